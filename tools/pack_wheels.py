@@ -15,7 +15,7 @@ from importlib import import_module
 from pathlib import Path
 from typing import Any
 
-from linkwright.learning.packing.locked_files import OURS, TABLE, wheel_rank
+from linkwright.learning.packing.locked_files import OWN_PACKAGES, TABLE, wheel_rank
 from linkwright.learning.packing.targets import SYSTEMS, Target, select_targets
 
 ROOT = Path(__file__).resolve().parent.parent
@@ -61,7 +61,7 @@ def _row(row: Mapping[str, Any]) -> str:
 
 
 def _key(package: Package) -> str:
-    return package["name"] if package["name"] in OURS else f"{package['name']} {package['version']}"
+    return package["name"] if package["name"] in OWN_PACKAGES else f"{package['name']} {package['version']}"
 
 
 def _has(rows: Mapping[str, Any], package: Package, extra: str) -> bool:
@@ -89,7 +89,7 @@ def _edge(edge: Mapping[str, Any], needed: Package) -> dict[str, Any]:
 
 
 def _files(package: Package, targets: list[Target]) -> list[list[Any]]:
-    if package["name"] in OURS:
+    if package["name"] in OWN_PACKAGES:
         return []
     wheels = [
         wheel

@@ -16,7 +16,7 @@ from linkwright.diagnostics import Diagnostic, LinkwrightError, Span, phrase
 from linkwright.graph.parameters.files import read_parameter_file
 from linkwright.learning.checks import running
 from linkwright.learning.checks.findings import describe_finding
-from linkwright.learning.checks.running import check_in_process, new_check_server
+from linkwright.learning.checks.running import check_in_process, create_check_server
 from linkwright.learning.classroom import open_classroom
 from linkwright.learning.course import find_course, load_course
 from linkwright.learning.lesson_tests import test_lesson as run_lesson_tests
@@ -211,11 +211,11 @@ def edit(path: Path, old: str, new: str) -> None:
 @pytest.mark.parametrize(
     ("file", "old", "new", "problem"),
     [
-        ("checks.py", "(0.5, 0.5, 0.5)", "(0.5, 0.5, 0.7)", "a right solution fails"),
-        ("checks.py", "def has_box", "def has_box(work): pass\ndef unused", "passes before"),
+        ("checks.py", "(0.5, 0.5, 0.5)", "(0.5, 0.5, 0.7)", "the checks reject a correct solution"),
+        ("checks.py", "def has_box", "def has_box(work): pass\ndef unused", "without its solution"),
         ("checks.py", 'check("mass"', 'check("weight"', "no step 'weight'"),
-        ("cases.py", "says=\"there is 'bax'\"", 'says="nothing"', "lacks 'nothing'"),
-        ("cases.py", "0.5 0.5 0.05", "0.5 0.5 0.50", "a wrong solution passes"),
+        ("cases.py", "says=\"there is 'bax'\"", 'says="nothing"', "does not contain 'nothing'"),
+        ("cases.py", "0.5 0.5 0.05", "0.5 0.5 0.50", "the checks accept a wrong solution"),
         ("lesson.zh.md", "# 一个连杆\n", "# 一个连杆\n\n![x](images/x.png)\n", "'images/x.png' is missing"),
     ],
 )
@@ -223,7 +223,7 @@ def test_the_tests_of_a_lesson_find_its_mistakes(tmp_path, capsys, file, old, ne
     folder = tmp_path / "mine"
     learn(capsys, "new", str(folder))
     edit(folder / "01-one-link" / file, old, new)
-    if problem == "passes before":
+    if problem == "without its solution":
         edit(folder / "01-one-link" / "checks.py", "def is_cube(work):", "def is_cube(work):\n    return")
     course = load_course(folder)
     problems = [str(result.problem) for result in run_lesson_tests(course, course.lessons[0]) if result.problem]
@@ -237,7 +237,7 @@ def check_server(request):
         return
     if not IS_POSSIBLE:
         pytest.skip("programs are forked off on Linux only")
-    with new_check_server() as server:
+    with create_check_server() as server:
         yield server
 
 

@@ -295,12 +295,12 @@ def test_odd_folders_have_a_line_each(folder, capsys):
     notes = {name: " / ".join(note["en"] for note in student["notes"]) for name, student in found.items()}
     assert notes["nested"] == "the workspace is the folder 'inner' in it"
     assert notes["links"] == "1 link was left out / 1 pipe, socket or device was left out"
-    assert notes["other"] == "learn.yaml is of the course 'robot', and was not used"
+    assert notes["other"] == "learn.yaml belongs to the course 'robot' and was not used"
     assert "does not contain the progress" in notes["yaml"]
     assert notes["without"] == "there is no learn.yaml, so there are no answers"
     assert notes["file.txt"] == "it is a file and not the folder of a student"
     assert notes["file.zip"] == "it is an archive; unpack it first"
-    assert notes["packed"] == "there is only the archive 'workspace.tar.gz'; unpack it first"
+    assert notes["packed"] == "the folder contains only the archive 'workspace.tar.gz'; unpack it first"
     points = {name: student["points"] for name, student in found.items()}
     not_graded = {"file.txt": 0, "file.zip": 0, "packed": 0}
     assert points == {"nested": 4, "links": 0, "other": 4, "yaml": 4, "without": 4, **not_graded}

@@ -47,7 +47,7 @@ def test_nodes_messages_and_transforms_are_waited_for(package):
         assert running.subscribers("/joint_states") == ["/robot_state_publisher"]
         assert running.wait_for_parameter("/robot_state_publisher", "publish_frequency") > 0
         begin = time.monotonic()
-        with pytest.raises(NotYet, match="/robot_state_publisher has no parameter 'colour'"):
+        with pytest.raises(NotYet, match="'/robot_state_publisher' has no parameter 'colour'"):
             running.wait_for_parameter("/robot_state_publisher", "colour")
         with pytest.raises(NotYet, match="no node '/robot_state_publishr'; there is '/robot_state_publisher'"):
             running.expect_node("/robot_state_publishr")
@@ -57,7 +57,7 @@ def test_nodes_messages_and_transforms_are_waited_for(package):
             running.expect_transform("base_link", "left_wheel_link", (0, 1, 0))
         with pytest.raises(NotYet, match="no transform from 'base_link' to 'arm'"):
             running.expect_transform("base_link", "arm")
-        with pytest.raises(NotYet, match="no fitting message came on /joint_states"):
+        with pytest.raises(NotYet, match="no message with the expected values arrived on '/joint_states'"):
             running.wait_for_message("/joint_states", lambda message: not message.name)
         assert time.monotonic() - begin < 60
 

@@ -89,7 +89,7 @@ def test_an_entry_of_setup_py_is_explained(package, entries, message):
         ("node.create_publisher(Twist, 'cmd_val', 10)", "the program publishes /cmd_val"),
         (
             "node.create_publisher(Twist, 'cmd_vel', 10), node.create_subscription(String, 'texts', print, 10)",
-            "subscribes to /texts, on which no node publishes; such messages come on /text",
+            "subscribes to /texts, but no node publishes it; messages of this type are published on /text",
         ),
     ],
 )

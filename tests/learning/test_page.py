@@ -160,7 +160,7 @@ async def test_wrong_requests_are_answered_with_the_reason(tmp_path):
 
 
 async def test_pages_elsewhere_are_refused(tmp_path, monkeypatch):
-    refusal = "the course can be used only in pages on the machine of the program"
+    refusal = "a course works only in pages on the machine where Linkwright runs"
     monkeypatch.setattr("linkwright.page.server.is_from_here", lambda _: False)
     async with classroom(tmp_path / "ws") as client:
         await client.send("take_solution")

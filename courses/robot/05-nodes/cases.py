@@ -93,7 +93,7 @@ CASES = [
         "package",
         "a misspelt module",
         Edit(SETUP, "my_control.first_move:main", "my_control.frist_move:main"),
-        says="which is missing",
+        says="is missing",
     ),
     right("publish", "a loop with time.sleep", {MOVE: LOOP}),
     right("publish", "a loop with spin_once", {MOVE: RATE}),

@@ -48,7 +48,12 @@ CASES = [
         says="does not move",
     ),
     wrong("meter", "no stop", Edit(METER, "        else:\n            self.drive(0.0)\n", ""), says="still drives"),
-    wrong("meter", "the wrong topic", Edit(METER, "'odom'", "'odometry'"), says="such messages come on /odom"),
+    wrong(
+        "meter",
+        "the wrong topic",
+        Edit(METER, "'odom'", "'odometry'"),
+        says="messages of this type are published on /odom",
+    ),
     wrong(
         "brake",
         "no braking",

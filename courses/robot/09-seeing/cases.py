@@ -218,7 +218,7 @@ CASES = [
         "detector",
         "another image topic",
         Edit(LAUNCH, "'/camera/image_raw'", "'/camera/image'"),
-        says="no fitting message came on /yolo/detections",
+        says="no message with the expected values arrived on '/yolo/detections'",
     ),
     wrong(
         "detector",

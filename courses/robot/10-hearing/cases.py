@@ -113,7 +113,7 @@ CASES = [
         "words",
         "another topic",
         Edit(DRIVER, "'voice/text'", "'text'"),
-        says="such messages come on /voice/text",
+        says="messages of this type are published on /voice/text",
     ),
     wrong(
         "words",

@@ -89,13 +89,13 @@ CASES = [
         "qos",
         "only the images",
         Edit(FINDER, "self.on_lens,\n                                 qos_profile_sensor_data", "self.on_lens, 10"),
-        says="does not fit that of the publisher",
+        says="is not compatible with that of the publisher",
     ),
     wrong(
         "qos",
         "only the camera_info",
         Edit(FINDER, "self.on_image,\n                                 qos_profile_sensor_data", "self.on_image, 10"),
-        says="does not fit that of the publisher",
+        says="is not compatible with that of the publisher",
     ),
     wrong(
         "qos",

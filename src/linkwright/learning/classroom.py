@@ -30,11 +30,11 @@ REPLACED_FOLDER = "replaced"
 
 @dataclass(frozen=True)
 class FilePlan:
-    """The files of a course that are to be written into the workspace.
+    """The files of a course to write into the workspace.
 
     Attributes:
-        new: the files that do not exist, with those of the course.
-        replaced: the files with another content, with those of the course.
+        new: the files that do not exist yet, with the course's file for each path.
+        replaced: the existing files with other content, with the course's file for each path.
     """
 
     new: Mapping[Path, Path]
@@ -42,7 +42,7 @@ class FilePlan:
 
     @property
     def files(self) -> Mapping[Path, Path]:
-        """All files to write, with those of the course."""
+        """All files to write, with the course's file for each path."""
         return {**self.new, **self.replaced}
 
 
@@ -81,15 +81,15 @@ class Classroom:
         return self.progress.step(step.address).passed is not None
 
     def _last_moment(self, step: Step) -> float:
-        """Return when a step was begun or passed, in seconds since the epoch; minus infinity if it never was."""
+        """Return the time when a step was last begun or passed, in s since the epoch; minus infinity for never."""
         noted = self.progress.step(step.address)
         moments = [moment.timestamp() for moment in (noted.started, noted.passed) if moment is not None]
         return max(moments, default=-math.inf)
 
     def open_step(self, step: Step) -> list[Path]:
-        """Open a step: note the time, and copy the files with which its lesson begins.
+        """Open a step: record the time, and copy the initial files of its lesson.
 
-        Files that exist stay as they are.
+        Existing files are not changed.
 
         Returns:
             The copied files.
@@ -108,7 +108,7 @@ class Classroom:
         return copied
 
     def check(self, step: Step, run: Callable[..., StepResult] = check_in_process) -> StepResult:
-        """Check a step, and note it as passed if all checks are satisfied.
+        """Check a step, and record it as passed if all checks are satisfied.
 
         Args:
             step: the step.
@@ -118,11 +118,11 @@ class Classroom:
             LinkwrightError: LEARN111, the progress cannot be written.
         """
         result = run(step, self.workspace, answer=self.progress.step(step.address).answer)
-        self.note_result(step, result)
+        self.record_result(step, result)
         return result
 
-    def note_result(self, step: Step, result: StepResult) -> None:
-        """Note a step as passed if all its checks are satisfied.
+    def record_result(self, step: Step, result: StepResult) -> None:
+        """Record a step as passed if all its checks are satisfied.
 
         Raises:
             LinkwrightError: LEARN111, the progress cannot be written.
@@ -131,7 +131,7 @@ class Classroom:
             self._note(step, passed=_now())
 
     def reload(self) -> None:
-        """Read the progress again, which another program may have written.
+        """Read the progress file again, because another program may have changed it.
 
         Raises:
             LinkwrightError: LEARN102, LEARN110: the progress cannot be read.
@@ -139,7 +139,7 @@ class Classroom:
         self.progress = read_progress(self.workspace) or self.progress
 
     def shown_file(self, step: Step) -> Path | None:
-        """Return the robot's file that is shown beside a step; it need not exist.
+        """Return the robot's file to show beside a step, or None; the file need not exist.
 
         It is the one that the step names, or the last one that a step before it names. It is None if there is none.
         """
@@ -148,11 +148,11 @@ class Classroom:
         return self.workspace / names[-1] if names else None
 
     def solution_files(self, step: Step) -> list[Path]:
-        """Return the files of the workspace that the solution of a step writes."""
+        """Return the paths in the workspace that the solution of a step writes."""
         return [self.workspace / name for name, _ in files_below(step.solution)]
 
     def answer(self, step: Step, text: str) -> None:
-        """Note the learner's answer to a step.
+        """Record the learner's answer to a step.
 
         Raises:
             LinkwrightError: LEARN111, the progress cannot be written; LEARN112, the step asks for no number.
@@ -164,18 +164,18 @@ class Classroom:
         self._note(step, answer=text)
 
     def take_hint(self, step: Step) -> int:
-        """Note one more hint of a step, and return the number of hints that are shown now."""
+        """Record that one more hint of a step is shown, and return the number of shown hints."""
         available = len(step.text("").hints)
         taken = min(self.progress.step(step.address).hints + 1, available)
         self._note(step, hints=taken)
         return taken
 
     def take_solution(self, step: Step) -> list[Path]:
-        """Copy the solution of a step into the workspace, and note that it was taken.
+        """Copy the solution of a step into the workspace, and record that it was used.
 
         A step that asks for a number may have no files; `Step.right_answer` is its solution.
 
-        Files with another content are copied to the folder `REPLACED_FOLDER` first, in which colcon finds no packages.
+        Files with other content are first copied to the folder `REPLACED_FOLDER`, which colcon ignores.
 
         Returns:
             The files that were written.
@@ -193,13 +193,13 @@ class Classroom:
         return written
 
     def steps_to_catch_up(self, step: Step) -> list[Step]:
-        """Return the steps before a step that write files and are neither passed nor taken over."""
+        """Return the earlier steps with files that are neither passed nor taken over."""
         before = self.course.steps[: self.course.steps.index(step)]
         noted = [(each, self.progress.step(each.address)) for each in before]
         return [each for each, done in noted if done.passed is None and not done.taken_over and each.solution.is_dir()]
 
     def plan_catch_up(self, step: Step) -> FilePlan:
-        """Return which files must be written for the course's state before a step.
+        """Return the files to write so that the workspace has the course's state before a step.
 
         Raises:
             LinkwrightError: LEARN111, a file cannot be read.
@@ -207,9 +207,9 @@ class Classroom:
         return self._plan(self.course.files_before(step))
 
     def catch_up(self, step: Step) -> list[Path]:
-        """Bring the workspace into the course's state before a step, and note the steps before it as taken over.
+        """Bring the workspace into the course's state before a step, and mark the earlier steps as taken over.
 
-        Steps that are passed stay passed. Files with another content are kept as in `take_solution`.
+        Passed steps stay passed. Files with other content are backed up as in `take_solution`.
 
         Returns:
             The files that were written.
@@ -224,7 +224,7 @@ class Classroom:
         return written
 
     def _plan(self, files: Mapping[Path, Path]) -> FilePlan:
-        """Return which of the files, by their paths in the workspace, differ from those of the workspace."""
+        """Return the files, by their paths in the workspace, that differ from the files of the workspace."""
         with _writing(self.workspace):
             targets = {self.workspace / name: source for name, source in files.items()}
             new = {target: source for target, source in targets.items() if not target.exists()}
@@ -236,7 +236,7 @@ class Classroom:
         return FilePlan(new, replaced)
 
     def _write(self, plan: FilePlan) -> list[Path]:
-        """Write the files of a plan, and keep those that they replace."""
+        """Write the files of a plan, and back up the files that they replace."""
         name = datetime.now().astimezone().strftime("%Y-%m-%d-%H%M%S")
         folders = (self.workspace / REPLACED_FOLDER / f"{name}{suffix}" for suffix in ("", *range(-2, -100, -1)))
         kept = next(folder for folder in folders if not folder.exists())
@@ -319,7 +319,7 @@ def _now() -> datetime:
 
 @contextmanager
 def _writing(workspace: Path) -> Iterator[None]:
-    """Raise LEARN111 for errors of the operating system."""
+    """Raise LEARN111 in place of an OSError in the context."""
     try:
         yield
     except OSError as error:

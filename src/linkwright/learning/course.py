@@ -1,4 +1,4 @@
-"""Courses and lessons: their folders, read and verified."""
+"""Courses and lessons, read from their folders and validated."""
 
 from __future__ import annotations
 
@@ -30,7 +30,7 @@ class Step:
 
     Attributes:
         lesson: the lesson.
-        id: the step's name, which is the same in all languages.
+        id: the name of the step, the same in all languages.
         texts: the text in each language of the lesson.
     """
 
@@ -50,12 +50,12 @@ class Step:
 
     @property
     def points(self) -> float:
-        """The points that the step counts in a grade."""
+        """The points that a grade includes for the step."""
         return self.lesson.points.get(self.id, 1)
 
     @property
     def unit(self) -> str | None:
-        """The unit of the number that the step asks for, or None if it asks for none."""
+        """The unit of the number that the step asks for, or None if the step has no question."""
         return next(iter(self.texts.values())).unit
 
     @property
@@ -74,7 +74,7 @@ class Step:
 
     @property
     def right_answer(self) -> str | None:
-        """The number that the step asks for, as text; None if the lesson does not give it.
+        """The correct answer, a number as text; None if the lesson does not contain it.
 
         Raises:
             LinkwrightError: LEARN102, the file with the number cannot be read.
@@ -97,7 +97,7 @@ class Lesson:
         title: the title in each language.
         needs: the extras of Linkwright that the lesson needs, such as ``sim``.
         texts: the text in each language.
-        points: the points of steps that do not count 1, by the step's name.
+        points: the points of steps, by the step's name; other steps have 1 point.
     """
 
     folder: Path
@@ -122,7 +122,7 @@ class Lesson:
 
     @property
     def start(self) -> Path:
-        """The folder with the files to begin with; it need not exist."""
+        """The folder with the initial files of the lesson; it need not exist."""
         return self.folder / "start"
 
 
@@ -153,7 +153,7 @@ class Course:
     def files_before(self, step: Step) -> dict[Path, Path]:
         """Return the files of the course before a step, by their paths in the workspace.
 
-        They are the solutions of all steps before it, and the files with which their lessons begin.
+        These are the initial files of the lessons, and the solutions of all earlier steps.
         """
         files: dict[Path, Path] = {}
         for earlier in self.steps[: self.steps.index(step)]:
@@ -202,7 +202,7 @@ class Course:
 
 
 def files_below(folder: Path) -> Iterator[tuple[Path, Path]]:
-    """Yield the path in a folder of each file below it, and the file; none if the folder does not exist."""
+    """Yield the relative path and the absolute path of each file below a folder, which need not exist."""
     for path in sorted(folder.rglob("*")) if folder.is_dir() else ():
         if path.is_file() and "__pycache__" not in path.parts:
             yield path.relative_to(folder), path
@@ -293,7 +293,7 @@ def _is_number_of_points(value: object) -> bool:
 
 
 def _form(step: StepText) -> tuple[object, ...]:
-    """Return what must be equal in all languages of a step."""
+    """Return the properties of a step that must be equal in all languages."""
     return step.id, step.unit, step.shown_file, len(step.hints)
 
 
@@ -309,9 +309,10 @@ def _compare_languages(texts: Sequence[LessonText]) -> None:
         )
         line = other.steps[min(index, len(other.steps) - 1)].line
         message = phrase(
-            "step {number} differs from the one in '{other}': names, attributes and numbers of hints must be equal",
+            "step {number} differs from the same step in '{other_file}': names, attributes and numbers of hints "
+            "must be equal",
             number=index + 1,
-            other=display_path(first.path),
+            other_file=display_path(first.path),
         )
         raise file_error("LEARN105", other.path, message, line=line)
 

@@ -1,4 +1,4 @@
-"""The errors that the files of a course cause."""
+"""Errors in the files of a course."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ from linkwright.diagnostics import Diagnostic, LinkwrightError, Phrase, Span, di
 
 
 def file_error(code: str, path: Path, message: Phrase, *, line: int = 1, hint: Phrase | None = None) -> LinkwrightError:
-    """Return the error for a line of a file."""
+    """Return an error at a line of a file."""
     return LinkwrightError(Diagnostic(code, message, Span(str(path), line, 1, line, 1), hint=hint))
 
 

@@ -1,4 +1,4 @@
-"""The tests of lessons: right and wrong solutions, which the checks must accept and refuse."""
+"""Tests of lessons, with correct solutions that the checks must accept and wrong ones that they must reject."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from pathlib import Path
 from linkwright.diagnostics import Phrase, phrase
 from linkwright.files.scratch_folders import ScratchFolder
 from linkwright.learning.checks.declaring import load_checks, load_module
-from linkwright.learning.checks.running import check_in_process, new_check_server
+from linkwright.learning.checks.running import check_in_process, create_check_server
 from linkwright.learning.course import CASES_FILE, CHECKS_FILE, Course, Lesson, Step
 from linkwright.learning.errors import file_error
 from linkwright.process.forked import ForkServer
@@ -40,11 +40,11 @@ class Case:
 
     Attributes:
         step: the name of the step.
-        title: what is special about the solution.
-        changes: the changes to the solution of the step, in order: edits; or new contents by path in the workspace,
-            None to delete the file.
-        says: for a wrong solution a part of the English message of its first failed check; None for a right solution.
-        answer: the answer instead of the right one; None for the right one.
+        title: the distinguishing feature of the solution.
+        changes: the changes to the step's solution, in order: edits, or new contents by path in the workspace with
+            None for a file to delete.
+        says: for a wrong solution, a part of the first failed check's English message; None for a right solution.
+        answer: the learner's answer; None for the correct answer.
     """
 
     step: str
@@ -55,14 +55,14 @@ class Case:
 
 
 def right(step: str, title: str, *changes: Edit | Mapping[str, str | None], answer: str | None = None) -> Case:
-    """Return a right solution; see `Case`."""
+    """Return a test case with a correct solution. See `Case`."""
     return Case(step, title, changes, None, answer)
 
 
 def wrong(
     step: str, title: str, *changes: Edit | Mapping[str, str | None], says: str, answer: str | None = None
 ) -> Case:
-    """Return a wrong solution, whose message contains `says`; see `Case`."""
+    """Return a test case with a wrong solution, for which a check's message must contain `says`. See `Case`."""
     return Case(step, title, changes, says, answer)
 
 
@@ -73,7 +73,7 @@ class TestResult:
     Attributes:
         lesson: the name of the lesson.
         title: the name of the test.
-        problem: what is wrong; None if nothing is.
+        problem: the reason why the test failed; None if it passed.
     """
 
     __test__ = False  # pytest would collect it
@@ -84,13 +84,13 @@ class TestResult:
 
 
 def test_lesson(course: Course, lesson: Lesson) -> Iterator[TestResult]:
-    """Test a lesson: its images, its checks, its solutions, and its right and wrong cases.
+    """Test the images, the checks, the solutions and the cases of a lesson.
 
-    Each step must fail before its solution and pass after it. The workspace before a lesson has the solutions of all
-    steps before it.
+    The checks of each step must fail before its solution and pass after it. The initial workspace has the solutions
+    of all steps before the lesson.
 
     Yields:
-        A result for each test, as soon as it is known.
+        The result of each test as soon as the test has ended.
 
     Raises:
         LinkwrightError: a file of the lesson cannot be read or run.
@@ -101,7 +101,7 @@ def test_lesson(course: Course, lesson: Lesson) -> Iterator[TestResult]:
     if unknown:
         yield TestResult(lesson.id, CHECKS_FILE, phrase("there is no step '{step}'", step=unknown[0]))
     cases = load_cases(lesson)
-    with ScratchFolder("lesson") as scratch, new_check_server() as server:
+    with ScratchFolder("lesson") as scratch, create_check_server() as server:
         workspace = Path(scratch) / "before"
         workspace.mkdir()
         for name, source in course.files_before(lesson.steps[0]).items():
@@ -121,32 +121,38 @@ test_lesson.__test__ = False  # type: ignore[attr-defined]  # pytest would colle
 def _test_step(
     step: Step, workspace: Path, cases: Sequence[Case], scratch: Path, server: ForkServer
 ) -> Iterator[TestResult]:
-    """Test a step, and leave its solution in the workspace."""
+    """Yield the results of a step's tests, and leave the step's solution in the workspace."""
     answer = step.right_answer
     if check_in_process(step, workspace, server=server).passed:
-        yield TestResult(step.lesson.id, step.id, phrase("the step passes before its solution"))
+        yield TestResult(step.lesson.id, step.id, phrase("the checks accept the step without its solution"))
     _overlay(step.solution, workspace)
-    yield TestResult(step.lesson.id, step.id, _objection(step, workspace, answer, None, server))
+    yield TestResult(step.lesson.id, step.id, _unexpected_result(step, workspace, answer, None, server))
     for case in cases:
         shutil.rmtree(scratch, ignore_errors=True)
         shutil.copytree(workspace, scratch)
         _apply(case, scratch, step.lesson)
         given = answer if case.answer is None else case.answer
         yield TestResult(
-            step.lesson.id, f"{step.id}: {case.title}", _objection(step, scratch, given, case.says, server)
+            step.lesson.id, f"{step.id}: {case.title}", _unexpected_result(step, scratch, given, case.says, server)
         )
 
 
-def _objection(step: Step, workspace: Path, answer: str | None, says: str | None, server: ForkServer) -> Phrase | None:
-    """Return what is wrong about the result of the checks, or None if nothing is."""
+def _unexpected_result(
+    step: Step, workspace: Path, answer: str | None, says: str | None, server: ForkServer
+) -> Phrase | None:
+    """Return the difference between the expected and the actual result of the checks, or None."""
     result = check_in_process(step, workspace, answer=answer, server=server)
     messages = [str(check.message) for check in result.checks if check.message is not None]
     if says is None:
-        return None if result.passed else phrase("a right solution fails: {message}", message=(messages or [""])[0])
+        return (
+            None
+            if result.passed
+            else phrase("the checks reject a correct solution: {message}", message=(messages or [""])[0])
+        )
     if result.passed:
-        return phrase("a wrong solution passes")
+        return phrase("the checks accept a wrong solution")
     if not messages or says not in messages[0]:
-        return phrase("the message is '{message}' and lacks '{part}'", message=(messages or [""])[0], part=says)
+        return phrase("the message '{message}' does not contain '{part}'", message=(messages or [""])[0], part=says)
     return None
 
 

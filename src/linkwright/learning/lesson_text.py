@@ -1,4 +1,4 @@
-"""The text of a lesson: Markdown, divided into steps and their sections."""
+"""The text of a lesson, Markdown that is divided into steps and sections."""
 
 from __future__ import annotations
 
@@ -28,9 +28,9 @@ class StepText:
         id: the step's name in checks and progress, from ``{#id}`` after the title.
         title: the title.
         body: the Markdown of the step without title and hints.
-        hints: the Markdown of each section marked with ``{.hint}``, with its title, in the order of the text.
-        unit: the unit of the number that the learner answers, from ``{#id answer=m}``; None if the step asks for none.
-            A number without a unit has the unit ``1``.
+        hints: the Markdown of each section marked with ``{.hint}``, including its title, in the order of the text.
+        unit: the unit of the learner's answer, from ``{#id answer=m}``; None if the step has no question.
+            The unit of a dimensionless number is ``1``.
         shown_file: the robot's file that the page shows from this step on, relative to the workspace, from
             ``{#id show=src/PACKAGE/urdf/ROBOT.xacro}``; None for no change.
         line: the line of the title, from 1.
@@ -127,7 +127,7 @@ def _line_of(headings: Sequence[_Heading], index: int, lines: Sequence[str]) -> 
 
 
 def _read_step(path: Path, lines: Sequence[str], headings: Sequence[_Heading], end_line: int) -> StepText:
-    """Return the step that the first of its headings begins."""
+    """Return the step that begins at the first of some headings."""
     opening = headings[0]
     line = opening.first_line + 1
     names = [attribute[1:] for attribute in opening.attributes if attribute.startswith("#")]

@@ -1,4 +1,4 @@
-"""Texts of lessons, which exist in one or more languages."""
+"""Texts of lessons in one or more languages."""
 
 from __future__ import annotations
 
@@ -32,7 +32,7 @@ class LocalText:
         return cls({language: translate_phrase(phrase, language) for language in LANGUAGES})
 
     def get(self, language: str) -> str:
-        """Return the text in a language, or in the first language that there is."""
+        """Return the text in a language, or else in the first available language."""
         return self.texts.get(language) or next(iter(self.texts.values()))
 
     def __str__(self) -> str:

@@ -1,4 +1,4 @@
-"""Create a course from the shipped example."""
+"""Creation of a course from the shipped example."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ EXAMPLE = "example"
 
 
 def create_course(folder: Path) -> list[Path]:
-    """Copy the example of a course, which passes ``linkwright learn test``.
+    """Create a course as a copy of the example, which passes ``linkwright learn test``.
 
     Returns:
         The files of the new course.

@@ -1,4 +1,4 @@
-"""The learner's progress: a readable file in the workspace."""
+"""The learner's progress, stored as a readable file in the workspace."""
 
 from __future__ import annotations
 
@@ -26,11 +26,11 @@ class StepProgress:
     """The progress in a step.
 
     Attributes:
-        started: when the step was opened first.
-        passed: when all checks were satisfied first; None if they never were.
+        started: the time when the step was first opened.
+        passed: the time when all checks were first satisfied; None if they never were.
         hints: the number of hints taken.
-        solution: whether the solution was taken.
-        taken_over: whether the learner took the step over from the course, to begin at a later step.
+        solution: whether the learner used the solution.
+        taken_over: whether the course's files replace the learner's work, so that a later step can be started.
         answer: the number that the learner answered, as text; None if there is none.
     """
 

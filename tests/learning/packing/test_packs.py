@@ -193,7 +193,7 @@ def test_a_source_that_needs_a_compiler_cannot_be_packed(
     source = write_source(index.folder, "source", tag="cp313-cp313-linux_x86_64")
     index.table["source 1.0"].update(package(source))
     assert index.pack(tmp_path / "pack", *LINUX) == 1
-    assert "the wheel that was built of 'source-1.0.tar.gz' is for this system only" in capsys.readouterr().err
+    assert "the wheel that was built from 'source-1.0.tar.gz' works only on this system" in capsys.readouterr().err
 
 
 def test_both_wheels_of_linkwright_are_needed(

@@ -1,1 +1,1 @@
-"""The checks of lessons: declaring them, what they look at, and running them."""
+"""The checks of lessons: their declaration, the objects that they inspect, and how they run."""

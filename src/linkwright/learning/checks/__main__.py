@@ -1,4 +1,4 @@
-"""The program that runs the checks of a step; see `linkwright.learning.checks.running.check_command`."""
+"""The program that runs the checks of a step (see `linkwright.learning.checks.running.check_command`)."""
 
 import sys
 

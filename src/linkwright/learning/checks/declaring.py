@@ -1,4 +1,4 @@
-"""Declare the checks of a lesson, and load them from its file."""
+"""Declaration of the checks of a lesson, and loading them from its file."""
 
 from __future__ import annotations
 

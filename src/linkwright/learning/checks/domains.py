@@ -1,4 +1,4 @@
-"""A ROS domain that no other check uses."""
+"""Reservation of a ROS domain that no other check uses."""
 
 from __future__ import annotations
 
@@ -19,13 +19,13 @@ _locks: list[socket.socket] = []
 
 
 def hold_domain() -> int:
-    """Return a ROS domain that no other process holds, and hold it until this process ends.
+    """Reserve a ROS domain for this process until the process ends, and return its ID.
 
-    The domain of the environment, which the learner's own programs use, is left out.
+    The domain of the environment is never returned, because the learner's own programs use it.
 
-    A domain is held by listening on a TCP port, which only one process can do. The port is the first of those that DDS
-    uses in the domain, over UDP. Ports have the same scope as domains, also in containers. If all domains are held, the
-    function waits.
+    Listening on a TCP port, which only one process can do, reserves the domain. The port is the first of those that DDS
+    uses in the domain, over UDP. Ports have the same scope as domains, also in containers. If all domains are
+    reserved, the function waits.
     """
     domains = [domain for domain in _DOMAINS if str(domain) != os.environ.get("ROS_DOMAIN_ID")]
     start = os.getpid() % len(domains)

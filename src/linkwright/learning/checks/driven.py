@@ -1,4 +1,4 @@
-"""Simulated robots that lack masses, collisions or a drive, completed as ``linkwright drive`` does."""
+"""Simulation of robots that lack masses, collisions or a drive, which are added as by ``linkwright drive``."""
 
 from __future__ import annotations
 
@@ -22,14 +22,14 @@ _NOT_DRIVEN = {"DRIVE201", "DRIVE203", "DRIVE204"}
 
 @contextmanager
 def simulate_completed(path: Path, finder: PackageFinder) -> Iterator[SteppedSimulation]:
-    """Simulate a robot in an empty world, with all elements that it lacks.
+    """Return a simulation of a robot in an empty world, completed with the elements that it lacks.
 
     Args:
         path: the URDF or xacro file of the robot, which has no errors.
         finder: the finder of packages.
 
     Raises:
-        NotYet: nothing on the robot can be driven.
+        NotYet: the robot has no joint that can be driven.
     """
     from linkwright.inertia import MeshLibrary
     from linkwright.inference import infer

@@ -1,4 +1,4 @@
-"""Findings about the learner's files, as checks tell them: in one line with the place and the advice."""
+"""Findings about the learner's files as one line of text, with the location and the hint."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ def describe_finding(finding: Diagnostic, file: str | None = None) -> Phrase:
     """
     text = phrase("{message} [{code}]", message=finding.message, code=finding.code)
     if finding.span is not None:
-        text = _place(finding.span, text)
+        text = _at_location(finding.span, text)
     elif file is not None:
         text = phrase("{file}: {message}", file=file, message=text)
     return add_hint(text, finding.hint)
@@ -28,19 +28,19 @@ def describe_error(error: LinkwrightError, file: str | None = None) -> Phrase:
 
 
 def add_hint(message: Phrase, hint: Phrase | None) -> Phrase:
-    """Return a message with a hint behind it, or the message alone if there is no hint."""
+    """Return a message followed by a hint, or the message alone if there is no hint."""
     return message if hint is None else phrase("{message}; {hint}", message=message, hint=hint)
 
 
-def _place(span: Span, text: Phrase) -> Phrase:
+def _at_location(span: Span, text: Phrase) -> Phrase:
     name = Path(span.file).name
     if _is_line(span):
         return phrase("{file}, line {line}: {text}", file=name, line=span.line, text=text)
     return phrase(
-        "{file}, line {line}, column {column}: {text}", file=name, line=span.line, column=span.column, text=text
+        "{file}, line {line}, column {column}: {message}", file=name, line=span.line, column=span.column, message=text
     )
 
 
 def _is_line(span: Span) -> bool:
-    """Return whether a span names a line whose column is not known."""
+    """Return whether a span locates a line without a column."""
     return span.column == 1 and (span.line, span.column) == (span.end_line, span.end_column)

@@ -40,10 +40,10 @@ print(json.dumps(files))
 
 
 def expect_valid_setup(folder: Path) -> None:
-    """Require a package to have a ``setup.py`` that is valid Python, if it is a Python package.
+    """Require the ``setup.py`` of a Python package to exist and to be valid Python.
 
     Raises:
-        NotYet: it is missing, or has a syntax error.
+        NotYet: the file is missing, or has a syntax error.
     """
     path = folder / "setup.py"
     if not path.is_file():
@@ -62,7 +62,7 @@ def expect_valid_setup(folder: Path) -> None:
 
 
 def files_of_setup(folder: Path) -> dict[PurePosixPath, Path]:
-    """Return the data files that a ``setup.py`` installs.
+    """Return the data files that a ``setup.py`` installs, by their installed paths.
 
     The file runs in a process of its own, with a stand-in for setuptools.
 
@@ -70,7 +70,7 @@ def files_of_setup(folder: Path) -> dict[PurePosixPath, Path]:
         folder: the folder of the package.
 
     Returns:
-        The source of each file, by its place below the installation prefix.
+        The source of each file, by its path below the installation prefix.
 
     Raises:
         NotYet: the file is missing or fails.
@@ -80,7 +80,7 @@ def files_of_setup(folder: Path) -> dict[PurePosixPath, Path]:
     try:
         output = _run_setup(folder)
     except subprocess.TimeoutExpired:
-        raise NotYet(phrase("setup.py took longer than {seconds:g} s", seconds=_TIMEOUT_SECONDS)) from None
+        raise NotYet(phrase("setup.py did not end within {seconds:g} s", seconds=_TIMEOUT_SECONDS)) from None
     except subprocess.CalledProcessError as error:
         raise NotYet(_describe_failure(error.stderr.strip().splitlines() or [""])) from None
     lines = output.splitlines()
@@ -102,8 +102,8 @@ def _run_setup(folder: Path) -> str:
     """Run a ``setup.py``, and return its output.
 
     Raises:
-        subprocess.CalledProcessError: it fails.
-        subprocess.TimeoutExpired: it takes too long, which does not depend on the load of the machine.
+        subprocess.CalledProcessError: the file fails.
+        subprocess.TimeoutExpired: the file takes too long; the load of the machine does not count.
     """
     clock = PatientClock()
     command = [sys.executable, "-c", _RUNNER]
@@ -127,7 +127,7 @@ def _run_setup(folder: Path) -> str:
 
 
 def _read_outputs(process: subprocess.Popen[str]) -> tuple[str, str] | None:
-    """Return the outputs of a process if it ends soon, or None."""
+    """Return standard output and standard error of a process if it ends soon, or None."""
     try:
         return process.communicate(timeout=_PERIOD_SECONDS)
     except subprocess.TimeoutExpired:

@@ -12,7 +12,7 @@ _SKIPPED = "LAUNCH146"
 
 
 class CheckedLog(LaunchLog):
-    """The log of a launch that a check runs, which keeps the problems that the launch reports.
+    """The log of a launch that a check runs, which also collects the problems that the launch reports.
 
     Args:
         output: the stream for all lines.
@@ -24,7 +24,7 @@ class CheckedLog(LaunchLog):
         self._problems = problems
 
     def write_diagnostics(self, diagnostics: Iterable[Diagnostic]) -> None:
-        """Log findings about the learner's files, and keep those that are problems."""
+        """Log findings about the learner's files, and collect the findings that are problems."""
         findings = list(diagnostics)
         for finding in findings:
             if finding.code == _SKIPPED:

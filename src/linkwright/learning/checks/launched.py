@@ -1,4 +1,4 @@
-"""A launch of the learner's package, and the graph that it starts."""
+"""Checks of a launch file of the learner's package, and of the graph that it starts."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ from linkwright.diagnostics import Diagnostic, LinkwrightError, Phrase, nearest,
 from linkwright.graph.faults import InvalidHandleError
 from linkwright.learning.checks.findings import describe_finding
 from linkwright.learning.checks.not_yet import NotYet
-from linkwright.learning.checks.rviz_arguments import object_to_rviz_arguments
+from linkwright.learning.checks.rviz_arguments import require_rviz_configuration
 from linkwright.process.patience import PatientClock
 
 if TYPE_CHECKING:
@@ -137,14 +137,17 @@ class LaunchCheck:
             NotYet: RViz did not start in time, or opens another configuration.
         """
         self.expect_node("/rviz2")
-        self._wait_until(lambda: bool(self._viewer_arguments()), phrase("the node '/rviz2' is not RViz"))
-        object_to_rviz_arguments(self._viewer_arguments()[0], path)
+        self._wait_until(
+            lambda: bool(self._viewer_arguments()),
+            phrase("the node '/rviz2' is another program than RViz; start 'rviz2' of the package 'rviz2'"),
+        )
+        require_rviz_configuration(self._viewer_arguments()[0], path)
 
     def _viewer_arguments(self) -> list[list[str]]:
         return [] if self._session is None else self._session.host.viewer_arguments
 
     def expect_distinct_nodes(self) -> None:
-        """Require the nodes that run now to have names of their own.
+        """Require the nodes that run now to have different names.
 
         Raises:
             NotYet: two nodes have the same name.
@@ -167,7 +170,7 @@ class LaunchCheck:
         self._wait_until(lambda: name in self.nodes(), lambda: self._missing_node(name))
 
     def nodes(self) -> list[str]:
-        """Return the full names of the nodes that run now."""
+        """Return the full names of the running nodes."""
         return [
             f"{namespace.rstrip('/')}/{name}"
             for name, namespace in self._call(self._checker.get_node_names_and_namespaces)
@@ -175,7 +178,7 @@ class LaunchCheck:
         ]
 
     def subscribers(self, topic: str) -> list[str]:
-        """Return the full names of the nodes that subscribe to a topic now."""
+        """Return the full names of the nodes that currently subscribe to a topic."""
         infos = self._call(lambda: self._checker.get_subscriptions_info_by_topic(topic))
         nodes = {(info.node_namespace.rstrip("/"), info.node_name) for info in infos}
         return sorted(f"{namespace}/{name}" for namespace, name in nodes if name != _NODE)
@@ -207,7 +210,7 @@ class LaunchCheck:
             return bool(found)
 
         try:
-            self._wait_until(has_value, phrase("{node} has no parameter '{name}'", node=node, name=name))
+            self._wait_until(has_value, phrase("the node '{node}' has no parameter '{name}'", node=node, name=name))
         finally:
             self._call(client.destroy)
         return parameter_value_to_python(found[0])
@@ -217,7 +220,7 @@ class LaunchCheck:
 
         Args:
             topic: the full name of the topic.
-            accept: returns whether a message is the one to wait for; None to accept any.
+            accept: returns whether the wait ends with a message; None to end it with any message.
 
         Raises:
             NotYet: no node publishes the topic, or no such message came in time.
@@ -240,7 +243,7 @@ class LaunchCheck:
             received.clear()
             return bool(matching)
 
-        self._wait_until(has_match, phrase("no fitting message came on {topic}", topic=topic))
+        self._wait_until(has_match, phrase("no message with the expected values arrived on '{topic}'", topic=topic))
         return matching[0]
 
     def expect_transform(
@@ -252,10 +255,10 @@ class LaunchCheck:
             frame: the frame in which the position is given.
             child: the frame whose position is expected.
             position: x, y and z in m; None for any.
-            tolerance: the greatest distance that passes, in m.
+            tolerance: the greatest accepted distance, in m.
 
         Raises:
-            NotYet: there is no transform in time, or the position differs.
+            NotYet: the transform does not become available in time, or the position differs.
         """
         found: list[Sequence[float]] = []
 
@@ -348,7 +351,7 @@ class LaunchCheck:
         return _QUIET_SECONDS_OF_PROCESSES if self._session.processes.names else _QUIET_SECONDS
 
     def _failure(self) -> Phrase:
-        """Return why the launch ended before the check did."""
+        """Return the reason why the launch ended before the check."""
         try:
             self._run.result()
         except LinkwrightError as error:
@@ -362,7 +365,7 @@ class LaunchCheck:
         )
 
     def _located(self, finding: Diagnostic) -> Phrase:
-        """Return a finding with the name of the launch file, unless it has a file of its own."""
+        """Return a finding with the name of the launch file, unless it names another file."""
         described = describe_finding(finding)
         return described if finding.span else phrase("{file}: {message}", file=self._file, message=described)
 
@@ -374,7 +377,7 @@ class LaunchCheck:
         return phrase("{file}: {message}", file=self._file, message=errors[0]) if errors else None
 
     def _missing_topic(self, topic: str) -> Phrase:
-        """Return that no node publishes a topic, with the first error that the launch printed."""
+        """Return the message for a topic without publishers, with the first error of the launch."""
         topics = self._topics()
         if problem := self._problem():
             return phrase("no node publishes '{topic}'; the launch says: {message}", topic=topic, message=problem)
@@ -392,7 +395,7 @@ class LaunchCheck:
         )
 
     def _missing_node(self, name: str) -> Phrase:
-        """Return that a node does not run, with a similar name, the problem of the launch, or the nodes that do."""
+        """Return the message for a missing node, with a similar name, the launch's problem, or the running nodes."""
         nodes = self.nodes()
         if similar := nearest(name, nodes, 1):
             return phrase("there is no node '{name}'; there is '{similar}'", name=name, similar=similar[0])
@@ -403,13 +406,13 @@ class LaunchCheck:
 
     def _errors(self) -> list[str]:
         """Return the lines of the launch's output that report errors."""
-        words = ("error", "fatal")
+        severities = ("error", "fatal")
         lines = self._output.getvalue().splitlines()
-        return [_LOG_PREFIX.sub(r"\1: ", line) for line in lines if any(word in line.casefold() for word in words)]
+        return [_LOG_PREFIX.sub(r"\1: ", line) for line in lines if any(name in line.casefold() for name in severities)]
 
 
 def _offered_profile(node: Node, topic: str) -> QoSProfile:
-    """Return a profile with which a subscription receives messages of a topic, and the last ones if they are kept."""
+    """Return a profile with which a subscription receives a topic's messages, latched ones included."""
     from linkwright.graph import DurabilityPolicy, QoSProfile, ReliabilityPolicy
 
     offered = [info.qos_profile for info in node.get_publishers_info_by_topic(topic)]

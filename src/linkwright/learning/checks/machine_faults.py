@@ -1,4 +1,4 @@
-"""Checks that could not be carried out because the machine has no memory, disk space, processes or libraries left."""
+"""Detection of checks that failed because the machine lacks memory, disk space, processes or libraries."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ _RESOURCES = {
 
 
 def is_machine_fault(error: Exception, workspace: Path) -> bool:
-    """Return whether a check could not be carried out, for a reason that is not in the learner's files."""
+    """Return whether an error has its cause in the machine, and not in the learner's files."""
     frames = traceback.extract_tb(error.__traceback__)
     if any(Path(frame.filename).is_relative_to(workspace) for frame in frames):
         return False

@@ -1,4 +1,4 @@
-"""Why a link or joint that the learner wrote is not part of the robot."""
+"""Reasons why a link or joint that the learner wrote is not part of the robot."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ XML_SUFFIXES = {".xacro", ".urdf", ".xml"}
 
 
 def explain_missing(path: Path, finder: PackageFinder, kind: str, name: str) -> Phrase | None:
-    """Return why a robot lacks a link or joint although its files seem to have it, or None.
+    """Return the reason why a robot lacks a link or joint that its files seem to contain, or None.
 
     Args:
         path: the file of the robot.
@@ -80,7 +80,7 @@ def _without_prefix(element: Element, path: Path) -> Phrase:
 
 
 def describe_unread(path: Path) -> Phrase | None:
-    """Return the first finding about an element of the file that is not read, or None."""
+    """Return the first finding about an element of the file that is ignored, or None."""
     from linkwright.lint.checking import Checker
     from linkwright.lint.targets import find_targets
 

@@ -1,4 +1,4 @@
-"""The message for a file that a check expects, with the files that the learner may have meant."""
+"""The message for a missing file, with the files that the learner may have meant."""
 
 from __future__ import annotations
 
@@ -18,17 +18,17 @@ def describe_missing_file(folder: Path, name: str, workspace: Path) -> Phrase:
     Args:
         folder: the folder that should have the file.
         name: the path in the folder.
-        workspace: the workspace, which may have the file at another place.
+        workspace: the workspace, which may have the file in another folder.
     """
-    inside = _same(folder, name)
-    if not inside and (elsewhere := _same(workspace, name)):
+    inside = _same_named_files(folder, name)
+    if not inside and (elsewhere := _same_named_files(workspace, name)):
         return phrase(
             "'{folder}' has no file '{name}'; the workspace has {others}",
             folder=folder.name,
             name=name,
             others=quoted_names(elsewhere),
         )
-    inside = inside or _similar(folder, name)
+    inside = inside or _similar_files(folder, name)
     if inside:
         return phrase(
             "'{folder}' has no file '{name}'; it has {others}",
@@ -36,7 +36,7 @@ def describe_missing_file(folder: Path, name: str, workspace: Path) -> Phrase:
             name=name,
             others=quoted_names(inside),
         )
-    elsewhere = _similar(workspace, Path(name).name)
+    elsewhere = _similar_files(workspace, Path(name).name)
     if elsewhere:
         return phrase(
             "'{folder}' has no file '{name}'; the workspace has {others}",
@@ -47,14 +47,14 @@ def describe_missing_file(folder: Path, name: str, workspace: Path) -> Phrase:
     return phrase("'{folder}' has no file '{name}'", folder=folder.name, name=name)
 
 
-def _same(folder: Path, name: str) -> list[str]:
-    """Return the files of a folder with the name of a file, apart from capitals and punctuation."""
+def _same_named_files(folder: Path, name: str) -> list[str]:
+    """Return the files of a folder whose names differ only in case and punctuation from a name."""
     names = [file.relative_to(folder).as_posix() for file in _files(folder)]
     return [other for other in names if _key(Path(other).name) == _key(Path(name).name)][:_MOST_FILES]
 
 
-def _similar(folder: Path, name: str) -> list[str]:
-    """Return the files of a folder whose names resemble that of a file."""
+def _similar_files(folder: Path, name: str) -> list[str]:
+    """Return the files of a folder whose names resemble a name."""
     names = [file.relative_to(folder).as_posix() for file in _files(folder)]
     stem = _stem(name)
     related = [other for other in names if _stem(other) == stem]
@@ -64,7 +64,7 @@ def _similar(folder: Path, name: str) -> list[str]:
 
 
 def _key(name: str) -> str:
-    """Return a name in small letters, with letters and digits only: ``Display_launch.py`` is ``display.launch.py``."""
+    """Return a name in lower case, without punctuation, to compare ``Display_launch.py`` and ``display.launch.py``."""
     return re.sub(r"[^a-z0-9]", "", name.casefold())
 
 

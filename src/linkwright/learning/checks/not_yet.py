@@ -1,4 +1,4 @@
-"""The result of a check that is not satisfied yet."""
+"""The exception with which a check reports that it is not satisfied yet."""
 
 from __future__ import annotations
 
@@ -7,10 +7,10 @@ from linkwright.learning.local_text import LocalText
 
 
 class NotYet(Exception):  # noqa: N818 - not an error, but the usual state of a step
-    """The result of a check that is not satisfied yet.
+    """Raised by a check that is not satisfied yet.
 
     Args:
-        message: one sentence about what is there and what is not yet, for lessons in one language.
+        message: one sentence with the actual and the expected state, for lessons in one language.
         texts: the sentence by language, as in ``NotYet(en="The wheel is too large.", zh="轮子太大。")``.
 
     Attributes:

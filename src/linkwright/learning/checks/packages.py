@@ -1,4 +1,4 @@
-"""Files and packages of the learner's workspace, as checks see them."""
+"""Access of checks to the files and packages of the learner's workspace."""
 
 from __future__ import annotations
 
@@ -76,9 +76,9 @@ class FileFolder:
         return self._robots[key]
 
     def robot_with_property(self, name: str, property_name: str, value: str) -> RobotCheck:
-        """Return the robot of a xacro file as it would be with another value of a property.
+        """Return the robot of a xacro file with another value of a property.
 
-        The files stay as they are.
+        The files do not change.
 
         Args:
             name: the path in the folder.
@@ -100,7 +100,7 @@ class FileFolder:
         raise NotYet(add_hint(message, did_you_mean(property_name, names)))
 
     def source_elements(self, name: str, tag: str) -> list[Element]:
-        """Return the elements with a tag in a file and in the files that it includes, before expansion.
+        """Return the elements with a tag in a file and its included files, before expansion.
 
         Raises:
             NotYet: the file is missing or not valid.
@@ -131,8 +131,8 @@ class FileFolder:
         if errors or description.robot is None:
             raise NotYet(describe_finding(errors[0]))
         if arguments:
-            words = " ".join(f"{key}:={value}" for key, value in arguments.items())
-            circumstance = phrase("with {arguments}", arguments=words)
+            argument_text = " ".join(f"{key}:={value}" for key, value in arguments.items())
+            circumstance = phrase("with {arguments}", arguments=argument_text)
         return RobotCheck(
             description.robot,
             path,
@@ -142,7 +142,7 @@ class FileFolder:
         )
 
     def simulate(self, name: str) -> AbstractContextManager[SteppedSimulation]:
-        """Return a simulation of the robot of a file in an empty world, as ``linkwright drive`` completes the robot.
+        """Return a simulation of a file's robot in an empty world, completed as by ``linkwright drive``.
 
         Args:
             name: the path in the folder.
@@ -173,10 +173,10 @@ class FileFolder:
         return None if document.root is None else yaml.constructor.SafeConstructor().construct_document(document.root)
 
     def expect_no_findings(self, name: str = "") -> None:
-        """Require that ``linkwright check`` finds no mistakes in a file, or in the whole folder.
+        """Require that ``linkwright check`` finds no errors or warnings in a file, or in the whole folder.
 
         Raises:
-            NotYet: there is a warning, an error, or a launch file uses a package that ``package.xml`` does not list.
+            NotYet: there is an error or a warning, or ``package.xml`` does not list a package that a launch file uses.
         """
         from linkwright.lint.checking import Checker
         from linkwright.lint.targets import find_targets
@@ -204,7 +204,7 @@ _UNDEFINED_MATERIAL = "URDF160"
 
 
 def _is_mistake(finding: Diagnostic) -> bool:
-    """Return whether a finding is one that other readers of XML or URDF refuse, although urdfdom may not."""
+    """Return whether some reader of XML or URDF rejects a file because of a finding, even if urdfdom accepts it."""
     if finding.severity is Severity.ERROR:
         return True
     return finding.code.startswith("XML") or finding.code == _UNDEFINED_MATERIAL
@@ -242,7 +242,7 @@ class PackageCheck(FileFolder):
         """Require ``package.xml`` to be well-formed XML with a package name.
 
         Raises:
-            NotYet: it is not.
+            NotYet: the file is not well-formed, or has no package name.
         """
         try:
             parse_file(self.file("package.xml"))
@@ -250,10 +250,10 @@ class PackageCheck(FileFolder):
             raise NotYet(describe_error(error)) from None
 
     def expect_dependencies(self, *names: str) -> None:
-        """Require ``package.xml`` to list packages that are needed at run time.
+        """Require ``package.xml`` to list packages as dependencies at run time.
 
         Raises:
-            NotYet: it is not well-formed, or lacks one of the packages at the right place.
+            NotYet: the file is not well-formed, or does not list one of the packages in a fitting element.
         """
         self.expect_manifest()
         root = parse_file(self.folder / "package.xml").root
@@ -288,13 +288,13 @@ class PackageCheck(FileFolder):
             )
 
     def expect_installed(self, *names: str) -> None:
-        """Require that ``setup.py`` installs files, each in the package's share folder at its path in the package.
+        """Require that ``setup.py`` installs files into the package's share folder, at their paths in the package.
 
         Args:
             names: the paths in the package, such as ``launch/display.launch.py``.
 
         Raises:
-            NotYet: ``setup.py`` fails, or does not install one of the files there.
+            NotYet: ``setup.py`` fails, or does not install one of the files at its path.
         """
         installed = files_of_setup(self.folder)
         marker = PurePosixPath("share/ament_index/resource_index/packages", self.name)

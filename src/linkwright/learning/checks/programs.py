@@ -1,4 +1,4 @@
-"""Programs of the learner's packages, to be started in a stepped graph or simulation."""
+"""Lookup of the programs of the learner's packages, and explanations of their failures."""
 
 from __future__ import annotations
 
@@ -27,9 +27,9 @@ _ADDRESS = re.compile(r" at 0x[0-9a-f]+")
 
 
 def find_program(folder: Path, package: str, name: str) -> Callable[[], object]:
-    """Return the ``main`` of an executable that a package's ``setup.py`` declares.
+    """Return a function that runs the ``main`` of an executable that a package's ``setup.py`` declares.
 
-    The function imports the learner's module when it is called, and is meant for `SteppedGraph.start_program`.
+    The returned function imports the learner's module when it is called. Pass it to `SteppedGraph.start_program`.
 
     Args:
         folder: the folder of the package.
@@ -69,7 +69,7 @@ def find_program(folder: Path, package: str, name: str) -> Callable[[], object]:
 
 
 def _expect_complete_entries(path: Path) -> None:
-    """Require the entries of ``setup.py`` to be separate and to name a function.
+    """Require each entry of ``setup.py`` to end with a comma and to name a function.
 
     Raises:
         NotYet: a comma is missing between two entries, or an entry names only a module.
@@ -97,10 +97,8 @@ def _missing_executable(name: str, entries: Mapping[str, EntryPoint]) -> Phrase:
 
 
 def _missing_module(name: str, entry: EntryPoint, folder: Path, package: str) -> Phrase:
-    """Return the message for an executable whose module is missing, with the form that is right."""
-    message = phrase(
-        "the executable '{name}' names the module '{module}', which is missing", name=name, module=entry.module
-    )
+    """Return the message for an executable whose module is missing, with the correct entry."""
+    message = phrase("the module '{module}' of the executable '{name}' is missing", name=name, module=entry.module)
     for ending in (".py", f".{entry.function}", ".main"):
         shorter = entry.module.removesuffix(ending)
         if shorter != entry.module:
@@ -113,14 +111,14 @@ def _missing_module(name: str, entry: EntryPoint, folder: Path, package: str) ->
     if not (inner / "__init__.py").is_file() and inner.is_dir():
         return phrase("{message}: the folder '{folder}' needs a file __init__.py", message=message, folder=inner.name)
     place = entry.module.replace(".", "/") + ".py"
-    return phrase("{message}; its file must be '{place}' in the package", message=message, place=place)
+    return phrase("{message}; create the file '{path}' in the package", message=message, path=place)
 
 
 def _expect_function(path: Path, function: str) -> None:
-    """Require a module to have a function, without running it.
+    """Require a module to define a function, without running the module.
 
     Raises:
-        NotYet: the module has no such name, or cannot be read.
+        NotYet: the module does not define the function, or cannot be parsed.
     """
     try:
         tree = ast.parse(path.read_bytes(), str(path))
@@ -149,7 +147,7 @@ def _names_of(statement: ast.stmt) -> Iterator[str]:
 
 
 def describe_failure(error: Exception, workspace: Path) -> Phrase:
-    """Return an exception as one sentence, with the last line of the learner's files that it passed."""
+    """Return an exception as one sentence, with the last line of the learner's files in its traceback."""
     from linkwright.launch.errors.user_code import hint_about
 
     text = _ADDRESS.sub("", f"{type(error).__name__}: {error}")
@@ -172,8 +170,7 @@ def describe_failure(error: Exception, workspace: Path) -> Phrase:
             text, hint = error.diagnostics[0].message, error.diagnostics[0].hint or hint
     elif match := _BUDGET.search(text):
         return phrase(
-            "{file}, line {line}: the program computes without an end; a loop must wait, with rclpy.spin_once(node) or "
-            "time.sleep(...)",
+            "{file}, line {line}: a loop runs without waiting; call rclpy.spin_once(node) or time.sleep(...) in it",
             file=Path(match[1]).name,
             line=int(match[2]),
         )
@@ -184,7 +181,7 @@ def describe_failure(error: Exception, workspace: Path) -> Phrase:
 
 
 def _own_module_hint(error: Exception, path: Path) -> Phrase | None:
-    """Return a hint about a module of the same package that is imported without the package, or None."""
+    """Return a hint if a module of the same package is imported without the package's name, or None."""
     name = error.name if isinstance(error, ModuleNotFoundError) else None
     if name is None or not path.with_name(f"{name}.py").is_file():
         return None
@@ -197,9 +194,9 @@ def _hint_about_line(error: Exception, line: str) -> Phrase | None:
     if "create_" in line and "missing" in text and "()" in line:
         return phrase("pass the function without parentheses, such as self.on_message")
     if "create_" in line and "'type' is not iterable" in text:
-        return phrase("first comes the type, then the name, such as create_publisher(Twist, 'cmd_vel', 10)")
+        return phrase("pass the type before the name, as in create_publisher(Twist, 'cmd_vel', 10)")
     if "must be of type 'float'" in text:
         return phrase("write the number with a point, such as 1.0; float(...) converts a value")
     if "the response of" in text:
-        return phrase("the callback of a service must end with 'return response'")
+        return phrase("end the callback of the service with 'return response'")
     return None

@@ -1,4 +1,4 @@
-"""The results of the checks of a step, and how they are written for other processes."""
+"""The results of the checks of a step, and their conversion to JSON for other processes."""
 
 from __future__ import annotations
 
@@ -16,8 +16,8 @@ class CheckResult:
     Attributes:
         title: what the check expects.
         passed: whether the check is satisfied.
-        message: what is not yet so; None if the check is satisfied.
-        is_machine_fault: whether the check could not be carried out, for a reason that is not in the learner's files.
+        message: the reason why the check is not satisfied; None if it is.
+        is_machine_fault: whether the check failed because of the machine, and not because of the learner's files.
     """
 
     title: LocalText
@@ -64,7 +64,7 @@ class StepResult:
 
     @property
     def has_machine_fault(self) -> bool:
-        """Whether a check could not be carried out."""
+        """Whether a check failed because of the machine, and not because of the learner's files."""
         return any(result.is_machine_fault for result in self.checks)
 
     def to_data(self) -> dict[str, Any]:

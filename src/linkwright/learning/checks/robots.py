@@ -1,4 +1,4 @@
-"""Robots of the learner, as checks see them: links, joints, poses and shapes, however they were written."""
+"""Checks of the learner's robot: links, joints, poses and shapes, in any notation."""
 
 from __future__ import annotations
 
@@ -51,20 +51,20 @@ class ShapeSpec:
     at: Vector | None = None
 
 
-class _Checked:
-    """A robot, or a part of it, that a check compares under a circumstance."""
+class _CheckedPart:
+    """The base class of a robot and its parts, which adds the circumstance of a check to messages."""
 
     def __init__(self, circumstance: Phrase | None) -> None:
         self._circumstance = circumstance
 
-    def _refusal(self, message: Phrase) -> NotYet:
-        """Return the result of a check that is not satisfied, with the circumstance of the check."""
+    def _not_yet(self, message: Phrase) -> NotYet:
+        """Return the exception for a check that is not satisfied, with the circumstance of the check."""
         if self._circumstance is None:
             return NotYet(message)
         return NotYet(phrase("{circumstance}: {message}", circumstance=self._circumstance, message=message))
 
 
-class RobotCheck(_Checked):
+class RobotCheck(_CheckedPart):
     """A robot of the learner.
 
     Attributes:
@@ -81,14 +81,14 @@ class RobotCheck(_Checked):
         explain_missing: Callable[[str, str], Phrase | None] | None = None,
         explain_unread: Callable[[], Phrase | None] | None = None,
     ) -> None:
-        """Keep a robot.
+        """Create the checks of a robot.
 
         Args:
             robot: the robot.
             path: the file that it was read from.
             circumstance: what is special about this robot, such as a property with another value.
-            explain_missing: returns why a link or joint that the files contain is missing, from its kind and name.
-            explain_unread: returns which element of the files is not read.
+            explain_missing: returns the reason why a link or joint of the files is missing, from its kind and name.
+            explain_unread: returns the finding about an element of the files that is ignored.
         """
         super().__init__(circumstance)
         self.robot = robot
@@ -104,7 +104,7 @@ class RobotCheck(_Checked):
         """
         link = self.robot.links.get(name)
         if link is None:
-            raise self._refusal(self._missing("link", name, self.robot.links))
+            raise self._not_yet(self._missing("link", name, self.robot.links))
         return LinkCheck(link, self._rotation(name), self._circumstance, self._explain_unread)
 
     def joint(self, name: str) -> JointCheck:
@@ -115,7 +115,7 @@ class RobotCheck(_Checked):
         """
         joint = self.robot.joints.get(name)
         if joint is None:
-            raise self._refusal(self._missing("joint", name, self.robot.joints))
+            raise self._not_yet(self._missing("joint", name, self.robot.joints))
         return JointCheck(joint, self._rotation(joint.child), self._circumstance)
 
     def _rotation(self, link: str) -> NDArray[np.float64]:
@@ -124,7 +124,7 @@ class RobotCheck(_Checked):
         return np.asarray(frames[tree.link_index(link)][:3, :3])
 
     def _missing(self, kind: Literal["link", "joint"], name: str, names: Iterable[str]) -> Phrase:
-        """Return the message for a link or joint that is missing, with the reason or the names that there are."""
+        """Return the message for a missing link or joint, with the reason or the existing names."""
         message = phrase("no link is called '{name}'", name=name)
         if kind == "joint":
             message = phrase("no joint is called '{name}'", name=name)
@@ -167,14 +167,14 @@ class RobotCheck(_Checked):
             link: the link.
             position: x, y and z in m.
             frame: the link whose frame is the reference; None for the root link.
-            tolerance: the greatest distance that passes, in m.
+            tolerance: the greatest accepted distance, in m.
 
         Raises:
-            NotYet: the link is missing or elsewhere.
+            NotYet: the link is missing, or at another position.
         """
         actual = self.pose(link, frame)[:3, 3]
         if np.linalg.norm(actual - np.asarray(position)) > tolerance:
-            raise self._refusal(
+            raise self._not_yet(
                 phrase(
                     "the frame of '{link}' is at {actual} in the frame of '{frame}', but should be at {expected}",
                     link=link,
@@ -194,14 +194,14 @@ class RobotCheck(_Checked):
             frame: the link whose frame is the reference; None for the root link.
 
         Raises:
-            NotYet: the link is missing, or turned.
+            NotYet: the link is missing, or its axis points in another direction.
         """
         actual = self.pose(link, frame)[:3, :3] @ np.asarray(axis, float)
         if _angle(actual, direction, either_sign=False) > _ANGLE_TOLERANCE:
-            raise self._refusal(
+            raise self._not_yet(
                 phrase(
-                    "the frame of '{link}' is turned: its axis {axis} points along {actual} in the frame of '{frame}', "
-                    "but should point along {expected}; compare the rpy of its joint",
+                    "the frame of '{link}' has the wrong orientation: its axis {axis} points along {actual} in the "
+                    "frame of '{frame}', but should point along {expected}; check the rpy of its joint",
                     link=link,
                     axis=_vector_text(axis),
                     actual=_vector_text(actual),
@@ -216,7 +216,7 @@ class RobotCheck(_Checked):
         return tree, np.asarray(tree.forward({}))
 
 
-class JointCheck(_Checked):
+class JointCheck(_CheckedPart):
     """A joint of the learner's robot.
 
     Attributes:
@@ -237,7 +237,7 @@ class JointCheck(_Checked):
             NotYet: it has another type.
         """
         if self.joint.type not in types:
-            raise self._refusal(
+            raise self._not_yet(
                 phrase(
                     "the joint '{joint}' has the type '{actual}', but should be {expected}",
                     joint=self.joint.name,
@@ -255,14 +255,14 @@ class JointCheck(_Checked):
         if (self.joint.parent, self.joint.child) == (parent, child):
             return
         if (self.joint.parent, self.joint.child) == (child, parent):
-            raise self._refusal(
+            raise self._not_yet(
                 phrase(
-                    "the joint '{joint}' has parent and child exchanged: the parent is '{parent}'",
+                    "the parent and the child of the joint '{joint}' are exchanged: the parent must be '{parent}'",
                     joint=self.joint.name,
                     parent=parent,
                 )
             )
-        raise self._refusal(
+        raise self._not_yet(
             phrase(
                 "the joint '{joint}' connects '{actual_parent}' and '{actual_child}', but should connect '{parent}' "
                 "and '{child}'",
@@ -279,7 +279,7 @@ class JointCheck(_Checked):
 
         Args:
             axis: the direction in the frame of the root link, with all joints at zero.
-            either_sign: whether the opposite direction passes, too.
+            either_sign: whether the opposite direction is accepted, too.
 
         Raises:
             NotYet: the axis is another one.
@@ -288,7 +288,7 @@ class JointCheck(_Checked):
         if _angle(actual, axis, either_sign=either_sign) <= _ANGLE_TOLERANCE:
             return
         if _angle(actual, self.joint.axis, either_sign=True) > _ANGLE_TOLERANCE:
-            raise self._refusal(
+            raise self._not_yet(
                 phrase(
                     "the axis of the joint '{joint}' points along {actual}, because the rpy of a joint's <origin> "
                     "turns it, but should point along {expected}",
@@ -298,16 +298,16 @@ class JointCheck(_Checked):
                 )
             )
         if _angle(actual, axis, either_sign=True) <= _ANGLE_TOLERANCE:
-            raise self._refusal(phrase("the axis of the joint '{joint}' has the wrong sign", joint=self.joint.name))
+            raise self._not_yet(phrase("the axis of the joint '{joint}' has the wrong sign", joint=self.joint.name))
         if tuple(self.joint.axis) == _DEFAULT_AXIS:
-            raise self._refusal(
+            raise self._not_yet(
                 phrase(
                     "the axis of the joint '{joint}' is 1 0 0, as without <axis>, but should be {expected}",
                     joint=self.joint.name,
                     expected=_vector_text(axis),
                 )
             )
-        raise self._refusal(
+        raise self._not_yet(
             phrase(
                 "the axis of the joint '{joint}' is {actual}, but should be {expected}",
                 joint=self.joint.name,
@@ -317,7 +317,7 @@ class JointCheck(_Checked):
         )
 
 
-class LinkCheck(_Checked):
+class LinkCheck(_CheckedPart):
     """A link of the learner's robot.
 
     Attributes:
@@ -337,9 +337,9 @@ class LinkCheck(_Checked):
         self._rotation = np.eye(3) if rotation is None else rotation
 
     def expect_shape(self, expected: ShapeSpec, part: Part = "visual") -> None:
-        """Require the link to have a shape of a size.
+        """Require a visual or a collision of the link to have a shape and size.
 
-        Other shapes of the link do not matter.
+        Other shapes of the link are ignored.
 
         Args:
             expected: the shape.
@@ -350,10 +350,10 @@ class LinkCheck(_Checked):
         """
         parts: Sequence[Visual | Collision] = self.link.visuals if part == "visual" else self.link.collisions
         self.expect_part(part)
-        all_objections = (_object_to(candidate, expected, self._rotation) for candidate in parts)
+        all_objections = (_shape_difference(candidate, expected, self._rotation) for candidate in parts)
         objections = [objection for objection in all_objections if objection is not None]
         if len(objections) == len(parts):
-            raise self._refusal(
+            raise self._not_yet(
                 phrase("the {part} of '{link}': {reason}", part=part, link=self.link.name, reason=objections[0])
             )
 
@@ -361,36 +361,36 @@ class LinkCheck(_Checked):
         """Require the link to have a visual or a collision.
 
         Raises:
-            NotYet: it has none; the text names an element of the file that is not read.
+            NotYet: the link has none; the message names an element of the file that is ignored.
         """
         if self.link.visuals if part == "visual" else self.link.collisions:
             return
         message = phrase("the link '{link}' has no <{part}>", link=self.link.name, part=part)
-        raise self._refusal(add_hint(message, self._explain_unread and self._explain_unread()))
+        raise self._not_yet(add_hint(message, self._explain_unread and self._explain_unread()))
 
     def expect_inertia(self, shape: Box | Cylinder | Sphere, *, along: Vector | None = None, factor: float) -> None:
-        """Require the moments of inertia of a solid shape with the link's mass.
+        """Require the link to have the moments of inertia of a solid shape with the link's mass.
 
         Args:
             shape: the shape.
             along: the direction of a cylinder's axis in the root frame, with all joints at zero.
-            factor: the greatest ratio between a moment and the right one.
+            factor: the greatest accepted ratio between a moment and the correct moment.
 
         Raises:
             NotYet: the link has no inertia, or another one.
         """
         inertial = self.link.inertial
         if inertial is None:
-            raise self._refusal(phrase("the link '{link}' has no <{part}>", link=self.link.name, part="inertial"))
+            raise self._not_yet(phrase("the link '{link}' has no <{part}>", link=self.link.name, part="inertial"))
         rotation = self._rotation @ matrix_from_pose(row_from_pose(inertial.origin))[:3, :3]
         actual = np.diag(rotation @ inertia_matrix(inertial) @ rotation.T)
         expected = moments_of_inertia(shape, inertial.mass, along)
         for name, moment, right in zip(("ixx", "iyy", "izz"), actual, expected, strict=True):
             if not right / factor <= moment <= right * factor:
-                raise self._refusal(
+                raise self._not_yet(
                     phrase(
-                        "the moment {name} of '{link}' is {actual:.3g} kg m², but should be about {expected:.3g} for a "
-                        "mass of {mass:g} kg; compare the sizes and the rpy that the inertia macro gets",
+                        "the moment {name} of '{link}' is {actual:.3g} kg m², but should be about {expected:.3g} "
+                        "for a mass of {mass:g} kg; check the sizes and the rpy that the inertia macro receives",
                         name=name,
                         link=self.link.name,
                         actual=moment,
@@ -410,9 +410,9 @@ class LinkCheck(_Checked):
         """
         colors = [visual.material.rgba for visual in self.link.visuals if visual.material and visual.material.rgba]
         if not colors:
-            raise self._refusal(phrase("the visual of '{link}' has no color", link=self.link.name))
+            raise self._not_yet(phrase("the visual of '{link}' has no color", link=self.link.name))
         if all(np.abs(np.subtract(color[:3], rgb)).max() > _COLOR_TOLERANCE for color in colors):
-            raise self._refusal(
+            raise self._not_yet(
                 phrase(
                     "the visual of '{link}' has the color {actual}, but should have {expected}",
                     link=self.link.name,
@@ -425,17 +425,17 @@ class LinkCheck(_Checked):
         """Require the link's mass to be in a range.
 
         Args:
-            lowest: the smallest mass that passes, in kg.
-            highest: the greatest mass that passes, in kg.
+            lowest: the smallest accepted mass, in kg.
+            highest: the greatest accepted mass, in kg.
 
         Raises:
             NotYet: the link has no mass, or another one.
         """
         if self.link.inertial is None:
-            raise self._refusal(phrase("the link '{link}' has no <{part}>", link=self.link.name, part="inertial"))
+            raise self._not_yet(phrase("the link '{link}' has no <{part}>", link=self.link.name, part="inertial"))
         mass = self.link.inertial.mass
         if not lowest <= mass <= highest:
-            raise self._refusal(
+            raise self._not_yet(
                 phrase(
                     "the mass of '{link}' is {mass:g} kg, but should be between {lowest:g} and {highest:g} kg",
                     link=self.link.name,
@@ -446,8 +446,8 @@ class LinkCheck(_Checked):
             )
 
 
-def _object_to(part: Visual | Collision, expected: ShapeSpec, rotation: NDArray[np.float64]) -> Phrase | None:
-    """Return what distinguishes a part from the expected shape, or None if nothing does.
+def _shape_difference(part: Visual | Collision, expected: ShapeSpec, rotation: NDArray[np.float64]) -> Phrase | None:
+    """Return the difference between a part and the expected shape, or None if they are equal.
 
     The rotation is that of the link's frame in the root frame.
     """
@@ -484,7 +484,7 @@ def _object_to(part: Visual | Collision, expected: ShapeSpec, rotation: NDArray[
 
 
 def _sizes(shape: object, expected: object) -> list[tuple[str, float, float]]:
-    """Return name, actual and expected value of each size of a shape."""
+    """Return the name, the actual value and the expected value of each size of a shape, in m."""
     if isinstance(shape, Box) and isinstance(expected, Box):
         sizes = zip("xyz", shape.size, expected.size, strict=True)
         return [(f"size {axis}", actual, wanted) for axis, actual, wanted in sizes]

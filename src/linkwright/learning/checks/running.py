@@ -1,4 +1,4 @@
-"""Run the checks of a step in a process of their own, because they may run the learner's code."""
+"""Execution of a step's checks in a separate process, because checks may run the learner's code."""
 
 from __future__ import annotations
 
@@ -82,8 +82,8 @@ def check_step(
     Args:
         step: the step.
         workspace: the learner's workspace.
-        answer: the number that the learner answered, as text.
-        begin_checks: called before the first check, when nothing of the learner's has run yet.
+        answer: the learner's answer, a number as text.
+        begin_checks: called before the first check, before any code of the learner runs.
 
     Raises:
         LinkwrightError: LEARN102, LEARN107: the checks of the lesson cannot be loaded.
@@ -111,7 +111,7 @@ def _run(check: Check, work: Work) -> CheckResult:
 
 
 def _without_repetition(results: Sequence[CheckResult]) -> list[CheckResult]:
-    """Return the results with each message only once: a missing file fails all checks of a step."""
+    """Return the results without repeated messages, because one missing file fails all checks of a step."""
     seen: set[LocalText] = set()
     unique: list[CheckResult] = []
     for result in results:
@@ -124,17 +124,17 @@ def _without_repetition(results: Sequence[CheckResult]) -> list[CheckResult]:
 
 
 def check_command(step: Step, workspace: Path, output: Path, *, answer: str | None = None) -> list[str]:
-    """Return the command that runs the checks of a step and writes the result as JSON to a file."""
-    return [*PYTHON, "-m", MODULE, *_check_words(step, workspace, output, answer)]
+    """Return the command that runs a step's checks and writes the results to a file as JSON."""
+    return [*PYTHON, "-m", MODULE, *_check_arguments(step, workspace, output, answer)]
 
 
-def _check_words(step: Step, workspace: Path, output: Path, answer: str | None) -> list[str]:
-    words = [str(step.lesson.folder), step.id, str(workspace), str(output)]
-    return words if answer is None else [*words, answer]
+def _check_arguments(step: Step, workspace: Path, output: Path, answer: str | None) -> list[str]:
+    arguments = [str(step.lesson.folder), step.id, str(workspace), str(output)]
+    return arguments if answer is None else [*arguments, answer]
 
 
-def new_check_server() -> ForkServer:
-    """Return a server for several processes of checks, which then start without imports. The caller closes it."""
+def create_check_server() -> ForkServer:
+    """Return a server that starts check processes without repeated imports. The caller must close it."""
     return ForkServer(_IMPORTED, PYTHON)
 
 
@@ -146,23 +146,23 @@ def check_in_process(
     time_limit: float = TIME_LIMIT,
     server: ForkServer | None = None,
 ) -> StepResult:
-    """Run the checks of a step in a process of their own; see `CheckProcess`."""
+    """Run the checks of a step in a separate process. See `CheckProcess`."""
     return CheckProcess(step, workspace, answer=answer, time_limit=time_limit, server=server).run()
 
 
 class CheckProcess:
     """A process that runs the checks of a step.
 
-    Everything that the process started ends with it. A process that takes longer than `time_limit`, or that dies,
-    fails the step with a message.
+    All processes that it started end with it. If it takes longer than `time_limit`, or dies, the result of the
+    step is a failure with a message.
 
     Args:
         step: the step.
         workspace: the learner's workspace.
-        answer: the number that the learner answered, as text.
-        time_limit: the seconds after which the process is ended.
-        server: starts the process; see `new_check_server`. None for a process that imports by itself.
-        niceness: by how much the priority of the process is lower than that of this one, 0 to 19. Windows ignores it.
+        answer: the learner's answer, a number as text.
+        time_limit: the time after which the process is killed, in seconds.
+        server: starts the process; see `create_check_server`. None to start an ordinary process.
+        niceness: the increase of the process's nice value, 0 to 19; ignored on Windows.
     """
 
     def __init__(
@@ -189,7 +189,7 @@ class CheckProcess:
         begin = time.monotonic()
         with ScratchFolder("check") as scratch:
             output = Path(scratch) / "result.json"
-            reason = self._run_program(_check_words(self._step, self._workspace, output, self._answer))
+            reason = self._run_program(_check_arguments(self._step, self._workspace, output, self._answer))
             data = _read(output)
         if data is not None and reason is None:
             return StepResult.from_data(data)
@@ -198,18 +198,18 @@ class CheckProcess:
         return StepResult(self._step.address, [failed], time.monotonic() - begin)
 
     def cancel(self) -> None:
-        """End the process, from any thread. `run` then returns soon, with a result that is of no use."""
+        """Kill the process, from any thread. `run` then returns soon, with a meaningless result."""
         self._is_canceled = True
         process = self._process
         if process is not None:
             _end_group(process)
 
-    def _run_program(self, words: Sequence[str]) -> Phrase | None:
-        """Run the program of the checks, and return why it ended early, or None."""
+    def _run_program(self, arguments: Sequence[str]) -> Phrase | None:
+        """Run the program of the checks, and return the reason why it ended early, or None."""
         with Path(os.devnull).open("r+b") as nothing, _last_bytes() as (errors, descriptor):
             streams = nothing.fileno(), nothing.fileno(), descriptor
             environment = {**os.environ, _NICENESS_VARIABLE: str(self._niceness)}
-            process = self._start(MODULE, words, cwd=self._workspace, env=environment, streams=streams)
+            process = self._start(MODULE, arguments, cwd=self._workspace, env=environment, streams=streams)
             self._process = process
             if self._is_canceled:
                 _end_group(process)
@@ -229,7 +229,7 @@ class CheckProcess:
 
 @contextmanager
 def _last_bytes() -> Iterator[tuple[bytearray, int]]:
-    """Yield a buffer, and a descriptor for writing. At the end, the buffer has the last bytes that were written."""
+    """Yield a buffer and a file descriptor for writing. At the end, the buffer has the last written bytes."""
     reader, writer = os.pipe()
     last = bytearray()
 
@@ -249,7 +249,7 @@ def _last_bytes() -> Iterator[tuple[bytearray, int]]:
 
 
 def _end_group(process: Program) -> None:
-    """End the process and all processes of its session."""
+    """Kill the process and all processes of its session."""
     if sys.platform == "win32":
         if process.poll() is None:  # Windows finds the children of a running process only
             command = ["taskkill", "/T", "/F", "/PID", str(process.pid)]
@@ -267,16 +267,16 @@ def _read(output: Path) -> Any:
         return None
 
 
-def main(words: Sequence[str]) -> int:
+def main(arguments: Sequence[str]) -> int:
     """Run the checks of a step, as `check_command` requests it.
 
-    The output exists, and is empty, from the beginning of the first check on.
+    The output file is created, empty, when the first check begins.
     """
     if sys.platform != "win32":
         os.nice(int(os.environ.get(_NICENESS_VARIABLE, "0")))
     os.environ["ROS_AUTOMATIC_DISCOVERY_RANGE"] = "LOCALHOST"
     os.environ["ROS_DOMAIN_ID"] = os.environ.get(DOMAIN_VARIABLE) or str(hold_domain())
-    lesson_folder, step_id, workspace, output, *answers = words
+    lesson_folder, step_id, workspace, output, *answers = arguments
     lesson = load_lesson(Path(lesson_folder))
     step = next(step for step in lesson.steps if step.id == step_id)
     try:

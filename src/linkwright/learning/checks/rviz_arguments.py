@@ -1,4 +1,4 @@
-"""The arguments with which a learner's launch file starts RViz."""
+"""A check of the arguments with which the learner's launch file starts RViz."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ from linkwright.learning.checks.not_yet import NotYet
 _OPTIONS = ("-d", "--display-config")
 
 
-def object_to_rviz_arguments(arguments: Sequence[str], path: Path) -> None:
+def require_rviz_configuration(arguments: Sequence[str], path: Path) -> None:
     """Require the arguments of RViz to name a configuration.
 
     Raises:
@@ -23,12 +23,12 @@ def object_to_rviz_arguments(arguments: Sequence[str], path: Path) -> None:
         return
     if given:
         raise NotYet(
-            phrase("rviz2 opens '{given}', but should open 'rviz/{expected}'", given=given[0], expected=path.name)
+            phrase("rviz2 opens '{actual}', but should open 'rviz/{expected}'", actual=given[0], expected=path.name)
         )
     raise NotYet(
         phrase(
-            "rviz2 needs two arguments, '-d' and the path of {file}; it has {given}",
+            "rviz2 needs two arguments, '-d' and the path of {file}; the launch file passes {arguments}",
             file=path.name,
-            given=" ".join(f"'{argument}'" for argument in arguments) or phrase("none"),
+            arguments=" ".join(f"'{argument}'" for argument in arguments) or phrase("none"),
         )
     )

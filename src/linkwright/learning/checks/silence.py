@@ -1,4 +1,4 @@
-"""Why a learner's program publishes nothing on a topic, as far as the graph of a check tells."""
+"""Reasons why a learner's program publishes nothing on a topic, derived from the graph of a check."""
 
 from __future__ import annotations
 
@@ -21,10 +21,10 @@ def expect_published(test: Any, topic: str, type_name: str, messages: Any) -> No
         test: the stepped graph or simulation, before it ends.
         topic: the full name of the topic.
         type_name: the type of its messages, such as ``geometry_msgs/msg/Twist``.
-        messages: the messages that were recorded.
+        messages: the recorded messages of the topic.
 
     Raises:
-        NotYet: no message was recorded; the text tells the reason, as far as it is known.
+        NotYet: no message was recorded; the message gives the reason, if it is known.
     """
     if not len(messages):
         raise NotYet(_explain_silence(test, topic, type_name))
@@ -43,7 +43,7 @@ def _explain_silence(test: Any, topic: str, type_name: str) -> Phrase:
         )
     if types is not None:
         return phrase("{silent}: {reason}", silent=silent, reason=_explain_idle(test))
-    if similar := _similar(topic, publishers):
+    if similar := _similar_files(topic, publishers):
         return phrase("{silent}; the program publishes {similar}", silent=silent, similar=similar)
     if publishers:
         return phrase("{silent}; the program publishes {topics}", silent=silent, topics=", ".join(sorted(publishers)))
@@ -53,7 +53,7 @@ def _explain_silence(test: Any, topic: str, type_name: str) -> Phrase:
 
 
 def _explain_idle(test: Any) -> Phrase:
-    """Return why a program that has a publisher does not publish."""
+    """Return the reason why a program with a publisher does not publish."""
     graph = test.graph
     subscriptions = {
         name: types for name, types in _endpoints(test, published=False).items() if name not in _GENERAL_TOPICS
@@ -67,13 +67,16 @@ def _explain_idle(test: Any) -> Phrase:
         others = sorted(other for other in published if other not in subscriptions and types & published[other])
         if name not in published and others:
             return phrase(
-                "the program subscribes to {topic}, on which no node publishes; such messages come on {other}",
+                "the program subscribes to {topic}, but no node publishes it; messages of this type are published "
+                "on {other_topic}",
                 topic=name,
-                other=others[0],
+                other_topic=others[0],
             )
     for name in sorted(subscriptions):
         if _is_incompatible(graph, name):
-            return phrase("the QoS of the subscription to {topic} does not fit that of the publisher", topic=name)
+            return phrase(
+                "the QoS of the subscription to {topic} is not compatible with that of the publisher", topic=name
+            )
     if subscriptions:
         return phrase(
             "the program has a publisher, but does not call publish(); is there a timer, or is the callback of "
@@ -100,7 +103,7 @@ def _is_incompatible(graph: Graph, topic: str) -> bool:
 
 
 def _endpoints(test: Any, *, published: bool) -> dict[str, set[str]]:
-    """Return the types by topic that the learner's programs publish, or subscribe to."""
+    """Return the types, by topic, of the publishers or of the subscriptions of the learner's programs."""
     graph = test.graph
     find = graph.get_publisher_names_and_types_by_node if published else graph.get_subscriber_names_and_types_by_node
     found: dict[str, set[str]] = {}
@@ -111,7 +114,7 @@ def _endpoints(test: Any, *, published: bool) -> dict[str, set[str]]:
     return found
 
 
-def _similar(topic: str, topics: dict[str, set[str]]) -> str | None:
+def _similar_files(topic: str, topics: dict[str, set[str]]) -> str | None:
     last = topic.rpartition("/")[2]
     same = [other for other in topics if other.rpartition("/")[2] == last]
     return next(iter([*same, *nearest(topic, topics, 1)]), None)

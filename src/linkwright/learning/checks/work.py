@@ -1,4 +1,4 @@
-"""The learner's workspace, as checks see it."""
+"""Access of checks to the learner's workspace."""
 
 from __future__ import annotations
 
@@ -17,13 +17,13 @@ _UNIT_FACTORS = (10.0, 100.0, 1000.0)
 
 
 class Work(FileFolder):
-    """The learner's workspace, as checks see it.
+    """The learner's workspace, passed to each check.
 
     Files and robots outside of packages are read by their path in the workspace.
 
     Args:
         folder: the workspace.
-        answer: the number that the learner answered for the step, as text; None if there is none.
+        answer: the learner's answer to the step, a number as text; None if there is none.
         lesson: the folder of the lesson, for worlds and other files that a check needs.
 
     Attributes:
@@ -70,7 +70,7 @@ class Work(FileFolder):
         raise NotYet(phrase("the workspace has no package '{name}' below 'src'", name=name))
 
     def number(self) -> float:
-        """Return the number that the learner answered.
+        """Return the learner's answer as a number.
 
         Raises:
             NotYet: there is no answer, or it is not a number.
@@ -81,16 +81,18 @@ class Work(FileFolder):
             return float(plain_text(self._answer.strip()).replace(",", "."))
         except ValueError:
             raise NotYet(
-                phrase("the answer '{text}' is not a number; write the number alone, without a unit", text=self._answer)
+                phrase(
+                    "the answer '{answer}' is not a number; write the number alone, without a unit", answer=self._answer
+                )
             ) from None
 
     def expect_number(self, value: float, *, tolerance: float, slips: Mapping[float, object] | None = None) -> None:
         """Require the learner's number to be near a value.
 
         Args:
-            value: the right number.
-            tolerance: the greatest difference that passes.
-            slips: messages for typical wrong numbers: a `NotYet` for each.
+            value: the correct number.
+            tolerance: the greatest accepted difference.
+            slips: the messages for typical wrong answers, as a `NotYet` by the wrong number.
 
         Raises:
             NotYet: the number is missing or differs.
@@ -107,8 +109,8 @@ class Work(FileFolder):
             if abs(number / factor - value) <= tolerance:
                 raise NotYet(
                     phrase(
-                        "{number:g} has the right digits, but not the unit of the question; look at the decimal point",
+                        "{number:g} has the correct digits, but not the unit of the question; check the decimal point",
                         number=number,
                     )
                 )
-        raise NotYet(phrase("{number:g} is not the right number; measure once more", number=number))
+        raise NotYet(phrase("{number:g} is not correct; measure again", number=number))

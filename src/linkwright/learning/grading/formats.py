@@ -19,10 +19,10 @@ _FORMULA = ("=", "+", "-", "@", "\t", "\r")
 
 
 def gradebook_csv(students: Sequence[StudentMarks], language: str) -> str:
-    """Return a line for each student, which Moodle and other gradebooks import by the columns that one selects there.
+    """Return the grades as CSV with a line for each student, which Moodle and other gradebooks import.
 
     The columns are the student, the points, the possible points, a column of points for each step, and the feedback.
-    Points that are not known because a step was not graded are empty, which is not a grade of zero.
+    The points of a step that was not graded are empty instead of 0.
     """
     steps = list(students[0].points) if students else []
     lines = [["username", "points", "max_points", *steps, "feedback"]]
@@ -35,7 +35,7 @@ def gradebook_csv(students: Sequence[StudentMarks], language: str) -> str:
 
 
 def nbgrader_csv(students: Sequence[StudentMarks]) -> str:
-    """Return a line for each lesson of each student, with the columns of nbgrader's export."""
+    """Return the grades as CSV with a line for each lesson and student, as nbgrader exports them."""
     names = ["assignment", "duedate", "timestamp", "student_id", "last_name", "first_name", "email"]
     lines = [[*names, "raw_score", "late_submission_penalty", "score", "max_score"]]
     for lesson in dict.fromkeys(step.split("/")[0] for student in students for step in student.points):
@@ -49,7 +49,7 @@ def nbgrader_csv(students: Sequence[StudentMarks]) -> str:
 
 
 def grades_json(course: Course, students: Sequence[StudentMarks], limits: Mapping[str, Any]) -> str:
-    """Return one document with everything that is known about the marks."""
+    """Return all data about the marks as one JSON document."""
     data = {
         "course": course.id,
         "limits": dict(limits),
@@ -94,12 +94,12 @@ def _student_data(student: StudentMarks) -> dict[str, Any]:
 
 
 def _claims(progress: StepProgress) -> dict[str, Any]:
-    """Return what the student's own progress file says."""
+    """Return the claims of the student's own progress file."""
     return {"hints": progress.hints, "solution": progress.solution, "answer": progress.answer}
 
 
 def _autograding(student: StudentMarks) -> dict[str, Any]:
-    """Return the result that GitHub Classroom's reporter of grades reads, encoded as Base64, from a runner."""
+    """Return the marks in the format of GitHub Classroom's autograding reporter, encoded as Base64."""
     return {
         "version": 1,
         "status": "pass" if student.marks and all(mark.passed for mark in student.marks.values()) else "fail",
@@ -127,7 +127,7 @@ def _status(mark: Mark) -> str:
 
 
 def _cell(student: StudentMarks, steps: Sequence[str]) -> str:
-    """Return the points of some steps together, or nothing if one of them is not graded."""
+    """Return the total points of some steps as text, or an empty string if one of them is not graded."""
     if any(step not in student.marks or not student.marks[step].is_graded for step in steps):
         return ""
     return _number(sum(_points_of(student, step) for step in steps))
@@ -155,5 +155,5 @@ def _to_csv(lines: Sequence[Sequence[str]]) -> str:
 
 
 def _to_cell(value: str) -> str:
-    """Return a value that a spreadsheet takes as text."""
+    """Return a value in a form that a spreadsheet reads as text, not as a formula."""
     return f"'{value}" if value.startswith(_FORMULA) else value

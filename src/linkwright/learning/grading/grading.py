@@ -1,4 +1,4 @@
-"""Grade a class: make a job of each step of each student, and collect the marks."""
+"""Grading of a class: one job for each student and step, and the collection of the marks."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ from linkwright.diagnostics import LinkwrightError, missing_extra, phrase
 from linkwright.diagnostics.extras import EXTRAS
 from linkwright.learning.checks.findings import describe_error
 from linkwright.learning.course import CASES_FILE, Course, Step
-from linkwright.learning.grading.journal import Journal, hash_folder, key_of
+from linkwright.learning.grading.journal import Journal, hash_folder, mark_key
 from linkwright.learning.grading.marks import Mark, StudentMarks
 from linkwright.learning.grading.running import Job
 from linkwright.learning.grading.submissions import Submission, copy_workspace
@@ -36,9 +36,9 @@ def grade_class(
     journal: Journal,
     progress: Progress,
 ) -> list[StudentMarks]:
-    """Check steps of a course in the folders of students, each on a copy in the sandbox.
+    """Check steps of a course on copies of the students' folders in the sandbox, and return the marks.
 
-    A run that may have failed because of other runs, or in which the grader failed, is repeated alone at the end.
+    A run is repeated alone at the end if other runs may have made it fail, or if the grader failed.
 
     Args:
         course: the course.
@@ -46,7 +46,7 @@ def grade_class(
         submissions: the folders of the students.
         limits: the limits of each run.
         run_jobs: runs jobs in parallel processes.
-        journal: keeps the marks for the case of an interruption.
+        journal: stores the marks, so that an interrupted run can be resumed.
         progress: called after each step.
 
     Raises:
@@ -85,7 +85,7 @@ def check_extras(steps: Sequence[Step]) -> None:
 
 
 def _copy_lessons(course: Course, scratch: Path) -> Path:
-    """Copy the course without its solutions, which no student's program shall read."""
+    """Copy the course without its solutions, which students' programs must not read."""
     copy = scratch / course.id
     shutil.copytree(course.folder, copy, ignore=shutil.ignore_patterns("solution", CASES_FILE, "__pycache__", ".git"))
     permit_reading(copy)
@@ -114,12 +114,12 @@ def _make_jobs(
             step_of_copy = replace(step, lesson=replace(step.lesson, folder=lessons / step.lesson.id))
             domain = 1 + len(jobs) % _DOMAINS
             job = Job(index, step_of_copy, copy, answer, limits, lessons, domain)
-            jobs.append((key_of(job, course_hash, copy_hash), job))
+            jobs.append((mark_key(job, course_hash, copy_hash), job))
     return jobs
 
 
 def _run_all(jobs: Sequence[tuple[str, Job]], run_jobs: RunJobs) -> Iterator[tuple[str, Job, Mark]]:
-    """Run jobs in parallel, then those again alone that may have failed because of others."""
+    """Run jobs in parallel, then repeat jobs alone that may have failed because of other jobs."""
     again: list[tuple[str, Job]] = []
     errors: list[LinkwrightError] = []
     has_mark = False

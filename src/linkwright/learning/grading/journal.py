@@ -1,4 +1,4 @@
-"""A file with the marks of a class that is not graded completely, from which the next run continues."""
+"""A file with the marks of an unfinished grading, from which the next run resumes."""
 
 from __future__ import annotations
 
@@ -19,10 +19,10 @@ SUFFIX = ".unfinished"
 
 
 class Journal:
-    """The marks by the content from which they result: the course, the student's files and answer, and the limits.
+    """A store of marks by a hash of their inputs: the course, the student's files and answer, and the limits.
 
     Args:
-        path: the file; None to keep nothing.
+        path: the file; None to store nothing.
     """
 
     def __init__(self, path: Path | None) -> None:
@@ -40,7 +40,7 @@ class Journal:
                 self._marks[entry["key"]] = Mark.from_data(entry["mark"])
 
     def find(self, key: str) -> Mark | None:
-        """Return a mark of an interrupted run."""
+        """Return the mark with a key from an interrupted run, or None."""
         return self._marks.get(key)
 
     def add(self, key: str, mark: Mark) -> None:
@@ -56,14 +56,14 @@ class Journal:
             file.write(f"\n{line}")  # the last line of an interrupted run may be incomplete
 
     def remove(self) -> None:
-        """Delete the file, because all marks are written elsewhere."""
+        """Delete the file after all marks are written to the result."""
         if self.path is not None:
             self.path.unlink(missing_ok=True)
 
 
 @contextmanager
 def reporting_write_errors(path: Path) -> Iterator[None]:
-    """Raise LEARN121 for an error of the operating system in the context."""
+    """Raise LEARN121 in place of an OSError in the context."""
     try:
         yield
     except OSError as error:
@@ -86,7 +86,7 @@ def hash_folder(folder: Path) -> str:
     return digest.hexdigest()
 
 
-def key_of(job: Job, course: str, copy: str) -> str:
-    """Return the key of a job's mark: everything from which it results."""
+def mark_key(job: Job, course: str, copy: str) -> str:
+    """Return the key of a job's mark, a hash of all inputs of the mark."""
     parts = [__version__, course, copy, job.step.address, job.answer, asdict(job.limits)]
     return hashlib.sha256(json.dumps(parts).encode()).hexdigest()

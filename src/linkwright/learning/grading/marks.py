@@ -1,4 +1,4 @@
-"""The marks of students, and how they are written for the journal and other programs."""
+"""The marks of students, and their conversion to JSON for the journal and other programs."""
 
 from __future__ import annotations
 
@@ -26,8 +26,8 @@ class Mark:
         seconds: the time that the run took, which does not affect the mark.
         protections: the protections that were in force.
         is_repeated: whether the step was checked again alone.
-        is_graded: whether the run tells something about the student's work; not if the grader failed.
-        may_differ: whether the run should be repeated alone, because the load of the machine may have failed it.
+        is_graded: whether the mark is valid; False if the grader failed.
+        may_differ: whether the run should be repeated alone, because the load of the machine may have made it fail.
     """
 
     step: str
@@ -42,7 +42,7 @@ class Mark:
 
     @property
     def messages(self) -> list[LocalText]:
-        """The messages about everything that is not yet right."""
+        """The messages of the checks that are not satisfied."""
         messages = [check.message or check.title for check in self.checks if not check.passed]
         messages = messages if self.reason is None else [self.reason, *messages]
         return messages if self.is_graded else [LocalText.from_phrase(NOT_GRADED), *messages]

@@ -1,4 +1,4 @@
-"""The marks of a class as one HTML page that needs no other file, in all languages."""
+"""The marks of a class as one self-contained HTML page, in all languages."""
 
 from __future__ import annotations
 
@@ -50,9 +50,9 @@ def grades_page(course: Course, students: Sequence[StudentMarks], preferred: str
     titles = {step.address: step.title for step in course.steps}
     parts = [
         f"<main>{_language_choice(preferred)}<h1>{_texts(title)}</h1>",
-        f"<p class='soft'>{_say(class_size(students))}</p>",
+        f"<p class='soft'>{_translated(class_size(students))}</p>",
         _overview(students),
-        f"<h2>{_say(phrase('Students'))}</h2>",
+        f"<h2>{_translated(phrase('Students'))}</h2>",
         *(_student(index, student, titles) for index, student in enumerate(students)),
         _steps(students, titles),
         _protections(students),
@@ -94,13 +94,13 @@ def _overview(students: Sequence[StudentMarks]) -> str:
 
 
 def _steps(students: Sequence[StudentMarks], titles: Mapping[str, LocalText]) -> str:
-    """Return a table that tells which steps are difficult for the class."""
+    """Return a table with the share of students that passed each step."""
     graded = [student for student in students if student.marks]
     rows = []
     for step in graded[0].points if graded else ():
         marks = [student.marks[step] for student in graded if student.marks[step].is_graded]
         rows.append([_step_name(step, titles), f"{sum(mark.passed for mark in marks)} / {len(marks)}"])
-    heading = f"<h2>{_say(phrase('Steps'))}</h2>"
+    heading = f"<h2>{_translated(phrase('Steps'))}</h2>"
     return heading + _table([phrase("Step"), phrase("Passed by")], rows, numbers=(1,)) if rows else ""
 
 
@@ -109,7 +109,7 @@ def _step_name(step: str, titles: Mapping[str, LocalText]) -> str:
 
 
 def _student(index: int, student: StudentMarks, titles: Mapping[str, LocalText]) -> str:
-    """Return what is known about a student. The link to it opens it, because its target is within ``details``."""
+    """Return the section of a student, whose link target is inside ``details``, so that a link opens it."""
     notes = "".join(f"<p class='soft'>{_texts(note)}</p>" for note in student.submission.notes)
     rows = [_step(student, step, mark, titles) for step, mark in student.marks.items()]
     headings = [
@@ -127,8 +127,8 @@ def _student(index: int, student: StudentMarks, titles: Mapping[str, LocalText])
 
 def _step(student: StudentMarks, step: str, mark: Mark, titles: Mapping[str, LocalText]) -> list[str]:
     claims = student.submission.progress.step(step)
-    taken = [_say(counted("{count} hint", "{count} hints", claims.hints))] if claims.hints else []
-    taken += [_say(phrase("solution taken"))] if claims.solution else []
+    taken = [_translated(counted("{count} hint", "{count} hints", claims.hints))] if claims.hints else []
+    taken += [_translated(phrase("solution taken"))] if claims.solution else []
     messages = "".join(f"<div class='message'>{_texts(message)}</div>" for message in mark.messages)
     sign = "<span class='good'>✓</span>" if mark.passed else "<span class='bad'>✗</span>"
     points = f"{student.points[step] if mark.passed else 0:g} / {student.points[step]:g}"
@@ -140,17 +140,17 @@ def _step(student: StudentMarks, step: str, mark: Mark, titles: Mapping[str, Loc
 def _protections(students: Sequence[StudentMarks]) -> str:
     in_force = protections_in_force(students)
     items = "".join(
-        f"<li>{'✓' if protection.value in in_force else '✗'} {_say(text)}</li>"
+        f"<li>{'✓' if protection.value in in_force else '✗'} {_translated(text)}</li>"
         for protection, text in PROTECTIONS.items()
     )
-    return f"<h2>{_say(phrase('Protections that were in force'))}</h2><ul>{items}</ul>"
+    return f"<h2>{_translated(phrase('Protections that were in force'))}</h2><ul>{items}</ul>"
 
 
 def _points(student: StudentMarks) -> str:
     if not student.submission.is_readable:
-        return f"<span class='bad'>{_say(phrase('not graded'))}</span>"
+        return f"<span class='bad'>{_translated(phrase('not graded'))}</span>"
     points = f"{student.total:g} / {student.possible:g}"
-    return points if student.is_graded else f"{points} <span class='bad'>({_say(phrase('not complete'))})</span>"
+    return points if student.is_graded else f"{points} <span class='bad'>({_translated(phrase('not complete'))})</span>"
 
 
 def _seconds(marks: Iterable[Mark]) -> str:
@@ -160,7 +160,7 @@ def _seconds(marks: Iterable[Mark]) -> str:
 def _table(headings: Sequence[Phrase], rows: Sequence[Sequence[str]], *, numbers: Sequence[int]) -> str:
     """Return a table whose cells are HTML."""
     head = "".join(
-        f"<th{' class=number' if column in numbers else ''}>{_say(heading)}</th>"
+        f"<th{' class=number' if column in numbers else ''}>{_translated(heading)}</th>"
         for column, heading in enumerate(headings)
     )
     lines = "".join(
@@ -172,10 +172,10 @@ def _table(headings: Sequence[Phrase], rows: Sequence[Sequence[str]], *, numbers
     return f'<div class="scroll"><table><thead><tr>{head}</tr></thead><tbody>{lines}</tbody></table></div>'
 
 
-def _say(text: Phrase) -> str:
+def _translated(text: Phrase) -> str:
     return _texts(LocalText.from_phrase(text))
 
 
 def _texts(text: LocalText) -> str:
-    """Return a text in all languages. The page shows one of them."""
+    """Return HTML with a text in all languages. The page shows one of them."""
     return "".join(f'<span lang="{language}">{escape(text.get(language))}</span>' for language in LANGUAGES)

@@ -1,4 +1,4 @@
-"""Run the checks of a step on a copy of a student's folder, in the sandbox."""
+"""Execution of a step's checks on a copy of a student's folder, in the sandbox."""
 
 from __future__ import annotations
 
@@ -33,7 +33,7 @@ class Job:
     Attributes:
         student: the index of the student.
         step: the step.
-        copy: a copy of the student's folder, which is copied once more for the run.
+        copy: a copy of the student's folder, which the run copies again.
         answer: the student's answer.
         limits: the limits of the run.
         course: the folder with the lessons, which the run may read.
@@ -54,8 +54,8 @@ class Job:
 def run_job(job: Job) -> Mark:
     """Check a step in the sandbox, and return the mark.
 
-    A step is not graded if a check could not be carried out, or if the run ended before the first check began, when
-    nothing of the student's had run.
+    The step is not graded if a check failed because of the machine, or if the run ended before the first check
+    began, before any code of the student ran.
 
     Raises:
         LinkwrightError: LEARN901, LEARN902: the sandbox cannot be used.
@@ -117,7 +117,7 @@ def _describe_end(outcome: Outcome, limits: Limits) -> Phrase:
 
 
 def _read_result(output: Path, step: Step) -> StepResult | None:
-    """Return the result in a file to which the student's program can have written anything."""
+    """Return the result from a file, without trusting it, because the student's program can write to it."""
     try:
         descriptor = os.open(output, os.O_RDONLY | os.O_NOFOLLOW | os.O_NONBLOCK)
     except OSError:

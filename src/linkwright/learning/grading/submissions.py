@@ -1,4 +1,4 @@
-"""The folders of students: found, read without trust, and copied."""
+"""Students' folders: search, untrusting reading, and copying."""
 
 from __future__ import annotations
 
@@ -32,8 +32,8 @@ class Submission:
     Attributes:
         student: the student's name, which is the folder's.
         folder: the workspace.
-        progress: what the student's progress file claims.
-        notes: what is unusual about the folder.
+        progress: the claims of the student's progress file.
+        notes: remarks about the folder for the teacher.
         is_readable: whether the folder can be graded.
     """
 
@@ -49,28 +49,28 @@ class Submission:
 
 
 def find_submissions(folders: Sequence[Path], course: Course) -> list[Submission]:
-    """Return the submissions in the given folders, one for each, with notes."""
+    """Return the submission in each of the given folders, with notes."""
     places = list(dict.fromkeys(_absolute(folder) for folder in folders))
-    counts = Counter(place.name for place in places)
+    counts = Counter(folder.name for folder in places)
     submissions = []
-    for place in places:
-        name = place.name if counts[place.name] == 1 else f"{place.parent.name}/{place.name}"
-        submissions.append(_open(printable(name), place, course))
+    for folder in places:
+        name = folder.name if counts[folder.name] == 1 else f"{folder.parent.name}/{folder.name}"
+        submissions.append(_open_submission(printable(name), folder, course))
     return submissions
 
 
 def _absolute(folder: Path) -> Path:
-    """Return the absolute path without ``..``, so that it has a name; links stay."""
+    """Return the absolute path without ``..``, so that it ends with a name. Links are not followed."""
     return Path(os.path.abspath(folder))  # noqa: PTH100 - `resolve` follows links
 
 
-def _open(student: str, place: Path, course: Course) -> Submission:
-    submission = Submission(student, place, Progress(course.id, {}))
+def _open_submission(student: str, folder: Path, course: Course) -> Submission:
+    submission = Submission(student, folder, Progress(course.id, {}))
     try:
-        submission.folder = _find_workspace(place)
+        submission.folder = _find_workspace(folder)
     except NotADirectoryError:
         submission.is_readable = False
-        if place.suffix.lower() in _ARCHIVES:
+        if folder.suffix.lower() in _ARCHIVES:
             submission.note(phrase("it is an archive; unpack it first"))
         else:
             submission.note(phrase("it is a file and not the folder of a student"))
@@ -81,26 +81,28 @@ def _open(student: str, place: Path, course: Course) -> Submission:
         return submission
     if (archive := _find_archive(submission.folder)) is not None:
         submission.is_readable = False
-        submission.note(phrase("there is only the archive '{name}'; unpack it first", name=_readable(archive.name)))
+        submission.note(
+            phrase("the folder contains only the archive '{name}'; unpack it first", name=_readable(archive.name))
+        )
         return submission
-    if submission.folder != place:
+    if submission.folder != folder:
         submission.note(phrase("the workspace is the folder '{name}' in it", name=_readable(submission.folder.name)))
     _read_claims(submission, course)
     return submission
 
 
-def _find_workspace(place: Path) -> Path:
-    """Return the folder, or its only subfolder if that is the workspace, as after unpacking an archive."""
-    entries = list(place.iterdir())
-    if _is_workspace(place):
-        return place
-    inside = [path for path in entries if path.is_dir() and not path.is_symlink() and path.name not in _SKIPPED]
-    visible = [path for path in inside if not path.name.startswith(".")]
-    return visible[0] if len(visible) == 1 and _is_workspace(visible[0]) else place
+def _find_workspace(folder: Path) -> Path:
+    """Return the workspace: the folder, or its only subfolder, which unpacking an archive often creates."""
+    entries = list(folder.iterdir())
+    if _is_workspace(folder):
+        return folder
+    subfolders = [path for path in entries if path.is_dir() and not path.is_symlink() and path.name not in _SKIPPED]
+    visible = [path for path in subfolders if not path.name.startswith(".")]
+    return visible[0] if len(visible) == 1 and _is_workspace(visible[0]) else folder
 
 
 def _find_archive(folder: Path) -> Path | None:
-    """Return an archive in a folder that is not a workspace, as downloads of a class contain it."""
+    """Return an archive in a folder that is not a workspace, or None. Downloads of a class contain archives."""
     if _is_workspace(folder):
         return None
     return next((path for path in sorted(folder.iterdir()) if path.suffix.lower() in _ARCHIVES), None)
@@ -111,7 +113,7 @@ def _is_workspace(folder: Path) -> bool:
 
 
 def _read_claims(submission: Submission, course: Course) -> None:
-    """Read the student's progress file, in which there can be anything."""
+    """Read the student's progress file, whose content is not trusted."""
     path = submission.folder / PROGRESS_FILE
     try:
         status = path.lstat()
@@ -129,23 +131,23 @@ def _read_claims(submission: Submission, course: Course) -> None:
         submission.note(phrase("there is no {file}, so there are no answers", file=PROGRESS_FILE))
     elif PurePosixPath(progress.course.replace("\\", "/")).name != course.id:
         name = printable(progress.course)
-        submission.note(phrase("{file} is of the course '{name}', and was not used", file=PROGRESS_FILE, name=name))
+        submission.note(phrase("{file} belongs to the course '{name}' and was not used", file=PROGRESS_FILE, name=name))
     else:
         submission.progress = progress
 
 
 def copy_workspace(submission: Submission, target: Path) -> bool:
-    """Copy the files of a submission, and return whether they could be copied.
+    """Copy the files of a submission, and return whether that succeeded.
 
-    Links, files that are not regular, and unreadable files are left out and noted.
+    Links, special files and unreadable files are omitted and mentioned in the notes.
     """
     left_out: Counter[str] = Counter()
     count = size = 0
     target.mkdir()
     for path, status in _entries(submission.folder, left_out):
-        place = target / path.relative_to(submission.folder)
+        folder = target / path.relative_to(submission.folder)
         if stat.S_ISDIR(status.st_mode):
-            place.mkdir(exist_ok=True)
+            folder.mkdir(exist_ok=True)
             continue
         count, size = count + 1, size + status.st_size
         if count > _MOST_FILES or size > _MOST_BYTES:
@@ -156,8 +158,8 @@ def copy_workspace(submission: Submission, target: Path) -> bool:
             submission.is_readable = False
             return False
         try:
-            shutil.copyfile(path, place, follow_symlinks=False)
-            place.chmod(0o755 if status.st_mode & stat.S_IXUSR else 0o644)
+            shutil.copyfile(path, folder, follow_symlinks=False)
+            folder.chmod(0o755 if status.st_mode & stat.S_IXUSR else 0o644)
         except OSError:
             left_out["unreadable"] += 1
     for kind, number in sorted(left_out.items()):
@@ -186,7 +188,7 @@ def _left_out(kind: str, count: int) -> Phrase:
 
 
 def _entries(folder: Path, left_out: Counter[str]) -> Iterator[tuple[Path, os.stat_result]]:
-    """Yield folders and regular files, each folder before its contents, in an order that is the same everywhere."""
+    """Yield folders and regular files, each folder before its contents, in the same order on all systems."""
     waiting = [(folder, 0)]
     while waiting:
         current, depth = waiting.pop()

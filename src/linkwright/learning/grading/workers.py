@@ -1,4 +1,4 @@
-"""Processes in which jobs run: of this machine, or of a Ray cluster."""
+"""Worker processes for jobs, on this machine or in a Ray cluster."""
 
 from __future__ import annotations
 
@@ -29,7 +29,7 @@ FolderContent = dict[str, "tuple[int, bytes] | None"]
 
 @contextmanager
 def scratch_for_runs() -> Iterator[Path]:
-    """Yield a folder through which the users of runs may pass, without seeing what is in it."""
+    """Yield a folder that the users of runs may traverse but not list."""
     with ScratchFolder("grade", ignore_cleanup_errors=True) as name:
         Path(name).chmod(0o711)
         yield Path(name)
@@ -74,7 +74,7 @@ def _run_on_ray(cluster: RayCluster, jobs: Sequence[Job]) -> Iterator[tuple[int,
 
 
 def _tasks(cluster: RayCluster, jobs: Sequence[Job]) -> Iterator[tuple[object, ...]]:
-    """Yield the arguments of `_run_in_cluster`. The content of a folder is sent when its first job begins."""
+    """Yield the arguments of `_run_in_cluster`. A folder's content is sent when its first job begins."""
     course = copy = None
     content_of: Path | None = None
     for job in jobs:
@@ -85,9 +85,9 @@ def _tasks(cluster: RayCluster, jobs: Sequence[Job]) -> Iterator[tuple[object, .
 
 
 def _run_in_cluster(course: FolderContent, copy: FolderContent, job: Job) -> Mark | LinkwrightError:
-    """Run a job in a process of the cluster, in folders of its own.
+    """Run a job in a process of the cluster, in separate folders.
 
-    The error is returned, because Ray would raise another one.
+    An error is returned instead of raised, because Ray would replace it with another error.
     """
     with scratch_for_runs() as scratch:
         lessons, own_copy = scratch / "course", scratch / "copy"

@@ -1,4 +1,4 @@
-"""Exercises: their folders, read and verified."""
+"""Exercises, read from their folders and validated."""
 
 from __future__ import annotations
 
@@ -26,7 +26,7 @@ class Figure:
     """The number by which a program is judged.
 
     Attributes:
-        name: what it measures.
+        name: the measured quantity.
         unit: the unit.
         none: the value that is worth no points.
         half: the value that is worth 50 points.
@@ -56,15 +56,15 @@ class Exercise:
         folder: its folder, whose name is the name of the exercise.
         title: the title in each language.
         difficulty: from 1 (easy) to 5.
-        minutes: the time that a learner probably needs.
+        minutes: the estimated time that a learner needs.
         needs: the extras of Linkwright that the exercise needs, such as ``sim``.
         robot: the file of the robot, or its ``package://`` URI; empty if the world contains it.
         arguments: the robot's xacro arguments.
         model: the name of the robot in the world.
         time_limit: the simulated time after which a run ends, in s.
-        collision_cost: the points that a collision of the robot costs.
+        collision_cost: the points subtracted for each collision of the robot.
         figure: the number by which a program is judged.
-        settings: other values, for the judge.
+        settings: further values for the judge.
     """
 
     folder: Path
@@ -87,7 +87,7 @@ class Exercise:
 
     @property
     def template(self) -> Path:
-        """The program to begin with."""
+        """The program from which the learner starts."""
         return self.folder / TEMPLATE_FILE
 
     def solution(self, name: str) -> Path:

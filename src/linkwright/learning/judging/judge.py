@@ -1,4 +1,4 @@
-"""Judges: they watch the true state of a simulated world, and measure how well a program does."""
+"""Judges, which monitor the ground truth of a simulated world and score a program."""
 
 from __future__ import annotations
 
@@ -31,7 +31,7 @@ class Judge:
 
     Args:
         exercise: the exercise.
-        seed: the seed of the run, which determines all that varies from run to run.
+        seed: the seed of the run, which determines everything that varies between runs.
 
     Attributes:
         TOPICS: the topics on which the program publishes its answers, with their types; see `on_message`.
@@ -39,11 +39,11 @@ class Judge:
         random: the random numbers of the run.
         time: the simulated time since the start, in s.
         figure: the number that is shown while the program runs, and judged at the end.
-        progress: how much of the task is done, from 0 to 1.
+        progress: the completed fraction of the task, from 0 to 1.
         is_solved: whether the task is done, so that the figure counts.
         is_finished: whether the run has ended.
         collisions: the number of collisions of the robot.
-        reasons: what earned or cost points.
+        reasons: the reasons for added and subtracted points.
     """
 
     TOPICS: ClassVar[tuple[tuple[str, str], ...]] = ()
@@ -69,38 +69,38 @@ class Judge:
         """Place the robot, and add the models that vary with the seed."""
 
     def start(self) -> None:
-        """Prepare for a run in a simulation whose models are in place."""
+        """Prepare for a run, when all models are placed in the simulation."""
 
     def update(self) -> None:
-        """Look at the world, and set `figure` and `progress`. Call `finish` or `fail` when the run has ended."""
+        """Inspect the world, and set `figure` and `progress`. Call `finish` or `fail` when the run has ended."""
         raise NotImplementedError
 
     def on_message(self, topic: str, message: Any) -> None:
         """Receive an answer of the program on one of `TOPICS`."""
 
     def at_time_limit(self) -> None:
-        """Decide what a run is worth that has not ended in time: by default, the task is not done."""
+        """Score a run that has reached the time limit. By default, the task counts as failed."""
         self.fail(en="the task is not done", zh="任务没有完成")
 
     # --- methods for judges to call -----------------------------------------------------------------------------------
 
     @property
     def simulation(self) -> Simulation:
-        """The simulation, with the true state of the world."""
+        """The simulation, with the ground truth of the world."""
         assert self._simulation is not None, "the run has started"
         return self._simulation
 
     def pose(self, model: str = "") -> tuple[float, float, float]:
-        """Return the true x and y of a model in m, and its yaw in rad; of the robot if no model is named."""
+        """Return the true x and y in m and yaw in rad of a model, by default of the robot."""
         x, y, _, qx, qy, qz, qw = self.simulation.model_pose(model or self.exercise.model)
         return x, y, atan2(2 * (qw * qz + qx * qy), 1 - 2 * (qy * qy + qz * qz))
 
     def height(self, model: str = "") -> float:
-        """Return the height of a model's frame, in m."""
+        """Return the height of a model's frame above the world's origin, in m."""
         return self.simulation.model_pose(model or self.exercise.model)[2]
 
     def touched_models(self, model: str = "") -> set[str]:
-        """Return the models that touch a model, without the ground; those that touch the robot if none is named."""
+        """Return the names of the models, except the ground, that touch a model, by default the robot."""
         own_name = model or self.exercise.model
         names = self._names_by_geom()
         data = self.simulation.data
@@ -112,12 +112,12 @@ class Judge:
         return {name for name in touched if name and not name.startswith(_GROUND_NAMES)}
 
     def finish(self, en: str = "", zh: str = "") -> None:
-        """End the run: the task is done."""
+        """End the run as successful."""
         self.is_solved = True
         self._end(en, zh)
 
     def fail(self, en: str, zh: str) -> None:
-        """End the run: the task is not done, and points are for `progress`."""
+        """End the run as failed. The score then depends on `progress`."""
         self._end(en, zh)
 
     def penalize(self, points: float, en: str, zh: str) -> None:
@@ -139,12 +139,12 @@ class Judge:
         return round(max(0.0, min(100.0, earned - self._penalty)), 1)
 
     def begin(self, simulation: Simulation) -> None:
-        """Begin to watch a simulation, which contains the robot."""
+        """Start to judge a run in a simulation that contains the robot."""
         self._simulation = simulation
         self.start()
 
     def watch(self) -> None:
-        """Look at the current state of the simulation."""
+        """Update the judge from the current state of the simulation."""
         if self.is_finished:
             return
         self.time = self.simulation.seconds

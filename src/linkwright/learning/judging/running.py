@@ -1,4 +1,4 @@
-"""Judging a program: its runs in simulated worlds at maximum rate, one for each seed."""
+"""Runs of a program in simulated worlds, as fast as possible, one for each seed."""
 
 from __future__ import annotations
 
@@ -49,14 +49,14 @@ def judge_program(
     """Run a program in the worlds of an exercise, and yield the result for each seed.
 
     The program runs in lockstep with the world, so a result depends on the program and the seed alone. It gets the
-    topics of its robot, but not the simulator's services, which could move the robot or tell its true pose. It does not
+    topics of its robot, but not the simulator's services, which could move the robot or reveal its pose. It does not
     communicate with other processes.
 
     Args:
         exercise: the exercise.
         program: the file of the program.
         seeds: the seeds.
-        budget: the longest time for which the program may compute without waiting, in seconds, without the time in
+        budget: the longest time for which the program may compute without waiting, in seconds, not counting the time in
             which it waits for a processor.
 
     Raises:

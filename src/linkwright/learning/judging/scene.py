@@ -1,4 +1,4 @@
-"""The scene of a run: the robot's start, and the models that a judge adds to the world of the exercise."""
+"""The scene of a run: the robot's initial pose, and the models that a judge adds to the exercise's world."""
 
 from __future__ import annotations
 
@@ -19,11 +19,11 @@ YELLOW: Color = (0.9, 0.8, 0.1)
 
 
 class Scene:
-    """Models to add to a world, and the start of the robot in it.
+    """The models to add to a world, and the initial pose of the robot.
 
     Attributes:
-        start: where the robot starts: x, y in m, and its yaw in rad.
-        start_height: the height of the robot's frame at the start, in m.
+        start: the initial x and y of the robot in m, and its yaw in rad.
+        start_height: the initial height of the robot's frame, in m.
     """
 
     def __init__(self) -> None:
@@ -45,7 +45,7 @@ class Scene:
 
         Args:
             name: the name of the model.
-            center: x, y, z of its middle, in m.
+            center: the x, y, z of its center, in m.
             size: its length, width and height, in m.
             color: red, green and blue, from 0 to 1.
             yaw: its rotation about z, in rad.
@@ -75,12 +75,12 @@ class Scene:
         self.add_box(name, middle, (length + 0.1, 0.1, height), WHITE, yaw=yaw)
 
     def add_room(self, corners: Sequence[Sequence[float]], height: float = 0.5) -> None:
-        """Add walls from corner to corner, and back to the first one: ``wall_1``, ``wall_2``, ..."""
+        """Add a closed polygon of walls between corners, named ``wall_1``, ``wall_2``, ..."""
         for number, corner in enumerate(corners, start=1):
             self.add_wall(f"wall_{number}", corner, corners[number % len(corners)], height)
 
     def add_tile(self, name: str, center: Sequence[float], size: float, color: Color = GREEN) -> None:
-        """Paint a square on the ground."""
+        """Add a flat colored square on the ground, without contacts."""
         box = f"<box><size>{size:.4f} {size:.4f} 0.002</size></box>"
         visual = f'<visual name="visual"><geometry>{box}</geometry>{_material(color)}</visual>'
         self._models.append(
@@ -115,13 +115,13 @@ class Scene:
         )
 
     def add_table(self, name: str, center: Sequence[float], yaw: float, half: float, color: Color = YELLOW) -> None:
-        """Add a table with four legs, which a robot can drive below, and which the judge moves.
+        """Add a table with four legs that a robot can pass under, and that the judge moves.
 
         Args:
             name: the name of the model.
-            center: x and y of its middle, in m.
+            center: the x and y of its center, in m.
             yaw: its rotation, in rad.
-            half: the distance from the middle to the legs along each side, in m.
+            half: the distance from the center to the legs along x and y, in m.
             color: red, green and blue, from 0 to 1.
         """
         leg = "<box><size>0.06 0.06 0.5</size></box>"
@@ -141,7 +141,7 @@ class Scene:
         )
 
     def add_line(self, name: str, points: Sequence[Sequence[float]], width: float, color: Color = BLACK) -> None:
-        """Paint a line through points x, y on the ground, closed to a loop if the last is the first."""
+        """Add a flat line through points x, y on the ground, a loop if the last point equals the first."""
         pieces = []
         for number, (first, second) in enumerate(pairwise(points)):
             length = hypot(second[0] - first[0], second[1] - first[1]) + 0.6 * width
@@ -157,7 +157,7 @@ class Scene:
         )
 
     def add_sdf(self, text: str) -> None:
-        """Add a ``<model>`` or an ``<include>`` of SDF."""
+        """Add an SDF ``<model>`` or ``<include>``."""
         self._models.append(text)
 
     def insert_into(self, world: str, plugin: str) -> str:

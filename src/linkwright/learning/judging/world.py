@@ -1,4 +1,4 @@
-"""The world of a run, and the plugin with which its judge watches it.
+"""The world of a run, and the plugin through which the judge monitors it.
 
 The world is the exercise's, with the models of the judge and a plugin. It is a file of its own, so that the judged run
 and a run in real time (``linkwright sim``) use the same one. The plugin publishes the state of the judge on
@@ -30,7 +30,7 @@ _UPDATE_RATE_HZ, _STATUS_RATE_HZ = 50.0, 5.0
 
 @dataclass(frozen=True)
 class Arrangement:
-    """The world of a run, and where the robot starts in it.
+    """The world of a run, and the initial pose of the robot.
 
     Attributes:
         world: the file of the world.
@@ -66,7 +66,7 @@ def write_world(exercise: Exercise, seed: int, folder: Path, *, publishes: bool)
         exercise: the exercise.
         seed: the seed of the run.
         folder: the folder, in which the file gets a name of its own.
-        publishes: whether the judge publishes its state. A program that is judged must not see it.
+        publishes: whether the judge publishes its state, which a judged program must not receive.
 
     Raises:
         LinkwrightError: LEARN140, the exercise has no judge.
@@ -95,7 +95,7 @@ class Parameters:
 
 
 class JudgePlugin(SimulatedPlugin[Parameters]):
-    """The plugin that lets a judge watch a world.
+    """The plugin that runs a judge in a simulated world.
 
     Attributes:
         judge: the judge of the current run.
@@ -115,7 +115,7 @@ class JudgePlugin(SimulatedPlugin[Parameters]):
             self.every(_STATUS_RATE_HZ, self._publish)
 
     def reset(self) -> None:
-        """Begin another run with the same seed."""
+        """Start another run with the same seed."""
         self.judge = create_judge(self._exercise, self.parameters.seed)
         self.judge.arrange(Scene())  # again, because the judge remembers what it has placed
         self._has_begun = False

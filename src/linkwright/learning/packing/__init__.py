@@ -1,1 +1,1 @@
-"""Folders for memory sticks from which a class installs Linkwright without a network."""
+"""Packs: folders, for example on memory sticks, from which a class installs Linkwright offline."""

@@ -1,7 +1,7 @@
-"""The check of a pack: the checksums of its files, and whether each target can be installed from it.
+"""Verification of a pack: the checksums of its files, and whether each target can be installed from it.
 
 The check reads the requirements in the wheels themselves and evaluates their markers for each target. It does not use
-the table from which the pack was made.
+the table from which the pack was built.
 """
 
 from __future__ import annotations
@@ -65,11 +65,11 @@ class _PackedWheels:
 
 
 def check_pack(folder: PackFolder, progress: Callable[[int, int], None]) -> list[Diagnostic]:
-    """Check a pack, and return what is wrong.
+    """Verify a pack, and return its problems.
 
     Args:
         folder: the pack.
-        progress: the function that receives the bytes that were read, and all of them.
+        progress: called with the number of bytes read so far and the total number of bytes.
 
     Raises:
         LinkwrightError: LEARN307 if the folder is not a pack, or LEARN305 if the pack is not complete.
@@ -118,11 +118,11 @@ def _damaged(message: Phrase) -> Diagnostic:
 def _target_problems(
     folder: PackFolder, settings: PackSettings, target: Target, wheels: _PackedWheels
 ) -> Iterator[Diagnostic]:
-    """Yield what prevents an installation on a target."""
+    """Yield the problems that prevent an installation on a target."""
     try:
         text = folder.requirements(target).read_text(encoding="utf-8")
     except OSError:
-        yield _unfit(phrase("{target}: its list of packages is missing", target=target.label))
+        yield _unsuitable_wheel(phrase("{target}: its list of packages is missing", target=target.label))
         return
     pinned: dict[NormalizedName, _Wheel] = {}
     for name, version, digest in _PINNED.findall(text):
@@ -132,7 +132,7 @@ def _target_problems(
             yield from error.diagnostics
             continue
         if wheel is None or (wheel.name, str(wheel.version)) != (canonicalize_name(name), version):
-            yield _unfit(
+            yield _unsuitable_wheel(
                 phrase(
                     "{target}: the pack has no wheel of {name} {version}",
                     target=target.label,
@@ -141,7 +141,9 @@ def _target_problems(
                 )
             )
         elif wheel_rank(wheel.file, target) is None or not wheel.pythons.contains(f"{target.python}.99"):
-            yield _unfit(phrase("{target}: the wheel '{file}' does not fit", target=target.label, file=wheel.file))
+            yield _unsuitable_wheel(
+                phrase("{target}: the wheel '{file}' does not fit", target=target.label, file=wheel.file)
+            )
         else:
             pinned[wheel.name] = wheel
     yield from _missing_requirements(settings, target, pinned)
@@ -150,7 +152,7 @@ def _target_problems(
 def _missing_requirements(
     settings: PackSettings, target: Target, pinned: Mapping[NormalizedName, _Wheel]
 ) -> Iterator[Diagnostic]:
-    """Follow the requirements from Linkwright on, and yield those that no wheel satisfies."""
+    """Yield the direct and indirect requirements of Linkwright that no wheel satisfies."""
     root = Requirement(f"linkwright[{','.join(settings.extras)}]" if settings.extras else "linkwright")
     queue: list[tuple[Requirement, str]] = [(root, "pack.json")]
     seen: set[tuple[str, str]] = set()
@@ -159,24 +161,24 @@ def _missing_requirements(
         name = canonicalize_name(requirement.name)
         wheel = pinned.get(name)
         if wheel is None or not requirement.specifier.contains(wheel.version, prereleases=True):
-            yield _unfit(
+            yield _unsuitable_wheel(
                 phrase(
-                    "{target}: no wheel for '{requirement}', which {asker} needs",
+                    "{target}: no wheel for '{requirement}', which {dependent} needs",
                     target=target.label,
                     requirement=str(requirement),
-                    asker=asker,
+                    dependent=asker,
                 )
             )
             continue
         for unknown in set(map(canonicalize_name, requirement.extras)) - wheel.extras:
-            yield _unfit(phrase("'{file}' has no extra '{extra}'", file=wheel.file, extra=unknown))
+            yield _unsuitable_wheel(phrase("'{file}' has no extra '{extra}'", file=wheel.file, extra=unknown))
         for extra in {"", *requirement.extras} - {extra for key, extra in seen if key == name}:
             seen.add((name, extra))
             queue += [(needed, wheel.file) for needed in wheel.requirements if _applies(needed, extra, target)]
 
 
 def _applies(requirement: Requirement, extra: str, target: Target) -> bool:
-    """Return whether a requirement holds on a target, for an extra or, if it is empty, always."""
+    """Return whether a requirement applies on a target, with an extra or, if it is empty, without extras."""
     if requirement.marker is None:
         return not extra
     if not extra:
@@ -184,5 +186,5 @@ def _applies(requirement: Requirement, extra: str, target: Target) -> bool:
     return requirement.marker.evaluate({**target.markers, "extra": extra})
 
 
-def _unfit(message: Phrase) -> Diagnostic:
+def _unsuitable_wheel(message: Phrase) -> Diagnostic:
     return Diagnostic("LEARN306", message)

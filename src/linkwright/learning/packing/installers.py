@@ -1,4 +1,4 @@
-"""The installers of a pack: a script for each system, and the Python program that they start."""
+"""The installers of a pack: a script for each system, and the Python program that the scripts start."""
 
 from __future__ import annotations
 
@@ -32,7 +32,7 @@ def write_installers(folder: PackFolder, settings: PackSettings) -> None:
         OSError: a file cannot be written.
     """
     pythons = preferred_pythons(settings.missing, settings.pythons)
-    words = {
+    replacements = {
         "@PYTHONS@": " ".join(pythons),
         "@DIGITS@": " ".join(version.replace(".", "") for version in pythons),
         "@VERSION@": settings.version,
@@ -40,8 +40,8 @@ def write_installers(folder: PackFolder, settings: PackSettings) -> None:
     }
     for name, template in _COPIES.items():
         text = (_TEMPLATES / template).read_text(encoding="utf-8")
-        for word, value in words.items():
-            text = text.replace(word, value)
+        for placeholder, value in replacements.items():
+            text = text.replace(placeholder, value)
         if name in _WINDOWS_LINES:
             text = text.replace("\n", "\r\n")
         write_whole_file(folder.path / name, text)
@@ -51,7 +51,7 @@ def write_installers(folder: PackFolder, settings: PackSettings) -> None:
 
 
 def preferred_pythons(missing: Mapping[str, Mapping[str, Sequence[str]]], pythons: Sequence[str]) -> list[str]:
-    """Return the versions of Python, those with the most parts of Linkwright first, then the newest."""
+    """Return the Python versions, sorted by the fewest missing parts of Linkwright, then newest first."""
 
     def rank(python: str) -> tuple[int, int]:
         parts = [len(texts["en"]) for target, texts in missing.items() if target.endswith(f"-py{python}")]

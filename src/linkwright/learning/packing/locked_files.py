@@ -1,8 +1,8 @@
-"""The files that a target needs, of the versions with which this Linkwright was tested.
+"""The packages that a target needs, in the versions with which this Linkwright was tested.
 
-They are in ``wheels.json``, which ``tools/pack_wheels.py`` makes of ``uv.lock``: the packages that the extras need,
-with markers and the names, checksums and sizes of the wheels that fit one of the targets. So neither a resolver nor a
-network is needed to know what a pack contains.
+``tools/pack_wheels.py`` creates their table, ``wheels.json``, from ``uv.lock``: the packages that the extras need,
+with markers and the names, checksums and sizes of the wheels for all targets. So neither a resolver nor a
+network is needed to determine the content of a pack.
 """
 
 from __future__ import annotations
@@ -21,16 +21,16 @@ from linkwright.diagnostics import Diagnostic, LinkwrightError, did_you_mean, jo
 from linkwright.learning.packing.targets import Target
 
 TABLE = Path(__file__).with_name("wheels.json")
-OURS = ("linkwright-core", "linkwright")
+OWN_PACKAGES = ("linkwright-core", "linkwright")
 """The distributions of Linkwright itself, which are not in the table's files."""
 
 Packages = Mapping[str, Mapping[str, Any]]
-"""The packages of the table by ``NAME VERSION``, or by the name alone for `OURS`."""
+"""The packages of the table by ``NAME VERSION``, or by the name alone for `OWN_PACKAGES`."""
 
 
 @dataclass(frozen=True)
 class LockedFile:
-    """A file that an index has.
+    """A file in a package index.
 
     Attributes:
         package: the name of the distribution.
@@ -48,13 +48,13 @@ class LockedFile:
 
     @property
     def is_wheel(self) -> bool:
-        """Whether the file is a wheel; else it is a source distribution, from which a wheel has to be built."""
+        """Whether the file is a wheel; otherwise it is a source distribution."""
         return self.name.endswith(".whl")
 
 
 @cache
 def locked_packages() -> Packages:
-    """Return the packages of the table."""
+    """Return the packages in the table ``wheels.json``."""
     packages: Packages = json.loads(TABLE.read_text(encoding="utf-8"))
     return packages
 
@@ -65,7 +65,7 @@ def known_extras(packages: Packages) -> list[str]:
 
 
 def check_extras(extras: Sequence[str], packages: Packages) -> None:
-    """Check the names of extras.
+    """Check that extras exist.
 
     Raises:
         LinkwrightError: LEARN301 if an extra is unknown.
@@ -79,9 +79,9 @@ def check_extras(extras: Sequence[str], packages: Packages) -> None:
 
 
 def needed_packages(target: Target, extras: Iterable[str], packages: Packages) -> list[str]:
-    """Return the keys of the packages that Linkwright with some extras needs on a target, without `OURS`.
+    """Return the keys of the packages, except `OWN_PACKAGES`, that Linkwright with some extras needs on a target.
 
-    pip, which installs the others, is always among them.
+    The result always includes pip, which installs the other packages.
     """
     environment = target.markers
     queue: list[tuple[str, str]] = [("linkwright", ""), *(("linkwright", extra) for extra in extras)]
@@ -92,16 +92,16 @@ def needed_packages(target: Target, extras: Iterable[str], packages: Packages) -
         package = packages[key]
         edges = package.get("extras", {}).get(extra, ()) if extra else package.get("needs", ())
         for edge in edges:
-            if "marker" in edge and not _holds(edge["marker"], environment):
+            if "marker" in edge and not _is_satisfied(edge["marker"], environment):
                 continue
             for name in ("", *edge.get("extras", ())):
                 if (edge["key"], name) not in seen:
                     seen.add((edge["key"], name))
                     queue.append((edge["key"], name))
-    return sorted({key for key, _ in seen} - set(OURS))
+    return sorted({key for key, _ in seen} - set(OWN_PACKAGES))
 
 
-def _holds(marker: str, environment: dict[str, str]) -> bool:
+def _is_satisfied(marker: str, environment: dict[str, str]) -> bool:
     return _parsed_marker(marker).evaluate(environment)
 
 
@@ -113,8 +113,8 @@ def _parsed_marker(marker: str) -> Marker:
 def needed_files(target: Target, extras: Iterable[str], packages: Packages) -> Iterator[LockedFile]:
     """Yield the files that Linkwright with some extras needs on a target.
 
-    A package without a wheel is given as its source distribution. Packages whose wheels do not fit are left out; the
-    tests make sure that the locked ones do not have any.
+    For a package without wheels, this is the source distribution. Packages without a suitable wheel are omitted;
+    tests ensure that no such package is needed.
     """
     for key in needed_packages(target, extras, packages):
         name, version = key.split(" ")
@@ -124,16 +124,16 @@ def needed_files(target: Target, extras: Iterable[str], packages: Packages) -> I
 
 
 def best_wheel(names: Iterable[str], target: Target) -> str | None:
-    """Return the file name of the wheel that fits a target best, or None if none fits.
+    """Return the file name of the best wheel for a target, or None if no wheel is suitable.
 
-    Of wheels for the same Python, the one that the oldest systems can install is the best.
+    Of wheels for the same Python, the best one supports the oldest systems.
     """
     ranked = [(rank, name) for name in names if (rank := wheel_rank(name, target)) is not None]
     return min(ranked)[1] if ranked else None
 
 
 def wheel_rank(name: str, target: Target) -> int | None:
-    """Return how well a wheel fits a target, with 0 for the best, or None if it does not fit."""
+    """Return the rank of a wheel for a target, 0 for the best, or None if the wheel is not suitable."""
     try:
         tags = parse_wheel_filename(name)[3]
     except InvalidWheelFilename:

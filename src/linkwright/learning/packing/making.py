@@ -1,4 +1,4 @@
-"""Making a pack: wheels, models, worlds, documentation and installers in a folder."""
+"""Creation of a pack: wheels, models, worlds, documentation and installers in a folder."""
 
 from __future__ import annotations
 
@@ -30,15 +30,15 @@ _BYTES_PER_MB = 1_000_000
 
 @dataclass(frozen=True)
 class PackContents:
-    """The contents of a pack beside the wheels of an index.
+    """The contents of a pack in addition to the wheels from a package index.
 
     Attributes:
-        own_wheels: the wheels of Linkwright; if empty, they are made.
+        own_wheels: the wheels of Linkwright; if empty, they are built.
         models: the models.
-        models_source: where models are that are not downloaded: a folder or the address of a mirror, or None for the
-            publishers' addresses.
-        worlds: folders of models of worlds, with their names in the pack, as `world_folders` returns them.
-        docs: the folder of the documentation's site, or None.
+        models_source: the source of models that are not downloaded yet: a folder, the address of a mirror, or None
+            for the publishers' addresses.
+        worlds: the folders with models of worlds, by their names in the pack (see `world_folders`).
+        docs: the folder with the documentation, or None.
     """
 
     own_wheels: Sequence[Path] = ()
@@ -50,7 +50,7 @@ class PackContents:
 
 @dataclass
 class _Maker:
-    """The making of one pack."""
+    """A builder of one pack."""
 
     folder: PackFolder
     report: Callable[[Phrase], None]
@@ -58,7 +58,7 @@ class _Maker:
     """The checksums of the wheels that are in the pack, by absolute path."""
 
     def add_locked(self, targets: Sequence[Target], extras: Sequence[str]) -> dict[Target, dict[str, Path]]:
-        """Add the wheels of an index, and return them by target and ``NAME==VERSION``."""
+        """Add the wheels from a package index, and return them by target and ``NAME==VERSION``."""
         packages = locked_packages()
         found: dict[Target, dict[str, Path]] = {}
         for target in targets:
@@ -96,13 +96,13 @@ class _Maker:
         return False
 
     def _verify(self, file: LockedFile) -> None:
-        """Verify a written file, because memory sticks fail."""
+        """Verify the checksum of a written file, because memory sticks fail."""
         if not self._has(file):
             message = phrase("'{file}' was not written correctly", file=display_path(self.folder.wheels / file.name))
             raise LinkwrightError(Diagnostic("LEARN304", message, hint=phrase("use another disk or memory stick")))
 
     def _built(self, file: LockedFile) -> Path:
-        """Return the wheel of a package that comes as source only."""
+        """Return the wheel of a package that is published only as source."""
         for path in self.folder.wheels.glob("*.whl"):
             name, version, _, _ = parse_wheel_filename(path.name)
             if (name, str(version)) == (file.package, file.version) and is_for_all_systems(path.name):
@@ -110,10 +110,12 @@ class _Maker:
         self.report(phrase("building the wheel of {name} {version}", name=file.package, version=file.version))
         return build(file, self.folder.wheels)
 
-    def write_requirements(self, target: Target, wheels: Mapping[str, Path], own: Iterable[Path], extras: str) -> None:
+    def write_requirements(
+        self, target: Target, wheels: Mapping[str, Path], own_wheels: Iterable[Path], extras: str
+    ) -> None:
         """Write the list of packages for a target."""
         lines = []
-        for path in own:
+        for path in own_wheels:
             name, version, _, _ = parse_wheel_filename(path.name)
             lines.append(f"{name}{extras if name == 'linkwright' else ''}=={version} --hash=sha256:{self._sum(path)}\n")
         lines += [f"{name} --hash=sha256:{self._sum(path)}\n" for name, path in sorted(wheels.items())]
@@ -124,16 +126,16 @@ class _Maker:
             self.sums[path] = sha256_of(path)
         return self.sums[path]
 
-    def remove_others(self, kept: set[Path], targets: Sequence[Target]) -> None:
-        """Remove wheels and lists of packages of an earlier pack that this one does not need."""
+    def remove_others(self, needed_wheels: set[Path], targets: Sequence[Target]) -> None:
+        """Remove wheels and package lists of an earlier pack that this pack does not need."""
         lists = {self.folder.requirements(target) for target in targets}
         for path in (*self.folder.wheels.glob("*.whl"), *lists.copy().pop().parent.glob("*.txt")):
-            if path not in kept and path not in lists:
+            if path not in needed_wheels and path not in lists:
                 path.unlink()
 
 
 def world_folders() -> list[tuple[str, Path]]:
-    """Return the folders of models that gz and Gazebo classic downloaded, with their names in a pack."""
+    """Return the folders with models that gz and Gazebo classic have downloaded, by their names in a pack."""
     folders = [("fuel", folder) for folder in fuel_caches(os.environ)]
     return [(name, path) for name, path in (*folders, ("gazebo", Path.home() / ".gazebo" / "models")) if path.is_dir()]
 
@@ -145,17 +147,17 @@ def make_pack(
     report: Callable[[Phrase], None],
     progress: Callable[[ModelEntry, int, int | None], None],
 ) -> list[Diagnostic]:
-    """Make a pack, or complete one that was interrupted.
+    """Create a pack, or complete an interrupted one.
 
     Args:
         folder: the folder, which is created.
-        settings: what the pack is made for; the version and the models are filled in.
-        contents: its other contents.
-        report: the function that receives a sentence about each step.
-        progress: the function that receives the progress of the download of a model.
+        settings: the settings of the pack; the version and the models are filled in.
+        contents: the further contents of the pack.
+        report: called with a sentence about each step.
+        progress: called with the progress of the download of a model.
 
     Returns:
-        Why models are missing in the pack.
+        The reasons why models are missing in the pack.
 
     Raises:
         LinkwrightError: LEARN301 if a name is unknown, LEARN302 if the wheels of Linkwright cannot be made, LEARN303 if
@@ -171,15 +173,15 @@ def make_pack(
         folder.write_settings(settings)
         maker = _Maker(folder, report)
         report(phrase("the wheels of Linkwright"))
-        own = add_own_wheels(contents.own_wheels, folder.wheels)
+        own_wheels = add_own_wheels(contents.own_wheels, folder.wheels)
         found = maker.add_locked(targets, settings.extras)
-        maker.remove_others({*own, *(path for wheels in found.values() for path in wheels.values())}, targets)
+        maker.remove_others({*own_wheels, *(path for wheels in found.values() for path in wheels.values())}, targets)
         extras = f"[{','.join(settings.extras)}]" if settings.extras else ""
         for target, wheels in found.items():
-            maker.write_requirements(target, wheels, own, extras)
+            maker.write_requirements(target, wheels, own_wheels, extras)
         problems, models = _add_models(folder, contents, report, progress)
         _add_folders(folder, contents, report)
-        version = str(read_metadata(own[-1])["Version"])
+        version = str(read_metadata(own_wheels[-1])["Version"])
         settings = replace(settings, version=version, models=models)
         folder.write_settings(settings)
         write_installers(folder, settings)
@@ -205,7 +207,7 @@ def _add_models(
     report: Callable[[Phrase], None],
     progress: Callable[[ModelEntry, int, int | None], None],
 ) -> tuple[list[Diagnostic], list[str]]:
-    """Add models, and return why some are missing and the names of the others."""
+    """Add models, and return the reasons why some are missing, and the names of the others."""
     problems: list[Diagnostic] = []
     names = []
     for entry in contents.models:
@@ -232,7 +234,7 @@ def _has_model(entry: ModelEntry, folder: Path) -> bool:
 
 
 def _add_folders(folder: PackFolder, contents: PackContents, report: Callable[[Phrase], None]) -> None:
-    """Copy the models of worlds and the documentation."""
+    """Add the models of worlds and the documentation."""
     for name, source in contents.worlds:
         report(phrase("the models of worlds in '{path}'", path=display_path(source)))
         _copy_tree(source, folder.worlds / name)
@@ -242,7 +244,7 @@ def _add_folders(folder: PackFolder, contents: PackContents, report: Callable[[P
 
 
 def _copy_tree(source: Path, target: Path) -> None:
-    """Copy the files of a folder that differ in size or time, without permissions, which memory sticks do not have."""
+    """Copy the files that differ in size or time. Permissions are omitted, because memory sticks lack them."""
     for path in sorted(source.rglob("*")):
         copy = target / path.relative_to(source)
         if not path.is_file():

@@ -1,4 +1,4 @@
-"""The parts of Linkwright whose packages some systems do not have."""
+"""The parts of Linkwright whose packages are not available on all systems."""
 
 from __future__ import annotations
 
@@ -13,11 +13,11 @@ from linkwright.learning.packing.targets import Target, select_targets
 
 @dataclass(frozen=True)
 class OptionalPart:
-    """A part that works without its package in a lesser way, or not at all.
+    """A part that works with limitations, or not at all, without its package.
 
     Attributes:
-        packages: the packages; one of them is enough.
-        purpose: what a learner does not have without them.
+        packages: the packages, one of which is sufficient.
+        purpose: the feature that is missing without the packages.
     """
 
     packages: tuple[str, ...]
@@ -35,7 +35,7 @@ PARTS = (
 
 
 def missing_parts(target: Target, extras: Iterable[str], packages: Packages) -> Iterator[OptionalPart]:
-    """Yield the parts of some extras that have no package on a target."""
+    """Yield the parts of some extras whose packages are not available on a target."""
     chosen = tuple(extras)
     here = package_names(target, chosen, packages)
     anywhere = set().union(*(package_names(other, chosen, packages) for other in select_targets((), ())))
@@ -47,7 +47,7 @@ def missing_parts(target: Target, extras: Iterable[str], packages: Packages) -> 
 def missing_texts(
     targets: Iterable[Target], extras: Iterable[str], packages: Packages
 ) -> dict[str, dict[str, list[str]]]:
-    """Return what each target lacks, by its name and by language, without targets that lack nothing."""
+    """Return the missing features by target and language, without targets that lack none."""
     chosen = tuple(extras)
     texts = {}
     for target in targets:

@@ -1,4 +1,4 @@
-"""The wheels of Linkwright itself: given ones, those of a checkout, or those of the installation that runs."""
+"""The wheels of Linkwright itself: given, built from a checkout, or repacked from the installation."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ from packaging.utils import canonicalize_name, parse_wheel_filename
 
 from linkwright.diagnostics import Diagnostic, LinkwrightError, Phrase, display_path, phrase
 from linkwright.diagnostics.installation import find_installation
-from linkwright.learning.packing.locked_files import OURS
+from linkwright.learning.packing.locked_files import OWN_PACKAGES
 from linkwright.learning.packing.pip_runs import build_checkout
 from linkwright.learning.packing.wheel_metadata import read_metadata
 
@@ -25,24 +25,24 @@ _INSTALLERS_FILES = {"INSTALLER", "REQUESTED", "direct_url.json", "uv_cache.json
 """The files that an installer adds to the metadata of a distribution, or replaces."""
 
 
-def add_own_wheels(given: Sequence[Path], wheels: Path) -> list[Path]:
-    """Put the wheels of linkwright-core and linkwright into a folder, and return them.
+def add_own_wheels(wheel_files: Sequence[Path], wheels: Path) -> list[Path]:
+    """Add the wheels of linkwright-core and linkwright to a folder, and return them.
 
     Args:
-        given: the files of both wheels; if empty, they are built of the checkout that this Linkwright was installed
-            from, or else made of the installed files.
+        wheel_files: the files of both wheels; if empty, they are built from the checkout that this Linkwright was
+            installed from, or else from the installed files.
         wheels: the folder.
 
     Raises:
         LinkwrightError: LEARN302 if there are no such wheels, or LEARN303 if the checkout cannot be built.
         OSError: the folder cannot be written.
     """
-    if given:
-        paths = [_copy(path, wheels) for path in given]
+    if wheel_files:
+        paths = [_copy(path, wheels) for path in wheel_files]
     elif (checkout := _checkout()) is not None:
         paths = build_checkout(checkout, wheels)
     else:
-        paths = [_repacked(name, wheels) for name in OURS]
+        paths = [_repacked(name, wheels) for name in OWN_PACKAGES]
     _check(paths)
     return paths
 
@@ -61,7 +61,7 @@ def _checkout() -> Path | None:
 
 
 def _check(paths: Sequence[Path]) -> None:
-    """Check that the files are the wheels of both distributions of one version, which need each other."""
+    """Check that the files are the wheels of both distributions in the same version."""
     found = {}
     for path in paths:
         try:
@@ -69,7 +69,7 @@ def _check(paths: Sequence[Path]) -> None:
         except ValueError:
             raise _unusable(phrase("'{path}' is not a wheel", path=display_path(path))) from None
         found[str(name)] = str(version)
-    if sorted(found) != sorted(OURS) or len(set(found.values())) != 1:
+    if sorted(found) != sorted(OWN_PACKAGES) or len(set(found.values())) != 1:
         raise _unusable(phrase("a pack needs a wheel of linkwright and one of linkwright-core, of the same version"))
     for path in paths:
         for text in read_metadata(path).get_all("Requires-Dist") or ():
@@ -83,7 +83,7 @@ def _unusable(message: Phrase) -> LinkwrightError:
 
 
 def _repacked(name: str, wheels: Path) -> Path:
-    """Make the wheel of an installed distribution of the files that its RECORD lists."""
+    """Build the wheel of an installed distribution from the files that its RECORD lists."""
     try:
         distribution = metadata.distribution(name)
     except metadata.PackageNotFoundError:
@@ -114,7 +114,7 @@ def _metadata_folder(distribution: metadata.Distribution) -> str:
 
 
 def _recorded_files(distribution: metadata.Distribution) -> Iterator[tuple[str, bytes]]:
-    """Yield the files of a wheel with their contents, as they were before the installation."""
+    """Yield the files of a wheel with the contents that they had before the installation."""
     folder = _metadata_folder(distribution)
     for file in sorted(distribution.files or (), key=str):
         is_made = file.parts[0] == folder and file.name in _INSTALLERS_FILES
@@ -130,5 +130,5 @@ def _recorded_files(distribution: metadata.Distribution) -> Iterator[tuple[str, 
 
 
 def _record_hash(content: bytes) -> str:
-    """Return a checksum as RECORD writes it."""
+    """Return a checksum in the format of RECORD."""
     return "sha256=" + base64.urlsafe_b64encode(hashlib.sha256(content).digest()).rstrip(b"=").decode("ascii")

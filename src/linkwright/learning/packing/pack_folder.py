@@ -24,11 +24,11 @@ class PackSettings:
 
     Attributes:
         version: the version of Linkwright.
-        systems: keys of `SYSTEMS`.
-        pythons: versions of Python.
+        systems: the systems, keys of `SYSTEMS`.
+        pythons: the versions of Python.
         extras: the extras of Linkwright.
         models: the names of the models in the pack.
-        missing: the parts of Linkwright that a target does not have, by target and language.
+        missing: the features that are missing on a target, by target and language.
     """
 
     version: str
@@ -66,7 +66,7 @@ class PackFolder:
 
     @property
     def worlds(self) -> Path:
-        """The folder of the models of worlds, in the layout of gz's cache."""
+        """The folder of the models for worlds, in the layout of gz's cache."""
         return self.path / "worlds"
 
     @property
@@ -75,7 +75,7 @@ class PackFolder:
         return self.path / "docs"
 
     def requirements(self, target: Target) -> Path:
-        """Return the file with the packages for a target, with versions and checksums."""
+        """Return the path of the requirements file of a target, with versions and checksums."""
         return self.path / "requirements" / f"{target.name}.txt"
 
     def open(self) -> None:
@@ -87,7 +87,7 @@ class PackFolder:
         """
         self.path.mkdir(parents=True, exist_ok=True)
         if any(self.path.iterdir()) and not (self.path / _SETTINGS).exists():
-            message = phrase("'{path}' has files, and is not a pack", path=display_path(self.path))
+            message = phrase("'{path}' is neither empty nor a pack", path=display_path(self.path))
             hint = phrase("name a new folder, or one that `linkwright learn pack` made")
             raise LinkwrightError(Diagnostic("LEARN307", message, hint=hint))
         self.wheels.mkdir(exist_ok=True)
@@ -115,7 +115,7 @@ class PackFolder:
         return settings
 
     def files(self) -> Iterator[Path]:
-        """Yield the files of the pack, without the sums and without the Python archives that a teacher adds."""
+        """Yield the files of the pack, except the checksums and the Python archives that a teacher adds."""
         for path in sorted(self.path.rglob("*")):
             relative = path.relative_to(self.path)
             if path.is_file() and relative.parts[0] not in (_SUMS, "python"):
@@ -125,7 +125,7 @@ class PackFolder:
         """Write the checksums of all files, as ``sha256sum --check`` reads them.
 
         Args:
-            known: the checksums of files that were verified before, by absolute path.
+            known: the checksums of already verified files, by absolute path.
         """
         lines = []
         for file in self.files():
@@ -166,7 +166,7 @@ def sha256_of(path: Path) -> str:
 
 
 def installed_size(folder: PackFolder, targets: Iterable[Target]) -> int:
-    """Return the bytes of the wheels that some targets need."""
+    """Return the total size, in bytes, of the wheels that some targets need."""
     sums = folder.read_sums()
     digests = {
         digest

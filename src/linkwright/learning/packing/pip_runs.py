@@ -1,7 +1,7 @@
-"""Runs of pip, which downloads wheels for any system and builds those of pure Python.
+"""Runs of pip that download wheels for any system, and build wheels of pure Python.
 
-pip asks the index that the user's pip is configured for. Each file is requested with its checksum, so that pip can take
-no other one.
+pip uses the package index of the user's configuration. Each file is requested with its checksum, so that pip accepts
+no other file.
 """
 
 from __future__ import annotations
@@ -39,19 +39,21 @@ def download(files: Sequence[LockedFile], target: Target, wheels: Path) -> None:
         OSError: the folder cannot be written.
     """
     platforms = {tag.platform for file in files for tag in parse_wheel_filename(file.name)[3]} - {"any"}
-    words = ["download", "--no-deps", "--only-binary=:all:", "--require-hashes", "--implementation", "cp"]
-    words += ["--python-version", target.python]
+    arguments = ["download", "--no-deps", "--only-binary=:all:", "--require-hashes", "--implementation", "cp"]
+    arguments += ["--python-version", target.python]
     for platform in sorted(platforms) or SYSTEMS[target.system].platforms[:1]:
-        words += ["--platform", platform]
+        arguments += ["--platform", platform]
     with _draft_folder(wheels) as drafts:
         _write_requirements(files, drafts)
-        _run_pip([*words, "--dest", str(drafts), "-r", str(drafts / "requirements.txt")], [file.name for file in files])
+        _run_pip(
+            [*arguments, "--dest", str(drafts), "-r", str(drafts / "requirements.txt")], [file.name for file in files]
+        )
         for file in files:
             (drafts / file.name).replace(wheels / file.name)
 
 
 def build(file: LockedFile, wheels: Path) -> Path:
-    """Build the wheel of a source distribution in a folder, and return it.
+    """Build the wheel of a source distribution in a folder, and return the wheel.
 
     Raises:
         LinkwrightError: LEARN303 if pip fails, or the wheel is for this system only.
@@ -59,36 +61,36 @@ def build(file: LockedFile, wheels: Path) -> Path:
     """
     with _draft_folder(wheels) as drafts:
         _write_requirements([file], drafts)
-        words = ["wheel", "--no-deps", "--require-hashes", "--wheel-dir", str(drafts)]
-        _run_pip([*words, "-r", str(drafts / "requirements.txt")], [file.name])
+        arguments = ["wheel", "--no-deps", "--require-hashes", "--wheel-dir", str(drafts)]
+        _run_pip([*arguments, "-r", str(drafts / "requirements.txt")], [file.name])
         (wheel,) = drafts.glob("*.whl")
         if not is_for_all_systems(wheel.name):
-            message = phrase("the wheel that was built of '{file}' is for this system only", file=file.name)
+            message = phrase("the wheel that was built from '{file}' works only on this system", file=file.name)
             raise LinkwrightError(Diagnostic("LEARN303", message))
         return wheel.replace(wheels / wheel.name)
 
 
 def build_checkout(checkout: Path, wheels: Path) -> list[Path]:
-    """Build the wheels of a checkout of Linkwright in a folder as a release does, and return them.
+    """Build the wheels of a checkout of Linkwright in a folder, as for a release, and return them.
 
     Raises:
         LinkwrightError: LEARN303 if pip fails.
         OSError: the folder cannot be written.
     """
     with _draft_folder(wheels) as drafts:
-        words = ["wheel", "--no-deps", "--wheel-dir", str(drafts), str(checkout / "core"), str(checkout)]
-        _run_pip(words, [str(checkout)], {_PINNED: "1"})
+        arguments = ["wheel", "--no-deps", "--wheel-dir", str(drafts), str(checkout / "core"), str(checkout)]
+        _run_pip(arguments, [str(checkout)], {_PINNED: "1"})
         return [wheel.replace(wheels / wheel.name) for wheel in sorted(drafts.glob("*.whl"))]
 
 
 def is_for_all_systems(name: str) -> bool:
-    """Return whether a wheel is of pure Python, for any system and all versions of Python 3."""
+    """Return whether a wheel contains only Python, for any system and all versions of Python 3."""
     return any((tag.abi, tag.platform) == ("none", "any") for tag in parse_wheel_filename(name)[3])
 
 
 @contextmanager
 def _draft_folder(wheels: Path) -> Iterator[Path]:
-    """Provide an empty folder, so that an interruption leaves no part of a file among the wheels."""
+    """Yield an empty folder, so that an interruption leaves no partial file among the wheels."""
     drafts = wheels / _DRAFTS
     shutil.rmtree(drafts, ignore_errors=True)
     drafts.mkdir(parents=True)
@@ -103,10 +105,12 @@ def _write_requirements(files: Iterable[LockedFile], folder: Path) -> None:
     (folder / "requirements.txt").write_text("".join(lines), encoding="utf-8")
 
 
-def _run_pip(words: Sequence[str], wanted: Sequence[str], variables: Mapping[str, str] | None = None) -> None:
-    command = [*_pip_command(), words[0], *_OPTIONS, *words[1:]]
+def _run_pip(
+    arguments: Sequence[str], requested_names: Sequence[str], variables: Mapping[str, str] | None = None
+) -> None:
+    command = [*_pip_command(), arguments[0], *_OPTIONS, *arguments[1:]]
     environment = {**os.environ, **(variables or {}), "PIP_REQUIRE_VIRTUALENV": "0"}
-    done = subprocess.run(  # noqa: S603 - pip, with words of ours
+    done = subprocess.run(  # noqa: S603 - pip, with Linkwright's own arguments
         command,
         env=environment,
         stdin=subprocess.DEVNULL,
@@ -117,26 +121,30 @@ def _run_pip(words: Sequence[str], wanted: Sequence[str], variables: Mapping[str
         check=False,
     )
     if done.returncode:
-        message = phrase("pip cannot get {files}: {reason}", files=_few(wanted), reason=foreign(_reason(done.stderr)))
+        message = phrase(
+            "pip cannot get {files}: {reason}",
+            files=_first_names(requested_names),
+            reason=foreign(_reason(done.stderr)),
+        )
         hint = phrase("repeat the command to continue; it keeps the files that the pack has")
         raise LinkwrightError(Diagnostic("LEARN303", message, hint=hint))
 
 
-def _few(names: Sequence[str]) -> Phrase:
-    """Return a phrase for some names, of which only the first ones are printed."""
+def _first_names(names: Sequence[str]) -> Phrase:
+    """Return a phrase that lists the first of some names, and counts the others."""
     if len(names) <= 3:
         return joined(names)
     return phrase("{names} and {count} others", names=joined(names[:2]), count=len(names) - 2)
 
 
-def _reason(errors: str) -> str:
-    """Return the line of pip's output that tells the reason."""
-    lines = [line.strip() for line in _CODE.sub("", errors).splitlines() if line.strip()]
+def _reason(output: str) -> str:
+    """Return the line of pip's output that contains the reason."""
+    lines = [line.strip() for line in _CODE.sub("", output).splitlines() if line.strip()]
     if _END_OF_BUILD in lines:  # the last line of a program that pip ran is its exception
         return lines[max(lines.index(_END_OF_BUILD) - 1, 0)]
-    broken = [line for line in lines if "connection broken" in line]
-    told = [line for line in lines if line.startswith("ERROR:")]
-    return re.sub(r"^(ERROR|WARNING): ", "", (broken[-1:] or told or lines or ["pip"])[0])
+    broken_connections = [line for line in lines if "connection broken" in line]
+    errors = [line for line in lines if line.startswith("ERROR:")]
+    return re.sub(r"^(ERROR|WARNING): ", "", (broken_connections[-1:] or errors or lines or ["pip"])[0])
 
 
 def _pip_command() -> list[str]:

@@ -1,4 +1,4 @@
-"""The systems and Pythons that a pack is made for: their names, tags of wheels and environment markers."""
+"""The systems and Pythons that packs support: their names, wheel tags and environment markers."""
 
 from __future__ import annotations
 
@@ -28,7 +28,7 @@ class System:
     """An operating system on a kind of processor.
 
     Attributes:
-        label: the name for readers.
+        label: the name in texts for users.
         platform: ``sys.platform``.
         machine: ``platform.machine()``.
         platform_system: ``platform.system()``.
@@ -41,7 +41,7 @@ class System:
 
     @property
     def platforms(self) -> list[str]:
-        """The platform tags of the wheels that fit, from the newest system to the oldest."""
+        """The platform tags of suitable wheels, from the newest system to the oldest."""
         if self.platform == "win32":
             return ["win_amd64"]
         if self.platform == "darwin":
@@ -76,22 +76,22 @@ class Target:
 
     @property
     def name(self) -> str:
-        """The name in the pack's files, as ``linux-x86_64-py3.12``."""
+        """The name in the files of a pack, such as ``linux-x86_64-py3.12``."""
         return f"{self.system}-py{self.python}"
 
     @property
     def label(self) -> str:
-        """The name for readers."""
+        """The name in texts for users."""
         return f"{SYSTEMS[self.system].label}, Python {self.python}"
 
     @cached_property
     def tag_ranks(self) -> dict[Tag, int]:
-        """The tags of wheels that fit, with lower numbers for better ones."""
+        """The ranks of the tags of suitable wheels; lower is better."""
         return {tag: rank for rank, tag in enumerate(_tags(self.system, self.python))}
 
     @property
     def markers(self) -> dict[str, str]:
-        """The environment for markers of requirements (PEP 508), without an extra."""
+        """The environment for requirement markers (PEP 508), without an extra."""
         system = SYSTEMS[self.system]
         return {
             "extra": "",
@@ -111,7 +111,7 @@ class Target:
 
 @cache
 def _tags(system: str, python: str) -> tuple[Tag, ...]:
-    """Return the tags that fit: for each interpreter and ABI, those for the oldest systems first."""
+    """Return the suitable tags; for each interpreter and ABI, tags of the oldest systems come first."""
     version = [int(part) for part in python.split(".")]
     platforms = SYSTEMS[system].platforms[::-1]
     interpreter = f"cp{''.join(python.split('.'))}"
@@ -122,7 +122,7 @@ def _tags(system: str, python: str) -> tuple[Tag, ...]:
 
 
 def select_targets(systems: Sequence[str], pythons: Sequence[str]) -> list[Target]:
-    """Return the targets for names of systems and Pythons; all of them if a list is empty.
+    """Return the targets with the named systems and Pythons; an empty list selects all.
 
     Raises:
         LinkwrightError: LEARN301 if a name is unknown.

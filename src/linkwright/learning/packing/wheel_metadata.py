@@ -1,4 +1,4 @@
-"""The metadata in a wheel."""
+"""Reading of the metadata in a wheel."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""The runner of a step's checks: one process at a time."""
+"""A runner of a step's checks, in one process at a time."""
 
 from __future__ import annotations
 
@@ -7,7 +7,7 @@ from collections.abc import Callable
 from pathlib import Path
 
 from linkwright.learning.checks.results import StepResult
-from linkwright.learning.checks.running import CheckProcess, new_check_server
+from linkwright.learning.checks.running import CheckProcess, create_check_server
 from linkwright.learning.course import Step
 
 _NICENESS = 5
@@ -17,17 +17,17 @@ _NICENESS = 5
 class CheckRunner:
     """A runner of checks on the event loop.
 
-    A request ends the checks that still run, because the learner's files have changed since.
+    A request cancels the running checks, because the learner's files have changed.
 
     Args:
         workspace: the learner's workspace.
-        on_result: called with a step and its results.
+        on_result: called with each step and its results.
     """
 
     def __init__(self, workspace: Path, on_result: Callable[[Step, StepResult], object]) -> None:
         self._workspace = workspace
         self._on_result = on_result
-        self._server = new_check_server()
+        self._server = create_check_server()
         self._process: CheckProcess | None = None
         self._task: asyncio.Task[None] | None = None
         self._requested: tuple[Step, str | None] | None = None
@@ -46,7 +46,7 @@ class CheckRunner:
             self._task = asyncio.get_running_loop().create_task(self._work())
 
     def close(self) -> None:
-        """End the checks that run."""
+        """Cancel the running checks."""
         self._requested = None
         if self._process is not None:
             self._process.cancel()

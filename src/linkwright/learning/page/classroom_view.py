@@ -1,4 +1,4 @@
-"""The classroom: the page with a course, the learner's files and robot, and a terminal."""
+"""The classroom, a page with a course, the learner's files and robot, and a terminal."""
 
 from __future__ import annotations
 
@@ -19,15 +19,15 @@ if TYPE_CHECKING:
 
 
 def run_classroom(room: Classroom, options: HostOptions, *, foxglove: int | None = None) -> int:
-    """Show a course in the page until the user ends it.
+    """Serve the page with a course until the user ends the program.
 
     Args:
-        room: the course in the learner's workspace, whose folder exists.
+        room: the course in the learner's workspace; the workspace's folder must exist.
         options: the options of nodes and viewers.
         foxglove: the port to which Foxglove and Lichtblick can connect; None to open no port.
 
     Returns:
-        The exit status, see `linkwright.hosting.signals.run_to_end`.
+        The exit status (see `linkwright.hosting.signals.run_to_end`).
     """
     finder = PackageFinder(start=[room.workspace])
     options = replace(options, title=room.workspace.name, terminal=room.workspace, needs_terminal=True)
@@ -44,7 +44,7 @@ def run_classroom(room: Classroom, options: HostOptions, *, foxglove: int | None
 
 
 class ClassroomView(ModelView):
-    """The view of the robot that belongs to the shown step of a course, on the running event loop.
+    """A view of the robot of the shown step of a course, on the running event loop.
 
     The robot is shown as soon as its file exists.
 
@@ -74,7 +74,7 @@ class ClassroomView(ModelView):
 
     @property
     def _config_name(self) -> str:
-        """The name of the workspace, because the robot's file changes."""
+        """The name of the view's configuration: the workspace, because the robot's file changes."""
         return str(self._room.workspace)
 
     def _set_viewer(self, viewer: Viewer) -> None:

@@ -1,4 +1,4 @@
-"""The guide of a course: shows steps, checks them when files are saved, and carries out requests of pages."""
+"""The guide of a course, which shows steps, checks them when files are saved, and handles page requests."""
 
 from __future__ import annotations
 
@@ -34,9 +34,9 @@ class CourseGuide(Guide):
     Args:
         room: the course in the learner's workspace.
         publish: sends a message to all pages.
-        logger: logs why files are not watched.
-        on_changed: called with the robot's file that is to be shown beside the step, when a step is opened and when
-            files of the workspace have changed; None if no step has named one yet.
+        logger: logs the reason if files cannot be watched.
+        on_changed: called with the robot's file to show beside the step, or None, when a step is opened and when
+            files of the workspace have changed.
     """
 
     def __init__(
@@ -62,11 +62,11 @@ class CourseGuide(Guide):
         self._open(self._step)
 
     def opening_messages(self) -> list[ServerMessage]:
-        """Return the course, its shown step and the results of its checks."""
+        """Return the messages with the course, the shown step and the results of its checks."""
         return [self._course(), self._shown_step(), self._checks()]
 
     def handle(self, message: PageMessage) -> None:
-        """Carry out a request of a page."""
+        """Handle a request of a page."""
         self._handlers[type(message)](message)
 
     def close(self) -> None:
@@ -119,7 +119,7 @@ class CourseGuide(Guide):
             step.address, is_running=False, checks=items, checked_at=time.time()
         )
         try:
-            self._room.note_result(step, result)
+            self._room.record_result(step, result)
         except LinkwrightError as error:
             self._publish(problem_of(error))
         self._publish(self._checks())
@@ -183,7 +183,7 @@ class CourseGuide(Guide):
         )
 
     async def _watch_files(self, workspace: Path) -> None:
-        """Check the shown step when files of the workspace have changed."""
+        """Check the shown step whenever files of the workspace have changed."""
         import watchfiles
 
         try:

@@ -1,4 +1,4 @@
-"""The guide of an exercise: its text, the state of its judge in the running world, and scores of the program."""
+"""The guide of an exercise, which shows the text, the judge's state in the running world, and scores."""
 
 from __future__ import annotations
 
@@ -30,8 +30,8 @@ _NO_STATE = phrase("the world has not sent the state of the judge yet")
 class ExerciseGuide(Guide):
     """The guide of a learner through an exercise, on the running event loop.
 
-    The first check shows the state of the judge in the world that runs in real time. A request to check judges the
-    program with several seeds, in a process of its own, and shows a check for each. The world is paused meanwhile,
+    The first check shows the state of the judge in the world that runs in real time. A check request judges the
+    program with several seeds, in a separate process, and shows one check for each. The world is paused meanwhile,
     because a weak computer cannot simulate two worlds.
 
     Args:
@@ -58,7 +58,7 @@ class ExerciseGuide(Guide):
         return [self._course(), self._step(), self._checks()]
 
     def handle(self, message: PageMessage) -> None:
-        """Judge the program if a page requests it, and ignore other requests, which an exercise does not offer."""
+        """Judge the program at the request of a page. Other requests are ignored, because exercises lack them."""
         if not isinstance(message, messages.CheckStep) or self._task is not None:
             return
         if not self._program.is_file():
@@ -69,7 +69,7 @@ class ExerciseGuide(Guide):
         self._publish(self._checks())
 
     def close(self) -> None:
-        """End the judge."""
+        """End a running judge process."""
         if self._task is not None:
             self._task.cancel()
 
@@ -79,9 +79,9 @@ class ExerciseGuide(Guide):
 
     async def _judge(self) -> None:
         self._call(self._pause)
-        words = [sys.executable, "-m", "linkwright", "learn", "judge", str(self._exercise.folder), str(self._program)]
+        command = [sys.executable, "-m", "linkwright", "learn", "judge", str(self._exercise.folder), str(self._program)]
         process = await asyncio.create_subprocess_exec(
-            *words, "--json", stdout=asyncio.subprocess.PIPE, stderr=asyncio.subprocess.PIPE
+            *command, "--json", stdout=asyncio.subprocess.PIPE, stderr=asyncio.subprocess.PIPE
         )
         try:
             output, errors = await process.communicate()
@@ -137,7 +137,7 @@ class ExerciseGuide(Guide):
         )
 
     def _live(self) -> messages.StepCheck:
-        """Return the state of the judge in the world that runs now."""
+        """Return the state of the judge in the running world."""
         if self._state is None:
             name = LocalText.from_phrase(_NO_STATE).texts
             return messages.StepCheck(name, is_passed=False, message=None)
@@ -168,6 +168,6 @@ def _reasons(state: Mapping[str, Any]) -> dict[str, str] | None:
 
 
 def _without_title(text: str) -> str:
-    """Return a Markdown text without its first heading, which the page shows itself."""
+    """Return a Markdown text without its first heading, because the page shows the title."""
     first, _, rest = text.lstrip().partition("\n")
     return rest if first.startswith("# ") else text

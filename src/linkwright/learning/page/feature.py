@@ -1,4 +1,4 @@
-"""The page feature of courses and exercises, which passes requests of pages to a guide."""
+"""The page feature of courses and exercises, which forwards page requests to a guide."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ from linkwright.panels.page_feature import FeatureHost, PageFeature
 
 
 class CourseFeature(PageFeature):
-    """The feature of a course or an exercise, which ignores all requests before `show`."""
+    """The page feature of a course or an exercise. It ignores all requests before `show` is called."""
 
     RECEIVES = (
         messages.AnswerStep,
@@ -30,7 +30,7 @@ class CourseFeature(PageFeature):
         self._guide: Guide | None = None
 
     def show(self, guide: Guide) -> None:
-        """Show what a guide has in the pages, and pass it their requests."""
+        """Show a guide in the pages, and forward their requests to it."""
         self._guide = guide
         for message in guide.opening_messages():
             self.context.pages.publish(message)
@@ -40,11 +40,11 @@ class CourseFeature(PageFeature):
         return [] if self._guide is None else self._guide.opening_messages()
 
     def receive(self, page: Page, message: Any) -> None:
-        """Carry out a request, or report why not."""
+        """Handle a request of a page, or report to the page why it was refused."""
         if self._guide is None:
             return
         if not page.is_here:
-            problem = phrase("the course can be used only in pages on the machine of the program")
+            problem = phrase("a course works only in pages on the machine where Linkwright runs")
             page.send(messages.CourseProblem(problem, ""))
             return
         try:

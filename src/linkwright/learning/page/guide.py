@@ -1,4 +1,4 @@
-"""The interface of guides, which show pages a course or an exercise."""
+"""The interface of guides, which show a course or an exercise in pages."""
 
 from __future__ import annotations
 
@@ -14,20 +14,20 @@ Publish = Callable[[ServerMessage], object]
 
 
 class Guide(Protocol):
-    """A guide of a learner."""
+    """A guide through a course or an exercise."""
 
     def opening_messages(self) -> list[ServerMessage]:
-        """Return the messages for a page that opens, the outline first."""
+        """Return the messages for a newly opened page, the outline first."""
 
     def handle(self, message: PageMessage) -> None:
-        """Carry out a request of a page.
+        """Handle a request of a page.
 
         Raises:
-            LinkwrightError: the request cannot be carried out.
+            LinkwrightError: the request cannot be executed.
         """
 
     def close(self) -> None:
-        """End all that runs for the learner."""
+        """Stop all activities of the guide."""
 
 
 def problem_of(error: LinkwrightError) -> messages.CourseProblem:

@@ -1,4 +1,4 @@
-"""The texts of lessons as HTML for pages."""
+"""Conversion of lesson texts to HTML for pages."""
 
 from __future__ import annotations
 
@@ -22,12 +22,12 @@ MAX_IMAGE_BYTES = 400_000
 def step_html(text: str, folder: Path) -> str:
     """Return the HTML of a Markdown text.
 
-    HTML in the text is shown as text. An image is part of the HTML if it is a file below the lesson's folder; other
+    HTML in the text is escaped. An image is embedded if it is a file below the lesson's folder; other
     images are replaced with their descriptions.
 
     Args:
         text: the Markdown.
-        folder: the folder of the lesson, which the paths of images refer to.
+        folder: the folder of the lesson, from which the paths of images are resolved.
     """
     return _renderer().render(text, {"folder": folder}) if text else ""
 
@@ -53,7 +53,7 @@ def _render_image(renderer: Any, tokens: Sequence[Token], index: int, options: A
 
 
 def _data_address(folder: Path, name: str) -> str | None:
-    """Return an image of a lesson as a data address, or None if the name is not that of an image of the lesson."""
+    """Return an image of a lesson as a data URL, or None if the lesson has no such image."""
     try:
         path = (folder / name).resolve(strict=True)
         is_inside = path.is_relative_to(folder.resolve(strict=True))

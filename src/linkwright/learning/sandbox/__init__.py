@@ -1,9 +1,9 @@
-"""The sandbox in which students' work is checked: a program runs confined, within limits, and is ended as a whole."""
+"""The sandbox for students' programs, which confines a run, limits its resources, and ends all its processes."""
 
 from linkwright.learning.sandbox.outcome import Exceeded, Limits, Outcome, Protection
 from linkwright.learning.sandbox.readable import permit_reading
 from linkwright.learning.sandbox.run import protections_available, run_in_sandbox
-from linkwright.learning.sandbox.words import PROTECTIONS, describe_exceeded
+from linkwright.learning.sandbox.sentences import PROTECTIONS, describe_exceeded
 
 __all__ = [
     "PROTECTIONS",

@@ -1,4 +1,4 @@
-"""Making the folder of a run safe to read for the grader."""
+"""Cleaning of the folder of a run, so that the grader can read it safely."""
 
 from __future__ import annotations
 
@@ -17,9 +17,9 @@ _LONGEST_PATH = 2048
 
 
 def remove_harmful(folder: str) -> tuple[str, ...]:
-    """Delete what could harm a reader of a folder, and return its paths relative to the folder.
+    """Delete files that could harm a reader of a folder, and return their paths relative to the folder.
 
-    Symbolic links out of the folder lead a reader to files of others. So do hard links to files that are elsewhere too.
+    Symbolic links out of the folder, and hard links to files outside it, lead a reader to other users' files.
     A reader waits forever for named pipes, sockets and devices, and fails at very deep folders. All folders and files
     become readable and writable for their owner. Nothing else may change the folder meanwhile.
     """
@@ -53,7 +53,7 @@ def remove_harmful(folder: str) -> tuple[str, ...]:
 
 
 def remove_files_of(user: int) -> None:
-    """Delete what a user has left in the folders in which all users may write. No process of the user runs."""
+    """Delete the files of a user in world-writable folders. No process of the user may be running."""
     for folder in _SHARED_FOLDERS:
         with contextlib.suppress(OSError), os.scandir(folder) as entries:
             for entry in entries:
@@ -63,7 +63,7 @@ def remove_files_of(user: int) -> None:
 
 
 def give_to(user: int, group: int, folder: str) -> None:
-    """Make a user the owner of a folder and of its contents, without following links, if this process is root's."""
+    """Change the owner of a folder and its contents to a user if this process runs as root. Links are not followed."""
     if os.geteuid() != 0:
         return
     os.chown(folder, user, group, follow_symlinks=False)
@@ -80,7 +80,7 @@ def _delete(path: str) -> None:
 
 
 def _delete_folder(path: str, folder: str) -> None:
-    """Delete a folder of any depth below another, to which each subfolder is moved before it is read."""
+    """Delete a folder of any depth. Each subfolder is first moved to a given parent folder."""
     base = tempfile.mkdtemp(dir=folder)
     numbers = itertools.count()
 
@@ -108,9 +108,9 @@ def _delete_folder(path: str, folder: str) -> None:
 
 
 def _paths_of(folder: str) -> list[str]:
-    """Return all paths in a folder, each folder before its contents; those in too deep folders are left out.
+    """Return all paths in a folder, each folder before its contents, without folders that are nested too deeply.
 
-    Folders are made readable on the way.
+    Folders are made readable during the search.
     """
     found = []
     waiting = [folder]
@@ -132,8 +132,8 @@ def _leads_out(path: str, folder: str) -> bool:
 
 
 def _permit_owner(path: str, status: os.stat_result) -> None:
-    """Let the owner read and write. Programs no longer run as another user (set-user-ID)."""
-    needed = 0o700 if stat.S_ISDIR(status.st_mode) else 0o600
-    wanted = stat.S_IMODE(status.st_mode) & 0o777 | needed
-    if wanted != stat.S_IMODE(status.st_mode):
-        os.chmod(path, wanted)
+    """Allow the owner to read and write, and remove set-user-ID and set-group-ID."""
+    owner_mode = 0o700 if stat.S_ISDIR(status.st_mode) else 0o600
+    mode = stat.S_IMODE(status.st_mode) & 0o777 | owner_mode
+    if mode != stat.S_IMODE(status.st_mode):
+        os.chmod(path, mode)

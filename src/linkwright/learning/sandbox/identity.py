@@ -1,4 +1,4 @@
-"""The user that a run has where the grader is root: one that owns nothing else."""
+"""The user of a run if the grader is root: a user that owns no files or processes."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ _LOW_USERS = range(61184, 65520)
 
 
 def find_unused_user() -> int | None:
-    """Return a user number for the run, or None if this process cannot change its user."""
+    """Return an unused user ID for the run, or None if this process cannot change its user."""
     if os.geteuid() != 0 or not (has_capability(CAP_SETUID) and has_capability(CAP_SETGID)):
         return None
     count = min(_count_mapped("/proc/self/uid_map"), _count_mapped("/proc/self/gid_map"))
@@ -33,14 +33,14 @@ def find_unused_user() -> int | None:
 
 
 def become(user: int) -> None:
-    """Change this process to a user and a group of the same number, without other groups."""
+    """Change this process to a user and to the group with the same ID, without other groups."""
     os.setgroups([])
     os.setresgid(user, user, user)
     os.setresuid(user, user, user)
 
 
 def can_be_reached(paths: list[str]) -> bool:
-    """Return whether a user who owns nothing may pass through all folders that contain these paths."""
+    """Return whether a user without files may traverse all folders that contain these paths."""
     for path in paths:
         place = Path(path).resolve()
         if any(not folder.stat().st_mode & 0o001 for folder in place.parents):
@@ -49,13 +49,13 @@ def can_be_reached(paths: list[str]) -> bool:
 
 
 def is_readable_for_others(path: str) -> bool:
-    """Return whether a user who owns nothing may read a file or list a folder, if he can reach it."""
+    """Return whether a user without files may read a file or list a folder that the user can reach."""
     needed = 0o005 if os.path.isdir(path) else 0o004
     return os.stat(path).st_mode & needed == needed
 
 
 def _count_mapped(path: str) -> int:
-    """Return how many users or groups from 0 on exist in this user namespace."""
+    """Return the number of consecutive IDs from 0 that exist in this user namespace."""
     for line in Path(path).read_text(encoding="ascii").splitlines():
         first, _, count = map(int, line.split())
         if first == 0:

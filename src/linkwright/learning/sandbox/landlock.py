@@ -1,6 +1,6 @@
-"""Landlock: the kernel's list of the paths that a process and its descendants may access.
+"""Landlock, with which the Linux kernel restricts the paths that a process and its descendants may access.
 
-It needs no privileges, and Linux 5.13 or later. Newer kernels protect more: the version is asked for.
+Landlock needs Linux 5.13 or later, but no privileges. Newer versions of its interface protect more.
 """
 
 from __future__ import annotations
@@ -62,12 +62,12 @@ def landlock_version() -> int:
 
 
 def restrict(readable: Iterable[str], listable: Iterable[str], writable: Iterable[str]) -> tuple[int, bool]:
-    """Restrict this process and its descendants to paths, and return the version and whether signals are restricted.
+    """Restrict the file access of this process and its descendants.
 
     Args:
-        readable: Files and whole folders that may be read and executed.
-        listable: Folders whose names may be listed, with those of all folders in them.
-        writable: The same as `readable`, for all accesses.
+        readable: the files and whole folders that may be read and executed.
+        listable: the folders that may be listed, including all folders below them.
+        writable: the files and whole folders with unrestricted access.
 
     Raises:
         OSError: Landlock is missing.
@@ -89,7 +89,7 @@ def restrict(readable: Iterable[str], listable: Iterable[str], writable: Iterabl
 
 
 def _create_ruleset(version: int, handled: int) -> tuple[int, bool]:
-    """Return a set of rules, and whether it covers signals. Kernels of RHEL 9 report version 6 without signals."""
+    """Return a ruleset, and whether it restricts signals, which kernels of RHEL 9 with version 6 cannot."""
     size = 8 if version < 4 else 16 if version < 6 else 24
     scopes = (_SCOPE_ABSTRACT_SOCKETS | _SCOPE_SIGNALS, _SCOPE_ABSTRACT_SOCKETS, 0) if version >= 6 else (0,)
     for scope in scopes:

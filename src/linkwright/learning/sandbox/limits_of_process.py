@@ -1,4 +1,4 @@
-"""Limits that the kernel holds for each process: resource limits, priority, processors."""
+"""Limits that the kernel enforces for each process: resources, priority and processors."""
 
 from __future__ import annotations
 
@@ -25,9 +25,9 @@ def apply_limits(limits: Limits, *, others: int) -> None:
     """Apply the resource limits to this process and its descendants.
 
     Args:
-        limits: The limits of the run. Those of memory and of processor time hold for each process here; the watchdog
-            holds them for all processes together.
-        others: The number of threads outside the run that the kernel counts together with those of the run.
+        limits: the limits of the run. Here, memory and processor time are limited for each process; the watchdog
+            limits them for all processes together.
+        others: the number of threads outside the run that the kernel counts for the same user.
     """
     seconds = max(1, round(limits.cpu_seconds + 0.5))
     _limit("RLIMIT_CPU", seconds, seconds + 1)
@@ -42,7 +42,7 @@ def apply_limits(limits: Limits, *, others: int) -> None:
 
 
 def count_threads_of_user() -> int:
-    """Return the number of threads that the user of this process has."""
+    """Return the number of threads of this process's user."""
     if sys.platform != "linux":
         return _GROWTH_OF_OTHERS
     count = 0
@@ -53,8 +53,8 @@ def count_threads_of_user() -> int:
     return count
 
 
-def be_modest(processors: Collection[int]) -> None:
-    """Run at low priority on some processors, and be the first to end if the machine has no memory left."""
+def lower_priority(processors: Collection[int]) -> None:
+    """Run this process at low priority on some processors, and let the kernel kill it first if memory runs out."""
     with contextlib.suppress(OSError):
         os.nice(_NICENESS)
     if sys.platform == "linux":

@@ -1,4 +1,4 @@
-"""Calls of the Linux kernel that Python has no function for, by ctypes.
+"""System calls of Linux without a Python function, made through ctypes.
 
 Constants and structures are those of the manual pages unshare(2), mount(2), mount_setattr(2), prctl(2), capset(2) and
 landlock(7). The numbers of system calls newer than Linux 5.0 are the same on all architectures.
@@ -51,7 +51,7 @@ def libc() -> ctypes.CDLL:
 
 
 def call(name: str, *arguments: object) -> int:
-    """Call a function of the C library that returns a negative number on failure.
+    """Call a function of the C library whose negative return value means a failure.
 
     Raises:
         OSError: The function failed.
@@ -64,7 +64,7 @@ def call(name: str, *arguments: object) -> int:
 
 
 def system_call(number: int, *arguments: object) -> int:
-    """Make a system call; raise an OSError if it fails."""
+    """Make a system call, and raise an OSError if it fails."""
     return call("syscall", ctypes.c_long(number), *arguments)
 
 
@@ -74,7 +74,7 @@ def unshare(flags: int) -> None:
 
 
 def mount(source: str, target: str, kind: str = "", flags: int = 0, data: str = "") -> None:
-    """Mount a file system, or a folder once more."""
+    """Mount a file system, or bind-mount a folder."""
     call(
         "mount",
         source.encode(),
@@ -95,7 +95,7 @@ class _MountAttributes(ctypes.Structure):
 
 
 def make_read_only(path: str, *, with_mounts_below: bool = True) -> None:
-    """Make a mount, and all mounts below it, read-only, without set-user-ID programs (Linux 5.12)."""
+    """Make a mount read-only, without set-user-ID programs, optionally with all mounts below it (Linux 5.12)."""
     attributes = _MountAttributes(attr_set=_MOUNT_ATTR_RDONLY | _MOUNT_ATTR_NOSUID)
     system_call(
         _SYS_MOUNT_SETATTR,
@@ -108,7 +108,7 @@ def make_read_only(path: str, *, with_mounts_below: bool = True) -> None:
 
 
 def change_root(path: str) -> None:
-    """Make a mount the root folder of this mount namespace, and unmount the former root."""
+    """Make a mount the root folder of this mount namespace, and unmount the previous root."""
     os.chdir(path)
     call("pivot_root", b".", b".")
     call("umount2", b".", ctypes.c_int(_MNT_DETACH))
@@ -121,19 +121,19 @@ def _prctl(option: int, argument: int) -> None:
 
 
 def die_with_parent(signal_number: int, parent: int) -> None:
-    """Request a signal for the moment when the parent process ends. A change of credentials cancels the request."""
+    """Request a signal to this process when its parent ends. A change of credentials cancels the request."""
     _prctl(_PR_SET_PDEATHSIG, signal_number)
     if os.getppid() != parent:
         os.kill(os.getpid(), signal_number)
 
 
 def adopt_orphans() -> None:
-    """Become the parent of all descendants whose parents end."""
+    """Make this process the new parent of descendants whose parents end."""
     _prctl(_PR_SET_CHILD_SUBREAPER, 1)
 
 
 def forbid_new_privileges() -> None:
-    """Let no program that this process executes gain privileges."""
+    """Prevent programs that this process executes from gaining privileges."""
     _prctl(_PR_SET_NO_NEW_PRIVS, 1)
 
 
@@ -142,7 +142,7 @@ class _CapabilityHeader(ctypes.Structure):
 
 
 def drop_capabilities() -> None:
-    """Give up all capabilities, for this process and for the programs that it executes."""
+    """Drop all capabilities of this process and of the programs that it executes."""
     with contextlib.suppress(OSError):  # until one does not exist, or if there is no right to drop any
         for capability in range(64):
             _prctl(_PR_CAPBSET_DROP, capability)
@@ -161,6 +161,6 @@ def has_capability(number: int) -> bool:
 
 
 def set_file_user(user: int, group: int) -> None:
-    """Access files as another user, without a change of the user that signals are checked against."""
+    """Access files as another user, without changing the user that the kernel checks for signals."""
     libc().setfsgid(ctypes.c_uint(group))
     libc().setfsuid(ctypes.c_uint(user))

@@ -1,4 +1,4 @@
-"""Namespaces of Linux: processes, mounts, network and IPC that the run does not share with the system."""
+"""Linux namespaces, which separate the processes, mounts, network and IPC of a run from the system."""
 
 from __future__ import annotations
 
@@ -40,7 +40,7 @@ def enter_user_namespace() -> None:
 
 
 def map_users(pid: int) -> None:
-    """Give a process that entered a new user namespace the users of this process.
+    """Map the users of this process into the new user namespace of another process.
 
     Raises:
         OSError: The system does not allow it.
@@ -63,12 +63,12 @@ def map_users(pid: int) -> None:
     (proc / "gid_map").write_text(f"{os.getegid()} {os.getegid()} 1", "ascii")
 
 
-def enter_namespaces(wanted: Collection[str]) -> set[str]:
-    """Create those of some namespaces that the system allows, and return their names.
+def enter_namespaces(requested_names: Collection[str]) -> set[str]:
+    """Create the requested namespaces as far as the system allows, and return their names.
 
-    That of processes holds for the next child of this process.
+    A new process namespace applies to the next child of this process.
     """
-    return {name for name, flag in _NAMESPACES.items() if name in wanted and _can_enter(flag)}
+    return {name for name, flag in _NAMESPACES.items() if name in requested_names and _can_enter(flag)}
 
 
 def _can_enter(flag: int) -> bool:
@@ -82,7 +82,7 @@ def _can_enter(flag: int) -> bool:
 
 
 def bring_up_loopback() -> None:
-    """Let processes of this network namespace reach each other on 127.0.0.1, by multicast too."""
+    """Enable loopback, including multicast, in this network namespace."""
     with socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as control:
         name = b"lo".ljust(16, b"\0")
         request = fcntl.ioctl(control, _SIOCGIFFLAGS, name + bytes(24))

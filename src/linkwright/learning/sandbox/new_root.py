@@ -1,4 +1,4 @@
-"""A root folder for the run that contains its folder, programs and libraries, and nothing else."""
+"""A root folder for the run that contains only its folder, programs and libraries."""
 
 from __future__ import annotations
 
@@ -27,10 +27,10 @@ def enter_new_root(readable: list[str], folder: str, temporary_bytes: int, *, ow
     """Replace the root folder of this mount namespace.
 
     Args:
-        readable: Files and whole folders that the run may read.
-        folder: The folder in which the run may write.
-        temporary_bytes: The size of /tmp and of /dev/shm, which are in memory and end with the run.
-        own_processes: Whether this process is in a new namespace of processes.
+        readable: the files and whole folders that the run may read.
+        folder: the folder in which the run may write.
+        temporary_bytes: the size of /tmp and of /dev/shm in bytes; both are in memory, and are deleted with the run.
+        own_processes: whether this process is in a new process namespace.
 
     Raises:
         OSError: The system does not allow it.
@@ -47,9 +47,9 @@ def enter_new_root(readable: list[str], folder: str, temporary_bytes: int, *, ow
 
 
 class _Root:
-    """The new root while it is built, at `base`.
+    """The new root folder, built at the path `base`.
 
-    The sources of mounts are opened before the base covers them.
+    The sources of mounts are opened before the new root hides them.
     """
 
     base = _BASE
@@ -72,7 +72,7 @@ class _Root:
         mount("linkwright", self.base, "tmpfs", MS_NOSUID | MS_NODEV, "mode=755,size=4m")
 
     def _follow_links(self, path: str) -> str | None:
-        """Return the real path, and note the links on the way to it."""
+        """Return the real path, and record the links that lead to it."""
         for _ in range(40):
             link = next((p for p in (*reversed(Path(path).parents), Path(path)) if p.is_symlink()), None)
             if link is None:
@@ -87,7 +87,7 @@ class _Root:
         return self.base + path
 
     def _bind(self, source: int, path: str) -> str:
-        """Mount an opened file or folder at its path in the new root, and return its place."""
+        """Mount an opened file or folder at its path in the new root, and return the mount point."""
         place = self._at(path)
         if Path(f"/proc/self/fd/{source}").is_dir():
             Path(place).mkdir(parents=True, exist_ok=True)
@@ -98,7 +98,7 @@ class _Root:
         return place
 
     def mount_temporary_folders(self, size: int) -> None:
-        """Mount the folders that are in memory and end with the run, before what is mounted in them."""
+        """Mount the in-memory folders of the run, before the mounts inside them."""
         for path in ("/dev/shm", "/tmp"):
             Path(self._at(path)).mkdir(parents=True)
             mount("linkwright", self._at(path), "tmpfs", MS_NOSUID | MS_NODEV, f"mode=1777,size={size}")
@@ -115,7 +115,7 @@ class _Root:
             mount("devpts", self._at("/dev/pts"), "devpts", MS_NOSUID | MS_NOEXEC, options)
 
     def mount_proc(self, *, own_processes: bool) -> None:
-        """Mount /proc of the new processes. Where that is not allowed, it contains only files about the machine."""
+        """Mount /proc of the new process namespace. If that is not allowed, /proc has only files about the machine."""
         proc = Path(self._at("/proc"))
         proc.mkdir()
         if own_processes:
@@ -128,7 +128,7 @@ class _Root:
                 make_read_only(self._bind(source, f"/proc/{name}"))
 
     def bind_readable(self) -> None:
-        """Mount the files that the run may read. A mounted folder has those below it."""
+        """Mount the files and folders that the run may read."""
         done: list[str] = []
         for real in sorted(self._sources, key=lambda path: path.count("/")):
             if not any(real == above or real.startswith(above.rstrip("/") + "/") for above in done):
@@ -140,5 +140,5 @@ class _Root:
                 Path(self._at(link)).symlink_to(target)
 
     def bind_folder(self) -> None:
-        """Mount the folder of the run, which may be in a readable one."""
+        """Mount the folder of the run, which may be inside a readable folder."""
         self._bind(self._folder_source, self._folder)

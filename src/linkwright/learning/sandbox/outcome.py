@@ -1,4 +1,4 @@
-"""The limits of a run in the sandbox, its outcome, and the protections that were in force."""
+"""The limits, the outcome and the active protections of a run in the sandbox."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ MEBIBYTE = 1024 * 1024
 
 @dataclass(frozen=True)
 class Limits:
-    """The resources that the processes of a run may use together. Times are in seconds, sizes in bytes."""
+    """The resources that all processes of a run together may use. Times are in seconds, sizes in bytes."""
 
     seconds: float = 120.0
     """Wall time, without the time in which a process of the run waited for a processor (see `PatientClock`)."""
@@ -29,7 +29,7 @@ class Limits:
 
 
 class Exceeded(enum.Enum):
-    """The limit that ended a run. The values are the names of the fields of `Limits`."""
+    """The limit that a run has exceeded. The values are the field names of `Limits`."""
 
     SECONDS = "seconds"
     CPU_SECONDS = "cpu_seconds"
@@ -42,7 +42,7 @@ class Exceeded(enum.Enum):
 
 
 class Protection(enum.Enum):
-    """A limitation of a run that holds for any program. `words.py` has a sentence for each."""
+    """A protection against the program of a run. `sentences.py` describes each protection."""
 
     LIMITS = "limits"
     """It cannot use more time, memory, disk space, processes or output than its limits allow."""

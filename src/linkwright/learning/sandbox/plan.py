@@ -1,4 +1,4 @@
-"""Messages between the grader and the supervisor of a run, as JSON: the plan and the outcome."""
+"""The JSON messages between the grader and the supervisor of a run: the plan and the outcome."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from linkwright.learning.sandbox.outcome import Exceeded, Limits, Outcome, Prote
 
 @dataclass(frozen=True)
 class Plan:
-    """A run as the supervisor needs it. Paths are absolute."""
+    """The description of a run for its supervisor. Paths are absolute."""
 
     arguments: tuple[str, ...]
     folder: str
@@ -22,12 +22,12 @@ class Plan:
     """The processors that the run may use. Empty means all of the grader's."""
 
     def to_json(self) -> str:
-        """Return the plan as text."""
+        """Return the plan as JSON."""
         return json.dumps(asdict(self))
 
     @classmethod
     def from_json(cls, text: str) -> Plan:
-        """Return the plan that a text contains."""
+        """Parse a plan from JSON."""
         data = json.loads(text)
         return cls(
             arguments=tuple(data["arguments"]),
@@ -40,7 +40,7 @@ class Plan:
 
 
 def outcome_to_json(outcome: Outcome) -> str:
-    """Return an outcome as text."""
+    """Return an outcome as JSON."""
     return json.dumps(
         {
             "status": outcome.status,
@@ -56,7 +56,7 @@ def outcome_to_json(outcome: Outcome) -> str:
 
 
 def outcome_from_json(text: str) -> Outcome:
-    """Return the outcome that a text contains."""
+    """Parse an outcome from JSON."""
     data = json.loads(text)
     return Outcome(
         status=data["status"],

@@ -1,4 +1,4 @@
-"""The processes of a run, what they use, and how they are ended."""
+"""The processes of a run: their resource usage, and their termination."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ _TICKS_PER_SECOND = os.sysconf("SC_CLK_TCK") if hasattr(os, "sysconf") else 100
 
 @dataclass(frozen=True)
 class ProcessUsage:
-    """The resources that a process uses: times in seconds, sizes in bytes."""
+    """The resource usage of a process. Times are in seconds, sizes in bytes."""
 
     pid: int
     parent: int
@@ -30,7 +30,7 @@ class ProcessUsage:
 
 
 def descendants(root: int) -> list[ProcessUsage]:
-    """Return all processes that descend from one."""
+    """Return all descendants of a process."""
     children: dict[int, list[ProcessUsage]] = {}
     for process in _all_processes():
         children.setdefault(process.parent, []).append(process)
@@ -54,7 +54,7 @@ def _all_processes() -> Iterator[ProcessUsage]:
 
 
 def _read_process(pid: int) -> ProcessUsage:
-    """Return the usage of a process by proc(5)."""
+    """Return the usage of a process from /proc (see proc(5))."""
     with open(f"/proc/{pid}/stat", "rb") as file:
         fields = file.read().rpartition(b")")[2].split()  # the name before it may contain anything
     cpu_ticks = sum(int(field) for field in fields[11:15])
@@ -65,9 +65,9 @@ _PAGE = os.sysconf("SC_PAGE_SIZE") if hasattr(os, "sysconf") else 4096
 
 
 def own_memory(process: ProcessUsage) -> int:
-    """Return the memory of a process without pages of files, and with its share of pages that others use too.
+    """Return the proportional memory of a process in bytes, without file pages.
 
-    All its memory if the system does not tell more.
+    If the system does not report it, return the whole resident memory.
     """
     total = None
     with contextlib.suppress(OSError), open(f"/proc/{process.pid}/smaps_rollup", "rb") as file:
@@ -79,7 +79,7 @@ def own_memory(process: ProcessUsage) -> int:
 
 
 def written_bytes(pid: int) -> int:
-    """Return how much a process has written to disks, its ended children included; 0 if it cannot be read."""
+    """Return the bytes that a process and its ended children wrote to disks; 0 if that cannot be read."""
     with contextlib.suppress(OSError, ValueError), open(f"/proc/{pid}/io", "rb") as file:
         for line in file:
             name, _, value = line.partition(b":")
@@ -89,9 +89,9 @@ def written_bytes(pid: int) -> int:
 
 
 def nameless_files(pid: int) -> dict[tuple[int, int], int]:
-    """Return the sizes of the files that a process has open and that are in no folder, by device and number.
+    """Return the sizes in bytes of a process's open files without a name, by device and inode.
 
-    They were deleted, or made by memfd_create(2).
+    Such files were deleted, or created by memfd_create(2).
     """
     sizes = {}
     with contextlib.suppress(OSError), os.scandir(f"/proc/{pid}/fd") as descriptors:
@@ -104,9 +104,9 @@ def nameless_files(pid: int) -> dict[tuple[int, int], int]:
 
 
 def _processes_of_ps() -> Iterator[ProcessUsage]:
-    """Read the table of processes that ps(1) prints, which POSIX describes. It has no threads."""
+    """Return the processes from the output of ps(1) in the POSIX format, which lacks threads."""
     command = ["ps", "-A", "-o", "pid=,ppid=,rss=,time="]
-    with subprocess.Popen(  # noqa: S603 - fixed words
+    with subprocess.Popen(  # noqa: S603 - fixed arguments
         command, stdin=subprocess.DEVNULL, stdout=subprocess.PIPE, stderr=subprocess.DEVNULL, text=True
     ) as table:
         lines = table.communicate()[0].splitlines()
@@ -118,7 +118,7 @@ def _processes_of_ps() -> Iterator[ProcessUsage]:
 
 
 def _seconds_of(time: str) -> float:
-    """Return the seconds of a time of ps: [[days-]hours:]minutes:seconds."""
+    """Convert a time in the format of ps, [[days-]hours:]minutes:seconds, to seconds."""
     days, _, clock = time.rpartition("-")
     seconds = 0.0
     for part in clock.split(":"):
@@ -127,12 +127,12 @@ def _seconds_of(time: str) -> float:
 
 
 def end_descendants(user: int | None) -> None:
-    """Kill all descendants of this process, and wait until none is left.
+    """Kill all descendants of this process, and wait until they have ended.
 
-    This process has adopted orphans, where the system allows that.
+    If the system allows it, this process must have called `adopt_orphans` before.
 
     Args:
-        user: The user of the run, if no other process has it.
+        user: the user of the run if only the run's processes belong to that user; otherwise None.
     """
     while True:
         if user is not None:
@@ -144,7 +144,7 @@ def end_descendants(user: int | None) -> None:
 
 
 def _stop_descendants() -> set[int]:
-    """Stop all descendants, and return them. Those that were not found at first are children of running ones."""
+    """Stop all descendants, including children that appear during the search, and return them."""
     stopped: set[int] = set()
     while found := {process.pid for process in descendants(os.getpid())} - stopped:
         for pid in found:
@@ -159,7 +159,7 @@ def _signal(pid: int, number: int) -> None:
 
 
 def _kill_processes_of(user: int) -> None:
-    """Kill all processes of a user at once: kill(2) with -1 misses none that is forked meanwhile."""
+    """Kill all processes of a user at once with kill(2) and -1, which no concurrent fork escapes."""
     from linkwright.learning.sandbox.identity import become
 
     if (child := os.fork()) == 0:
@@ -172,7 +172,7 @@ def _kill_processes_of(user: int) -> None:
 
 
 def _wait_for_one_child() -> bool:
-    """Wait for the end of a child, and of all others that have ended. Return whether there was one."""
+    """Wait for a child to end, reap all ended children, and return whether there was any."""
     try:
         os.waitpid(-1, 0)
         while os.waitpid(-1, os.WNOHANG)[0]:

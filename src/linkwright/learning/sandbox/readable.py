@@ -1,4 +1,4 @@
-"""The files that every run may read: Python, Linkwright, and the programs, libraries and settings of the system."""
+"""The files that every run may read: Python, Linkwright, and the system's programs, libraries and settings."""
 
 from __future__ import annotations
 
@@ -22,13 +22,13 @@ _STATES = ("/sys/devices/system", "/proc/cpuinfo", "/proc/meminfo", "/proc/stat"
 
 
 def permit_reading(folder: Path) -> None:
-    """Let all users read a folder, which contains only folders and regular files."""
+    """Allow all users to read a folder that contains only folders and regular files."""
     for path in (folder, *folder.rglob("*")):
         path.chmod(0o755 if path.is_dir() else 0o644 | path.stat().st_mode & 0o111)
 
 
 def readable_everywhere() -> list[str]:
-    """Return the paths that every run may read, those of them that exist."""
+    """Return the existing paths that every run may read."""
     installation = [sys.prefix, sys.exec_prefix, sys.base_prefix, sys.base_exec_prefix]
     packages = [str(path) for folder in linkwright.__path__ for path in (Path(folder).parent, Path(folder))]
     shipped = [str(folder) for folder in [shipped_folder()] if folder is not None]

@@ -1,4 +1,4 @@
-"""Running a program in the sandbox: the grader's side."""
+"""Start of a program in the sandbox, on the grader's side."""
 
 from __future__ import annotations
 
@@ -33,21 +33,21 @@ def run_in_sandbox(
     environment: Mapping[str, str] | None = None,
     processors: Collection[int] = (),
 ) -> Outcome:
-    """Run a program on a copy of a student's folder, confined, and return the outcome.
+    """Run a program, confined to a copy of a student's folder, and return the outcome.
 
-    After the run none of its processes is left, and the folder contains nothing that harms a reader. The folder is the
-    home of the program and the place where it starts; its temporary files are in a folder there that is deleted.
+    After the run, all its processes have ended, and the folder is safe to read. The folder is the program's home and
+    working directory. Temporary files are in a subfolder, which is deleted.
 
     Args:
-        arguments: The program, such as `sys.executable`, and its arguments.
-        folder: The copy. The run may change it, and nothing else.
-        limits: The resources that the run may use.
-        readable: Files and whole folders that the run may read besides its folder, Python with its packages, and the
-            system's programs and libraries.
-        environment: Variables of the environment, besides the path, the language and the places above. Others of this
-            process are not passed on.
-        processors: The numbers of the processors that the run may use. Runs at the same time that have different
-            processors do not slow each other. Empty: all.
+        arguments: the program, such as `sys.executable`, and its arguments.
+        folder: the copy of the folder, the only folder that the run may change.
+        limits: the resources that the run may use.
+        readable: the files and whole folders that the run may read besides its folder, Python with its packages, and
+            the system's programs and libraries.
+        environment: the environment variables in addition to the path, the language and the folders above. Other
+            variables of this process are not passed on.
+        processors: the numbers of the processors that the run may use; empty for all. Simultaneous runs on different
+            processors do not slow each other down.
 
     Raises:
         LinkwrightError: The program could not be started.
@@ -78,22 +78,22 @@ def run_in_sandbox(
 
 @cache
 def protections_available() -> frozenset[Protection]:
-    """Return the protections that this system offers, found out by a run of an empty program."""
+    """Return the protections that this system supports, determined by running an empty program."""
     with ScratchFolder("sandbox") as folder:
         Path(folder).chmod(0o711)
         arguments = [sys.executable, "-I", "-S", "-c", ""]
         return run_in_sandbox(arguments, folder=Path(folder), limits=Limits()).protections
 
 
-def _make_environment(folder: Path, scratch: Path, wanted: Mapping[str, str]) -> dict[str, str]:
+def _make_environment(folder: Path, scratch: Path, variables: Mapping[str, str]) -> dict[str, str]:
     passed_on = {name: os.environ[name] for name in _PASSED_ON if name in os.environ}
-    places = {"HOME": str(folder), "TMPDIR": str(scratch)}
+    folders = {"HOME": str(folder), "TMPDIR": str(scratch)}
     programs = os.pathsep.join([os.path.dirname(sys.executable), passed_on.get("PATH", os.defpath)])
-    return {**passed_on, "PATH": programs, **places, **wanted}
+    return {**passed_on, "PATH": programs, **folders, **variables}
 
 
 def _supervise(plan: Plan) -> Outcome:
-    """Run the supervisor to its end. If this process is interrupted, the supervisor ends the run first."""
+    """Run the supervisor, and wait for its end. After an interruption, the supervisor first ends the run."""
     search_path = json.dumps([os.path.abspath(path) for path in sys.path if path])
     command = [sys.executable, "-I", "-S", "-c", _SUPERVISE.format(module=_MODULE), search_path]
     with subprocess.Popen(  # noqa: S603 - our own program

@@ -1,9 +1,9 @@
-"""A filter of system calls (seccomp) against what the other layers leave open.
+"""A system call filter (seccomp) that blocks operations which the other protections allow.
 
-Shared memory of System V outlives its processes, and no count of theirs includes it. Requests by io_uring pass by such
-filters. Where a run shares the root folder and the user with the grader, it could ask a server of that user, such as
-systemd over D-Bus, to do what the run must not, because Landlock does not restrict sockets of servers; a pair of
-connected sockets (socketpair) is allowed. The filter is a program of classic BPF.
+System V shared memory outlives its processes and is not included in their memory usage. io_uring bypasses such
+filters. A run that shares the root folder and the user with the grader could request forbidden operations from a
+server of that user, such as systemd over D-Bus, because Landlock does not restrict Unix sockets. A pair of
+connected sockets (socketpair) is allowed. The filter is a classic BPF program.
 """
 
 from __future__ import annotations
@@ -43,12 +43,12 @@ class _Program(ctypes.Structure):
 
 
 def filter_system_calls(*, forbid_local_servers: bool) -> bool:
-    """Filter the system calls of this process and its descendants. False: not on this system.
+    """Filter the system calls of this process and its descendants, and return whether the system supports it.
 
-    The process must have given up new privileges before.
+    The process must have called `forbid_new_privileges` before.
 
     Args:
-        forbid_local_servers: Whether to forbid sockets to servers of this machine other than those of the network.
+        forbid_local_servers: whether to forbid sockets for servers on this machine, except network sockets.
     """
     known = _ARCHITECTURES.get(os.uname().machine)
     if known is None or sys.maxsize < 2**32:

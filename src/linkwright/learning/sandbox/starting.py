@@ -1,8 +1,8 @@
-"""Starting the program of a run, in what confinement the system offers.
+"""Start of the program of a run, with the confinement that the system supports.
 
-The supervisor forks a child. Where namespaces are allowed, the child enters them and forks twice: first the process
-number 1 of the new namespace, whose end ends all others, then the program. Elsewhere the child becomes the program.
-Each reports to the supervisor through a pipe.
+The supervisor forks a child. If namespaces are allowed, the child enters them and forks twice: first process 1 of
+the new namespace, whose end ends all others, then the program. Otherwise the child becomes the program.
+Each process reports to the supervisor through a pipe.
 """
 
 from __future__ import annotations
@@ -16,7 +16,7 @@ from collections.abc import Callable
 from dataclasses import dataclass, field
 from typing import Any, NoReturn
 
-from linkwright.learning.sandbox.limits_of_process import apply_limits, be_modest, count_threads_of_user
+from linkwright.learning.sandbox.limits_of_process import apply_limits, count_threads_of_user, lower_priority
 from linkwright.learning.sandbox.plan import Plan
 
 _TEMPORARY_SHARE = 8
@@ -25,7 +25,7 @@ _TEMPORARY_SHARE = 8
 
 @dataclass
 class Confinement:
-    """The confinement that was applied to the run so far."""
+    """The protections that have been applied to the run so far."""
 
     namespaces: set[str] = field(default_factory=set)
     """`user`, `processes`, `mounts`, `ipc`, `network`; `root` when the run has a root folder of its own."""
@@ -41,7 +41,7 @@ class Confinement:
         return {**vars(self), "namespaces": sorted(self.namespaces)}
 
     def take(self, message: dict[str, Any]) -> None:
-        """Take over the confinement that a message of `to_message` reports."""
+        """Update the confinement from a message of `to_message`."""
         self.namespaces = set(message["namespaces"])
         self.landlock = message["landlock"]
         self.landlock_signals = message["landlock_signals"]
@@ -50,22 +50,22 @@ class Confinement:
 
 
 class Messages:
-    """A pipe on which the processes of a run report to the supervisor, a line of JSON each."""
+    """A pipe through which the processes of a run send lines of JSON to the supervisor."""
 
     def __init__(self) -> None:
         self.reader, self.writer = os.pipe()
         self._rest = b""
 
     def send(self, **message: Any) -> None:
-        """Send a message. Those of a run are shorter than a pipe's atomic size."""
+        """Send a message, which must be short enough for an atomic write to a pipe."""
         os.write(self.writer, json.dumps(message).encode() + b"\n")
 
     def close_writer(self) -> None:
-        """Let `receive` end when all other processes have closed the pipe."""
+        """Close this process's end for writing, so that `receive` ends when all other processes have closed theirs."""
         os.close(self.writer)
 
     def receive(self) -> dict[str, Any] | None:
-        """Wait for a message, and return it; None at the end."""
+        """Wait for the next message, and return it, or None if the pipe is closed."""
         while b"\n" not in self._rest:
             part = os.read(self.reader, 65536)
             if not part:
@@ -78,23 +78,23 @@ class Messages:
 
 @dataclass
 class Start:
-    """A start of the program: what each of the processes needs to know."""
+    """The start of the program, with the data that all processes of the start need."""
 
     plan: Plan
     messages: Messages
-    go: tuple[int, int]
+    go_pipe: tuple[int, int]
     """A pipe on which the supervisor lets the child continue."""
     output: tuple[int, int]
     user: int | None
-    wanted_namespaces: frozenset[str]
+    requested_namespaces: frozenset[str]
     """Of `processes`, `mounts`, `ipc` and `network`."""
     needs_root_folder: bool
     """Whether the program could not run without a root folder of its own."""
 
     def run_child(self, supervisor: int) -> NoReturn:
-        """Be the child of the supervisor. Never returns."""
+        """Run as the child process of the supervisor. Never returns."""
         try:
-            os.close(self.go[1])
+            os.close(self.go_pipe[1])
             os.close(self.messages.reader)
             self._enter(supervisor)
         except BaseException as error:  # noqa: BLE001 - this process must not continue as another supervisor
@@ -110,7 +110,7 @@ class Start:
         from linkwright.learning.sandbox.linux import die_with_parent
 
         die_with_parent(signal.SIGKILL, supervisor)
-        if self.wanted_namespaces:
+        if self.requested_namespaces:
             confinement.namespaces = self._enter_namespaces()
         if "processes" not in confinement.namespaces:
             self._prepare_namespaces(confinement)
@@ -123,16 +123,16 @@ class Start:
     def _enter_namespaces(self) -> set[str]:
         from linkwright.learning.sandbox.namespaces import enter_namespaces, enter_user_namespace
 
-        if os.geteuid() == 0 and (entered := enter_namespaces(self.wanted_namespaces)):
+        if os.geteuid() == 0 and (entered := enter_namespaces(self.requested_namespaces)):
             return entered
         try:
             enter_user_namespace()
         except OSError:
             return set()
         self.messages.send(map=os.getpid())
-        if os.read(self.go[0], 1) != b"y":
+        if os.read(self.go_pipe[0], 1) != b"y":
             os._exit(125)
-        entered = enter_namespaces(self.wanted_namespaces)
+        entered = enter_namespaces(self.requested_namespaces)
         if not entered:
             self._give_up()
         return entered | {"user"}
@@ -163,7 +163,7 @@ class Start:
             self._give_up()
 
     def _run_first_process(self, confinement: Confinement) -> NoReturn:
-        """Be the process number 1 of the run's processes. Their program's end ends them all."""
+        """Run as process 1 of the run's process namespace. The end of the program ends all its processes."""
         from linkwright.learning.sandbox.linux import die_with_parent
 
         die_with_parent(signal.SIGKILL, 0)  # the parent is outside this namespace, which shows it as 0
@@ -180,7 +180,7 @@ class Start:
         plan = self.plan
         os.setsid()
         _take_standard_streams(self.output)
-        be_modest(plan.processors)
+        lower_priority(plan.processors)
         os.chdir(plan.folder)
         others = 0 if self._is_counted_alone(confinement) else count_threads_of_user()
         if sys.platform == "linux":
@@ -197,7 +197,7 @@ class Start:
         os._exit(127)
 
     def _is_counted_alone(self, confinement: Confinement) -> bool:
-        """Return whether the kernel counts the processes of the run separately from others of its user."""
+        """Return whether the kernel counts the run's processes separately from other processes of its user."""
         return self.user is not None or ("user" in confinement.namespaces and _counts_in_namespaces())
 
     def _restrict(self, confinement: Confinement, parent: int) -> None:
@@ -228,7 +228,7 @@ class Start:
 
 
 def _fork(run: Callable[[], NoReturn]) -> int:
-    """Fork, call a function in the child, and return the child's number in the parent."""
+    """Fork, call a function in the child, and return the child's process ID in the parent."""
     child = os.fork()
     if child == 0:
         run()
@@ -236,7 +236,7 @@ def _fork(run: Callable[[], NoReturn]) -> int:
 
 
 def _counts_in_namespaces() -> bool:
-    """Return whether the kernel counts processes for each user namespace: Linux 5.14 and later."""
+    """Return whether the kernel counts processes per user namespace (Linux 5.14 and later)."""
     major, minor, *_ = os.uname().release.split(".")
     return (int(major), int(minor.partition("-")[0])) >= (5, 14)
 
@@ -249,7 +249,7 @@ def _take_standard_streams(output: tuple[int, int]) -> None:
 
 
 def _restore_signals() -> None:
-    """Give the program the signals as they are by default: Python ignores some."""
+    """Restore the default handling of the signals that Python ignores."""
     for number in signal.valid_signals() - {signal.SIGKILL, signal.SIGSTOP}:
         with contextlib.suppress(OSError, ValueError):
             signal.signal(number, signal.SIG_DFL)
@@ -257,7 +257,7 @@ def _restore_signals() -> None:
 
 
 def _wait_for(program: int) -> int:
-    """Reap children until a program ends, and return its status: negative for a signal."""
+    """Reap children until a program ends, and return its exit status, negative for a signal."""
     while True:
         pid, status = os.waitpid(-1, 0)
         if pid == program:

@@ -1,7 +1,7 @@
-"""The supervisor of a run: a process between the grader and the student's program.
+"""The supervisor of a run, a process between the grader and the student's program.
 
 It reads a plan from standard input, starts the program confined, watches it, ends all its processes, and prints the
-outcome. The grader starts it with ``python -c`` and its own search path; nothing of the student's is imported.
+outcome. The grader starts it with ``python -c`` and its own search path, so no code of the student is imported.
 """
 
 from __future__ import annotations
@@ -30,11 +30,11 @@ _UMASK = 0o022
 
 
 class RunFailedError(Exception):
-    """The program could not be started."""
+    """Raised when the program cannot be started."""
 
 
 def main() -> None:
-    """Supervise the run whose plan is on standard input, and print its outcome as JSON."""
+    """Supervise the run whose plan is read from standard input, and print its outcome as JSON."""
     os.umask(_UMASK)
     plan = Plan.from_json(sys.stdin.read())
     supervisor = _Supervisor(plan)
@@ -62,7 +62,7 @@ class _Supervisor:
         self._end_requested = True
 
     def run(self) -> Outcome:
-        """Run the program to its end or to a limit, end all its processes, and return the outcome."""
+        """Run the program until it ends or exceeds a limit, end all its processes, and return the outcome."""
         folder = self._plan.folder
         if sys.platform == "linux":
             from linkwright.learning.sandbox.linux import adopt_orphans
@@ -95,12 +95,12 @@ class _Supervisor:
         )
 
     def _remove_temporary_files(self) -> None:
-        """Delete what the run has left in folders that it shared with the system, if its user shows what that is."""
+        """Delete the run's files in shared folders of the system if they are identifiable by their user."""
         if self._confinement.user is not None and "root" not in self._confinement.namespaces:
             remove_files_of(self._confinement.user)
 
     def _start(self) -> None:
-        """Start the program with all namespaces, or with those that work here."""
+        """Start the program with all namespaces, or with the namespaces that this system allows."""
         user = self._find_user()
         needs_root_folder = user is not None and not self._can_reach()
         if self._try_to_start(user, _NAMESPACES, needs_root_folder=needs_root_folder):
@@ -130,9 +130,9 @@ class _Supervisor:
         give_to(*owner, self._plan.folder)
         self._confinement.user = user
         self._messages = Messages()
-        go_reader, go = os.pipe()
+        go_reader, go_pipe = os.pipe()
         start = Start(
-            self._plan, self._messages, (go_reader, go), self._output.writers, user, namespaces, needs_root_folder
+            self._plan, self._messages, (go_reader, go_pipe), self._output.writers, user, namespaces, needs_root_folder
         )
         supervisor = os.getpid()
         self._leader = os.fork()
@@ -141,17 +141,17 @@ class _Supervisor:
         os.close(go_reader)
         self._messages.close_writer()
         try:
-            is_started = self._follow_start(go)
+            is_started = self._follow_start(go_pipe)
         finally:
-            os.close(go)
+            os.close(go_pipe)
         if is_started:
             self._output.close_writers()
         else:
             end_descendants(user)
         return is_started
 
-    def _follow_start(self, go: int) -> bool:
-        """Take the messages of the start until the program is about to run. False: namespaces are of no use."""
+    def _follow_start(self, go_pipe: int) -> bool:
+        """Handle the messages of the start until the program runs, and return whether the namespaces are usable."""
         while (message := self._messages.receive()) is not None:
             if "map" in message:
                 from linkwright.learning.sandbox.namespaces import map_users
@@ -159,9 +159,9 @@ class _Supervisor:
                 try:
                     map_users(message["map"])
                 except OSError:
-                    os.write(go, b"n")
+                    os.write(go_pipe, b"n")
                     return False
-                os.write(go, b"y")
+                os.write(go_pipe, b"y")
             elif "applied" in message:
                 self._confinement.take(message["applied"])
                 return True
@@ -172,7 +172,7 @@ class _Supervisor:
         return False
 
     def _watch(self, watchdog: Watchdog) -> Exceeded | None:
-        """Watch the program until its end. Return the limit that it exceeds, if it does."""
+        """Monitor the program until it ends or exceeds a limit, and return that limit or None."""
         poll = select.poll()
         sources = [*self._output.readers, self._messages.reader]
         for source in sources:
@@ -221,7 +221,7 @@ class _Supervisor:
 
 
 class _Output:
-    """The standard output and standard error of the run, up to a limit."""
+    """The captured standard output and standard error of the run, up to a limit."""
 
     def __init__(self, limit: int) -> None:
         self._limit = limit
@@ -238,7 +238,7 @@ class _Output:
             os.close(writer)
 
     def read(self, descriptor: int) -> bool:
-        """Read what is there now. False at the end."""
+        """Read the available output of a stream, and return False at its end."""
         try:
             part = os.read(descriptor, 65536)
         except BlockingIOError:
@@ -250,14 +250,14 @@ class _Output:
         return bool(part)
 
     def read_all(self) -> None:
-        """Read the rest, after the end of all writers."""
+        """Read the remaining output after all writers have ended."""
         for descriptor in self.readers:
             while self.read(descriptor):
                 pass
 
 
 def protections_of(confinement: Confinement) -> frozenset[Protection]:
-    """Return the protections that a confinement gives."""
+    """Return the protections that a confinement provides."""
     if sys.platform != "linux":
         return frozenset({Protection.LIMITS})
     has_root = "root" in confinement.namespaces

@@ -1,4 +1,4 @@
-"""Watching what a run uses, and naming the limit that it exceeds."""
+"""Monitoring of the resources of a run, and detection of an exceeded limit."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ _SHARE_OF_TIME = 0.1
 
 @dataclass(frozen=True)
 class FolderUsage:
-    """The size of a folder's contents."""
+    """The total size, the number of files and the largest file of a folder. Sizes are in bytes."""
 
     bytes: int
     files: int
@@ -31,9 +31,9 @@ class FolderUsage:
 
 
 def measure_folder(folder: str) -> FolderUsage:
-    """Return the size of a folder's contents, without following links.
+    """Measure the contents of a folder without following links.
 
-    A path that is too long counts as endlessly many files.
+    A path that is too long counts as an infinite number of files.
     """
     total = files = largest = 0
     counted: set[tuple[int, int]] = set()
@@ -51,7 +51,7 @@ def measure_folder(folder: str) -> FolderUsage:
 
 
 def _walk(folder: str) -> Iterator[os.stat_result | None]:
-    """Yield the status of all that a folder contains, and None for a path that is too long."""
+    """Yield the status of each path below a folder, or None for a path that is too long."""
     waiting = [folder]
     while waiting:
         for path, status in _list_folder(waiting.pop()):
@@ -61,7 +61,7 @@ def _walk(folder: str) -> Iterator[os.stat_result | None]:
 
 
 def _list_folder(folder: str) -> Iterator[tuple[str, os.stat_result | None]]:
-    """Yield the paths in a folder with their status. Paths that the run deleted or made unreadable are left out."""
+    """Yield the paths in a folder with their status, except paths that were deleted or made unreadable."""
     try:
         with os.scandir(folder) as entries:
             for entry in entries:
@@ -72,11 +72,11 @@ def _list_folder(folder: str) -> Iterator[tuple[str, os.stat_result | None]]:
 
 
 class Watchdog:
-    """The resources that a run has used since its start, compared with its limits.
+    """A monitor that compares the resource usage of a run with its limits.
 
     Attributes:
-        user: the user of the run, if it is not this process's.
-        cpu_seconds: the processor time of all processes so far.
+        user: the user of the run, if it differs from this process's user.
+        cpu_seconds: the processor time of all processes so far, in seconds.
     """
 
     def __init__(self, limits: Limits, folder: str) -> None:
@@ -94,11 +94,11 @@ class Watchdog:
 
     @property
     def seconds(self) -> float:
-        """The wall time since the start."""
+        """The wall time since the start, in seconds."""
         return time.monotonic() - self._start
 
     def check_in_time(self) -> Exceeded | None:
-        """Return the limit that the run exceeds now, if it is time to look again."""
+        """Return the exceeded limit or None, checking only if the check interval has passed."""
         now = time.monotonic()
         if now < self._next_check:
             return None
@@ -112,7 +112,7 @@ class Watchdog:
         return self._check_processes() or self._check_folder()
 
     def find_exceeded_at_end(self) -> Exceeded | None:
-        """Return the limit that the run exceeded in its last moments."""
+        """Return the limit that the run exceeded shortly before its end, or None."""
         self._next_walk = 0.0
         return self._check_folder()
 
@@ -129,7 +129,7 @@ class Watchdog:
             return self._check_memory(found) or self._check_written(found)
 
     def _check_memory(self, found: list[ProcessUsage]) -> Exceeded | None:
-        """Compare the memory with the limit, at first by a sum that counts shared pages more than once."""
+        """Compare the memory with the limit, first by a fast sum that counts shared pages repeatedly."""
         sizes: dict[tuple[int, int], int] = {}
         for process in found:
             sizes.update(nameless_files(process.pid))
@@ -139,14 +139,14 @@ class Watchdog:
         return Exceeded.MEMORY if is_exceeded else None
 
     def _check_written(self, found: list[ProcessUsage]) -> Exceeded | None:
-        """Compare the bytes written with the limit. Those of an ended process are part of its parent's."""
+        """Compare the written bytes with the limit. A parent's bytes include its ended children's."""
         written = sum(written_bytes(pid) for pid in (os.getpid(), *(process.pid for process in found)))
         is_exceeded = max(written, self._nameless_on_disk) > self._limits.disk_bytes
         return Exceeded.DISK_BYTES if is_exceeded else None
 
     @contextlib.contextmanager
     def _access_to_processes(self) -> Iterator[None]:
-        """Read /proc as the user of the run, where this process, though root, must not trace others."""
+        """Access /proc as the user of the run if this process is root without the right to trace processes."""
         if self.user is None or self._may_trace:
             yield
             return

@@ -1,10 +1,10 @@
-"""Install Linkwright from this folder into the user's folder, without a network and without administrator's rights.
+"""Install Linkwright from this folder into the user's folder, offline and without administrator rights.
 
 Usage: python install.py [FOLDER]
 
-FOLDER is where Linkwright goes, ~/linkwright by default. The scripts install.sh, install.command and install.bat run
-this file with a Python that fits. It is part of a folder that ``linkwright learn pack`` made, and imports nothing but
-Python's own modules.
+FOLDER is the installation folder, by default ~/linkwright. The scripts install.sh, install.command and install.bat run
+this file with a suitable Python. The file belongs to a pack of ``linkwright learn pack``, and imports only modules of
+the standard library.
 """
 
 from __future__ import annotations
@@ -25,7 +25,7 @@ _IS_WINDOWS = os.name == "nt"
 
 
 class InstallationError(Exception):
-    """Raised if the installation is not possible, with the reason in English and in Chinese."""
+    """Raised if the installation is not possible. The arguments are the reason in English and in Chinese."""
 
 
 def install(target_folder: Path) -> None:
@@ -36,13 +36,15 @@ def install(target_folder: Path) -> None:
     """
     settings = json.loads((PACK / "pack.json").read_text(encoding="utf-8"))
     target = _target(settings)
-    _say(f"Linkwright {settings['version']}: {target} -> {target_folder}")
+    _print_in_both_languages(f"Linkwright {settings['version']}: {target} -> {target_folder}")
     python = _make_environment(target_folder)
-    _say("Installing the packages; this takes one to five minutes.", "正在安装软件包，需要一到五分钟。")
+    _print_in_both_languages(
+        "Installing the packages; this takes one to five minutes.", "正在安装软件包，需要一到五分钟。"
+    )
     (pip,) = (PACK / "wheels").glob("pip-*.whl")
-    words = ["install", "--isolated", "--disable-pip-version-check", "--no-cache-dir", "--quiet", "--no-index"]
-    words += ["--find-links", str(PACK / "wheels"), "--require-hashes"]
-    _run([str(python), str(pip / "pip"), *words, "-r", str(PACK / "requirements" / f"{target}.txt")])
+    arguments = ["install", "--isolated", "--disable-pip-version-check", "--no-cache-dir", "--quiet", "--no-index"]
+    arguments += ["--find-links", str(PACK / "wheels"), "--require-hashes"]
+    _run([str(python), str(pip / "pip"), *arguments, "-r", str(PACK / "requirements" / f"{target}.txt")])
     program = python.with_name("linkwright.exe" if _IS_WINDOWS else "linkwright")
     for model in settings["models"]:
         _run([str(program), "models", "get", model, "--from", str(PACK / "models")])
@@ -50,11 +52,11 @@ def install(target_folder: Path) -> None:
     _copy_new(PACK / "worlds" / "gazebo", Path.home() / ".gazebo" / "models")
     _copy_new(PACK / "docs", target_folder / "docs")
     _verify(program, python, settings["version"])
-    _say_what_next(target_folder, settings["missing"].get(target, {}))
+    _print_next_steps(target_folder, settings["missing"].get(target, {}))
 
 
 def _target(settings: dict[str, Any]) -> str:
-    """Return the name of this system with this Python, for which the folder has packages."""
+    """Return the name of the target for this system and this Python, after checking that the folder has it."""
     version = f"{sys.version_info[0]}.{sys.version_info[1]}"
     machine = _MACHINES.get(platform.machine().lower(), platform.machine().lower())
     system = _SYSTEMS.get(platform.system(), platform.system()).format(machine=machine)
@@ -79,7 +81,7 @@ def _target(settings: dict[str, Any]) -> str:
 
 
 def _make_environment(folder: Path) -> Path:
-    """Make a virtual environment, or keep the one that there is, and return its Python."""
+    """Create a virtual environment, or reuse the existing one, and return its Python."""
     if folder.exists() and not (folder / "pyvenv.cfg").is_file() and (not folder.is_dir() or any(folder.iterdir())):
         raise InstallationError(
             f"{folder} exists and is not an environment of Python. Name another folder: install FOLDER",
@@ -89,24 +91,26 @@ def _make_environment(folder: Path) -> Path:
     return folder / ("Scripts/python.exe" if _IS_WINDOWS else "bin/python")
 
 
-def _run(words: list[str]) -> str:
-    """Run a program and return what it prints; show what it reports."""
+def _run(arguments: list[str]) -> str:
+    """Run a program and return its standard output. Its standard error is shown to the user."""
     variables = {key: value for key, value in os.environ.items() if not key.startswith(("PYTHON", "PIP_"))}
     try:
-        done = subprocess.run(  # noqa: S603 - words of ours
-            words, env=variables, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True, encoding="utf-8",
+        done = subprocess.run(  # noqa: S603 - only Linkwright's own arguments
+            arguments, env=variables, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True, encoding="utf-8",
             errors="replace", check=False,
         )  # fmt: skip
     except OSError as error:
-        raise InstallationError(f"{words[0]}: {error}", f"无法运行 {words[0]}") from None
+        raise InstallationError(f"{arguments[0]}: {error}", f"无法运行 {arguments[0]}") from None
     if done.returncode:
         lines = done.stdout.strip().splitlines()[-12:]
-        raise InstallationError("\n".join([f"This step failed: {' '.join(words[:4])} ...", *lines]), "这一步失败了。")
+        raise InstallationError(
+            "\n".join([f"This step failed: {' '.join(arguments[:4])} ...", *lines]), "这一步失败了。"
+        )
     return done.stdout
 
 
 def _copy_new(source: Path, target: Path) -> None:
-    """Copy the files of a folder, if it exists, that the target does not have."""
+    """Copy the files of a folder, which need not exist, unless the target already has them."""
     for path in sorted(source.rglob("*")) if source.is_dir() else ():
         copy = target / path.relative_to(source)
         if path.is_file() and not copy.exists():
@@ -115,8 +119,8 @@ def _copy_new(source: Path, target: Path) -> None:
 
 
 def _verify(program: Path, python: Path, version: str) -> None:
-    """Try the installation: its version, and a check of the robot that comes with it."""
-    _say("Trying it.", "正在试运行。")
+    """Verify the installation by its version and a check of the shipped robot."""
+    _print_in_both_languages("Trying it.", "正在试运行。")
     printed = _run([str(program), "--version"]).strip()
     if printed != f"linkwright {version}":
         raise InstallationError(
@@ -127,34 +131,36 @@ def _verify(program: Path, python: Path, version: str) -> None:
     _run([str(program), "check", str(robot)])
 
 
-def _say_what_next(folder: Path, missing: dict[str, list[str]]) -> None:
+def _print_next_steps(folder: Path, missing: dict[str, list[str]]) -> None:
     if missing:
-        _say(
+        _print_in_both_languages(
             "\nOn this system with this Python there is no package for:",
             "这个系统加这个 Python 版本没有以下部分的软件包：",
         )
         for english, chinese in zip(missing["en"], missing["zh"], strict=True):
-            _say(f"  - {english}", f"    {chinese}")
+            _print_in_both_languages(f"  - {english}", f"    {chinese}")
     activate = f"{folder}\\Scripts\\activate.bat" if _IS_WINDOWS else f". '{folder}/bin/activate'"
-    _say("\nLinkwright is installed. In a new terminal:", "Linkwright 已安装。打开一个新终端，输入：")
-    _say(f"\n    {activate}", "    linkwright learn\n")
+    _print_in_both_languages(
+        "\nLinkwright is installed. In a new terminal:", "Linkwright 已安装。打开一个新终端，输入："
+    )
+    _print_in_both_languages(f"\n    {activate}", "    linkwright learn\n")
     if (folder / "docs" / "index.html").is_file():
-        _say(f"Documentation / 文档: {folder / 'docs' / 'index.html'}")
-    _say(f"To remove it, delete the folder {folder}.", f"要卸载，删除目录 {folder} 即可。")
+        _print_in_both_languages(f"Documentation / 文档: {folder / 'docs' / 'index.html'}")
+    _print_in_both_languages(f"To remove it, delete the folder {folder}.", f"要卸载，删除目录 {folder} 即可。")
 
 
-def _say(*lines: str) -> None:
+def _print_in_both_languages(*lines: str) -> None:
     print(*lines, sep="\n", flush=True)
 
 
-def main(words: list[str]) -> int:
-    """Install, and return the exit status."""
+def main(arguments: list[str]) -> int:
+    """Install Linkwright, and return the exit status."""
     for stream in (sys.stdout, sys.stderr):
         reconfigure = getattr(stream, "reconfigure", None)
         if reconfigure is not None:
             reconfigure(encoding="utf-8", errors="replace")
     try:
-        install(Path(words[0]).expanduser().absolute() if words else Path.home() / "linkwright")
+        install(Path(arguments[0]).expanduser().absolute() if arguments else Path.home() / "linkwright")
     except InstallationError as error:
         print(*error.args, sep="\n", file=sys.stderr)
         return 1

@@ -1,4 +1,4 @@
-"""Sentences of a grader about the sandbox: the reason why a run was ended, and the protections."""
+"""Sentences about the sandbox for users: the reasons why runs end, and the protections."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ PROTECTIONS: dict[Protection, Phrase] = {
 
 
 def describe_exceeded(exceeded: Exceeded, limits: Limits) -> Phrase:
-    """Return the reason for which a run was ended."""
+    """Return a sentence with the limit that a run has exceeded."""
     match exceeded:
         case Exceeded.SECONDS:
             return phrase("the program did not end within {seconds:g} s", seconds=limits.seconds)
