@@ -1,4 +1,4 @@
-"""Graphs for tests of nodes.
+"""Graphs and simulated worlds for tests of nodes.
 
 Time passes only when the test advances it. An hour of such time takes milliseconds. With `SteppedSimulation`, a
 simulated world advances together with the graph.

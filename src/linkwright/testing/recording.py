@@ -1,4 +1,4 @@
-"""Records the messages that are published on a topic during a test."""
+"""Recording of the messages that are published on a topic during a test."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ from linkwright.graph import (
 
 
 class Recording:
-    """The messages of a topic in the order of arrival.
+    """The recorded messages of a topic, in the order of arrival.
 
     The method ``record`` of a stepped graph creates a recording.
 

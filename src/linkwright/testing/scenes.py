@@ -1,4 +1,4 @@
-"""Loads worlds and robots for simulations, and caches them until their files change."""
+"""Loading of worlds and robots for simulations, with a cache that ends when a file changes."""
 
 from __future__ import annotations
 

@@ -254,7 +254,7 @@ def _with_arguments_of(
 
 
 class SteppedSimulation(SteppedGraph):
-    """A simulated world and a graph whose time passes only in `advance`.
+    """A simulated world and a graph whose time advances only in `advance`.
 
     >>> with SteppedSimulation("empty", "package://my_robot_description/urdf/mbot_gazebo.xacro") as test:
     ...     odometry = test.record("/odom")
@@ -263,11 +263,11 @@ class SteppedSimulation(SteppedGraph):
     ...     1.0 < odometry.last.pose.pose.position.x < 1.25
     True
 
-    Neither threads nor real time are used. The world moves for a `period`. Then the graph calls the expired timers,
-    publishes the time on ``/clock``, receives the messages of plugins and sensors, and runs the callbacks that these
-    messages cause. After that the world moves again, with the commands that it has received. The results of a test are
-    therefore bit-identical in each run. Nodes written for rclpy run in the graph after `init_rclpy`, and follow
-    simulated time if the parameter ``use_sim_time`` is set.
+    Neither threads nor real time are used. The world is simulated for one `period`. Then the graph calls the expired
+    timers, publishes the time on ``/clock``, receives the messages of plugins and sensors, and runs the callbacks that
+    these messages cause. The next period then begins, with the received commands. The results of a test are therefore
+    bit-identical in each run. Nodes written for rclpy run in the graph after `init_rclpy`, and follow simulated time if
+    the parameter ``use_sim_time`` is set.
 
     The simulation offers the services of a simulator: ``/spawn_entity``, ``/delete_entity``, ``/set_entity_state``,
     ``/pause_physics`` and so on; `spawn` and `delete` do the same as the first two services.
@@ -287,8 +287,8 @@ class SteppedSimulation(SteppedGraph):
         noise: the factor for the noise of the robot's sensors; 0 for exact measurements.
         robot_state_publisher: whether a robot_state_publisher runs for the robot, which publishes the description and
             the transforms of the links from ``/joint_states``.
-        services: whether the services of a simulator are offered. A program that is judged must not have them.
-        period: the time that the world moves between two steps of the graph, in s.
+        services: whether the services of a simulator are offered, which a judged program must not have.
+        period: the simulated time between two steps of the graph, in s.
         start: the time of day at the start, in seconds since the epoch.
         strict: whether the step in which a callback fails raises the callback's error; otherwise errors are only
             logged.

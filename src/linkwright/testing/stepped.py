@@ -1,4 +1,4 @@
-"""A graph whose time passes in steps, for tests that are coroutines."""
+"""A graph whose time advances only in steps, for tests that are coroutines."""
 
 from __future__ import annotations
 
@@ -29,7 +29,7 @@ _NODE = "test"
 
 
 class AsyncSteppedGraph:
-    """A graph whose time passes only in `advance`.
+    """A graph whose time advances only in `advance`.
 
     An hour of timers, rates and throttles takes milliseconds.
 
@@ -111,7 +111,7 @@ class AsyncSteppedGraph:
 
     @property
     def program_nodes(self) -> list[tuple[str, str]]:
-        """The name and the namespace of each node that programs have now."""
+        """The name and the namespace of each current node of the programs."""
         return [] if self._programs is None else self._programs.node_names
 
     def create_node(self, name: str, **options: Any) -> Node:
@@ -133,7 +133,7 @@ class AsyncSteppedGraph:
         """Interrupt the programs that are running, and let them end. See `SteppedGraph.start_program`.
 
         Args:
-            error: the error that ends the test, which takes precedence over those of programs.
+            error: the error that ends the test, which takes precedence over errors of programs.
 
         Raises:
             Exception: the error of a program that failed while it ended.

@@ -1,4 +1,4 @@
-"""A graph whose time passes in steps, for tests that are plain functions."""
+"""A graph whose time advances only in steps, for tests that are plain functions."""
 
 from __future__ import annotations
 
@@ -124,11 +124,11 @@ class SteppedGraph:
         return self._context
 
     def start_program(self, main: Main, args: Sequence[str] = (), *, budget: float = 30.0, seed: int = 0) -> Program:
-        """Start a program: a file with ``rclpy.init()`` and ``rclpy.spin(node)``, or a loop with ``time.sleep``.
+        """Start a program, such as a file that calls ``rclpy.init()`` and ``rclpy.spin(node)``, and return it.
 
-        The program runs in threads of its own, but only in the steps of the graph, and until all its threads wait.
-        Executors, ``time.sleep``, rates, locks, events, queues, futures and asyncio give control back to the graph. The
-        modules ``time`` and ``rclpy`` tell the program the time of the graph, so its results are bit-identical in each
+        The program runs in separate threads, but only in the steps of the graph, until all its threads wait.
+        Executors, ``time.sleep``, rates, locks, events, queues, futures and asyncio return control to the graph. The
+        modules ``time`` and ``rclpy`` use the time of the graph, so the program's results are bit-identical in each
         run. Several programs may run in a graph. Each has its own default context of rclpy and its own ``sys.argv``.
 
         If an exception ends a program, the step in which it happens raises it. At the end of the test, programs
@@ -139,9 +139,9 @@ class SteppedGraph:
                 or a function.
             args: the command line without the name of the program, with ROS arguments such as
                 ``["--ros-args", "-p", "use_sim_time:=true"]``.
-            budget: the longest time for which a program may compute without waiting, in seconds, without the
-                time in which it waits for a processor. After it, the step raises a `BudgetExceededError` with file and
-                line.
+            budget: the longest time for which the program may compute without waiting, in seconds, not counting the
+                time in which it waits for a processor. If it is exceeded, the step raises a `BudgetExceededError` with
+                file and line.
             seed: the seed of the modules ``random`` and ``numpy.random`` at the start.
 
         Raises:
@@ -151,7 +151,7 @@ class SteppedGraph:
 
     @property
     def program_nodes(self) -> list[tuple[str, str]]:
-        """The name and the namespace of each node that programs have now."""
+        """The name and the namespace of each current node of the programs."""
         return self._steps.program_nodes
 
     def create_node(self, name: str, **options: Any) -> Node:

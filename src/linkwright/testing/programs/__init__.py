@@ -1,1 +1,1 @@
-"""Programs with a ``main`` that run in lockstep with a stepped graph."""
+"""Programs with a ``main``, which run in lockstep with a stepped graph."""

@@ -1,4 +1,4 @@
-"""The graph of a test as a program in it sees it."""
+"""The view that a program has of the graph of a test."""
 
 from __future__ import annotations
 
@@ -10,12 +10,12 @@ from linkwright.graph.names.rules import NodeIdentity, Remappings
 
 
 class ProgramGraph:
-    """The nodes of a program's context in the graph of a test.
+    """The graph of a program's context, whose nodes belong to the graph of a test.
 
-    Their callbacks run when the program spins them. Closing destroys these nodes and no others.
+    The callbacks of the nodes run when the program spins them. `close` destroys only the nodes of the program.
 
     Args:
-        graph: the graph of the test, which does everything else.
+        graph: the graph of the test, to which all other operations are delegated.
     """
 
     dispatcher = None

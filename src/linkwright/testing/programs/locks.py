@@ -1,4 +1,4 @@
-"""Locks for threads that run in turns: a thread that waits for one gives its turn back."""
+"""Locks for lockstep threads, which let other threads run while a thread waits for a lock."""
 
 from __future__ import annotations
 
@@ -10,9 +10,9 @@ from linkwright.testing.programs.threads import LockstepThread, current_thread
 
 
 class CooperativeLock:
-    """A lock like ``threading.Lock``, whose acquisition gives the turn to other threads.
+    """A replacement of ``threading.Lock`` that lets other lockstep threads run during a wait.
 
-    Any thread may release it, also the graph's.
+    Any thread may release it, including the thread of the graph.
     """
 
     def __init__(self) -> None:
@@ -20,7 +20,7 @@ class CooperativeLock:
         self._waiting: deque[LockstepThread] = deque()
 
     def acquire(self, blocking: bool = True, timeout: float = -1) -> bool:
-        """Take the lock, and wait for it if necessary.
+        """Acquire the lock, waiting if necessary, and return whether that succeeded.
 
         Raises:
             RuntimeError: a thread that does not run in turns would have to wait.
@@ -58,7 +58,7 @@ class CooperativeLock:
         self._wake_next()
 
     def locked(self) -> bool:
-        """Return whether the lock is taken."""
+        """Return whether the lock is acquired."""
         return self._is_locked
 
     def _wake_next(self) -> None:
@@ -76,8 +76,8 @@ class CooperativeLock:
 
 
 class ThreadAwareLock:
-    """The replacement of ``threading.Lock``, which creates the lock that fits the calling thread."""
+    """The replacement of ``threading.Lock``, which creates the kind of lock that the calling thread needs."""
 
     def __new__(cls) -> Any:
-        """Return a cooperative lock for a thread that runs in turns, otherwise an ordinary one."""
+        """Return a cooperative lock for a lockstep thread, or an ordinary lock for any other thread."""
         return CooperativeLock() if current_thread() is not None else allocate_lock()

@@ -1,7 +1,7 @@
-"""Functions of Python's modules that threads of programs wait in or read the time from.
+"""Replacements of Python's functions that wait or read the time.
 
-While programs run in a graph, each of these functions has a replacement. In a thread that runs in turns, it uses the
-time of the graph; in any other thread it does what the original does.
+While programs run in a graph, these functions are replaced. In a lockstep thread, a replacement uses the time of
+the graph; in any other thread, it calls the original.
 """
 
 from __future__ import annotations
@@ -33,7 +33,7 @@ _users: list[object] = []
 
 
 def install(user: object) -> None:
-    """Replace the functions until `uninstall` is called for each user."""
+    """Replace the functions until `uninstall` is called for each installed user."""
     _users.append(user)
     if len(_users) == 1:
         for owner, name, make in _PATCHES:
@@ -43,7 +43,7 @@ def install(user: object) -> None:
 
 
 def uninstall(user: object) -> None:
-    """Restore the functions after the last use."""
+    """Unregister a user, and restore the functions after the last one."""
     _users.remove(user)
     if not _users:
         for (owner, name), original in _original_values.items():
@@ -52,7 +52,7 @@ def uninstall(user: object) -> None:
 
 
 def _reading(read: Callable[[LockstepThread], Any]) -> Callable[[Original], Original]:
-    """Return what makes the replacement of a function that reads a time."""
+    """Return a function that creates the replacement of a function that reads the time."""
 
     def make(original: Original) -> Original:
         @wraps(original)
@@ -76,7 +76,7 @@ _steady_s = _reading(lambda thread: thread.clock.steady_ns() / NANOSECONDS_PER_S
 
 
 def _polling(original: Original) -> Original:
-    """Return the replacement of a method by which a program may poll."""
+    """Return the replacement of a method that a program may poll."""
 
     @wraps(original)
     def replacement(*args: Any, **kwargs: Any) -> Any:
@@ -140,7 +140,7 @@ def _ending_quietly(run: Callable[[], object]) -> Callable[[], None]:
 
 
 def _bootstrap(original: Original) -> Original:
-    """Return the replacement of the first function that a new thread runs."""
+    """Return the replacement of the function that a new thread runs first."""
 
     @wraps(original)
     def bootstrap(self: threading.Thread) -> None:
@@ -190,7 +190,7 @@ def _lockstep_thread(thread: threading.Thread) -> LockstepThread | None:
 
 
 def _select(original: Original) -> Original:
-    """Return the replacement of the wait of an event loop for its sockets."""
+    """Return the replacement of the function in which an event loop waits for sockets."""
 
     @wraps(original)
     def select(self: selectors.BaseSelector, timeout: float | None = None) -> Any:

@@ -1,4 +1,4 @@
-"""A program with a ``main`` that runs in a graph whose time passes in steps."""
+"""A program with a ``main``, which runs in lockstep with a stepped graph."""
 
 from __future__ import annotations
 
@@ -27,10 +27,10 @@ Main = str | Path | Callable[[], object]
 
 
 class Program:
-    """A program that runs in a stepped graph. `SteppedGraph.start_program` creates it.
+    """A program that runs in a stepped graph, created by `SteppedGraph.start_program`.
 
     Attributes:
-        exit_code: the exit code after the end: 0, 1 after an exception, or the argument of ``sys.exit``; None before.
+        exit_code: the exit code: 0, 1 after an exception, or the argument of ``sys.exit``; None while the program runs.
         error: the exception that ended the program, or None.
     """
 
@@ -54,23 +54,23 @@ class Program:
 
     @property
     def is_running(self) -> bool:
-        """Whether the program has not ended."""
+        """Whether the program is still running."""
         return any(not thread.ended.ended() and not thread.is_daemon for thread in self._threads)
 
     @property
     def has_threads(self) -> bool:
-        """Whether a thread of the program has not ended."""
+        """Whether any thread of the program is still running."""
         return any(not thread.ended.ended() for thread in self._threads)
 
     @property
     def node_names(self) -> list[tuple[str, str]]:
-        """The name and the namespace of each node that the program has now."""
+        """The name and the namespace of each current node of the program."""
         return [names for graph in self._graphs for names in graph.node_names]
 
     def interrupt(self) -> None:
-        """Send the program Ctrl-C, as ``ros2 run`` does: rclpy shuts down, and the main thread is interrupted.
+        """Interrupt the program like Ctrl-C: rclpy shuts down, and the main thread gets a KeyboardInterrupt.
 
-        rclpy stays open if the program asked for this (``signal_handler_options`` of ``rclpy.init``).
+        rclpy does not shut down if the program disabled this with ``signal_handler_options`` of ``rclpy.init``.
         """
         self.is_interrupted = True
         if self._state.signal_options & SignalHandlerOptions.SIGINT:
@@ -81,7 +81,7 @@ class Program:
             self._main_thread.interrupt(partial(handler, signal.SIGINT, None))
 
     def kill(self) -> None:
-        """End all threads of the program at the places where they wait."""
+        """End all threads of the program in their current waits."""
         for thread in self._threads:
             if not thread.ended.ended():
                 thread.kill()
@@ -90,7 +90,7 @@ class Program:
 
     @contextmanager
     def surroundings(self) -> Iterator[None]:
-        """Let the program find its own arguments, main module, modules and rclpy during a turn."""
+        """Return a context with the program's arguments, main module, modules and rclpy, for a turn of a thread."""
         argv, main_module, path = sys.argv, sys.modules["__main__"], list(sys.path)
         sys.argv, sys.modules["__main__"] = self._arguments, self._module
         sys.path[:0] = self._folders
@@ -103,7 +103,7 @@ class Program:
                 sys.path[:] = path
 
     def add(self, thread: LockstepThread) -> None:
-        """Add a thread that the program starts."""
+        """Register a thread that the program starts."""
         self._threads = [thread for thread in self._threads if not thread.ended.ended()]
         self._threads.append(thread)
         thread.ended.add_waiter(self._end_if_done)
@@ -121,7 +121,7 @@ class Program:
     # --- running -----------------------------------------------------------------------------------------------------
 
     def run_file(self, path: Path, source: bytes) -> None:
-        """Run a file as ``python FILE`` does. If it only defines ``main``, call that, as ``ros2 run`` does."""
+        """Run a file like ``python FILE``. If the file only defines ``main``, call it like ``ros2 run``."""
         self._module.__file__ = str(path)
         code = compile(source, str(path), "exec")
         exec(code, vars(self._module))  # noqa: S102  # the user's program
@@ -156,7 +156,7 @@ class Program:
                 self.error = error
 
     def _end_if_done(self) -> None:
-        """End what a process ends when its last thread that is not a daemon has ended."""
+        """End the daemon threads and the context when the last other thread has ended, as in a process."""
         if self.is_running:
             return
         with use_state(self._state):
@@ -178,7 +178,7 @@ def _is_path(main: Main) -> bool:
 
 
 def _module_folders(path: Path) -> list[str]:
-    """Return the folders in which a file finds modules: its own, and that of the Python package that it is in."""
+    """Return the folders of modules that a file can import: its own, and its Python package's parent."""
     folder = path.parent
     package_folder = folder
     while (package_folder / "__init__.py").is_file():

@@ -1,4 +1,4 @@
-"""The programs in a graph whose time passes in steps."""
+"""The programs that run in a stepped graph."""
 
 from __future__ import annotations
 
@@ -18,11 +18,11 @@ _ENDING_STEP_S = 0.1
 
 
 class Programs:
-    """The programs in a graph: it lets them run in its steps, and ends them.
+    """The programs in a stepped graph, which are run in its steps and ended with it.
 
     Args:
         graph: the graph.
-        clock: its clock.
+        clock: the clock of the graph.
         on_error: receives the exceptions that end programs.
     """
 
@@ -36,7 +36,7 @@ class Programs:
         clock.attach(self)
 
     def start(self, main: Main, arguments: Sequence[str], budget_s: float, seed: int) -> Program:
-        """Start a program, which runs in the next step. See ``SteppedGraph.start_program``."""
+        """Start a program, which first runs in the next step. See ``SteppedGraph.start_program``."""
         _offer_rclpy()
         if not self._programs:
             patches.install(self)
@@ -52,20 +52,20 @@ class Programs:
 
     @property
     def node_names(self) -> list[tuple[str, str]]:
-        """The name and the namespace of each node that the programs have now."""
+        """The name and the namespace of each current node of the programs."""
         return [names for program in self._programs for names in program.node_names]
 
     async def settle(self) -> None:
-        """Run the programs and the callbacks of the graph until all wait."""
+        """Run the programs and the callbacks of the graph until all of them wait."""
         self._turns.wake_pollers()
         while self._run_threads():
             await self._graph.settle()
 
     async def end(self, advance: Callable[[float], Awaitable[object]]) -> None:
-        """Interrupt the programs, let them end, and kill those that do not.
+        """Interrupt the programs, wait for their end, and kill programs that do not end.
 
         Args:
-            advance: advances the time of the graph, by a number of seconds.
+            advance: advances the time of the graph by a number of seconds.
         """
         if not self._programs:
             return

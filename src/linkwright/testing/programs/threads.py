@@ -1,8 +1,8 @@
-"""Threads of programs, of which only one runs at a time, and only while the graph waits for it.
+"""Lockstep threads of programs: only one runs at a time, and only while the graph waits for it.
 
-The graph gives a thread the turn. The thread runs until it waits: for a lock, an event, the end of a sleep. There it
-gives the turn back. A thread can run again after `LockstepThread.wake`, or at the deadline of its wait, which is a time
-of the graph's clock. So no two threads ever run at the same time, and the order of their turns is the same in each run.
+The graph gives the turn to a thread. The thread runs until it waits for a lock, an event or the end of a sleep, and
+then returns the turn. A thread can run again after `LockstepThread.wake`, or at the deadline of its wait, which is a
+time of the graph's clock. So two threads never run at the same time, and the order of their turns is reproducible.
 """
 
 from __future__ import annotations
@@ -39,31 +39,31 @@ _OWN_FOLDERS = (str(Path(__file__).parents[2]), str(Path(threading.__file__).par
 
 
 class BudgetExceededError(RuntimeError):
-    """A program computed for longer than its budget without waiting."""
+    """Raised when a program has computed for longer than its budget without waiting."""
 
 
 class EndedByTest(SystemExit):
-    """Ends a thread of a program at its next wait, because the test ends."""
+    """Raised in a thread of a program at its next wait, to end the thread with the test."""
 
 
 class Owner(Protocol):
-    """The part of a program that its threads need."""
+    """The interface of a program for its threads."""
 
     def surroundings(self) -> AbstractContextManager[object]:
         """Return a context that is entered for each turn of a thread."""
 
     def add(self, thread: LockstepThread) -> None:
-        """Add a thread that a thread of the program starts."""
+        """Register a thread that a thread of the program starts."""
 
     def set_signal_handler(self, number: int, handler: Any) -> Any:
         """Set the handler of a signal, and return the previous one."""
 
 
 class LockstepThread:
-    """A thread that runs in turns.
+    """A thread that runs in lockstep with the graph, in turns.
 
     Args:
-        turns: the turns in which it runs.
+        turns: the scheduler of the turns.
         owner: the program.
         is_daemon: whether the program may end while the thread runs.
     """
@@ -87,23 +87,23 @@ class LockstepThread:
         return self.turns.clock
 
     def time_after(self, seconds: float) -> int:
-        """Return the steady time of the graph after a number of seconds, rounded up so that time passes."""
+        """Return the steady time of the graph in ns after a number of seconds, rounded up so that time advances."""
         return self.clock.steady_ns() + math.ceil(seconds * NANOSECONDS_PER_SECOND)
 
     def begin(self) -> None:
-        """Make the calling thread this thread, and wait for the first turn."""
+        """Associate the calling thread with this object, and wait for the first turn."""
         self.ident = threading.get_ident()
         self._turn.acquire()
         _threads[self.ident] = self
 
     def end(self) -> None:
-        """Give the last turn back. The calling thread ends."""
+        """Return the last turn, because the calling thread ends."""
         _threads.pop(self.ident, None)
         self.ended.set_result(None)
         self.turns.take_back(self)
 
     def wait(self, deadline_ns: int | None = None) -> None:
-        """Give the turn back until `wake` is called, or until a steady time of the graph.
+        """Return the turn, and wait until `wake` is called or the graph's steady time reaches a deadline in ns.
 
         Raises:
             BaseException: what an interruption raises.
@@ -126,13 +126,13 @@ class LockstepThread:
             interruption()
 
     def wake(self) -> None:
-        """End the wait of the thread: it is the next thread's turn after those that are ready."""
+        """End the wait of the thread, and queue it behind the threads that are ready."""
         if self._is_waiting:
             self._is_waiting = False
             self.turns.ready(self)
 
     def count_poll(self) -> None:
-        """Let some time pass if the thread has asked for the time often without waiting.
+        """Wait briefly if the thread has read the time many times without waiting.
 
         Otherwise a loop until a point in time would never end, because time passes only while all threads wait.
         """
@@ -142,17 +142,17 @@ class LockstepThread:
             self.wait(self.clock.steady_ns() + _POLL_WAIT_NS)
 
     def interrupt(self, action: Callable[[], object]) -> None:
-        """End the wait of the thread, and call a function there, which may raise an exception."""
+        """End the wait of the thread, and call a function in it, which may raise an exception."""
         self._interruption = action
         self.wake()
 
     def kill(self) -> None:
-        """End the thread at this wait, and at each later one."""
+        """Raise `EndedByTest` in the current wait of the thread, and in all later waits."""
         self.is_killed = True
         self.wake()
 
     def give_turn(self) -> None:
-        """Let the thread run. `Turns` waits for it."""
+        """Let the thread run. `Turns` then waits until the turn is returned."""
         self._turn.release()
 
     def _raise_if_killed(self) -> None:
@@ -164,12 +164,12 @@ _threads: dict[int, LockstepThread] = {}
 
 
 def current_thread() -> LockstepThread | None:
-    """Return the calling thread, or None if it is not a thread of a program."""
+    """Return the `LockstepThread` of the calling thread, or None for any other thread."""
     return _threads.get(threading.get_ident())
 
 
 class Turns:
-    """The turns of the threads of programs in a graph.
+    """The scheduler of the threads of all programs in a graph, which gives them turns.
 
     Args:
         clock: the clock of the graph.
@@ -189,22 +189,22 @@ class Turns:
         self._ready.append(thread)
 
     def take_back(self, thread: LockstepThread) -> None:
-        """Take the turn back from the thread that has it."""
+        """Receive the turn back from the running thread."""
         if self._running is thread:
             self._running = None
             self._returned.release()
 
     def wake_pollers(self) -> None:
-        """Let the threads that wait for sockets or files look for them."""
+        """Wake the threads that wait for sockets or files, so that they check them again."""
         for thread in tuple(self.pollers):
             thread.wake()
 
     def run(self, budget_s: float) -> bool:
-        """Run the ready threads, and those that they make ready, until all threads wait.
+        """Run the ready threads, and the threads that they make ready, until all threads wait.
 
         Args:
-            budget_s: the longest time of a turn, in seconds, without the time in which this process waits for a
-                processor.
+            budget_s: the longest duration of a turn, in seconds, not counting the time in which this process waits for
+                a processor.
 
         Returns:
             Whether any thread has run.
@@ -232,7 +232,7 @@ class Turns:
                 )
 
     def _is_returned_within(self, budget_s: float) -> bool:
-        """Wait for the turn, and return whether it was given back before the budget was used up."""
+        """Wait until the turn is returned, and return whether that happened within the budget."""
         if self._returned.acquire(timeout=min(_PERIOD_S, budget_s)):
             return True
         clock = PatientClock()
@@ -242,7 +242,7 @@ class Turns:
         return False
 
     def _kill_running(self, thread: LockstepThread) -> None:
-        """End a thread that does not wait. A thread that cannot be ended no longer belongs to the turns."""
+        """End a thread that does not wait. A thread that cannot be ended is no longer scheduled."""
         thread.is_killed = True
         ctypes.pythonapi.PyThreadState_SetAsyncExc(ctypes.c_ulong(thread.ident), ctypes.py_object(EndedByTest))
         if not self._returned.acquire(timeout=_KILL_TIMEOUT_S):
@@ -253,7 +253,7 @@ class Turns:
 
 
 def _describe_place(thread_id: int) -> str:
-    """Return the file, line and function where a thread is, in the user's code if possible."""
+    """Return a text with the current file, line and function of a thread, in the user's code if possible."""
     frames = list(_frames(sys._current_frames().get(thread_id)))
     if not frames:
         return "at an unknown place"
