@@ -245,10 +245,7 @@ async def test_why_a_service_without_a_text_refuses_is_logged(tmp_path):
                 "/set_entity_state: 'ground_plane' is fixed to the world "
                 "(delete it, and spawn it again at the intended pose)"
             ),
-            (
-                "/set_entity_state: 'two' is connected with 'one' by a joint of the world "
-                "(move 'one', to which it is connected)"
-            ),
+            ("/set_entity_state: a joint of the world connects 'two' to 'one' (move 'one' instead)"),
             "/set_entity_state: there is no model or link 'three'",
             "/get_entity_state: there is no model or link 'on' (did you mean 'one'?)",
             "/clear_link_wrenches: there is no model or link 'wheel'",

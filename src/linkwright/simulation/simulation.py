@@ -465,8 +465,10 @@ class Simulation:
             hint = phrase("delete it, and spawn it again at the intended pose")
             if scene_model.attached_to:
                 other = min(scene_model.attached_to)
-                message = phrase("'{name}' is connected with '{other}' by a joint of the world", name=name, other=other)
-                hint = phrase("move '{other}', to which it is connected", other=other)
+                message = phrase(
+                    "a joint of the world connects '{name}' to '{other_model}'", name=name, other_model=other
+                )
+                hint = phrase("move '{other_model}' instead", other_model=other)
             raise LinkwrightError(Diagnostic("SIM103", message, hint=hint))
         root, offset = self._first_link(name)
         joint = self.data.joint(f"{root}#free")

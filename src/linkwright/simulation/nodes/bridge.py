@@ -284,7 +284,9 @@ def parse_bridge_argument(argument: str) -> BridgedTopic:
         raise LinkwrightError(
             Diagnostic(
                 "NODE820",
-                phrase("'{word}' does not describe a topic to bridge; it needs a name and two types", word=argument),
+                phrase(
+                    "'{argument}' does not describe a topic to bridge; it needs a name and two types", argument=argument
+                ),
                 hint=hint,
             )
         )

@@ -24,9 +24,9 @@ _GZ_VERBOSITY = ("-v", "--verbose")
 _ROS_ARGUMENTS = "--ros-args"
 
 
-def simulator_command(words: Sequence[str]) -> NodeCommand | None:
+def simulator_command(command: Sequence[str]) -> NodeCommand | None:
     """Parse the command line of one of Gazebo's programs, or return None for other programs."""
-    program, *arguments = words
+    program, *arguments = command
     name = PurePath(program).name
     if name in ("gazebo", "gzserver"):
         return classic_server(arguments, window=name == "gazebo")
@@ -37,9 +37,9 @@ def simulator_command(words: Sequence[str]) -> NodeCommand | None:
     return None
 
 
-def classic_server(words: Sequence[str], *, window: bool = False) -> NodeCommand:
+def classic_server(arguments: Sequence[str], *, window: bool = False) -> NodeCommand:
     """Parse the arguments of ``gzserver``, or of ``gazebo``, which also opens a window."""
-    gazebo_arguments, ros_arguments = _split_ros_arguments(words)
+    gazebo_arguments, ros_arguments = _split_ros_arguments(arguments)
     options, positional = _read(gazebo_arguments, _CLASSIC_VALUES.split())
     parameters = _seed_parameter(options) | ({"gui": True} if window else {})
     if positional and positional[0]:
@@ -49,12 +49,12 @@ def classic_server(words: Sequence[str], *, window: bool = False) -> NodeCommand
     return NodeCommand("gazebo_ros", "gzserver", parameters, ros_arguments)
 
 
-def gz_server(words: Sequence[str]) -> NodeCommand:
+def gz_server(arguments: Sequence[str]) -> NodeCommand:
     """Parse the arguments of ``gz sim``.
 
     Without ``-r``, the simulation starts paused.
     """
-    gazebo_arguments, ros_arguments = _split_ros_arguments(words)
+    gazebo_arguments, ros_arguments = _split_ros_arguments(arguments)
     options, positional = _read(gazebo_arguments, _GZ_VALUES.split())
     if "-g" in options:
         return NodeCommand("ros_gz_sim", "gzclient")
@@ -64,13 +64,13 @@ def gz_server(words: Sequence[str]) -> NodeCommand:
     return NodeCommand("ros_gz_sim", "gzserver", parameters, ros_arguments)
 
 
-def _split_ros_arguments(words: Sequence[str]) -> tuple[list[str], list[str]]:
+def _split_ros_arguments(arguments: Sequence[str]) -> tuple[list[str], list[str]]:
     """Split a command line into Gazebo's arguments and the ROS arguments."""
-    start = words.index(_ROS_ARGUMENTS) if _ROS_ARGUMENTS in words else len(words)
-    return list(words[:start]), list(words[start:])
+    start = arguments.index(_ROS_ARGUMENTS) if _ROS_ARGUMENTS in arguments else len(arguments)
+    return list(arguments[:start]), list(arguments[start:])
 
 
-def _read(words: list[str], value_options: Sequence[str]) -> tuple[dict[str, str], list[str]]:
+def _read(arguments: list[str], value_options: Sequence[str]) -> tuple[dict[str, str], list[str]]:
     """Split arguments into options with their values and positional arguments.
 
     A flag has an empty value. Arguments that consist only of spaces are dropped, but empty ones are kept: a launch file
@@ -78,13 +78,13 @@ def _read(words: list[str], value_options: Sequence[str]) -> tuple[dict[str, str
     arguments after it do not name a world.
     """
     options, positional = {}, []
-    remaining = [argument for argument in words if argument.strip() or not argument]
+    remaining = [argument for argument in arguments if argument.strip() or not argument]
     while remaining:
-        word = remaining.pop(0)
-        name, equals, value = word.partition("=")
-        if not word.startswith("-"):
-            positional.append(word)
-        elif word in _GZ_VERBOSITY and remaining and remaining[0].isdigit():
+        argument = remaining.pop(0)
+        name, equals, value = argument.partition("=")
+        if not argument.startswith("-"):
+            positional.append(argument)
+        elif argument in _GZ_VERBOSITY and remaining and remaining[0].isdigit():
             options[name] = remaining.pop(0)
         elif equals or name not in value_options or not remaining:
             options[name] = value

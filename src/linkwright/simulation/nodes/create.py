@@ -91,12 +91,12 @@ def _with_free_name(entity: Entity, names: Sequence[str]) -> Entity:
     return Entity(name, entity.xyz, entity.rpy, entity.namespace, entity.reference_frame)
 
 
-def _options(words: Sequence[str]) -> Iterator[tuple[str, str]]:
+def _options(arguments: Sequence[str]) -> Iterator[tuple[str, str]]:
     """Yield the names and values of options, in the syntax of gflags.
 
     A name follows one or two dashes. Its value follows ``=`` or is the next argument.
     """
-    remaining = list(words)
+    remaining = list(arguments)
     while remaining:
         argument = remaining.pop(0)
         option, equals, value = argument.partition("=")

@@ -119,13 +119,13 @@ def _create_parser(program: str) -> _Parser:
     return parser
 
 
-def _read(parser: _Parser, words: Sequence[str]) -> argparse.Namespace:
+def _read(parser: _Parser, command_line: Sequence[str]) -> argparse.Namespace:
     """Parse a command line that names an entity.
 
     Raises:
         LinkwrightError: NODE812, the command line is invalid.
     """
-    arguments = parser.parse_args(words)
+    arguments = parser.parse_args(command_line)
     if not arguments.name:
         message = phrase("the command line of {program} does not name a model", program=parser.prog)
         hint = phrase("pass its name with --name; Linkwright models have no numeric IDs")

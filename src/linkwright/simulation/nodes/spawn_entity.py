@@ -98,7 +98,7 @@ class SpawnEntity(EntitySpawner):
             self._finish(0)
 
 
-def parse_arguments(words: Sequence[str]) -> argparse.Namespace:
+def parse_arguments(arguments: Sequence[str]) -> argparse.Namespace:
     """Parse the command line, whose long options begin with a single dash.
 
     Raises:
@@ -124,7 +124,7 @@ def parse_arguments(words: Sequence[str]) -> argparse.Namespace:
     # argparse ends the program if a required option is missing, and up to Python 3.12 even with exit_on_error=False.
     parser.error = _refuse  # type: ignore[method-assign]  # on purpose, see above
     try:
-        return parser.parse_args(words)
+        return parser.parse_args(arguments)
     except argparse.ArgumentError as error:
         _refuse(str(error))
 

@@ -120,10 +120,11 @@ class _DiffDrive(SimulatedPlugin[P], Generic[P]):
         """
         if len(left) != len(right):
             message = phrase(
-                "plugin '{plugin}' has {left} left wheels, but {right} right wheels; the numbers must be equal",
+                "plugin '{plugin}' has {left_count} left wheels, but {right_count} right wheels; the numbers must "
+                "be equal",
                 plugin=self.context.name,
-                left=len(left),
-                right=len(right),
+                left_count=len(left),
+                right_count=len(right),
             )
             raise self.parameter_error(message)
         if any(not (separation > 0.0 and radius > 0.0) for separation, radius in sizes):

@@ -25,6 +25,6 @@ def error_findings(error: Exception, name: str, element: Element | None) -> list
     hint = phrase("the simulation continues without it")
     if frames := extract_tb(error.__traceback__):
         location = f"{Path(frames[-1].filename).name}:{frames[-1].lineno}"
-        hint = phrase("the code failed in {place}; the simulation continues without it", place=location)
+        hint = phrase("the code failed in {location}; the simulation continues without it", location=location)
     span, source = (None, None) if element is None else (element.span(), element.source)
     return [Diagnostic("SIM138", message, span, hint=hint, source=source)]

@@ -98,8 +98,8 @@ def _load(entry: EntryPoint) -> PluginClass:
     except Exception as error:
         message = phrase("the plugin '{name}' cannot be imported", name=entry.name)
         hint = phrase(
-            "fix the Python package '{place}', whose import fails: {problem}",
-            place=entry.distribution,
+            "fix the Python package '{package}', whose import fails: {problem}",
+            package=entry.distribution,
             problem=foreign(error),
         )
         raise LinkwrightError(Diagnostic("SIM136", message, hint=hint)) from error

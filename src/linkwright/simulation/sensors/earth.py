@@ -117,7 +117,7 @@ class NavsatSensor:
     Args:
         mount: the mount of the sensor.
         navsat: the parsed sensor; None for no noise.
-        place: the position of the world on earth.
+        coordinates: the coordinates of the world; None for a world without them.
         generator: the source of the noise.
     """
 

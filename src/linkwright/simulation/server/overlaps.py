@@ -59,7 +59,7 @@ def _moving_first(simulation: Simulation, links: Iterable[str]) -> list[str]:
 def _finding(simulation: Simulation, first: str, second: str, depth: float) -> Diagnostic:
     values = {"first": first, "second": second, "depth": f"{depth:.2f}"}
     is_same_model = model_of(first) == model_of(second)
-    message: Phrase = phrase("'{first}' starts {depth} m inside '{second}'", **values)
+    message: Phrase = phrase("'{link}' starts {depth} m inside '{other_link}'", **values)
     hint = phrase("they are pushed apart slowly; move one of them if this is not intended")
     if is_same_model:
         hint = phrase("they are pushed apart slowly; to ignore contacts within the model, remove <self_collide>")

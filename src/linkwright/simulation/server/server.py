@@ -367,7 +367,9 @@ class SimulationServer:
             self.node.get_logger().info(phrase("plugins and sensors that are not simulated: {names}", names=names))
         for name in new_names:
             if (alternative := alternative_to(name)) is not None:
-                self.node.get_logger().info(phrase("instead of {name}, use {other}", name=name, other=alternative))
+                self.node.get_logger().info(
+                    phrase("instead of {name}, use {alternative}", name=name, alternative=alternative)
+                )
 
     def _find_plugin_class(self, context: PluginContext) -> PluginClass | None:
         if context.plugin is None:
