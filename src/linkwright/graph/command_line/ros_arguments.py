@@ -156,7 +156,7 @@ def _read_log_level(ros: RosArguments, rule: str) -> None:
     if level is None or (separator and not name):
         levels = [log_level.name.lower() for log_level in LogLevel]
         raise _error(
-            phrase("unknown log level '{word}'", word=level_name),
+            phrase("unknown log level '{level}'", level=level_name),
             did_you_mean(level_name.lower(), levels) or phrase("the levels are {levels}", levels=joined(levels)),
         )
     if separator:
@@ -212,7 +212,9 @@ _FLAGS = {
 def _split_assignment(rule: str, description: Phrase, form: Phrase) -> tuple[str, str]:
     name, separator, value = rule.partition(":=")
     if not separator or not name:
-        raise _error(phrase("'{rule}' is not {what}", rule=rule, what=description), phrase("write {text}", text=form))
+        raise _error(
+            phrase("'{rule}' is not {expected}", rule=rule, expected=description), phrase("write {form}", form=form)
+        )
     return name, value
 
 

@@ -31,16 +31,16 @@ class Dispute:
     server has begun to drive.
 
     Args:
-        lasting_s: how long the parties must contradict each other, in seconds.
-        times: how often each party must take over. The party that commands at the start already has one takeover.
+        min_duration_s: how long the parties must contradict each other, in seconds.
+        min_takeovers: how often each party must take over. The party that commands at the start has one already.
 
     Attributes:
         parties: the parties of the current or last dispute.
     """
 
-    def __init__(self, lasting_s: float = 3.0, times: int = 3) -> None:
-        self._lasting_s = lasting_s
-        self._times = times
+    def __init__(self, min_duration_s: float = 3.0, min_takeovers: int = 3) -> None:
+        self._min_duration_s = min_duration_s
+        self._min_takeovers = min_takeovers
         self._last_command: tuple[Hashable, object, float] | None = None
         self._start_s = self._last_takeover_s = float("-inf")
         self._takeovers: Counter[Hashable] = Counter()
@@ -68,9 +68,9 @@ class Dispute:
                 self.parties = frozenset()
         self._last_takeover_s = now_s
         self._takeovers[publisher] += 1
-        if now_s - self._start_s < self._lasting_s:
+        if now_s - self._start_s < self._min_duration_s:
             return False
-        parties = frozenset(party for party, count in self._takeovers.items() if count >= self._times)
+        parties = frozenset(party for party, count in self._takeovers.items() if count >= self._min_takeovers)
         if len(parties) < 2 or parties <= self.parties:
             return False
         self.parties = parties

@@ -49,8 +49,8 @@ class LifecycleTransitionError(LinkwrightError, RclError):
             phrase("the transitions from this state are {names}", names=joined(names)) if names else None
         )
         text = phrase(
-            "Transition is not registered: No transition matching {asked} found for current state {label}",
-            asked=requested,
+            "Transition is not registered: No transition matching {transition} found for current state {label}",
+            transition=requested,
             label=state.label,
         )
         super().__init__(Diagnostic("GRAPH231", text, hint=hint))

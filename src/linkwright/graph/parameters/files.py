@@ -269,11 +269,11 @@ class _Reader:
                 first_type, other_type = _TYPE_NAMES[type(values[0])], _TYPE_NAMES[type(value)]
                 raise self._error(
                     phrase(
-                        "the list of parameter '{name}' begins with a value of type {first} but contains one of type "
-                        "{other}",
+                        "the list of parameter '{name}' begins with a value of type {first_type} but contains one "
+                        "of type {other_type}",
                         name=name,
-                        first=first_type,
-                        other=other_type,
+                        first_type=first_type,
+                        other_type=other_type,
                     ),
                     _type_hint(values[0], value, self._event.value),
                 )
@@ -326,7 +326,7 @@ def _type_hint(first: Any, value: Any, text: str) -> Phrase:
     if type(first) is float and type(value) is int:
         return phrase("write {text}.0", text=text)
     if type(first) is int and type(value) is float:
-        return phrase("write {first}.0 as the first value, or integers only", first=first)
+        return phrase("write {value}.0 as the first value, or integers only", value=first)
     if type(first) is str:
         return phrase('write "{text}"', text=text)
     return phrase("all values of a list must be of one type")

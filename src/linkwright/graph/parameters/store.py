@@ -53,9 +53,9 @@ def refusal_reason(parameter: Parameter, descriptor: Any, *, declared: bool, che
         return phrase("Static parameter cannot be undeclared")
     elif is_set and parameter.type_.value != descriptor.type:
         return phrase(
-            "Wrong parameter type, expected '{expected}' got '{given}'",
+            "Wrong parameter type, expected '{expected}' got '{actual}'",
             expected=str(ParameterType(descriptor.type)),
-            given=str(parameter.type_),
+            actual=str(parameter.type_),
         )
     if parameter.type_ is ParameterType.INTEGER and descriptor.integer_range:
         return _integer_range_problem(parameter, descriptor.integer_range[0])

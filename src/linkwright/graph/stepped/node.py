@@ -316,7 +316,7 @@ class SteppedNode:
 
     def _stop_motion(self, rest: Callable[[], bool], publisher: EndpointInfo) -> None:
         if rest():
-            self.logger.warning(phrase("{who}: the motion stops", who=describe_lost_publisher(publisher)))
+            self.logger.warning(phrase("{problem}: the motion stops", problem=describe_lost_publisher(publisher)))
 
     def _pass_if_finite(
         self, callback: Callable[[Any], object], stop_motion: Callable[[], object], topic: str, message: Any

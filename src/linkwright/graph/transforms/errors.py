@@ -58,7 +58,7 @@ class TimeoutException(TransformException):
 def loop(detail: str) -> LookupException:
     """Return the error for parents that form a loop, with `detail` appended to the message."""
     return LookupException(
-        phrase("The tf tree is invalid because it contains a loop.{which}", which=detail), code="GRAPH303"
+        phrase("The tf tree is invalid because it contains a loop.{detail}", detail=detail), code="GRAPH303"
     )
 
 

@@ -189,10 +189,10 @@ class Walker:
     def _extrapolation_error(self, reason: str, source: int, target: int) -> ExtrapolationException:
         return ExtrapolationException(
             phrase(
-                "{trouble}, when looking up transform from frame [{names}] to frame [{other_names}]",
-                trouble=reason,
-                names=self._names[source],
-                other_names=self._names[target],
+                "{problem}, when looking up transform from frame [{source_frame}] to frame [{target_frame}]",
+                problem=reason,
+                source_frame=self._names[source],
+                target_frame=self._names[target],
             )
         )
 
