@@ -125,7 +125,7 @@ def _read_with_pillow(path: Path, data: bytes) -> MapImage:
     try:
         with pillow.open(BytesIO(data)) as file:
             if file.width * file.height > MAX_PIXELS:
-                raise _unreadable_error(path, phrase("it has more than {most} pixels", most=MAX_PIXELS))
+                raise _unreadable_error(path, phrase("it has more than {maximum} pixels", maximum=MAX_PIXELS))
             has_16_bits = file.mode.startswith("I")
             has_opacity = file.mode in ("LA", "PA", "RGBA", "La", "RGBa") or "transparency" in file.info
             values = np.asarray(file if has_16_bits else file.convert("RGBA" if has_opacity else "RGB"), np.float64)

@@ -168,7 +168,7 @@ class MonitorNode(ManagedNode):
     def _on_publisher_lost(self, publisher: EndpointInfo) -> None:
         if self._output is not None and self._last_verdict.velocity != ZERO_VELOCITY:
             self.get_logger().warning(
-                str(phrase("{who}; the robot is stopped", who=describe_lost_publisher(publisher)))
+                str(phrase("{problem}; the robot is stopped", problem=describe_lost_publisher(publisher)))
             )
             self._output.stop()
             self._last_verdict = Verdict(ZERO_VELOCITY)

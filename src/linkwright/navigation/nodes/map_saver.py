@@ -185,14 +185,14 @@ class MapSaver(SingleNode):
             self.finished.set_result(0 if is_saved else 1)
 
 
-def _parse_options(words: list[str]) -> dict[str, str]:
+def _parse_options(arguments: list[str]) -> dict[str, str]:
     """Parse the command-line options, and return their values by option.
 
     Raises:
         ValueError: an option does not exist, has no value, or needs a number and has another value.
     """
     option_values = {}
-    remaining = iter(words)
+    remaining = iter(arguments)
     for argument in remaining:
         if argument not in _OPTIONS:
             raise ValueError(f"Wrong argument: {argument}")

@@ -190,7 +190,9 @@ class _ManagedSmoother(ManagedNode):
         """Start to decelerate to zero because the publisher of commands disappeared."""
         if self._command is not None and any(self._command):
             self._command = [0.0] * len(_AXES)
-            self.get_logger().warning(phrase("{who}; the robot is stopped", who=describe_lost_publisher(publisher)))
+            self.get_logger().warning(
+                phrase("{problem}; the robot is stopped", problem=describe_lost_publisher(publisher))
+            )
 
     def _on_odometry(self, message: Any) -> None:
         now_ns = self.get_clock().now().nanoseconds
