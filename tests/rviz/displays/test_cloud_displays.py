@@ -213,7 +213,7 @@ async def test_a_scan_is_shown():
         ([math.nan, math.nan], "All 2 ranges are NaN: the sensor measured nothing"),
         (
             [0.05, 12.5],
-            "All ranges, from 0.05 to 12.50 m, are outside the limits of the message, which are 0.10 and 10.00 m",
+            "All ranges, 0.05 to 12.50 m, are outside the range limits of the message, 0.10 to 10.00 m",
         ),
         ([math.inf, math.inf], None),
         ([math.nan, math.inf], None),

@@ -49,9 +49,9 @@ def read(path: Path) -> tuple[str, FileForm]:
     except OSError as error:
         hint = phrase("give the path of a .rviz file after '-d'") if isinstance(error, FileNotFoundError) else None
         message = phrase(
-            "cannot read the RViz configuration '{path}': {strerror}",
+            "cannot read the RViz configuration '{path}': {reason}",
             path=path,
-            strerror=foreign(error.strerror or error),
+            reason=foreign(error.strerror or error),
         )
         raise LinkwrightError(Diagnostic("RVIZ101", message, hint=hint)) from None
     if len(content) > MAX_SIZE:
@@ -81,9 +81,9 @@ def write(path: Path, text: str, form: FileForm) -> None:
         write_whole_file(path, content)
     except OSError as error:
         message = phrase(
-            "cannot write the RViz configuration '{path}': {strerror}",
+            "cannot write the RViz configuration '{path}': {reason}",
             path=path,
-            strerror=foreign(error.strerror or error),
+            reason=foreign(error.strerror or error),
         )
         raise LinkwrightError(Diagnostic("RVIZ104", message)) from None
 

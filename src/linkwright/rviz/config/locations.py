@@ -48,7 +48,7 @@ def configuration_path(text: str, folder: Path) -> Path:
     except (ValueError, RuntimeError, OSError):
         suffixes, path = ("", ""), Path(text)
     if "\0" in text or any(suffix != EXTENSION for suffix in suffixes):
-        hint = phrase("choose a name that ends in '{ending}'", ending=EXTENSION)
+        hint = phrase("choose a name that ends in '{extension}'", extension=EXTENSION)
         raise LinkwrightError(
             Diagnostic(
                 "RVIZ105", phrase("'{text}' is not a valid file name for an RViz configuration", text=text), hint=hint
@@ -199,10 +199,10 @@ def find_unsaved(config: RvizConfig) -> list[Diagnostic]:
     if config.path is None or _real_path(config.path) == _real_path(path) or not path.is_file():
         return []
     message = phrase(
-        "earlier unsaved changes to '{path}' are in '{kept}': {how}",
+        "earlier unsaved changes to '{path}' are stored in '{recovery_file}': {hint}",
         path=config.path,
-        kept=path,
-        how=_RECOVERY_HINT,
+        recovery_file=path,
+        hint=_RECOVERY_HINT,
     )
     return [Diagnostic("RVIZ302", message, severity=Severity.INFO)]
 
@@ -229,13 +229,13 @@ def remove_recovery_files(previous_path: Path | None, config: RvizConfig, recent
 
 def _stored_finding(config: RvizConfig, path: Path) -> Diagnostic:
     if config.path is None or _real_path(config.path) == _real_path(path):
-        message = phrase("unsaved displays are stored in '{path}': {how}", path=path, how=_RECOVERY_HINT)
+        message = phrase("unsaved displays are stored in '{path}': {hint}", path=path, hint=_RECOVERY_HINT)
     else:
         message = phrase(
-            "unsaved changes to '{path}' are stored in '{kept}': {how}",
+            "unsaved changes to '{path}' are stored in '{recovery_file}': {hint}",
             path=config.path,
-            kept=path,
-            how=_RECOVERY_HINT,
+            recovery_file=path,
+            hint=_RECOVERY_HINT,
         )
     return Diagnostic("RVIZ301", message, severity=Severity.WARNING)
 

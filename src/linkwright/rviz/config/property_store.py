@@ -197,7 +197,7 @@ class PropertyStore:
             expanded=spec.expanded,
             children=[self._row(child, path) for child in spec.children if self._is_shown(child)],
             details=spec.details,
-            topics=TopicOffer(list(spec.messages), list(spec.words)) if spec.messages else None,
+            topics=TopicOffer(list(spec.messages), list(spec.name_words)) if spec.messages else None,
         )
 
     def _is_shown(self, spec: PropertySpec) -> bool:

@@ -45,8 +45,8 @@ class PropertySpec:
         maximum: the upper bound of an ``int`` or ``float``, inclusive.
         messages: for a ``topic``, the message types of the topics that the page offers; by default the display's
             types.
-        words: for a ``topic``, lower-case words; the page offers only topics with a name that contains at least one of
-            them; by default it offers all.
+        name_words: for a ``topic``, lower-case words; the page offers only topics with a name that contains at least
+            one of them; by default it offers all.
         children: the rows below the property's row.
         when: the condition for this row to be shown: the path of another property of the display, and the value that it
             must have. The condition of that property must also hold.
@@ -65,7 +65,7 @@ class PropertySpec:
     minimum: float | None = None
     maximum: float | None = None
     messages: tuple[str, ...] = ()
-    words: tuple[str, ...] = ()
+    name_words: tuple[str, ...] = ()
     children: tuple[PropertySpec, ...] = ()
     when: tuple[tuple[str, ...], PropertyValue] | None = None
     expanded: bool = False

@@ -309,9 +309,9 @@ class ViewEntry:
             return cls
         shown_class = SIMILAR_CLASSES.get(cls, ORBIT)
         message = phrase(
-            "the view '{text}' is shown as an {rpartition} view",
-            text=scalar.text,
-            rpartition=shown_class.rpartition("/")[2],
+            "the view class '{class_name}' is not supported; it is shown as {shown_class}",
+            class_name=scalar.text,
+            shown_class=shown_class.rpartition("/")[2],
         )
         self._report(Diagnostic("RVIZ203", message, scalar.span, Severity.WARNING, source=self._section.source))
         return shown_class

@@ -48,7 +48,7 @@ DEPTH_SCHEMA: Schema = (
         "",
         "sensor_msgs/msg/Image with depths: 16UC1 in millimetres or 32FC1 in metres.",
         messages=(_IMAGE,),
-        words=("depth",),
+        name_words=("depth",),
     ),
     PropertySpec(
         DEPTH_TRANSPORT, "enum", RAW, "The image transport of the depths: raw, or compressedDepth.", options=TRANSPORTS
@@ -66,7 +66,7 @@ DEPTH_SCHEMA: Schema = (
         "",
         "sensor_msgs/msg/Image with the colours of the points.",
         messages=(_IMAGE,),
-        words=("color", "rgb", "bgr", "gray", "mono"),
+        name_words=("color", "rgb", "bgr", "gray", "mono"),
     ),
     PropertySpec(
         COLOUR_TRANSPORT, "enum", RAW, "The image transport of the colours: raw, or compressed.", options=TRANSPORTS
@@ -109,7 +109,7 @@ DEPTH_SCHEMA: Schema = (
     *(replace(spec, hidden=True) if spec.name == POSITION_TRANSFORMER else spec for spec in TRANSFORMER_SPECS),
 )
 
-DEPTH_SCHEMA_UNFILTERED: Schema = tuple(replace(spec, words=()) for spec in DEPTH_SCHEMA)
+DEPTH_SCHEMA_UNFILTERED: Schema = tuple(replace(spec, name_words=()) for spec in DEPTH_SCHEMA)
 """The schema if ``Topic Filter`` is off: topics with any name are offered."""
 
 _MAX_TIME_DIFFERENCE_NS = 500_000_000

@@ -127,10 +127,10 @@ class InteractiveMarkersDisplay(DataDisplay):
             return
         self._release = self.context.transforms.use(self._on_transforms)
         events = ClientEvents(
-            lambda markers: self._apply_or_queue(partial(self._apply_all, markers)),
-            lambda update: self._apply_or_queue(partial(self._apply_update, update)),
-            self._clear,
-            self._client_status,
+            on_all_markers=lambda markers: self._apply_or_queue(partial(self._apply_all, markers)),
+            on_update=lambda update: self._apply_or_queue(partial(self._apply_update, update)),
+            on_all_removed=self._clear,
+            on_status=self._client_status,
         )
         try:
             self._client = InteractiveMarkerClient(self.context.node, namespace, events)

@@ -256,7 +256,9 @@ class CloudDisplay(TopicDisplay):
         self.set_status_row(
             "Points",
             "ok",
-            phrase("Showing [{points}] points from [{shown}] messages", points=points, shown=len(self._shown_clouds)),
+            phrase(
+                "Showing [{points}] points from [{messages}] messages", points=points, messages=len(self._shown_clouds)
+            ),
         )
 
 
@@ -332,12 +334,12 @@ class LaserScanDisplay(PointsDisplay):
         finite = ranges[np.isfinite(ranges)]
         if len(finite):
             return phrase(
-                "All ranges, from {low:.2f} to {high:.2f} m, are outside the limits of the message, which are "
-                "{least:.2f} and {most:.2f} m",
-                low=float(finite.min()),
-                high=float(finite.max()),
-                least=message.range_min,
-                most=message.range_max,
+                "All ranges, {shortest:.2f} to {longest:.2f} m, are outside the range limits of the message, "
+                "{minimum:.2f} to {maximum:.2f} m",
+                shortest=float(finite.min()),
+                longest=float(finite.max()),
+                minimum=message.range_min,
+                maximum=message.range_max,
             )
         if len(ranges) and np.isnan(ranges).all():
             return phrase("All {count} ranges are NaN: the sensor measured nothing", count=len(ranges))

@@ -300,7 +300,7 @@ class WorldDisplay(TopicDisplay):
             self.set_status_row(
                 name,
                 level,
-                phrase("{texts}; and {more} more", texts=text, more=extra_count) if extra_count > 0 else text,
+                phrase("{texts}; and {count} more", texts=text, count=extra_count) if extra_count > 0 else text,
             )
         else:
             self.delete_status_row(name)

@@ -47,16 +47,16 @@ class ClientEvents:
     """Callbacks for the events of a connection to a server.
 
     Attributes:
-        everything: called with all markers of the server, at the beginning and after a lost update.
-        update: called with a visualization_msgs/msg/InteractiveMarkerUpdate.
+        on_all_markers: called with all markers of the server, at the beginning and after a lost update.
+        on_update: called with a visualization_msgs/msg/InteractiveMarkerUpdate.
         on_all_removed: called when all markers must be removed, for example because the server has disappeared.
-        status: called with the state of the connection, for the display's status.
+        on_status: called with the state of the connection, for the display's status.
     """
 
-    everything: Callable[[list[Any]], None]
-    update: Callable[[Any], None]
+    on_all_markers: Callable[[list[Any]], None]
+    on_update: Callable[[Any], None]
     on_all_removed: Callable[[], None]
-    status: Callable[[StatusLevel, Phrase], None]
+    on_status: Callable[[StatusLevel, Phrase], None]
 
 
 class InteractiveMarkerClient:
@@ -118,14 +118,14 @@ class InteractiveMarkerClient:
         if not is_ready and (self._sequence is not None or self._request is not None):
             self._reset()
         if not is_ready:
-            self._events.status(
+            self._events.on_status(
                 "warn", phrase("Service is not available: {name}", name=f"{self._namespace}/get_interactive_markers")
             )
         elif self._sequence is None and self._request is None:
             self._request_markers()
 
     def _request_markers(self) -> None:
-        self._events.status("ok", phrase("Sending request for interactive markers"))
+        self._events.on_status("ok", phrase("Sending request for interactive markers"))
         request = self._request = self._client.call_async(self._client.srv_type.Request())
         request.add_done_callback(lambda future: self._on_response(request, future.result()))
 
@@ -134,8 +134,8 @@ class InteractiveMarkerClient:
             return  # the client was reset since the request, because the server disappeared
         self._request = None
         self._sequence = response.sequence_number
-        self._events.everything(list(response.markers))
-        self._events.status("ok", phrase("Initialized interactive marker client"))
+        self._events.on_all_markers(list(response.markers))
+        self._events.on_status("ok", phrase("Initialized interactive marker client"))
         early_updates, self._early_updates = self._early_updates, []
         for update in early_updates:
             self._received(update)
@@ -149,7 +149,7 @@ class InteractiveMarkerClient:
         expected = self._sequence + (1 if update.type == _UPDATE else 0)
         if update.seq_num != expected:
             self._reset()
-            self._events.status(
+            self._events.on_status(
                 "warn",
                 phrase(
                     "Detected lost update or server restart. Resetting. Sequence {expected} expected", expected=expected
@@ -158,7 +158,7 @@ class InteractiveMarkerClient:
             return
         if update.type == _UPDATE:
             self._sequence = update.seq_num
-            self._events.update(update)
+            self._events.on_update(update)
 
     def _reset(self) -> None:
         self._sequence = self._request = None

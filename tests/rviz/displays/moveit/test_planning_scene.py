@@ -286,7 +286,7 @@ async def test_bad_scenes_are_said_and_the_next_good_one_is_drawn():
         assert status["kind"] == ("error", "Primitives of type 9 are not supported")
         assert status["poses"] == (
             "error",
-            "The numbers of shapes and poses of kind primitive differ: 1 shapes, but 2 poses",
+            "The object has 1 shapes of kind primitive, but 2 poses",
         )
         assert status["mesh"] == ("error", "A triangle of a mesh refers to vertex 7, but the mesh has only 0 vertices")
         assert status["plane"] == ("error", "The normal of a plane is zero or not finite")

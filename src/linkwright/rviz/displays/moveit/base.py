@@ -77,7 +77,9 @@ class MoveItDisplay(StoredMarkersDisplay):
             names, extra_count = quoted_names(joints[:5]), len(joints) - 5
             text = phrase("The robot has no joint {names}", names=names)
             if extra_count > 0:
-                text = phrase("The robot has no joint {names} and {more} more", names=names, more=extra_count)
+                text = phrase(
+                    "The robot has no joint {names}, and lacks {count} further joints", names=names, count=extra_count
+                )
             self.set_status_row(_JOINTS_ROW, "warn", text)
         else:
             self.delete_status_row(_JOINTS_ROW)

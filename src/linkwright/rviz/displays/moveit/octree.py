@@ -98,7 +98,7 @@ def _read_binary(data: bytes, resolution: float) -> Cells:
             pending += [_child(node, child) for child in reversed(range(8)) if inner_children >> 2 * child & 1]
         if len(inner_nodes) > MAX_CELLS:
             raise BadOctreeError(
-                phrase("The octomap has more than {most} cells, which are too many to draw", most=MAX_CELLS)
+                phrase("The octomap has more than {maximum} cells, which are too many to draw", maximum=MAX_CELLS)
             )
     _check_is_at_end(offset, data)
     return _leaf_cells(np.array(inner_nodes, dtype=np.int64), np.array(states, dtype=np.int64), resolution)
@@ -116,7 +116,7 @@ def _leaf_cells(inner_nodes: NDArray[np.int64], bits: NDArray[np.int64], resolut
     parents, children = np.nonzero((states == _FREE) | (states == _OCCUPIED))
     if len(parents) > MAX_CELLS:
         raise BadOctreeError(
-            phrase("The octomap has more than {most} cells, which are too many to draw", most=MAX_CELLS)
+            phrase("The octomap has more than {maximum} cells, which are too many to draw", maximum=MAX_CELLS)
         )
     edges = inner_nodes[parents, 3]
     if (edges <= 2).any():
@@ -183,7 +183,7 @@ class _Leaves:
     def add(self, node: _Node, probability: float) -> None:
         if len(self._nodes) == MAX_CELLS:
             raise BadOctreeError(
-                phrase("The octomap has more than {most} cells, which are too many to draw", most=MAX_CELLS)
+                phrase("The octomap has more than {maximum} cells, which are too many to draw", maximum=MAX_CELLS)
             )
         self._nodes.append(node)
         self._probabilities.append(probability)
@@ -196,4 +196,6 @@ class _Leaves:
 
 def _check_is_at_end(offset: int, data: bytes) -> None:
     if offset != len(data):
-        raise BadOctreeError(phrase("The octree ends after {at} of {data} bytes of data", at=offset, data=len(data)))
+        raise BadOctreeError(
+            phrase("The octree ends after {count} of {total} bytes of data", count=offset, total=len(data))
+        )

@@ -136,8 +136,8 @@ class PosableRobot:
         if len(multi_dof.joint_names) != len(multi_dof.transforms):
             raise UnusableStateError(
                 phrase(
-                    "The state has {joint_names} multi-DOF joints, but {transforms} transforms",
-                    joint_names=len(multi_dof.joint_names),
+                    "The state has {joints} multi-DOF joints, but {transforms} transforms",
+                    joints=len(multi_dof.joint_names),
                     transforms=len(multi_dof.transforms),
                 )
             )

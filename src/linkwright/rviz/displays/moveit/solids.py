@@ -61,9 +61,9 @@ def object_markers(message: Any, namespace: str, color: Color, *, frame: str, ba
         if len(poses) not in (0, len(shapes)):
             raise BadObjectError(
                 phrase(
-                    "The numbers of shapes and poses of kind {what} differ: {shapes} shapes, but {poses} poses",
+                    "The object has {shapes} shapes of kind {kind}, but {poses} poses",
                     shapes=len(shapes),
-                    what=kind_name,
+                    kind=kind_name,
                     poses=len(poses),
                 )
             )

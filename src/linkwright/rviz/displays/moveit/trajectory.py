@@ -62,7 +62,7 @@ def read_motion(robot: PosableRobot, message: Any) -> Motion:
             partial_trajectory.multi_dof_joint_trajectory,
         )
         if len(states) + max(len(joint_trajectory.points), len(root_trajectory.points)) > _MAX_STATES:
-            raise UnusableStateError(phrase("The motion has more than {most} states", most=_MAX_STATES))
+            raise UnusableStateError(phrase("The motion has more than {maximum} states", maximum=_MAX_STATES))
         joints.update(joint_trajectory.joint_names)
         times = [0.0]
         for point, root_point in zip_longest(joint_trajectory.points, root_trajectory.points):
