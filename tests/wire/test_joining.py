@@ -72,7 +72,7 @@ def test_a_domain_that_is_none_is_told(graph, log, monkeypatch, number):
     monkeypatch.setenv("ROS_DOMAIN_ID", number)
     assert join(graph) is None
     (text,) = texts(log)
-    assert f"error[DDS101]: '{number}' is not a DDS domain" in text
+    assert f"error[DDS101]: '{number}' is not a DDS domain ID" in text
     assert "This process continues without the network" in text
     assert goes_on(graph)
 

@@ -28,10 +28,10 @@ def read_domain_id(variables: Mapping[str, str], domain_id: int | None = None) -
     raise LinkwrightError(
         Diagnostic(
             code="DDS101",
-            message=phrase("'{text}' is not a DDS domain", text=text),
+            message=phrase("'{value}' is not a DDS domain ID", value=text),
             hint=phrase(
-                "set ROS_DOMAIN_ID to a number from 0 to {highest}; up to 101 is safe on every system",
-                highest=MAX_DOMAIN_ID,
+                "set ROS_DOMAIN_ID to a number from 0 to {maximum}; up to 101 is safe on every system",
+                maximum=MAX_DOMAIN_ID,
             ),
         )
     )

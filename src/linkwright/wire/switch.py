@@ -38,4 +38,4 @@ def switched_off() -> Iterator[None]:
 
 def switched_off_reason() -> Phrase:
     """Return the reason why communication is switched off."""
-    return phrase("the environment variable {switch} is 0", switch=SWITCH)
+    return phrase("the environment variable {variable} is 0", variable=SWITCH)

@@ -119,10 +119,10 @@ def _create_domain(settings: Settings) -> OpenDomain:
                 domain_id=settings.domain_id,
             ),
             hint=phrase(
-                "check that at most {most} processes are in the domain, that its ports (from 7400, 250 per "
-                "domain) are free, and that a network interface is up; otherwise use another ROS_DOMAIN_ID, "
-                "or name an interface in CYCLONEDDS_URI",
-                most=max_participants(settings.domain_id),
+                "check that at most {maximum} processes are in the domain, that its ports (from 7400, 250 per "
+                "domain) are free, and that a network interface is up; otherwise use another ROS_DOMAIN_ID, or "
+                "name an interface in CYCLONEDDS_URI",
+                maximum=max_participants(settings.domain_id),
             ),
         )
     )

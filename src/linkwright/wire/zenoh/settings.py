@@ -171,7 +171,7 @@ def _attempts(variables: Mapping[str, str]) -> int | None:
         raise LinkwrightError(
             Diagnostic(
                 "DDS111",
-                phrase("'{text}' in {variable} is not a number", text=text, variable=ATTEMPTS),
+                phrase("'{value}' in {variable} is not a number", value=text, variable=ATTEMPTS),
                 hint=phrase("write the number of attempts to find a router; 0 for no limit, -1 for no attempt"),
             )
         ) from None
