@@ -93,9 +93,10 @@ class DiffDriveController(LimitedDrive[Parameters]):
         if left_count != right_count:
             raise ControllerError(
                 phrase(
-                    "The number of left wheels [{left}] and the number of right wheels [{right}] are different",
-                    left=left_count,
-                    right=right_count,
+                    "The number of left wheels [{left_count}] and the number of right wheels [{right_count}] are "
+                    "different",
+                    left_count=left_count,
+                    right_count=right_count,
                 )
             )
         if not left_count:

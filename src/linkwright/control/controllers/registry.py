@@ -48,8 +48,8 @@ def controller_class(type_name: str) -> type[Controller[Any]]:
     except Exception as error:
         message = phrase("the controller '{name}' cannot be imported", name=type_name)
         hint = phrase(
-            "fix the Python package '{place}', whose import fails: {problem}",
-            place=entry.distribution,
+            "fix the Python package '{package}', whose import fails: {problem}",
+            package=entry.distribution,
             problem=foreign(error),
         )
         raise LinkwrightError(Diagnostic("CTL104", message, hint=hint)) from error

@@ -133,8 +133,8 @@ def hardware_class(plugin: str) -> type[Hardware] | None:
     except Exception as error:
         message = phrase("the hardware '{name}' cannot be imported", name=plugin)
         hint = phrase(
-            "fix the Python package '{place}', whose import fails: {problem}",
-            place=entry.distribution,
+            "fix the Python package '{package}', whose import fails: {problem}",
+            package=entry.distribution,
             problem=foreign(error),
         )
         raise LinkwrightError(Diagnostic("CTL121", message, hint=hint)) from error

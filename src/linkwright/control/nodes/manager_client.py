@@ -140,22 +140,22 @@ class ManagerProgram(SingleNode):
             self.finished.set_result(status)
 
 
-def _drop_empty_arguments(parser: argparse.ArgumentParser, words: Sequence[str]) -> list[str]:
+def _drop_empty_arguments(parser: argparse.ArgumentParser, arguments: Sequence[str]) -> list[str]:
     """Return command-line arguments without the empty arguments of launch files.
 
     Empty values of options are kept.
     """
     flags = [action for action in parser._actions if action.nargs == 0]
     valueless = {"", *(option for action in flags for option in action.option_strings)}
-    previous_arguments = ["", *words]
+    previous_arguments = ["", *arguments]
     return [
         argument
-        for argument, previous in zip(words, previous_arguments, strict=False)
+        for argument, previous in zip(arguments, previous_arguments, strict=False)
         if argument or (previous[:1] == "-" and previous not in valueless)
     ]
 
 
-def parse_arguments(parser: argparse.ArgumentParser, words: Sequence[str]) -> argparse.Namespace:
+def parse_arguments(parser: argparse.ArgumentParser, arguments: Sequence[str]) -> argparse.Namespace:
     """Parse the arguments of a command line.
 
     Raises:
@@ -169,6 +169,6 @@ def parse_arguments(parser: argparse.ArgumentParser, words: Sequence[str]) -> ar
     # If a required option is missing, argparse in Python up to 3.12 ends the program even with exit_on_error=False.
     parser.error = refuse  # type: ignore[method-assign]  # on purpose, see above
     try:
-        return parser.parse_args(_drop_empty_arguments(parser, words))
+        return parser.parse_args(_drop_empty_arguments(parser, arguments))
     except argparse.ArgumentError as error:
         refuse(str(error))
