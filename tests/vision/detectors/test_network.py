@@ -368,7 +368,7 @@ def test_rows_that_look_like_those_of_yolov5_and_are_none(tmp_path, rows, metada
 def test_names_that_do_not_fit(tmp_path):
     path = columns(tmp_path / "v8.onnx", 5, metadata=NAMES)
     code, message, _ = refused(path)
-    assert (code, message) == ("VISION107", "the network in 'v8.onnx' has 5 classes, but its metadata have 3 names")
+    assert (code, message) == ("VISION107", "the network in 'v8.onnx' has 5 classes, but its metadata has 3 names")
     labels = tmp_path / "labels.txt"
     labels.write_text("one\ntwo\n")
     code, message, _ = refused(columns(tmp_path / "v8.onnx", metadata=NAMES), labels=labels)

@@ -19,7 +19,7 @@ def test_it_goes_to_the_ball(tmp_path, ball):
         assert test.advance_until_said("I am at the ball")
         assert test.spoken() == [
             "I am looking for the ball.",
-            "I see the ball and am going to it.",
+            "I see the ball and drive to it.",
             "I am at the ball.",
         ]
         assert test.distance() - RADIUS == pytest.approx(0.5, abs=0.08)
@@ -120,7 +120,7 @@ def test_a_laser_sees_what_stands_in_the_way(tmp_path):
         )
         test.spawn(box, "box", pose=(1.5, 0.0, 0.3, 0.0, 0.0, 0.0))
         test.tell("/vision/go_to", "ball")
-        assert test.advance_until_said("There is something between me and the ball")
+        assert test.advance_until_said("An obstacle is between me and the ball")
         x, *_ = test.robot_pose()
         assert 0.8 < x < 1.2
 

@@ -163,20 +163,20 @@ def class_count_error(file: Path, classes: int, name_count: int, labels: Path | 
     """
     if labels is None:
         message = phrase(
-            "the network in '{file}' has {classes} classes, but its metadata have {named} names",
+            "the network in '{file}' has {classes} classes, but its metadata has {names} names",
             file=file.name,
             classes=classes,
-            named=name_count,
+            names=name_count,
         )
         return LinkwrightError(
             Diagnostic("VISION107", message, hint=phrase("pass a labels file with one name per class"))
         )
     message = phrase(
-        "the network in '{file}' has {classes} classes, but '{labels}' has {named} names",
+        "the network in '{file}' has {classes} classes, but '{labels}' has {names} names",
         file=file.name,
         classes=classes,
         labels=labels,
-        named=name_count,
+        names=name_count,
     )
     return LinkwrightError(
         Diagnostic("VISION107", message, hint=phrase("pass the labels that the network was trained with"))

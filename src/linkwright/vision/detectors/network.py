@@ -43,7 +43,7 @@ class NetworkDetector(Detector):
         self._file, self._labels = file, options.labels
         labels = read_labels(options.labels) if options.labels is not None else None
         if options.size is not None and max(options.size) > MAX_SIZE:
-            raise setting_error("imgsz", max(options.size), phrase("give at most {largest} pixels", largest=MAX_SIZE))
+            raise setting_error("imgsz", max(options.size), phrase("give at most {maximum} pixels", maximum=MAX_SIZE))
         self._session, self._notes = create_session(file, options.device)
         metadata = Metadata.of(self._session.get_modelmeta().custom_metadata_map)
         self._input, self._kind, fixed_size = _image_input(file, self._session.get_inputs())
@@ -60,7 +60,9 @@ class NetworkDetector(Detector):
         if self._layout.ignored_outputs:
             ignored = phrase("masks") if self._layout.ignored_outputs == "masks" else phrase("keypoints")
             self._notes.append(
-                phrase("only the boxes of '{file}' are used; its {what} are ignored", file=file.name, what=ignored)
+                phrase(
+                    "only the boxes of '{file}' are used; its {outputs} are ignored", file=file.name, outputs=ignored
+                )
             )
 
     @property

@@ -21,7 +21,9 @@ def read_number(settings: Mapping[str, object], name: str, default: float, minim
     """
     value = settings.get(name, default)
     if isinstance(value, bool) or not isinstance(value, int | float) or not minimum <= value <= maximum:
-        raise setting_error(name, value, phrase("give a number from {low} to {high}", low=minimum, high=maximum))
+        raise setting_error(
+            name, value, phrase("give a number from {minimum} to {maximum}", minimum=minimum, maximum=maximum)
+        )
     return float(value)
 
 

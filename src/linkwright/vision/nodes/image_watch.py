@@ -72,10 +72,10 @@ class ImageWatch:
         if not matching_publishers:
             types = quoted_names(sorted({publisher.topic_type for publisher in publishers}))
             return phrase(
-                "no images arrive: the type of '{topic}' is {types}, not '{wanted}'",
+                "no images arrive: the type of '{topic}' is {types}, not '{expected}'",
                 topic=topic,
                 types=types,
-                wanted=message_type,
+                expected=message_type,
             ), self._suggest_topics()
         offered_reliabilities = {endpoint.qos_profile.reliability for endpoint in matching_publishers}
         if self._qos.reliability is ReliabilityPolicy.RELIABLE and offered_reliabilities == {

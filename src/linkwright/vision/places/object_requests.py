@@ -74,12 +74,12 @@ class Answer(Enum):
 
 
 _ANSWERS: Mapping[Answer, Callable[[str], Phrase]] = {
-    Answer.SEARCHING: lambda it: phrase("I am looking for the {it}.", it=it),
-    Answer.FOUND: lambda it: phrase("I see the {it} and am going to it.", it=it),
-    Answer.ARRIVED: lambda it: phrase("I am at the {it}.", it=it),
-    Answer.NOT_FOUND: lambda it: phrase("I cannot find the {it}.", it=it),
-    Answer.LOST: lambda it: phrase("I have lost the {it}.", it=it),
-    Answer.BLOCKED: lambda it: phrase("There is something between me and the {it}.", it=it),
+    Answer.SEARCHING: lambda it: phrase("I am looking for the {name}.", name=it),
+    Answer.FOUND: lambda it: phrase("I see the {name} and drive to it.", name=it),
+    Answer.ARRIVED: lambda it: phrase("I am at the {name}.", name=it),
+    Answer.NOT_FOUND: lambda it: phrase("I cannot find the {name}.", name=it),
+    Answer.LOST: lambda it: phrase("I have lost the {name}.", name=it),
+    Answer.BLOCKED: lambda it: phrase("An obstacle is between me and the {name}.", name=it),
     Answer.NO_DETECTIONS: lambda _: phrase("I am stopping, because I receive no detections."),
     Answer.STOPPED: lambda _: phrase("I am stopping."),
 }

@@ -41,9 +41,9 @@ def load_weights(network: Network, names: Sequence[str], path: Path, images: Ite
     channels, expected = len(weights[0][0]), network.shape.channels
     if len(weights) == len(convolutions) and channels != expected:
         reason = phrase(
-            "its first layer has {channels} channels, but this network has {wanted}",
+            "its first layer has {channels} channels, but this network has {expected}",
             channels=channels,
-            wanted=expected,
+            expected=expected,
         )
         raise _weights_error(path, reason, phrase("train with `--channels {channels}`", channels=channels))
     scores = [head.scores[-1] for head in network.heads]
