@@ -1,7 +1,7 @@
-"""The state of rclpy's functions that are called without a context.
+"""The state behind rclpy's functions that are called without a context.
 
-A process has one such state. A test that runs several programs in one process, one at a time, gives each of them its
-own.
+A process has one such state. A test that runs several programs in one process switches between a state for each of
+them.
 """
 
 from __future__ import annotations
@@ -24,7 +24,7 @@ class RclpyState:
         create_graph: creates the graph of a context; None for a graph that joins the network.
 
     Attributes:
-        signal_options: the signals that shut contexts down, as calls of ``rclpy.init`` have asked for.
+        signal_options: the signals that shut contexts down, as requested by calls of ``rclpy.init``.
     """
 
     def __init__(self, create_graph: Callable[[], Graph] | None = None) -> None:
@@ -40,13 +40,13 @@ class _Current:
 
 
 def current_state() -> RclpyState:
-    """Return the state that applies now."""
+    """Return the state in use."""
     return _Current.state
 
 
 @contextmanager
 def use_state(state: RclpyState) -> Iterator[None]:
-    """Let a state apply in all threads until the end of the context."""
+    """Use a state in all threads inside the ``with`` block."""
     previous_state, _Current.state = _Current.state, state
     try:
         yield

@@ -185,9 +185,9 @@ def open_output(output_filename: str | Path | None) -> IO[str]:
         raise XacroException(f"cannot write '{path}':", exc=error) from error
 
 
-def main(words: Sequence[str] | None = None) -> None:
+def main(arguments: Sequence[str] | None = None) -> None:
     """Run the command ``xacro``, and exit on errors."""
-    options, file = process_args(sys.argv[1:] if words is None else list(words))
+    options, file = process_args(sys.argv[1:] if arguments is None else list(arguments))
     assert file is not None, "the options say that a file is needed"
     if options.root_dir:
         STATE.root_dir = options.root_dir
