@@ -67,10 +67,10 @@ class ActionReader:
             all_kinds = ", ".join(self.KINDS)
             message = (
                 phrase(
-                    "{subject} has two actions, '{first}' and '{second}'",
+                    "{subject} has two actions, '{action}' and '{other_action}'",
                     subject=self._keys.subject,
-                    first=kinds[0],
-                    second=kinds[1],
+                    action=kinds[0],
+                    other_action=kinds[1],
                 )
                 if kinds
                 else phrase("{subject} has no action", subject=self._keys.subject)
@@ -101,7 +101,7 @@ class ActionReader:
             raise keys.error(phrase("'drive' has no motion: give 'x', 'y' or 'turn'"))
         if len(limits) > 1:
             message = phrase(
-                "'drive' must have either '{first}' or '{second}', not both", first=limits[0], second=limits[1]
+                "'drive' must have either '{key}' or '{other_key}', not both", key=limits[0], other_key=limits[1]
             )
             raise keys.error(message)
         if limits == ["distance"] and not (x or y):

@@ -104,7 +104,7 @@ class _Reader:
                 words = words_of(text)
                 other = self._names[slot].setdefault(words, name)
                 if other != name:
-                    message = phrase("'{text}' is also a name of '{other}'", text=text, other=other)
+                    message = phrase("'{name}' is also a name of '{other_key}'", name=text, other_key=other)
                     raise self._error("VOICE304", message, text_node)
 
     def _add_slot_values(self, slot: str, node: yaml.Node, top: Keys) -> None:
@@ -116,7 +116,7 @@ class _Reader:
             for text, text_node in entries:
                 if parse_quantity(slot, words_of(text)) is None:
                     raise self._document.error(
-                        phrase("'{text}' is not a value of {slot}", text=text, slot=slot), text_node
+                        phrase("'{value}' is not a value of {slot}", value=text, slot=slot), text_node
                     )
             default_values = GRAMMAR_VALUES[slot].get(language, ())
             self._slot_values.setdefault(slot, dict(GRAMMAR_VALUES[slot]))[language] = (
@@ -169,12 +169,14 @@ class _Reader:
             parsed = parse_templates(text, slots)
         except TemplateError as error:
             raise self._error(
-                "VOICE303", phrase("the phrase '{text}' is invalid: {why}", text=text, why=error.args[0]), node
+                "VOICE303",
+                phrase("the phrase '{phrase}' is invalid: {reason}", phrase=text, reason=error.args[0]),
+                node,
             ) from None
         for template in parsed:
             other = self._intent_by_pieces.setdefault((template.pieces, template.slots), intent)
             if intent and other != intent:
-                message = phrase("'{text}' is also a phrase of '{other}'", text=template.text, other=other)
+                message = phrase("'{phrase}' is also a phrase of '{command}'", phrase=template.text, command=other)
                 raise self._error("VOICE304", message, node)
         return parsed
 
@@ -195,10 +197,10 @@ class _Reader:
             count = command_set.phrase_count(language)
             if count > MAX_PHRASES:
                 message = phrase(
-                    "{count} phrases are possible in '{language}', but engines accept at most {most}",
+                    "{count} phrases are possible in '{language}', but engines accept at most {maximum}",
                     count=count,
                     language=language,
-                    most=MAX_PHRASES,
+                    maximum=MAX_PHRASES,
                 )
                 hint = phrase("use fewer parts in brackets, fewer slots in a phrase, or shorter lists under 'said'")
                 raise self._error("VOICE306", message, None, hint)

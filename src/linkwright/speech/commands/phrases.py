@@ -96,7 +96,7 @@ def parse_templates(text: str, slots: Sequence[str]) -> list[Template]:
         TemplateError: a bracket is not closed, a slot occurs twice or does not exist, or there is no literal word.
     """
     if len(_OPTIONAL_PATTERN.findall(text)) > _MAX_OPTIONAL:
-        raise TemplateError(phrase("it has more than {most} optional parts in brackets", most=_MAX_OPTIONAL))
+        raise TemplateError(phrase("it has more than {maximum} optional parts in brackets", maximum=_MAX_OPTIONAL))
     expanded = []
     for variant in _expand_brackets(text):
         if re.search(r"[\[\]{}]", _SLOT_PATTERN.sub("", variant)):

@@ -127,6 +127,6 @@ class Keys:
     def _invalid_value(self, key: str, node: yaml.Node | None, expected: Phrase) -> LinkwrightError:
         if node is None:
             return self.error(
-                phrase("{subject} must have '{key}', {wanted}", subject=self.subject, key=key, wanted=expected)
+                phrase("{subject} must have '{key}', {expected}", subject=self.subject, key=key, expected=expected)
             )
-        return self.error(phrase("'{key}' must be {wanted}", key=key, wanted=expected), node)
+        return self.error(phrase("'{key}' must be {expected}", key=key, expected=expected), node)

@@ -53,7 +53,9 @@ class Phrasing:
                 converted.setdefault(tuple(words), text)
         if missing:
             message = phrase(
-                "the vocabulary of '{model}' does not contain {words}", model=model, words=quoted_names(missing)
+                "the vocabulary of '{model}' does not contain {missing_words}",
+                model=model,
+                missing_words=quoted_names(missing),
             )
             hint = phrase("use other words, or the engine 'enrolled', which needs no vocabulary")
             raise LinkwrightError(Diagnostic("VOICE103", message, hint=hint))

@@ -41,7 +41,7 @@ def enrol(words: Words, name: str, samples: Samples, has_gaps: bool = False) -> 
     if reason is not None:
         return (_rejection("VOICE204", phrase("a word cannot be named '{name}': {reason}", name=name, reason=reason)),)
     if len(words.names) >= MAX_WORDS and name not in words.names:
-        reason = phrase("there are already {most} words", most=MAX_WORDS)
+        reason = phrase("{maximum} words are enrolled already, the maximum", maximum=MAX_WORDS)
         return (_rejection("VOICE204", phrase("a word cannot be named '{name}': {reason}", name=name, reason=reason)),)
     if has_gaps:
         message = phrase("the recording for '{name}' has gaps", name=name)
@@ -87,7 +87,9 @@ def _compare_take(words: Words, name: str, take: Take) -> Diagnostic | None:
         )
     nearest = min(costs, key=lambda word: costs[word], default=name)
     if nearest != name and own_cost > _SIMILAR_DISTANCE * costs[nearest]:
-        message = phrase("'{name}' sounds very similar to '{other}', so they may be confused", name=name, other=nearest)
+        message = phrase(
+            "'{name}' sounds very similar to '{other_name}', so they may be confused", name=name, other_name=nearest
+        )
         hint = phrase("choose a longer or less similar word for one of them")
         return Diagnostic("VOICE209", message, severity=Severity.WARNING, hint=hint)
     return None

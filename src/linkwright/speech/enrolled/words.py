@@ -138,7 +138,7 @@ def name_problem(name: str) -> Phrase | None:
     if not name.strip():
         return phrase("it is empty")
     if len(name) > _MAX_NAME_LENGTH:
-        return phrase("it has more than {most} characters", most=_MAX_NAME_LENGTH)
+        return phrase("it has more than {maximum} characters", maximum=_MAX_NAME_LENGTH)
     if not name.isprintable():
         return phrase("it contains non-printable characters")
     return None
@@ -175,7 +175,7 @@ def _parse_words(document: Any, path_text: str) -> dict[str, tuple[Take, ...]]:
         )
     words = document.get("words")
     if not isinstance(words, list) or len(words) > MAX_WORDS:
-        raise _damaged_error(path_text, phrase("it must contain a list of at most {most} words", most=MAX_WORDS))
+        raise _damaged_error(path_text, phrase("it must contain a list of at most {maximum} words", maximum=MAX_WORDS))
     takes_by_name: dict[str, tuple[Take, ...]] = {}
     for number, word in enumerate(words, 1):
         name = word.get("name") if isinstance(word, dict) else None
@@ -186,7 +186,7 @@ def _parse_words(document: Any, path_text: str) -> dict[str, tuple[Take, ...]]:
         takes = word.get("takes")
         if not isinstance(takes, list) or not 1 <= len(takes) <= MAX_TAKES:
             raise _damaged_error(
-                path_text, phrase("the word '{name}' must have 1 to {most} recordings", name=name, most=MAX_TAKES)
+                path_text, phrase("the word '{name}' must have 1 to {maximum} recordings", name=name, maximum=MAX_TAKES)
             )
         takes_by_name[name] = tuple(_read_take(take, name, path_text) for take in takes)
     return takes_by_name
@@ -208,6 +208,6 @@ def _read_take(take: Any, name: str, path_text: str) -> Take:
 
 
 def _damaged_error(path_text: str, why: Phrase, place: Span | None = None) -> LinkwrightError:
-    message = phrase("'{path}' cannot be read as a file of enrolled words: {why}", path=path_text, why=why)
+    message = phrase("'{path}' cannot be read as a file of enrolled words: {reason}", path=path_text, reason=why)
     hint = phrase("replace it with a backup, or remove it and enrol the words again")
     return LinkwrightError(Diagnostic("VOICE203", message, place, hint=hint))

@@ -71,10 +71,10 @@ class AudioCapture(SingleNode):
         self._warn_about_format()
         if not 0 < chunk <= _MAX_CHUNK:
             message = phrase(
-                "parameter '{name}' must be {least} to {most}, but it is {value}",
+                "parameter '{name}' must be {minimum} to {maximum}, but it is {value}",
                 name="chunk",
-                least=1,
-                most=_MAX_CHUNK,
+                minimum=1,
+                maximum=_MAX_CHUNK,
                 value=chunk,
             )
             raise LinkwrightError(Diagnostic("VOICE414", message))

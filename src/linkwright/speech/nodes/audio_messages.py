@@ -70,12 +70,12 @@ class AudioFormat:
             LinkwrightError: VOICE411, sound in this format, such as MP3, is not supported.
         """
         if info.coding_format not in ("", WAVE):
-            raise _format_error(phrase("its encoding is '{coding}'", coding=info.coding_format))
+            raise _format_error(phrase("its encoding is '{encoding}'", encoding=info.coding_format))
         return cls(info.channels, info.sample_rate, info.sample_format)
 
 
 def _format_error(why: Phrase) -> LinkwrightError:
-    message = phrase("sound in this format is not supported: {why}", why=why)
+    message = phrase("sound in this format is not supported: {reason}", reason=why)
     hint = phrase("publish it with format 'wave', sample_format 'S16LE', sample_rate 16000 and channels 1")
     return LinkwrightError(Diagnostic("VOICE411", message, hint=hint))
 

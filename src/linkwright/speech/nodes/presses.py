@@ -86,6 +86,7 @@ class ButtonPresses:
             return phrase("I do not recognise your words: enrol them in the Voice panel, in the room where you speak")
         if press.unknown.nearest:
             return phrase(
-                "I heard something that is not a command; the most similar one is '{text}'", text=press.unknown.nearest
+                "I heard something that is not a command; the most similar one is '{phrase}'",
+                phrase=press.unknown.nearest,
             )
         return phrase("I heard something that is not a command")

@@ -262,7 +262,9 @@ class VoiceCommander(SingleNode):
             and self._is_addressed
             and result.confidence >= _REPEAT_SHARE * self._min_confidence
         ):
-            self._conversation.answer(phrase("I am not sure that I heard '{text}', please repeat", text=result.text))
+            self._conversation.answer(
+                phrase("I am not sure that I heard '{phrase}', please repeat", phrase=result.text)
+            )
         else:
             return bool(result.text) and is_certain  # speech was not understood, and this was answered
         return True

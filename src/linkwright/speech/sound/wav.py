@@ -82,10 +82,10 @@ def parse_wav(data: bytes, name: str) -> Samples:
         raise _wav_error(
             name,
             phrase(
-                "its rate is {rate} Hz, but {lowest} to {highest} Hz are supported",
+                "its rate is {rate} Hz, but {minimum} to {maximum} Hz are supported",
                 rate=wav_format.rate,
-                lowest=MIN_RATE,
-                highest=MAX_RATE,
+                minimum=MIN_RATE,
+                maximum=MAX_RATE,
             ),
         )
     frame_size = wav_format.channels * wav_format.bits // 8
@@ -144,7 +144,7 @@ def _wav_error(name: str, why: Phrase) -> LinkwrightError:
     return LinkwrightError(
         Diagnostic(
             "VOICE402",
-            phrase("'{path}' cannot be read as a WAV file: {why}", path=name, why=why),
+            phrase("'{path}' cannot be read as a WAV file: {reason}", path=name, reason=why),
             hint=phrase("convert it to 16-bit PCM, for example with 'ffmpeg -i FILE -ar 16000 -ac 1 OUT.wav'"),
         )
     )
