@@ -72,9 +72,9 @@ class _Setter:
             names = joined(field.name for field in definition_of(type(message)).fields)
             self._report_invalid_value(
                 phrase(
-                    "{what} must be a mapping of fields to values, not {values}",
-                    what=subject,
-                    values=_value_text(values),
+                    "{subject} must be a mapping of fields to values, not {actual}",
+                    subject=subject,
+                    actual=_value_text(values),
                 ),
                 phrase("its fields: {names}", names=names or phrase("none")),
             )
@@ -95,7 +95,7 @@ class _Setter:
         except _InvalidValueError as unfit:
             self._report_invalid_value(
                 phrase("'{path}' cannot be {value}", path=path, value=_value_text(value)),
-                phrase("it must be {unfit}", unfit=unfit),
+                phrase("it must be {expected}", expected=unfit),
             )
         except AssertionError as error:
             reason = str(error).partition(" must ")[2]
@@ -151,7 +151,7 @@ class _Setter:
         self.diagnostics.append(
             Diagnostic(
                 "MSG301",
-                phrase("{called} has no field '{name}'", called=subject, name=name),
+                phrase("{subject} has no field '{name}'", subject=subject, name=name),
                 hint=hint,
             )
         )
@@ -215,12 +215,15 @@ def _type_description(kind: FieldType) -> Phrase:
     value_description = phrase("{type}", type=kind.base) if primitive is None else descriptions[primitive.python]
     if primitive is not None and primitive.is_integer:
         value_description = phrase(
-            "{one}, {low} to {high}", one=value_description, low=primitive.low, high=primitive.high
+            "{description}, {minimum} to {maximum}",
+            description=value_description,
+            minimum=primitive.low,
+            maximum=primitive.high,
         )
     if kind.container is Container.ARRAY:
-        return phrase("a list of {size} ({spelled})", size=kind.size, spelled=kind.to_msg_text())
+        return phrase("a list of {size} ({type_name})", size=kind.size, type_name=kind.to_msg_text())
     if kind.container is Container.SEQUENCE:
-        return phrase("a list ({spelled})", spelled=kind.to_msg_text())
+        return phrase("a list ({type_name})", type_name=kind.to_msg_text())
     return value_description
 
 

@@ -296,10 +296,14 @@ def _reader_for(data: bytes, message_class: type[Any]) -> Any:
                 headers=_OTHER_ENCODINGS[data[:2]],
             )
         else:
-            reason = phrase("it begins with {hex} instead of a CDR header", hex=data[:4].hex(" "))
+            reason = phrase("it begins with {bytes} instead of a CDR header", bytes=data[:4].hex(" "))
         raise data_error(
             "MSG201",
-            phrase("this is not a message of type '{type_name}': {why}", type_name=message_class.TYPE_NAME, why=reason),
+            phrase(
+                "this is not a message of type '{type_name}': {reason}",
+                type_name=message_class.TYPE_NAME,
+                reason=reason,
+            ),
         )
     name = message_class.TYPE_NAME
     reader = _big_endian_readers.get(name)
@@ -319,7 +323,7 @@ def _read_error(message_class: type[Any], data: bytes, fault: Exception) -> Mess
         why = phrase("the data has only {count} bytes and ends in the middle of the message", count=len(data))
     return data_error(
         "MSG201",
-        phrase("this is not a message of type '{type_name}': {why}", type_name=message_class.TYPE_NAME, why=why),
+        phrase("this is not a message of type '{type_name}': {reason}", type_name=message_class.TYPE_NAME, reason=why),
     )
 
 
@@ -332,9 +336,9 @@ def _write_error(message: object, fault: Exception) -> MessageDataError:
     return data_error(
         "MSG202",
         phrase(
-            "this message of type '{type_name}' cannot be serialized: {bad_field}",
+            "this message of type '{type_name}' cannot be serialized: {reason}",
             type_name=message.TYPE_NAME,
-            bad_field=foreign(_invalid_field(message, "") or fault),
+            reason=foreign(_invalid_field(message, "") or fault),
         ),
     )
 
@@ -350,7 +354,7 @@ def _invalid_field(message: Message, path: str) -> str | None:
             value = getattr(message, field.name)
             setattr(type(message)(), field.name, value)
         except AttributeError:
-            return phrase("'{here}' is not set", here=field_path)
+            return phrase("'{field}' is not set", field=field_path)
         except AssertionError as error:
             return str(error).replace(f"'{field.name}'", f"'{field_path}'", 1)
         nested_messages = [value] if isinstance(value, Message) else value if "/" in field.type.base else ()

@@ -133,13 +133,16 @@ def import_lines(body: str) -> str:
     """Return the import lines that a stub needs."""
     lines = []
     for line in _PLAIN_IMPORTS.splitlines():
-        head, sep, words = line.partition(" import ")
+        head, sep, names = line.partition(" import ")
         if not sep:
             lines.append(line if not line.startswith("import numpy") or "np." in body else "")
             continue
-        wanted = [word for word in words.split(", ") if f"{word}[" in body or f"({word})" in body or f" {word} " in body
-                  or f"[{word}]" in body]  # fmt: skip
-        lines.append(f"{head} import {', '.join(wanted)}" if wanted else "")
+        used_names = [
+            name
+            for name in names.split(", ")
+            if any(use in body for use in (f"{name}[", f"({name})", f" {name} ", f"[{name}]"))
+        ]
+        lines.append(f"{head} import {', '.join(used_names)}" if used_names else "")
     text = "\n".join(lines)
     while "\n\n\n" in text:
         text = text.replace("\n\n\n", "\n\n")

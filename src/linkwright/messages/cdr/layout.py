@@ -37,7 +37,7 @@ class Alignment(NamedTuple):
         return (-self.remainder) % size if self.modulus >= size else None
 
     def common(self, other: Alignment) -> Alignment:
-        """Return what is known about a position that may be either of two positions."""
+        """Return the alignment that holds for both of two possible positions."""
         modulus = min(self.modulus, other.modulus)
         while (self.remainder - other.remainder) % modulus:
             modulus //= 2

@@ -135,7 +135,7 @@ class _Reader:
             else:
                 self._fail(
                     "MSG120",
-                    phrase("'{text}' is not supported in messages", text=keyword.text),
+                    phrase("'{construct}' is not supported in messages", construct=keyword.text),
                     keyword.start,
                     len(keyword.text),
                     phrase("write the interface as a .msg, .srv or .action file"),
@@ -235,7 +235,9 @@ class _Reader:
         if text in self._typedefs:
             return self._typedefs[text]
         if text in _UNSUPPORTED_TYPES:
-            self._fail("MSG120", phrase("'{text}' is not supported in messages", text=text), token.start, len(text))
+            self._fail(
+                "MSG120", phrase("'{construct}' is not supported in messages", construct=text), token.start, len(text)
+            )
         parts = text.split("::")
         if len(parts) != 3:
             self._fail("MSG111", phrase("there is no type '{text}'", text=text), token.start, len(text),
@@ -287,7 +289,7 @@ class _Reader:
         if not token.text.isdigit() or int(token.text) == 0:
             self._fail(
                 "MSG119",
-                phrase("'{text}' is not a length: write an integer above 0", text=token.text),
+                phrase("'{value}' is not a length: write an integer above 0", value=token.text),
                 token.start,
                 len(token.text),
             )
@@ -326,7 +328,7 @@ class _Reader:
         actual = quoted(token.text) if token.text else phrase("the end of the file")
         self._fail(
             "MSG120",
-            phrase("expected {wanted}, but found {found}", found=actual, wanted=expected),
+            phrase("expected {expected}, but found {actual}", actual=actual, expected=expected),
             token.start,
             len(token.text),
         )

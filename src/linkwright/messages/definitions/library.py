@@ -262,7 +262,7 @@ class Library:
             packages = {*catalogue.packages(), *self._finder().packages()}
             if name.package in packages:
                 notes.append(
-                    Note(phrase("the package '{package}' has no {what}", package=name.package, what=kind_text))
+                    Note(phrase("the package '{package}' has no {kind}", package=name.package, kind=kind_text))
                 )
                 hint = None
             else:
@@ -282,7 +282,7 @@ class Library:
                 None,
             )
         return Diagnostic(
-            "MSG101", phrase("there is no {what} '{name}'", what=kind_text, name=name), notes=tuple(notes), hint=hint
+            "MSG101", phrase("there is no {kind} '{name}'", kind=kind_text, name=name), notes=tuple(notes), hint=hint
         )
 
     def _same_name_elsewhere(self, name: InterfaceName, kinds: tuple[str | None, ...]) -> Phrase | None:
@@ -325,8 +325,8 @@ def wrong_kind_diagnostic(definition: Definition, kind: str) -> Diagnostic:
     ]
     return Diagnostic(
         "MSG101",
-        phrase("there is no {what} '{name}'", what=KIND_NAMES[kind], name=name),
-        hint=phrase("'{name}' is {is_a}", name=name, is_a=actual_kind),
+        phrase("there is no {kind} '{name}'", kind=KIND_NAMES[kind], name=name),
+        hint=phrase("'{name}' is {kind}", name=name, kind=actual_kind),
     )
 
 
@@ -372,7 +372,11 @@ def _recursion_diagnostic(source: SourceText, type_chain: tuple[str, ...]) -> Di
     inside = type_chain[0] if len(type_chain) == 2 else f"{type_chain[0]} by way of " + ", ".join(type_chain[1:-1])
     return Diagnostic(
         "MSG116",
-        phrase("'{way}' would contain itself: it is part of {inside}", way=type_chain[-1], inside=inside),
+        phrase(
+            "'{type_name}' would contain itself: it is part of {enclosing_types}",
+            type_name=type_chain[-1],
+            enclosing_types=inside,
+        ),
         span,
         source=source,
     )

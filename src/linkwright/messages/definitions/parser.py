@@ -44,20 +44,20 @@ def read_default(text: str, kind: FieldType) -> object:
     primitive = kind.primitive
     if primitive is None:
         raise LiteralFault(
-            phrase("a field of type '{spelled}' cannot have a default value", spelled=kind.to_msg_text())
+            phrase("a field of type '{type_name}' cannot have a default value", type_name=kind.to_msg_text())
         )
     if kind.container is Container.ONE:
         return _read_bounded(text, kind, primitive)
     if not (text.startswith("[") and text.endswith("]")):
         raise LiteralFault(
-            phrase("write the default of '{spelled}' as a list in square brackets", spelled=kind.to_msg_text())
+            phrase("write the default of '{type_name}' as a list in square brackets", type_name=kind.to_msg_text())
         )
     values = tuple(_read_bounded(item, kind, primitive) for item in split_list(text[1:-1]))
     if kind.container is Container.ARRAY and len(values) != kind.size:
         raise LiteralFault(
             phrase(
-                "'{spelled}' takes {size} values, not {count}",
-                spelled=kind.to_msg_text(),
+                "'{type_name}' must have {size} values, not {count}",
+                type_name=kind.to_msg_text(),
                 size=kind.size,
                 count=len(values),
             )
@@ -65,8 +65,8 @@ def read_default(text: str, kind: FieldType) -> object:
     if kind.container is Container.SEQUENCE and kind.size is not None and len(values) > kind.size:
         raise LiteralFault(
             phrase(
-                "'{spelled}' takes at most {size} values, not {count}",
-                spelled=kind.to_msg_text(),
+                "'{type_name}' must have at most {size} values, not {count}",
+                type_name=kind.to_msg_text(),
                 size=kind.size,
                 count=len(values),
             )
@@ -120,11 +120,11 @@ def _read(text: str, type_name: str, primitive: Primitive) -> Value:
     if not low <= number <= high:
         raise LiteralFault(
             phrase(
-                "{text} is outside the range of {type_name}, {low} to {high}",
-                text=text,
+                "{value} is outside the range of {type_name}, {minimum} to {maximum}",
+                value=text,
                 type_name=type_name,
-                low=low,
-                high=high,
+                minimum=low,
+                maximum=high,
             )
         )
     return bytes([number]) if primitive.python is bytes else number
@@ -153,7 +153,7 @@ def _read_float(text: str, type_name: str, primitive: Primitive) -> float:
     except ValueError:
         raise LiteralFault(phrase("'{text}' is not a number", text=text)) from None
     if math.isfinite(number) and abs(number) > primitive.high:
-        raise LiteralFault(phrase("{text} is outside the range of {type_name}", text=text, type_name=type_name))
+        raise LiteralFault(phrase("{value} is outside the range of {type_name}", value=text, type_name=type_name))
     return number
 
 
@@ -380,7 +380,9 @@ class _Reader:
             return int(text)
         self._report(
             "MSG119",
-            phrase("'{text}' is not a valid length of {what}: write an integer above 0", text=text, what=subject),
+            phrase(
+                "'{value}' is not a valid length of {subject}: write an integer above 0", value=text, subject=subject
+            ),
             offset,
             max(len(text), 1),
         )
@@ -396,7 +398,8 @@ class _Reader:
             suggested_name = re.sub(r"_+", "_", re.sub(r"(?<=[a-z0-9])(?=[A-Z])", "_", name).lower()).strip("_")
             if is_field_name(suggested_name):
                 hint = phrase(
-                    "field names are lower case with single underscores, such as '{near}'", near=suggested_name
+                    "field names are lower case with single underscores, such as '{suggestion}'",
+                    suggestion=suggested_name,
                 )
             self._report(
                 "MSG112", phrase("'{name}' is not a valid name for a field", name=name), name_offset, len(name), hint
@@ -438,9 +441,9 @@ class _Reader:
             self._report(
                 "MSG114",
                 phrase(
-                    "the constant '{name}' cannot be of type '{spelled}'",
+                    "the constant '{name}' cannot be of type '{type_name}'",
                     name=name,
-                    spelled=kind.to_msg_text(self._package),
+                    type_name=kind.to_msg_text(self._package),
                 ),
                 name_offset,
                 len(name),
