@@ -72,12 +72,12 @@ class ListenerQos(_CountingNode):
         self._count_message()
 
 
-def _read(name: str, words: Sequence[str]) -> argparse.Namespace:
+def _read(name: str, arguments: Sequence[str]) -> argparse.Namespace:
     parser = argparse.ArgumentParser(prog=name, add_help=False, exit_on_error=False)
     parser.add_argument("--reliable", action="store_true")
     parser.add_argument("-n", "--number_of_cycles", type=int, default=_UNLIMITED)
     try:
-        return parser.parse_known_args(words)[0]
+        return parser.parse_known_args(arguments)[0]
     except argparse.ArgumentError as error:
         raise LinkwrightError(
             Diagnostic(

@@ -297,7 +297,7 @@ class JointStatePublisher(SingleNode):
                 raise LinkwrightError(
                     Diagnostic(
                         "NODE205",
-                        phrase("'{path}' contains {other}, but this node reads only URDF", path=path, other=other),
+                        phrase("'{path}' contains {format}, but this node reads only URDF", path=path, format=other),
                         hint=phrase("convert the file to URDF; only the ROS node also reads SDF and COLLADA"),
                     )
                 )

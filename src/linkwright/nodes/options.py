@@ -266,8 +266,8 @@ class NodeRegistry(Mapping[tuple[str, str], Factory]):
             package, name = key
             message = phrase("the node '{package}/{name}' cannot be imported", package=package, name=name)
             hint = phrase(
-                "fix the Python package '{place}', whose import fails: {problem}",
-                place=entry_point.distribution,
+                "fix the Python package '{package}', whose import fails: {problem}",
+                package=entry_point.distribution,
                 problem=foreign(error),
             )
             raise LinkwrightError(Diagnostic("NODE002", message, hint=hint)) from error

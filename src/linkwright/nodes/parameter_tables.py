@@ -154,7 +154,7 @@ def entries(table: Any, prefix: str = "", keys: tuple[str, ...] = ()) -> Iterato
             default = None if entry.default is MISSING else entry.default
             if properties.later is not _UNCHANGED and not is_before_iron():
                 default = properties.later
-            choices = properties.check.words if isinstance(properties.check, _OneOf) else ()
+            choices = properties.check.choices if isinstance(properties.check, _OneOf) else ()
             description = properties.description or descriptions.get(entry.name, "")
             yield TableEntry(name, _TYPES[kinds[entry.name]], default, description, choices, properties.only, keys)
 
@@ -348,23 +348,23 @@ def at_least(limit: float) -> Check:
 
 @dataclass(frozen=True, slots=True)
 class _OneOf:
-    words: tuple[str, ...]
+    choices: tuple[str, ...]
 
     def __call__(self, name: str, value: Any) -> Phrase | None:
         """Return the error message if the value or an item of it is not one of the words."""
         for item in (value,) if isinstance(value, str) else value:
-            if item not in self.words:
+            if item not in self.choices:
                 text = phrase(
-                    "Parameter '{name}' with the value '{value}' is not one of: {words}",
+                    "Parameter '{name}' with the value '{value}' is not one of: {choices}",
                     name=name,
                     value=item,
-                    words=", ".join(self.words),
+                    choices=", ".join(self.choices),
                 )
-                hint = did_you_mean(item, self.words)
+                hint = did_you_mean(item, self.choices)
                 return text if hint is None else joined((text, hint), "; ")
         return None
 
 
-def one_of(*words: str) -> Check:
+def one_of(*choices: str) -> Check:
     """Return a validator that requires one of the given words, or a list of them."""
-    return _OneOf(words)
+    return _OneOf(choices)

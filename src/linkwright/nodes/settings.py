@@ -35,14 +35,14 @@ def declare_required(node: Node, name: str, kind: ParameterType, usage: str) -> 
     return value
 
 
-def options_from_words(
-    options: NodeOptions, words: Sequence[str], names: Mapping[str, Callable[[str], Any]], usage: str
+def options_from_arguments(
+    options: NodeOptions, arguments: Sequence[str], names: Mapping[str, Callable[[str], Any]], usage: str
 ) -> NodeOptions:
     """Return the options with the parameters that command-line arguments set.
 
     Args:
         options: the options of the node.
-        words: the arguments without ROS arguments.
+        arguments: the arguments without ROS arguments.
         names: the parameters that the arguments set, in order, each with its converter; later arguments may be omitted.
         usage: a command line that starts the node, for the hint.
 
@@ -50,11 +50,12 @@ def options_from_words(
         LinkwrightError: NODE432, an argument is not a value of its parameter, or there are more arguments than names.
     """
     hint = phrase("usage: {usage}", usage=usage)
-    if len(words) > len(names):
-        message = phrase("unexpected argument '{word}'", word=words[len(names)])
+    if len(arguments) > len(names):
+        message = phrase("unexpected argument '{argument}'", argument=arguments[len(names)])
         raise LinkwrightError(Diagnostic("NODE432", message, hint=hint))
     argument_values = {
-        name: _convert_argument(word, name, names[name], hint) for word, name in zip(words, names, strict=False)
+        name: _convert_argument(argument, name, names[name], hint)
+        for argument, name in zip(arguments, names, strict=False)
     }
     return replace(options, parameters={**options.parameters, **argument_values})
 
@@ -67,7 +68,7 @@ def _convert_argument(argument: str, name: str, convert: Callable[[str], Any], h
         raise LinkwrightError(Diagnostic("NODE432", message, hint=hint)) from None
 
 
-def words_of(options: NodeOptions) -> list[str]:
+def arguments_of(options: NodeOptions) -> list[str]:
     """Return the command-line arguments of a node that are not ROS arguments."""
     return parse(options.arguments).non_ros_arguments
 

@@ -31,7 +31,7 @@ from linkwright.graph import (
 from linkwright.graph.qos.compatibility import fit
 from linkwright.messages import get_message, interface_names, set_fields
 from linkwright.nodes.options import NodeOptions, SingleNode, create_node, handle_start_errors
-from linkwright.nodes.settings import words_of
+from linkwright.nodes.settings import arguments_of
 
 
 class _Parser(argparse.ArgumentParser):
@@ -51,7 +51,7 @@ class _ExpressionTool(SingleNode, ABC):
 
     def __init__(self, graph: Graph, options: NodeOptions) -> None:
         self._graph = graph
-        self._arguments = self._parser().parse_args(words_of(options))
+        self._arguments = self._parser().parse_args(arguments_of(options))
         self._node, _ = create_node(graph, options, f"{self.PROGRAM}_{getpid()}")
         self._publisher: Publisher[Any] | None = None
         self._subscription: Subscription[Any] | None = None

@@ -42,10 +42,10 @@ class _Switch(TopicTool):
             service_class = get_service(f"topic_tools_interfaces/srv/{self._SERVICE_PREFIX}{verb.capitalize()}")
             self._node.create_service(service_class, f"~/{verb}", callback)
 
-    def _options(self, options: NodeOptions, words: list[str]) -> NodeOptions:
-        parameters: dict[str, object] = {self._SINGLE_PARAMETER: words[0]} if words else {}
-        if words[1:]:
-            parameters[self._CHOICES_PARAMETER] = words[1:]
+    def _options(self, options: NodeOptions, arguments: list[str]) -> NodeOptions:
+        parameters: dict[str, object] = {self._SINGLE_PARAMETER: arguments[0]} if arguments else {}
+        if arguments[1:]:
+            parameters[self._CHOICES_PARAMETER] = arguments[1:]
         return replace(options, parameters={**options.parameters, **parameters})
 
     def _declare(self) -> None:

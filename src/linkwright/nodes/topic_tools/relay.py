@@ -9,7 +9,7 @@ from typing import Any, ClassVar
 from linkwright.graph import Clock, ParameterType, Timer
 from linkwright.messages import serialize
 from linkwright.nodes.options import NodeOptions
-from linkwright.nodes.settings import bad_value, declare_required, options_from_words, positive
+from linkwright.nodes.settings import bad_value, declare_required, options_from_arguments, positive
 from linkwright.nodes.topic_tools.tool import TopicTool
 
 
@@ -77,9 +77,9 @@ class Throttle(_InputToOutput):
         "output_topic": str,
     }
 
-    def _options(self, options: NodeOptions, words: list[str]) -> NodeOptions:
-        names = self._BYTES if words[:1] == ["bytes"] else self._MESSAGES
-        return options_from_words(options, words, names, self.USAGE)
+    def _options(self, options: NodeOptions, arguments: list[str]) -> NodeOptions:
+        names = self._BYTES if arguments[:1] == ["bytes"] else self._MESSAGES
+        return options_from_arguments(options, arguments, names, self.USAGE)
 
     def _declare_parameters(self) -> None:
         node = self._node

@@ -17,7 +17,7 @@ from linkwright.graph.endpoints.commander import Commander
 from linkwright.graph.endpoints.drivers import DriverWatch
 from linkwright.graph.qos.compatibility import fit
 from linkwright.nodes.options import NodeOptions, SingleNode, create_node, handle_start_errors
-from linkwright.nodes.settings import log_unknown, options_from_words, words_of
+from linkwright.nodes.settings import arguments_of, log_unknown, options_from_arguments
 from linkwright.nodes.standstill import VELOCITIES, send_stop
 
 
@@ -40,7 +40,7 @@ class TopicTool(SingleNode, ABC):
     _lazy = False
 
     def __init__(self, graph: Graph, options: NodeOptions) -> None:
-        options = self._options(options, words_of(options))
+        options = self._options(options, arguments_of(options))
         self._graph = graph
         self._node, _ = create_node(graph, options, self.DEFAULT_NAME)
         self._publisher: Publisher[Any] | None = None
@@ -58,9 +58,9 @@ class TopicTool(SingleNode, ABC):
         self._graph.unwatch(self._changed.trigger)
         super().close()
 
-    def _options(self, options: NodeOptions, words: list[str]) -> NodeOptions:
+    def _options(self, options: NodeOptions, arguments: list[str]) -> NodeOptions:
         """Return the options with parameters that are set by command-line arguments."""
-        return options_from_words(options, words, self.WORDS, self.USAGE)
+        return options_from_arguments(options, arguments, self.WORDS, self.USAGE)
 
     @abstractmethod
     def _declare(self) -> None:
