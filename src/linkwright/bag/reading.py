@@ -383,9 +383,9 @@ def _storage_targets(path: Path, display_name: str) -> list[Path]:
         raise LinkwrightError(Diagnostic("BAG102", message))
     file_names = ", ".join(file.name for file in files)
     message = phrase(
-        "the names of the files in '{path}' show that they belong to different recordings: {found}",
+        "the names of the files in '{path}' show that they belong to different recordings: {files}",
         path=display_name,
-        found=file_names,
+        files=file_names,
     )
     hint = phrase("pass one of them, or all files of one recording: linkwright view FILE FILE ...")
     raise LinkwrightError(Diagnostic("BAG102", message, hint=hint))

@@ -111,6 +111,6 @@ class RowLookup:
             counts_by_topic.setdefault(topic, {})[interval] = count
         return counts_by_topic
 
-    def _query(self, words: str, *values: int) -> list[Any]:
+    def _query(self, sql: str, *values: int) -> list[Any]:
         connection: Any = self._storage.dbconn
-        return list(connection.execute(words, values))
+        return list(connection.execute(sql, values))

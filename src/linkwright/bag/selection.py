@@ -107,6 +107,10 @@ def _compiled(pattern: str) -> re.Pattern[str] | None:
         raise LinkwrightError(
             Diagnostic(
                 "BAG104",
-                phrase("'{pattern}' is not a valid regular expression: {msg}", pattern=pattern, msg=foreign(error.msg)),
+                phrase(
+                    "'{pattern}' is not a valid regular expression: {reason}",
+                    pattern=pattern,
+                    reason=foreign(error.msg),
+                ),
             )
         ) from error

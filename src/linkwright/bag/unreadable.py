@@ -44,7 +44,7 @@ def diagnose(path: Path, error: Exception) -> Verdict:
     reason = foreign(str(error).strip().rstrip(".") or type(error).__name__)
     if first_bytes is not None and (failure := _diagnose_first_bytes(path, first_bytes)) is not None:
         is_mcap = first_bytes.startswith(_MCAP)  # the error of the library explains what is wrong with an MCAP file
-        return failure._replace(note=phrase("the library reports: {words}", words=reason)) if is_mcap else failure
+        return failure._replace(note=phrase("the library reports: {reason}", reason=reason)) if is_mcap else failure
     return Verdict(reason, None)
 
 
@@ -77,7 +77,9 @@ def _diagnose_first_bytes(path: Path, first_bytes: bytes) -> Verdict | None:
     format_by_suffix = {".mcap": "MCAP", ".db3": "SQLite", PACKED: "zstd"}
     if path.suffix not in format_by_suffix:
         return None
-    hint = phrase("the file has the extension {ending} but not its format; copy or record it again", ending=path.suffix)
+    hint = phrase(
+        "the file has the extension {extension} but not its format; copy or record it again", extension=path.suffix
+    )
     reason = phrase("it does not begin with a {kind} header", kind=foreign(format_by_suffix[path.suffix]))
     return Verdict(reason, hint)
 

@@ -310,5 +310,5 @@ class BagWriter:
 def _split_size_error(size: int, min_size: int) -> LinkwrightError:
     message = phrase("a recording cannot be split into files as small as {size} bytes", size=size)
     return LinkwrightError(
-        Diagnostic("BAG116", message, hint=phrase("use a size of {smallest} bytes or more", smallest=min_size))
+        Diagnostic("BAG116", message, hint=phrase("use a size of {minimum} bytes or more", minimum=min_size))
     )
