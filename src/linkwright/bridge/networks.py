@@ -105,7 +105,7 @@ def read_network(text: str) -> Network:
         raise LinkwrightError(
             Diagnostic(
                 "CLI451",
-                phrase("'{text}' is not a network that can be bridged", text=text),
+                phrase("'{network}' is not a network that can be bridged", network=text),
                 hint=phrase(
                     "write dds or zenoh; to use a domain other than ROS_DOMAIN_ID, add it after a colon, as in dds:5"
                 ),
