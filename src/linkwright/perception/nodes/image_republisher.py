@@ -18,7 +18,7 @@ from linkwright.diagnostics import install_hint
 from linkwright.graph import DEFAULT_QOS, Graph, Node, Publisher, Subscription
 from linkwright.messages import get_message
 from linkwright.nodes.options import NodeOptions, SingleNode, create_node, handle_start_errors
-from linkwright.nodes.settings import bad_value, log_unknown, options_from_words, words_of
+from linkwright.nodes.settings import arguments_of, bad_value, log_unknown, options_from_arguments
 from linkwright.perception.nodes.image_transports import (
     BadImageError,
     compress_depth,
@@ -61,7 +61,7 @@ class ImageRepublisher(SingleNode):
     WORDS: ClassVar[dict[str, Callable[[str], Any]]] = {"in_transport": str, "out_transport": str}
 
     def __init__(self, graph: Graph, options: NodeOptions) -> None:
-        options = options_from_words(options, words_of(options), self.WORDS, self.USAGE)
+        options = options_from_arguments(options, arguments_of(options), self.WORDS, self.USAGE)
         self._node, _ = create_node(graph, options, self.DEFAULT_NAME)
         with handle_start_errors(self._node):
             self._in_transport = self._transport("in_transport", "raw")

@@ -31,9 +31,9 @@ class ScanShadowsFilter(ScanFilter):
     def __post_init__(self) -> None:
         if not 0.0 <= self.min_angle <= 90.0 <= self.max_angle <= 180.0:
             message = phrase(
-                "min_angle ({least:g}) must be 0 to 90 degrees, and max_angle ({most:g}) 90 to 180 degrees",
-                least=self.min_angle,
-                most=self.max_angle,
+                "min_angle ({minimum:g}) must be 0 to 90 degrees, and max_angle ({maximum:g}) 90 to 180 degrees",
+                minimum=self.min_angle,
+                maximum=self.max_angle,
             )
             raise LinkwrightError(Diagnostic("NODE433", message))
 

@@ -136,7 +136,9 @@ class PolygonFilter(ScanFilter):
     def __post_init__(self) -> None:
         numbers = [float(value) for value in _NUMBER_PATTERN.findall(self.polygon)]
         if len(numbers) < 6 or len(numbers) % 2:
-            message = phrase("polygon '{text}' must have three or more corners of two numbers each", text=self.polygon)
+            message = phrase(
+                "polygon '{polygon}' must have three or more corners of two numbers each", polygon=self.polygon
+            )
             hint = phrase("write it like '[[0.2, 0.2], [0.2, -0.2], [-0.2, 0.0]]'")
             raise LinkwrightError(Diagnostic("NODE433", message, hint=hint))
         corners = np.array(numbers).reshape(-1, 2)
