@@ -27,12 +27,12 @@ class Sweep:
     Attributes:
         scenario: the scenario.
         table: the file of the table; its extension selects the format.
-        words: the command line of the sweep; the summary page shows it for reruns.
+        command: the command line of the sweep; the summary page shows it for reruns.
     """
 
     scenario: Scenario
     table: Path
-    words: Sequence[str]
+    command: Sequence[str]
 
     @property
     def page(self) -> Path:
@@ -68,7 +68,7 @@ class Sweep:
             with suppress(KeyboardInterrupt):
                 runner([run for run in runs if run.row not in journal.outcomes], on_outcome)
         table = Table.of(runs, journal.outcomes)
-        page = summary(table, self.scenario.path.name, shlex.join(self.words), len(runs))
+        page = summary(table, self.scenario.path.name, shlex.join(self.command), len(runs))
         for path, content in ((self.table, table_bytes(table, self.table)), (self.page, page)):
             with reporting_write_errors(path):
                 write_whole_file(path, content)
