@@ -76,10 +76,10 @@ def _decode_rvl(data: NDArray[np.uint8]) -> NDArray[np.uint16]:
     if not 0 < columns * rows <= MAX_PIXELS:
         raise BadImageError(
             phrase(
-                "The header of the RVL depth image declares {columns} x {rows} pixels; 1 to {most} are supported",
+                "The header of the RVL depth image declares {columns} x {rows} pixels; 1 to {maximum} are supported",
                 columns=columns,
                 rows=rows,
-                most=MAX_PIXELS,
+                maximum=MAX_PIXELS,
             )
         )
     try:
@@ -100,9 +100,9 @@ def _dequantize(numbers: NDArray[np.uint16], first: float, offset: float) -> NDA
     if not (np.isfinite(first) and np.isfinite(offset) and first > 0.0):
         raise BadImageError(
             phrase(
-                "The header of the depth image has an invalid scale of the depths: {first:g}, {second:g}",
-                first=first,
-                second=offset,
+                "The header of the depth image has an invalid scale of the depths: {scale:g}, {offset:g}",
+                scale=first,
+                offset=offset,
             )
         )
     all_numbers = np.arange(65536, dtype=np.float32)
@@ -171,7 +171,7 @@ def _read_runs(numbers: NDArray[np.int64], pixels: int) -> tuple[list[int], list
     position, remaining, count = 0, pixels, len(numbers)
     while remaining > 0:
         if position + 2 > count:
-            raise BadRvlError(phrase("it ends {left} pixels too early", left=remaining))
+            raise BadRvlError(phrase("it ends {count} pixels too early", count=remaining))
         zeros, nonzeros = values[position], values[position + 1]
         if zeros == 0 and count_positions:
             raise BadRvlError(phrase("it has an empty run of pixels"))
@@ -180,7 +180,7 @@ def _read_runs(numbers: NDArray[np.int64], pixels: int) -> tuple[list[int], list
         runs += (zeros, nonzeros)
         position += 2 + nonzeros
     if remaining < 0:
-        raise BadRvlError(phrase("it has {left} pixels too many", left=-remaining))
+        raise BadRvlError(phrase("it has {count} pixels too many", count=-remaining))
     if position > count:
-        raise BadRvlError(phrase("it ends {left} pixels too early", left=position - count))
+        raise BadRvlError(phrase("it ends {count} pixels too early", count=position - count))
     return count_positions, runs

@@ -96,11 +96,11 @@ def decode_file(data: NDArray[np.uint8]) -> NDArray[Any]:
         ) from None
     raise BadImageError(
         phrase(
-            "The {kind} has {width} x {height} pixels; at most {most} are supported",
+            "The {kind} has {width} x {height} pixels; at most {maximum} are supported",
             kind=file_format(first_bytes),
             width=width,
             height=height,
-            most=MAX_PIXELS,
+            maximum=MAX_PIXELS,
         )
     )
 
