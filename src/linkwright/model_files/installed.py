@@ -122,7 +122,7 @@ def verify_checksum(entry: ModelEntry, path: Path, expected: str | None, origin:
     if digest.hexdigest() != expected:
         message = phrase("'{path}' is not the right file for the model '{name}'", path=origin or path, name=entry.name)
         checksum_note = phrase(
-            "its SHA-256 is {found}, but {expected} is expected", found=digest.hexdigest(), expected=expected
+            "its SHA-256 is {actual}, but {expected} is expected", actual=digest.hexdigest(), expected=expected
         )
         raise LinkwrightError(
             Diagnostic("MODEL104", message, notes=(Note(checksum_note),), hint=manual_download_hint(entry))
