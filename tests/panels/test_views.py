@@ -127,7 +127,9 @@ def test_a_frame_aligned_view_is_shown_as_one_that_flies_and_stays_what_it_is():
         "Point towards: +x axis, Yaw: 1.5, Position: {X: 1, Y: 2, Z: 3}}}}\n"
     )
     config = RvizConfig.parse(text)
-    assert [warning.message for warning in config.warnings] == ["the view 'rviz/FrameAligned' is shown as an FPS view"]
+    assert [warning.message for warning in config.warnings] == [
+        "the view class 'rviz/FrameAligned' is not supported; it is shown as FPS"
+    ]
     view = config.views.current
     assert (view.cls, view.values["Yaw"], view.values["Position/Z"]) == ("rviz_default_plugins/FPS", 1.5, 3.0)
     view.values["Yaw"] = 2.0

@@ -158,13 +158,13 @@ class Session:
         provided_names = self.globals.values
         python = provided_names["python"].values
         if name in ("true", "false"):
-            hint: Phrase | None = phrase("write {text}", text=name.capitalize())
+            hint: Phrase | None = phrase("write {form}", form=name.capitalize())
         elif name in python:
             hint = phrase("write python.{name}", name=name)
         elif name in self.arguments:
             hint = phrase("'{name}' is an argument: write $(arg {name})", name=name)
         elif name.lower() in provided_names:
-            hint = phrase("write {text}", text=name.lower())
+            hint = phrase("write {form}", form=name.lower())
         elif f"**{name}" in set(environment.blocks()):
             hint = phrase(
                 '\'{name}\' is defined without a value; write <xacro:property name="{name}" value="..."/>', name=name
@@ -378,7 +378,7 @@ class Session:
             self.warn(
                 "XAC507",
                 phrase("calling '{name}' by its bare name is deprecated", name=bare),
-                hint=phrase("write {text}", text=better),
+                hint=phrase("write {form}", form=better),
                 called=bare,
             )
             return function(*arguments, **named)

@@ -118,7 +118,7 @@ class AxisNotUnit(Rule):
                 ),
                 axis,
                 "xyz",
-                hint=phrase("write {text}", text=unit_vector),
+                hint=phrase("write {form}", form=unit_vector),
                 fix=replace_value(axis, "xyz", unit_vector),
             )
 
@@ -261,7 +261,7 @@ class AxisTilted(Rule):
                 ),
                 axis,
                 "xyz",
-                hint=phrase("write {text}", text=exact_axis),
+                hint=phrase("write {form}", form=exact_axis),
                 fix=replace_value(axis, "xyz", exact_axis, safe=False),
             )
 

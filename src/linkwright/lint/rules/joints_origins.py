@@ -158,7 +158,7 @@ class AngleRounded(Rule):
                     ),
                     origin,
                     "rpy",
-                    hint=phrase("write {text}", text=suggestion),
+                    hint=phrase("write {form}", form=suggestion),
                     fix=Fix((edit,), safe=False) if edit else None,
                 )
 

@@ -70,7 +70,7 @@ class DeprecatedFunction(XacroRule):
                 if source.text.startswith(name, start):
                     fix = Fix((Edit(source.name, start, start, full_name.removesuffix(name)),))
         message = phrase("calling '{name}' by its bare name is deprecated", name=name)
-        return self.report(message, element, attribute, span=span, hint=phrase("write {text}", text=full_name), fix=fix)
+        return self.report(message, element, attribute, span=span, hint=phrase("write {form}", form=full_name), fix=fix)
 
 
 def _is_called_by(name: str, file: FileFacts) -> bool:

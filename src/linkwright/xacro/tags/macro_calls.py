@@ -276,7 +276,7 @@ class _Call:
             name=macro.name,
             parameters=quoted_names(parameter.name for parameter in missing),
         )
-        hint = phrase("write {text}", text=" ".join(f'{parameter.name}="..."' for parameter in missing))
+        hint = phrase("write {form}", form=" ".join(f'{parameter.name}="..."' for parameter in missing))
         if not all(parameter.name.lstrip("*").isidentifier() for parameter in missing):
             hint = phrase("a default that contains spaces ends at the first space; put it in quotes")
         note = self._definition_note(macro, missing[0])
