@@ -12,7 +12,7 @@ from itertools import pairwise
 from gazebo_sdf import (
     BLACK,
     BLUE,
-    GREY,
+    GRAY,
     ORANGE,
     RED,
     SKIN,
@@ -167,7 +167,7 @@ def sign(name: str, plates: Sequence[tuple[str, str, Colour]], height: float) ->
         )
         for at, (part, file, colour) in enumerate(plates)
     ]
-    pole = cylinder("pole", 0.025, height, Pose(z=height / 2), GREY)
+    pole = cylinder("pole", 0.025, height, Pose(z=height / 2), GRAY)
     return [pole, *upright]
 
 
@@ -196,7 +196,7 @@ MODELS = {
     "traffic_cone": (traffic_cone, "A traffic cone that can be knocked over"),
     "ball": (ball, "A football that rolls"),
     "crate": (crate, "A wooden crate that a robot can push"),
-    "person_standing": (lambda: person("person_standing", 1.0, BLUE, GREY), "A standing person of 1.75 m"),
+    "person_standing": (lambda: person("person_standing", 1.0, BLUE, GRAY), "A standing person of 1.75 m"),
     "child_standing": (lambda: person("child_standing", 0.68, YELLOW, RED), "A standing child of 1.2 m"),
     "stop_sign": (stop_sign, "A stop sign on a pole"),
     "yield_sign": (yield_sign, "A yield sign on a pole"),

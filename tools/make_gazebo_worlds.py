@@ -19,8 +19,8 @@ from gazebo_models import MODELS, model_config
 from gazebo_sdf import (
     BLACK,
     BLUE,
+    GRAY,
     GREEN,
-    GREY,
     RED,
     WALL,
     WHITE,
@@ -121,14 +121,14 @@ def obstacles() -> list[Model | Include]:
         (-2.2, 2.4, 1.2, 0.4, 0.8, -0.3, BLUE),
         (-3.0, -1.8, 0.6, 0.6, 0.5, 0.8, GREEN),
         (1.2, -2.6, 1.6, 0.3, 0.4, 0.2, YELLOW),
-        (3.8, -0.6, 0.4, 1.4, 0.7, 0.0, GREY),
+        (3.8, -0.6, 0.4, 1.4, 0.7, 0.0, GRAY),
     ]
     pillars = [(1.0, 2.9), (-1.2, -1.2), (3.2, 2.8), (-3.9, 0.7), (3.4, -2.9)]
     parts = [
         box(f"block_{at}", (x_size, y_size, tall), Pose(x, y, tall / 2, yaw), colour)
         for at, (x, y, x_size, y_size, tall, yaw, colour) in enumerate(blocks, start=1)
     ]
-    parts += [cylinder(f"pillar_{at}", 0.15, 1.2, Pose(x, y, 0.6), GREY) for at, (x, y) in enumerate(pillars, start=1)]
+    parts += [cylinder(f"pillar_{at}", 0.15, 1.2, Pose(x, y, 0.6), GRAY) for at, (x, y) in enumerate(pillars, start=1)]
     ramp = box("ramp", (1.2, 0.9, 0.05), Pose(-3.6, 3.0, 0.08, pitch=-0.12), WOOD)
     return [
         walls(rectangle(-5, 5, -4, 4), 1.0, 0.15),
@@ -163,7 +163,7 @@ def house() -> list[Model | Include]:
             box("bed", (1.5, 2.0, 0.45), Pose(-4.1, 2.85, 0.225), WHITE),
             box("pillow", (1.1, 0.35, 0.12), Pose(-4.1, 3.6, 0.51), YELLOW, solid=False),
             box("wardrobe", (1.2, 0.55, 1.7), Pose(-1.7, 3.6, 0.85), WOOD),
-            box("kitchen_counter", (0.6, 3.0, 0.9), Pose(4.6, -1.6, 0.45), GREY),
+            box("kitchen_counter", (0.6, 3.0, 0.9), Pose(4.6, -1.6, 0.45), GRAY),
             box("bath_tub", (1.7, 0.75, 0.5), Pose(4.0, 3.5, 0.25), WHITE),
             box("wash_basin", (0.5, 0.4, 0.8), Pose(4.6, 1.3, 0.40), WHITE),
             box("table_top", (1.0, 1.0, 0.05), Pose(3.0, -2.6, 0.72), WOOD),
@@ -235,7 +235,7 @@ def _runs(line: int, closed: Sequence[bool], cell: float) -> Iterator[tuple[floa
 def playground() -> list[Model | Include]:
     """A yard with things to detect: cones as a slalom, balls, crates, people and signs."""
     slalom = [Include("traffic_cone", f"cone_{at}", Pose(1.5 + 1.2 * at, 0.35 * (-1) ** at)) for at in range(1, 5)]
-    coloured = [
+    colored = [
         Model(
             f"{word}_ball",
             [sphere("ball", 0.15, Pose(), colour)],
@@ -261,7 +261,7 @@ def playground() -> list[Model | Include]:
         drums,
         *slalom,
         Include("ball", "football", Pose(1.2, 1.0)),
-        *coloured,
+        *colored,
         *stacked,
         Include("person_standing", "adult_1", Pose(4.5, -1.8, 0, 2.6)),
         Include("person_standing", "adult_2", Pose(-2.6, 2.6, 0, -0.8)),

@@ -62,7 +62,7 @@ def _seen(world: World) -> Grid:
         if tuple(cell) in seen:
             continue
         seen.add(tuple(cell))
-        place = grid.centres_of(cell)
+        place = grid.centers_of(cell)
         origin = np.array((*place, HEIGHT))
         distances, _ = cast(simulation.model, simulation.data, origin, rays, groups, apart_from=-1, reach=REACH)
         met = distances > 0.0
@@ -74,7 +74,7 @@ def _seen(world: World) -> Grid:
         for way in ((APART, 0), (-APART, 0), (0, APART), (0, -APART)):
             beside = cell + way
             between = np.linspace(cell, beside, APART + 1).astype(int)
-            inside = (np.abs(grid.centres_of(beside)) < INSIDE).all()
+            inside = (np.abs(grid.centers_of(beside)) < INSIDE).all()
             if inside and not hits[tuple(between.T)].any() and passes[tuple(between.T)].all():
                 waiting.append(beside)
     # A ray that grazes a wall goes through its cells, too: what was hit as a rule is occupied.

@@ -92,7 +92,7 @@ def test_only_images_of_more_than_eight_bits_have_a_range():
 @pytest.mark.parametrize("pattern", ["rggb", "bggr", "gbrg", "grbg"])
 def test_mosaics_give_their_colours(pattern):
     value = {"r": 200, "g": 100, "b": 50}
-    tile = np.array([value[colour] for colour in pattern], np.uint8).reshape(2, 2)
+    tile = np.array([value[color] for color in pattern], np.uint8).reshape(2, 2)
     mosaic = np.tile(tile, (3, 3))
     expected = [[[200, 100, 50]] * 6] * 6
     assert pixels(image(f"bayer_{pattern}8", 6, 6, mosaic.tobytes())) == expected
@@ -102,11 +102,11 @@ def test_mosaics_give_their_colours(pattern):
 
 def test_chroma_becomes_colour():
     # BT.601: black, white, and the red of 8-bit video
-    grey = [[[0, 0, 0], [255, 255, 255]]]
+    gray = [[[0, 0, 0], [255, 255, 255]]]
     for encoding in ("yuv422", "uyvy"):
-        assert pixels(image(encoding, 2, 1, bytes([128, 16, 128, 235]))) == grey
+        assert pixels(image(encoding, 2, 1, bytes([128, 16, 128, 235]))) == gray
     for encoding in ("yuv422_yuy2", "yuyv"):
-        assert pixels(image(encoding, 2, 1, bytes([16, 128, 235, 128]))) == grey
+        assert pixels(image(encoding, 2, 1, bytes([16, 128, 235, 128]))) == gray
     assert pixels(image("yuyv", 2, 1, bytes([81, 90, 81, 240]))) == [[[255, 0, 0]] * 2]
     assert pixels(image("nv24", 2, 1, bytes([81, 81, 90, 240, 90, 240]))) == [[[255, 0, 0]] * 2]
     assert pixels(image("nv21", 2, 2, bytes([81, 81, 81, 81, 240, 90]))) == [[[255, 0, 0]] * 2] * 2

@@ -89,8 +89,8 @@ def test_the_upper_deck_is_centred_0_32_m_above_base_link() -> None:
 def test_every_visual_but_the_mesh_has_a_colour(name: str) -> None:
     for link in load_model(name).links.values():
         (visual,) = link.visuals
-        coloured = visual.material is not None and visual.material.rgba is not None
-        assert coloured != isinstance(visual.geometry, Mesh), link.name
+        colored = visual.material is not None and visual.material.rgba is not None
+        assert colored != isinstance(visual.geometry, Mesh), link.name
 
 
 @pytest.mark.parametrize("name", ["mbot_with_kinect.urdf", "mbot_base.xacro"])

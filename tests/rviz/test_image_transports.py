@@ -76,10 +76,10 @@ def test_whole_depths_are_what_they_were(packing):
 
 @pytest.mark.parametrize("packing", ["png", "rvl"])
 def test_depths_in_metres_are_nearly_what_they_were(packing):
-    metres = np.array([[0.5, 1.0, 4.0, 9.0], [np.nan, np.inf, 11.0, 2.0]])
-    image = decode_compressed(depth_message(metres, packing))
+    meters = np.array([[0.5, 1.0, 4.0, 9.0], [np.nan, np.inf, 11.0, 2.0]])
+    image = decode_compressed(depth_message(meters, packing))
     assert image.encoding == "32FC1"
-    expected = np.where(metres < 10.0, metres, np.nan)
+    expected = np.where(meters < 10.0, meters, np.nan)
     assert np.allclose(image.data.view("<f4").reshape(2, 4), expected, rtol=0.002, equal_nan=True)
 
 
@@ -205,14 +205,14 @@ async def test_a_depth_cloud_takes_the_transports_of_its_hints(packing):
         node = w.graph.create_node("camera")
         info(node)
         depths = node.create_publisher(CompressedImage, "/depth/image/compressedDepth", 5)
-        colours = node.create_publisher(CompressedImage, "/color/image/compressed", 5)
+        colors = node.create_publisher(CompressedImage, "/color/image/compressed", 5)
         depths.publish(depth_message(np.array([[2000, 4000]], np.uint16), packing))
-        colours.publish(packed("rgb8; jpeg compressed bgr8", jpeg((0, 0, 250), 2, 1)))
+        colors.publish(packed("rgb8; jpeg compressed bgr8", jpeg((0, 0, 250), 2, 1)))
         await w.settle()
         display = w.display("DepthCloud")
         (content,) = contents(display)
         assert content.fields["positions"].reshape(-1, 3).tolist() == [[0, 0, 2], [2, 0, 4]]
-        assert np.allclose(clouds.colours(display), [[0, 0, 250, 255]] * 2, atol=4)
+        assert np.allclose(clouds.colors(display), [[0, 0, 250, 255]] * 2, atol=4)
         status = w.status("DepthCloud")
         assert status["Message"] == ("ok", "Ok")
         assert (status["Depth Image Size"], status["Image Size"]) == (("ok", "2 x 1"), ("ok", "2 x 1"))

@@ -107,8 +107,8 @@ class TestConversions:
         deep = image(np.array([[0, 65535, 32896]], np.uint16), "mono16")
         assert BRIDGE.imgmsg_to_cv2(deep, "mono8").tolist() == [[0, 255, 128]]
         assert BRIDGE.imgmsg_to_cv2(deep, "bgr8")[0, 1].tolist() == [255, 255, 255]
-        metres = image(np.array([[1.6, np.nan, 1e9]], np.float32), "32FC1")
-        assert BRIDGE.imgmsg_to_cv2(metres, "16UC1").tolist() == [[2, 0, 65535]]
+        meters = image(np.array([[1.6, np.nan, 1e9]], np.float32), "32FC1")
+        assert BRIDGE.imgmsg_to_cv2(meters, "16UC1").tolist() == [[2, 0, 65535]]
 
     def test_a_mosaic(self):
         mosaic = np.full((4, 4), 10, np.uint8)
@@ -117,8 +117,8 @@ class TestConversions:
         assert BRIDGE.imgmsg_to_cv2(image(mosaic, "bayer_rggb8"), "bgr8")[2, 2].tolist() == [10, 10, 200]
 
     def test_yuv(self):
-        grey = np.array([[[128, 100], [128, 200]]], np.uint8)
-        assert BRIDGE.imgmsg_to_cv2(image(grey, "yuv422"), "bgr8")[0, 0].tolist() == pytest.approx([98] * 3, abs=3)
+        gray = np.array([[[128, 100], [128, 200]]], np.uint8)
+        assert BRIDGE.imgmsg_to_cv2(image(gray, "yuv422"), "bgr8")[0, 0].tolist() == pytest.approx([98] * 3, abs=3)
 
     @pytest.mark.parametrize(
         ("source", "wanted", "words"),

@@ -106,7 +106,7 @@ def map_has_rooms(work):
 @check("save", en="The walls are where they are in the flat.", zh="墙的位置与公寓一致。")
 def map_has_walls(work):
     grid = read_map(work)
-    occupied = grid.centres_of(np.argwhere(grid.cells == OCCUPIED))
+    occupied = grid.centers_of(np.argwhere(grid.cells == OCCUPIED))
     if not len(occupied):
         raise NotYet(en="The map has no occupied cell.", zh="地图中没有占用的格子。")
     points = wall_points()

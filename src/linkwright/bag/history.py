@@ -221,7 +221,7 @@ class _Track:
         return 0 if replaced_entry is None else _stored_size(replaced_entry[2])
 
     def thin(self, wanted_bytes: int) -> int:
-        """Drop messages that are close to their neighbours in relation to their age.
+        """Drop messages that are close to their neighbors in relation to their age.
 
         Args:
             wanted_bytes: the number of bytes to free.

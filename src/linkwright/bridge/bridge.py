@@ -1,7 +1,7 @@
 """A bridge that mirrors the nodes of each of two networks in the other one.
 
 The mirrored nodes have the same topics and services. Two bridges between the same networks do not carry the same
-traffic: nodes of a bridge are recognised by their enclave, and traffic that both could carry is carried by the bridge
+traffic: nodes of a bridge are recognized by their enclave, and traffic that both could carry is carried by the bridge
 whose ID sorts first (decision 0066).
 """
 

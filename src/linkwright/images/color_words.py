@@ -1,4 +1,4 @@
-"""Colours in class names, such as ``red_ball``."""
+"""Colors in class names, such as ``red_ball``."""
 
 from __future__ import annotations
 
@@ -18,10 +18,10 @@ RGB_BY_COLOR_WORD: dict[str, tuple[int, int, int]] = {
     "grey": (145, 145, 145),
     "black": (30, 30, 30),
 }
-"""The red, green and blue, 0 to 255, of the colours that have a name."""
+"""The red, green and blue, 0 to 255, of the colors that have a name."""
 
 COLOR_WORD_SPELLINGS = {**{word: word for word in RGB_BY_COLOR_WORD}, "gray": "grey", "violet": "purple"}
-"""The English words for colours, each with its name in `RGB_BY_COLOR_WORD`."""
+"""The English words for colors, each with its name in `RGB_BY_COLOR_WORD`."""
 
 
 def words_of(name: str) -> list[str]:
@@ -29,15 +29,15 @@ def words_of(name: str) -> list[str]:
     return [word for word in re.split(r"[\s_\-]+", name.lower()) if word]
 
 
-def find_colour_word(name: str) -> str | None:
-    """Return the colour word in a class name, one of `RGB_BY_COLOR_WORD`, or None if there is none."""
+def find_color_word(name: str) -> str | None:
+    """Return the color word in a class name, one of `RGB_BY_COLOR_WORD`, or None if there is none."""
     return next((COLOR_WORD_SPELLINGS[word] for word in words_of(name) if word in COLOR_WORD_SPELLINGS), None)
 
 
 def find_rgb(name: str) -> tuple[int, int, int] | None:
-    """Return red, green and blue, 0 to 255, of the colour in a class name.
+    """Return red, green and blue, 0 to 255, of the color in a class name.
 
-    Return None if the name contains no colour.
+    Return None if the name contains no color.
     """
-    colour = find_colour_word(name)
-    return None if colour is None else RGB_BY_COLOR_WORD[colour]
+    color = find_color_word(name)
+    return None if color is None else RGB_BY_COLOR_WORD[color]

@@ -1,7 +1,7 @@
 """The transport ``compressedDepth``: a header, then the depths as 16-bit PNG or RVL.
 
 It follows compressed_depth_image_transport. The header consists of an unused int32 and two float32. Float32 depths are
-quantised to integers, which grow as the distance decreases: ``depth = first / (number - second)``. 0 means that there
+quantized to integers, which grow as the distance decreases: ``depth = first / (number - second)``. 0 means that there
 is no depth. An RVL stream is preceded by its columns and rows, each a uint32.
 
 RVL is the lossless compression of depth images by Wilson ("Fast Lossless Depth Image Compression", ISS 2017). A stream
@@ -96,7 +96,7 @@ def _decode_rvl(data: NDArray[np.uint8]) -> NDArray[np.uint16]:
 
 
 def _dequantize(numbers: NDArray[np.uint16], first: float, offset: float) -> NDArray[np.float32]:
-    """Return the depths in metres, shape (height, width), with NaN for pixels without a depth."""
+    """Return the depths in meters, shape (height, width), with NaN for pixels without a depth."""
     if not (np.isfinite(first) and np.isfinite(offset) and first > 0.0):
         raise BadImageError(
             phrase(
@@ -107,9 +107,9 @@ def _dequantize(numbers: NDArray[np.uint16], first: float, offset: float) -> NDA
         )
     all_numbers = np.arange(65536, dtype=np.float32)
     with np.errstate(divide="ignore"):
-        metres = np.float32(first) / (all_numbers - np.float32(offset))
-    metres[0] = np.nan
-    depths: NDArray[np.float32] = metres[numbers]
+        meters = np.float32(first) / (all_numbers - np.float32(offset))
+    meters[0] = np.nan
+    depths: NDArray[np.float32] = meters[numbers]
     return depths
 
 

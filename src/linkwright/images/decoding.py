@@ -1,7 +1,7 @@
-"""The conversion of sensor_msgs/msg/Image to 8-bit grey, RGB or RGBA pixels.
+"""The conversion of sensor_msgs/msg/Image to 8-bit gray, RGB or RGBA pixels.
 
 Luma and chroma of video cameras are converted (ITU-R BT.601, studio range), and images of a Bayer filter demosaiced.
-Grey values of more than 8 bits are scaled by a range, as by RViz's Normalize Range.
+Gray values of more than 8 bits are scaled by a range, as by RViz's Normalize Range.
 """
 
 from __future__ import annotations
@@ -34,7 +34,7 @@ class DecodedImage:
     """The pixels of an image, row by row from the top.
 
     Attributes:
-        pixels: shape (height, width) for grey, (height, width, 3) for RGB, (height, width, 4) for RGBA.
+        pixels: shape (height, width) for gray, (height, width, 3) for RGB, (height, width, 4) for RGBA.
     """
 
     pixels: Pixels
@@ -258,35 +258,35 @@ def _normalize(values: NDArray[Any], ranges: RangeFinder) -> Pixels:
 def demosaic(mosaic: Pixels, pattern: str) -> Pixels:
     """Return the RGB pixels of a Bayer mosaic, shape (height, width, 3).
 
-    Each missing colour is the mean of the neighbours that have it.
+    Each missing color is the mean of the neighbors that have it.
 
     Args:
         mosaic: shape (height, width).
-        pattern: the colours of the first two pixels of the first row, then of the second row, such as ``rggb``.
+        pattern: the colors of the first two pixels of the first row, then of the second row, such as ``rggb``.
     """
     height, width = mosaic.shape
     if height < 2 or width < 2:
         return np.repeat(mosaic[..., np.newaxis], 3, axis=2)
     padded = np.pad(mosaic, 1, mode="reflect").astype(np.uint16)
-    neighbours = [padded[1 + dy : 1 + dy + height, 1 + dx : 1 + dx + width] for dy in (-1, 0, 1) for dx in (-1, 0, 1)]
-    _, up, _, left, _, right, _, down, _ = neighbours
+    neighbors = [padded[1 + dy : 1 + dy + height, 1 + dx : 1 + dx + width] for dy in (-1, 0, 1) for dx in (-1, 0, 1)]
+    _, up, _, left, _, right, _, down, _ = neighbors
     horizontal = (left + right) >> 1
     vertical = (up + down) >> 1
     cross = (left + right + up + down) >> 2
-    corners = (neighbours[0] + neighbours[2] + neighbours[6] + neighbours[8]) >> 2
+    corners = (neighbors[0] + neighbors[2] + neighbors[6] + neighbors[8]) >> 2
     result = np.empty((height, width, 3), np.uint8)
-    for position, colour in enumerate(pattern):
+    for position, color in enumerate(pattern):
         rows, columns = slice(position // 2, None, 2), slice(position % 2, None, 2)
-        known_colour = mosaic[rows, columns]
+        known_color = mosaic[rows, columns]
         channels: tuple[NDArray[Any], ...]
-        if colour == "g":
+        if color == "g":
             is_red_in_row = pattern[position ^ 1] == "r"
             red, blue = (horizontal, vertical) if is_red_in_row else (vertical, horizontal)
-            channels = (red[rows, columns], known_colour, blue[rows, columns])
-        elif colour == "r":
-            channels = (known_colour, cross[rows, columns], corners[rows, columns])
+            channels = (red[rows, columns], known_color, blue[rows, columns])
+        elif color == "r":
+            channels = (known_color, cross[rows, columns], corners[rows, columns])
         else:
-            channels = (corners[rows, columns], cross[rows, columns], known_colour)
+            channels = (corners[rows, columns], cross[rows, columns], known_color)
         for index, channel in enumerate(channels):
             result[rows, columns, index] = channel
     return result

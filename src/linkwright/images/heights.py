@@ -1,4 +1,4 @@
-"""The heights of a heightmap, from the grey values of an image."""
+"""The heights of a heightmap, from the gray values of an image."""
 
 from __future__ import annotations
 
@@ -43,8 +43,8 @@ def read_heights(path: Path) -> Heights:
             simplefilter("ignore")  # errors are reported below
             with Image.open(path) as image:
                 mode = image.mode
-                grey = image if mode in ("L", "I", "F", "I;16", "I;16B") else image.convert("L")
-                values = np.asarray(grey, dtype=np.float64)
+                gray = image if mode in ("L", "I", "F", "I;16", "I;16B") else image.convert("L")
+                values = np.asarray(gray, dtype=np.float64)
     except (OSError, UnidentifiedImageError, ValueError, Image.DecompressionBombError) as error:
         try:
             mode, values = "F", read_elevation(path)

@@ -197,7 +197,7 @@ def made_fixed_array(name: str, value: Any, kind: FieldType) -> NDArray[Any]:
     return converted
 
 
-# --- values of numpy, recognised without importing numpy ------------------------------------------------------------
+# --- values of numpy, recognized without importing numpy ------------------------------------------------------------
 
 
 def is_array(value: Any) -> TypeGuard[NDArray[Any]]:

@@ -1,11 +1,11 @@
-"""The message tf2_msgs/msg/TFMessage, optimised for many transforms.
+"""The message tf2_msgs/msg/TFMessage, optimized for many transforms.
 
 Five hundred joints at 30 Hz are 15 000 transforms per second. Creating message objects for them would take longer than
 all other work of the process. Therefore, a `TFMessage` may contain a `TransformBatch`, which has the same data as names
 and one array, or the received bytes. It creates the objects only when they are requested.
 
 Messages with transforms between the same frames differ only in the bytes of stamps and numbers. A `TransformLayout`
-stores the positions of these bytes. A message is written by filling in a template, and a received message is recognised
+stores the positions of these bytes. A message is written by filling in a template, and a received message is recognized
 by comparing its other bytes with the template. In both directions, a transform takes a few nanoseconds and no object is
 created.
 """
@@ -73,7 +73,7 @@ class TransformLayout:
 
         Args:
             stamp_ns: the stamp, in nanoseconds since the epoch.
-            poses: array, shape (n, 7), of x y z (metres) and qx qy qz qw.
+            poses: array, shape (n, 7), of x y z (meters) and qx qy qz qw.
 
         Raises:
             OverflowError: the seconds do not fit into 32 bits.
@@ -92,7 +92,7 @@ class TransformLayout:
 
         Args:
             stamps: the seconds and nanoseconds of each stamp.
-            poses: array, shape (n, 7), of x y z (metres) and qx qy qz qw.
+            poses: array, shape (n, 7), of x y z (meters) and qx qy qz qw.
         """
         words = self._words.copy()
         words.view(np.uint32)[self._stamps] = np.array([sec for sec, _ in stamps], np.int32).view(np.uint32)
@@ -122,7 +122,7 @@ class TransformLayout:
         return not ((words ^ self._words) & self._mask).any()
 
     def poses_in(self, words: NDArray[np.uint64]) -> NDArray[np.float64]:
-        """Return the poses in a message: array, shape (n, 7), of x y z (metres) and qx qy qz qw."""
+        """Return the poses in a message: array, shape (n, 7), of x y z (meters) and qx qy qz qw."""
         poses: NDArray[np.float64] = words.view(np.float64)[self._poses]
         return poses
 
@@ -148,7 +148,7 @@ class ReceivedTransforms(NamedTuple):
     words: NDArray[np.uint64]
 
     def poses(self) -> NDArray[np.float64]:
-        """Return the poses: array, shape (n, 7), of x y z (metres) and qx qy qz qw."""
+        """Return the poses: array, shape (n, 7), of x y z (meters) and qx qy qz qw."""
         return self.layout.poses_in(self.words)
 
     def stamps_ns(self) -> NDArray[np.int64]:
@@ -215,7 +215,7 @@ class TransformBatch:
         parents: the parent frame of each transform.
         children: the child frame of each transform.
         stamp_ns: the stamp of all transforms, in nanoseconds since the epoch.
-        poses: array, shape (n, 7), of the pose of each child in its parent: x y z (metres) and qx qy qz qw.
+        poses: array, shape (n, 7), of the pose of each child in its parent: x y z (meters) and qx qy qz qw.
     """
 
     parents: tuple[str, ...]
@@ -339,7 +339,7 @@ class TFMessage(Message):
     def columns(self) -> tuple[tuple[str, ...], tuple[str, ...], list[int], NDArray[np.float64]] | None:
         """Return the parents, children, stamps and poses of the transforms.
 
-        Stamps are in nanoseconds since the epoch. Poses are an array, shape (n, 7), of x y z (metres) and qx qy qz qw.
+        Stamps are in nanoseconds since the epoch. Poses are an array, shape (n, 7), of x y z (meters) and qx qy qz qw.
 
         If the message stores objects, return None, because reading the objects directly is faster.
         """

@@ -98,8 +98,8 @@ def log_unknown(node: Node) -> None:
 
     This must be called after all declarations.
 
-    A name that looks misspelt causes a warning. Other names are logged only as information, because parameters for all
-    nodes of a launch (``/**``) also reach nodes that do not have them.
+    A name that looks misspelled causes a warning. Other names are logged only as information, because parameters for
+    all nodes of a launch (``/**``) also reach nodes that do not have them.
     """
     declared_names = node.parameter_names()
     undeclared_names = [name for name in node.undeclared_overrides() if not name.startswith(_COMMON_PREFIXES)]

@@ -25,7 +25,7 @@ HELP = f"""A command line utility for manually sending a static transform.
 
 usage: {USAGE}
 
-Translations are in metres, and angles are in radians. Deprecated forms with positional arguments:
+Translations are in meters, and angles are in radians. Deprecated forms with positional arguments:
 static_transform_publisher X Y Z YAW PITCH ROLL FRAME_ID CHILD_FRAME_ID
 static_transform_publisher X Y Z QX QY QZ QW FRAME_ID CHILD_FRAME_ID"""
 _TRANSLATION = ("--x", "--y", "--z")
@@ -40,7 +40,7 @@ _POSITIONS_WITH_QUATERNION = (*_TRANSLATION, *_QUATERNION, *_FRAMES)
 class StaticTransform:
     """The pose of the child frame in the parent frame, from the command line.
 
-    The translation is in metres, and the rotation is a unit quaternion x y z w. `old_style` is true if the values were
+    The translation is in meters, and the rotation is a unit quaternion x y z w. `old_style` is true if the values were
     positional arguments, which are deprecated in tf2_ros.
     """
 

@@ -115,7 +115,7 @@ class MadgwickFilter:
         self.orientation = normalized(*_add_scaled_quaternion(self.orientation, change, seconds))
 
     def _gradient(self, acceleration: Vector3, magnetic: Vector3 | None) -> Quaternion | None:
-        """Return the normalised gradient of the error of the orientation.
+        """Return the normalized gradient of the error of the orientation.
 
         Return None if the error is zero or the acceleration has no usable direction.
         """

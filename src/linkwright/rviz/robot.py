@@ -1,6 +1,6 @@
 """A robot for the page: the source of its description, its shapes and its size.
 
-A description is received on a topic or read from a file. It is converted to links with shapes, colours, files and
+A description is received on a topic or read from a file. It is converted to links with shapes, colors, files and
 poses, which pages draw.
 """
 
@@ -238,7 +238,7 @@ def _node_text(publisher: EndpointInfo) -> str:
 
 
 def link_inertia(inertial: Inertial | None) -> LinkInertia | None:
-    """Return a link's mass, centre of mass and equivalent box, or None if not computable."""
+    """Return a link's mass, center of mass and equivalent box, or None if not computable."""
     if inertial is None:
         return None
     from linkwright.inertia.inertial import from_inertial  # few pages request inertias
@@ -303,8 +303,8 @@ def has_visuals(robot: Robot, finder: PackageFinder) -> bool:
 class SceneBuilder:
     """A converter of robots to the page's form.
 
-    Each visual has the colour of its own material, whereas RViz colours links with several visuals incorrectly. A
-    collision has the colour of the link's first visual, as in RViz.
+    Each visual has the color of its own material, whereas RViz colors links with several visuals incorrectly. A
+    collision has the color of the link's first visual, as in RViz.
 
     Attributes:
         index: finds mesh and texture files, and collects them for `MeshFolders`.

@@ -33,7 +33,7 @@ from linkwright.sdf.shapes import Shape as SdfShape
 from linkwright.sdf.worlds import World
 
 _DEFAULT_COLOR = [0.7, 0.7, 0.7, 1.0]
-"""The colour of shapes without a material: grey, as in Gazebo."""
+"""The color of shapes without a material: gray, as in Gazebo."""
 _MAX_HEIGHTS = 257
 """The largest number of heights along a side of a heightmap."""
 _COLLISION_COLOR = [1.0, 0.55, 0.1, 0.6]
@@ -176,7 +176,7 @@ class _Builder:
     def _heights(self, link: str, uri: str) -> NDArray[np.float32] | None:
         """Return the heights of a heightmap as in the simulation, or None if it cannot be read.
 
-        The image is decoded here, because browsers decode neither TIFF nor 16-bit grey.
+        The image is decoded here, because browsers decode neither TIFF nor 16-bit gray.
         """
         if self._url_of(link, uri, IMAGE_TYPES) is None:
             return None
@@ -223,13 +223,13 @@ def _maps(workflow: Workflow) -> tuple[str, ...]:
 
 
 def _has_surface(workflow: Workflow) -> bool:
-    """Return whether a material has images other than the colour image, roughness or metalness."""
+    """Return whether a material has images other than the color image, roughness or metalness."""
     default = Workflow()
     return any(_maps(workflow)) or (workflow.roughness, workflow.metalness) != (default.roughness, default.metalness)
 
 
 def _appearance(material: Material) -> tuple[Sequence[float] | None, str]:
-    """Return the colour of a material or None, and the address of its colour image or ``""``.
+    """Return the color of a material or None, and the address of its color image or ``""``.
 
     Material scripts were read with the world. For a model from text, only Gazebo's own material names are known here.
     """

@@ -27,7 +27,7 @@ class Heard:
         confidence: the confidence of the least certain word, 0 to 1.
         final: whether the utterance is over; a partial result may still change.
         start: the start of the utterance, in seconds of sound since the engine was created.
-        end: the end of the recognised sound, on the same time scale.
+        end: the end of the recognized sound, on the same time scale.
         nearest: if the text is empty, the most similar phrase; empty if no phrase is similar.
     """
 
@@ -44,7 +44,7 @@ class EngineOptions:
     """The options of an engine.
 
     Attributes:
-        phrases: all phrases to recognise; the engine must not return any other text.
+        phrases: all phrases to recognize; the engine must not return any other text.
         language: ``en``, ``zh`` or another BCP 47 tag, for engines that depend on the language.
         model: the file or folder of the model, for engines that need one; None for the engine's default.
     """
@@ -55,7 +55,7 @@ class EngineOptions:
 
 
 class SpeechEngine(ABC):
-    """A recogniser of phrases in a stream of sound.
+    """A recognizer of phrases in a stream of sound.
 
     Only one thread at a time may call it.
     """
@@ -73,7 +73,7 @@ class SpeechEngine(ABC):
 
     @property
     def problem(self) -> Diagnostic | None:
-        """The reason why the engine recognises less than it should, or None if it works fully."""
+        """The reason why the engine recognizes less than it should, or None if it works fully."""
         return None
 
     def close(self) -> None:  # noqa: B027 - few engines have resources to release

@@ -21,7 +21,7 @@ _IGNORED_DOCSTRING_RULES = ("D100", "D101", "D102", "D103", "D104", "D105", "D10
 _IGNORED_STYLE_RULES = ("B902", "C816", "I202", *_IGNORED_DOCSTRING_RULES)
 _SOURCE_SUFFIXES = frozenset({".c", ".cc", ".cmake", ".cpp", ".cxx", ".h", ".hh", ".hpp", ".hxx", ".py"})
 _HEADER_LENGTH = 4000
-"""The number of characters at the start of a file in which its copyright notice and licence are searched for."""
+"""The number of characters at the start of a file in which its copyright notice and license are searched for."""
 _COPYRIGHT = re.compile(r"copyright.*\d{4}|SPDX-FileCopyrightText:", re.IGNORECASE)
 _LICENSE = re.compile(
     r"licensed under|SPDX-License-Identifier:|permission is hereby granted|redistribution and use|GNU \w* ?general",
@@ -85,7 +85,7 @@ def pep257(argv: Sequence[str] | None = None) -> int:
 
 
 def copyright_headers(argv: Sequence[str] | None = None) -> int:
-    """Check each source file for a copyright notice and a licence.
+    """Check each source file for a copyright notice and a license.
 
     Return 0 if all files have both, otherwise 1.
 

@@ -131,7 +131,7 @@ class Cache(SimpleFilter):
         """Return the time of the newest message, or None if the cache is empty."""
         return self.cache_times[-1] if self.cache_times else None
 
-    getLastestTime = getLatestTime  # the misspelt name in Humble and Jazzy
+    getLastestTime = getLatestTime  # the misspelled name in Humble and Jazzy
 
     def getOldestTime(self) -> Time | None:
         """Return the time of the oldest message, or None if the cache is empty."""

@@ -20,7 +20,7 @@ _CONFUSION_SCORE, _CONFUSION_OVERLAP = 0.5, 0.5
 
 @dataclass(frozen=True, slots=True)
 class GroundTruth:
-    """The labelled objects in an image.
+    """The labeled objects in an image.
 
     Attributes:
         boxes: shape ``(n, 4)``: left, top, right, bottom, in pixels.

@@ -153,17 +153,17 @@ def test_what_would_harm_a_reader_is_deleted_after_the_run(situation: str, stude
 
 
 def test_a_run_stays_in_its_sandbox(situation: str, student: Path) -> None:
-    neighbour = student.parent / "neighbour"
-    neighbour.mkdir(mode=0o777)
-    (neighbour / "secret").write_text("secret")
-    for path, mode in ((neighbour, 0o777), (neighbour / "secret", 0o666), (student.parent, 0o777)):
+    neighbor = student.parent / "neighbour"
+    neighbor.mkdir(mode=0o777)
+    (neighbor / "secret").write_text("secret")
+    for path, mode in ((neighbor, 0o777), (neighbor / "secret", 0o666), (student.parent, 0o777)):
         path.chmod(mode)
     with socket.create_server(("127.0.0.1", 0)) as server, socket.socket(socket.AF_UNIX) as local_server:
         place = str(student.parent / "server")
         local_server.bind(place)
         local_server.listen()
         Path(place).chmod(0o777)
-        words = [str(neighbour), str(os.getpid()), str(server.getsockname()[1]), place]
+        words = [str(neighbor), str(os.getpid()), str(server.getsockname()[1]), place]
         outcome = attack(situation, student, attacks.TRESPASS, *words)
     if not outcome.protections:
         assert outcome.status == -9
@@ -171,7 +171,7 @@ def test_a_run_stays_in_its_sandbox(situation: str, student: Path) -> None:
     done = {name for name, was_done in json.loads(outcome.stdout).items() if was_done}
     assert done <= _possible(outcome.protections)
     if Protection.WRITE in outcome.protections:
-        assert (neighbour / "secret").read_text() == "secret"
+        assert (neighbor / "secret").read_text() == "secret"
         assert sorted(path.name for path in student.parent.iterdir()) == ["neighbour", "server", "student"]
 
 

@@ -30,9 +30,9 @@ def test_points_outside_have_cells_that_the_grid_does_not_have(grid):
 def test_the_middle_of_a_cell_is_in_that_cell(yaw):
     grid = Grid(cells=np.zeros((3, 4), np.int8), resolution=0.05, x=-1.0, y=2.0, yaw=yaw)
     indices = np.stack(np.meshgrid(np.arange(3), np.arange(4), indexing="ij"), axis=-1)
-    assert (grid.cells_of(grid.centres_of(indices)) == indices).all()
+    assert (grid.cells_of(grid.centers_of(indices)) == indices).all()
 
 
 def test_a_turned_grid_lies_about_its_corner():
     grid = Grid(cells=np.zeros((3, 4), np.int8), resolution=1.0, x=10.0, y=0.0, yaw=pi / 2)
-    assert np.allclose(grid.centres_of(np.array([0, 3])), [9.5, 3.5])
+    assert np.allclose(grid.centers_of(np.array([0, 3])), [9.5, 3.5])

@@ -50,7 +50,7 @@ def test_without_a_mode_it_is_trinary_and_other_keys_do_not_matter(tmp_path: Pat
         ("negate: 0\n", "", 1, 1, "'negate' is missing in the map"),
         ("image: house.pgm", "image:", 1, 7, "'image' must be a file name"),
         ("0.05", "five", 3, 13, "'resolution' must be a number"),
-        ("0.05", "0", 3, 13, "'resolution' must be more than 0 (metres per pixel)"),
+        ("0.05", "0", 3, 13, "'resolution' must be more than 0 (meters per pixel)"),
         ("0.05", ".inf", 3, 13, "'resolution' must be a number"),
         ("[-1.5, 2, 0]", "[-1.5, 2]", 4, 9, "'origin' must have 3 values (x, y, yaw), but has 2"),
         ("[-1.5, 2, 0]", "[-1.5, up, 0]", 4, 16, "'origin' must be a number"),

@@ -146,7 +146,7 @@ def seen_points(faces: np.ndarray, grid: Grid) -> np.ndarray:
 
 def occupied_of(grid: Grid) -> np.ndarray:
     """The middles of occupied cells, of shape (n, 2)."""
-    return grid.centres_of(np.argwhere(grid.cells == OCCUPIED))
+    return grid.centers_of(np.argwhere(grid.cells == OCCUPIED))
 
 
 def gaps(grid: Grid, points: np.ndarray) -> np.ndarray:

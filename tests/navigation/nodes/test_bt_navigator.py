@@ -167,7 +167,7 @@ async def test_trees_of_users_are_not_read(scene, log):
     goal = Asked(scene, "NavigateToPose", "navigate_to_pose")
     await goal.send(pose=pose_stamped(1.2, 1.0), behavior_tree="/tmp/mine.xml")
     assert await goal.ends(30.0) == GoalStatus.SUCCEEDED
-    assert any("behaviour trees are not supported" in record.text for record in log)
+    assert any("behavior trees are not supported" in record.text for record in log)
 
 
 async def test_waypoints_are_followed_and_missed_ones_told(scene):

@@ -44,8 +44,8 @@ def reached(grid: Grid) -> np.ndarray:
 
 def free_or_outside(grid: Grid) -> np.ndarray:
     """The cells that are free, and those outside of the house."""
-    centres = grid.centres_of(np.moveaxis(np.indices(grid.cells.shape), 0, -1))
-    return (grid.cells == FREE) | (np.abs(centres) > WALLS).any(axis=-1)
+    centers = grid.centers_of(np.moveaxis(np.indices(grid.cells.shape), 0, -1))
+    return (grid.cells == FREE) | (np.abs(centers) > WALLS).any(axis=-1)
 
 
 def test_every_room_is_reached_and_nothing_that_was_not_seen():

@@ -71,7 +71,7 @@ def test_the_map_of_a_flat_is_that_flat():
         pose = np.array([x, y, 0.3 * number])
         occupancy.draw(number, scan_at(walls, pose, count=720), pose)
     grid = occupancy.grid()
-    occupied = grid.centres_of(np.argwhere(grid.cells == OCCUPIED))
+    occupied = grid.centers_of(np.argwhere(grid.cells == OCCUPIED))
     start, along = walls[:, 0], walls[:, 1] - walls[:, 0]
     away = occupied[:, None] - start
     part = np.clip((away * along).sum(axis=2) / (along**2).sum(axis=1), 0, 1)

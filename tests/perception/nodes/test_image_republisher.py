@@ -31,7 +31,7 @@ def image(values, encoding):
     return message
 
 
-def coloured():
+def colored():
     pixels = np.zeros((16, 16, 3), np.uint8)
     pixels[:, :, 0] = 200
     return pixels
@@ -49,11 +49,11 @@ async def test_raw_becomes_compressed_and_raw_again(test):
     start(test, "compressed", "raw", remappings=[("in/compressed", "/small/compressed"), ("out", "/back")])
     back, small = test.record("/back"), test.record("/small/compressed")
     await test.settle()
-    await send(test, "/camera/image_raw", image(coloured(), "bgr8"))
+    await send(test, "/camera/image_raw", image(colored(), "bgr8"))
     assert small.last.format == "bgr8; jpeg compressed bgr8"
     assert (back.last.encoding, back.last.width, back.last.step) == ("bgr8", 16, 48)
     pixels = np.frombuffer(bytes(back.last.data), np.uint8).reshape(16, 16, 3)
-    assert np.abs(pixels.astype(int) - coloured()).max() <= 4
+    assert np.abs(pixels.astype(int) - colored()).max() <= 4
     assert back.last.header.frame_id == "camera"
 
 
@@ -84,7 +84,7 @@ async def test_without_an_output_transport_there_are_all(test):
     assert {"/out", "/out/compressed", "/out/compressedDepth"} <= set(kinds)
     assert test.graph.count_subscribers("/in") == 0
     out = test.record("/out")
-    message = image(coloured(), "rgb8")
+    message = image(colored(), "rgb8")
     await send(test, "/in", message)
     assert out.last is message
 

@@ -8,7 +8,7 @@ import pytest
 from linkwright.perception.scans.projection import Pinhole, Rays, points_from_scan, scan_from_depths, scan_from_points
 from tests.perception.scans.test_scan_filters import ranges, scan
 
-CAMERA = Pinhole(focal_length=4.0, centre_column=2.0, centre_row=1.5)
+CAMERA = Pinhole(focal_length=4.0, center_column=2.0, center_row=1.5)
 
 
 def test_a_wall_across_the_view_is_a_wall_in_the_scan():

@@ -11,12 +11,12 @@ from linkwright.images import DecodedImage
 from linkwright.messages import get_message
 from linkwright.rviz.clouds import (
     BadCloudError,
-    ColourSettings,
+    ColorSettings,
     DepthCamera,
     DepthCloudBuilder,
     Points,
     ScanProjector,
-    coloured,
+    colored,
     deskew,
     points_of_cloud,
     supported_transformers,
@@ -55,8 +55,8 @@ def xyz(points, *extra: tuple[str, str]) -> np.ndarray:
     return array
 
 
-def colours(points: Points, pose=None, **settings) -> list[tuple[int, ...]]:
-    found, _ = coloured(points, ColourSettings(**settings), pose)
+def colors(points: Points, pose=None, **settings) -> list[tuple[int, ...]]:
+    found, _ = colored(points, ColorSettings(**settings), pose)
     return [tuple(int(part) for part in row) for row in found]
 
 
@@ -137,36 +137,36 @@ def test_the_rainbow_goes_from_red_to_magenta():
     array["intensity"] = [0, 1, 2, 3, 4, 5]
     points = points_of_cloud(cloud(array))
     yellow, cyan = (255, 255, 0, 255), (0, 255, 255, 255)
-    assert colours(points) == [RED, yellow, GREEN, cyan, BLUE, MAGENTA]
-    assert colours(points, inverted=True) == [MAGENTA, BLUE, cyan, GREEN, yellow, RED]
+    assert colors(points) == [RED, yellow, GREEN, cyan, BLUE, MAGENTA]
+    assert colors(points, inverted=True) == [MAGENTA, BLUE, cyan, GREEN, yellow, RED]
 
 
 def test_the_bounds_are_computed_or_given():
     points = Points(np.zeros((3, 3), np.float32), {"intensity": np.array([10.0, 20.0, 30.0])})
-    _, bounds = coloured(points, ColourSettings())
+    _, bounds = colored(points, ColorSettings())
     assert bounds == (10.0, 30.0)
-    assert colours(points, intensities=(20.0, 40.0))[:2] == [RED, RED]
-    assert coloured(points, ColourSettings(intensities=(0.0, 1.0)))[1] is None
+    assert colors(points, intensities=(20.0, 40.0))[:2] == [RED, RED]
+    assert colored(points, ColorSettings(intensities=(0.0, 1.0)))[1] is None
 
 
 def test_two_colours_are_mixed():
     points = Points(np.zeros((3, 3), np.float32), {"intensity": np.array([0.0, 1.0, 2.0])})
-    mixed = colours(points, rainbow=False, darkest=(0, 0, 100), brightest=(200, 0, 100))
+    mixed = colors(points, rainbow=False, darkest=(0, 0, 100), brightest=(200, 0, 100))
     assert mixed == [(0, 0, 100, 255), (100, 0, 100, 255), (200, 0, 100, 255)]
 
 
 def test_equal_and_missing_intensities_colour_evenly():
     points = Points(np.zeros((2, 3), np.float32), {"intensity": np.array([5.0, 5.0])})
-    assert colours(points) == [RED, RED]
-    assert colours(points, channel="other") == [(255, 255, 255, 255)] * 2
+    assert colors(points) == [RED, RED]
+    assert colors(points, channel="other") == [(255, 255, 255, 255)] * 2
     other = Points(points.positions, {"intensities": np.array([0.0, 1.0])})
-    assert colours(other) == [RED, MAGENTA]
+    assert colors(other) == [RED, MAGENTA]
 
 
 def test_intensities_that_are_no_numbers_do_not_count():
     values = np.array([np.nan, 0.0, np.inf, 2.0])
     points = Points(np.zeros((4, 3), np.float32), {"intensity": values})
-    found, bounds = coloured(points, ColourSettings())
+    found, bounds = colored(points, ColorSettings())
     assert bounds == (0.0, 2.0)
     assert [tuple(row) for row in found.tolist()] == [RED, RED, MAGENTA, MAGENTA]
 
@@ -174,11 +174,11 @@ def test_intensities_that_are_no_numbers_do_not_count():
 def test_axis_colour_looks_at_the_fixed_frame_or_at_the_clouds_own():
     points = Points(np.array([[0, 0, 0], [1, 0, 0]], np.float32))
     upright = np.array([0, 0, 10, 0, -math.sqrt(0.5), 0, math.sqrt(0.5)])  # x points up
-    found, bounds = coloured(points, ColourSettings("AxisColor"), upright)
+    found, bounds = colored(points, ColorSettings("AxisColor"), upright)
     np.testing.assert_allclose(bounds, (10.0, 11.0), atol=1e-5)
     assert [tuple(row) for row in found.tolist()] == [RED, MAGENTA]
-    assert colours(points, upright, transformer="AxisColor", in_fixed_frame=False) == [RED, RED]
-    assert colours(points, upright, transformer="AxisColor", in_fixed_frame=False, axis=0) == [RED, MAGENTA]
+    assert colors(points, upright, transformer="AxisColor", in_fixed_frame=False) == [RED, RED]
+    assert colors(points, upright, transformer="AxisColor", in_fixed_frame=False, axis=0) == [RED, MAGENTA]
 
 
 def test_packed_colours_are_unpacked():
@@ -186,10 +186,10 @@ def test_packed_colours_are_unpacked():
     array["rgb"] = np.array([0x40102030], "<u4").view("<f4")
     points = points_of_cloud(cloud(array))
     assert supported_transformers(points)[0] == "RGB8"
-    assert colours(points, transformer="RGB8") == [(0x10, 0x20, 0x30, 255)]
+    assert colors(points, transformer="RGB8") == [(0x10, 0x20, 0x30, 255)]
     with_alpha = xyz([(0, 0, 0)], ("rgba", "u4"))
     with_alpha["rgba"] = 0x40102030
-    assert colours(points_of_cloud(cloud(with_alpha)), transformer="RGB8") == [(0x10, 0x20, 0x30, 0x40)]
+    assert colors(points_of_cloud(cloud(with_alpha)), transformer="RGB8") == [(0x10, 0x20, 0x30, 0x40)]
 
 
 def test_colours_of_floats_are_taken():
@@ -197,13 +197,13 @@ def test_colours_of_floats_are_taken():
     array["r"], array["g"], array["b"] = 1.0, 0.5, 7.0
     points = points_of_cloud(cloud(array))
     assert "RGBF32" in supported_transformers(points)
-    assert colours(points, transformer="RGBF32") == [(255, 127, 255, 255)]
+    assert colors(points, transformer="RGBF32") == [(255, 127, 255, 255)]
 
 
 def test_what_a_cloud_does_not_have_is_not_offered():
     points = points_of_cloud(cloud(xyz([(0, 0, 0)])))
     assert supported_transformers(points) == ("Intensity", "AxisColor", "FlatColor")
-    assert colours(points, transformer="FlatColor") == []
+    assert colors(points, transformer="FlatColor") == []
 
 
 def test_a_large_cloud_is_left_to_numpy():
@@ -214,7 +214,7 @@ def test_a_large_cloud_is_left_to_numpy():
         for name in array.dtype.names:
             array[name] = rng.random(array.size)
         message = cloud(array)
-        return lines_run(lambda: coloured(points_of_cloud(message), ColourSettings()))
+        return lines_run(lambda: colored(points_of_cloud(message), ColorSettings()))
 
     work(10)  # what is kept from one cloud to the next
     assert work(100) == work(100_000)
@@ -296,8 +296,8 @@ def test_millimetres_become_metres_and_zero_is_no_depth():
 
 
 def test_points_get_the_colours_of_the_image():
-    colour = DecodedImage(np.array([[[1, 2, 3], [4, 5, 6]]], np.uint8))
-    points = DepthCloudBuilder().points(depth_image([[math.nan, 1.0]]), camera(), colour)
+    color = DecodedImage(np.array([[[1, 2, 3], [4, 5, 6]]], np.uint8))
+    points = DepthCloudBuilder().points(depth_image([[math.nan, 1.0]]), camera(), color)
     assert points.channels["rgb"].tolist() == [0x040506]
 
 
@@ -319,17 +319,17 @@ def test_images_that_do_not_fit_are_refused():
 
 def test_covered_points_stay_for_a_while_in_half_their_colour():
     builder = DepthCloudBuilder()
-    colour = DecodedImage(np.full((1, 1, 3), 200, np.uint8))
+    color = DecodedImage(np.full((1, 1, 3), 200, np.uint8))
     view = camera(1)
 
     def depths(depth: float, now: float) -> list[float]:
-        points = builder.points(depth_image([[depth]]), view, colour, keep_covered=10.0, now=now)
+        points = builder.points(depth_image([[depth]]), view, color, keep_covered=10.0, now=now)
         return points.positions[:, 2].tolist()
 
     assert depths(4.0, 0.0) == [4.0]
     assert depths(2.0, 1.0) == [2.0, 4.0]
     assert depths(math.nan, 2.0) == [4.0]
-    shown = builder.points(depth_image([[2.0]]), view, colour, keep_covered=10.0, now=3.0)
+    shown = builder.points(depth_image([[2.0]]), view, color, keep_covered=10.0, now=3.0)
     assert shown.channels["rgb"].tolist() == [0xC8C8C8, 0x646464]
     assert depths(2.0, 20.0) == [2.0]
 

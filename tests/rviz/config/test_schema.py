@@ -129,5 +129,5 @@ def test_floats_survive_the_file(value):
 
 
 @given(st.from_regex(r"#[0-9a-f]{6}", fullmatch=True))
-def test_colours_survive_the_file(colour):
-    assert from_text(COLOUR, to_text(COLOUR, colour)) == colour
+def test_colours_survive_the_file(color):
+    assert from_text(COLOUR, to_text(COLOUR, color)) == color

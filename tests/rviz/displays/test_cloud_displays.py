@@ -50,7 +50,7 @@ def shown(display) -> list[list[float]]:
     return [content.fields["positions"].reshape(-1, 3).tolist() for content in contents(display)]
 
 
-def colours(display) -> list[list[int]]:
+def colors(display) -> list[list[int]]:
     (content,) = contents(display)
     return content.fields["colours"].reshape(-1, 4).tolist()
 
@@ -83,7 +83,7 @@ async def test_a_cloud_with_colours_is_shown_with_them():
         await w.settle()
         display = w.display("PointCloud2")
         assert display.properties.text("Color Transformer") == "RGB8"
-        assert colours(display) == [[0x10, 0x20, 0x30, 255]] * 2
+        assert colors(display) == [[0x10, 0x20, 0x30, 255]] * 2
         assert w.viewer.config.text() == config().text()  # nobody asked for that: the file is as it was
 
 
@@ -121,11 +121,11 @@ async def test_another_colour_is_seen_without_another_message():
         publisher.publish(coloured_cloud())
         await w.settle()
         display = w.display("PointCloud2")
-        assert colours(display) == [[255, 0, 0, 255], [255, 0, 255, 255]]
+        assert colors(display) == [[255, 0, 0, 255], [255, 0, 255, 255]]
         display.set_property(("Invert Rainbow",), True)
-        assert colours(display) == [[255, 0, 255, 255], [255, 0, 0, 255]]
+        assert colors(display) == [[255, 0, 255, 255], [255, 0, 0, 255]]
         display.set_property(("Color Transformer",), "FlatColor")
-        assert colours(display) == []
+        assert colors(display) == []
 
 
 async def test_bounds_that_were_computed_are_where_the_users_begin():
@@ -268,7 +268,7 @@ async def test_a_scanner_that_moves_draws_no_skewed_image():
 
 
 @pytest.mark.parametrize(
-    ("cls", "field", "value", "colour"),
+    ("cls", "field", "value", "color"),
     [
         ("FluidPressure", "fluid_pressure", 98000.0, [255, 0, 0, 255]),
         ("Illuminance", "illuminance", 1000.0, [255, 0, 255, 255]),
@@ -276,7 +276,7 @@ async def test_a_scanner_that_moves_draws_no_skewed_image():
         ("Temperature", "temperature", 100.0, [255, 0, 0, 255]),
     ],
 )
-async def test_a_number_is_a_coloured_point(cls, field, value, colour):
+async def test_a_number_is_a_coloured_point(cls, field, value, color):
     async with world(config(cls)) as w:
         message_type = get_message(f"sensor_msgs/msg/{cls}")
         publisher = w.graph.create_node("sensor").create_publisher(message_type, "/points", 5)
@@ -286,7 +286,7 @@ async def test_a_number_is_a_coloured_point(cls, field, value, colour):
         await w.settle()
         display = w.display(cls)
         assert shown(display) == [[[0, 0, 0]]]
-        assert colours(display) == [colour]
+        assert colors(display) == [color]
         names = set(store_rows(display))
         assert {"Use rainbow", "Min Intensity", "Max Intensity", "Decay Time"} <= names
         assert names.isdisjoint({"Color Transformer", "Channel Name", "Autocompute Intensity Bounds"})
@@ -339,16 +339,16 @@ async def test_a_depth_image_waits_for_its_colours():
     async with world(config("DepthCloud", **topics)) as w:
         node = w.graph.create_node("camera")
         depths = node.create_publisher(Image, "/depth/image", 5)
-        colour = node.create_publisher(Image, "/color/image", 5)
+        color = node.create_publisher(Image, "/color/image", 5)
         node.create_publisher(CameraInfo, "/depth/camera_info", 5).publish(camera_info(2, 1))
         depths.publish(placed(depth_image([[2.0, 4.0]])))
         await w.settle()
         display = w.display("DepthCloud")
         assert contents(display) == []
         image = Image(width=2, height=1, step=6, encoding="rgb8", data=bytes([1, 2, 3, 4, 5, 6]))
-        colour.publish(placed(image, "other"))
+        color.publish(placed(image, "other"))
         await w.settle()
-        assert colours(display) == [[1, 2, 3, 255], [4, 5, 6, 255]]
+        assert colors(display) == [[1, 2, 3, 255], [4, 5, 6, 255]]
         text = "Depth image frame id [base] doesn't match color image frame id [other]"
         assert w.status("DepthCloud")["Message"] == ("warn", text)
 
@@ -379,7 +379,7 @@ async def test_a_cloud_of_the_old_message_is_shown_as_the_new_one():
         await w.settle()
         display = w.display("PointCloud")
         assert shown(display) == [[[1, 0, 0], [2, 0, 0]]]
-        first, second = colours(display)
+        first, second = colors(display)
         assert first != second
 
 

@@ -255,8 +255,8 @@ def test_parts_of_a_mesh_that_are_one_triangle_or_none_do_not_lose_the_model(tmp
     corners = "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\nv 1 0 1\nv 0 1 1\n"
     parts = "usemtl a\nf 1 2 3\nusemtl b\nf 4 5 6\nf 4 6 5\nf 1 2 5\nusemtl c\nf 1 2 2\n"
     (tmp_path / "parts.obj").write_text(f"mtllib parts.mtl\n{corners}{parts}")
-    colours = enumerate(("1 0 0", "0 1 0", "0 0 1"))
-    (tmp_path / "parts.mtl").write_text("".join(f"newmtl {'abc'[number]}\nKd {colour}\n" for number, colour in colours))
+    colors = enumerate(("1 0 0", "0 1 0", "0 0 1"))
+    (tmp_path / "parts.mtl").write_text("".join(f"newmtl {'abc'[number]}\nKd {color}\n" for number, color in colors))
     visual = f'<visual name="v"><geometry><mesh><uri>file://{tmp_path}/parts.obj</uri></mesh></geometry></visual>'
     simulation = simulated(f'<model name="m"><static>true</static><link name="l">{visual}</link></model>')
     assert not simulation.scene.diagnostics

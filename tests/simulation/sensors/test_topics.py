@@ -406,10 +406,10 @@ async def test_a_depth_camera_measures_along_its_axis(library: str):
     near = block("near", "0.35 0.2 0 0 0 0", "0.1 0.1 0.1")
     async with served(WALL, near, carrier(sensor("depth", EYE + element))) as (server, graph, _):
         depth, cloud = await heard(server, graph, "/depth/depth/image_raw", "/depth/points")
-        metres = np.frombuffer(bytes(depth.data), np.float32).reshape(48, 64)
+        meters = np.frombuffer(bytes(depth.data), np.float32).reshape(48, 64)
         assert (depth.encoding, depth.step) == ("32FC1", 256)
-        assert metres[24, 60] == pytest.approx(2.0, abs=1e-3)
-        assert metres[24, 10] == -inf
+        assert meters[24, 60] == pytest.approx(2.0, abs=1e-3)
+        assert meters[24, 10] == -inf
         points = np.frombuffer(bytes(cloud.data), np.float32).reshape(48, 64, 8)
         assert (cloud.point_step, cloud.height, cloud.width) == (32, 48, 64)
         assert points[24, 60, :3] == pytest.approx([28.5 / 32 * 2, 0.5 / 32 * 2, 2.0], abs=1e-2)
@@ -464,12 +464,12 @@ async def test_an_rgbd_camera_of_gz_has_points_with_x_forwards():
 LABEL = '<plugin filename="gz-sim-label-system" name="gz::sim::systems::Label"><label>{}</label></plugin>'
 
 
-def labelled(name: str, pose: str, label: int) -> str:
+def labeled(name: str, pose: str, label: int) -> str:
     return block(name, pose, "0.1 0.4 0.4").replace("</visual>", LABEL.format(label) + "</visual>")
 
 
 async def test_labels_are_seen_and_all_else_is_background():
-    world = labelled("cup", "2 0.5 0 0 0 0", 7), labelled("other", "2 -0.5 0 0 0 0", 7), WALL
+    world = labeled("cup", "2 0.5 0 0 0 0", 7), labeled("other", "2 -0.5 0 0 0 0", 7), WALL
     text = carrier(sensor("segmentation_camera", f"<topic>seg</topic>{EYE}"))
     async with served(*world, text) as (server, graph, _):
         maps, colored = await heard(server, graph, "/seg/labels_map", "/seg/colored_map")
@@ -479,7 +479,7 @@ async def test_labels_are_seen_and_all_else_is_background():
 
 
 async def test_boxes_are_around_what_is_labelled():
-    world = labelled("cup", "1.55 0.5 0 0 0 0", 7), labelled("ball", "1.55 -0.5 0 0 0 0", 9), WALL
+    world = labeled("cup", "1.55 0.5 0 0 0 0", 7), labeled("ball", "1.55 -0.5 0 0 0 0", 9), WALL
     text = carrier(sensor("boundingbox_camera", f"<topic>boxes</topic>{EYE}"))
     async with served(*world, text) as (server, graph, _):
         boxes, image = await heard(server, graph, "/boxes", "/boxes_image")

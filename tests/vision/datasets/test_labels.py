@@ -36,7 +36,7 @@ def shots(stage, count):
         yield arrange(stage, OPTIONS, np.random.default_rng(number))
 
 
-def labelled(stage, shot):
+def labeled(stage, shot):
     geoms = stage.renderer.render(shot.optics, shot.pose, Channels.GEOMS).geoms
     return label_image(stage, shot, geoms, OPTIONS.min_size, OPTIONS.min_visible), geoms
 
@@ -65,7 +65,7 @@ def test_whole_boxes_of_balls_are_those_of_their_outlines(stage):
     """The outline of a ball is the cone of rays that touch it: its ends are known to the last digit."""
     compared = 0
     for shot in shots(stage, 12):
-        labels, _ = labelled(stage, shot)
+        labels, _ = labeled(stage, shot)
         seen = {label.full_box: label for label in labels}
         axes = axes_of(shot.pose)
         for prop in (each for each in shot.placed_props if each.label == 0):
@@ -106,7 +106,7 @@ def test_labels_are_those_of_another_renderer(stage):
     other = make_renderer(stage.simulation, "mujoco")
     compared = 0
     for shot in shots(stage, 8):
-        labels, _ = labelled(stage, shot)
+        labels, _ = labeled(stage, shot)
         geoms = other.render(shot.optics, shot.pose, Channels.GEOMS).geoms
         boxes = [box_of(np.isin(geoms, prop.geoms)) for prop in shot.placed_props]
         for label in labels:
@@ -118,7 +118,7 @@ def test_labels_are_those_of_another_renderer(stage):
 
 def test_visible_and_whole_fit_together(stage):
     for shot in shots(stage, 8):
-        labels, geoms = labelled(stage, shot)
+        labels, geoms = labeled(stage, shot)
         for label in labels:
             left, top, right, bottom = label.box
             assert color_mask(label.run_lengths, *geoms.shape).sum() == label.area
@@ -146,7 +146,7 @@ def test_what_nothing_hides_is_visible(stage):
             for other in shot.placed_props:
                 if other is not prop:
                     stage.hide(other.geoms)
-            labels, _ = labelled(stage, alone(shot, prop))
+            labels, _ = labeled(stage, alone(shot, prop))
             assert all(label.visibility > 0.97 or label.is_truncated for label in labels)
             break
 

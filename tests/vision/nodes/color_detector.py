@@ -9,7 +9,7 @@ import numpy as np
 from linkwright.graph import SENSOR_DATA_QOS, Graph
 from linkwright.images import RangeFinder, decode_image
 from linkwright.messages import get_message
-from linkwright.vision.places.object_colors import COLOURS, classify_colours
+from linkwright.vision.places.object_colors import COLORS, classify_colors
 
 _LEAST_PIXELS = 60
 
@@ -19,12 +19,12 @@ class ColourDetector:
 
     Args:
         graph: where it lives.
-        colour: one of `COLOURS`.
+        color: one of `COLORS`.
         name: the class of what it finds.
     """
 
-    def __init__(self, graph: Graph, colour: str = "red", name: str = "ball") -> None:
-        self._colour, self._name = COLOURS.index(colour), name
+    def __init__(self, graph: Graph, color: str = "red", name: str = "ball") -> None:
+        self._color, self._name = COLORS.index(color), name
         self.node = graph.create_node("colour_detector")
         self._array = get_message("vision_msgs/msg/Detection2DArray")
         self._publisher = self.node.create_publisher(self._array, "/yolo/detections", 10)
@@ -35,8 +35,8 @@ class ColourDetector:
 
     def _see(self, image: Any) -> None:
         pixels = decode_image(image, self._ranges).pixels[:, :, :3]
-        names = classify_colours(pixels.reshape(-1, 3)).reshape(pixels.shape[:2])
-        rows, columns = np.nonzero(names == self._colour)
+        names = classify_colors(pixels.reshape(-1, 3)).reshape(pixels.shape[:2])
+        rows, columns = np.nonzero(names == self._color)
         found = self._array(header=image.header)
         if len(rows) >= _LEAST_PIXELS:
             left, right = np.percentile(columns, [1, 99])

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from linkwright.vision.places.object_colors import COLOURS, classify_colours, object_color
+from linkwright.vision.places.object_colors import COLORS, classify_colors, object_color
 
 SAMPLES = {
     "red": [(200, 13, 15), (120, 10, 10), (230, 60, 50)],
@@ -23,18 +23,18 @@ SAMPLES = {
 }
 
 
-@pytest.mark.parametrize("name", COLOURS)
+@pytest.mark.parametrize("name", COLORS)
 def test_colours_have_the_names_that_people_give_them(name):
     pixels = np.array(SAMPLES[name], np.uint8)
-    assert [COLOURS[named_colour] for named_colour in classify_colours(pixels)] == [name] * len(pixels)
+    assert [COLORS[named_color] for named_color in classify_colors(pixels)] == [name] * len(pixels)
 
 
-def disc(colour, ground=(180, 180, 180), shade=1.0):
+def disc(color, ground=(180, 180, 180), shade=1.0):
     image = np.full((120, 160, 3), ground, np.uint8)
     rows, columns = np.mgrid[:120, :160]
     inside = (rows - 60) ** 2 + (columns - 80) ** 2 <= 30**2
     light = np.where(rows > 60, shade, 1.0)[inside][:, None]
-    image[inside] = (np.array(colour) * light).astype(np.uint8)
+    image[inside] = (np.array(color) * light).astype(np.uint8)
     return image, np.array([50.0, 30.0, 110.0, 90.0])
 
 
@@ -54,6 +54,6 @@ def test_what_cannot_be_said():
     image, box = disc((200, 20, 20))
     assert object_color(image, box + 500) is None
     stripes = np.zeros((60, 60, 3), np.uint8)
-    for row, colour in enumerate([(200, 10, 10), (20, 150, 30), (20, 40, 190), (240, 200, 20)] * 15):
-        stripes[row] = colour
+    for row, color in enumerate([(200, 10, 10), (20, 150, 30), (20, 40, 190), (240, 200, 20)] * 15):
+        stripes[row] = color
     assert object_color(stripes, np.array([0.0, 0.0, 60.0, 60.0])) is None

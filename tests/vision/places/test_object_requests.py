@@ -9,13 +9,13 @@ from linkwright.vision.places.object_requests import (
     Sighting,
     answer_phrase,
     describe_sightings,
-    name_with_colour,
+    name_with_color,
     parse_request,
 )
 
 
 @pytest.mark.parametrize(
-    ("text", "noun", "colour"),
+    ("text", "noun", "color"),
     [
         ("ball", "ball", None),
         ("the red ball", "ball", "red"),
@@ -43,9 +43,9 @@ from linkwright.vision.places.object_requests import (
         ("茶壶", "茶壶", None),
     ],
 )
-def test_what_somebody_asks_for(text, noun, colour):
+def test_what_somebody_asks_for(text, noun, color):
     found = parse_request(text)
-    assert (found.noun, found.colour) == (noun, colour)
+    assert (found.noun, found.color) == (noun, color)
     assert found.language == ("en" if text.isascii() else "zh")
 
 
@@ -55,7 +55,7 @@ def test_nothing_is_asked_for(text):
 
 
 @pytest.mark.parametrize(
-    ("asked", "name", "colour", "is_it"),
+    ("asked", "name", "color", "is_it"),
     [
         ("ball", "ball", "red", True),
         ("ball", "sports ball", None, True),
@@ -72,8 +72,8 @@ def test_nothing_is_asked_for(text):
         ("stop sign", "stop_sign", "red", True),
     ],
 )
-def test_whether_this_is_it(asked, name, colour, is_it):
-    assert parse_request(asked).matches(name, colour) is is_it
+def test_whether_this_is_it(asked, name, color, is_it):
+    assert parse_request(asked).matches(name, color) is is_it
 
 
 def test_a_patch_of_a_colour_is_a_ball_if_it_is_as_wide_as_high():
@@ -125,6 +125,6 @@ def test_what_is_seen_in_a_sentence():
 
 
 def test_names():
-    assert name_with_colour("traffic cone", "orange", "zh") == "橙色的锥桶"
-    assert name_with_colour("red_ball", "blue", "en") == "red ball"
-    assert name_with_colour("teapot", None, "zh") == "teapot"
+    assert name_with_color("traffic cone", "orange", "zh") == "橙色的锥桶"
+    assert name_with_color("red_ball", "blue", "en") == "red ball"
+    assert name_with_color("teapot", None, "zh") == "teapot"

@@ -13,12 +13,12 @@ SMALL = make_camera_model(320, 240, [250.0, 0.0, 159.5, 0.0, 250.0, 119.5, 0.0, 
 UP = np.array([0.0, -1.0, 0.0])
 
 
-def ball(centre, radius, behind=4.0, camera=CAMERA):
+def ball(center, radius, behind=4.0, camera=CAMERA):
     """The depth image of a ball before a wall, and its box."""
     size = camera.width, camera.height
     columns, rows = np.meshgrid(np.arange(size[0]) + 0.5, np.arange(size[1]) + 0.5)
     rays = camera.rays(np.stack([columns.ravel(), rows.ravel()], axis=1))
-    middle = np.asarray(centre, np.float64)
+    middle = np.asarray(center, np.float64)
     a, b, c = (rays**2).sum(axis=1), rays @ middle, middle @ middle - radius**2
     root = b**2 - a * c
     depths = np.where(root > 0, (b - np.sqrt(np.maximum(root, 0))) / a, behind).reshape(size[1], size[0])
@@ -28,25 +28,25 @@ def ball(centre, radius, behind=4.0, camera=CAMERA):
     return depths, np.array([across[0], down[0], across[-1] + 1, down[-1] + 1]) * scale
 
 
-@pytest.mark.parametrize("centre", [(0.0, 0.0, 1.5), (0.5, 0.2, 2.0), (-0.9, -0.3, 3.0)])
-def test_a_ball_before_a_wall(centre):
-    depths, box = ball(centre, 0.15)
+@pytest.mark.parametrize("center", [(0.0, 0.0, 1.5), (0.5, 0.2, 2.0), (-0.9, -0.3, 3.0)])
+def test_a_ball_before_a_wall(center):
+    depths, box = ball(center, 0.15)
     place = position_from_depth(box, depths, CAMERA)
-    assert place.centre == pytest.approx(centre, abs=0.04)
+    assert place.center == pytest.approx(center, abs=0.04)
     assert (place.width, place.height, place.depth) == pytest.approx((0.3, 0.3, 0.3), abs=0.04)
 
 
 def test_a_depth_image_of_another_size():
     depths, box = ball((0.3, 0.1, 2.0), 0.2, camera=SMALL)
     place = position_from_depth(box, depths, CAMERA)
-    assert place.centre == pytest.approx((0.3, 0.1, 2.0), abs=0.05)
+    assert place.center == pytest.approx((0.3, 0.1, 2.0), abs=0.05)
 
 
 def test_depths_that_are_not_known_do_not_count():
     depths, box = ball((0.0, 0.0, 1.5), 0.15)
     holes = np.random.default_rng(1).random(depths.shape) < 0.5
     depths[holes] = np.random.default_rng(2).choice([np.nan, np.inf, 0.0], holes.sum())
-    assert position_from_depth(box, depths, CAMERA).centre == pytest.approx((0.0, 0.0, 1.5), abs=0.04)
+    assert position_from_depth(box, depths, CAMERA).center == pytest.approx((0.0, 0.0, 1.5), abs=0.04)
 
 
 def test_a_box_without_depths_has_no_place():
@@ -61,14 +61,14 @@ def test_the_nearest_surface_counts_though_more_is_behind():
     depths = np.full((480, 640), 5.0)
     depths[200:280, 310:330] = 1.0
     place = position_from_depth(np.array([290.0, 200.0, 350.0, 280.0]), depths, CAMERA)
-    assert place.centre[2] == pytest.approx(1.0, abs=0.01)
+    assert place.center[2] == pytest.approx(1.0, abs=0.01)
     assert place.depth < 0.01, "what is flat is not as deep as wide"
 
 
 def test_a_few_near_depths_are_no_thing():
     depths = np.full((480, 640), 2.0)
     depths[200:280:7, 300:340:7] = 0.3
-    assert position_from_depth(np.array([290.0, 190.0, 350.0, 290.0]), depths, CAMERA).centre[2] == pytest.approx(
+    assert position_from_depth(np.array([290.0, 190.0, 350.0, 290.0]), depths, CAMERA).center[2] == pytest.approx(
         2.0, 0.02
     )
 
@@ -86,15 +86,15 @@ def drum(x, z, radius, height, above):
 def test_what_stands_on_the_ground(x, z):
     box = drum(x, z, 0.15, 0.6, 0.5)
     place = position_on_ground(box, CAMERA, UP, 0.5)
-    assert (place.centre[0], place.centre[2]) == pytest.approx((x, z), abs=0.06)
+    assert (place.center[0], place.center[2]) == pytest.approx((x, z), abs=0.06)
     assert place.width == pytest.approx(0.3, abs=0.05)
-    assert place.centre[1] == pytest.approx(0.2, abs=0.06), "in the middle of its height"
+    assert place.center[1] == pytest.approx(0.2, abs=0.06), "in the middle of its height"
 
 
 def test_a_ball_on_the_ground_touches_it_below_its_middle():
     _, box = ball((0.4, 0.05, 2.0), 0.15)
     place = position_on_ground(box, CAMERA, UP, 0.2)
-    assert place.centre == pytest.approx((0.4, 0.05, 2.0), abs=0.06)
+    assert place.center == pytest.approx((0.4, 0.05, 2.0), abs=0.06)
     assert place.width == pytest.approx(0.3, abs=0.03)
 
 
@@ -102,7 +102,7 @@ def test_a_camera_that_looks_down():
     tilt = np.radians(20.0)
     up = np.array([0.0, -np.cos(tilt), -np.sin(tilt)])
     place = position_on_ground(np.array([300.0, 200.0, 340.0, 240.0]), CAMERA, up, 1.0)
-    assert place.centre[2] == pytest.approx(1.0 / np.sin(tilt), rel=0.05)
+    assert place.center[2] == pytest.approx(1.0 / np.sin(tilt), rel=0.05)
 
 
 def test_what_does_not_stand_on_ground_that_is_seen_has_no_place():

@@ -13,14 +13,14 @@ from tests.vision.training.images_of_shapes import write_shapes
 
 
 @pytest.fixture
-def colours(tmp_path):
-    """Red discs and blue squares, which the detector `colours` knows."""
+def colors(tmp_path):
+    """Red discs and blue squares, which the detector `colors` knows."""
     return write_shapes(tmp_path / "colours", 6, names=("red", "blue"))
 
 
-def test_without_pytorch_training_says_what_to_install(colours, tmp_path, capsys, monkeypatch):
+def test_without_pytorch_training_says_what_to_install(colors, tmp_path, capsys, monkeypatch):
     monkeypatch.setitem(sys.modules, "torch", None)
-    assert main(["vision", "train", str(colours), "-o", str(tmp_path / "out")]) == 1
+    assert main(["vision", "train", str(colors), "-o", str(tmp_path / "out")]) == 1
     output = capsys.readouterr().err
     assert "VISION301" in output
     assert str(install_hint("train")) in output
@@ -33,16 +33,16 @@ def test_a_size_that_the_network_cannot_have_is_wrong_usage(size, capsys):
     assert "both multiples of 32" in capsys.readouterr().err
 
 
-def test_a_detector_is_judged(colours, capsys):
-    assert main(["vision", "evaluate", "colours", str(colours), "--confusion"]) == 0
+def test_a_detector_is_judged(colors, capsys):
+    assert main(["vision", "evaluate", "colours", str(colors), "--confusion"]) == 0
     output = capsys.readouterr().out
     assert output.startswith("6 images: mAP50 1.000, ")
     assert "| red | 6 | 1.000 |" in output
     assert "| blue |  | 6 |" in output
 
 
-def test_figures_are_printed_for_programs(colours, capsys):
-    assert main(["vision", "evaluate", "colours", str(colours), "--split", "train", "--format", "json"]) == 0
+def test_figures_are_printed_for_programs(colors, capsys):
+    assert main(["vision", "evaluate", "colours", str(colors), "--split", "train", "--format", "json"]) == 0
     figures = json.loads(capsys.readouterr().out)
     assert figures["images"] == 6
     assert figures["map50"] == pytest.approx(1)
@@ -56,6 +56,6 @@ def test_a_folder_that_is_no_dataset_is_one_error(tmp_path, capsys):
     assert output.out == ""
 
 
-def test_a_detector_that_is_not_there_is_one_error(colours, capsys):
-    assert main(["vision", "evaluate", "none.onnx", str(colours)]) == 1
+def test_a_detector_that_is_not_there_is_one_error(colors, capsys):
+    assert main(["vision", "evaluate", "none.onnx", str(colors)]) == 1
     assert "VISION102" in capsys.readouterr().err

@@ -13,7 +13,7 @@ import pytest
 
 from linkwright.cli import main
 from linkwright.diagnostics import LinkwrightError
-from linkwright.vision.training.images import read_labelled_images
+from linkwright.vision.training.images import read_labeled_images
 from linkwright.vision.training.options import Options
 from linkwright.vision.training.training_run import train_network
 from linkwright.vision.training.yolo_dataset import open_dataset
@@ -48,8 +48,8 @@ def options(shapes: Path, output: Path, **changed) -> Options:
 def course_of(given: Options) -> TrainingLoop:
     given.output.mkdir(exist_ok=True)
     dataset = open_dataset(given.dataset)
-    labelled_images = read_labelled_images(dataset.read("train"), given.width, given.height)
-    return TrainingLoop(dataset.names, given, labelled_images, labelled_images)
+    labeled_images = read_labeled_images(dataset.read("train"), given.width, given.height)
+    return TrainingLoop(dataset.names, given, labeled_images, labeled_images)
 
 
 def weights(training_loop: TrainingLoop) -> np.ndarray:

@@ -7,10 +7,10 @@ import pytest
 
 from linkwright.diagnostics import LinkwrightError
 from linkwright.vision.training.images import (
-    LabelledImages,
+    LabeledImages,
     augment,
     read_image,
-    read_labelled_images,
+    read_labeled_images,
     repeat_factors,
     repeated_indices,
 )
@@ -138,23 +138,23 @@ def test_a_label_that_cannot_be_is_said_with_its_place(shapes, line, message):
 def test_a_image_that_is_none_is_said(shapes):
     dataset = open_dataset(shapes)
     (shapes / "images" / "train" / "001.png").write_bytes(b"none")
-    found = problem(read_labelled_images, dataset.read("train"), 96, 96)
+    found = problem(read_labeled_images, dataset.read("train"), 96, 96)
     assert (found.code, "001.png" in str(found.message)) == ("VISION305", True)
 
 
 def test_images_of_another_shape_are_fitted_in_with_grey(shapes):
     images = open_dataset(shapes).read("train")
-    labelled_images = read_labelled_images(images, 160, 96)
-    assert labelled_images.images.shape == (3, 96, 160, 3)
-    assert (labelled_images.images[:, :, :32] == 114).all()
-    assert np.allclose(labelled_images.objects[0][:, 1:], images[0].boxes * 96 + (32, 0, 32, 0), atol=1e-4)
+    labeled_images = read_labeled_images(images, 160, 96)
+    assert labeled_images.images.shape == (3, 96, 160, 3)
+    assert (labeled_images.images[:, :, :32] == 114).all()
+    assert np.allclose(labeled_images.objects[0][:, 1:], images[0].boxes * 96 + (32, 0, 32, 0), atol=1e-4)
 
 
 def test_boxes_stay_with_what_they_are_around(shapes):
-    labelled_images = read_labelled_images(open_dataset(shapes).read("train"), 96, 96)
+    labeled_images = read_labeled_images(open_dataset(shapes).read("train"), 96, 96)
     seen = 0
     for seed in range(40):
-        image, objects = augment(labelled_images, seed % 3, VIEW, np.random.default_rng(seed))
+        image, objects = augment(labeled_images, seed % 3, VIEW, np.random.default_rng(seed))
         assert image.shape == (64, 64, 3)
         for kind, left, top, right, bottom in objects:
             assert 0 <= left < right <= 64
@@ -167,8 +167,8 @@ def test_boxes_stay_with_what_they_are_around(shapes):
 
 
 def test_the_same_dice_change_a_image_in_the_same_way(shapes):
-    labelled_images = read_labelled_images(open_dataset(shapes).read("train"), 96, 96)
-    one, other = (augment(labelled_images, 0, VIEW, np.random.default_rng(5)) for _ in range(2))
+    labeled_images = read_labeled_images(open_dataset(shapes).read("train"), 96, 96)
+    one, other = (augment(labeled_images, 0, VIEW, np.random.default_rng(5)) for _ in range(2))
     assert (one[0] == other[0]).all()
     assert (one[1] == other[1]).all()
 
@@ -177,10 +177,10 @@ def test_the_last_epochs_are_of_whole_images(shapes):
     options = Options(shapes, shapes, epochs=5, whole_epochs=2, width=96, height=96)
     assert [options.view(epoch).size for epoch in range(5)] == [(64, 64)] * 3 + [(96, 96)] * 2
     assert options.view(4).scales[0] > options.view(0).scales[0]
-    labelled_images = read_labelled_images(open_dataset(shapes).read("train"), 96, 96)
+    labeled_images = read_labeled_images(open_dataset(shapes).read("train"), 96, 96)
     same = View((96, 96), (1.0, 1.0))
-    (_, objects) = augment(labelled_images, 0, same, np.random.default_rng(5))
-    here = labelled_images.objects[0]
+    (_, objects) = augment(labeled_images, 0, same, np.random.default_rng(5))
+    here = labeled_images.objects[0]
     sides = (objects[:, 3:] - objects[:, 1:3]) / (here[:, 3:] - here[:, 1:3])
     assert (objects[:, 0] == here[:, 0]).all()
     assert np.median(sides) == pytest.approx(1, abs=0.12)  # seen whole, and as large as they are
@@ -191,8 +191,8 @@ def test_images_of_rare_classes_are_seen_more_often():
         return np.array([[each, 0, 0, 9, 9] for each in classes], np.float32).reshape(-1, 5)
 
     objects = (*[image(0)] * 16, *[image(1, 0)] * 8, image(2), image(-4, 0), image())
-    labelled_images = LabelledImages(np.zeros((len(objects), 1, 1, 3), np.uint8), objects)
-    times = repeat_factors(labelled_images, 4)
+    labeled_images = LabeledImages(np.zeros((len(objects), 1, 1, 3), np.uint8), objects)
+    times = repeat_factors(labeled_images, 4)
     assert times[:24] == pytest.approx(1)  # classes 0 and 1 are at the median of 8, or more frequent
     assert times[24] == pytest.approx(np.sqrt(8))
     assert times[25:] == pytest.approx(1)  # what is to be ignored, or nothing

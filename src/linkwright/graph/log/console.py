@@ -90,7 +90,7 @@ _TOKENS: dict[str, Part] = {
 
 
 _NORMAL = "\x1b[0m"
-_COLOURS = {
+_COLORS = {
     LogLevel.DEBUG: "\x1b[32m",
     LogLevel.INFO: _NORMAL,
     LogLevel.WARN: "\x1b[33m",
@@ -102,8 +102,8 @@ _COLOURS = {
 def print_to_console(record: LogRecord) -> None:
     """Write a record to standard error, or to standard output on request.
 
-    RCUTILS_LOGGING_USE_STDOUT=1 selects standard output. Records are coloured on terminals. RCUTILS_COLORIZED_OUTPUT (0
-    or 1) overrides this; if it is not set, NO_COLOR turns colours off. Each record is flushed immediately, regardless
+    RCUTILS_LOGGING_USE_STDOUT=1 selects standard output. Records are colored on terminals. RCUTILS_COLORIZED_OUTPUT (0
+    or 1) overrides this; if it is not set, NO_COLOR turns colors off. Each record is flushed immediately, regardless
     of RCUTILS_LOGGING_BUFFERED_STREAM, so that no record is lost if the process dies. Errors of the stream are ignored.
     """
     stream: TextIO | None = sys.stdout if os.environ.get("RCUTILS_LOGGING_USE_STDOUT") == "1" else sys.stderr
@@ -111,8 +111,8 @@ def print_to_console(record: LogRecord) -> None:
         return
     line = console_line(record)
     try:
-        if _wants_colour(stream):
-            line = f"{_COLOURS[record.level]}{line}{_NORMAL}"
+        if _wants_color(stream):
+            line = f"{_COLORS[record.level]}{line}{_NORMAL}"
         stream.write(f"{line}\n")
         stream.flush()
     except (OSError, ValueError):
@@ -120,7 +120,7 @@ def print_to_console(record: LogRecord) -> None:
         return
 
 
-def _wants_colour(stream: TextIO) -> bool:
+def _wants_color(stream: TextIO) -> bool:
     setting = os.environ.get("RCUTILS_COLORIZED_OUTPUT")
     if setting in ("0", "1"):
         return setting == "1"

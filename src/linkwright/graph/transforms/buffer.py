@@ -80,7 +80,7 @@ class FrameSnapshot:
         revision: a number that changes if and only if `names` or `parents` change.
         names: the names of the n frames.
         parents: for each frame the index of its parent, -1 for frames without a parent.
-        poses: array, shape (n, 7), of each frame's pose in the fixed frame: x y z (metres) and qx qy qz qw. The rows of
+        poses: array, shape (n, 7), of each frame's pose in the fixed frame: x y z (meters) and qx qy qz qw. The rows of
             frames that no transforms connect with the fixed frame are NaN.
         ages: array, shape (n,), of the seconds since each frame's transform was last received; 0 for static transforms.
     """
@@ -179,7 +179,7 @@ class TransformBuffer:
         As in tf2's ``lookupTransform``, the pose transforms points from the source frame to the target frame.
 
         Returns:
-            Array, shape (7,), of x y z (metres) and qx qy qz qw.
+            Array, shape (7,), of x y z (meters) and qx qy qz qw.
 
         Raises:
             LookupException: one of the frames is not known, or its parents form a loop.

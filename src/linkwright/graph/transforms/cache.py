@@ -196,7 +196,7 @@ class MovingCache(FrameCache):
     def at(self, time_ns: int) -> tuple[int, Transform]:
         """Return the number of the parent and the pose at a time.
 
-        The pose is interpolated between the neighbouring transforms.
+        The pose is interpolated between the neighboring transforms.
         """
         index = self._index_at(time_ns)
         sample = self._samples[index]

@@ -1,6 +1,6 @@
 """The tf buffer with history, for lookups at any time in the last seconds.
 
-The methods are those of ``tf2_py.BufferCore``. Behaviour and messages follow tf2. Displays, which need the current
+The methods are those of ``tf2_py.BufferCore``. Behavior and messages follow tf2. Displays, which need the current
 poses of all frames, use `TransformBuffer` instead.
 """
 

@@ -38,7 +38,7 @@ def velocity(
     reference: tuple[str, Vector3, str],
     times_ns: tuple[int, int, int],
 ) -> tuple[Vector3, Vector3]:
-    """Return the linear and angular velocity of a frame, in metres and radians per second.
+    """Return the linear and angular velocity of a frame, in meters and radians per second.
 
     Args:
         buffer: provides the poses.

@@ -1,1 +1,1 @@
-"""Behaviours for recovery, and zones around the robot that limit its velocity."""
+"""Behaviors for recovery, and zones around the robot that limit its velocity."""

@@ -1,4 +1,4 @@
-"""Behaviours of nav2's behavior_server: spin, drive straight, wait, assisted teleoperation.
+"""Behaviors of nav2's behavior_server: spin, drive straight, wait, assisted teleoperation.
 
 Source: nav2_behaviors.
 """
@@ -21,7 +21,7 @@ IsFree = Callable[[NDArray[np.float64]], bool]
 
 
 class Outcome(Enum):
-    """The state of a behaviour after a cycle."""
+    """The state of a behavior after a cycle."""
 
     RUNNING = "running"
     DONE = "done"
@@ -31,12 +31,12 @@ class Outcome(Enum):
 
 @dataclass(frozen=True, slots=True)
 class Step:
-    """The result of one cycle of a behaviour.
+    """The result of one cycle of a behavior.
 
     Attributes:
-        outcome: whether the behaviour is still running, or how it ended.
-        velocity: the commanded velocity; zero once the behaviour has ended.
-        traveled: the distance travelled or the angle turned so far, in metres or radians.
+        outcome: whether the behavior is still running, or how it ended.
+        velocity: the commanded velocity; zero once the behavior has ended.
+        traveled: the distance traveled or the angle turned so far, in meters or radians.
     """
 
     outcome: Outcome
@@ -45,7 +45,7 @@ class Step:
 
 
 class Behavior(ABC):
-    """The base class of behaviours.
+    """The base class of behaviors.
 
     Args:
         allowance: the time limit in seconds; 0 for no limit.
@@ -55,11 +55,11 @@ class Behavior(ABC):
         self._allowance = allowance
 
     def step(self, pose: Pose, elapsed: float, is_free: IsFree) -> Step:
-        """Run one cycle of the behaviour.
+        """Run one cycle of the behavior.
 
         Args:
             pose: the pose of the robot.
-            elapsed: the time since the behaviour began, in seconds.
+            elapsed: the time since the behavior began, in seconds.
             is_free: checks poses for collisions, in the frame of `pose`; see `IsFree`.
 
         Returns:
@@ -86,7 +86,7 @@ class SpinParameters:
 
 
 class Spin(Behavior):
-    """A behaviour that turns the robot in place.
+    """A behavior that turns the robot in place.
 
     Args:
         angle: the angle to turn, in radians; it may exceed a full turn.
@@ -121,10 +121,10 @@ class Spin(Behavior):
 
 
 class DriveStraight(Behavior):
-    """A behaviour that drives the robot straight forward or backward.
+    """A behavior that drives the robot straight forward or backward.
 
     Args:
-        distance: the distance to drive, in metres; negative to drive backward.
+        distance: the distance to drive, in meters; negative to drive backward.
         speed: the speed in m/s.
         allowance: see `Behavior`.
         look_ahead: how far ahead the motion is checked for collisions, in seconds.
@@ -150,7 +150,7 @@ class DriveStraight(Behavior):
 
 
 class Wait(Behavior):
-    """A behaviour that keeps the robot at rest for a number of seconds."""
+    """A behavior that keeps the robot at rest for a number of seconds."""
 
     def __init__(self, seconds: float) -> None:
         super().__init__(0.0)

@@ -20,7 +20,7 @@ from linkwright.navigation.costmaps.footprints import Footprint
 from linkwright.navigation.following.follower import Velocity
 
 Points = NDArray[np.float64]
-"""Points of sensors in the frame of the robot, in metres, of shape (points, 2)."""
+"""Points of sensors in the frame of the robot, in meters, of shape (points, 2)."""
 
 
 class ZoneAction(IntEnum):
@@ -38,7 +38,7 @@ class Circle:
     """A circular zone around the origin of the robot.
 
     Attributes:
-        radius: the radius in metres.
+        radius: the radius in meters.
     """
 
     radius: float
@@ -54,7 +54,7 @@ class Polygon:
     """A polygonal zone.
 
     Attributes:
-        corners: the corners of the polygon in the frame of the robot, in metres.
+        corners: the corners of the polygon in the frame of the robot, in meters.
     """
 
     corners: Footprint

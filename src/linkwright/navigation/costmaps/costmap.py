@@ -15,9 +15,9 @@ from linkwright.navigation.grids.grid import Grid
 
 FREE: Final = 0
 MAX_PASSABLE: Final = 252
-"""The maximum cost of a cell in which the centre of the robot may be."""
+"""The maximum cost of a cell in which the center of the robot may be."""
 INSCRIBED: Final = 253
-"""An obstacle is nearer than the inscribed radius of the footprint, so a robot centred here touches it."""
+"""An obstacle is nearer than the inscribed radius of the footprint, so a robot centered here touches it."""
 LETHAL: Final = 254
 """The cell contains an obstacle."""
 UNKNOWN: Final = 255
@@ -54,7 +54,7 @@ class Costmap:
         """Return the costs of the cells that contain points.
 
         Args:
-            points: x and y in the frame of the costmap, in metres, of shape (..., 2).
+            points: x and y in the frame of the costmap, in meters, of shape (..., 2).
             outside_cost: the cost of points that are not in the grid.
 
         Returns:
@@ -72,8 +72,8 @@ class Costmap:
         """Return the highest cost under the outline of a footprint, for one pose or many.
 
         Args:
-            poses: x, y (metres) and yaw (radians) in the frame of the costmap, of shape (..., 3).
-            footprint: the corners in the frame of the robot, in metres, of shape (corners, 2).
+            poses: x, y (meters) and yaw (radians) in the frame of the costmap, of shape (..., 3).
+            footprint: the corners in the frame of the robot, in meters, of shape (corners, 2).
 
         Returns:
             Costs of shape (...); `LETHAL` if part of the outline is outside the grid and no part is in an unknown cell.

@@ -12,7 +12,7 @@ from linkwright.navigation.costmaps.layer import Layer, UpdateContext, Window
 from linkwright.navigation.grids.grid import Grid
 from linkwright.navigation.grids.library import load_scipy
 
-_ALL_NEIGHBOURS = 8
+_ALL_NEIGHBORS = 8
 
 
 class DenoiseLayer(Layer):
@@ -23,10 +23,10 @@ class DenoiseLayer(Layer):
         group_connectivity_type: 8 if cells that touch only at a corner are connected, and 4 otherwise.
     """
 
-    def __init__(self, minimal_group_size: int = 2, group_connectivity_type: int = _ALL_NEIGHBOURS) -> None:
+    def __init__(self, minimal_group_size: int = 2, group_connectivity_type: int = _ALL_NEIGHBORS) -> None:
         self._min_group_size = minimal_group_size
         self._connectivity = np.ones((3, 3), np.bool_)
-        if group_connectivity_type != _ALL_NEIGHBOURS:
+        if group_connectivity_type != _ALL_NEIGHBORS:
             self._connectivity[[0, 0, 2, 2], [0, 2, 0, 2]] = False
 
     def update_window(self, window: Window, context: UpdateContext, grid: Grid) -> Window:

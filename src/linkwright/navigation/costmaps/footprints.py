@@ -13,7 +13,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 Footprint = NDArray[np.float64]
-"""Corners in the frame of the robot, in metres, of shape (corners, 2)."""
+"""Corners in the frame of the robot, in meters, of shape (corners, 2)."""
 
 _CIRCLE_CORNERS = 16
 _MIN_CORNERS = 3
@@ -29,7 +29,7 @@ class BadFootprintError(ValueError):
 def circle(radius: float) -> Footprint:
     """Return the footprint of a round robot: a regular polygon of 16 corners.
 
-    `radius` is in metres.
+    `radius` is in meters.
     """
     angles = np.arange(_CIRCLE_CORNERS) * (2.0 * pi / _CIRCLE_CORNERS)
     corners: Footprint = radius * np.stack((np.cos(angles), np.sin(angles)), axis=-1)
@@ -55,15 +55,15 @@ def parse_footprint(text: str) -> Footprint:
 
 
 def pad_footprint(footprint: Footprint, padding: float) -> Footprint:
-    """Return a footprint with its corners moved away from both axes by `padding` metres."""
+    """Return a footprint with its corners moved away from both axes by `padding` meters."""
     padded_corners: Footprint = footprint + padding * np.sign(footprint)
     return padded_corners
 
 
 def radii(footprint: Footprint) -> tuple[float, float]:
-    """Return the radii of the inscribed and circumscribed circles of a footprint, in metres.
+    """Return the radii of the inscribed and circumscribed circles of a footprint, in meters.
 
-    Both circles are centred at the origin of the robot.
+    Both circles are centered at the origin of the robot.
     """
     next_corners = np.roll(footprint, -1, axis=0)
     edges = next_corners - footprint
@@ -75,7 +75,7 @@ def radii(footprint: Footprint) -> tuple[float, float]:
 
 
 def outline(footprint: Footprint, spacing: float) -> NDArray[np.float64]:
-    """Return points along the outline of a footprint, at most `spacing` metres apart.
+    """Return points along the outline of a footprint, at most `spacing` meters apart.
 
     The points have shape (points, 2).
     """

@@ -23,8 +23,8 @@ class Inflation:
     """The parameters of the decay of costs with the distance from obstacles.
 
     Attributes:
-        inflation_radius: the distance up to which cells have a cost, in metres.
-        cost_scaling_factor: the rate of the decay, per metre.
+        inflation_radius: the distance up to which cells have a cost, in meters.
+        cost_scaling_factor: the rate of the decay, per meter.
         inflate_unknown: whether unknown cells get every cost above 0; otherwise they get only the costs at which the
             robot would touch an obstacle.
         inflate_around_unknown: whether unknown cells are inflated like obstacles.
@@ -36,7 +36,7 @@ class Inflation:
     inflate_around_unknown: bool = False
 
     def costs(self, distances: NDArray[np.float64], inscribed_radius: float) -> Costs:
-        """Return the costs at distances, in metres, from the nearest obstacle.
+        """Return the costs at distances, in meters, from the nearest obstacle.
 
         The costs have the shape of `distances`.
         """

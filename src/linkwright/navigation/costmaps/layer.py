@@ -86,9 +86,9 @@ class UpdateContext:
     """The time of an update, and the robot's position and footprint at that time.
 
     Attributes:
-        x, y: the position of the robot, in metres, in the frame of the costmap.
-        footprint: the corners of the robot in that frame, in metres, of shape (corners, 2).
-        inscribed_radius: the radius of the circle inscribed in the footprint around the robot, in metres.
+        x, y: the position of the robot, in meters, in the frame of the costmap.
+        footprint: the corners of the robot in that frame, in meters, of shape (corners, 2).
+        inscribed_radius: the radius of the circle inscribed in the footprint around the robot, in meters.
         time_ns: the time of the update.
     """
 
@@ -214,7 +214,7 @@ def footprint_window(context: UpdateContext, grid: Grid) -> Window:
 
 
 def free_footprint(cells: Costs, context: UpdateContext, grid: Grid, window: Window) -> None:
-    """Free the cells of a window whose centres are within the robot's footprint."""
+    """Free the cells of a window whose centers are within the robot's footprint."""
     footprint_cells = footprint_window(context, grid)
     footprint_cells = Window(
         max(footprint_cells.top, window.top),
@@ -225,5 +225,5 @@ def free_footprint(cells: Costs, context: UpdateContext, grid: Grid, window: Win
     if footprint_cells.is_empty:
         return
     rows, columns = np.mgrid[footprint_cells.top : footprint_cells.bottom, footprint_cells.left : footprint_cells.right]
-    centres = grid.centres_of(np.stack((rows, columns), axis=-1))
-    cells[footprint_cells.cells][within_polygon(centres, context.footprint)] = FREE
+    centers = grid.centers_of(np.stack((rows, columns), axis=-1))
+    cells[footprint_cells.cells][within_polygon(centers, context.footprint)] = FREE

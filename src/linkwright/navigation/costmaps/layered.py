@@ -15,7 +15,7 @@ from linkwright.navigation.costmaps.layer import Layer, UpdateContext, Window
 from linkwright.navigation.grids.grid import Grid
 
 Pose = tuple[float, float, float]
-"""x, y (metres) and yaw (radians) in the frame of a costmap."""
+"""x, y (meters) and yaw (radians) in the frame of a costmap."""
 
 
 class LayeredCostmap:
@@ -27,12 +27,12 @@ class LayeredCostmap:
         footprint: the footprint of the robot without padding; see `Footprint`.
         is_rolling: whether the costmap moves to keep the robot in its middle.
         track_unknown: whether cells without data are unknown; otherwise they are free.
-        footprint_padding: the padding of the footprint, in metres.
+        footprint_padding: the padding of the footprint, in meters.
 
     Attributes:
         costmap: the costs after the last update.
         layers: the layers from bottom to top.
-        padding: the padding that is applied when the footprint is next set, in metres.
+        padding: the padding that is applied when the footprint is next set, in meters.
         changed_window: the window that the last update wrote.
     """
 
@@ -127,8 +127,8 @@ class LayeredCostmap:
         """Clear the clearable layers in a square, or everywhere outside the square.
 
         Args:
-            pose: the centre of the square.
-            distance: the side of the square, in metres.
+            pose: the center of the square.
+            distance: the side of the square, in meters.
             clear_outside: whether to keep the square and clear the rest.
         """
         corners = np.array([[pose[0], pose[1]]]) + distance / 2.0 * np.array([[-1.0, -1.0], [1.0, 1.0]])

@@ -16,7 +16,7 @@ from linkwright.process.nanoseconds import NANOSECONDS_PER_SECOND
 
 @dataclass(frozen=True, kw_only=True)
 class Source:
-    """Settings of a sensor, with lengths in metres and times in seconds.
+    """Settings of a sensor, with lengths in meters and times in seconds.
 
     Attributes:
         marking: whether the sensor's points mark obstacles.
@@ -48,7 +48,7 @@ class Observation:
     """A set of points observed at the same time.
 
     Attributes:
-        origin: x, y and z of the sensor in the frame of the costmap, in metres.
+        origin: x, y and z of the sensor in the frame of the costmap, in meters.
         points: the points, of shape (n, 3), in the same frame.
         source: the settings of the sensor.
         time_ns: the time of the observation.

@@ -33,7 +33,7 @@ Cells = NDArray[np.int64]
 
 @dataclass(frozen=True, kw_only=True)
 class HeightRange:
-    """The height range of obstacles, in metres."""
+    """The height range of obstacles, in meters."""
 
     min_obstacle_height: float = 0.0
     max_obstacle_height: float = 2.0
@@ -140,7 +140,7 @@ def ray_ends(observation: Observation, grid: Grid) -> tuple[Cells, Cells, NDArra
 
     Returns:
         The cell of the sensor, of shape (2,); the cells in which rays end, clipped to the maximum range and without
-        duplicates, of shape (n, 2); and the height at which each ray ends, in metres, of shape (n,).
+        duplicates, of shape (n, 2); and the height at which each ray ends, in meters, of shape (n,).
     """
     origin, points = observation.origin, observation.points
     offsets = points - origin

@@ -34,7 +34,7 @@ class RangeSettings:
     """Settings of the sensor model, with nav2's names and defaults.
 
     Attributes:
-        phi: the distance beyond which readings are uncertain, in metres.
+        phi: the distance beyond which readings are uncertain, in meters.
         clear_threshold: cells with a lower probability of being occupied are free.
         mark_threshold: cells with a higher probability of being occupied are obstacles.
         clear_on_max_reading: whether a reading of the maximum range clears the cone.
@@ -54,9 +54,9 @@ class RangeReading:
     """A reading of a range sensor.
 
     Attributes:
-        x, y: the position of the sensor in the frame of the costmap, in metres.
+        x, y: the position of the sensor in the frame of the costmap, in meters.
         yaw: the direction of the sensor, in radians.
-        distance: the measured distance, in metres.
+        distance: the measured distance, in meters.
         field_of_view: the full angle of the cone, in radians.
         is_free: whether the sensor found no obstacle up to the distance.
         time_ns: the time of the reading.
@@ -134,8 +134,8 @@ class RangeLayer(PersistentLayer):
             row - reach_in_cells, column - reach_in_cells, row + reach_in_cells + 1, column + reach_in_cells + 1
         ).clipped_to(grid)
         rows, columns = np.mgrid[window.top : window.bottom, window.left : window.right]
-        centres = grid.centres_of(np.stack((rows, columns), axis=-1))
-        x, y = centres[..., 0] - reading.x, centres[..., 1] - reading.y
+        centers = grid.centers_of(np.stack((rows, columns), axis=-1))
+        x, y = centers[..., 0] - reading.x, centers[..., 1] - reading.y
         angles = np.abs((np.arctan2(y, x) - reading.yaw + np.pi) % (2.0 * np.pi) - np.pi)
         half_angle = max(reading.field_of_view / 2.0, np.finfo(float).tiny)
         distances = np.hypot(x, y)
@@ -165,10 +165,10 @@ class RangeLayer(PersistentLayer):
         """Return the probability that a cell is occupied according to this reading alone.
 
         Args:
-            distance: the distance of cells from the sensor, in metres.
+            distance: the distance of cells from the sensor, in meters.
             angular_offset: the angular offset of cells from the sensor's axis, scaled to 1 at the edge of the cone.
             reading: the measurement.
-            resolution: the side of a cell, in metres.
+            resolution: the side of a cell, in meters.
         """
         if reading.is_free:
             return np.where(distance <= reading.distance, 0.0, 0.5)

@@ -16,7 +16,7 @@ from linkwright.navigation.costmaps.layer import Costs, Layer, UpdateContext, Wi
 from linkwright.navigation.grids.grid import Grid
 
 MapPose = tuple[float, float, float]
-"""x, y (metres) and yaw (radians) of the costmap's frame in the map's frame."""
+"""x, y (meters) and yaw (radians) of the costmap's frame in the map's frame."""
 
 _IDENTITY: MapPose = (0.0, 0.0, 0.0)
 _ALIGNMENT_TOLERANCE = 1e-3
@@ -169,15 +169,15 @@ class StaticLayer(Layer):
     def _sampled_cells(self, grid: Grid, window: Window) -> tuple[NDArray[np.bool_], Costs]:
         """Return a mask of the window's cells that the map covers, and the costs of these cells.
 
-        The map is sampled at the cell centres, for grids that are not aligned.
+        The map is sampled at the cell centers, for grids that are not aligned.
         """
         assert self.map is not None
         assert self._map_pose is not None
         rows, columns = np.mgrid[window.top : window.bottom, window.left : window.right]
-        centres = grid.centres_of(np.stack((rows, columns), axis=-1))
+        centers = grid.centers_of(np.stack((rows, columns), axis=-1))
         x, y, yaw = self._map_pose
         cosine, sine = np.cos(yaw), np.sin(yaw)
-        indices = self.map.cells_of(centres @ np.array([[cosine, sine], [-sine, cosine]]) + (x, y))
+        indices = self.map.cells_of(centers @ np.array([[cosine, sine], [-sine, cosine]]) + (x, y))
         is_inside = self.map.contains(indices)
         indices = indices[is_inside]
         return is_inside, self.map.cells[indices[:, 0], indices[:, 1]]

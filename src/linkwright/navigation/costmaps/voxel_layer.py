@@ -34,8 +34,8 @@ class Voxels:
     """The height levels in a column of cells.
 
     Attributes:
-        origin_z: the bottom of the lowest level, in metres.
-        z_resolution: the height of a level, in metres.
+        origin_z: the bottom of the lowest level, in meters.
+        z_resolution: the height of a level, in meters.
         z_voxels: the number of levels, up to 16.
         unknown_threshold: a column with more unknown levels than this is unknown.
         mark_threshold: a column with more occupied levels than this is an obstacle.

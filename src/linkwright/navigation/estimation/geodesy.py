@@ -1,7 +1,7 @@
-"""Conversion of WGS 84 coordinates in degrees to metres: UTM and tangent planes.
+"""Conversion of WGS 84 coordinates in degrees to meters: UTM and tangent planes.
 
 Sources: L. Krüger 1912 for the transverse Mercator projection, with the coefficients of C. Karney, "Transverse Mercator
-with an accuracy of a few nanometers", 2011, to the fourth order, whose error is far below a millimetre within a zone;
+with an accuracy of a few nanometers", 2011, to the fourth order, whose error is far below a millimeter within a zone;
 EPSG Guidance Note 7-2 for the zones, false origins and the plane.
 """
 
@@ -63,7 +63,7 @@ def zone_from_degrees(latitude: float, longitude: float) -> UtmZone:
 
 
 def utm_from_degrees(latitude: float, longitude: float, zone: UtmZone) -> tuple[float, float]:
-    """Convert a position in degrees to easting and northing in metres."""
+    """Convert a position in degrees to easting and northing in meters."""
     tau = tan(radians(latitude))
     sigma = sinh(_ECCENTRICITY * atanh(_ECCENTRICITY * tau / hypot(1.0, tau)))
     conformal = tau * hypot(1.0, sigma) - sigma * hypot(1.0, tau)
@@ -79,7 +79,7 @@ def utm_from_degrees(latitude: float, longitude: float, zone: UtmZone) -> tuple[
 
 
 def degrees_from_utm(easting: float, northing: float, zone: UtmZone) -> tuple[float, float]:
-    """Convert easting and northing in metres to latitude and longitude in degrees.
+    """Convert easting and northing in meters to latitude and longitude in degrees.
 
     This is the inverse of `utm_from_degrees`.
     """
@@ -115,7 +115,7 @@ class TangentPlane:
     Args:
         latitude: the latitude of the plane's origin, in degrees.
         longitude: the longitude of the plane's origin, in degrees.
-        altitude: the altitude of the plane's origin above the ellipsoid, in metres.
+        altitude: the altitude of the plane's origin above the ellipsoid, in meters.
     """
 
     latitude: float
@@ -123,7 +123,7 @@ class TangentPlane:
     altitude: float
 
     def point_from_geodetic(self, latitude: float, longitude: float, altitude: float) -> Vector3:
-        """Convert latitude and longitude in degrees and altitude in metres to a point in metres."""
+        """Convert latitude and longitude in degrees and altitude in meters to a point in meters."""
         x, y, z = _geocentric(latitude, longitude, altitude)
         ox, oy, oz = _geocentric(self.latitude, self.longitude, self.altitude)
         east, north, up = self._axes()
@@ -131,7 +131,7 @@ class TangentPlane:
         return dot(east, offset), dot(north, offset), dot(up, offset)
 
     def geodetic_from_point(self, point: Vector3) -> Vector3:
-        """Convert a point in metres to latitude and longitude in degrees and altitude in metres."""
+        """Convert a point in meters to latitude and longitude in degrees and altitude in meters."""
         ox, oy, oz = _geocentric(self.latitude, self.longitude, self.altitude)
         axes = self._axes()
         x, y, z = (

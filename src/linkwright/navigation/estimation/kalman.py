@@ -249,7 +249,7 @@ class KalmanFilter(ABC):
 
 
 class ExtendedKalmanFilter(KalmanFilter):
-    """A Kalman filter that linearises the motion at the state."""
+    """A Kalman filter that linearizes the motion at the state."""
 
     def _predict(self, seconds: float) -> None:
         jacobian, noise = state_jacobian(self.state, seconds), self._process_noise(seconds)
@@ -284,13 +284,13 @@ class UnscentedKalmanFilter(KalmanFilter):
         points = [self.state, *(self.state + column for column in root.T), *(self.state - column for column in root.T)]
         predicted_points = np.array([predict_state(point, seconds) for point in points])
         # Angles near +-pi are averaged relative to the first point.
-        centre = predicted_points[0]
-        deviations = predicted_points - centre
+        center = predicted_points[0]
+        deviations = predicted_points - center
         for index in _ANGLES:
             deviations[:, index] = [wrap_angle(float(angle)) for angle in deviations[:, index]]
         mean = self._weights @ deviations
         deviations -= mean
-        self.state = centre + mean
+        self.state = center + mean
         wrap_state_angles(self.state)
         self.covariance = (deviations.T * self._covariance_weights) @ deviations + noise
 

@@ -16,7 +16,7 @@ class GoalChecker(ABC):
     """The base class of checkers that decide whether a goal is reached."""
 
     xy_tolerance: float = 0.25
-    """The distance from the goal at which its position counts as reached, in metres."""
+    """The distance from the goal at which its position counts as reached, in meters."""
 
     @abstractmethod
     def is_reached(self, pose: Pose, goal: Pose, velocity: Velocity) -> bool:
@@ -31,7 +31,7 @@ class GoalChecker(ABC):
 
 @dataclass(frozen=True, kw_only=True)
 class SimpleGoalParameters:
-    """Parameters of `SimpleGoalChecker`, in metres and radians."""
+    """Parameters of `SimpleGoalChecker`, in meters and radians."""
 
     xy_goal_tolerance: float = 0.25
     yaw_goal_tolerance: float = 0.25
@@ -64,7 +64,7 @@ class SimpleGoalChecker(GoalChecker):
 
 @dataclass(frozen=True, kw_only=True)
 class StoppedGoalParameters(SimpleGoalParameters):
-    """Parameters of `StoppedGoalChecker`, in metres, radians and seconds."""
+    """Parameters of `StoppedGoalChecker`, in meters, radians and seconds."""
 
     trans_stopped_velocity: float = 0.25
     rot_stopped_velocity: float = 0.25
@@ -88,7 +88,7 @@ class StoppedGoalChecker(SimpleGoalChecker):
 
 @dataclass(frozen=True, kw_only=True)
 class ProgressParameters:
-    """Parameters of `ProgressChecker` (nav2's SimpleProgressChecker), in metres and seconds."""
+    """Parameters of `ProgressChecker` (nav2's SimpleProgressChecker), in meters and seconds."""
 
     required_movement_radius: float = 0.5
     movement_time_allowance: float = 10.0

@@ -13,7 +13,7 @@ from linkwright.navigation.costmaps.costmap import Costmap
 from linkwright.navigation.costmaps.footprints import Footprint
 
 Pose = tuple[float, float, float]
-"""x, y (metres) and yaw (radians)."""
+"""x, y (meters) and yaw (radians)."""
 
 
 class Velocity(NamedTuple):
@@ -41,11 +41,11 @@ class Situation:
     Attributes:
         pose: the pose of the robot.
         velocity: the current velocity of the robot.
-        path: the remaining path, of shape (poses, 3): x, y (metres) and yaw (radians); at least two poses.
+        path: the remaining path, of shape (poses, 3): x, y (meters) and yaw (radians); at least two poses.
         costmap: the costmap around the robot.
         footprint: the footprint in the frame of the robot.
         period: the period of the cycles, in seconds.
-        xy_tolerance: the distance from the end within which the path counts as completed, in metres.
+        xy_tolerance: the distance from the end within which the path counts as completed, in meters.
     """
 
     pose: Pose
@@ -113,7 +113,7 @@ def to_robot_frame(pose: Pose, points: NDArray[np.float64]) -> NDArray[np.float6
 
 
 def distances_along(path: NDArray[np.float64]) -> NDArray[np.float64]:
-    """Return the distance along a path to each of its poses, in metres, of shape (poses,)."""
+    """Return the distance along a path to each of its poses, in meters, of shape (poses,)."""
     steps = np.hypot(*np.diff(path[:, :2], axis=0).T)
     lengths: NDArray[np.float64] = np.concatenate(([0.0], np.cumsum(steps)))
     return lengths

@@ -34,7 +34,7 @@ from linkwright.navigation.following.follower import (
 class PurePursuitParameters:
     """Parameters of `RegulatedPurePursuit`, with nav2's names and defaults.
 
-    Units are metres, seconds and radians.
+    Units are meters, seconds and radians.
     """
 
     desired_linear_vel: float = 0.5
@@ -184,8 +184,8 @@ def find_carrot(points: NDArray[np.float64], lookahead: float) -> NDArray[np.flo
     If all points are nearer, the last point is returned.
 
     Args:
-        points: the points of the path in the robot's frame, of shape (points, 2), in metres.
-        lookahead: the distance, in metres.
+        points: the points of the path in the robot's frame, of shape (points, 2), in meters.
+        lookahead: the distance, in meters.
     """
     distances = np.hypot(points[:, 0], points[:, 1])
     far_indices = np.flatnonzero(distances >= lookahead)
@@ -213,7 +213,7 @@ def curvature_to(point: NDArray[np.float64]) -> float:
 def speed_in_curve(speed: float, curvature: float, min_radius: float) -> float:
     """Return the speed in a curve, in m/s.
 
-    If the radius of the curve is below `min_radius`, in metres, the speed is reduced in proportion to the radius.
+    If the radius of the curve is below `min_radius`, in meters, the speed is reduced in proportion to the radius.
     """
     radius = 1.0 / abs(curvature) if curvature else np.inf
     return speed * min(1.0, float(radius) / min_radius) if min_radius > 0.0 else speed

@@ -25,7 +25,7 @@ from linkwright.navigation.following.pure_pursuit import is_free, rotation_speed
 class RotationShimParameters:
     """Parameters of `RotationShim`, with nav2's names and defaults.
 
-    Units are metres, seconds and radians.
+    Units are meters, seconds and radians.
     """
 
     angular_dist_threshold: float = 0.785

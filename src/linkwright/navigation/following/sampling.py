@@ -61,8 +61,8 @@ class SamplingParameters:
         sample_counts: the number of velocities sampled along x, along y and about z.
         simulated_seconds: how long each motion is simulated.
         step_count: the number of simulation steps.
-        path_weight: the cost of each metre of distance from the path, as an equivalent length of path in metres.
-        heading_weight: the cost of each radian of deviation from the path's direction, as a length of path in metres.
+        path_weight: the cost of each meter of distance from the path, as an equivalent length of path in meters.
+        heading_weight: the cost of each radian of deviation from the path's direction, as a length of path in meters.
         obstacle_weight: the weight of the highest costmap cost along the motion.
         min_turn_angle: the angle to the path above which the robot turns in place, in radians.
     """
@@ -80,7 +80,7 @@ class SamplingParameters:
 _MAX_FOOTPRINTS = 60
 """The maximum number of velocities that are checked with the footprint, best first. This check is slow."""
 _LOOK_AHEAD = 0.35
-"""The distance from a motion's end to the point ahead on the path that the robot should face, in metres."""
+"""The distance from a motion's end to the point ahead on the path that the robot should face, in meters."""
 
 
 class SamplingFollower(Follower):
@@ -195,7 +195,7 @@ class SamplingFollower(Follower):
     def _motion_costs(
         self, motions: NDArray[np.float64], costs: NDArray[np.float64], situation: Situation
     ) -> NDArray[np.float64]:
-        """Return the costs of motions, in metres of the path, of shape (motions,).
+        """Return the costs of motions, in meters of the path, of shape (motions,).
 
         `motions` are the predicted poses, and `costs` are the highest costs in the costmap, from 0 to 1.
         """
@@ -230,4 +230,4 @@ def _brake(speed: float, deceleration: float, period: float) -> float:
 
 
 _MIN_DIRECTION_DISTANCE = 0.05
-"""The minimum distance to a point for its direction to be used, in metres."""
+"""The minimum distance to a point for its direction to be used, in meters."""

@@ -9,14 +9,14 @@ from linkwright.navigation.grids.library import load_scipy
 
 
 def distance_field(is_marked: NDArray[np.bool_], resolution: float) -> NDArray[np.float64]:
-    """Return the distance from the centre of each cell to the centre of the nearest marked cell.
+    """Return the distance from the center of each cell to the center of the nearest marked cell.
 
     Args:
         is_marked: the mask of marked cells, of shape (rows, columns).
-        resolution: the side of a cell, in metres.
+        resolution: the side of a cell, in meters.
 
     Returns:
-        Distances in metres, of the same shape; 0 in marked cells, infinite if no cell is marked.
+        Distances in meters, of the same shape; 0 in marked cells, infinite if no cell is marked.
 
     Raises:
         LinkwrightError: NAV101, SciPy is not installed.

@@ -22,9 +22,9 @@ class Grid:
     Args:
         cells: the values, of shape (rows, columns): ``cells[row, column]``, rows along y. Their type and meaning depend
             on the use (int8 for nav_msgs/OccupancyGrid, uint8 for costs).
-        resolution: the side of a cell, in metres.
-        x: the x coordinate of the outer corner of cell (0, 0) in the frame of the grid, in metres.
-        y: the y coordinate of that corner, in metres.
+        resolution: the side of a cell, in meters.
+        x: the x coordinate of the outer corner of cell (0, 0) in the frame of the grid, in meters.
+        y: the y coordinate of that corner, in meters.
         yaw: the rotation of the grid about that corner, in radians.
     """
 
@@ -48,7 +48,7 @@ class Grid:
         """Return the rows and columns of the cells that contain points, even outside the grid.
 
         Args:
-            points: x and y in the frame of the grid, in metres, of shape (..., 2).
+            points: x and y in the frame of the grid, in meters, of shape (..., 2).
 
         Returns:
             Rows and columns, of shape (..., 2).
@@ -61,14 +61,14 @@ class Grid:
         indices: NDArray[np.int64] = np.floor(np.stack((y, x), axis=-1) / self.resolution).astype(np.int64)
         return indices
 
-    def centres_of(self, indices: NDArray[np.integer[Any]]) -> NDArray[np.float64]:
-        """Return the centres of cells.
+    def centers_of(self, indices: NDArray[np.integer[Any]]) -> NDArray[np.float64]:
+        """Return the centers of cells.
 
         Args:
             indices: rows and columns, of shape (..., 2).
 
         Returns:
-            x and y in the frame of the grid, in metres, of shape (..., 2).
+            x and y in the frame of the grid, in meters, of shape (..., 2).
         """
         y = (indices[..., 0] + 0.5) * self.resolution
         x = (indices[..., 1] + 0.5) * self.resolution

@@ -47,13 +47,13 @@ def cast_rays(distances: Grid, points: NDArray[np.float64], angles: NDArray[np.f
     0.
 
     Args:
-        distances: the metres to the nearest occupied cell (see `distance_field`), 0 in occupied cells.
-        points: the origins of the rays, x and y in the frame of the grid, in metres, of shape (..., 2).
+        distances: the meters to the nearest occupied cell (see `distance_field`), 0 in occupied cells.
+        points: the origins of the rays, x and y in the frame of the grid, in meters, of shape (..., 2).
         angles: the angles of the rays about z in that frame, in radians, of shape (...).
-        limit: the range of rays that hit no cell or leave the grid, in metres.
+        limit: the range of rays that hit no cell or leave the grid, in meters.
 
     Returns:
-        Ranges in metres, of shape (...), accurate to about half a cell.
+        Ranges in meters, of shape (...), accurate to about half a cell.
     """
     shape = np.broadcast_shapes(points.shape[:-1], angles.shape)
     cosine, sine, size = cos(distances.yaw), sin(distances.yaw), distances.resolution

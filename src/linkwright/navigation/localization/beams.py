@@ -19,11 +19,11 @@ class Beams:
     """Selected beams of a scan, projected to the plane.
 
     Attributes:
-        origin: x and y of the laser in the frame of the robot, in metres.
+        origin: x and y of the laser in the frame of the robot, in meters.
         end_points: the end points of the beams, x and y in that frame, of shape (n, 2); a beam without a return ends at
             `range_max`.
-        ranges: the lengths of the beams, of shape (n,), in metres.
-        range_max: the maximum length of a beam, in metres.
+        ranges: the lengths of the beams, of shape (n,), in meters.
+        range_max: the maximum length of a beam, in meters.
     """
 
     origin: tuple[float, float]
@@ -54,8 +54,8 @@ def beams_of_scan(
         scan: the message.
         laser_in_robot: the pose of the laser in the frame of the robot; the laser may be upside down or tilted.
         max_beams: the maximum number of beams.
-        min_range: beams up to this length count as having no return, in metres; negative for the scan's own limit.
-        range_max: longer ranges count as this range, in metres; negative for the scan's own limit.
+        min_range: beams up to this length count as having no return, in meters; negative for the scan's own limit.
+        range_max: longer ranges count as this range, in meters; negative for the scan's own limit.
     """
     ranges = np.asarray(scan.ranges, np.float64)
     step = max(1, (len(ranges) - 1) // max(1, max_beams - 1)) if max_beams > 1 else max(1, len(ranges))

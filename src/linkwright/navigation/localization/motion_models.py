@@ -13,10 +13,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 Poses = NDArray[np.float64]
-"""x and y in metres and yaw in radians, of shape (n, 3)."""
+"""x and y in meters and yaw in radians, of shape (n, 3)."""
 
 _MIN_TRANSLATION = 0.01
-"""The minimum distance in metres for a motion to have a direction."""
+"""The minimum distance in meters for a motion to have a direction."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -39,7 +39,7 @@ class Noise:
 
 
 Pose = tuple[float, float, float]
-"""x and y in metres and yaw in radians."""
+"""x and y in meters and yaw in radians."""
 
 MotionModel = Callable[[Poses, Pose, Pose, Noise, np.random.Generator], None]
 """Moves particles in place. The arguments: particles, old and new odometry pose, noise, random generator."""

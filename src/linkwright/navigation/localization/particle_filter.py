@@ -13,10 +13,10 @@ from linkwright.navigation.grids.library import load_scipy
 from linkwright.navigation.localization.motion_models import Poses
 
 _BIN_SIZE = np.array((0.5, 0.5, np.pi / 18.0))
-"""The size of a bin of poses along x and y, in metres, and yaw, in radians."""
+"""The size of a bin of poses along x and y, in meters, and yaw, in radians."""
 _YAW_BINS = 36
 _CONVERGENCE_DISTANCE = 0.5
-"""The filter has converged if all particles are within this distance of their mean, in metres."""
+"""The filter has converged if all particles are within this distance of their mean, in meters."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -45,7 +45,7 @@ class Estimate:
     """An estimated pose.
 
     Attributes:
-        pose: x and y in metres and yaw in radians: the mean of the most likely cluster.
+        pose: x and y in meters and yaw in radians: the mean of the most likely cluster.
         weight: the weight of that cluster, 0 to 1.
         covariance: the covariance of all particles, of shape (3, 3).
     """
@@ -88,7 +88,7 @@ class ParticleFilter:
         self.set_particles(np.array(pose) + deviations @ axes.T)
 
     def update_weights(self, likelihoods: NDArray[np.float64]) -> None:
-        """Multiply the weights by the likelihoods, normalise them, and update the recovery averages.
+        """Multiply the weights by the likelihoods, normalize them, and update the recovery averages.
 
         If all products are 0, the particles get equal weights instead.
         """
@@ -180,9 +180,9 @@ class ParticleFilter:
 
 
 def _bins(particles: Poses) -> tuple[NDArray[np.int64], int]:
-    """Return the bin number of each particle, and the difference between neighbours along x.
+    """Return the bin number of each particle, and the difference between neighbors along x.
 
-    Neighbours along y differ by the number of yaw bins, and neighbours in yaw differ by 1 and wrap after a full turn.
+    Neighbors along y differ by the number of yaw bins, and neighbors in yaw differ by 1 and wrap after a full turn.
     A border of empty bins surrounds all others.
     """
     bins: NDArray[np.int64] = np.floor(particles / _BIN_SIZE).astype(np.int64)
@@ -203,10 +203,10 @@ def _clusters(particles: Poses) -> NDArray[np.int64]:
     pairs = []
     for step in (along_x + _YAW_BINS, along_x, along_x - _YAW_BINS, _YAW_BINS, 0):  # Opposite steps are symmetric.
         for yaw_step in (-1, 0, 1):
-            neighbours = bins - yaw + step + (yaw + yaw_step) % _YAW_BINS
-            neighbour_indices = np.minimum(np.searchsorted(bins, neighbours), len(bins) - 1)
-            exists = bins[neighbour_indices] == neighbours
-            pairs.append(np.stack((own_indices[exists], neighbour_indices[exists])))
+            neighbors = bins - yaw + step + (yaw + yaw_step) % _YAW_BINS
+            neighbor_indices = np.minimum(np.searchsorted(bins, neighbors), len(bins) - 1)
+            exists = bins[neighbor_indices] == neighbors
+            pairs.append(np.stack((own_indices[exists], neighbor_indices[exists])))
     edges = np.concatenate(pairs, axis=1)
     matrix = load_scipy("sparse").coo_matrix((np.ones(edges.shape[1]), edges), shape=(len(bins), len(bins)))
     _, labels = load_scipy("sparse.csgraph").connected_components(matrix, directed=False)

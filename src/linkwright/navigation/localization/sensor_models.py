@@ -21,7 +21,7 @@ from linkwright.navigation.localization.motion_models import Poses
 Likelihoods = NDArray[np.float64]
 MODELS = ("likelihood_field", "likelihood_field_prob", "beam")
 _FIT_DISTANCE = 0.15
-"""The maximum distance from the end of a beam to an obstacle of the map for the beam to fit, in metres."""
+"""The maximum distance from the end of a beam to an obstacle of the map for the beam to fit, in meters."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -31,7 +31,7 @@ class BeamSkipping:
     Beam skipping ignores beams that fit only few particles, such as beams that hit people.
 
     Attributes:
-        distance: the maximum distance from the map's nearest obstacle at which a beam fits a particle, in metres.
+        distance: the maximum distance from the map's nearest obstacle at which a beam fits a particle, in meters.
         threshold: the share of particles that a beam must fit.
         error_threshold: if more than this share of beams would be skipped, all beams are used.
     """
@@ -45,7 +45,7 @@ class BeamSkipping:
 class LaserSettings:
     """Parameters of the sensor models, with nav2's names.
 
-    Lengths are in metres, and ``lambda_short`` is in 1/m.
+    Lengths are in meters, and ``lambda_short`` is in 1/m.
     """
 
     z_hit: float = 0.5
@@ -87,7 +87,7 @@ class MapLikelihoods:
     ) -> Likelihoods:
         """Return the likelihood of a scan from each pose by one of `MODELS`, of shape (particles,).
 
-        Likelihoods are positive and not normalised.
+        Likelihoods are positive and not normalized.
         """
         if model == "beam":
             return self._beam_likelihoods(particles, beams)
@@ -127,7 +127,7 @@ class MapLikelihoods:
             self._free_cells if len(self._free_cells) else np.argwhere(np.ones_like(self.grid.cells, np.bool_))
         )
         cells = cell_choices[random.integers(0, len(cell_choices), count)]
-        points = self.grid.centres_of(cells) + random.uniform(-0.5, 0.5, (count, 2)) * self.grid.resolution
+        points = self.grid.centers_of(cells) + random.uniform(-0.5, 0.5, (count, 2)) * self.grid.resolution
         return np.column_stack((points, random.uniform(-np.pi, np.pi, count)))
 
     def _contributions_by_cell(self, model: str, range_max: float) -> NDArray[np.float32]:

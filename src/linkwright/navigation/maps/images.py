@@ -37,7 +37,7 @@ class MapImage:
     """The pixels of an image from the top row down, with values from 0 to 1.
 
     Attributes:
-        shade: the brightness, the mean of the colour channels, of shape (rows, columns).
+        shade: the brightness, the mean of the color channels, of shape (rows, columns).
         opacity: the opacity, 1 for opaque pixels, of the same shape; None if the image has no transparency.
     """
 
@@ -64,7 +64,7 @@ def read_image(path: Path) -> MapImage:
 
 
 def encode_pgm(pixels: NDArray[np.uint8]) -> bytes:
-    """Encode grey pixels of shape (rows, columns) as a binary PGM, in the form that nav2 writes."""
+    """Encode gray pixels of shape (rows, columns) as a binary PGM, in the form that nav2 writes."""
     rows, columns = pixels.shape
     return b"P5\n%d %d\n255\n" % (columns, rows) + np.ascontiguousarray(pixels).tobytes()
 
@@ -73,14 +73,14 @@ def encode_with_pillow(pixels: NDArray[np.uint8], kind: str) -> bytes:
     """Encode pixels as an image file in one of Pillow's formats.
 
     Args:
-        pixels: the pixels, of shape (rows, columns) for grey, or (rows, columns, 2) for grey and opacity.
+        pixels: the pixels, of shape (rows, columns) for gray, or (rows, columns, 2) for gray and opacity.
         kind: the name of the format, such as ``png``.
 
     Raises:
         LinkwrightError: NAV204, Pillow is not installed.
         ValueError: Pillow cannot write the format, or cannot write these pixels in it.
     """
-    image = _pillow().fromarray(pixels) if pixels.ndim == 2 else _grey_with_opacity(pixels)
+    image = _pillow().fromarray(pixels) if pixels.ndim == 2 else _gray_with_opacity(pixels)
     file = BytesIO()
     try:
         image.save(file, format=kind)
@@ -89,9 +89,9 @@ def encode_with_pillow(pixels: NDArray[np.uint8], kind: str) -> bytes:
     return file.getvalue()
 
 
-def _grey_with_opacity(pixels: NDArray[np.uint8]) -> Any:
-    grey = pixels[..., 0]
-    return _pillow().fromarray(np.stack((grey, grey, grey, pixels[..., 1]), axis=-1))
+def _gray_with_opacity(pixels: NDArray[np.uint8]) -> Any:
+    gray = pixels[..., 0]
+    return _pillow().fromarray(np.stack((gray, gray, gray, pixels[..., 1]), axis=-1))
 
 
 def _parse_pgm(path: Path, data: bytes, header: re.Match[bytes]) -> MapImage:

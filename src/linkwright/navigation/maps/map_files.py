@@ -137,6 +137,6 @@ def _yaml_text(grid: Grid, settings: MapSaveSettings, image: str) -> str:
 
 
 def _format_number(value: float) -> str:
-    """Format a number with nav2's three significant digits, or more to keep millimetres."""
+    """Format a number with nav2's three significant digits, or more to keep millimeters."""
     digits = 3 if value == 0.0 else max(3, floor(log10(abs(value))) + 4)
     return f"{value:.{digits}g}"

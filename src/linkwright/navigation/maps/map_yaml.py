@@ -42,8 +42,8 @@ class MapYaml:
 
     Attributes:
         image: the path of the image.
-        resolution: the side of a cell, in metres.
-        origin: x and y of the lower left corner in the frame of the map, in metres, and yaw, in radians.
+        resolution: the side of a cell, in meters.
+        origin: x and y of the lower left corner in the frame of the map, in meters, and yaw, in radians.
         negate: whether white is occupied and black is free.
         occupied_thresh: the darkness above which a pixel is occupied, 0 to 1.
         free_thresh: the darkness below which a pixel is free, 0 to 1.
@@ -125,7 +125,7 @@ class _Reader:
         node = self._nodes["resolution"]
         value = self._number(node, "resolution")
         if not value > 0.0:
-            raise self._error(phrase("'resolution' must be more than 0 (metres per pixel)"), node)
+            raise self._error(phrase("'resolution' must be more than 0 (meters per pixel)"), node)
         return value
 
     def _origin(self) -> list[float]:

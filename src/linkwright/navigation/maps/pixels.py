@@ -9,8 +9,8 @@ from linkwright.navigation.grids.grid import FREE, OCCUPIED, UNKNOWN
 from linkwright.navigation.maps.images import MapImage
 from linkwright.navigation.maps.map_yaml import MapMode, MapYaml
 
-_FREE_GREY, _UNKNOWN_GREY = 254, 205
-UNKNOWN_DARKNESS = 1.0 - _UNKNOWN_GREY / 255.0
+_FREE_GRAY, _UNKNOWN_GRAY = 254, 205
+UNKNOWN_DARKNESS = 1.0 - _UNKNOWN_GRAY / 255.0
 """The darkness of pixels for unknown cells in the mode ``trinary``; a higher ``free_thresh`` reads them as free."""
 _OPAQUE = 255
 
@@ -27,10 +27,10 @@ def cells_of_image(image: MapImage, map_yaml: MapYaml) -> NDArray[np.int8]:
     """
     shade, opacity = image.shade[::-1], None if image.opacity is None else image.opacity[::-1]
     if map_yaml.mode is MapMode.RAW:
-        grey = np.floor(shade * 255.0 + 0.5)
-        return np.where(grey <= OCCUPIED, grey, UNKNOWN).astype(np.int8)
+        gray = np.floor(shade * 255.0 + 0.5)
+        return np.where(gray <= OCCUPIED, gray, UNKNOWN).astype(np.int8)
     if map_yaml.mode is MapMode.TRINARY and opacity is not None:
-        shade = (shade * 3.0 + opacity) / 4.0  # nav2 counts opacity as a fourth colour channel.
+        shade = (shade * 3.0 + opacity) / 4.0  # nav2 counts opacity as a fourth color channel.
     darkness = shade if map_yaml.negate else 1.0 - shade
     if map_yaml.mode is MapMode.SCALE:
         threshold_span = map_yaml.occupied_thresh - map_yaml.free_thresh
@@ -61,16 +61,16 @@ def pixels_of_cells(
         free_thresh: the maximum probability of a free cell in the mode ``trinary``, 0 to 1.
 
     Returns:
-        Grey pixels, of the shape of the cells; in the mode ``scale``, grey and opacity, of shape (rows, columns, 2).
+        Gray pixels, of the shape of the cells; in the mode ``scale``, gray and opacity, of shape (rows, columns, 2).
     """
     values = cells[::-1].astype(np.int16)
     is_known = (values >= 0) & (values <= 100)
     if mode is MapMode.RAW:
         return np.where(is_known, values, 255).astype(np.uint8)
     if mode is MapMode.SCALE:
-        grey = np.where(is_known, np.rint((100 - values) / 100.0 * 255.0), 128)
-        return np.stack((grey, np.where(is_known, _OPAQUE, 0)), axis=-1).astype(np.uint8)
+        gray = np.where(is_known, np.rint((100 - values) / 100.0 * 255.0), 128)
+        return np.stack((gray, np.where(is_known, _OPAQUE, 0)), axis=-1).astype(np.uint8)
     is_free = is_known & (values <= round(free_thresh * 100.0))
     is_occupied = is_known & (values >= round(occupied_thresh * 100.0))
-    grey = np.where(is_free, _FREE_GREY, np.where(is_occupied, 0, _UNKNOWN_GREY))
-    return grey.astype(np.uint8)
+    gray = np.where(is_free, _FREE_GRAY, np.where(is_occupied, 0, _UNKNOWN_GRAY))
+    return gray.astype(np.uint8)

@@ -227,7 +227,7 @@ class AmclNode(ManagedNode):
         )
 
     def _initialize_particles(self, pose: Pose | None, covariance: NDArray[np.float64]) -> None:
-        """Initialise the particles around a pose, or around the map's origin if the pose is None."""
+        """Initialize the particles around a pose, or around the map's origin if the pose is None."""
         self._pose, self._covariance = pose, covariance
         self._filter.draw_around(pose or (0.0, 0.0, 0.0), covariance)
         self._reset()

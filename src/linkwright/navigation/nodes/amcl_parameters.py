@@ -30,7 +30,7 @@ _NON_NEGATIVE = ("laser_likelihood_max_dist", *(f"alpha{number}" for number in r
 
 @dataclass(frozen=True, kw_only=True)
 class InitialPose:
-    """The parameters ``initial_pose.*``, in metres and radians."""
+    """The parameters ``initial_pose.*``, in meters and radians."""
 
     x: float = 0.0
     y: float = 0.0
@@ -42,7 +42,7 @@ class InitialPose:
 class AmclParameters:
     """The parameters that are in neither `LaserSettings` nor `FilterSettings`.
 
-    Units are metres, radians and seconds.
+    Units are meters, radians and seconds.
     """
 
     alpha1: float = 0.2

@@ -1,7 +1,7 @@
 """nav2's behavior_server: spin, back up, drive on heading, wait and assisted teleoperation.
 
 Source: nav2_behaviors, Humble and Jazzy. Obstacles are read from ``local_costmap/costmap_raw``, and the footprint from
-``local_costmap/published_footprint``. A deliberate difference: a behaviour other than wait fails when the costmap is no
+``local_costmap/published_footprint``. A deliberate difference: a behavior other than wait fails when the costmap is no
 longer published.
 """
 
@@ -54,9 +54,9 @@ _BEHAVIOR_TYPES = {
 
 
 class _AssistedTeleop(Behavior):
-    """A behaviour that drives with an operator's velocities, slowed down near obstacles.
+    """A behavior that drives with an operator's velocities, slowed down near obstacles.
 
-    The behaviour ends when it is canceled or times out.
+    The behavior ends when it is canceled or times out.
 
     Args:
         allowance: the time limit in seconds; 0 for no limit.
@@ -145,7 +145,7 @@ class BehaviorNode(ManagedNode):
             server.abort("UNKNOWN", "the server was deactivated")
 
     def cleanup(self) -> None:
-        """Stop the running behaviour, and remove the action servers and the output topic."""
+        """Stop the running behavior, and remove the action servers and the output topic."""
         self.end_cycles()
         self._servers.clear()
         self._costmap = self._footprint = None
@@ -181,7 +181,7 @@ class BehaviorNode(ManagedNode):
         self.begin_cycles(self._period, self._run_cycle)
 
     def _create_behavior(self, name: str, goal: Any, start: Pose) -> Behavior | str:
-        """Return the behaviour for a goal, or the reason why the goal is aborted."""
+        """Return the behavior for a goal, or the reason why the goal is aborted."""
         if name == "wait":
             return Wait(_seconds(goal.time))
         allowance = _seconds(goal.time_allowance)
@@ -242,7 +242,7 @@ class BehaviorNode(ManagedNode):
         server.abort(code, reason, total_elapsed_time=_duration(elapsed))
 
     def _halt(self) -> None:
-        """End the cycles of the running behaviour, and stop the robot if the behaviour moved it."""
+        """End the cycles of the running behavior, and stop the robot if the behavior moved it."""
         self.end_cycles()
         if self._running is not None and self._running[2] != "wait":
             self._output.stop()
@@ -314,7 +314,7 @@ class BehaviorServer(ManagedServer):
 
 
 def _feedback(name: str, step: Step, elapsed: float, goal: Any) -> dict[str, Any]:
-    """Return the fields of a behaviour's feedback."""
+    """Return the fields of a behavior's feedback."""
     if name == "spin":
         return {"angular_distance_traveled": float(step.traveled)}
     if name == "wait":

@@ -3,7 +3,7 @@
 The node offers the actions ``navigate_to_pose`` and ``navigate_through_poses``, and subscribes to ``goal_pose`` (RViz's
 2D Goal Pose). It behaves as nav2's default trees do (``navigate_to_pose_w_replanning_and_recovery.xml``): it plans a
 new path each second. When planning or driving fails, it clears the costmaps; if that does not help, the robot spins,
-waits, backs up and tries again, up to six times. A deliberate difference: it does not run users' behaviour trees, and
+waits, backs up and tries again, up to six times. A deliberate difference: it does not run users' behavior trees, and
 logs a warning instead.
 """
 
@@ -38,7 +38,7 @@ _MAX_RECOVERIES = 6
 _REPLANNING_PERIODS = {"pose": 1.0, "poses": 3.0}
 """The seconds between two plans for each action, as in nav2's trees."""
 _PASSED_DISTANCE = 0.7
-"""The distance within which an intermediate pose counts as passed, in metres."""
+"""The distance within which an intermediate pose counts as passed, in meters."""
 _SPIN_ANGLE, _WAIT_SECONDS, _BACK_UP_DISTANCE, _BACK_UP_SPEED = 1.57, 5.0, 0.3, 0.05
 _ALLOWANCE = 10.0
 
@@ -117,7 +117,7 @@ class NavigatorNode(StepNode):
         return True
 
     def _log_ignored_tree(self, path: str) -> None:
-        self.get_logger().warning(f"behaviour trees are not supported: the default navigation runs instead of {path}")
+        self.get_logger().warning(f"behavior trees are not supported: the default navigation runs instead of {path}")
 
     def _start(self, variant: str, goal: Any) -> None:
         """Start navigating for a goal, and abort a running goal of the other action."""
@@ -344,7 +344,7 @@ class BtNavigator(ManagedServer):
 
 
 def _is_default_tree(path: str) -> bool:
-    """Return whether a behaviour tree has the file name of one of nav2's defaults."""
+    """Return whether a behavior tree has the file name of one of nav2's defaults."""
     return path.rpartition("/")[2] in _DEFAULT_TREES
 
 
@@ -354,7 +354,7 @@ def _path_length(path: Any) -> float:
 
 
 def _remaining_distance(path: Any, x: float, y: float) -> float:
-    """Return the remaining distance from a position along a path, in metres.
+    """Return the remaining distance from a position along a path, in meters.
 
     The result is the distance to the nearest pose of the path plus the length of the path from that pose to the end.
     """

@@ -155,7 +155,7 @@ class CostmapNode(ManagedNode):
         return self._layered is not None and self._layered.is_current(self.now_ns())
 
     def robot_pose(self) -> Pose | None:
-        """Return x, y (metres) and yaw (radians) of the robot in the frame of the costmap.
+        """Return x, y (meters) and yaw (radians) of the robot in the frame of the costmap.
 
         Returns None if the transform is not available.
         """
@@ -165,7 +165,7 @@ class CostmapNode(ManagedNode):
         """Transform a pose to the frame of the costmap, or return None if no transform is available.
 
         Args:
-            pose: x, y (metres) and yaw (radians).
+            pose: x, y (meters) and yaw (radians).
             frame: the frame of the pose. As in nav2, there is no transform for a pose without a frame.
             time_ns: the time of the transform; 0 for the latest.
         """
@@ -453,7 +453,7 @@ def _axis_aligned_grid(grid: Grid) -> Grid:
     if not grid.yaw:
         return grid
     rows, columns = grid.rows, grid.columns
-    corners = grid.centres_of(np.array([[-1, -1], [-1, columns], [rows, -1], [rows, columns]]))
+    corners = grid.centers_of(np.array([[-1, -1], [-1, columns], [rows, -1], [rows, columns]]))
     (x, y), (right, top) = corners.min(axis=0), corners.max(axis=0)
     shape = (int(np.ceil((top - y) / grid.resolution)), int(np.ceil((right - x) / grid.resolution)))
     return replace(grid, cells=np.zeros(shape, np.uint8), x=float(x), y=float(y), yaw=0.0)

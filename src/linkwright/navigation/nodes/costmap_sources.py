@@ -41,7 +41,7 @@ _MAX_QUEUED = 50
 _MAX_POINTS = 40_000
 """The maximum number of points of a cloud. Every n-th point of a larger cloud is used."""
 _RANGE_MARGIN = 1e-4
-"""The distance by which a ray without a hit is shorter than the maximum range, in metres."""
+"""The distance by which a ray without a hit is shorter than the maximum range, in meters."""
 
 
 class SensorTopic(ABC):

@@ -13,7 +13,7 @@ from linkwright.messages import get_message
 
 
 def path_message(poses: NDArray[np.float64], frame: str, stamp: Any) -> Any:
-    """Convert poses, of shape (n, 3) with x, y (metres) and yaw (radians), to a nav_msgs/Path."""
+    """Convert poses, of shape (n, 3) with x, y (meters) and yaw (radians), to a nav_msgs/Path."""
     path, pose_stamped = get_message("nav_msgs/msg/Path")(), get_message("geometry_msgs/msg/PoseStamped")
     path.header.frame_id, path.header.stamp = frame, stamp
     for x, y, yaw in poses.tolist():
@@ -28,13 +28,13 @@ def path_message(poses: NDArray[np.float64], frame: str, stamp: Any) -> Any:
 def poses_from_messages(stamped: Any) -> NDArray[np.float64]:
     """Convert a list of geometry_msgs/PoseStamped to planar poses, of shape (n, 3).
 
-    Poses are x, y (metres) and yaw (radians).
+    Poses are x, y (meters) and yaw (radians).
     """
     return np.array([pose_of(pose) for pose in stamped], np.float64).reshape(-1, 3)
 
 
 def pose_of(stamped: Any) -> tuple[float, float, float]:
-    """Convert a geometry_msgs/PoseStamped to x, y (metres) and yaw (radians)."""
+    """Convert a geometry_msgs/PoseStamped to x, y (meters) and yaw (radians)."""
     position, orientation = stamped.pose.position, stamped.pose.orientation
     quaternion = (orientation.x, orientation.y, orientation.z, orientation.w)
     yaw = rpy_from_quaternion(quaternion)[2] if any(quaternion) else 0.0

@@ -20,7 +20,7 @@ _STEP_CELLS = 0.5
 _MAX_STEPS_IN_CELL = 4
 _STEPS_BETWEEN_YIELDS = 64
 _MIN_SLOPE = 1e-6
-_NEIGHBOUR_OFFSETS = [(row, column) for row in (-1, 0, 1) for column in (-1, 0, 1) if row or column]
+_NEIGHBOR_OFFSETS = [(row, column) for row in (-1, 0, 1) for column in (-1, 0, 1) if row or column]
 
 
 class _Slope:
@@ -37,29 +37,29 @@ class _Slope:
             return float(self._costs[row, column])
         return inf
 
-    def are_connected(self, cell: Cell, neighbour: Cell) -> bool:
+    def are_connected(self, cell: Cell, neighbor: Cell) -> bool:
         """Return whether the straight step to an adjacent cell avoids unreachable cells.
 
         For a diagonal step, both cells beside the corner must be reachable, too.
         """
-        (row, column), (to_row, to_column) = cell, neighbour
+        (row, column), (to_row, to_column) = cell, neighbor
         return self.potential_at(to_row, to_column) < inf and (
             row == to_row
             or column == to_column
             or max(self.potential_at(row, to_column), self.potential_at(to_row, column)) < inf
         )
 
-    def steepest_neighbour(self, cell: Cell) -> Cell:
-        """Return the neighbour with the steepest descent, or the cell if no neighbour is lower."""
+    def steepest_neighbor(self, cell: Cell) -> Cell:
+        """Return the neighbor with the steepest descent, or the cell if no neighbor is lower."""
         row, column = cell
         cost = self.potential_at(row, column)
-        steepest_neighbor, steepest_descent = cell, 0.0
-        for row_step, column_step in _NEIGHBOUR_OFFSETS:
-            neighbour = (row + row_step, column + column_step)
-            descent = (cost - self.potential_at(*neighbour)) / hypot(row_step, column_step)
-            if descent > steepest_descent and self.are_connected(cell, neighbour):
-                steepest_neighbor, steepest_descent = neighbour, descent
-        return steepest_neighbor
+        best_neighbor, steepest_descent = cell, 0.0
+        for row_step, column_step in _NEIGHBOR_OFFSETS:
+            neighbor = (row + row_step, column + column_step)
+            descent = (cost - self.potential_at(*neighbor)) / hypot(row_step, column_step)
+            if descent > steepest_descent and self.are_connected(cell, neighbor):
+                best_neighbor, steepest_descent = neighbor, descent
+        return best_neighbor
 
     def direction(self, position: Position) -> Position | None:
         """Return the direction of steepest descent as a unit vector (rows, columns).
@@ -101,7 +101,7 @@ class _Slope:
 def _difference(previous: float, current: float, following: float) -> float:
     """Return the derivative of a potential along an axis.
 
-    The derivative never leads towards an unreachable neighbour.
+    The derivative never leads towards an unreachable neighbor.
     """
     if previous < inf and following < inf:
         return (following - previous) / 2.0
@@ -133,8 +133,8 @@ def descend(costs: Floats, source: Cell, start: Position) -> Generator[None, Non
             yield
         next_position = _step(slope, position, cell) if steps_in_cell < _MAX_STEPS_IN_CELL else None
         if next_position is None:
-            neighbour = slope.steepest_neighbour(cell)
-            next_position = (neighbour[0] + 0.5, neighbour[1] + 0.5)
+            neighbor = slope.steepest_neighbor(cell)
+            next_position = (neighbor[0] + 0.5, neighbor[1] + 0.5)
         next_cell = (floor(next_position[0]), floor(next_position[1]))
         steps_in_cell = steps_in_cell + 1 if next_cell == cell else 0
         position, cell = next_position, next_cell

@@ -25,11 +25,11 @@ from linkwright.navigation.planning.potential import Cell, Floats, compute_poten
 _ESCAPE_PRICE: Final = 2530.0
 """The price of crossing a cell that is too near to an obstacle, if the robot starts in such a cell."""
 _MAX_ESCAPE_DISTANCE: Final = 1.0
-"""The maximum distance from such a start to a cell where the robot fits, in metres."""
+"""The maximum distance from such a start to a cell where the robot fits, in meters."""
 
 
 _MIN_POINT_DISTANCE: Final = 1e-9
-"""The minimum distance between successive points of a path, in metres."""
+"""The minimum distance between successive points of a path, in meters."""
 
 
 class Problem(Enum):
@@ -59,7 +59,7 @@ class Settings:
     """Settings of the planner, with nav2's names and defaults.
 
     Attributes:
-        tolerance: the maximum distance from the end of the path to an unreachable goal, in metres.
+        tolerance: the maximum distance from the end of the path to an unreachable goal, in meters.
         use_astar: whether to skip cells that cannot be on a cheaper path; the result is the same.
         allow_unknown: whether paths may cross unknown cells.
         use_final_approach_orientation: whether the final heading is the path's direction instead of the goal's heading.
@@ -80,7 +80,7 @@ def plan(costmap: Costmap, start: Pose, goal: Pose, settings: Settings) -> Gener
 
     Args:
         costmap: the costs of cells.
-        start: x, y (metres) and yaw (radians) in the frame of the costmap.
+        start: x, y (meters) and yaw (radians) in the frame of the costmap.
         goal: the goal in the same form.
         settings: the settings of the planner.
 
@@ -108,8 +108,8 @@ def plan(costmap: Costmap, start: Pose, goal: Pose, settings: Settings) -> Gener
         costs_to_start = yield from compute_potential(prices, from_cell)
         end = _nearest_reachable_cell(costs_to_start, costmap, goal, to_cell, settings)
     is_reached = end == to_cell
-    centre = costmap.grid.centres_of(np.array(end))
-    end_pose = goal if is_reached else (float(centre[0]), float(centre[1]), goal[2])
+    center = costmap.grid.centers_of(np.array(end))
+    end_pose = goal if is_reached else (float(center[0]), float(center[1]), goal[2])
     grid = costmap.grid
     end_position = ((end_pose[1] - grid.y) / grid.resolution, (end_pose[0] - grid.x) / grid.resolution)
     path_cells = yield from descend(costs_to_start, from_cell, end_position)

@@ -2,7 +2,7 @@
 
 A potential is computed as a wavefront. The wave solves the eikonal equation on a grid, as NavFn does, so paths can have
 any direction, not only along rows, columns and diagonals. All cells of the front are updated in the same step. A cell
-is updated again if a neighbour became cheaper, until nothing changes. The wave continues from an expensive cell only
+is updated again if a neighbor became cheaper, until nothing changes. The wave continues from an expensive cell only
 when it has reached the same cost in cheap cells, because there is usually a cheaper path around expensive cells.
 
 Source: Brock and Khatib, High-speed navigation using the global dynamic window approach, ICRA 1999; nav2_navfn_planner
@@ -91,10 +91,10 @@ def compute_potential(
     bound, step_count = 0.0, 0
     while front.size or held_cells.size:
         yield
-        neighbour_costs = costs.take(front + offsets)
+        neighbor_costs = costs.take(front + offsets)
         new_costs = _potential_after_crossing(
-            np.minimum(neighbour_costs[0], neighbour_costs[1]),
-            np.minimum(neighbour_costs[2], neighbour_costs[3]),
+            np.minimum(neighbor_costs[0], neighbor_costs[1]),
+            np.minimum(neighbor_costs[2], neighbor_costs[3]),
             prices.take(front),
         )
         improved = np.flatnonzero(new_costs < update_bounds.take(front) - _MIN_GAIN)
@@ -118,17 +118,17 @@ def compute_potential(
                 new_costs if remaining_bounds is None else new_costs + remaining_bounds.take(front)
             ) < costs[target_index]
             front, new_costs = front[is_promising], new_costs[is_promising]
-        neighbours = front + offsets
-        neighbours = neighbours[update_bounds.take(neighbours) > new_costs + min_increase]
-        last_positions[neighbours] = order = np.arange(neighbours.size)
-        front = neighbours[last_positions.take(neighbours) == order]
+        neighbors = front + offsets
+        neighbors = neighbors[update_bounds.take(neighbors) > new_costs + min_increase]
+        last_positions[neighbors] = order = np.arange(neighbors.size)
+        front = neighbors[last_positions.take(neighbors) == order]
     result: Floats = costs.reshape(rows + 2, width)[1:-1, 1:-1]
     return result
 
 
-def _potential_after_crossing(row_neighbour: Floats, column_neighbour: Floats, price: Floats) -> Floats:
-    """Return the potential of cells from their prices and the cheaper neighbour on each axis."""
-    low, high = np.minimum(row_neighbour, column_neighbour), np.maximum(row_neighbour, column_neighbour)
+def _potential_after_crossing(row_neighbor: Floats, column_neighbor: Floats, price: Floats) -> Floats:
+    """Return the potential of cells from their prices and the cheaper neighbor on each axis."""
+    low, high = np.minimum(row_neighbor, column_neighbor), np.maximum(row_neighbor, column_neighbor)
     difference = np.minimum(high - low, price)  # A larger difference means that only one axis counts.
     value: Floats = low + 0.5 * (difference + np.sqrt(2.0 * price * price - difference * difference))
     return value

@@ -1,4 +1,4 @@
-"""Smoothing of paths: each point moves towards the middle of its neighbours.
+"""Smoothing of paths: each point moves towards the middle of its neighbors.
 
 Points stay near their original positions.
 
@@ -28,7 +28,7 @@ class Smoothing:
 
     Attributes:
         w_data: the weight of a point's original position.
-        w_smooth: the weight of the middle of the point's neighbours.
+        w_smooth: the weight of the middle of the point's neighbors.
         do_refinement: whether to smooth the result again.
         refinement_num: the number of refinements.
         enforce_path_inversion: whether points at which the robot reverses direction are fixed.
@@ -45,7 +45,7 @@ def smooth_path(points: Points, smoothing: Smoothing, costmap: Costmap | None = 
     """Smooth a path.
 
     Args:
-        points: x and y in the frame of the costmap, in metres, of shape (n, 2).
+        points: x and y in the frame of the costmap, in meters, of shape (n, 2).
         smoothing: the settings of the smoother.
         costmap: the costmap whose obstacles are avoided; None for no obstacles.
 
@@ -98,7 +98,7 @@ def _smooth_once(
 
 
 def _blocked_points(points: Points, costmap: Costmap) -> NDArray[np.bool_]:
-    """Return a mask of the points that collide, or have a colliding midpoint to a neighbour."""
+    """Return a mask of the points that collide, or have a colliding midpoint to a neighbor."""
     midpoints = (points + np.roll(points, -1, axis=0)) / 2.0
     midpoints[-1] = points[-1]
 
@@ -118,11 +118,11 @@ def _solve_equilibrium(points: Points, is_kept: NDArray[np.bool_], smoothing: Sm
 
     Points in the mask `is_kept` keep their positions x.
     """
-    neighbour_weights = np.where(is_kept, 0.0, -smoothing.w_smooth)
+    neighbor_weights = np.where(is_kept, 0.0, -smoothing.w_smooth)
     bands = np.zeros((3, len(points)))
-    bands[0, 1:] = neighbour_weights[:-1]
+    bands[0, 1:] = neighbor_weights[:-1]
     bands[1] = np.where(is_kept, 1.0, smoothing.w_data + 2.0 * smoothing.w_smooth)
-    bands[2, :-1] = neighbour_weights[1:]
+    bands[2, :-1] = neighbor_weights[1:]
     right_side: Any = np.where(is_kept, 1.0, smoothing.w_data)[:, None] * points
     solution: Points = load_scipy("linalg").solve_banded((1, 1), bands, right_side)
     return solution

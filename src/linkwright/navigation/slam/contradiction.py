@@ -13,9 +13,9 @@ from linkwright.navigation.slam.poses import Floats, relative_pose, transform_po
 from linkwright.navigation.slam.scan import PlanarScan
 
 _MAX_RAY_ANGLE = 0.03
-"""The maximum angle between a point and its neighbouring rays, in radians."""
+"""The maximum angle between a point and its neighboring rays, in radians."""
 _MIN_DEPTH = 0.3
-"""The minimum distance by which a ray must pass a point of the other scan for a contradiction, in metres."""
+"""The minimum distance by which a ray must pass a point of the other scan for a contradiction, in meters."""
 _MIN_POINTS = 20
 
 
@@ -52,9 +52,9 @@ def _share_passed_through(viewer: PlanarScan, other: PlanarScan, pose: Floats) -
     ranges = np.concatenate((ranges[-1:], ranges, ranges[:1]))
     point_bearings = np.arctan2(points[:, 1], points[:, 0])
     next_rays = np.clip(np.searchsorted(bearings, point_bearings), 1, len(bearings) - 1)
-    # Both neighbouring rays must be longer, because next to an edge one of them may be longer without a contradiction.
-    has_neighbours = (bearings[next_rays] - point_bearings < _MAX_RAY_ANGLE) & (
+    # Both neighboring rays must be longer, because next to an edge one of them may be longer without a contradiction.
+    has_neighbors = (bearings[next_rays] - point_bearings < _MAX_RAY_ANGLE) & (
         point_bearings - bearings[next_rays - 1] < _MAX_RAY_ANGLE
     )
     is_passed = np.minimum(ranges[next_rays], ranges[next_rays - 1]) > np.hypot(points[:, 0], points[:, 1]) + _MIN_DEPTH
-    return float((has_neighbours & is_passed).sum() / max(int(has_neighbours.sum()), _MIN_POINTS))
+    return float((has_neighbors & is_passed).sum() / max(int(has_neighbors.sum()), _MIN_POINTS))

@@ -28,7 +28,7 @@ _MIN_LINK_INLIERS = 0.4
 """The minimum shares of points on known walls, for any match and for a match with an earlier pass."""
 _MAX_CONTRADICTION = 0.15
 _MAX_LINK_VARIANCE = 0.01
-"""A link to an earlier pass closes the loop if the variance of its position is below this, in square metres."""
+"""A link to an earlier pass closes the loop if the variance of its position is below this, in square meters."""
 _MAX_LOOP_CANDIDATES = 3
 _REDRAW_SHARE = 0.2
 """A scan is redrawn if its points at `_FAR_POINT` moved by at least this share of a cell."""
@@ -343,7 +343,7 @@ class Mapper:
 
 
 def _worst_variance(best_match: Match) -> float:
-    """Return the larger of a match's position variances along x and y, in square metres."""
+    """Return the larger of a match's position variances along x and y, in square meters."""
     return float(np.linalg.inv(best_match.information + _MIN_INFORMATION * np.eye(3)).diagonal()[:2].max())
 
 

@@ -18,9 +18,9 @@ MIN_POINTS = 12
 
 _MAX_ITERATIONS = 15
 _FIRST_MAX_DISTANCE, _LAST_MAX_DISTANCE = 0.30, 0.10
-"""The maximum distance of corresponding points in the first and in the last iterations, in metres."""
+"""The maximum distance of corresponding points in the first and in the last iterations, in meters."""
 _SCALE = 0.03
-"""The scale of the Cauchy weights, in metres: larger distances have less influence."""
+"""The scale of the Cauchy weights, in meters: larger distances have less influence."""
 _CONVERGENCE_STEP = 1e-5
 _MIN_INFORMATION_SHARE = 0.02
 """The minimum information per point, as a share of the maximum, for a direction to be corrected."""
@@ -41,7 +41,7 @@ class Match:
         information: the inverse of the pose's covariance, of shape (3, 3), for x, y and yaw in the frame of the robot;
             near 0 in directions without information, as along a corridor.
         inliers: the share of the points that are on a wall, 0 to 1.
-        error: the root mean square of the points' distances from their walls, in metres.
+        error: the root mean square of the points' distances from their walls, in meters.
     """
 
     pose: Floats
@@ -134,7 +134,7 @@ def _normal_equations(
 
     Returns:
         The matrix, of shape (3, 3); the negated right-hand side, of shape (3,); the share of the points that are on a
-        wall; and the error of the points that were used, in metres.
+        wall; and the error of the points that were used, in meters.
     """
     points = transform_points(pose, scan.points)
     distances, _, wall_points, normals, flatness = reference.nearest(points)

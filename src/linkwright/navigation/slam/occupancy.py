@@ -36,12 +36,12 @@ class OccupancyMap:
     A scan whose pose is corrected can be removed and added again.
 
     Args:
-        resolution: the side of a cell, in metres.
+        resolution: the side of a cell, in meters.
         min_pass_through: a cell is known if more rays than this reached it.
         occupancy_threshold: a cell is occupied if more than this share of those rays ended in it.
 
     Attributes:
-        resolution: the side of a cell, in metres.
+        resolution: the side of a cell, in meters.
     """
 
     def __init__(self, resolution: float, min_pass_through: int = 2, occupancy_threshold: float = 0.1) -> None:

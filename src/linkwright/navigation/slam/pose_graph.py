@@ -1,4 +1,4 @@
-"""A graph of planar poses, and its optimisation."""
+"""A graph of planar poses, and its optimization."""
 
 from __future__ import annotations
 
@@ -64,10 +64,10 @@ class PoseGraph:
         self.is_doubtful.append(is_doubtful)
 
     def solve(self) -> Steps[float]:
-        """Optimise the poses with respect to all edges, in steps.
+        """Optimize the poses with respect to all edges, in steps.
 
         Returns:
-            The largest distance that a node moved, in metres.
+            The largest distance that a node moved, in meters.
         """
         old_poses = self.poses.copy()
         if self.first and len(self.poses) > 1:

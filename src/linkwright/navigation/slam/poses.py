@@ -1,6 +1,6 @@
 """Poses in the plane, as arrays (x, y, yaw) of shape (3,) or (..., 3).
 
-Units are metres and radians.
+Units are meters and radians.
 """
 
 from __future__ import annotations

@@ -12,9 +12,9 @@ from linkwright.navigation.slam.poses import Floats, transform_points
 from linkwright.navigation.slam.scan import PlanarScan
 
 _THINNING_CELL = 0.05
-_NEIGHBOURS = 6
-_MAX_NEIGHBOUR_DISTANCE = 0.5
-"""The maximum distance of a point's neighbours for its wall to have a direction, in metres."""
+_NEIGHBORS = 6
+_MAX_NEIGHBOR_DISTANCE = 0.5
+"""The maximum distance of a point's neighbors for its wall to have a direction, in meters."""
 _MIN_LIKELIHOOD = 0.01
 
 
@@ -57,10 +57,10 @@ class Reference:
     def find_lines(self) -> None:
         """Compute the direction of the wall at each point, as required by `nearest`."""
         self._tree = load_scipy("spatial").cKDTree(self.points)
-        count = min(_NEIGHBOURS, len(self.points))
+        count = min(_NEIGHBORS, len(self.points))
         distances, indices = self._tree.query(self.points, k=count)
-        neighbours = self.points[indices.reshape(-1, count)]
-        offsets = neighbours - neighbours.mean(axis=1, keepdims=True)
+        neighbors = self.points[indices.reshape(-1, count)]
+        offsets = neighbors - neighbors.mean(axis=1, keepdims=True)
         x, y = offsets[..., 0], offsets[..., 1]
         xx, yy, xy = (x * x).sum(axis=1), (y * y).sum(axis=1), (x * y).sum(axis=1)
         directions = 0.5 * np.arctan2(2 * xy, xx - yy)
@@ -70,7 +70,7 @@ class Reference:
         eigenvalue_differences = np.sqrt((xx - yy) ** 2 + 4 * xy**2)
         total = np.maximum(xx + yy, 1e-12)
         flatness = eigenvalue_differences / total  # 1 for a line, 0 for points scattered in all directions.
-        flatness[distances.reshape(-1, count)[:, -1] > _MAX_NEIGHBOUR_DISTANCE] = 0.0
+        flatness[distances.reshape(-1, count)[:, -1] > _MAX_NEIGHBOR_DISTANCE] = 0.0
         self._normals: Floats = normals
         self._flatness: Floats = flatness if count >= 3 else np.zeros(len(self.points))
 
@@ -89,9 +89,9 @@ class LikelihoodField:
     """A grid of likelihoods, with the maxima over blocks of 2x2, 4x4, ... cells.
 
     Args:
-        points: the observed points, of shape (n, 2), in metres.
-        resolution: the side of a cell, in metres.
-        smear_deviation: the standard deviation of the points' positions, in metres.
+        points: the observed points, of shape (n, 2), in meters.
+        resolution: the side of a cell, in meters.
+        smear_deviation: the standard deviation of the points' positions, in meters.
     """
 
     def __init__(self, points: Floats, resolution: float, smear_deviation: float) -> None:

@@ -17,7 +17,7 @@ class PlanarScan:
     The robot's motion during the scan is ignored.
 
     Attributes:
-        points: the ends of rays with a hit, of shape (n, 2), in metres.
+        points: the ends of rays with a hit, of shape (n, 2), in meters.
         free_ends: the ends of rays that were cut off at the maximum range, of shape (m, 2); the space up to them is
             free.
         origin: the origin of the rays, of shape (2,).
@@ -44,10 +44,10 @@ def planar_scan(
     minimum is ignored, and a range beyond the mapper's maximum marks the ray up to the maximum as free.
 
     Args:
-        ranges: the ranges in metres, of shape (n,).
+        ranges: the ranges in meters, of shape (n,).
         angles: the angles of the rays in the frame of the laser, about its z axis, of shape (n,), in radians.
-        limits: the minimum and maximum range that the laser measures, in metres.
-        cut_off: the mapper's minimum and maximum range, in metres.
+        limits: the minimum and maximum range that the laser measures, in meters.
+        cut_off: the mapper's minimum and maximum range, in meters.
         laser: the rotation matrix, of shape (3, 3), and position, of shape (3,), of the laser in the frame of the base;
             the laser may be mounted upside down.
         stamp_ns: the time of the measurement, in nanoseconds.

@@ -27,17 +27,17 @@ _BLOCKS_PER_SIDE = 3
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Search:
-    """A search window of poses, and the penalties for distance from its centre.
+    """A search window of poses, and the penalties for distance from its center.
 
     Names and meanings are the same as for Karto's parameters.
 
     Attributes:
-        dimension: the side of the window, in metres.
-        resolution: the resolution of positions, in metres.
-        smear_deviation: the standard deviation of a reading's position, in metres.
+        dimension: the side of the window, in meters.
+        resolution: the resolution of positions, in meters.
+        smear_deviation: the standard deviation of a reading's position, in meters.
         angle_offset: half the window of angles, in radians.
         angle_resolution: the resolution of angles, in radians; refined if it would skip cells at the farthest points.
-        distance_variance_penalty: the variance of the penalty for distance, in square metres; a smaller value keeps the
+        distance_variance_penalty: the variance of the penalty for distance, in square meters; a smaller value keeps the
             pose nearer to the expected one.
         angle_variance_penalty: the variance of the penalty for angles, in square radians.
         minimum_distance_penalty: the minimum factor by which the distance reduces a response; 1 for no penalty.
@@ -56,7 +56,7 @@ class Search:
 
     @property
     def cell(self) -> float:
-        """The side of a cell of the search, in metres.
+        """The side of a cell of the search, in meters.
 
         The side is the resolution, but at least half of `smear_deviation`.
         """
@@ -153,8 +153,8 @@ def best_pose(
 
     Args:
         likelihood: the likelihood field of the earlier scans.
-        points: the points of the scan, at least one, in the frame of the robot, of shape (n, 2), in metres.
-        guess: the centre of the window, of shape (3,).
+        points: the points of the scan, at least one, in the frame of the robot, of shape (n, 2), in meters.
+        guess: the center of the window, of shape (3,).
         search: the window.
 
     Returns:

@@ -10,7 +10,7 @@ from linkwright.navigation.slam.search import Search
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class MapperSettings:
-    """Settings of a mapper, in metres, radians and seconds.
+    """Settings of a mapper, in meters, radians and seconds.
 
     Attributes:
         use_scan_matching: whether scans are matched to earlier scans; otherwise odometry alone is used.
@@ -25,7 +25,7 @@ class MapperSettings:
         loop_search_maximum_distance: the maximum distance to earlier scans in the search for loops.
         loop_match_minimum_chain_size: the minimum number of consecutive scans for a loop.
         loop_match_maximum_variance_coarse: the maximum variance of the position at which a loop is accepted, in square
-            metres.
+            meters.
         loop_match_minimum_response_coarse: the minimum response of the search for a loop, 0 to 1.
         loop_match_minimum_response_fine: the minimum response of the match that follows this search, 0 to 1.
         matching: the search window for a new scan.

@@ -1,6 +1,6 @@
-"""Files that store a pose graph with its scans, in place of slam_toolbox's serialised maps.
+"""Files that store a pose graph with its scans, in place of slam_toolbox's serialized maps.
 
-A file is a NumPy archive of plain arrays, in a format of Linkwright. slam_toolbox serialises its C++ classes with
+A file is a NumPy archive of plain arrays, in a format of Linkwright. slam_toolbox serializes its C++ classes with
 Boost, which other programs cannot read.
 """
 

@@ -17,7 +17,7 @@ from linkwright.nodes.settings import log_unknown, positive
 from linkwright.perception.nodes.lazy import LazySubscriptions
 from linkwright.perception.scans.projection import Pinhole, scan_from_depths
 
-_METRES_OF_16UC1 = 0.001
+_METERS_OF_16UC1 = 0.001
 _SECONDS_BETWEEN_ERRORS = 5.0
 
 
@@ -63,11 +63,11 @@ class DepthImageToLaserScan(SingleNode):
         super().close()
 
     def _receive_camera_info(self, message: Any) -> None:
-        focal_length, centre_column, centre_row = message.p[0], message.p[2], message.p[6]
+        focal_length, center_column, center_row = message.p[0], message.p[2], message.p[6]
         if not focal_length:
-            focal_length, centre_column, centre_row = message.k[0], message.k[2], message.k[5]
+            focal_length, center_column, center_row = message.k[0], message.k[2], message.k[5]
         if focal_length:
-            self._camera = Pinhole(float(focal_length), float(centre_column), float(centre_row))
+            self._camera = Pinhole(float(focal_length), float(center_column), float(center_row))
 
     def _receive(self, image: Any) -> None:
         if self._camera is None:
@@ -94,7 +94,7 @@ class DepthImageToLaserScan(SingleNode):
 
 
 def read_depths(image: Any) -> NDArray[np.float64]:
-    """Return the depths of a sensor_msgs/msg/Image in metres, shape ``(rows, columns)``.
+    """Return the depths of a sensor_msgs/msg/Image in meters, shape ``(rows, columns)``.
 
     Pixels without a depth are NaN in integer images, and unchanged in 32FC1 images.
 
@@ -113,5 +113,5 @@ def read_depths(image: Any) -> NDArray[np.float64]:
     rows = data[: image.step * image.height].reshape(image.height, image.step)[:, :row_bytes]
     values = np.ascontiguousarray(rows).view(order + dtype).reshape(image.height, image.width)
     if dtype == "u2":
-        return np.where(values > 0, values * _METRES_OF_16UC1, np.nan)
+        return np.where(values > 0, values * _METERS_OF_16UC1, np.nan)
     return values.astype(np.float64)

@@ -78,7 +78,7 @@ class _ImuFilter(SingleNode, ABC):
         """Create the filter from the remaining parameters."""
 
     def _initialize_orientation(self, acceleration: Vector3, magnetic: Vector3 | None) -> bool:
-        """Initialise the orientation, or return False if that is not possible yet."""
+        """Initialize the orientation, or return False if that is not possible yet."""
         return True
 
     def _output_orientation(self, orientation: Quaternion) -> Quaternion:

@@ -1,4 +1,4 @@
-"""Filters that compare neighbouring points to find shadows at edges, and speckles."""
+"""Filters that compare neighboring points to find shadows at edges, and speckles."""
 
 from __future__ import annotations
 
@@ -89,7 +89,7 @@ class SpeckleFilter(ScanFilter):
         is_cluster = (
             self._have_similar_ranges(ranges)
             if self.filter_type == 0
-            else self._have_near_neighbours(ranges, scan.angle_increment)
+            else self._have_near_neighbors(ranges, scan.angle_increment)
         )
         is_kept = ranges > self.max_range
         starts = np.flatnonzero(is_cluster[: len(ranges) - window + 1])
@@ -105,9 +105,7 @@ class SpeckleFilter(ScanFilter):
                 is_similar[first] &= np.abs(ranges[second] - ranges[first]) <= self.max_range_difference
         return is_similar
 
-    def _have_near_neighbours(
-        self, ranges: np.ndarray[tuple[int, ...], np.dtype[np.float64]], increment: float
-    ) -> Mask:
+    def _have_near_neighbors(self, ranges: np.ndarray[tuple[int, ...], np.dtype[np.float64]], increment: float) -> Mask:
         near_counts = np.zeros(len(ranges), dtype=int)
         for shift in range(-self.filter_window, self.filter_window + 1):
             if shift:

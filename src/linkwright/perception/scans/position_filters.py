@@ -80,7 +80,7 @@ class SectorFilter(ScanFilter):
 class BoxFilter(ScanFilter):
     """``LaserScanBoxFilter``: removes the points in a box, or all others.
 
-    The box is in ``box_frame``, in metres. With ``invert``, the points outside the box are removed.
+    The box is in ``box_frame``, in meters. With ``invert``, the points outside the box are removed.
     """
 
     box_frame: str

@@ -11,12 +11,12 @@ from numpy.typing import NDArray
 from linkwright.perception.scans.scan import Floats, Scan
 
 _INDEX_TOLERANCE = 1e-9
-"""The tolerance of ray indices, so that rounding does not move a point to the neighbouring ray."""
+"""The tolerance of ray indices, so that rounding does not move a point to the neighboring ray."""
 
 
 @dataclass(frozen=True, slots=True)
 class Rays:
-    """The rays of a laser scan to compute: angles in rad, ranges in metres."""
+    """The rays of a laser scan to compute: angles in rad, ranges in meters."""
 
     angle_min: float
     angle_max: float
@@ -29,25 +29,25 @@ class Rays:
 class Pinhole:
     """A camera without distortion.
 
-    The focal length along the columns, and the column and row of the centre, are in pixels.
+    The focal length along the columns, and the column and row of the center, are in pixels.
     """
 
     focal_length: float
-    centre_column: float
-    centre_row: float
+    center_column: float
+    center_row: float
 
 
 def scan_from_depths(
     depths: NDArray[np.float64], camera: Pinhole, height: int, range_min: float, range_max: float
 ) -> tuple[Floats, Rays]:
-    """Return a laser scan from the rows around the centre of a depth image.
+    """Return a laser scan from the rows around the center of a depth image.
 
     Args:
-        depths: shape ``(rows, columns)``, metres along the optical axis; NaN or infinite for unknown depths.
+        depths: shape ``(rows, columns)``, meters along the optical axis; NaN or infinite for unknown depths.
         camera: the camera of the image.
         height: the number of rows to use.
-        range_min: the minimum range that is used, metres.
-        range_max: the maximum range that is used, metres.
+        range_min: the minimum range that is used, meters.
+        range_max: the maximum range that is used, meters.
 
     Returns:
         The ranges from right to left, shape ``(columns,)``, and their rays. Each range is the nearest one in its
@@ -59,14 +59,14 @@ def scan_from_depths(
     Source: depthimage_to_laserscan.
     """
     rows, columns = depths.shape
-    if height / 2 > camera.centre_row or height / 2 > rows - camera.centre_row:
+    if height / 2 > camera.center_row or height / 2 > rows - camera.center_row:
         raise ValueError(f"scan_height ( {height} pixels) is too large for the image height.")
-    angle_max = atan(camera.centre_column / camera.focal_length)
-    angle_min = -atan((columns - 1 - camera.centre_column) / camera.focal_length)
+    angle_max = atan(camera.center_column / camera.focal_length)
+    angle_min = -atan((columns - 1 - camera.center_column) / camera.focal_length)
     increment = (angle_max - angle_min) / max(columns - 1, 1)
-    first_row = int(camera.centre_row - height / 2)
+    first_row = int(camera.center_row - height / 2)
     band = depths[first_row : first_row + height]
-    slopes = (np.arange(columns) - camera.centre_column) / camera.focal_length
+    slopes = (np.arange(columns) - camera.center_column) / camera.focal_length
     ray_indices = ((-np.arctan(slopes) - angle_min) / increment + _INDEX_TOLERANCE).astype(int).clip(0, columns - 1)
     ranges_in_band = band * np.hypot(slopes, 1.0)
     with np.errstate(invalid="ignore"):
@@ -85,14 +85,14 @@ def scan_from_points(
     """Return a laser scan from a point cloud: the nearest point of each ray.
 
     Args:
-        points: shape ``(n, 3)``, metres in the frame of the laser; points that are not finite are ignored.
+        points: shape ``(n, 3)``, meters in the frame of the laser; points that are not finite are ignored.
         rays: the rays of the scan.
-        min_height: the minimum z of points that are used, metres.
-        max_height: the maximum z of points that are used, metres.
-        empty_range: the range of a ray without a point, metres or infinite.
+        min_height: the minimum z of points that are used, meters.
+        max_height: the maximum z of points that are used, meters.
+        empty_range: the range of a ray without a point, meters or infinite.
 
     Returns:
-        The ranges, shape ``(rays,)``, in metres.
+        The ranges, shape ``(rays,)``, in meters.
 
     Source: pointcloud_to_laserscan.
     """
@@ -113,7 +113,7 @@ def points_from_scan(scan: Scan) -> tuple[NDArray[np.float32], NDArray[np.int32]
     """Return the points of a scan in its own frame, and the index of the ray of each point.
 
     Returns:
-        Points, shape ``(n, 3)``, in metres; and indices, shape ``(n,)``. Rays without a measurement have no point.
+        Points, shape ``(n, 3)``, in meters; and indices, shape ``(n,)``. Rays without a measurement have no point.
 
     Source: laser_geometry.
     """

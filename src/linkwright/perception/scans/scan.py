@@ -28,13 +28,13 @@ class Scan:
     """A laser scan, with arrays that filters may change.
 
     Attributes:
-        ranges: shape (n,), metres; missing measurements are NaN, infinite, or outside the limits.
+        ranges: shape (n,), meters; missing measurements are NaN, infinite, or outside the limits.
         intensities: shape (n,), or (0,) if there are none.
         angle_min: the angle of the first range, rad.
         angle_max: the angle of the last range, rad.
         angle_increment: the angle between successive ranges, rad.
-        range_min: the minimum valid range, metres.
-        range_max: the maximum valid range, metres.
+        range_min: the minimum valid range, meters.
+        range_max: the maximum valid range, meters.
         time_increment: the time between successive ranges, seconds.
         stamp_ns: the time of the first range, nanoseconds.
         frame: the frame of the scan; x points forward, z upward.
@@ -62,7 +62,7 @@ class Scan:
         return (self.ranges >= self.range_min) & (self.ranges <= self.range_max)
 
     def points(self, frame: str, lookup: Lookup) -> NDArray[np.float64] | None:
-        """Return the end points of the rays in a frame, shape ``(n, 3)``, metres.
+        """Return the end points of the rays in a frame, shape ``(n, 3)``, meters.
 
         The result is None if there is no transform to the frame. The points of ranges that were not measured are
         meaningless.

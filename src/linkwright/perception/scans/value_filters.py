@@ -61,9 +61,9 @@ class IntensityFilter(ScanFilter):
 
 @dataclass(slots=True)
 class InterpolationFilter(ScanFilter):
-    """``InterpolationFilter``: replaces invalid ranges with the mean of their neighbours.
+    """``InterpolationFilter``: replaces invalid ranges with the mean of their neighbors.
 
-    The neighbours are the nearest valid ranges on both sides. If there is no valid range on a side, a range just below
+    The neighbors are the nearest valid ranges on both sides. If there is no valid range on a side, a range just below
     ``range_max`` is used.
     """
 

@@ -1,6 +1,6 @@
-"""Point data from messages: positions, channels, and the colours of RViz's transformers."""
+"""Point data from messages: positions, channels, and the colors of RViz's transformers."""
 
-from linkwright.rviz.clouds.colours import AXES, TRANSFORMERS, ColourSettings, coloured, supported_transformers
+from linkwright.rviz.clouds.colors import AXES, TRANSFORMERS, ColorSettings, colored, supported_transformers
 from linkwright.rviz.clouds.depth import DepthCamera, DepthCloudBuilder
 from linkwright.rviz.clouds.points import (
     BadCloudError,
@@ -16,12 +16,12 @@ __all__ = [
     "AXES",
     "TRANSFORMERS",
     "BadCloudError",
-    "ColourSettings",
+    "ColorSettings",
     "DepthCamera",
     "DepthCloudBuilder",
     "Points",
     "ScanProjector",
-    "coloured",
+    "colored",
     "decimated",
     "deskew",
     "points_of_cloud",

@@ -1,4 +1,4 @@
-"""Points from a depth image, optionally coloured by an image of the same size."""
+"""Points from a depth image, optionally colored by an image of the same size."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ from linkwright.images import DecodedImage
 from linkwright.rviz.clouds.points import BadCloudError, Points
 
 _SHADOW_DISTANCE = 0.01
-"""A point covers the point behind it if the difference of their depths is larger than this, in metres."""
+"""A point covers the point behind it if the difference of their depths is larger than this, in meters."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -23,7 +23,7 @@ class DepthCamera:
     Attributes:
         columns: x / z of the rays of each column, float32, shape (width,).
         rows: y / z of the rays of each row, float32, shape (height,).
-        pixel: the width of a pixel at a distance of one metre, in metres.
+        pixel: the width of a pixel at a distance of one meter, in meters.
     """
 
     columns: NDArray[np.float32]
@@ -83,7 +83,7 @@ class DepthCloudBuilder:
         self,
         depth: Any,
         camera: DepthCamera,
-        colour: DecodedImage | None,
+        color: DecodedImage | None,
         *,
         keep_covered: float | None = None,
         now: float = 0.0,
@@ -91,57 +91,57 @@ class DepthCloudBuilder:
         """Return the points of a depth image, in the camera's optical frame.
 
         Args:
-            depth: sensor_msgs/msg/Image, 16UC1 or mono16 in millimetres or 32FC1 in metres.
+            depth: sensor_msgs/msg/Image, 16UC1 or mono16 in millimeters or 32FC1 in meters.
             camera: a camera of the image's size.
-            colour: an image of the same size; None for white points.
+            color: an image of the same size; None for white points.
             keep_covered: seconds for which covered points remain visible, at half their brightness; None to discard
                 them immediately.
             now: the current time, in seconds.
 
         Raises:
             BadCloudError: the image's encoding is not supported, its data is too short, or its size differs from the
-                colour image's.
+                color image's.
         """
-        metres, valid = _read_depths(depth)
-        if colour is not None and (colour.width, colour.height) != (depth.width, depth.height):
+        meters, valid = _read_depths(depth)
+        if color is not None and (color.width, color.height) != (depth.width, depth.height):
             raise BadCloudError(
                 phrase(
                     "Error updating depth cloud: Depth image resolution ({width}x{height}) does not match "
                     "color image resolution ({columns}x{rows})",
                     width=depth.width,
                     height=depth.height,
-                    columns=colour.width,
-                    rows=colour.height,
+                    columns=color.width,
+                    rows=color.height,
                 )
             )
-        colours = np.full(metres.shape, 0x00FFFFFF, np.uint32) if colour is None else _packed_colours(colour)
+        colors = np.full(meters.shape, 0x00FFFFFF, np.uint32) if color is None else _packed_colors(color)
         if keep_covered is None:
             self._covered = None
-            return _points_from_depths(metres, colours, valid, camera)
-        return self._with_covered(metres, colours, valid, camera, now, keep_covered)
+            return _points_from_depths(meters, colors, valid, camera)
+        return self._with_covered(meters, colors, valid, camera, now, keep_covered)
 
     def _with_covered(
         self,
-        metres: NDArray[np.float32],
-        colours: NDArray[np.uint32],
+        meters: NDArray[np.float32],
+        colors: NDArray[np.uint32],
         valid: NDArray[np.bool_],
         camera: DepthCamera,
         now: float,
         timeout: float,
     ) -> Points:
         covered = self._covered
-        if covered is None or covered.metres.shape != metres.shape:
+        if covered is None or covered.meters.shape != meters.shape:
             covered = self._covered = _CoveredPoints(
-                np.zeros_like(metres), np.zeros_like(colours), np.zeros(metres.shape)
+                np.zeros_like(meters), np.zeros_like(colors), np.zeros(meters.shape)
             )
-        covered.metres[covered.seen_times < now - timeout] = 0.0
-        is_covering = valid & (metres < covered.metres - _SHADOW_DISTANCE)
-        is_shown = (covered.metres != 0.0) & (is_covering | ~valid)
-        covered_points = _points_from_depths(covered.metres, covered.colours, is_shown, camera)
-        visible_points = _points_from_depths(metres, colours, valid, camera)
+        covered.meters[covered.seen_times < now - timeout] = 0.0
+        is_covering = valid & (meters < covered.meters - _SHADOW_DISTANCE)
+        is_shown = (covered.meters != 0.0) & (is_covering | ~valid)
+        covered_points = _points_from_depths(covered.meters, covered.colors, is_shown, camera)
+        visible_points = _points_from_depths(meters, colors, valid, camera)
         is_visible = valid & ~is_covering
-        covered.metres[is_visible] = metres[is_visible]
-        covered.colours[is_visible] = colours[is_visible] >> 1 & 0x7F7F7F
+        covered.meters[is_visible] = meters[is_visible]
+        covered.colors[is_visible] = colors[is_visible] >> 1 & 0x7F7F7F
         covered.seen_times[is_visible] = now
         return Points(
             np.concatenate([visible_points.positions, covered_points.positions]),
@@ -151,13 +151,13 @@ class DepthCloudBuilder:
 
 @dataclass(slots=True)
 class _CoveredPoints:
-    metres: NDArray[np.float32]
-    colours: NDArray[np.uint32]
+    meters: NDArray[np.float32]
+    colors: NDArray[np.uint32]
     seen_times: NDArray[np.float64]
 
 
 def _read_depths(image: Any) -> tuple[NDArray[np.float32], NDArray[np.bool_]]:
-    """Return the depths in metres and a mask of the valid depths, each of shape (height, width)."""
+    """Return the depths in meters and a mask of the valid depths, each of shape (height, width)."""
     type_codes = {"32FC1": "f4", "16UC1": "u2", "mono16": "u2"}
     type_code = type_codes.get(image.encoding)
     if type_code is None:
@@ -179,30 +179,30 @@ def _read_depths(image: Any) -> tuple[NDArray[np.float32], NDArray[np.bool_]]:
             )
         )
     raw: NDArray[Any] = np.ndarray((image.height, image.width), type_code, data.data, 0, (step, int(type_code[2])))
-    metres = raw.astype(np.float32)
+    meters = raw.astype(np.float32)
     if type_code[1] == "f":
-        return metres, np.isfinite(metres)
-    valid = metres != 0.0
-    metres *= np.float32(0.001)
-    return metres, valid
+        return meters, np.isfinite(meters)
+    valid = meters != 0.0
+    meters *= np.float32(0.001)
+    return meters, valid
 
 
-def _packed_colours(image: DecodedImage) -> NDArray[np.uint32]:
-    """Return the image's colours packed like an ``rgb`` channel."""
+def _packed_colors(image: DecodedImage) -> NDArray[np.uint32]:
+    """Return the image's colors packed like an ``rgb`` channel."""
     rgb = image.rgb().astype(np.uint32)
     packed: NDArray[np.uint32] = np.bitwise_or(rgb[..., 0] << 16 | rgb[..., 1] << 8, rgb[..., 2], dtype=np.uint32)
     return packed
 
 
 def _points_from_depths(
-    metres: NDArray[np.float32], colours: NDArray[np.uint32], mask: NDArray[np.bool_], camera: DepthCamera
+    meters: NDArray[np.float32], colors: NDArray[np.uint32], mask: NDArray[np.bool_], camera: DepthCamera
 ) -> Points:
     is_complete = bool(mask.all())
-    depths = metres.ravel() if is_complete else metres[mask]
+    depths = meters.ravel() if is_complete else meters[mask]
     positions = np.empty((len(depths), 3), np.float32)
     with np.errstate(all="ignore"):
-        coordinates = (metres * camera.columns, metres * camera.rows[:, np.newaxis])
+        coordinates = (meters * camera.columns, meters * camera.rows[:, np.newaxis])
     for axis, coordinate in enumerate(coordinates):
         positions[:, axis] = coordinate.ravel() if is_complete else coordinate[mask]
     positions[:, 2] = depths
-    return Points(positions, {"rgb": colours.ravel() if is_complete else colours[mask]})
+    return Points(positions, {"rgb": colors.ravel() if is_complete else colors[mask]})

@@ -34,7 +34,7 @@ class Points:
     """Points with finite positions, and their other fields.
 
     Attributes:
-        positions: float32 array, shape (N, 3), metres in the frame of the message.
+        positions: float32 array, shape (N, 3), meters in the frame of the message.
         channels: the values of the other fields by name, in the order of the message; each of shape (N,).
     """
 

@@ -35,11 +35,11 @@ GLOBAL_OPTIONS = (
         "Backdrop",
         "enum",
         "Color",
-        "The background: one colour, as in RViz, or a sky and a ground in the colours of the page's theme.",
+        "The background: one color, as in RViz, or a sky and a ground in the colors of the page's theme.",
         options=("Color", "Sky and Ground"),
     ),
     PropertySpec(
-        "Background Color", "color", "#303030", "The background colour of the scene.", when=(("Backdrop",), "Color")
+        "Background Color", "color", "#303030", "The background color of the scene.", when=(("Backdrop",), "Color")
     ),
     PropertySpec(
         "Frame Rate",

@@ -22,9 +22,9 @@ FIXED_FRAME = "<Fixed Frame>"
 MAX_TEXT_LENGTH = 4096
 """The length of the longest string that is accepted from a page, in characters."""
 
-_HEX_COLOUR = re.compile(r"#[0-9a-fA-F]{6}")
-_SHORT_COLOUR = re.compile(r"#[0-9a-fA-F]{3}")
-_RVIZ_COLOUR = re.compile(r"([+-]?\d{1,6})\s*;\s*([+-]?\d{1,6})\s*;\s*([+-]?\d{1,6})\s*(;.*)?")
+_HEX_COLOR = re.compile(r"#[0-9a-fA-F]{6}")
+_SHORT_COLOR = re.compile(r"#[0-9a-fA-F]{3}")
+_RVIZ_COLOR = re.compile(r"([+-]?\d{1,6})\s*;\s*([+-]?\d{1,6})\s*;\s*([+-]?\d{1,6})\s*(;.*)?")
 _YAML_NUMBER = re.compile(r"[+-]?\.(inf|nan)", re.IGNORECASE)
 _INFINITY_SUBSTITUTE = 3.4028234663852886e38
 """The largest 32-bit float, which replaces infinity as in RViz, because JSON cannot represent infinity."""
@@ -79,7 +79,7 @@ Schema = tuple[PropertySpec, ...]
 
 
 def vector(name: str, description: str) -> PropertySpec:
-    """Return the declaration of a group with the float properties X, Y and Z in metres.
+    """Return the declaration of a group with the float properties X, Y and Z in meters.
 
     The defaults are 0, as in RViz's VectorProperty.
     """
@@ -100,7 +100,7 @@ def alpha(
 
 
 def length(name: str, default: float, description: str, when: tuple[Path, str] | None = None) -> PropertySpec:
-    """Return the declaration of a property for a length in metres."""
+    """Return the declaration of a property for a length in meters."""
     return PropertySpec(name, "float", default, description, when=when)
 
 
@@ -110,19 +110,19 @@ def line_style_spec(*children: PropertySpec) -> PropertySpec:
         "Line Style",
         "enum",
         "Lines",
-        "Lines are one pixel wide; billboards have a width in metres.",
+        "Lines are one pixel wide; billboards have a width in meters.",
         options=("Lines", "Billboards"),
         children=children,
     )
 
 
 def line_width_spec() -> PropertySpec:
-    """Return the declaration of ``Line Width`` in metres.
+    """Return the declaration of ``Line Width`` in meters.
 
     The property is shown only for lines drawn as billboards.
     """
     return PropertySpec(
-        "Line Width", "float", 0.03, "Width of the lines, in metres.", minimum=0.001, when=IS_BILLBOARDS
+        "Line Width", "float", 0.03, "Width of the lines, in meters.", minimum=0.001, when=IS_BILLBOARDS
     )
 
 
@@ -189,7 +189,7 @@ _EXPECTATIONS = {
     "int": phrase("an integer is expected"),
     "float": phrase("a finite number is expected"),
     "string": phrase("a string of at most {maximum_text} characters is expected", maximum_text=MAX_TEXT_LENGTH),
-    "color": "a colour such as #a0a0a4 is expected",
+    "color": "a color such as #a0a0a4 is expected",
     "enum": "one of {options} is expected",
     "frame": phrase("the name of a frame is expected"),
     "topic": phrase("the name of a topic is expected"),
@@ -207,7 +207,7 @@ def _validate(spec: PropertySpec, value: object) -> PropertyValue:
     if kind == "enum":
         return value if value in spec.options else None
     if kind == "color":
-        return value.lower() if _HEX_COLOUR.fullmatch(value) else None
+        return value.lower() if _HEX_COLOR.fullmatch(value) else None
     if kind == "frame":
         return value.strip().removeprefix("/") or None  # tf2 frame names have no leading slash; RViz strips it too
     return value
@@ -242,7 +242,7 @@ def _read_as_qt(spec: PropertySpec, text: str) -> object:
     if kind in ("int", "float"):
         return _parse_number(spec, text)
     if kind == "color":
-        return _parse_colour(text)
+        return _parse_color(text)
     return text
 
 
@@ -258,17 +258,17 @@ def _parse_number(spec: PropertySpec, text: str) -> object:
     return number if math.isfinite(number) else math.copysign(_INFINITY_SUBSTITUTE, number)
 
 
-def _parse_colour(text: str) -> str:
-    match = _RVIZ_COLOUR.fullmatch(text)
+def _parse_color(text: str) -> str:
+    match = _RVIZ_COLOR.fullmatch(text)
     if match:  # a fourth number, such as alpha, is ignored
         return "#" + "".join(f"{min(max(int(component), 0), 255):02x}" for component in match.groups()[:3])
-    if _SHORT_COLOUR.fullmatch(text):
+    if _SHORT_COLOR.fullmatch(text):
         return "#" + "".join(2 * digit for digit in text[1:])
     if text.isalpha():
         import webcolors  # type: ignore[import-untyped]  # untyped; imported late, because names are rare
 
         with suppress(ValueError):
-            return str(webcolors.name_to_hex(text))  # webcolors and Qt both know the colour names of SVG
+            return str(webcolors.name_to_hex(text))  # webcolors and Qt both know the color names of SVG
     return text
 
 

@@ -59,14 +59,14 @@ TOOL_KINDS: dict[str, ToolKind] = {
     "rviz_default_plugins/Select": ToolKind("Select"),
     "rviz_default_plugins/FocusCamera": ToolKind("Focus Camera"),
     "rviz_default_plugins/Measure": ToolKind(
-        "Measure", (PropertySpec("Line color", "color", "#808000", "The colour of the measuring line."),)
+        "Measure", (PropertySpec("Line color", "color", "#808000", "The color of the measuring line."),)
     ),
     "rviz_default_plugins/SetInitialPose": ToolKind(
         "2D Pose Estimate",
         (
             _topic("/initialpose", "The topic to publish pose estimates to."),
-            PropertySpec("Covariance x", "float", 0.25, "Covariance along x, in square metres.", minimum=0.0),
-            PropertySpec("Covariance y", "float", 0.25, "Covariance along y, in square metres.", minimum=0.0),
+            PropertySpec("Covariance x", "float", 0.25, "Covariance along x, in square meters.", minimum=0.0),
+            PropertySpec("Covariance y", "float", 0.25, "Covariance along y, in square meters.", minimum=0.0),
             PropertySpec(
                 "Covariance yaw",
                 "float",
@@ -99,7 +99,7 @@ DEFAULT_TOOLS = tuple(cls for cls in TOOL_KINDS if cls.startswith("rviz_default_
 def tool_name(cls: str) -> str:
     """Return the label of a tool's button.
 
-    As in RViz, an unknown class is labelled with its class name, split into words.
+    As in RViz, an unknown class is labeled with its class name, split into words.
     """
     kind = TOOL_KINDS.get(cls)
     return kind.name if kind else re.sub(r"(?<!^)(?=[A-Z])", " ", cls.rpartition("/")[2])

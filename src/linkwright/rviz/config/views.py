@@ -33,7 +33,7 @@ _MAX_FOCAL_SHAPE = 0.05
 
 @dataclass(frozen=True, slots=True)
 class ModelSize:
-    """The size of a robot and the typical spacing of its links, in metres.
+    """The size of a robot and the typical spacing of its links, in meters.
 
     Attributes:
         diagonal: the diagonal of the robot's bounding box.
@@ -87,7 +87,7 @@ _NEAR_CLIP = PropertySpec(
     "Near Clip Distance",
     "float",
     0.01,
-    "The near clipping distance of the camera, in metres.",
+    "The near clipping distance of the camera, in meters.",
     minimum=0.001,
     maximum=10000.0,
 )
@@ -115,16 +115,16 @@ _ORBIT: Schema = (
     _STEREO,
     _INVERT_Z,
     _TARGET,
-    PropertySpec("Distance", "float", 10.0, "From the focal point to the camera, in metres.", minimum=0.001),
+    PropertySpec("Distance", "float", 10.0, "From the focal point to the camera, in meters.", minimum=0.001),
     PropertySpec(
-        "Focal Shape Size", "float", 0.05, "Diameter of the disc at the focal point, in metres.", minimum=0.001
+        "Focal Shape Size", "float", 0.05, "Diameter of the disc at the focal point, in meters.", minimum=0.001
     ),
     PropertySpec(
         "Focal Shape Fixed Size", "bool", True, "The disc keeps its size; otherwise it grows with the distance."
     ),
     PropertySpec("Yaw", "float", _EIGHTH_TURN, _YAW_HELP),
     PropertySpec("Pitch", "float", _EIGHTH_TURN, _PITCH_HELP, minimum=-PITCH_LIMIT, maximum=PITCH_LIMIT),
-    vector("Focal Point", "The point that the camera orbits, in the target frame, in metres."),
+    vector("Focal Point", "The point that the camera orbits, in the target frame, in meters."),
 )
 _FPS: Schema = (
     _NEAR_CLIP,
@@ -135,7 +135,7 @@ _FPS: Schema = (
     PropertySpec(
         "Position",
         "group",
-        description="The position of the camera in the target frame, in metres.",
+        description="The position of the camera in the target frame, in meters.",
         children=(
             PropertySpec("X", "float", 5.0),
             PropertySpec("Y", "float", 5.0),
@@ -147,10 +147,10 @@ _TOP_DOWN_ORTHO: Schema = (
     _NEAR_CLIP,
     _STEREO,
     _TARGET,
-    PropertySpec("Scale", "float", 10.0, "Pixels per metre; a negative scale turns the image upside down."),
+    PropertySpec("Scale", "float", 10.0, "Pixels per meter; a negative scale turns the image upside down."),
     PropertySpec("Angle", "float", 0.0, "The rotation of the image about the z axis, in radians."),
-    PropertySpec("X", "float", 0.0, "The centre of the image along x in the target frame, in metres."),
-    PropertySpec("Y", "float", 0.0, "The centre of the image along y in the target frame, in metres."),
+    PropertySpec("X", "float", 0.0, "The center of the image along x in the target frame, in meters."),
+    PropertySpec("Y", "float", 0.0, "The center of the image along y in the target frame, in meters."),
 )
 
 VIEW_SCHEMAS: dict[str, Schema] = {

@@ -1,4 +1,4 @@
-"""The colours of detection classes, the same in all displays."""
+"""The colors of detection classes, the same in all displays."""
 
 from __future__ import annotations
 
@@ -20,10 +20,10 @@ KNOWN: dict[str, Color] = {
     "cyclist": (255, 255, 0),
     "motorcycle": (230, 230, 250),
 }
-"""The classes with fixed colours in vision_msgs_rviz_plugins."""
+"""The classes with fixed colors in vision_msgs_rviz_plugins."""
 
 UNCLASSIFIED_COLOR: Color = (255, 22, 80)
-"""The colour of detections without a class, as in vision_msgs_rviz_plugins."""
+"""The color of detections without a class, as in vision_msgs_rviz_plugins."""
 
 _PALETTE: tuple[Color, ...] = (
     (230, 25, 75),
@@ -42,10 +42,10 @@ _PALETTE: tuple[Color, ...] = (
 
 
 def class_color(name: str, table: Mapping[str, Color]) -> Color:
-    """Return the colour of a detection class.
+    """Return the color of a detection class.
 
-    The colour is the first that is found in the table, in vision_msgs_rviz_plugins, as a colour word in the name, or
-    in a palette. Detections without a class have the colour `UNCLASSIFIED_COLOR`.
+    The color is the first that is found in the table, in vision_msgs_rviz_plugins, as a color word in the name, or
+    in a palette. Detections without a class have the color `UNCLASSIFIED_COLOR`.
     """
     if not name:
         return UNCLASSIFIED_COLOR
@@ -55,7 +55,7 @@ def class_color(name: str, table: Mapping[str, Color]) -> Color:
 
 
 def read_class_colors(path: str) -> dict[str, Color]:
-    """Return the colour table in a YAML file, with class names in lower case.
+    """Return the color table in a YAML file, with class names in lower case.
 
     An entry is ``NAME: {r: 255, g: 165, b: 0}``.
 
@@ -71,9 +71,7 @@ def read_class_colors(path: str) -> dict[str, Color]:
         raise ValueError(phrase("cannot read '{path}': {reason}", path=path, reason=foreign(reason))) from None
     if not isinstance(document, dict) or not all(_is_color(color) for color in document.values()):
         raise ValueError(
-            phrase(
-                "'{path}' is not a table of colours: write entries such as 'ball: {{r: 255, g: 0, b: 0}}'", path=path
-            )
+            phrase("'{path}' is not a table of colors: write entries such as 'ball: {{r: 255, g: 0, b: 0}}'", path=path)
         )
     return {str(name).lower(): (color["r"], color["g"], color["b"]) for name, color in document.items()}
 

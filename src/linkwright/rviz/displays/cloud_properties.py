@@ -5,12 +5,12 @@ from __future__ import annotations
 from dataclasses import replace
 from typing import Any
 
-from linkwright.rviz.clouds import AXES, TRANSFORMERS, ColourSettings
+from linkwright.rviz.clouds import AXES, TRANSFORMERS, ColorSettings
 from linkwright.rviz.config.property_store import PropertyStore
 from linkwright.rviz.config.schema import Path, PropertySpec, Schema, alpha
 
 DECAY_TIME = "Decay Time"
-COLOUR_TRANSFORMER = "Color Transformer"
+COLOR_TRANSFORMER = "Color Transformer"
 POSITION_TRANSFORMER = "Position Transformer"
 CHANNEL = "Channel Name"
 AUTO_INTENSITY = "Autocompute Intensity Bounds"
@@ -28,7 +28,7 @@ STYLE_SPECS: Schema = (
         options=("Points", "Squares", "Flat Squares", "Spheres", "Boxes", "Tiles"),
     ),
     PropertySpec(
-        "Size (m)", "float", 0.01, "Size of a point, in metres; it does not apply to the style Points.", minimum=0.0001
+        "Size (m)", "float", 0.01, "Size of a point, in meters; it does not apply to the style Points.", minimum=0.0001
     ),
     PropertySpec("Size (Pixels)", "float", 3.0, "Size of a point of the style Points, in pixels.", minimum=1.0),
     alpha("Opacity of the points: 0 is invisible."),
@@ -37,14 +37,14 @@ STYLE_SPECS: Schema = (
     ),
 )
 
-_IS_INTENSITY = ((COLOUR_TRANSFORMER,), "Intensity")
-_IS_AXIS = ((COLOUR_TRANSFORMER,), "AxisColor")
+_IS_INTENSITY = ((COLOR_TRANSFORMER,), "Intensity")
+_IS_AXIS = ((COLOR_TRANSFORMER,), "AxisColor")
 _WITHOUT_RAINBOW = (("Use rainbow",), False)
 
 TRANSFORMER_SPECS: Schema = (
     PropertySpec(POSITION_TRANSFORMER, "enum", "XYZ", "The source of the points' positions.", options=("XYZ",)),
     PropertySpec(
-        COLOUR_TRANSFORMER, "enum", "", "The source of the points' colours.", options=tuple(sorted(TRANSFORMERS))
+        COLOR_TRANSFORMER, "enum", "", "The source of the points' colors.", options=tuple(sorted(TRANSFORMERS))
     ),
     PropertySpec(
         CHANNEL,
@@ -58,26 +58,26 @@ TRANSFORMER_SPECS: Schema = (
         "Use rainbow",
         "bool",
         True,
-        "Use the colours of the rainbow, instead of a gradient between two colours.",
+        "Use the colors of the rainbow, instead of a gradient between two colors.",
         when=_IS_INTENSITY,
     ),
     PropertySpec("Invert Rainbow", "bool", False, "Reverse the rainbow.", when=(("Use rainbow",), True)),
-    PropertySpec("Min Color", "color", "#000000", "Colour of the minimum intensity.", when=_WITHOUT_RAINBOW),
-    PropertySpec("Max Color", "color", "#ffffff", "Colour of the maximum intensity.", when=_WITHOUT_RAINBOW),
+    PropertySpec("Min Color", "color", "#000000", "Color of the minimum intensity.", when=_WITHOUT_RAINBOW),
+    PropertySpec("Max Color", "color", "#ffffff", "Color of the maximum intensity.", when=_WITHOUT_RAINBOW),
     PropertySpec(
         AUTO_INTENSITY, "bool", True, "Use the minimum and maximum intensity of each message.", when=_IS_INTENSITY
     ),
     PropertySpec(
-        MIN_INTENSITY, "float", 0.0, "The intensity that is shown in the first colour.", when=((AUTO_INTENSITY,), False)
+        MIN_INTENSITY, "float", 0.0, "The intensity that is shown in the first color.", when=((AUTO_INTENSITY,), False)
     ),
     PropertySpec(
         MAX_INTENSITY,
         "float",
         4096.0,
-        "The intensity that is shown in the last colour.",
+        "The intensity that is shown in the last color.",
         when=((AUTO_INTENSITY,), False),
     ),
-    PropertySpec("Axis", "enum", "Z", "The axis along which the colour changes.", options=AXES, when=_IS_AXIS),
+    PropertySpec("Axis", "enum", "Z", "The axis along which the color changes.", options=AXES, when=_IS_AXIS),
     PropertySpec(
         AUTO_VALUES,
         "bool",
@@ -90,14 +90,14 @@ TRANSFORMER_SPECS: Schema = (
                 VALUE_BOUNDS[0],
                 "float",
                 -10.0,
-                "The coordinate that is shown in the first colour, in metres.",
+                "The coordinate that is shown in the first color, in meters.",
                 when=((AUTO_VALUES,), False),
             ),
             PropertySpec(
                 VALUE_BOUNDS[1],
                 "float",
                 10.0,
-                "The coordinate that is shown in the last colour, in metres.",
+                "The coordinate that is shown in the last color, in meters.",
                 when=((AUTO_VALUES,), False),
             ),
         ),
@@ -109,15 +109,15 @@ TRANSFORMER_SPECS: Schema = (
         "Use the coordinates in the Fixed Frame, not those in the frame of the message.",
         when=_IS_AXIS,
     ),
-    PropertySpec("Color", "color", "#ffffff", "The colour of every point.", when=((COLOUR_TRANSFORMER,), "FlatColor")),
+    PropertySpec("Color", "color", "#ffffff", "The color of every point.", when=((COLOR_TRANSFORMER,), "FlatColor")),
 )
 
-COLOUR_PROPERTIES = frozenset(spec.name for spec in TRANSFORMER_SPECS) - {"Color", POSITION_TRANSFORMER}
-"""The properties that affect the computed colours of points. The page itself applies ``Color``."""
+COLOR_PROPERTIES = frozenset(spec.name for spec in TRANSFORMER_SPECS) - {"Color", POSITION_TRANSFORMER}
+"""The properties that affect the computed colors of points. The page itself applies ``Color``."""
 
 
 def scalar_specs(channel: str, minimum: float, maximum: float, *, inverted: bool | None = None) -> Schema:
-    """Return the properties of a display that colours points by one number.
+    """Return the properties of a display that colors points by one number.
 
     Properties with only one possible value are hidden, as in RViz.
 
@@ -129,7 +129,7 @@ def scalar_specs(channel: str, minimum: float, maximum: float, *, inverted: bool
     """
     changes: dict[str, dict[str, Any]] = {
         POSITION_TRANSFORMER: {"hidden": True},
-        COLOUR_TRANSFORMER: {"hidden": True, "default": "Intensity"},
+        COLOR_TRANSFORMER: {"hidden": True, "default": "Intensity"},
         CHANNEL: {"hidden": True, "default": channel},
         AUTO_INTENSITY: {"hidden": True, "default": False},
         MIN_INTENSITY: {"default": minimum},
@@ -140,15 +140,15 @@ def scalar_specs(channel: str, minimum: float, maximum: float, *, inverted: bool
     return tuple(replace(spec, **changes.get(spec.name, {})) for spec in (*STYLE_SPECS, *TRANSFORMER_SPECS))
 
 
-def colour_settings(properties: PropertyStore) -> ColourSettings:
-    """Return the colour settings from the values of the properties."""
+def color_settings(properties: PropertyStore) -> ColorSettings:
+    """Return the color settings from the values of the properties."""
     flag, number, text = properties.flag, properties.number, properties.text
 
     def bounds(auto_property: str, *paths: Path) -> tuple[float, float] | None:
         return None if flag(auto_property) else (number(*paths[0]), number(*paths[1]))
 
-    return ColourSettings(
-        transformer=text(COLOUR_TRANSFORMER),
+    return ColorSettings(
+        transformer=text(COLOR_TRANSFORMER),
         channel=text(CHANNEL),
         rainbow=flag("Use rainbow"),
         inverted=flag("Invert Rainbow"),
@@ -161,5 +161,5 @@ def colour_settings(properties: PropertyStore) -> ColourSettings:
     )
 
 
-def _rgb(colour: str) -> tuple[int, int, int]:
-    return int(colour[1:3], 16), int(colour[3:5], 16), int(colour[5:7], 16)
+def _rgb(color: str) -> tuple[int, int, int]:
+    return int(color[1:3], 16), int(color[3:5], 16), int(color[5:7], 16)

@@ -23,14 +23,14 @@ from linkwright.rviz.displays.point_clouds import CloudDisplay
 RELIABILITY = "Reliability Policy"
 DEPTH_TOPIC, DEPTH_TRANSPORT = "Depth Map Topic", "Depth Map Transport Hint"
 INFO_TOPIC = "CameraInfo Topic"
-COLOUR_TOPIC, COLOUR_TRANSPORT = "Color Image Topic", "Color Transport Hint"
+COLOR_TOPIC, COLOR_TRANSPORT = "Color Image Topic", "Color Transport Hint"
 QUEUE_SIZE = "Queue Size"
 AUTO_SIZE, SIZE_FACTOR = "Auto Size", "Auto Size Factor"
 OCCLUSION, OCCLUSION_TIMEOUT = "Occlusion Compensation", "Occlusion Time-Out"
 TOPIC_FILTER = "Topic Filter"
 _IMAGE = "sensor_msgs/msg/Image"
 
-SOURCES = frozenset((RELIABILITY, DEPTH_TOPIC, DEPTH_TRANSPORT, INFO_TOPIC, COLOUR_TOPIC, COLOUR_TRANSPORT, QUEUE_SIZE))
+SOURCES = frozenset((RELIABILITY, DEPTH_TOPIC, DEPTH_TRANSPORT, INFO_TOPIC, COLOR_TOPIC, COLOR_TRANSPORT, QUEUE_SIZE))
 """The properties that select the sources of messages."""
 
 DEPTH_SCHEMA: Schema = (
@@ -41,12 +41,12 @@ DEPTH_SCHEMA: Schema = (
         "Whether every message must arrive, or may be lost.",
         options=("System Default", "Reliable", "Best effort"),
     ),
-    PropertySpec(TOPIC_FILTER, "bool", True, "Offer only topics whose names suggest depth and colour images."),
+    PropertySpec(TOPIC_FILTER, "bool", True, "Offer only topics whose names suggest depth and color images."),
     PropertySpec(
         DEPTH_TOPIC,
         "topic",
         "",
-        "sensor_msgs/msg/Image with depths: 16UC1 in millimetres or 32FC1 in metres.",
+        "sensor_msgs/msg/Image with depths: 16UC1 in millimeters or 32FC1 in meters.",
         messages=(_IMAGE,),
         name_words=("depth",),
     ),
@@ -61,15 +61,15 @@ DEPTH_SCHEMA: Schema = (
         messages=("sensor_msgs/msg/CameraInfo",),
     ),
     PropertySpec(
-        COLOUR_TOPIC,
+        COLOR_TOPIC,
         "topic",
         "",
-        "sensor_msgs/msg/Image with the colours of the points.",
+        "sensor_msgs/msg/Image with the colors of the points.",
         messages=(_IMAGE,),
         name_words=("color", "rgb", "bgr", "gray", "mono"),
     ),
     PropertySpec(
-        COLOUR_TRANSPORT, "enum", RAW, "The image transport of the colours: raw, or compressed.", options=TRANSPORTS
+        COLOR_TRANSPORT, "enum", RAW, "The image transport of the colors: raw, or compressed.", options=TRANSPORTS
     ),
     PropertySpec(QUEUE_SIZE, "int", 5, "The size of the message queue.", minimum=1, maximum=1000),
     PropertySpec(
@@ -113,15 +113,15 @@ DEPTH_SCHEMA_UNFILTERED: Schema = tuple(replace(spec, name_words=()) for spec in
 """The schema if ``Topic Filter`` is off: topics with any name are offered."""
 
 _MAX_TIME_DIFFERENCE_NS = 500_000_000
-"""The largest time between a colour image and its depth image, in nanoseconds."""
+"""The largest time between a color image and its depth image, in nanoseconds."""
 
-# The camera has moved if its pose changes by more than these values, in metres and radians.
+# The camera has moved if its pose changes by more than these values, in meters and radians.
 _MOVE_THRESHOLD = 0.01
 _TURN_THRESHOLD = np.radians(0.5)
 
 
 class DepthCloudDisplay(CloudDisplay):
-    """A display of the points of a depth image, optionally coloured by a colour image."""
+    """A display of the points of a depth image, optionally colored by a color image."""
 
     CLASS = "rviz_default_plugins/DepthCloud"
     MESSAGE = "sensor_msgs/msg/Image"
@@ -134,13 +134,13 @@ class DepthCloudDisplay(CloudDisplay):
         super().__init__(host, identity, config)
         self._is_filtered = self.properties.flag(TOPIC_FILTER)
         self._info_topic = SideTopic(host, "sensor_msgs/msg/CameraInfo", self._on_info)
-        self._colour_topic: SideTopic | None = None
+        self._color_topic: SideTopic | None = None
         self._depth_unpacker = Unpacker()
-        self._colour_unpacker = Unpacker()
+        self._color_unpacker = Unpacker()
         self._builder = DepthCloudBuilder()
         self._info: Any = None
         self._pixel_width = 0.0
-        self._recent_colours: deque[Any] = deque()
+        self._recent_colors: deque[Any] = deque()
         self._pending: tuple[Any, Pose] | None = None
         self._camera_pose: Pose | None = None
 
@@ -152,7 +152,7 @@ class DepthCloudDisplay(CloudDisplay):
     def most_waiting(self) -> int:
         """Return the maximum number of queued depth images.
 
-        The same limit applies to stored colour images.
+        The same limit applies to stored color images.
         """
         return int(self.properties.number(QUEUE_SIZE))
 
@@ -165,14 +165,14 @@ class DepthCloudDisplay(CloudDisplay):
         )
 
     def process_message(self, message: Any, pose: Pose | None) -> None:
-        """Show a depth image, or store it until its CameraInfo and its colour image have arrived."""
+        """Show a depth image, or store it until its CameraInfo and its color image have arrived."""
         assert pose is not None
-        colour = self._nearest_colour(message) if self._has_colour_topic() else None
-        if self._info is None or (colour is None and self._has_colour_topic()):
+        color = self._nearest_color(message) if self._has_color_topic() else None
+        if self._info is None or (color is None and self._has_color_topic()):
             self._pending = (message, pose)
             return
         self._pending = None
-        self._show_depths(message, pose, colour)
+        self._show_depths(message, pose, color)
 
     def schema(self) -> Schema:
         """Return the properties.
@@ -196,8 +196,8 @@ class DepthCloudDisplay(CloudDisplay):
     def on_time_changed(self) -> None:
         """Show the messages that were queued while time was paused."""
         self._info_topic.resume()
-        if self._colour_topic is not None:
-            self._colour_topic.resume()
+        if self._color_topic is not None:
+            self._color_topic.resume()
         super().on_time_changed()
 
     def reset(self) -> None:
@@ -207,7 +207,7 @@ class DepthCloudDisplay(CloudDisplay):
         self._pending = None
         if self.last_message is None:
             self._info = None
-            self._recent_colours.clear()
+            self._recent_colors.clear()
         super().reset()
 
     # --- topics ------------------------------------------------------------------------------------------------
@@ -223,12 +223,12 @@ class DepthCloudDisplay(CloudDisplay):
     def _depth_source(self) -> ImageSource:
         return ImageSource.of(self.properties.text(DEPTH_TOPIC), self.properties.text(DEPTH_TRANSPORT))
 
-    def _colour_source(self) -> ImageSource:
-        return ImageSource.of(self.properties.text(COLOUR_TOPIC), self.properties.text(COLOUR_TRANSPORT))
+    def _color_source(self) -> ImageSource:
+        return ImageSource.of(self.properties.text(COLOR_TOPIC), self.properties.text(COLOR_TRANSPORT))
 
     def _subscribe(self) -> None:
-        depth, colour = self._depth_source(), self._colour_source()
-        for name, source in ((DEPTH_TRANSPORT, depth), (COLOUR_TRANSPORT, colour)):
+        depth, color = self._depth_source(), self._color_source()
+        for name, source in ((DEPTH_TRANSPORT, depth), (COLOR_TRANSPORT, color)):
             if not source.is_supported:
                 choice = phrase("choose raw, compressed or compressedDepth")
                 self.set_status_row(
@@ -240,7 +240,7 @@ class DepthCloudDisplay(CloudDisplay):
                         choice=choice,
                     ),
                 )
-        if not (depth.is_supported and colour.is_supported):
+        if not (depth.is_supported and color.is_supported):
             return
         super()._subscribe()
         if not depth.topic:
@@ -252,50 +252,50 @@ class DepthCloudDisplay(CloudDisplay):
             "error" if problem else "warn",
             problem or phrase("No CameraInfo received on [{topic}]", topic=info),
         )
-        if colour.topic:
-            self._colour_topic = SideTopic(self.host, colour.message_type, self._on_colour)
-            if problem := self._colour_topic.listen(colour.topic, self._qos()):
+        if color.topic:
+            self._color_topic = SideTopic(self.host, color.message_type, self._on_color)
+            if problem := self._color_topic.listen(color.topic, self._qos()):
                 self.set_status_row("Message", "error", problem)
             self.choose_transformer("RGB8")
 
     def _unsubscribe(self) -> None:
         super()._unsubscribe()
         self._info_topic.close()
-        if self._colour_topic is not None:
-            self._colour_topic.close()
-            self._colour_topic = None
+        if self._color_topic is not None:
+            self._color_topic.close()
+            self._color_topic = None
 
     def _on_info(self, info: Any) -> None:
         self._info = info
         self.set_status_row("Depth Camera Info", "ok", phrase("OK"))
         self._try_pending()
 
-    def _on_colour(self, message: Any) -> None:
-        self._recent_colours.append(message)
-        while len(self._recent_colours) > self.most_waiting():
-            self._recent_colours.popleft()
+    def _on_color(self, message: Any) -> None:
+        self._recent_colors.append(message)
+        while len(self._recent_colors) > self.most_waiting():
+            self._recent_colors.popleft()
         self._try_pending()
 
     def _try_pending(self) -> None:
         if self._pending is not None:
             self.process_message(*self._pending)
 
-    def _has_colour_topic(self) -> bool:
-        return bool(self.properties.text(COLOUR_TOPIC).strip())
+    def _has_color_topic(self) -> bool:
+        return bool(self.properties.text(COLOR_TOPIC).strip())
 
-    def _nearest_colour(self, depth: Any) -> Any:
-        """Return the colour image nearest in time to a depth image, or None if none is close enough."""
+    def _nearest_color(self, depth: Any) -> Any:
+        """Return the color image nearest in time to a depth image, or None if none is close enough."""
         stamp_ns = self.frame_of(depth)[1]
-        nearest = min(self._recent_colours, key=lambda image: abs(self.frame_of(image)[1] - stamp_ns), default=None)
+        nearest = min(self._recent_colors, key=lambda image: abs(self.frame_of(image)[1] - stamp_ns), default=None)
         if nearest is None or abs(self.frame_of(nearest)[1] - stamp_ns) > _MAX_TIME_DIFFERENCE_NS:
             return None
         return nearest
 
     # --- points ------------------------------------------------------------------------------------------------
 
-    def _show_depths(self, message: Any, pose: Pose, colour: Any) -> None:
+    def _show_depths(self, message: Any, pose: Pose, color: Any) -> None:
         try:
-            points = self._make_points(message, pose, colour)
+            points = self._make_points(message, pose, color)
         except BadCloudError as error:
             self.set_status_row("Message", "error", foreign(error))
             return
@@ -304,7 +304,7 @@ class DepthCloudDisplay(CloudDisplay):
                 "Message", "error", phrase("Error updating depth cloud: {reason}", reason=foreign(error))
             )
             return
-        frames = (message.header.frame_id, colour.header.frame_id if colour is not None else message.header.frame_id)
+        frames = (message.header.frame_id, color.header.frame_id if color is not None else message.header.frame_id)
         if frames[0] != frames[1]:
             text = phrase(
                 "Depth image frame id [{depth}] doesn't match color image frame id [{color}]",
@@ -316,18 +316,18 @@ class DepthCloudDisplay(CloudDisplay):
             self.set_status_row("Message", "ok", phrase("Ok"))
         self.show(points, pose, self.frame_of(message)[1])
 
-    def _make_points(self, message: Any, pose: Pose, colour: Any) -> Points:
+    def _make_points(self, message: Any, pose: Pose, color: Any) -> Points:
         depth = self._depth_unpacker.image(message, self._depth_source().transport)
         self.set_status_row(
             "Depth Image Size", "ok", phrase("{width} x {height}", width=depth.width, height=depth.height)
         )
         image = None
-        if colour is not None:
-            colour = self._colour_unpacker.image(colour, self._colour_source().transport)
+        if color is not None:
+            color = self._color_unpacker.image(color, self._color_source().transport)
             self.set_status_row(
-                "Image Size", "ok", phrase("{width} x {height}", width=colour.width, height=colour.height)
+                "Image Size", "ok", phrase("{width} x {height}", width=color.width, height=color.height)
             )
-            image = decode_image(colour, RangeFinder())
+            image = decode_image(color, RangeFinder())
         camera = DepthCamera.of(self._info, depth.width, depth.height)
         self._pixel_width = camera.pixel
         covered_seconds = (

@@ -25,20 +25,20 @@ _BOX_PROPERTIES: Schema = (
         "Line Width",
         "float",
         0.05,
-        "Width of the edges, in metres.",
+        "Width of the edges, in meters.",
         minimum=0.01,
         maximum=0.1,
         when=((ONLY_EDGE,), True),
     ),
     PropertySpec("Alpha", "float", 1.0, "Opacity of the boxes.", minimum=0.1, maximum=1.0),
 )
-_COLOUR_PROPERTY = PropertySpec("Color", "color", "#ffff00", "Colour of the boxes.")
-CLASS_COLOURS = PropertySpec(
-    CONFIG_PATH, "string", "", "A YAML file with colours of classes, such as 'ball: {r: 255, g: 0, b: 0}'."
+_COLOR_PROPERTY = PropertySpec("Color", "color", "#ffff00", "Color of the boxes.")
+CLASS_COLORS = PropertySpec(
+    CONFIG_PATH, "string", "", "A YAML file with colors of classes, such as 'ball: {r: 255, g: 0, b: 0}'."
 )
 _CLASS_PROPERTIES: Schema = (
     PropertySpec("Show Score", "bool", False, "Write class and score above each box."),
-    CLASS_COLOURS,
+    CLASS_COLORS,
     PropertySpec(
         LIFETIME, "int", 0, "How many seconds a message is shown; 0 shows it until the next message.", minimum=0
     ),
@@ -70,16 +70,16 @@ def _pose_values(pose: Any) -> tuple[float, ...]:
 
 
 class BoundingBox3DArrayDisplay(_BoxDisplay):
-    """A display of boxes in one colour."""
+    """A display of boxes in one color."""
 
     CLASS = "vision_msgs_rviz_plugins/BoundingBox3DArray"
     MESSAGE = "vision_msgs/msg/BoundingBox3DArray"
-    SCHEMA = (topic_spec(description=MESSAGE, filter_size=10), *_BOX_PROPERTIES, _COLOUR_PROPERTY)
+    SCHEMA = (topic_spec(description=MESSAGE, filter_size=10), *_BOX_PROPERTIES, _COLOR_PROPERTY)
 
     def content(self, message: Any) -> DataContent | None:
         """Return the boxes of a message, all in white.
 
-        Pages replace white with the colour of the property.
+        Pages replace white with the color of the property.
         """
         boxes = self.boxes_of(message)
         return self._content(boxes, [(255, 255, 255)] * len(boxes), [-1.0] * len(boxes), [""] * len(boxes))
@@ -94,7 +94,7 @@ class BoundingBox3DDisplay(BoundingBox3DArrayDisplay):
 
     CLASS = "vision_msgs_rviz_plugins/BoundingBox3D"
     MESSAGE = "vision_msgs/msg/BoundingBox3D"
-    SCHEMA = (topic_spec(description=MESSAGE, filter_size=10), *_BOX_PROPERTIES, _COLOUR_PROPERTY)
+    SCHEMA = (topic_spec(description=MESSAGE, filter_size=10), *_BOX_PROPERTIES, _COLOR_PROPERTY)
 
     def frame_of(self, message: Any) -> tuple[str, int]:
         """Return the Fixed Frame, and 0 for the latest time."""
@@ -117,7 +117,7 @@ def best_result(detection: Any) -> tuple[str, float]:
 
 
 class Detection3DArrayDisplay(_BoxDisplay):
-    """A display of detections as boxes in the colours of their classes."""
+    """A display of detections as boxes in the colors of their classes."""
 
     CLASS = "vision_msgs_rviz_plugins/Detection3DArray"
     MESSAGE = "vision_msgs/msg/Detection3DArray"
@@ -129,7 +129,7 @@ class Detection3DArrayDisplay(_BoxDisplay):
         self._end_timer: asyncio.TimerHandle | None = None
 
     def start(self) -> None:
-        """Read the class colours, and subscribe."""
+        """Read the class colors, and subscribe."""
         self._read_colors()
         super().start()
 
@@ -139,7 +139,7 @@ class Detection3DArrayDisplay(_BoxDisplay):
         super().stop()
 
     def on_property_changed(self, path: Path) -> None:
-        """Apply new colours or a new lifetime."""
+        """Apply new colors or a new lifetime."""
         super().on_property_changed(path)
         if path == (CONFIG_PATH,):
             self._read_colors()
@@ -163,7 +163,7 @@ class Detection3DArrayDisplay(_BoxDisplay):
         super().reset()
 
     def content(self, message: Any) -> DataContent | None:
-        """Return the boxes of the detections in a message, with the colours of their classes."""
+        """Return the boxes of the detections in a message, with the colors of their classes."""
         detections = self.detections_of(message)
         results = [best_result(detection) for detection in detections]
         colors = [class_color(name, self._table) for name, _ in results]

@@ -44,8 +44,8 @@ class EffortDisplay(RecentDisplay):
     SCHEMA = (
         topic_spec(description=MESSAGE, filter_size=10),
         alpha(),
-        PropertySpec("Width", "float", 0.02, "Width of the rings' lines, in metres."),
-        PropertySpec("Scale", "float", 1.0, "Width in metres of the ring of a joint at its effort limit."),
+        PropertySpec("Width", "float", 0.02, "Width of the rings' lines, in meters."),
+        PropertySpec("Scale", "float", 1.0, "Width in meters of the ring of a joint at its effort limit."),
         PropertySpec("History Length", "int", 1, "The number of messages that are shown.", minimum=1, maximum=100000),
         PropertySpec(
             _DESCRIPTION,

@@ -37,8 +37,8 @@ class AxesDisplay(ViewerDisplay):
     CLASS = "rviz_default_plugins/Axes"
     SCHEMA = (
         PropertySpec(_REFERENCE, "frame", FIXED_FRAME, "The frame whose axes are drawn."),
-        PropertySpec("Length", "float", 1.0, "Length of each axis, in metres.", minimum=0.0001),
-        PropertySpec("Radius", "float", 0.1, "Radius of each axis, in metres.", minimum=0.0001),
+        PropertySpec("Length", "float", 1.0, "Length of each axis, in meters.", minimum=0.0001),
+        PropertySpec("Radius", "float", 0.1, "Radius of each axis, in meters.", minimum=0.0001),
     )
 
     def start(self) -> None:
@@ -60,7 +60,7 @@ class GridDisplay(ViewerDisplay):
 
     CLASS = "rviz_default_plugins/Grid"
     SCHEMA = (
-        PropertySpec(_REFERENCE, "frame", FIXED_FRAME, "The frame whose origin is the centre of the grid."),
+        PropertySpec(_REFERENCE, "frame", FIXED_FRAME, "The frame whose origin is the center of the grid."),
         PropertySpec("Plane Cell Count", "int", 10, "Cells along each side of the grid.", minimum=1, maximum=1000),
         PropertySpec(
             "Normal Cell Count",
@@ -70,12 +70,12 @@ class GridDisplay(ViewerDisplay):
             minimum=0,
             maximum=100,
         ),
-        PropertySpec("Cell Size", "float", 1.0, "Side of a cell, in metres.", minimum=0.0001),
+        PropertySpec("Cell Size", "float", 1.0, "Side of a cell, in meters.", minimum=0.0001),
         line_style_spec(line_width_spec()),
-        PropertySpec("Color", "color", "#a0a0a4", "Colour of the lines."),
+        PropertySpec("Color", "color", "#a0a0a4", "Color of the lines."),
         alpha("Opacity of the lines: 0 is invisible.", 0.5),
         PropertySpec("Plane", "enum", "XY", "The plane of the grid.", options=("XY", "XZ", "YZ")),
-        vector("Offset", "The centre of the grid in the reference frame, in metres."),
+        vector("Offset", "The center of the grid in the reference frame, in meters."),
     )
 
     def start(self) -> None:
@@ -151,7 +151,7 @@ _FIXED_PROPERTIES = (
         FRAME_TIMEOUT,
         "float",
         15.0,
-        "Seconds until a frame without new transforms is removed: grey after the first third, hidden after the second.",
+        "Seconds until a frame without new transforms is removed: gray after the first third, hidden after the second.",
         minimum=1.0,
     ),
     PropertySpec(_WHITELIST, "string", "", "A regular expression: only frames in whose name it is found are shown."),

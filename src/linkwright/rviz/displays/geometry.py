@@ -28,7 +28,7 @@ class GridCellsDisplay(TopicDisplay):
     MESSAGE = "nav_msgs/msg/GridCells"
     SCHEMA = (
         topic_spec(description=MESSAGE, filter_size=10),
-        PropertySpec("Color", "color", "#19ff00", "Colour of the cells."),
+        PropertySpec("Color", "color", "#19ff00", "Color of the cells."),
         alpha("Opacity of the cells: 0 is invisible."),
     )
 
@@ -64,9 +64,9 @@ class PointStampedDisplay(RecentDisplay):
     LENGTH = ("History Length",)
     SCHEMA = (
         topic_spec(description=MESSAGE, filter_size=10),
-        PropertySpec("Color", "color", "#cc29cc", "The colour of the points."),
+        PropertySpec("Color", "color", "#cc29cc", "The color of the points."),
         PropertySpec("Alpha", "float", 1.0, "Opacity: 0 is invisible.", minimum=0.0, maximum=1.0),
-        PropertySpec("Radius", "float", 0.2, "Radius of a point, in metres."),
+        PropertySpec("Radius", "float", 0.2, "Radius of a point, in meters."),
         PropertySpec("History Length", "int", 1, "The number of points that are shown.", minimum=1, maximum=100000),
     )
 
@@ -83,7 +83,7 @@ class PolygonDisplay(RecentDisplay):
     MESSAGE = "geometry_msgs/msg/PolygonStamped"
     SCHEMA = (
         topic_spec(description=MESSAGE, filter_size=10),
-        PropertySpec("Color", "color", "#19ff00", "Colour of the line."),
+        PropertySpec("Color", "color", "#19ff00", "Color of the line."),
         alpha("Opacity of the line."),
     )
 
@@ -102,7 +102,7 @@ class RangeDisplay(RecentDisplay):
     LENGTH = ("Buffer Length",)
     SCHEMA = (
         topic_spec(description=MESSAGE, filter_size=10),
-        PropertySpec("Color", "color", "#ffffff", "Colour of the cones."),
+        PropertySpec("Color", "color", "#ffffff", "Color of the cones."),
         alpha("Opacity of the cones.", 0.5),
         PropertySpec("Buffer Length", "int", 1, "The number of measurements that are shown.", minimum=1),
     )
@@ -114,7 +114,7 @@ class RangeDisplay(RecentDisplay):
 
 
 def _cone_length(message: Any) -> float:
-    """Return the length of the cone in metres, as in RViz, according to REP 117.
+    """Return the length of the cone in meters, as in RViz, according to REP 117.
 
     A fixed-distance ranger has equal minimum and maximum ranges. It reports -Inf for a detection. A detection is drawn
     at the fixed distance.

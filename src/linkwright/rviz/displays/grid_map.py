@@ -36,7 +36,7 @@ class BadGridError(ValueError):
 class GridMapDisplay(RecentDisplay):
     """A display of the last grid maps of a topic as surfaces.
 
-    One layer sets the heights, another the colours.
+    One layer sets the heights, another the colors.
     """
 
     CLASS = "grid_map_rviz_plugin/GridMap"
@@ -53,7 +53,7 @@ class GridMapDisplay(RecentDisplay):
             topic_spec(description=self.MESSAGE, filter_size=10),
             alpha("Opacity of the surface."),
             PropertySpec("History Length", "int", 1, "The number of maps that are shown.", minimum=1, maximum=100),
-            PropertySpec("Show Grid Lines", "bool", True, "Draw lines between the centres of cells."),
+            PropertySpec("Show Grid Lines", "bool", True, "Draw lines between the centers of cells."),
             PropertySpec(
                 "Height Transformer",
                 "enum",
@@ -66,14 +66,14 @@ class GridMapDisplay(RecentDisplay):
                 "Color Transformer",
                 "enum",
                 _LAYER_MODE,
-                "The source of the colours: the values of a layer, the colours of a layer, one colour; or no surface.",
+                "The source of the colors: the values of a layer, the colors of a layer, one color; or no surface.",
                 options=_COLOR_MODES,
             ),
-            PropertySpec("Color Layer", "string", "elevation", "The layer that contains the colours."),
+            PropertySpec("Color Layer", "string", "elevation", "The layer that contains the colors."),
             PropertySpec(
-                "Color", "color", "#c8c8c8", "The colour of the surface.", when=(("Color Transformer",), "FlatColor")
+                "Color", "color", "#c8c8c8", "The color of the surface.", when=(("Color Transformer",), "FlatColor")
             ),
-            PropertySpec(f"Use {rainbow_word}", "bool", True, "Use the colours of the rainbow for values."),
+            PropertySpec(f"Use {rainbow_word}", "bool", True, "Use the colors of the rainbow for values."),
             PropertySpec(
                 f"Invert {rainbow_word}", "bool", False, "Reverse the rainbow.", when=((f"Use {rainbow_word}",), True)
             ),
@@ -81,14 +81,14 @@ class GridMapDisplay(RecentDisplay):
                 "Min Color",
                 "color",
                 "#000000",
-                "The colour of the minimum value.",
+                "The color of the minimum value.",
                 when=((f"Use {rainbow_word}",), False),
             ),
             PropertySpec(
                 "Max Color",
                 "color",
                 "#ffffff",
-                "The colour of the maximum value.",
+                "The color of the maximum value.",
                 when=((f"Use {rainbow_word}",), False),
             ),
             PropertySpec(
@@ -98,14 +98,14 @@ class GridMapDisplay(RecentDisplay):
                 "Min Intensity",
                 "float",
                 0.0,
-                "The value that is shown in the colour of the minimum.",
+                "The value that is shown in the color of the minimum.",
                 when=(("Autocompute Intensity Bounds",), False),
             ),
             PropertySpec(
                 "Max Intensity",
                 "float",
                 10.0,
-                "The value that is shown in the colour of the maximum.",
+                "The value that is shown in the color of the maximum.",
                 when=(("Autocompute Intensity Bounds",), False),
             ),
         )
@@ -157,7 +157,7 @@ class GridMapDisplay(RecentDisplay):
         )
 
     def _colors(self, grid: _Grid) -> NDArray[np.uint8]:
-        """Return the RGB colour of each cell, shape (rows, columns, 3), or one colour, shape (3,)."""
+        """Return the RGB color of each cell, shape (rows, columns, 3), or one color, shape (3,)."""
         properties = self.properties
         transformer = properties.text("Color Transformer")
         if transformer in ("FlatColor", "None"):
@@ -188,7 +188,7 @@ class GridMapDisplay(RecentDisplay):
 _RAINBOW = np.array(
     [[255 * channel for channel in colorsys.hsv_to_rgb(0.8 * (1.0 - step / 255.0), 1.0, 1.0)] for step in range(256)]
 ).astype(np.uint8)
-"""The colours from violet to red."""
+"""The colors from violet to red."""
 
 
 def _rgb(text: str) -> NDArray[np.uint8]:
@@ -262,9 +262,9 @@ class _Grid:
         return np.ascontiguousarray(np.roll(cells, shift, axis=(0, 1)))
 
     def points(self, heights: NDArray[np.floating[Any]]) -> NDArray[np.float64]:
-        """Return the cell centres at the given heights, in the message's frame.
+        """Return the cell centers at the given heights, in the message's frame.
 
-        The heights are in metres and relative to the map's pose. The result has the shape (rows, columns, 3).
+        The heights are in meters and relative to the map's pose. The result has the shape (rows, columns, 3).
         """
         rows, columns = self.shape
         x_coordinates = (rows / 2.0 - 0.5 - np.arange(rows)) * self._resolution

@@ -306,7 +306,7 @@ _CAMERA_SPECS: Schema = (
         "Far Plane Distance",
         "float",
         100.0,
-        "The far clipping distance, in metres.",
+        "The far clipping distance, in meters.",
         minimum=0.00001,
         maximum=100000.0,
     ),

@@ -42,13 +42,13 @@ _SCHEMA: Schema = (
     ),
     alpha("Opacity of the map: 0 is invisible.", 0.7),
     PropertySpec(
-        "Color Scheme", "enum", "map", "The colours for the values of the cells.", options=("map", "costmap", "raw")
+        "Color Scheme", "enum", "map", "The colors for the values of the cells.", options=("map", "costmap", "raw")
     ),
     PropertySpec("Draw Behind", "bool", False, "Draw the map behind everything else, wherever it is."),
-    PropertySpec("Resolution", "float", 0.0, "Side of a cell, in metres.", read_only=True),
+    PropertySpec("Resolution", "float", 0.0, "Side of a cell, in meters.", read_only=True),
     PropertySpec("Width", "int", 0, "Cells along x.", read_only=True),
     PropertySpec("Height", "int", 0, "Cells along y.", read_only=True),
-    _read_only_vector("Position", "XYZ", "The position of the lower left corner in the map's frame, in metres."),
+    _read_only_vector("Position", "XYZ", "The position of the lower left corner in the map's frame, in meters."),
     _read_only_vector("Orientation", "XYZW", "The rotation of the map in its frame."),
     PropertySpec(
         _USE_TIMESTAMP,

@@ -53,8 +53,8 @@ class OctomapDisplay(StoredMarkersDisplay):
             minimum=1,
             maximum=_MAX_DEPTH,
         ),
-        PropertySpec("Max. Height Display", "float", _MAX_FLOAT, "The maximum height of drawn cells, in metres."),
-        PropertySpec("Min. Height Display", "float", -_MAX_FLOAT, "The minimum height of drawn cells, in metres."),
+        PropertySpec("Max. Height Display", "float", _MAX_FLOAT, "The maximum height of drawn cells, in meters."),
+        PropertySpec("Min. Height Display", "float", -_MAX_FLOAT, "The minimum height of drawn cells, in meters."),
     )
 
     def __init__(self, host: DisplayHost, identity: str, config: DisplayConfig) -> None:

@@ -21,7 +21,7 @@ from linkwright.rviz.clouds import (
     BadCloudError,
     Points,
     ScanProjector,
-    coloured,
+    colored,
     decimated,
     deskew,
     points_of_cloud,
@@ -36,14 +36,14 @@ from linkwright.rviz.displays.cloud_properties import (
     AUTO_INTENSITY,
     AUTO_VALUES,
     CHANNEL,
-    COLOUR_PROPERTIES,
-    COLOUR_TRANSFORMER,
+    COLOR_PROPERTIES,
+    COLOR_TRANSFORMER,
     DECAY_TIME,
     INTENSITY_BOUNDS,
     STYLE_SPECS,
     TRANSFORMER_SPECS,
     VALUE_BOUNDS,
-    colour_settings,
+    color_settings,
     scalar_specs,
 )
 
@@ -63,7 +63,7 @@ class _ShownCloud:
 class CloudDisplay(TopicDisplay):
     """The base class of displays that draw points.
 
-    The colours are computed here and sent with the positions. The page applies style, size and opacity. With a Decay
+    The colors are computed here and sent with the positions. The page applies style, size and opacity. With a Decay
     Time, the points of each message are sent separately, and are removed after that time.
     """
 
@@ -85,15 +85,15 @@ class CloudDisplay(TopicDisplay):
         return 0.0
 
     def choose_transformer(self, transformer: str) -> None:
-        """Select a colour transformer that the messages support, without changing the file."""
-        if self.properties.set_read_only((COLOUR_TRANSFORMER,), transformer):
+        """Select a color transformer that the messages support, without changing the file."""
+        if self.properties.set_read_only((COLOR_TRANSFORMER,), transformer):
             self.publish_properties()
 
     def schema(self) -> Schema:
         """Return the properties, with the transformers and channels that the last message supports."""
         options: dict[str, tuple[str, ...]] = {}
         if self._transformers:
-            options[COLOUR_TRANSFORMER] = tuple(sorted(self._transformers))
+            options[COLOR_TRANSFORMER] = tuple(sorted(self._transformers))
         if self._channels:
             options[CHANNEL] = self._channels
         if not options:
@@ -126,13 +126,13 @@ class CloudDisplay(TopicDisplay):
         self._count_points()
 
     def on_property_changed(self, path: Path) -> None:
-        """Subscribe again if necessary, colour the points again, or apply the Decay Time."""
+        """Subscribe again if necessary, color the points again, or apply the Decay Time."""
         super().on_property_changed(path)
         if path == (AUTO_INTENSITY,):
             self._store_computed_bounds(AUTO_INTENSITY, *((name,) for name in INTENSITY_BOUNDS))
         elif path == (AUTO_VALUES,):
             self._store_computed_bounds(AUTO_VALUES, *((AUTO_VALUES, name) for name in VALUE_BOUNDS))
-        if path[0] in COLOUR_PROPERTIES:
+        if path[0] in COLOR_PROPERTIES:
             for cloud in self._shown_clouds:
                 self._draw(cloud)
         elif path == (DECAY_TIME,):
@@ -171,17 +171,17 @@ class CloudDisplay(TopicDisplay):
                 fields[name] = number if math.isfinite(number) else str(number)
         return fields
 
-    # --- colours -----------------------------------------------------------------------------------------------
+    # --- colors -----------------------------------------------------------------------------------------------
 
     def _draw(self, cloud: _ShownCloud) -> None:
-        settings = colour_settings(self.properties)
-        colours, bounds = coloured(cloud.points, settings, cloud.pose)
+        settings = color_settings(self.properties)
+        colors, bounds = colored(cloud.points, settings, cloud.pose)
         if bounds is not None:
             self._computed_bounds[AUTO_INTENSITY if settings.transformer == "Intensity" else AUTO_VALUES] = bounds
         content = CloudPoints(
             positions=cloud.points.positions,
-            colours=colours,
-            translucent=settings.transformer == "RGB8" and bool((colours[:, 3] < 255).any()),
+            colours=colors,
+            translucent=settings.transformer == "RGB8" and bool((colors[:, 3] < 255).any()),
             pixel=self.pixel_size(),
         )
         shrink = partial(decimated, content)
@@ -193,7 +193,7 @@ class CloudDisplay(TopicDisplay):
         if (transformers, channels) != (self._transformers, self._channels):
             self._transformers, self._channels = transformers, channels
             self.publish_properties()
-        if self.properties.text(COLOUR_TRANSFORMER) not in transformers:
+        if self.properties.text(COLOR_TRANSFORMER) not in transformers:
             self.choose_transformer(transformers[0])
 
     def _store_computed_bounds(self, auto_property: str, *paths: Path) -> None:
@@ -406,7 +406,7 @@ class PointCloud2Display(PointsDisplay):
 
 
 class ScalarDisplay(PointsDisplay):
-    """The base class of displays of a scalar, as a coloured point at the sensor's origin."""
+    """The base class of displays of a scalar, as a colored point at the sensor's origin."""
 
     FIELD: ClassVar[str]
     """The message field that contains the scalar. The channel of the point has the same name."""

@@ -36,14 +36,14 @@ def pose_shape_specs(*, nested: bool = False) -> Schema:
     """
     description = "Whether a pose is drawn as an arrow along its x or as axes."
     sizes = (
-        PropertySpec("Color", "color", "#ff1900", "Colour of the arrow.", when=_IS_ARROW),
+        PropertySpec("Color", "color", "#ff1900", "Color of the arrow.", when=_IS_ARROW),
         alpha("Opacity of the arrow.", when=_IS_ARROW),
-        length("Shaft Length", 1.0, "Length of the arrow's shaft, in metres.", _IS_ARROW),
-        length("Shaft Radius", 0.05, "Thickness of the arrow's shaft, in metres.", _IS_ARROW),
-        length("Head Length", 0.3, "Length of the arrow's head, in metres.", _IS_ARROW),
-        length("Head Radius", 0.1, "Width of the arrow's head, in metres.", _IS_ARROW),
-        length("Axes Length", 1.0, "Length of each axis, in metres.", _IS_AXES),
-        length("Axes Radius", 0.1, "Thickness of each axis, in metres.", _IS_AXES),
+        length("Shaft Length", 1.0, "Length of the arrow's shaft, in meters.", _IS_ARROW),
+        length("Shaft Radius", 0.05, "Thickness of the arrow's shaft, in meters.", _IS_ARROW),
+        length("Head Length", 0.3, "Length of the arrow's head, in meters.", _IS_ARROW),
+        length("Head Radius", 0.1, "Width of the arrow's head, in meters.", _IS_ARROW),
+        length("Axes Length", 1.0, "Length of each axis, in meters.", _IS_AXES),
+        length("Axes Radius", 0.1, "Thickness of each axis, in meters.", _IS_AXES),
     )
     options = ("Arrow", "Axes")
     if nested:
@@ -54,7 +54,7 @@ def pose_shape_specs(*, nested: bool = False) -> Schema:
 def covariance() -> PropertySpec:
     """Return the declaration of the property group of RViz's CovarianceProperty."""
     position = (
-        PropertySpec("Color", "color", "#cc33cc", "Colour of the ellipsoid."),
+        PropertySpec("Color", "color", "#cc33cc", "Color of the ellipsoid."),
         alpha("Opacity of the ellipsoid.", 0.3),
         PropertySpec("Scale", "float", 1.0, "Size of the ellipsoid, in standard deviations.", minimum=0.0),
     )
@@ -70,14 +70,14 @@ def covariance() -> PropertySpec:
             "Color Style",
             "enum",
             "Unique",
-            "One colour for all three, or red, green and blue for the rotations about x, y and z.",
+            "One color for all three, or red, green and blue for the rotations about x, y and z.",
             options=("Unique", "RGB"),
         ),
         PropertySpec(
             "Color",
             "color",
             "#ffff7f",
-            "Colour of the three rotations.",
+            "Color of the three rotations.",
             when=(("Covariance", "Orientation", "Color Style"), "Unique"),
         ),
         alpha("Opacity of the three rotations.", 0.5),
@@ -85,7 +85,7 @@ def covariance() -> PropertySpec:
             "Offset",
             "float",
             1.0,
-            "Distance from the pose, in metres; in a plane: length of the triangle.",
+            "Distance from the pose, in meters; in a plane: length of the triangle.",
             minimum=0.0,
         ),
         PropertySpec("Scale", "float", 1.0, "Size of the three rotations, in standard deviations.", minimum=0.0),
@@ -159,7 +159,7 @@ _POSE_PROPERTIES = (
         "Whether poses are drawn as arrows of lines, as solid arrows or as axes.",
         options=("Arrow (Flat)", "Arrow (3D)", "Axes"),
     ),
-    PropertySpec("Color", "color", "#ff1900", "Colour of the arrows."),
+    PropertySpec("Color", "color", "#ff1900", "Color of the arrows."),
     alpha("Opacity of the arrows."),
 )
 
@@ -172,13 +172,13 @@ class PoseArrayDisplay(RecentDisplay):
     SCHEMA = (
         topic_spec(description=MESSAGE, filter_size=10),
         *_POSE_PROPERTIES,
-        length("Arrow Length", 0.3, "Length of the arrows, in metres.", _IS_FLAT_ARROW),
-        length("Head Radius", 0.03, "Width of the arrows' heads, in metres.", _IS_SOLID_ARROW),
-        length("Head Length", 0.07, "Length of the arrows' heads, in metres.", _IS_SOLID_ARROW),
-        length("Shaft Radius", 0.01, "Thickness of the arrows' shafts, in metres.", _IS_SOLID_ARROW),
-        length("Shaft Length", 0.23, "Length of the arrows' shafts, in metres.", _IS_SOLID_ARROW),
-        length("Axes Length", 0.3, "Length of each axis, in metres.", _IS_AXES),
-        length("Axes Radius", 0.01, "Thickness of each axis, in metres.", _IS_AXES),
+        length("Arrow Length", 0.3, "Length of the arrows, in meters.", _IS_FLAT_ARROW),
+        length("Head Radius", 0.03, "Width of the arrows' heads, in meters.", _IS_SOLID_ARROW),
+        length("Head Length", 0.07, "Length of the arrows' heads, in meters.", _IS_SOLID_ARROW),
+        length("Shaft Radius", 0.01, "Thickness of the arrows' shafts, in meters.", _IS_SOLID_ARROW),
+        length("Shaft Length", 0.23, "Length of the arrows' shafts, in meters.", _IS_SOLID_ARROW),
+        length("Axes Length", 0.3, "Length of each axis, in meters.", _IS_AXES),
+        length("Axes Radius", 0.01, "Thickness of each axis, in meters.", _IS_AXES),
     )
 
     def content(self, message: Any) -> DataContent | None:
@@ -195,10 +195,10 @@ class ParticleCloudDisplay(RecentDisplay):
     SCHEMA = (
         topic_spec(description=MESSAGE, filter_size=10),
         *_POSE_PROPERTIES,
-        length("Min Arrow Length", 0.02, "Length of the arrow of an unlikely pose, in metres."),
-        length("Max Arrow Length", 0.3, "Length of the arrow of a certain pose, in metres."),
+        length("Min Arrow Length", 0.02, "Length of the arrow of an unlikely pose, in meters."),
+        length("Max Arrow Length", 0.3, "Length of the arrow of a certain pose, in meters."),
         PropertySpec(
-            "Arrow Height Scale", "float", 5.0, "Height in metres at which a pose of weight 1 is drawn.", minimum=0.0
+            "Arrow Height Scale", "float", 5.0, "Height in meters at which a pose of weight 1 is drawn.", minimum=0.0
         ),
     )
 
@@ -227,7 +227,7 @@ class OdometryDisplay(RecentDisplay):
             "Position Tolerance",
             "float",
             0.1,
-            "Distance from the last mark at which a new one is drawn, in metres.",
+            "Distance from the last mark at which a new one is drawn, in meters.",
             minimum=0.0,
         ),
         PropertySpec(
@@ -293,18 +293,18 @@ class PathDisplay(RecentDisplay):
         topic_spec(description=MESSAGE, filter_size=10),
         line_style_spec(),
         line_width_spec(),
-        PropertySpec("Color", "color", "#19ff00", "Colour of the lines."),
+        PropertySpec("Color", "color", "#19ff00", "Color of the lines."),
         alpha("Opacity of the lines."),
         PropertySpec("Buffer Length", "int", 1, "The number of paths that are shown.", minimum=1),
-        vector("Offset", "Offset of the paths in the Fixed Frame, in metres."),
+        vector("Offset", "Offset of the paths in the Fixed Frame, in meters."),
         PropertySpec("Pose Style", "enum", "None", "The shape of the poses.", options=("None", "Axes", "Arrows")),
-        length("Length", 0.3, "Length of each axis, in metres.", _SHOWS_AXES),
-        length("Radius", 0.03, "Thickness of each axis, in metres.", _SHOWS_AXES),
-        PropertySpec("Pose Color", "color", "#ff55ff", "Colour of the arrows.", when=_SHOWS_ARROWS),
-        length("Shaft Length", 0.1, "Length of the arrows' shafts, in metres.", _SHOWS_ARROWS),
-        length("Head Length", 0.2, "Length of the arrows' heads, in metres.", _SHOWS_ARROWS),
-        length("Shaft Diameter", 0.1, "Thickness of the arrows' shafts, in metres.", _SHOWS_ARROWS),
-        length("Head Diameter", 0.3, "Width of the arrows' heads, in metres.", _SHOWS_ARROWS),
+        length("Length", 0.3, "Length of each axis, in meters.", _SHOWS_AXES),
+        length("Radius", 0.03, "Thickness of each axis, in meters.", _SHOWS_AXES),
+        PropertySpec("Pose Color", "color", "#ff55ff", "Color of the arrows.", when=_SHOWS_ARROWS),
+        length("Shaft Length", 0.1, "Length of the arrows' shafts, in meters.", _SHOWS_ARROWS),
+        length("Head Length", 0.2, "Length of the arrows' heads, in meters.", _SHOWS_ARROWS),
+        length("Shaft Diameter", 0.1, "Thickness of the arrows' shafts, in meters.", _SHOWS_ARROWS),
+        length("Head Diameter", 0.3, "Width of the arrows' heads, in meters.", _SHOWS_ARROWS),
     )
 
     def content(self, message: Any) -> DataContent | None:

@@ -139,7 +139,7 @@ _FIXED_PROPERTIES = (
         "group",
         description="How masses are drawn.",
         children=(
-            PropertySpec("Mass", "bool", False, "Draw each link's mass as a sphere of lead at its centre of mass."),
+            PropertySpec("Mass", "bool", False, "Draw each link's mass as a sphere of lead at its center of mass."),
             PropertySpec("Inertia", "bool", False, "Draw each link's inertia as a box of the same inertia."),
         ),
     ),

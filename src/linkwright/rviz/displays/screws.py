@@ -14,12 +14,12 @@ from linkwright.rviz.displays.base.topic_display import RecentDisplay
 
 def _screw_specs(linear: str, angular: str) -> Schema:
     return (
-        PropertySpec(f"{linear} Color", "color", "#cc3333", f"Colour of the {linear.lower()} arrows."),
-        PropertySpec(f"{angular} Color", "color", "#cccc33", f"Colour of the {angular.lower()} arrows."),
+        PropertySpec(f"{linear} Color", "color", "#cc3333", f"Color of the {linear.lower()} arrows."),
+        PropertySpec(f"{angular} Color", "color", "#cccc33", f"Color of the {angular.lower()} arrows."),
         alpha(),
-        PropertySpec(f"{linear} Arrow Scale", "float", 2.0, f"Metres for each unit of the {linear.lower()} vector."),
-        PropertySpec(f"{angular} Arrow Scale", "float", 2.0, f"Metres for each unit of the {angular.lower()} vector."),
-        PropertySpec("Arrow Width", "float", 0.5, "Width of the arrows, in metres."),
+        PropertySpec(f"{linear} Arrow Scale", "float", 2.0, f"Meters for each unit of the {linear.lower()} vector."),
+        PropertySpec(f"{angular} Arrow Scale", "float", 2.0, f"Meters for each unit of the {angular.lower()} vector."),
+        PropertySpec("Arrow Width", "float", 0.5, "Width of the arrows, in meters."),
         PropertySpec("History Length", "int", 1, "The number of messages that are shown.", minimum=1, maximum=100000),
     )
 

@@ -296,7 +296,7 @@ def _default_markers(
 
 
 def _axis_color(orientation: list[float]) -> list[float]:
-    """Return the colour of an axis: red for x, green for y, blue for z, or a mixture.
+    """Return the color of an axis: red for x, green for y, blue for z, or a mixture.
 
     The axis is the x axis of an orientation.
     """

@@ -73,8 +73,8 @@ def make_marker(
         scale: x, y, z, as in visualization_msgs/msg/Marker for this kind.
         color: red, green, blue, alpha, from 0 to 1.
         frame: the frame that the marker follows; empty for the Fixed Frame.
-        points: the points, shape (N, 3), metres.
-        colors: one colour for each point, shape (N, 4); empty to use `color`.
+        points: the points, shape (N, 3), meters.
+        colors: one color for each point, shape (N, 4); empty to use `color`.
         mesh: the file of a ``mesh``.
     """
     return MarkerShape(

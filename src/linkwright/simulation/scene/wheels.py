@@ -29,7 +29,7 @@ this value it turns at 0.43 times that rate; Coulomb friction gives 0.50 times, 
 def make_rolling(spec: Any, body: Any, joint: Any, step: float, grips: Mapping[str, float], max_grip: float) -> None:
     """Make the collisions of a body roll about a joint without slipping.
 
-    Each collision then touches the ground in one point, like a tyre. Cylinders, and meshes that are round about the
+    Each collision then touches the ground in one point, like a tire. Cylinders, and meshes that are round about the
     axis of the joint, become ellipsoids: the two edges of a cylinder would scrub in turns, and the corners of a mesh
     would bump.
 

@@ -22,7 +22,7 @@ class Destination:
     """A place to which the robot can be sent.
 
     Attributes:
-        x, y: the position in metres.
+        x, y: the position in meters.
         yaw: the heading in radians.
         frame: the frame of the pose.
     """

@@ -15,7 +15,7 @@ from linkwright.speech.commands.quantities import GRAMMAR_VALUES, parse_quantity
 from linkwright.speech.commands.words import Words, words_of
 
 Value = float | str
-"""The value of a slot: a quantity in metres, radians, seconds or metres per second, or a name in the file."""
+"""The value of a slot: a quantity in meters, radians, seconds or meters per second, or a name in the file."""
 
 Names = Mapping[str, Mapping[Words, str]]
 """For each slot that a name replaces, the names by their spoken forms."""

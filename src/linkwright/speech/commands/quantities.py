@@ -1,4 +1,4 @@
-"""Spoken quantities: numbers with units, converted to metres, radians and seconds."""
+"""Spoken quantities: numbers with units, converted to meters, radians and seconds."""
 
 from __future__ import annotations
 
@@ -76,7 +76,7 @@ GRAMMAR_VALUES: Mapping[str, Mapping[str, tuple[str, ...]]] = {
 """The values of slots in the engines' grammars, by slot and language.
 
 There are only a few values, so that engines do not mishear other words. Any other value is also understood if an engine
-recognises it or a user types it.
+recognizes it or a user types it.
 """
 
 _PER_SECOND: Words = ("每", "秒")

@@ -34,7 +34,7 @@ _FULL_SCALE = 32_768.0
 
 
 class OnnxEngine(SpeechEngine):
-    """An engine that recognises phrases with the ONNX network in the file of option ``model``.
+    """An engine that recognizes phrases with the ONNX network in the file of option ``model``.
 
     Raises:
         LinkwrightError: VOICE102, onnxruntime is not installed; VOICE104, the file is not such a network.

@@ -62,7 +62,7 @@ class Phrasing:
         return cls(converted)
 
     def split_into_phrases(self, words: Sequence[str]) -> list[tuple[str, int, int]] | None:
-        """Split recognised words into the smallest number of phrases.
+        """Split recognized words into the smallest number of phrases.
 
         Returns:
             Each phrase with the indices of its first word and of the word after its last; None if the words are not a

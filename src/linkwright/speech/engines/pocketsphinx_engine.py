@@ -1,6 +1,6 @@
 """The engine ``pocketsphinx``: a grammar of phrases and a model of American English.
 
-The grammar has no model of other speech: in our measurements a quarter of other utterances was recognised as a phrase,
+The grammar has no model of other speech: in our measurements a quarter of other utterances was recognized as a phrase,
 and more in noise. The engine is therefore suitable for push-to-talk; Vosk or enrolled words are better where they are
 available.
 """
@@ -31,7 +31,7 @@ _MIN_PROBABILITY = 1e-300  # avoids the logarithm of a probability that underflo
 
 
 class PocketsphinxEngine(SpeechEngine):
-    """An engine that recognises phrases with pocketsphinx.
+    """An engine that recognizes phrases with pocketsphinx.
 
     The confidence rates the acoustic fit, and is 0.5 for a score of -8 per frame. The probability from pocketsphinx
     itself is not useful: it is divided among all paths through the grammar that sound alike, and a fifth of clear
@@ -120,9 +120,9 @@ class PocketsphinxEngine(SpeechEngine):
         return [Heard(text, confidence, False, self._endpointer.speech_start, end)]
 
     def _best_phrase(self) -> tuple[str, float]:
-        """Return the recognised phrase as the user wrote it, and its confidence.
+        """Return the recognized phrase as the user wrote it, and its confidence.
 
-        The phrase is empty if no phrase was recognised.
+        The phrase is empty if no phrase was recognized.
         """
         hypothesis = self._decoder.hyp()
         if hypothesis is None:

@@ -5,7 +5,7 @@ word of less confidence than `MIN_CONFIDENCE`, is rejected. In our measurements 
 texts from one in sixty to none, at the cost of one correct command in a hundred.
 
 Partial results come from the best path and arrive immediately; with confidences, Vosk would delay them until it has
-built a lattice. They start after the last ``[unk]``, so that "stop" is also recognised in the middle of other speech.
+built a lattice. They start after the last ``[unk]``, so that "stop" is also recognized in the middle of other speech.
 """
 
 from __future__ import annotations
@@ -37,7 +37,7 @@ _ACOUSTIC_MODEL = Path("am") / "final.mdl"
 
 
 class VoskEngine(SpeechEngine):
-    """An engine that recognises phrases with Vosk.
+    """An engine that recognizes phrases with Vosk.
 
     Raises:
         LinkwrightError: MODEL102, the language's model has not been downloaded; VOICE102, Vosk is not installed;

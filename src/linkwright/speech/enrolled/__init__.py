@@ -1,1 +1,1 @@
-"""Enrolled words of any language, recognised by their distance from the recordings."""
+"""Enrolled words of any language, recognized by their distance from the recordings."""

@@ -1,4 +1,4 @@
-"""The engine ``enrolled``: recognises words in any language that the user has recorded."""
+"""The engine ``enrolled``: recognizes words in any language that the user has recorded."""
 
 from __future__ import annotations
 
@@ -33,12 +33,12 @@ _MIN_NUMBER_CONFIDENCE = 0.7
 
 
 class EnrolledEngine(SpeechEngine):
-    """An engine that recognises enrolled words by comparing utterances with their recordings.
+    """An engine that recognizes enrolled words by comparing utterances with their recordings.
 
     The file can appear, change and disappear at run time: it is checked with each block of samples.
 
     Args:
-        options: `model` is the file of words; None for `words_path`. Only words that are also phrases are recognised;
+        options: `model` is the file of words; None for `words_path`. Only words that are also phrases are recognized;
             the other words help to reject sound. Case and surrounding spaces are ignored.
 
     Raises:
@@ -65,7 +65,7 @@ class EnrolledEngine(SpeechEngine):
 
     @property
     def problem(self) -> Diagnostic | None:
-        """The reason why the engine recognises less than it should, or None if it works fully.
+        """The reason why the engine recognizes less than it should, or None if it works fully.
 
         VOICE201, none of the phrases is enrolled; VOICE202 or VOICE203, the changed file is damaged.
         """

@@ -25,7 +25,7 @@ from linkwright.speech.enrolled.words import Take, Words
 from linkwright.speech.sound.spectra import Powers
 
 ACCEPTED = 0.5
-"""The minimum confidence of a recognised word."""
+"""The minimum confidence of a recognized word."""
 
 _MIN_RATIO_TERM = 1e-3
 _EXCLUDED_COST = np.float32(1e9)
@@ -50,7 +50,7 @@ class Guess:
 
 
 class Recognizer:
-    """A recogniser of the enrolled words of a user.
+    """A recognizer of the enrolled words of a user.
 
     Args:
         words: all enrolled words, at least one; words that are not requested help to reject other speech.

@@ -1,4 +1,4 @@
-"""Takes with the reverberation of a room, to recognise words from a distance.
+"""Takes with the reverberation of a room, to recognize words from a distance.
 
 A room adds earlier sound to the current sound. In each band its power decays exponentially, by 60 dB in the
 reverberation time (Polack's model of late reverberation), and its total energy is a fraction of the direct sound's
@@ -47,4 +47,4 @@ class Room:
 
 
 ROOMS = (Room(0.4, 8.0), Room(0.5, 2.0))
-"""A living room from a distance of two metres, and a larger room or a greater distance."""
+"""A living room from a distance of two meters, and a larger room or a greater distance."""

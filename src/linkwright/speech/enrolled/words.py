@@ -29,7 +29,7 @@ from linkwright.files.whole_files import write_whole_file
 from linkwright.speech.sound.spectra import BANDS, Powers
 
 RECOMMENDED_TAKES = 3
-"""The recommended number of takes of a word. With fewer takes, a word is recognised with less confidence."""
+"""The recommended number of takes of a word. With fewer takes, a word is recognized with less confidence."""
 
 MAX_TAKES = 10
 MAX_WORDS = 200

@@ -31,7 +31,7 @@ class Listener:
         make_engine: creates the engine in the thread; this may take seconds.
         on_result: called with each result of the engine.
         on_finish: called when all sound before a call of `finish` was processed.
-        on_problem: called with the reason why the engine recognises less than it should, whenever the reason changes.
+        on_problem: called with the reason why the engine recognizes less than it should, whenever the reason changes.
         on_error: called with the error that ended the engine.
     """
 

@@ -19,12 +19,12 @@ _MISSES_BEFORE_PROPOSAL = 3
 
 @dataclass(slots=True)
 class _Press:
-    """The words that were recognised during one press.
+    """The words that were recognized during one press.
 
     Attributes:
         has_command: whether a command of this press was executed or answered.
         has_gaps: whether some of its sound was lost.
-        unknown: the last recognised speech that is not a command.
+        unknown: the last recognized speech that is not a command.
     """
 
     has_command: bool = False
@@ -83,7 +83,7 @@ class ButtonPresses:
         self._missed_presses += 1
         self.proposes_enrolling = self._can_enrol and self._missed_presses % _MISSES_BEFORE_PROPOSAL == 0
         if self.proposes_enrolling:
-            return phrase("I do not recognise your words: enrol them in the Voice panel, in the room where you speak")
+            return phrase("I do not recognize your words: enrol them in the Voice panel, in the room where you speak")
         if press.unknown.nearest:
             return phrase(
                 "I heard something that is not a command; the most similar one is '{phrase}'",

@@ -2,7 +2,7 @@
 
 Requests are action goals, service calls and messages.
 
-An engine of `linkwright.speech` recognises the sound on ``audio/audio_stamped``, and the command file defines the
+An engine of `linkwright.speech` recognizes the sound on ``audio/audio_stamped``, and the command file defines the
 meaning of the words. The node listens while ``voice/listen`` reports that a button is held, or always with
 ``open_listening``.
 """
@@ -54,7 +54,7 @@ _REPEAT_SHARE = 0.5
 
 
 class VoiceCommander(SingleNode):
-    """The node that recognises spoken commands, and executes them.
+    """The node that recognizes spoken commands, and executes them.
 
     Parameters:
 
@@ -243,7 +243,7 @@ class VoiceCommander(SingleNode):
             self._presses.record_unknown_speech(result)
 
     def _handle_final_result(self, result: Heard) -> bool:
-        """Execute a recognised text, or ask the user to repeat it.
+        """Execute a recognized text, or ask the user to repeat it.
 
         Returns:
             False if neither was done.
@@ -318,7 +318,7 @@ class VoiceCommander(SingleNode):
     def _on_goal_end(self, is_reached: bool, reason: str) -> None:
         self._conversation.on_goal_end(is_reached, reason)
 
-    # --- recognised text -----------------------------------------------------------------------------------------
+    # --- recognized text -----------------------------------------------------------------------------------------
 
     def _execute(self, text: str, *, by_voice: bool) -> bool:
         """Execute the command in a text, and return whether it was understood."""

@@ -1,1 +1,1 @@
-"""The Voice panel: microphones of pages, recognised commands, and answers."""
+"""The Voice panel: microphones of pages, recognized commands, and answers."""

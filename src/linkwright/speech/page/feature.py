@@ -1,4 +1,4 @@
-"""The page feature for voice: microphones, recognised commands and answers."""
+"""The page feature for voice: microphones, recognized commands and answers."""
 
 from __future__ import annotations
 
@@ -44,7 +44,7 @@ _MAX_TEXT = 500
 class VoiceFeature(PageFeature):
     """The feature that publishes the sound of one page at a time, and sends results to pages.
 
-    The results are recognised commands and answers. The sound topics exist while any page has its microphone open, and
+    The results are recognized commands and answers. The sound topics exist while any page has its microphone open, and
     the other topics while any page watches.
     """
 

@@ -42,11 +42,11 @@ class MelFrames:
         if not len(samples):
             return np.zeros((0, BANDS))
         values = samples.astype(np.float64)
-        emphasised = values.copy()
-        emphasised[0] -= _PRE_EMPHASIS * self._last_sample
-        emphasised[1:] -= _PRE_EMPHASIS * values[:-1]
+        emphasized = values.copy()
+        emphasized[0] -= _PRE_EMPHASIS * self._last_sample
+        emphasized[1:] -= _PRE_EMPHASIS * values[:-1]
         self._last_sample = float(values[-1])
-        self._buffer = np.concatenate((self._buffer, emphasised))
+        self._buffer = np.concatenate((self._buffer, emphasized))
         count = (len(self._buffer) - WINDOW) // HOP + 1
         if count <= 0:
             return np.zeros((0, BANDS))

@@ -1,4 +1,4 @@
-"""The random appearance of an image: lights, colours, patterns, backdrop, camera effects."""
+"""The random appearance of an image: lights, colors, patterns, backdrop, camera effects."""
 
 from __future__ import annotations
 
@@ -26,8 +26,8 @@ def set_lights(stage: Stage, generator: np.random.Generator) -> None:
     lights = []
     for number in range(int(generator.integers(1, 4))):
         intensity = 1.0 if number == 0 else 0.5
-        colour = _tinted_white(generator, 0.25) * generator.uniform(0.3, 1.0) * intensity
-        red, green, blue = (float(channel) for channel in colour)
+        color = _tinted_white(generator, 0.25) * generator.uniform(0.3, 1.0) * intensity
+        red, green, blue = (float(channel) for channel in color)
         diffuse = red, green, blue, 1.0
         x, y, z = (float(component) for component in generator.normal(size=3))
         direction = x, y, -abs(z) - 0.2
@@ -37,46 +37,46 @@ def set_lights(stage: Stage, generator: np.random.Generator) -> None:
 
 
 def paint_surfaces(stage: Stage, shot: Shot, generator: np.random.Generator) -> None:
-    """Recolour all objects and surroundings.
+    """Recolor all objects and surroundings.
 
-    Most objects keep their colour or get a similar one.
+    Most objects keep their color or get a similar one.
     """
     for prop in shot.placed_props:
-        choice, new_colours = generator.random(), {}
+        choice, new_colors = generator.random(), {}
         is_textured = generator.random() < 0.3
         number = int(generator.integers(1 << 16))
         for geom in prop.geoms:
-            original_colour = tuple(float(channel) for channel in stage.original_colour(geom)[:3])
-            if original_colour not in new_colours:
-                new_colours[original_colour] = _similar_colour(original_colour, choice, generator)
+            original_color = tuple(float(channel) for channel in stage.original_color(geom)[:3])
+            if original_color not in new_colors:
+                new_colors[original_color] = _similar_color(original_color, choice, generator)
             if not stage.has_material(geom):
-                stage.paint(geom, new_colours[original_colour], "object" if is_textured else "", number)
+                stage.paint(geom, new_colors[original_color], "object" if is_textured else "", number)
     for geom in stage.distractors:
         is_patterned = generator.random() < 0.5
         stage.paint(geom, generator.random(3), "wall" if is_patterned else "", int(generator.integers(1 << 16)))
     for kind, geoms in (("wall", shot.structures), ("ground", stage.ground)):
         is_uniform = generator.random() < 0.7
-        colour, is_patterned, number = _random_surface(generator)
+        color, is_patterned, number = _random_surface(generator)
         for geom in geoms:
             if not is_uniform:
-                colour, is_patterned, number = _random_surface(generator)
-            stage.paint(geom, colour, kind if is_patterned else "", number)
+                color, is_patterned, number = _random_surface(generator)
+            stage.paint(geom, color, kind if is_patterned else "", number)
 
 
-def fill_backdrop(colour: Pixels, geoms: Any, generator: np.random.Generator) -> None:
+def fill_backdrop(color: Pixels, geoms: Any, generator: np.random.Generator) -> None:
     """Fill the empty parts of an image with a random backdrop: a gradient with clouds."""
     is_empty = geoms < 0
     if not is_empty.any():
         return
     height, width = geoms.shape
-    top_colour, bottom_colour = generator.uniform(0.2, 1.0, 3), generator.uniform(0.2, 1.0, 3)
+    top_color, bottom_color = generator.uniform(0.2, 1.0, 3), generator.uniform(0.2, 1.0, 3)
     blend = np.linspace(0.0, 1.0, height)[:, None]
     if generator.random() < 0.5:
         blend = 0.5 * blend + 0.5 * smooth_noise(generator, int(generator.integers(2, 12)), height, width)
     blend = np.broadcast_to(blend, (height, width))[is_empty].astype(np.float32)
     for channel in range(3):
-        colour[..., channel][is_empty] = (
-            255 * (top_colour[channel] + (bottom_colour[channel] - top_colour[channel]) * blend)
+        color[..., channel][is_empty] = (
+            255 * (top_color[channel] + (bottom_color[channel] - top_color[channel]) * blend)
         ).astype(np.uint8)
 
 
@@ -86,15 +86,15 @@ class Camera:
     def __init__(self) -> None:
         self._noise = np.random.default_rng(0).standard_normal(_NOISE_VALUES, dtype=np.float32)
 
-    def develop(self, colour: Pixels, generator: np.random.Generator) -> Pixels:
+    def develop(self, color: Pixels, generator: np.random.Generator) -> Pixels:
         """Return an image with random effects of lens and sensor."""
         gain, gamma = np.exp(generator.normal(0.0, 0.18)), np.exp(generator.normal(0.0, 0.15))
         balance = np.exp(generator.normal(0.0, 0.05, 3))
         levels = np.linspace(0.0, 1.0, 256)[:, None] ** gamma * gain * balance
         lookup_table = np.clip(np.round(levels * 255), 0, 255).astype(np.uint8)
-        developed = np.empty_like(colour)
+        developed = np.empty_like(color)
         for channel in range(3):
-            developed[..., channel] = lookup_table[:, channel].take(colour[..., channel])
+            developed[..., channel] = lookup_table[:, channel].take(color[..., channel])
         if generator.random() < 0.35:
             developed = _blurred(developed, float(generator.uniform(0.3, 1.6)))
         if generator.random() < 0.7:
@@ -105,10 +105,10 @@ class Camera:
         return developed
 
 
-def _blurred(colour: Pixels, radius: float) -> Pixels:
+def _blurred(color: Pixels, radius: float) -> Pixels:
     from PIL import Image, ImageFilter
 
-    blurred: Pixels = np.asarray(Image.fromarray(colour).filter(ImageFilter.GaussianBlur(radius)))
+    blurred: Pixels = np.asarray(Image.fromarray(color).filter(ImageFilter.GaussianBlur(radius)))
     return blurred
 
 
@@ -117,11 +117,11 @@ def _tinted_white(generator: np.random.Generator, max_saturation: float) -> Arra
     return np.array(colorsys.hsv_to_rgb(generator.random(), generator.uniform(0.0, max_saturation), 1.0))
 
 
-def _similar_colour(colour: tuple[float, ...], choice: float, generator: np.random.Generator) -> Array:
-    """Return a colour for an object: the same, one with a similar hue, or a random one."""
-    hue, saturation, value = colorsys.rgb_to_hsv(*colour)
+def _similar_color(color: tuple[float, ...], choice: float, generator: np.random.Generator) -> Array:
+    """Return a color for an object: the same, one with a similar hue, or a random one."""
+    hue, saturation, value = colorsys.rgb_to_hsv(*color)
     if choice < 0.45:
-        return np.array(colour)
+        return np.array(color)
     if choice < 0.85:
         hue = (hue + generator.normal(0.0, 0.02)) % 1.0
         saturation = float(np.clip(saturation * generator.uniform(0.7, 1.2), 0.0, 1.0))
@@ -132,5 +132,5 @@ def _similar_colour(colour: tuple[float, ...], choice: float, generator: np.rand
 
 
 def _random_surface(generator: np.random.Generator) -> tuple[Array, bool, int]:
-    colour = np.array(colorsys.hsv_to_rgb(generator.random(), generator.beta(1.0, 2.5), generator.uniform(0.25, 1.0)))
-    return colour, bool(generator.random() < 0.6), int(generator.integers(1 << 16))
+    color = np.array(colorsys.hsv_to_rgb(generator.random(), generator.beta(1.0, 2.5), generator.uniform(0.25, 1.0)))
+    return color, bool(generator.random() < 0.6), int(generator.integers(1 << 16))

@@ -52,13 +52,13 @@ class _Ground:
         horizontal_z = np.abs(data.geom_xmat[geoms].reshape(-1, 3, 3)[:, 2, :2]).max(initial=0.0, axis=1)
         is_upright = horizontal_z < 1e-3
         half = stage.simulation.model.geom_aabb[geoms, 3:5]
-        centres = stage.simulation.model.geom_aabb[geoms, :2]
+        centers = stage.simulation.model.geom_aabb[geoms, :2]
         axes = data.geom_xmat[geoms].reshape(-1, 3, 3)[:, :2, :2]
         bounds = stage.boxes[geoms]
         self._half_sizes = np.where(is_upright[:, None], half, (bounds[:, 1, :2] - bounds[:, 0, :2]) / 2)
         self._axes = np.where(is_upright[:, None, None], axes, np.eye(2))
-        rotated_centres = data.geom_xpos[geoms, :2] + np.einsum("gij,gj->gi", axes, centres)
-        self._centers = np.where(is_upright[:, None], rotated_centres, (bounds[:, 0, :2] + bounds[:, 1, :2]) / 2)
+        rotated_centers = data.geom_xpos[geoms, :2] + np.einsum("gij,gj->gi", axes, centers)
+        self._centers = np.where(is_upright[:, None], rotated_centers, (bounds[:, 0, :2] + bounds[:, 1, :2]) / 2)
         self._occupied_circles: list[tuple[float, float, float]] = []
 
     def is_free(self, x: float, y: float, radius: float) -> bool:
@@ -235,9 +235,9 @@ def _place_prop(stage: Stage, prop: Prop, place: tuple[float, float], generator:
     corners = prop.corners @ rotation.T
     minimum, maximum = corners.min(axis=0), corners.max(axis=0)
     height_above_floor = generator.uniform(0.1, 0.9) if generator.random() < 0.06 else 0.0
-    centre = (minimum + maximum) / 2
+    bounds_center = (minimum + maximum) / 2
     is_tilted = rotation[2, 2] < 1.0 - 1e-9
-    offset = -centre[:2] if is_tilted else np.zeros(2)
+    offset = -bounds_center[:2] if is_tilted else np.zeros(2)
     height = -float(minimum[2])
     if prop.is_round:  # the bounding box of a rotated ball is larger than the ball
         center = (prop.corners.min(axis=0) + prop.corners.max(axis=0)) / 2

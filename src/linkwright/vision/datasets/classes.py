@@ -23,7 +23,7 @@ from linkwright.simulation.sensors.mount import part_of
 from linkwright.simulation.simulation import Simulation
 
 _NUMBER_SUFFIX = re.compile(r"[ _-]*(?:clone)?[ _-]*\(?\d+\)?$")
-_COLOURS = frozenset(
+_COLORS = frozenset(
     ("red", "green", "blue", "yellow", "orange", "purple", "pink", "white", "black", "grey", "gray", "brown", "cyan")
 )
 _BACKGROUND_WORDS = frozenset(
@@ -102,11 +102,11 @@ def _invalid_classes_error(document: YamlDocument, node: yaml.Node | None) -> Li
 def default_class(name: str) -> str:
     """Return the class for a model name, such as ``ball`` for ``red_ball_2``.
 
-    The class is the name in lower case, without colours and final number.
+    The class is the name in lower case, without colors and final number.
     """
     words = [word for word in re.split(r"[ _-]+", _NUMBER_SUFFIX.sub("", name.lower())) if word]
-    words_without_colours = [word for word in words if word not in _COLOURS]
-    return "_".join(words_without_colours or words) or name
+    words_without_colors = [word for word in words if word not in _COLORS]
+    return "_".join(words_without_colors or words) or name
 
 
 def default_rules(simulations: list[Simulation]) -> ClassRules:
@@ -161,9 +161,9 @@ def geom_boxes(model: Any, data: Any) -> Array:
     The corners are in m, and the shape is (geoms, 2, 3).
     """
     rotations = data.geom_xmat.reshape(-1, 3, 3)
-    centres = data.geom_xpos + np.einsum("gij,gj->gi", rotations, model.geom_aabb[:, :3])
+    centers = data.geom_xpos + np.einsum("gij,gj->gi", rotations, model.geom_aabb[:, :3])
     half_sizes = np.einsum("gij,gj->gi", np.abs(rotations), model.geom_aabb[:, 3:])
-    boxes: Array = np.stack([centres - half_sizes, centres + half_sizes], axis=1)
+    boxes: Array = np.stack([centers - half_sizes, centers + half_sizes], axis=1)
     return boxes
 
 
@@ -207,9 +207,9 @@ def _touching_groups(
         while queue:
             visual = queue.pop(0)
             group.append(visual)
-            neighbours = [other for other in remaining if _boxes_touch(bounds[visual], bounds[other])]
-            queue += neighbours
-            remaining = [other for other in remaining if other not in neighbours]
+            neighbors = [other for other in remaining if _boxes_touch(bounds[visual], bounds[other])]
+            queue += neighbors
+            remaining = [other for other in remaining if other not in neighbors]
         yield group
 
 

@@ -5,19 +5,19 @@ from __future__ import annotations
 from collections.abc import Sequence
 from io import BytesIO
 
-from linkwright.vision.datasets.rendering import LabelledImage
+from linkwright.vision.datasets.rendering import LabeledImage
 
 _COLUMNS, _WIDTH = 5, 320
 MAX_SHEET_IMAGES = 30
 """The maximum number of images on a sheet."""
-_COLOURS = ("#ffdc00", "#00d5ff", "#ff5ec4", "#7dff5c", "#ff8a3c", "#b09bff", "#ffffff", "#4affc0")
-_IGNORED_COLOUR = "#808080"
+_COLORS = ("#ffdc00", "#00d5ff", "#ff5ec4", "#7dff5c", "#ff8a3c", "#b09bff", "#ffffff", "#4affc0")
+_IGNORED_COLOR = "#808080"
 
 
-def contact_sheet(images: Sequence[LabelledImage], classes: Sequence[str]) -> bytes:
+def contact_sheet(images: Sequence[LabeledImage], classes: Sequence[str]) -> bytes:
     """Return a JPEG of the first `MAX_SHEET_IMAGES` images, with the class and visible box of each object.
 
-    Objects that are ignored, because they are too small or too hidden, have grey boxes.
+    Objects that are ignored, because they are too small or too hidden, have gray boxes.
     """
     from PIL import Image, ImageDraw
 
@@ -30,13 +30,13 @@ def contact_sheet(images: Sequence[LabelledImage], classes: Sequence[str]) -> by
         draw = ImageDraw.Draw(image)
         for label in sample.labels:
             left, top, right, bottom = (scale * edge for edge in label.box)
-            colour = _IGNORED_COLOUR if label.is_ignored else _COLOURS[label.label % len(_COLOURS)]
-            draw.rectangle((left, top, max(right - 1, left), max(bottom - 1, top)), outline=colour)
+            color = _IGNORED_COLOR if label.is_ignored else _COLORS[label.label % len(_COLORS)]
+            draw.rectangle((left, top, max(right - 1, left), max(bottom - 1, top)), outline=color)
             if not label.is_ignored:
                 caption = f"{classes[label.label]} {label.visibility:.0%}"
                 text_box = draw.textbbox((left + 1, max(top - 11, 0)), caption)
                 draw.rectangle(text_box, fill="#000000")
-                draw.text((left + 1, max(top - 11, 0)), caption, fill=colour)
+                draw.text((left + 1, max(top - 11, 0)), caption, fill=color)
         draw.text((3, image.height - 13), f"{sample.index:06d} {sample.split}", fill="#ffffff", stroke_width=1,
                   stroke_fill="#000000")  # fmt: skip
         thumbnails.append(image)

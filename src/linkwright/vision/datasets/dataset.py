@@ -15,7 +15,7 @@ from linkwright.process.processors import usable_processors
 from linkwright.vision.datasets.contact_sheet import MAX_SHEET_IMAGES, contact_sheet
 from linkwright.vision.datasets.folder import SHEET, DatasetFolder, write_error
 from linkwright.vision.datasets.options import FORMATS, Options
-from linkwright.vision.datasets.rendering import IMAGES_PER_PATTERN_SET, LabelledImage, Source, Studio
+from linkwright.vision.datasets.rendering import IMAGES_PER_PATTERN_SET, LabeledImage, Source, Studio
 from linkwright.vision.datasets.workers import make_in_processes
 
 
@@ -49,7 +49,7 @@ def make_dataset(
     progress: Callable[[int], object] = lambda _: None,
     begin: Callable[[Studio], object] = lambda _: None,
 ) -> DatasetResult:
-    """Make a dataset of labelled images.
+    """Make a dataset of labeled images.
 
     Args:
         worlds: one world or several, by file or name.
@@ -82,7 +82,7 @@ def make_dataset(
         numbers = range(folder.first_number, folder.first_number + images)
         in_this_process = workers == 1 or images <= IMAGES_PER_PATTERN_SET
         samples = map(studio.make, numbers) if in_this_process else make_in_processes(source, numbers, workers)
-        sheet_samples: list[LabelledImage] = []
+        sheet_samples: list[LabeledImage] = []
         added, was_interrupted, image_error = 0, False, None
         try:
             for sample in _yield_and_close(samples):
@@ -106,7 +106,7 @@ def make_dataset(
     return DatasetResult(folder, added, was_interrupted)
 
 
-def _yield_and_close(samples: Iterator[LabelledImage]) -> Iterator[LabelledImage]:
+def _yield_and_close(samples: Iterator[LabeledImage]) -> Iterator[LabeledImage]:
     """Yield the images of an iterator, and close the iterator at the end or on an error."""
     try:
         yield from samples

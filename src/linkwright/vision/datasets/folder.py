@@ -16,7 +16,7 @@ from typing import Any
 from linkwright.diagnostics import Diagnostic, LinkwrightError, display_path, foreign, phrase
 from linkwright.files.whole_files import write_whole_file
 from linkwright.vision.datasets.options import SPLITS
-from linkwright.vision.datasets.rendering import LabelledImage
+from linkwright.vision.datasets.rendering import LabeledImage
 from linkwright.vision.datasets.statistics import ClassStatistics, compute_statistics
 
 CARD = "dataset.json"
@@ -90,7 +90,7 @@ class DatasetFolder:
         except OSError as error:
             raise write_error(self.path, error) from None
 
-    def add(self, sample: LabelledImage) -> None:
+    def add(self, sample: LabeledImage) -> None:
         """Write an image and its labels, either both or neither.
 
         Raises:
@@ -239,18 +239,18 @@ class DatasetFolder:
         _remove([self.path / name for name in _FILES])
 
 
-def _yolo_lines(sample: LabelledImage, width: int, height: int) -> str:
+def _yolo_lines(sample: LabeledImage, width: int, height: int) -> str:
     lines = []
     for label in sample.labels:
         if not label.is_ignored:
             left, top, right, bottom = label.box
-            centre = (left + right) / 2 / width, (top + bottom) / 2 / height
+            center = (left + right) / 2 / width, (top + bottom) / 2 / height
             size = (right - left) / width, (bottom - top) / height
-            lines.append(" ".join([str(label.label), *(f"{value:.6f}" for value in (*centre, *size))]) + "\n")
+            lines.append(" ".join([str(label.label), *(f"{value:.6f}" for value in (*center, *size))]) + "\n")
     return "".join(lines)
 
 
-def _coco(sample: LabelledImage, width: int, height: int) -> list[dict[str, Any]]:
+def _coco(sample: LabeledImage, width: int, height: int) -> list[dict[str, Any]]:
     annotations = []
     for label in sample.labels:
         left, top, right, bottom = label.box

@@ -49,7 +49,7 @@ class Source:
 
 
 @dataclass(frozen=True, slots=True)
-class LabelledImage:
+class LabeledImage:
     """An image with its labels.
 
     Attributes:
@@ -66,7 +66,7 @@ class LabelledImage:
 
 
 class Studio:
-    """The renderer and labeller of the images of a dataset.
+    """The renderer and labeler of the images of a dataset.
 
     An image depends only on its number and the seed.
 
@@ -111,7 +111,7 @@ class Studio:
         self._pattern_sets: dict[int, int] = {}
         self._camera = Camera()
 
-    def make(self, index: int) -> LabelledImage:
+    def make(self, index: int) -> LabeledImage:
         """Render the image with a number, and return it with its labels."""
         options, stage_index = self._options, index % len(self._stages)
         stage, pattern_set = self._stages[stage_index], index // IMAGES_PER_PATTERN_SET
@@ -129,21 +129,21 @@ class Studio:
         assert image.color is not None
         assert image.geoms is not None
         labels = label_image(stage, shot, image.geoms, options.min_size, options.min_visible)
-        colour = image.color
+        color = image.color
         if "lights" not in options.fixed_properties:
-            fill_backdrop(colour, image.geoms, generator)
+            fill_backdrop(color, image.geoms, generator)
         if "lens" not in options.fixed_properties:
-            colour = self._camera.develop(colour, generator)
-        return LabelledImage(index, split_of(index, options), self._encode(colour, generator), tuple(labels))
+            color = self._camera.develop(color, generator)
+        return LabeledImage(index, split_of(index, options), self._encode(color, generator), tuple(labels))
 
     def close(self) -> None:
         """Release the renderers."""
         for stage in self._stages:
             stage.close()
 
-    def _encode(self, colour: Any, generator: np.random.Generator) -> bytes:
+    def _encode(self, color: Any, generator: np.random.Generator) -> bytes:
         file = BytesIO()
-        image = self._image.fromarray(colour)
+        image = self._image.fromarray(color)
         if self._options.form == "png":
             image.save(file, "PNG", compress_level=1)
         else:
@@ -181,7 +181,7 @@ def _load_model(path: Path) -> Model:
 
 
 def _share_models(simulations: Sequence[Simulation], rules: ClassRules) -> None:
-    """Add the labelled models of each world to all other worlds."""
+    """Add the labeled models of each world to all other worlds."""
     models_by_world = [dict(simulation.scene.models) for simulation in simulations]
     for simulation in simulations:
         model_names = {original_name(scene_model.model) for scene_model in simulation.scene.models.values()}
@@ -191,14 +191,14 @@ def _share_models(simulations: Sequence[Simulation], rules: ClassRules) -> None:
                 if (
                     model_name not in model_names
                     and name not in simulation.scene.models
-                    and _is_labelled(name, held.model, rules)
+                    and _is_labeled(name, held.model, rules)
                 ):
                     simulation.spawn(held.model, name, held.pose)
                     model_names.add(model_name)
         simulation.refresh()
 
 
-def _is_labelled(name: str, model: Model, rules: ClassRules) -> bool:
+def _is_labeled(name: str, model: Model, rules: ClassRules) -> bool:
     """Return whether a model, or each of its visuals, has a class in the rules."""
     if rules.class_number(name, original_name(model)) is not None:
         return True

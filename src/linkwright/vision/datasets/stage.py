@@ -1,4 +1,4 @@
-"""A world whose objects move and change colour without recompiling MuJoCo's model."""
+"""A world whose objects move and change color without recompiling MuJoCo's model."""
 
 from __future__ import annotations
 
@@ -38,9 +38,9 @@ class Prop:
         label: the index of its class; -1 for none.
         geoms: the indices of its geoms in MuJoCo's model.
         main_geom: its largest geom: the one whose bounding box has the largest face.
-        positions: the positions of its geoms relative to the centre of its base: shape (n, 3), in m.
+        positions: the positions of its geoms relative to the center of its base: shape (n, 3), in m.
         rotations: the rotation matrices of its geoms: shape (n, 3, 3).
-        corners: the corners of the boxes around its geoms, relative to the centre of its base: shape (n * 8, 3), in m.
+        corners: the corners of the boxes around its geoms, relative to the center of its base: shape (n * 8, 3), in m.
         radius: the radius in m of a circle around the object, seen from above.
         is_round: whether the object is a ball, which has no upper side.
     """
@@ -57,7 +57,7 @@ class Prop:
 
 
 class Stage:
-    """A world with copies of its labelled objects, and with distractors.
+    """A world with copies of its labeled objects, and with distractors.
 
     Args:
         simulation: the world; it is changed.
@@ -93,13 +93,13 @@ class Stage:
         self.floor = float(np.median([bases[scene_object.name].bottom for scene_object in objects])) if objects else 0.0
         first = [model.geom(f"distractor {number}").id for number in range(distractors)]
         self.distractors = first
-        labelled = {model.geom(name).id for name in object_geoms} | {
+        labeled = {model.geom(name).id for name in object_geoms} | {
             int(geom) for prop in self.props for geom in prop.geoms
         }
         properties_used_by_plugins = [
             geom
             for geom in range(model.ngeom)
-            if model.geom_group[geom] == VISUAL_GROUP and geom not in labelled and geom not in first
+            if model.geom_group[geom] == VISUAL_GROUP and geom not in labeled and geom not in first
         ]
         self.boxes = geom_boxes(model, data)
         plane = self._mujoco.mjtGeom.mjGEOM_PLANE
@@ -113,18 +113,18 @@ class Stage:
         for geom in properties_used_by_plugins:
             if geom not in flat_geoms:
                 self.structures.setdefault(model.geom(geom).name.partition("::")[0], []).append(geom)
-        self.area = self._area(labelled)
-        self._colours: Any = model.geom_rgba.copy()
+        self.area = self._area(labeled)
+        self._colors: Any = model.geom_rgba.copy()
         self._materials: Any = model.geom_matid.copy()
         self._initial_poses: tuple[Any, Any] = data.geom_xpos.copy(), data.geom_xmat.copy()
         self._original_world = simulation.world
         self.renderer: Renderer = make_renderer(simulation)
 
     def begin(self) -> None:
-        """Restore the poses and colours of all structures, and hide all objects."""
+        """Restore the poses and colors of all structures, and hide all objects."""
         model, data = self.simulation.model, self.simulation.data
         data.geom_xpos[:], data.geom_xmat[:] = self._initial_poses
-        model.geom_rgba[:], model.geom_matid[:] = self._colours, self._materials
+        model.geom_rgba[:], model.geom_matid[:] = self._colors, self._materials
         for prop in self.props:
             data.geom_xpos[prop.geoms] = _HIDDEN_POSITION
         self.hide(self.distractors)
@@ -138,7 +138,7 @@ class Stage:
 
         Args:
             prop: the object.
-            position: the position of the centre of its base, in m.
+            position: the position of the center of its base, in m.
             rotation: its rotation matrix, shape (3, 3).
         """
         data = self.simulation.data
@@ -177,25 +177,25 @@ class Stage:
         data.geom_xpos[geom] = position + np.array([0.0, 0.0, half_size[2]])
         data.geom_xmat[geom] = rotation.reshape(9)
 
-    def original_colour(self, geom: int) -> Any:
-        """Return the initial colour of a geom: red, green, blue and opacity, from 0 to 1."""
-        return self._colours[geom]
+    def original_color(self, geom: int) -> Any:
+        """Return the initial color of a geom: red, green, blue and opacity, from 0 to 1."""
+        return self._colors[geom]
 
     def has_material(self, geom: int) -> bool:
         """Return whether a geom has a material in the original world."""
         return bool(self._materials[geom] >= 0)
 
-    def paint(self, geom: int, colour: Array, kind: str = "", number: int = 0) -> None:
-        """Set the colour and the pattern of a geom.
+    def paint(self, geom: int, color: Array, kind: str = "", number: int = 0) -> None:
+        """Set the color and the pattern of a geom.
 
         Args:
             geom: the geom.
-            colour: red, green and blue.
+            color: red, green and blue.
             kind: the kind of pattern: ``object``, ``wall`` or ``ground``; empty for none.
             number: selects one of the patterns.
         """
         model = self.simulation.model
-        model.geom_rgba[geom, :3] = colour
+        model.geom_rgba[geom, :3] = color
         if kind:
             model.geom_matid[geom] = self._patterns[kind][number % _PATTERNS_PER_KIND]
 
@@ -235,19 +235,19 @@ class Stage:
         """Release the renderer."""
         self.renderer.close()
 
-    def _area(self, labelled: set[int]) -> Array:
+    def _area(self, labeled: set[int]) -> Array:
         model, geom_types = self.simulation.model, self._mujoco.mjtGeom
         unbounded_types = (geom_types.mjGEOM_PLANE, geom_types.mjGEOM_HFIELD)
-        bounded_geoms = [geom for geom in labelled if geom < len(self.boxes)]
+        bounded_geoms = [geom for geom in labeled if geom < len(self.boxes)]
         bounded_geoms += [geom for geoms in self.structures.values() for geom in geoms]
         bounded_geoms = [geom for geom in bounded_geoms if int(model.geom_type[geom]) not in unbounded_types]
         default_area = np.array([[-3.0, -3.0], [3.0, 3.0]])
         if not bounded_geoms:
             return default_area
         minimum, maximum = self.boxes[bounded_geoms, 0, :2].min(axis=0), self.boxes[bounded_geoms, 1, :2].max(axis=0)
-        centre = np.clip((minimum + maximum) / 2, -1e3, 1e3)
+        center = np.clip((minimum + maximum) / 2, -1e3, 1e3)
         half_size = np.clip((maximum - minimum) / 2, 3.0, 12.0)
-        return np.stack([centre - half_size, centre + half_size])
+        return np.stack([center - half_size, center + half_size])
 
     def _copy(self, objects: Sequence[SceneObject], copies: int) -> list[tuple[SceneObject, str]]:
         """Add copies of objects as static bodies, and return each copy with its original's name."""
@@ -313,7 +313,7 @@ class Stage:
 
 @dataclass(frozen=True)
 class _InitialGeometry:
-    """The initial geometry of an object, relative to the centre of its base."""
+    """The initial geometry of an object, relative to the center of its base."""
 
     positions: Array
     rotations: Array
@@ -353,6 +353,6 @@ def _make_prop(model: Any, scene_object: SceneObject, geometry: _InitialGeometry
     return Prop(scene_object.name, scene_object.label, geoms, main, *poses, radius, geometry.is_round)
 
 
-def _opaque(colour: Array) -> tuple[float, float, float, float]:
-    red, green, blue = (float(channel) for channel in colour)
+def _opaque(color: Array) -> tuple[float, float, float, float]:
+    red, green, blue = (float(channel) for channel in color)
     return red, green, blue, 1.0

@@ -18,13 +18,13 @@ class ClassStatistics:
     """The statistics of a class.
 
     Attributes:
-        objects: the number of labelled objects.
-        images: the number of images with at least one labelled object.
+        objects: the number of labeled objects.
+        images: the number of images with at least one labeled object.
         ignored: the number of objects that are too small or too hidden for a label.
         small, medium, large: the number of objects by COCO's size ranges.
         hidden: the number of objects that are less than three quarters visible.
         truncated: the number of objects that reach beyond their image.
-        thirds: the number of objects whose centre is in each cell of a 3 x 3 grid over the image, row by row.
+        thirds: the number of objects whose center is in each cell of a 3 x 3 grid over the image, row by row.
     """
 
     objects: int = 0

@@ -16,7 +16,7 @@ def random_pattern(generator: np.random.Generator, size: int, *, soft: bool) -> 
     Args:
         generator: the random generator.
         size: the side of the square in pixels.
-        soft: whether the pattern is light grey, so that the surface keeps its colour; else it has two random colours.
+        soft: whether the pattern is light gray, so that the surface keeps its color; else it has two random colors.
 
     Returns:
         The pattern in RGB, shape (size, size, 3).
@@ -33,13 +33,13 @@ def random_pattern(generator: np.random.Generator, size: int, *, soft: bool) -> 
     else:
         shade = _gradient(generator, size)
     shade = np.clip(shade + generator.normal(0.0, 0.03, shade.shape), 0.0, 1.0)[..., None]
-    first_colour: NDArray[np.float64]
-    second_colour: NDArray[np.float64]
+    first_color: NDArray[np.float64]
+    second_color: NDArray[np.float64]
     if soft:
-        first_colour, second_colour = np.full(3, generator.uniform(0.55, 0.85)), np.ones(3)
+        first_color, second_color = np.full(3, generator.uniform(0.55, 0.85)), np.ones(3)
     else:
-        first_colour, second_colour = generator.uniform(0.25, 1.0, 3), generator.uniform(0.25, 1.0, 3)
-    pixels: Pixels = np.round((first_colour + (second_colour - first_colour) * shade) * 255).astype(np.uint8)
+        first_color, second_color = generator.uniform(0.25, 1.0, 3), generator.uniform(0.25, 1.0, 3)
+    pixels: Pixels = np.round((first_color + (second_color - first_color) * shade) * 255).astype(np.uint8)
     return pixels
 
 

@@ -13,13 +13,13 @@ from contextlib import suppress
 from multiprocessing.connection import Connection, wait
 
 from linkwright.diagnostics import Diagnostic, LinkwrightError, phrase
-from linkwright.vision.datasets.rendering import IMAGES_PER_PATTERN_SET, LabelledImage, Source, Studio
+from linkwright.vision.datasets.rendering import IMAGES_PER_PATTERN_SET, LabeledImage, Source, Studio
 
 _PATIENCE = 10.0
 """The seconds that a process has to exit before it is killed."""
 
 
-def make_in_processes(source: Source, numbers: range, workers: int) -> Iterator[LabelledImage]:
+def make_in_processes(source: Source, numbers: range, workers: int) -> Iterator[LabeledImage]:
     """Yield images that several processes make at the same time.
 
     Args:
@@ -44,7 +44,7 @@ def make_in_processes(source: Source, numbers: range, workers: int) -> Iterator[
             for connection in wait(list(busy_workers)):
                 worker = busy_workers[connection]  # type: ignore[index]  # connections only were waited for
                 sample = worker.result()
-                if isinstance(sample, LabelledImage):
+                if isinstance(sample, LabeledImage):
                     yield sample
                     worker.remaining_count -= 1
                 if not worker.remaining_count:
@@ -85,7 +85,7 @@ class _Worker:
         with suppress(OSError):  # the process has died, which `result` reports
             self.connection.send(numbers)
 
-    def result(self) -> LabelledImage:
+    def result(self) -> LabeledImage:
         """Return the next image that the process finishes.
 
         Raises:
@@ -97,7 +97,7 @@ class _Worker:
             message = phrase("a process that renders images has died")
             hint = phrase("if memory is short, use fewer processes, for example --workers 1")
             raise LinkwrightError(Diagnostic("VISION208", message, hint=hint)) from None
-        if isinstance(reply, LabelledImage):
+        if isinstance(reply, LabeledImage):
             return reply
         raise LinkwrightError(*reply)
 

@@ -1,4 +1,4 @@
-"""The detector ``colours``, which finds patches of one colour by hue, saturation and value."""
+"""The detector ``colors``, which finds patches of one color by hue, saturation and value."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ from linkwright.vision.detectors.options import DetectorOptions
 from linkwright.vision.detectors.selection import select_detections
 from linkwright.vision.detectors.settings import parse_hsv_range, read_number, setting_error
 
-COLOURS: Mapping[str, tuple[int, ...]] = {
+COLORS: Mapping[str, tuple[int, ...]] = {
     "red": (172, 110, 60, 6, 255, 255),
     "orange": (8, 130, 80, 20, 255, 255),
     "yellow": (22, 110, 80, 35, 255, 255),
@@ -24,18 +24,18 @@ COLOURS: Mapping[str, tuple[int, ...]] = {
     "blue": (95, 110, 50, 130, 255, 255),
     "purple": (132, 80, 50, 165, 255, 255),
 }
-"""The default colours: minimum hue, saturation and value, then the maximum of each, as in `parse_hsv_range`."""
+"""The default colors: minimum hue, saturation and value, then the maximum of each, as in `parse_hsv_range`."""
 
 
 class ColourDetector(Detector):
-    """A detector of patches of a colour.
+    """A detector of patches of a color.
 
-    The score is the fraction of the box that the colour fills, such as 0.79 for a ball.
+    The score is the fraction of the box that the color fills, such as 0.79 for a ball.
 
     Settings:
-        ``colours``
+        ``colors``
             a mapping from names to six numbers; see `parse_hsv_range`. If the minimum hue exceeds the maximum, as for
-            red, the range wraps around through 0. The default is `COLOURS`.
+            red, the range wraps around through 0. The default is `COLORS`.
         ``least_area``
             the minimum area of a patch, in pixels; 150 by default.
 
@@ -46,15 +46,15 @@ class ColourDetector(Detector):
     def __init__(self, options: DetectorOptions) -> None:
         load_opencv()
         self._notes = refuse_network_options(options)
-        colour_settings = options.settings.get("colours", COLOURS)
-        if not isinstance(colour_settings, Mapping) or not colour_settings:
-            raise setting_error("colours", colour_settings)
-        self._ranges = {str(name): parse_hsv_range(f"colours.{name}", value) for name, value in colour_settings.items()}
+        color_settings = options.settings.get("colours", COLORS)
+        if not isinstance(color_settings, Mapping) or not color_settings:
+            raise setting_error("colours", color_settings)
+        self._ranges = {str(name): parse_hsv_range(f"colours.{name}", value) for name, value in color_settings.items()}
         self._min_area = read_number(options.settings, "least_area", 150.0, 1.0, 1e9)
 
     @property
     def names(self) -> tuple[str, ...]:
-        """The names of the colours."""
+        """The names of the colors."""
         return tuple(self._ranges)
 
     @property
@@ -63,7 +63,7 @@ class ColourDetector(Detector):
         return self._notes
 
     def detect(self, image: NDArray[np.uint8], limits: Limits) -> Detections:
-        """Find patches of the colours."""
+        """Find patches of the colors."""
         cv2 = load_opencv()
         boxes: list[tuple[int, int, int, int]] = []
         scores: list[float] = []
@@ -71,7 +71,7 @@ class ColourDetector(Detector):
         hsv = cv2.cvtColor(image, cv2.COLOR_RGB2HSV) if image.size else image
         for index, bounds in enumerate(self._ranges.values() if image.size else ()):
             mask = color_mask(hsv, bounds)
-            x, y, columns, rows = cv2.boundingRect(mask)  # most colours are absent or in a small part of the image
+            x, y, columns, rows = cv2.boundingRect(mask)  # most colors are absent or in a small part of the image
             if columns * rows < self._min_area:
                 continue
             region = mask[y : y + rows, x : x + columns]
@@ -85,13 +85,13 @@ class ColourDetector(Detector):
 
 
 def color_mask(hsv: NDArray[np.uint8], bounds: tuple[int, ...]) -> NDArray[np.uint8]:
-    """Return the mask of a colour: 255 where the image has it, else 0.
+    """Return the mask of a color: 255 where the image has it, else 0.
 
     Spots narrower than three pixels are removed from the mask.
 
     Args:
         hsv: the image in OpenCV's HSV, shape ``(height, width, 3)``.
-        bounds: the range of the colour; see `parse_hsv_range`.
+        bounds: the range of the color; see `parse_hsv_range`.
     """
     cv2 = load_opencv()
     minimum, maximum = np.array(bounds[:3], np.uint8), np.array(bounds[3:], np.uint8)

@@ -19,13 +19,13 @@ _MIN_TEXT_HEIGHT = 9
 
 
 def class_color(name: str) -> tuple[int, int, int]:
-    """Return the colour for a class name: red, green and blue, from 0 to 255.
+    """Return the color for a class name: red, green and blue, from 0 to 255.
 
-    A name that contains a colour word gets that colour. For any other name, the colour is computed from the name.
+    A name that contains a color word gets that color. For any other name, the color is computed from the name.
     """
-    named_colour = find_rgb(name)
-    if named_colour is not None:
-        return named_colour
+    named_color = find_rgb(name)
+    if named_color is not None:
+        return named_color
     hue = crc32(name.encode()) % _HUE_COUNT / _HUE_COUNT * 6.0
     rising = hue % 1.0
     high, up, down = 1.0, rising, 1.0 - rising
@@ -50,25 +50,25 @@ def draw_detections(image: NDArray[np.uint8], detections: Detections) -> NDArray
     scale, stroke = cv2.getFontScaleFromHeight(cv2.FONT_HERSHEY_SIMPLEX, text_height), max(1, round(text_height / 10))
     for index in reversed(range(len(detections))):  # draw the most certain detection last, so that it is not covered
         name = detections.name(index)
-        colour = class_color(name)
+        color = class_color(name)
         left, top, right, bottom = (int(edge) for edge in np.rint(detections.boxes[index]))
         if detections.corners is not None:
-            cv2.polylines(canvas, [np.rint(detections.corners[index]).astype(np.int32)], True, colour, line_width)
+            cv2.polylines(canvas, [np.rint(detections.corners[index]).astype(np.int32)], True, color, line_width)
         else:
-            cv2.rectangle(canvas, (left, top), (right, bottom), colour, line_width)
+            cv2.rectangle(canvas, (left, top), (right, bottom), color, line_width)
         text = f"{name} {detections.scores[index]:.2f}"
         (width, height), descent = cv2.getTextSize(text, cv2.FONT_HERSHEY_SIMPLEX, scale, stroke)
         text_bottom = max(height + descent, top - line_width)
         left = max(0, min(left, image.shape[1] - width))
-        cv2.rectangle(canvas, (left, text_bottom - height - descent), (left + width, text_bottom), colour, cv2.FILLED)
-        text_colour = (0, 0, 0) if sum(colour) > 380 else (255, 255, 255)
+        cv2.rectangle(canvas, (left, text_bottom - height - descent), (left + width, text_bottom), color, cv2.FILLED)
+        text_color = (0, 0, 0) if sum(color) > 380 else (255, 255, 255)
         cv2.putText(
             canvas,
             text,
             (left, text_bottom - descent // 2),
             cv2.FONT_HERSHEY_SIMPLEX,
             scale,
-            text_colour,
+            text_color,
             stroke,
             cv2.LINE_AA,
         )

@@ -1,7 +1,7 @@
 """The output layout of YOLO networks, determined from shapes and metadata.
 
 Three layouts exist. Networks since v8, and YOLOv5 as exported by Ultralytics' newer program (``yolov5u``), have one
-column for each grid cell: centre, size and a score for each class. The classic YOLOv5 has three rows for each grid cell
+column for each grid cell: center, size and a score for each class. The classic YOLOv5 has three rows for each grid cell
 with one more number, the probability that there is an object at all. Networks that were exported with ``nms=True``, and
 YOLO26 with ``end2end``, output up to 300 final rows: corners, score, class. Segmentation adds mask coefficients after
 the scores, and pose estimation adds keypoints.
@@ -29,7 +29,7 @@ _BOXES_PER_CELL = 3
 """The number of boxes that the classic YOLOv5 has for each grid cell."""
 _IGNORED_OUTPUTS = {"": "", "detect": "", "segment": "masks", "pose": "key points"}
 """The additional outputs of each task that finds upright boxes. They are ignored."""
-_CORNERS_OF_CENTRES = np.array([[1, 0, -0.5, 0], [0, 1, 0, -0.5], [1, 0, 0.5, 0], [0, 1, 0, 0.5]], np.float32)
+_CORNERS_OF_CENTERS = np.array([[1, 0, -0.5, 0], [0, 1, 0, -0.5], [1, 0, 0.5, 0], [0, 1, 0, 0.5]], np.float32)
 
 
 class BoxArrangement(Enum):
@@ -88,15 +88,15 @@ class Layout:
             best_scores = scores.max(axis=0)
             columns = np.flatnonzero(best_scores >= threshold)
             class_numbers, best_scores = scores[:, columns].argmax(axis=0), best_scores[columns]
-            centres = values[:4, columns]
+            centers = values[:4, columns]
         else:
             rows = values[values[:, 4] >= threshold]
             class_scores = rows[:, 5 : 5 + self.classes] * rows[:, 4:5]
             class_numbers, best_scores = class_scores.argmax(axis=1), class_scores.max(axis=1)
             is_certain = best_scores >= threshold
             class_numbers, best_scores = class_numbers[is_certain], best_scores[is_certain]
-            centres = rows[is_certain, :4].T
-        corners = (_CORNERS_OF_CENTRES @ centres).T
+            centers = rows[is_certain, :4].T
+        corners = (_CORNERS_OF_CENTERS @ centers).T
         return Candidates(np.ascontiguousarray(corners), best_scores, class_numbers.astype(np.int32))
 
 

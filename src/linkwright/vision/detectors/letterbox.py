@@ -1,7 +1,7 @@
-"""Letterboxing: scale an image into the input of a network, with grey borders.
+"""Letterboxing: scale an image into the input of a network, with gray borders.
 
 It works as in Ultralytics (`LetterBox`, `scale_boxes`): one scale for both directions, linear interpolation, the image
-in the middle, and `GREY` around it. If the network takes any size, the input is only as large as its stride requires.
+in the middle, and `GRAY` around it. If the network takes any size, the input is only as large as its stride requires.
 """
 
 from __future__ import annotations
@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 
 from linkwright.vision.detectors.library import load_opencv
 
-GREY = 114
+GRAY = 114
 """The level of the border in all three channels, as in the training of networks."""
 
 
@@ -69,7 +69,7 @@ def letterbox_image(
     scaled = image
     if (rows, columns) != (height, width):
         scaled = cv2.resize(image, (columns, rows), interpolation=cv2.INTER_LINEAR)
-    canvas = np.full((rows + vertical_border, columns + horizontal_border, 3), GREY, np.uint8)
+    canvas = np.full((rows + vertical_border, columns + horizontal_border, 3), GRAY, np.uint8)
     canvas[top : top + rows, left : left + columns] = scaled
     return canvas, Letterbox(width, height, (columns / width, rows / height), left, top)
 

@@ -20,14 +20,14 @@ _NAMES = ("line",)
 
 
 class LineDetector(Detector):
-    """A detector of a line: the largest patch of a colour in the lower part of the image.
+    """A detector of a line: the largest patch of a color in the lower part of the image.
 
-    The line is at the centre x of its box: ``(x - width / 2) / (width / 2)`` is its offset from the image's middle,
+    The line is at the center x of its box: ``(x - width / 2) / (width / 2)`` is its offset from the image's middle,
     from -1 to 1, and positive if the line is to the right. The score is the fraction of searched rows with the line.
 
     Settings:
-        ``colour``
-            the colour of the line as six numbers, see `parse_hsv_range`; dark by default.
+        ``color``
+            the color of the line as six numbers, see `parse_hsv_range`; dark by default.
         ``part``
             the fraction of the image that is searched, from the bottom; 0.25 by default.
         ``least_area``
@@ -40,7 +40,7 @@ class LineDetector(Detector):
     def __init__(self, options: DetectorOptions) -> None:
         load_opencv()
         self._notes = refuse_network_options(options)
-        self._colour = parse_hsv_range("colour", options.settings.get("colour", _DARK_RANGE))
+        self._color = parse_hsv_range("colour", options.settings.get("colour", _DARK_RANGE))
         self._searched_share = read_number(options.settings, "part", 0.25, 0.01, 1.0)
         self._min_area = read_number(options.settings, "least_area", 150.0, 1.0, 1e9)
 
@@ -62,7 +62,7 @@ class LineDetector(Detector):
         if not image.size or rows < 1:
             return Detections.empty(_NAMES)
         searched_region = np.ascontiguousarray(image[height - rows :])
-        mask = color_mask(cv2.cvtColor(searched_region, cv2.COLOR_RGB2HSV), self._colour)
+        mask = color_mask(cv2.cvtColor(searched_region, cv2.COLOR_RGB2HSV), self._color)
         count, labels, statistics, _ = cv2.connectedComponentsWithStats(mask, connectivity=8)
         if count < 2:
             return Detections.empty(_NAMES)

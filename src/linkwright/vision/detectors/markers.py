@@ -62,7 +62,7 @@ class MarkerDetector(Detector):
         """Detect the markers of the dictionary."""
         if min(image.shape[:2]) < _MIN_IMAGE_SIDE:
             return Detections.empty(self._names)
-        corners, ids, _ = self._detector.detectMarkers(_grey(image))
+        corners, ids, _ = self._detector.detectMarkers(_gray(image))
         classes = [] if ids is None else [int(number) for number in np.ravel(ids)]
         marker_corners = [np.asarray(corner, np.float32).reshape(4, 2) + 0.5 for corner in corners]
         boxes = [_bounding_box(points) for points in marker_corners]
@@ -104,10 +104,10 @@ class QrDetector(Detector):
         """Detect and read QR codes."""
         if min(image.shape[:2]) < _MIN_IMAGE_SIDE:
             return Detections.empty(())
-        grey = _grey(image)
-        has_codes, texts, corners, _ = self._detector.detectAndDecodeMulti(grey)
+        gray = _gray(image)
+        has_codes, texts, corners, _ = self._detector.detectAndDecodeMulti(gray)
         codes = [np.asarray(corner, np.float32).reshape(4, 2) for corner in corners] if has_codes else []
-        decoded = [text or self._read(grey, code) for text, code in zip(texts, codes, strict=False)]
+        decoded = [text or self._read(gray, code) for text, code in zip(texts, codes, strict=False)]
         readable = [index for index, text in enumerate(decoded) if text]
         names = tuple(dict.fromkeys(decoded[index] for index in readable))
         code_corners = [codes[index] + 0.5 for index in readable]
@@ -121,13 +121,13 @@ class QrDetector(Detector):
             code_corners,
         )
 
-    def _read(self, grey: NDArray[np.uint8], corners: NDArray[np.float32]) -> str:
+    def _read(self, gray: NDArray[np.uint8], corners: NDArray[np.float32]) -> str:
         """Rectify and enlarge a code, and return its text, or an empty string if it cannot be read."""
         cv2 = load_opencv()
         start, end = _QUIET_ZONE, _QUIET_ZONE + _ENLARGED_SIDE
         square = np.array([(start, start), (end, start), (end, end), (start, end)], np.float32)
         size = (start + end, start + end)
-        rectified = cv2.warpPerspective(grey, cv2.getPerspectiveTransform(corners, square), size, flags=cv2.INTER_CUBIC)
+        rectified = cv2.warpPerspective(gray, cv2.getPerspectiveTransform(corners, square), size, flags=cv2.INTER_CUBIC)
         return str(self._detector.detectAndDecode(rectified)[0])
 
 
@@ -137,10 +137,10 @@ _MIN_IMAGE_SIDE = 8
 """The minimum side of an image in pixels: OpenCV fails on smaller images."""
 
 
-def _grey(image: NDArray[np.uint8]) -> NDArray[np.uint8]:
+def _gray(image: NDArray[np.uint8]) -> NDArray[np.uint8]:
     cv2 = load_opencv()
-    grey: NDArray[np.uint8] = cv2.cvtColor(image, cv2.COLOR_RGB2GRAY)
-    return grey
+    gray: NDArray[np.uint8] = cv2.cvtColor(image, cv2.COLOR_RGB2GRAY)
+    return gray
 
 
 def _bounding_box(corners: NDArray[np.floating[Any]]) -> list[float]:

@@ -15,7 +15,7 @@ from linkwright.vision.detections import Detections
 from linkwright.vision.detector import Detector, Limits
 from linkwright.vision.detectors.class_names import read_labels
 from linkwright.vision.detectors.layouts import BoxArrangement, Candidates, class_count_error, find_layout
-from linkwright.vision.detectors.letterbox import GREY, letterbox_image, to_tensor
+from linkwright.vision.detectors.letterbox import GRAY, letterbox_image, to_tensor
 from linkwright.vision.detectors.metadata import Metadata
 from linkwright.vision.detectors.options import MAX_SIZE, DetectorOptions
 from linkwright.vision.detectors.sessions import create_session
@@ -52,8 +52,8 @@ class NetworkDetector(Detector):
         if fixed_size and options.size not in (None, fixed_size):
             size_text = phrase("{columns} x {rows}", columns=fixed_size[1], rows=fixed_size[0])
             self._notes.append(phrase("the input of '{file}' is always {size} pixels", file=file.name, size=size_text))
-        grey = np.full((*self._size, 3), GREY, np.uint8)
-        shapes = [output.shape for output in self._run(to_tensor(grey, self._kind))]
+        gray = np.full((*self._size, 3), GRAY, np.uint8)
+        shapes = [output.shape for output in self._run(to_tensor(gray, self._kind))]
         label_count = len(labels) if labels is not None else None
         self._layout = find_layout(shapes, self._size, metadata, file, label_count, options.labels)
         self._names = self._choose_names(metadata.names, labels)

@@ -41,7 +41,7 @@ def read_choice(settings: Mapping[str, object], name: str, default: str, choices
 
 
 def parse_hsv_range(name: str, value: object) -> tuple[int, ...]:
-    """Parse a range of colours in OpenCV's units.
+    """Parse a range of colors in OpenCV's units.
 
     The six numbers are the minimum hue, saturation and value, and then the maximum of each.
 

@@ -1,8 +1,8 @@
-"""detect_3d_node: computes the positions of detected objects in metres.
+"""detect_3d_node: computes the positions of detected objects in meters.
 
 Source: yolo_ros 4 (the executable, the topics ``detections``, ``depth_image``, ``depth_info`` and ``detections_3d``,
 the parameters, and the matching of messages up to 0.5 s apart). Deliberate differences: detections have the
-types of vision_msgs, except in the node with yolo_ros's own name; depth images of 32FC1 are in metres regardless of the
+types of vision_msgs, except in the node with yolo_ros's own name; depth images of 32FC1 are in meters regardless of the
 divisor, as in REP 118; and with a ``ground_frame``, objects without a known depth are placed where their boxes touch
 the ground.
 """
@@ -32,7 +32,7 @@ _MAX_DEPTH_IMAGES = 10
 """The number of depth images that are kept until their detections arrive."""
 _MAX_STAMP_DIFFERENCE_NS = 500_000_000
 _RELIABLE = 1
-_MILLIMETRES = 1000
+_MILLIMETERS = 1000
 _SECONDS_BETWEEN_WARNINGS = 5.0
 _MARKER_LIFETIME_SECONDS = 1
 _LABEL_HEIGHT = 0.12
@@ -46,7 +46,7 @@ class Detect3DNode(SingleNode):
     Parameters:
 
     - ``target_frame``: the frame of the result.
-    - ``depth_image_units_divisor``: the units per metre in images of 16UC1.
+    - ``depth_image_units_divisor``: the units per meter in images of 16UC1.
     - ``maximum_detection_threshold``: the maximum difference in depth from the middle of the object's surface, in m.
     - ``depth_image_reliability``, ``depth_info_reliability``: 1 for reliable, 2 for best effort.
     - ``ground_frame``: the frame whose x and y axes span the ground; if empty, no objects are placed on the ground.
@@ -76,7 +76,7 @@ class Detect3DNode(SingleNode):
                 for name in ("depth_image_reliability", "depth_info_reliability")
             )
             log_unknown(node)
-        self._metres_per_unit = _MILLIMETRES / divisor
+        self._meters_per_unit = _MILLIMETERS / divisor
         self._poses = FramePoses(node, "the positions of detections are unknown:")
         self._depth_images: deque[Any] = deque(maxlen=_MAX_DEPTH_IMAGES)
         self._cameras: dict[str, CameraModel] = {}
@@ -93,7 +93,7 @@ class Detect3DNode(SingleNode):
             info, "depth_info", lambda message: self._receive_camera_info("depth", message), info_qos
         )
         node.create_subscription(
-            info, "camera_info", lambda message: self._receive_camera_info("colour", message), SENSOR_DATA_QOS
+            info, "camera_info", lambda message: self._receive_camera_info("color", message), SENSOR_DATA_QOS
         )
         node.create_subscription(get_message(self.FORM.image_type), "detections", self._receive, _QUEUE_DEPTH)
 
@@ -122,7 +122,7 @@ class Detect3DNode(SingleNode):
 
     def _find_positions(self, message: Any) -> list[ObjectPosition | None]:
         """Return each detection's position in the optical frame of its image, or None if unknown."""
-        camera = self._cameras.get("colour") or self._cameras.get("depth")
+        camera = self._cameras.get("color") or self._cameras.get("depth")
         if camera is None:
             self._warn("no camera_info has arrived")
             return [None] * len(message.detections)
@@ -140,7 +140,7 @@ class Detect3DNode(SingleNode):
         return positions
 
     def _matching_depths(self, message: Any) -> NDArray[np.float64] | None:
-        """Return the depth image of the detections in metres, or None if there is none."""
+        """Return the depth image of the detections in meters, or None if there is none."""
         time_ns = message.header.stamp.nanoseconds
         image = min(self._depth_images, key=lambda depth: abs(depth.header.stamp.nanoseconds - time_ns), default=None)
         if image is None or abs(image.header.stamp.nanoseconds - time_ns) > _MAX_STAMP_DIFFERENCE_NS:
@@ -158,7 +158,7 @@ class Detect3DNode(SingleNode):
         except ValueError as error:
             self._warn(str(error))
             return None
-        return depths if image.encoding == "32FC1" else depths * self._metres_per_unit
+        return depths if image.encoding == "32FC1" else depths * self._meters_per_unit
 
     def _ground_plane(self, message: Any) -> tuple[NDArray[np.float64], float] | None:
         """Return the upward direction and the camera's height in m, or None if unknown.
@@ -179,7 +179,7 @@ class Detect3DNode(SingleNode):
 
         The x axis of the box points along the view, and its z axis up.
         """
-        box_pose = compose(pose, (*place.centre, *_FORWARD_IN_OPTICAL))
+        box_pose = compose(pose, (*place.center, *_FORWARD_IN_OPTICAL))
         return self.FORM.with_position(detection, header, box_pose, (place.depth, place.width, place.height))
 
     def _warn(self, reason: str) -> None:
@@ -208,18 +208,18 @@ def _make_markers(form: DetectionFormat, found: Any, positions: list[ObjectPosit
         )
         box.lifetime.sec = label.lifetime.sec = _MARKER_LIFETIME_SECONDS
         box.pose, box.scale = box_3d.center, box_3d.size
-        label_position, box_centre = label.pose.position, box_3d.center.position
+        label_position, box_center = label.pose.position, box_3d.center.position
         label_position.x, label_position.y, label_position.z = (
-            box_centre.x,
-            box_centre.y,
-            box_centre.z + box_3d.size.z / 2 + _LABEL_HEIGHT,
+            box_center.x,
+            box_center.y,
+            box_center.z + box_3d.size.z / 2 + _LABEL_HEIGHT,
         )
         label.scale.z = _LABEL_HEIGHT
-        distance = float(np.linalg.norm(position.centre))
+        distance = float(np.linalg.norm(position.center))
         label.text = " ".join(filter(None, (name, detection.id, f"{distance:.1f} m")))
         for marker, alpha in ((box, 0.45), (label, 1.0)):
-            colour = marker.color
-            colour.r, colour.g, colour.b = (channel / 255 for channel in class_color(name))
-            colour.a = alpha
+            color = marker.color
+            color.r, color.g, color.b = (channel / 255 for channel in class_color(name))
+            color.a = alpha
         marker_array.markers += [box, label]
     return marker_array

@@ -20,7 +20,7 @@ def vision_message(header: Any, detections: Detections) -> Any:
         get_message("vision_msgs/msg/ObjectHypothesisWithPose"),
     )
     detection_messages = []
-    for index, (x, y, width, height) in enumerate(_centres_and_sizes(detections)):
+    for index, (x, y, width, height) in enumerate(_centers_and_sizes(detections)):
         result = hypothesis_class()
         result.hypothesis.class_id = detections.name(index)
         result.hypothesis.score = float(detections.scores[index])
@@ -35,7 +35,7 @@ def yolo_message(header: Any, detections: Detections) -> Any:
     """Convert detections to yolo_msgs/msg/DetectionArray."""
     detection_class = get_message("yolo_msgs/msg/Detection")
     detection_messages = []
-    for index, (x, y, width, height) in enumerate(_centres_and_sizes(detections)):
+    for index, (x, y, width, height) in enumerate(_centers_and_sizes(detections)):
         detection = detection_class(class_id=int(detections.classes[index]), class_name=detections.name(index))
         detection.score = float(detections.scores[index])
         detection.bbox.center.position.x, detection.bbox.center.position.y = x, y
@@ -57,9 +57,9 @@ def image_message(header: Any, image: NDArray[np.uint8]) -> Any:
     return message
 
 
-def _centres_and_sizes(detections: Detections) -> list[list[float]]:
-    """Return the centre x and y, the width and the height of each box, in pixels."""
+def _centers_and_sizes(detections: Detections) -> list[list[float]]:
+    """Return the center x and y, the width and the height of each box, in pixels."""
     corners = detections.boxes.astype(np.float64)
-    centres, sizes = (corners[:, :2] + corners[:, 2:]) / 2, corners[:, 2:] - corners[:, :2]
-    rows: list[list[float]] = np.hstack([centres, sizes]).tolist()
+    centers, sizes = (corners[:, :2] + corners[:, 2:]) / 2, corners[:, 2:] - corners[:, :2]
+    rows: list[list[float]] = np.hstack([centers, sizes]).tolist()
     return rows

@@ -19,7 +19,7 @@ class DetectionFormat(ABC):
 
     Args:
         image_type: the type of messages with boxes in images.
-        position_type: the type of messages with boxes in metres.
+        position_type: the type of messages with boxes in meters.
     """
 
     def __init__(self, image_type: str, position_type: str) -> None:
@@ -55,11 +55,11 @@ class DetectionFormat(ABC):
 
     @abstractmethod
     def with_position(self, detection: Any, header: Any, pose: Transform, size: tuple[float, float, float]) -> Any:
-        """Return a detection with a box in metres, whose pose is in the frame of the header."""
+        """Return a detection with a box in meters, whose pose is in the frame of the header."""
 
     @abstractmethod
     def box_3d(self, detection: Any) -> Any:
-        """Return the box in metres of a detection: a message with ``center`` and ``size``."""
+        """Return the box in meters of a detection: a message with ``center`` and ``size``."""
 
 
 class _Vision(DetectionFormat):
@@ -112,15 +112,15 @@ VISION_FORMAT: DetectionFormat = _Vision("vision_msgs/msg/Detection2DArray", "vi
 YOLO_FORMAT: DetectionFormat = _Yolo("yolo_msgs/msg/DetectionArray", "yolo_msgs/msg/DetectionArray")
 
 
-def _box_corners(centre: Any, width: float, height: float) -> NDArray[np.float64]:
+def _box_corners(center: Any, width: float, height: float) -> NDArray[np.float64]:
     half_size = width / 2, height / 2
     return np.array(
-        [centre.x - half_size[0], centre.y - half_size[1], centre.x + half_size[0], centre.y + half_size[1]], np.float64
+        [center.x - half_size[0], center.y - half_size[1], center.x + half_size[0], center.y + half_size[1]], np.float64
     )
 
 
 def _set_box(box: Any, pose: Transform, size: tuple[float, float, float]) -> None:
-    centre = box.center
-    centre.position.x, centre.position.y, centre.position.z = pose[:3]
-    centre.orientation.x, centre.orientation.y, centre.orientation.z, centre.orientation.w = pose[3:]
+    center = box.center
+    center.position.x, center.position.y, center.position.z = pose[:3]
+    center.orientation.x, center.orientation.y, center.orientation.z, center.orientation.w = pose[3:]
     box.size.x, box.size.y, box.size.z = size

@@ -8,7 +8,7 @@ differences between the packages are in `dialects`.
 Parameters, by the names of yolo_ros:
 
 ``model``
-    an ONNX file, or the name of a detector: ``colours``, ``aruco``, ``apriltag``, ``qr``, ``line``, or a detector
+    an ONNX file, or the name of a detector: ``colors``, ``aruco``, ``apriltag``, ``qr``, ``line``, or a detector
     that a package provides.
 ``labels``
     a file with the names of the classes, which replace the names in the network's file.
@@ -21,7 +21,7 @@ Parameters, by the names of yolo_ros:
     can be set at run time. ``classes`` are names; an empty list means all classes.
 ``input_image_topic``, ``image_transport``, ``image_reliability``
     the source of images: a topic of Image, or one that ends in ``/compressed``; 1 reliable, 2 best effort.
-``colours.NAME``, ``dictionary``, ``least_area``, ``part``, ``colour``
+``colors.NAME``, ``dictionary``, ``least_area``, ``part``, ``color``
     settings of the detectors without networks.
 """
 
@@ -75,7 +75,7 @@ _SIDE_DESCRIPTOR = ParameterDescriptor(integer_range=[Range(0, MAX_SIZE)], read_
 _READ_ONLY = ParameterDescriptor(read_only=True)
 _ANY_TYPE = ParameterDescriptor(dynamic_typing=True)
 _DETECTOR_SETTINGS = ("dictionary", "least_area", "part", "colour")
-_COLOURS_PARAMETER = "colours"
+_COLORS_PARAMETER = "colours"
 _CLASSES_PARAMETER = "classes"
 _MIN_PERIOD_SHARE = 0.9
 """The fraction of a period after which the next image is accepted, so that a slightly early image is not skipped."""
@@ -165,7 +165,7 @@ class DetectorNode(SingleNode):
         if dialect.output_topic:
             node.declare_parameter(dialect.output_topic, dialect.default_output_topic, _READ_ONLY)
         for name in node.undeclared_overrides():
-            if name in _DETECTOR_SETTINGS or name.startswith(f"{_COLOURS_PARAMETER}."):
+            if name in _DETECTOR_SETTINGS or name.startswith(f"{_COLORS_PARAMETER}."):
                 node.declare_parameter(name, None, ParameterDescriptor(read_only=True, dynamic_typing=True))
 
     def _value(self, name: str) -> Any:
@@ -174,11 +174,11 @@ class DetectorNode(SingleNode):
     def _detector_options(self, dialect: Dialect) -> DetectorOptions:
         names = self._node.parameter_names()
         settings: dict[str, object] = {name: self._value(name) for name in _DETECTOR_SETTINGS if name in names}
-        colours = {
-            name.partition(".")[2]: self._value(name) for name in names if name.startswith(f"{_COLOURS_PARAMETER}.")
+        colors = {
+            name.partition(".")[2]: self._value(name) for name in names if name.startswith(f"{_COLORS_PARAMETER}.")
         }
-        if colours:
-            settings[_COLOURS_PARAMETER] = colours
+        if colors:
+            settings[_COLORS_PARAMETER] = colors
         size = self._value("imgsz_height"), self._value("imgsz_width")
         if 0 in size and any(size):
             missing = "imgsz_width" if size[0] else "imgsz_height"

@@ -41,9 +41,9 @@ class Nav2Trip:
 
         Args:
             frame: the frame of both positions.
-            robot: the robot's position, x and y in metres.
-            target: the object's position, x and y in metres.
-            distance: the distance to keep between the centres of robot and object, metres.
+            robot: the robot's position, x and y in meters.
+            target: the object's position, x and y in meters.
+            distance: the distance to keep between the centers of robot and object, meters.
         """
         yaw = atan2(target[1] - robot[1], target[0] - robot[0])
         travel = max(0.0, hypot(target[0] - robot[0], target[1] - robot[1]) - distance)

@@ -1,6 +1,6 @@
 """object_seeker: finds an object by name, drives to it or follows it, and lists objects.
 
-``vision/go_to`` and ``vision/follow`` receive a name, optionally with a colour (``red ball``, 红色的球).
+``vision/go_to`` and ``vision/follow`` receive a name, optionally with a color (``red ball``, 红色的球).
 ``vision/stop`` ends the search. The outcome is published on ``/voice/response``.
 ``vision/describe`` lists the visible objects.
 ``vision/go_to``, ``vision/follow`` and ``vision/describe`` have variants ``en`` and ``zh`` (``vision/go_to/zh``) for
@@ -47,7 +47,7 @@ _MAX_SCAN_AGE_SECONDS = 1.0
 class ObjectSeeker(SingleNode):
     """The object_seeker node.
 
-    Parameters: ``distance`` (from the robot's centre to the object's nearest side, m), ``max_linear_velocity`` (m/s),
+    Parameters: ``distance`` (from the robot's center to the object's nearest side, m), ``max_linear_velocity`` (m/s),
     ``max_angular_velocity`` (rad/s), ``lost_time`` (s), ``obstacle_distance`` (m), ``blocked_time`` (s),
     ``robot_radius`` (m), ``base_frame``, ``fixed_frame``, ``use_nav2`` (use ``navigate_to_pose`` once the object is
     seen, if a server is available), ``language`` (en or zh; a request in Chinese is always answered in Chinese).
@@ -162,7 +162,7 @@ class ObjectSeeker(SingleNode):
             objects = []
         else:
             objects = [
-                Sighting(seen_object.name, seen_object.colour, *_in_robot_frame(pose, seen_object))
+                Sighting(seen_object.name, seen_object.color, *_in_robot_frame(pose, seen_object))
                 for seen_object in self._seen_objects.objects
             ]
         response.success, response.message = True, describe_sightings(objects, language)
@@ -230,7 +230,7 @@ class ObjectSeeker(SingleNode):
         candidates = [
             seen_object
             for seen_object in self._seen_objects.objects
-            if self._request.matches(seen_object.name, seen_object.colour, seen_object.aspect_ratio, seen_object.score)
+            if self._request.matches(seen_object.name, seen_object.color, seen_object.aspect_ratio, seen_object.score)
         ]
         previous = self._target
         if previous is not None:
@@ -247,7 +247,7 @@ class ObjectSeeker(SingleNode):
     def _free_distance(self, now_ns: int) -> float:
         """Return the distance in m to the nearest point ahead, or 0 if scans have stopped.
 
-        The distance is measured from the robot's centre. It is infinite before the first scan, or if the pose is
+        The distance is measured from the robot's center. It is infinite before the first scan, or if the pose is
         unknown.
         """
         scan = self._scan
@@ -275,7 +275,7 @@ class ObjectSeeker(SingleNode):
 
 
 def _in_robot_frame(pose: Transform, seen_object: SeenObject) -> tuple[float, float]:
-    """Return how far an object is ahead of the robot and to its left, in metres."""
+    """Return how far an object is ahead of the robot and to its left, in meters."""
     x, y, _, *rotation = invert(pose)
     ahead, left, _ = rotate((rotation[0], rotation[1], rotation[2], rotation[3]), (seen_object.x, seen_object.y, 0.0))
     return ahead + x, left + y

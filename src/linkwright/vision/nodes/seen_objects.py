@@ -1,4 +1,4 @@
-"""Detected objects with their colours, in a fixed frame."""
+"""Detected objects with their colors, in a fixed frame."""
 
 from __future__ import annotations
 
@@ -27,9 +27,9 @@ class SeenObject:
     Attributes:
         name: the name of its class.
         id: the ID from the tracker; empty if there is none.
-        colour: the word for its colour; None if it is unknown.
-        x, y: the position of its centre in the fixed frame, metres.
-        radius: half its width, metres.
+        color: the word for its color; None if it is unknown.
+        x, y: the position of its center in the fixed frame, meters.
+        radius: half its width, meters.
         aspect_ratio: its width divided by its height.
         score: the score of its detection.
         seen_ns: the time of the image, nanoseconds.
@@ -37,7 +37,7 @@ class SeenObject:
 
     name: str
     id: str
-    colour: str | None
+    color: str | None
     x: float
     y: float
     radius: float
@@ -47,9 +47,9 @@ class SeenObject:
 
 
 class SeenObjects:
-    """The collection of detections with positions, and with the colours of objects from images.
+    """The collection of detections with positions, and with the colors of objects from images.
 
-    The colour is measured in the box with the same ID in ``image_raw``; boxes with IDs arrive on ``tracking``.
+    The color is measured in the box with the same ID in ``image_raw``; boxes with IDs arrive on ``tracking``.
 
     Args:
         node: the node that subscribes.
@@ -79,7 +79,7 @@ class SeenObjects:
         )
 
     def _receive_tracking(self, message: Any) -> None:
-        """Count votes for the colours of objects that have IDs."""
+        """Count votes for the colors of objects that have IDs."""
         time_ns = message.header.stamp.nanoseconds
         image = next((candidate for candidate in self._images if candidate.header.stamp.nanoseconds == time_ns), None)
         if image is None or not any(detection.id for detection in message.detections):
@@ -91,10 +91,10 @@ class SeenObjects:
         if pixels.ndim != 3:
             return
         for detection in message.detections:
-            colour = object_color(pixels[:, :, :3], VISION_FORMAT.box(detection)) if detection.id else None
-            if colour is not None:
+            color = object_color(pixels[:, :, :3], VISION_FORMAT.box(detection)) if detection.id else None
+            if color is not None:
                 votes = self._votes.setdefault(detection.id, Counter())
-                votes[colour] += 1
+                votes[color] += 1
                 if votes.total() > _MAX_VOTES:
                     self._votes[detection.id] = Counter({name: count // 2 for name, count in votes.items()})
                 self._votes.move_to_end(detection.id)
@@ -109,11 +109,11 @@ class SeenObjects:
         if pose is None:
             return
         for detection in message.detections:
-            centre = detection.bbox.center.position
-            x, y, *_ = compose(pose, (centre.x, centre.y, centre.z, 0.0, 0.0, 0.0, 1.0))
-            colour_votes = self._votes.get(detection.id)
-            colour = colour_votes.most_common(1)[0][0] if colour_votes else None
+            center = detection.bbox.center.position
+            x, y, *_ = compose(pose, (center.x, center.y, center.z, 0.0, 0.0, 0.0, 1.0))
+            color_votes = self._votes.get(detection.id)
+            color = color_votes.most_common(1)[0][0] if color_votes else None
             name, score = VISION_FORMAT.best_hypothesis(detection)
             size = detection.bbox.size
             aspect_ratio = size.y / size.z if size.z > 0 else 1.0
-            self.objects.append(SeenObject(name, detection.id, colour, x, y, size.y / 2, aspect_ratio, score, time_ns))
+            self.objects.append(SeenObject(name, detection.id, color, x, y, size.y / 2, aspect_ratio, score, time_ns))

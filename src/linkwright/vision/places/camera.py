@@ -16,8 +16,8 @@ Floats = NDArray[np.float64]
 
 _UNDISTORT_ITERATIONS = 20
 """The number of iterations that undistort a point."""
-_PIXEL_CENTRE = 0.5
-"""The offset in pixels: CameraInfo counts from the centre of pixel 0, boxes count from its edge."""
+_PIXEL_CENTER = 0.5
+"""The offset in pixels: CameraInfo counts from the center of pixel 0, boxes count from its edge."""
 _MAX_COEFFICIENTS = 8
 _DISTORTION_MODELS = ("", "plumb_bob", "rational_polynomial")
 
@@ -111,8 +111,8 @@ def make_camera_model(
             )
         coefficients = tuple(float(coefficient) for coefficient in d[:_MAX_COEFFICIENTS])
         return CameraModel(
-            width, height, float(k[0]), float(k[4]), float(k[2]) + _PIXEL_CENTRE, k[5] + _PIXEL_CENTRE, coefficients
+            width, height, float(k[0]), float(k[4]), float(k[2]) + _PIXEL_CENTER, k[5] + _PIXEL_CENTER, coefficients
         )
     if len(p) and p[0] > 0 and p[5] > 0:
-        return CameraModel(width, height, float(p[0]), float(p[5]), float(p[2]) + _PIXEL_CENTRE, p[6] + _PIXEL_CENTRE)
+        return CameraModel(width, height, float(p[0]), float(p[5]), float(p[2]) + _PIXEL_CENTER, p[6] + _PIXEL_CENTER)
     raise ValueError("the camera has no focal length: both K and P are zero")

@@ -10,9 +10,9 @@ from math import atan2, degrees, hypot
 
 from linkwright.diagnostics import Phrase, phrase
 from linkwright.diagnostics.translation import CHINESE, ENGLISH, localized
-from linkwright.images.color_words import COLOR_WORD_SPELLINGS, find_colour_word, words_of
+from linkwright.images.color_words import COLOR_WORD_SPELLINGS, find_color_word, words_of
 
-_CHINESE_COLOURS = {
+_CHINESE_COLORS = {
     "红": "red", "橙": "orange", "橘": "orange", "黄": "yellow", "绿": "green", "青": "cyan", "蓝": "blue",
     "紫": "purple", "粉": "pink", "棕": "brown", "褐": "brown", "白": "white", "灰": "grey", "黑": "black",
 }  # fmt: skip
@@ -91,13 +91,13 @@ class ObjectRequest:
     """An object that a user asks for.
 
     Attributes:
-        noun: the name of the object, as `object_name` returns it; empty for any object of the colour.
-        colour: one of `COLOURS`; None for any colour.
+        noun: the name of the object, as `object_name` returns it; empty for any object of the color.
+        color: one of `COLORS`; None for any color.
         text: the words of the request, without filler words.
     """
 
     noun: str
-    colour: str | None
+    color: str | None
     text: str
 
     @property
@@ -105,40 +105,40 @@ class ObjectRequest:
         """The language of the request, one of `LANGUAGES`."""
         return ENGLISH if self.text.isascii() else CHINESE
 
-    def matches(self, name: str, colour: str | None, aspect_ratio: float = 1.0, score: float = 1.0) -> bool:
+    def matches(self, name: str, color: str | None, aspect_ratio: float = 1.0, score: float = 1.0) -> bool:
         """Return whether an object is the requested one.
 
-        A class can have a colour in its name, as ``red_ball`` has. A class that is only a colour matches any object
-        of that colour, and matches a ball if the patch is about as wide as high. If the request is for a ball of any
-        colour, a round patch also matches.
+        A class can have a color in its name, as ``red_ball`` has. A class that is only a color matches any object
+        of that color, and matches a ball if the patch is about as wide as high. If the request is for a ball of any
+        color, a round patch also matches.
 
         Args:
             name: the class of the object.
-            colour: the colour of the object; None if it is unknown.
+            color: the color of the object; None if it is unknown.
             aspect_ratio: the width divided by the height.
-            score: the score of the detection; for a patch of a colour, the fraction of its box that it fills.
+            score: the score of the detection; for a patch of a color, the fraction of its box that it fills.
         """
         words = words_of(name)
-        class_colour = find_colour_word(name)
+        class_color = find_color_word(name)
         class_noun = " ".join(word for word in words if word not in COLOR_WORD_SPELLINGS)
-        if self.colour is not None and self.colour != (class_colour or colour):
+        if self.color is not None and self.color != (class_color or color):
             return False
         if not self.noun:
             return True
         if not class_noun:
             if self.noun != _ROUND_NOUN:
-                return self.colour is not None
-            is_round = self.colour is not None or _ROUND_FILL_SHARES[0] < score < _ROUND_FILL_SHARES[1]
+                return self.color is not None
+            is_round = self.color is not None or _ROUND_FILL_SHARES[0] < score < _ROUND_FILL_SHARES[1]
             return is_round and _ROUND_ASPECT_RATIOS[0] < aspect_ratio < _ROUND_ASPECT_RATIOS[1]
         return self.noun in (object_name(class_noun), object_name(class_noun.split()[-1]))
 
 
 @dataclass(frozen=True, slots=True)
 class Sighting:
-    """A visible object: its class, its colour or None, and its position in m."""
+    """A visible object: its class, its color or None, and its position in m."""
 
     name: str
-    colour: str | None
+    color: str | None
     ahead: float
     left: float
 
@@ -168,17 +168,15 @@ def parse_request(text: str) -> ObjectRequest | None:
             _VERBS.sub("", f"{' '.join(normalized.split())} ", count=1) if _VERBS.match(normalized) else normalized
         )
         words = [word for word in words_of(normalized) if word not in _FILLERS]
-        colour = next((COLOR_WORD_SPELLINGS[word] for word in words if word in COLOR_WORD_SPELLINGS), None)
+        color = next((COLOR_WORD_SPELLINGS[word] for word in words if word in COLOR_WORD_SPELLINGS), None)
         noun = " ".join(word for word in words if word not in COLOR_WORD_SPELLINGS and word not in ("thing", "one"))
-        return ObjectRequest(object_name(noun), colour, " ".join(words)) if colour or noun else None
+        return ObjectRequest(object_name(noun), color, " ".join(words)) if color or noun else None
     normalized = _CHINESE_VERBS.sub("", normalized)
-    colour = next((_CHINESE_COLOURS[character] for character in normalized if character in _CHINESE_COLOURS), None)
+    color = next((_CHINESE_COLORS[character] for character in normalized if character in _CHINESE_COLORS), None)
     noun = _CHINESE_FILLERS.sub("", normalized)
-    noun = "".join(sign for sign in noun if sign not in _CHINESE_COLOURS).replace("东西", "").strip()
+    noun = "".join(sign for sign in noun if sign not in _CHINESE_COLORS).replace("东西", "").strip()
     return (
-        ObjectRequest(object_name(noun), colour, re.sub(r"那个|这个|一个|请", "", normalized))
-        if colour or noun
-        else None
+        ObjectRequest(object_name(noun), color, re.sub(r"那个|这个|一个|请", "", normalized)) if color or noun else None
     )
 
 
@@ -186,7 +184,7 @@ def describe_sightings(sightings: Iterable[Sighting], language: str) -> str:
     """Describe visible objects, nearest first: *I see a red ball 1.2 m ahead and two crates*."""
     groups: dict[str, list[Sighting]] = {}
     for sighting in sorted(sightings, key=lambda sighting: hypot(sighting.ahead, sighting.left)):
-        groups.setdefault(name_with_colour(sighting.name, sighting.colour, language), []).append(sighting)
+        groups.setdefault(name_with_color(sighting.name, sighting.color, language), []).append(sighting)
     if not groups:
         return localized(phrase("I see no objects."), language)
     if language == CHINESE:
@@ -194,16 +192,16 @@ def describe_sightings(sightings: Iterable[Sighting], language: str) -> str:
     return f"I see {_join([_describe_in_english(group) for group in groups.values()], ', ', ' and ')}."
 
 
-def name_with_colour(name: str, colour: str | None, language: str) -> str:
-    """Return the name of an object with its colour: *red ball*, 红色的球."""
+def name_with_color(name: str, color: str | None, language: str) -> str:
+    """Return the name of an object with its color: *red ball*, 红色的球."""
     words = [word for word in words_of(name) if word not in COLOR_WORD_SPELLINGS]
-    colour_word = find_colour_word(name) or colour
+    color_word = find_color_word(name) or color
     noun = " ".join(words)
     if language != CHINESE:
-        return " ".join(filter(None, (colour_word, noun or "thing")))
+        return " ".join(filter(None, (color_word, noun or "thing")))
     chinese = _CHINESE_NAMES.get(object_name(noun), noun) if noun else "东西"
-    colour_characters = {english: sign for sign, english in reversed(_CHINESE_COLOURS.items())}
-    return f"{colour_characters[colour_word]}色的{chinese}" if colour_word else chinese
+    color_characters = {english: sign for sign, english in reversed(_CHINESE_COLORS.items())}
+    return f"{color_characters[color_word]}色的{chinese}" if color_word else chinese
 
 
 def answer_phrase(event: Answer, request: ObjectRequest, language: str) -> str:
@@ -211,13 +209,13 @@ def answer_phrase(event: Answer, request: ObjectRequest, language: str) -> str:
 
     The object has its name from the request, or the translation of that name.
     """
-    name = request.text if request.language == language else name_with_colour(request.noun, request.colour, language)
+    name = request.text if request.language == language else name_with_color(request.noun, request.color, language)
     return localized(_ANSWERS[event](name), language)
 
 
 def _describe_in_english(group: Sequence[Sighting]) -> str:
     sighting = group[0]
-    name = name_with_colour(sighting.name, sighting.colour, ENGLISH)
+    name = name_with_color(sighting.name, sighting.color, ENGLISH)
     if len(group) > 1:
         return f"{_number_word(len(group), ENGLISH)} {_plural(name)}"
     article = "an" if name[0] in "aeiou" else "a"
@@ -226,7 +224,7 @@ def _describe_in_english(group: Sequence[Sighting]) -> str:
 
 def _describe_in_chinese(group: Sequence[Sighting]) -> str:
     sighting = group[0]
-    name = name_with_colour(sighting.name, sighting.colour, CHINESE)
+    name = name_with_color(sighting.name, sighting.color, CHINESE)
     if len(group) > 1:
         return f"{_number_word(len(group), CHINESE)}个{name}"
     return f"{_direction(sighting, CHINESE)}{hypot(sighting.ahead, sighting.left):.1f}米处有一个{name}"

@@ -1,4 +1,4 @@
-"""Positions of detected objects in metres, from a depth image or from the ground below them."""
+"""Positions of detected objects in meters, from a depth image or from the ground below them."""
 
 from __future__ import annotations
 
@@ -15,15 +15,15 @@ _INNER_SHARE = 0.6
 _MIN_SURFACE_SHARE = 0.25
 """The minimum fraction of the depths in the middle of a box that belong to the object's surface."""
 _MIN_DEPTHS = 4
-_GAP_METRES, _GAP_SHARE = 0.1, 0.05
-"""Neighbouring depths belong to different surfaces if they differ by more than this distance and this fraction."""
+_GAP_METERS, _GAP_SHARE = 0.1, 0.05
+"""Neighboring depths belong to different surfaces if they differ by more than this distance and this fraction."""
 _MAX_FLAT_SHARE = 0.1
 """The maximum depth of a flat surface, as a fraction of its width."""
 _ROUND_ASPECT_RATIOS = (0.8, 1.25)
-"""The range of width / height of the boxes of round objects. Such objects touch the ground below their centre."""
+"""The range of width / height of the boxes of round objects. Such objects touch the ground below their center."""
 _EDGE_PIXELS = 1.5
 _MIN_DESCENT = 0.01
-"""The minimum descent of a ray, in metres per metre, at which its point on the ground is used."""
+"""The minimum descent of a ray, in meters per meter, at which its point on the ground is used."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -31,11 +31,11 @@ class ObjectPosition:
     """The position and size of an object.
 
     Attributes:
-        centre: x, y, z in metres, in the camera's optical frame.
-        width, height, depth: the size in metres, along the image's x and y axes and along the optical axis.
+        center: x, y, z in meters, in the camera's optical frame.
+        width, height, depth: the size in meters, along the image's x and y axes and along the optical axis.
     """
 
-    centre: tuple[float, float, float]
+    center: tuple[float, float, float]
     width: float
     height: float
     depth: float
@@ -57,11 +57,11 @@ def position_from_depth(
     Args:
         box: left, top, right, bottom, in pixels of an image that is registered to the depth image and has the size of
             `camera`.
-        depths: shape ``(rows, columns)``, metres along the view; NaN, infinite, 0 or negative where unknown.
+        depths: shape ``(rows, columns)``, meters along the view; NaN, infinite, 0 or negative where unknown.
         camera: the camera of the image with the box.
         max_depth_difference: the maximum difference in depth between the middle of the surface and a point of the
-            object, metres.
-        max_depth: the maximum depth that is used, metres.
+            object, meters.
+        max_depth: the maximum depth that is used, meters.
 
     Returns:
         The position and size; None if there are too few depths.
@@ -81,11 +81,11 @@ def position_from_depth(
         & (depths_in_box <= min(surface_end + _min_gap(surface_end), surface_depth + max_depth_difference))
     ]
     front = float(np.percentile(surface, 5))
-    width, height = _size_in_metres(box, camera, front)
+    width, height = _size_in_meters(box, camera, front)
     thickness = float(np.percentile(surface, 95)) - front
     depth = width if thickness > _MAX_FLAT_SHARE * width else thickness
     surface_depth = front + depth / 2
-    width, height = _size_in_metres(box, camera, surface_depth)
+    width, height = _size_in_meters(box, camera, surface_depth)
     ray = camera.rays(np.array([[(box[0] + box[2]) / 2, (box[1] + box[3]) / 2]], np.float64))[0]
     return ObjectPosition(
         (float(ray[0]) * surface_depth, float(ray[1]) * surface_depth, surface_depth), width, height, depth
@@ -98,14 +98,14 @@ def position_on_ground(
     """Return the position of an object on the ground, from the lower edge of its box.
 
     An object is assumed to be as deep as it is wide. If its box is about square, the object touches the ground below
-    its centre, as a ball does. Any other object touches the ground with its front at the lower edge of the box.
+    its center, as a ball does. Any other object touches the ground with its front at the lower edge of the box.
 
     Args:
         box: left, top, right, bottom, pixels.
         camera: the camera of the image.
         normal: the ground's upward normal in the optical frame: shape ``(3,)``, length 1.
-        height: the height of the camera above the ground, metres.
-        max_distance: the maximum distance along the viewing ray, metres; beyond it the result is None.
+        height: the height of the camera above the ground, meters.
+        max_distance: the maximum distance along the viewing ray, meters; beyond it the result is None.
 
     Returns:
         The position and size; None if the box ends at or above the horizon, or at the lower edge of the image.
@@ -118,22 +118,22 @@ def position_on_ground(
     if descent < _MIN_DESCENT or height <= 0 or height / descent > max_distance:
         return None
     position = ray * (height / descent)
-    width, object_height = _size_in_metres(box, camera, float(position[2]))
+    width, object_height = _size_in_meters(box, camera, float(position[2]))
     if not _ROUND_ASPECT_RATIOS[0] <= width / object_height <= _ROUND_ASPECT_RATIOS[1]:
         horizontal = ray + descent * normal
         position = position + horizontal * (width / 2 / max(float(np.linalg.norm(horizontal)), 1e-9))
-        width, object_height = _size_in_metres(box, camera, float(position[2]))
-    centre = position + normal * (object_height / 2)
-    return ObjectPosition((float(centre[0]), float(centre[1]), float(centre[2])), width, object_height, width)
+        width, object_height = _size_in_meters(box, camera, float(position[2]))
+    center = position + normal * (object_height / 2)
+    return ObjectPosition((float(center[0]), float(center[1]), float(center[2])), width, object_height, width)
 
 
-def _size_in_metres(box: NDArray[np.floating], camera: CameraModel, depth: float) -> tuple[float, float]:
+def _size_in_meters(box: NDArray[np.floating], camera: CameraModel, depth: float) -> tuple[float, float]:
     return float(box[2] - box[0]) / camera.fx * depth, float(box[3] - box[1]) / camera.fy * depth
 
 
 def _shrink_box(box: Floats, share: float) -> Floats:
-    centre, half_size = (box[:2] + box[2:]) / 2, (box[2:] - box[:2]) / 2
-    return np.concatenate([centre - half_size * share, centre + half_size * share])
+    center, half_size = (box[:2] + box[2:]) / 2, (box[2:] - box[:2]) / 2
+    return np.concatenate([center - half_size * share, center + half_size * share])
 
 
 def _depths_in(depths: Floats, box: Floats) -> Floats:
@@ -144,12 +144,12 @@ def _depths_in(depths: Floats, box: Floats) -> Floats:
 
 
 def _min_gap(depth: float) -> float:
-    return max(_GAP_METRES, _GAP_SHARE * depth)
+    return max(_GAP_METERS, _GAP_SHARE * depth)
 
 
 def _nearest_surface(depths: Floats) -> tuple[float, float]:
     """Return the depth range of the nearest sufficiently large surface, from sorted depths."""
-    gaps = np.diff(depths) > np.maximum(_GAP_METRES, _GAP_SHARE * depths[:-1])
+    gaps = np.diff(depths) > np.maximum(_GAP_METERS, _GAP_SHARE * depths[:-1])
     surfaces = np.split(depths, np.flatnonzero(gaps) + 1)
     for surface in surfaces:
         if len(surface) >= _MIN_SURFACE_SHARE * len(depths):

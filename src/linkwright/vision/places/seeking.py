@@ -33,11 +33,11 @@ class SeekSettings:
     """The settings of a seeker.
 
     Attributes:
-        distance: the final distance from the robot's centre to the object's nearest side, metres.
+        distance: the final distance from the robot's center to the object's nearest side, meters.
         speed: the maximum speed, m/s.
         turn_speed: the maximum angular speed, rad/s; half of it is used to look around.
         lost_time: the time without seeing the object after which the robot stops, seconds.
-        obstacle_distance: the minimum distance from the robot's centre to obstacles ahead, metres.
+        obstacle_distance: the minimum distance from the robot's center to obstacles ahead, meters.
         blocked_time: how long the robot waits for a clear path, seconds.
     """
 
@@ -57,11 +57,11 @@ class View:
         time: the time of the step, seconds.
         heading: the robot's heading in a fixed frame, rad.
         bearing: the angle from the robot's heading to the object, rad, positive to the left; valid if it was ever seen.
-        surface_distance: the distance from the robot's centre to the object's nearest side, metres; infinite if it was
+        surface_distance: the distance from the robot's center to the object's nearest side, meters; infinite if it was
             never seen.
         age: seconds since the object was last seen; infinite if it was never seen.
         detection_silence: seconds since the last message of a detector.
-        free_distance: the distance from the robot's centre to the nearest obstacle ahead, metres.
+        free_distance: the distance from the robot's center to the nearest obstacle ahead, meters.
     """
 
     time: float

@@ -17,7 +17,7 @@ from linkwright.vision.places.assignment import assign
 from linkwright.vision.places.camera import Floats
 
 _MEASUREMENT_NOISE = 0.05
-"""The standard deviation of a measured box's centre and size, as a fraction of its size."""
+"""The standard deviation of a measured box's center and size, as a fraction of its size."""
 _SPEED_NOISE = 2.0
 """The standard deviation of a new track's velocity, in box sizes per second."""
 _ACCELERATION_NOISE = 3.0
@@ -48,7 +48,7 @@ class TrackerSettings:
 
 @dataclass(slots=True)
 class _Track:
-    """A tracked object: its centre and size, their velocities, and the covariances.
+    """A tracked object: its center and size, their velocities, and the covariances.
 
     The values are x, y, width and height. Each has a filter with the same model: the variances of value and velocity,
     and their covariance.
@@ -92,7 +92,7 @@ class _Track:
 
 @dataclass(frozen=True, slots=True)
 class _Frame:
-    """The detections of an image: boxes as centre and size, names, and the time in seconds."""
+    """The detections of an image: boxes as center and size, names, and the time in seconds."""
 
     boxes: Floats
     names: list[str]
@@ -132,7 +132,7 @@ class Tracker:
         for track in self._tracks:
             track.predict(elapsed)
         frame = _Frame(
-            _to_centre_form(detections.boxes), [detections.name(index) for index in range(len(detections))], time
+            _to_center_form(detections.boxes), [detections.name(index) for index in range(len(detections))], time
         )
         scores = detections.scores
         high_indices = [index for index in range(len(detections)) if scores[index] >= settings.high_threshold]
@@ -201,7 +201,7 @@ def pairwise_iou(first: NDArray[np.floating], second: NDArray[np.floating]) -> F
     return result
 
 
-def _to_centre_form(boxes: NDArray[np.floating]) -> Floats:
+def _to_center_form(boxes: NDArray[np.floating]) -> Floats:
     corners = np.asarray(boxes, np.float64).reshape(-1, 4)
     return np.concatenate([(corners[:, :2] + corners[:, 2:]) / 2, corners[:, 2:] - corners[:, :2]], axis=1)
 

@@ -1,4 +1,4 @@
-"""The training, evaluation and export of networks on labelled images, with a card.
+"""The training, evaluation and export of networks on labeled images, with a card.
 
 Only the training itself needs PyTorch.
 """

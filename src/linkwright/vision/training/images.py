@@ -11,17 +11,17 @@ import numpy as np
 from numpy.typing import NDArray
 
 from linkwright.diagnostics import Diagnostic, LinkwrightError, display_path, phrase
-from linkwright.vision.detectors.letterbox import GREY, letterbox_image
+from linkwright.vision.detectors.letterbox import GRAY, letterbox_image
 from linkwright.vision.detectors.library import load_opencv
 from linkwright.vision.training.options import View
-from linkwright.vision.training.yolo_dataset import LabelledFile
+from linkwright.vision.training.yolo_dataset import LabeledFile
 
 _MIN_SIDE = 3.0  # an object narrower than this after augmentation is ignored
 _MIN_VISIBLE_SHARE = 0.3  # an object with a smaller share of its box left in the image is ignored
 
 
 @dataclass(frozen=True, slots=True)
-class LabelledImages:
+class LabeledImages:
     """Images of one size, with the labels of each.
 
     Attributes:
@@ -34,49 +34,49 @@ class LabelledImages:
     objects: tuple[NDArray[np.float32], ...]
 
 
-def read_image(labelled: LabelledFile) -> NDArray[np.uint8]:
-    """Return the pixels of a labelled image: shape ``(height, width, 3)``, RGB.
+def read_image(labeled: LabeledFile) -> NDArray[np.uint8]:
+    """Return the pixels of a labeled image: shape ``(height, width, 3)``, RGB.
 
     Raises:
         LinkwrightError: VISION305, the file is not an image.
     """
     cv2 = load_opencv()
-    data: NDArray[np.uint8] = np.fromfile(labelled.path, np.uint8)
+    data: NDArray[np.uint8] = np.fromfile(labeled.path, np.uint8)
     pixels: Any = cv2.imdecode(data, cv2.IMREAD_COLOR) if data.size else None
     if pixels is None:
-        message = phrase("'{path}' is not an image, or is broken", path=display_path(labelled.path))
+        message = phrase("'{path}' is not an image, or is broken", path=display_path(labeled.path))
         raise LinkwrightError(Diagnostic("VISION305", message))
     rgb: NDArray[np.uint8] = np.ascontiguousarray(pixels[..., ::-1])
     return rgb
 
 
-def read_labelled_images(labelled: Sequence[LabelledFile], width: int, height: int) -> LabelledImages:
-    """Read images into memory, letterboxed to one size with grey borders, as detectors do.
+def read_labeled_images(labeled: Sequence[LabeledFile], width: int, height: int) -> LabeledImages:
+    """Read images into memory, letterboxed to one size with gray borders, as detectors do.
 
     Raises:
         LinkwrightError: VISION305, one of the files is not an image.
     """
-    images: NDArray[np.uint8] = np.zeros((len(labelled), height, width, 3), np.uint8)
-    objects: list[NDArray[np.float32]] = [np.zeros((0, 5), np.float32)] * len(labelled)
+    images: NDArray[np.uint8] = np.zeros((len(labeled), height, width, 3), np.uint8)
+    objects: list[NDArray[np.float32]] = [np.zeros((0, 5), np.float32)] * len(labeled)
 
     def read(number: int) -> None:
-        pixels = read_image(labelled[number])
+        pixels = read_image(labeled[number])
         images[number], letterbox = letterbox_image(pixels, (height, width), None)
         scaled_size = np.array((letterbox.width, letterbox.height) * 2, np.float32) * np.array(
             letterbox.scale * 2, np.float32
         )
-        boxes: NDArray[np.float32] = labelled[number].boxes * scaled_size
+        boxes: NDArray[np.float32] = labeled[number].boxes * scaled_size
         boxes += np.array((letterbox.left, letterbox.top) * 2, np.float32)
-        signed_classes = np.where(labelled[number].ignored, -2 - labelled[number].classes, labelled[number].classes)
+        signed_classes = np.where(labeled[number].ignored, -2 - labeled[number].classes, labeled[number].classes)
         objects[number] = np.concatenate((signed_classes[:, None].astype(np.float32), boxes), 1)
 
     with ThreadPoolExecutor(2) as pool:
-        for future in [pool.submit(read, number) for number in range(len(labelled))]:
+        for future in [pool.submit(read, number) for number in range(len(labeled))]:
             future.result()
-    return LabelledImages(images, tuple(objects))
+    return LabeledImages(images, tuple(objects))
 
 
-def repeat_factors(labelled_images: LabelledImages, classes: int) -> NDArray[np.float64]:
+def repeat_factors(labeled_images: LabeledImages, classes: int) -> NDArray[np.float64]:
     """Return how often an epoch uses each image: once, or more often if it shows a rare class.
 
     A class is rare if the fraction f of images that show it is below the median m of these fractions. Its images are
@@ -85,8 +85,8 @@ def repeat_factors(labelled_images: LabelledImages, classes: int) -> NDArray[np.
     Returns:
         Shape ``(n,)``, 1 or more.
     """
-    has_class: NDArray[np.bool_] = np.zeros((len(labelled_images.objects), classes), np.bool_)
-    for row, objects in zip(has_class, labelled_images.objects, strict=True):
+    has_class: NDArray[np.bool_] = np.zeros((len(labeled_images.objects), classes), np.bool_)
+    for row, objects in zip(has_class, labeled_images.objects, strict=True):
         row[objects[objects[:, 0] >= 0, 0].astype(np.int64)] = True
     image_counts = has_class.sum(0)
     median_count = float(np.median(image_counts[image_counts > 0])) if image_counts.any() else 1.0
@@ -102,23 +102,23 @@ def repeated_indices(factors: NDArray[np.float64], generator: np.random.Generato
 
 
 def augment(
-    labelled_images: LabelledImages, place: int, view: View, generator: np.random.Generator
+    labeled_images: LabeledImages, place: int, view: View, generator: np.random.Generator
 ) -> tuple[NDArray[np.uint8], NDArray[np.float32]]:
     """Return a randomly augmented part of an image, with its objects.
 
-    The part is mirrored and scaled at random; light, contrast, colours and sharpness change, and noise is added.
+    The part is mirrored and scaled at random; light, contrast, colors and sharpness change, and noise is added.
 
     Args:
-        labelled_images: the images.
-        place: the index of the image in `labelled_images`.
+        labeled_images: the images.
+        place: the index of the image in `labeled_images`.
         view: the size of the part in pixels, and the range of scales.
         generator: the random generator.
 
     Returns:
-        The part, shape ``(height, width, 3)``, and its objects as in `LabelledImages`.
+        The part, shape ``(height, width, 3)``, and its objects as in `LabeledImages`.
     """
     cv2 = load_opencv()
-    image, objects = labelled_images.images[place], labelled_images.objects[place]
+    image, objects = labeled_images.images[place], labeled_images.objects[place]
     height, width = image.shape[:2]
     size = view.size
     min_log_scale, max_log_scale = np.log(view.scales)
@@ -126,22 +126,22 @@ def augment(
     mirror = -1.0 if generator.random() < 0.5 else 1.0
     aspect = float(np.exp(generator.uniform(-0.1, 0.1)))
     scale_x, scale_y = scale * aspect, scale / aspect
-    centre = generator.uniform(0, 1, 2) * (width, height)
-    labelled_objects = objects[objects[:, 0] >= 0]
-    if len(labelled_objects) and generator.random() < 0.7:  # centre the crop near an object
-        chosen_object = labelled_objects[int(generator.integers(len(labelled_objects)))]
-        centre = (chosen_object[1:3] + chosen_object[3:5]) / 2 + generator.uniform(-0.4, 0.4, 2) * size / np.array(
+    center = generator.uniform(0, 1, 2) * (width, height)
+    labeled_objects = objects[objects[:, 0] >= 0]
+    if len(labeled_objects) and generator.random() < 0.7:  # center the crop near an object
+        chosen_object = labeled_objects[int(generator.integers(len(labeled_objects)))]
+        center = (chosen_object[1:3] + chosen_object[3:5]) / 2 + generator.uniform(-0.4, 0.4, 2) * size / np.array(
             (scale_x, scale_y)
         )
-    # Keep the crop within the image; an image smaller than the crop is padded with grey.
+    # Keep the crop within the image; an image smaller than the crop is padded with gray.
     max_corner = np.array((width, height)) - np.array(size) / (scale_x, scale_y)
     corner = np.clip(
-        centre - np.array(size) / (scale_x, scale_y) / 2, np.minimum(max_corner, 0), np.maximum(max_corner, 0)
+        center - np.array(size) / (scale_x, scale_y) / 2, np.minimum(max_corner, 0), np.maximum(max_corner, 0)
     )
     left, top = corner
     shift = -left * scale_x if mirror > 0 else size[0] + left * scale_x
     transform: NDArray[np.float32] = np.array([[scale_x * mirror, 0, shift], [0, scale_y, -top * scale_y]], np.float32)
-    transformed = cv2.warpAffine(image, transform, size, flags=cv2.INTER_LINEAR, borderValue=(GREY, GREY, GREY))
+    transformed = cv2.warpAffine(image, transform, size, flags=cv2.INTER_LINEAR, borderValue=(GRAY, GRAY, GRAY))
     return _vary_light(transformed, generator), _transform_objects(objects, transform, *size)
 
 
@@ -178,10 +178,10 @@ def _transform_objects(
     visible_boxes[:, 0::2] = np.clip(visible_boxes[:, 0::2], 0, width)
     visible_boxes[:, 1::2] = np.clip(visible_boxes[:, 1::2], 0, height)
     visible_sizes, full_sizes = visible_boxes[:, 2:] - visible_boxes[:, :2], full_boxes[:, 2:] - full_boxes[:, :2]
-    is_labelled = (visible_sizes.min(1, initial=np.inf) >= _MIN_SIDE) & (
+    is_labeled = (visible_sizes.min(1, initial=np.inf) >= _MIN_SIDE) & (
         visible_sizes.prod(1) >= _MIN_VISIBLE_SHARE * np.maximum(full_sizes.prod(1), 1e-6)
     )
-    signed_classes = np.where(is_labelled | (objects[:, 0] < 0), objects[:, 0], -2 - objects[:, 0])
+    signed_classes = np.where(is_labeled | (objects[:, 0] < 0), objects[:, 0], -2 - objects[:, 0])
     result: NDArray[np.float32] = np.concatenate((signed_classes[:, None], visible_boxes), 1)[
         visible_sizes.min(1, initial=np.inf) > 0
     ]

@@ -15,7 +15,7 @@ from linkwright.vision.training.card import EvaluationReport, dataset_facts, des
 from linkwright.vision.training.detector_evaluation import evaluate_detector
 from linkwright.vision.training.library import require_pytorch
 from linkwright.vision.training.options import Options
-from linkwright.vision.training.yolo_dataset import Dataset, LabelledFile, open_dataset
+from linkwright.vision.training.yolo_dataset import Dataset, LabeledFile, open_dataset
 
 if TYPE_CHECKING:
     from linkwright.vision.training.learning.network import Network
@@ -53,7 +53,7 @@ def train_network(options: Options, on_epoch: Callable[[Epoch], None]) -> Traini
         KeyboardInterrupt: training was interrupted before the first checkpoint.
     """
     require_pytorch()
-    from linkwright.vision.training.images import read_labelled_images
+    from linkwright.vision.training.images import read_labeled_images
     from linkwright.vision.training.learning.export import export_to_onnx
     from linkwright.vision.training.learning.training_loop import TrainingLoop
 
@@ -69,8 +69,8 @@ def train_network(options: Options, on_epoch: Callable[[Epoch], None]) -> Traini
     training_loop = TrainingLoop(
         dataset.names,
         options,
-        read_labelled_images(training_images, *size),
-        read_labelled_images(validation_images, *size),
+        read_labeled_images(training_images, *size),
+        read_labeled_images(validation_images, *size),
     )
     if options.resume:
         training_loop.load(options.output / "last.pt")
@@ -134,11 +134,11 @@ def _evaluation_split(dataset: Dataset) -> str:
 
 
 def _training_facts(
-    options: Options, dataset: Dataset, images: Sequence[LabelledFile], epochs: int, best_epoch: int, network: Network
+    options: Options, dataset: Dataset, images: Sequence[LabeledFile], epochs: int, best_epoch: int, network: Network
 ) -> dict[str, str]:
     """Return the facts about the training for the card."""
     parameters = sum(parameter.numel() for parameter in network.parameters())
-    object_count = sum(int((~labelled.ignored).sum()) for labelled in images)
+    object_count = sum(int((~labeled.ignored).sum()) for labeled in images)
     return {
         "command": f"`{options.command}`",
         "classes": ", ".join(dataset.names),
@@ -163,12 +163,12 @@ def _initial_weights_facts(weights: Path | None) -> dict[str, str]:
         return {"started from": weights.name}
 
 
-def dataset_digest(images: Sequence[LabelledFile]) -> str:
+def dataset_digest(images: Sequence[LabeledFile]) -> str:
     """Return the SHA-256 of images and labels in order, to identify a dataset."""
     digest = hashlib.sha256()
-    for labelled in images:
-        digest.update(hashlib.sha256(labelled.path.read_bytes()).digest())
-        digest.update(labelled.classes.tobytes() + labelled.boxes.tobytes())
+    for labeled in images:
+        digest.update(hashlib.sha256(labeled.path.read_bytes()).digest())
+        digest.update(labeled.classes.tobytes() + labeled.boxes.tobytes())
     return digest.hexdigest()
 
 

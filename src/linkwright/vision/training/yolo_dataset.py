@@ -1,7 +1,7 @@
 """Datasets in the YOLO folder layout, which `linkwright dataset` writes.
 
 A YAML file in the folder names the classes and the image folders. Next to ``images`` is ``labels`` with a text file
-for each image. Each line of that file describes an object: its class, and the centre, width and height of its box as
+for each image. Each line of that file describes an object: its class, and the center, width and height of its box as
 fractions of the image. An image without a text file has no objects.
 """
 
@@ -33,8 +33,8 @@ IMAGE_SUFFIXES = frozenset({".bmp", ".jpeg", ".jpg", ".png", ".ppm", ".webp"})
 
 
 @dataclass(frozen=True, slots=True)
-class LabelledFile:
-    """A labelled image.
+class LabeledFile:
+    """A labeled image.
 
     Attributes:
         path: the path of the image.
@@ -63,7 +63,7 @@ class Dataset:
     names: tuple[str, ...]
     splits: Mapping[str, tuple[Path, ...]]
 
-    def read(self, split: str) -> list[LabelledFile]:
+    def read(self, split: str) -> list[LabeledFile]:
         """Return the images of a split with their labels, in the order of their paths.
 
         Raises:
@@ -89,7 +89,7 @@ class Dataset:
             )
             raise LinkwrightError(Diagnostic("VISION303", message))
         ignored_boxes = _read_ignored_boxes(self.folder / "annotations" / f"instances_{split}.json", self.names)
-        return [_read_labelled(path, len(self.names), ignored_boxes.get(path.name, ())) for path in paths]
+        return [_read_labeled(path, len(self.names), ignored_boxes.get(path.name, ())) for path in paths]
 
 
 def open_dataset(folder: Path) -> Dataset:
@@ -186,7 +186,7 @@ def _read_ignored_boxes(file: Path, names: tuple[str, ...]) -> dict[str, list[li
     return boxes
 
 
-def _read_labelled(path: Path, classes: int, hidden: Sequence[list[float]]) -> LabelledFile:
+def _read_labeled(path: Path, classes: int, hidden: Sequence[list[float]]) -> LabeledFile:
     """Read the labels of an image, and append its ignored boxes.
 
     Raises:
@@ -207,7 +207,7 @@ def _read_labelled(path: Path, classes: int, hidden: Sequence[list[float]]) -> L
     ignored_rows: NDArray[np.float32] = np.array(hidden, np.float32).reshape(-1, 5)
     class_indices: NDArray[np.int32] = np.concatenate((table[:, 0], ignored_rows[:, 0])).astype(np.int32)
     ignored: NDArray[np.bool_] = np.arange(len(class_indices)) >= len(table)
-    return LabelledFile(path, class_indices, np.concatenate((boxes, ignored_rows[:, 1:])), ignored)
+    return LabeledFile(path, class_indices, np.concatenate((boxes, ignored_rows[:, 1:])), ignored)
 
 
 def label_path(image: Path) -> Path:

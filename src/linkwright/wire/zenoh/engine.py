@@ -101,7 +101,7 @@ class Engine(AnyEngine):
         """
         self._wake_event.set()
 
-    def has_neighbours(self) -> bool:
+    def has_neighbors(self) -> bool:
         """Return whether this session is connected to another session or a router."""
         info = self._session.info
         return bool(info.peers_zid() or info.routers_zid())

@@ -105,7 +105,7 @@ class ZenohTransport(BackgroundTransport):
 
     def _has_settled(self, quiet: float) -> bool:
         engine = self._zenoh_engine
-        if engine is None or not engine.has_neighbours():
+        if engine is None or not engine.has_neighbors():
             return quiet >= _ALONE_AFTER
         self._connected_at = self._connected_at or time.monotonic()
         return min(quiet, time.monotonic() - self._connected_at) >= SETTLED_AFTER

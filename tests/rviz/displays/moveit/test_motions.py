@@ -146,8 +146,8 @@ async def test_color_and_trail():
         assert len([name for name in shown_markers(display) if name.endswith("/hand")]) == 3
         display.set_property(("Show Trail",), False)
         display.set_property(("Color Enabled",), False)
-        (grey,) = [each["color"] for name, each in shown_markers(display).items() if name.endswith("/base")]
-        assert grey == [0.5, 0.5, 0.5, 0.5]
+        (gray,) = [each["color"] for name, each in shown_markers(display).items() if name.endswith("/base")]
+        assert gray == [0.5, 0.5, 0.5, 0.5]
 
 
 async def test_a_new_motion_waits_unless_it_is_to_interrupt():

@@ -214,7 +214,7 @@ class NavsatTransformNode(SingleNode):
         return (0.0, 0.0, 0.0) if pose is None else pose[:3]
 
     def _grid_from_geodetic(self, geodetic: Vector3) -> Vector3:
-        """Convert a geodetic position (degrees and metres) to a point of the grid, in metres."""
+        """Convert a geodetic position (degrees and meters) to a point of the grid, in meters."""
         if self._plane is not None:
             return self._plane.point_from_geodetic(*geodetic)
         assert self._zone is not None, "`_locate_map` sets it"
@@ -222,7 +222,7 @@ class NavsatTransformNode(SingleNode):
         return easting, northing, geodetic[2]
 
     def _geodetic_from_grid(self, point: Vector3) -> Vector3:
-        """Convert a point of the grid, in metres, to a geodetic position (degrees and metres)."""
+        """Convert a point of the grid, in meters, to a geodetic position (degrees and meters)."""
         if self._plane is not None:
             return self._plane.geodetic_from_point(point)
         assert self._zone is not None, "`_locate_map` sets it"

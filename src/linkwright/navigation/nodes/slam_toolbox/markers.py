@@ -24,7 +24,7 @@ def graph_markers(graph: PoseGraph, frame: str, stamp: Any) -> Any:
     consecutive_edges = [(first, second) for first, second in edges if second == first + 1]
     other_edges = [(first, second) for first, second in edges if second != first + 1]
     kind = get_message("visualization_msgs/msg/Marker")
-    for number, (shape, size, colour, marker_points) in enumerate(
+    for number, (shape, size, color, marker_points) in enumerate(
         (
             (kind.SPHERE_LIST, _SPHERE_DIAMETER, (1.0, 0.0, 0.0), points),
             (
@@ -47,7 +47,7 @@ def graph_markers(graph: PoseGraph, frame: str, stamp: Any) -> Any:
         marker.action = kind.ADD if marker_points else kind.DELETE
         marker.pose.orientation.w = 1.0
         marker.scale.x = marker.scale.y = marker.scale.z = size
-        marker.color.r, marker.color.g, marker.color.b = colour
+        marker.color.r, marker.color.g, marker.color.b = color
         marker.color.a = 1.0
         marker.points = marker_points
         array.markers.append(marker)

@@ -37,7 +37,7 @@ _WITHOUT_EFFECT: dict[str, bool | int | float | str] = {
 
 @dataclass(frozen=True, slots=True)
 class Settings:
-    """The parameters of a node, in metres, radians, and nanoseconds if the name ends in ``_ns``.
+    """The parameters of a node, in meters, radians, and nanoseconds if the name ends in ``_ns``.
 
     Attributes:
         odom_frame: the frame of odometry.

@@ -55,7 +55,7 @@ class DisplayHost(Protocol):
 
 
 Pose = NDArray[np.float64]
-"""The pose of a frame in the Fixed Frame: x, y, z in metres, qx, qy, qz, qw, shape (7,)."""
+"""The pose of a frame in the Fixed Frame: x, y, z in meters, qx, qy, qz, qw, shape (7,)."""
 
 _LEVEL_RANK: dict[StatusLevel, int] = {"ok": 0, "warn": 1, "error": 2}
 

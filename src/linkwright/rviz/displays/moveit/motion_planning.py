@@ -24,9 +24,9 @@ _REQUEST_SPEC = PropertySpec(
     children=(
         PropertySpec("Query Start State", "bool", False, "Draw the first state."),
         PropertySpec("Query Goal State", "bool", True, "Draw the last state."),
-        PropertySpec("Start State Color", "color", "#00ff00", "Colour of the first state."),
+        PropertySpec("Start State Color", "color", "#00ff00", "Color of the first state."),
         fraction("Start State Alpha", 1.0, "Opacity of the first state."),
-        PropertySpec("Goal State Color", "color", "#fa8000", "Colour of the last state."),
+        PropertySpec("Goal State Color", "color", "#fa8000", "Color of the last state."),
         fraction("Goal State Alpha", 1.0, "Opacity of the last state."),
     ),
 )

@@ -44,8 +44,8 @@ class Cells:
     """The leaves of a tree.
 
     Attributes:
-        centers: the centres of the cells, metres, shape (N, 3).
-        sizes: the edge lengths of the cells, metres, shape (N,).
+        centers: the centers of the cells, meters, shape (N, 3).
+        sizes: the edge lengths of the cells, meters, shape (N,).
         probabilities: the probability that each cell is occupied, shape (N,).
     """
 
@@ -65,7 +65,7 @@ def read_octree(*, data: bytes, binary: bool, kind: str, resolution: float) -> C
         data: the bytes of the message's `data`.
         binary: whether the data has the binary form, instead of the full form.
         kind: the class of the tree, which is the message's `id`.
-        resolution: the edge length of the smallest cells, metres.
+        resolution: the edge length of the smallest cells, meters.
 
     Raises:
         BadOctreeError: the data is too short or too long, or the resolution or the class is not supported.
@@ -110,7 +110,7 @@ def _leaf_cells(inner_nodes: NDArray[np.int64], bits: NDArray[np.int64], resolut
     Args:
         inner_nodes: the inner nodes, shape (N, 4).
         bits: for each inner node, the states of its eight children, two bits each.
-        resolution: the edge length of the smallest cells, metres.
+        resolution: the edge length of the smallest cells, meters.
     """
     states = bits[:, None] >> 2 * np.arange(8) & 3
     parents, children = np.nonzero((states == _FREE) | (states == _OCCUPIED))
@@ -155,7 +155,7 @@ def _read_full(data: bytes, kind: str, resolution: float) -> Cells:
 
 
 _Node = tuple[int, int, int, int]
-"""The centre x, y, z of a node and its edge length, in units of half the edge of the smallest cells."""
+"""The center x, y, z of a node and its edge length, in units of half the edge of the smallest cells."""
 
 _ROOT: _Node = (0, 0, 0, 2 << _MAX_DEPTH)
 

@@ -249,4 +249,4 @@ class PlanningSceneDisplay(MoveItDisplay):
 
 
 _COMPONENTS = 1 | 2 | 4 | 8 | 16 | 32 | 64 | 512
-"""The requested components: settings, state, objects with names and shapes, octomap, transforms and colours."""
+"""The requested components: settings, state, objects with names and shapes, octomap, transforms and colors."""

@@ -50,8 +50,8 @@ GEOMETRY_SPEC = PropertySpec(
     children=(
         PropertySpec("Scene Name", "string", "(noname)", "The name of the scene.", read_only=True),
         PropertySpec("Show Scene Geometry", "bool", True, "Draw the objects and the octomap."),
-        fraction("Scene Alpha", 0.9, "Opacity of objects that have no colour, and of the octomap."),
-        PropertySpec("Scene Color", "color", "#32e632", "Colour of objects that have no colour."),
+        fraction("Scene Alpha", 0.9, "Opacity of objects that have no color, and of the octomap."),
+        PropertySpec("Scene Color", "color", "#32e632", "Color of objects that have no color."),
         VOXEL_RENDERING,
         VOXEL_COLORING,
         PropertySpec(
@@ -60,7 +60,7 @@ GEOMETRY_SPEC = PropertySpec(
     ),
 )
 ATTACHED_COLOR_SPEC = PropertySpec(
-    "Attached Body Color", "color", "#963296", "Colour of attached bodies that have no colour."
+    "Attached Body Color", "color", "#963296", "Color of attached bodies that have no color."
 )
 
 
@@ -115,8 +115,8 @@ def path_specs(links: Sequence[str]) -> tuple[PropertySpec, ...]:
         PropertySpec(
             "Interrupt Display", "bool", False, "Show a new motion without waiting for the end of the previous one."
         ),
-        PropertySpec("Robot Color", "color", "#963296", "Colour of the robot that moves."),
-        PropertySpec("Color Enabled", "bool", False, "Draw the robot that moves in that colour."),
+        PropertySpec("Robot Color", "color", "#963296", "Color of the robot that moves."),
+        PropertySpec("Color Enabled", "bool", False, "Draw the robot that moves in that color."),
         links_spec(links),
     )
 
@@ -133,7 +133,7 @@ def links_spec(links: Sequence[str]) -> PropertySpec:
 
 
 def rgb(text: str) -> tuple[float, float, float]:
-    """Return the RGB components, 0 to 1, of a colour such as ``#32e632``."""
+    """Return the RGB components, 0 to 1, of a color such as ``#32e632``."""
     red, green, blue = (int(text[start : start + 2], 16) / 255.0 for start in (1, 3, 5))
     return red, green, blue
 
@@ -168,7 +168,7 @@ def look(
         robot: the robot whose links have check boxes.
         namespace: the markers' namespace.
         group_path: the path of the group that contains the properties.
-        color: the colour of all links, such as ``#963296``; None to use the colours in the description.
+        color: the color of all links, such as ``#963296``; None to use the colors in the description.
     """
     return Look(
         namespace,

@@ -21,7 +21,7 @@ from linkwright.rviz.robot import SceneBuilder
 from linkwright.urdf import Robot
 
 _DEFAULT_COLOR: Color = (1.0, 0.0, 0.0, 1.0)
-"""The colour of shapes for which the description has no colour, as in RViz."""
+"""The color of shapes for which the description has no color, as in RViz."""
 
 
 @dataclass(slots=True)
@@ -45,7 +45,7 @@ class JointPositions:
 
 @dataclass(frozen=True, slots=True)
 class Look:
-    """The appearance of a robot: colours, opacity, and the links and shapes to draw.
+    """The appearance of a robot: colors, opacity, and the links and shapes to draw.
 
     Attributes:
         namespace: the markers' namespace.
@@ -53,8 +53,8 @@ class Look:
         collision: whether to draw the collision geometry.
         alpha: the opacity of all links.
         alphas: the opacity of individual links, which is multiplied by `alpha`; links with 0 are not drawn.
-        color: the RGB colour of all links; None to use the colours in the description.
-        links: the colours of individual links, which take precedence over `color`.
+        color: the RGB color of all links; None to use the colors in the description.
+        links: the colors of individual links, which take precedence over `color`.
         only: the names of the links that are drawn; None to draw all of them.
     """
 
@@ -283,10 +283,10 @@ def _pose_in_link(shape: Shape) -> Transform:
 
 
 def _description_color(shape: Shape) -> Color:
-    """Return the colour of a shape in the description, by default red.
+    """Return the color of a shape in the description, by default red.
 
-    The colour of a mesh is white, because it is multiplied by the materials of the mesh. STL meshes have no materials,
-    and so have the colour of the description.
+    The color of a mesh is white, because it is multiplied by the materials of the mesh. STL meshes have no materials,
+    and so have the color of the description.
     """
     if shape.kind == "mesh" and not (shape.format or "").startswith("stl"):
         alpha = shape.color[3] if shape.color else 1.0

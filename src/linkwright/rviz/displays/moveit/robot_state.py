@@ -29,7 +29,7 @@ _HIGHLIGHTS_ROW = "Highlights"
 
 
 class RobotStateDisplay(MoveItDisplay):
-    """A display of a robot in the state, and with the link colours, of the last message."""
+    """A display of a robot in the state, and with the link colors, of the last message."""
 
     CLASS = "moveit_rviz_plugin/RobotState"
     MESSAGE = "moveit_msgs/msg/DisplayRobotState"
@@ -48,7 +48,7 @@ class RobotStateDisplay(MoveItDisplay):
             *visibility("Visual Enabled", "Collision Enabled"),
             fraction("Robot Alpha", 1.0, "Opacity of the robot."),
             ATTACHED_COLOR_SPEC,
-            PropertySpec("Show Highlights", "bool", True, "Draw links in the colours that the message gives them."),
+            PropertySpec("Show Highlights", "bool", True, "Draw links in the colors that the message gives them."),
             links_spec(self.link_names),
         )
 

@@ -24,7 +24,7 @@ Form = tuple[MarkerKind, Sequence[float], NDArray[np.float32]]
 _NO_POINTS = np.empty((0, 3), dtype=np.float32)
 
 _PLANE_EDGE = 10.0
-"""The edge length in metres of the square that represents an infinite plane."""
+"""The edge length in meters of the square that represents an infinite plane."""
 
 _CONE_CORNERS = 24
 """The number of corners of the circle of a cone."""
@@ -43,7 +43,7 @@ def object_markers(message: Any, namespace: str, color: Color, *, frame: str, ba
     Args:
         message: the object. A pose that is not set is the identity.
         namespace: the markers' namespace.
-        color: the colour of all shapes.
+        color: the color of all shapes.
         frame: the frame that the markers follow.
         base: the pose of the frame in the message's header, relative to `frame`.
 
@@ -175,7 +175,7 @@ def _mesh(mesh: Any) -> Form:
 def _plane(plane: Any) -> Form:
     """Return a square in the plane a x + b y + c z + d = 0.
 
-    The square is centred on the point of the plane that is nearest to the origin.
+    The square is centered on the point of the plane that is nearest to the origin.
     """
     normal, distance = np.array(plane.coef[:3], dtype=np.float64), float(plane.coef[3])
     length = float(np.linalg.norm(normal))

@@ -1,4 +1,4 @@
-"""Markers for octree cells, and the properties for selecting and colouring the cells."""
+"""Markers for octree cells, and the properties for selecting and coloring the cells."""
 
 from __future__ import annotations
 
@@ -25,7 +25,7 @@ VOXEL_COLORING = PropertySpec(
     "Voxel Coloring",
     "enum",
     _BY_HEIGHT,
-    "Whether the colour of a cell shows its height or the probability that it is occupied.",
+    "Whether the color of a cell shows its height or the probability that it is occupied.",
     options=(_BY_HEIGHT, BY_PROBABILITY),
 )
 
@@ -48,7 +48,7 @@ def octomap_markers(
         frame: the frame that the markers follow.
         base: the pose of the tree in `frame`.
         alpha: the opacity of all cells.
-        by_probability: whether the colour of a cell shows the probability that the cell is occupied, instead of its
+        by_probability: whether the color of a cell shows the probability that the cell is occupied, instead of its
             height.
     """
     cells = cells.chosen(_visible_mask(cells))
@@ -91,14 +91,14 @@ _RAINBOW = np.array([colorsys.hsv_to_rgb(0.8 * (1.0 - step / 63.0), 1.0, 1.0) fo
 
 
 def _visible_mask(cells: Cells) -> NDArray[np.bool_]:
-    """Return a mask of the cells with at least one side without a neighbour of the same size."""
+    """Return a mask of the cells with at least one side without a neighbor of the same size."""
     is_visible = np.ones(len(cells.sizes), dtype=np.bool_)
     for size in np.unique(cells.sizes):
         mask = cells.sizes == size
         codes = _cell_codes(np.floor(cells.centers[mask] / size).astype(np.int64))
         sorted_codes = np.sort(codes)
         is_enclosed = np.ones(len(codes), dtype=np.bool_)
-        for step in _NEIGHBOUR_OFFSETS:
+        for step in _NEIGHBOR_OFFSETS:
             positions = np.searchsorted(sorted_codes, codes + step)
             is_enclosed &= sorted_codes[np.minimum(positions, len(sorted_codes) - 1)] == codes + step
         is_visible[mask] = ~is_enclosed
@@ -106,8 +106,8 @@ def _visible_mask(cells: Cells) -> NDArray[np.bool_]:
 
 
 _BITS = 20
-_NEIGHBOUR_OFFSETS = (1, -1, 1 << _BITS, -(1 << _BITS), 1 << 2 * _BITS, -(1 << 2 * _BITS))
-"""The differences between the codes of a cell's six neighbours and the code of the cell."""
+_NEIGHBOR_OFFSETS = (1, -1, 1 << _BITS, -(1 << _BITS), 1 << 2 * _BITS, -(1 << 2 * _BITS))
+"""The differences between the codes of a cell's six neighbors and the code of the cell."""
 
 
 def _cell_codes(indices: NDArray[np.int64]) -> NDArray[np.int64]:

@@ -105,7 +105,7 @@ def _label_of(labels: dict[str, int], part: str) -> int:
     return 0
 
 
-class _LabellingCamera(CameraPlugin[NoParameters]):
+class _LabelingCamera(CameraPlugin[NoParameters]):
     """The base class of cameras that need the labels of the visible geoms."""
 
     def make_sensor(self) -> None:
@@ -128,7 +128,7 @@ class _LabellingCamera(CameraPlugin[NoParameters]):
             output.publish(message)
 
 
-class GzSegmentation(_LabellingCamera):
+class GzSegmentation(_LabelingCamera):
     """The sensor ``segmentation_camera`` of gz, which publishes a label map and a colored map."""
 
     def make_topics(self) -> None:
@@ -169,7 +169,7 @@ class GzSegmentation(_LabellingCamera):
             self.publish_colors(self._colored, colored)
 
 
-class GzBoxes(_LabellingCamera):
+class GzBoxes(_LabelingCamera):
     """The sensor ``boundingbox_camera`` of gz.
 
     The sensor publishes bounding boxes of the visible parts of labeled models, and an image with these boxes. Unlike

@@ -29,7 +29,7 @@ class _YoloOutput(nn.Module):
         self.shift = math.log((1 - threshold) / threshold)
 
     def forward(self, images: Tensor) -> Tensor:
-        """Return centre, width and height in pixels, and the scores.
+        """Return center, width and height in pixels, and the scores.
 
         The shape is (batch, 4 + classes, cells).
         """

@@ -1,7 +1,7 @@
 """Initial weights from a network that `linkwright vision train` exported.
 
-The export folds the normalisation into each convolution. This module splits it into two layers with the same result.
-The file lacks the statistics of the normalisation, so they are measured with images.
+The export folds the normalization into each convolution. This module splits it into two layers with the same result.
+The file lacks the statistics of the normalization, so they are measured with images.
 """
 
 from __future__ import annotations
@@ -65,7 +65,7 @@ def load_weights(network: Network, names: Sequence[str], path: Path, images: Ite
             else:
                 layer.weight.copy_(kernel)
                 _set_bias(blocks[layer].norm if layer in blocks else layer, bias)
-        _restore_normalisation(network, list(blocks.values()), images)
+        _restore_normalization(network, list(blocks.values()), images)
 
 
 def _read(path: Path) -> tuple[tuple[str, ...], list[tuple[Tensor, Tensor]]]:
@@ -107,7 +107,7 @@ def _execution_order(network: Network) -> list[nn.Conv2d]:
 
 
 def _set_bias(layer: nn.Conv2d | nn.BatchNorm2d, bias: Tensor) -> None:
-    """Set the bias of a layer, and turn a normalisation into the addition of this bias."""
+    """Set the bias of a layer, and turn a normalization into the addition of this bias."""
     layer.bias.copy_(bias)
     if isinstance(layer, nn.BatchNorm2d):
         layer.weight.fill_(1.0)
@@ -115,8 +115,8 @@ def _set_bias(layer: nn.Conv2d | nn.BatchNorm2d, bias: Tensor) -> None:
         layer.running_var.fill_(1.0 - layer.eps)
 
 
-def _restore_normalisation(network: Network, blocks: Sequence[Convolution], images: Iterable[Tensor]) -> None:
-    """Move scale and statistics from the kernels into the normalisations.
+def _restore_normalization(network: Network, blocks: Sequence[Convolution], images: Iterable[Tensor]) -> None:
+    """Move scale and statistics from the kernels into the normalizations.
 
     The results stay the same. Then each output's kernel has norm 1, which the optimizer needs because all its steps
     have the same length.

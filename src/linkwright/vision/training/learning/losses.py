@@ -14,7 +14,7 @@ from torch.nn import functional
 
 _SCORE_POWER, _OVERLAP_POWER = 1.0, 4.0
 _CELLS_PER_OBJECT = 10
-_MIN_HALF_SIZE = 8.0  # for small objects: cells within this many pixels of the centre may be assigned
+_MIN_HALF_SIZE = 8.0  # for small objects: cells within this many pixels of the center may be assigned
 _BOX_WEIGHT, _SCORE_WEIGHT = 4.0, 1.0
 _EPSILON = 1e-7
 
@@ -38,14 +38,14 @@ class Assignment:
 
 
 def pairwise_iou(first: Tensor, second: Tensor) -> tuple[Tensor, Tensor]:
-    """Return the IoU and the generalised IoU of pairs of boxes.
+    """Return the IoU and the generalized IoU of pairs of boxes.
 
     Args:
         first: shape (..., 4), left, top, right, bottom.
         second: boxes whose shape broadcasts with `first`.
 
     Returns:
-        The intersection over union, and the generalised one (Rezatofighi and others 2019), which also differs between
+        The intersection over union, and the generalized one (Rezatofighi and others 2019), which also differs between
         boxes that do not touch. Both have the broadcast shape without the last axis.
     """
     intersection_sizes = (
@@ -62,13 +62,13 @@ def pairwise_iou(first: Tensor, second: Tensor) -> tuple[Tensor, Tensor]:
 
 
 @torch.no_grad()
-def assign(boxes: Tensor, logits: Tensor, centres: Tensor, objects: Tensor) -> Assignment:
+def assign(boxes: Tensor, logits: Tensor, centers: Tensor, objects: Tensor) -> Assignment:
     """Assign cells to each object, and return the targets of all cells.
 
     Args:
         boxes: the boxes of the network, shape (batch, cells, 4).
         logits: the class logits of the network, shape (batch, cells, classes).
-        centres: the centres of the cells, shape (cells, 2).
+        centers: the centers of the cells, shape (cells, 2).
         objects: shape (batch, count, 5): class, left, top, right, bottom. Class -1 pads images with fewer objects; a
             class below -1 marks an ignored object.
     """
@@ -80,8 +80,8 @@ def assign(boxes: Tensor, logits: Tensor, centres: Tensor, objects: Tensor) -> A
     scores = logits.sigmoid().transpose(1, 2).gather(1, class_indices[..., None].expand(-1, -1, cells))
     alignment = scores**_SCORE_POWER * iou**_OVERLAP_POWER
     half_sizes = ((object_boxes[..., 2:] - object_boxes[..., :2]) / 2).clamp(_MIN_HALF_SIZE)
-    object_centres = (object_boxes[..., :2] + object_boxes[..., 2:]) / 2
-    is_near = ((centres - object_centres[:, :, None]).abs() <= half_sizes[:, :, None]).all(3) & is_object[..., None]
+    object_centers = (object_boxes[..., :2] + object_boxes[..., 2:]) / 2
+    is_near = ((centers - object_centers[:, :, None]).abs() <= half_sizes[:, :, None]).all(3) & is_object[..., None]
     alignment = (alignment + _EPSILON * iou) * is_near
     best_cells = alignment.topk(min(_CELLS_PER_OBJECT, cells), 2).indices
     is_candidate = torch.zeros_like(is_near).scatter_(2, best_cells, value=True) & is_near & (alignment > 0)
@@ -94,7 +94,7 @@ def assign(boxes: Tensor, logits: Tensor, centres: Tensor, objects: Tensor) -> A
     cell_scores = alignment / (alignment.amax(2, keepdim=True) + 1e-12) * (iou * is_candidate).amax(2, keepdim=True)
     target_scores = cell_scores.amax(1) * is_assigned
     target = functional.one_hot(class_indices.gather(1, assigned_object), classes) * target_scores[..., None]
-    is_inside = (centres >= object_boxes[:, :, None, :2]).all(3) & (centres <= object_boxes[:, :, None, 2:]).all(3)
+    is_inside = (centers >= object_boxes[:, :, None, :2]).all(3) & (centers <= object_boxes[:, :, None, 2:]).all(3)
     is_ignored = (is_inside & (objects[..., 0] < -1)[..., None]).any(1) & ~is_assigned
     return Assignment(
         object_boxes.gather(1, assigned_object[..., None].expand(-1, -1, 4)),
@@ -104,20 +104,20 @@ def assign(boxes: Tensor, logits: Tensor, centres: Tensor, objects: Tensor) -> A
     )
 
 
-def loss(boxes: Tensor, logits: Tensor, centres: Tensor, objects: Tensor) -> tuple[Tensor, Tensor]:
+def loss(boxes: Tensor, logits: Tensor, centers: Tensor, objects: Tensor) -> tuple[Tensor, Tensor]:
     """Return the loss of a batch, given the arguments of `assign`.
 
     Returns:
         The total loss; and the box loss and the score loss, shape (2,), without gradients.
     """
-    targets = assign(boxes, logits, centres, objects)
+    targets = assign(boxes, logits, centers, objects)
     normalizer = targets.scores.sum().clamp(1.0)
     score_loss = functional.binary_cross_entropy_with_logits(logits, targets.scores, reduction="none")
     # Empty cells with high scores weigh most. Empty cells with low scores are already correct and weigh almost nothing.
     weights = torch.where(targets.scores > 0, targets.scores, 0.75 * logits.sigmoid().detach() ** 2)
     score_loss = (score_loss * weights * ~targets.is_ignored[..., None]).sum() / normalizer
     box_weights = targets.scores.sum(2)[targets.is_assigned]
-    _, generalised_iou = pairwise_iou(boxes[targets.is_assigned], targets.boxes[targets.is_assigned])
-    box_loss = ((1 - generalised_iou) * box_weights).sum() / normalizer
+    _, generalized_iou = pairwise_iou(boxes[targets.is_assigned], targets.boxes[targets.is_assigned])
+    box_loss = ((1 - generalized_iou) * box_weights).sum() / normalizer
     total = _BOX_WEIGHT * box_loss + _SCORE_WEIGHT * score_loss
     return total, torch.stack((box_loss, score_loss)).detach()

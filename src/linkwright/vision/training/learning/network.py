@@ -2,7 +2,7 @@
 
 A backbone of half-stages (as in CSPNet, Wang and others 2019) computes features for cells of 8, 16 and 32 pixels. A
 pyramid passes coarse features to the fine ones and back (PANet, Liu and others 2018). One head per scale predicts for
-each cell the class, and the distances of the four sides of a box from the cell's centre (FCOS, Tian and others 2019).
+each cell the class, and the distances of the four sides of a box from the cell's center (FCOS, Tian and others 2019).
 Depthwise convolutions would have fewer weights, but a CPU computes dense convolutions with few channels in the same
 time.
 """
@@ -39,7 +39,7 @@ class Shape:
 
 
 class Convolution(nn.Module):
-    """A convolution with normalisation and SiLU."""
+    """A convolution with normalization and SiLU."""
 
     def __init__(self, inputs: int, outputs: int, size: int = 1, stride: int = 1) -> None:
         super().__init__()
@@ -47,7 +47,7 @@ class Convolution(nn.Module):
         self.norm = nn.BatchNorm2d(outputs, eps=1e-3, momentum=0.03)
 
     def forward(self, features: Tensor) -> Tensor:
-        """Apply the convolution, the normalisation and SiLU.
+        """Apply the convolution, the normalization and SiLU.
 
         The shape (batch, inputs, height, width) becomes (batch, outputs, height / stride, width / stride).
         """
@@ -157,9 +157,9 @@ class Network(nn.Module):
         coarse = self.up_coarse(torch.cat((self.halve_middle(middle), coarse), 1))
         levels = [head(level) for head, level in zip(self.heads, (fine, middle, coarse), strict=True)]
         outputs = torch.cat(levels, 2).transpose(1, 2)
-        centres, strides = cells(images.shape[3], images.shape[2], images.device)
+        centers, strides = cells(images.shape[3], images.shape[2], images.device)
         distances = outputs[..., :4].clamp(max=_MAX_LOG_DISTANCE).exp() * strides
-        boxes = torch.cat((centres - distances[..., :2], centres + distances[..., 2:]), 2)
+        boxes = torch.cat((centers - distances[..., :2], centers + distances[..., 2:]), 2)
         return boxes, outputs[..., 4:]
 
 
@@ -169,15 +169,15 @@ def _upsample(features: Tensor) -> Tensor:
 
 @cache
 def cells(width: int, height: int, device: torch.device = _CPU) -> tuple[Tensor, Tensor]:
-    """Return the centres and strides of the cells of all scales, for an image size in pixels.
+    """Return the centers and strides of the cells of all scales, for an image size in pixels.
 
     Returns:
-        The centres in pixels, shape (cells, 2), and the strides in pixels, shape (cells, 1).
+        The centers in pixels, shape (cells, 2), and the strides in pixels, shape (cells, 1).
     """
-    centres, strides = [], []
+    centers, strides = [], []
     for stride in STRIDES:
         rows, columns = height // stride, width // stride
         y, x = torch.meshgrid(torch.arange(rows), torch.arange(columns), indexing="ij")
-        centres.append((torch.stack((x, y), 2).reshape(-1, 2) + 0.5) * stride)
+        centers.append((torch.stack((x, y), 2).reshape(-1, 2) + 0.5) * stride)
         strides.append(torch.full((rows * columns, 1), float(stride)))
-    return torch.cat(centres).to(device), torch.cat(strides).to(device)
+    return torch.cat(centers).to(device), torch.cat(strides).to(device)

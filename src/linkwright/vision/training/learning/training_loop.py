@@ -22,7 +22,7 @@ from linkwright.vision.detections import Detections
 from linkwright.vision.detectors.suppression import non_maximum_suppression
 from linkwright.vision.evaluation import Evaluation, GroundTruth, best_f1_threshold, evaluate
 from linkwright.vision.training.detector_evaluation import EVALUATION_LIMITS
-from linkwright.vision.training.images import LabelledImages, augment, repeat_factors, repeated_indices
+from linkwright.vision.training.images import LabeledImages, augment, repeat_factors, repeated_indices
 from linkwright.vision.training.learning.initial_weights import load_weights
 from linkwright.vision.training.learning.losses import loss
 from linkwright.vision.training.learning.network import Network, Shape, cells
@@ -74,7 +74,7 @@ class TrainingLoop:
     """
 
     def __init__(
-        self, names: Sequence[str], options: Options, training: LabelledImages, validation: LabelledImages
+        self, names: Sequence[str], options: Options, training: LabeledImages, validation: LabeledImages
     ) -> None:
         torch.set_num_threads(options.threads)
         torch.manual_seed(options.seed)
@@ -142,8 +142,8 @@ class TrainingLoop:
             images, objects = self._batch(indices, seed)
             with torch.autocast(self._device.type, torch.bfloat16, enabled=self.options.precision == "bfloat16"):
                 boxes, logits = self.network(images)
-            centres, _ = cells(images.shape[3], images.shape[2], images.device)
-            total, losses = loss(boxes, logits, centres, objects)
+            centers, _ = cells(images.shape[3], images.shape[2], images.device)
+            total, losses = loss(boxes, logits, centers, objects)
             self._optimizer.reset_gradients()
             total.backward()
             nn.utils.clip_grad_norm_(self.network.parameters(), _MAX_GRADIENT_NORM)

@@ -1,4 +1,4 @@
-"""RViz's colour transformers: selection by the fields of a cloud, and point colours."""
+"""RViz's color transformers: selection by the fields of a cloud, and point colors."""
 
 from __future__ import annotations
 
@@ -20,27 +20,27 @@ _MAX_INTENSITY = 999999.0
 """The largest absolute intensity that RViz uses as a computed bound."""
 
 _RAINBOW_STEPS = 5 * 255
-"""The number of steps of the rainbow from magenta to red, along five edges of the colour cube."""
+"""The number of steps of the rainbow from magenta to red, along five edges of the color cube."""
 
 _MIX_STEPS = 255
 
-Colours = NDArray[np.uint8]
-"""Shape (N, 4): red, green, blue, alpha. It has no rows if all points have the colour of the display."""
+Colors = NDArray[np.uint8]
+"""Shape (N, 4): red, green, blue, alpha. It has no rows if all points have the color of the display."""
 
 
 @dataclass(frozen=True, slots=True)
-class ColourSettings:
-    """The settings of the colour transformers.
+class ColorSettings:
+    """The settings of the color transformers.
 
-    Colours are RGB, 0 to 255.
+    Colors are RGB, 0 to 255.
 
     Attributes:
         transformer: one of `TRANSFORMERS`.
         channel: the name of the channel that ``Intensity`` uses.
         rainbow: whether ``Intensity`` uses the rainbow instead of a gradient from `darkest` to `brightest`.
         inverted: whether the rainbow of ``Intensity`` is reversed.
-        darkest: the colour of the minimum intensity.
-        brightest: the colour of the maximum intensity.
+        darkest: the color of the minimum intensity.
+        brightest: the color of the maximum intensity.
         intensities: minimum and maximum intensity, or None to compute them from the cloud.
         axis: the axis of ``AxisColor``, an index of `AXES`.
         values: minimum and maximum coordinate, or None to compute them from the cloud.
@@ -60,7 +60,7 @@ class ColourSettings:
 
 
 def supported_transformers(points: Points) -> tuple[str, ...]:
-    """Return the transformers that can colour these points.
+    """Return the transformers that can color these points.
 
     The transformer that RViz selects by default is the first.
     """
@@ -75,35 +75,35 @@ def supported_transformers(points: Points) -> tuple[str, ...]:
     return tuple(transformers)
 
 
-def coloured(
-    points: Points, settings: ColourSettings, pose: NDArray[np.float64] | None = None
-) -> tuple[Colours, tuple[float, float] | None]:
-    """Return the colours of the points, and the computed bounds or None.
+def colored(
+    points: Points, settings: ColorSettings, pose: NDArray[np.float64] | None = None
+) -> tuple[Colors, tuple[float, float] | None]:
+    """Return the colors of the points, and the computed bounds or None.
 
-    With ``FlatColor`` the colours have no rows, because all points have the colour of the display. Bounds are the
+    With ``FlatColor`` the colors have no rows, because all points have the color of the display. Bounds are the
     minimum and maximum of the intensity or coordinate. They are computed if the settings do not contain them.
 
     Args:
         points: the points.
-        settings: the colour settings; the points must support the transformer.
+        settings: the color settings; the points must support the transformer.
         pose: the pose of the points' frame in the Fixed Frame, x y z qx qy qz qw; None if the points are in the Fixed
             Frame.
     """
     if settings.transformer == INTENSITY:
-        return _colour_by_intensity(points, settings)
+        return _color_by_intensity(points, settings)
     if settings.transformer == AXIS:
-        return _colour_by_axis(points, settings, pose)
+        return _color_by_axis(points, settings, pose)
     if settings.transformer == RGB8:
-        return _unpacked_colours(points), None
+        return _unpacked_colors(points), None
     if settings.transformer == RGBF32:
         parts = [np.clip(np.nan_to_num(points.channels[name]), 0.0, 1.0) * 255.0 for name in "rgb"]
-        colours = np.full((len(points), 4), 255, np.uint8)
-        colours[:, :3] = np.stack(parts, axis=1)
-        return colours, None
+        colors = np.full((len(points), 4), 255, np.uint8)
+        colors[:, :3] = np.stack(parts, axis=1)
+        return colors, None
     return np.empty((0, 4), np.uint8), None
 
 
-def _colour_by_intensity(points: Points, settings: ColourSettings) -> tuple[Colours, tuple[float, float] | None]:
+def _color_by_intensity(points: Points, settings: ColorSettings) -> tuple[Colors, tuple[float, float] | None]:
     values = points.values(settings.channel)
     if values is None and settings.channel == "intensity":
         values = points.values("intensities")
@@ -117,13 +117,13 @@ def _colour_by_intensity(points: Points, settings: ColourSettings) -> tuple[Colo
     if settings.rainbow:
         table = rainbow()[::-1] if not settings.inverted else rainbow()
     else:
-        table = _two_colour_gradient(settings.darkest, settings.brightest)
-    return _colours_from_table(table, values, minimum, span), computed
+        table = _two_color_gradient(settings.darkest, settings.brightest)
+    return _colors_from_table(table, values, minimum, span), computed
 
 
-def _colour_by_axis(
-    points: Points, settings: ColourSettings, pose: NDArray[np.float64] | None
-) -> tuple[Colours, tuple[float, float] | None]:
+def _color_by_axis(
+    points: Points, settings: ColorSettings, pose: NDArray[np.float64] | None
+) -> tuple[Colors, tuple[float, float] | None]:
     if settings.in_fixed_frame and pose is not None:
         row = rotation_matrix(normalized(*pose[3:]))[settings.axis].astype(np.float32)
         values = points.positions @ row + np.float32(pose[settings.axis])
@@ -133,7 +133,7 @@ def _colour_by_axis(
     if settings.values is None:
         computed = _bounds(values, 9999.0)
     minimum, maximum = computed or settings.values or (0.0, 0.0)
-    return _colours_from_table(rainbow()[::-1], values, minimum, maximum - minimum or 0.001), computed
+    return _colors_from_table(rainbow()[::-1], values, minimum, maximum - minimum or 0.001), computed
 
 
 def _bounds(values: NDArray[Any], limit: float) -> tuple[float, float]:
@@ -152,7 +152,7 @@ def _bounds(values: NDArray[Any], limit: float) -> tuple[float, float]:
     return max(-limit, minimum), min(limit, maximum)
 
 
-def _colours_from_table(table: NDArray[np.uint32], values: NDArray[Any], minimum: float, span: float) -> Colours:
+def _colors_from_table(table: NDArray[np.uint32], values: NDArray[Any], minimum: float, span: float) -> Colors:
     steps = len(table) - 1
     with np.errstate(all="ignore"):
         index = values.astype(np.float32) if values.dtype != np.float32 else values
@@ -160,23 +160,23 @@ def _colours_from_table(table: NDArray[np.uint32], values: NDArray[Any], minimum
         index += np.float32(0.5)
         np.nan_to_num(index, copy=False, nan=0.0, posinf=steps, neginf=0.0)
     np.clip(index, 0, steps, out=index)
-    colours: Colours = table[index.astype(np.intp)].view(np.uint8).reshape(-1, 4)
-    return colours
+    colors: Colors = table[index.astype(np.intp)].view(np.uint8).reshape(-1, 4)
+    return colors
 
 
 @cache
 def rainbow() -> NDArray[np.uint32]:
-    """Return RViz's rainbow as packed colours, from magenta at 0 through blue to red."""
+    """Return RViz's rainbow as packed colors, from magenta at 0 through blue to red."""
     corners = np.array([(1, 0, 1), (0, 0, 1), (0, 1, 1), (0, 1, 0), (1, 1, 0), (1, 0, 0)]) * 255.0
     return _gradient(corners, _RAINBOW_STEPS)
 
 
-def _two_colour_gradient(darkest: tuple[int, int, int], brightest: tuple[int, int, int]) -> NDArray[np.uint32]:
+def _two_color_gradient(darkest: tuple[int, int, int], brightest: tuple[int, int, int]) -> NDArray[np.uint32]:
     return _gradient(np.array([darkest, brightest], dtype=np.float64), _MIX_STEPS)
 
 
 def _gradient(corners: NDArray[np.float64], steps: int) -> NDArray[np.uint32]:
-    """Return a table of opaque packed colours, interpolated evenly between corner colours."""
+    """Return a table of opaque packed colors, interpolated evenly between corner colors."""
     positions = np.linspace(0, len(corners) - 1, steps + 1)
     table = np.full((steps + 1, 4), 255, np.uint8)
     for channel in range(3):
@@ -190,8 +190,8 @@ def _packed_channel(points: Points) -> str | None:
     return next((name for name in reversed(list(points.channels)) if name in ("rgb", "rgba")), None)
 
 
-def _unpacked_colours(points: Points) -> Colours:
-    """Return the packed colours of the points as red, green, blue and alpha, shape (N, 4).
+def _unpacked_colors(points: Points) -> Colors:
+    """Return the packed colors of the points as red, green, blue and alpha, shape (N, 4).
 
     The channel is ``rgb``, or ``rgba`` if there is no ``rgb``.
 
@@ -200,7 +200,7 @@ def _unpacked_colours(points: Points) -> Colours:
     name = "rgb" if "rgb" in points.channels else "rgba"
     values = points.channels[name]
     packed = np.ascontiguousarray(values.astype(values.dtype.newbyteorder("<"))).view(np.uint8).reshape(-1, 4)
-    colours: Colours = packed[:, [2, 1, 0, 3]]
+    colors: Colors = packed[:, [2, 1, 0, 3]]
     if name == "rgb":
-        colours[:, 3] = 255
-    return colours
+        colors[:, 3] = 255
+    return colors
