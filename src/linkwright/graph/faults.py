@@ -1,4 +1,4 @@
-"""The exceptions of the graph, modelled on those of rclpy."""
+"""The exceptions of the graph, modeled on those of rclpy."""
 
 from __future__ import annotations
 

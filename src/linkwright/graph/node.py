@@ -503,12 +503,12 @@ def _values_by_name(parameters: Mapping[str, Any] | Sequence[Parameter]) -> Mapp
     return {parameter.name: parameter.value for parameter in parameters}
 
 
-def _endpoint_profiles(ask: Callable[[str, bool], list[TopicEndpointInfo]], topic: str) -> Iterator[QoSProfile]:
+def _endpoint_profiles(query: Callable[[str, bool], list[TopicEndpointInfo]], topic: str) -> Iterator[QoSProfile]:
     """Iterate over the QoS profiles of a topic's endpoints, in this process and others.
 
     The graph is queried only when the first profile is needed.
     """
-    yield from (endpoint.qos_profile for endpoint in ask(topic, True))
+    yield from (endpoint.qos_profile for endpoint in query(topic, True))
 
 
 P = ParamSpec("P")

@@ -239,11 +239,11 @@ class Classroom:
         """Write the files of a plan, and back up the files that they replace."""
         name = datetime.now().astimezone().strftime("%Y-%m-%d-%H%M%S")
         folders = (self.workspace / REPLACED_FOLDER / f"{name}{suffix}" for suffix in ("", *range(-2, -100, -1)))
-        kept = next(folder for folder in folders if not folder.exists())
+        backup = next(folder for folder in folders if not folder.exists())
         with _writing(self.workspace):
             for target in plan.replaced:
-                _copy(target, kept / target.relative_to(self.workspace))
-                (kept.parent / "COLCON_IGNORE").touch()
+                _copy(target, backup / target.relative_to(self.workspace))
+                (backup.parent / "COLCON_IGNORE").touch()
             for target, source in plan.files.items():
                 _copy(source, target)
         return sorted(plan.files)

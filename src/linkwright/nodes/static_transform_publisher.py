@@ -122,7 +122,7 @@ def _random_suffix() -> str:
 
 
 def _split(arguments: Sequence[str]) -> tuple[dict[str, str], list[str]]:
-    named, positional = {}, []
+    options, positional = {}, []
     known_names = {*_TRANSLATION, *_QUATERNION, *_ANGLES, *_FRAMES}
     waiting = iter(arguments)
     for argument in waiting:
@@ -130,10 +130,10 @@ def _split(arguments: Sequence[str]) -> tuple[dict[str, str], list[str]]:
             value = next(waiting, None)
             if value is None:
                 raise _usage_error(phrase("Not enough arguments for {argument}", argument=argument))
-            named[argument] = value
+            options[argument] = value
         else:
             positional.append(argument)
-    return named, positional
+    return options, positional
 
 
 def _rotation(options: dict[str, str]) -> tuple[float, float, float, float]:

@@ -100,9 +100,9 @@ class _Builder:
             )
         )
 
-    def _shapes(self, link: str, elements: Sequence[Visual | Collision], place: _PoseInLink) -> Iterator[Shape]:
+    def _shapes(self, link: str, elements: Sequence[Visual | Collision], pose_in_link: _PoseInLink) -> Iterator[Shape]:
         for element in elements:
-            shape = self._shape(link, element, place(element.pose))
+            shape = self._shape(link, element, pose_in_link(element.pose))
             if shape is not None:
                 yield shape
 

@@ -77,8 +77,8 @@ async def test_other_forms_are_told_not_to_be_published(test, wav):
     await test.settle()
     warned = [each.text for each in test.log if each.level is LogLevel.WARN]
     assert warned == [
-        "sound is published with sample_rate 16000, not 44100",
-        "sound is published with format wave, not mp3",
+        "parameter 'sample_rate' cannot be '44100': sound is published with '16000'",
+        "parameter 'format' cannot be 'mp3': sound is published with 'wave'",
     ]
 
 

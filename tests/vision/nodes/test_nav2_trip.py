@@ -42,7 +42,7 @@ class Navigator:
         self.goals[-1].execute(finish)
 
 
-@pytest.mark.parametrize(("reached", "message"), [(True, "I am at the ball."), (False, "There is something between")])
+@pytest.mark.parametrize(("reached", "message"), [(True, "I am at the ball."), (False, "An obstacle is between")])
 def test_nav2_goes_there(tmp_path, reached, message):
     with SeekingRobot(tmp_path, (2.0, 0.0), seeker={"use_nav2": True}) as test:
         navigator = Navigator(test)

@@ -14,7 +14,7 @@ from tests.vision.training.images_of_shapes import write_shapes
 
 @pytest.fixture
 def colors(tmp_path):
-    """Red discs and blue squares, which the detector `colors` knows."""
+    """Red discs and blue squares, which the detector `colours` finds."""
     return write_shapes(tmp_path / "colours", 6, names=("red", "blue"))
 
 

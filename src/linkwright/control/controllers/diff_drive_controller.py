@@ -29,7 +29,7 @@ class LinearLimits:
 
 @dataclass(frozen=True, kw_only=True)
 class Parameters(LimitedDriveParameters):
-    """Parameters of the controller."""
+    """The parameters of a diff_drive_controller."""
 
     left_wheel_names: tuple[str, ...] = parameter((), description="the joints of the left wheels")
     right_wheel_names: tuple[str, ...] = parameter((), description="the joints of the right wheels")

@@ -36,7 +36,7 @@ _NO_LINEAR_LIMITS = LinearLimits()
 
 @dataclass(frozen=True, kw_only=True)
 class Parameters(LimitedDriveParameters):
-    """Parameters of the controller."""
+    """The parameters of a Husarion mecanum drive controller."""
 
     front_left_wheel_name: str = parameter("", description="the joint of the front left wheel")
     front_right_wheel_name: str = parameter("", description="the joint of the front right wheel")

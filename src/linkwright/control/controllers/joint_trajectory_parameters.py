@@ -83,7 +83,7 @@ class Constraints:
 
 @dataclass(frozen=True, kw_only=True)
 class Parameters:
-    """Parameters of the controller."""
+    """The parameters of a joint_trajectory_controller."""
 
     joints: tuple[str, ...] = parameter(
         (), read_only=True, description="the joints that trajectories move", check=not_empty

@@ -51,7 +51,7 @@ _NO_KINEMATICS = Kinematics()
 
 @dataclass(frozen=True, kw_only=True)
 class Parameters:
-    """Parameters of the controller."""
+    """The parameters of a mecanum_drive_controller."""
 
     reference_timeout: float = parameter(0.0, description="how long a command is valid, in seconds; 0 for one update")
     front_left_wheel_command_joint_name: str = parameter("", description="the joint of the wheel")

@@ -44,7 +44,7 @@ class Gains(PidParameters):
 
 @dataclass(frozen=True, kw_only=True)
 class Parameters:
-    """Parameters of the controller."""
+    """The parameters of a pid_controller."""
 
     dof_names: tuple[str, ...] = parameter((), read_only=True, description="the commanded joints", check=not_empty)
     reference_and_state_dof_names: tuple[str, ...] = parameter(

@@ -21,7 +21,7 @@ from linkwright.process.nanoseconds import NANOSECONDS_PER_SECOND
 
 @dataclass(frozen=True, kw_only=True)
 class ScaledParameters(Parameters):
-    """Parameters of the controller."""
+    """The parameters of a scaled_joint_trajectory_controller."""
 
     speed_scaling_interface_name: str = parameter(
         "speed_scaling/speed_scaling_factor",

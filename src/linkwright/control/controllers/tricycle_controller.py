@@ -61,7 +61,7 @@ _NO_TRACTION_LIMITS, _NO_STEERING_LIMITS = TractionLimits(), SteeringLimits()
 
 @dataclass(frozen=True, kw_only=True)
 class Parameters:
-    """Parameters of the controller."""
+    """The parameters of a tricycle_controller."""
 
     traction_joint_name: str = parameter("", description="the joint that drives the wheel")
     steering_joint_name: str = parameter("", description="the joint that steers the wheel")

@@ -176,9 +176,11 @@ class LifecycleNodeMixin(ManagedEntity):
         """
         return self._call_entities(lambda entity: entity.on_error(state))
 
-    def _call_entities(self, ask: Callable[[ManagedEntity], TransitionCallbackReturn]) -> TransitionCallbackReturn:
+    def _call_entities(
+        self, transition: Callable[[ManagedEntity], TransitionCallbackReturn]
+    ) -> TransitionCallbackReturn:
         for entity in tuple(self._managed_entities):
-            result = ask(entity)
+            result = transition(entity)
             if result != TransitionCallbackReturn.SUCCESS:
                 return result
         return TransitionCallbackReturn.SUCCESS

@@ -59,7 +59,7 @@ class ParameterRules:
 
     @property
     def patterns(self) -> list[str]:
-        """The patterns, in order."""
+        """The patterns, in the order in which they apply."""
         return list(self._values)
 
     def matches_node(self, full_name: str) -> bool:

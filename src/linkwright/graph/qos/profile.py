@@ -48,7 +48,7 @@ class QoSPolicyEnum(IntEnum):
 
     @classmethod
     def get_from_short_key(cls, name: str) -> int:
-        """Return the number of the value with a name, regardless of case.
+        """Return the number of a policy value, given its name in any case.
 
         Raises:
             KeyError: there is no value with this name.
@@ -407,7 +407,7 @@ class QoSPresetProfiles(Enum):
 
     @classmethod
     def get_from_short_key(cls, name: str) -> QoSProfile:
-        """Return the profile with a name, regardless of case.
+        """Return a profile, given its name in any case.
 
         Raises:
             KeyError: there is no profile with this name.

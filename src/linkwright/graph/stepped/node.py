@@ -271,12 +271,12 @@ class SteppedNode:
         self,
         topic: str,
         callback: Callable[[Any], object],
-        rest: Callable[[], object] | None,
+        stop_motion: Callable[[], object] | None,
         commander: Commander | None,
     ) -> Callable[..., object]:
         """Return a subscription callback that passes each message to `callback` between steps."""
-        if rest is not None:
-            callback = partial(self._pass_if_finite, callback, rest, topic)
+        if stop_motion is not None:
+            callback = partial(self._pass_if_finite, callback, stop_motion, topic)
         deferred_callback: Callable[..., object] = partial(self._received, callback)
         return deferred_callback if commander is None else commander.tracking_callback(deferred_callback)
 
@@ -314,8 +314,8 @@ class SteppedNode:
         """
         return QoSProfile.of(qos)
 
-    def _stop_motion(self, rest: Callable[[], bool], publisher: EndpointInfo) -> None:
-        if rest():
+    def _stop_motion(self, stop_motion: Callable[[], bool], publisher: EndpointInfo) -> None:
+        if stop_motion():
             self.logger.warning(phrase("{problem}: the motion stops", problem=describe_lost_publisher(publisher)))
 
     def _pass_if_finite(

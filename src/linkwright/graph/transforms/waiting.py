@@ -163,11 +163,11 @@ class Buffer(BufferCore):
             lambda: self.can_transform_full_core(*arguments)[0], lambda: self.lookup_transform_full_core(*arguments)
         )
 
-    def _wait(self, ask: Callable[[], tuple[bool, str]], timeout: Any) -> tuple[bool, str]:
+    def _wait(self, query: Callable[[], tuple[bool, str]], timeout: Any) -> tuple[bool, str]:
         deadline_s = steady.monotonic() + timeout.nanoseconds / 1e9
         with self._new_data:
             while True:
-                result = ask()
+                result = query()
                 remaining_s = deadline_s - steady.monotonic()
                 if result[0] or remaining_s <= 0.0:
                     return result

@@ -95,7 +95,11 @@ def files_of_setup(folder: Path) -> dict[PurePosixPath, Path]:
                 "setup.py: {entry} in data_files is not a pair of a folder and a list of files", entry=entries["entry"]
             )
         )
-    return {PurePosixPath(place) / Path(name).name: folder / name for place, names in entries for name in names}
+    return {
+        PurePosixPath(folder_in_prefix) / Path(name).name: folder / name
+        for folder_in_prefix, names in entries
+        for name in names
+    }
 
 
 def _run_setup(folder: Path) -> str:

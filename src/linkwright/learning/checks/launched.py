@@ -109,8 +109,8 @@ class LaunchCheck:
             self._session = LaunchSession(self._finder, options, CheckedLog(self._output, self._findings), context)
             self._node = self._session.host.graph.create_node(_NODE)
             self._session.host.network.join_soon(with_viewer=False)
-            places = {"current_launch_file_path": str(path), "current_launch_file_directory": str(path.parent)}
-            return await self._session.run(description, places)
+            launch_locals = {"current_launch_file_path": str(path), "current_launch_file_directory": str(path.parent)}
+            return await self._session.run(description, launch_locals)
 
     def __exit__(
         self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None

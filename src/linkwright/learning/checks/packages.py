@@ -307,10 +307,12 @@ class PackageCheck(FileFolder):
                 )
             )
         for name in ("package.xml", *names):
-            place = PurePosixPath("share", self.name, name)
-            source = installed.get(place)
+            share_path = PurePosixPath("share", self.name, name)
+            source = installed.get(share_path)
             if source is None or not source.is_file():
-                raise NotYet(phrase("setup.py does not install '{name}' in '{folder}'", name=name, folder=place.parent))
+                raise NotYet(
+                    phrase("setup.py does not install '{name}' in '{folder}'", name=name, folder=share_path.parent)
+                )
 
     def program(self, name: str) -> Callable[[], object]:
         """Return an executable of the package, to be started with `SteppedGraph.start_program`.

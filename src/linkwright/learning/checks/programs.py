@@ -110,8 +110,8 @@ def _missing_module(name: str, entry: EntryPoint, folder: Path, package: str) ->
     inner = folder / package
     if not (inner / "__init__.py").is_file() and inner.is_dir():
         return phrase("{message}: the folder '{folder}' needs a file __init__.py", message=message, folder=inner.name)
-    place = entry.module.replace(".", "/") + ".py"
-    return phrase("{message}; create the file '{path}' in the package", message=message, path=place)
+    path = entry.module.replace(".", "/") + ".py"
+    return phrase("{message}; create the file '{path}' in the package", message=message, path=path)
 
 
 def _expect_function(path: Path, function: str) -> None:
@@ -158,13 +158,13 @@ def describe_failure(error: Exception, workspace: Path) -> Phrase:
     if isinstance(error, SyntaxError) and error.filename and Path(error.filename).is_relative_to(workspace):
         text = f"{type(error).__name__}: {error.msg}"
         hint = lookalike_hint(error.text or "") if "invalid character" in error.msg else None
-        place, line = error.filename, error.lineno or 1
+        path, line = error.filename, error.lineno or 1
     elif own:
-        place, line = own[-1].filename, own[-1].lineno or 1
+        path, line = own[-1].filename, own[-1].lineno or 1
         hint = (
-            _own_module_hint(error, Path(place))
+            _own_module_hint(error, Path(path))
             or hint_about(error)
-            or _hint_about_line(error, linecache.getline(place, line))
+            or _hint_about_line(error, linecache.getline(path, line))
         )
         if isinstance(error, LinkwrightError):
             text, hint = error.diagnostics[0].message, error.diagnostics[0].hint or hint
@@ -176,7 +176,7 @@ def describe_failure(error: Exception, workspace: Path) -> Phrase:
         )
     else:
         return phrase("the check failed: {error}", error=foreign(text))
-    described = phrase("{file}, line {line}: {error}", file=Path(place).name, line=line, error=foreign(text))
+    described = phrase("{file}, line {line}: {error}", file=Path(path).name, line=line, error=foreign(text))
     return add_hint(described, hint)
 
 

@@ -101,10 +101,10 @@ def _make_jobs(
     for index, submission in enumerate(submissions):
         if not submission.is_readable:
             continue
-        place = scratch / f"{index}"
-        place.mkdir()
-        place.chmod(0o711)
-        copy = place / "copy"
+        job_folder = scratch / f"{index}"
+        job_folder.mkdir()
+        job_folder.chmod(0o711)
+        copy = job_folder / "copy"
         if not copy_workspace(submission, copy):
             continue
         copy_hash = hash_folder(copy)

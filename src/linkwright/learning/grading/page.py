@@ -128,7 +128,7 @@ def _student(index: int, student: StudentMarks, titles: Mapping[str, LocalText])
 def _step(student: StudentMarks, step: str, mark: Mark, titles: Mapping[str, LocalText]) -> list[str]:
     claims = student.submission.progress.step(step)
     taken = [_translated(counted("{count} hint", "{count} hints", claims.hints))] if claims.hints else []
-    taken += [_translated(phrase("solution taken"))] if claims.solution else []
+    taken += [_translated(phrase("solution used"))] if claims.solution else []
     messages = "".join(f"<div class='message'>{_texts(message)}</div>" for message in mark.messages)
     sign = "<span class='good'>✓</span>" if mark.passed else "<span class='bad'>✗</span>"
     points = f"{student.points[step] if mark.passed else 0:g} / {student.points[step]:g}"

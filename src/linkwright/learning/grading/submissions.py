@@ -50,10 +50,10 @@ class Submission:
 
 def find_submissions(folders: Sequence[Path], course: Course) -> list[Submission]:
     """Return the submission in each of the given folders, with notes."""
-    places = list(dict.fromkeys(_absolute(folder) for folder in folders))
-    counts = Counter(folder.name for folder in places)
+    absolute_folders = list(dict.fromkeys(_absolute(folder) for folder in folders))
+    counts = Counter(folder.name for folder in absolute_folders)
     submissions = []
-    for folder in places:
+    for folder in absolute_folders:
         name = folder.name if counts[folder.name] == 1 else f"{folder.parent.name}/{folder.name}"
         submissions.append(_open_submission(printable(name), folder, course))
     return submissions

@@ -60,7 +60,7 @@ class _Maker:
     def add_locked(self, targets: Sequence[Target], extras: Sequence[str]) -> dict[Target, dict[str, Path]]:
         """Add the wheels from a package index, and return them by target and ``NAME==VERSION``."""
         packages = locked_packages()
-        found: dict[Target, dict[str, Path]] = {}
+        wheels_by_target: dict[Target, dict[str, Path]] = {}
         for target in targets:
             files = list(needed_files(target, extras, packages))
             wheels = [file for file in files if file.is_wheel]
@@ -78,13 +78,13 @@ class _Maker:
                 download(absent, target, self.folder.wheels)
             for file in absent:
                 self._verify(file)
-            found[target] = {
+            wheels_by_target[target] = {
                 f"{file.package}=={file.version}": self.folder.wheels / file.name
                 if file.is_wheel
                 else self._built(file)
                 for file in files
             }
-        return found
+        return wheels_by_target
 
     def _has(self, file: LockedFile) -> bool:
         path = self.folder.wheels / file.name
@@ -174,10 +174,12 @@ def make_pack(
         maker = _Maker(folder, report)
         report(phrase("the wheels of Linkwright"))
         own_wheels = add_own_wheels(contents.own_wheels, folder.wheels)
-        found = maker.add_locked(targets, settings.extras)
-        maker.remove_others({*own_wheels, *(path for wheels in found.values() for path in wheels.values())}, targets)
+        wheels_by_target = maker.add_locked(targets, settings.extras)
+        maker.remove_others(
+            {*own_wheels, *(path for wheels in wheels_by_target.values() for path in wheels.values())}, targets
+        )
         extras = f"[{','.join(settings.extras)}]" if settings.extras else ""
-        for target, wheels in found.items():
+        for target, wheels in wheels_by_target.items():
             maker.write_requirements(target, wheels, own_wheels, extras)
         problems, models = _add_models(folder, contents, report, progress)
         _add_folders(folder, contents, report)

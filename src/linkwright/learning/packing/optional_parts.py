@@ -37,10 +37,10 @@ PARTS = (
 def missing_parts(target: Target, extras: Iterable[str], packages: Packages) -> Iterator[OptionalPart]:
     """Yield the parts of some extras whose packages are not available on a target."""
     chosen = tuple(extras)
-    here = package_names(target, chosen, packages)
+    selected_packages = package_names(target, chosen, packages)
     anywhere = set().union(*(package_names(other, chosen, packages) for other in select_targets((), ())))
     for part in PARTS:
-        if anywhere.intersection(part.packages) and not here.intersection(part.packages):
+        if anywhere.intersection(part.packages) and not selected_packages.intersection(part.packages):
             yield part
 
 

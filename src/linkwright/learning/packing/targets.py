@@ -138,8 +138,8 @@ def _targets(systems: Sequence[str], pythons: Sequence[str]) -> Iterator[Target]
             yield from (Target(system, python) for python in PYTHONS if python in pythons)
 
 
-def _check_names(kind: str, names: Sequence[str], known: Sequence[str] | dict[str, System]) -> None:
-    unknown = [name for name in names if name not in known]
+def _check_names(kind: str, names: Sequence[str], known_names: Sequence[str] | dict[str, System]) -> None:
+    unknown = [name for name in names if name not in known_names]
     if not unknown:
         return
     name = unknown[0]
@@ -148,5 +148,5 @@ def _check_names(kind: str, names: Sequence[str], known: Sequence[str] | dict[st
         if kind == "systems"
         else phrase("a pack cannot be made for Python '{name}'", name=name)
     )
-    hint = did_you_mean(name, known) or phrase("choose from {names}", names=joined(known))
+    hint = did_you_mean(name, known_names) or phrase("choose from {names}", names=joined(known_names))
     raise LinkwrightError(Diagnostic("LEARN301", message, hint=hint))

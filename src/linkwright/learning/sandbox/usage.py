@@ -117,30 +117,30 @@ class Watchdog:
         return self._check_folder()
 
     def _check_processes(self) -> Exceeded | None:
-        found = descendants(os.getpid())
+        processes = descendants(os.getpid())
         ended = os.times()
-        now = ended.children_user + ended.children_system + sum(process.cpu_seconds for process in found)
+        now = ended.children_user + ended.children_system + sum(process.cpu_seconds for process in processes)
         self.cpu_seconds = max(self.cpu_seconds, now)
         if self.cpu_seconds > self._limits.cpu_seconds:
             return Exceeded.CPU_SECONDS
-        if sum(process.threads for process in found) > self._limits.processes:
+        if sum(process.threads for process in processes) > self._limits.processes:
             return Exceeded.PROCESSES
         with self._access_to_processes():
-            return self._check_memory(found) or self._check_written(found)
+            return self._check_memory(processes) or self._check_written(processes)
 
-    def _check_memory(self, found: list[ProcessUsage]) -> Exceeded | None:
+    def _check_memory(self, processes: list[ProcessUsage]) -> Exceeded | None:
         """Compare the memory with the limit, first by a fast sum that counts shared pages repeatedly."""
         sizes: dict[tuple[int, int], int] = {}
-        for process in found:
+        for process in processes:
             sizes.update(nameless_files(process.pid))
         self._nameless_on_disk = sum(size for (device, _), size in sizes.items() if device == self._device)
         room = self._limits.memory - sum(sizes.values()) + self._nameless_on_disk
-        is_exceeded = sum(process.memory for process in found) > room and sum(map(own_memory, found)) > room
+        is_exceeded = sum(process.memory for process in processes) > room and sum(map(own_memory, processes)) > room
         return Exceeded.MEMORY if is_exceeded else None
 
-    def _check_written(self, found: list[ProcessUsage]) -> Exceeded | None:
+    def _check_written(self, processes: list[ProcessUsage]) -> Exceeded | None:
         """Compare the written bytes with the limit. A parent's bytes include its ended children's."""
-        written = sum(written_bytes(pid) for pid in (os.getpid(), *(process.pid for process in found)))
+        written = sum(written_bytes(pid) for pid in (os.getpid(), *(process.pid for process in processes)))
         is_exceeded = max(written, self._nameless_on_disk) > self._limits.disk_bytes
         return Exceeded.DISK_BYTES if is_exceeded else None
 

@@ -49,7 +49,7 @@ def compile_reader(structure: Structure, class_of: ClassOf, order: Order = "<") 
         class_of: returns the class of a structure.
         order: ``<`` for little-endian data, ``>`` for big-endian data.
     """
-    code = _ReaderCode(START, class_of, order, known=4)
+    code = _ReaderCode(START, class_of, order, known_position=4)
     name = code.add_creation(structure)
     code.structure(structure, name)
     code.end_run()
@@ -65,7 +65,7 @@ def _compile_part(structure: Structure, class_of: ClassOf, order: Order) -> Call
     """
     reader = _part_readers.get((structure.type_name, order))
     if reader is None:
-        code = _ReaderCode(ANYWHERE, class_of, order, known=None)
+        code = _ReaderCode(ANYWHERE, class_of, order, known_position=None)
         name = code.add_creation(structure)
         code.structure(structure, name)
         code.end_run()
@@ -80,9 +80,9 @@ class _ReaderCode:
     In the code, `p` is the position in the data, including the header, and `e` is the end of the data.
     """
 
-    def __init__(self, alignment: Alignment, class_of: ClassOf, order: Order, known: int | None) -> None:
+    def __init__(self, alignment: Alignment, class_of: ClassOf, order: Order, known_position: int | None) -> None:
         self.alignment = alignment
-        self._known_position = known
+        self._known_position = known_position
         """The position as a number, or None once it differs between messages."""
         self._class_of = class_of
         self._order = order

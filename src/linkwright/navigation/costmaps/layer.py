@@ -192,16 +192,19 @@ class PersistentLayer(Layer):
         return window
 
 
-def shift_cells(cells: NDArray[Any], old: Grid, new: Grid, fill: int) -> NDArray[Any]:
+def shift_cells(cells: NDArray[Any], old_grid: Grid, new_grid: Grid, fill: int) -> NDArray[Any]:
     """Return the cells of an old grid on a new grid, with `fill` outside the old grid.
 
     If the resolutions differ, all cells are `fill`.
     """
-    shifted_cells = np.full((new.rows, new.columns), fill, cells.dtype)
-    if old.resolution != new.resolution:
+    shifted_cells = np.full((new_grid.rows, new_grid.columns), fill, cells.dtype)
+    if old_grid.resolution != new_grid.resolution:
         return shifted_cells
-    rows, columns = round((new.y - old.y) / new.resolution), round((new.x - old.x) / new.resolution)
-    overlap = Window(-rows, -columns, old.rows - rows, old.columns - columns).clipped_to(new)
+    rows, columns = (
+        round((new_grid.y - old_grid.y) / new_grid.resolution),
+        round((new_grid.x - old_grid.x) / new_grid.resolution),
+    )
+    overlap = Window(-rows, -columns, old_grid.rows - rows, old_grid.columns - columns).clipped_to(new_grid)
     if not overlap.is_empty:
         source = Window(overlap.top + rows, overlap.left + columns, overlap.bottom + rows, overlap.right + columns)
         shifted_cells[overlap.cells] = cells[source.cells]

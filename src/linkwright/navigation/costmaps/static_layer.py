@@ -81,7 +81,7 @@ class StaticLayer(Layer):
     def set_map(self, occupancy: Grid) -> None:
         """Set a new map.
 
-        The cells of `occupancy` are of type int8: occupancies in per cent, or -1 for unknown.
+        The cells of `occupancy` are of type int8: occupancies in percent, or -1 for unknown.
         """
         costs = self.interpretation.table()[occupancy.cells.astype(np.uint8)]
         self.map = Grid(cells=costs, resolution=occupancy.resolution, x=occupancy.x, y=occupancy.y, yaw=occupancy.yaw)

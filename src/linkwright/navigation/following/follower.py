@@ -83,8 +83,8 @@ class Follower(ABC):
         """Limit the speed, or remove the limit.
 
         Args:
-            speed: the limit in m/s, or in per cent of the maximum speed; 0 for no limit.
-            is_percentage: whether `speed` is in per cent.
+            speed: the limit in m/s, or in percent of the maximum speed; 0 for no limit.
+            is_percentage: whether `speed` is in percent.
         """
 
 

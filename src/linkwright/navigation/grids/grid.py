@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 FREE: Final = 0
 OCCUPIED: Final = 100
 UNKNOWN: Final = -1
-"""Values of nav_msgs/OccupancyGrid. Values from ``FREE`` to ``OCCUPIED`` are occupancies in per cent."""
+"""Values of nav_msgs/OccupancyGrid. Values from ``FREE`` to ``OCCUPIED`` are occupancies in percent."""
 
 
 @dataclass(eq=False, kw_only=True)

@@ -23,7 +23,7 @@ def occupancy_message(grid: Grid, frame: str, stamp: Any) -> Any:
     """Convert a grid to a nav_msgs/OccupancyGrid.
 
     Args:
-        grid: the grid; its cells are per cent or `UNKNOWN`.
+        grid: the grid; its cells are percent or `UNKNOWN`.
         frame: the frame of the grid.
         stamp: the builtin_interfaces/Time for the stamp and the load time of the map.
     """

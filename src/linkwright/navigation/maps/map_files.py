@@ -62,7 +62,7 @@ def save_map(
     """Save a grid as a map.
 
     Args:
-        grid: the grid; its cells are per cent or unknown.
+        grid: the grid; its cells are percent or unknown.
         settings: the name of the files and the settings.
         warn: called with each warning for the user.
 

@@ -141,7 +141,7 @@ class _Reader:
         node = self._nodes[key]
         value = self._number(node, key)
         if not 0.0 <= value <= 1.0:
-            hint = phrase("write 0.65 for 65 per cent") if value > 1.0 else None
+            hint = phrase("write 0.65 for 65 %") if value > 1.0 else None
             raise self._error(phrase("'{key}' must be between 0 and 1", key=key), node, hint)
         return value
 

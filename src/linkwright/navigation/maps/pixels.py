@@ -55,7 +55,7 @@ def pixels_of_cells(
     """Convert cells of an occupancy grid to the pixels of an image, from the top row down.
 
     Args:
-        cells: the cells, per cent or `UNKNOWN`, from the lowest row up.
+        cells: the cells, percent or `UNKNOWN`, from the lowest row up.
         mode: the meaning of the pixels.
         occupied_thresh: the minimum probability of an occupied cell in the mode ``trinary``, 0 to 1.
         free_thresh: the maximum probability of a free cell in the mode ``trinary``, 0 to 1.

@@ -347,7 +347,7 @@ def _check_triangle_count(path: Path, count: int) -> None:
         LinkwrightError: SIM115, the mesh has more than `_MAX_TRIANGLES` triangles.
     """
     if count > _MAX_TRIANGLES:
-        values = {"path": display_path(path), "count": count, "most": _MAX_TRIANGLES}
+        values = {"path": display_path(path), "count": count, "maximum": _MAX_TRIANGLES}
         message = phrase("mesh '{path}' has {count} triangles, but the maximum is {maximum}", **values)
         hint = phrase("simplify the mesh, or use a simple shape for the collision")
         raise LinkwrightError(Diagnostic("SIM115", message, hint=hint))

@@ -56,13 +56,14 @@ def _moving_first(simulation: Simulation, links: Iterable[str]) -> list[str]:
     return sorted(links, key=lambda link: int(simulation.model.body_weldid[simulation.body(link)]) == 0)
 
 
-def _finding(simulation: Simulation, first: str, second: str, depth: float) -> Diagnostic:
-    values = {"first": first, "second": second, "depth": f"{depth:.2f}"}
-    is_same_model = model_of(first) == model_of(second)
-    message: Phrase = phrase("'{link}' starts {depth} m inside '{other_link}'", **values)
+def _finding(simulation: Simulation, link: str, other_link: str, depth: float) -> Diagnostic:
+    is_same_model = model_of(link) == model_of(other_link)
+    message: Phrase = phrase(
+        "'{link}' starts {depth} m inside '{other_link}'", link=link, depth=f"{depth:.2f}", other_link=other_link
+    )
     hint = phrase("they are pushed apart slowly; move one of them if this is not intended")
     if is_same_model:
         hint = phrase("they are pushed apart slowly; to ignore contacts within the model, remove <self_collide>")
-    element = simulation.scene.models[model_of(first)].model.element
+    element = simulation.scene.models[model_of(link)].model.element
     span, source = (None, None) if element is None else (element.span(), element.source)
     return Diagnostic("SIM144", message, span, severity=Severity.WARNING, hint=hint, source=source)

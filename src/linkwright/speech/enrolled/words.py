@@ -207,7 +207,7 @@ def _read_take(take: Any, name: str, path_text: str) -> Take:
     return Take(_from_levels(frames).reshape(count, BANDS), _from_levels(noise))
 
 
-def _damaged_error(path_text: str, why: Phrase, place: Span | None = None) -> LinkwrightError:
-    message = phrase("'{path}' cannot be read as a file of enrolled words: {reason}", path=path_text, reason=why)
+def _damaged_error(path_text: str, reason: Phrase, location: Span | None = None) -> LinkwrightError:
+    message = phrase("'{path}' cannot be read as a file of enrolled words: {reason}", path=path_text, reason=reason)
     hint = phrase("replace it with a backup, or remove it and enrol the words again")
-    return LinkwrightError(Diagnostic("VOICE203", message, place, hint=hint))
+    return LinkwrightError(Diagnostic("VOICE203", message, location, hint=hint))

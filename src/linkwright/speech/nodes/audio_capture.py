@@ -92,9 +92,9 @@ class AudioCapture(SingleNode):
             value: Any = self._node.declare_parameter(name, supported).value
             if value != supported:
                 warning = phrase(
-                    "sound is published with {name} {published}, not {value}",
+                    "parameter '{name}' cannot be '{value}': sound is published with '{supported}'",
                     name=name,
-                    published=supported,
+                    supported=supported,
                     value=value,
                 )
                 self._node.get_logger().warning(localized(warning))

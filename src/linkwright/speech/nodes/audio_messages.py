@@ -74,8 +74,8 @@ class AudioFormat:
         return cls(info.channels, info.sample_rate, info.sample_format)
 
 
-def _format_error(why: Phrase) -> LinkwrightError:
-    message = phrase("sound in this format is not supported: {reason}", reason=why)
+def _format_error(reason: Phrase) -> LinkwrightError:
+    message = phrase("sound in this format is not supported: {reason}", reason=reason)
     hint = phrase("publish it with format 'wave', sample_format 'S16LE', sample_rate 16000 and channels 1")
     return LinkwrightError(Diagnostic("VOICE411", message, hint=hint))
 

@@ -72,7 +72,11 @@ class Listener:
         return True
 
     def record_gap(self, seconds: float) -> None:
-        """Record that seconds of sound are missing before the next block."""
+        """Record a gap in the sound before the next block.
+
+        Args:
+            seconds: the length of the gap.
+        """
         self._gaps.append((self._sample_count / RATE, seconds))
 
     def missing_seconds(self, result: Heard) -> float:

@@ -140,11 +140,11 @@ def _values(sample_bytes: bytes, wav_format: _WavFormat) -> NDArray[np.float64]:
     return np.frombuffer(sample_bytes, f"<i{wav_format.bits // 8}").astype(np.float64) / 2.0 ** (wav_format.bits - 1)
 
 
-def _wav_error(name: str, why: Phrase) -> LinkwrightError:
+def _wav_error(name: str, reason: Phrase) -> LinkwrightError:
     return LinkwrightError(
         Diagnostic(
             "VOICE402",
-            phrase("'{path}' cannot be read as a WAV file: {reason}", path=name, reason=why),
+            phrase("'{path}' cannot be read as a WAV file: {reason}", path=name, reason=reason),
             hint=phrase("convert it to 16-bit PCM, for example with 'ffmpeg -i FILE -ar 16000 -ac 1 OUT.wav'"),
         )
     )

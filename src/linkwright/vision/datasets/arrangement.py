@@ -225,7 +225,7 @@ def _find_free_position(
     return None
 
 
-def _place_prop(stage: Stage, prop: Prop, place: tuple[float, float], generator: np.random.Generator) -> None:
+def _place_prop(stage: Stage, prop: Prop, position: tuple[float, float], generator: np.random.Generator) -> None:
     """Place an object at a position: usually upright, sometimes lying or above the ground."""
     rotation = _yaw_rotation(generator.uniform(-pi, pi))
     if prop.is_round or generator.random() < 0.08:
@@ -244,7 +244,7 @@ def _place_prop(stage: Stage, prop: Prop, place: tuple[float, float], generator:
         height = float(center[2] - (rotation @ center)[2])
     stage.place_prop(
         prop,
-        np.array([place[0] + offset[0], place[1] + offset[1], stage.floor + height + height_above_floor]),
+        np.array([position[0] + offset[0], position[1] + offset[1], stage.floor + height + height_above_floor]),
         rotation,
     )
 

@@ -1,4 +1,4 @@
-"""The detector ``colors``, which finds patches of one color by hue, saturation and value."""
+"""The detector ``colours``, which finds patches of one color by hue, saturation and value."""
 
 from __future__ import annotations
 
@@ -33,7 +33,7 @@ class ColourDetector(Detector):
     The score is the fraction of the box that the color fills, such as 0.79 for a ball.
 
     Settings:
-        ``colors``
+        ``colours``
             a mapping from names to six numbers; see `parse_hsv_range`. If the minimum hue exceeds the maximum, as for
             red, the range wraps around through 0. The default is `COLORS`.
         ``least_area``

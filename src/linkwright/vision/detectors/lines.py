@@ -26,7 +26,7 @@ class LineDetector(Detector):
     from -1 to 1, and positive if the line is to the right. The score is the fraction of searched rows with the line.
 
     Settings:
-        ``color``
+        ``colour``
             the color of the line as six numbers, see `parse_hsv_range`; dark by default.
         ``part``
             the fraction of the image that is searched, from the bottom; 0.25 by default.

@@ -26,10 +26,10 @@ def non_maximum_suppression(
     """
     remaining = np.argsort(-scores, kind="stable")[:MAX_CANDIDATES]
     areas = (boxes[:, 2] - boxes[:, 0]) * (boxes[:, 3] - boxes[:, 1])
-    kept: list[int] = []
-    while remaining.size and len(kept) < max_boxes:
+    kept_indices: list[int] = []
+    while remaining.size and len(kept_indices) < max_boxes:
         best, remaining = remaining[0], remaining[1:]
-        kept.append(int(best))
+        kept_indices.append(int(best))
         others = boxes[remaining]
         width = np.minimum(boxes[best, 2], others[:, 2]) - np.maximum(boxes[best, 0], others[:, 0])
         height = np.minimum(boxes[best, 3], others[:, 3]) - np.maximum(boxes[best, 1], others[:, 1])
@@ -39,4 +39,4 @@ def non_maximum_suppression(
             intersection > iou * union
         )  # an untrained network also outputs boxes without area
         remaining = remaining[~(is_same_object & (classes[remaining] == classes[best]))]
-    return np.asarray(kept, np.intp)
+    return np.asarray(kept_indices, np.intp)

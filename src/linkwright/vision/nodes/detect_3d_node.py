@@ -174,13 +174,13 @@ class Detect3DNode(SingleNode):
         x, y, z, w = pose[3:]
         return np.array(rotate((-x, -y, -z, w), (0.0, 0.0, 1.0))), pose[2]
 
-    def _position_detection(self, detection: Any, place: ObjectPosition, pose: Transform, header: Any) -> Any:
+    def _position_detection(self, detection: Any, position: ObjectPosition, pose: Transform, header: Any) -> Any:
         """Return a detection with a box in the target frame.
 
         The x axis of the box points along the view, and its z axis up.
         """
-        box_pose = compose(pose, (*place.center, *_FORWARD_IN_OPTICAL))
-        return self.FORM.with_position(detection, header, box_pose, (place.depth, place.width, place.height))
+        box_pose = compose(pose, (*position.center, *_FORWARD_IN_OPTICAL))
+        return self.FORM.with_position(detection, header, box_pose, (position.depth, position.width, position.height))
 
     def _warn(self, reason: str) -> None:
         self._node.get_logger().warning(
@@ -194,16 +194,16 @@ class YoloDetect3DNode(Detect3DNode):
     FORM = YOLO_FORMAT
 
 
-def _make_markers(form: DetectionFormat, found: Any, positions: list[ObjectPosition]) -> Any:
+def _make_markers(form: DetectionFormat, detection_array: Any, positions: list[ObjectPosition]) -> Any:
     """Return a visualization_msgs/msg/MarkerArray with a box and a label for each detection."""
     marker_class = get_message("visualization_msgs/msg/Marker")
     marker_array = get_message("visualization_msgs/msg/MarkerArray")()
-    marker_array.markers.append(marker_class(header=found.header, action=marker_class.DELETEALL))
-    for number, (detection, position) in enumerate(zip(found.detections, positions, strict=True)):
+    marker_array.markers.append(marker_class(header=detection_array.header, action=marker_class.DELETEALL))
+    for number, (detection, position) in enumerate(zip(detection_array.detections, positions, strict=True)):
         name, _ = form.best_hypothesis(detection)
         box_3d = form.box_3d(detection)
         box, label = (
-            marker_class(header=found.header, ns=ns, id=number, type=shape, action=marker_class.ADD)
+            marker_class(header=detection_array.header, ns=ns, id=number, type=shape, action=marker_class.ADD)
             for ns, shape in (("boxes", marker_class.CUBE), ("labels", marker_class.TEXT_VIEW_FACING))
         )
         box.lifetime.sec = label.lifetime.sec = _MARKER_LIFETIME_SECONDS

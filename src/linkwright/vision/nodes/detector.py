@@ -8,7 +8,7 @@ differences between the packages are in `dialects`.
 Parameters, by the names of yolo_ros:
 
 ``model``
-    an ONNX file, or the name of a detector: ``colors``, ``aruco``, ``apriltag``, ``qr``, ``line``, or a detector
+    an ONNX file, or the name of a detector: ``colours``, ``aruco``, ``apriltag``, ``qr``, ``line``, or a detector
     that a package provides.
 ``labels``
     a file with the names of the classes, which replace the names in the network's file.
@@ -21,7 +21,7 @@ Parameters, by the names of yolo_ros:
     can be set at run time. ``classes`` are names; an empty list means all classes.
 ``input_image_topic``, ``image_transport``, ``image_reliability``
     the source of images: a topic of Image, or one that ends in ``/compressed``; 1 reliable, 2 best effort.
-``colors.NAME``, ``dictionary``, ``least_area``, ``part``, ``color``
+``colours.NAME``, ``dictionary``, ``least_area``, ``part``, ``colour``
     settings of the detectors without networks.
 """
 

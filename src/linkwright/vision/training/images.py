@@ -102,7 +102,7 @@ def repeated_indices(factors: NDArray[np.float64], generator: np.random.Generato
 
 
 def augment(
-    labeled_images: LabeledImages, place: int, view: View, generator: np.random.Generator
+    labeled_images: LabeledImages, index: int, view: View, generator: np.random.Generator
 ) -> tuple[NDArray[np.uint8], NDArray[np.float32]]:
     """Return a randomly augmented part of an image, with its objects.
 
@@ -110,7 +110,7 @@ def augment(
 
     Args:
         labeled_images: the images.
-        place: the index of the image in `labeled_images`.
+        index: the index of the image in `labeled_images`.
         view: the size of the part in pixels, and the range of scales.
         generator: the random generator.
 
@@ -118,7 +118,7 @@ def augment(
         The part, shape ``(height, width, 3)``, and its objects as in `LabeledImages`.
     """
     cv2 = load_opencv()
-    image, objects = labeled_images.images[place], labeled_images.objects[place]
+    image, objects = labeled_images.images[index], labeled_images.objects[index]
     height, width = image.shape[:2]
     size = view.size
     min_log_scale, max_log_scale = np.log(view.scales)

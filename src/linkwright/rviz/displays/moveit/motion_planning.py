@@ -108,7 +108,7 @@ class MotionPlanningDisplay(PlanningSceneDisplay):
         self._draw_end_state("Goal", -1)
         self.send_markers()
 
-    def _draw_end_state(self, end_name: str, place: int) -> None:
+    def _draw_end_state(self, end_name: str, waypoint: int) -> None:
         group, motion, robot = f"{end_name} State", self._player.motion, self.robot
         if robot is None or motion is None or not self.properties.flag(_REQUEST_GROUP, f"Query {end_name} State"):
             self.put(group, ())
@@ -119,7 +119,7 @@ class MotionPlanningDisplay(PlanningSceneDisplay):
             color=rgb(self.properties.text(_REQUEST_GROUP, f"{end_name} State Color")),
             only=robot.links_moved_by(motion.joints),
         )
-        self.put(group, robot.markers(motion.states[place], appearance))
+        self.put(group, robot.markers(motion.states[waypoint], appearance))
 
     def _subscribe_motions(self) -> None:
         self._motion_topic.close()

@@ -258,21 +258,21 @@ class _MarkerPlacement:
         return _MarkerPlacement(self.namespace, f"{self.name} end {number}", self.frame, pose)
 
 
-def _shape_markers(shape: Shape, place: _MarkerPlacement, color: Color, *, is_painted: bool) -> list[MarkerShape]:
+def _shape_markers(shape: Shape, placement: _MarkerPlacement, color: Color, *, is_painted: bool) -> list[MarkerShape]:
     if shape.kind == "mesh":
         mesh = MarkerMesh(shape.format or "", shape.url, None, embedded=not is_painted)
-        return [place.marker("mesh", shape.size, color, mesh)]
+        return [placement.marker("mesh", shape.size, color, mesh)]
     if shape.kind == "box":
-        return [place.marker("cube", shape.size, color)]
+        return [placement.marker("cube", shape.size, color)]
     radius = shape.size[0]
     sphere_size = [2.0 * radius] * 3
     if shape.kind == "sphere":
-        return [place.marker("sphere", sphere_size, color)]
+        return [placement.marker("sphere", sphere_size, color)]
     length = shape.size[1]
-    cylinder = place.marker("cylinder", [2.0 * radius, 2.0 * radius, length], color)
+    cylinder = placement.marker("cylinder", [2.0 * radius, 2.0 * radius, length], color)
     if shape.kind == "cylinder":
         return [cylinder]
-    ends = (place.end(number, sign * length / 2.0) for number, sign in enumerate((-1.0, 1.0)))
+    ends = (placement.end(number, sign * length / 2.0) for number, sign in enumerate((-1.0, 1.0)))
     return [cylinder, *(at_end.marker("sphere", sphere_size, color) for at_end in ends)]
 
 

@@ -50,7 +50,7 @@ class SimulatedSystem(Hardware):
         description: the description of the hardware in the URDF.
         logger: receives warnings about joints and sensors that the model does not have.
         plugin: the plugin that runs the hardware.
-        holds: whether joints hold their positions while they have no command.
+        holds_position: whether joints hold their positions while they have no command.
         gain: the fraction of a position error that each update corrects; with NaN, an update corrects the whole error.
         values: parameters of the plugin's node, which may include gains of PID controllers.
 
@@ -64,7 +64,7 @@ class SimulatedSystem(Hardware):
         logger: Logger,
         plugin: ControlledModel,
         *,
-        holds: bool,
+        holds_position: bool,
         gain: float = nan,
         values: Mapping[str, Any] = MappingProxyType({}),
     ) -> None:
@@ -94,7 +94,7 @@ class SimulatedSystem(Hardware):
                     and command.kind in _COMMAND_KINDS
                     and joint_description.mimic is None
                 },
-                holds_position=holds,
+                holds_position=holds_position,
                 gain=gain,
                 pids={
                     kind: Pid(each_gains)

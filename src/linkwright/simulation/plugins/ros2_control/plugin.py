@@ -144,7 +144,7 @@ class SimulatedControl(SimulatedPlugin[Parameters]):
     def _create_system(self, description: HardwareDescription, logger: Logger) -> Hardware:
         holds_joints = self.parameters.hold_joints
         system = SimulatedSystem(
-            description, logger, self, holds=holds_joints, gain=self._position_gain, values=self._values
+            description, logger, self, holds_position=holds_joints, gain=self._position_gain, values=self._values
         )
         self._systems.append(system)
         if system.has_pids:
