@@ -20,7 +20,7 @@ _ACTIVE_STATE = "active"
 
 
 class TaskResult(Enum):
-    """The result of a task."""
+    """How a navigation task ended; `UNKNOWN` while it runs."""
 
     UNKNOWN = 0
     SUCCEEDED = 1

@@ -50,7 +50,7 @@ class Figure:
 
 @dataclass(frozen=True)
 class Exercise:
-    """An exercise.
+    """A programming exercise whose result a judge measures in simulation.
 
     Attributes:
         folder: its folder, whose name is the name of the exercise.
