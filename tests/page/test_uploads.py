@@ -78,7 +78,8 @@ class Sender:
 @asynccontextmanager
 async def host() -> AsyncIterator[tuple[World, Sender]]:
     made = World()
-    made.viewer.guests = GuestRecordings(made.viewer)
+    guests = GuestRecordings(made.viewer)
+    made.viewer.make_guests = lambda: guests
     await made.viewer.start()
     try:
         async with aiohttp.ClientSession() as session:

@@ -17,6 +17,7 @@ if TYPE_CHECKING:
     from linkwright.nodes import RunningNode
     from linkwright.page.page_server import PageServer
     from linkwright.viewer import Viewer
+    from linkwright.viewer.guests import GuestRecordings
 
 _CLOSE_TIMEOUT_SECONDS = 0.8
 
@@ -117,7 +118,6 @@ class ViewerHost:
         """
         from linkwright.rviz import find_unsaved
         from linkwright.viewer import Viewer
-        from linkwright.viewer.guests import GuestRecordings
 
         session = self._session
         if plan.viewer_config is not None:
@@ -146,7 +146,7 @@ class ViewerHost:
             history=session.options.history,
         )
         self._servers.pop(plan.process_name, None)
-        viewer.guests = GuestRecordings(viewer)
+        viewer.make_guests = lambda: _make_guests(viewer)
         if session.options.terminal is not None:
             from linkwright.panels.terminal.feature import TerminalFeature
 
@@ -223,8 +223,13 @@ def load_viewer() -> None:
 
     This takes time, and may run in another thread.
     """
-    import linkwright.viewer.guests
     import linkwright.viewer.viewer  # noqa: F401 - only loaded
+
+
+def _make_guests(viewer: Viewer) -> GuestRecordings:
+    from linkwright.viewer.guests import GuestRecordings  # few users upload recordings
+
+    return GuestRecordings(viewer)
 
 
 def _attach_panel(viewer: Viewer, node: RunningNode) -> None:

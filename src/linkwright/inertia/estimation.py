@@ -6,7 +6,6 @@ from linkwright.diagnostics import LinkwrightError, Phrase, phrase, term
 from linkwright.geometry.mass import MassProperties, combine
 from linkwright.geometry.shapes import MAX_COORDINATE, shape_bounds
 from linkwright.geometry.solids import shape_properties
-from linkwright.inertia.inertial import has_mass
 from linkwright.inertia.mesh_library import MeshLibrary
 from linkwright.loading.lean_dataclasses import dataclass
 from linkwright.loading.lean_typing import Literal
@@ -81,7 +80,7 @@ def estimate(
     basis: Literal["mass", "density", "present"] = "density"
     if mass is not None:
         basis = "mass"
-    elif density is None and link.inertial is not None and has_mass(link.inertial):
+    elif density is None and link.inertial is not None and link.inertial.has_mass:
         basis, mass = "present", link.inertial.mass
     if kind is None:
         return Estimate(link.name, None, None, 0, basis, 0.0, tuple(notes))

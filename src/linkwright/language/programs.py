@@ -18,7 +18,8 @@ from linkwright.lint.targets import walk
 from linkwright.nodes import COMPONENTS
 from linkwright.packages import PackageFinder, enclosing_package, install_prefix, is_installed
 from linkwright.packages.programs.source_programs import module_file, python_root, source_programs
-from linkwright.packages.readers.entry_points import EntryPoint, text_of
+from linkwright.packages.readers.entry_points import text_of
+from linkwright.packages.readers.installed import EntryPoint
 from linkwright.packages.share_layout import source_of, substituted_executables
 
 _PACKAGE_USE = re.compile(

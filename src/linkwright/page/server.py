@@ -89,11 +89,12 @@ _NOT_SENT_LOW_WATER: int | None = getattr(socket, "TCP_NOTSENT_LOWAT", None)
 class _Services:
     """The services for pages: the audience for their WebSockets, and the guests.
 
-    The guests show recordings that pages upload. `uploads` is created when the first upload is requested.
+    The guests show recordings that pages upload. `guests` and `uploads` are created when the first upload is requested.
     """
 
     audience: Audience
-    guests: Guests | None
+    open_guests: Callable[[], Guests] | None
+    guests: Guests | None = None
     uploads: Uploads | None = None
 
 
@@ -180,14 +181,14 @@ class WebServer:
             raise
         return f"{url_of(listener)}?{TOKEN_PARAMETER}={self._gate.token}"
 
-    def show(self, audience: Audience, guests: Guests | None = None) -> None:
+    def show(self, audience: Audience, open_guests: Callable[[], Guests] | None = None) -> None:
         """Admit pages, including pages that are already waiting.
 
         Args:
             audience: serves the WebSockets of pages.
-            guests: shows the recordings that pages upload; None if uploads are not accepted.
+            open_guests: returns the guests, which show the recordings that pages upload; None to accept no uploads.
         """
-        self._services.set_result(_Services(audience, guests))
+        self._services.set_result(_Services(audience, open_guests))
 
     async def close(self) -> None:
         """Close the connections to pages, and stop serving."""
@@ -331,11 +332,12 @@ class WebServer:
         self, handle_upload: Callable[[Uploads, web.Request], Awaitable[web.Response]], request: web.Request
     ) -> web.Response:
         services = await self._viewer()
-        if services.guests is None:
+        if services.open_guests is None:
             raise web.HTTPNotFound(text="This program does not accept recordings.\n")
         if services.uploads is None:
             from linkwright.page.uploads import Uploads
 
+            services.guests = services.open_guests()
             services.uploads = Uploads(services.guests)
         return await handle_upload(services.uploads, request)
 

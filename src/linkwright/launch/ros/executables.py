@@ -28,7 +28,7 @@ from linkwright.packages import PackageFinder, PackageNotFoundError, install_pre
 from linkwright.packages.programs.child_python import python_command
 
 if TYPE_CHECKING:
-    from linkwright.packages.readers.entry_points import EntryPoint
+    from linkwright.packages.readers.installed import EntryPoint
 
 # The readers of sources and scripts are imported only where they are used. A launch of Linkwright's own nodes does
 # not need them.
