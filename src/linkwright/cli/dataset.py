@@ -181,7 +181,7 @@ class _Progress:
     def begin(self, studio: Studio) -> None:
         """Print the classes and the rendering method."""
         print_message(localized(phrase("Classes: {names}", names=", ".join(studio.classes))))
-        print_message(localized(phrase("Rendering images with {way}", way=studio.render_method)))
+        print_message(localized(phrase("Rendering images with {renderer}", renderer=studio.render_method)))
         if studio.unused:
             print_message(
                 localized(phrase("These worlds have no object of the classes {names}", names=", ".join(studio.unused)))

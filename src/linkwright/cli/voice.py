@@ -122,8 +122,8 @@ class _Trial:
                     "end": f"{result.end - recording_start:.2f}",
                 }
                 print(localized(phrase(
-                    "{file}: {what}, {start} s to {end} s, recognized {latency} s later",
-                    file=file, what=self._result_text(result), latency=f"{max(0.0, current_time - result.end):.2f}",
+                    "{file}: {result}, {start} s to {end} s, recognized {latency} s later",
+                    file=file, result=self._result_text(result), latency=f"{max(0.0, current_time - result.end):.2f}",
                     **times,
                 )))  # fmt: skip
         return sum(result.final for result in results)

@@ -109,7 +109,9 @@ def _solid(
         try:
             mesh = meshes.load(geometry, shape.element)
         except LinkwrightError as error:
-            notes.append(phrase("a {kind} mesh is left out: {why}", kind=term(kind), why=error.diagnostics[0].message))
+            notes.append(
+                phrase("a {kind} mesh is left out: {reason}", kind=term(kind), reason=error.diagnostics[0].message)
+            )
             return None
         solid = mesh.solid
         name = geometry.filename.rpartition("/")[2]
@@ -125,7 +127,9 @@ def _solid(
     else:
         shape_name = type(geometry).__name__.lower()
         if max(shape_bounds(geometry).high) > MAX_COORDINATE:
-            notes.append(phrase("a {kind} {what} is left out: it is too large", kind=term(kind), what=term(shape_name)))
+            notes.append(
+                phrase("a {kind} {shape} is left out: it is too large", kind=term(kind), shape=term(shape_name))
+            )
             return None
         solid = shape_properties(geometry)
         if not solid.mass > _MIN_VOLUME:
@@ -133,7 +137,7 @@ def _solid(
                 phrase("its volume is negligible") if solid.mass > 0 else phrase("it has a size that is not positive")
             )
             notes.append(
-                phrase("a {kind} {what} is left out: {why}", kind=term(kind), what=term(shape_name), why=reason)
+                phrase("a {kind} {shape} is left out: {reason}", kind=term(kind), shape=term(shape_name), reason=reason)
             )
             return None
     return solid.moved(shape.origin)

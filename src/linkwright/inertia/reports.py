@@ -87,7 +87,7 @@ def _row(estimate: Estimate, verdict: Verdict) -> tuple[str, ...]:
     )
     density = "-" if verdict.density is None else grouped_digits(verdict.density)
     name = _GRADE_NAMES.get(verdict.grade)
-    text = verdict.reason if name is None else phrase("{standing}: {words}", standing=name, words=verdict.reason)
+    text = verdict.reason if name is None else phrase("{grade}: {reasons}", grade=name, reasons=verdict.reason)
     return estimate.link, mass, density, moments, localized(text)
 
 

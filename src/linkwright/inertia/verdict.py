@@ -162,9 +162,9 @@ def _comparison_reasons(comparison: Comparison, computed: MassProperties) -> lis
         if times > _ROUGH_RATIO:
             times_text = f"{times:.2g}" if times < _DOUBTFUL_RATIO else grouped_digits(times)
             words = (
-                phrase("its moments are {times} times the moments of a solid with its shapes", times=times_text)
+                phrase("its moments are {factor} times the moments of a solid with its shapes", factor=times_text)
                 if ratio > 1
-                else phrase("its moments are 1/{times} of the moments of a solid with its shapes", times=times_text)
+                else phrase("its moments are 1/{factor} of the moments of a solid with its shapes", factor=times_text)
             )
             reasons.append(_Reason(Grade.DOUBTFUL if times > _DOUBTFUL_RATIO else Grade.ROUGH, words, log(times)))
     return reasons

@@ -84,7 +84,9 @@ def _link_collisions(survey: Survey, link: Link, wheel: Wheel | None) -> Iterato
         collisions.append(collision[0])
         descriptions.append(collision[1])
     if collisions:
-        message = phrase("link '{link}' has no <collision>: it gets {what}", link=link.name, what=joined(descriptions))
+        message = phrase(
+            "link '{link}' has no <collision>: it gets {shape}", link=link.name, shape=joined(descriptions)
+        )
         yield Finding(_diagnostic_at("DRIVE101", message, element), element, tuple(collisions))
 
 
@@ -96,7 +98,7 @@ def _visual_to_collision(
     if not isinstance(geometry, Mesh):
         shape_name = term(type(geometry).__name__.lower())
         return _collision_element(visual.origin.xyz, visual.origin.rpy, _shape_element(geometry)), phrase(
-            "the {what} of its visual", what=shape_name
+            "the {shape} of its visual", shape=shape_name
         )
     corners = vertices(visual, survey.meshes)
     if corners is None:

@@ -161,7 +161,9 @@ def _source_position(element: Element) -> tuple[str, int]:
 def _refusal(finding: Finding, why: str) -> Diagnostic:
     diagnostic = finding.diagnostic
     message = phrase(
-        "an inferred element is not written to the file, because {why}: {what}", what=diagnostic.message, why=why
+        "an inferred element is not written to the file, because {reason}: {element}",
+        element=diagnostic.message,
+        reason=why,
     )
     hint = phrase("edit the macro or the expression; `linkwright drive FILE --show` prints the text")
     return Diagnostic("DRIVE301", message, diagnostic.span, hint=hint, source=diagnostic.source)

@@ -135,11 +135,11 @@ class ExpansionProof:
             renamed: the new names of arguments of the descriptions, by old name.
 
         Raises:
-            UnprovedError: a file is outside of the workspace, there is nothing to compare, or an edit causes an error.
+            UnprovedError: a file is outside the workspace, there is nothing to compare, or an edit causes an error.
         """
         for file in sorted({edit.file for edit in edits}):
             if not self._project.contains(file):
-                raise UnprovedError(phrase("'{file}' is outside of the workspace", file=display_path(str(file))))
+                raise UnprovedError(phrase("'{file}' is outside the workspace", file=display_path(str(file))))
             if file.name.endswith(DESCRIPTIONS):
                 self._add_entries(file)
         if not self.trials:
@@ -153,7 +153,7 @@ class ExpansionProof:
             except LinkwrightError as error:
                 first = error.diagnostics[0]
                 raise UnprovedError(
-                    phrase("the edit causes this error: {why}", why=first.message), first.span
+                    phrase("the edit causes this error: {reason}", reason=first.message), first.span
                 ) from None
             root = former.expansion.document.root
             yield ExpansionPair(former.entry, root, after.document.root, str(former.expansion), str(after))

@@ -246,7 +246,7 @@ def _check_new_name(name: Occurrence, new: str) -> None:
 
 def _unproved(message: Phrase, name: Occurrence, span: Span | None = None) -> LinkwrightError:
     return LinkwrightError(
-        Diagnostic("LANG104", phrase("'{name}' is not renamed: {why}", name=name.name, why=message), span)
+        Diagnostic("LANG104", phrase("'{name}' is not renamed: {reason}", name=name.name, reason=message), span)
     )
 
 

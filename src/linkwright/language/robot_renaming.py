@@ -97,7 +97,7 @@ class RobotRenaming:
 
     def _no_name_reason(self) -> Phrase:
         reason = self._proof.gap_reason
-        nothing = phrase("no link, joint or material takes its name from this place")
+        nothing = phrase("no link, joint or material takes its name from this position")
         return (
             nothing
             if reason is None
@@ -270,7 +270,9 @@ class RobotRenaming:
 
 
 def _computed_name_error(written: SourceValue, value: str, span: Span | None = None) -> UnprovedError:
-    return UnprovedError(phrase("'{value}' is computed from '{written}'", value=value, written=written.text), span)
+    return UnprovedError(
+        phrase("'{value}' is computed from '{expression}'", value=value, expression=written.text), span
+    )
 
 
 def _check_overlap(edits: Iterable[Edit]) -> None:

@@ -85,7 +85,7 @@ def rename_in_sdf(
         new: the new name.
 
     Raises:
-        UnprovedError: the new name is not valid or exists, the file is outside of the workspace, or values would lead
+        UnprovedError: the new name is not valid or exists, the file is outside the workspace, or values would lead
             to other elements.
     """
     text = project.text(name.file, texts) or ""
@@ -93,7 +93,7 @@ def rename_in_sdf(
     if not _NAME.fullmatch(new) or _SEPARATOR in new or (new.startswith("__") and new.endswith("__")):
         raise UnprovedError(phrase("'{new}' is not a valid name", new=new), span)
     if not project.contains(name.file):
-        raise UnprovedError(phrase("'{file}' is outside of the workspace", file=name.file.name), span)
+        raise UnprovedError(phrase("'{file}' is outside the workspace", file=name.file.name), span)
     definition = innermost_element(source_elements(text), name.definition)
     scope = None if definition is None else _scope(definition.parent)
     if definition is None or scope is None:

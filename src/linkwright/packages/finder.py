@@ -44,7 +44,7 @@ class PackageNotFoundError(LinkwrightError, KeyError):
     """
 
     def __init__(self, name: str, locations: Sequence[str], suggestion: Phrase | None, *, is_slip: bool) -> None:
-        notes = tuple(Note(phrase("searched {place}", place=location)) for location in locations)
+        notes = tuple(Note(phrase("searched {location}", location=location)) for location in locations)
         hint = suggestion or phrase("change to the workspace that contains it, or source its install/setup.bash")
         super().__init__(Diagnostic("PKG101", phrase("package '{name}' not found", name=name), notes=notes, hint=hint))
         self.name = name

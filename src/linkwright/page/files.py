@@ -142,7 +142,9 @@ class MeshIndex:
                 ),
             )
         if is_pointer_file(path):
-            return Located(None, phrase("'{path}': {why}; {how}", path=path, why=POINTER_REASON, how=POINTER_HINT))
+            return Located(
+                None, phrase("'{path}': {problem}; {hint}", path=path, problem=POINTER_REASON, hint=POINTER_HINT)
+            )
         folder = self._folder_of(uri, path)
         relative = path.relative_to(folder.root)
         try:

@@ -398,7 +398,7 @@ class _Fault:
     def _undefined_entity(self) -> Diagnostic:
         name = _NAME.match(self._text, self._offset + 1)
         entity = f"&{name[0]};" if name else "&"
-        message = phrase("the entity '{written}' is not defined", written=entity)
+        message = phrase("the entity '{entity}' is not defined", entity=entity)
         return self._diagnostic("XML208", message, len(entity), hint=_AMPERSAND_HINT)
 
     def _duplicate_attribute(self) -> Diagnostic:
@@ -409,4 +409,4 @@ class _Fault:
 
 
 def _expat_message(error: ExpatError) -> Phrase:
-    return phrase("this is not well-formed XML: {partition}", partition=foreign(str(error).partition(":")[0]))
+    return phrase("this is not well-formed XML: {reason}", reason=foreign(str(error).partition(":")[0]))

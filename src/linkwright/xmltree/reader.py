@@ -390,9 +390,7 @@ class _Reader:
         self, context: str | None, _base: str | None, system_id: str | None, _public_id: str | None
     ) -> int:
         offset = self._character_offset(self._parser.CurrentByteIndex)
-        message = phrase(
-            "the entity '&{context};' would read another file ('{system_id}')", context=context, system_id=system_id
-        )
+        message = phrase("the entity '&{entity};' would read another file ('{file}')", entity=context, file=system_id)
         self._refuse_entity(offset, message)
 
     def _skipped_entity(self, name: str, is_parameter: bool) -> None:

@@ -110,7 +110,7 @@ class Connection:
 
 
 def is_told(message: Message) -> bool:
-    text = "'ty' does not run, so Python files are edited without it"
+    text = "'ty' cannot be run, so Python files are edited without it"
     return message.get("method") == "window/showMessage" and message["params"]["message"] == text
 
 

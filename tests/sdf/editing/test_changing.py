@@ -118,7 +118,7 @@ def test_what_is_no_size_is_refused(size):
 def test_what_is_no_simple_shape_has_neither_size_nor_colour():
     with pytest.raises(EditError, match="'ground_plane' cannot be resized"):
         change(world_text(PLAIN), [Change("ground_plane", size=(1, 1, 1))])
-    with pytest.raises(EditError, match="the color of 'ground_plane' cannot be changed"):
+    with pytest.raises(EditError, match="the colour of 'ground_plane' cannot be changed"):
         change(world_text(PLAIN), [Change("ground_plane", color=(1, 1, 1, 1))])
 
 

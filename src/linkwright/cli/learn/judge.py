@@ -147,7 +147,9 @@ def _show_exercise(exercise: Exercise, program: Path, viewer: Viewer) -> None:
 
 def _copy_template(exercise: Exercise, program: Path) -> int:
     if program.exists():
-        raise LinkwrightError(Diagnostic("LEARN144", phrase("'{path}' exists and is kept", path=display_path(program))))
+        raise LinkwrightError(
+            Diagnostic("LEARN144", phrase("'{path}' already exists and is not changed", path=display_path(program)))
+        )
     program.write_text(exercise.template.read_text(encoding="utf-8"), encoding="utf-8")
     print(display_path(program))
     return 0

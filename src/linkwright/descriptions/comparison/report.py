@@ -91,7 +91,9 @@ def _location_text(place: DifferenceLocation, label: Label) -> str:
     position = _position_text(place.span, label)
     if not place.calls:
         return position
-    return localized(phrase("{place} called at {call}", place=position, call=_position_text(place.calls[0], label)))
+    return localized(
+        phrase("{location} called at {call}", location=position, call=_position_text(place.calls[0], label))
+    )
 
 
 def _position_text(span: Span, label: Label) -> str:

@@ -61,13 +61,15 @@ def refusal(place: TextRange, index: int | None, attempts: Sequence[Attempt], ta
             "text for all of these parts"
         )
         if index is None:
-            message = phrase("an <{tag}> written here would also change {what}", tag=tag, what=names_text)
+            message = phrase("an <{tag}> written here would also change {parts}", tag=tag, parts=names_text)
         else:
-            message = phrase("another number in '{written}' would also change {what}", written=text, what=names_text)
+            message = phrase(
+                "another number in '{expression}' would also change {parts}", expression=text, parts=names_text
+            )
         return Diagnostic("EDIT104", message, place.span, notes=notes, hint=hint, source=place.source)
     if forbidden is not None:
         return forbidden
-    message = phrase("no number gives '{written}' the requested value", written=text)
+    message = phrase("no number gives '{expression}' the requested value", expression=text)
     hint = phrase("write a number, or a sum that contains a number, in place of the expression")
     return Diagnostic("EDIT105", message, place.span, notes=notes, hint=hint, source=place.source)
 
@@ -80,7 +82,7 @@ def _attempt_note(attempt: Attempt) -> Note:
             attempt.text_range.span,
         )
     return Note(
-        phrase("'{text}' also determines {what}", text=text, what=_joined_names(attempt.side_effects)),
+        phrase("'{text}' also determines {parts}", text=text, parts=_joined_names(attempt.side_effects)),
         attempt.text_range.span,
     )
 
@@ -94,7 +96,7 @@ def _joined_names(names: Sequence[str]) -> object:
 
 def forbidden_file(path: str, reason: object) -> Diagnostic:
     """Return the finding that a file must not be written."""
-    message = phrase("'{path}' is not written: {why}", path=display_path(path), why=reason)
+    message = phrase("'{path}' is not written: {reason}", path=display_path(path), reason=reason)
     hint = phrase("open the description from your own workspace, or change a copy of the file")
     return Diagnostic("EDIT106", message, hint=hint)
 

@@ -68,9 +68,9 @@ def explain(error: BaseException, subject: str, fallback: SourceLocation | None 
     text = str(error.args[0]) if isinstance(error, KeyError) and error.args else str(error)
     text = _MODULE_PATH.sub("", (text.splitlines() or [""])[0]).rstrip(".")
     message = (
-        phrase("{where} raised {kind}: {text}", where=subject, kind=type_name, text=foreign(text))
+        phrase("{subject} raised {kind}: {text}", subject=subject, kind=type_name, text=foreign(text))
         if text
-        else phrase("{where} raised {kind}", where=subject, kind=type_name)
+        else phrase("{subject} raised {kind}", subject=subject, kind=type_name)
     )
     source = place.source() if place else None
     span = place.span(source) if place else None
@@ -139,7 +139,7 @@ def _class_hint(error: AttributeError) -> Phrase | None:
     """Return a hint about a class in place of its instance, or a method outside of its class, or None."""
     name, owner = getattr(error, "name", None) or "", getattr(error, "obj", None)
     if isinstance(owner, property):
-        return phrase("a class stands where its instance belongs; write its name with parentheses: NAME()")
+        return phrase("a class is used where its instance is required; write its name with parentheses: NAME()")
     if name.startswith("_Node__"):
         return phrase("call super().__init__('NAME') first in __init__")
     if hasattr(owner, "TYPE_NAME"):
@@ -148,7 +148,7 @@ def _class_hint(error: AttributeError) -> Phrase | None:
             return phrase("did you mean '{name}'?", name=f".{inner}.{name}")
     frame = _innermost_frame(error)
     if frame is not None and callable(frame.f_globals.get(name)) and "self" in frame.f_locals:
-        return phrase("'{name}' is a function outside of the class; indent it as the other methods", name=name)
+        return phrase("'{name}' is a function outside the class; indent it like the other methods", name=name)
     return None
 
 
@@ -249,9 +249,9 @@ def _missing_hint(error: TypeError, source: SourceText | None, span: Span | None
         similar_names = nearest(missing_name, (name for name in keyword_names if name != missing_name))
         if similar_names:
             return phrase(
-                "argument '{missing}' is missing; the call passes {near}",
+                "argument '{missing}' is missing; the call passes {similar}",
                 missing=missing_name,
-                near=quoted_names(similar_names, " or "),
+                similar=quoted_names(similar_names, " or "),
             )
     return None
 

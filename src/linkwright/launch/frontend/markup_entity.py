@@ -68,7 +68,12 @@ class MarkupEntity(Entity):
         raise error_at(
             self._place_of_part(name),
             "LAUNCH116",
-            phrase("'{type_name}' has no {what} '{name}'", type_name=self._type_name, what=term(part_kind), name=name),
+            phrase(
+                "'{type_name}' has no {part_kind} '{name}'",
+                type_name=self._type_name,
+                part_kind=term(part_kind),
+                name=name,
+            ),
             hint,
             ros_error=ValueError(f"{ros_text} `{self._type_name}`: {{{names_text}}}"),
         )
@@ -89,11 +94,11 @@ class MarkupEntity(Entity):
 
     def _fail_wrong_type(self, name: str, value: Any, data_type: Any, ros_error: str) -> NoReturn:
         message = phrase(
-            "attribute '{name}' of '{type_name}' is {value}, which is not {type_words}",
+            "attribute '{name}' of '{type_name}' is {value}, which is not {type}",
             name=name,
             type_name=self._type_name,
             value=repr(value),
-            type_words=describe_type(data_type),
+            type=describe_type(data_type),
         )
         raise error_at(self._place_of_part(name), "LAUNCH118", message, ros_error=TypeError(ros_error))
 

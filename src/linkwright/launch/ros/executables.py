@@ -224,11 +224,7 @@ def _check_module(executable: Executable, entry_point: EntryPoint, root: Path) -
         entry=entry_point,
         module=entry_point.module,
     )
-    notes = (
-        Note(
-            phrase("searched for {joinpath}.py", joinpath=display_path(root.joinpath(*entry_point.module.split("."))))
-        ),
-    )
+    notes = (Note(phrase("searched for {path}.py", path=display_path(root.joinpath(*entry_point.module.split("."))))),)
     raise LinkwrightError(
         Diagnostic("LAUNCH131", message, notes=notes, hint=suggestion or phrase("check entry_points in setup.py"))
     )
@@ -272,8 +268,8 @@ def _missing_executable_error(
         notes = (
             Note(
                 phrase(
-                    "searched for {install_prefix}",
-                    install_prefix=display_path(install_prefix(share) / "lib" / package / name),
+                    "searched for {folder}",
+                    folder=display_path(install_prefix(share) / "lib" / package / name),
                 )
             ),
         )

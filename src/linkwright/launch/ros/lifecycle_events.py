@@ -71,7 +71,7 @@ class ChangeState(Event):
                 SourceLocation.of_caller(),
                 "LAUNCH138",
                 message,
-                phrase("the available transitions are {listed}", listed=transitions_text),
+                phrase("the available transitions are {transitions}", transitions=transitions_text),
                 ros_error=ros_error,
             )
         self.lifecycle_node_matcher = lifecycle_node_matcher

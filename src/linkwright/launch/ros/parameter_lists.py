@@ -117,7 +117,7 @@ def _normalize_item(item: Any, place: SourceLocation | None) -> Any:
         return item
     if isinstance(item, (str, Path, Substitution, list, tuple)):
         return ParameterFile(item)
-    message = phrase("'parameters' of a node contains an item of type {name}", name=type(item).__name__)
+    message = phrase("'parameters' of a node contains an item of type {type}", type=type(item).__name__)
     hint = phrase("items must be dictionaries or paths of YAML files")
     raise error_at(place, "LAUNCH132", message, hint, ros_error=TypeError(message))
 
@@ -141,7 +141,9 @@ def _normalize_value(value: Any, key: Any) -> Any:
         return _normalize_sequence(value, key)
     shown_name = key if isinstance(key, str) else "..."
     if isinstance(value, Path):
-        message = phrase("the value of parameter '{shown}' is a Path, which is not a parameter type", shown=shown_name)
+        message = phrase(
+            "the value of parameter '{parameter}' is a Path, which is not a parameter type", parameter=shown_name
+        )
         raise error_at(
             SourceLocation.of_caller(),
             "LAUNCH132",
@@ -150,9 +152,9 @@ def _normalize_value(value: Any, key: Any) -> Any:
             ros_error=TypeError(message),
         )
     message = phrase(
-        "parameter '{shown}' is of type {name}, which is not a parameter type",
-        shown=shown_name,
-        name=type(value).__name__,
+        "parameter '{parameter}' is of type {type}, which is not a parameter type",
+        parameter=shown_name,
+        type=type(value).__name__,
     )
     ros_error = TypeError(f"Unexpected type for parameter value {value!r}")
     raise error_at(SourceLocation.of_caller(), "LAUNCH132", message, ros_error=ros_error)
@@ -185,7 +187,9 @@ def _item_kind(item: Any, key: Any) -> type:
         return tuple
     shown_name = key if isinstance(key, str) else "..."
     message = phrase(
-        "the list of parameter '{shown}' contains an item of type {name}", shown=shown_name, name=type(item).__name__
+        "the list of parameter '{parameter}' contains an item of type {type}",
+        parameter=shown_name,
+        type=type(item).__name__,
     )
     hint = phrase("items must be of type bool, int, float or str")
     raise error_at(SourceLocation.of_caller(), "LAUNCH132", message, hint, ros_error=TypeError(message))

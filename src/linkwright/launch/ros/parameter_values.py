@@ -88,14 +88,14 @@ class ParameterValue(Placed):
             expected = getattr(self._value_type, "__name__", None) or str(self._value_type)
             if self._value_type is None:
                 message = phrase(
-                    "{called} has no type and is not YAML: {error}",
-                    called=subject,
+                    "{subject} has no type and is not YAML: {error}",
+                    subject=subject,
                     error=foreign(error),
                 )
                 raise error_at(self.place, "LAUNCH132", message, STRING_HINT, ros_error=error) from error
             message = phrase(
-                "{called} is not of the requested type {expected}: {error}",
-                called=subject,
+                "{subject} is not of the requested type {expected}: {error}",
+                subject=subject,
                 expected=expected,
                 error=foreign(error),
             )

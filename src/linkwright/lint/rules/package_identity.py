@@ -211,7 +211,7 @@ class MaintainerEmail(ManifestRule):
             if not email:
                 if element.tag == "maintainer":
                     yield self.report(
-                        phrase("the maintainer '{who}' has no e-mail address", who=maintainer_name),
+                        phrase("the maintainer '{maintainer}' has no e-mail address", maintainer=maintainer_name),
                         element,
                         hint=phrase('add email="..."'),
                     )

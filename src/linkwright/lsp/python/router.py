@@ -330,7 +330,7 @@ class Router:
                 return
         for identifier in [each for each, question in self._questions.items() if program.name in question.awaited]:
             self._answered(program.name, {"id": identifier, "result": None})
-        message = phrase("'{program}' does not run, so Python files are edited without it", program=program.name)
+        message = phrase("'{program}' cannot be run, so Python files are edited without it", program=program.name)
         shown = {"type": _WARNING, "message": localized(message)}
         self._editor.send({"jsonrpc": "2.0", "method": "window/showMessage", "params": shown})
 

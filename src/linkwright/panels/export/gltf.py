@@ -356,10 +356,10 @@ def _unreadable_mesh_error(link: LinkScene, name: str, why: Phrase) -> Linkwrigh
         Diagnostic(
             "VIEW204",
             phrase(
-                "cannot read the mesh '{name}' of link '{link_name}': {why}",
+                "cannot read the mesh '{name}' of link '{link_name}': {reason}",
                 name=name,
                 link_name=link.name,
-                why=why,
+                reason=why,
             ),
             hint=hint,
         )

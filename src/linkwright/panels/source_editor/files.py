@@ -114,7 +114,7 @@ class SourceFiles:
         """Create a file in the workspace, with the folders above it.
 
         Raises:
-            EditRefusedError: the file exists or is outside of the workspace, or it cannot be created.
+            EditRefusedError: the file exists or is outside the workspace, or it cannot be created.
         """
         real = Path(os.path.realpath(path))
         refusal = self._creating_refusal(real)

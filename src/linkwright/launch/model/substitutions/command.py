@@ -90,7 +90,7 @@ class Command(DeclaredSubstitution, tag="command", shown="Command({command})"):
     def _run(self, context: LaunchContext, text: str, words: list[str]) -> str:
         rule = perform_substitutions(context, self.on_stderr)
         if rule not in _STDERR_RULES:
-            message = phrase("'on_stderr' is '{rule}', not one of 'fail', 'warn', 'ignore', 'capture'", rule=rule)
+            message = phrase("'on_stderr' is '{value}', not one of 'fail', 'warn', 'ignore', 'capture'", value=rule)
             ros_error = SubstitutionFailure(
                 f"expected 'on_stderr' to be one of: ['fail', 'ignore', 'warn', 'capture'], got '{rule}'"
             )
@@ -101,10 +101,10 @@ class Command(DeclaredSubstitution, tag="command", shown="Command({command})"):
             )
         except OSError as error:
             message = phrase(
-                "command '{text}' cannot be run, because program '{words}' does not start: {strerror}",
+                "command '{text}' cannot be run, because program '{program}' does not start: {strerror}",
                 text=text,
                 strerror=foreign(error.strerror or error),
-                words=words[0],
+                program=words[0],
             )
             ros_error = SubstitutionFailure(f"file not found: {error}")
             hint = phrase("write a space after 'xacro'") if words[0].startswith("xacro/") else None

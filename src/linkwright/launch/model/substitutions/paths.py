@@ -165,10 +165,10 @@ class FindLaunchfile(DeclaredSubstitution, tag="find-launchfile", shown="FindLau
             names_text = ", ".join(file.name for file in matching_files)
             raise self._create_error(
                 phrase(
-                    "folder '{folder}' has several launch files '{name}': {listed}",
+                    "folder '{folder}' has several launch files '{name}': {paths}",
                     name=name,
                     folder=folder,
-                    listed=names_text,
+                    paths=names_text,
                 )
             )
         raise self._create_error(
