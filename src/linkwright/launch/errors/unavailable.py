@@ -1,4 +1,4 @@
-"""Marks for errors whose cause is missing third-party software, and not a mistake of the user.
+"""Marks for errors that missing third-party software causes, not a mistake of the user.
 
 A launch skips the parts whose software is missing, and continues. For example, the simulation of a robot is useful
 even without move_group.

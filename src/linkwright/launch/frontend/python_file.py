@@ -23,7 +23,7 @@ from linkwright.diagnostics import (
 from linkwright.diagnostics.lookalikes import lookalike_hint
 from linkwright.files.input_files import read_text
 from linkwright.launch.errors.exceptions import InvalidPythonLaunchFileError, as_ros_error
-from linkwright.launch.errors.places import MarkupLocation, SourceLocation, error_at, outside_markup
+from linkwright.launch.errors.locations import MarkupLocation, SourceLocation, error_at, outside_markup
 from linkwright.launch.errors.user_code import explain
 from linkwright.launch.model.description import LaunchDescription
 from linkwright.packages.launch_files import is_launch_file_name

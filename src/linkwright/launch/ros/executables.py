@@ -1,4 +1,7 @@
-"""The executables of packages, which are part of Linkwright, installed, or in the sources of a package."""
+"""The executables of packages.
+
+They are part of Linkwright, installed, or in the sources of a package.
+"""
 
 from __future__ import annotations
 

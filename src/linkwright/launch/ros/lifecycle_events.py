@@ -7,7 +7,7 @@ from collections.abc import Callable
 from typing import Any
 
 from linkwright.diagnostics import phrase
-from linkwright.launch.errors.places import SourceLocation, error_at
+from linkwright.launch.errors.locations import SourceLocation, error_at
 from linkwright.launch.model.event_handlers import EventHandler
 from linkwright.launch.model.events import Event
 
