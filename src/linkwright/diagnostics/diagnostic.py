@@ -212,7 +212,7 @@ class Diagnostic:
         return self._fields()
 
     @property
-    def placed_message(self) -> Phrase:
+    def located_message(self) -> Phrase:
         """The message, preceded by its position if there is one."""
         return joined((str(self.span), self.message), ": ") if self.span else self.message
 

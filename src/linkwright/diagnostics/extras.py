@@ -72,7 +72,7 @@ def install_hint(extra: str, package: str = "") -> Phrase:
             "because '{path}', from which it was installed, no longer exists",
             command=command,
             placeholder=installation.origin.words(())[-1],
-            path=installation.origin.place,
+            path=installation.origin.location,
         )
     return phrase("run {command}", command=command)
 
