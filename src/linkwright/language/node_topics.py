@@ -137,8 +137,8 @@ def _in_form(name: str, typed: str) -> str:
 
 def describe_topic(topic: NodeTopic) -> str:
     """Return the type and role of a topic, in Markdown."""
-    place = "" if topic.target is None else f", {topic.target.file.name}"
-    return f"**{topic.name}** `{topic.type}`, {topic.role}{place}".replace(" ``", "")
+    file_suffix = "" if topic.target is None else f", {topic.target.file.name}"
+    return f"**{topic.name}** `{topic.type}`, {topic.role}{file_suffix}".replace(" ``", "")
 
 
 def explain_topic(document: Document, programs: Sequence[NodeProgram], name: str) -> str:

@@ -197,6 +197,6 @@ class ExpansionProof:
         for file in {edit.file for edit in edits} | {*former.gaps}:
             gaps = former.gaps.get(file, ())
             inside = [edit for edit in edits if edit.file == file]
-            kept = [edit for edit in inside if not any(start <= edit.start < end for start, end in gaps)]
-            texts[file] = apply_edits(blank_out(self._project.text(file, self._texts) or "", gaps), kept)
+            remaining_edits = [edit for edit in inside if not any(start <= edit.start < end for start, end in gaps)]
+            texts[file] = apply_edits(blank_out(self._project.text(file, self._texts) or "", gaps), remaining_edits)
         return expand_with_gaps(self._project, texts, former.entry, arguments)

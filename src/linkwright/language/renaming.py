@@ -125,9 +125,9 @@ def _proved(project: Workspace, texts: Mapping[Path, str], name: Occurrence, new
         renaming = RobotRenaming(project, texts, name, new, proof)
         renaming.run(seeds)
         edits, names, unchanged = renaming.edits, renaming.names, renaming.unchanged
-        more = sorted(old for (_, old) in names if old != name.name) if "$" not in name.name else []
-        if more:
-            notes.append(phrase("these names change, too: {names}", names=quoted_names(more)))
+        derived_names = sorted(old for (_, old) in names if old != name.name) if "$" not in name.name else []
+        if derived_names:
+            notes.append(phrase("these names change, too: {names}", names=quoted_names(derived_names)))
     else:
         edits = {Edit(seed.file, seed.start, seed.end, new) for seed in seeds}
         renamed = {}
@@ -140,8 +140,8 @@ def _proved(project: Workspace, texts: Mapping[Path, str], name: Occurrence, new
         notes.append(
             phrase("compared without the elements that cannot be expanded here: {reason}", reason=proof.gap_reason)
         )
-    kept = tuple(sorted(edit for edit in edits if edit.file not in probes))
-    return Renaming(kept, {old: changed for (_, old), changed in names.items()}, unchanged, tuple(notes))
+    file_edits = tuple(sorted(edit for edit in edits if edit.file not in probes))
+    return Renaming(file_edits, {old: changed for (_, old), changed in names.items()}, unchanged, tuple(notes))
 
 
 def _equal(
@@ -164,15 +164,15 @@ def _equal(
     try:
         proof.check_equal(edits, renamed)
     except UnprovedError:
-        more = edits | _visible_elsewhere(project, texts, name, new)
-        if more == edits:
+        extended_edits = edits | _visible_elsewhere(project, texts, name, new)
+        if extended_edits == edits:
             raise
         try:
-            proof.check_equal(more, renamed)
+            proof.check_equal(extended_edits, renamed)
         except UnprovedError:
             pass
         else:
-            return more
+            return extended_edits
         raise
     return edits
 

@@ -184,11 +184,15 @@ def _state_reference(element: SourceElement) -> Iterator[tuple[str, int, SourceE
     around = [*element.ancestors_and_self()]
     state = next((number for number, outer in enumerate(around) if outer.name == "state"), None)
     scope = None if state is None else _scope(around[state].parent)
-    name = next((one for one in element.tag.attributes() if one.name == "name" and one.value), None)
+    name = next(
+        (candidate for candidate in element.tag.attributes() if candidate.name == "name" and candidate.value), None
+    )
     if state is None or scope is None or name is None:
         return
     for outer in reversed(around[1:state]):
-        found = next((one for one in _named_children(scope) if one.value("name") == outer.value("name")), None)
+        found = next(
+            (candidate for candidate in _named_children(scope) if candidate.value("name") == outer.value("name")), None
+        )
         if found is None:
             return
         scope = found
@@ -211,7 +215,7 @@ def _referred_elements(scope: SourceElement, value: str) -> Iterator[tuple[str, 
         found = (
             None
             if current is None
-            else next((one for one in _named_children(current) if one.value("name") == part), None)
+            else next((candidate for candidate in _named_children(current) if candidate.value("name") == part), None)
         )
         if found is None:
             return
@@ -266,5 +270,5 @@ def _includes(include: SourceElement, text: str, model: Path) -> bool:
 
 
 def _child_text(element: SourceElement, tag: str, text: str) -> str:
-    child = next((one for one in element.children if one.name == tag), None)
+    child = next((candidate for candidate in element.children if candidate.name == tag), None)
     return "" if child is None else text[child.tag.end : text.find("<", child.tag.end)].strip()

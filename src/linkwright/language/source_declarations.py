@@ -135,7 +135,9 @@ def declared_topics(document: Document, folder: Path) -> list[DeclaredTopic]:
     Raises:
         NotYetKnownError: the sources were never read, and the document does not wait.
     """
-    return [topic for file, each in _known(document).items() if file.is_relative_to(folder) for topic in each.topics]
+    return [
+        topic for file, source in _known(document).items() if file.is_relative_to(folder) for topic in source.topics
+    ]
 
 
 def _known(document: Document) -> dict[Path, _Source]:

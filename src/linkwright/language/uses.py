@@ -65,6 +65,6 @@ def _documents(document: Document, file: Path) -> Iterator[Document]:
 
 def _uses(document: Document, known: Format, target: Target, name: str) -> Iterator[Target]:
     places = re.finditer(rf"(?<![\w.-]){re.escape(name)}(?![\w.-])", document.text)
-    for _, place in zip(range(_MAX_PLACES), places, strict=False):
-        if target in known.define(document, place.start()):
-            yield Target(document.file, *place.span())
+    for _, position in zip(range(_MAX_PLACES), places, strict=False):
+        if target in known.define(document, position.start()):
+            yield Target(document.file, *position.span())

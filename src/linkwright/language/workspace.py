@@ -293,7 +293,13 @@ class Workspace:
         versions = versions_of(texts)
         for result in self._results.values():
             if result.versions.get(file) == versions.get(file):
-                found.add([one for one in result.findings if one.span is not None and real(one.span.file) == file])
+                found.add(
+                    [
+                        finding
+                        for finding in result.findings
+                        if finding.span is not None and real(finding.span.file) == file
+                    ]
+                )
         return found.all()
 
     def checked(self, subject: Path, texts: Mapping[Path, str]) -> tuple[Diagnostic, ...]:

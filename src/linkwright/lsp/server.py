@@ -374,19 +374,19 @@ class LinkwrightServer(LanguageServer):
                 )
             )
 
-    async def _attempt(self, work: Callable[[], T], about: Path) -> T | None:
+    async def _attempt(self, work: Callable[[], T], path: Path) -> T | None:
         """Return the result of work in the check thread, or log an unexpected error and return None."""
         try:
             return await self.run_in_check_thread(work)
         except Exception:  # noqa: BLE001 - the editor continues to work, and the log has the reason
-            _log.exception("The check of '%s' failed", about)
+            _log.exception("The check of '%s' failed", path)
             return None
 
-    def submit_to_check_thread(self, work: Iterable[Callable[[], object]], about: Path) -> None:
+    def submit_to_check_thread(self, work: Iterable[Callable[[], object]], path: Path) -> None:
         """Submit work to the check thread, and replace waiting work about the same file."""
-        for future in self._submitted_work.pop(about, ()):
+        for future in self._submitted_work.pop(path, ()):
             future.cancel()
-        self._submitted_work[about] = [self._check_thread.submit(task) for task in work]
+        self._submitted_work[path] = [self._check_thread.submit(task) for task in work]
 
     async def run_in_check_thread(self, work: Callable[[], T]) -> T:
         """Return the result of work in the check thread, which does one task after the other."""

@@ -43,7 +43,7 @@ def _path_of(name: str) -> Path | None:
     """Return the path of a program, or None. A program in the current folder is not used, as it may be a stranger's."""
     folders = [Path(sys.executable).parent, *map(Path, os.get_exec_path())]
     candidates = (folder / (f"{name}.exe" if os.name == "nt" else name) for folder in folders if folder.is_absolute())
-    return next((each for each in candidates if each.is_file() and os.access(each, os.X_OK)), None)
+    return next((candidate for candidate in candidates if candidate.is_file() and os.access(candidate, os.X_OK)), None)
 
 
 def program_environment(folders: Sequence[Path], workspace_stubs: Path) -> dict[str, str]:
@@ -56,7 +56,7 @@ def program_environment(folders: Sequence[Path], workspace_stubs: Path) -> dict[
         workspace_stubs: the folder with the type stubs of the messages of the workspace.
     """
     environment = process.environment(workspace_environment(PackageFinder(start=list(folders)), os.environ))
-    entries = [each for each in environment[_PYTHON_PATH].split(os.pathsep) if each != process.standin_path()]
+    entries = [entry for entry in environment[_PYTHON_PATH].split(os.pathsep) if entry != process.standin_path()]
     interpreter = process.python_command(())[0]
     is_own = interpreter == sys.executable
     if not _has_ros(entries):

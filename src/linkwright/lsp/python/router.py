@@ -328,7 +328,9 @@ class Router:
                 for text in self._texts.values():
                     server.send(_opening(text))
                 return
-        for identifier in [each for each, question in self._questions.items() if program.name in question.awaited]:
+        for identifier in [
+            pending for pending, question in self._questions.items() if program.name in question.awaited
+        ]:
             self._answered(program.name, {"id": identifier, "result": None})
         message = phrase("'{program}' cannot be run, so Python files are edited without it", program=program.name)
         shown = {"type": _WARNING, "message": localized(message)}
@@ -344,7 +346,7 @@ class Router:
         for identifier, question in list(self._questions.items()):
             if server.name in question.awaited:
                 self._answered(server.name, {"id": identifier, "result": None})
-        for identifier in [each for each, name in self._resolving.items() if name == server.name]:
+        for identifier in [pending for pending, name in self._resolving.items() if name == server.name]:
             del self._resolving[identifier]
             self._editor.send({"jsonrpc": "2.0", "id": identifier, "result": None})
         self._start(self._programs[server.name])
@@ -407,7 +409,9 @@ def _for_server(message: Message, name: str) -> Message:
     if message["method"] != CODE_ACTION:
         return message
     context = message["params"]["context"]
-    findings = [each for each in context["diagnostics"] if str(each.get("source", OWN)).lower() == name]
+    findings = [
+        diagnostic for diagnostic in context["diagnostics"] if str(diagnostic.get("source", OWN)).lower() == name
+    ]
     return {**message, "params": {**message["params"], "context": {**context, "diagnostics": findings}}}
 
 
