@@ -149,11 +149,11 @@ def run_check(arguments: argparse.Namespace) -> int:
     return FINE
 
 
-def _verification_problems(entry: ModelEntry, place: Path) -> Sequence[Diagnostic]:
+def _verification_problems(entry: ModelEntry, path: Path) -> Sequence[Diagnostic]:
     from linkwright.model_files import verify
 
     try:
-        verify(entry, place)
+        verify(entry, path)
     except LinkwrightError as error:
         return error.diagnostics
     return ()

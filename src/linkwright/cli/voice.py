@@ -166,8 +166,8 @@ def run_enrol(arguments: argparse.Namespace) -> int:
         raise LinkwrightError(*diagnostics)
     _write_words(words, path)
     count = len(words.takes(arguments.word))
-    takes = counted("{count} recording", "{count} recordings", count)
-    print(localized(phrase("'{word}': {takes}", word=arguments.word, takes=takes)))
+    recordings = counted("{count} recording", "{count} recordings", count)
+    print(localized(phrase("'{word}': {takes}", word=arguments.word, takes=recordings)))
     if count < RECOMMENDED_TAKES:
         print_message(
             localized(phrase("{takes} recordings make the recognition more reliable", takes=RECOMMENDED_TAKES))
@@ -185,8 +185,8 @@ def run_words(arguments: argparse.Namespace) -> int:
     path = _words_path(arguments)
     words = _read_words(path)
     for name in words.names:
-        takes = counted("{count} recording", "{count} recordings", len(words.takes(name)))
-        print(localized(phrase("'{word}': {takes}", word=name, takes=takes)))
+        recordings = counted("{count} recording", "{count} recordings", len(words.takes(name)))
+        print(localized(phrase("'{word}': {takes}", word=name, takes=recordings)))
     if not words.names:
         print_message(localized(phrase("no word is enrolled in '{path}'", path=display_path(path))))
     return FINE

@@ -289,11 +289,11 @@ def _reference_faults(document: dict[str, Any]) -> Iterator[Phrase]:
         yield from _missing_reference_faults(document, f"bufferViews[{number}].buffer", "buffers", view["buffer"])
 
 
-def _missing_reference_faults(document: dict[str, Any], place: str, kind: str, index: int | None) -> Iterator[Phrase]:
+def _missing_reference_faults(document: dict[str, Any], entry: str, kind: str, index: int | None) -> Iterator[Phrase]:
     count = len(document.get(kind, ()))
     if index is not None and not 0 <= index < count:
         yield phrase(
-            "{entry} is {index}, but the number of {kind} is {count}", entry=place, index=index, count=count, kind=kind
+            "{entry} is {index}, but the number of {kind} is {count}", entry=entry, index=index, count=count, kind=kind
         )
 
 

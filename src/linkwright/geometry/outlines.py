@@ -146,7 +146,7 @@ def _text_stl(data: bytes) -> SmallMesh | None:
     name.decode()
     if any(token != b"?" and set(tokens[index :: len(FACET)]) != {token} for index, token in enumerate(FACET)):
         return None
-    columns = [tokens[place :: len(FACET)] for place in CORNERS]
+    columns = [tokens[corner :: len(FACET)] for corner in CORNERS]
     return _mesh_from_corners([float(number) for row in zip(*columns, strict=True) for number in row])
 
 

@@ -114,8 +114,8 @@ class _Server:
         signal.set_wakeup_fd(-1)
         signal.signal(signal.SIGCHLD, signal.SIG_DFL)
         self._selector.close()
-        for each in (self.control, self._wake_reader, self._wake_writer):
-            each.close()
+        for resource in (self.control, self._wake_reader, self._wake_writer):
+            resource.close()
         for report in self.reports.values():
             os.close(report)
 

@@ -226,10 +226,10 @@ def _describe_location(element: Element, rule: ElementRule, attribute: Attribute
 
 
 def _explain_value(
-    place: Phrase, text: str, attribute: AttributeRule, element: Element
+    subject: Phrase, text: str, attribute: AttributeRule, element: Element
 ) -> tuple[Phrase, Phrase | None]:
     """Return the message and the hint, or None, for an invalid value of an attribute."""
-    values = {"subject": place, "value": text}
+    values = {"subject": subject, "value": text}
     if attribute.type in COUNTS:
         return _explain_numbers(values, text, COUNTS[attribute.type], element)
     if attribute.type is TRUTH:

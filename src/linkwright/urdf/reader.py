@@ -415,7 +415,7 @@ def _mimic_cycles(joints: Mapping[str, Joint]) -> dict[str, list[str]]:
             name = leaders[name]
         if name in path:
             cycle = [*dropwhile(name.__ne__, path)]
-            twice, more = [*cycle, *cycle], ["..."] if len(cycle) > _MAX_CYCLE else []
+            twice, ellipsis = [*cycle, *cycle], ["..."] if len(cycle) > _MAX_CYCLE else []
             shown = min(len(cycle), _MAX_CYCLE)
-            cycles.update((name, [*twice[k : k + shown], *more]) for k, name in enumerate(cycle))
+            cycles.update((name, [*twice[k : k + shown], *ellipsis]) for k, name in enumerate(cycle))
     return cycles

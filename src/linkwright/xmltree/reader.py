@@ -247,11 +247,11 @@ class _Reader:
             self._release()
         self._check_prefixes()
         top_nodes = self._top.children
-        at, root = next((index, node) for index, node in enumerate(top_nodes) if isinstance(node, Element))
+        root_index, root = next((index, node) for index, node in enumerate(top_nodes) if isinstance(node, Element))
         document = Document(root, self._source)
         document.prolog, document.epilog = (
-            _comments_and_instructions(top_nodes[:at]),
-            _comments_and_instructions(top_nodes[at + 1 :]),
+            _comments_and_instructions(top_nodes[:root_index]),
+            _comments_and_instructions(top_nodes[root_index + 1 :]),
         )
         document.doctype, document.doctype_index = self._doctype, self._doctype_at
         if not self._is_ascii:

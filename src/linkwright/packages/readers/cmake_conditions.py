@@ -192,8 +192,8 @@ def _compare(kind: str, left: str, right: str) -> int | None:
     if kind == "VERSION_":
         versions = [[int(part) for part in re.findall(r"\d+", text)] for text in (left, right)]
         max_length = max(len(parts) for parts in versions)
-        one, other = ([*parts, *[0] * (max_length - len(parts))] for parts in versions)
-        return (one > other) - (one < other)
+        first, second = ([*parts, *[0] * (max_length - len(parts))] for parts in versions)
+        return (first > second) - (first < second)
     if not _NUMBER.fullmatch(left) or not _NUMBER.fullmatch(right):
         return None
     return (float(left) > float(right)) - (float(left) < float(right))

@@ -350,7 +350,7 @@ def _mesh_name(shape: Shape) -> str:
     return urlsplit(shape.url).path.rpartition("/")[2] if shape.url else shape.kind
 
 
-def _unreadable_mesh_error(link: LinkScene, name: str, why: Phrase) -> LinkwrightError:
+def _unreadable_mesh_error(link: LinkScene, name: str, reason: Phrase) -> LinkwrightError:
     hint = phrase("export the mesh again, or remove it from the robot")
     return LinkwrightError(
         Diagnostic(
@@ -359,7 +359,7 @@ def _unreadable_mesh_error(link: LinkScene, name: str, why: Phrase) -> Linkwrigh
                 "cannot read the mesh '{name}' of link '{link_name}': {reason}",
                 name=name,
                 link_name=link.name,
-                reason=why,
+                reason=reason,
             ),
             hint=hint,
         )

@@ -379,9 +379,9 @@ def _joined_parts(texts: list[str], parts: list[_Part | None]) -> _Part:
 
     def join(scope: Scope) -> str:
         pieces = texts.copy()
-        for place, part in indexed_parts:
+        for position, part in indexed_parts:
             value = part(scope)
-            pieces[place] = value if value.__class__ is str else _checked_text(value)
+            pieces[position] = value if value.__class__ is str else _checked_text(value)
         try:
             return sandbox.joined(pieces)
         except RefusalError as error:

@@ -142,14 +142,14 @@ def split_mark(path: str) -> tuple[str | None, str]:
     return package, rest
 
 
-def _selected_text(place: Open, choices: Mapping[str, Choice], selection: Selection) -> Text | str | None:
-    if place.choice in selection.fixed_texts:
-        return selection.fixed_texts[place.choice]
-    choice = choices.get(place.choice)
+def _selected_text(placeholder: Open, choices: Mapping[str, Choice], selection: Selection) -> Text | str | None:
+    if placeholder.choice in selection.fixed_texts:
+        return selection.fixed_texts[placeholder.choice]
+    choice = choices.get(placeholder.choice)
     if choice is None or not choice.rows:
         return None
-    row = choice.rows[min(selection.rows.get(place.choice, 0), len(choice.rows) - 1)]
-    return row[place.column] if place.column < len(row) else None
+    row = choice.rows[min(selection.rows.get(placeholder.choice, 0), len(choice.rows) - 1)]
+    return row[placeholder.column] if placeholder.column < len(row) else None
 
 
 def choices_in(text: Text, choices: Mapping[str, Choice], fixed_texts: Mapping[str, str]) -> list[str]:
@@ -194,6 +194,6 @@ def variations(
     alternatives = [(name, row) for name in unselected_names for row in range(1, len(choices[name].rows))]
     for name, row in alternatives[:MAX_VARIATIONS]:
         yield Selection({**start.rows, name: row}, start.fixed_texts), is_certain
-    pairs = ((one, other) for one, other in combinations(alternatives, 2) if one[0] != other[0])
+    pairs = ((first, second) for first, second in combinations(alternatives, 2) if first[0] != second[0])
     for pair in islice(pairs, MAX_VARIATIONS):
         yield Selection({**start.rows, **dict(pair)}, start.fixed_texts), False
