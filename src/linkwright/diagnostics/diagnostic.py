@@ -240,7 +240,10 @@ class LinkwrightError(Exception):
 
 
 def _restore_error(error_type: type[LinkwrightError], args: tuple[object, ...]) -> LinkwrightError:
-    """Create an error that another process has pickled, whose attributes follow, without its constructor."""
+    """Create an error that another process has pickled, without calling its constructor.
+
+    `pickle` then sets the attributes.
+    """
     return error_type.__new__(error_type, *args)
 
 

@@ -151,7 +151,7 @@ def _text_stl(data: bytes) -> SmallMesh | None:
 
 
 def _mesh_from_corners(numbers: list[float]) -> SmallMesh | None:
-    """Return a mesh of separate triangles from their corners' coordinates, or None as `_mesh` does."""
+    """Return a mesh of separate triangles from their coordinates, or None as `_mesh` does."""
     count = len(numbers) // 9
     indices = range(3 * count)
     return _mesh(_points(numbers), list(zip(indices[::3], indices[1::3], indices[2::3], strict=True)))

@@ -202,7 +202,7 @@ class NodeHost:
             await self._graph.close()
 
     def _open_shared_graph(self, network: Network) -> Graph:
-        """Return a new graph that joins the network, with a monitor of the names that other programs also use."""
+        """Return a new graph that joins the network, with a monitor of shared node names."""
         from linkwright.graph import Graph
         from linkwright.hosting.network import SharedNames
 

@@ -94,7 +94,10 @@ class ViewerHost:
         )
 
     async def _announce(self, server: PageServer) -> None:
-        """Print the address of a page, and open it where the user looks: in the page of this terminal, or a browser."""
+        """Print the address of a page, and open the page in a browser if the options ask for it.
+
+        If this program runs in a terminal of another page, that page shows it in a frame instead.
+        """
         options = self._session.options
         self._session.log.announce(f"Viewer: {server.url}")
         if not options.open_browser or await server.embed(os.environ, options.title):

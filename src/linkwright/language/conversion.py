@@ -80,7 +80,7 @@ def _escaped(text: str) -> str:
 
 
 def _comparable_elements(root: Element) -> list[tuple[object, ...]]:
-    """Return the tag, attributes and text of each element, without the xacro namespace declaration."""
+    """Return the tag, attributes and text of each element, without the xacro namespace."""
     return [
         (
             element.tag,

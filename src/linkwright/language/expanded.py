@@ -1,4 +1,4 @@
-"""The expansion of a description as text, with the source location of each element, and as robots."""
+"""The expansion of a description, as text with source locations and as robots."""
 
 from __future__ import annotations
 

@@ -74,7 +74,9 @@ class IncludeIndex:
         return [file for file in files if not self._includers_of(file, includers)]
 
     def related(self, file: Path, texts: Mapping[Path, str], *, computed: bool = False) -> list[Path]:
-        """Return a file, the files that it includes, the descriptions that include it, and their other files.
+        """Return a file and all files of the descriptions that include it.
+
+        The files that it includes are among them.
 
         Args:
             file: the file.

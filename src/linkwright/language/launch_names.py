@@ -241,7 +241,7 @@ def _included(launch: PythonLaunchText, call: Group, file: Path) -> LaunchInclud
 
 
 def _argument_groups(launch: PythonLaunchText, part: object) -> list[Group]:
-    """Return the bracket groups with launch arguments in an expression, or in the variable it names."""
+    """Return the brackets with launch arguments in an expression, or in its variable."""
     name = part.value if isinstance(part, Name) else part.callee if isinstance(part, Group) else ""
     bound = launch.python.bindings.get(name.partition(".")[0].strip()) if name else None
     parts = [part] if bound is None else bound.parts

@@ -55,7 +55,10 @@ def occurrence_at(text: str, file: Path, offset: int) -> Occurrence | None:
 
 
 def xacro_name_at(text: str, file: Path, offset: int) -> Occurrence | None:
-    """Return the macro, parameter, property or argument at an offset of an SDF xacro file, or None."""
+    """Return the name that xacro defines at an offset of an SDF xacro file, or None.
+
+    It is the name of a macro, parameter, property or argument.
+    """
     return _innermost((name for name in occurrences_in(text, file) if name.kind not in ROBOT_NAME_KINDS), offset)
 
 

@@ -93,7 +93,7 @@ def part_names(document: Document) -> list[NameDefinition]:
 
 
 def mentioned_robots(document: Document, words: Collection[str]) -> list[Path]:
-    """Return the likely descriptions with links or joints in some words, the best match first.
+    """Return the descriptions whose links or joints are among some words, the best match first.
 
     Args:
         document: the file with the words.

@@ -74,7 +74,7 @@ def sdf_name_at(text: str, file: Path, offset: int) -> SdfName | None:
 def rename_in_sdf(
     project: Workspace, texts: Mapping[Path, str], name: SdfName, new: str
 ) -> tuple[set[Edit], list[Mention]]:
-    """Return the edits that rename a link, joint, frame or model of an SDF text, and uncertain mentions.
+    """Return the edits that rename a link, joint, frame or model, and uncertain mentions.
 
     A mention in another file, such as a launch file that starts a model, may have another meaning.
 

@@ -247,7 +247,9 @@ class Workspace:
     def record(
         self, subject: Path, found: tuple[Diagnostic, ...], texts: Mapping[Path, str], changed: Iterable[Path] = ()
     ) -> dict[Path, list[Diagnostic]]:
-        """Store the findings about a description or package, and return the findings about each affected file.
+        """Store the findings about a subject, and return the findings about each affected file.
+
+        A subject is a description or a package.
 
         Args:
             subject: the description or the folder of the package.

@@ -80,7 +80,7 @@ def _explain_attribute(
 
 
 def _in_degrees(cursor: Cursor, rule: AttributeRule, value: str) -> str:
-    """Return the angles of a value in degrees, or empty if it contains other quantities or expressions."""
+    """Return the angles of a value in degrees, or an empty text if it has other contents."""
     parent_attributes = {
         attribute.name: attribute.value for element in cursor.elements[-2:-1] for attribute in element.attributes()
     }

@@ -64,7 +64,9 @@ def setup_folders_fix(package: PackageContext, setup: SetupFile, folders: Iterab
 
 
 def setup_file_fix(package: PackageContext, setup: SetupFile, destination: str, file: str) -> Fix | None:
-    """Return the fix that installs a file by the ``data_files`` of ``setup.py``, or None if its place is uncertain.
+    """Return the fix that adds a file to the ``data_files`` of ``setup.py``.
+
+    The result is None if the position of the new entry is uncertain.
 
     Args:
         package: the package.
@@ -77,7 +79,9 @@ def setup_file_fix(package: PackageContext, setup: SetupFile, destination: str, 
 
 
 def cmake_folder_fix(source: SourceText, folder: str, *, safe: bool) -> Fix | None:
-    """Return the fix that installs a folder by ``CMakeLists.txt``, or None if its place is uncertain.
+    """Return the fix that installs a folder by ``CMakeLists.txt``.
+
+    The result is None if the position of the new command is uncertain.
 
     A folder directly in the package is added to a command that installs folders into the share folder. For any other
     folder, or without such a command, a command is added before ``ament_package()``.

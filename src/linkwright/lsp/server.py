@@ -180,7 +180,10 @@ class LinkwrightServer(LanguageServer):
         return context
 
     def format_context(self, document: types.TextDocumentIdentifier) -> FormatContext | None:
-        """Return a document with its format, or None if it has no format of its own, or is large or unreadable."""
+        """Return a document with its format, or None.
+
+        The result is None if the file has no format of its own, or is too large or unreadable.
+        """
         path = path_of(document.uri)
         format_ = None if path is None else format_of(path)
         if path is None or format_ is None or self.project is None:

@@ -364,7 +364,10 @@ class LimitedConnection(asyncio.Protocol):
 
 
 def is_from_here(transport: BaseTransport | None) -> bool:
-    """Return whether a connection comes from this machine: over loopback, or from its own address."""
+    """Return whether a connection comes from this machine.
+
+    It then comes over loopback, or from an address of this machine.
+    """
     endpoints = endpoints_of(transport)
     if endpoints is None:
         return False

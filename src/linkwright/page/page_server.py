@@ -92,7 +92,10 @@ class PageServer:
 
     @property
     def is_embedded(self) -> bool:
-        """Whether a page in whose terminal this program runs shows the page of this server in a frame."""
+        """Whether another page shows the page of this server in a frame.
+
+        This program then runs in a terminal of the other page.
+        """
         return self._embedding is not None
 
     async def embed(self, environment: Mapping[str, str], title: str) -> bool:

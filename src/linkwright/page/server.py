@@ -427,7 +427,7 @@ def _audience_of(services: _Services, request: web.Request) -> Audience:
 
 
 def _own_configuration(request: web.Request) -> str:
-    """Return the name of the page's own configuration, or an empty string for the shared configuration."""
+    """Return the name of the page's own configuration, or an empty string for the shared one."""
     key = request.query.get("own", "")
     return key if _OWN_CONFIGURATION_KEY.fullmatch(key) else ""
 

@@ -402,7 +402,10 @@ def _check_mimics(joints: dict[str, Joint], findings: UrdfReport) -> None:
 
 
 def _mimic_cycles(joints: Mapping[str, Joint]) -> dict[str, list[str]]:
-    """Return the mimic joints on a cycle, each with the cycle from it on, shortened after some names."""
+    """Return the mimic joints on a cycle, each with the names on the cycle from there on.
+
+    Long lists of names are shortened.
+    """
     leaders = {joint.name: joint.mimic.joint for joint in joints.values() if joint.mimic is not None}
     cycles: dict[str, list[str]] = {}
     seen: set[str] = set()

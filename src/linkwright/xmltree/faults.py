@@ -363,7 +363,7 @@ class _Fault:
         return self._diagnostic("XML206", phrase("'<' is not allowed inside a tag"), hint=_LESS_HINT)
 
     def _open_quote(self) -> Diagnostic | None:
-        """Return the error for a value of the tag before the current one whose quotes are not closed, or None."""
+        """Return the error for unclosed quotes around a value of the previous tag, or None."""
         tag_start = self._text.rfind("<", 0, self._offset)
         tag = _QUOTED.sub(lambda value: " " * len(value[0]), self._text[max(tag_start, 0) : self._offset])
         match_ = _OPEN_QUOTE.search(tag)

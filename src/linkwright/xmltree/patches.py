@@ -74,7 +74,7 @@ def indentation(text: str, offset: int) -> str | None:
 
 
 def find_start_tag(element: Element) -> StartTag | None:
-    """Return an element's start tag in its source, or None if the source does not contain the tag.
+    """Return an element's start tag in its source, or None if the source does not have it.
 
     The source does not contain elements that a program or an entity created.
     """

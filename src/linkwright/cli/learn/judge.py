@@ -1,4 +1,7 @@
-"""``linkwright learn exercises``, ``judge`` and ``world``: exercises that a judge scores in simulated worlds."""
+"""``linkwright learn exercises``, ``judge`` and ``world``: exercises in simulated worlds.
+
+A judge scores the programs.
+"""
 
 from __future__ import annotations
 
@@ -112,7 +115,7 @@ def configure_world(parser: argparse.ArgumentParser) -> None:
 
 
 def run_world(arguments: argparse.Namespace) -> int:
-    """Simulate the world of an exercise in real time, with its robot and its judge, beside the program."""
+    """Simulate the world of an exercise in real time, with its robot and its judge."""
     from linkwright.cli.command import parser_for
     from linkwright.cli.sim import run
     from linkwright.learning.judging.exercise import find_exercise

@@ -1,4 +1,4 @@
-"""The candidates for editing a number of an attribute, starting with the most likely candidate."""
+"""The candidates for editing a number of an attribute, the most likely first."""
 
 from __future__ import annotations
 

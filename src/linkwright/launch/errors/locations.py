@@ -38,7 +38,7 @@ class SourceLocation(ABC):
 
     @staticmethod
     def of_caller() -> SourceLocation | None:
-        """Return the location in the markup that is being read, or the caller's location in user code.
+        """Return the location in the markup being read, or the caller's location in user code.
 
         Returns:
             The location; None if the call did not come from user code.

@@ -1,4 +1,4 @@
-"""Rules about elements that URDF readers ignore because they are misspelt, misplaced or unknown."""
+"""Rules about elements that URDF readers ignore: misspelt, misplaced or unknown ones."""
 
 from __future__ import annotations
 

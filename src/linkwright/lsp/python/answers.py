@@ -58,7 +58,7 @@ def combined(method: str, answers: Sequence[tuple[str, Any]], text: OpenText, pa
 
 
 def server_of_action(action: Mapping[str, Any]) -> tuple[str, dict[str, Any]] | None:
-    """Return the server of a code action and the server's own action, or None for Linkwright's own server."""
+    """Return the server of a code action with its own action, or None for Linkwright's server."""
     data = action.get(_DATA)
     if not isinstance(data, dict) or _SERVER not in data:
         return None
@@ -72,14 +72,19 @@ def marked_action(server: str, action: Mapping[str, Any]) -> dict[str, Any]:
 
 
 def _actions(server: str, actions: Sequence[Mapping[str, Any]]) -> list[Mapping[str, Any]]:
-    """Return the code actions of a server; those of other servers are marked, and their commands left out."""
+    """Return the code actions of a server in the form for the editor.
+
+    The actions of other servers are marked with the server's name, and their commands are omitted.
+    """
     if server == OWN:
         return list(actions)
     return [marked_action(server, action) for action in actions if action.get("command") is None]
 
 
 def _completions(found: Sequence[Any], text: OpenText, parameters: Mapping[str, Any]) -> Any:
-    """Return the items of all servers, or of the first that replaces more or less than the word at the cursor.
+    """Return the completions of all servers, or of the first with a range of its own.
+
+    Such a server replaces more or less than the word at the cursor.
 
     Editors take the range of the first item for that of all items.
     """

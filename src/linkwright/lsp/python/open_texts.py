@@ -1,4 +1,4 @@
-"""The Python files that an editor has open: their texts, and the findings of each server about them."""
+"""The Python files that an editor has open, with the findings of each server."""
 
 from __future__ import annotations
 
@@ -103,7 +103,10 @@ class _Replacement:
         self._growth = len(after) - len(before)
 
     def moved(self, start: int, end: int) -> tuple[int, int]:
-        """Return the place of a range in the new text. Text that is inserted at one of its ends stays outside."""
+        """Return the position of a range in the new text.
+
+        Text that is inserted at one of its ends remains outside the range.
+        """
         first = start if start < self._start else self._after(start)
         last = end if end <= self._start else self._after(end)
         return first, max(first, last)

@@ -1,4 +1,7 @@
-"""The command that shows a robot in a page. The page follows the texts and the cursor of the editor."""
+"""The command that shows a robot in a page.
+
+The page follows the texts and the cursor of the editor.
+"""
 
 from __future__ import annotations
 
@@ -18,7 +21,9 @@ SHOW_ROBOT = "linkwright.showRobot"
 
 
 class PageEditor:
-    """The editor to which the pages of robots report, see `linkwright.lsp.robot_views.TextEditor`.
+    """The editor to which the pages of robots report.
+
+    It implements `linkwright.lsp.robot_views.TextEditor`.
 
     Args:
         server: the server.

@@ -1,4 +1,7 @@
-"""The records of the files and programs that a package installs, for all kinds of build files."""
+"""The records of the files and programs that a package installs.
+
+They are the same for all kinds of build files.
+"""
 
 from __future__ import annotations
 
