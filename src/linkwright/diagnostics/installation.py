@@ -50,7 +50,7 @@ class Origin:
         """Whether the origin is a checkout or a file that no longer exists."""
         return bool(self.location) and "://" not in self.location and not Path(self.location).exists()
 
-    def words(self, extras: Iterable[str]) -> list[str]:
+    def installer_arguments(self, extras: Iterable[str]) -> list[str]:
         """Return the arguments with which an installer installs the distribution with extras."""
         extras_suffix = f"[{','.join(sorted(extras))}]" if extras else ""
         if "://" in self.location:
@@ -91,9 +91,8 @@ class Installation:
         return _quote_command([*self.tool, *packages])
 
     def _command(self, tool: tuple[str, ...], extras: Iterable[str], other_packages: Iterable[str]) -> str:
-        return _quote_command(
-            [*tool, *(argument for name in other_packages for argument in ("--with", name)), *self.origin.words(extras)]
-        )
+        others = (argument for name in other_packages for argument in ("--with", name))
+        return _quote_command([*tool, *others, *self.origin.installer_arguments(extras)])
 
 
 PIPX = ("pipx", "install", "--force")

@@ -167,7 +167,7 @@ class LiveReload:
                 self._saved_calls.add(call)
             if self._is_broken(call):
                 # The missing file may be in the folder of this file, or in any package.
-                self.descriptions.finder.forget()
+                self.descriptions.finder.clear_cache()
                 self._start_reload(call)
             elif call in self._saved_calls:
                 self._start_reload(call)

@@ -110,7 +110,7 @@ class RobotRenaming:
         if "$" not in name.name:
             return {(self._kind(), name.name): self._new}
         required: dict[tuple[NameKind, str], str] = {}
-        for value in self._values_at_place():
+        for value in self._expanded_values():
             new = renamed_template(name.name, self._new, value)
             if new is not None and new != value and self._defines(name.kind, value):
                 required[name.kind, value] = new
@@ -131,7 +131,7 @@ class RobotRenaming:
             for element in _definitions(trial.expansion.document.root, kind)
         )
 
-    def _values_at_place(self) -> Iterator[str]:
+    def _expanded_values(self) -> Iterator[str]:
         """Yield the values of the name in the expansions."""
         files = self._proof.names_of(self._name.file)
         for trial in self._proof.trials:

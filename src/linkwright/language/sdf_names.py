@@ -164,7 +164,7 @@ def _references(element: SourceElement, text: str) -> Iterator[tuple[str, int, S
         is_reference = attribute.name in _ATTRIBUTES or (element.name, attribute.name) == _MIMIC
         if is_reference and attribute.value:
             own = element if attribute.name in _INNER_REFERENCES and element.name == "model" else None
-            scope = own or _scope_of_place(element)
+            scope = own or _attribute_scope(element)
             if scope is not None:
                 yield attribute.value, attribute.value_start, scope
     if element.name in ("model", "link"):
@@ -199,7 +199,7 @@ def _state_reference(element: SourceElement) -> Iterator[tuple[str, int, SourceE
     yield name.value or "", name.value_start, scope
 
 
-def _scope_of_place(element: SourceElement) -> SourceElement | None:
+def _attribute_scope(element: SourceElement) -> SourceElement | None:
     """Return the scope of an element's attributes, which is outside the model for its pose."""
     parent = element.parent
     if element.name == "pose" and parent is not None and parent.name == "model":

@@ -14,7 +14,14 @@ from pathlib import Path
 from typing import TYPE_CHECKING, cast
 from urllib.parse import quote
 
-from linkwright.page.access import PROGRAM_PAGES_PATH, TOKEN_PARAMETER, Admission, Gate, is_from_here, security_headers
+from linkwright.page.access import (
+    PROGRAM_PAGES_PATH,
+    TOKEN_PARAMETER,
+    Admission,
+    Gate,
+    is_local_connection,
+    security_headers,
+)
 from linkwright.page.files import CONTENT_TYPES, IMAGE_TYPES, Downloads, FileRefusedError, MeshFolders
 from linkwright.page.http_server import SERVER_LOGGER, web
 from linkwright.page.peers import may_be_own_user
@@ -228,7 +235,7 @@ class WebServer:
             self._admission.admit(request.protocol)
 
     async def _add_headers(self, request: web.Request, response: web.StreamResponse) -> None:
-        host = request.host if self._gate.knows(request.host) else "localhost"
+        host = request.host if self._gate.accepts_host(request.host) else "localhost"
         frames = "'none'" if self._program_pages is None else _FRAME_SOURCES
         response.headers.update(security_headers(host, frames=frames, frame_ancestors=self.frame_ancestor or "'none'"))
         response.headers.setdefault("Cache-Control", _NO_STORE)
@@ -398,7 +405,7 @@ class WebServer:
         page = Page(
             socket,
             _own_configuration(request),
-            is_here=is_from_here(request.transport),
+            is_local=is_local_connection(request.transport),
             may_be_own_user=cache(partial(may_be_own_user, request.transport)),
             language=requested_language(request),
             origin=request.headers.get("Origin") or f"http://{request.host}",

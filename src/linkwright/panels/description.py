@@ -109,11 +109,11 @@ class KnownDescription:
         return SourceTexts(self.robot.element, self._files)
 
     @cached_property
-    def account(self) -> Description:
+    def details(self) -> Description:
         """The details of the description's links and joints, for pages."""
-        from linkwright.panels.description_details import account
+        from linkwright.panels.description_details import describe
 
-        return account(
+        return describe(
             self.robot,
             self.text,
             self.texts.names,
@@ -243,7 +243,7 @@ class DescriptionFeature(PageFeature):
         if known is None:
             return None
         async with self._answer_lock:
-            return await asyncio.to_thread(lambda: known.account)
+            return await asyncio.to_thread(lambda: known.details)
 
     async def _answer(self, page: Page, request: _Request) -> None:
         robot_models = self.managers.of(page).robot_models()
@@ -257,7 +257,7 @@ class DescriptionFeature(PageFeature):
             if known is None:
                 return None
             if isinstance(request, AskDescription):
-                return known.account
+                return known.details
             if isinstance(request, AskInertia):
                 return known.findings(self.context.finder)
             return display.provenance(request.link) if display is not None else None

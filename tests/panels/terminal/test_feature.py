@@ -117,7 +117,7 @@ async def test_a_page_that_opens_without_permission_hears_nothing_of_terminals()
 
 
 async def test_pages_of_other_machines_are_refused(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(server, "is_from_here", lambda _: False)
+    monkeypatch.setattr(server, "is_local_connection", lambda _: False)
     async with enabled(tmp_path) as scene, page(scene.viewer) as client:
         await client.until("terminals")
         await client.send("open_terminal", **SIZE)

@@ -29,5 +29,5 @@ def is_unavailable(error: LinkwrightError) -> bool:
 def is_missing_third_party(error: LinkwrightError) -> bool:
     """Return whether an error reports a missing third-party package or module."""
     if isinstance(error, PackageNotFoundError):
-        return not error.is_slip
+        return not error.is_misspelling
     return isinstance(error, ModuleNotFoundError) or is_unavailable(error)

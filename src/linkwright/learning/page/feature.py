@@ -43,7 +43,7 @@ class CourseFeature(PageFeature):
         """Carry out a request, or report why not."""
         if self._guide is None:
             return
-        if not page.is_here:
+        if not page.is_local:
             problem = phrase("the course can be used only in pages on the machine of the program")
             page.send(messages.CourseProblem(problem, ""))
             return

@@ -15,7 +15,7 @@ from linkwright.language.includes import real
 from linkwright.language.mentions import Mention
 from linkwright.language.occurrences import Occurrence
 from linkwright.language.proof import Edit
-from linkwright.language.rename_places import RenamableName, renamable_name_at, rename_name
+from linkwright.language.renamable_names import RenamableName, renamable_name_at, rename_name
 from linkwright.language.renaming import occurrence_at, references
 from linkwright.language.uses import uses_at
 from linkwright.lsp.edits import document_edits

@@ -10,7 +10,7 @@ import pytest
 from linkwright.diagnostics import LinkwrightError
 from linkwright.language.file_renaming import rename_file
 from linkwright.language.includes import real
-from linkwright.language.rename_places import renamable_name_at, rename_name
+from linkwright.language.renamable_names import renamable_name_at, rename_name
 from linkwright.language.renaming import Renaming
 from linkwright.language.workspace import Workspace
 from linkwright.xacro import expand
