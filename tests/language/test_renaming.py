@@ -1,4 +1,4 @@
-"""Renaming: what follows, what is left alone, and what is refused."""
+"""Renaming: the edited and unchanged names, and refusals."""
 
 from __future__ import annotations
 

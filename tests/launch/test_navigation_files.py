@@ -1,4 +1,4 @@
-"""The launch files of nav2_bringup, slam_toolbox and nav2_map_server that stand in for those that are not installed."""
+"""The substitutes for the launch files of nav2_bringup, slam_toolbox and nav2_map_server."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Packages that are not built and install their files elsewhere than they lie."""
+"""Packages that are not built, and that install files to other folders."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""The user at the other end of a connection, as the tables of Linux tell it."""
+"""The user at the other end of a connection, according to the tables of Linux."""
 
 from __future__ import annotations
 
@@ -32,7 +32,7 @@ sys.stdin.read()
 
 
 class Connection(Transport):
-    """What asyncio tells of an accepted connection."""
+    """The properties of an accepted connection in asyncio."""
 
     def __init__(self, peer: Any, own: Any) -> None:
         super().__init__({"peername": peer, "sockname": own})
@@ -58,7 +58,7 @@ def listen(host: str) -> socket.socket:
 def connected(
     listening: str = "127.0.0.1", connecting: str = "127.0.0.1"
 ) -> Iterator[tuple[socket.socket, Connection]]:
-    """A socket of this process that is connected to a server in it."""
+    """Return a socket of this process that is connected to a server in this process."""
     family = socket.AF_INET6 if ":" in connecting else socket.AF_INET
     with listen(listening) as listener, socket.socket(family) as theirs:
         theirs.connect((connecting, listener.getsockname()[1]))

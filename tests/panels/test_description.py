@@ -1,4 +1,4 @@
-"""What pages are told of the description behind a robot."""
+"""The details of a robot's description for pages."""
 
 from __future__ import annotations
 
@@ -71,7 +71,7 @@ async def ask(client, kind: str, answer: str, **fields) -> dict:
 
 
 def lines(text: str, written: dict) -> str:
-    """The text of a place, which begins and ends where it says."""
+    """Return the text of a range."""
     rows = text.splitlines(keepends=True)[written["line"] - 1 : written["end_line"]]
     rows[-1] = rows[-1][: written["end_column"] - 1]
     rows[0] = rows[0][written["column"] - 1 :]

@@ -1,4 +1,4 @@
-"""Editing a robot in the page: what can be edited, previews, writing, undo."""
+"""Editing a robot in the page: editable values, previews, writing, undo."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""The editor of source files: what it reads and writes, and its language server."""
+"""The editor of source files: reading, writing, and the language server."""
 
 from __future__ import annotations
 

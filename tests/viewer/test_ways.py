@@ -1,4 +1,4 @@
-"""How many files the data passes through: each is one that a reader of the way must open."""
+"""The number of files through which the data passes: a reader must open each of them."""
 
 from __future__ import annotations
 

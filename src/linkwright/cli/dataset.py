@@ -92,7 +92,7 @@ def configure(parser: argparse.ArgumentParser) -> None:
     )
     parser.add_argument(
         "--keep",
-        metavar="WHAT",
+        metavar="PROPERTIES",
         type=_parse_fixed_properties,
         default=(),
         help="properties not to randomize: lights, colours, lens (no blur, no noise), separated by commas",
@@ -106,7 +106,7 @@ def configure(parser: argparse.ArgumentParser) -> None:
     )
     parser.add_argument(
         "--min-visible",
-        metavar="SHARE",
+        metavar="FRACTION",
         type=_parse_fraction,
         default=0.5,
         help="ignore objects of which less than this fraction is visible (default: 0.5)",

@@ -167,10 +167,10 @@ def run_enrol(arguments: argparse.Namespace) -> int:
     _write_words(words, path)
     count = len(words.takes(arguments.word))
     recordings = counted("{count} recording", "{count} recordings", count)
-    print(localized(phrase("'{word}': {takes}", word=arguments.word, takes=recordings)))
+    print(localized(phrase("'{word}': {recordings}", word=arguments.word, recordings=recordings)))
     if count < RECOMMENDED_TAKES:
         print_message(
-            localized(phrase("{takes} recordings make the recognition more reliable", takes=RECOMMENDED_TAKES))
+            localized(phrase("{count} recordings make the recognition more reliable", count=RECOMMENDED_TAKES))
         )
     return FINE
 
@@ -186,7 +186,7 @@ def run_words(arguments: argparse.Namespace) -> int:
     words = _read_words(path)
     for name in words.names:
         recordings = counted("{count} recording", "{count} recordings", len(words.takes(name)))
-        print(localized(phrase("'{word}': {takes}", word=name, takes=recordings)))
+        print(localized(phrase("'{word}': {recordings}", word=name, recordings=recordings)))
     if not words.names:
         print_message(localized(phrase("no word is enrolled in '{path}'", path=display_path(path))))
     return FINE

@@ -8,7 +8,7 @@ from dataclasses import dataclass, field
 from pathlib import Path
 
 from linkwright.language.format import Document
-from linkwright.language.includes import real
+from linkwright.language.includes import real_path
 from linkwright.language.launch_arguments import arguments_in
 from linkwright.language.launch_python import CONFIGURATIONS, PythonLaunchText, is_python_launch_file
 from linkwright.language.launch_values import LaunchText
@@ -97,7 +97,7 @@ def launch_names(document: Document) -> LaunchNames:
 
 
 def _target(path: Path | None) -> Path | None:
-    return None if path is None or not path.is_file() else real(source_of(str(path)))
+    return None if path is None or not path.is_file() else real_path(source_of(str(path)))
 
 
 def _uses(text: str, start: int, file: Path) -> Iterator[LaunchName]:

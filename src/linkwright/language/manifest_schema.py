@@ -76,9 +76,9 @@ PACKAGE = ElementRule(
         ),
         _value(
             "license",
-            "a licence, by its SPDX identifier",
-            AttributeRule("file", ValueType("path"), "the file with the text of the licence"),
-            kind=ValueType("licence"),
+            "a license, by its SPDX identifier",
+            AttributeRule("file", ValueType("path"), "the file with the text of the license"),
+            kind=ValueType("license"),
             is_repeated=True,
         ),
         _value(

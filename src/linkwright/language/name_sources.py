@@ -13,7 +13,7 @@ from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
-from linkwright.language.includes import real
+from linkwright.language.includes import real_path
 from linkwright.language.proof import Edit
 from linkwright.language.workspace import Workspace
 from linkwright.xacro.expressions.template import Token, TokenKind, tokenize
@@ -66,7 +66,7 @@ def source_value(element: Element, key: str) -> SourceValue | None:
     if value_range is None:
         return None
     frame = element.origin if isinstance(element.origin, Frame) else None
-    return SourceValue(real(source.name), value_range[0], source.text[value_range[0] : value_range[1]], frame)
+    return SourceValue(real_path(source.name), value_range[0], source.text[value_range[0] : value_range[1]], frame)
 
 
 def _text_range(element: Element) -> tuple[int, int] | None:
@@ -227,7 +227,10 @@ class NameSources:
             if frame.macro is not None and source is not None:
                 if value_range is not None:
                     yield SourceValue(
-                        real(source.name), value_range[0], source.text[value_range[0] : value_range[1]], frame.around
+                        real_path(source.name),
+                        value_range[0],
+                        source.text[value_range[0] : value_range[1]],
+                        frame.around,
                     )
                     return
                 default = self._parameter_default(frame.macro, name, frame)

@@ -14,7 +14,7 @@ from pathlib import Path
 
 from linkwright.diagnostics import LinkwrightError
 from linkwright.language.definitions import NameKind
-from linkwright.language.includes import real
+from linkwright.language.includes import real_path
 from linkwright.language.mentions import Mention, mentions_in
 from linkwright.language.occurrences import Occurrence, occurrences_in
 from linkwright.language.proof import Edit, ExpansionProof
@@ -112,8 +112,8 @@ class OtherFiles:
         files: dict[Path, list[Path]] = {}
         seen: set[Path] = set()
         own = enclosing_package(self._file.parent)
-        folders = [] if own is None else [real(own[1])]
-        for folder in dict.fromkeys((*folders, *map(real, self._project.index.packages))):
+        folders = [] if own is None else [real_path(own[1])]
+        for folder in dict.fromkeys((*folders, *map(real_path, self._project.index.packages))):
             files[folder] = [file for file in self._project.configurations_below(folder) if file not in seen]
             seen.update(files[folder])
         return files
@@ -126,7 +126,7 @@ class OtherFiles:
         package, own = enclosing_package(file.parent), enclosing_package(self._file.parent)
         if package is None or own is None or not any((kind, mention.name) in names for kind in mention.kinds):
             return False
-        return real(own[1]) in _dependencies(self._project, self._texts, real(package[1]))
+        return real_path(own[1]) in _dependencies(self._project, self._texts, real_path(package[1]))
 
     def _robots_of(self, file: Path) -> list[Path]:
         if file not in self._robots:
@@ -157,7 +157,7 @@ def robots_of_file(project: Workspace, texts: Mapping[Path, str], file: Path) ->
         file: the file.
     """
     package = enclosing_package(file.parent)
-    folder = file.parent if package is None else real(package[1])
+    folder = file.parent if package is None else real_path(package[1])
     robots = _robots_of_package(project, texts, folder)
     if len(robots) < 2:
         return [*robots]
@@ -248,7 +248,7 @@ def _dependencies(project: Workspace, texts: Mapping[Path, str], folder: Path) -
     """Return the folders of a package's direct and indirect dependencies in the workspace."""
     manifests = {
         package_folder: _manifest(project, texts, package_folder)
-        for package_folder in map(real, project.index.packages)
+        for package_folder in map(real_path, project.index.packages)
     }
     by_name = {
         manifest.name: manifest_folder for manifest_folder, manifest in manifests.items() if manifest is not None

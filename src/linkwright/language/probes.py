@@ -6,7 +6,7 @@ from collections.abc import Iterator, Mapping
 from pathlib import Path
 from xml.sax.saxutils import quoteattr
 
-from linkwright.language.includes import real
+from linkwright.language.includes import real_path
 from linkwright.language.occurrences import Occurrence
 from linkwright.language.proof import ExpansionProof
 from linkwright.language.workspace import Workspace
@@ -60,7 +60,7 @@ def probes_of(project: Workspace, texts: Mapping[Path, str], name: Occurrence) -
     text = project.text(name.file, texts) or ""
     element = innermost_element(source_elements(text), name.start)
     macro = None if element is None else element if element.name == "xacro:macro" else element.macro
-    if macro is None or macro.macro is not None or not project.contains(real(name.file)):
+    if macro is None or macro.macro is not None or not project.contains(real_path(name.file)):
         return {}
     calls = [*dict.fromkeys(_calls(macro))]
     return {

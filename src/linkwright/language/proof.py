@@ -13,7 +13,7 @@ from pathlib import Path
 from typing import NamedTuple
 
 from linkwright.diagnostics import LinkwrightError, Phrase, Span, display_path, phrase
-from linkwright.language.includes import real
+from linkwright.language.includes import real_path
 from linkwright.language.trials import Trial, blank_out, expand_with_gaps, trials
 from linkwright.language.workspace import Workspace
 from linkwright.lint.targets import DESCRIPTIONS
@@ -188,8 +188,8 @@ class ExpansionProof:
         self._error = error or self._error
         self.trials += found
         for path in (path for trial in found for path in trial.expansion.dependencies):
-            self.data.add(real(path))
-            self._names.setdefault(real(path), set()).add(str(path))
+            self.data.add(real_path(path))
+            self._names.setdefault(real_path(path), set()).add(str(path))
 
     def _edited(self, former: Trial, arguments: Mapping[str, str], edits: Collection[Edit]) -> Expansion:
         """Return the expansion of a trial with edits, except edits in its omitted elements."""

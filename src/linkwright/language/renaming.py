@@ -17,7 +17,7 @@ from pathlib import Path
 from linkwright.diagnostics import Diagnostic, LinkwrightError, Phrase, SourceText, Span, phrase, quoted_names, term
 from linkwright.language.definitions import NameKind
 from linkwright.language.grammar import root_of
-from linkwright.language.includes import real
+from linkwright.language.includes import real_path
 from linkwright.language.mentions import Mention
 from linkwright.language.occurrences import Occurrence, occurrences_in
 from linkwright.language.probes import is_reached, probes_of
@@ -212,7 +212,7 @@ def _passed_arguments(
         for values, span in project.argument_calls(entry):
             if old not in values or span is None:
                 continue
-            file = real(span.file)
+            file = real_path(span.file)
             text = project.text(file, texts) or ""
             found = {Edit(file, *match.span(), new) for match in passed.finditer(text, *_call_range(text, span))}
             if not found:

@@ -12,7 +12,7 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from linkwright.diagnostics import SourceText, phrase
-from linkwright.language.includes import real
+from linkwright.language.includes import real_path
 from linkwright.language.mentions import Mention, mentions_in
 from linkwright.language.occurrences import kinds_of_text
 from linkwright.language.proof import Edit, ExpansionProof, UnprovedError, apply_edits
@@ -266,7 +266,7 @@ def _edits_of_includer(text: str, file: Path, model: Path, path: tuple[str, ...]
 
 def _includes(include: SourceElement, text: str, model: Path) -> bool:
     uri = _child_text(include, "uri", text).rstrip("/")
-    return uri.rpartition("/")[2] in (model.parent.name, model.name) and real(model).is_file()
+    return uri.rpartition("/")[2] in (model.parent.name, model.name) and real_path(model).is_file()
 
 
 def _child_text(element: SourceElement, tag: str, text: str) -> str:

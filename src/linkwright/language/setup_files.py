@@ -28,7 +28,7 @@ _ARGUMENTS = {
     "maintainer": "the name of the maintainer",
     "maintainer_email": "the address of the maintainer",
     "description": "the purpose of the package, as in package.xml",
-    "license": "the licence, as in package.xml",
+    "license": "the license, as in package.xml",
     "tests_require": "the Python packages that the tests need",
     "entry_points": "the programs: console_scripts with NAME = MODULE:FUNCTION",
 }

@@ -15,7 +15,7 @@ from linkwright.language.format import Document, Format, Target
 from linkwright.language.grammar import rule_at
 from linkwright.language.hover import Explanation, definitions_at
 from linkwright.language.hover_facts import facts_at, part_facts
-from linkwright.language.includes import real
+from linkwright.language.includes import real_path
 from linkwright.language.links import FileReference, file_references
 from linkwright.language.outline import Outline
 from linkwright.language.robot_names import mentioned_robots
@@ -75,7 +75,7 @@ class _Semantics:
         for found in _ASSISTANT.finditer(text_of(folder / ".setup_assistant")):
             share = self.document.finder.find(found[1])
             if share is not None and (share / found[2]).is_file():
-                yield real(source_of(str(share / found[2])))
+                yield real_path(source_of(str(share / found[2])))
 
     @cached_property
     def robots(self) -> list[Robot]:

@@ -15,7 +15,7 @@ from pathlib import Path
 
 from linkwright.descriptions.argument_sets import compared_values
 from linkwright.diagnostics import LinkwrightError, Phrase, SourceText, Span
-from linkwright.language.includes import real
+from linkwright.language.includes import real_path
 from linkwright.language.workspace import Workspace
 from linkwright.language.written import innermost_element, source_elements
 from linkwright.xacro import Expansion, expand
@@ -161,7 +161,7 @@ def _trial_with_gaps(
 
 def _element_around(project: Workspace, texts: Mapping[Path, str], span: Span, gaps: Gaps) -> tuple[Path, Range] | None:
     """Return the file and range of the element at a location, or None for the root."""
-    file = real(span.file)
+    file = real_path(span.file)
     text = project.text(file, texts)
     if text is None:
         return None

@@ -33,7 +33,7 @@ _FIRST_IMPORT = lazy_pattern(r"^(import|from)[ \t]", re.MULTILINE)
 def dependency_fix(manifest: Manifest, names: list[str]) -> Fix | None:
     """Return the fix that adds dependencies to ``package.xml``, or None if this is not possible.
 
-    The new lines follow the last dependency that is not only for tests or documentation, or else the licence. They have
+    The new lines follow the last dependency that is not only for tests or documentation, or else the license. They have
     its indentation.
     """
     source = manifest.document.source

@@ -24,7 +24,7 @@ from linkwright.diagnostics.translation import localized
 from linkwright.language.definitions import NameDefinition
 from linkwright.language.format import Document, Format
 from linkwright.language.formats import format_of
-from linkwright.language.includes import real
+from linkwright.language.includes import real_path
 from linkwright.language.values import ValuedText, values_in
 from linkwright.language.workspace import MAX_CHARACTERS, Workspace
 from linkwright.lint.targets import XML_FILES
@@ -110,7 +110,7 @@ class LinkwrightServer(LanguageServer):
         """Store the URI of an opened file, schedule its check, and prepare its format."""
         path = path_of(uri)
         if path is not None:
-            self._uris[real(path)] = uri
+            self._uris[real_path(path)] = uri
             self.file_changed(uri)
             format_ = format_of(path)
             if format_ is not None:
@@ -125,15 +125,15 @@ class LinkwrightServer(LanguageServer):
         """Schedule checks of a file and of the descriptions that include it, and update robot pages."""
         path = path_of(uri)
         if path is not None:
-            self._changed[real(path)] = None
+            self._changed[real_path(path)] = None
             self._has_changes.set()
-            self.robot_views.text_changed(real(path), self.workspace.text_documents.get(uri))
+            self.robot_views.text_changed(real_path(path), self.workspace.text_documents.get(uri))
 
     def file_saved(self, uri: str) -> None:
         """Update the workspace after a file on the disk has changed."""
         path = path_of(uri)
         if path is not None and self.project is not None:
-            self.project.file_saved(real(path))
+            self.project.file_saved(real_path(path))
             self._values.clear()
             self.file_changed(uri)
 
@@ -191,18 +191,18 @@ class LinkwrightServer(LanguageServer):
         positions = self._usual_positions(path)
         if positions is None:
             return None
-        return FormatContext(format_, Document(self.project, self.texts(), real(path), positions.text), positions)
+        return FormatContext(format_, Document(self.project, self.texts(), real_path(path), positions.text), positions)
 
     async def defined_names(self, path: Path) -> list[NameDefinition]:
         """Wait for the index, and return the names that a file's descriptions define."""
         if self.project is None:
             return []
         await self.when_indexed()
-        return self.project.names(real(path), self.texts())
+        return self.project.names(real_path(path), self.texts())
 
     async def expression_values(self, path: Path) -> list[ValuedText]:
         """Wait for the index, and return the values of the expressions in a file."""
-        project, file, texts = self.project, real(path), self.texts()
+        project, file, texts = self.project, real_path(path), self.texts()
         if project is None:
             return []
         await self.when_indexed()
@@ -249,7 +249,7 @@ class LinkwrightServer(LanguageServer):
 
     def positions(self, path: Path) -> TextPositions | None:
         """Return the positions of a file's text, open or saved, or None if it is unreadable."""
-        file = real(path)
+        file = real_path(path)
         encoding = self.workspace.position_encoding or UTF_16
         uri = self._uris.get(file)
         if uri is not None and uri in self.workspace.text_documents:
@@ -273,7 +273,7 @@ class LinkwrightServer(LanguageServer):
 
     def uri_of(self, path: Path) -> str:
         """Return the URI of a file, in the editor's spelling if the file is open."""
-        file = real(path)
+        file = real_path(path)
         return self._uris.get(file) or file.as_uri()
 
     def texts(self) -> dict[Path, str]:

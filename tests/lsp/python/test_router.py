@@ -46,7 +46,7 @@ URI = "file:///ws/a.py"
 
 
 class Peer:
-    """A peer that keeps its messages."""
+    """A peer that stores its messages."""
 
     def __init__(self, name: str) -> None:
         self.name = name

@@ -226,7 +226,7 @@ class ManifestPlaceholder(ManifestRule):
 
     ## Why
 
-    The description, licence and maintainer of a published package are visible to its users. Without a licence, other
+    The description, license and maintainer of a published package are visible to its users. Without a license, other
     users are not allowed to use the package.
 
     ## Example

@@ -103,7 +103,7 @@ class ManifestIncomplete(ManifestRule):
 
     ## Why
 
-    REP 149 requires name, version, description, maintainer and licence. colcon ignores a package without a name, and
+    REP 149 requires name, version, description, maintainer and license. colcon ignores a package without a name, and
     release tools refuse a package without the other elements.
 
     ## Example

@@ -67,7 +67,7 @@ def create_package(request: PackageRequest, report: Callable[[str], None]) -> li
         report: called with each line that ``ros2 pkg create`` prints, in the same order.
 
     Returns:
-        Warnings about the name, the licence, and a renamed node.
+        Warnings about the name, the license, and a renamed node.
 
     Raises:
         LinkwrightError: PKG201 to PKG206, the request is not valid, and nothing is written; PKG207, the folder exists;

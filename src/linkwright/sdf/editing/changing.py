@@ -51,7 +51,7 @@ class Change:
         size: the size of a model that consists of one simple shape, as in `SimpleShape`.
         new_name: the new name.
         static: whether the model is fixed and never moves.
-        color: the color of a simple shape or a light: red, green, blue and alpha, from 0 to 1.
+        color: the colour of a simple shape or a light: red, green, blue and alpha, from 0 to 1.
     """
 
     name: str
@@ -324,7 +324,7 @@ def _color_edits(entity: Entity, color: Sequence[float]) -> list[Replacement]:
             parts = (new_element("ambient", text), new_element("diffuse", text))
             edits.append(writing.insertion_edit(visual.element, [new_element("material", *parts)]))
             continue
-        script = material.first("script")  # the script would override the colors
+        script = material.first("script")  # the script would override the colours
         missing = [tag for tag in ("ambient", "diffuse") if material.first(tag) is None]
         for tag in ("ambient", "diffuse"):
             if tag not in missing:
