@@ -1,4 +1,4 @@
-"""A graph for the verbs that look at running nodes: made by the test, inside the command's own event loop."""
+"""A graph for the commands about running nodes, on the event loop of the command."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ from linkwright.graph import Graph
 
 @pytest.fixture
 def in_graph(monkeypatch: pytest.MonkeyPatch) -> Callable[[Callable[[Graph], object]], None]:
-    """Takes a function that puts nodes into the graph that the next commands look at; nothing outside is joined."""
+    """Accept a function that adds nodes to the graph of the next commands, which joins no other network."""
 
     def use(make: Callable[[Graph], object]) -> None:
         async def join(graph: Graph, _spin_time: float | None, *, read_only: bool = False) -> None:

@@ -1,4 +1,4 @@
-"""``linkwright action``, ``lifecycle`` and ``component``: what ros2 prints, and what is said of mistakes."""
+"""``linkwright action``, ``lifecycle`` and ``component``: the output of ros2, and errors."""
 
 from __future__ import annotations
 
@@ -121,7 +121,7 @@ def test_mistakes_of_send_goal(in_graph, capsys, words, message):
 
 
 class Managed(LifecycleNodeMixin):
-    """A managed node made of a graph's node."""
+    """A managed node in the graph."""
 
     def __init__(self, graph: Graph, name: str) -> None:
         self._node = graph.create_node(name)
@@ -208,7 +208,7 @@ def test_component_load_and_unload(in_graph, capsys):
 
 
 class _Container:
-    """The process that `component standalone` starts, as far as it is asked for; its node is in the graph."""
+    """A substitute for the process that `component standalone` starts, with its node in the graph."""
 
     def __init__(self, deaf_to: set[int], status: int | None) -> None:
         self.returncode: int | None = None

@@ -1,4 +1,4 @@
-"""`linkwright check`: the tree as check_urdf prints it, findings with their place, exit status."""
+"""`linkwright check`: the tree of check_urdf, findings with their locations, exit status."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""`linkwright check` over several files and folders: what is looked at, forms, settings, fixes, exit status."""
+"""`linkwright check` for several files and folders: selection, formats, settings, fixes, exit status."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What TAB completes: commands, options, packages, launch files, names of the graph; in the shell itself, too."""
+"""Completion of commands, options, packages, launch files and names of the graph, also in the shell."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""``linkwright control``: what ros2 prints of controllers and hardware."""
+"""``linkwright control``: the output of ros2 about controllers and hardware."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ POSITIONS = {"joints": ["hip"], "interface_name": "position"}
 
 @pytest.fixture
 def manager(in_graph, tmp_path):
-    """A manager whose controllers are in some state when a command looks."""
+    """A manager whose controllers have given states."""
     path = tmp_path / "c.yaml"
     path.write_text("positions: {ros__parameters: {joints: [hip], interface_name: position}}")
 

@@ -1,4 +1,4 @@
-"""`linkwright diagram`: the .gv text and a picture beside it."""
+"""`linkwright diagram`: the .gv file and the picture."""
 
 from __future__ import annotations
 

@@ -37,7 +37,7 @@ needs_git = pytest.mark.skipif(shutil.which("git") is None, reason="there is no 
 
 @pytest.fixture
 def package(tmp_path, monkeypatch) -> Path:
-    """A package with a robot, in no repository."""
+    """Create a package with a robot, outside any repository."""
     files = {"package.xml": MANIFEST, "urdf/body.xacro": BODY, "urdf/arm.urdf.xacro": ARM, "meshes/body.stl": "solid"}
     for name, text in files.items():
         path = tmp_path / "arm" / name
@@ -62,7 +62,7 @@ def git(folder: Path, *words: str) -> None:
 
 @pytest.fixture
 def committed(package) -> Path:
-    """The same, committed."""
+    """Create the package, and commit it."""
     git(package, "init")
     git(package, "add", "--all")
     git(package, "commit", "--message", "first")

@@ -1,4 +1,4 @@
-"""``linkwright doctor``: troubles seeded into a running graph are seen and explained."""
+"""``linkwright doctor``: problems of a running graph are found and explained."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""`linkwright drive`: what it prints, writes and refuses; the driving itself is tested with `hosting.simulated`."""
+"""`linkwright drive`: output, files and refusals; `hosting.simulated` tests the driving."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ from tests.hosting.test_driven import MBOT
 
 @pytest.fixture
 def file(tmp_path, monkeypatch):
-    """A robot of visuals only in the working directory."""
+    """Write a robot without physics to the working directory."""
     monkeypatch.chdir(tmp_path)
     (tmp_path / "mbot.urdf").write_text(MBOT)
     return tmp_path / "mbot.urdf"

@@ -1,4 +1,4 @@
-"""The engine without the rest: what linkwright-core is made of, and what its commands say without linkwright."""
+"""The engine without linkwright: the contents of linkwright-core, and the output of its commands."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ CONTRACT = "The engine imports nothing else; linkwright-core is made of its modu
 
 
 def rooms() -> tuple[set[str], set[str]]:
-    """The modules of the engine, and those that it may not import."""
+    """Return the modules of the engine, and the modules that it must not import."""
     contracts = read_toml((REPOSITORY / "pyproject.toml").read_text(encoding="utf-8"))["tool"]["importlinter"]
     (contract,) = (contract for contract in contracts["contracts"] if contract["name"] == CONTRACT)
     return set(contract["source_modules"]), set(contract["forbidden_modules"])
@@ -34,7 +34,7 @@ def test_linkwright_needs_the_engine_of_its_own_version() -> None:
 
 @pytest.fixture
 def alone(monkeypatch):
-    """As with linkwright-core alone: a module that is None in this table cannot be imported."""
+    """Simulate an installation of linkwright-core alone: modules that are None in this table cannot be imported."""
     for name in ("cli.workbench", "simulation", "viewer.notebook", "bag"):
         for loaded in [module for module in sys.modules if f"{module}.".startswith(f"linkwright.{name}.")]:
             monkeypatch.delitem(sys.modules, loaded)

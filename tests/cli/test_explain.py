@@ -1,4 +1,4 @@
-"""`linkwright explain`: the page of a code, and near ones for a code that is none."""
+"""`linkwright explain`: the page of a code, and suggestions for unknown codes."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""``linkwright format``: files, folders, standard input, and what it says of them."""
+"""``linkwright format``: files, folders, standard input, and messages."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Commands on a full disk, and with standard streams that are full or closed: one message, and nothing is lost."""
+"""Commands on a full disk, or with full or closed standard streams: one message, and no loss."""
 
 from __future__ import annotations
 
@@ -196,7 +196,7 @@ sys.stderr.write(repr(failed))
 
 
 def statuses(commands: Mapping[str, Sequence[str]], folder: Path, redirection: str) -> tuple[dict[str, int], str]:
-    """The exit statuses of commands, a process each, with streams that a shell redirects, and what they said."""
+    """Run commands with redirected streams, and return their exit statuses and output."""
     program = _MANY.format(commands=[list(words) for words in commands.values()])
     environment = {**os.environ, "PYTHONPATH": str(REPOSITORY / "src")}
     done = subprocess.run(

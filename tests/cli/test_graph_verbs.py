@@ -1,4 +1,4 @@
-"""``linkwright node``, ``param`` and ``service``: what ros2 prints, and what is said of mistakes."""
+"""``linkwright node``, ``param`` and ``service``: the output of ros2, and errors."""
 
 from __future__ import annotations
 
@@ -288,7 +288,7 @@ def test_mistakes_of_service_call(capsys, words, message):
 
 
 def watched(graph: Graph) -> None:
-    """A service that tells of its requests, and somebody who asks it; in the end Ctrl-C is pressed."""
+    """Run a command that shows the requests to a service, call the service, and press Ctrl-C."""
     node = graph.create_node("watched")
     service = node.create_service("example_interfaces/srv/AddTwoInts", "sum", add)
     service.configure_introspection(node.get_clock(), SERVICES_QOS, ServiceIntrospectionState.CONTENTS)

@@ -1,4 +1,4 @@
-"""`linkwright inertia`: the blocks, the comparison, writing, and what cannot be."""
+"""`linkwright inertia`: the blocks, the comparison, writing, and errors."""
 
 from __future__ import annotations
 

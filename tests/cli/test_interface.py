@@ -1,4 +1,4 @@
-"""``linkwright interface``: the types that come with Linkwright and those of the workspace, without a build."""
+"""``linkwright interface``: types of Linkwright and of the workspace, without a build."""
 
 from __future__ import annotations
 

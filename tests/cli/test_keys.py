@@ -1,4 +1,4 @@
-"""Keys that a recording and a player listen to, typed on a terminal of the test's own."""
+"""The keys of a recording and a player, typed in a terminal of the test."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ termios = pytest.importorskip("termios")
 
 @pytest.fixture
 def keyboard(monkeypatch: pytest.MonkeyPatch) -> Iterator[int]:
-    """The end of a terminal that types; standard input is the other one."""
+    """The end of a terminal at which the test types; the other end is the standard input."""
     main, terminal = pty.openpty()
     with os.fdopen(terminal) as stdin:
         monkeypatch.setattr(sys, "stdin", stdin)

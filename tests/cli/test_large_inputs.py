@@ -1,4 +1,4 @@
-"""What `check` does and prints grows as its input does, not faster: counted in calls and characters, not seconds."""
+"""The work and output of `check` grow linearly with its input, counted in calls and characters."""
 
 from __future__ import annotations
 
@@ -70,7 +70,7 @@ KINDS = [chain, star, attributes, unknown_elements, wrong_numbers, properties, m
 
 
 def work(make: Callable[[int], str], count: int, folder: Path, capsys: pytest.CaptureFixture[str]) -> tuple[int, int]:
-    """How many functions `check` calls for an input of so many parts, and how many characters it prints."""
+    """Return the number of function calls and printed characters of `check` for an input of a size."""
     path = folder / f"{count}" / "r.xacro"
     path.parent.mkdir()
     path.write_text(f'<robot name="r" xmlns:xacro="http://www.ros.org/wiki/xacro">{make(count)}</robot>')

@@ -1,4 +1,4 @@
-"""``linkwright launch``: its options, as a user types them."""
+"""``linkwright launch`` and its options."""
 
 from __future__ import annotations
 
@@ -27,7 +27,7 @@ PRINTS = "ExecuteProcess(cmd=[sys.executable, '-c', 'print(\"out\")'], name='py'
 
 @pytest.fixture
 def write(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Write:
-    """Writes a launch file of entities."""
+    """Write a launch file with entities."""
     monkeypatch.setenv("ROS_LOG_DIR", str(tmp_path / "logs"))
     monkeypatch.setenv("LINKWRIGHT_DDS", "0")
 

@@ -1,4 +1,4 @@
-"""The command itself: verbs, usage, exit statuses, never a traceback."""
+"""The command `linkwright`: subcommands, usage, exit statuses, and no traceback."""
 
 from __future__ import annotations
 
@@ -119,7 +119,7 @@ def test_what_is_imported_at_the_start_is_not_searched_for_garbage():
 
 
 def texts_in(parser: argparse.ArgumentParser) -> Iterator[str]:
-    """What a parser and those below it say: of themselves, of their groups and of each argument."""
+    """Return the texts of a parser and its subparsers: descriptions, groups and arguments."""
     yield from filter(None, [parser.description, *(group.title for group in parser._action_groups)])
     for action in parser._actions:
         if action.help and action.help != argparse.SUPPRESS:

@@ -1,4 +1,4 @@
-"""`linkwright models`: what it prints, and that it ends with one message when something is wrong."""
+"""`linkwright models`: the output, and one message for each error."""
 
 from __future__ import annotations
 

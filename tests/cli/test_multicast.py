@@ -1,4 +1,4 @@
-"""``linkwright multicast`` and ``linkwright doctor hello``, on this machine alone."""
+"""``linkwright multicast`` and ``linkwright doctor hello``, on one machine."""
 
 from __future__ import annotations
 
@@ -33,7 +33,7 @@ with_multicast = pytest.mark.skipif(not carries_multicast(), reason="this machin
 
 @pytest.fixture
 def address() -> list[str]:
-    """Options for a group and a port of this test's own."""
+    """Return options for a group and a port of this test only."""
     chosen = random.SystemRandom()
     group = f"234.{chosen.randrange(255)}.{chosen.randrange(255)}.{chosen.randrange(1, 255)}"
     return ["--group", group, "--port", str(chosen.randrange(16_000, 18_000))]

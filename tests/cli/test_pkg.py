@@ -1,4 +1,4 @@
-"""``linkwright pkg create``: layout, printed lines, refusals, and packages that the real build tools take."""
+"""``linkwright pkg create``: files, output, refusals, and packages for the real build tools."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""The figures of ``topic hz``, ``delay`` and ``bw``, and their texts."""
+"""The numbers of ``topic hz``, ``delay`` and ``bw``, and their texts."""
 
 from __future__ import annotations
 

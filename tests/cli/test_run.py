@@ -1,4 +1,4 @@
-"""``linkwright run``, as a user types it."""
+"""``linkwright run``."""
 
 from __future__ import annotations
 
@@ -37,7 +37,7 @@ Run = Callable[..., "subprocess.Popen[str]"]
 
 @pytest.fixture(autouse=True)
 def workspace(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
-    """The current folder: a workspace with the package ``arm``, which nobody has built."""
+    """Return the current folder: a workspace with the package ``arm``, which is not built."""
     package = tmp_path / "src" / "arm"
     (package / "arm").mkdir(parents=True)
     (package / "package.xml").write_text("<package><name>arm</name></package>")

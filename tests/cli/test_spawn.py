@@ -1,4 +1,4 @@
-"""``linkwright spawn``, against a simulator that takes note of what it is asked for."""
+"""``linkwright spawn``, with a simulator that records the requests."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ ROBOT = """<robot name="r"><link name="base"><inertial><mass value="1"/>
 
 @pytest.fixture
 def asked(in_graph) -> list[Any]:
-    """The requests for entities; a name that was taken is refused."""
+    """Return the requests for entities; a used name is refused."""
     requests: list[Any] = []
 
     def spawn(request: Any, response: Any) -> Any:

@@ -1,4 +1,4 @@
-"""``linkwright topic``: what ros2 topic prints, and what is said of mistakes."""
+"""``linkwright topic``: the output of ros2 topic, and errors."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""The verbs as a user runs them: processes of their own, which meet over DDS."""
+"""The commands in separate processes that communicate over DDS."""
 
 from __future__ import annotations
 

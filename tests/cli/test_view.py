@@ -1,4 +1,4 @@
-"""What `linkwright view` takes beside a recording, and says where it takes it not."""
+"""The options of `linkwright view`, with and without a recording."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ RVIZ = "Panels: []\nVisualization Manager:\n  Displays: []\n  Global Options:\n 
 
 @pytest.fixture
 def folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
-    """The working directory: a robot, a recording `drive`, an .rviz file."""
+    """Return the working directory with a robot, a recording `drive` and an .rviz file."""
     monkeypatch.chdir(tmp_path)
     (tmp_path / "r.urdf").write_text("<robot name='r'><link name='a'/></robot>")
     (tmp_path / "v.rviz").write_text(RVIZ)

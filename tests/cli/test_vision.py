@@ -1,4 +1,4 @@
-"""``linkwright vision detect``: what is printed and drawn of image files."""
+"""``linkwright vision detect``: output and pictures for image files."""
 
 from __future__ import annotations
 
@@ -34,7 +34,7 @@ def test_as_json(image, capsys):
 
 
 def marker(folder, dictionary):
-    """An image of the marker 4."""
+    """Return an image of the marker 4."""
     pixels = np.full((120, 160), 255, np.uint8)
     pixels[20:80, 30:90] = cv2.aruco.generateImageMarker(cv2.aruco.getPredefinedDictionary(dictionary), 4, 60)
     path = folder / "marker.png"

@@ -1,4 +1,4 @@
-"""`linkwright voice`: recordings are handed to engines as a microphone would, and words are kept in a file."""
+"""`linkwright voice`: engines receive recordings in blocks, and words are stored in a file."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ TEXTS = {FORWARD: "forward", STOP: "stop", OTHER: ""}
 
 
 class ByLevel(SpeechEngine):
-    """Hears the phrase that the level of a sound stands for, half a second after it has ended."""
+    """An engine that recognises a phrase by the level of a sound, half a second after its end."""
 
     def __init__(self, options):
         assert "stop" in options.phrases or options.language == "zh"
@@ -62,7 +62,7 @@ def recorded(name, level):
 
 
 def word(name):
-    """A tone that wanders, between silences with a little noise, as a word is for who only looks at its length."""
+    """Return a tone with a changing pitch between noisy silences, which has the length of a word."""
     times = np.arange(RATE // 2) / RATE
     tone = 6_000 * np.sin(2 * np.pi * (300 + 400 * times) * times) + 4_000 * np.sin(2 * np.pi * 1_500 * times)
     sound = np.concatenate((np.zeros(RATE // 2), tone, np.zeros(RATE // 2)))

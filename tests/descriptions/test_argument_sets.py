@@ -1,4 +1,4 @@
-"""The values that a workspace gives to the arguments of a description."""
+"""The values of a description's arguments in a workspace."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ MANIFEST = "<package format='3'><name>{name}</name><exec_depend>{needs}</exec_de
 
 @pytest.fixture
 def workspace(tmp_path: Path) -> Path:
-    """A workspace with the package ``arm``, whose robot takes arguments, and ``user``, which depends on it."""
+    """Create a workspace with the package ``arm``, whose robot has arguments, and ``user``, which depends on it."""
     for name, needs in (("arm", "xacro"), ("user", "arm")):
         folder = tmp_path / "src" / name
         folder.mkdir(parents=True)
@@ -26,7 +26,7 @@ def workspace(tmp_path: Path) -> Path:
 
 
 def sets(workspace: Path, file: str, text: str) -> list[ArgumentSet]:
-    """The sets that the robot of the workspace is given by one file."""
+    """Return the sets of values that one file passes to the robot of the workspace."""
     path = workspace / file
     path.parent.mkdir(parents=True, exist_ok=True)
     path.write_text(text)
@@ -34,7 +34,7 @@ def sets(workspace: Path, file: str, text: str) -> list[ArgumentSet]:
 
 
 def values(found: list[ArgumentSet]) -> list[dict[str, str]]:
-    """The values of the sets that are known to occur."""
+    """Return the values of the sets that are certain to occur."""
     return [dict(each.values) for each in found if each.is_complete]
 
 
@@ -54,7 +54,7 @@ COMMAND = """
 
 
 def launch_file(of_argument: str = "") -> str:
-    """A launch file that hands its argument ``prefix`` to the robot."""
+    """Write a launch file that passes its argument ``prefix`` to the robot."""
     declared = f"DeclareLaunchArgument('prefix', {of_argument})"
     return f"{HEAD}\ndef generate_launch_description():\n    {declared}\n{COMMAND}"
 

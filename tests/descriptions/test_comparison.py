@@ -1,4 +1,4 @@
-"""Comparing two descriptions."""
+"""The comparison of two descriptions."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Loading by path and text, and sharing readings."""
+"""Loading by path and text, and shared results."""
 
 from __future__ import annotations
 
@@ -54,7 +54,7 @@ class TestLoad:
 
 
 class TestAsUrdfdom:
-    """What tinyxml2 takes otherwise than XML says."""
+    """Differences between tinyxml2 and the XML standard."""
 
     def test_blanks_before_the_declaration(self):
         assert load('\n  <?xml version="1.0"?>\n' + GOOD).name == "r"

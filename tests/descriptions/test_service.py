@@ -1,4 +1,4 @@
-"""What is xacro and what is URDF, and texts that stand for those of files."""
+"""The distinction of xacro and URDF, and texts that replace those of files."""
 
 from __future__ import annotations
 

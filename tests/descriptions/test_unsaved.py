@@ -1,4 +1,4 @@
-"""Unsaved texts: which one counts, and the calls of the listeners."""
+"""Unsaved texts: their precedence, and the calls of the listeners."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""The diagnostic itself, the error that carries some, and their data form."""
+"""Diagnostics, errors that contain several, and their form as data."""
 
 from __future__ import annotations
 

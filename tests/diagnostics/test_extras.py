@@ -1,4 +1,4 @@
-"""Libraries that are installed when asked for."""
+"""Optional libraries, and the offers to install them."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ from tests import toml_files
 
 @pytest.fixture
 def without(monkeypatch):
-    """Make a library one that is not installed."""
+    """Let a library appear not to be installed."""
 
     def hide(module: str) -> None:
         for name in [name for name in sys.modules if name.partition(".")[0] == module]:

@@ -1,4 +1,4 @@
-"""What other programs say about common mistakes is said in Chinese."""
+"""The Chinese translation of common messages of other programs."""
 
 from __future__ import annotations
 
@@ -49,7 +49,7 @@ XML_MISTAKES = {
 
 
 def chinese(text: str) -> str:
-    """Return the translation without what is quoted."""
+    """Return the translation without the quoted parts."""
     return re.sub("“[^”]*”", "", translate_phrase(foreign(text), "zh"))
 
 

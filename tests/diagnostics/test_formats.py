@@ -1,4 +1,4 @@
-"""The forms of diagnostics for programs."""
+"""The machine-readable formats of diagnostics."""
 
 from __future__ import annotations
 

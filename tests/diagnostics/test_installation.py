@@ -1,4 +1,4 @@
-"""How Linkwright was installed, and which command adds to that."""
+"""The installation of Linkwright, and the command that adds packages to it."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ def checkout(tmp_path: Path) -> Path:
 
 
 def direct_url(path: Path, **more: object) -> dict[str, object]:
-    """What an installer writes of a file or folder of this machine."""
+    """Return the record of an installer for a local file or folder."""
     return {"url": path.as_uri(), "dir_info": {}, **more}
 
 
@@ -113,7 +113,7 @@ def test_what_uvx_runs_becomes_a_tool(tmp_path: Path) -> None:
 
 @pytest.fixture
 def pip_there(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> Path:
-    """An environment with pip; its folder of programs."""
+    """Create an environment with pip, and return its folder of programs."""
     monkeypatch.setattr("linkwright.diagnostics.installation.find_spec", lambda _name: object())
     monkeypatch.setattr(sys, "executable", str(tmp_path / "python"))
     (tmp_path / "pip").write_text("")

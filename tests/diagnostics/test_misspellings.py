@@ -1,4 +1,4 @@
-"""Which names are taken for misspellings of others."""
+"""Names that are considered misspellings of others."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Texts that can be translated: what they read as, and how another language says them."""
+"""Translatable texts, in English and in other languages."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Diagnostics as a terminal shows them."""
+"""Diagnostics as shown in a terminal."""
 
 from __future__ import annotations
 

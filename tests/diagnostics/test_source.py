@@ -1,4 +1,4 @@
-"""Offsets to lines and columns and back."""
+"""The conversion of offsets to lines and columns and back."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Diagnostics in Chinese: choosing the language, looking texts up, filling in what is the user's."""
+"""Diagnostics in Chinese: the choice of the language, the catalogue, and inserted values."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Every message of the program has its Chinese form: those in the source, and those that the test cases bring up."""
+"""Every message in the source and in the test cases has a Chinese translation."""
 
 from __future__ import annotations
 
@@ -36,7 +36,7 @@ def words(request: pytest.FixtureRequest) -> Recording:
 
 
 class Recording:
-    """A catalogue that remembers which templates it was asked for in vain."""
+    """A catalogue that records the templates without a translation."""
 
     def __init__(self, translations: NullTranslations) -> None:
         self._translations = translations
@@ -60,7 +60,7 @@ class Recording:
 
 @pytest.fixture(scope="module")
 def source() -> Any:
-    """What the program says, gathered from all of its modules."""
+    """Return the messages of all modules of the program."""
     return load_tool("catalogues").Source()
 
 
@@ -196,7 +196,7 @@ def test_the_meaning_of_every_element_and_attribute(words: Recording) -> None:
 
 
 def assert_translated(diagnostics: Iterable[Diagnostic], words: Recording) -> None:
-    """Fails on a text that is no phrase, and on a phrase or a part of one that the catalogue does not know."""
+    """Fail for a text that is no phrase, and for a phrase or a part of one without a translation."""
     for diagnostic in diagnostics:
         words.missing.clear()
         for text in (diagnostic.message, diagnostic.hint, *(note.message for note in diagnostic.notes)):

@@ -1,4 +1,4 @@
-"""What the doctor says of a record: each trouble is found where it is, and nothing is said of a graph that is well."""
+"""The examination of a record: each problem is found, and a graph without problems has no findings."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What the doctor writes down of a graph that others are coming into while it looks."""
+"""The record of a graph that other programs join during the observation."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ LATE = EndpointInfo(EndpointKind.SUBSCRIPTION, None, "/cmd_vel", TWIST_STAMPED, 
 
 
 class RemoteTransport(Transport):
-    """What other processes have, as a test says."""
+    """A transport with the given endpoints of other processes."""
 
     def __init__(self, *endpoints: EndpointInfo) -> None:
         self.endpoints = list(endpoints)

@@ -1,4 +1,4 @@
-"""Files that are pipes or devices are read as others are, or refused at once; nothing waits for a writer."""
+"""Pipes and devices are read like other files, or refused without waiting for a writer."""
 
 from __future__ import annotations
 
@@ -36,7 +36,7 @@ def pipe(tmp_path: Path) -> Path:
 
 @pytest.fixture
 def piped() -> Iterator[str]:
-    """The path of a pipe with a xacro file in it, as a shell gives it for ``<(command)``."""
+    """Return the path of a pipe with a xacro file, as from ``<(command)`` in a shell."""
     outer, inner = os.pipe()
     os.write(inner, XACRO.encode())
     os.close(inner)

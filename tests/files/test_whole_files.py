@@ -1,4 +1,4 @@
-"""Files are written whole or not at all, whatever the disk and the folder allow."""
+"""Files are written completely or not at all, on any disk and in any folder."""
 
 from __future__ import annotations
 
@@ -25,7 +25,7 @@ def file(tmp_path: Path) -> Path:
 
 @pytest.fixture
 def fill_disk(monkeypatch: pytest.MonkeyPatch) -> Callable[[int], None]:
-    """Let this process write so many bytes by file descriptors, and then refuse as a full disk does."""
+    """Let this process write a number of bytes, and then refuse to write as a full disk does."""
 
     def fill(room: int) -> None:
         left = room
@@ -46,7 +46,7 @@ def fill_disk(monkeypatch: pytest.MonkeyPatch) -> Callable[[int], None]:
 
 @pytest.fixture
 def no_replacing(monkeypatch: pytest.MonkeyPatch) -> None:
-    """A file that is a mount of its own: a container's."""
+    """Create a file that is a mount point, as in containers."""
 
     def refuse(*_: object) -> None:
         raise OSError(errno.EBUSY, "Device or resource busy")

@@ -1,4 +1,4 @@
-"""Boxes along the axes of a frame."""
+"""Bounding boxes along the axes of a frame."""
 
 from __future__ import annotations
 

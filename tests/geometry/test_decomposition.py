@@ -1,4 +1,4 @@
-"""Surfaces as convex pieces."""
+"""The decomposition of surfaces into convex parts."""
 
 from __future__ import annotations
 

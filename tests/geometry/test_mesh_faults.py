@@ -1,4 +1,4 @@
-"""A mesh file that cannot be read is refused in its own words: the line, the element, the number."""
+"""The errors of unreadable mesh files, with the line, the element and the number."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What is known of a mesh file before it is parsed, and what is read of one that is broken in parts."""
+"""Properties of mesh files before parsing, and the readable parts of damaged files."""
 
 from __future__ import annotations
 

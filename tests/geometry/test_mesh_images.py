@@ -1,4 +1,4 @@
-"""Images that mesh files name: a PNG is handed on as it is, anything else becomes one."""
+"""The images of mesh files: a PNG is unchanged, and other formats are converted to PNG."""
 
 from __future__ import annotations
 
@@ -24,7 +24,7 @@ def encoded(kind: str) -> bytes:
 
 
 def image_of(folder: Path, name: str, data: bytes) -> bytes | None:
-    """The image that a mesh of one triangle is read with."""
+    """Return the image of a mesh with one triangle."""
     (folder / "m.obj").write_text(OBJ)
     (folder / "m.mtl").write_text(f"newmtl m\nKd 1 1 1\nmap_Kd {name}\n")
     (folder / name).write_bytes(data)

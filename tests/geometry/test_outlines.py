@@ -1,4 +1,4 @@
-"""Outlines of meshes without arrays, beside those that `read_mesh` makes by arrays."""
+"""Outlines of meshes without arrays, compared with those from the arrays of `read_mesh`."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""COLLADA and OBJ without trimesh: the same triangles as with it."""
+"""COLLADA and OBJ without trimesh: the same triangles as with trimesh."""
 
 from __future__ import annotations
 
@@ -33,13 +33,13 @@ KEPT = '<instance_node url="#kept"/>'
 
 
 def kept(parts: str) -> str:
-    """A file that places a node of its library twice."""
+    """Return a file that uses a node of its library twice."""
     library = f'<library_nodes><node id="kept">{parts}</node></library_nodes><library_visual_scenes>'
     return COLLADA.replace(NODE, f"<node>{KEPT}{KEPT}</node>").replace("<library_visual_scenes>", library)
 
 
 def corners(data: bytes, kind: str, *, is_plain: bool) -> np.ndarray:
-    """The corners of all triangles in metres, sorted, each triangle from its lowest corner on; shape (n, 9)."""
+    """Return the sorted corners of all triangles in metres, each from its lowest corner; shape (n, 9)."""
     found = []
     for mesh, matrix, unit, _ in (placed := placed_meshes(data, kind, is_plain=is_plain)):
         assert isinstance(mesh, PlainMesh) is is_plain

@@ -1,4 +1,4 @@
-"""Polygons in a plane; their triangles are tested with what is decomposed into convex parts."""
+"""Polygons in a plane; the tests of the decomposition cover their triangles."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Poses as rows against homogeneous matrices."""
+"""Poses as rows, compared with homogeneous matrices."""
 
 from __future__ import annotations
 

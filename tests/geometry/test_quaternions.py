@@ -1,4 +1,4 @@
-"""Quaternions against matrices, and the conventions."""
+"""Quaternions, compared with matrices, and the conventions."""
 
 from __future__ import annotations
 
@@ -28,7 +28,7 @@ X, Y, Z = np.eye(3)
 
 
 def about(axis, angle):
-    """A rotation matrix, from the textbook."""
+    """Return a rotation matrix, by the textbook formula."""
     c, s = np.cos(angle), np.sin(angle)
     return {
         "x": np.array([[1, 0, 0], [0, c, -s], [0, s, c]]),

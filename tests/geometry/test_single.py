@@ -1,4 +1,4 @@
-"""Roll, pitch and yaw to quaternions and back, as urdfdom computes them."""
+"""The conversion of roll, pitch and yaw to quaternions and back, as in urdfdom."""
 
 from __future__ import annotations
 

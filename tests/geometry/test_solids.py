@@ -1,4 +1,4 @@
-"""The closed formulae against numeric integration, and against meshes of the shapes."""
+"""The formulas for solids, compared with numeric integration and meshes."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ sizes = st.floats(0.01, 2.0)
 
 
 def integrate_discs(radius_at, half_height, steps=20_000):
-    """Volume and moments of a body of revolution about z, as a pile of thin discs."""
+    """Return the volume and moments of a body of revolution about z, integrated as thin discs."""
     dz = 2 * half_height / steps
     z = -half_height + dz * (np.arange(steps) + 0.5)
     r2 = radius_at(z) ** 2

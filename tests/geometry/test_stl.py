@@ -1,4 +1,4 @@
-"""STL, as trimesh reads it."""
+"""STL files, compared with trimesh."""
 
 import numpy as np
 import pytest

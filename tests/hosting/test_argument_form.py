@@ -1,4 +1,4 @@
-"""A description that fails for arguments which nobody gave."""
+"""A description with missing values of arguments."""
 
 from __future__ import annotations
 
@@ -28,7 +28,7 @@ xacro.process_file(path, mappings={{'model': '{model}'}})
 
 @pytest.fixture
 def box(tmp_path: Path) -> Path:
-    """A description that needs an argument, in a package whose launch files give three values."""
+    """Write a description with an argument, and launch files that set three values."""
     package = tmp_path / "box_description"
     for folder in ("urdf", "launch"):
         (package / folder).mkdir(parents=True)

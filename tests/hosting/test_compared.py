@@ -1,4 +1,4 @@
-"""``linkwright view`` with two descriptions: what is refused, and what is waited for."""
+"""``linkwright view`` with two descriptions: refusals and waiting."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Driving a robot of visuals only: the simulator with what was inferred, in this process."""
+"""Driving a robot without physics: the simulator with the inferred physics, in this process."""
 
 from __future__ import annotations
 
@@ -56,7 +56,7 @@ SHARED = Path(__file__).parents[3] / "shared" / "tutorial" / "my_robot_descripti
 
 
 class Driven:
-    """A robot that is driven in a simulation, which stands still but for `drive`."""
+    """A robot in a simulation that only advances in `drive`."""
 
     def __init__(self, graph: Graph, server: SimulationServer) -> None:
         self._graph = graph
@@ -68,7 +68,7 @@ class Driven:
         listener.create_subscription(get_message("nav_msgs/msg/Odometry"), "/odom", self.odometry.append, 10)
 
     async def drive(self, forward: float, turning: float, seconds: float) -> None:
-        """Tell it a velocity, and let time pass."""
+        """Send a velocity, and let time pass."""
         twist = get_message("geometry_msgs/msg/Twist")()
         twist.linear.x, twist.angular.z = forward, turning
         self._publisher.publish(twist)
@@ -78,12 +78,12 @@ class Driven:
 
     @property
     def pose(self):
-        """Where it is in the world."""
+        """Return the pose of the robot in the world."""
         return self._server.simulation.model_pose("mbot")
 
 
 def drive_of(path: Path) -> SimulatedWorld:
-    """What `linkwright drive` makes of a file."""
+    """Return the drive that `linkwright drive` infers for a file."""
     description = examine(path)
     assert description.robot is not None
     meshes = MeshLibrary(PackageFinder(start=path.parent), path.parent)
@@ -93,7 +93,7 @@ def drive_of(path: Path) -> SimulatedWorld:
 
 @asynccontextmanager
 async def driven(path: Path):
-    """The robot of a file on a plane; time passes when the test says so."""
+    """Simulate the robot of a file on a plane; time advances when the test asks for it."""
     drive = drive_of(path)
     loaded = load_world(drive.world)
     graph = Graph(on_log=lambda record: None)
@@ -110,7 +110,7 @@ async def driven(path: Path):
 
 
 def files(folder: Path) -> list[Path]:
-    """Robots of visuals only: our own, and the tutorial's where it is there."""
+    """Return robots without physics: Linkwright's own, and the tutorial's if available."""
     path = folder / "mbot_base.urdf"
     path.write_text(MBOT)
     return [path, *([SHARED] if SHARED.exists() else [])]

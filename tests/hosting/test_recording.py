@@ -1,4 +1,4 @@
-"""``--record`` of simulations: what all topics carry, with simulated times, and whole however the simulation ends."""
+"""``--record`` of simulations: all topics, simulated times, and complete files at any end."""
 
 from __future__ import annotations
 
@@ -34,7 +34,7 @@ def _logs(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
 
 
 def mbot(seconds: float) -> SimulatedWorld:
-    """mbot on a plane, without a page, as fast as can be."""
+    """Simulate mbot on a plane without a page, as fast as possible."""
     description = examine(MBOT)
     assert description.robot is not None
     return SimulatedWorld(
@@ -48,7 +48,7 @@ def view_of(world: SimulatedWorld) -> tuple[SimulatedView, io.StringIO]:
 
 
 class Watched(BagWriter):
-    """A recording that tells of which topics it has messages."""
+    """A recording that reports the topics of its messages."""
 
     def __init__(self, path: Path) -> None:
         super().__init__(path)

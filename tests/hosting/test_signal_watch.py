@@ -1,4 +1,4 @@
-"""Signals before there is a launch to be ended."""
+"""Signals before the start of a launch."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ from tests.waiting import SECONDS
 
 
 class Dropping:
-    """Something in whose destructor a signal comes."""
+    """An object whose destructor raises a signal."""
 
     def __init__(self, number: int) -> None:
         self._number = number

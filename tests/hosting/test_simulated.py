@@ -31,7 +31,7 @@ def _logs(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
 
 
 def in_an_empty_world() -> SimulatedWorld:
-    """mbot in a world without a page, as fast as can be, for two seconds."""
+    """Simulate mbot in a world without a page for two seconds, as fast as possible."""
     description = examine(MBOT)
     assert description.robot is not None
     return SimulatedWorld(

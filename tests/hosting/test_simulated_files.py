@@ -1,4 +1,4 @@
-"""Saving the files of a world and its robot while they are simulated."""
+"""Changes of the files of a world and its robot during a simulation."""
 
 from __future__ import annotations
 
@@ -45,7 +45,7 @@ def world(*parts: str) -> str:
 
 
 class Shown:
-    """A simulation that is shown, and what it printed."""
+    """A simulation with its output."""
 
     def __init__(self, view: SimulatedView, err: io.StringIO, until: Callable[[str], object]) -> None:
         self.view = view
@@ -54,29 +54,29 @@ class Shown:
 
     @property
     def simulator(self) -> Simulator:
-        """The node that simulates."""
+        """The node of the simulation."""
         running = [each for _, each in self.view.host._running.values()]
         return next(each for each in running if isinstance(each, Simulator))
 
     @property
     def server(self) -> SimulationServer:
-        """What moves, in its own thread."""
+        """The server of the simulation, which runs in its own thread."""
         return self.simulator.server
 
     @property
     def worlds(self) -> WorldLoader:
-        """What takes other worlds."""
+        """The object that loads other worlds."""
         return self.simulator.services.worlds
 
     async def look(self, function: Callable[[Simulation], Any]) -> Any:
-        """What a function says in the thread of the simulation."""
+        """Return the result of a function in the thread of the simulation."""
         seen: list[Any] = []
         self.server.exchange.post(lambda: seen.append(function(self.server.simulation)))
         await eventually(lambda: bool(seen))
         return seen[0]
 
     async def when(self, condition: Callable[[Simulation], bool]) -> None:
-        """Wait until something is so in the thread of the simulation."""
+        """Wait until a condition holds in the thread of the simulation."""
         seen: list[bool] = []
 
         def is_so() -> bool:
@@ -88,7 +88,7 @@ class Shown:
 
 @asynccontextmanager
 async def shown(simulated: SimulatedWorld) -> AsyncIterator[Shown]:
-    """A simulation without a page, which stands still."""
+    """Start a paused simulation without a page."""
     out, err = io.StringIO(), io.StringIO()
     finder = PackageFinder(start=simulated.path.parent)
     options = HostOptions(port=0, open_browser=False, network=False)
@@ -108,7 +108,7 @@ async def shown(simulated: SimulatedWorld) -> AsyncIterator[Shown]:
 
 
 def with_robot(folder: Path, text: str) -> SimulatedWorld:
-    """A robot in a world, of files in a folder."""
+    """Add a robot to a world, from files in a folder."""
     (folder / "a.world").write_text(world(FALLING))
     (folder / "robot.urdf").write_text(text)
     description = examine(folder / "robot.urdf")
@@ -123,7 +123,7 @@ def with_robot(folder: Path, text: str) -> SimulatedWorld:
 
 
 def has(*names: str) -> Callable[[Simulation], bool]:
-    """Whether a simulation has these models."""
+    """Return whether a simulation has these models."""
     return lambda simulation: set(simulation.scene.models) == set(names)
 
 
@@ -248,5 +248,5 @@ async def test_a_mesh_of_the_world_that_is_saved_is_read_again(tmp_path):
 
 
 def _extent(simulation: Simulation) -> float:
-    """The greatest extent of all meshes in m."""
+    """Return the greatest extent of all meshes in m."""
     return float(np.ptp(simulation.model.mesh_vert, axis=0).max())

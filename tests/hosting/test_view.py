@@ -1,4 +1,4 @@
-"""One model that is shown without a launch file."""
+"""A model that is shown without a launch file."""
 
 from __future__ import annotations
 
@@ -35,7 +35,7 @@ def _logs(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
 
 @asynccontextmanager
 async def shown(path: Path, foxglove: int | None = None) -> AsyncIterator[tuple[ModelView, Callable[[str], object]]]:
-    """A view, and what waits for a text that it prints; it ends without a failure."""
+    """Start a view, and return a function that waits for a printed text; the view must end without a failure."""
     out, err = io.StringIO(), io.StringIO()
     finder = PackageFinder(start=path.parent, environment={})
     options = HostOptions(port=0, open_browser=False, network=False)

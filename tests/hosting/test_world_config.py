@@ -1,4 +1,4 @@
-"""What a page shows of a simulated world."""
+"""The configuration of a page for a simulated world."""
 
 from __future__ import annotations
 

@@ -16,7 +16,7 @@ INERTIAL = '<inertial><mass value="{}"/><inertia ixx="1" ixy="0" ixz="0" iyy="1"
 
 @pytest.fixture
 def of(tmp_path):
-    """Estimates the only link of a robot from what stands in it."""
+    """Estimate the inertia of the only link of a robot."""
 
     def estimate_link(content, **options):
         robot = load(f'<robot name="r" version="1.1"><link name="a">{content}</link></robot>')

@@ -26,7 +26,7 @@ CONE = trimesh.creation.cone(0.3, 1.0)
 
 
 def write(folder, kind):
-    """A cone in a file of a kind."""
+    """Write a cone to a file of a format."""
     data = CONE.export(file_type=kind)
     path = folder / f"cone.{kind.partition('_')[0]}"
     if isinstance(data, dict):  # glTF with its buffer beside it
@@ -55,7 +55,7 @@ def test_nothing_large_stays_of_a_file_that_was_read(kind, tmp_path):
 
 
 def _bytes_of_meshes():
-    """How many objects there are that hold corners, triangles or the bytes of a file."""
+    """Return the number of objects with corners, triangles or the bytes of a file."""
     kinds = (trimesh.caching.TrackedArray, trimesh.caching.DataStore, trimesh.parent.LoadSource)
     return sum(isinstance(each, kinds) for each in gc.get_objects())
 

@@ -1,4 +1,4 @@
-"""What is said of an `<inertial>` beside the shapes of its link."""
+"""The verdict about an `<inertial>` in comparison with the shapes of its link."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ BALL = '<visual><geometry><sphere radius="0.1"/></geometry></visual>'
 
 
 def verdict_on(tmp_path, inertial, shapes=BALL, more=""):
-    """The verdict on a link 'a' that a joint turns."""
+    """Return the verdict on a link 'a' with a revolute joint."""
     text = (
         f'<robot name="r"><link name="world"/><link name="a">{inertial}{shapes}</link>'
         '<joint name="j" type="continuous"><parent link="world"/><child link="a"/></joint>' + more + "</robot>"

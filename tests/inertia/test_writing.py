@@ -1,4 +1,4 @@
-"""Putting blocks into files: what is written, what stays, and what is refused."""
+"""Writing blocks to files: new and unchanged text, and refusals."""
 
 from __future__ import annotations
 
@@ -24,7 +24,7 @@ XACRO = '<robot name="r" xmlns:xacro="http://www.ros.org/wiki/xacro">'
 
 @pytest.fixture
 def write(tmp_path):
-    """Writes the cube to links of a description, and returns what came of it and the new text."""
+    """Write the inertia of the cube to links of a description, and return the result and the new text."""
 
     def run(text, *links, name="r.urdf"):
         path = tmp_path / name

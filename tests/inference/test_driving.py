@@ -1,4 +1,4 @@
-"""A robot of visuals only drives by what was inferred: its physics, without plugins and nodes."""
+"""Driving a robot without physics: the inferred physics, without plugins and nodes."""
 
 from __future__ import annotations
 
@@ -25,7 +25,7 @@ MOTOR = (20.0, 1.5)
 
 
 def standing(title: str) -> tuple[Simulation, Drive]:
-    """A robot of the page on the ground, and its drive."""
+    """Return a robot on the ground, and its drive."""
     document, found = read_and_inferred(ROBOTS[title])
     robot = read(complete_description(document, found)).robot
     assert robot is not None
@@ -37,7 +37,7 @@ def standing(title: str) -> tuple[Simulation, Drive]:
 
 
 def motors(simulation: Simulation, drive: Drive) -> tuple[list[Motor], list[Motor]]:
-    """Motors on the left and on the right."""
+    """Return motors on the left and on the right."""
     left, right = (
         [simulation.add_velocity_motor(f"r::{wheel.joint}", *MOTOR) for wheel in side]
         for side in (drive.left, drive.right)
@@ -46,7 +46,7 @@ def motors(simulation: Simulation, drive: Drive) -> tuple[list[Motor], list[Moto
 
 
 def driven(simulation: Simulation, sides: tuple[list[Motor], list[Motor]], left: float, right: float) -> None:
-    """Bring the wheels to velocities in rad/s within a second, as a drive does that spares the tyres."""
+    """Accelerate the wheels to velocities in rad/s within a second, slowly enough to avoid slip."""
     for hundredth in range(1, 101):
         for motor in sides[0]:
             motor.target = left * hundredth / 100
@@ -56,7 +56,7 @@ def driven(simulation: Simulation, sides: tuple[list[Motor], list[Motor]], left:
 
 
 def yaw(pose: Transform) -> float:
-    """The turn about z in rad of a pose that is upright."""
+    """Return the rotation about z in rad of an upright pose."""
     _, _, _, x, y, z, w = pose
     return atan2(2.0 * (w * z + x * y), 1.0 - 2.0 * (y * y + z * z))
 

@@ -1,4 +1,4 @@
-"""What the user decides, what meshes tell, and what is refused."""
+"""Inference: decisions of the user, facts from meshes, and refusals."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ WHEEL = (
 
 
 def wheel(name: str, x: float, y: float, radius: float = 0.08, shapes: str = WHEEL) -> str:
-    """A wheel on a joint called as its link, with _joint."""
+    """Return a wheel, and a joint with the name of the link and _joint."""
     z = radius - 0.08
     return (
         f'<link name="{name}">{shapes.format(radius=radius)}</link><joint name="{name}_joint" type="continuous">'
@@ -97,7 +97,7 @@ def test_a_joint_that_turns_no_wheel_is_told_with_its_place():
 
 @pytest.fixture
 def tyre(tmp_path):
-    """An STL of a wheel that turns about y; beside it a robot may name tyre.stl."""
+    """Write an STL file tyre.stl with a wheel that turns about y."""
     body = trimesh.creation.cylinder(radius=0.08, height=0.04, sections=24)
     body.apply_transform(trimesh.transformations.rotation_matrix(np.pi / 2, (1, 0, 0)))
     body.apply_translation((0, 0.01, 0))

@@ -1,4 +1,4 @@
-"""What is inferred about small robots: cases on a page, each the robot and the result."""
+"""Inference for small robots: cases in Markdown, each with a robot and the result."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ CASES = [(title, blocks[0].text, blocks[1].text) for title, blocks in read_secti
 
 
 def read_and_inferred(text: str) -> tuple[Document, Inference]:
-    """A description, and what is inferred about its robot."""
+    """Return a description, and the inference about its robot."""
     description = examine(text)
     assert description.robot is not None
     meshes = MeshLibrary(PackageFinder(start=PAGE.parent), PAGE.parent)
@@ -27,12 +27,12 @@ def read_and_inferred(text: str) -> tuple[Document, Inference]:
 
 
 def inferred(text: str) -> Inference:
-    """What is inferred about a robot."""
+    """Return the inference about a robot."""
     return read_and_inferred(text)[1]
 
 
 def shown(found: Inference) -> str:
-    """An inference as the page shows it."""
+    """Return an inference in the form of the page."""
     drive = found.drive
     lines = ["none"]
     if drive is not None:

@@ -1,4 +1,4 @@
-"""Writing what was inferred: the file says what the completed robot has, and all else in it stays."""
+"""Writing inferred elements: the file describes the completed robot, and other text is unchanged."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ XACRO = '<robot name="r" xmlns:xacro="http://www.ros.org/wiki/xacro">'
 
 @pytest.fixture
 def write(tmp_path):
-    """Infers and writes; returns what came of it, the completed robot and the new text."""
+    """Infer and write, and return the result, the completed robot and the new text."""
 
     def run(text, name="r.urdf"):
         path = tmp_path / name

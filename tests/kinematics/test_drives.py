@@ -1,4 +1,4 @@
-"""Drives, against the geometry of wheels that roll without sliding."""
+"""Drives, compared with the geometry of wheels that roll without sliding."""
 
 from __future__ import annotations
 

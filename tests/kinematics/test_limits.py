@@ -1,4 +1,4 @@
-"""Velocities that are followed within bounds: no bound is ever passed, and what is within them is reached."""
+"""Limited velocities: no limit is exceeded, and possible velocities are reached."""
 
 from __future__ import annotations
 

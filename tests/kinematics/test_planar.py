@@ -1,4 +1,4 @@
-"""Moving in a plane, against the closed formulas of arcs."""
+"""Motion in a plane, compared with the closed formulas for arcs."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Forward kinematics against the definition, joint by joint."""
+"""Forward kinematics, compared with the definition for each joint."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ from tests.urdf.robots import chain, robot_text, robots
 
 
 def frame_of(robot: Robot, link: str, values: dict[str, float]) -> np.ndarray:
-    """The frame of a link in the root, by composing up to the root; the definition, written as plainly as can be."""
+    """Return the frame of a link in the root, by the definition: the product of all frames up to the root."""
     if link == robot.root:
         return np.eye(4)
     joint = parent_joints(robot)[link]

@@ -1,4 +1,4 @@
-"""Texts of a package with a marked place, and what an editor gets there."""
+"""Texts of a package with a marked position, and the results for an editor there."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ from linkwright.diagnostics.translation import localized
 from linkwright.language.completion import Completion
 from linkwright.language.format import Document, Format
 from linkwright.language.formats import format_of
-from linkwright.language.includes import real
+from linkwright.language.includes import real_path
 from linkwright.language.workspace import Workspace
 
 MANIFEST = """<package format="3">
@@ -56,11 +56,11 @@ def make_packages(folder: Path) -> Path:
         path = folder / name
         path.parent.mkdir(parents=True, exist_ok=True)
         path.write_text(text)
-    return real(folder / "lamp_bringup")
+    return real_path(folder / "lamp_bringup")
 
 
 class Place:
-    """A place in the text of a file, marked by ``|``.
+    """A position in the text of a file, marked by ``|``.
 
     Args:
         file: the file, in a package.
@@ -82,7 +82,7 @@ class Place:
         return [*self.format.complete(self.document, self.offset)]
 
     def labels(self) -> list[str]:
-        """Return the completions that match what is typed."""
+        """Return the completions that match the typed text."""
         typed = [(item.label, self.document.text[item.start : self.offset]) for item in self.items()]
         return [label for label, begin in typed if label.startswith(begin)]
 
@@ -92,7 +92,7 @@ class Place:
         return "" if found is None else localized(found.text)
 
     def targets(self) -> list[str]:
-        """Return the definitions, each as the name of the file and the text of the place."""
+        """Return the definitions, each as the name of the file and the text at the location."""
         targets = self.format.define(self.document, self.offset)
         return [f"{to.file.name}:{self.document.other(to.file)[to.start : to.end]}" for to in targets]
 

@@ -1,4 +1,4 @@
-"""Requests about texts that are being typed: any state of a text, and any place in it."""
+"""Requests about incomplete texts: any text, and any position in it."""
 
 from __future__ import annotations
 

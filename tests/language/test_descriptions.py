@@ -1,4 +1,4 @@
-"""Completions in descriptions: names after the expansion, values by type, plugins and their parameters."""
+"""Completion in descriptions: expanded names, values by type, plugins and their parameters."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from linkwright.diagnostics.translation import localized
 from linkwright.language.expression_completion import FUNCTIONS, XACRO_FUNCTIONS
 from linkwright.language.extension_schema import DESCRIPTION
 from linkwright.language.format import Document, NotYetKnownError
-from linkwright.language.includes import real
+from linkwright.language.includes import real_path
 from linkwright.language.simulator_plugins import simulator_plugins
 from linkwright.language.workspace import Workspace
 from linkwright.language.xml_completion import complete
@@ -65,12 +65,12 @@ def package(tmp_path: Path) -> Path:
         path = tmp_path / "arm" / name
         path.parent.mkdir(parents=True, exist_ok=True)
         path.write_text(text)
-    return real(tmp_path / "arm")
+    return real_path(tmp_path / "arm")
 
 
 @pytest.fixture
 def offered(package: Path):
-    """Return the labels that match what is typed, where a text replaces another one; the bar is the cursor."""
+    """Return the labels that match the typed text after a replacement; the bar marks the cursor."""
 
     def labels(old: str, new: str, name: str = "urdf/arm.urdf.xacro", text: str = ROBOT) -> list[str]:
         text = text.replace(old, new, 1) if old else text
@@ -193,7 +193,7 @@ def test_types_of_sensors_and_choices_are_offered_in_worlds(offered):
 
 @pytest.fixture
 def explained(package: Path):
-    """Return the hover where a text replaces another one; the bar is the mouse."""
+    """Return the hover after a replacement; the bar marks the position of the mouse."""
 
     def hover(old: str, new: str, name: str = "urdf/arm.urdf.xacro", text: str = ROBOT) -> str:
         text = text.replace(old, new, 1) if old else text

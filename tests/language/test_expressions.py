@@ -1,4 +1,4 @@
-"""Expressions as written: an inserted expression keeps its value, and a part can be taken out."""
+"""Expressions: insertion keeps the value, and a part can be extracted."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Which description includes which file, where several files have the same name."""
+"""The descriptions that include a file, if several files have the same name."""
 
 from __future__ import annotations
 
@@ -6,7 +6,7 @@ from pathlib import Path
 
 import pytest
 
-from linkwright.language.includes import IncludeIndex, real
+from linkwright.language.includes import IncludeIndex, real_path
 from linkwright.lint.inclusions import Inclusion, inclusions_in
 
 WHEEL = '<robot xmlns:xacro="http://www.ros.org/wiki/xacro"><xacro:macro name="wheel"/></robot>'
@@ -29,7 +29,7 @@ def folder(tmp_path: Path) -> Path:
     write(tmp_path / "rover", robot=including("$(find rover)/urdf/wheel.xacro"), wheel=WHEEL)
     write(tmp_path / "cart", robot=including("wheel.xacro"), wheel=WHEEL)
     write(tmp_path / "tool", robot=including("$(find other)/urdf/wheel.xacro"))
-    return real(tmp_path)
+    return real_path(tmp_path)
 
 
 @pytest.fixture
@@ -60,9 +60,9 @@ def test_related_files_begin_with_the_file_itself_and_what_it_includes(tmp_path)
         one=f"<robot>{arms}</robot>",
         two=f"<robot>{arms}</robot>",
     )
-    found = IncludeIndex([real(tmp_path)])
+    found = IncludeIndex([real_path(tmp_path)])
     found.refresh()
-    folder = real(tmp_path) / "arms" / "urdf"
+    folder = real_path(tmp_path) / "arms" / "urdf"
     related = found.related(folder / "one.xacro", {})
     assert [file.stem for file in related] == ["one", "middle", "right", "left"]
     assert found.related(folder / "left.xacro", {})[0] == folder / "left.xacro"

@@ -1,4 +1,4 @@
-"""Launch files in Python: completion, hover and definition in strings, without running the file."""
+"""Python launch files: completion, hover and definition in strings, without running the file."""
 
 from __future__ import annotations
 

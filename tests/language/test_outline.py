@@ -1,4 +1,4 @@
-"""The elements of a text in any state."""
+"""The elements of a complete or incomplete text."""
 
 from __future__ import annotations
 

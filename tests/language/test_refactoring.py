@@ -1,4 +1,4 @@
-"""Refactorings: the edits, where definitions are placed, and what is refused."""
+"""Refactorings: edits, positions of new definitions, and refusals."""
 
 from __future__ import annotations
 

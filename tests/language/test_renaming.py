@@ -1,4 +1,4 @@
-"""Renaming: what follows, what is left alone, and what is refused."""
+"""Renaming: the edited and unchanged names, and refusals."""
 
 from __future__ import annotations
 
@@ -219,7 +219,7 @@ def test_a_file_outside_of_the_workspace_is_not_edited(package: Package, tmp_pat
     (package.folder / "urdf" / "parts.xacro").unlink()
     main = package.folder / "urdf" / "arm.urdf.xacro"
     main.write_text(MAIN.replace('filename="parts.xacro"', f'filename="{outside}"'))
-    with pytest.raises(LinkwrightError, match="is outside of the workspace"):
+    with pytest.raises(LinkwrightError, match="is outside the workspace"):
         Package(package.folder).rename("urdf/arm.urdf.xacro", '<link name="', "trunk")
     assert outside.read_text(encoding="utf-8") == PARTS
 

@@ -1,4 +1,4 @@
-"""Comments that suppress a finding: where they are inserted, and that each suppresses it."""
+"""The insertion of suppression comments, and their effect."""
 
 from __future__ import annotations
 

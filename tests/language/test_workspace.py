@@ -1,4 +1,4 @@
-"""The files of an editor: their findings, as files and unsaved texts change."""
+"""The findings about the files of an editor when files and unsaved texts change."""
 
 from __future__ import annotations
 
@@ -7,7 +7,7 @@ from pathlib import Path
 import pytest
 
 from linkwright.language.definitions import definitions_in
-from linkwright.language.includes import real
+from linkwright.language.includes import real_path
 from linkwright.language.workspace import Workspace
 
 PARTS = (
@@ -26,7 +26,7 @@ LONG_AXIS = """<robot name="r">
 @pytest.fixture
 def folder(tmp_path: Path) -> Path:
     (tmp_path / "linkwright.toml").write_text('select = ["LW221"]\n')
-    return real(tmp_path)
+    return real_path(tmp_path)
 
 
 @pytest.fixture

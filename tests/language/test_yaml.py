@@ -1,4 +1,4 @@
-"""Parameter files and RViz configurations that are being typed. A ``|`` in a text is the cursor."""
+"""Incomplete parameter files and RViz configurations. A ``|`` in a text marks the cursor."""
 
 from __future__ import annotations
 

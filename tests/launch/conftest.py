@@ -24,7 +24,7 @@ activate()
 
 @dataclass
 class Launched:
-    """What came of a launch that ran to its end."""
+    """The result of a launch that has ended."""
 
     out: str
     err: str
@@ -33,14 +33,14 @@ class Launched:
 
     @property
     def messages(self) -> list[str]:
-        """What LogInfo actions said."""
+        """Return the messages of LogInfo actions."""
         start = "[INFO] [launch.user]: "
         return [line[len(start) :] for line in self.err.splitlines() if line.startswith(start)]
 
 
 @pytest.fixture(autouse=True)
 def _surroundings(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Iterator[None]:
-    """Log files stay in the test's folder, and what a launch does to the environment is undone."""
+    """Keep log files in the folder of the test, and restore the environment after a launch."""
     monkeypatch.setenv("ROS_LOG_DIR", str(tmp_path / "ros_log"))
     monkeypatch.setenv("XDG_CACHE_HOME", str(tmp_path / "cache"))
     monkeypatch.setenv("LINKWRIGHT_DDS", "0")  # tests that need it say so
@@ -55,7 +55,7 @@ def _surroundings(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Iterator[N
 
 @pytest.fixture
 def launch(tmp_path: Path) -> Callable[..., object]:
-    """Runs entities as a launch does, to the end, and gives what was printed."""
+    """Launch entities until the end, and return the output."""
 
     async def run(
         *entities: LaunchDescriptionEntity,
@@ -77,7 +77,7 @@ def launch(tmp_path: Path) -> Callable[..., object]:
 
 @pytest.fixture
 def write(tmp_path: Path) -> Callable[[str, str], Path]:
-    """Writes a file below the test's folder."""
+    """Write a file below the folder of the test."""
 
     def written(name: str, text: str) -> Path:
         path = tmp_path / name

@@ -1,4 +1,4 @@
-"""What a test of a launch waits for: the launch goes on, or ends, once a condition holds, not after some time."""
+"""Functions that wait until a launch continues or ends."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ Condition = Callable[[LaunchContext], object]
 
 
 def when(condition: Condition, *actions: Any) -> OpaqueFunction:
-    """Do actions once a condition holds; after a minute all the same, so that the test says what is missing."""
+    """Run actions when a condition holds, or after a minute, so that the test reports what is missing."""
     limit = time.monotonic() + SECONDS
 
     def look(context: LaunchContext) -> list[Any]:
@@ -29,12 +29,12 @@ def when(condition: Condition, *actions: Any) -> OpaqueFunction:
 
 
 def ends_when(condition: Condition) -> OpaqueFunction:
-    """End the launch once a condition holds."""
+    """End the launch when a condition holds."""
     return when(condition, Shutdown())
 
 
 def printed(*texts: str, times: int = 1) -> Condition:
-    """The condition that the launch has printed each of some texts, so many times."""
+    """Return the condition that the launch has printed each of some texts a number of times."""
 
     def holds(context: LaunchContext) -> bool:
         output = "".join(stream.getvalue() for stream in context.session.log._streams.values())

@@ -1,4 +1,4 @@
-"""A launcher in a process of its own, for tests of how launches begin and end."""
+"""A launcher in a separate process, for tests of the start and end of launches."""
 
 from __future__ import annotations
 
@@ -54,7 +54,7 @@ class Running:
 
     @property
     def has_begun(self) -> bool:
-        """Whether Ctrl-C is the launcher's own to take care of; see `tests.begun`."""
+        """Return whether the launcher handles Ctrl-C itself; see `tests.begun`."""
         return self._files[0].read_text().startswith("begun\n")
 
     @property
@@ -73,7 +73,7 @@ class Running:
             time.sleep(0.01)
 
     def end(self, number: int = signal.SIGINT) -> tuple[int, float]:
-        """Send a signal; gives the exit status and how long the end took, in seconds."""
+        """Send a signal, and return the exit status and the time in seconds until the end."""
         began = time.monotonic()
         self.process.send_signal(number)
         return self.process.wait(SECONDS), time.monotonic() - began

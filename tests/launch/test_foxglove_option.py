@@ -1,4 +1,4 @@
-"""``--foxglove PORT`` of the commands that launch."""
+"""The option ``--foxglove PORT`` of the commands that launch."""
 
 from __future__ import annotations
 

@@ -32,7 +32,7 @@ URDF = """\
 
 @pytest.fixture
 def arm(write: Any, tmp_path: Path) -> Any:
-    """A configuration package as the Setup Assistant writes it."""
+    """Create a configuration package in the form of the Setup Assistant."""
     folder = "src/arm_moveit_config"
     for name in ("arm_moveit_config", "arm_description"):
         write(f"src/{name}/package.xml", f"<package format='3'><name>{name}</name><version>1.0.0</version></package>")

@@ -1,4 +1,4 @@
-"""The launch files of nav2_bringup, slam_toolbox and nav2_map_server that stand in for those that are not installed."""
+"""The substitutes for the launch files of nav2_bringup, slam_toolbox and nav2_map_server."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ from launch_ros.actions import Node
 
 from linkwright.graph import Graph
 from linkwright.launch.frontend.include import IncludeLaunchDescription
-from linkwright.launch.ros.left_out import remove_skipped_nodes
+from linkwright.launch.ros.skipped_nodes import remove_skipped_nodes
 from linkwright.messages import get_message, get_service
 from linkwright.navigation.substitutes.servers import Server
 from linkwright.nodes import EXECUTABLES, NodeOptions
@@ -244,7 +244,7 @@ async def test_no_manager_waits_for_what_a_launch_file_of_a_user_starts_and_is_n
 def test_no_composed_manager_waits_for_it_either() -> None:
     messages: list[str] = []
     log = SimpleNamespace(write_warning=lambda _name, text: messages.append(text))
-    context = SimpleNamespace(session=SimpleNamespace(left_out={"docking_server"}, log=log))
+    context = SimpleNamespace(session=SimpleNamespace(skipped_nodes={"docking_server"}, log=log))
     request = get_service("composition_interfaces/srv/LoadNode").Request(package_name="nav2_lifecycle_manager")
     parameter = get_message("rcl_interfaces/msg/Parameter")(name="node_names")
     parameter.value.string_array_value = ["bt_navigator", "docking_server"]

@@ -1,4 +1,4 @@
-"""Two programs on one machine: views do not know of each other, and launches that share names say so."""
+"""Two programs on one machine: views are independent, and launches report shared names."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ SHARED = "another launch or program on ROS_DOMAIN_ID"
 
 @pytest.fixture(autouse=True)
 def domain(monkeypatch: pytest.MonkeyPatch, _surroundings: None) -> int:
-    """Nodes join the domain of this process."""
+    """Let nodes join the domain of this process."""
     monkeypatch.delenv("LINKWRIGHT_DDS")
     return own_domain()
 
@@ -39,7 +39,7 @@ def is_on_network(running: Running) -> bool:
 
 
 class Page:
-    """What a page of a launch was last told, by the type of the message."""
+    """The last messages that a page of a launch received, by type."""
 
     def __init__(self) -> None:
         self.told: dict[str, dict] = {}

@@ -1,4 +1,4 @@
-"""The host of nodes asks them by protocols, so that nodes of other packages have what ours have."""
+"""The protocols through which the host of nodes supports nodes of other packages."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ INCOMPLETE = (
 
 
 class Boat(SingleNode):
-    """A node that is not ours."""
+    """A third-party node."""
 
     DEFAULT_NAME = "boat"
     description_parameter = "plan"

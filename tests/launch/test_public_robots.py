@@ -1,4 +1,4 @@
-"""Constructs that launch files of public robots rely on, beyond what launch and launch_ros document."""
+"""Constructs in the launch files of public robots that launch and launch_ros do not document."""
 
 from __future__ import annotations
 
@@ -46,7 +46,7 @@ def file(write: Any) -> Any:
 
 @pytest.fixture
 def messages(launch: Any, tmp_path: Path) -> Any:
-    """What a launch file's LogInfo actions say."""
+    """Return the messages of the LogInfo actions in a launch file."""
 
     async def run(path: Path, **configurations: str) -> list[str]:
         finder = PackageFinder(start=tmp_path, environment={})

@@ -1,4 +1,4 @@
-"""Launch files written in the ways of public robots: they load, and say what is wrong where something is."""
+"""Launch files in the styles of public robots: they load, and errors are reported."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Launch files that never end, end themselves or are nested without measure: one clear error, at the user's line."""
+"""Launch files that are endless, recursive or deeply nested: one error with the location."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Launch files that start Gazebo, as users write them: our packages stand in for those that are not installed."""
+"""Launch files that start Gazebo, with Linkwright's substitutes for missing packages."""
 
 from __future__ import annotations
 
@@ -30,7 +30,7 @@ WORLD = GAZEBO_PACKAGE / "worlds" / "playground.world"
 
 
 class Server(SingleNode):
-    """Stands in for the simulation: ends as soon as one entity was spawned, or at once."""
+    """A substitute for the simulation that ends when one entity was spawned, or immediately."""
 
     DEFAULT_NAME = "gazebo"
 

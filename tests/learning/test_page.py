@@ -161,7 +161,7 @@ async def test_wrong_requests_are_answered_with_the_reason(tmp_path):
 
 async def test_pages_elsewhere_are_refused(tmp_path, monkeypatch):
     refusal = "a course works only in pages on the machine where Linkwright runs"
-    monkeypatch.setattr("linkwright.page.server.is_from_here", lambda _: False)
+    monkeypatch.setattr("linkwright.page.server.is_local_connection", lambda _: False)
     async with classroom(tmp_path / "ws") as client:
         await client.send("take_solution")
         assert (await client.until("course_problem"))["message"] == refusal

@@ -1,4 +1,4 @@
-"""Rules tested by Markdown pages: a document, and what is to be said of it.
+"""Tests of rules from Markdown pages: a document, and the expected findings.
 
 A page begins with a comment that says whose findings it shows, ``<!-- rules: LW2 -->`` (all rules of those codes run,
 pedantic ones too). A case is:
@@ -42,11 +42,11 @@ class Case:
 
     @property
     def name(self) -> str:
-        """What the test is called."""
+        """The name of the test."""
         return f"{self.page}: {self.title}"
 
     def run(self, folder: Path) -> str:
-        """Write the files, check the first, and return what is said, in the form of the page."""
+        """Write the files, check the first, and return the findings in the form of the page."""
         for name, text in self.files.items():
             (folder / name).parent.mkdir(parents=True, exist_ok=True)
             (folder / name).write_text(text, encoding="utf-8")
@@ -56,7 +56,7 @@ class Case:
         return "".join(f"{line}\n" for each in wanted for line in _lines(each, folder, main))
 
     def fixed_text(self, folder: Path) -> str:
-        """The checked file, written by `run`, after all its fixes."""
+        """Return the checked file, written by `run`, after all its fixes."""
         main = folder / next(iter(self.files))
         settings = self._settings(main)
         fix_file(main, lambda _text: examine(main, settings=settings).diagnostics, unsafe=True)
@@ -69,7 +69,7 @@ class Case:
 
 
 def load_cases() -> list[Case]:
-    """The cases of all pages beside this file."""
+    """Return the cases of all pages in this folder."""
     return [case for page in sorted(FOLDER.glob("*.md")) for case in _cases(page)]
 
 

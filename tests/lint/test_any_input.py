@@ -1,4 +1,4 @@
-"""No rule, comment or setting makes the check stumble, whatever a description says."""
+"""No rule, comment or setting makes the check fail, whatever a description contains."""
 
 from __future__ import annotations
 
@@ -86,7 +86,7 @@ def test_any_text_around_a_comment(before, after):
 
 
 def chain(count: int, mimic: str = "", loose: str = "") -> str:
-    """Return a robot whose links hang on each other; `mimic` is the content of each joint."""
+    """Return a robot with a chain of links; `mimic` is the content of each joint."""
     parts = (
         f'<link name="l{i}"/><joint name="j{i}" type="continuous"><parent link="l{i - 1}"/><child link="l{i}"/>'
         f"{mimic.format(before=i - 1)}</joint>\n"

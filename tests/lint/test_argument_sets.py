@@ -1,4 +1,4 @@
-"""A description is checked with the values that its callers give, and each finding is told once."""
+"""Checks of a description with the values from its callers; each finding is reported once."""
 
 from __future__ import annotations
 
@@ -35,7 +35,7 @@ def generate_launch_description():
 
 @pytest.fixture
 def check(tmp_path, monkeypatch, capsys):
-    """Write files, check the folder, and return what is said: code, severity, file, message and notes."""
+    """Write files, check the folder, and return the code, severity, file, message and notes of each finding."""
     monkeypatch.chdir(tmp_path)
 
     def run(files, *words):
@@ -361,7 +361,7 @@ TURNED = """
 
 
 def given_kinds(inside, *kinds):
-    """A description with an argument, and a launch file that gives it values."""
+    """Write a description with an argument, and a launch file that sets its value."""
     robot = f'<robot {XACRO} name="a"><xacro:arg name="kind" default="{kinds[0]}"/>{inside}</robot>'
     launch = LAUNCH.format(kinds=", ".join(map(repr, kinds))).replace("'name': 'a', 'type'", "'kind'")
     return {"arm/urdf/arm.urdf.xacro": robot, "arm/launch/view.launch.py": launch}

@@ -1,4 +1,4 @@
-"""Settings from files: what they do, and what is said of mistakes in them, with the place."""
+"""Settings from files: their effects, and the errors in them with their locations."""
 
 from __future__ import annotations
 

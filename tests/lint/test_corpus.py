@@ -1,4 +1,4 @@
-"""Whole robots: no rule stumbles over them, and fine robots are left in peace."""
+"""Whole robots: no rule fails, and correct robots have no findings."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Every code has a page: of a rule its docstring, of others a section."""
+"""Every code has an explanation: the docstring of a rule, or a section of a page."""
 
 from __future__ import annotations
 

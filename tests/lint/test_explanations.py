@@ -1,4 +1,4 @@
-"""Values that a comment explains are told of as information."""
+"""Values that a comment explains are reported as information."""
 
 from __future__ import annotations
 

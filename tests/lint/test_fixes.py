@@ -1,4 +1,4 @@
-"""Fixes: what they change, what they leave alone, and that files are never left half written."""
+"""Fixes: the changed and unchanged parts, and files that are written completely or not at all."""
 
 from __future__ import annotations
 

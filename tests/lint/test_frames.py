@@ -1,4 +1,4 @@
-"""Frames at rest in plain floats agree with the kinematics room."""
+"""The frames of a robot at rest, compared with the kinematics room."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""The registry, the engine, and what all rules have in common."""
+"""The registry, the engine, and the common properties of all rules."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Findings that are informations where what they tell may be meant; each beside one that is a warning."""
+"""Findings that are information if the author may intend them, compared with warnings."""
 
 from __future__ import annotations
 
@@ -27,7 +27,7 @@ PLUGIN = """<gazebo><plugin name="drive" filename="libgazebo_ros_diff_drive.so">
 
 @pytest.fixture
 def severity_of(tmp_path):
-    """The severity of the one finding of a rule in a robot that has a link ``base`` and what is given."""
+    """Return the severity of a rule's only finding about a robot with a link ``base`` and other elements."""
 
     def check(code, inside):
         (tmp_path / "r.urdf").write_text(f'<robot name="r"><link name="base"/>{inside}</robot>')

@@ -1,4 +1,4 @@
-"""What rules leave alone because nobody would mend it; each beside what they do tell of."""
+"""Cases that rules ignore on purpose, compared with cases that they report."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ BOX = '<visual><geometry><box size="{0} {0} {0}"/></geometry></visual>'
 
 @pytest.fixture
 def codes_of(tmp_path):
-    """The codes of what is said of a robot's text, with more files beside it."""
+    """Return the codes of the findings about the text of a robot, with other files beside it."""
 
     def check(text, *selectors, name="r.urdf", **files):
         for file, content in files.items():

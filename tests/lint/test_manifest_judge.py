@@ -1,4 +1,4 @@
-"""A manifest has an error where catkin_pkg, through which colcon reads it, refuses it, and nowhere else."""
+"""A manifest has an error exactly if catkin_pkg, which colcon uses, refuses it."""
 
 from __future__ import annotations
 

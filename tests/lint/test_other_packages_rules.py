@@ -1,4 +1,4 @@
-"""Rules that other packages bring."""
+"""Rules from other packages."""
 
 from __future__ import annotations
 
@@ -34,7 +34,7 @@ class Nameless(Rule):
 
 @pytest.fixture
 def installed(tmp_path, monkeypatch):
-    """Installs a package with the given rules."""
+    """Install a package with the given rules."""
 
     def install(text: str) -> None:
         (tmp_path / "team_rules.py").write_text(text)

@@ -1,4 +1,4 @@
-"""Fixes of package.xml, setup.py and CMakeLists.txt: the finding disappears, and the file keeps its form."""
+"""Fixes of package.xml, setup.py and CMakeLists.txt: the finding disappears, and the format remains."""
 
 from __future__ import annotations
 
@@ -29,7 +29,7 @@ def generate_launch_description():
 
 
 def fixed(folder: Path, build_file: str, text: str, *, selected: tuple[str, ...] = ("LW822", "LW826")) -> str:
-    """Return the text of a build file after all safe fixes of the package, and check that nothing is found then."""
+    """Return a build file after all safe fixes of the package, and check that no finding remains."""
     build_type = "ament_python" if build_file == "setup.py" else "ament_cmake"
     files = {
         "package.xml": MANIFEST.format(build_type=build_type),

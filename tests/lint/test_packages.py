@@ -1,4 +1,4 @@
-"""Whole packages: fixes outside descriptions, real robots, and robustness of the package rules."""
+"""Whole packages: fixes outside descriptions, real robots, and robust package rules."""
 
 from __future__ import annotations
 
@@ -75,7 +75,7 @@ def test_the_shipped_package_is_silent():
 
 
 def with_slips(folder: Path) -> Path:
-    """A copy of the shipped package with the slips of the tutorial's."""
+    """Return a copy of the shipped package with the mistakes of the tutorial."""
     package = without_meshes(PACKAGE, folder)
     (package / "setup.py").write_text(_SETUP)
     manifest = package / "package.xml"

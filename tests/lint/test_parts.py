@@ -1,4 +1,4 @@
-"""What rules find in a description of which some parts cannot be expanded."""
+"""Findings about a description that can only be expanded in part."""
 
 from __future__ import annotations
 

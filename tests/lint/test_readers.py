@@ -1,4 +1,4 @@
-"""What is read from Python, CMake and xacro texts without running them."""
+"""The contents of Python, CMake and xacro files, read without running them."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Findings of several rooms or rules about one thing are told once."""
+"""Findings of several rooms or rules with the same cause are reported once."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""The cases of the pages beside this file: every finding with its place, message, notes, hint and fix."""
+"""The cases of the pages in this folder: findings with location, message, notes, hint and fix."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""The rules about masses, shapes, meshes and materials on whole robots: real ones, and ones with extreme numbers."""
+"""The rules about masses, shapes, meshes and materials, with real robots and extreme numbers."""
 
 from __future__ import annotations
 

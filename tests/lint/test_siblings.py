@@ -1,4 +1,4 @@
-"""What refers to a name that is not there never gets the name of another thing: not as a fix, not as a hint."""
+"""Fixes and hints for unknown names never suggest the name of another thing."""
 
 from __future__ import annotations
 

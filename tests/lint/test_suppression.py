@@ -1,4 +1,4 @@
-"""Suppressing comments: where they hold, in XML and in other files."""
+"""Suppression comments and their scope, in XML and in other files."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What is doubtful in worlds that can be read."""
+"""Findings about valid worlds."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ GOOD = "<inertial><mass>1</mass><inertia><ixx>1</ixx><iyy>1</iyy><izz>1</izz></i
 
 @pytest.fixture
 def findings_of(tmp_path, monkeypatch):
-    """Code, line, place and message of what is said of models in a world."""
+    """Return the code, line, location and message of the findings about models in a world."""
     monkeypatch.setenv("HOME", str(tmp_path))
 
     def check(inside):

@@ -1,4 +1,4 @@
-"""Patterns of `linkwright.loading.deferred`, beside those that are compiled at once."""
+"""Patterns of `linkwright.loading.deferred`, compared with patterns that are compiled immediately."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""The order of what packages bring."""
+"""The order of the extensions of packages."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ from linkwright.loading import extensions
 
 @pytest.fixture
 def installed(tmp_path: Path, monkeypatch: pytest.MonkeyPatch):
-    """Install packages with entry points of one group, written in the order given."""
+    """Install packages with entry points of one group, in the given order."""
 
     def install(**packages: list[str]) -> None:
         for name, lines in packages.items():

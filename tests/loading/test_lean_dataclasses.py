@@ -1,4 +1,4 @@
-"""Classes of `linkwright.loading.lean_dataclasses`, beside the same ones of `dataclasses`."""
+"""Classes of `linkwright.loading.lean_dataclasses`, compared with those of `dataclasses`."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ KINDS = [{"frozen": frozen, "slots": slots, "eq": eq} for frozen in (0, 1) for s
 
 
 def classes(library: Any, options: dict[str, int]) -> dict[str, Any]:
-    """The same classes, made by one of both libraries."""
+    """Return equal classes from one of the two libraries."""
     dataclass, field = library.dataclass, library.field
     options = {name: bool(value) for name, value in options.items()}
 
@@ -58,7 +58,7 @@ def classes(library: Any, options: dict[str, int]) -> dict[str, Any]:
 
 
 def answers(library: Any, options: dict[str, int]) -> list[object]:
-    """What objects of the classes say and do."""
+    """Return the results of operations on objects of the classes."""
     made = classes(library, options)
     point, path, named, nothing = made["Point"], made["Path"], made["Named"], made["Nothing"]
     objects = [point(1), point(1.0, y=2), point(3, 4), path(), path([point(1)], place="here"), named(1, 2, "tip")]
@@ -88,7 +88,7 @@ def answers(library: Any, options: dict[str, int]) -> list[object]:
 
 
 def outcome(call: Any) -> Any:
-    """What a call returns, or its exception."""
+    """Return the result of a call, or its exception."""
     try:
         return call()
     except (AttributeError, TypeError, ValueError) as error:
@@ -102,7 +102,7 @@ def test_classes_behave_as_those_of_the_standard_library(options):
 
 @lean_dataclasses.dataclass(frozen=True, slots=True)
 class Kept:
-    """One that can be found by its name."""
+    """A class that can be found by its name."""
 
     x: int
     others: tuple[int, ...] = ()
@@ -133,7 +133,7 @@ def test_a_dataclass_may_derive_from_a_lean_one():
 
 
 class Leaned(lean_dataclasses.NamedTuple):
-    """One of ours."""
+    """A class from `lean_dataclasses`."""
 
     x: int
     others: tuple[int, ...] = ()

@@ -1,4 +1,4 @@
-"""Names of `linkwright.loading.lean_typing`, beside those of `typing`: their use while a module is loaded."""
+"""Names of `linkwright.loading.lean_typing`, compared with those of `typing`."""
 
 from __future__ import annotations
 

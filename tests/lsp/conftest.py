@@ -1,4 +1,4 @@
-"""An editor's side of the connection, and a package to work on."""
+"""The client of an editor, and a package to edit."""
 
 from __future__ import annotations
 
@@ -78,7 +78,7 @@ class Editor:
         return types.TextDocumentIdentifier(self.uri(name))
 
     def open(self, name: str, text: str | None = None, language: str = "xml") -> None:
-        """Open a file, with its text on the disk or another one."""
+        """Open a file with its text from the disk or another text."""
         uri = self.uri(name)
         self._versions[uri] = 1
         content = (self.folder / name).read_text(encoding="utf-8") if text is None else text

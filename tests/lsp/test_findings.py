@@ -1,4 +1,4 @@
-"""Findings as somebody types: those of a check, in the files that are open and in those that they include."""
+"""Findings of a check during typing, in open files and in included ones."""
 
 from __future__ import annotations
 

@@ -19,7 +19,7 @@ PYTHON = """def generate_launch_description():
 
 
 def opened(editor, name: str, text: str) -> types.TextDocumentPositionParams:
-    """Open a text, and return the place of its cursor."""
+    """Open a text, and return the position of its cursor."""
     before = text[: text.index("█")]
     editor.open(name, text.replace("█", ""))
     at = types.Position(before.count("\n"), len(before) - before.rfind("\n") - 1)

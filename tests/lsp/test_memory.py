@@ -1,4 +1,4 @@
-"""The memory of a server that works for a long time; ``benchmarks/soak_editor.py`` does this for an hour."""
+"""The memory of a server over a long time; ``benchmarks/soak_editor.py`` does this for an hour."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ FILE = "urdf/arm.urdf.xacro"
 
 
 async def typed(editor, first: int, last: int) -> None:
-    """Call macros that do not exist, one name after the other."""
+    """Type calls of macros that do not exist, one name after the other."""
     for number in range(first, last):
         editor.change(FILE, MAIN.replace("xacro:bar", f"xacro:bar{number}") + f"<!-- {number} -->\n" * 200)
         if number % 5 == 0:

@@ -12,7 +12,7 @@ CURSOR = "█"
 
 
 async def complete(editor, text: str, name: str = FILE) -> list[str]:
-    """Return the labels that are offered at the cursor."""
+    """Return the labels of the completions at the cursor."""
     before = text[: text.index(CURSOR)]
     editor.open(name, text.replace(CURSOR, ""))
     at = types.Position(before.count("\n"), len(before) - before.rfind("\n") - 1)

@@ -1,4 +1,4 @@
-"""The page of a robot beside the text: it follows the unsaved texts and the cursor, and leads to the source."""
+"""The page of a robot: it follows the unsaved texts and the cursor, and opens the source."""
 
 from __future__ import annotations
 

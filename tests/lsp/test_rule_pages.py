@@ -1,4 +1,4 @@
-"""The page behind the code of a finding, and the hover over a code in a suppression comment."""
+"""The page for the code of a finding, and the hover over a code in a suppression comment."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What a package installs, as read from its CMakeLists.txt."""
+"""The installed files of a package, as read from its CMakeLists.txt."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ def rules(text: str, package: Path | None = None) -> CMakeFile:
 
 
 def copied(text: str, package: Path) -> dict[str, str]:
-    """Source -> destination of all files that are copied; nothing else may be left open."""
+    """Return the source and destination of all copied files; nothing may be unknown."""
     found = rules(text, package)
     assert found.is_complete, found.unknown
     return {file.source: file.destination for file in found.installed(package)}

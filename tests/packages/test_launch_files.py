@@ -1,4 +1,4 @@
-"""Which files of a package are launch files; what `linkwright launch` finds is what TAB completes."""
+"""The launch files of a package, for `linkwright launch` and for completion."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Python modules of the packages of a workspace."""
+"""The Python modules of the packages in a workspace."""
 
 from __future__ import annotations
 

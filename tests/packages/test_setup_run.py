@@ -1,4 +1,4 @@
-"""What a setup.py installs that puts its data files together with loops and functions."""
+"""The installed files of a setup.py with loops and functions."""
 
 from __future__ import annotations
 
@@ -162,7 +162,7 @@ def read(text: str, package: Path) -> set[tuple[str, str]]:
 
 
 def run_by_python(text: str, package: Path, monkeypatch: pytest.MonkeyPatch) -> set[tuple[str, str]]:
-    """What setuptools is given when Python runs the file."""
+    """Return the arguments of setuptools when Python runs the file."""
     given: list[Any] = []
     setuptools, somewhere = ModuleType("setuptools"), ModuleType("somewhere")
     vars(setuptools)["setup"] = lambda **arguments: given.extend(arguments["data_files"])

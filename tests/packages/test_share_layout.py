@@ -1,4 +1,4 @@
-"""Packages that are not built and install their files elsewhere than they lie."""
+"""Packages that are not built, and that install files to other folders."""
 
 from __future__ import annotations
 
@@ -189,7 +189,7 @@ def test_a_new_file_is_there_at_the_next_question_and_old_layouts_go(moved: Path
     (moved / "bringup" / "config" / "more.yaml").write_text("")
     month_ago = time.time() - 30 * 86400
     os.utime(before.parent, (month_ago, month_ago))
-    finder.forget()
+    finder.clear_cache()
     after = finder.share("arm")
     assert (after / "config" / "more.yaml").is_file()
     assert not before.exists()

@@ -1,4 +1,4 @@
-"""Files that pages ask for: each is fetched once, from an address that nobody can guess."""
+"""Files that pages request: each is fetched once, from a secret address."""
 
 from __future__ import annotations
 

@@ -36,7 +36,7 @@ def index(tmp_path, robot):
 
 
 def ask(index: MeshIndex, url: str) -> Path:
-    """What the server would read for an address."""
+    """Return what the server reads for an address."""
     folders = MeshFolders()
     folders.replace("display-1", index.folders)
     _, _, key, relative = url.partition("?")[0].split("/", 3)

@@ -1,4 +1,4 @@
-"""aiohttp's server is loaded without its client, which is there for whoever asks."""
+"""The server of aiohttp is loaded without the client, which is loaded on demand."""
 
 from __future__ import annotations
 

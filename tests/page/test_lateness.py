@@ -1,4 +1,4 @@
-"""How late the program is, told apart from a slow line."""
+"""The lateness of the program, distinguished from a slow connection."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ from linkwright.page.audience import LoopLag
 
 
 class Loop:
-    """An event loop that runs its one timer when it is told to."""
+    """An event loop that runs its only timer on request."""
 
     def __init__(self) -> None:
         self.now = 0.0

@@ -1,4 +1,4 @@
-"""Whatever a page sends, as long as it is of the protocol, the viewer goes on and the configuration can be saved."""
+"""After any valid message of a page, the viewer continues, and the configuration can be saved."""
 
 from __future__ import annotations
 
@@ -33,7 +33,7 @@ MESSAGES += [SetProperty] * 30
 
 
 def anything(kind: Any, name: str, chance: random.Random) -> Any:
-    """A value as JSON has it that a field of the protocol may hold."""
+    """Generate a JSON value that a field of the protocol may contain."""
     origin, arguments = typing.get_origin(kind), typing.get_args(kind)
     if isinstance(kind, type) and issubclass(kind, msgspec.Struct):
         hints = typing.get_type_hints(kind)

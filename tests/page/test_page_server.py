@@ -1,4 +1,4 @@
-"""The server gives out the page before there is a viewer, and lets pages in when there is one."""
+"""The server delivers the page before the viewer exists, and connects pages afterwards."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ from tests.viewer.scene import World
 
 @asynccontextmanager
 async def opened() -> AsyncIterator[tuple[PageServer, aiohttp.ClientSession]]:
-    """A server that gives out the page, and a browser."""
+    """Start a server that delivers the page, and return it with a browser."""
     server = PageServer("127.0.0.1", 0)
     await server.open()
     try:

@@ -1,4 +1,4 @@
-"""The user at the other end of a connection, as the tables of Linux tell it."""
+"""The user at the other end of a connection, according to the tables of Linux."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ from typing import Any
 import pytest
 
 from linkwright.page import peers
-from linkwright.page.access import is_from_here
+from linkwright.page.access import is_local_connection
 from linkwright.page.peers import may_be_own_user
 from tests.waiting import SECONDS
 
@@ -32,7 +32,7 @@ sys.stdin.read()
 
 
 class Connection(Transport):
-    """What asyncio tells of an accepted connection."""
+    """The properties of an accepted connection in asyncio."""
 
     def __init__(self, peer: Any, own: Any) -> None:
         super().__init__({"peername": peer, "sockname": own})
@@ -58,7 +58,7 @@ def listen(host: str) -> socket.socket:
 def connected(
     listening: str = "127.0.0.1", connecting: str = "127.0.0.1"
 ) -> Iterator[tuple[socket.socket, Connection]]:
-    """A socket of this process that is connected to a server in it."""
+    """Return a socket of this process that is connected to a server in this process."""
     family = socket.AF_INET6 if ":" in connecting else socket.AF_INET
     with listen(listening) as listener, socket.socket(family) as theirs:
         theirs.connect((connecting, listener.getsockname()[1]))
@@ -70,7 +70,7 @@ def connected(
 @pytest.mark.parametrize(("listening", "connecting"), FAMILIES)
 def test_a_program_of_the_same_user_is_accepted(listening: str, connecting: str) -> None:
     with connected(listening, connecting) as (_, connection):
-        assert is_from_here(connection)
+        assert is_local_connection(connection)
         assert may_be_own_user(connection)
 
 
@@ -80,7 +80,7 @@ def test_another_user_is_refused(monkeypatch: pytest.MonkeyPatch, listening: str
     with connected(listening, connecting) as (_, connection):
         monkeypatch.setattr(os, "geteuid", lambda: NOBODY - 1)
         monkeypatch.setattr(peers, "_ROOT", None)
-        assert is_from_here(connection)
+        assert is_local_connection(connection)
         assert not may_be_own_user(connection)
 
 
@@ -134,12 +134,12 @@ def test_where_the_system_lists_no_sockets_every_user_of_this_machine_is_accepte
 
 @pytest.mark.parametrize("transport", [None, Connection(None, None), Connection(("127.0.0.1", 1), None)])
 def test_a_connection_that_was_lost_is_refused(transport: Connection | None) -> None:
-    assert not is_from_here(transport)
+    assert not is_local_connection(transport)
     assert not may_be_own_user(transport)
 
 
 @pytest.mark.parametrize(
-    ("peer", "own", "is_here"),
+    ("peer", "own", "is_local"),
     [
         (("127.0.0.2", 1), ("127.0.0.1", 2), True),
         (("192.0.2.1", 1), ("192.0.2.1", 2), True),
@@ -149,5 +149,5 @@ def test_a_connection_that_was_lost_is_refused(transport: Connection | None) -> 
         (("fe80::1%eth0", 1, 0, 2), ("fe80::2%eth0", 2, 0, 2), False),
     ],
 )
-def test_loopback_and_own_addresses_are_this_machine(peer: Any, own: Any, is_here: bool) -> None:
-    assert is_from_here(Connection(peer, own)) is is_here
+def test_loopback_and_own_addresses_are_this_machine(peer: Any, own: Any, is_local: bool) -> None:
+    assert is_local_connection(Connection(peer, own)) is is_local

@@ -1,4 +1,4 @@
-"""The token of a port stays for the user's next program there, and for nobody else."""
+"""The token of a port is kept for the next program of the same user only."""
 
 from __future__ import annotations
 

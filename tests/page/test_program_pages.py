@@ -1,4 +1,4 @@
-"""Programs in terminals of a page let it show their pages in frames, and nobody else may."""
+"""Programs in the terminals of a page, and only they, can show their pages in frames."""
 
 from __future__ import annotations
 
@@ -25,7 +25,7 @@ FRAMES = "frame-src http://127.0.0.1:* http://localhost:*"
 
 @asynccontextmanager
 async def classroom(folder: Path, command: tuple[str, ...] = ("/bin/sh", "-i")) -> AsyncIterator[World]:
-    """A viewer whose page has terminals."""
+    """Start a viewer whose page has terminals."""
     made = World(server=PageServer("127.0.0.1", 0, only_loopback=True))
     await made.viewer.start()
     server = made.viewer._server
@@ -39,7 +39,7 @@ async def classroom(folder: Path, command: tuple[str, ...] = ("/bin/sh", "-i")) 
 
 @asynccontextmanager
 async def program() -> AsyncIterator[PageServer]:
-    """The server of a program that would open its page in the browser."""
+    """Start the server of a program that would open its page in the browser."""
     server = PageServer("127.0.0.1", 0)
     await server.open()
     try:

@@ -1,4 +1,4 @@
-"""The server against requests that no page of ours would send."""
+"""Requests to the server that Linkwright's page never sends."""
 
 from __future__ import annotations
 
@@ -49,7 +49,7 @@ async def served(robot):
 
 
 async def raw(viewer, target: str, *, host: str | None = None, method: str = "GET", token: bool = True, **headers):
-    """Status and body of a request whose target is sent exactly as it is."""
+    """Return the status and body for a request whose target is sent unchanged."""
     address = urlsplit(viewer.url)
     if token:
         target += ("&" if "?" in target else "?") + address.query
@@ -286,7 +286,7 @@ async def test_more_pages_than_allowed_are_refused(served):
 
 
 def memory() -> int:
-    """Resident bytes of this process."""
+    """Return the resident memory of this process in bytes."""
     return psutil.Process().memory_info().rss
 
 
@@ -298,7 +298,7 @@ async def knock(viewer, said: bytes = b"") -> asyncio.StreamWriter:
 
 
 async def is_served(client) -> None:
-    """The page that is there gets its answers."""
+    """Check that the open page still receives answers."""
     wanted = "tip" if client.messages and "base" in str(client.messages[-1]) else "base"
     await client.set("global/Fixed Frame", wanted)
     await client.until("property_changed", id="global/Fixed Frame", value=wanted)

@@ -1,4 +1,4 @@
-"""Pages behind slow lines: the robot keeps moving, the rest gets thin."""
+"""Pages with slow connections: robots keep moving, and other messages are sent less often."""
 
 from __future__ import annotations
 
@@ -58,7 +58,7 @@ def image(width: int, height: int):
 
 
 class Watcher:
-    """A page that notes when what arrives."""
+    """A page that records the time of each message."""
 
     def __init__(self, socket, *, answers: bool, busy: float = 0.0) -> None:
         self.now = asyncio.get_running_loop().time
@@ -92,7 +92,7 @@ class Watcher:
                 self.contents.append((self.now(), unpack_content(frame).fields))
 
     def _whole(self, data: bytes) -> bytes:
-        """The frame that a message is, or that it completes as its last piece; empty while there is more to come."""
+        """Return the frame that a message contains or completes, or an empty one if pieces are missing."""
         kind, _, offset, length = struct.unpack_from("<IIII", data)
         if kind != PIECE_KIND:
             return data
@@ -121,7 +121,7 @@ async def watching(url: str, *, answers: bool = True, busy: float = 0.0):
 
 
 async def publish_all(w, seconds: float, *, rate: float = 50.0, points: int = 100_000) -> None:
-    """The robot moves at a rate, its x being the time of the loop; a cloud and an image come ten times a second."""
+    """Publish the robot's transform with x = time at a rate, and a cloud and an image ten times a second."""
     now = asyncio.get_running_loop().time
     node = w.graph.create_node("senses")
     clouds = node.create_publisher(get_message("sensor_msgs/msg/PointCloud2"), "/cloud", 1)
@@ -233,7 +233,7 @@ async def test_four_pages_lose_nothing_but_stale_frames():
 
 
 class Hand:
-    """A clock moved by hand."""
+    """A clock that the test sets."""
 
     def __init__(self) -> None:
         self.now = 100.0

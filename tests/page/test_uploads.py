@@ -1,4 +1,4 @@
-"""Recordings that pages give to the server: how they come, what is refused, and that nothing of them stays."""
+"""Recordings that pages upload: the transfer, refusals, and the removal of the files."""
 
 from __future__ import annotations
 
@@ -27,7 +27,7 @@ REFUSED = -1
 
 @pytest.fixture(autouse=True)
 def scratch(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
-    """Where what comes is put."""
+    """The folder for uploaded files."""
     folder = tmp_path / "scratch"
     folder.mkdir()
     monkeypatch.setenv("TMPDIR", str(folder))
@@ -37,13 +37,13 @@ def scratch(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
 
 @pytest.fixture(autouse=True)
 def little_patience(monkeypatch: pytest.MonkeyPatch) -> None:
-    """Even minutes that are skipped take seconds."""
+    """Shorten the time limits to seconds."""
     monkeypatch.setattr(uploads, "PATIENCE", SECONDS)
     monkeypatch.setattr(guests, "PATIENCE", SECONDS)
 
 
 class Sender:
-    """A page as far as it sends recordings."""
+    """A page that sends recordings."""
 
     def __init__(self, session: aiohttp.ClientSession, url: str) -> None:
         parts = urlsplit(url)
@@ -64,7 +64,7 @@ class Sender:
         return await self.ask("POST", "recordings", json={"name": name, "files": listed})
 
     async def send(self, name: str, files: dict[str, bytes]) -> tuple[int, dict[str, str]]:
-        """All of a recording; the last answer."""
+        """Send a whole recording, and return the last answer."""
         status, answer = await self.announce(name, {each: len(data) for each, data in files.items()})
         if status != 200:
             return status, answer
@@ -78,7 +78,8 @@ class Sender:
 @asynccontextmanager
 async def host() -> AsyncIterator[tuple[World, Sender]]:
     made = World()
-    made.viewer.guests = GuestRecordings(made.viewer)
+    guests = GuestRecordings(made.viewer)
+    made.viewer.make_guests = lambda: guests
     await made.viewer.start()
     try:
         async with aiohttp.ClientSession() as session:
@@ -90,14 +91,14 @@ async def host() -> AsyncIterator[tuple[World, Sender]]:
 
 @asynccontextmanager
 async def seen(sender: Sender, recording: str) -> AsyncIterator[Client]:
-    """A page that shows a recording."""
+    """Return a page that shows a recording."""
     address = f"{sender.base}/ws?token={sender.token}&recording={recording}"
     async with sender.session.ws_connect(address) as socket:
         yield Client(socket)
 
 
 async def answer_pings(client: Client) -> None:
-    """Read what comes, as an open page does."""
+    """Read incoming messages, as an open page does."""
     while True:
         await client.socket.receive()
 

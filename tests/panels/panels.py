@@ -1,4 +1,4 @@
-"""Parts of .rviz files that say which panels are open; for tests."""
+"""Parts of .rviz files with the visible panels; for tests."""
 
 from __future__ import annotations
 
@@ -33,7 +33,7 @@ Panels:
 
 
 def window_state(collapsed: tuple[str, ...] = (), hide_right: bool = False, **hidden: bool) -> str:
-    """``Window Geometry`` with a state as Qt writes it, in which docks are shown but for those with ``NAME=False``."""
+    """Return ``Window Geometry`` with a state from Qt; docks are visible except those with ``NAME=False``."""
     docks = {"Selection": True, "Tool Properties": True, "Displays": True, "Knobs": True, "Views": True} | hidden
     state = "000000ff00000000fd00000001000000000000013c0000025ffc02" + f"{len(docks) + 1:08x}"
     for name, shown in docks.items():

@@ -1,4 +1,4 @@
-"""Two descriptions in one scene: what pages are told, and where the old robot is."""
+"""Two descriptions in one scene: the messages to pages, and the position of the old robot."""
 
 from __future__ import annotations
 
@@ -84,7 +84,7 @@ class Compared:
         self.joint_states.publish(message)
 
     def pose(self, frame: str) -> np.ndarray | None:
-        """Where a frame is in `base`: x y z qx qy qz qw."""
+        """Return the pose of a frame in `base`: x y z qx qy qz qw."""
         names, poses = self.made.viewer.manager.opening_state()[1].names, None
         if frame in names:
             from linkwright.page.protocol.message import unpack_transforms

@@ -1,4 +1,4 @@
-"""Configurations as pages open and save them."""
+"""Opening and saving configurations from pages."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What pages are told of the description behind a robot."""
+"""The details of a robot's description for pages."""
 
 from __future__ import annotations
 
@@ -71,7 +71,7 @@ async def ask(client, kind: str, answer: str, **fields) -> dict:
 
 
 def lines(text: str, written: dict) -> str:
-    """The text of a place, which begins and ends where it says."""
+    """Return the text of a range."""
     rows = text.splitlines(keepends=True)[written["line"] - 1 : written["end_line"]]
     rows[-1] = rows[-1][: written["end_column"] - 1]
     rows[0] = rows[0][written["column"] - 1 :]
@@ -174,12 +174,12 @@ async def test_a_page_that_opens_is_told_that_there_is_a_description():
         async with page(scene.viewer) as client:
             message = await client.until("description_changed", display=DISPLAY)
             assert (message["links"], message["joints"]) == ([], [])
-            account = await ask(client, "ask_description", "description", display=DISPLAY)
-    assert account["revision"] == message["revision"]
+            details = await ask(client, "ask_description", "description", display=DISPLAY)
+    assert details["revision"] == message["revision"]
     # Nobody knows of files: there is the text alone.
-    assert account["files"] == []
-    assert account["links"][0]["written"]["origin"] is None
-    assert account["links"][0]["written"]["expanded"]["line"] == 2
+    assert details["files"] == []
+    assert details["links"][0]["written"]["origin"] is None
+    assert details["links"][0]["written"]["expanded"]["line"] == 2
 
 
 async def test_the_text_that_is_wrong_is_told_and_not_the_one_of_the_robot_that_stands(files):
@@ -228,8 +228,8 @@ async def test_a_page_with_displays_of_its_own_hears_of_those_only(files):
             mine = await alone.until("description_changed")
             assert mine["display"] != answer["display"]
             await alone.send("ask_description", display=answer["display"])  # which it does not see
-            account = await ask(alone, "ask_description", "description", display=mine["display"])
-            assert account["display"] == mine["display"]
+            details = await ask(alone, "ask_description", "description", display=mine["display"])
+            assert details["display"] == mine["display"]
             describe(scene, files)
             rest = await shared.drain()
     kinds = [

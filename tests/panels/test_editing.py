@@ -1,4 +1,4 @@
-"""Editing a robot in the page: what can be edited, previews, writing, undo."""
+"""Editing a robot in the page: editable values, previews, writing, undo."""
 
 from __future__ import annotations
 
@@ -200,9 +200,9 @@ async def test_a_page_of_another_machine_is_told_why_nothing_is_written(
 ) -> None:
     made = Page.__init__
 
-    def elsewhere(self: Page, *words: Any, is_here: bool = False, **named: Any) -> None:
-        assert is_here, "the page of the test is on this machine"
-        made(self, *words, is_here=False, **named)
+    def elsewhere(self: Page, *words: Any, is_local: bool = False, **named: Any) -> None:
+        assert is_local, "the page of the test is on this machine"
+        made(self, *words, is_local=False, **named)
 
     monkeypatch.setattr(Page, "__init__", elsewhere)
     async with world() as scene, page(scene.viewer) as client:

@@ -56,7 +56,7 @@ def bridge(published):
 
 
 async def until_published(graph, bridge):
-    """Wait until the bridge has told of a change."""
+    """Wait until the bridge reports a change."""
     await graph.settle()
     await eventually(lambda: bridge._send_timer is None)
 

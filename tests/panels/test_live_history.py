@@ -1,4 +1,4 @@
-"""The last minutes in a viewer: time stands still, goes back, and is the present again."""
+"""The last minutes in a viewer: pausing, going back, and returning to the present."""
 
 from __future__ import annotations
 
@@ -14,13 +14,13 @@ KEPT = 10_000_000
 
 
 def moved(made: World, x: float) -> int:
-    """Publish where the arm is; returns when that was, nanoseconds."""
+    """Publish the position of the arm, and return the time in nanoseconds."""
     made.move({("base", "tip"): (x, 0, 0, 0, 0, 0, 1)})
     return made.graph.timebase.now_ns()
 
 
 async def filled(made: World) -> list[float]:
-    """Publish five places of a frame, a second apart; the times between them, seconds."""
+    """Publish five positions of a frame, one each second, and return the times halfway between, in seconds."""
     between = []
     for x in range(5):
         moved(made, float(x))

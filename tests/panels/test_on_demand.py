@@ -1,4 +1,4 @@
-"""Features that are created on demand: their messages are declared by address, and defined by the first one."""
+"""Features that are created on demand, when the first of their messages arrives."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Which of RViz's panels a file shows, and how that is changed in it."""
+"""The visible panels of RViz in a file, and changes to them."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ def parsed(geometry: str = "", panels: str = RVIZ_PANELS) -> RvizConfig:
 
 
 def changes(config: RvizConfig, before: str) -> list[str]:
-    """The lines that are others than before, without those that only changed the window's state."""
+    """Return the changed lines, without those that only contain the state of the window."""
     lines = difflib.ndiff(before.splitlines(), config.text().splitlines())
     return [line for line in lines if line[0] in "+-" and "QMainWindow State" not in line]
 

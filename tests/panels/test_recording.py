@@ -1,4 +1,4 @@
-"""Recording from pages: what is in the files, what pages are told, and how it ends."""
+"""Recording from pages: the files, the messages to pages, and the end."""
 
 from __future__ import annotations
 
@@ -29,18 +29,18 @@ TF, STRING = "/tf", "std_msgs/msg/String"
 
 @pytest.fixture(autouse=True)
 def folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
-    """The working directory, where recordings go."""
+    """Return the working directory, to which recordings are written."""
     monkeypatch.chdir(tmp_path)
     return tmp_path
 
 
 def made_in(folder: Path) -> set[str]:
-    """The names of what is in a folder."""
+    """Return the names of the files in a folder."""
     return {path.name for path in folder.iterdir()}
 
 
 def mcap(recording: str) -> Path:
-    """The file of a recording."""
+    """Return the file of a recording."""
     (file,) = Path(recording).glob("*.mcap")
     return file
 
@@ -191,7 +191,7 @@ async def test_a_disk_that_refuses_ends_the_recording_and_keeps_what_was_written
 
 
 class Usage(NamedTuple):
-    """What `shutil.disk_usage` gives, bytes."""
+    """The result of `shutil.disk_usage` in bytes."""
 
     total: int
     used: int

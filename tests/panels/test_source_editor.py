@@ -1,4 +1,4 @@
-"""The editor of source files: what it reads and writes, and its language server."""
+"""The editor of source files: reading, writing, and the language server."""
 
 from __future__ import annotations
 
@@ -161,8 +161,8 @@ async def test_a_workspace_is_edited_without_a_description(tmp_path: Path) -> No
 
 
 async def test_a_page_elsewhere_edits_nothing(file: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(Page, "is_here", False, raising=False)
-    monkeypatch.setattr("linkwright.page.server.is_from_here", lambda _: False)
+    monkeypatch.setattr(Page, "is_local", False, raising=False)
+    monkeypatch.setattr("linkwright.page.server.is_local_connection", lambda _: False)
     async with world() as scene, page(scene.viewer) as client:
         answer = await opened(scene, client, file)
         assert "only in pages that are open on the machine" in answer["why_not"]

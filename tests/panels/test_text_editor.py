@@ -7,7 +7,7 @@ from pathlib import Path
 import pytest
 
 from linkwright.descriptions import examine
-from linkwright.panels.description_details import account
+from linkwright.panels.description_details import describe
 from linkwright.panels.text_editor import element_at
 
 ARM = """<robot name="arm" xmlns:xacro="http://www.ros.org/wiki/xacro">
@@ -42,6 +42,6 @@ def test_the_element_at_a_line(tmp_path: Path, line: int, element: tuple[str, st
     file.write_text(ARM)
     description = examine(file)
     assert description.robot is not None
-    details = account(description.robot, description.text, [], display="d", revision=1, prefix="")
+    details = describe(description.robot, description.text, [], display="d", revision=1, prefix="")
     assert element_at(details, file, line) == element
     assert element_at(details, tmp_path / "other.xacro", line) is None

@@ -45,7 +45,7 @@ def x_of(client, transforms, name: str) -> float:
 
 
 async def arrived(client, name: str, x: float) -> None:
-    """Wait until a frame is somewhere."""
+    """Wait until a frame has a position."""
     while True:
         transforms = await client.transforms()
         if transforms.poses.size and x_of(client, transforms, name) == x:

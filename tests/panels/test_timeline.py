@@ -1,4 +1,4 @@
-"""A recording in a viewer: what pages are told of it, and have it do."""
+"""A recording in a viewer: the messages to pages, and their requests."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ SECOND = 1_000_000_000
 
 
 def recorded(folder: Path) -> Path:
-    """Ten seconds: each second a point, and a frame whose x is the seconds since the start."""
+    """Record ten seconds: a point each second, and a frame with x = the seconds since the start."""
     pytest.importorskip("rosbags", reason="there is no wheel for Python 3.15")
     path = folder / "drive"
     with BagWriter(path) as writer:
@@ -37,7 +37,7 @@ def recorded(folder: Path) -> Path:
 
 @asynccontextmanager
 async def shown(folder: Path, **other: str) -> AsyncIterator[World]:
-    """A viewer that shows the recording, in the recording's time; words of its files are others of equal length."""
+    """Show the recording in a viewer, in the recording's time, optionally with words of its files replaced."""
     path = recorded(folder)
     for file in path.iterdir():
         for word, instead in other.items():

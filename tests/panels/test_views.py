@@ -45,7 +45,7 @@ def config_of(view: str) -> RvizConfig:
 
 
 def default_view(cls: str = ORBIT) -> View:
-    """A view as a page makes one of a class."""
+    """Return the default view of a class, as a page creates it."""
     return next(View(each.cls, CURRENT_NAME, each.defaults) for each in view_classes() if each.cls == cls)
 
 

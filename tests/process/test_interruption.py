@@ -1,4 +1,4 @@
-"""Ctrl-C that Python drops."""
+"""Ctrl-C in situations in which Python ignores it."""
 
 from __future__ import annotations
 

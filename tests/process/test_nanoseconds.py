@@ -1,4 +1,4 @@
-"""The number of nanoseconds in a second stands in one file."""
+"""The number of nanoseconds in a second is defined in one file only."""
 
 from __future__ import annotations
 

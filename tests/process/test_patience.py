@@ -1,4 +1,4 @@
-"""A clock that does not count the time in which processes wait for a processor."""
+"""A clock that excludes the time in which processes wait for a processor."""
 
 import os
 import subprocess

@@ -1,4 +1,4 @@
-"""A small language of garden sheds, read, written and described by its rules."""
+"""An example language for garden sheds, read, written and described by its rules."""
 
 from __future__ import annotations
 
@@ -92,7 +92,7 @@ SHED = ElementRule(
 
 
 class Told:
-    """A report that keeps a word for each finding."""
+    """A report that stores a word for each finding."""
 
     def __init__(self):
         self.words: list[str] = []

@@ -1,4 +1,4 @@
-"""Findings as ``mistakes.md`` writes them."""
+"""Findings in the notation of ``mistakes.md``."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from tests.urdf.mistakes import lines_of
 
 
 def describe(text: str) -> str:
-    """What is said of a world, one line for each fact; it stands in an empty folder, and nothing else is installed."""
+    """Return the findings about a world in an empty folder, with one line for each fact."""
     with tempfile.TemporaryDirectory() as folder:
         path = Path(folder, "w.world")
         path.write_text(text, encoding="utf-8")

@@ -1,4 +1,4 @@
-"""Any worlds and models, made from the types of the fields of their classes."""
+"""Generated worlds and models, from the types of the fields of their classes."""
 
 from __future__ import annotations
 
@@ -31,7 +31,7 @@ _SPECULAR = ("specular_map", "glossiness_map", "glossiness")
 
 @st.composite
 def poses(draw) -> Pose:
-    """Poses by angles or a quaternion."""
+    """Generate poses with angles or a quaternion."""
     xyz = draw(st.tuples(NUMBERS, NUMBERS, NUMBERS))
     if draw(st.booleans()):
         return Pose(xyz, draw(st.tuples(NUMBERS, NUMBERS, NUMBERS)))
@@ -64,7 +64,7 @@ def _hints(kind: type) -> dict[str, Any]:
 
 
 def of(kind: type, name: str) -> SearchStrategy[Any]:
-    """The values of a field; what it usually is comes often."""
+    """Generate the values of a field; usual values are frequent."""
     if (kind, name) in _SPECIAL:
         return _SPECIAL[kind, name]
     hint = _hints(kind)[name]
@@ -91,7 +91,7 @@ def _values(hint: Any) -> SearchStrategy[Any]:
 
 
 def objects(kind: type) -> SearchStrategy[Any]:
-    """Any objects of a class."""
+    """Generate objects of a class."""
     if kind is Pose:
         return poses()
     if kind is Pbr:

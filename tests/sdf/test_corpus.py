@@ -1,4 +1,4 @@
-"""Real worlds, where they are there: what is in them and where it stands, by the facts that were checked elsewhere."""
+"""Real worlds, if available: their contents and poses, compared with known facts."""
 
 from __future__ import annotations
 
@@ -51,7 +51,7 @@ def examined(item):
 
 
 def _is_ours(known) -> bool:
-    """Whether it is a model of Fuel in whose place stands ours, which has another name."""
+    """Return whether a model of Fuel was replaced by one of Linkwright with another name."""
     return known.get("include", "").lower().endswith(("/ground plane", "/sun"))
 
 

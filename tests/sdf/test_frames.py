@@ -1,4 +1,4 @@
-"""Where frames stand: worked out by hand."""
+"""The poses of frames, compared with poses calculated by hand."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""A robot as gz takes it from its URDF."""
+"""The conversion of a robot from URDF, as in gz."""
 
 from __future__ import annotations
 
@@ -31,7 +31,7 @@ def robot_of(inside):
 
 
 def converted(inside, *, lump=False):
-    """The model of a robot with nothing wrong."""
+    """Return the model of a robot without errors."""
     conversion = model_from_robot(robot_of(inside), lump_fixed_joints=lump)
     assert conversion.diagnostics == ()
     return conversion.model
@@ -368,7 +368,7 @@ def test_a_chain_of_many_links():
 
 
 def _robots():
-    """Real robots that are beside the repository: name, file, arguments, packages, known facts."""
+    """Return real robots outside the repository: name, file, arguments, packages, known facts."""
     for folder, where in (("worlds", ""), ("corpus", "robots")):
         manifest = SHARED / folder / "manifest.json"
         if not manifest.is_file():

@@ -1,4 +1,4 @@
-"""Models of other files: where they are found, and what becomes of them."""
+"""Included models: the search for their files, and the resulting models."""
 
 from __future__ import annotations
 

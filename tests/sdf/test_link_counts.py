@@ -1,4 +1,4 @@
-"""Worlds of so many links that they are not read."""
+"""Worlds with too many links are refused."""
 
 import pytest
 

@@ -1,4 +1,4 @@
-"""What `linkwright check` prints of a world."""
+"""The list of a world that `linkwright check` prints."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Populations: how many models come of them, where they stand, what they are called."""
+"""Populations: the number, poses and names of their models."""
 
 from __future__ import annotations
 

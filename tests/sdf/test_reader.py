@@ -1,4 +1,4 @@
-"""What the reader makes of each part of SDF."""
+"""The reader of SDF, for each part of the format."""
 
 from __future__ import annotations
 
@@ -31,7 +31,7 @@ from tests.sdf.worlds import model, world
 
 
 def rules(rule: ElementRule, seen: dict[int, ElementRule]) -> dict[int, ElementRule]:
-    """All rules below one, each once."""
+    """Yield all rules below a rule, each once."""
     if id(rule) not in seen:
         seen[id(rule)] = rule
         for child in rule.children:

@@ -1,4 +1,4 @@
-"""Worlds as Gazebo classic saved them."""
+"""Worlds that Gazebo classic has saved."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Materials of scripts: Gazebo's own, and those of models."""
+"""Materials from scripts of Gazebo and of models."""
 
 from __future__ import annotations
 

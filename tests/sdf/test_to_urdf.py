@@ -1,4 +1,4 @@
-"""A model of SDF as the robot that ROS makes of a robot description in SDF."""
+"""The conversion of an SDF model to a robot, as in ROS."""
 
 from __future__ import annotations
 

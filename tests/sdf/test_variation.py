@@ -1,4 +1,4 @@
-"""Models with other masses, friction and noise."""
+"""Variation of masses, friction and noise."""
 
 from linkwright.sdf.variation import with_friction, with_mass, with_noise
 from tests.simulation.worlds import model

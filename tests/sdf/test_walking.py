@@ -1,4 +1,4 @@
-"""Where figures are while they walk."""
+"""The poses of walking figures."""
 
 from __future__ import annotations
 

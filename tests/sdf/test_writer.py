@@ -1,4 +1,4 @@
-"""Writing worlds and models: reading what was written gives what it was written from."""
+"""The writer of worlds and models: the reader returns the same objects."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""The shell: which programs are found, where real ones come first, statuses and signals."""
+"""The shell: found programs, precedence of real ones, exit statuses and signals."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ BARE = "/usr/bin:/bin"
 
 
 def script(folder: Path, name: str, text: str) -> Path:
-    """An executable shell script."""
+    """Write an executable shell script."""
     folder.mkdir(parents=True, exist_ok=True)
     path = folder / name
     path.write_text(f"#!/bin/sh\n{text}\n")
@@ -103,7 +103,7 @@ def test_a_program_of_ros_that_is_not_here_says_what_to_use() -> None:
 
 
 def in_bash(home: Path, lines: str) -> subprocess.CompletedProcess[str]:
-    """What is typed in the interactive shell of a user with this home."""
+    """Type lines in the interactive shell of a user with this home folder."""
     return subprocess.run(
         [sys.executable, "-m", "linkwright", "shell"],
         input=lines,
@@ -149,7 +149,7 @@ def test_our_folders_stand_once_on_the_path(tmp_path: Path, start: str) -> None:
 
 
 def in_shell(command: str, folder: Path) -> subprocess.Popen[str]:
-    """A command of sh in a shell of ours, in a session of its own, so that a Ctrl-C can be sent to both."""
+    """Run a command of sh in Linkwright's shell in its own session, so that both can receive Ctrl-C."""
     return subprocess.Popen(
         [sys.executable, "-m", "linkwright", "shell", "--", "sh", "-c", command],
         stdout=subprocess.PIPE,

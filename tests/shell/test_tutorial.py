@@ -1,4 +1,4 @@
-"""The tutorial as a learner types it, in the shell: create, build, source, launch, diagram."""
+"""The commands of the tutorial in the shell: create, build, source, launch, diagram."""
 
 from __future__ import annotations
 
@@ -51,7 +51,7 @@ def environment(home: Path) -> dict[str, str]:
 
 
 def typed(text: str, home: Path) -> str:
-    """What a learner's lines print on standard output."""
+    """Return the standard output of the lines that a learner types."""
     result = subprocess.run(
         shell_words(text), cwd=home, env=environment(home), capture_output=True, text=True, timeout=120, check=False
     )
@@ -79,7 +79,7 @@ def test_the_tutorial_word_for_word(home: Path) -> None:
 
 
 def launched(home: Path) -> str:
-    """What the launch says until its page was answered and Ctrl-C ended it."""
+    """Return the output of a launch until its page was loaded and Ctrl-C ended it."""
     process = subprocess.Popen(
         shell_words(LAUNCH),
         cwd=home,

@@ -1,4 +1,4 @@
-"""Findings as ``mistakes.md`` writes them."""
+"""Findings in the notation of ``mistakes.md``."""
 
 from __future__ import annotations
 
@@ -8,14 +8,14 @@ from linkwright.urdf.plaintext import parse_as_urdfdom
 
 
 def describe(text: str) -> str:
-    """What the reader says of a URDF text, one line for each fact."""
+    """Return the reader's findings about a URDF text, with one line for each fact."""
     reading = read(parse_as_urdfdom(text, "robot.urdf")[0])
     lines = [line for diagnostic in reading.diagnostics for line in lines_of(diagnostic)]
     return "\n".join([*lines, "robot: none" if reading.robot is None else "robot: kept"])
 
 
 def lines_of(diagnostic: Diagnostic) -> list[str]:
-    """One finding, one line for each fact."""
+    """Return one finding, with one line for each fact."""
     span, source = diagnostic.span, diagnostic.source
     assert span is not None
     assert source is not None

@@ -1,4 +1,4 @@
-"""Any tree of elements is read without a crash, and nothing is lost without a word."""
+"""Any tree of elements is read without a crash, and every loss is reported."""
 
 from __future__ import annotations
 
@@ -64,7 +64,7 @@ def elements(draw, rule: ElementRule, sloppy: bool) -> Element:
 
 @st.composite
 def robots(draw, sloppy: bool) -> Element:
-    """A robot whose joints make a tree of its links, or nearly."""
+    """Generate a robot whose joints form a tree of its links, or almost a tree."""
     root = draw(elements(ROBOT, sloppy))
 
     def sound() -> bool:

@@ -1,4 +1,4 @@
-"""Whole robots: urdfdom's verdict, urdf_to_graphviz's text, and back to URDF."""
+"""Whole robots: the verdict of urdfdom, the text of urdf_to_graphviz, and conversion to URDF."""
 
 from __future__ import annotations
 

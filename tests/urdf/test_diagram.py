@@ -1,4 +1,4 @@
-"""Pictures by Graphviz."""
+"""Pictures from Graphviz."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""The mistakes of `mistakes.md`: every message with its exact place, marked text, notes and hint."""
+"""The errors of `mistakes.md`: message, location, marked text, notes and hint."""
 
 from __future__ import annotations
 

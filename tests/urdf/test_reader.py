@@ -1,4 +1,4 @@
-"""What is read: defaults, urdfdom's rules for links, materials, axes and versions, and what is kept for others."""
+"""The reader: defaults, urdfdom's rules for links, materials, axes and versions, and other elements."""
 
 from __future__ import annotations
 
@@ -73,7 +73,7 @@ class TestDefaults:
 
 
 class TestLenience:
-    """urdfdom reads all of this without complaint."""
+    """Text that urdfdom reads without complaint."""
 
     @pytest.mark.parametrize(
         "inside",
@@ -121,7 +121,7 @@ class TestLenience:
 
 
 class TestTruncation:
-    """A bad part of a link takes with it what comes after, in the order inertial, visuals, collisions."""
+    """After a bad part of a link, later parts are lost, in the order inertial, visuals, collisions."""
 
     GOOD_VISUAL, GOOD_COLLISION = f"<visual>{BOX}</visual>", f"<collision>{BOX}</collision>"
     INERTIAL = '<inertial><mass value="{}"/><inertia ixx="1" ixy="0" ixz="0" iyy="1" iyz="0" izz="1"/></inertial>'

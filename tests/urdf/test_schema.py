@@ -1,4 +1,4 @@
-"""The table of elements and the reader say the same."""
+"""The table of elements agrees with the reader."""
 
 from __future__ import annotations
 
@@ -33,7 +33,7 @@ VERSIONS = ("1.0", "1.2")
 
 
 def full(rule: ElementRule, version: tuple[int, int]) -> Element:
-    """An element with all it may carry, itself as small as can be where only one child counts."""
+    """Return an element with all its attributes and children; ``<geometry>`` has only its first child."""
     element = Element(
         rule.tag,
         {attribute.name: VALUES[attribute.type] for attribute in rule.attributes if attribute.since <= version},
@@ -81,7 +81,7 @@ def find(element: Element, path: tuple[str, ...]) -> Element:
 
 
 def attribute_cases(choose):
-    """Parameters for each attribute of the table that `choose` takes, in each version."""
+    """Return parameters for each attribute of the table that `choose` accepts, in each version."""
     cases = []
     for version in VERSIONS:
         parsed = tuple(map(int, version.split(".")))

@@ -1,4 +1,4 @@
-"""Walking the tree: children by the names of their joints, the parent urdfdom keeps, text as its tools print it."""
+"""The tree of links: the order of children, the parent that urdfdom keeps, and the printed tree."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Numbers and vectors as urdfdom's C++ streams read them."""
+"""Numbers and vectors, read as by the C++ streams of urdfdom."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ from linkwright.urdf.values import looks_like_degrees, number, number_hint, numb
 
 
 def stream_reads(text: str) -> bool:
-    """Whether a C++ stream reads a double from the text and uses it up, character by character as num_get does."""
+    """Return whether a C++ stream reads a double from the whole text, character by character as num_get does."""
     text = text.lstrip(" \t\n\v\f\r")
     at = 0
 

@@ -1,4 +1,4 @@
-"""Robot to URDF and back."""
+"""The conversion of robots to URDF and back."""
 
 from __future__ import annotations
 

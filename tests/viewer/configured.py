@@ -1,4 +1,4 @@
-"""A configuration with a group and a display that nobody knows, and a page that edits it; for tests."""
+"""A configuration with an unknown group and display, and a page that edits it; for tests."""
 
 from __future__ import annotations
 
@@ -42,7 +42,7 @@ Visualization Manager:
 
 @asynccontextmanager
 async def opened(text: str = TEXT, path: Path | None = None):
-    """A world with a page that has read its opening messages."""
+    """Return a world, and a page that has read its opening messages."""
     config = RvizConfig.parse(text)
     if path is not None:
         path.write_text(text, encoding="utf-8")  # noqa: ASYNC240 - a test may wait
@@ -61,7 +61,7 @@ def entries(made) -> list[dict]:
 
 
 async def edit(client, kind: str, **fields) -> dict:
-    """Has something done, and gives how things stand then."""
+    """Perform an edit, and return the state afterwards."""
     await client.drain(0.03)
     await client.send(kind, **fields)
     return await client.until("configuration")

@@ -5,5 +5,5 @@ import pytest
 
 @pytest.fixture(autouse=True)
 def _state_of_the_user(tmp_path, monkeypatch):
-    """What is remembered of files that were opened is not the user's own."""
+    """Keep the list of opened files separate from the user's."""
     monkeypatch.setenv("XDG_STATE_HOME", str(tmp_path / "state"))

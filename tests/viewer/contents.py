@@ -1,4 +1,4 @@
-"""What pages would be sent to draw, unpacked; for tests."""
+"""The unpacked contents of a viewer for pages; for tests."""
 
 from __future__ import annotations
 
@@ -24,7 +24,7 @@ class Content:
 
 
 def unpack(frame: bytes) -> Content:
-    """A frame of `pack_data`."""
+    """Return the contents of a frame of `pack_data`."""
     kind, length, _, _ = struct.unpack_from("<IIII", frame)
     assert kind == 2
     header = json.loads(frame[16 : 16 + length])
@@ -43,12 +43,12 @@ def unpack(frame: bytes) -> Content:
 
 
 def contents(display: Any) -> list[Content]:
-    """What a page that opens now would be sent of a display."""
+    """Return the messages about a display for a page that opens now."""
     return [unpack(getattr(frame, "full_frame", frame)) for frame in display.data()]
 
 
 def shown_markers(display: Any) -> dict[str, dict[str, Any]]:
-    """The markers of a display that is drawn as markers, by their ids, as a page that opens now would be sent them."""
+    """Return the markers of a display by their IDs, as a page that opens now receives them."""
     (store,) = display.data()
     frame, _ = store.since(0)
     return {} if frame is None else {each["id"]: each for each in unpack(frame).fields["markers"]}

@@ -1,4 +1,4 @@
-"""Images as image_transport's plugins pack them, by an encoder of the tests' own."""
+"""Images in the formats of image_transport's plugins, encoded by the tests."""
 
 from __future__ import annotations
 
@@ -15,12 +15,12 @@ CompressedImage = get_message("sensor_msgs/msg/CompressedImage")
 
 
 def chunk(kind: bytes, data: bytes) -> bytes:
-    """A chunk of a PNG."""
+    """Return a chunk of a PNG."""
     return struct.pack(">I", len(data)) + kind + data + struct.pack(">I", zlib.crc32(kind + data))
 
 
 def png(values: np.ndarray, *, says: tuple[int, int] | None = None) -> bytes:
-    """A grey PNG of 8 or 16 bits; it may say that it has another width and height than it has."""
+    """Return a grey PNG with 8 or 16 bits, optionally with a false width and height."""
     height, width = values.shape
     rows = values.astype(values.dtype.newbyteorder(">"))
     data = b"".join(b"\0" + row.tobytes() for row in rows)
@@ -30,14 +30,14 @@ def png(values: np.ndarray, *, says: tuple[int, int] | None = None) -> bytes:
 
 
 def jpeg(colour: tuple[int, int, int] | int, width: int, height: int) -> bytes:
-    """A JPEG of one colour, or one grey."""
+    """Return a JPEG with one colour or grey value."""
     file = BytesIO()
     Pictures.new("L" if isinstance(colour, int) else "RGB", (width, height), colour).save(file, "JPEG", quality=95)
     return file.getvalue()
 
 
 def rvl(values: np.ndarray) -> bytes:
-    """The numbers of an RVL stream, four bits at a time, of which eight make a word."""
+    """Return an RVL stream of numbers, with four bits each and eight in a word."""
     groups: list[int] = []
 
     def put(number: int) -> None:
@@ -64,13 +64,13 @@ def rvl(values: np.ndarray) -> bytes:
 
 
 def sized_rvl(values: np.ndarray, *, says: tuple[int, int] | None = None) -> bytes:
-    """An RVL stream behind its columns and rows."""
+    """Return an RVL stream after its columns and rows."""
     height, width = values.shape
     return struct.pack("<II", *(says or (width, height))) + rvl(values)
 
 
 def header(first: float = 0.0, second: float = 0.0) -> bytes:
-    """What stands before the depths of `compressedDepth`."""
+    """Return the header of the depths in `compressedDepth`."""
     return struct.pack("<iff", 0, first, second)
 
 
@@ -91,7 +91,7 @@ def depth_message(values, packing: str = "png", frame: str = "base"):
 
 
 def packed(form: str, data: bytes, frame: str = "base"):
-    """A sensor_msgs/msg/CompressedImage."""
+    """Return a sensor_msgs/msg/CompressedImage."""
     message = CompressedImage(format=form, data=data)
     message.header.frame_id = frame
     return message

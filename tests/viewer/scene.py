@@ -1,4 +1,4 @@
-"""A graph with a viewer in it, and a page that listens; for tests."""
+"""A graph with a viewer, and a connected page; for tests."""
 
 from __future__ import annotations
 
@@ -99,7 +99,7 @@ class World:
 
 @asynccontextmanager
 async def world(config: RvizConfig | None = None, **options) -> AsyncIterator[World]:
-    """A started world, taken down at the end."""
+    """Start a world, and close it at the end."""
     made = World(config, **options)
     await made.viewer.start()
     try:
@@ -146,7 +146,7 @@ class Client:
         return decoded
 
     async def until(self, kind: str, **fields) -> dict:
-        """The next message of a type, with these fields."""
+        """Return the next message of a type with these fields."""
         while True:
             message = await self.receive()
             if isinstance(message, dict) and message["type"] == kind and fields.items() <= message.items():
@@ -159,7 +159,7 @@ class Client:
                 return message
 
     async def drain(self, quiet: float = 0.15) -> list[dict | Transforms | bytes]:
-        """Everything that comes until nothing comes for a while."""
+        """Receive messages until none arrives for a while, and return them."""
         start = len(self.messages)
         with suppress(asyncio.TimeoutError):
             while True:
@@ -167,7 +167,7 @@ class Client:
         return self.messages[start:]
 
     async def opened(self) -> dict[str, dict]:
-        """The opening messages by type, up to the frame table."""
+        """Return the opening messages by type, up to the frame table."""
         first: dict[str, dict] = {}
         while "frame_table" not in first:
             message = await self.receive()
@@ -192,7 +192,7 @@ async def page(viewer: Viewer, more: str = "") -> AsyncIterator[Client]:
 
 
 def rows_by_id(properties: list[dict]) -> dict[str, dict]:
-    """Every property row, also below others."""
+    """Return all property rows, including nested ones."""
     found = {}
     for row in properties:
         found[row["id"]] = row

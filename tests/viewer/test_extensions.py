@@ -1,4 +1,4 @@
-"""Displays and page features that other packages bring."""
+"""Displays and page features from other packages."""
 
 from __future__ import annotations
 
@@ -53,7 +53,7 @@ broken = brought_to_linkwright:nothing
 
 @pytest.fixture
 def brought(tmp_path, monkeypatch):
-    """A package on the path that brings a display and a page feature, and others that cannot be loaded."""
+    """Create a package with a display and a page feature, and others that cannot be loaded."""
     (tmp_path / "brought_to_linkwright.py").write_text(MODULE)
     facts = tmp_path / "brought_to_linkwright-1.0.dist-info"
     facts.mkdir()

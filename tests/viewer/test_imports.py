@@ -1,4 +1,4 @@
-"""What a page has imported when it opens."""
+"""The imported modules when a page opens."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""The robot of a recording that has no transforms: it stands as its joint states say, at any time that is gone to."""
+"""The robot of a recording without transforms: its pose follows the joint states at any time."""
 
 from __future__ import annotations
 
@@ -36,7 +36,7 @@ ARM = """
 
 
 def recorded(path: Path, lifts: Sequence[float], transforms: bool = False) -> Path:
-    """The arm, and a joint state each second, which tells of one joint only."""
+    """Record an arm, and a joint state each second that contains only one joint."""
     with BagWriter(path) as writer:
         writer.add_topic("/robot_description", "std_msgs/msg/String", [DESCRIPTION_QOS])
         writer.write("/robot_description", START * SECOND, serialize(String(data=ARM)))
@@ -53,7 +53,7 @@ def recorded(path: Path, lifts: Sequence[float], transforms: bool = False) -> Pa
 
 
 class Shown:
-    """A recording that is published, and where the links were put last, by name: x, y, z in the parent link, metres."""
+    """A published recording, and the last positions of the links: x, y, z in the parent link, in metres."""
 
     def __init__(self, bag: BagReader) -> None:
         self.graph = Graph()
@@ -70,7 +70,7 @@ class Shown:
         self.places.update(zip(message.batch.children, message.batch.poses[:, :3].tolist(), strict=True))
 
     async def at(self, second: int) -> dict[str, list[float]]:
-        """Where the links are at a time."""
+        """Return the positions of the links at a time."""
         self.places.clear()
         self.playback.seek((START + second) * SECOND)
         for _ in range(4):  # a seek takes a few turns of the loop

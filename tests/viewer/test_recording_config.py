@@ -1,4 +1,4 @@
-"""What is shown of a recording at first."""
+"""The initial configuration for a recording."""
 
 from __future__ import annotations
 

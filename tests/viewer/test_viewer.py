@@ -1,4 +1,4 @@
-"""A whole viewer, from topics to a page and back."""
+"""A complete viewer, from topics to a page and back."""
 
 from __future__ import annotations
 

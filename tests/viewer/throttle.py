@@ -1,4 +1,4 @@
-"""A slow line between a page and the server; for tests."""
+"""A slow connection between a page and the server; for tests."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ _BUFFER = 8192
 
 @asynccontextmanager
 async def slow_line(url: str, rate: float) -> AsyncIterator[str]:
-    """The address of a proxy in front of a server that lets through so many bytes a second of what the server sends."""
+    """Return the address of a proxy for a server, which limits the bytes per second from the server."""
     address = urlsplit(url)
     tasks: set[asyncio.Task] = set()
 

@@ -48,7 +48,7 @@ class FunctionFiles:
                 self._found.add(code.co_filename)
 
     def start(self) -> None:
-        """Record from now on."""
+        """Start recording."""
         self._found.clear()
         self._records = True
 

@@ -1,4 +1,4 @@
-"""Test cases written in Markdown: a heading is a case, its fenced blocks are files, arguments and what must come out.
+"""Test cases in Markdown: each heading is a case, with blocks for files, arguments and the expected result.
 
 Fences: ``xacro`` is what stands inside the root element of ``main.xacro``; ``document`` is the whole of it;
 ``file NAME`` is a file beside it; ``arguments`` holds ``name:=value`` lines; ``urdf`` is the expansion without its
@@ -34,7 +34,7 @@ class Case:
     expected: str = ""
 
     def write(self, folder: Path) -> None:
-        """Write the files of the case into a folder, which is made."""
+        """Write the files of the case to a new folder."""
         for name, text in {"main.xacro": self.main, **self.files}.items():
             path = folder / name
             path.parent.mkdir(parents=True, exist_ok=True)
@@ -42,7 +42,7 @@ class Case:
 
 
 def read_cases(path: Path) -> list[Case]:
-    """The cases of a Markdown file."""
+    """Return the cases of a Markdown file."""
     cases = []
     for title, blocks in read_sections(path):
         case = Case(title)
@@ -66,7 +66,7 @@ def read_cases(path: Path) -> list[Case]:
 
 
 def set_environment(monkeypatch: pytest.MonkeyPatch) -> None:
-    """Set the environment variables that cases may name."""
+    """Set the environment variables that cases may use."""
     for name, value in ENVIRONMENT.items():
         if value is None:
             monkeypatch.delenv(name, raising=False)
@@ -75,12 +75,12 @@ def set_environment(monkeypatch: pytest.MonkeyPatch) -> None:
 
 
 def without_banner(text: str) -> str:
-    """An expansion without its XML declaration and banner."""
+    """Return an expansion without its XML declaration and banner."""
     return "".join(text.splitlines(keepends=True)[BANNER_LINES:]).removesuffix("\n")
 
 
 def described(diagnostic: Diagnostic, folder: Path) -> str:
-    """A diagnostic as the Markdown files write it."""
+    """Return a diagnostic in the notation of the Markdown files."""
     where = f"{_place(diagnostic.span, folder)}: " if diagnostic.span else ""
     lines = [f"{where}{diagnostic.severity.value} {diagnostic.code}: {diagnostic.message}"]
     lines += [f"  note: {note.message}{_in_brackets(note.span, folder)}" for note in diagnostic.notes]

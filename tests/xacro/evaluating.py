@@ -1,4 +1,4 @@
-"""Evaluating single texts in tests."""
+"""The evaluation of single texts, for tests."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ from linkwright.xacro.session import Session
 
 
 def evaluate(text: str, limits: Limits | None = None, **properties: Any) -> Any:
-    """The value of a text that sees some properties."""
+    """Return the value of a text with some properties in scope."""
     limits = limits or Limits()
     session = Session("main.xacro", {}, {}, limits)
     scope = Scope(session.globals, session, dict(properties))

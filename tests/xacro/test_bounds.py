@@ -1,4 +1,4 @@
-"""Ways to make an expansion never end, or fill the memory. Each is stopped with a clear error."""
+"""Expansions that would be endless or fill the memory end with a clear error."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ from .evaluating import evaluate
 
 
 def codes(text: str, limits: Limits | None = None) -> list[str]:
-    """The codes of the mistakes in a text, none of which takes long to find."""
+    """Return the codes of the errors in a text, and check that none takes long to find."""
     with ends(), pytest.raises(LinkwrightError) as caught:
         expand("m.xacro", text=text, limits=limits)
     return [diagnostic.code for diagnostic in caught.value.diagnostics]
@@ -288,7 +288,7 @@ def test_what_is_large_but_allowed_does_not_take_long(source: str) -> None:
 
 
 def nested_macros(count: int, body: str) -> str:
-    """Macros that each call the next one twice."""
+    """Return macros that each call the next one twice."""
     macros = "".join(
         f'<xacro:macro name="m{number}">{body.format(call=f"<xacro:m{number + 1}/>")}</xacro:macro>'
         for number in range(count)

@@ -1,4 +1,4 @@
-"""Whole robots: the expansions are those of ros/xacro, byte for byte."""
+"""Whole robots: the expansions are identical to those of ros/xacro."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""The way into the room: what `expand` takes and gives."""
+"""The function `expand`: its arguments and results."""
 
 from __future__ import annotations
 
@@ -184,7 +184,7 @@ def test_files_that_cannot_be_read(tmp_path: Path) -> None:
 
 
 def test_where_the_reference_crashes_or_loses_something(tmp_path: Path) -> None:
-    """Bugs of ros/xacro that are put right."""
+    """Bugs of ros/xacro that Linkwright does not have."""
     in_a_condition = '<x><xacro:if value="1"><xacro:attribute name="k" value="v"/></xacro:if></x>'
     assert '<x k="v"/>' in str(expand(write(tmp_path, main=in_a_condition)))
     in_a_macro = '<xacro:macro name="m"><xacro:attribute name="k" value="v"/></xacro:macro><x><xacro:m/></x>'
@@ -197,7 +197,7 @@ def test_where_the_reference_crashes_or_loses_something(tmp_path: Path) -> None:
 
 
 def test_cold_import_stays_light() -> None:
-    """Nothing heavy, nor what only some files need, is imported with the room."""
+    """Importing the room imports no slow modules, and none that only some files need."""
     names = loaded_by("from linkwright.xacro import expand")
     heavy = {"yaml", "numpy", "asyncio", "xml.dom", "linkwright.packages", "datetime"}
     stands_for_less = {"ast", "contextlib", "dataclasses", "gettext", "inspect", "pathlib", "typing", "warnings"}

@@ -1,4 +1,4 @@
-"""What is reported for mistakes: code, words, exact place, the calls on the way, and the hint."""
+"""The reports of errors: code, message, location, calls and hint."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Expressions mean what they mean in Python."""
+"""Expressions have the same values as in Python."""
 
 from __future__ import annotations
 

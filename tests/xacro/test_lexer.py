@@ -1,4 +1,4 @@
-"""Tokens of texts: the rules, and what holds for any text."""
+"""The tokens of expressions, for examples and for any text."""
 
 from __future__ import annotations
 

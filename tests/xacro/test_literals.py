@@ -1,4 +1,4 @@
-"""The literal rule and what counts as true."""
+"""The conversion of literals, and the values that count as true."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ from linkwright.xacro.expressions.scope import literal, truth
 
 
 def reference(value: str) -> Any:
-    """The rule as it is told, without short cuts."""
+    """Convert a literal by the documented rule, without optimizations."""
     if len(value) >= 2 and value[0] == value[-1] == "'":
         return value[1:-1]
     if "_" in value:

@@ -1,4 +1,4 @@
-"""What is expanded of a description that has mistakes, and which of them are told."""
+"""The expanded parts of a description with errors, and the reported errors."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What comes out as it was read: it is copied, and whoever looks sees no difference."""
+"""Elements that are copied unchanged look like other elements."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""The rules of the language, one case each; what comes out is what ros/xacro writes (tools/reference_outputs.py)."""
+"""The rules of the language, compared with the output of ros/xacro (tools/reference_outputs.py)."""
 
 from __future__ import annotations
 

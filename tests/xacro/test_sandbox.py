@@ -1,4 +1,4 @@
-"""Ways out of an expression that are known from other sandboxes. None works."""
+"""Known attacks on sandboxes of expressions fail."""
 
 from __future__ import annotations
 

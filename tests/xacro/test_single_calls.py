@@ -1,4 +1,4 @@
-"""No single call of a function takes long: between two calls an expansion can be stopped, during one it cannot."""
+"""No function call takes long, because an expansion can only be stopped between calls."""
 
 from __future__ import annotations
 
@@ -43,7 +43,7 @@ TEXTS = {
 
 @contextlib.contextmanager
 def soon() -> Iterator[None]:
-    """What is inside ends, well or with an error."""
+    """Check that the body ends soon, with or without an error."""
     faults = (Fault, RefusalError, TypeError, ValueError, LookupError, ArithmeticError, AttributeError)
     with ends(), contextlib.suppress(*faults):
         yield

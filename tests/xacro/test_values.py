@@ -1,4 +1,4 @@
-"""The values of all expressions, as an editor shows them."""
+"""The values of all expressions, as shown in an editor."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ HEAD = '<robot name="r" xmlns:xacro="http://www.ros.org/wiki/xacro">'
 
 
 def values(text: str, **arguments: str) -> dict[str, tuple[str, ...]]:
-    """Return the values of each text with expressions, by its characters."""
+    """Return the values of each text with expressions, by its position."""
     whole = f"{HEAD}{text}</robot>"
     found = evaluated_expressions(Inputs("r.xacro", arguments, text=whole))
     return {whole[each.start : each.end]: each.values for each in found}

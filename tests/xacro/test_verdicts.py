@@ -1,4 +1,4 @@
-"""What ros/xacro refuses, we refuse; where not, it is on purpose."""
+"""Linkwright refuses what ros/xacro refuses, apart from intended differences."""
 
 from __future__ import annotations
 

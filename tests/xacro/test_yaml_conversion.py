@@ -1,4 +1,4 @@
-"""Our short way from YAML nodes to values gives what PyYAML gives."""
+"""The fast conversion of YAML nodes to values, compared with PyYAML."""
 
 from __future__ import annotations
 

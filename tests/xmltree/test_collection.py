@@ -1,4 +1,4 @@
-"""How often the garbage collector runs while a tree is built."""
+"""The number of garbage collections during the construction of a tree."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ from linkwright.xmltree.nodes import seldom_collected
 
 @pytest.fixture
 def asked(monkeypatch):
-    """What is asked of a collector of the test's own, in which so many objects are frozen."""
+    """Return the calls to a garbage collector of the test, with a number of frozen objects."""
     calls: list[object] = []
     settings = SimpleNamespace(frozen=0, threshold=(700, 10, 10))
 

@@ -1,4 +1,4 @@
-"""Documents that attack their reader."""
+"""Documents that attack the reader."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What is said of a text that is not well-formed."""
+"""The messages about text that is not well-formed."""
 
 from __future__ import annotations
 

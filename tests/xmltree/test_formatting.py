@@ -1,4 +1,4 @@
-"""Formatted XML means what it meant, and is formatted."""
+"""Formatted XML has the same meaning, and formatting it again changes nothing."""
 
 from __future__ import annotations
 

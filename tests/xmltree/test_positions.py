@@ -1,4 +1,4 @@
-"""Places inside a start tag."""
+"""Positions inside a start tag."""
 
 from __future__ import annotations
 

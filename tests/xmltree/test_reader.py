@@ -1,4 +1,4 @@
-"""Reading: the tree, and where its nodes were written."""
+"""The reader: the tree, and the locations of its nodes."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What TinyXML2 accepts is read in a time that grows with the text."""
+"""XML for TinyXML2 is read in linear time."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""The tokens of a text in any state, such as one that is being typed; those of a whole text are the reader's."""
+"""The tokens of complete and incomplete texts, compared with the reader."""
 
 from __future__ import annotations
 

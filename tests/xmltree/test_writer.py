@@ -1,4 +1,4 @@
-"""Writing: the form of ros/xacro on Python 3.11, and that nothing is lost."""
+"""The writer: the format of ros/xacro on Python 3.11, without losses."""
 
 from __future__ import annotations
 

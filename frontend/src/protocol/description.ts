@@ -38,7 +38,7 @@ export interface SourceRange {
   end_column: number;
 }
 
-/** The positions of an element in the expanded text and in its file, and the calls that led to it. */
+/** The positions of an element in the expanded text and in its file, with its calls. */
 export interface Written {
   expanded: SourceRange | null;
   origin: SourceRange | null;

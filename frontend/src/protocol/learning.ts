@@ -42,7 +42,7 @@ export interface CourseStep {
   type: "course_step";
 }
 
-/** The result of one check. `message` is what is not yet so, or None if the check is satisfied. */
+/** The result of one check. */
 export interface StepCheck {
   title: Record<string, string>;
   is_passed: boolean;
@@ -58,7 +58,7 @@ export interface StepChecks {
   type: "step_checks";
 }
 
-/** The reason why the last request of a page was not carried out, and a hint, each of which may be empty. */
+/** The reason why the last request of a page failed, and a hint; both may be empty. */
 export interface CourseProblem {
   message: string;
   hint: string;

@@ -235,7 +235,7 @@ export interface TeleopTarget {
   frame_id: string;
 }
 
-/** The message type of a teleop pad, its number of subscribers, and the reason why it cannot publish. */
+/** The state of a teleop pad: message type, subscribers, and the reason for a failure. */
 export interface TeleopState {
   topic: string;
   kind: string;

@@ -7,7 +7,7 @@ export interface TerminalItem {
   status: number | null;
 }
 
-/** All terminals of the program. It is sent when a page opens, and again when something changes. */
+/** All terminals of the program, sent when a page opens and after each change. */
 export interface Terminals {
   folder: string;
   terminals: TerminalItem[];
@@ -24,7 +24,7 @@ export interface TerminalOutput {
   type: "terminal_output";
 }
 
-/** A notice that input was discarded because the program in the terminal does not read its input. */
+/** A notice that input was discarded because the program in the terminal does not read it. */
 export interface TerminalInputLost {
   terminal: number;
   size: number;
@@ -64,7 +64,7 @@ export interface ShowTerminal {
   type: "show_terminal";
 }
 
-/** A notice that the page does not show a terminal any more, for example because its tab is hidden. */
+/** A notice that the page no longer shows a terminal, for example because its tab is hidden. */
 export interface LeaveTerminal {
   terminal: number;
   type: "leave_terminal";
@@ -86,7 +86,7 @@ export interface ResizeTerminal {
   type: "resize_terminal";
 }
 
-/** The acknowledgement that the page has processed the output up to the message with this number. */
+/** The acknowledgement of the output up to the message with this number. */
 export interface AcknowledgeTerminal {
   terminal: number;
   number: number;

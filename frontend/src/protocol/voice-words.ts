@@ -37,7 +37,7 @@ export interface RenameWord {
   type: "rename_word";
 }
 
-/** A request to import the words of a file. An imported word replaces a word with the same name. */
+/** A request to import the words of a file. */
 export interface ImportWords {
   text: string;
   type: "import_words";

@@ -81,7 +81,7 @@ def run_types(arguments: argparse.Namespace) -> int:
         )
         raise LinkwrightError(
             Diagnostic(
-                "CLI436", phrase("No component types found in package '{wanted}'", wanted=package_name), hint=hint
+                "CLI436", phrase("No component types found in package '{package}'", package=package_name), hint=hint
             )
         )
     print("\n".join(by_package[package_name]))
@@ -272,7 +272,7 @@ async def _unload_component(session: Session, container: str, uid: int) -> None:
             Diagnostic(
                 "CLI434",
                 message,
-                hint=phrase("the container's nodes are {there}", there=nodes)
+                hint=phrase("the container's nodes are {nodes}", nodes=nodes)
                 if nodes
                 else phrase("the container is empty"),
             )

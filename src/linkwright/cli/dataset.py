@@ -92,7 +92,7 @@ def configure(parser: argparse.ArgumentParser) -> None:
     )
     parser.add_argument(
         "--keep",
-        metavar="WHAT",
+        metavar="PROPERTIES",
         type=_parse_fixed_properties,
         default=(),
         help="properties not to randomize: lights, colours, lens (no blur, no noise), separated by commas",
@@ -106,7 +106,7 @@ def configure(parser: argparse.ArgumentParser) -> None:
     )
     parser.add_argument(
         "--min-visible",
-        metavar="SHARE",
+        metavar="FRACTION",
         type=_parse_fraction,
         default=0.5,
         help="ignore objects of which less than this fraction is visible (default: 0.5)",
@@ -181,7 +181,7 @@ class _Progress:
     def begin(self, studio: Studio) -> None:
         """Print the classes and the rendering method."""
         print_message(localized(phrase("Classes: {names}", names=", ".join(studio.classes))))
-        print_message(localized(phrase("Rendering images with {way}", way=studio.render_method)))
+        print_message(localized(phrase("Rendering images with {renderer}", renderer=studio.render_method)))
         if studio.unused:
             print_message(
                 localized(phrase("These worlds have no object of the classes {names}", names=", ".join(studio.unused)))

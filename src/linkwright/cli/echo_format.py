@@ -150,9 +150,9 @@ def select(message: Any, path: Sequence[str]) -> Any:
                 Diagnostic(
                     "CLI414",
                     phrase(
-                        "Invalid field '{whole}': {what} has no field '{name}'",
+                        "Invalid field '{whole}': {type} has no field '{name}'",
                         whole=full_path,
-                        what=type_name,
+                        type=type_name,
                         name=name,
                     ),
                     hint=did_you_mean(name, fields) or fallback_hint,

@@ -149,7 +149,7 @@ def _parse_masses(words: Sequence[str], robot: Robot) -> dict[str, float]:
         except argparse.ArgumentTypeError:
             name = ""
         if not name:
-            message = phrase("'{word}' does not set the mass of a link", word=assignment)
+            message = phrase("'{argument}' does not set the mass of a link", argument=assignment)
             diagnostics.append(
                 Diagnostic("CLI312", message, hint=phrase("write --mass LINK=KG, such as --mass arm_link=1.5"))
             )
@@ -174,7 +174,7 @@ def _refusal_findings(reasons: Mapping[str, str], robot: Robot) -> list[Diagnost
         diagnostics.append(
             Diagnostic(
                 "INR211",
-                phrase("<inertial> of link '{name}' is not written: {why}", name=name, why=reason),
+                phrase("<inertial> of link '{name}' is not written: {reason}", name=name, reason=reason),
                 element.span() if element else None,
                 hint=phrase("add the block printed above to the link, or write expressions with the same values"),
                 source=element.source if element else None,

@@ -133,7 +133,7 @@ def run_set(arguments: argparse.Namespace) -> int:
                         node=node,
                         transition=arguments.transition,
                     ),
-                    notes=(Note(phrase("available transitions:\n{listed}", listed=transition_list)),),
+                    notes=(Note(phrase("available transitions:\n{transitions}", transitions=transition_list)),),
                     hint=did_you_mean(arguments.transition, [candidate.label for candidate in available]),
                 )
             )

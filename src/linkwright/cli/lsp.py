@@ -31,7 +31,7 @@ def configure(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
         "--python",
         action="store_true",
-        help="add the answers of ty and ruff about Python files, if they are installed (not with --tcp and --ws)",
+        help="also report the results of ty and ruff for Python files, if they are installed (not with --tcp and --ws)",
     )
 
 

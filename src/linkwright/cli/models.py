@@ -149,11 +149,11 @@ def run_check(arguments: argparse.Namespace) -> int:
     return FINE
 
 
-def _verification_problems(entry: ModelEntry, place: Path) -> Sequence[Diagnostic]:
+def _verification_problems(entry: ModelEntry, path: Path) -> Sequence[Diagnostic]:
     from linkwright.model_files import verify
 
     try:
-        verify(entry, place)
+        verify(entry, path)
     except LinkwrightError as error:
         return error.diagnostics
     return ()
@@ -177,7 +177,7 @@ def _add_name_argument(parser: argparse.ArgumentParser) -> None:
 
 
 VERBS = {
-    "list": SubVerb(configure_list, run_list, help="list the available models with size, licence and purpose"),
+    "list": SubVerb(configure_list, run_list, help="list the available models with size, license and purpose"),
     "get": SubVerb(configure_get, run_get, help="download a model, or copy it from a file, a folder or a mirror"),
     "path": SubVerb(configure_path, run_path, help="print the path of a downloaded model"),
     "check": SubVerb(configure_check, run_check, help="verify the checksums of downloaded models"),

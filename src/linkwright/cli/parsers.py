@@ -30,7 +30,9 @@ def make_parser(
 
 
 class _Parser(argparse.ArgumentParser):
-    """An argument parser that suggests similar options, and raises errors that occur when help is printed.
+    """An argument parser that suggests similar options.
+
+    It raises errors that occur when help is printed.
 
     argparse itself ignores such errors.
     """

@@ -19,7 +19,7 @@ if TYPE_CHECKING:
 
 
 class _ListLicenses(argparse.Action):
-    """The action that stores a licence or, for ``?``, lists the known licences and exits."""
+    """The action that stores a license or, for ``?``, lists the known licenses and exits."""
 
     def __call__(
         self,

@@ -1,4 +1,4 @@
-"""The replacement of this process by another program, so that the program receives the signals."""
+"""The replacement of this process by another program, which then receives the signals."""
 
 from __future__ import annotations
 

@@ -183,7 +183,10 @@ def _check_type(session: Session, name: str, requested_type: str) -> None:
     types = sorted({server.type_name for server in servers})
     if types and requested_type not in types:
         message = phrase(
-            "service '{name}' is of type {types}, not {asked}", name=name, types=", ".join(types), asked=requested_type
+            "service '{name}' is of type {types}, not {requested_type}",
+            name=name,
+            types=", ".join(types),
+            requested_type=requested_type,
         )
         raise LinkwrightError(
             Diagnostic("CLI428", message, hint=phrase("call the service with the type {types}", types=types[0]))

@@ -122,8 +122,8 @@ class _Trial:
                     "end": f"{result.end - recording_start:.2f}",
                 }
                 print(localized(phrase(
-                    "{file}: {what}, {start} s to {end} s, recognized {latency} s later",
-                    file=file, what=self._result_text(result), latency=f"{max(0.0, current_time - result.end):.2f}",
+                    "{file}: {result}, {start} s to {end} s, recognized {latency} s later",
+                    file=file, result=self._result_text(result), latency=f"{max(0.0, current_time - result.end):.2f}",
                     **times,
                 )))  # fmt: skip
         return sum(result.final for result in results)
@@ -166,11 +166,11 @@ def run_enrol(arguments: argparse.Namespace) -> int:
         raise LinkwrightError(*diagnostics)
     _write_words(words, path)
     count = len(words.takes(arguments.word))
-    takes = counted("{count} recording", "{count} recordings", count)
-    print(localized(phrase("'{word}': {takes}", word=arguments.word, takes=takes)))
+    recordings = counted("{count} recording", "{count} recordings", count)
+    print(localized(phrase("'{word}': {recordings}", word=arguments.word, recordings=recordings)))
     if count < RECOMMENDED_TAKES:
         print_message(
-            localized(phrase("{takes} recordings make the recognition more reliable", takes=RECOMMENDED_TAKES))
+            localized(phrase("{count} recordings make the recognition more reliable", count=RECOMMENDED_TAKES))
         )
     return FINE
 
@@ -185,8 +185,8 @@ def run_words(arguments: argparse.Namespace) -> int:
     path = _words_path(arguments)
     words = _read_words(path)
     for name in words.names:
-        takes = counted("{count} recording", "{count} recordings", len(words.takes(name)))
-        print(localized(phrase("'{word}': {takes}", word=name, takes=takes)))
+        recordings = counted("{count} recording", "{count} recordings", len(words.takes(name)))
+        print(localized(phrase("'{word}': {recordings}", word=name, recordings=recordings)))
     if not words.names:
         print_message(localized(phrase("no word is enrolled in '{path}'", path=display_path(path))))
     return FINE

@@ -150,7 +150,7 @@ def _values(words: list[str]) -> tuple[dict[str, str], list[Diagnostic]]:
             continue
         del values[name]
         reason = phrase("its name begins with an underscore") if value else phrase("it is empty")
-        message = phrase("the argument '{name}' is ignored, as in xacro: {why}", name=name, why=reason)
+        message = phrase("the argument '{name}' is ignored, as in xacro: {reason}", name=name, reason=reason)
         warnings.append(Diagnostic("CLI103", message, severity=Severity.WARNING))
     return values, warnings
 

@@ -358,7 +358,7 @@ def _parse_world(path: Path, content: str | bytes) -> tuple[Document, tuple[Diag
 
     if has_more_links(content, _MAX_LINKS):
         message = phrase(
-            "'{path}' is not read: it has more than {most} links", path=display_path(path), most=_MAX_LINKS
+            "'{path}' is not read: it has more than {maximum} links", path=display_path(path), maximum=_MAX_LINKS
         )
         hint = phrase("put shapes that never move into one link")
         raise LinkwrightError(Diagnostic("SDF163", message, hint=hint))

@@ -212,7 +212,7 @@ class Diagnostic:
         return self._fields()
 
     @property
-    def placed_message(self) -> Phrase:
+    def located_message(self) -> Phrase:
         """The message, preceded by its position if there is one."""
         return joined((str(self.span), self.message), ": ") if self.span else self.message
 
@@ -240,7 +240,10 @@ class LinkwrightError(Exception):
 
 
 def _restore_error(error_type: type[LinkwrightError], args: tuple[object, ...]) -> LinkwrightError:
-    """Create an error that another process has pickled, whose attributes follow, without its constructor."""
+    """Create an error that another process has pickled, without calling its constructor.
+
+    `pickle` then sets the attributes.
+    """
     return error_type.__new__(error_type, *args)
 
 

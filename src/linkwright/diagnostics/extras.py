@@ -71,8 +71,8 @@ def install_hint(extra: str, package: str = "") -> Phrase:
             "run {command}, and replace {placeholder} with the path of a checkout or wheel of Linkwright, "
             "because '{path}', from which it was installed, no longer exists",
             command=command,
-            placeholder=installation.origin.words(())[-1],
-            path=installation.origin.place,
+            placeholder=installation.origin.installer_arguments(())[-1],
+            path=installation.origin.location,
         )
     return phrase("run {command}", command=command)
 

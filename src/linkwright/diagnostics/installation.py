@@ -36,29 +36,29 @@ class Origin:
     """The origin of an installed distribution.
 
     Attributes:
-        place: a path or a URL; empty for a package index.
+        location: a path or a URL; empty for a package index.
         editable: whether the distribution runs from the files of the checkout.
         name: the name of the distribution.
     """
 
-    place: str = ""
+    location: str = ""
     editable: bool = False
     name: str = NAME
 
     @property
     def is_gone(self) -> bool:
         """Whether the origin is a checkout or a file that no longer exists."""
-        return bool(self.place) and "://" not in self.place and not Path(self.place).exists()
+        return bool(self.location) and "://" not in self.location and not Path(self.location).exists()
 
-    def words(self, extras: Iterable[str]) -> list[str]:
+    def installer_arguments(self, extras: Iterable[str]) -> list[str]:
         """Return the arguments with which an installer installs the distribution with extras."""
         extras_suffix = f"[{','.join(sorted(extras))}]" if extras else ""
-        if "://" in self.place:
-            return [f"{self.name}{extras_suffix} @ {self.place}"]
-        place = PATH_PLACEHOLDER if self.is_gone else self.place or self.name
-        if self.place and Path(self.place) == Path.cwd():
-            place = "."
-        return [*(["-e"] if self.editable else []), f"{place}{extras_suffix}"]
+        if "://" in self.location:
+            return [f"{self.name}{extras_suffix} @ {self.location}"]
+        location = PATH_PLACEHOLDER if self.is_gone else self.location or self.name
+        if self.location and Path(self.location) == Path.cwd():
+            location = "."
+        return [*(["-e"] if self.editable else []), f"{location}{extras_suffix}"]
 
 
 @dataclass(frozen=True)
@@ -91,9 +91,8 @@ class Installation:
         return _quote_command([*self.tool, *packages])
 
     def _command(self, tool: tuple[str, ...], extras: Iterable[str], other_packages: Iterable[str]) -> str:
-        return _quote_command(
-            [*tool, *(argument for name in other_packages for argument in ("--with", name)), *self.origin.words(extras)]
-        )
+        others = (argument for name in other_packages for argument in ("--with", name))
+        return _quote_command([*tool, *others, *self.origin.installer_arguments(extras)])
 
 
 PIPX = ("pipx", "install", "--force")
@@ -122,9 +121,15 @@ def installation_in(prefix: Path, origin: Origin) -> Installation:
     if receipt.is_file():
         toml: Any = import_module("tomllib" if sys.version_info >= (3, 11) else "tomli")
         requirements = toml.loads(receipt.read_text(encoding="utf-8"))["tool"]["requirements"]
-        own_requirements = (asked for asked in requirements if asked["name"] == origin.name)
-        other_packages = tuple(asked["name"] for asked in requirements if asked["name"] != origin.name)
-        extras = frozenset(extra for asked in own_requirements for extra in asked.get("extras", ()))
+        own_requirements = (
+            required_package for required_package in requirements if required_package["name"] == origin.name
+        )
+        other_packages = tuple(
+            required_package["name"] for required_package in requirements if required_package["name"] != origin.name
+        )
+        extras = frozenset(
+            extra for required_package in own_requirements for extra in required_package.get("extras", ())
+        )
         return Installation(origin, UV_TOOL, extras, other_packages)
     if prefix.parent.name.startswith(_UV_CACHE_FOLDERS):  # uvx created the environment for this run only
         return Installation(origin, UV_TOOL)
@@ -163,7 +168,7 @@ def _pip_command(prefix: Path, origin: Origin) -> tuple[str, ...]:
         pip_path = shutil.which("pip")
         is_on_path = pip_path is not None and Path(pip_path).parent == Path(sys.executable).parent
         return ("pip", "install") if is_on_path else (sys.executable, "-m", "pip", "install")
-    checkout_uv = Path(origin.place, ".build", "uv", "bin", "uv")  # installed by the Makefile
+    checkout_uv = Path(origin.location, ".build", "uv", "bin", "uv")  # installed by the Makefile
     uv = str(checkout_uv) if shutil.which("uv") is None and checkout_uv.is_file() else "uv"
     is_active = os.environ.get("VIRTUAL_ENV", "") == str(prefix)
     return (uv, "pip", "install", *(() if is_active else ("--python", str(prefix))))

@@ -1,4 +1,7 @@
-"""Characters that look like those of code: full-width punctuation and digits, curved quotes, dashes, signs."""
+"""Characters that look like those of code.
+
+They are full-width punctuation and digits, curved quotes, dashes and signs.
+"""
 
 from __future__ import annotations
 
@@ -43,7 +46,7 @@ def plain_text(text: str) -> str:
 
 
 def lookalike_hint(text: str) -> Phrase | None:
-    """Return a hint about the first character of a text that looks like an ASCII character, or None."""
+    """Return a hint about the first character of a text that looks like ASCII, or None."""
     for character in text:
         plain = plain_character(character)
         if plain == " ":

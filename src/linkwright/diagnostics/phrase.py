@@ -171,7 +171,10 @@ class _Known(Phrase):
 
 
 class _Foreign(_Known):
-    """A text of another program, which the catalogue contains as it is, or with ``'…'`` for each quoted part."""
+    """A text of another program.
+
+    The catalogue contains the text unchanged, or with ``'…'`` for each quoted part.
+    """
 
     __slots__ = ()
 

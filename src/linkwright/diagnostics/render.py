@@ -201,7 +201,7 @@ def _indent(text: str) -> str:
 
 
 def display_path(path: str | Path) -> str:
-    """Return a path as shown in messages, relative to the current folder if it is inside the folder."""
+    """Return a path as shown in messages, relative to the current folder if it is inside."""
     text = str(path)
     relative = os.path.relpath(text)
     return text if relative.startswith("..") else relative

@@ -275,7 +275,7 @@ def _examine_misnamed_topics(observation: Observation) -> Iterator[Diagnostic]:
 def _examine_commands(observation: Observation) -> Iterator[Diagnostic]:
     """Yield findings about velocity commands to which no node subscribes."""
     subscribed_topics = {endpoint.name for endpoint in observation.endpoints_of_kind(EndpointKind.SUBSCRIPTION)}
-    misnamed_topics = {like for _, _, _, like in _find_misnamed_topics(observation)}
+    misnamed_topics = {similar_topic for _, _, _, similar_topic in _find_misnamed_topics(observation)}
     command_topics = {
         endpoint.name
         for endpoint in observation.endpoints_of_kind(EndpointKind.SUBSCRIPTION)

@@ -34,7 +34,7 @@ class ScratchFolder(TemporaryDirectory[str]):
     Args:
         purpose: a word for the name of the folder.
         parent: the parent folder; None for the system's folder for temporary files.
-        ignore_cleanup_errors: whether what cannot be removed stays without an error.
+        ignore_cleanup_errors: whether files that cannot be removed are left behind without an error.
     """
 
     def __init__(self, purpose: str, parent: Path | None = None, *, ignore_cleanup_errors: bool = False) -> None:

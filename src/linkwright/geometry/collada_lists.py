@@ -35,8 +35,8 @@ def read_triangles(data: bytes, max_triangles: int) -> _Mesh | None:
             for x, y, z in points
         ]
         for face in faces:
-            one, two, three = reversed(face) if is_mirrored else face
-            triangles.append((first_index + one, first_index + two, first_index + three))
+            first, second, third = reversed(face) if is_mirrored else face
+            triangles.append((first_index + first, first_index + second, first_index + third))
     return corners, triangles
 
 

@@ -131,7 +131,7 @@ def _plate(corners: Array, normal: Array) -> Array:
 
 
 def _flat_groups(faces: Faces, normals: Array) -> list[NDArray[np.int64]]:
-    """Group triangles that are coplanar and connected by edges, and return the indices in each group."""
+    """Return the indices of the triangles in each flat, connected group."""
     edges = np.sort(np.stack([faces, np.roll(faces, -1, axis=1)], axis=2).reshape(-1, 2), axis=1)
     owner = np.repeat(np.arange(len(faces)), 3)
     order = np.lexsort((edges[:, 1], edges[:, 0]))

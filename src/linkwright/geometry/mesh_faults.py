@@ -61,7 +61,9 @@ def _stl_faults(data: bytes) -> Iterator[Phrase]:
     triangle_count = (len(data) - _HEADER) // _TRIANGLE
     if declared_count > triangle_count:
         yield phrase(
-            "its header declares {said} triangles, but the file has {there}", said=declared_count, there=triangle_count
+            "its header declares {declared} triangles, but the file has {found}",
+            declared=declared_count,
+            found=triangle_count,
         )
 
 
@@ -87,7 +89,7 @@ def _obj_faults(data: bytes) -> Iterator[Phrase]:
                 try:
                     index = int(token.partition("/")[0])
                 except ValueError:
-                    yield _with_line(number, phrase("'{word}' is not a vertex number", word=token))
+                    yield _with_line(number, phrase("'{text}' is not a vertex number", text=token))
                     continue
                 if not 1 <= abs(index) <= vertices:
                     yield _with_line(
@@ -107,13 +109,13 @@ def _lines(data: bytes) -> Iterator[tuple[int, list[str]]]:
 
 def _number_faults(line: int, words: list[str], count: int) -> Iterator[Phrase]:
     yield from (
-        _with_line(line, phrase("'{word}' is not a finite number", word=token))
+        _with_line(line, phrase("'{text}' is not a finite number", text=token))
         for token in words
         if not _is_number(token)
     )
     if len(words) != count:
         yield _with_line(
-            line, phrase("{count} numbers are needed, but there are {there}", there=len(words), count=count)
+            line, phrase("{count} numbers are needed, but there are {found}", found=len(words), count=count)
         )
 
 
@@ -125,7 +127,7 @@ def _is_number(token: str) -> bool:
 
 
 def _with_line(line: int, fault: Phrase) -> Phrase:
-    return phrase("line {line}: {what}", line=line, what=fault)
+    return phrase("line {line}: {problem}", line=line, problem=fault)
 
 
 # --- COLLADA -------------------------------------------------------------------------------------------------------
@@ -169,9 +171,9 @@ def _element_faults(element: Element, ids: set[str]) -> Iterator[Phrase]:
         number_count = len(element.text().split())
         if count != str(number_count):
             message = phrase(
-                "<{tag}> has {there} numbers, but {count} are needed",
+                "<{tag}> has {found} numbers, but {count} are needed",
                 tag=element.tag,
-                there=number_count,
+                found=number_count,
                 count=count or "?",
             )
             yield _with_element_line(element, message)
@@ -200,7 +202,7 @@ def _index_faults(mesh: Element) -> Iterator[Phrase]:
 def _list_faults(element: Element, is_valid: Callable[[str], bool], expected: Phrase) -> Iterator[Phrase]:
     for token in element.text().split():
         if not is_valid(token):
-            message = phrase("'{word}' in <{tag}> is not {what}", word=token, tag=element.tag, what=expected)
+            message = phrase("'{text}' in <{tag}> is not {type}", text=token, tag=element.tag, type=expected)
             yield _with_element_line(element, message)
 
 
@@ -226,7 +228,7 @@ def _glb_faults(data: bytes) -> Iterator[Phrase]:
     if version != 2:
         yield phrase("it is glTF {version}, but only glTF 2 is supported", version=version)
     if length > len(data):
-        yield phrase("its header declares {said} bytes, but the file has {there}", said=length, there=len(data))
+        yield phrase("its header declares {declared} bytes, but the file has {found}", declared=length, found=len(data))
     if chunk_type != _JSON_CHUNK:
         yield phrase("its first chunk is not JSON")
         return
@@ -266,7 +268,7 @@ def _reference_faults(document: dict[str, Any]) -> Iterator[Phrase]:
             location = f"meshes[{number}].primitives[{index}]"
             attributes = primitive["attributes"]
             if "POSITION" not in attributes:
-                yield phrase("{place} has no attribute '{name}'", place=location, name="POSITION")
+                yield phrase("{entry} has no attribute '{name}'", entry=location, name="POSITION")
             for name, accessor in attributes.items():
                 yield from _missing_reference_faults(document, f"{location}.attributes.{name}", "accessors", accessor)
             yield from _missing_reference_faults(document, f"{location}.indices", "accessors", primitive.get("indices"))
@@ -278,8 +280,8 @@ def _reference_faults(document: dict[str, Any]) -> Iterator[Phrase]:
         for name, values in (("componentType", _COMPONENT_SIZES), ("type", _COMPONENT_COUNTS)):
             if accessor.get(name) not in values:
                 yield phrase(
-                    "{place}.{name} is {value}, which glTF does not have",
-                    place=location,
+                    "{entry}.{name} is {value}, which glTF does not have",
+                    entry=location,
                     name=name,
                     value=str(accessor.get(name)),
                 )
@@ -287,11 +289,11 @@ def _reference_faults(document: dict[str, Any]) -> Iterator[Phrase]:
         yield from _missing_reference_faults(document, f"bufferViews[{number}].buffer", "buffers", view["buffer"])
 
 
-def _missing_reference_faults(document: dict[str, Any], place: str, kind: str, index: int | None) -> Iterator[Phrase]:
+def _missing_reference_faults(document: dict[str, Any], entry: str, kind: str, index: int | None) -> Iterator[Phrase]:
     count = len(document.get(kind, ()))
     if index is not None and not 0 <= index < count:
         yield phrase(
-            "{place} is {index}, but the number of {kind} is {count}", place=place, index=index, count=count, kind=kind
+            "{entry} is {index}, but the number of {kind} is {count}", entry=entry, index=index, count=count, kind=kind
         )
 
 
@@ -302,16 +304,16 @@ def _range_faults(document: dict[str, Any], binary: int | None) -> Iterator[Phra
         buffer_size = binary if binary is not None and "uri" not in buffer else buffer["byteLength"]
         if view.get("byteOffset", 0) + view["byteLength"] > buffer_size:
             yield phrase(
-                "{place} reaches beyond the {there} bytes of its buffer",
-                place=f"bufferViews[{number}]",
-                there=buffer_size,
+                "{entry} reaches beyond the {found} bytes of its buffer",
+                entry=f"bufferViews[{number}]",
+                found=buffer_size,
             )
     for number, accessor in enumerate(document.get("accessors", ())):
         if "bufferView" in accessor:
             element_size = _COMPONENT_SIZES[accessor["componentType"]] * _COMPONENT_COUNTS[accessor["type"]]
             end = accessor.get("byteOffset", 0) + element_size * accessor["count"]
             if end > views[accessor["bufferView"]]["byteLength"]:
-                yield phrase("{place} reaches beyond its bufferView", place=f"accessors[{number}]")
+                yield phrase("{entry} reaches beyond its bufferView", entry=f"accessors[{number}]")
 
 
 _FAULTS: dict[str, Callable[[bytes], Iterator[Phrase]]] = {

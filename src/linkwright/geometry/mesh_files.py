@@ -225,7 +225,7 @@ def parser_fault(error: Exception) -> Phrase:
     if isinstance(error, FileNotFoundError):
         return phrase("it refers to the file '{name}', which does not exist", name=str(error.filename or error))
     lines = str(error).strip().splitlines()
-    return phrase("the parser reports: {said}", said=foreign(lines[0] if lines else type(error).__name__))
+    return phrase("the parser reports: {error}", error=foreign(lines[0] if lines else type(error).__name__))
 
 
 def file_resolver(path: str) -> Any:

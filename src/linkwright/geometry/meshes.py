@@ -173,6 +173,8 @@ def unreadable(path: Path, reason: str) -> LinkwrightError:
     hint = phrase("export the mesh again, or leave out the link that uses it")
     return LinkwrightError(
         Diagnostic(
-            "INR103", phrase("cannot read the mesh '{path}': {why}", path=display_path(path), why=reason), hint=hint
+            "INR103",
+            phrase("cannot read the mesh '{path}': {reason}", path=display_path(path), reason=reason),
+            hint=hint,
         )
     )

@@ -146,12 +146,12 @@ def _text_stl(data: bytes) -> SmallMesh | None:
     name.decode()
     if any(token != b"?" and set(tokens[index :: len(FACET)]) != {token} for index, token in enumerate(FACET)):
         return None
-    columns = [tokens[place :: len(FACET)] for place in CORNERS]
+    columns = [tokens[corner :: len(FACET)] for corner in CORNERS]
     return _mesh_from_corners([float(number) for row in zip(*columns, strict=True) for number in row])
 
 
 def _mesh_from_corners(numbers: list[float]) -> SmallMesh | None:
-    """Return a mesh of separate triangles from their corners' coordinates, or None as `_mesh` does."""
+    """Return a mesh of separate triangles from their coordinates, or None as `_mesh` does."""
     count = len(numbers) // 9
     indices = range(3 * count)
     return _mesh(_points(numbers), list(zip(indices[::3], indices[1::3], indices[2::3], strict=True)))

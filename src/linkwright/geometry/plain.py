@@ -59,6 +59,6 @@ def triangulate_fans(corners: Faces, counts: Faces) -> Faces:
         counts: the number of corners of each polygon, 3 or more.
     """
     ends = np.cumsum(counts)
-    firsts = np.repeat(ends - counts, counts - 2)
-    seconds = np.arange(len(firsts)) + np.repeat(2 * np.arange(len(counts)), counts - 2) + 1
-    return np.stack([corners[firsts], corners[seconds], corners[seconds + 1]], axis=1)
+    first_corners = np.repeat(ends - counts, counts - 2)
+    seconds = np.arange(len(first_corners)) + np.repeat(2 * np.arange(len(counts)), counts - 2) + 1
+    return np.stack([corners[first_corners], corners[seconds], corners[seconds + 1]], axis=1)

@@ -35,11 +35,10 @@ class Network:
     """
 
     def __init__(self, session: Supervisor) -> None:
-        self._session = session
-        if session.options.network:
-            from linkwright.wire.joining import check_security
+        from linkwright.wire.joining import check_security
 
-            check_security()
+        check_security()
+        self._session = session
         self._graph: Graph | None = None
         self._handle: asyncio.TimerHandle | None = None
         self.domain_id: int | None = None
@@ -51,9 +50,9 @@ class Network:
     def join_soon(self, *, with_viewer: bool) -> None:
         """Join the network after a delay, unless this was already requested.
 
-        This method has no effect if there is no graph, or if joining is disabled.
+        This method has no effect if there is no graph, or if the environment disables joining.
         """
-        if self._graph is None or self._handle is not None or not self._is_enabled():
+        if self._graph is None or self._handle is not None or os.environ.get(_SWITCH_VARIABLE) == "0":
             return
         loop = asyncio.get_running_loop()
         self._handle = loop.call_later(_DELAY_SECONDS if with_viewer else 0.0, self._join)
@@ -63,9 +62,6 @@ class Network:
         if self._handle is not None:
             self._handle.cancel()
         self._graph = None
-
-    def _is_enabled(self) -> bool:
-        return self._session.options.network and os.environ.get(_SWITCH_VARIABLE) != "0"
 
     def _join(self) -> None:
         graph = self._graph

@@ -11,13 +11,13 @@ from typing import TYPE_CHECKING, Any
 
 from linkwright.diagnostics import Diagnostic, LinkwrightError, foreign, phrase
 from linkwright.hosting.launch_log import SCREEN, output_destinations
-from linkwright.hosting.network import Network, SharedNames
 from linkwright.hosting.plans import HostedPlan, Supervisor
 from linkwright.hosting.reload import WatchedFiles
 from linkwright.hosting.viewer_host import ViewerHost, load_viewer
 
 if TYPE_CHECKING:
     from linkwright.graph import Graph, LogRecord, Node
+    from linkwright.hosting.network import Network, SharedNames
     from linkwright.hosting.xacro_calls import XacroCall
     from linkwright.nodes import RunningNode
     from linkwright.viewer import Viewer
@@ -49,7 +49,11 @@ class NodeHost:
         self._start_lock = asyncio.Lock()
         self._is_closing = False
         self._closed = asyncio.Event()
-        self.network = Network(session)
+        self._network: Network | None = None
+        if session.options.network:
+            from linkwright.hosting.network import Network
+
+            self._network = Network(session)
 
     @property
     def is_busy(self) -> bool:
@@ -77,9 +81,10 @@ class NodeHost:
         if self._graph is None:
             from linkwright.graph import Graph
 
-            self._shared_names = SharedNames(self.network, self._session.log, self._show_findings)
-            self._graph = Graph(on_log=self._on_log, on_shared_names=self._shared_names.set_names)
-            self.network.set_graph(self._graph)
+            if self._network is None:
+                self._graph = Graph(on_log=self._on_log)
+            else:
+                self._graph = self._open_shared_graph(self._network)
         return self._graph
 
     @property
@@ -92,7 +97,7 @@ class NodeHost:
             self._launcher = self.graph.create_node(
                 f"launch_ros_{os.getpid()}", enable_rosout=False, parameters={"use_sim_time": self._uses_simulated_time}
             )
-            self.network.join_soon(with_viewer=self.has_viewer)
+            self.join_network_soon()
         return self._launcher
 
     def use_simulated_time(self, value: bool) -> None:
@@ -102,6 +107,14 @@ class NodeHost:
         self._uses_simulated_time = value
         if self._launcher is not None:
             self._launcher.set_parameters([Parameter("use_sim_time", value=value)])
+
+    def join_network_soon(self) -> None:
+        """Join the ROS 2 network after a delay, unless this was already requested.
+
+        This method has no effect before `graph` is used, or if the options or the environment disable the network.
+        """
+        if self._network is not None:
+            self._network.join_soon(with_viewer=self.has_viewer)
 
     def plan(self, plan: HostedPlan) -> None:
         """Plan a node, which starts as soon as possible.
@@ -148,7 +161,7 @@ class NodeHost:
                     self._start_node(plan)
                     await asyncio.sleep(0)
         if not self._is_closing:
-            self.network.join_soon(with_viewer=self.has_viewer)
+            self.join_network_soon()
 
     def show_findings(self, findings: list[Diagnostic]) -> None:
         """Show the current findings about description files in the viewers."""
@@ -181,11 +194,22 @@ class NodeHost:
         for plan in self._viewers.plans():
             await self._stop_viewer(plan, self._viewers.pop_viewer(plan))
         await self._viewers.close()
-        self.network.close()
+        if self._network is not None:
+            self._network.close()
         if self._shared_names is not None:
             self._shared_names.close()
         if self._graph is not None:
             await self._graph.close()
+
+    def _open_shared_graph(self, network: Network) -> Graph:
+        """Return a new graph that joins the network, with a monitor of shared node names."""
+        from linkwright.graph import Graph
+        from linkwright.hosting.network import SharedNames
+
+        self._shared_names = SharedNames(network, self._session.log, self._show_findings)
+        graph = Graph(on_log=self._on_log, on_shared_names=self._shared_names.set_names)
+        network.set_graph(graph)
+        return graph
 
     # --- nodes ----------------------------------------------------------------------------------------------
 

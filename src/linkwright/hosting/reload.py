@@ -167,7 +167,7 @@ class LiveReload:
                 self._saved_calls.add(call)
             if self._is_broken(call):
                 # The missing file may be in the folder of this file, or in any package.
-                self.descriptions.finder.forget()
+                self.descriptions.finder.clear_cache()
                 self._start_reload(call)
             elif call in self._saved_calls:
                 self._start_reload(call)
@@ -188,7 +188,10 @@ class LiveReload:
         return any(os.path.realpath(file) == path for file in self._files_of_interest(call))
 
     def _is_unsaved(self, call: XacroCall) -> bool:
-        """Return whether a description is read with unsaved texts, whose findings are shown and not printed."""
+        """Return whether a description is read with unsaved texts.
+
+        The findings about unsaved texts are shown in pages, but not printed.
+        """
         return any(self._uses_file(call, str(path)) for path in self.descriptions.unsaved_texts)
 
     def _is_broken(self, call: XacroCall) -> bool:

@@ -226,7 +226,7 @@ def own_environment(finder: PackageFinder) -> Iterator[None]:
     saved_environment = dict(os.environ)
     try:
         with use_finder(finder):
-            finder.offer_prefix_path(os.environ)
+            finder.set_prefix_path(os.environ)
             yield
     finally:
         for name in [name for name in os.environ if name not in saved_environment]:

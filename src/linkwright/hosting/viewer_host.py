@@ -17,6 +17,7 @@ if TYPE_CHECKING:
     from linkwright.nodes import RunningNode
     from linkwright.page.page_server import PageServer
     from linkwright.viewer import Viewer
+    from linkwright.viewer.guests import GuestRecordings
 
 _CLOSE_TIMEOUT_SECONDS = 0.8
 
@@ -93,7 +94,10 @@ class ViewerHost:
         )
 
     async def _announce(self, server: PageServer) -> None:
-        """Print the address of a page, and open it where the user looks: in the page of this terminal, or a browser."""
+        """Print the address of a page, and open the page in a browser if the options ask for it.
+
+        If this program runs in a terminal of another page, that page shows it in a frame instead.
+        """
         options = self._session.options
         self._session.log.announce(f"Viewer: {server.url}")
         if not options.open_browser or await server.embed(os.environ, options.title):
@@ -117,7 +121,6 @@ class ViewerHost:
         """
         from linkwright.rviz import find_unsaved
         from linkwright.viewer import Viewer
-        from linkwright.viewer.guests import GuestRecordings
 
         session = self._session
         if plan.viewer_config is not None:
@@ -146,7 +149,7 @@ class ViewerHost:
             history=session.options.history,
         )
         self._servers.pop(plan.process_name, None)
-        viewer.guests = GuestRecordings(viewer)
+        viewer.make_guests = lambda: _make_guests(viewer)
         if session.options.terminal is not None:
             from linkwright.panels.terminal.feature import TerminalFeature
 
@@ -223,8 +226,13 @@ def load_viewer() -> None:
 
     This takes time, and may run in another thread.
     """
-    import linkwright.viewer.guests
     import linkwright.viewer.viewer  # noqa: F401 - only loaded
+
+
+def _make_guests(viewer: Viewer) -> GuestRecordings:
+    from linkwright.viewer.guests import GuestRecordings  # few users upload recordings
+
+    return GuestRecordings(viewer)
 
 
 def _attach_panel(viewer: Viewer, node: RunningNode) -> None:

@@ -5,16 +5,14 @@ from linkwright.loading.lean_typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
     from linkwright.inertia.estimation import DEFAULT_DENSITY, Estimate, ShapeKind, estimate
-    from linkwright.inertia.inertial import from_inertial, to_inertial
     from linkwright.inertia.mesh_library import MeshLibrary
 
-__all__ = ["DEFAULT_DENSITY", "Estimate", "MeshLibrary", "ShapeKind", "estimate", "from_inertial", "to_inertial"]
+__all__ = ["DEFAULT_DENSITY", "Estimate", "MeshLibrary", "ShapeKind", "estimate"]
 
 __getattr__ = deferred(
     __name__,
     {
         "estimation": ("DEFAULT_DENSITY", "Estimate", "ShapeKind", "estimate"),
-        "inertial": ("from_inertial", "to_inertial"),
         "mesh_library": ("MeshLibrary",),
     },
 )

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from linkwright.geometry.mass import MassProperties
-from linkwright.inertia.inertial import to_inertial
+from linkwright.urdf import Inertial
 
 _DIGITS = 6
 _ROUNDING = 1e-9
@@ -18,7 +18,7 @@ def inertial_parts(properties: MassProperties) -> tuple[tuple[str, Attributes], 
     The axes are the link's axes. Numbers have six significant digits: the rounding is far smaller than the
     uncertainty of the shape, and keeps a valid tensor valid.
     """
-    inertial = to_inertial(properties)
+    inertial = Inertial.of(properties)
     xyz = inertial.origin.xyz
     x, y, z = (
         _number_text(coordinate, 1.0) for coordinate in xyz

@@ -6,7 +6,6 @@ from linkwright.diagnostics import LinkwrightError, Phrase, phrase, term
 from linkwright.geometry.mass import MassProperties, combine
 from linkwright.geometry.shapes import MAX_COORDINATE, shape_bounds
 from linkwright.geometry.solids import shape_properties
-from linkwright.inertia.inertial import has_mass
 from linkwright.inertia.mesh_library import MeshLibrary
 from linkwright.loading.lean_dataclasses import dataclass
 from linkwright.loading.lean_typing import Literal
@@ -81,7 +80,7 @@ def estimate(
     basis: Literal["mass", "density", "present"] = "density"
     if mass is not None:
         basis = "mass"
-    elif density is None and link.inertial is not None and has_mass(link.inertial):
+    elif density is None and link.inertial is not None and link.inertial.has_mass:
         basis, mass = "present", link.inertial.mass
     if kind is None:
         return Estimate(link.name, None, None, 0, basis, 0.0, tuple(notes))
@@ -110,7 +109,9 @@ def _solid(
         try:
             mesh = meshes.load(geometry, shape.element)
         except LinkwrightError as error:
-            notes.append(phrase("a {kind} mesh is left out: {why}", kind=term(kind), why=error.diagnostics[0].message))
+            notes.append(
+                phrase("a {kind} mesh is left out: {reason}", kind=term(kind), reason=error.diagnostics[0].message)
+            )
             return None
         solid = mesh.solid
         name = geometry.filename.rpartition("/")[2]
@@ -126,7 +127,9 @@ def _solid(
     else:
         shape_name = type(geometry).__name__.lower()
         if max(shape_bounds(geometry).high) > MAX_COORDINATE:
-            notes.append(phrase("a {kind} {what} is left out: it is too large", kind=term(kind), what=term(shape_name)))
+            notes.append(
+                phrase("a {kind} {shape} is left out: it is too large", kind=term(kind), shape=term(shape_name))
+            )
             return None
         solid = shape_properties(geometry)
         if not solid.mass > _MIN_VOLUME:
@@ -134,7 +137,7 @@ def _solid(
                 phrase("its volume is negligible") if solid.mass > 0 else phrase("it has a size that is not positive")
             )
             notes.append(
-                phrase("a {kind} {what} is left out: {why}", kind=term(kind), what=term(shape_name), why=reason)
+                phrase("a {kind} {shape} is left out: {reason}", kind=term(kind), shape=term(shape_name), reason=reason)
             )
             return None
     return solid.moved(shape.origin)

@@ -12,11 +12,10 @@ from linkwright.diagnostics.translation import localized
 from linkwright.geometry.mass import MassProperties
 from linkwright.inertia.blocks import inertial_block
 from linkwright.inertia.estimation import Estimate
-from linkwright.inertia.inertial import to_inertial
 from linkwright.inertia.verdict import Grade, Verdict, assess, grouped_digits
 from linkwright.inertia.writing import WriteResult
 from linkwright.loading.lean_typing import Any
-from linkwright.urdf import Robot
+from linkwright.urdf import Inertial, Robot
 from linkwright.urdf.bodies import Bodies
 
 _STEP = "  "
@@ -88,7 +87,7 @@ def _row(estimate: Estimate, verdict: Verdict) -> tuple[str, ...]:
     )
     density = "-" if verdict.density is None else grouped_digits(verdict.density)
     name = _GRADE_NAMES.get(verdict.grade)
-    text = verdict.reason if name is None else phrase("{standing}: {words}", standing=name, words=verdict.reason)
+    text = verdict.reason if name is None else phrase("{grade}: {reasons}", grade=name, reasons=verdict.reason)
     return estimate.link, mass, density, moments, localized(text)
 
 
@@ -151,7 +150,7 @@ def _link_data(estimate: Estimate, verdict: Verdict, write_result: WriteResult |
 
 
 def _properties_data(properties: MassProperties) -> dict[str, Any]:
-    inertial = to_inertial(properties)
+    inertial = Inertial.of(properties)
     principal = properties.principal()
     box = properties.equivalent_box()
     tensor = {name: getattr(inertial, name) for name in ("ixx", "ixy", "ixz", "iyy", "iyz", "izz")}

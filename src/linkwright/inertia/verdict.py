@@ -12,7 +12,6 @@ from linkwright.geometry.mass import MassProperties
 from linkwright.geometry.validity import MAX_DENSITY, MIN_DENSITY, problems
 from linkwright.inertia.comparison import Comparison, compare
 from linkwright.inertia.estimation import Estimate
-from linkwright.inertia.inertial import from_inertial
 from linkwright.loading.lean_dataclasses import dataclass
 from linkwright.urdf import Link, Mesh
 from linkwright.urdf.bodies import Bodies
@@ -87,7 +86,7 @@ def assess(link: Link, estimate: Estimate, bodies: Bodies) -> Verdict:
         return _verdict_without_inertial(link, bodies)
     if not link.inertial.is_computable:
         return Verdict(Grade.IMPOSSIBLE, phrase("its numbers are out of range"))
-    file_properties = from_inertial(link.inertial)
+    file_properties = link.inertial.properties
     shapes = link.collisions if estimate.kind == "collision" else link.visuals
     comparison = None if estimate.properties is None else compare(file_properties, estimate.properties)
     computed = (
@@ -163,9 +162,9 @@ def _comparison_reasons(comparison: Comparison, computed: MassProperties) -> lis
         if times > _ROUGH_RATIO:
             times_text = f"{times:.2g}" if times < _DOUBTFUL_RATIO else grouped_digits(times)
             words = (
-                phrase("its moments are {times} times the moments of a solid with its shapes", times=times_text)
+                phrase("its moments are {factor} times the moments of a solid with its shapes", factor=times_text)
                 if ratio > 1
-                else phrase("its moments are 1/{times} of the moments of a solid with its shapes", times=times_text)
+                else phrase("its moments are 1/{factor} of the moments of a solid with its shapes", factor=times_text)
             )
             reasons.append(_Reason(Grade.DOUBTFUL if times > _DOUBTFUL_RATIO else Grade.ROUGH, words, log(times)))
     return reasons

@@ -57,8 +57,8 @@ def edits_of_link(robot: Robot, name: str, properties: MassProperties) -> tuple[
     Raises:
         NotWritableError: as for `edits_for`, or the text of the link defines other links, too.
     """
-    place = _source_position(robot.links[name])
-    if any(_source_position(other) == place for other in robot.links.values() if other.name != name):
+    position = _source_position(robot.links[name])
+    if any(_source_position(other) == position for other in robot.links.values() if other.name != name):
         raise NotWritableError(phrase("its text in the file defines several links"))
     return edits_for(robot.links[name], properties)
 

@@ -138,8 +138,8 @@ def _missing_wheels(kind: DriveKind, fixed_pairs: list[Pair], steered_pairs: lis
     min_pairs = {"mecanum": 2, "skid": 2}.get(kind, 1)
     if len(fixed_pairs) < min_pairs:
         return phrase(
-            "it needs {least} pairs of wheels, each with one on the left and one on the right, but there are {count}",
-            least=min_pairs,
+            "it needs {minimum} pairs of wheels, each with one on the left and one on the right, but there are {count}",
+            minimum=min_pairs,
             count=len(fixed_pairs),
         )
     if kind == "differential" and len(fixed_pairs) > 1:

@@ -53,7 +53,7 @@ def infer(robot: Robot, meshes: MeshLibrary, *, kind: DriveKind | None = None, w
     if working_drive is None and idle_drive is not None and verdict.drive is None:
         verdict = DriveVerdict(Drive("joints"), phrase("the controllers of the robot do not work here"))
     if is_requested and verdict.drive is None:
-        message = phrase("'{robot}' cannot be driven as requested: {why}", robot=robot.name, why=verdict.reason)
+        message = phrase("'{robot}' cannot be driven as requested: {reason}", robot=robot.name, reason=verdict.reason)
         raise LinkwrightError(Diagnostic("DRIVE211", message, hint=_DRIVE_HINT))
     return _InferenceBuilder(survey, undercarriage, verdict, working_drive, idle_drive).result()
 
@@ -146,12 +146,12 @@ class _InferenceBuilder:
         root = self._robot.element
         if self._idle_drive is not None:
             message = phrase(
-                "'{what}', the drive that '{robot}' declares, has no effect here",
+                "'{drive}', the drive that '{robot}' declares, has no effect here",
                 **self._message_values(self._idle_drive),
             )
             yield Finding(_diagnostic_at(self._idle_drive, "DRIVE205", message))
         if self._working_drive is not None:
-            message = phrase("'{robot}' declares its own drive, '{what}'", **self._message_values(self._working_drive))
+            message = phrase("'{robot}' declares its own drive, '{drive}'", **self._message_values(self._working_drive))
             yield Finding(_diagnostic_at(self._working_drive, "DRIVE202", message))
             yield from self._holding_findings(held_joints)
             return
@@ -162,10 +162,10 @@ class _InferenceBuilder:
         if drive.kind != "joints":
             yield from self._reversed_axes(drive)
             message = phrase(
-                "the inferred drive of '{robot}' is of the kind '{kind}': {why}",
+                "the inferred drive of '{robot}' is of the kind '{kind}': {reason}",
                 robot=self._robot.name,
                 kind=drive.kind,
-                why=self._verdict.reason,
+                reason=self._verdict.reason,
             )
             yield Finding(
                 self._diagnostic_at_root("DRIVE111", message),
@@ -175,7 +175,9 @@ class _InferenceBuilder:
             yield from self._caster_findings()
             yield from self._tipping_findings(drive)
         if self._fixed_base and self._robot.root != _WORLD_LINK:
-            message = phrase("'{robot}' is fixed to the world: {why}", robot=self._robot.name, why=self._verdict.reason)
+            message = phrase(
+                "'{robot}' is fixed to the world: {reason}", robot=self._robot.name, reason=self._verdict.reason
+            )
             yield Finding(self._diagnostic_at_root("DRIVE113", message), root, tuple(_world_anchor(self._robot)))
         yield from self._holding_findings(held_joints)
         moving = [joint.name for joint in self._robot.joints.values() if joint.type in _MOVING_TYPES]
@@ -197,13 +199,15 @@ class _InferenceBuilder:
 
     def _message_values(self, element: Element) -> dict[str, str]:
         element_name = element.attributes.get("filename") or element.attributes.get("name") or element.tag
-        return {"robot": self._robot.name, "what": element_name}
+        return {"robot": self._robot.name, "drive": element_name}
 
     def _no_drive_finding(self) -> Finding:
         if not any(joint.type in _MOVING_TYPES for joint in self._robot.joints.values()):
             message = phrase("no joint of '{robot}' moves: there is nothing to drive", robot=self._robot.name)
             return Finding(self._diagnostic_at_root("DRIVE203", message))
-        message = phrase("the drive of '{robot}' is unknown: {why}", robot=self._robot.name, why=self._verdict.reason)
+        message = phrase(
+            "the drive of '{robot}' is unknown: {reason}", robot=self._robot.name, reason=self._verdict.reason
+        )
         return Finding(self._diagnostic_at_root("DRIVE201", message, Severity.WARNING, _DRIVE_HINT))
 
     def _reversed_axes(self, drive: Drive) -> Iterator[Finding]:

@@ -16,7 +16,6 @@ from linkwright.geometry.shapes import rotated, transposed
 from linkwright.geometry.single import Vector3, add_vectors, length, rotation_from_z, rpy_from_quaternion, scaled
 from linkwright.inertia import DEFAULT_DENSITY, MeshLibrary, estimate
 from linkwright.inertia.blocks import inertial_parts
-from linkwright.inertia.inertial import has_mass
 from linkwright.inertia.verdict import grouped_digits
 from linkwright.inference.gazebo import format_number
 from linkwright.inference.results import Finding, Wheel
@@ -85,7 +84,9 @@ def _link_collisions(survey: Survey, link: Link, wheel: Wheel | None) -> Iterato
         collisions.append(collision[0])
         descriptions.append(collision[1])
     if collisions:
-        message = phrase("link '{link}' has no <collision>: it gets {what}", link=link.name, what=joined(descriptions))
+        message = phrase(
+            "link '{link}' has no <collision>: it gets {shape}", link=link.name, shape=joined(descriptions)
+        )
         yield Finding(_diagnostic_at("DRIVE101", message, element), element, tuple(collisions))
 
 
@@ -97,7 +98,7 @@ def _visual_to_collision(
     if not isinstance(geometry, Mesh):
         shape_name = term(type(geometry).__name__.lower())
         return _collision_element(visual.origin.xyz, visual.origin.rpy, _shape_element(geometry)), phrase(
-            "the {what} of its visual", what=shape_name
+            "the {shape} of its visual", shape=shape_name
         )
     corners = vertices(visual, survey.meshes)
     if corners is None:
@@ -182,7 +183,7 @@ def _missing_body_mass(members: list[Link], densities: Mapping[str, float], mesh
 def _missing_tensor(link: Link, meshes: MeshLibrary) -> Iterator[Finding]:
     """Yield a finding with the ``<inertial>`` of a link with mass and zero moments of inertia."""
     inertial = link.inertial
-    if inertial is None or not has_mass(inertial) or any(_moments(inertial)) or link.element is None:
+    if inertial is None or not inertial.has_mass or any(_moments(inertial)) or link.element is None:
         return
     properties = estimate(link, meshes, mass=inertial.mass).properties
     if properties is not None:

@@ -57,7 +57,7 @@ def write_inference(robot: Robot, inference: Inference) -> WriteResult:
     by_key = {str(key): findings for key, findings in findings_by_owner.items()}
     writer = _Writer(robot)
     written = write_edits({key: partial(writer.edits, findings) for key, findings in by_key.items()})
-    refused = tuple(_refusal(finding, why) for key, why in written.refusals.items() for finding in by_key[key])
+    refused = tuple(_refusal(finding, reason) for key, reason in written.refusals.items() for finding in by_key[key])
     return WriteResult(written.files, sum(len(by_key[key]) for key in written.links), refused)
 
 
@@ -158,10 +158,12 @@ def _source_position(element: Element) -> tuple[str, int]:
     return ("", id(element)) if element.source is None else (element.source.name, element.offset)
 
 
-def _refusal(finding: Finding, why: str) -> Diagnostic:
+def _refusal(finding: Finding, reason: str) -> Diagnostic:
     diagnostic = finding.diagnostic
     message = phrase(
-        "an inferred element is not written to the file, because {why}: {what}", what=diagnostic.message, why=why
+        "an inferred element is not written to the file, because {reason}: {element}",
+        element=diagnostic.message,
+        reason=reason,
     )
     hint = phrase("edit the macro or the expression; `linkwright drive FILE --show` prints the text")
     return Diagnostic("DRIVE301", message, diagnostic.span, hint=hint, source=diagnostic.source)

@@ -32,7 +32,7 @@ class DifferentialDrive:
         return (forward - rotation_speed) / self.left_radius, (forward + rotation_speed) / self.right_radius
 
     def motion(self, left_speed: float, right_speed: float) -> tuple[float, float]:
-        """Return the forward velocity (m/s) and angular velocity (rad/s) for two wheel speeds in rad/s."""
+        """Return the forward (m/s) and angular velocity (rad/s) for two wheel speeds in rad/s."""
         left_speed, right_speed = left_speed * self.left_radius, right_speed * self.right_radius
         return (left_speed + right_speed) / 2.0, (right_speed - left_speed) / self.separation
 
@@ -133,7 +133,7 @@ class CarDrive:
         return speed * (1.0 - difference), speed * (1.0 + difference)
 
     def motion(self, left_speed: float, right_speed: float, angle: float) -> tuple[float, float]:
-        """Return the forward velocity (m/s) and angular velocity (rad/s) for two wheel speeds in rad/s.
+        """Return the forward (m/s) and angular velocity (rad/s) for two wheel speeds in rad/s.
 
         `angle` is the steering angle in rad. The forward velocity is the mean of the values for both wheels.
         """

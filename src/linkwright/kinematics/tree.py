@@ -322,7 +322,7 @@ class KinematicTree:
         self.joint_names: tuple[str, ...] = independent_joints
         self.link_names: tuple[str, ...] = layout.link_names
         self._joint_indexes = {name: index for index, name in enumerate(independent_joints)}
-        self._link_indexes = {name: place for place, name in enumerate(layout.link_names)}
+        self._link_indexes = {name: link_index for link_index, name in enumerate(layout.link_names)}
         self._relations = relations
         self._types = {joint.name: joint.type for joint in robot.joints.values()}
         names = [joint.name for joint in layout.body_joints]

@@ -45,14 +45,14 @@ def convert_to_xacro(project: Workspace, texts: Mapping[Path, str], file: Path, 
         text: its text.
 
     Raises:
-        UnprovedError: the new file exists or is outside of the workspace, the URDF is invalid, or the expansion would
+        UnprovedError: the new file exists or is outside the workspace, the URDF is invalid, or the expansion would
             differ from it.
     """
     new = file.with_name(f"{file.name}.xacro")
     if new.exists() or new in texts:
         raise UnprovedError(phrase("'{file}' already exists", file=display_path(str(new))))
     if not project.contains(new):
-        raise UnprovedError(phrase("'{file}' is outside of the workspace", file=display_path(str(new))))
+        raise UnprovedError(phrase("'{file}' is outside the workspace", file=display_path(str(new))))
     root = next(iter(source_elements(text)), None)
     if root is None:
         raise UnprovedError(phrase("the file has no element"))
@@ -80,7 +80,7 @@ def _escaped(text: str) -> str:
 
 
 def _comparable_elements(root: Element) -> list[tuple[object, ...]]:
-    """Return the tag, attributes and text of each element, without the xacro namespace declaration."""
+    """Return the tag, attributes and text of each element, without the xacro namespace."""
     return [
         (
             element.tag,

@@ -1,4 +1,4 @@
-"""The expansion of a description as text, with the source location of each element, and as robots."""
+"""The expansion of a description, as text with source locations and as robots."""
 
 from __future__ import annotations
 
@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from linkwright.diagnostics import LinkwrightError
-from linkwright.language.includes import real
+from linkwright.language.includes import real_path
 from linkwright.language.workspace import Workspace
 from linkwright.urdf import Robot, read
 from linkwright.xacro import expand
@@ -82,7 +82,7 @@ def expanded_text(
         expanded_range = _tag_range(expanded_element)
         source = _tag_range(element)
         if expanded_range is not None and source is not None and element.source is not None:
-            elements.append(ExpandedElement(*expanded_range, real(element.source.name), *source))
+            elements.append(ExpandedElement(*expanded_range, real_path(element.source.name), *source))
     return ExpandedText(text, tuple(elements))
 
 
@@ -118,4 +118,4 @@ def expanded_robots(project: Workspace, texts: Mapping[Path, str], file: Path) -
 def is_source_of(file: Path, start: int, element: Element | None) -> bool:
     """Return whether the start tag at an offset of a file is the source of an expanded element."""
     source = None if element is None else element.source
-    return element is not None and source is not None and (real(source.name), element.offset) == (file, start)
+    return element is not None and source is not None and (real_path(source.name), element.offset) == (file, start)

@@ -70,7 +70,9 @@ def complete_expression(document: Document, cursor: Cursor, names: Sequence[Name
         yield Completion(parameter.name, ItemKind.PROPERTY, begin, detail, f"**parameter {parameter.name}**")
     macro = cursor.macro
     macro_name = (
-        "" if macro is None else next((each.value or "" for each in macro.attributes() if each.name == "name"), "")
+        ""
+        if macro is None
+        else next((attribute.value or "" for attribute in macro.attributes() if attribute.name == "name"), "")
     )
     properties = definitions_of_kind(
         [name for name in names if not name.owner or name.owner == macro_name], NameKind.PROPERTY
@@ -101,7 +103,11 @@ def blocks_in_scope(cursor: Cursor) -> list[Parameter]:
 
 def _parameters(cursor: Cursor) -> tuple[Parameter, ...]:
     macro = cursor.macro
-    params_values = () if macro is None else (each.value or "" for each in macro.attributes() if each.name == "params")
+    params_values = (
+        ()
+        if macro is None
+        else (attribute.value or "" for attribute in macro.attributes() if attribute.name == "params")
+    )
     try:
         return tuple(parse_parameters(next(iter(params_values), "")))
     except Fault:  # it is being typed

@@ -70,7 +70,14 @@ def selected_value(text: str, start: int, end: int) -> ValueSelection | None:
     if element is None or element.top is None:
         return None
     if start < element.tag.end:
-        attribute = next((one for one in element.tag.attributes() if one.value_start <= start <= one.value_end), None)
+        attribute = next(
+            (
+                candidate
+                for candidate in element.tag.attributes()
+                if candidate.value_start <= start <= candidate.value_end
+            ),
+            None,
+        )
         if attribute is None or attribute.value is None or not _is_evaluated(element, attribute):
             return None
         return _selection(element, attribute.name, attribute.value, attribute.value_start, (start, end))
@@ -116,7 +123,12 @@ def _selection(
     if start >= end:
         return None
     enclosing = next(
-        (one for one in expressions_in(value) if one.inner_range[0] <= start and end <= one.inner_range[1]), None
+        (
+            expression
+            for expression in expressions_in(value)
+            if expression.inner_range[0] <= start and end <= expression.inner_range[1]
+        ),
+        None,
     )
     if enclosing is not None:
         low = enclosing.inner_range[0]
@@ -137,7 +149,9 @@ def _selection(
 
 def _is_plain_part(value: str, start: int, end: int) -> bool:
     """Return whether a range of a value cuts through no expression, substitution or number."""
-    if "$" in value and any(one.start < edge < one.end for edge in (start, end) for one in expressions_in(value)):
+    if "$" in value and any(
+        expression.start < edge < expression.end for edge in (start, end) for expression in expressions_in(value)
+    ):
         return False
     part = value[start:end]
     if part.count("$(") != part.count(")") or part.count("${") != part.count("}") or "$$" in value:
@@ -188,8 +202,8 @@ def extract_property(
     )
     proof = ExpansionProof(project, texts, file)
     error: UnprovedError | None = None
-    for place in _definition_offsets(text, element, is_local=is_local):
-        edits = (insertion_before(file, text, place, definition), use)
+    for insertion_offset in _definition_offsets(text, element, is_local=is_local):
+        edits = (insertion_before(file, text, insertion_offset, definition), use)
         try:
             proof.check_equal(edits)
         except UnprovedError as reason:
@@ -215,7 +229,7 @@ def _definition_offsets(text: str, element: SourceElement, *, is_local: bool) ->
     if macro is not None:
         places.append(element.child_of(macro))
     places.append(element)
-    offsets = [offset for place in places for offset in (start_with_comments(text, place.start), place.start)]
+    offsets = [offset for anchor in places for offset in (start_with_comments(text, anchor.start), anchor.start)]
     yield from dict.fromkeys(offsets)
 
 

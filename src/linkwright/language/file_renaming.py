@@ -10,7 +10,7 @@ from typing import NamedTuple
 from linkwright.diagnostics import LinkwrightError
 from linkwright.language.format import Document
 from linkwright.language.formats import format_of
-from linkwright.language.includes import real
+from linkwright.language.includes import real_path
 from linkwright.language.links import FileReference, file_references
 from linkwright.language.mentions import Mention
 from linkwright.language.proof import Edit
@@ -74,7 +74,7 @@ def _reference_edits(
     """Return the edits of the references to the old file in a text."""
     edits: dict[int, Edit] = {}
     for link in (*_format_references(project, texts, file, text), *_path_references(project, file, text)):
-        if real(link.file) == old:
+        if real_path(link.file) == old:
             edit = _reference_edit(file, text, link.start, link.end, old, new)
             if edit is not None:
                 edits[edit.end] = edit

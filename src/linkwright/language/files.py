@@ -1,4 +1,7 @@
-"""The names of the files that an editor sends to the language server, for the configurations of editors."""
+"""The names of the files that an editor sends to the language server.
+
+The configurations of editors are generated from them.
+"""
 
 from __future__ import annotations
 

@@ -25,7 +25,7 @@ class Document:
     Attributes:
         project: the files of the editor.
         texts: the texts of all open files.
-        file: the file, as `linkwright.language.includes.real` returns it.
+        file: the file, as `linkwright.language.includes.real_path` returns it.
         text: its text, which may be incomplete.
         waits: whether functions may expand descriptions and search sources. Otherwise they use the results of earlier
             requests, add the updates of outdated results to `refreshes`, and raise `NotYetKnownError` without results.

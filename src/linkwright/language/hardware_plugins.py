@@ -66,7 +66,7 @@ class HardwareParameter:
 def hardware_plugins(document: Document) -> dict[str, str]:
     """Return the purposes of hardware plugins by type, the plugins that packages export first."""
     found = {plugin.name: plugin.description for plugin in plugin_classes(document, BASE)}
-    found |= {name: about for name, (about, _) in _KNOWN.items() if name not in found}
+    found |= {name: purpose for name, (purpose, _) in _KNOWN.items() if name not in found}
     return found | {name: "" for name in sorted(extensions("linkwright.hardware")) if name not in found}
 
 

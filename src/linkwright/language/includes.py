@@ -36,16 +36,16 @@ class IncludeIndex:
         packages: dict[Path, None] = {}
         for folder in self._folders:
             found, below = walk(folder, DESCRIPTIONS)
-            files.update(dict.fromkeys(real(file) for file in found))
+            files.update(dict.fromkeys(real_path(file) for file in found))
             packages.update(dict.fromkeys(below))
         self.files, self.packages = tuple(files), tuple(packages)
-        self._package_folders = folders_by_package(map(real, packages))
+        self._package_folders = folders_by_package(map(real_path, packages))
 
     def entries(self, file: Path, texts: Mapping[Path, str], *, computed: bool = False) -> list[Path]:
         """Return the top-level descriptions that include a file, or the file if none does.
 
         Args:
-            file: the file, as `real` returns it.
+            file: the file, as `real_path` returns it.
             texts: texts that replace those of files.
             computed: whether an include with a computed path counts for each file that it can mean.
         """
@@ -74,7 +74,9 @@ class IncludeIndex:
         return [file for file in files if not self._includers_of(file, includers)]
 
     def related(self, file: Path, texts: Mapping[Path, str], *, computed: bool = False) -> list[Path]:
-        """Return a file, the files that it includes, the descriptions that include it, and their other files.
+        """Return a file and all files of the descriptions that include it.
+
+        The files that it includes are among them.
 
         Args:
             file: the file.
@@ -136,6 +138,6 @@ class IncludeIndex:
         return known[1]
 
 
-def real(path: str | os.PathLike[str]) -> Path:
+def real_path(path: str | os.PathLike[str]) -> Path:
     """Return the path of a file with all symbolic links resolved."""
     return Path(os.path.realpath(path))

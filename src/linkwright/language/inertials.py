@@ -21,7 +21,11 @@ from linkwright.xmltree import Element
 def link_with_shapes_at(text: str, offset: int) -> SourceElement | None:
     """Return the link around an offset if it has shapes without expressions, or None."""
     element = innermost_element(source_elements(text), offset)
-    link = None if element is None else next((one for one in element.ancestors_and_self() if one.name == "link"), None)
+    link = (
+        None
+        if element is None
+        else next((candidate for candidate in element.ancestors_and_self() if candidate.name == "link"), None)
+    )
     if link is None or any(child.name.startswith(PREFIX) for child in link.children):
         return None
     shapes = [child for child in link.children if child.name in ("visual", "collision")]
@@ -59,7 +63,7 @@ def fill_in_inertia(
         raise UnprovedError(error.args[0]) from None
     if source.text != text:
         raise UnprovedError(phrase("'{file}' has changed since it was read", file=file.name))
-    edits = tuple(Edit(file, one.start, one.end, one.text) for one in replacements)
+    edits = tuple(Edit(file, replacement.start, replacement.end, replacement.text) for replacement in replacements)
     if not edits:
         raise UnprovedError(phrase("the link '{name}' has this inertia already", name=expanded.name))
     for pair in ExpansionProof(project, texts, file).pairs(edits):
@@ -73,7 +77,9 @@ def _expanded_link(
     project: Workspace, texts: Mapping[Path, str], file: Path, link: SourceElement
 ) -> tuple[Robot, Path, Link]:
     for entry, robot in expanded_robots(project, texts, file):
-        expanded = next((one for one in robot.links.values() if is_source_of(file, link.start, one.element)), None)
+        expanded = next(
+            (candidate for candidate in robot.links.values() if is_source_of(file, link.start, candidate.element)), None
+        )
         if expanded is not None:
             return robot, entry, expanded
     raise UnprovedError(phrase("no description that can be expanded has this link"))

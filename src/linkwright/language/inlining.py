@@ -115,7 +115,14 @@ def _replacements(
         pieces = [*_pieces(text)] if places else []
         done: set[tuple[int, int]] = set()
         for use in places:
-            piece = next((one for one in pieces if one.start <= use.start < one.start + len(one.text)), None)
+            piece = next(
+                (
+                    candidate
+                    for candidate in pieces
+                    if candidate.start <= use.start < candidate.start + len(candidate.text)
+                ),
+                None,
+            )
             around = None if piece is None else _expression_around(piece, use)
             if piece is None or around is None or text[: use.start].endswith("."):
                 line = text.count("\n", 0, use.start) + 1
@@ -129,7 +136,7 @@ def _replacements(
             span = piece.start + around.start, piece.start + around.end
             if span not in done:
                 done.add(span)
-                names = [one for one in places if span[0] <= one.start < span[1]]
+                names = [candidate for candidate in places if span[0] <= candidate.start < span[1]]
                 yield Edit(file, *span, _replaced(around, piece, names, value, is_raw=is_raw))
 
 
@@ -145,8 +152,10 @@ def _pieces(text: str) -> Iterator[_Piece]:
 
 
 def _expression_around(piece: _Piece, use: Occurrence) -> SourceExpression | None:
-    at = use.start - piece.start
-    return next((one for one in expressions_in(piece.text) if one.start < at < one.end), None)
+    offset = use.start - piece.start
+    return next(
+        (expression for expression in expressions_in(piece.text) if expression.start < offset < expression.end), None
+    )
 
 
 def _replaced(around: SourceExpression, piece: _Piece, names: Sequence[Occurrence], value: str, *, is_raw: bool) -> str:
@@ -160,7 +169,7 @@ def _replaced(around: SourceExpression, piece: _Piece, names: Sequence[Occurrenc
         raise UnprovedError(phrase("an expression cannot contain the value '{value}'", value=value))
     if piece.quote:
         new = new.replace(piece.quote, quotes[piece.quote])
-    for use in sorted(names, key=lambda one: one.start, reverse=True):
+    for use in sorted(names, key=lambda name: name.start, reverse=True):
         replaced = substitute_name(source, use.start - low, use.end - low, new)
         if replaced is None:
             raise UnprovedError(phrase("an expression cannot contain the value '{value}'", value=value))

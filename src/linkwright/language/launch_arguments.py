@@ -165,7 +165,7 @@ def _in_python(text: str, file: Path) -> Iterator[LaunchArgument]:
 
 
 def _loop_values(python: PythonText, call: Group, name: str) -> Iterator[tuple[Text, list[str]]]:
-    """Yield each string that a loop around a call assigns to a name, with the strings of its entry.
+    """Yield each string that a loop around a call assigns to a name, with its entry's strings.
 
     The loop iterates over a list of strings, or over a dictionary whose values are strings or pairs of strings.
     """

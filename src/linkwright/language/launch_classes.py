@@ -49,9 +49,9 @@ def describe_class(name: str) -> str | None:
     cls = _classes().get(name)
     if cls is None:
         return None
-    about, _, _ = (inspect.getdoc(cls) or "").partition("\nArgs:")
+    purpose, _, _ = (inspect.getdoc(cls) or "").partition("\nArgs:")
     arguments = [f"- `{argument}`: {meaning}" for argument, meaning in class_arguments(name).items() if meaning]
-    return "\n\n".join(filter(None, (f"**{name}**: {_markdown(about.strip())}", "\n".join(arguments))))
+    return "\n\n".join(filter(None, (f"**{name}**: {_markdown(purpose.strip())}", "\n".join(arguments))))
 
 
 @cache

@@ -8,7 +8,7 @@ from dataclasses import dataclass, field
 from pathlib import Path
 
 from linkwright.language.format import Document
-from linkwright.language.includes import real
+from linkwright.language.includes import real_path
 from linkwright.language.launch_arguments import arguments_in
 from linkwright.language.launch_python import CONFIGURATIONS, PythonLaunchText, is_python_launch_file
 from linkwright.language.launch_values import LaunchText
@@ -97,7 +97,7 @@ def launch_names(document: Document) -> LaunchNames:
 
 
 def _target(path: Path | None) -> Path | None:
-    return None if path is None or not path.is_file() else real(source_of(str(path)))
+    return None if path is None or not path.is_file() else real_path(source_of(str(path)))
 
 
 def _uses(text: str, start: int, file: Path) -> Iterator[LaunchName]:
@@ -241,7 +241,7 @@ def _included(launch: PythonLaunchText, call: Group, file: Path) -> LaunchInclud
 
 
 def _argument_groups(launch: PythonLaunchText, part: object) -> list[Group]:
-    """Return the bracket groups with launch arguments in an expression, or in the variable it names."""
+    """Return the brackets with launch arguments in an expression, or in its variable."""
     name = part.value if isinstance(part, Name) else part.callee if isinstance(part, Group) else ""
     bound = launch.python.bindings.get(name.partition(".")[0].strip()) if name else None
     parts = [part] if bound is None else bound.parts

@@ -97,7 +97,11 @@ class PythonLaunchText:
     def __init__(self, document: Document) -> None:
         self.document = document
         self.python = python_text(document.text)
-        texts = {each.name: each.default for each in self.arguments if each.default and "(" not in each.default}
+        texts = {
+            argument.name: argument.default
+            for argument in self.arguments
+            if argument.default and "(" not in argument.default
+        }
         self.paths = PythonPaths(self.python, document.file, document.finder, texts)
 
     @cached_property
@@ -146,9 +150,9 @@ class PythonLaunchText:
         if outer is None or group.callee or not item.parts or item.parts[0] is not text:
             return None
         if group.opening == "(" and _is_in_list_named(outer, _REMAPPINGS) and len(group.items) <= _PAIR:
-            pairs = [each.parts[0] for each in outer.group.items if each is not outer and each.parts]
-            firsts = (pair.items[0].parts[:1] for pair in pairs if isinstance(pair, Group) and pair.items)
-            given = frozenset(part.value for parts in firsts for part in parts if isinstance(part, Text))
+            pairs = [sibling.parts[0] for sibling in outer.group.items if sibling is not outer and sibling.parts]
+            first_parts = (pair.items[0].parts[:1] for pair in pairs if isinstance(pair, Group) and pair.items)
+            given = frozenset(part.value for parts in first_parts for part in parts if isinstance(part, Text))
             programs = self._programs(outer, "remappings")
             first = group.items[0].parts[0] if group.items[0].parts else None
             if item is not group.items[0]:  # the new name
@@ -156,7 +160,7 @@ class PythonLaunchText:
                 return _StringMeaning("topic", text, choices=_new_names(old), programs=programs)
             return _StringMeaning("topic", text, programs=programs, given=given)
         if group.opening == "{" and _is_in_list_named(outer, _PARAMETERS):
-            names = (each.parts[0] for each in group.items if each is not item and each.parts)
+            names = (sibling.parts[0] for sibling in group.items if sibling is not item and sibling.parts)
             given = frozenset(part.value for part in names if isinstance(part, Text))
             return _StringMeaning("parameter", text, programs=self._programs(outer, "parameters"), given=given)
         return None
@@ -176,17 +180,17 @@ class PythonLaunchText:
 
     def _program(self, call: Group) -> NodeProgram:
         package, executable = (
-            next((each for each in call.items if each.keyword in keywords), None)
+            next((candidate for candidate in call.items if candidate.keyword in keywords), None)
             for keywords in (_PACKAGE_KEYWORDS, _PROGRAM_KEYWORDS)
         )
         return NodeProgram(self.paths.text_of(package) or "", self.paths.text_of(executable) or "")
 
-    def parameters(self, place: _StringMeaning) -> list[ParameterInfo]:
+    def parameters(self, meaning: _StringMeaning) -> list[ParameterInfo]:
         """Return the possible parameters of the nodes to which a string belongs."""
         found: dict[str, ParameterInfo] = {}
-        for program in place.programs:
+        for program in meaning.programs:
             names = (node_name(*program), program.executable)
-            known = next((each for name in names if (each := node_parameters(name))), ())
+            known = next((found_parameters for name in names if (found_parameters := node_parameters(name))), ())
             for parameter in known or parameters_in_sources(self.document, program):
                 found.setdefault(parameter.name, parameter)
         found.setdefault("use_sim_time", ParameterInfo("use_sim_time", "bool", False))
@@ -204,7 +208,7 @@ class PythonLaunchText:
         listed = call.argument("choices")
         part = listed.parts[0] if listed is not None and listed.parts else None
         inner = part.items if isinstance(part, Group) else []
-        return tuple(each.value for item in inner for each in item.parts[:1] if isinstance(each, Text))
+        return tuple(text_part.value for item in inner for text_part in item.parts[:1] if isinstance(text_part, Text))
 
     def _included_arguments(self, text: Text, item: Item) -> _StringMeaning | None:
         """Return the meaning of a key or value in the launch arguments of an include, or None."""
@@ -221,7 +225,7 @@ class PythonLaunchText:
             return _StringMeaning("argument", text, arguments=declared) if is_pair or group.opening == "{" else None
         if not is_pair and group.opening != "{":
             return None
-        argument = next((each for each in declared if each.name == name), None)
+        argument = next((candidate for candidate in declared if candidate.name == name), None)
         choices = () if argument is None else likely_values(argument, name, self.document.text)
         known = () if argument is None else (argument,)
         return _StringMeaning("choice", text, None, known, self.paths.before(text, item), choices)
@@ -245,11 +249,11 @@ class PythonLaunchText:
             if argument.is_argument:
                 yield argument
 
-    def path_through(self, place: _StringMeaning, end: int) -> str | None:
+    def path_through(self, meaning: _StringMeaning, end: int) -> str | None:
         """Return the path of a string up to the first slash at or after an offset."""
-        base = "" if place.base is None else place.base.text
-        rest = place.text.value[end - place.text.start :].partition("/")[0]
-        written = place.text.value[: end - place.text.start] + rest
+        base = "" if meaning.base is None else meaning.base.text
+        rest = meaning.text.value[end - meaning.text.start :].partition("/")[0]
+        written = meaning.text.value[: end - meaning.text.start] + rest
         return base.rstrip("/") + "/" + written.lstrip("/") if base.endswith("/") else base + written
 
 
@@ -294,52 +298,52 @@ def _include_around(item: Item) -> Group | None:
 
 def _complete(document: Document, offset: int) -> Iterator[Completion]:
     launch = PythonLaunchText(document)
-    place = launch.meaning_at(offset)
-    if place is None:
+    meaning = launch.meaning_at(offset)
+    if meaning is None:
         yield from _argument_completions(launch, offset)
         return
-    start = place.text.start
-    if place.kind == "package":
+    start = meaning.text.start
+    if meaning.kind == "package":
         yield from offer_packages(document, start)
-    elif place.kind == "program":
-        yield from offer_programs(document, place.package, start)
-    elif place.kind == "component":
-        yield from offer_components(document, place.package, start)
-    elif place.kind in ("configuration", "argument"):
-        for argument in place.arguments:
-            if place.text.start != argument.start or argument.file != document.file:
+    elif meaning.kind == "program":
+        yield from offer_programs(document, meaning.package, start)
+    elif meaning.kind == "component":
+        yield from offer_components(document, meaning.package, start)
+    elif meaning.kind in ("configuration", "argument"):
+        for argument in meaning.arguments:
+            if meaning.text.start != argument.start or argument.file != document.file:
                 detail = argument.default or ""
                 yield Completion(argument.name, ItemKind.NAME, start, detail, argument.describe())
-        if place.kind == "configuration":
-            for name in launch.undeclared_names(place.text):
+        if meaning.kind == "configuration":
+            for name in launch.undeclared_names(meaning.text):
                 yield Completion(name, ItemKind.NAME, start)
-    elif place.kind == "parameter":
-        for parameter in launch.parameters(place):
-            if parameter.name not in place.given and "*" not in parameter.name:
+    elif meaning.kind == "parameter":
+        for parameter in launch.parameters(meaning):
+            if parameter.name not in meaning.given and "*" not in parameter.name:
                 detail = f"{parameter.type} {parameter.written_default}".strip()
                 yield Completion(parameter.name, ItemKind.NAME, start, detail, parameter.description)
-    elif place.kind == "topic" and not place.choices:
-        yield from offer_topics(document, place.programs, document.text[start:offset], start, place.given)
+    elif meaning.kind == "topic" and not meaning.choices:
+        yield from offer_topics(document, meaning.programs, document.text[start:offset], start, meaning.given)
     else:
-        yield from offer_values(place.choices, start)
-        yield from _path_completions(launch, place, offset)
+        yield from offer_values(meaning.choices, start)
+        yield from _path_completions(launch, meaning, offset)
 
 
-def _path_completions(launch: PythonLaunchText, place: _StringMeaning, offset: int) -> Iterator[Completion]:
-    typed = place.text.value[: offset - place.text.start]
+def _path_completions(launch: PythonLaunchText, meaning: _StringMeaning, offset: int) -> Iterator[Completion]:
+    typed = meaning.text.value[: offset - meaning.text.start]
     if typed.startswith(_URI):
         name, slash, rest = typed[len(_URI) :].partition("/")
         share = launch.document.finder.find(name) if slash else None
         if share is not None:
             yield from offer_files(share, rest, offset)
         elif not slash:
-            yield from offer_packages(launch.document, place.text.start + len(_URI))
+            yield from offer_packages(launch.document, meaning.text.start + len(_URI))
         return
-    if place.base is None or not place.base.is_path:
+    if meaning.base is None or not meaning.base.is_path:
         return
-    if not place.base.text.endswith("/") and not typed.startswith("/"):
+    if not meaning.base.text.endswith("/") and not typed.startswith("/"):
         return
-    yield from offer_files(Path(place.base.text), typed, offset, launch_files="launch" in place.base.text)
+    yield from offer_files(Path(meaning.base.text), typed, offset, launch_files="launch" in meaning.base.text)
 
 
 # --- hover, definition and links ------------------------------------------------------------------------------
@@ -347,39 +351,39 @@ def _path_completions(launch: PythonLaunchText, place: _StringMeaning, offset: i
 
 def _explain(document: Document, offset: int) -> Explanation | None:
     launch = PythonLaunchText(document)
-    place = launch.meaning_at(offset)
-    if place is None:
+    meaning = launch.meaning_at(offset)
+    if meaning is None:
         return _explain_name(launch, offset)
-    text = _explanation(launch, place, offset) or _explain_argument(launch, place)
-    return Explanation(text, place.text.start, place.text.end) if text else None
+    text = _explanation(launch, meaning, offset) or _explain_argument(launch, meaning)
+    return Explanation(text, meaning.text.start, meaning.text.end) if text else None
 
 
-def _explanation(launch: PythonLaunchText, place: _StringMeaning, offset: int) -> str | None:
-    value = place.text.value
-    if place.kind == "package":
+def _explanation(launch: PythonLaunchText, meaning: _StringMeaning, offset: int) -> str | None:
+    value = meaning.text.value
+    if meaning.kind == "package":
         return explain_package(launch.document, value)
-    if place.kind == "program":
-        return explain_program(launch.document, place.package, value)
-    if place.kind in ("configuration", "argument"):
-        return "\n\n".join(argument.describe() for argument in place.arguments if argument.name == value)
-    if place.kind == "topic":
-        return explain_topic(launch.document, place.programs, value)
-    if place.kind == "parameter":
-        parameter = next((each for each in launch.parameters(place) if each.matches(value)), None)
+    if meaning.kind == "program":
+        return explain_program(launch.document, meaning.package, value)
+    if meaning.kind in ("configuration", "argument"):
+        return "\n\n".join(argument.describe() for argument in meaning.arguments if argument.name == value)
+    if meaning.kind == "topic":
+        return explain_topic(launch.document, meaning.programs, value)
+    if meaning.kind == "parameter":
+        parameter = next((candidate for candidate in launch.parameters(meaning) if candidate.matches(value)), None)
         return None if parameter is None else describe_parameter_info(parameter, value)
-    path = launch.path_through(place, offset)
+    path = launch.path_through(meaning, offset)
     file = None if path is None else launch.file_of(path)
-    if file is not None and (place.base is not None or "/" in value):
+    if file is not None and (meaning.base is not None or "/" in value):
         return explain_file(file)
-    is_path = place.base is not None and place.base.is_path and path is not None
+    is_path = meaning.base is not None and meaning.base.is_path and path is not None
     return explain_file(Path(path or "")) if is_path else None
 
 
-def _explain_argument(launch: PythonLaunchText, place: _StringMeaning) -> str | None:
+def _explain_argument(launch: PythonLaunchText, string_meaning: _StringMeaning) -> str | None:
     """Explain the argument of an included file or launch class that has a string as its value."""
-    if place.kind == "choice" and place.arguments:
-        return place.arguments[0].describe()
-    found = launch.python.string_at(place.text.start)
+    if string_meaning.kind == "choice" and string_meaning.arguments:
+        return string_meaning.arguments[0].describe()
+    found = launch.python.string_at(string_meaning.text.start)
     if found is None or not found[1].keyword:
         return None
     meaning = class_arguments(found[1].group.function).get(found[1].keyword)
@@ -429,24 +433,24 @@ def _explain_name(launch: PythonLaunchText, offset: int) -> Explanation | None:
 
 def _define(document: Document, offset: int) -> Iterator[Target]:
     launch = PythonLaunchText(document)
-    place = launch.meaning_at(offset)
-    if place is None:
+    meaning = launch.meaning_at(offset)
+    if meaning is None:
         return
-    value = place.text.value
-    if place.kind == "package":
+    value = meaning.text.value
+    if meaning.kind == "package":
         yield from target_of_package(document, value)
-    elif place.kind == "program":
-        yield from target_of_program(document, place.package, value)
-    elif place.kind == "component":
-        yield from target_of_component(document, place.package, value)
-    elif place.kind == "topic":
-        yield from targets_of_topic(document, place.programs, value)
-    elif place.kind in ("configuration", "argument"):
-        for argument in place.arguments:
+    elif meaning.kind == "program":
+        yield from target_of_program(document, meaning.package, value)
+    elif meaning.kind == "component":
+        yield from target_of_component(document, meaning.package, value)
+    elif meaning.kind == "topic":
+        yield from targets_of_topic(document, meaning.programs, value)
+    elif meaning.kind in ("configuration", "argument"):
+        for argument in meaning.arguments:
             if argument.name == value:
                 yield Target(argument.file, argument.start, argument.end)
     else:
-        path = launch.path_through(place, place.text.end)
+        path = launch.path_through(meaning, meaning.text.end)
         yield from target_of_file(None if path is None else launch.file_of(path))
 
 

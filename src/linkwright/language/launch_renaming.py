@@ -102,7 +102,11 @@ class _Search:
                     self._edit(key)
                 elif not include.is_known:
                     self._result.notes.append(
-                        phrase("'{file}' passes computed arguments to '{other}'", file=other.name, other=file.name)
+                        phrase(
+                            "'{file}' passes computed arguments to '{included_file}'",
+                            file=other.name,
+                            included_file=file.name,
+                        )
                     )
                 elif self._mentions_above(other, includers, {file}):
                     pending.append(other)
@@ -127,7 +131,11 @@ class _Search:
         if include.target is None:
             if include.written:
                 self._result.notes.append(
-                    phrase("'{file}' includes '{other}', which cannot be found", file=file.name, other=include.written)
+                    phrase(
+                        "'{file}' includes '{included_file}', which cannot be found",
+                        file=file.name,
+                        included_file=include.written,
+                    )
                 )
         elif self._mentions_below(include.target, set()):
             yield include.target
@@ -172,7 +180,7 @@ class _Search:
     def _edit(self, name: LaunchName) -> None:
         if not self._project.contains(name.file):
             raise UnprovedError(
-                phrase("'{file}' is outside of the workspace", file=display_path(str(name.file))), self._span(name)
+                phrase("'{file}' is outside the workspace", file=display_path(str(name.file))), self._span(name)
             )
         self._result.edits.add(Edit(name.file, name.start, name.end, self._new))
 

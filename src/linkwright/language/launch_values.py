@@ -177,13 +177,13 @@ def _offer_command(launch: LaunchText, value: LaunchValue) -> Iterator[Completio
     written = value.typed.rpartition("$(command")[2].strip()
     words = [written[start:end] for start, end in path_words(written)]
     word = typed_word(value.typed)
-    for name in (each for each in words if each != word and each.endswith(_DESCRIPTIONS)):
+    for name in (other_word for other_word in words if other_word != word and other_word.endswith(_DESCRIPTIONS)):
         path = launch.path_of(name)
         if path is not None and path.is_file() and ":=" not in word:
             path = Path(source_of(str(path)))
             for definition in definitions_in(launch.document.other(path), path):
                 label = f"{definition.name}:="
-                is_given = any(each.startswith(label) for each in words)
+                is_given = any(other_word.startswith(label) for other_word in words)
                 if definition.kind is NameKind.ARGUMENT and not is_given:
                     yield Completion(label, ItemKind.NAME, value.offset - len(word), definition.detail, path.name)
     if "/" in word:
@@ -211,9 +211,9 @@ def _plain_completions(launch: LaunchText, value: LaunchValue) -> Iterator[Compl
         yield from offer_components(document, launch.package_of(value), start)
     elif value.is_included and name == "name":
         found = launch.included_arguments(value) or launch.arguments
-        yield from _offer_arguments((each for each in found if each.name not in value.sibling_names), start)
+        yield from _offer_arguments((argument for argument in found if argument.name not in value.sibling_names), start)
     elif name in ("if", "unless"):
-        yield from _offer_variables(launch, start, [each for each in launch.arguments if each.is_condition])
+        yield from _offer_variables(launch, start, [argument for argument in launch.arguments if argument.is_condition])
         yield from offer_values(("true", "false"), start)
     elif attribute is not None and choices_of(attribute):
         yield from offer_values(choices_of(attribute), start)
@@ -283,7 +283,7 @@ def _choices(launch: LaunchText, value: LaunchValue) -> tuple[str, ...]:
     name = value.attributes.get("name", "")
     if not value.is_included:
         return likely_values(None, name, launch.document.text) if value.name == "default" else _boolean_choices(name)
-    argument = next((each for each in launch.included_arguments(value) if each.name == name), None)
+    argument = next((candidate for candidate in launch.included_arguments(value) if candidate.name == name), None)
     return () if argument is None else likely_values(argument, name, launch.document.text)
 
 
@@ -328,9 +328,9 @@ class _ValueMeaning:
 
 def _meaning_at(launch: LaunchText, value: LaunchValue) -> _ValueMeaning | None:
     around = substitution_around(value.text, value.offset - value.start)
-    place = None if around is None else _meaning_in_substitution(launch, around, value.offset - value.start)
-    if place is not None:
-        return replace(place, start=value.start + place.start, end=value.start + place.end)
+    meaning = None if around is None else _meaning_in_substitution(launch, around, value.offset - value.start)
+    if meaning is not None:
+        return replace(meaning, start=value.start + meaning.start, end=value.start + meaning.end)
     return _meaning_of_attribute(launch, value)
 
 
@@ -340,13 +340,13 @@ def _meaning_in_substitution(launch: LaunchText, around: re.Match[str], offset: 
         return _ValueMeaning("substitution", command, *around.span(1)) if command in substitution_names() else None
     name = arguments.partition(" ")[0]
     start = around.start(2) + (around[2] or "").find(name) if around[2] else around.end(1)
-    place = start, start + len(name)
+    name_range = start, start + len(name)
     if command in _PACKAGES:
-        return _ValueMeaning("package", name, *place)
+        return _ValueMeaning("package", name, *name_range)
     if command in _VARIABLES:
-        return _ValueMeaning("argument", name, *place, arguments=_arguments_named(launch.arguments, name))
+        return _ValueMeaning("argument", name, *name_range, arguments=_arguments_named(launch.arguments, name))
     if command == "exec-in-pkg" and " " in arguments:
-        return _ValueMeaning("program", name, *place, package=arguments.split()[-1])
+        return _ValueMeaning("program", name, *name_range, package=arguments.split()[-1])
     return None
 
 
@@ -376,14 +376,16 @@ def _meaning_of_attribute(launch: LaunchText, value: LaunchValue) -> _ValueMeani
 
 def explain_value(launch: LaunchText, value: LaunchValue) -> Explanation | None:
     """Explain the object at the cursor in a value, or else the attribute, or return None."""
-    place = _meaning_at(launch, value)
-    text = None if place is None else _explanation(launch.document, place)
-    if place is not None and text:
-        return Explanation(text, place.start, place.end)
+    meaning = _meaning_at(launch, value)
+    text = None if meaning is None else _explanation(launch.document, meaning)
+    if meaning is not None and text:
+        return Explanation(text, meaning.start, meaning.end)
     end = value.start + len(value.text)
     if value.tags[-1] in ("param", "set_parameter") and value.name in ("name", "value"):
         known = _known_parameters(launch, value)
-        parameter = next((each for each in known if each.matches(value.attributes.get("name", ""))), None)
+        parameter = next(
+            (candidate for candidate in known if candidate.matches(value.attributes.get("name", ""))), None
+        )
         if parameter is not None:
             default = f" = `{parameter.written_default}`" if parameter.written_default else ""
             head = f"**{parameter.name}**: {parameter.type}{default}"
@@ -393,38 +395,38 @@ def explain_value(launch: LaunchText, value: LaunchValue) -> Explanation | None:
     return None if attribute is None else Explanation(describe_attribute(attribute), value.start, end)
 
 
-def _explanation(document: Document, place: _ValueMeaning) -> str | None:
-    if place.kind == "package":
-        return explain_package(document, place.name)
-    if place.kind == "program":
-        return explain_program(document, place.package, place.name)
-    if place.kind == "argument":
-        return "\n\n".join(argument.describe() for argument in place.arguments)
-    if place.kind == "file":
-        return explain_file(Path(place.name))
-    if place.kind == "topic" and place.program is not None:
-        return explain_topic(document, [place.program], place.name)
-    if place.kind == "substitution":
-        return f"**$({place.name} ...)**: {substitution_names()[place.name]}"
+def _explanation(document: Document, meaning: _ValueMeaning) -> str | None:
+    if meaning.kind == "package":
+        return explain_package(document, meaning.name)
+    if meaning.kind == "program":
+        return explain_program(document, meaning.package, meaning.name)
+    if meaning.kind == "argument":
+        return "\n\n".join(argument.describe() for argument in meaning.arguments)
+    if meaning.kind == "file":
+        return explain_file(Path(meaning.name))
+    if meaning.kind == "topic" and meaning.program is not None:
+        return explain_topic(document, [meaning.program], meaning.name)
+    if meaning.kind == "substitution":
+        return f"**$({meaning.name} ...)**: {substitution_names()[meaning.name]}"
     return None
 
 
 def define_value(launch: LaunchText, value: LaunchValue) -> Iterator[Target]:
     """Yield the definitions of the object at the cursor in a value."""
-    document, place = launch.document, _meaning_at(launch, value)
-    if place is None:
+    document, meaning = launch.document, _meaning_at(launch, value)
+    if meaning is None:
         return
-    if place.kind == "package":
-        yield from target_of_package(document, place.name)
-    elif place.kind == "program":
-        yield from target_of_program(document, place.package, place.name)
-    elif place.kind == "component":
-        yield from target_of_component(document, place.package, place.name)
-    elif place.kind == "file":
-        yield from target_of_file(Path(place.name))
-    elif place.kind == "topic" and place.program is not None:
-        yield from targets_of_topic(document, [place.program], place.name)
-    for argument in place.arguments:
+    if meaning.kind == "package":
+        yield from target_of_package(document, meaning.name)
+    elif meaning.kind == "program":
+        yield from target_of_program(document, meaning.package, meaning.name)
+    elif meaning.kind == "component":
+        yield from target_of_component(document, meaning.package, meaning.name)
+    elif meaning.kind == "file":
+        yield from target_of_file(Path(meaning.name))
+    elif meaning.kind == "topic" and meaning.program is not None:
+        yield from targets_of_topic(document, [meaning.program], meaning.name)
+    for argument in meaning.arguments:
         yield Target(argument.file, argument.start, argument.end)
 
 

@@ -36,19 +36,19 @@ def selected_elements(text: str, start: int, end: int) -> list[SourceElement]:
     start, end = start + len(chosen) - len(chosen.lstrip()), end - len(chosen) + len(chosen.rstrip())
     if start >= end:
         return []
-    inside = [one for one in source_elements(text) if start <= one.start < end]
-    if not inside or any(one.end < 0 or one.end > end for one in inside):
+    inside = [candidate for candidate in source_elements(text) if start <= candidate.start < end]
+    if not inside or any(candidate.end < 0 or candidate.end > end for candidate in inside):
         return []
     first = inside[0]
-    siblings = [one for one in inside if one.parent is first.parent]
-    if first.parent is None or not all(_is_movable(one) for one in siblings):
+    siblings = [candidate for candidate in inside if candidate.parent is first.parent]
+    if first.parent is None or not all(_is_movable(candidate) for candidate in siblings):
         return []
-    at = start
+    position = start
     for sibling in siblings:
-        if not _is_blank(text[at : sibling.start]):
+        if not _is_blank(text[position : sibling.start]):
             return []
-        at = sibling.end
-    return siblings if at == end or _is_blank(text[at:end]) else []
+        position = sibling.end
+    return siblings if position == end or _is_blank(text[position:end]) else []
 
 
 def _is_blank(text: str) -> bool:
@@ -86,14 +86,14 @@ def extract_macro(
     starts = dict.fromkeys((start, start_with_comments(text, start)))  # xacro drops comments above calls
     places = dict.fromkeys((start_with_comments(text, top.start), top.start))
     lists = _parameter_lists(project, texts, file, text, (start, end))
-    for parameters, begin, place in product(lists, starts, places):
-        if begin < place:
+    for parameters, begin, insertion_offset in product(lists, starts, places):
+        if begin < insertion_offset:
             continue
         call = "".join(f' {parameter}="${{{parameter}}}"' for parameter in parameters)
         body = _indented(text, begin, end, blanks + _STEP)
         params = f' params="{" ".join(parameters)}"'
         lines = (f'<xacro:macro name="{name}"{params}>', f"{blanks}{_STEP}{body}", f"{blanks}</xacro:macro>")
-        definition = insertion_before(file, text, place, newline.join(lines))
+        definition = insertion_before(file, text, insertion_offset, newline.join(lines))
         edits = _joined(definition, Edit(file, begin, end, f"<xacro:{name}{call}/>"))
         try:
             proof.check_equal(edits)
@@ -114,9 +114,9 @@ def _joined(first: Edit, second: Edit) -> tuple[Edit, ...]:
 def _macro_name(element: SourceElement) -> str:
     """Return a macro name made of the element's tag and the nearest name around it."""
     tag = element.name.removeprefix(PREFIX)
-    for one in element.ancestors_and_self():
-        literal = re.sub(r"\$\{[^}]*\}|\$\([^)]*\)", "", one.value("name")).strip("_- ")
-        if literal and one.parent is not None:
+    for ancestor in element.ancestors_and_self():
+        literal = re.sub(r"\$\{[^}]*\}|\$\([^)]*\)", "", ancestor.value("name")).strip("_- ")
+        if literal and ancestor.parent is not None:
             return literal if literal.endswith(tag) else f"{literal}_{tag}"
     return f"{tag}_macro"
 
@@ -128,18 +128,22 @@ def _parameter_lists(
     properties: set[str] = set()
     for other in project.index.related(file, texts):
         all_names = occurrences_in(project.text(other, texts) or "", other)
-        properties |= {one.name for one in all_names if one.kind is NameKind.PROPERTY and one.is_definition}
-    inside = [one for one in occurrences_in(text, file) if selected[0] <= one.start < selected[1]]
-    own = {one.name for one in inside if one.kind is NameKind.PROPERTY and one.is_definition}
-    blocks = {one.name for one in inside if _is_block_use(text, one)}
-    names = [one for one in inside if one.name not in own | blocks and not one.is_definition]
+        properties |= {
+            candidate.name for candidate in all_names if candidate.kind is NameKind.PROPERTY and candidate.is_definition
+        }
+    inside = [candidate for candidate in occurrences_in(text, file) if selected[0] <= candidate.start < selected[1]]
+    own = {candidate.name for candidate in inside if candidate.kind is NameKind.PROPERTY and candidate.is_definition}
+    blocks = {candidate.name for candidate in inside if _is_block_use(text, candidate)}
+    names = [candidate for candidate in inside if candidate.name not in own | blocks and not candidate.is_definition]
     used = [
-        one.name
-        for one in names
-        if (one.kind is NameKind.PARAMETER and _is_value(text, one))
-        or (one.kind is NameKind.PROPERTY and one.name in properties)
+        candidate.name
+        for candidate in names
+        if (candidate.kind is NameKind.PARAMETER and _is_value(text, candidate))
+        or (candidate.kind is NameKind.PROPERTY and candidate.name in properties)
     ]
-    local = [one.name for one in names if one.kind is NameKind.PARAMETER and _is_value(text, one)]
+    local = [
+        candidate.name for candidate in names if candidate.kind is NameKind.PARAMETER and _is_value(text, candidate)
+    ]
     lists = [[*dict.fromkeys(used)], [*dict.fromkeys(local)], []]
     for index, parameters in enumerate(lists):
         if parameters not in lists[:index]:

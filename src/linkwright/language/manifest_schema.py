@@ -33,9 +33,9 @@ USED_DEPENDENCIES = frozenset(_MEANINGS)
 
 
 def _value(
-    tag: str, meaning: str, *attributes: AttributeRule, kind: ValueType = _TEXT, many: bool = False
+    tag: str, meaning: str, *attributes: AttributeRule, kind: ValueType = _TEXT, is_repeated: bool = False
 ) -> ElementRule:
-    return ElementRule(tag, meaning, attributes, many=many, text=AttributeRule("text", kind, meaning))
+    return ElementRule(tag, meaning, attributes, many=is_repeated, text=AttributeRule("text", kind, meaning))
 
 
 _EXPORT = ElementRule(
@@ -44,7 +44,7 @@ _EXPORT = ElementRule(
     (),
     (
         _value("build_type", "the build system", _CONDITION, kind=ValueType("build type")),
-        _value("member_of_group", "a group that the package belongs to", many=True),
+        _value("member_of_group", "a group that the package belongs to", is_repeated=True),
         ElementRule("architecture_independent", "marks a package that does not depend on the architecture"),
         _value("deprecated", "marks a package that should not be used, with the reason"),
         ElementRule("metapackage", "marks a package that only depends on others"),
@@ -72,20 +72,20 @@ PACKAGE = ElementRule(
             "maintainer",
             "a person who maintains the package",
             AttributeRule("email", ValueType("address"), "the e-mail address", required=True),
-            many=True,
+            is_repeated=True,
         ),
         _value(
             "license",
-            "a licence, by its SPDX identifier",
-            AttributeRule("file", ValueType("path"), "the file with the text of the licence"),
-            kind=ValueType("licence"),
-            many=True,
+            "a license, by its SPDX identifier",
+            AttributeRule("file", ValueType("path"), "the file with the text of the license"),
+            kind=ValueType("license"),
+            is_repeated=True,
         ),
         _value(
             "author",
             "a person who wrote the package",
             AttributeRule("email", ValueType("address"), "the e-mail address"),
-            many=True,
+            is_repeated=True,
         ),
         _value(
             "url",
@@ -93,13 +93,18 @@ PACKAGE = ElementRule(
             AttributeRule(
                 "type", ValueType("website, bugtracker or repository"), "the kind of the page", default="website"
             ),
-            many=True,
+            is_repeated=True,
         ),
-        *(_value(tag, meaning, *_VERSIONS, _CONDITION, kind=_PACKAGE, many=True) for tag, meaning in _MEANINGS.items()),
-        _value("group_depend", "a group all of whose packages are needed", _CONDITION, many=True),
-        _value("member_of_group", "a group that the package belongs to", _CONDITION, many=True),
-        _value("conflict", "a package that cannot be installed with this one", *_VERSIONS, kind=_PACKAGE, many=True),
-        _value("replace", "a package that this one replaces", *_VERSIONS, kind=_PACKAGE, many=True),
+        *(
+            _value(tag, meaning, *_VERSIONS, _CONDITION, kind=_PACKAGE, is_repeated=True)
+            for tag, meaning in _MEANINGS.items()
+        ),
+        _value("group_depend", "a group all of whose packages are needed", _CONDITION, is_repeated=True),
+        _value("member_of_group", "a group that the package belongs to", _CONDITION, is_repeated=True),
+        _value(
+            "conflict", "a package that cannot be installed with this one", *_VERSIONS, kind=_PACKAGE, is_repeated=True
+        ),
+        _value("replace", "a package that this one replaces", *_VERSIONS, kind=_PACKAGE, is_repeated=True),
         _EXPORT,
     ),
 )

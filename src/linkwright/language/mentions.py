@@ -117,7 +117,7 @@ def _in_yaml(text: str, file: Path, names: frozenset[str]) -> Iterator[Mention]:
 
 
 def _in_path(value: str, text: str, begin: int, file: Path, names: frozenset[str]) -> Iterator[Mention]:
-    """Yield the parts of a value such as ``left_wheel_joint/velocity`` or ``controller/left_wheel_joint``."""
+    """Yield the names in a value with slashes, such as ``left_wheel_joint/velocity``."""
     parts = value.split("/")
     start = text.find(value, begin, begin + len(value) + 2)
     for number, part in enumerate(parts):

@@ -13,7 +13,7 @@ from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
-from linkwright.language.includes import real
+from linkwright.language.includes import real_path
 from linkwright.language.proof import Edit
 from linkwright.language.workspace import Workspace
 from linkwright.xacro.expressions.template import Token, TokenKind, tokenize
@@ -62,11 +62,11 @@ def source_value(element: Element, key: str) -> SourceValue | None:
     source = element.source
     if source is None:
         return None
-    place = attribute_value_range(source.text, element.offset, key) if key else _text_range(element)
-    if place is None:
+    value_range = attribute_value_range(source.text, element.offset, key) if key else _text_range(element)
+    if value_range is None:
         return None
     frame = element.origin if isinstance(element.origin, Frame) else None
-    return SourceValue(real(source.name), place[0], source.text[place[0] : place[1]], frame)
+    return SourceValue(real_path(source.name), value_range[0], source.text[value_range[0] : value_range[1]], frame)
 
 
 def _text_range(element: Element) -> tuple[int, int] | None:
@@ -153,11 +153,11 @@ class NameSources:
         changed = re.fullmatch(kept, new, re.DOTALL)
         if changed is None:
             return
-        news = iter(changed.groups())
+        new_literals = iter(changed.groups())
         edits = []
         for part in parts:
             if part.kind is TokenKind.TEXT:
-                text = next(news)
+                text = next(new_literals)
                 if text != part.text:
                     edits.append(Edit(written.file, written.start + part.start, written.start + part.end, text))
         if edits and all(edit.text for edit in edits):
@@ -183,7 +183,7 @@ class NameSources:
                     pieces.append("(?P=new)" if has_group else "(?P<new>.+)")
                     has_group = True
             matched = re.fullmatch("".join(pieces), new, re.DOTALL)
-            part, text = next(each for each in expressions if each[0].text == changed)
+            part, text = next(pair for pair in expressions if pair[0].text == changed)
             if matched is not None:
                 for source in self._sources(part, written.frame):
                     yield from self._edits(source, text, matched["new"], depth + 1)
@@ -223,10 +223,15 @@ class NameSources:
     def _sources_of_name(self, name: str, frame: Frame | None) -> Iterator[SourceValue]:
         while frame is not None:
             source = frame.site.source
-            place = None if source is None else attribute_value_range(source.text, frame.site.offset, name)
+            value_range = None if source is None else attribute_value_range(source.text, frame.site.offset, name)
             if frame.macro is not None and source is not None:
-                if place is not None:
-                    yield SourceValue(real(source.name), place[0], source.text[place[0] : place[1]], frame.around)
+                if value_range is not None:
+                    yield SourceValue(
+                        real_path(source.name),
+                        value_range[0],
+                        source.text[value_range[0] : value_range[1]],
+                        frame.around,
+                    )
                     return
                 default = self._parameter_default(frame.macro, name, frame)
                 if default is not None:
@@ -271,7 +276,10 @@ def _start_tags(text: str) -> Iterator[tuple[str, dict[str, tuple[str, int]]]]:
     """Yield the start tags of macros, properties and arguments, with their attributes."""
     for token in tokens(text):
         if token.kind is Kind.START and token.name in ("xacro:macro", "xacro:property", "xacro:arg"):
-            yield token.name, {one.name: (one.value or "", one.value_start) for one in token.attributes()}
+            yield (
+                token.name,
+                {attribute.name: (attribute.value or "", attribute.value_start) for attribute in token.attributes()},
+            )
 
 
 def _parts(text: str) -> Sequence[Token]:

@@ -15,7 +15,7 @@ from typing import Any, NamedTuple
 
 from linkwright.language.completion import Completion, ItemKind
 from linkwright.language.format import Document, Target
-from linkwright.language.includes import real
+from linkwright.language.includes import real_path
 from linkwright.language.programs import programs_of
 from linkwright.language.source_declarations import declared_topics
 from linkwright.packages.share_layout import source_of
@@ -104,7 +104,7 @@ def _in_sources(document: Document, program: NodeProgram) -> Iterator[NodeTopic]
         return
     own = programs_of(document.finder, program.package).get(program.executable)
     file = None if own is None or own.target is None else own.target.file
-    folder = real(source_of(str(share / "package.xml"))).parent
+    folder = real_path(source_of(str(share / "package.xml"))).parent
     for topic in declared_topics(document, file if file is not None and file.suffix == ".py" else folder):
         end = topic.start + len(topic.name)
         yield NodeTopic(topic.name, topic.type, topic.role, Target(topic.file, topic.start, end))
@@ -137,8 +137,8 @@ def _in_form(name: str, typed: str) -> str:
 
 def describe_topic(topic: NodeTopic) -> str:
     """Return the type and role of a topic, in Markdown."""
-    place = "" if topic.target is None else f", {topic.target.file.name}"
-    return f"**{topic.name}** `{topic.type}`, {topic.role}{place}".replace(" ``", "")
+    file_suffix = "" if topic.target is None else f", {topic.target.file.name}"
+    return f"**{topic.name}** `{topic.type}`, {topic.role}{file_suffix}".replace(" ``", "")
 
 
 def explain_topic(document: Document, programs: Sequence[NodeProgram], name: str) -> str:

@@ -268,12 +268,12 @@ class _Scan:
             elif isinstance(node, ast.Call):
                 yield from self._argument(node, offset_of)
 
-    def _argument(self, call: ast.Call, at: Callable[[int], int]) -> Iterator[Occurrence]:
+    def _argument(self, call: ast.Call, to_offset: Callable[[int], int]) -> Iterator[Occurrence]:
         called = call.func.attr if isinstance(call.func, ast.Attribute) else getattr(call.func, "id", "")
         first: Sequence[ast.expr] = call.args[:1]
         for node in first:
             if called == "arg" and isinstance(node, ast.Constant) and isinstance(node.value, str):
-                start = at(node.col_offset) + 1
+                start = to_offset(node.col_offset) + 1
                 if self._text[start : start + len(node.value)] == node.value:
                     yield Occurrence(NameKind.ARGUMENT, node.value, self._file, start)
 

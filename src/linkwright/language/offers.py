@@ -83,7 +83,10 @@ def explain_package(document: Document, name: str) -> str | None:
 
 
 def explain_program(document: Document, package: str | None, name: str) -> str | None:
-    """Return the origin, topics, services and actions of an executable in Markdown, or None if it is unknown."""
+    """Return the origin and the interfaces of an executable in Markdown, or None.
+
+    The interfaces are its topics, services and actions. The result is None for an unknown executable.
+    """
     program = programs_of(document.finder, package).get(name) if package else None
     if package is None or program is None:
         return None

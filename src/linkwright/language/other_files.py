@@ -14,7 +14,7 @@ from pathlib import Path
 
 from linkwright.diagnostics import LinkwrightError
 from linkwright.language.definitions import NameKind
-from linkwright.language.includes import real
+from linkwright.language.includes import real_path
 from linkwright.language.mentions import Mention, mentions_in
 from linkwright.language.occurrences import Occurrence, occurrences_in
 from linkwright.language.proof import Edit, ExpansionProof
@@ -60,11 +60,11 @@ class OtherFiles:
         for use in self._literal_uses(names):
             if not use.is_definition:
                 found.add(Edit(use.file, use.start, use.end, names[use.kind, use.name]))
-        olds = frozenset(old for _, old in names)
+        old_names = frozenset(old for _, old in names)
         for files in self._files.values():
             for file in files:
                 text = self._project.text(file, self._texts) or ""
-                mentions = [*_mentions(text, file, names, olds)]
+                mentions = [*_mentions(text, file, names, old_names)]
                 robots = self._robots_of(file) if mentions else []
                 if robots and not any(map(self._is_affected, robots)):  # the file is about other robots
                     unchanged += [mention for mention in mentions if self._depends(file, names, mention)]
@@ -112,8 +112,8 @@ class OtherFiles:
         files: dict[Path, list[Path]] = {}
         seen: set[Path] = set()
         own = enclosing_package(self._file.parent)
-        folders = [] if own is None else [real(own[1])]
-        for folder in dict.fromkeys((*folders, *map(real, self._project.index.packages))):
+        folders = [] if own is None else [real_path(own[1])]
+        for folder in dict.fromkeys((*folders, *map(real_path, self._project.index.packages))):
             files[folder] = [file for file in self._project.configurations_below(folder) if file not in seen]
             seen.update(files[folder])
         return files
@@ -126,7 +126,7 @@ class OtherFiles:
         package, own = enclosing_package(file.parent), enclosing_package(self._file.parent)
         if package is None or own is None or not any((kind, mention.name) in names for kind in mention.kinds):
             return False
-        return real(own[1]) in _dependencies(self._project, self._texts, real(package[1]))
+        return real_path(own[1]) in _dependencies(self._project, self._texts, real_path(package[1]))
 
     def _robots_of(self, file: Path) -> list[Path]:
         if file not in self._robots:
@@ -137,11 +137,11 @@ class OtherFiles:
         return robot in self._proof.entries
 
 
-def _mentions(text: str, file: Path, names: Names, olds: frozenset[str]) -> Iterable[Mention]:
+def _mentions(text: str, file: Path, names: Names, old_names: frozenset[str]) -> Iterable[Mention]:
     if ".srdf" in file.name:
         uses = (use for use in occurrences_in(text, file) if (use.kind, use.name) in names)
         return (Mention(use.name, file, use.start, (use.kind,)) for use in uses)
-    return mentions_in(text, file, olds)
+    return mentions_in(text, file, old_names)
 
 
 def robots_of_file(project: Workspace, texts: Mapping[Path, str], file: Path) -> list[Path]:
@@ -157,7 +157,7 @@ def robots_of_file(project: Workspace, texts: Mapping[Path, str], file: Path) ->
         file: the file.
     """
     package = enclosing_package(file.parent)
-    folder = file.parent if package is None else real(package[1])
+    folder = file.parent if package is None else real_path(package[1])
     robots = _robots_of_package(project, texts, folder)
     if len(robots) < 2:
         return [*robots]
@@ -194,7 +194,9 @@ def _named_together(project: Workspace, texts: Mapping[Path, str], file: Path, r
             return same
     found = {robot for robot in robots if _named_in(robot, text)}
     for robot in robots:
-        if any(name.search(project.text(one, texts) or "") for one in project.index.related(robot, texts)):
+        if any(
+            name.search(project.text(related_file, texts) or "") for related_file in project.index.related(robot, texts)
+        ):
             found.add(robot)
     for launch in project.files(_LAUNCH):
         written = project.text(launch, texts) or ""
@@ -210,8 +212,8 @@ def _named_in(robot: Path, text: str) -> bool:
 def _nearest(file: Path, folder: Path, robots: Mapping[Path, Sequence[Path]]) -> list[Path]:
     """Return the robots with files that share most folders of their package with a file."""
 
-    def shared(one: Path) -> int:
-        names, others = (path.relative_to(folder).parts[:-1] for path in (file, one))
+    def shared(robot_file: Path) -> int:
+        names, others = (path.relative_to(folder).parts[:-1] for path in (file, robot_file))
         return len([*takewhile(lambda pair: pair[0] == pair[1], zip(names, others, strict=False))])
 
     depths = {robot: max(map(shared, parts), default=0) for robot, parts in robots.items()}
@@ -246,9 +248,11 @@ def _dependencies(project: Workspace, texts: Mapping[Path, str], folder: Path) -
     """Return the folders of a package's direct and indirect dependencies in the workspace."""
     manifests = {
         package_folder: _manifest(project, texts, package_folder)
-        for package_folder in map(real, project.index.packages)
+        for package_folder in map(real_path, project.index.packages)
     }
-    by_name = {manifest.name: each for each, manifest in manifests.items() if manifest is not None}
+    by_name = {
+        manifest.name: manifest_folder for manifest_folder, manifest in manifests.items() if manifest is not None
+    }
     found: dict[Path, None] = {}
     pending = [folder]
     while pending:

@@ -109,8 +109,8 @@ def _keys(document: Document, section: Section, cursor: YamlCursor, colon: str) 
         if len(parts) <= len(prefix_parts) or any(a not in ("*", b) for a, b in zip(parts, prefix_parts, strict=False)):
             continue
         rest = parts[len(prefix_parts) :]
-        firsts = _names_for(document, section, parameter) if rest[0] == "*" else [rest[0]]
-        for first in firsts:
+        first_names = _names_for(document, section, parameter) if rest[0] == "*" else [rest[0]]
+        for first in first_names:
             if len(rest) == 1 and first not in present:
                 yield _parameter_key(cursor, first, parameter, colon)
             elif len(rest) > 1:
@@ -133,9 +133,9 @@ def _keys_in_sources(
 ) -> Iterator[Completion]:
     """Yield the parameters that the sources of a node of the workspace declare."""
     for parameter in sources_of(document, section):
-        place = f"{section.prefix}." if section.prefix else ""
-        if parameter.name.startswith(place):
-            first, _, rest = parameter.name.removeprefix(place).partition(".")
+        prefix = f"{section.prefix}." if section.prefix else ""
+        if parameter.name.startswith(prefix):
+            first, _, rest = parameter.name.removeprefix(prefix).partition(".")
             if first not in present:
                 detail = f"{parameter.type} = {parameter.default}" if parameter.default else parameter.type
                 end = ":\n  $0" if rest else ": $0"

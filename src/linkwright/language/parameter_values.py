@@ -144,11 +144,11 @@ def _plugin_types(section: Section, plugin: str, key: str) -> list[str]:
     if key == "primary_controller":
         return plugin_types(section.node, "controller_plugins")
     entries = section.entries()
-    for listed in dict.fromkeys(each.listed for each in plugins().values()):
+    for listed in dict.fromkeys(known_plugin.listed for known_plugin in plugins().values()):
         entry, parameter = entries.get(listed), section.find(listed)
         names = [parameter.default] if parameter is not None else []
         if entry is not None:
             names = [[text for text, _ in entry.items()], entry.scalar]
         if any(plugin == name or (isinstance(name, list) and plugin in name) for name in names):
             return _resembling(plugin_types(section.node, listed), plugin)
-    return _resembling(plugin_types(section.node) or [each.type for each in plugins().values()], plugin)
+    return _resembling(plugin_types(section.node) or [known_plugin.type for known_plugin in plugins().values()], plugin)

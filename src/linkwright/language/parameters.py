@@ -33,7 +33,7 @@ def block_parameters(element: OutlineElement, names: Sequence[NameDefinition]) -
     A xacro element may expand to any number of blocks, so the iteration ends at the first one.
     """
     macro = called_macro(element.tag.name, names)
-    blocks = [] if macro is None else [each.name for each in macro_parameters(macro) if each.is_block]
+    blocks = [] if macro is None else [parameter.name for parameter in macro_parameters(macro) if parameter.is_block]
     for child, name in zip(element.children, blocks, strict=False):
         if child.tag.name.startswith(PREFIX):
             return

@@ -6,7 +6,7 @@ from collections.abc import Iterator, Mapping
 from pathlib import Path
 from xml.sax.saxutils import quoteattr
 
-from linkwright.language.includes import real
+from linkwright.language.includes import real_path
 from linkwright.language.occurrences import Occurrence
 from linkwright.language.proof import ExpansionProof
 from linkwright.language.workspace import Workspace
@@ -29,17 +29,19 @@ def is_reached(proof: ExpansionProof, text: str, name: Occurrence) -> bool:
         text: the text of the file that contains the name.
         name: the name.
     """
-    place = innermost_element(source_elements(text), name.start)
-    if place is None:
+    innermost = innermost_element(source_elements(text), name.start)
+    if innermost is None:
         return True
-    macro = place.macro if not place.name.startswith("xacro:macro") else place
-    if place.name.startswith("xacro:"):
+    macro = innermost.macro if not innermost.name.startswith("xacro:macro") else innermost
+    if innermost.name.startswith("xacro:"):
         if macro is None:
             return True
-        place = macro
+        innermost = macro
     files = proof.names_of(name.file)
     return any(
-        element.source is not None and element.source.name in files and place.start <= element.offset < place.end
+        element.source is not None
+        and element.source.name in files
+        and innermost.start <= element.offset < innermost.end
         for trial in proof.trials
         for element in trial.expansion.document.root.walk()
     )
@@ -56,9 +58,9 @@ def probes_of(project: Workspace, texts: Mapping[Path, str], name: Occurrence) -
         name: the name.
     """
     text = project.text(name.file, texts) or ""
-    place = innermost_element(source_elements(text), name.start)
-    macro = None if place is None else place if place.name == "xacro:macro" else place.macro
-    if macro is None or macro.macro is not None or not project.contains(real(name.file)):
+    element = innermost_element(source_elements(text), name.start)
+    macro = None if element is None else element if element.name == "xacro:macro" else element.macro
+    if macro is None or macro.macro is not None or not project.contains(real_path(name.file)):
         return {}
     calls = [*dict.fromkeys(_calls(macro))]
     return {
@@ -81,9 +83,9 @@ def _calls(macro: SourceElement) -> Iterator[str]:
     blocks = "".join(map(_block, parameters))
     for value in _VALUES:
         given = "".join(
-            f" {one.name}={quoteattr(value)}"
-            for one in parameters
-            if not one.is_block and (one.default is None or value != _VALUES[0])
+            f" {parameter.name}={quoteattr(value)}"
+            for parameter in parameters
+            if not parameter.is_block and (parameter.default is None or value != _VALUES[0])
         )
         yield f"  <xacro:{called}{given}>{blocks}</xacro:{called}>"
 

@@ -18,7 +18,8 @@ from linkwright.lint.targets import walk
 from linkwright.nodes import COMPONENTS
 from linkwright.packages import PackageFinder, enclosing_package, install_prefix, is_installed
 from linkwright.packages.programs.source_programs import module_file, python_root, source_programs
-from linkwright.packages.readers.entry_points import EntryPoint, text_of
+from linkwright.packages.readers.entry_points import text_of
+from linkwright.packages.readers.installed import EntryPoint
 from linkwright.packages.share_layout import source_of, substituted_executables
 
 _PACKAGE_USE = re.compile(
@@ -114,8 +115,8 @@ def _in_sources(share: Path, package: str) -> Iterator[Program]:
     build = Path(source_of(str(share / "CMakeLists.txt")))
     text = text_of(build) if programs.compiled else ""
     for name in sorted(programs.compiled):
-        place = re.search(rf"(?i)(?:add_executable\s*\(\s*|EXECUTABLE\s+)({re.escape(name)})\b", text)
-        yield Program(name, "CMakeLists.txt", Target(build, *(place.span(1) if place else (0, 0))))
+        match = re.search(rf"(?i)(?:add_executable\s*\(\s*|EXECUTABLE\s+)({re.escape(name)})\b", text)
+        yield Program(name, "CMakeLists.txt", Target(build, *(match.span(1) if match else (0, 0))))
 
 
 def _entry_target(root: Path, entry: EntryPoint) -> Target | None:
@@ -123,8 +124,8 @@ def _entry_target(root: Path, entry: EntryPoint) -> Target | None:
     if file is None:
         return None
     file = Path(source_of(str(file)))
-    place = re.search(rf"^(?:async )?def ({re.escape(entry.function)})\b", text_of(file), re.MULTILINE)
-    return Target(file, *(place.span(1) if place else (0, 0)))
+    match = re.search(rf"^(?:async )?def ({re.escape(entry.function)})\b", text_of(file), re.MULTILINE)
+    return Target(file, *(match.span(1) if match else (0, 0)))
 
 
 def components_of(finder: PackageFinder, package: str) -> dict[str, Target | None]:

@@ -13,7 +13,7 @@ from pathlib import Path
 from typing import NamedTuple
 
 from linkwright.diagnostics import LinkwrightError, Phrase, Span, display_path, phrase
-from linkwright.language.includes import real
+from linkwright.language.includes import real_path
 from linkwright.language.trials import Trial, blank_out, expand_with_gaps, trials
 from linkwright.language.workspace import Workspace
 from linkwright.lint.targets import DESCRIPTIONS
@@ -135,11 +135,11 @@ class ExpansionProof:
             renamed: the new names of arguments of the descriptions, by old name.
 
         Raises:
-            UnprovedError: a file is outside of the workspace, there is nothing to compare, or an edit causes an error.
+            UnprovedError: a file is outside the workspace, there is nothing to compare, or an edit causes an error.
         """
         for file in sorted({edit.file for edit in edits}):
             if not self._project.contains(file):
-                raise UnprovedError(phrase("'{file}' is outside of the workspace", file=display_path(str(file))))
+                raise UnprovedError(phrase("'{file}' is outside the workspace", file=display_path(str(file))))
             if file.name.endswith(DESCRIPTIONS):
                 self._add_entries(file)
         if not self.trials:
@@ -153,7 +153,7 @@ class ExpansionProof:
             except LinkwrightError as error:
                 first = error.diagnostics[0]
                 raise UnprovedError(
-                    phrase("the edit causes this error: {why}", why=first.message), first.span
+                    phrase("the edit causes this error: {reason}", reason=first.message), first.span
                 ) from None
             root = former.expansion.document.root
             yield ExpansionPair(former.entry, root, after.document.root, str(former.expansion), str(after))
@@ -188,8 +188,8 @@ class ExpansionProof:
         self._error = error or self._error
         self.trials += found
         for path in (path for trial in found for path in trial.expansion.dependencies):
-            self.data.add(real(path))
-            self._names.setdefault(real(path), set()).add(str(path))
+            self.data.add(real_path(path))
+            self._names.setdefault(real_path(path), set()).add(str(path))
 
     def _edited(self, former: Trial, arguments: Mapping[str, str], edits: Collection[Edit]) -> Expansion:
         """Return the expansion of a trial with edits, except edits in its omitted elements."""
@@ -197,6 +197,6 @@ class ExpansionProof:
         for file in {edit.file for edit in edits} | {*former.gaps}:
             gaps = former.gaps.get(file, ())
             inside = [edit for edit in edits if edit.file == file]
-            kept = [edit for edit in inside if not any(start <= edit.start < end for start, end in gaps)]
-            texts[file] = apply_edits(blank_out(self._project.text(file, self._texts) or "", gaps), kept)
+            remaining_edits = [edit for edit in inside if not any(start <= edit.start < end for start, end in gaps)]
+            texts[file] = apply_edits(blank_out(self._project.text(file, self._texts) or "", gaps), remaining_edits)
         return expand_with_gaps(self._project, texts, former.entry, arguments)

@@ -17,7 +17,7 @@ from pathlib import Path
 from linkwright.diagnostics import Diagnostic, LinkwrightError, Phrase, SourceText, Span, phrase, quoted_names, term
 from linkwright.language.definitions import NameKind
 from linkwright.language.grammar import root_of
-from linkwright.language.includes import real
+from linkwright.language.includes import real_path
 from linkwright.language.mentions import Mention
 from linkwright.language.occurrences import Occurrence, occurrences_in
 from linkwright.language.probes import is_reached, probes_of
@@ -55,7 +55,10 @@ def occurrence_at(text: str, file: Path, offset: int) -> Occurrence | None:
 
 
 def xacro_name_at(text: str, file: Path, offset: int) -> Occurrence | None:
-    """Return the macro, parameter, property or argument at an offset of an SDF xacro file, or None."""
+    """Return the name that xacro defines at an offset of an SDF xacro file, or None.
+
+    It is the name of a macro, parameter, property or argument.
+    """
     return _innermost((name for name in occurrences_in(text, file) if name.kind not in ROBOT_NAME_KINDS), offset)
 
 
@@ -125,9 +128,9 @@ def _proved(project: Workspace, texts: Mapping[Path, str], name: Occurrence, new
         renaming = RobotRenaming(project, texts, name, new, proof)
         renaming.run(seeds)
         edits, names, unchanged = renaming.edits, renaming.names, renaming.unchanged
-        more = sorted(old for (_, old) in names if old != name.name) if "$" not in name.name else []
-        if more:
-            notes.append(phrase("these names change, too: {names}", names=quoted_names(more)))
+        derived_names = sorted(old for (_, old) in names if old != name.name) if "$" not in name.name else []
+        if derived_names:
+            notes.append(phrase("these names change, too: {names}", names=quoted_names(derived_names)))
     else:
         edits = {Edit(seed.file, seed.start, seed.end, new) for seed in seeds}
         renamed = {}
@@ -140,8 +143,8 @@ def _proved(project: Workspace, texts: Mapping[Path, str], name: Occurrence, new
         notes.append(
             phrase("compared without the elements that cannot be expanded here: {reason}", reason=proof.gap_reason)
         )
-    kept = tuple(sorted(edit for edit in edits if edit.file not in probes))
-    return Renaming(kept, {old: changed for (_, old), changed in names.items()}, unchanged, tuple(notes))
+    file_edits = tuple(sorted(edit for edit in edits if edit.file not in probes))
+    return Renaming(file_edits, {old: changed for (_, old), changed in names.items()}, unchanged, tuple(notes))
 
 
 def _equal(
@@ -164,15 +167,15 @@ def _equal(
     try:
         proof.check_equal(edits, renamed)
     except UnprovedError:
-        more = edits | _visible_elsewhere(project, texts, name, new)
-        if more == edits:
+        extended_edits = edits | _visible_elsewhere(project, texts, name, new)
+        if extended_edits == edits:
             raise
         try:
-            proof.check_equal(more, renamed)
+            proof.check_equal(extended_edits, renamed)
         except UnprovedError:
             pass
         else:
-            return more
+            return extended_edits
         raise
     return edits
 
@@ -209,7 +212,7 @@ def _passed_arguments(
         for values, span in project.argument_calls(entry):
             if old not in values or span is None:
                 continue
-            file = real(span.file)
+            file = real_path(span.file)
             text = project.text(file, texts) or ""
             found = {Edit(file, *match.span(), new) for match in passed.finditer(text, *_call_range(text, span))}
             if not found:
@@ -246,7 +249,7 @@ def _check_new_name(name: Occurrence, new: str) -> None:
 
 def _unproved(message: Phrase, name: Occurrence, span: Span | None = None) -> LinkwrightError:
     return LinkwrightError(
-        Diagnostic("LANG104", phrase("'{name}' is not renamed: {why}", name=name.name, why=message), span)
+        Diagnostic("LANG104", phrase("'{name}' is not renamed: {reason}", name=name.name, reason=message), span)
     )
 
 

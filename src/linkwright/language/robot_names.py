@@ -15,7 +15,7 @@ from weakref import WeakKeyDictionary
 from linkwright.diagnostics import LinkwrightError
 from linkwright.language.definitions import NameDefinition, NameKind, definitions_in
 from linkwright.language.format import Document, NotYetKnownError
-from linkwright.language.includes import real
+from linkwright.language.includes import real_path
 from linkwright.language.valid_parts import valid_parts
 from linkwright.language.workspace import Workspace
 from linkwright.packages import enclosing_package
@@ -93,7 +93,7 @@ def part_names(document: Document) -> list[NameDefinition]:
 
 
 def mentioned_robots(document: Document, words: Collection[str]) -> list[Path]:
-    """Return the likely descriptions with links or joints in some words, the best match first.
+    """Return the descriptions whose links or joints are among some words, the best match first.
 
     Args:
         document: the file with the words.
@@ -140,7 +140,7 @@ def _likely_robots(document: Document) -> list[Path]:
     """Return the top-level descriptions, sorted by their relation to the file's package."""
     file = document.file
     package = enclosing_package(file.parent)
-    name, folder = ("", file.parent) if package is None else (package[1].name, real(package[1]))
+    name, folder = ("", file.parent) if package is None else (package[1].name, real_path(package[1]))
 
     def distance(entry: Path) -> tuple[bool, int]:
         shared = max(len(commonprefix([name, part])) for part in entry.parts)  # noqa: RUF071 - it compares characters
@@ -200,7 +200,7 @@ def _robot_of_expansion(expansion: Expansion, state: _State, *, is_complete: boo
             definition = next(definitions_in(tag, Path()), None)
             start = element.offset + (definition.start if definition else 0)
             detail = element.attributes.get("type", "")
-            names.append(NameDefinition(kind, name, real(element.source.name), start, detail))
+            names.append(NameDefinition(kind, name, real_path(element.source.name), start, detail))
     contents = (element.text() for element in expansion.document.root.walk())
     files = (content.strip().rpartition("/")[2] for content in contents)
     mentioned = frozenset(file for file in files if file.endswith((".yaml", ".yml")))
@@ -210,7 +210,7 @@ def _robot_of_expansion(expansion: Expansion, state: _State, *, is_complete: boo
 def _state(files: Iterator[str] | list[str] | map[str], texts: Mapping[Path, str]) -> _State:
     state: list[tuple[str, object]] = []
     for file in files:
-        text = texts.get(Path(file)) or texts.get(real(file))
+        text = texts.get(Path(file)) or texts.get(real_path(file))
         try:
             state.append((file, os.stat(file).st_mtime_ns if text is None else str(hash(text))))  # noqa: PTH116
         except OSError:

@@ -97,7 +97,7 @@ class RobotRenaming:
 
     def _no_name_reason(self) -> Phrase:
         reason = self._proof.gap_reason
-        nothing = phrase("no link, joint or material takes its name from this place")
+        nothing = phrase("no link, joint or material takes its name from this position")
         return (
             nothing
             if reason is None
@@ -110,7 +110,7 @@ class RobotRenaming:
         if "$" not in name.name:
             return {(self._kind(), name.name): self._new}
         required: dict[tuple[NameKind, str], str] = {}
-        for value in self._values_at_place():
+        for value in self._expanded_values():
             new = renamed_template(name.name, self._new, value)
             if new is not None and new != value and self._defines(name.kind, value):
                 required[name.kind, value] = new
@@ -131,7 +131,7 @@ class RobotRenaming:
             for element in _definitions(trial.expansion.document.root, kind)
         )
 
-    def _values_at_place(self) -> Iterator[str]:
+    def _expanded_values(self) -> Iterator[str]:
         """Yield the values of the name in the expansions."""
         files = self._proof.names_of(self._name.file)
         for trial in self._proof.trials:
@@ -142,8 +142,8 @@ class RobotRenaming:
                 if element.offset > self._name.start or start_tag_end(source.text, element.offset) <= self._name.start:
                     continue
                 for key, value in element.attributes.items():
-                    place = attribute_value_range(source.text, element.offset, key)
-                    if place is not None and place[0] == self._name.start:
+                    value_range = attribute_value_range(source.text, element.offset, key)
+                    if value_range is not None and value_range[0] == self._name.start:
                         yield value
 
     def _proposals(self, required: Names, literal: set[Edit]) -> Iterator[set[Edit]]:
@@ -177,17 +177,17 @@ class RobotRenaming:
             if not names and not required:
                 raise UnprovedError(self._no_name_reason())
             wanted = {**names, **required}
-            more: set[Edit] = set()
+            new_edits: set[Edit] = set()
             for pair in pairs:
-                more |= {*self._edits_of_old_names(pair, wanted, edits)}
+                new_edits |= {*self._edits_of_old_names(pair, wanted, edits)}
             found, unchanged = self._others.edits(wanted)
-            more |= found
-            if more <= edits:
+            new_edits |= found
+            if new_edits <= edits:
                 self._check(pairs, names, required)
                 self.edits, self.names = edits, names
                 self.unchanged = (*unchanged, *self._unused_mentions(edits, names))
                 return
-            edits = edits | more
+            edits = edits | new_edits
             _check_overlap(edits)
         raise UnprovedError(phrase("some references would keep the old name"))
 
@@ -237,9 +237,9 @@ class RobotRenaming:
             self._check_sharing(pairs, required)
         allowed = {*((old, new) for (_, old), new in names.items())}
         for pair in pairs:
-            olds, news = _part_names(pair.before), _part_names(pair.after)
+            old_names, new_names = _part_names(pair.before), _part_names(pair.after)
             for key, old, new in _differences(pair.before, pair.after):
-                is_name = (old, new) in allowed and (old not in olds or new in news)
+                is_name = (old, new) in allowed and (old not in old_names or new in new_names)
                 if not is_name and not (key == "name" and _is_derived(old, new, allowed)):
                     raise UnprovedError(phrase("'{old}' would become '{new}'", old=old, new=new))
             for kind in ROBOT_NAME_KINDS[:2]:
@@ -270,7 +270,9 @@ class RobotRenaming:
 
 
 def _computed_name_error(written: SourceValue, value: str, span: Span | None = None) -> UnprovedError:
-    return UnprovedError(phrase("'{value}' is computed from '{written}'", value=value, written=written.text), span)
+    return UnprovedError(
+        phrase("'{value}' is computed from '{expression}'", value=value, expression=written.text), span
+    )
 
 
 def _check_overlap(edits: Iterable[Edit]) -> None:
@@ -304,10 +306,10 @@ def _changed_names(pairs: Iterable[ExpansionPair]) -> Iterator[tuple[tuple[NameK
     names: dict[tuple[NameKind, str], str] = {}
     for pair in pairs:
         for kind in ROBOT_NAME_KINDS:
-            olds, news = [*_values(pair.before, kind)], [*_values(pair.after, kind)]
-            if len(olds) != len(news):
+            old_values, new_values = [*_values(pair.before, kind)], [*_values(pair.after, kind)]
+            if len(old_values) != len(new_values):
                 raise UnprovedError(phrase("the number of {kind}s would change", kind=term(kind.value)))
-            for old, new in zip(olds, news, strict=True):
+            for old, new in zip(old_values, new_values, strict=True):
                 if old == new:
                     continue
                 first = names.setdefault((kind, old), new)
@@ -348,10 +350,10 @@ def _is_derived(old: str, new: str, allowed: Collection[tuple[str, str]]) -> boo
 
 def _differences(before: Element, after: Element) -> Iterator[tuple[str, str, str]]:
     """Yield the attribute (empty for a text) and both values of each difference."""
-    olds, news = [*before.walk()], [*after.walk()]
-    if [old.tag for old in olds] != [new.tag for new in news]:
+    old_elements, new_elements = [*before.walk()], [*after.walk()]
+    if [old.tag for old in old_elements] != [new.tag for new in new_elements]:
         raise UnprovedError(phrase("the robot would have other elements"))
-    for old, new in zip(olds, news, strict=True):
+    for old, new in zip(old_elements, new_elements, strict=True):
         if old.attributes.keys() != new.attributes.keys():
             raise UnprovedError(phrase("<{tag}> would have other attributes", tag=old.tag))
         for key, value in old.attributes.items():

@@ -59,11 +59,11 @@ _LINK: Schema = (
     PropertySpec("Value", "bool", True, "Whether it is drawn."),
 )
 _OF_FRAMES: Schema = (
-    PropertySpec("Frames", "group", description="Which frames are drawn."),
+    PropertySpec("Frames", "group", description="The frames that are drawn."),
     PropertySpec("Tree", "group", description="The tree of the frames."),
 )
 _MANAGER: Schema = (
-    PropertySpec("Displays", "group", description="The displays, from the first to the last that is drawn."),
+    PropertySpec("Displays", "group", description="The displays, in the order in which they are drawn."),
     PropertySpec(OPTIONS, "group", description="The Fixed Frame, the background and the frame rate."),
     PropertySpec("Tools", "group", description="The tools of the toolbar."),
     PropertySpec("Views", "group", description="The current view and the saved ones."),

@@ -12,7 +12,7 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from linkwright.diagnostics import SourceText, phrase
-from linkwright.language.includes import real
+from linkwright.language.includes import real_path
 from linkwright.language.mentions import Mention, mentions_in
 from linkwright.language.occurrences import kinds_of_text
 from linkwright.language.proof import Edit, ExpansionProof, UnprovedError, apply_edits
@@ -74,7 +74,7 @@ def sdf_name_at(text: str, file: Path, offset: int) -> SdfName | None:
 def rename_in_sdf(
     project: Workspace, texts: Mapping[Path, str], name: SdfName, new: str
 ) -> tuple[set[Edit], list[Mention]]:
-    """Return the edits that rename a link, joint, frame or model of an SDF text, and uncertain mentions.
+    """Return the edits that rename a link, joint, frame or model, and uncertain mentions.
 
     A mention in another file, such as a launch file that starts a model, may have another meaning.
 
@@ -85,7 +85,7 @@ def rename_in_sdf(
         new: the new name.
 
     Raises:
-        UnprovedError: the new name is not valid or exists, the file is outside of the workspace, or values would lead
+        UnprovedError: the new name is not valid or exists, the file is outside the workspace, or values would lead
             to other elements.
     """
     text = project.text(name.file, texts) or ""
@@ -93,7 +93,7 @@ def rename_in_sdf(
     if not _NAME.fullmatch(new) or _SEPARATOR in new or (new.startswith("__") and new.endswith("__")):
         raise UnprovedError(phrase("'{new}' is not a valid name", new=new), span)
     if not project.contains(name.file):
-        raise UnprovedError(phrase("'{file}' is outside of the workspace", file=name.file.name), span)
+        raise UnprovedError(phrase("'{file}' is outside the workspace", file=name.file.name), span)
     definition = innermost_element(source_elements(text), name.definition)
     scope = None if definition is None else _scope(definition.parent)
     if definition is None or scope is None:
@@ -164,7 +164,7 @@ def _references(element: SourceElement, text: str) -> Iterator[tuple[str, int, S
         is_reference = attribute.name in _ATTRIBUTES or (element.name, attribute.name) == _MIMIC
         if is_reference and attribute.value:
             own = element if attribute.name in _INNER_REFERENCES and element.name == "model" else None
-            scope = own or _scope_of_place(element)
+            scope = own or _attribute_scope(element)
             if scope is not None:
                 yield attribute.value, attribute.value_start, scope
     if element.name in ("model", "link"):
@@ -184,18 +184,22 @@ def _state_reference(element: SourceElement) -> Iterator[tuple[str, int, SourceE
     around = [*element.ancestors_and_self()]
     state = next((number for number, outer in enumerate(around) if outer.name == "state"), None)
     scope = None if state is None else _scope(around[state].parent)
-    name = next((one for one in element.tag.attributes() if one.name == "name" and one.value), None)
+    name = next(
+        (candidate for candidate in element.tag.attributes() if candidate.name == "name" and candidate.value), None
+    )
     if state is None or scope is None or name is None:
         return
     for outer in reversed(around[1:state]):
-        found = next((one for one in _named_children(scope) if one.value("name") == outer.value("name")), None)
+        found = next(
+            (candidate for candidate in _named_children(scope) if candidate.value("name") == outer.value("name")), None
+        )
         if found is None:
             return
         scope = found
     yield name.value or "", name.value_start, scope
 
 
-def _scope_of_place(element: SourceElement) -> SourceElement | None:
+def _attribute_scope(element: SourceElement) -> SourceElement | None:
     """Return the scope of an element's attributes, which is outside the model for its pose."""
     parent = element.parent
     if element.name == "pose" and parent is not None and parent.name == "model":
@@ -211,7 +215,7 @@ def _referred_elements(scope: SourceElement, value: str) -> Iterator[tuple[str, 
         found = (
             None
             if current is None
-            else next((one for one in _named_children(current) if one.value("name") == part), None)
+            else next((candidate for candidate in _named_children(current) if candidate.value("name") == part), None)
         )
         if found is None:
             return
@@ -262,9 +266,9 @@ def _edits_of_includer(text: str, file: Path, model: Path, path: tuple[str, ...]
 
 def _includes(include: SourceElement, text: str, model: Path) -> bool:
     uri = _child_text(include, "uri", text).rstrip("/")
-    return uri.rpartition("/")[2] in (model.parent.name, model.name) and real(model).is_file()
+    return uri.rpartition("/")[2] in (model.parent.name, model.name) and real_path(model).is_file()
 
 
 def _child_text(element: SourceElement, tag: str, text: str) -> str:
-    child = next((one for one in element.children if one.name == tag), None)
+    child = next((candidate for candidate in element.children if candidate.name == tag), None)
     return "" if child is None else text[child.tag.end : text.find("<", child.tag.end)].strip()

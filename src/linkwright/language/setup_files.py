@@ -28,7 +28,7 @@ _ARGUMENTS = {
     "maintainer": "the name of the maintainer",
     "maintainer_email": "the address of the maintainer",
     "description": "the purpose of the package, as in package.xml",
-    "license": "the licence, as in package.xml",
+    "license": "the license, as in package.xml",
     "tests_require": "the Python packages that the tests need",
     "entry_points": "the programs: console_scripts with NAME = MODULE:FUNCTION",
 }
@@ -121,8 +121,8 @@ def _explain(document: Document, offset: int) -> Explanation | None:
     text, parts = entry or (None, None)
     if text is not None and parts is not None:
         module, function = parts["module"], parts["function"] or ""
-        place = "" if target is None else f"\n\n`{target.file}`"
-        return Explanation(f"**{parts['name']}**: `{module}:{function}`{place}", text.start, text.end)
+        file_line = "" if target is None else f"\n\n`{target.file}`"
+        return Explanation(f"**{parts['name']}**: `{module}:{function}`{file_line}", text.start, text.end)
     found = python_text(document.text).string_at(offset)
     if found is not None and target is not None:
         return Explanation(explain_file(target.file), found[0].start, found[0].end)
@@ -137,8 +137,8 @@ def _define(document: Document, offset: int) -> Iterator[Target]:
         file = module_file(folder, parts["module"]) if parts is not None else None
         if parts is not None and file is not None:
             names = _FUNCTION.finditer(text_of(file))
-            place = next((found.span(1) for found in names if found[1] == parts["function"]), (0, 0))
-            yield Target(file, *place)
+            name_range = next((found.span(1) for found in names if found[1] == parts["function"]), (0, 0))
+            yield Target(file, *name_range)
         return
     found = python_text(document.text).string_at(offset)
     if found is not None and _is_installed(found[1]):

@@ -75,16 +75,18 @@ def simulator_plugins() -> Mapping[str, SimulatorPlugin]:
 
 
 def _plugin(library: str, entry: Mapping[str, object]) -> SimulatorPlugin:
-    name, about, parameters = str(entry["class"]), str(entry["about"]), entry["parameters"]
+    name, purpose, parameters = str(entry["class"]), str(entry["about"]), entry["parameters"]
     assert isinstance(parameters, list)
     children = tuple(map(_parameter, parameters))
     if not name:
         children = (_ROS, *children)
-    return SimulatorPlugin(library, name, about, ElementRule("plugin", about, PLUGIN.attributes, children, many=True))
+    return SimulatorPlugin(
+        library, name, purpose, ElementRule("plugin", purpose, PLUGIN.attributes, children, many=True)
+    )
 
 
 def _parameter(entry: Mapping[str, str]) -> ElementRule:
-    name, meaning, many = entry["name"], entry["meaning"], bool(entry.get("many"))
+    name, meaning, is_repeated = entry["name"], entry["meaning"], bool(entry.get("many"))
     text = AttributeRule(
         "text",
         _TYPES[entry["type"]],
@@ -93,7 +95,7 @@ def _parameter(entry: Mapping[str, str]) -> ElementRule:
         required=bool(entry.get("required")),
         default=entry.get("default"),
     )
-    return ElementRule(name, meaning, many=many, text=text, required=text.required)
+    return ElementRule(name, meaning, many=is_repeated, text=text, required=text.required)
 
 
 def plugin_of(filename: str, name: str = "") -> SimulatorPlugin | None:

@@ -12,7 +12,7 @@ from typing import NamedTuple
 from weakref import WeakKeyDictionary
 
 from linkwright.language.format import Document, NotYetKnownError
-from linkwright.language.includes import real
+from linkwright.language.includes import real_path
 from linkwright.language.workspace import Workspace
 from linkwright.lint.targets import walk
 
@@ -135,7 +135,9 @@ def declared_topics(document: Document, folder: Path) -> list[DeclaredTopic]:
     Raises:
         NotYetKnownError: the sources were never read, and the document does not wait.
     """
-    return [topic for file, each in _known(document).items() if file.is_relative_to(folder) for topic in each.topics]
+    return [
+        topic for file, source in _known(document).items() if file.is_relative_to(folder) for topic in source.topics
+    ]
 
 
 def _known(document: Document) -> dict[Path, _Source]:
@@ -154,7 +156,7 @@ def _known(document: Document) -> dict[Path, _Source]:
 
 def _read(project: Workspace, texts: Mapping[Path, str], before: _Sources | None) -> _Sources:
     """Read the sources that have changed since they were read before."""
-    files = [real(file) for folder in project.index.packages for file in walk(folder, _SOURCES)[0]][:_MAX_FILES]
+    files = [real_path(file) for folder in project.index.packages for file in walk(folder, _SOURCES)[0]][:_MAX_FILES]
     cache = {} if before is None else before.cache
     found: dict[Path, _Source] = {}
     for file in files:

@@ -9,7 +9,9 @@ from linkwright.language.source_declarations import declared_parameters
 
 
 def parameters_in_sources(document: Document, program: NodeProgram) -> tuple[ParameterInfo, ...]:
-    """Return the parameters that the sources of a program declare, or an empty tuple without a program.
+    """Return the parameters that the sources of a program declare.
+
+    The result is empty without a program.
 
     Args:
         document: the launch file.

@@ -15,7 +15,7 @@ from linkwright.language.format import Document, Format, Target
 from linkwright.language.grammar import rule_at
 from linkwright.language.hover import Explanation, definitions_at
 from linkwright.language.hover_facts import facts_at, part_facts
-from linkwright.language.includes import real
+from linkwright.language.includes import real_path
 from linkwright.language.links import FileReference, file_references
 from linkwright.language.outline import Outline
 from linkwright.language.robot_names import mentioned_robots
@@ -75,7 +75,7 @@ class _Semantics:
         for found in _ASSISTANT.finditer(text_of(folder / ".setup_assistant")):
             share = self.document.finder.find(found[1])
             if share is not None and (share / found[2]).is_file():
-                yield real(source_of(str(share / found[2])))
+                yield real_path(source_of(str(share / found[2])))
 
     @cached_property
     def robots(self) -> list[Robot]:
@@ -127,8 +127,8 @@ def _complete(document: Document, offset: int) -> Iterator[Completion]:
             if name not in present:
                 yield Completion(name, ItemKind.NAME, start, kind.value)
     elif _is_group(cursor, rule):
-        for name, place in semantics.groups().items():
-            if place != start:
+        for name, group_offset in semantics.groups().items():
+            if group_offset != start:
                 yield Completion(name, ItemKind.NAME, start)
 
 
@@ -158,20 +158,25 @@ def _explain(document: Document, offset: int) -> Explanation | None:
     if found is not None or not document.file.name.endswith(".xacro"):
         return found
     values = values_in(document.project, document.texts, document.file)
-    more = facts_at(document.project, document.texts, document.file, document.text, offset, values)
-    return Explanation("\n\n".join(more), offset, offset) if more else None
+    further_facts = facts_at(document.project, document.texts, document.file, document.text, offset, values)
+    return Explanation("\n\n".join(further_facts), offset, offset) if further_facts else None
 
 
 def _described_group(text: str, name: str) -> str:
     """Return the content of a group in Markdown, or empty if the text does not define it."""
-    for element in (each for root in Outline.of(text).elements for each in root.children if each.tag.name == "group"):
-        if any((each.name, each.value) == ("name", name) for each in element.tag.attributes()) and element.children:
+    for element in (
+        candidate for root in Outline.of(text).elements for candidate in root.children if candidate.tag.name == "group"
+    ):
+        if (
+            any((candidate.name, candidate.value) == ("name", name) for candidate in element.tag.attributes())
+            and element.children
+        ):
             lines = [
-                f"- {child.tag.name} " + ", ".join(f"`{each.value}`" for each in child.tag.attributes())
+                f"- {child.tag.name} " + ", ".join(f"`{candidate.value}`" for candidate in child.tag.attributes())
                 for child in element.children[:_SHOWN_PARTS]
             ]
-            more = ["- ..."] if len(element.children) > _SHOWN_PARTS else []
-            return "\n".join([f"**group {name}**", "", *lines, *more])
+            ellipsis = ["- ..."] if len(element.children) > _SHOWN_PARTS else []
+            return "\n".join([f"**group {name}**", "", *lines, *ellipsis])
     return ""
 
 

@@ -122,7 +122,10 @@ def _meaning(text: str, file: Path) -> object:
             events = yaml.parse(text, Loader=getattr(yaml, "CSafeLoader", yaml.SafeLoader))
             return [(type(event), getattr(event, "value", None)) for event in events]
         if file.name == "CMakeLists.txt":
-            return [(one.name, [word.text for word in one.tokens]) for one in statements(SourceText("", text))]
+            return [
+                (statement.name, [word.text for word in statement.tokens])
+                for statement in statements(SourceText("", text))
+            ]
     except (SyntaxError, ValueError, RecursionError, MemoryError, tokenize.TokenError, yaml.YAMLError):
         return text
     return text

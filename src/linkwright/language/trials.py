@@ -15,7 +15,7 @@ from pathlib import Path
 
 from linkwright.descriptions.argument_sets import compared_values
 from linkwright.diagnostics import LinkwrightError, Phrase, SourceText, Span
-from linkwright.language.includes import real
+from linkwright.language.includes import real_path
 from linkwright.language.workspace import Workspace
 from linkwright.language.written import innermost_element, source_elements
 from linkwright.xacro import Expansion, expand
@@ -141,7 +141,7 @@ def _trial_with_gaps(
         except LinkwrightError as raised:
             error = raised
         undeclared = [diagnostic for diagnostic in error.diagnostics if diagnostic.code == _UNDECLARED]
-        names = [str(name) for one in undeclared if (name := one.message.arguments.get("name"))]
+        names = [str(name) for finding in undeclared if (name := finding.message.arguments.get("name"))]
         added = {name: _PLACEHOLDERS[0] for name in names if name not in values}
         if added:
             values |= added
@@ -161,7 +161,7 @@ def _trial_with_gaps(
 
 def _element_around(project: Workspace, texts: Mapping[Path, str], span: Span, gaps: Gaps) -> tuple[Path, Range] | None:
     """Return the file and range of the element at a location, or None for the root."""
-    file = real(span.file)
+    file = real_path(span.file)
     text = project.text(file, texts)
     if text is None:
         return None
@@ -169,8 +169,8 @@ def _element_around(project: Workspace, texts: Mapping[Path, str], span: Span, g
     element = innermost_element(source_elements(text), offset)
     if element is None or element.parent is None or element.end < 0:
         return None
-    place = element.start, element.end
-    return None if place in gaps.get(file, ()) else (file, place)
+    element_range = element.start, element.end
+    return None if element_range in gaps.get(file, ()) else (file, element_range)
 
 
 def _switched(project: Workspace, texts: Mapping[Path, str], base: Trial, known: set[str]) -> Iterator[Trial]:

@@ -11,7 +11,7 @@ from pathlib import Path
 
 from linkwright.language.format import Document, Format, Target
 from linkwright.language.formats import format_of
-from linkwright.language.includes import real
+from linkwright.language.includes import real_path
 from linkwright.packages import enclosing_package
 from linkwright.packages.launch_files import is_launch_file_name, launch_files_below
 from linkwright.packages.share_layout import source_of
@@ -55,7 +55,7 @@ def _documents(document: Document, file: Path) -> Iterator[Document]:
     if is_launch_file_name(file.name) or file.name.endswith(".launch"):
         packages = (enclosing_package(path.parent) for path in (document.file, file))
         folders = dict.fromkeys(found[1] for found in packages if found is not None)
-        others = [real(source_of(str(path))) for folder in folders for path in launch_files_below(folder)]
+        others = [real_path(source_of(str(path))) for folder in folders for path in launch_files_below(folder)]
     for number, path in enumerate(dict.fromkeys((document.file, file, *others))):
         if number < _MAX_FILES:
             text = document.text if path == document.file else document.other(path)
@@ -65,6 +65,6 @@ def _documents(document: Document, file: Path) -> Iterator[Document]:
 
 def _uses(document: Document, known: Format, target: Target, name: str) -> Iterator[Target]:
     places = re.finditer(rf"(?<![\w.-]){re.escape(name)}(?![\w.-])", document.text)
-    for _, place in zip(range(_MAX_PLACES), places, strict=False):
-        if target in known.define(document, place.start()):
-            yield Target(document.file, *place.span())
+    for _, position in zip(range(_MAX_PLACES), places, strict=False):
+        if target in known.define(document, position.start()):
+            yield Target(document.file, *position.span())

@@ -6,7 +6,7 @@ from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
 
-from linkwright.language.includes import real
+from linkwright.language.includes import real_path
 from linkwright.language.workspace import Workspace
 from linkwright.xacro.faults import Frame, frames
 from linkwright.xacro.session import Inputs
@@ -58,7 +58,7 @@ def values_in(project: Workspace, texts: Mapping[Path, str], file: Path) -> list
     for _, (entry, values) in zip(range(_MAX_EXPANSIONS), calls, strict=False):
         inputs = Inputs(str(entry), values, project.finder(entry), overlay=overlay)
         for expression in evaluated_expressions(inputs):
-            if real(expression.file) == file:
+            if real_path(expression.file) == file:
                 key = expression.start, expression.end
                 text = found.setdefault(key, ValuedText(*key))
                 text.evaluations += [(evaluation, values) for evaluation in expression.evaluations]

@@ -8,7 +8,7 @@ from typing import NamedTuple
 
 from linkwright.diagnostics import Diagnostic, LinkwrightError, Span
 from linkwright.language.definitions import NameDefinition, definitions_in
-from linkwright.language.includes import IncludeIndex, real
+from linkwright.language.includes import IncludeIndex, real_path
 from linkwright.language.mentions import FILES as MENTIONING_FILES
 from linkwright.lint.checking import Checker, UniqueFindings
 from linkwright.lint.contexts import Contexts
@@ -62,8 +62,8 @@ def versions_of(texts: Mapping[Path, str]) -> dict[Path, int]:
 class Workspace:
     """The files below some folders, with the open texts of an editor.
 
-    All paths are results of `linkwright.language.includes.real`. Methods that read files or check may be called from
-    another thread, one at a time.
+    All paths are results of `linkwright.language.includes.real_path`. Methods that read files or check may be called
+    from another thread, one at a time.
 
     Args:
         folders: the folders of the workspace.
@@ -75,7 +75,7 @@ class Workspace:
     """
 
     def __init__(self, folders: Iterable[Path]) -> None:
-        self.folders = tuple(real(folder) for folder in folders)
+        self.folders = tuple(real_path(folder) for folder in folders)
         self.index = IncludeIndex(self.folders)
         self._checker = Checker(folders=self.folders)
         self._names: dict[Path, tuple[int, tuple[NameDefinition, ...]]] = {}
@@ -132,19 +132,19 @@ class Workspace:
     def configurations_below(self, folder: Path) -> list[Path]:
         """Return the files below a folder that may mention links and joints."""
         found, _ = walk(folder, (*MENTIONING_FILES, ".srdf", ".srdf.xacro", ".sdf", ".world"))
-        return [real(path) for path in found]
+        return [real_path(path) for path in found]
 
     def files(self, suffixes: tuple[str, ...]) -> list[Path]:
         """Return the files of the workspace with some suffixes, inside packages or not."""
         found = (path for folder in self.folders for path in walk(folder, suffixes)[0])
-        return [*dict.fromkeys(map(real, found))]
+        return [*dict.fromkeys(map(real_path, found))]
 
     def package_neighbors(self, file: Path, known: Container[Path]) -> list[Path]:
         """Return the descriptions in a file's package, except known ones."""
         package = enclosing_package(file.parent)
         if package is None:
             return []
-        folder = real(package[1])
+        folder = real_path(package[1])
         return [other for other in self.index.files if other not in known and other.is_relative_to(folder)]
 
     def names(self, file: Path, texts: Mapping[Path, str]) -> list[NameDefinition]:
@@ -227,7 +227,7 @@ class Workspace:
                 return [*dict.fromkeys((*entries, *below))]
         package = enclosing_package(file.parent)
         found = self.index.entries(file, texts) if is_description else []
-        subjects = [*found, *([] if package is None else [real(package[1])])]
+        subjects = [*found, *([] if package is None else [real_path(package[1])])]
         if subjects and file not in subjects:
             self._results.pop(file, None)  # of the file alone, before it belonged to a description or a package
         return subjects
@@ -247,7 +247,9 @@ class Workspace:
     def record(
         self, subject: Path, found: tuple[Diagnostic, ...], texts: Mapping[Path, str], changed: Iterable[Path] = ()
     ) -> dict[Path, list[Diagnostic]]:
-        """Store the findings about a description or package, and return the findings about each affected file.
+        """Store the findings about a subject, and return the findings about each affected file.
+
+        A subject is a description or a package.
 
         Args:
             subject: the description or the folder of the package.
@@ -277,7 +279,7 @@ class Workspace:
         for subject, result in self._results.items():
             for finding in result.findings:
                 if isinstance(finding, Finding) and finding.fix is not None and _file(finding, subject) == file:
-                    edited = {real(edit.source_file) for edit in finding.fix.edits}
+                    edited = {real_path(edit.source_file) for edit in finding.fix.edits}
                     if all(result.versions.get(other) == versions.get(other) for other in edited):
                         found.add([finding])
         return [finding for finding in found.all() if isinstance(finding, Finding)]
@@ -293,7 +295,13 @@ class Workspace:
         versions = versions_of(texts)
         for result in self._results.values():
             if result.versions.get(file) == versions.get(file):
-                found.add([one for one in result.findings if one.span is not None and real(one.span.file) == file])
+                found.add(
+                    [
+                        finding
+                        for finding in result.findings
+                        if finding.span is not None and real_path(finding.span.file) == file
+                    ]
+                )
         return found.all()
 
     def checked(self, subject: Path, texts: Mapping[Path, str]) -> tuple[Diagnostic, ...]:
@@ -337,5 +345,5 @@ class Workspace:
 def _file(diagnostic: Diagnostic, subject: Path) -> Path:
     """Return the file of a finding: its location, or else its description or manifest."""
     if diagnostic.span is not None:
-        return real(diagnostic.span.file)
+        return real_path(diagnostic.span.file)
     return subject / MANIFEST if subject.is_dir() else subject

@@ -52,7 +52,7 @@ def yaml_value(document: Document, name: str, names: Sequence[NameDefinition]) -
 
 def _definition_of(name: str, kind: NameKind, names: Sequence[NameDefinition]) -> tuple[str, Path | None]:
     """Return the value of a property or argument as written, and the file that defines it."""
-    found = next((each for each in names if each.kind is kind and each.name == name), None)
+    found = next((candidate for candidate in names if candidate.kind is kind and candidate.name == name), None)
     return ("", None) if found is None else (found.detail, found.file)
 
 

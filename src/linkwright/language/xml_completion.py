@@ -88,7 +88,7 @@ def _present_elements(text: str, cursor: Cursor) -> frozenset[str]:
     inside = Outline.of(text).elements
     around: OutlineElement | None = None
     for element in cursor.elements:
-        around = next((each for each in inside if each.tag.start == element.start), None)
+        around = next((candidate for candidate in inside if candidate.tag.start == element.start), None)
         inside = [] if around is None else around.children
     own = cursor.token.start if cursor.token is not None else -1
     return frozenset(child.tag.name for child in inside if child.tag.start != own)
@@ -127,7 +127,7 @@ def _call_snippet(macro: NameDefinition) -> str:
     tag = PREFIX + macro.name
     return (
         f"{tag}{attributes_text}>$0</{tag}>"
-        if any(each.is_block for each in parameters)
+        if any(macro_parameter.is_block for macro_parameter in parameters)
         else f"{tag}{attributes_text}/>$0"
     )
 

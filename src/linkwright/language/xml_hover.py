@@ -80,7 +80,7 @@ def _explain_attribute(
 
 
 def _in_degrees(cursor: Cursor, rule: AttributeRule, value: str) -> str:
-    """Return the angles of a value in degrees, or empty if it contains other quantities or expressions."""
+    """Return the angles of a value in degrees, or an empty text if it has other contents."""
     parent_attributes = {
         attribute.name: attribute.value for element in cursor.elements[-2:-1] for attribute in element.attributes()
     }
@@ -96,7 +96,7 @@ def _in_degrees(cursor: Cursor, rule: AttributeRule, value: str) -> str:
 def _explain_value(document: Document, cursor: Cursor, rule: AttributeRule, value: str) -> str:
     """Return the explanation of a simulator plugin or hardware parameter, or empty."""
     if cursor.tags[-1] == "plugin" and rule.name in ("filename", "name"):
-        given = {each.name: each.value or "" for each in cursor.elements[-1].attributes()}
+        given = {attribute.name: attribute.value or "" for attribute in cursor.elements[-1].attributes()}
         plugin = plugin_of(given.get("filename", ""), given.get("name", ""))
         return "" if plugin is None else describe_plugin(plugin)
     if rule.type is PARAMETER_NAME and "hardware" in cursor.tags:
@@ -126,10 +126,10 @@ def _explain_text(document: Document, cursor: Cursor, root: ElementRule) -> Expl
         return None
     start = begin + written.index(value)
     if rule.text.type is HARDWARE_PLUGIN:
-        about = hardware_plugins(document).get(value)
+        purpose = hardware_plugins(document).get(value)
         parameters = ", ".join(f"`{name}`" for name in hardware_parameters(document, value))
-        if about is not None:
-            described = "\n\n".join(filter(None, (f"**{value}**: {about}", parameters)))
+        if purpose is not None:
+            described = "\n\n".join(filter(None, (f"**{value}**: {purpose}", parameters)))
             return Explanation(described, start, start + len(value))
     return Explanation(describe_element(rule), start, start + len(value))
 
@@ -142,7 +142,9 @@ def _explain_word(cursor: Cursor) -> Explanation | None:
     if found is None:
         return None
     word, start = found[0], found[1] + cursor.token.start
-    parameter = next((each for each in parameters_in_scope(cursor) if each.name == word.partition(".")[0]), None)
+    parameter = next(
+        (candidate for candidate in parameters_in_scope(cursor) if candidate.name == word.partition(".")[0]), None
+    )
     if parameter is not None:
         default = "" if parameter.default is None else f" = `{parameter.default}`"
         return Explanation(f"**parameter {parameter.name}**{default}", start, start + len(word))

@@ -188,8 +188,8 @@ def _type_completions(
         for word in ("true", "false"):
             yield from _value_completions((word,), start, localized(phrase("default")) if word == rule.default else "")
     elif kind is HARDWARE_PLUGIN:
-        for name, about in hardware_plugins(document).items():
-            yield Completion(name, ItemKind.VALUE, start, "", about)
+        for name, purpose in hardware_plugins(document).items():
+            yield Completion(name, ItemKind.VALUE, start, "", purpose)
     elif kind is INTERFACE_NAME:
         yield from _interfaces(document, cursor, start)
     elif kind is PARAMETER_NAME:
@@ -202,8 +202,8 @@ def _interfaces(document: Document, cursor: Cursor, start: int) -> Iterator[Comp
     """Yield the names of interfaces that the component does not have yet."""
     component = element_at(document.text, cursor.elements[:-1])
     tag = cursor.tags[-1]
-    others = [] if component is None else [each for each in component.children if each.tag.name == tag]
-    given = {_attribute(each.tag, "name") for each in others if each.tag.start != cursor.elements[-1].start}
+    others = [] if component is None else [sibling for sibling in component.children if sibling.tag.name == tag]
+    given = {_attribute(sibling.tag, "name") for sibling in others if sibling.tag.start != cursor.elements[-1].start}
     is_joint = len(cursor.tags) < 2 or cursor.tags[-2] == "joint"
     likely = INTERFACES if is_joint else (*_names_in_text(document.text, tag), *INTERFACES)
     yield from _value_completions((name for name in dict.fromkeys(likely) if name not in given), start)
@@ -217,7 +217,7 @@ def _parameters(document: Document, cursor: Cursor, start: int) -> Iterator[Comp
     """Yield the parameters of hardware or of an interface."""
     component = element_at(document.text, cursor.elements[:-1])
     others = [] if component is None else [child for child in component.children if child.tag.name == "param"]
-    given = {_attribute(each.tag, "name") for each in others if each.tag.start != cursor.elements[-1].start}
+    given = {_attribute(sibling.tag, "name") for sibling in others if sibling.tag.start != cursor.elements[-1].start}
     if cursor.tags[-2:-1] == ("hardware",):
         plugin = hardware_of(document.text, component)
         for parameter in hardware_parameters(document, plugin, start).values():
@@ -239,13 +239,13 @@ def element_at(text: str, elements: Sequence[Token]) -> OutlineElement | None:
     """Return the innermost of some nested elements in the outline of a text."""
     inside, found = Outline.of(text).elements, None
     for element in elements:
-        found = next((each for each in inside if each.tag.start == element.start), None)
+        found = next((candidate for candidate in inside if candidate.tag.start == element.start), None)
         inside = [] if found is None else found.children
     return found
 
 
 def _attribute(token: Token, name: str) -> str:
-    return next((each.value or "" for each in token.attributes() if each.name == name), "")
+    return next((attribute.value or "" for attribute in token.attributes() if attribute.name == name), "")
 
 
 # --- names ------------------------------------------------------------------------------------------------------------
@@ -329,7 +329,12 @@ def complete_path(
     computed = _IN_EXPRESSION.match(typed)
     if computed is not None:
         value = next(
-            (each.detail for each in definitions_of_kind(names, NameKind.PROPERTY) if each.name == computed[1]), ""
+            (
+                definition.detail
+                for definition in definitions_of_kind(names, NameKind.PROPERTY)
+                if definition.name == computed[1]
+            ),
+            "",
         )
         typed = f"package://{value}/{typed[computed.end() :]}"
     inside = _PATH.match(typed)

@@ -36,7 +36,7 @@ def parse_arguments(words: Iterable[str]) -> dict[str, str]:
 
 
 def _malformed_error(argument: str, hint: Phrase) -> Diagnostic:
-    return Diagnostic("LAUNCH111", phrase("launch argument '{word}' is malformed", word=argument), hint=hint)
+    return Diagnostic("LAUNCH111", phrase("launch argument '{argument}' is malformed", argument=argument), hint=hint)
 
 
 def check_arguments(description: LaunchDescription, values: Mapping[str, str]) -> list[Diagnostic]:
@@ -82,7 +82,9 @@ def _misspelt(name: str, undeclared: Sequence[str], error: Diagnostic) -> Diagno
     """
     similar_names = nearest(name, undeclared, limit=1)
     return (
-        error.with_changes(hint=phrase("did you mean '{name}' instead of '{like}'?", like=similar_names[0], name=name))
+        error.with_changes(
+            hint=phrase("did you mean '{name}' instead of '{given_name}'?", given_name=similar_names[0], name=name)
+        )
         if similar_names
         else error
     )

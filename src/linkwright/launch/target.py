@@ -60,9 +60,7 @@ class LaunchTarget:
             )
             paths_text = ", ".join(str(path.relative_to(share)) for path in matching_files)
             raise LinkwrightError(
-                Diagnostic(
-                    "LAUNCH101", message, hint=phrase("pass the path of one of them: {listed}", listed=paths_text)
-                )
+                Diagnostic("LAUNCH101", message, hint=phrase("pass the path of one of them: {paths}", paths=paths_text))
             )
         names = [path.name for path in launch_files]
         message = phrase(

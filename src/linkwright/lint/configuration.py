@@ -171,7 +171,7 @@ class _Reader:
             self._report_invalid(
                 path,
                 phrase("is not a list of strings"),
-                phrase('write {written} = ["LW204", "limit-inverted"]', written=_toml_key(path[-1])),
+                phrase('write {key} = ["LW204", "limit-inverted"]', key=_toml_key(path[-1])),
             )
             return ()
         return tuple(selector for item in value if (selector := self._selector(path, item, item)))
@@ -180,7 +180,7 @@ class _Reader:
         if is_selector(selector):
             return canonical(selector)
         self._add(
-            "LINT104", phrase("there is no rule '{word}'", word=selector), path, selector_hint(selector), mark=mark
+            "LINT104", phrase("there is no rule '{rule}'", rule=selector), path, selector_hint(selector), mark=mark
         )
         return None
 
@@ -191,7 +191,7 @@ class _Reader:
             selector = self._selector(path, key, key)
             if value not in severity_names:
                 hint = did_you_mean(str(value), severity_names) or phrase(
-                    "use one of {words}; to silence a rule, use ignore", words=joined(severity_names)
+                    "use one of {values}; to silence a rule, use ignore", values=joined(severity_names)
                 )
                 self._report_invalid(path, phrase("is not a severity"), hint, shown=value)
             elif selector:
@@ -210,9 +210,7 @@ class _Reader:
                 self._report_invalid(
                     ("arguments", pattern),
                     phrase("is neither a set of values nor a list of sets"),
-                    phrase(
-                        'write {written} = [{{ prefix = "left_" }}, {{ prefix = "right_" }}]', written=f'"{pattern}"'
-                    ),
+                    phrase('write {key} = [{{ prefix = "left_" }}, {{ prefix = "right_" }}]', key=f'"{pattern}"'),
                 )
 
     def _style_settings(self, table: Mapping[str, Any]) -> Iterator[tuple[str, int]]:
@@ -233,7 +231,7 @@ class _Reader:
             rule = find_rule(key)
             if rule is None:
                 self._add(
-                    "LINT104", phrase("there is no rule '{word}'", word=key), ("options", key), selector_hint(key)
+                    "LINT104", phrase("there is no rule '{rule}'", rule=key), ("options", key), selector_hint(key)
                 )
             elif not isinstance(value, dict):
                 self._report_invalid(
@@ -271,7 +269,7 @@ class _Reader:
                 yield name, value
 
     def _report_invalid(self, path: tuple[str, ...], problem: Phrase, hint: Phrase, *, shown: object = None) -> None:
-        message = phrase("'{key}' {what}", key=path[-1], what=problem)
+        message = phrase("'{key}' {problem}", key=path[-1], problem=problem)
         if shown is not None:
             message = joined([message, quoted(shown)], ": ")
         self._add("LINT103", message, path, hint)

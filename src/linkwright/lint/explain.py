@@ -115,7 +115,7 @@ def toml(value: OptionValue) -> str:
 def _default_state(rule: Rule) -> Phrase:
     if rule.default:
         return phrase("On by default.")
-    return phrase('Off by default; `extend-select = ["{code}"]` switches it on.', code=rule.code)
+    return phrase('Off by default; `extend-select = ["{code}"]` enables it.', code=rule.code)
 
 
 def _lines(*lines: str) -> Phrase:

@@ -81,13 +81,12 @@ class Extents:
         import numpy as np
 
         from linkwright.geometry.mass import MassProperties, combine
-        from linkwright.inertia.inertial import from_inertial
 
         link_properties = []
         for link, frame in zip(self._bodies.members(body), body.frames.values(), strict=True):
             inertial = link.inertial
             if inertial is not None and inertial.mass > 0 and inertial.is_computable:
-                properties = from_inertial(inertial)
+                properties = inertial.properties
                 rotation = np.array(frame.rotation)
                 center = rotation @ properties.center + np.array(_clamp_position(frame).position)
                 link_properties.append(

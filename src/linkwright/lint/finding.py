@@ -44,7 +44,7 @@ class Finding(Diagnostic):
 
 
 def with_related(first: Diagnostic, others: Sequence[Diagnostic]) -> Diagnostic:
-    """Return the first of several findings with the same cause, with a note for each of the others."""
+    """Return the first of several findings with one cause, with a note for each of the others."""
     if not others:
         return first
     notes = tuple(Note(other.message, other.span) for other in others[:_MAX_NOTES])

@@ -33,15 +33,15 @@ _FIRST_IMPORT = lazy_pattern(r"^(import|from)[ \t]", re.MULTILINE)
 def dependency_fix(manifest: Manifest, names: list[str]) -> Fix | None:
     """Return the fix that adds dependencies to ``package.xml``, or None if this is not possible.
 
-    The new lines follow the last dependency that is not only for tests or documentation, or else the licence. They have
+    The new lines follow the last dependency that is not only for tests or documentation, or else the license. They have
     its indentation.
     """
     source = manifest.document.source
     dependencies = manifest.dependencies
     run_time = [dependency for dependency in dependencies if dependency.tag not in ("test_depend", "doc_depend")]
     last = (run_time or dependencies)[-1].element if dependencies else manifest.root.first("license")
-    place = None if last is None else element_range(last)
-    if source is None or last is None or place is None:
+    last_range = None if last is None else element_range(last)
+    if source is None or last is None or last_range is None:
         return None
     line = source.text.rfind("\n", 0, last.offset) + 1
     indent = source.text[line : last.offset]
@@ -49,7 +49,7 @@ def dependency_fix(manifest: Manifest, names: list[str]) -> Fix | None:
         return None
     newline = line_ending(source.text)
     text = "".join(f"{newline}{indent}<exec_depend>{name}</exec_depend>" for name in names)
-    return Fix((Edit(source.name, place[1], place[1], text),))
+    return Fix((Edit(source.name, last_range[1], last_range[1], text),))
 
 
 def setup_folders_fix(package: PackageContext, setup: SetupFile, folders: Iterable[str], *, safe: bool) -> Fix | None:
@@ -64,7 +64,9 @@ def setup_folders_fix(package: PackageContext, setup: SetupFile, folders: Iterab
 
 
 def setup_file_fix(package: PackageContext, setup: SetupFile, destination: str, file: str) -> Fix | None:
-    """Return the fix that installs a file by the ``data_files`` of ``setup.py``, or None if its place is uncertain.
+    """Return the fix that adds a file to the ``data_files`` of ``setup.py``.
+
+    The result is None if the position of the new entry is uncertain.
 
     Args:
         package: the package.
@@ -77,7 +79,9 @@ def setup_file_fix(package: PackageContext, setup: SetupFile, destination: str, 
 
 
 def cmake_folder_fix(source: SourceText, folder: str, *, safe: bool) -> Fix | None:
-    """Return the fix that installs a folder by ``CMakeLists.txt``, or None if its place is uncertain.
+    """Return the fix that installs a folder by ``CMakeLists.txt``.
+
+    The result is None if the position of the new command is uncertain.
 
     A folder directly in the package is added to a command that installs folders into the share folder. For any other
     folder, or without such a command, a command is added before ``ament_package()``.
@@ -164,8 +168,8 @@ def _after_last(source: SourceText, last: tuple[int, int], entries: list[str]) -
     separator = f"{line_ending(text)}{indent}"
     rest = _REST.match(text, end)
     if rest is not None and rest[1] and rest[2]:  # a comment belongs to the entry before it
-        at = end + len(rest[0].rstrip("\r"))
-        return Edit(source.name, at, at, "".join(f"{separator}{entry}," for entry in entries))
+        offset = end + len(rest[0].rstrip("\r"))
+        return Edit(source.name, offset, offset, "".join(f"{separator}{entry}," for entry in entries))
     return Edit(source.name, end, end, "".join(f",{separator}{entry}" for entry in entries))
 
 

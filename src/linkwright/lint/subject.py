@@ -109,7 +109,7 @@ class Subject:
         return self._shared.results_for(self.xacro, self.root, is_whole=self.is_whole)
 
     def elements(self, tag: str | None = None) -> Iterator[Element]:
-        """Return the direct children of ``<robot>``, or only the children with a tag, in document order."""
+        """Return the direct children of ``<robot>`` with a tag, or all, in document order."""
         return self.root.elements() if tag is None else iter(self._elements_by_tag.get(tag, ()))
 
     @cached_property

@@ -156,10 +156,10 @@ class Suppressions:
             if len(unused_selectors) == max(len(directive.selectors), 1):
                 fix = Fix((_removal_edit(directive),))
             yield rule.report(
-                phrase("this comment suppresses {what}, but no such finding occurs here", what=suppressed),
+                phrase("this comment suppresses {findings}, but no such finding occurs here", findings=suppressed),
                 span=directive.source.span(directive.start, directive.end),
                 source=directive.source,
-                hint=phrase("remove it") if fix else phrase("remove {what} from this comment", what=suppressed),
+                hint=phrase("remove it") if fix else phrase("remove {findings} from this comment", findings=suppressed),
                 fix=fix,
             )
 

@@ -86,4 +86,4 @@ def first_flaw(inertial: Inertial) -> Flaw | None:
 def name_others(names: Sequence[str]) -> Phrase:
     """Return a phrase that names a few of the other links with the same tensor."""
     others_phrase = phrase("the others are {names}", names=quoted_names(names[:_MAX_NAMED_LINKS]))
-    return phrase("{list}, ...", list=others_phrase) if len(names) > _MAX_NAMED_LINKS else others_phrase
+    return phrase("{names}, ...", names=others_phrase) if len(names) > _MAX_NAMED_LINKS else others_phrase

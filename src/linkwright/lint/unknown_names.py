@@ -104,7 +104,7 @@ def reader_hints(subject: Subject) -> dict[Span | None, str]:
 
 
 def intended_element(rule: ElementRule, child: Element) -> str | None:
-    """Return the allowed element that the author of an unknown element probably intended, or None."""
+    """Return the allowed element that an unknown element probably misspells, or None."""
     if child.tag in PARENT_TAGS:
         return None
     allowed_tags = [child.tag for child in rule.children]
@@ -125,7 +125,7 @@ def is_misspelt(name: str, intended: str) -> bool:
 
 
 def intended_attribute(schema_element: SchemaElement, attribute: str) -> str | None:
-    """Return the absent attribute that the author of an unknown attribute probably intended, or None."""
+    """Return the absent attribute that an unknown attribute probably misspells, or None."""
     absent_attributes = [
         rule.name for rule in schema_element.rule.attributes if rule.name not in schema_element.element.attributes
     ]

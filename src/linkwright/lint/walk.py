@@ -23,7 +23,7 @@ def joints(subject: Subject) -> Iterator[tuple[Joint, Element]]:
 
 
 def joint_children(subject: Subject, tag: str) -> Iterator[tuple[Joint, Element, Element]]:
-    """Yield each joint that has a child element with a tag, with the joint's element and the child.
+    """Yield each joint with a child element of a tag, the joint's element, and the child.
 
     Only the first such child is yielded, because readers use only this one.
     """

@@ -1,4 +1,7 @@
-"""The pages that show robots beside the text: a process of ``linkwright view`` for each description."""
+"""The pages that show robots beside the text.
+
+There is a process of ``linkwright view`` for each description.
+"""
 
 from __future__ import annotations
 

@@ -24,7 +24,7 @@ from linkwright.diagnostics.translation import localized
 from linkwright.language.definitions import NameDefinition
 from linkwright.language.format import Document, Format
 from linkwright.language.formats import format_of
-from linkwright.language.includes import real
+from linkwright.language.includes import real_path
 from linkwright.language.values import ValuedText, values_in
 from linkwright.language.workspace import MAX_CHARACTERS, Workspace
 from linkwright.lint.targets import XML_FILES
@@ -110,7 +110,7 @@ class LinkwrightServer(LanguageServer):
         """Store the URI of an opened file, schedule its check, and prepare its format."""
         path = path_of(uri)
         if path is not None:
-            self._uris[real(path)] = uri
+            self._uris[real_path(path)] = uri
             self.file_changed(uri)
             format_ = format_of(path)
             if format_ is not None:
@@ -125,15 +125,15 @@ class LinkwrightServer(LanguageServer):
         """Schedule checks of a file and of the descriptions that include it, and update robot pages."""
         path = path_of(uri)
         if path is not None:
-            self._changed[real(path)] = None
+            self._changed[real_path(path)] = None
             self._has_changes.set()
-            self.robot_views.text_changed(real(path), self.workspace.text_documents.get(uri))
+            self.robot_views.text_changed(real_path(path), self.workspace.text_documents.get(uri))
 
     def file_saved(self, uri: str) -> None:
         """Update the workspace after a file on the disk has changed."""
         path = path_of(uri)
         if path is not None and self.project is not None:
-            self.project.file_saved(real(path))
+            self.project.file_saved(real_path(path))
             self._values.clear()
             self.file_changed(uri)
 
@@ -180,7 +180,10 @@ class LinkwrightServer(LanguageServer):
         return context
 
     def format_context(self, document: types.TextDocumentIdentifier) -> FormatContext | None:
-        """Return a document with its format, or None if it has no format of its own, or is large or unreadable."""
+        """Return a document with its format, or None.
+
+        The result is None if the file has no format of its own, or is too large or unreadable.
+        """
         path = path_of(document.uri)
         format_ = None if path is None else format_of(path)
         if path is None or format_ is None or self.project is None:
@@ -188,18 +191,18 @@ class LinkwrightServer(LanguageServer):
         positions = self._usual_positions(path)
         if positions is None:
             return None
-        return FormatContext(format_, Document(self.project, self.texts(), real(path), positions.text), positions)
+        return FormatContext(format_, Document(self.project, self.texts(), real_path(path), positions.text), positions)
 
     async def defined_names(self, path: Path) -> list[NameDefinition]:
         """Wait for the index, and return the names that a file's descriptions define."""
         if self.project is None:
             return []
         await self.when_indexed()
-        return self.project.names(real(path), self.texts())
+        return self.project.names(real_path(path), self.texts())
 
     async def expression_values(self, path: Path) -> list[ValuedText]:
         """Wait for the index, and return the values of the expressions in a file."""
-        project, file, texts = self.project, real(path), self.texts()
+        project, file, texts = self.project, real_path(path), self.texts()
         if project is None:
             return []
         await self.when_indexed()
@@ -246,7 +249,7 @@ class LinkwrightServer(LanguageServer):
 
     def positions(self, path: Path) -> TextPositions | None:
         """Return the positions of a file's text, open or saved, or None if it is unreadable."""
-        file = real(path)
+        file = real_path(path)
         encoding = self.workspace.position_encoding or UTF_16
         uri = self._uris.get(file)
         if uri is not None and uri in self.workspace.text_documents:
@@ -270,7 +273,7 @@ class LinkwrightServer(LanguageServer):
 
     def uri_of(self, path: Path) -> str:
         """Return the URI of a file, in the editor's spelling if the file is open."""
-        file = real(path)
+        file = real_path(path)
         return self._uris.get(file) or file.as_uri()
 
     def texts(self) -> dict[Path, str]:
@@ -374,19 +377,19 @@ class LinkwrightServer(LanguageServer):
                 )
             )
 
-    async def _attempt(self, work: Callable[[], T], about: Path) -> T | None:
+    async def _attempt(self, work: Callable[[], T], path: Path) -> T | None:
         """Return the result of work in the check thread, or log an unexpected error and return None."""
         try:
             return await self.run_in_check_thread(work)
         except Exception:  # noqa: BLE001 - the editor continues to work, and the log has the reason
-            _log.exception("The check of '%s' failed", about)
+            _log.exception("The check of '%s' failed", path)
             return None
 
-    def submit_to_check_thread(self, work: Iterable[Callable[[], object]], about: Path) -> None:
+    def submit_to_check_thread(self, work: Iterable[Callable[[], object]], path: Path) -> None:
         """Submit work to the check thread, and replace waiting work about the same file."""
-        for future in self._submitted_work.pop(about, ()):
+        for future in self._submitted_work.pop(path, ()):
             future.cancel()
-        self._submitted_work[about] = [self._check_thread.submit(task) for task in work]
+        self._submitted_work[path] = [self._check_thread.submit(task) for task in work]
 
     async def run_in_check_thread(self, work: Callable[[], T]) -> T:
         """Return the result of work in the check thread, which does one task after the other."""

@@ -36,19 +36,19 @@ class PackageNotFoundError(LinkwrightError, KeyError):
         name: the name that was searched for.
         locations: the descriptions of the locations that were searched.
         suggestion: the hint that names a similar package, or None.
-        is_slip: see the attribute.
+        is_misspelling: see the attribute.
 
     Attributes:
         name: the name that was searched for.
-        is_slip: whether the name is a misspelling of an existing package's name.
+        is_misspelling: whether the name is a misspelling of an existing package's name.
     """
 
-    def __init__(self, name: str, locations: Sequence[str], suggestion: Phrase | None, *, is_slip: bool) -> None:
-        notes = tuple(Note(phrase("searched {place}", place=location)) for location in locations)
+    def __init__(self, name: str, locations: Sequence[str], suggestion: Phrase | None, *, is_misspelling: bool) -> None:
+        notes = tuple(Note(phrase("searched {location}", location=location)) for location in locations)
         hint = suggestion or phrase("change to the workspace that contains it, or source its install/setup.bash")
         super().__init__(Diagnostic("PKG101", phrase("package '{name}' not found", name=name), notes=notes, hint=hint))
         self.name = name
-        self.is_slip = is_slip
+        self.is_misspelling = is_misspelling
 
 
 class PackageFinder:
@@ -146,8 +146,8 @@ class PackageFinder:
         if share is None:
             if name not in self._suggestions:
                 self._suggestions[name] = self._nearest(name)
-            suggestion, is_slip = self._suggestions[name]
-            raise PackageNotFoundError(name, self._searched_locations(), suggestion, is_slip=is_slip)
+            suggestion, is_misspelling = self._suggestions[name]
+            raise PackageNotFoundError(name, self._searched_locations(), suggestion, is_misspelling=is_misspelling)
         return share
 
     def packages(self) -> dict[str, Path]:
@@ -174,7 +174,7 @@ class PackageFinder:
         """
         return uri.resolve(address, self.share, relative_to)
 
-    def offer_prefix_path(self, environment: MutableMapping[str, str]) -> None:
+    def set_prefix_path(self, environment: MutableMapping[str, str]) -> None:
         """Set ``AMENT_PREFIX_PATH`` for programs that read this variable, unless it is set already.
 
         The value contains the prefixes that sourcing the workspaces would set or, before a build, the folder into which
@@ -191,7 +191,7 @@ class PackageFinder:
             return []
         return ament.environment_prefixes(self._environment)
 
-    def forget(self) -> None:
+    def clear_cache(self) -> None:
         """Clear all cached results, so that the next search reads the disk again."""
         self._shares.clear()
         self._suggestions.clear()

@@ -12,7 +12,7 @@ from contextlib import suppress
 from pathlib import Path
 
 from linkwright.files.user_folders import SHARES_SUBFOLDER, cache_folder
-from linkwright.packages.readers.installed_file import InstalledFile
+from linkwright.packages.readers.installed import InstalledFile
 
 _MAX_LINKS = 5000
 _RETENTION_SECONDS = 7 * 24 * 3600.0

@@ -54,7 +54,7 @@ def check_member_name(name: str, member_kind: str) -> list[Diagnostic]:
         Diagnostic(
             "PKG203",
             phrase(
-                "'{name}' cannot be the name of a {what}: {problem}", name=name, what=term(member_kind), problem=problem
+                "'{name}' cannot be the name of a {kind}: {problem}", name=name, kind=term(member_kind), problem=problem
             ),
             hint=_suggestion(name),
         )
@@ -93,7 +93,9 @@ def _identifier_problem(name: str) -> Phrase:
     invalid_characters = sorted(set(re.findall(r"[^A-Za-z0-9_]", name)))
     if invalid_characters:
         character_list = " ".join("a blank" if character.isspace() else character for character in invalid_characters)
-        return phrase("it may contain only letters, digits and underscores, not {shown}", shown=character_list)
+        return phrase(
+            "it may contain only letters, digits and underscores, not {characters}", characters=character_list
+        )
     return phrase("it must begin with a letter")
 
 

@@ -28,7 +28,7 @@ from linkwright.files.user_folders import SHARES_SUBFOLDER
 from linkwright.loading.extensions import extensions
 from linkwright.packages.ament import install_prefix, share_in_prefix
 from linkwright.packages.manifest import MANIFEST
-from linkwright.packages.readers.installed_file import InstalledFile
+from linkwright.packages.readers.installed import InstalledFile
 
 _GROUP = "linkwright.package_substitutes"
 _PARTIAL_PREFIX = Path(__file__).parent / "substitutes"

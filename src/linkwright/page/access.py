@@ -166,7 +166,7 @@ class Gate:
     def refusal(self, headers: Mapping[str, str]) -> str | None:
         """Return the reason to refuse a request because of its Host or Origin header (403), or None."""
         host = headers.get("Host", "")
-        if not self.knows(host):
+        if not self.accepts_host(host):
             return f"this server does not answer to the name '{host[:200]}': open the address that linkwright printed"
         origin = headers.get("Origin")
         if origin is not None and not _is_same_origin(origin, host):
@@ -187,7 +187,7 @@ class Gate:
         """
         return hmac.digest(self.token.encode(), nonce.encode(), "sha256").hex() if _NONCE.fullmatch(nonce) else None
 
-    def knows(self, host_header: str) -> bool:
+    def accepts_host(self, host_header: str) -> bool:
         """Return whether a Host header is an IP address, localhost, or a name of this machine."""
         if not _PLAIN_HOST.fullmatch(host_header):
             return False
@@ -363,8 +363,11 @@ class LimitedConnection(asyncio.Protocol):
         self.served.connection_lost(exc)
 
 
-def is_from_here(transport: BaseTransport | None) -> bool:
-    """Return whether a connection comes from this machine: over loopback, or from its own address."""
+def is_local_connection(transport: BaseTransport | None) -> bool:
+    """Return whether a connection comes from this machine.
+
+    It then comes over loopback, or from an address of this machine.
+    """
     endpoints = endpoints_of(transport)
     if endpoints is None:
         return False

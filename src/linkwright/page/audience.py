@@ -105,7 +105,7 @@ class Page:
         socket: the page's socket.
         configuration_name: the name of the page's own configuration; empty for a page that uses the shared
             configuration.
-        is_here: whether the page is open on this machine or connected through a tunnel to it.
+        is_local: whether the page is open on this machine or connected through a tunnel to it.
         may_be_own_user: returns whether the page's browser or tunnel may run as the user of this program; see
             `peers.may_be_own_user`.
         language: the language of the page's user, one of `LANGUAGES`; None to send texts untranslated.
@@ -117,7 +117,7 @@ class Page:
         socket: WebSocketResponse,
         configuration_name: str = "",
         *,
-        is_here: bool = False,
+        is_local: bool = False,
         may_be_own_user: Callable[[], bool] = lambda: False,
         language: str | None = None,
         origin: str = "",
@@ -126,7 +126,7 @@ class Page:
         self.origin = origin
         self.language = language
         self.own = configuration_name
-        self.is_here = is_here
+        self.is_local = is_local
         self.may_be_own_user = may_be_own_user
         self.line = ConnectionMeter(asyncio.get_running_loop().time)
         self._socket = socket
@@ -374,11 +374,11 @@ class Audience(PageGroup):
         from linkwright.page.http_server import web
 
         remaining_invalid = _MAX_INVALID_MESSAGES
-        rate_limit = Pace(asyncio.get_running_loop().time)
+        rate_limit = RateLimit(asyncio.get_running_loop().time)
         async for message in socket:
             if message.type not in (web.WSMsgType.TEXT, web.WSMsgType.BINARY):
                 continue
-            if (delay := rate_limit.wait()) > 0:
+            if (delay := rate_limit.next_delay()) > 0:
                 await asyncio.sleep(delay)
             if message.type is web.WSMsgType.BINARY:
                 from linkwright.page.protocol.voice import unpack_sound
@@ -418,7 +418,7 @@ _MAX_BURST = 4000.0
 """The number of messages that a page may send at once, such as the reports of all meshes of a large robot."""
 
 
-class Pace:
+class RateLimit:
     """A limit on the rate of messages of a page, so that the page cannot block other pages.
 
     Args:
@@ -430,7 +430,7 @@ class Pace:
         self._remaining_messages = _MAX_BURST
         self._last_time = clock()
 
-    def wait(self) -> float:
+    def next_delay(self) -> float:
         """Return the time in seconds by which the next message must be delayed."""
         now = self._clock()
         self._remaining_messages = min(_MAX_BURST, self._remaining_messages + (now - self._last_time) * _MAX_RATE) - 1.0

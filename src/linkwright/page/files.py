@@ -83,7 +83,7 @@ class ServedFolder:
 
 
 @dataclass(frozen=True, slots=True)
-class Located:
+class FileAddress:
     """The address of a file for pages, or None and the reason why the file has no address."""
 
     url: str | None
@@ -108,9 +108,9 @@ class MeshIndex:
 
     finder: PackageFinder
     folders: dict[str, ServedFolder] = field(default_factory=dict)
-    _missing_packages: dict[str, Located] = field(default_factory=dict)
+    _missing_packages: dict[str, FileAddress] = field(default_factory=dict)
 
-    def locate(self, uri: str, base: Path | None, types: dict[str, str]) -> Located:
+    def locate(self, uri: str, base: Path | None, types: dict[str, str]) -> FileAddress:
         """Return the address of a file, and add its folder to `folders`.
 
         Args:
@@ -124,16 +124,16 @@ class MeshIndex:
         try:
             path = Path(os.path.normpath(self.finder.resolve(uri, base)))
         except PackageNotFoundError as error:
-            return self._missing_packages.setdefault(error.name, Located(None, error.diagnostics[0].message))
+            return self._missing_packages.setdefault(error.name, FileAddress(None, error.diagnostics[0].message))
         except LinkwrightError as error:
-            return Located(None, error.diagnostics[0].message)
+            return FileAddress(None, error.diagnostics[0].message)
         except ValueError:
-            return Located(None, phrase("the path contains an invalid character"))
+            return FileAddress(None, phrase("the path contains an invalid character"))
         if not path.is_file():
-            return Located(None, phrase("there is no file '{path}'", path=path))
+            return FileAddress(None, phrase("there is no file '{path}'", path=path))
         if path.suffix.lower() not in types:
             supported_formats = ", ".join(sorted(suffix[1:].upper() for suffix in types))
-            return Located(
+            return FileAddress(
                 None,
                 phrase(
                     "the format of '{path}' is not supported; the supported formats are {known}",
@@ -142,16 +142,18 @@ class MeshIndex:
                 ),
             )
         if is_pointer_file(path):
-            return Located(None, phrase("'{path}': {why}; {how}", path=path, why=POINTER_REASON, how=POINTER_HINT))
+            return FileAddress(
+                None, phrase("'{path}': {problem}; {hint}", path=path, problem=POINTER_REASON, hint=POINTER_HINT)
+            )
         folder = self._folder_of(uri, path)
         relative = path.relative_to(folder.root)
         try:
             resolve(folder, relative.as_posix())
         except FileRefusedError as error:
-            return Located(None, phrase("'{path}': {error}", path=path, error=error))
+            return FileAddress(None, phrase("'{path}': {error}", path=path, error=error))
         self.folders[folder.key] = folder
         version = path.stat().st_mtime_ns
-        return Located(f"/mesh/{folder.key}/{quote(relative.as_posix())}?v={version:x}")
+        return FileAddress(f"/mesh/{folder.key}/{quote(relative.as_posix())}?v={version:x}")
 
     def _folder_of(self, uri: str, path: Path) -> ServedFolder:
         package_match = _PACKAGE_URI.match(uri)

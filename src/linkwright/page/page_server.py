@@ -15,6 +15,7 @@ from linkwright.page.files import Downloads, MeshFolders
 
 if TYPE_CHECKING:
     from asyncio import StreamWriter
+    from collections.abc import Callable
 
     from linkwright.page.audience import Audience
     from linkwright.page.program_pages import ProgramPages
@@ -84,14 +85,17 @@ class PageServer:
         self.web = WebServer(gate, self.meshes, self.downloads, program_pages=self.program_pages)
         self.url = await self.web.start(listener)
 
-    def show(self, audience: Audience, guests: Guests | None) -> None:
+    def show(self, audience: Audience, open_guests: Callable[[], Guests] | None) -> None:
         """Admit pages, see `WebServer.show`."""
         if self.web is not None:
-            self.web.show(audience, guests)
+            self.web.show(audience, open_guests)
 
     @property
     def is_embedded(self) -> bool:
-        """Whether a page in whose terminal this program runs shows the page of this server in a frame."""
+        """Whether another page shows the page of this server in a frame.
+
+        This program then runs in a terminal of the other page.
+        """
         return self._embedding is not None
 
     async def embed(self, environment: Mapping[str, str], title: str) -> bool:

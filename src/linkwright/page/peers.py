@@ -25,7 +25,7 @@ _ROOT = 0
 
 
 def may_be_own_user(transport: BaseTransport | None) -> bool:
-    """Return whether the peer of a connection from this machine may run as the user of this program, or as root.
+    """Return whether the peer of a local connection may run as this user, or as root.
 
     On Linux, the system knows the user. Root is accepted because root can do everything that this user can, and
     because the relay that connects a browser on Windows to WSL is expected to run as root.
@@ -62,7 +62,7 @@ def _read_table(table: Path) -> str:
 
 
 def _socket_user(tables: str, local: Endpoint, remote: Endpoint) -> int | None:
-    """Return the ID of the user who owns an open socket with these addresses, or None if there is no such socket.
+    """Return the ID of the user who owns an open socket with these addresses, or None.
 
     A socket that its program has closed has no inode, and the user 0 in the tables.
     """
@@ -76,7 +76,10 @@ def _socket_user(tables: str, local: Endpoint, remote: Endpoint) -> int | None:
 
 
 def _table_address(endpoint: Endpoint) -> str:
-    """Return an address and port as the tables write them: 32-bit words in the byte order of the machine."""
+    """Return an address and port in the form of the tables.
+
+    The tables contain 32-bit words in the byte order of the machine.
+    """
     address, port = endpoint
     packed = address.packed
     words = (int.from_bytes(packed[start : start + 4], sys.byteorder) for start in range(0, len(packed), 4))

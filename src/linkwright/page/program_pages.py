@@ -123,7 +123,7 @@ class Embedder:
 
     @classmethod
     def of(cls, environment: Mapping[str, str]) -> Embedder | None:
-        """Return the page that the environment variables name, or None if there is none on this machine."""
+        """Return the page that the environment variables name, or None if they do not."""
         address = environment.get(PROGRAM_PAGES_VARIABLE, "")
         if not _SERVER_ADDRESS.fullmatch(address):
             return None

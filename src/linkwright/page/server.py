@@ -14,7 +14,14 @@ from pathlib import Path
 from typing import TYPE_CHECKING, cast
 from urllib.parse import quote
 
-from linkwright.page.access import PROGRAM_PAGES_PATH, TOKEN_PARAMETER, Admission, Gate, is_from_here, security_headers
+from linkwright.page.access import (
+    PROGRAM_PAGES_PATH,
+    TOKEN_PARAMETER,
+    Admission,
+    Gate,
+    is_local_connection,
+    security_headers,
+)
 from linkwright.page.files import CONTENT_TYPES, IMAGE_TYPES, Downloads, FileRefusedError, MeshFolders
 from linkwright.page.http_server import SERVER_LOGGER, web
 from linkwright.page.peers import may_be_own_user
@@ -89,11 +96,12 @@ _NOT_SENT_LOW_WATER: int | None = getattr(socket, "TCP_NOTSENT_LOWAT", None)
 class _Services:
     """The services for pages: the audience for their WebSockets, and the guests.
 
-    The guests show recordings that pages upload. `uploads` is created when the first upload is requested.
+    The guests show recordings that pages upload. `guests` and `uploads` are created when the first upload is requested.
     """
 
     audience: Audience
-    guests: Guests | None
+    open_guests: Callable[[], Guests] | None
+    guests: Guests | None = None
     uploads: Uploads | None = None
 
 
@@ -180,14 +188,14 @@ class WebServer:
             raise
         return f"{url_of(listener)}?{TOKEN_PARAMETER}={self._gate.token}"
 
-    def show(self, audience: Audience, guests: Guests | None = None) -> None:
+    def show(self, audience: Audience, open_guests: Callable[[], Guests] | None = None) -> None:
         """Admit pages, including pages that are already waiting.
 
         Args:
             audience: serves the WebSockets of pages.
-            guests: shows the recordings that pages upload; None if uploads are not accepted.
+            open_guests: returns the guests, which show the recordings that pages upload; None to accept no uploads.
         """
-        self._services.set_result(_Services(audience, guests))
+        self._services.set_result(_Services(audience, open_guests))
 
     async def close(self) -> None:
         """Close the connections to pages, and stop serving."""
@@ -227,7 +235,7 @@ class WebServer:
             self._admission.admit(request.protocol)
 
     async def _add_headers(self, request: web.Request, response: web.StreamResponse) -> None:
-        host = request.host if self._gate.knows(request.host) else "localhost"
+        host = request.host if self._gate.accepts_host(request.host) else "localhost"
         frames = "'none'" if self._program_pages is None else _FRAME_SOURCES
         response.headers.update(security_headers(host, frames=frames, frame_ancestors=self.frame_ancestor or "'none'"))
         response.headers.setdefault("Cache-Control", _NO_STORE)
@@ -331,11 +339,12 @@ class WebServer:
         self, handle_upload: Callable[[Uploads, web.Request], Awaitable[web.Response]], request: web.Request
     ) -> web.Response:
         services = await self._viewer()
-        if services.guests is None:
+        if services.open_guests is None:
             raise web.HTTPNotFound(text="This program does not accept recordings.\n")
         if services.uploads is None:
             from linkwright.page.uploads import Uploads
 
+            services.guests = services.open_guests()
             services.uploads = Uploads(services.guests)
         return await handle_upload(services.uploads, request)
 
@@ -396,7 +405,7 @@ class WebServer:
         page = Page(
             socket,
             _own_configuration(request),
-            is_here=is_from_here(request.transport),
+            is_local=is_local_connection(request.transport),
             may_be_own_user=cache(partial(may_be_own_user, request.transport)),
             language=requested_language(request),
             origin=request.headers.get("Origin") or f"http://{request.host}",
@@ -425,7 +434,7 @@ def _audience_of(services: _Services, request: web.Request) -> Audience:
 
 
 def _own_configuration(request: web.Request) -> str:
-    """Return the name of the page's own configuration, or an empty string for the shared configuration."""
+    """Return the name of the page's own configuration, or an empty string for the shared one."""
     key = request.query.get("own", "")
     return key if _OWN_CONFIGURATION_KEY.fullmatch(key) else ""
 

@@ -109,11 +109,11 @@ class KnownDescription:
         return SourceTexts(self.robot.element, self._files)
 
     @cached_property
-    def account(self) -> Description:
+    def details(self) -> Description:
         """The details of the description's links and joints, for pages."""
-        from linkwright.panels.description_details import account
+        from linkwright.panels.description_details import describe
 
-        return account(
+        return describe(
             self.robot,
             self.text,
             self.texts.names,
@@ -122,13 +122,13 @@ class KnownDescription:
             prefix=self.prefix,
         )
 
-    def changes_since(self, before: KnownDescription | None) -> DescriptionChanged:
+    def changes_since(self, previous: KnownDescription | None) -> DescriptionChanged:
         """Return the names of the links and joints that differ from the previous description.
 
-        The lists are empty if `before` is None.
+        The lists are empty if `previous` is None.
         """
-        links = _changed(before.robot.links, self.robot.links) if before else []
-        joints = _changed(before.robot.joints, self.robot.joints) if before else []
+        links = _changed(previous.robot.links, self.robot.links) if previous else []
+        joints = _changed(previous.robot.joints, self.robot.joints) if previous else []
         return DescriptionChanged(self.display, self.revision, links, joints)
 
     def text_of_file(self, file: str) -> DescriptionText:
@@ -149,13 +149,13 @@ class KnownDescription:
         return InertiaFindings(self.display, self.revision, implausible_inertias(self.robot, finder))
 
 
-def _changed(previous: Mapping[str, Part], after: Mapping[str, Part]) -> list[str]:
+def _changed(previous: Mapping[str, Part], current: Mapping[str, Part]) -> list[str]:
     """Return the names of new or changed links or joints.
 
     Source positions are ignored.
     """
     # Links and joints are compared without their elements, which contain the source positions.
-    return [name for name, element in after.items() if previous.get(name) != element]
+    return [name for name, element in current.items() if previous.get(name) != element]
 
 
 _Request = AskDescription | AskDescriptionText | AskInertia | AskProvenance
@@ -182,10 +182,10 @@ class DescriptionFeature(PageFeature):
         for manager in self.managers.all():
             for display in manager.robot_models():
                 shown.add(display.id)
-                before = self._descriptions.get(display.id)
+                previous = self._descriptions.get(display.id)
                 known = self._current_description(display)
-                if known is not None and known is not before:
-                    manager.pages.publish(known.changes_since(before))
+                if known is not None and known is not previous:
+                    manager.pages.publish(known.changes_since(previous))
         for removed_id in self._descriptions.keys() - shown:
             del self._descriptions[removed_id]
 
@@ -243,7 +243,7 @@ class DescriptionFeature(PageFeature):
         if known is None:
             return None
         async with self._answer_lock:
-            return await asyncio.to_thread(lambda: known.account)
+            return await asyncio.to_thread(lambda: known.details)
 
     async def _answer(self, page: Page, request: _Request) -> None:
         robot_models = self.managers.of(page).robot_models()
@@ -257,7 +257,7 @@ class DescriptionFeature(PageFeature):
             if known is None:
                 return None
             if isinstance(request, AskDescription):
-                return known.account
+                return known.details
             if isinstance(request, AskInertia):
                 return known.findings(self.context.finder)
             return display.provenance(request.link) if display is not None else None

@@ -94,7 +94,7 @@ def _source_range(element: Element) -> SourceRange | None:
     return SourceRange(span.file, span.line, span.column, span.end_line, span.end_column)
 
 
-def account(robot: Robot, text: str, files: list[str], *, display: str, revision: int, prefix: str) -> Description:
+def describe(robot: Robot, text: str, files: list[str], *, display: str, revision: int, prefix: str) -> Description:
     """Return all details of a robot except its shapes.
 
     Pages already have the shapes. The text is parsed again. This takes as long as reading the description.

@@ -140,7 +140,7 @@ class LiveHistory:
     def messages_between(
         self, topics: Mapping[str, SavedTopic], start_ns: int, end_ns: int, *, simulated: bool
     ) -> list[Recorded]:
-        """Return the stored messages between two times, and earlier messages for the state at the start.
+        """Return the messages between two times, and earlier messages for the state at the start.
 
         Args:
             topics: see `topics`.

@@ -228,10 +228,10 @@ class RecordingFeature(PageFeature):
                 _finding(
                     phrase(
                         "there is not enough space for a recording in '{folder}': {free} MB are free, but "
-                        "{least} MB are required",
+                        "{required} MB are required",
                         folder=display_path(self.folder),
                         free=self._free_bytes() // 1_000_000,
-                        least=(self.min_free_bytes + required_bytes) // 1_000_000,
+                        required=(self.min_free_bytes + required_bytes) // 1_000_000,
                     )
                 )
             )

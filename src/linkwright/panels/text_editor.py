@@ -1,4 +1,4 @@
-"""Selects the element at the cursor of a text editor in pages, and reports selected elements."""
+"""Selects the element at a text editor's cursor in pages, and reports selected elements."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ class TextEditorFeature(PageFeature):
     """The feature that selects the element at a text editor's cursor in all pages.
 
     Attributes:
-        selected: call_elements with the source range of each element that a user selects in a page.
+        selected: called with the source range of each element that a user selects in a page.
     """
 
     RECEIVES: ClassVar[tuple[type, ...]] = (ElementSelected,)

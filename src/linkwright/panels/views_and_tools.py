@@ -292,11 +292,11 @@ class ToolsFeature(PageFeature):
         self._log_pose(_POSE_TOOLS[entry.cls], message.header, _fill_pose(pose, header_pose), header_pose)
         publisher.publish(message)
 
-    def _log_pose(self, kind: str, header: Any, pose: Any, place: list[float]) -> None:
+    def _log_pose(self, kind: str, header: Any, pose: Any, planar_pose: list[float]) -> None:
         self.context.node.get_logger().info(
             f"Setting {kind} pose: Frame:{header.frame_id}, "
             f"Position({pose.position.x:g}, {pose.position.y:g}, 0), "
-            f"Orientation(0, 0, {pose.orientation.z:g}, {pose.orientation.w:g}) = Angle: {_angle(place):g}"
+            f"Orientation(0, 0, {pose.orientation.z:g}, {pose.orientation.w:g}) = Angle: {_angle(planar_pose):g}"
         )
 
     def _publish_point(self, manager: VisualizationManager, choice: PointChosen) -> None:
@@ -325,10 +325,10 @@ class ToolsFeature(PageFeature):
         return message, header_pose.tolist()
 
 
-def _fill_pose(pose: Any, place: list[float]) -> Any:
+def _fill_pose(pose: Any, planar_pose: list[float]) -> Any:
     """Write a position and a quaternion to a geometry_msgs/msg/Pose, and return the message."""
-    pose.position.x, pose.position.y, pose.position.z = place[:3]
-    pose.orientation.x, pose.orientation.y, pose.orientation.z, pose.orientation.w = place[3:]
+    pose.position.x, pose.position.y, pose.position.z = planar_pose[:3]
+    pose.orientation.x, pose.orientation.y, pose.orientation.z, pose.orientation.w = planar_pose[3:]
     return pose
 
 

@@ -1,1 +1,4 @@
-"""Functions for the whole process: arguments, standard streams, Ctrl-C, the event loop, forked programs."""
+"""Functions for the whole process.
+
+They concern arguments, standard streams, Ctrl-C, the event loop and forked programs.
+"""

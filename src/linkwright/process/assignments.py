@@ -12,7 +12,7 @@ _SINGLE_SIGN_PATTERN = r"^-*([A-Za-z_][\w-]*)(=|:)(?!=)(.*)$"
 
 
 def _malformed_error(argument: str, hint: Phrase) -> Diagnostic:
-    message = phrase("'{word}' is not an argument of the form name:=value", word=argument)
+    message = phrase("'{argument}' is not an argument of the form name:=value", argument=argument)
     return Diagnostic("CLI101", message, hint=hint)
 
 

@@ -1,4 +1,4 @@
-"""A process that has imported modules, and forks for each program that is requested.
+"""A process that has imported modules, and is forked for each requested program.
 
 Run as ``python -m linkwright.process.fork_server FD NAME...``, where FD is a socket of `linkwright.process.forked` and
 each NAME is a module, or ``PACKAGE.*`` for all in a package. The process ends when the socket is closed. Programs that
@@ -35,7 +35,7 @@ started."""
 
 @dataclass
 class Request:
-    """A requested program, and the files that it gets."""
+    """A requested program, and the files that it receives."""
 
     module: str
     words: list[str]
@@ -49,7 +49,7 @@ class Request:
 
 @dataclass
 class _Server:
-    """The loop of the server, in which requests arrive and programs end."""
+    """The server, which handles requests and the ends of programs in a loop."""
 
     control: socket.socket
     reports: dict[int, int] = field(default_factory=dict)
@@ -64,7 +64,10 @@ class _Server:
         self._selector.register(self._wake_reader, selectors.EVENT_READ)
 
     def serve(self) -> Request | None:
-        """Fork for each request. Return the request in the new process, and None in the server at the end."""
+        """Fork for each request, and return the request in the new process.
+
+        In the server, the result is None when its socket is closed.
+        """
         signal.signal(signal.SIGCHLD, lambda *_: None)
         signal.set_wakeup_fd(self._wake_writer.fileno(), warn_on_full_buffer=False)
         while True:
@@ -110,12 +113,12 @@ class _Server:
                 os.close(report)
 
     def _leave(self) -> None:
-        """Close in a new process what belongs to the server."""
+        """Close the files of the server in a new process."""
         signal.set_wakeup_fd(-1)
         signal.signal(signal.SIGCHLD, signal.SIG_DFL)
         self._selector.close()
-        for each in (self.control, self._wake_reader, self._wake_writer):
-            each.close()
+        for resource in (self.control, self._wake_reader, self._wake_writer):
+            resource.close()
         for report in self.reports.values():
             os.close(report)
 
@@ -130,7 +133,7 @@ def _receive(control: socket.socket) -> Request | None:
 
 
 def _become(request: Request) -> None:
-    """Be what ``python -m MODULE WORDS`` is in a process and a session of its own."""
+    """Run ``python -m MODULE WORDS`` in this process, in a session of its own."""
     os.setsid()
     os.write(request.report, NUMBER.pack(os.getpid()))
     os.close(request.report)
@@ -167,14 +170,20 @@ def _end_without_cleanup(code: object) -> None:
 
 
 def _forget_random_numbers() -> None:
-    """Seed numpy's global generator, as an import does. Python itself seeds that of `random` after a fork."""
+    """Seed numpy's global generator, as an import does.
+
+    Python itself seeds the generator of `random` after a fork.
+    """
     numbers = sys.modules.get("numpy.random")
     if numbers is not None:
         numbers.seed()
 
 
 def _import_all(names: Sequence[str]) -> None:
-    """Import modules, as far as possible: a program that needs one of the others reports why it is missing."""
+    """Import modules, and skip those that cannot be imported.
+
+    A program that needs a skipped module reports why it is missing.
+    """
     for name in names:
         package = name.removesuffix(".*")
         _import(package)
@@ -188,7 +197,7 @@ def _import(name: str) -> None:
 
 
 def _inner_modules(package: str) -> Iterator[str]:
-    """Yield the modules in a package; those of an inner package when that has been imported."""
+    """Yield the modules in a package, and those of each inner package after its import."""
     for module in pkgutil.iter_modules(getattr(sys.modules.get(package), "__path__", ()), f"{package}."):
         if not module.name.endswith(".__main__"):
             yield module.name
@@ -196,7 +205,10 @@ def _inner_modules(package: str) -> Iterator[str]:
 
 
 def main() -> None:
-    """Import, serve until the socket is closed, and be a program in each process that was forked."""
+    """Import the modules, and serve until the socket is closed.
+
+    Each forked process runs the requested program.
+    """
     descriptor, *names = sys.argv[1:]
     _import_all(names)
     gc.collect()

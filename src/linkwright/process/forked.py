@@ -1,4 +1,7 @@
-"""Python programs in processes that start without imports: forked off a process that has imported what they need."""
+"""Python programs that are forked off a process, and need no time for imports.
+
+That process has already imported the modules that the programs need.
+"""
 
 from __future__ import annotations
 
@@ -29,7 +32,9 @@ Streams = tuple[int, int, int]
 
 
 class ForkedProcess:
-    """A program that a `ForkServer` has forked off, with the part of `subprocess.Popen` that does not depend on pipes.
+    """A program that a `ForkServer` has forked off.
+
+    It has the part of the interface of `subprocess.Popen` that does not depend on pipes.
 
     The program leads a session of its own.
 
@@ -122,7 +127,7 @@ def start_fresh(
 
 
 class ForkServer:
-    """A process from which programs are forked off. It starts with the first program.
+    """A process from which programs are forked off, started with the first program.
 
     A program has an environment, folder, standard streams, session, signals and exit status of its own. It has the
     modules, the search path and the hash seed of the server.
@@ -155,7 +160,7 @@ class ForkServer:
         self.close()
 
     def prepare(self) -> None:
-        """Start the server unless it runs, so that it imports before the first program is needed."""
+        """Start the server unless it is running, so that its imports are done early."""
         with self._lock:
             if IS_POSSIBLE:
                 self._running_control()
@@ -223,7 +228,7 @@ class ForkServer:
         return control
 
     def close(self) -> None:
-        """End the server. Programs that run continue, but their end is not reported."""
+        """End the server; running programs continue, but their ends are not reported."""
         with self._lock:
             self._end()
 

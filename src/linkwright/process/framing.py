@@ -1,4 +1,7 @@
-"""Messages of the Language Server Protocol on a stream of bytes: a header with the length, then the content."""
+"""Messages of the Language Server Protocol on a stream of bytes.
+
+Each message is a header with the length, and the content.
+"""
 
 from __future__ import annotations
 

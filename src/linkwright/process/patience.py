@@ -1,4 +1,4 @@
-"""A clock for limits of waiting that does not punish a program for the load of the machine."""
+"""A clock for timeouts that does not count the time in which the machine was busy."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ _MOST_DELAY = 10.0
 
 
 class PatientClock:
-    """Measures time without that in which a process and its descendants waited for a processor.
+    """A clock that stops while a process and its descendants wait for a processor.
 
     On a busy machine it is slower than a clock on the wall. Where the system does not tell how long processes wait
     (Linux does, in schedstat), it is the same. Call `read` every few milliseconds to seconds.
@@ -41,7 +41,10 @@ class PatientClock:
 
 
 def _usages_below(root: int) -> Iterator[tuple[str, tuple[float, float]]]:
-    """Yield each thread of a process and of its descendants, with the seconds that it has run, and waited to run."""
+    """Yield the threads of a process and of its descendants, with running and waiting times.
+
+    Both times are in seconds.
+    """
     waiting = [root]
     while waiting:
         folder = f"/proc/{waiting.pop()}/task"

@@ -239,13 +239,9 @@ def _node_text(publisher: EndpointInfo) -> str:
 
 def link_inertia(inertial: Inertial | None) -> LinkInertia | None:
     """Return a link's mass, center of mass and equivalent box, or None if not computable."""
-    if inertial is None:
+    if inertial is None or not inertial.is_computable:
         return None
-    from linkwright.inertia.inertial import from_inertial  # few pages request inertias
-
-    if not inertial.is_computable:
-        return None
-    properties = from_inertial(inertial)
+    properties = inertial.properties
     box = properties.equivalent_box()
     edges = [] if box is None or not np.isfinite(box).all() else [float(edge) for edge in box]
     axes = properties.principal().axes if edges else np.eye(3)

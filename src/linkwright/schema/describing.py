@@ -17,8 +17,8 @@ def describe_element(rule: ElementRule) -> Phrase:
     value_children = [] if rule.choice else [child for child in rule.children if child.is_value]
     lines += [phrase("- {line}", line=_describe_value(child)) for child in value_children]
     other_children = (child for child in rule.children if child not in value_children)
-    child_texts = [_with_count(child.tag, many=child.many, required=child.required) for child in other_children]
-    child_texts += [_with_count(rule.tag, many=True, required=False)] if rule.nests else []
+    child_texts = [_with_count(child.tag, is_repeated=child.many, required=child.required) for child in other_children]
+    child_texts += [_with_count(rule.tag, is_repeated=True, required=False)] if rule.nests else []
     if child_texts:
         elements = joined(child_texts)
         lines.append(
@@ -67,9 +67,9 @@ def _version_facts(version: Version) -> list[Phrase]:
     return [phrase("since version {version}", version=_version_text(version))] if version > (1, 0) else []
 
 
-def _with_count(tag: str, *, many: bool, required: bool) -> Phrase:
+def _with_count(tag: str, *, is_repeated: bool, required: bool) -> Phrase:
     name = f"`<{tag}>`"
-    if many:
+    if is_repeated:
         return phrase("{name} (any number)", name=name)
     return phrase("{name} (required)", name=name) if required else Phrase(name)
 

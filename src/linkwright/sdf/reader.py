@@ -192,7 +192,7 @@ def _check_version(root: Element, report: SdfReport) -> None:
     version_match = _VERSION(version_text.strip())
     if version_match and int(version_match[1]) <= NEWEST[1]:
         return
-    message = phrase("SDF version '{written}' does not exist", written=version_text)
+    message = phrase("SDF version '{version}' does not exist", version=version_text)
     hint = phrase("use a version from 1.0 to 1.12; the file is read as 1.12")
     report.warning("SDF102", message, root, "version", hint=hint)
 

@@ -220,25 +220,27 @@ def _describe_location(element: Element, rule: ElementRule, attribute: Attribute
     location = phrase("<{tag}>", tag=rule.tag)
     if attribute is not rule.text:
         location = phrase("'{name}' in <{tag}>", name=attribute.name, tag=rule.tag)
-    return location if owner is element else phrase("{place} of {owner}", place=location, owner=described(owner))
+    return (
+        location if owner is element else phrase("{value_name} of {owner}", value_name=location, owner=described(owner))
+    )
 
 
 def _explain_value(
-    place: Phrase, text: str, attribute: AttributeRule, element: Element
+    subject: Phrase, text: str, attribute: AttributeRule, element: Element
 ) -> tuple[Phrase, Phrase | None]:
     """Return the message and the hint, or None, for an invalid value of an attribute."""
-    values = {"place": place, "value": text}
+    values = {"subject": subject, "value": text}
     if attribute.type in COUNTS:
         return _explain_numbers(values, text, COUNTS[attribute.type], element)
     if attribute.type is TRUTH:
-        return phrase("{place} must be true or false, not '{value}'", **values), phrase("write true or false")
+        return phrase("{subject} must be true or false, not '{value}'", **values), phrase("write true or false")
     if attribute.type in (NUMBER, TIME):
-        return phrase("{place} is not a number: '{value}'", **values), number_hint(text)
+        return phrase("{subject} is not a number: '{value}'", **values), number_hint(text)
     if attribute.type is INTEGER:
-        return phrase("{place} is not an integer: '{value}'", **values), None
+        return phrase("{subject} is not an integer: '{value}'", **values), None
     words = attribute.type.name.split(" | ")
     hint = did_you_mean(text, words) or phrase("choose from {names}", names=joined(words))
-    return phrase("{place} has an unsupported value: '{value}'", **values), hint
+    return phrase("{subject} has an unsupported value: '{value}'", **values), hint
 
 
 def _explain_numbers(values: dict[str, Any], text: str, count: int, element: Element) -> tuple[Phrase, Phrase | None]:
@@ -247,16 +249,16 @@ def _explain_numbers(values: dict[str, Any], text: str, count: int, element: Ele
     try:
         found_count = len(numbers(text))
     except ValueError:
-        return phrase("{place} is not {count} numbers: '{value}'", **values, count=count), vector_hint(text, count)
+        return phrase("{subject} is not {count} numbers: '{value}'", **values, count=count), vector_hint(text, count)
     if found_count == count and not all(map(isfinite, numbers(text))):
-        return phrase("{place} is not {count} numbers: '{value}'", **values, count=count), None
+        return phrase("{subject} is not {count} numbers: '{value}'", **values, count=count), None
     if found_count == count:
-        return phrase("the quaternion in {place} has length zero: '{value}'", **values), phrase(
+        return phrase("the quaternion in {subject} has length zero: '{value}'", **values), phrase(
             "write 0 0 0 1 for no rotation"
         )
     message = counted(
-        "{place} has 1 number, but {expected_count} are expected: '{value}'",
-        "{place} has {count} numbers, but {expected_count} are expected: '{value}'",
+        "{subject} has 1 number, but {expected_count} are expected: '{value}'",
+        "{subject} has {count} numbers, but {expected_count} are expected: '{value}'",
         found_count,
         **values,
         expected_count=count,

@@ -37,7 +37,7 @@ _UNBOUNDED = 1e16
 It is also written to URDF, which cannot express an unbounded limit.
 """
 _AMBIENT_INTENSITY, _DIFFUSE_INTENSITY = 0.4, 0.8
-"""The intensities of the light in a default Gazebo world, from which sdformat_urdf computes one color."""
+"""The intensities of the light in a default Gazebo world, from which sdformat_urdf computes one colour."""
 
 
 class _ConversionError(Exception):
@@ -132,8 +132,10 @@ class _Converter:
                 reason = phrase("{joint} connects the model to the world", joint=_joint_description(joint))
                 raise _ConversionError(reason, joint.element, phrase("set a fixed base where the robot is spawned"))
             if child in parent_joints:
-                placeholders = {"link": child, "one": parent_joints[child].name, "other": joint.name}
-                reason = phrase("link '{link}' is the child of two joints, '{one}' and '{other}'", **placeholders)
+                placeholders = {"link": child, "joint": parent_joints[child].name, "other_joint": joint.name}
+                reason = phrase(
+                    "link '{link}' is the child of two joints, '{joint}' and '{other_joint}'", **placeholders
+                )
                 raise _ConversionError(
                     reason, joint.element, phrase("remove one of the joints: URDF supports only trees")
                 )

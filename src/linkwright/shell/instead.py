@@ -65,7 +65,9 @@ def unknown_command_error(
         default_hint: the hint if there is neither a replacement nor a suggestion; None for no hint.
     """
     hint = HINTS.get(name) or did_you_mean(name, existing_commands) or default_hint
-    return LinkwrightError(Diagnostic("SHELL101", phrase("command '{words}' does not exist", words=name), hint=hint))
+    return LinkwrightError(
+        Diagnostic("SHELL101", phrase("command '{command}' does not exist", command=name), hint=hint)
+    )
 
 
 def main(name: str) -> int:

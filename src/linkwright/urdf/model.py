@@ -12,8 +12,11 @@ from collections.abc import Mapping
 from linkwright.geometry.shapes import MAX_COORDINATE, SimpleShape
 from linkwright.geometry.single import IDENTITY_POSE, Pose, Vector3
 from linkwright.loading.lean_dataclasses import dataclass, field
-from linkwright.loading.lean_typing import Literal
+from linkwright.loading.lean_typing import TYPE_CHECKING, Literal
 from linkwright.xmltree import Element
+
+if TYPE_CHECKING:
+    from linkwright.geometry.mass import MassProperties
 
 _MAX_MASS = 1e30
 """The largest mass in kg, and moment of inertia in kg m2, to compute with. The sun has 2e30 kg."""
@@ -97,6 +100,31 @@ class Inertial:
         """Whether the numbers are small enough to avoid overflow, even if physically invalid."""
         numbers = (self.mass, self.ixx, self.ixy, self.ixz, self.iyy, self.iyz, self.izz)
         return max(map(abs, numbers)) <= _MAX_MASS and max(map(abs, self.origin.xyz)) <= MAX_COORDINATE
+
+    @property
+    def has_mass(self) -> bool:
+        """Whether the mass is usable, so that it can be distributed over a shape."""
+        from linkwright.geometry.mass import MIN_MASS
+
+        return self.is_computable and self.mass > MIN_MASS
+
+    @property
+    def properties(self) -> MassProperties:
+        """The mass properties in the link frame."""
+        import numpy as np  # here, because most users of a robot do not compute with its masses
+
+        from linkwright.geometry.mass import MassProperties
+
+        rows = ((self.ixx, self.ixy, self.ixz), (self.ixy, self.iyy, self.iyz), (self.ixz, self.iyz, self.izz))
+        return MassProperties(self.mass, np.zeros(3), np.array(rows, dtype=np.float64)).moved(self.origin)
+
+    @classmethod
+    def of(cls, properties: MassProperties) -> Inertial:
+        """Return the ``<inertial>`` with these mass properties in the link frame, in the link's axes."""
+        tensor = properties.inertia
+        x, y, z = (float(coordinate) for coordinate in properties.center)
+        ixx, ixy, ixz, iyy, iyz, izz = (float(tensor[i, j]) for i in range(3) for j in range(i, 3))
+        return cls(float(properties.mass), ixx, ixy, ixz, iyy, iyz, izz, Pose((x, y, z)))
 
 
 @dataclass(frozen=True, slots=True)

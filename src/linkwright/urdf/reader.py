@@ -72,7 +72,7 @@ def _drop_unreadable_parts(values: dict[str, Any], findings: UrdfReport) -> None
         values[rule.target] = readable
     if first_unreadable is not None:
         note = phrase(
-            "urdfdom drops these parts of {owner}: {lost}", owner=owner_name(element), lost=joined(lost_parts)
+            "urdfdom drops these parts of {owner}: {parts}", owner=owner_name(element), parts=joined(lost_parts)
         )
         findings.annotate(_first_error(*first_unreadable, element, findings.version), Note(note))
 
@@ -317,12 +317,12 @@ def _read_version(root: Element, findings: UrdfReport) -> Version:
     parts = version_text.split(".")
     numbers = [int(match[1]) for part in parts if (match := _INTEGER.fullmatch(part))]
     if len(parts) != 2 or len(numbers) != 2 or min(numbers) < 0:
-        message = phrase("'version' of <robot> is not of the form x.y: '{written}'", written=version_text)
+        message = phrase("'version' of <robot> is not of the form x.y: '{version}'", version=version_text)
         findings.reject("URDF104", message, root, "version", hint=phrase("write 1.0, 1.1 or 1.2, or leave it out"))
         return NEWEST_VERSION
     version = numbers[0], numbers[1]
     if not (1, 0) <= version <= NEWEST_VERSION:
-        message = phrase("there is no URDF version '{written}'", written=version_text)
+        message = phrase("there is no URDF version '{version}'", version=version_text)
         findings.reject("URDF104", message, root, "version", hint=phrase("write 1.0, 1.1 or 1.2"))
         return NEWEST_VERSION
     return version
@@ -362,13 +362,13 @@ def _report_leftover_xacro(root: Element, extensions: list[Element], findings: U
     names = list(dict.fromkeys(f"<{element.tag}>" for element in xacro_elements))
     names_text = joined(names[:_MAX_NAMES])
     if len(names) > _MAX_NAMES:
-        names_text = phrase("{list}, ...", list=names_text)
+        names_text = phrase("{names}, ...", names=names_text)
     hint = phrase("expand the file with xacro")
     if "xmlns:xacro" not in root.attributes:
         hint = phrase('expand the file with xacro; <robot> must declare xmlns:xacro="http://www.ros.org/wiki/xacro"')
     findings.warning(
         "URDF102",
-        phrase("xacro did not evaluate {shown}, which URDF readers ignore", shown=names_text),
+        phrase("xacro did not evaluate {expressions}, which URDF readers ignore", expressions=names_text),
         xacro_elements[0],
         hint=hint,
     )
@@ -402,7 +402,10 @@ def _check_mimics(joints: dict[str, Joint], findings: UrdfReport) -> None:
 
 
 def _mimic_cycles(joints: Mapping[str, Joint]) -> dict[str, list[str]]:
-    """Return the mimic joints on a cycle, each with the cycle from it on, shortened after some names."""
+    """Return the mimic joints on a cycle, each with the names on the cycle from there on.
+
+    Long lists of names are shortened.
+    """
     leaders = {joint.name: joint.mimic.joint for joint in joints.values() if joint.mimic is not None}
     cycles: dict[str, list[str]] = {}
     seen: set[str] = set()
@@ -415,7 +418,7 @@ def _mimic_cycles(joints: Mapping[str, Joint]) -> dict[str, list[str]]:
             name = leaders[name]
         if name in path:
             cycle = [*dropwhile(name.__ne__, path)]
-            twice, more = [*cycle, *cycle], ["..."] if len(cycle) > _MAX_CYCLE else []
+            twice, ellipsis = [*cycle, *cycle], ["..."] if len(cycle) > _MAX_CYCLE else []
             shown = min(len(cycle), _MAX_CYCLE)
-            cycles.update((name, [*twice[k : k + shown], *more]) for k, name in enumerate(cycle))
+            cycles.update((name, [*twice[k : k + shown], *ellipsis]) for k, name in enumerate(cycle))
     return cycles

@@ -221,9 +221,7 @@ class UrdfReport(Findings):
         name, value = attribute.name, element.attributes[attribute.name]
         fields = {"name": name, "tag": rule.tag, "owner": owner_name(owner), "value": value}
         if attribute.type is JOINT_TYPE:
-            message = phrase(
-                "the type '{written}' of {owner} is not a joint type", written=value, owner=owner_name(owner)
-            )
+            message = phrase("the type '{type}' of {owner} is not a joint type", type=value, owner=owner_name(owner))
             self.error("URDF140", message, element, name, hint=_joint_type_hint(value))
             return UNREADABLE
         if attribute.type is NUMBER:
@@ -240,11 +238,11 @@ class UrdfReport(Findings):
         if attribute.type is RGBA:
             return self._malformed_color(element, values, owner)
         message = counted(
-            "'{name}' in <{tag}> of {owner} has 1 number, but {wanted} are expected: '{value}'",
-            "'{name}' in <{tag}> of {owner} has {count} numbers, but {wanted} are expected: '{value}'",
+            "'{name}' in <{tag}> of {owner} has 1 number, but {expected} are expected: '{value}'",
+            "'{name}' in <{tag}> of {owner} has {count} numbers, but {expected} are expected: '{value}'",
             len(values),
             **fields,
-            wanted=count,
+            expected=count,
         )
         self.error("URDF122", message, element, name, hint=_count_hint(rule, attribute, values))
         return UNREADABLE
@@ -277,13 +275,15 @@ class UrdfReport(Findings):
             "add <{tag}/>: {meaning}", tag=f"{child.tag}{_usual_attributes(child)}", meaning=term(child.meaning)
         )
         if misspelt_child is not None:
-            hint = phrase("did you mean '{name}' instead of '{like}'?", name=child.tag, like=misspelt_child.tag)
+            hint = phrase(
+                "did you mean '{name}' instead of '{given_name}'?", name=child.tag, given_name=misspelt_child.tag
+            )
         owner_text = owner_name(owner)
         if kind:
             owner_text = phrase("{kind} {owner}", kind=kind, owner=owner_text)
         elif rule.tag not in ("link", "joint"):
             owner_text = phrase("<{tag}> of {owner}", tag=rule.tag, owner=owner_text)
-        message = phrase("{whose} has no <{tag}>", whose=owner_text, tag=child.tag)
+        message = phrase("{owner} has no <{tag}>", owner=owner_text, tag=child.tag)
         self.error("URDF130", message, misspelt_child or element, hint=hint)
 
     def empty_choice(self, element: Element, rule: ElementRule, owner: Element) -> None:
@@ -369,7 +369,9 @@ def _missing_attribute_hint(element: Element, rule: ElementRule, attribute: Attr
     unknown_attributes = [name for name in element.attributes if name not in rule.attribute_rules]
     similar_names = nearest(attribute.name, unknown_attributes, limit=1)
     if similar_names:
-        return phrase("did you mean '{name}' instead of '{like}'?", name=attribute.name, like=similar_names[0])
+        return phrase(
+            "did you mean '{name}' instead of '{given_name}'?", name=attribute.name, given_name=similar_names[0]
+        )
     text = element.text().strip()
     if text and not unknown_attributes and attribute.type in (TEXT, NUMBER):
         return phrase('write <{tag} {name}="{text}"/>', tag=rule.tag, name=attribute.name, text=text)

@@ -148,10 +148,10 @@ def check_limit(limit: Limit, element: Element, owner: Element, findings: Findin
     for name in _UNSIGNED:
         if name in attributes and number(attributes[name]) < 0:
             message = phrase(
-                "'{name}' in <limit> of {owner} is negative: '{given}'",
+                "'{name}' in <limit> of {owner} is negative: '{value}'",
                 name=name,
                 owner=owner_name(owner),
-                given=attributes[name],
+                value=attributes[name],
             )
             findings.error("URDF123", message, element, name, hint=phrase("give its magnitude, without a sign"))
     return limit if limit.deceleration is not None else replace(limit, deceleration=limit.acceleration)

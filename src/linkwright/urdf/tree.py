@@ -103,16 +103,18 @@ def _links_exist(links: Mapping[str, Link], joints: Sequence[Joint], findings: F
 
 
 def _report_roots(roots: Sequence[str], links: Mapping[str, Link], findings: Findings) -> None:
-    names_text = quoted_names(roots, " and ") if len(roots) < 6 else phrase("{list}, ...", list=quoted_names(roots[:5]))
+    names_text = (
+        quoted_names(roots, " and ") if len(roots) < 6 else phrase("{names}, ...", names=quoted_names(roots[:5]))
+    )
     notes = [Note(phrase("'{name}' has no parent", name=name), _span_of(links[name].element)) for name in roots[:5]]
     element = links[roots[1]].element
     assert element is not None
     findings.reject(
         "URDF152",
         phrase(
-            "{count} links have no parent joint, but a robot has one root: {listed}",
+            "{count} links have no parent joint, but a robot has one root: {links}",
             count=len(roots),
-            listed=names_text,
+            links=names_text,
         ),
         element,
         "name",
@@ -154,10 +156,10 @@ def _check_parents(joints: Sequence[Joint], findings: Findings) -> None:
         findings.error(
             "URDF151",
             phrase(
-                "link '{link}' is the child of two joints, '{one}' and '{other}'",
+                "link '{link}' is the child of two joints, '{joint}' and '{other_joint}'",
                 link=joint.child,
-                one=first.name,
-                other=joint.name,
+                joint=first.name,
+                other_joint=joint.name,
             ),
             child_element,
             "link",
@@ -216,7 +218,7 @@ def _report_loop(loop: Sequence[str], joints: Sequence[Joint], consequence: str,
     assert child_element is not None
     findings.error(
         "URDF153",
-        phrase("the joints form a cycle, {loop}, and {consequence}", loop=" -> ".join(loop), consequence=consequence),
+        phrase("the joints form a cycle, {cycle}, and {consequence}", cycle=" -> ".join(loop), consequence=consequence),
         child_element,
         "link",
         hint=phrase("remove or reverse one of these joints; URDF cannot describe a closed chain"),

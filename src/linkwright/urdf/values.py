@@ -106,7 +106,7 @@ def number_hint(text: str) -> Phrase | None:
     if stripped.lower().lstrip("+-") in ("inf", "infinity", "nan") or re.fullmatch(_DIGITS, stripped):
         return phrase("only finite numbers are read")
     if re.fullmatch("[+-]?0[xX][0-9a-fA-F]+", stripped):
-        return phrase("write it as a decimal number: '{int}'", int=int(stripped, 16))
+        return phrase("write it as a decimal number: '{number}'", number=int(stripped, 16))
     if "pi" in stripped.lower():
         return phrase("URDF has no 'pi': write 3.14159..., or use xacro, where ${pi} works")
     if len(stripped.split()) > 1 and all(map(_is_number, stripped.split())):
@@ -117,11 +117,11 @@ def number_hint(text: str) -> Phrase | None:
         return _UNITS[stripped][0]
     name = stripped.strip("${}\uff5b\uff5d")
     if _NAME(name) and ("_" in name or name != stripped):
-        return phrase("if it is the name of a xacro property, write {written}", written=f"${{{name}}}")
+        return phrase("if it is the name of a xacro property, write {expression}", expression=f"${{{name}}}")
     match = _WITH_UNIT.fullmatch(text)
     if match and match[2] in _UNITS:
         reason, factor = _UNITS[match[2]]
-        return phrase("{why}: '{value:.6g}'", why=reason, value=float(match[1]) * factor)
+        return phrase("{reason}: '{value:.6g}'", reason=reason, value=float(match[1]) * factor)
     return None
 
 
@@ -133,10 +133,12 @@ def vector_hint(text: str, count: int) -> Phrase | None:
         return phrase("give {count} numbers separated by spaces", count=count)
     pieces = text.split()
     if len(pieces) == count and all(map(_is_number, pieces)):
-        return phrase("separate the numbers with spaces, not tabs or line breaks: '{pieces}'", pieces=" ".join(pieces))
+        return phrase(
+            "separate the numbers with spaces, not tabs or line breaks: '{numbers}'", numbers=" ".join(pieces)
+        )
     pieces = [piece for piece in re.split(r"[,;\s]+", text.strip()) if piece]
     if len(pieces) == count and all(map(_is_number, pieces)) and re.search("[,;]", text):
-        return phrase("separate the numbers with spaces, not commas: '{pieces}'", pieces=" ".join(pieces))
+        return phrase("separate the numbers with spaces, not commas: '{numbers}'", numbers=" ".join(pieces))
     pieces = text.replace(",", ".").split()
     if "," in text and len(pieces) == count and all(map(_is_number, pieces)):
         return phrase("write a point as decimal separator: '{text}'", text=" ".join(pieces))
@@ -145,15 +147,15 @@ def vector_hint(text: str, count: int) -> Phrase | None:
         return phrase("write it with an English keyboard: '{text}'", text=" ".join(pieces))
     pieces = re.split(r"\s*[x\u00d7*]\s*", text.strip())
     if len(pieces) == count and all(map(_is_number, pieces)):
-        return phrase("separate the numbers with spaces: '{pieces}'", pieces=" ".join(pieces))
+        return phrase("separate the numbers with spaces: '{numbers}'", numbers=" ".join(pieces))
     malformed = next((piece for piece in text.split() if not _is_number(piece)), None)
     if malformed is None:
-        return phrase("give {count} numbers, not {text_split}", count=count, text_split=len(text.split()))
+        return phrase("give {count} numbers, not {count_given}", count=count, count_given=len(text.split()))
     if malformed.startswith("(") and "," in malformed:
         return phrase("a comma in an expression makes a pair of numbers; write a point as decimal separator")
     hint = number_hint(malformed)
     return (
-        phrase("'{bad}': {hint}", bad=malformed, hint=hint)
+        phrase("'{value}': {hint}", value=malformed, hint=hint)
         if hint
         else phrase("'{text}' is not a number", text=malformed)
     )

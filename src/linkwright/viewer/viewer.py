@@ -61,7 +61,8 @@ class Viewer:
         beside: another viewer with a server that also serves the pages of this viewer; None for a separate server.
 
     Attributes:
-        guests: shows the recordings that pages upload; None if uploads are not accepted.
+        make_guests: creates `guests`; None if pages cannot upload recordings.
+        guests: the uploaded recordings that pages show; None before the first one.
 
     Raises:
         LinkwrightError: a name, a remapping or a ROS argument is not valid.
@@ -84,6 +85,7 @@ class Viewer:
     ) -> None:
         self._history = history
         self._host_viewer = beside
+        self.make_guests: Callable[[], Guests] | None = None
         self.guests: Guests | None = None
         self._server = server or PageServer(host, port)
         self._title = title
@@ -141,11 +143,17 @@ class Viewer:
             for feature in self._features:
                 feature.start()
             if self._host_viewer is None:
-                self._server.show(self._audience, self.guests)
+                self._server.show(self._audience, self._open_guests if self.make_guests else None)
         except BaseException:  # also after cancellation, because the caller cannot close this viewer
             self._node.destroy_node()
             await self._server.close()
             raise
+
+    def _open_guests(self) -> Guests:
+        assert self.make_guests is not None
+        if self.guests is None:
+            self.guests = self.make_guests()
+        return self.guests
 
     async def _open_server(self) -> None:
         if not self._server.url:

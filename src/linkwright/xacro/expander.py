@@ -393,10 +393,10 @@ class Expander:
                 continue
             if attributes.setdefault(name, value) != value:
                 message = phrase(
-                    "'{name}' is declared as '{value}' here, but as '{attributes}' in an enclosing element",
+                    "'{name}' is declared as '{value}' here, but as '{other_value}' in an enclosing element",
                     name=name,
                     value=value,
-                    attributes=attributes[name],
+                    other_value=attributes[name],
                 )
                 self.session.warn("XAC504", message, site.node.span())
 
@@ -507,7 +507,7 @@ def is_final(diagnostic: Diagnostic) -> bool:
 
 def _check_comment(data: str) -> None:
     if "--" in data or data.endswith("-"):
-        raise Fault("XAC311", phrase("the comment would contain '--': '{data}'", data=data.strip()))
+        raise Fault("XAC311", phrase("the comment would contain '--': '{comment}'", comment=data.strip()))
 
 
 def _with_attribute(element: Element, name: str, value: str) -> Element:
@@ -538,7 +538,7 @@ def check_attributes(expander: Expander, node: Element, required: tuple[str, ...
         if name not in attributes:
             similar_names = nearest(name, [attribute for attribute in attributes if attribute not in optional])
             missing = (
-                phrase("write {name}=\"...\" for '{near}'", name=name, near=similar_names[0])
+                phrase("write {name}=\"...\" for '{similar_name}'", name=name, similar_name=similar_names[0])
                 if similar_names
                 else phrase('write {name}="..."', name=name)
             )

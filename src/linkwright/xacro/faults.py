@@ -219,7 +219,9 @@ def inactive_definition(
 
 @lru_cache(maxsize=16)
 def _definitions(text: str, tag: str) -> tuple[str, dict[str, int]]:
-    """Return a text without its comments, and the offset of the first element with a tag for each name.
+    """Return a text without its comments, and the offset of the first element by name.
+
+    Only elements with the given tag are considered.
 
     Spaces replace the comments, so that offsets stay valid.
 

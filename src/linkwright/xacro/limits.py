@@ -116,9 +116,9 @@ class Budget:
     def too_many_elements(self) -> Fault:
         """Return the error for an expansion that exceeds the element limit (XAC602)."""
         message = phrase(
-            "the expansion creates more than {limit:,} elements; a macro call counts as {macro}",
+            "the expansion creates more than {limit:,} elements; a macro call counts as {cost}",
             limit=self._limits.elements,
-            macro=_MACRO_COST,
+            cost=_MACRO_COST,
         )
         return Fault("XAC602", message, hint=phrase("look for macros that call each other endlessly"))
 

@@ -329,13 +329,13 @@ class Session:
         Returns:
             The finding, or None if it was recorded before.
         """
-        place = self.current_node
-        if span is None and place is not None:
-            span = self._call_span(place, called)
+        node = self.current_node
+        if span is None and node is not None:
+            span = self._call_span(node, called)
         if (code, message, span) in self._reported:
             return None
         self._reported.add((code, message, span))
-        source = place.source if place is not None and span is not None else None
+        source = node.source if node is not None and span is not None else None
         diagnostic = Diagnostic(code, message, span, severity, trail(self.frame), hint, source)
         self.diagnostics.append(diagnostic)
         return diagnostic
@@ -345,16 +345,16 @@ class Session:
         self.diagnostics.remove(diagnostic)
         self._reported.discard((diagnostic.code, diagnostic.message, diagnostic.span))
 
-    def _call_span(self, place: Element | Text, function: str | None) -> Span | None:
+    def _call_span(self, node: Element | Text, function: str | None) -> Span | None:
         attribute = self.current_attribute
-        if isinstance(place, Element) and attribute is None:
-            return place.span()
-        text = place.data if isinstance(place, Text) else place.attributes.get(attribute or "", "")
+        if isinstance(node, Element) and attribute is None:
+            return node.span()
+        text = node.data if isinstance(node, Text) else node.attributes.get(attribute or "", "")
         match = re.search(rf"(?<![\w.]){re.escape(function)}(?=\s*\()", text) if function else None
         start, end = match.span() if match else (None, None)
-        if isinstance(place, Text):
-            return text_part_span(place, start, end)
-        return attribute_span(place, attribute or "", start, end) or place.span()
+        if isinstance(node, Text):
+            return text_part_span(node, start, end)
+        return attribute_span(node, attribute or "", start, end) or node.span()
 
     def _warn_of_encoding(self, source: SourceText, encoding: str) -> None:
         key = ("XAC905", source.name, None)
@@ -411,12 +411,12 @@ def _yaml_fault(path: str, text: str, error: YamlError) -> Fault:
     fault = Fault("XAC506", phrase("'{path}' is not valid YAML: {message}", path=path, message=foreign(error.message)))
     if error.line:
         fault.source = source = SourceText(path, text)
-        at = source.offset(error.line, error.column)
-        if text[at - 1 : at] == "\t":
-            at -= 1
-        fault.span = source.span(at)
+        offset = source.offset(error.line, error.column)
+        if text[offset - 1 : offset] == "\t":
+            offset -= 1
+        fault.span = source.span(offset)
         fault.next_note = phrase("the file is loaded here")
-        if text[at : at + 1] == "\t":
+        if text[offset : offset + 1] == "\t":
             fault.hint = phrase("indent YAML with spaces, not tabs")
     return fault
 

@@ -167,7 +167,11 @@ class _Fault:
         if code == _UNCLOSED_CDATA:
             start = self._text.rfind("<![CDATA[", 0, self._offset)
             return self._diagnostic(
-                "XML203", phrase("this CDATA section is never closed"), 9, at=start, hint=phrase("close it with ']]>'")
+                "XML203",
+                phrase("this CDATA section is never closed"),
+                9,
+                offset=start,
+                hint=phrase("close it with ']]>'"),
             )
         if code == _SYNTAX and self._open == []:
             return self._not_xml()
@@ -179,13 +183,13 @@ class _Fault:
             tag = pattern.search(self._text)
             if tag is not None and tag.start() <= self._offset:
                 message = phrase("this is a {language} template, not XML", language=language)
-                return self._diagnostic("XML206", message, len(tag[0].split("\n")[0]), at=tag.start(), hint=hint)
+                return self._diagnostic("XML206", message, len(tag[0].split("\n")[0]), offset=tag.start(), hint=hint)
         return None
 
     def _diagnostic(
-        self, code: str, message: Phrase, length: int = 1, *, at: int | None = None, hint: Phrase | None = None
+        self, code: str, message: Phrase, length: int = 1, *, offset: int | None = None, hint: Phrase | None = None
     ) -> Diagnostic:
-        start = self._offset if at is None else at
+        start = self._offset if offset is None else offset
         span = self._source.span(start, start + length)
         return Diagnostic(code, message, span=span, hint=hint, source=self._source)
 
@@ -251,7 +255,7 @@ class _Fault:
     def _not_xml(self) -> Diagnostic:
         hint = phrase("an XML file may have only comments before its root element")
         start = len(self._text) - len(self._text.lstrip())
-        return self._diagnostic("XML206", phrase("this is not XML"), at=start, hint=hint)
+        return self._diagnostic("XML206", phrase("this is not XML"), offset=start, hint=hint)
 
     # --- invalid tokens: recognized common mistakes -------------------------------------------------------------------
 
@@ -297,7 +301,7 @@ class _Fault:
             "XML206",
             phrase("there is an unresolved merge conflict here"),
             len(_MERGE_MARK.rstrip()),
-            at=line,
+            offset=line,
             hint=phrase("keep one of the two, and remove the lines with '<<<<<<<', '=======' and '>>>>>>>'"),
         )
 
@@ -316,20 +320,20 @@ class _Fault:
             return None
         start = self._offset - len(match_[0])
         hint = _AND_HINT if self._text[start : start + 2] == "&&" else _AMPERSAND_HINT
-        return self._diagnostic("XML206", phrase("'&' does not begin an entity"), at=start, hint=hint)
+        return self._diagnostic("XML206", phrase("'&' does not begin an entity"), offset=start, hint=hint)
 
     def _dashes_in_comment(self) -> Diagnostic | None:
         if not _DASHES_IN_COMMENT.search(self._preceding_text):
             return None
         message = phrase("'--' is not allowed inside a comment")
         hint = phrase("use other characters, such as '=='")
-        return self._diagnostic("XML206", message, 2, at=self._offset - 2, hint=hint)
+        return self._diagnostic("XML206", message, 2, offset=self._offset - 2, hint=hint)
 
     def _lone_less_than(self) -> Diagnostic | None:
         if not self._preceding_text.endswith("<"):
             return None
         message = phrase("'<' does not begin a tag")
-        return self._diagnostic("XML206", message, at=self._offset - 1, hint=phrase("write '&lt;'"))
+        return self._diagnostic("XML206", message, offset=self._offset - 1, hint=phrase("write '&lt;'"))
 
     def _unquoted_value(self) -> Diagnostic | None:
         unquoted = _UNQUOTED.search(self._preceding_text)
@@ -359,7 +363,7 @@ class _Fault:
         return self._diagnostic("XML206", phrase("'<' is not allowed inside a tag"), hint=_LESS_HINT)
 
     def _open_quote(self) -> Diagnostic | None:
-        """Return the error for a value of the tag before the current one whose quotes are not closed, or None."""
+        """Return the error for unclosed quotes around a value of the previous tag, or None."""
         tag_start = self._text.rfind("<", 0, self._offset)
         tag = _QUOTED.sub(lambda value: " " * len(value[0]), self._text[max(tag_start, 0) : self._offset])
         match_ = _OPEN_QUOTE.search(tag)
@@ -367,7 +371,7 @@ class _Fault:
             return None
         message = phrase("the quotes around the value of '{open_quote}' are not closed", open_quote=match_[1])
         hint = lookalike_hint(match_[2]) or phrase("write a quote at the end of the value")
-        return self._diagnostic("XML206", message, len(match_[1]), at=tag_start + match_.start(), hint=hint)
+        return self._diagnostic("XML206", message, len(match_[1]), offset=tag_start + match_.start(), hint=hint)
 
     def _unclosed_quote(self) -> Diagnostic | None:
         match_ = _UNCLOSED_QUOTE.search(self._preceding_text)
@@ -375,7 +379,7 @@ class _Fault:
             return None
         message = phrase("the quotes around the value of '{open_quote}' are not closed", open_quote=match_[1])
         start, hint = self._offset - len(match_[0]), phrase("write a quote at the end of the value")
-        return self._diagnostic("XML206", message, len(match_[1]), at=start, hint=hint)
+        return self._diagnostic("XML206", message, len(match_[1]), offset=start, hint=hint)
 
     def _missing_space(self) -> Diagnostic | None:
         if not self._preceding_text.endswith(('"', "'")) or not _NAME.match(self._character):
@@ -390,7 +394,7 @@ class _Fault:
         message = phrase("the attribute '{bare}' has no value", bare=bare_attribute[1])
         hint = lookalike_hint(self._character) or phrase('write {name}="..."', name=bare_attribute[1])
         return self._diagnostic(
-            "XML206", message, len(bare_attribute[1]), at=self._offset - len(bare_attribute[0]), hint=hint
+            "XML206", message, len(bare_attribute[1]), offset=self._offset - len(bare_attribute[0]), hint=hint
         )
 
     # --- entities and attributes --------------------------------------------------------------------------------------
@@ -398,7 +402,7 @@ class _Fault:
     def _undefined_entity(self) -> Diagnostic:
         name = _NAME.match(self._text, self._offset + 1)
         entity = f"&{name[0]};" if name else "&"
-        message = phrase("the entity '{written}' is not defined", written=entity)
+        message = phrase("the entity '{entity}' is not defined", entity=entity)
         return self._diagnostic("XML208", message, len(entity), hint=_AMPERSAND_HINT)
 
     def _duplicate_attribute(self) -> Diagnostic:
@@ -409,4 +413,4 @@ class _Fault:
 
 
 def _expat_message(error: ExpatError) -> Phrase:
-    return phrase("this is not well-formed XML: {partition}", partition=foreign(str(error).partition(":")[0]))
+    return phrase("this is not well-formed XML: {reason}", reason=foreign(str(error).partition(":")[0]))

@@ -181,7 +181,7 @@ class _Layout:
 
     @staticmethod
     def _is_beside(before: _Node, node: _Node) -> bool:
-        """Return whether one of two adjacent nodes is a comment on the other, so that they share a line."""
+        """Return whether one of two adjacent nodes is a comment on the other one's line."""
         return Kind.COMMENT in (before.token.kind, node.token.kind) and Kind.INSTRUCTION not in (
             before.token.kind,
             node.token.kind,

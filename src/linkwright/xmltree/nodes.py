@@ -148,7 +148,7 @@ class Element:
         return "".join(child.data for child in self.children if isinstance(child, Text))
 
     def span(self) -> Span | None:
-        """Return the location of ``<`` and the name in the start tag, or None if the node has no source."""
+        """Return the location of ``<`` and the name, or None if there is no source."""
         if self.source is None:
             return None
         return self.source.span(self.offset, self.offset + 1 + len(self.tag))

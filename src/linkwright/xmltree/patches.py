@@ -74,7 +74,7 @@ def indentation(text: str, offset: int) -> str | None:
 
 
 def find_start_tag(element: Element) -> StartTag | None:
-    """Return an element's start tag in its source, or None if the source does not contain the tag.
+    """Return an element's start tag in its source, or None if the source does not have it.
 
     The source does not contain elements that a program or an entity created.
     """
@@ -179,8 +179,8 @@ def insertion(
         return Replacement(tag.insertion_offset, end, f">{newline}{lines}{newline}{owner_indent}</{owner.tag}>")
     after_range = element_range(after) if after is not None else None
     if in_line and not any(True for element in new_elements for _ in element.elements()):
-        at = after_range[1] if after_range else tag.end if first else text.rindex("</", start, end)
-        return Replacement(at, at, "".join(block(element) for element in new_elements))
+        offset = after_range[1] if after_range else tag.end if first else text.rindex("</", start, end)
+        return Replacement(offset, offset, "".join(block(element) for element in new_elements))
     lines = newline.join(child_indent + block(element, child_indent, step, newline) for element in new_elements)
     if after_range is not None:
         return Replacement(after_range[1], after_range[1], f"{newline}{lines}")

@@ -247,11 +247,11 @@ class _Reader:
             self._release()
         self._check_prefixes()
         top_nodes = self._top.children
-        at, root = next((index, node) for index, node in enumerate(top_nodes) if isinstance(node, Element))
+        root_index, root = next((index, node) for index, node in enumerate(top_nodes) if isinstance(node, Element))
         document = Document(root, self._source)
         document.prolog, document.epilog = (
-            _comments_and_instructions(top_nodes[:at]),
-            _comments_and_instructions(top_nodes[at + 1 :]),
+            _comments_and_instructions(top_nodes[:root_index]),
+            _comments_and_instructions(top_nodes[root_index + 1 :]),
         )
         document.doctype, document.doctype_index = self._doctype, self._doctype_at
         if not self._is_ascii:
@@ -390,9 +390,7 @@ class _Reader:
         self, context: str | None, _base: str | None, system_id: str | None, _public_id: str | None
     ) -> int:
         offset = self._character_offset(self._parser.CurrentByteIndex)
-        message = phrase(
-            "the entity '&{context};' would read another file ('{system_id}')", context=context, system_id=system_id
-        )
+        message = phrase("the entity '&{entity};' would read another file ('{file}')", entity=context, file=system_id)
         self._refuse_entity(offset, message)
 
     def _skipped_entity(self, name: str, is_parameter: bool) -> None:

@@ -56,8 +56,8 @@ def blank_outside_tags(text: str) -> str:
     return _BETWEEN_TAGS.sub(lambda section: " " * len(section[0]), text)
 
 
-def _replace_control_characters(text: str, at: int) -> str:
-    if text[at : at + 1] not in _CONTROL_CHARACTERS:
+def _replace_control_characters(text: str, offset: int) -> str:
+    if text[offset : offset + 1] not in _CONTROL_CHARACTERS:
         return text
     return "".join(
         " "
@@ -69,8 +69,8 @@ def _replace_control_characters(text: str, at: int) -> str:
     )
 
 
-def _replace_less_than(text: str, at: int) -> str:
-    if text[at : at + 1] != "<":
+def _replace_less_than(text: str, offset: int) -> str:
+    if text[offset : offset + 1] != "<":
         return text
     for value in _values(text):
         value_text = text[value.start : value.end]
@@ -78,12 +78,12 @@ def _replace_less_than(text: str, at: int) -> str:
     return text
 
 
-def _insert_blanks(text: str, at: int) -> str:
+def _insert_blanks(text: str, offset: int) -> str:
     """Return the text with a space inserted between adjacent attributes.
 
     To keep positions valid, the closing quote overwrites the last character of the value.
     """
-    if text[at - 1 : at] not in ("'", '"'):
+    if text[offset - 1 : offset] not in ("'", '"'):
         return text
     for value in _values_without_blank_after(text):
         if value.start == value.end or text[value.end - 1] == ";":

@@ -1,4 +1,4 @@
-"""Writing edits of robots, and taking them back."""
+"""Writing and undoing edits of robots."""
 
 from __future__ import annotations
 

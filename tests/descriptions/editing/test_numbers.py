@@ -1,4 +1,4 @@
-"""Numbers as they are written."""
+"""The notation of numbers."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""From an edit of a robot to the smallest edit of its text."""
+"""The smallest edit of a text for an edit of a robot."""
 
 from __future__ import annotations
 
@@ -25,7 +25,7 @@ XACRO = 'xmlns:xacro="http://www.ros.org/wiki/xacro"'
 
 
 def edited(folder: Path, text: str, request: EditRequest, **files: str) -> str:
-    """What a file says after an edit, which is the only one that changes."""
+    """Return the text of the only changed file after an edit."""
     path = folder / "robot.urdf.xacro"
     path.write_bytes(text.encode())
     for name, content in files.items():
@@ -52,7 +52,7 @@ def robot(body: str, joint: str = '<origin xyz="0 0 0.250"/>') -> str:
 
 
 def changed_lines(before: str, after: str) -> list[str]:
-    """The lines that an edit makes anew."""
+    """Return the lines that an edit changes."""
     old = before.splitlines()
     return [line.strip() for line in after.splitlines() if line not in old]
 
@@ -330,7 +330,7 @@ def parts_of(found: Robot) -> list[tuple[Any, str, int]]:
 
 
 def with_edit(found: Robot, request: EditRequest) -> Robot:
-    """The robot that is asked for."""
+    """Return the robot that an edit should produce."""
     assert request.xyz is not None
     x, y, z = request.xyz
     name, i = request.name, request.index
@@ -359,7 +359,7 @@ def moved(origin: Pose, request: EditRequest) -> Pose:
 
 
 def rounded(value: Any) -> Any:
-    """Poses and axes to the nanometre, so that robots can be compared."""
+    """Round poses and axes to the nanometre, so that robots can be compared."""
     if isinstance(value, float):
         return round(value, 7) + 0.0
     if isinstance(value, dict):
@@ -382,7 +382,7 @@ def facts(found: Robot) -> Any:
 
 
 def unedited(root: Element) -> Iterator[tuple[str, dict[str, str], str]]:
-    """A document without origins and axes."""
+    """Return a document without origins and axes."""
     for element in root.walk():
         if element.tag not in ("origin", "axis"):
             yield element.tag, element.attributes, " ".join(element.text().split())

@@ -1,4 +1,4 @@
-"""What the guardian does when the launcher ends, in the process of the test: the real one cannot be looked into."""
+"""The program of the guardian, run in the process of the test."""
 
 from __future__ import annotations
 
@@ -32,7 +32,7 @@ def _signals() -> Iterator[None]:
 
 @pytest.fixture
 def start() -> Iterator[Start]:
-    """Starts a program that stays, in a process group of its own."""
+    """Start a program that does not end by itself, in its own process group."""
     made: list[subprocess.Popen[str]] = []
 
     def run(*ignored: str, **variables: str) -> subprocess.Popen[str]:

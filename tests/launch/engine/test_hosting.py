@@ -1,4 +1,4 @@
-"""Our own nodes: in the launcher's process, or isolated in processes of their own."""
+"""Nodes that run in the process of the launcher, or isolated in separate processes."""
 
 from __future__ import annotations
 

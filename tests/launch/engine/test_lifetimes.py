@@ -1,4 +1,4 @@
-"""Nothing outlives a launch: no process, no thread, however and whenever it ends."""
+"""No process or thread remains after a launch, however it ends."""
 
 from __future__ import annotations
 
@@ -38,7 +38,7 @@ def sleeper(name: str) -> str:
 
 
 def marked_by(launcher: int) -> list[psutil.Process]:
-    """The processes that a launcher has started, wherever they are now, and those below them."""
+    """Return the processes that a launcher has started, and their descendants."""
     return [each for each in psutil.process_iter() if _is_marked(each, f"launcher_{launcher}")]
 
 
@@ -60,7 +60,7 @@ def gone_within(seconds: float, launcher: int) -> bool:
 
 @pytest.fixture
 def begin(start: Callable[..., Running], monkeypatch: pytest.MonkeyPatch) -> Callable[..., Running]:
-    """Starts a launcher whose processes, guardian included, can be told by a variable in their environment."""
+    """Start a launcher whose processes, including the guardian, have a variable in their environment."""
     numbers = iter(range(100))
 
     def started(*words: object) -> Running:
@@ -210,7 +210,7 @@ class TestCounts:
 
 
 def _is_pooled(thread: threading.Thread) -> bool:
-    """Whether a thread belongs to the event loop's own pool, which goes with the loop."""
+    """Return whether a thread belongs to the thread pool of the event loop, which ends with the loop."""
     return re.match(r"asyncio_\d+|waitpid-\d+", thread.name) is not None
 
 

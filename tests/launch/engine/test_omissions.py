@@ -1,4 +1,4 @@
-"""What is left out of a launch because something that it needs is not there."""
+"""The parts that a launch skips because a package, program or file is missing."""
 
 from __future__ import annotations
 
@@ -78,7 +78,7 @@ async def test_the_error_offers_the_command(launch) -> None:
 
 
 class TestWithoutTheOption:
-    """What others make and is not here is left out all the same: launch files of robots start much that is."""
+    """Parts that need missing third-party packages are skipped by default, because robots start many."""
 
     async def test_a_node_of_another_package(self, launch) -> None:
         done = await launch(

@@ -115,7 +115,7 @@ async def test_a_pseudo_terminal(launch) -> None:
 
 
 def written_below(folder: Path) -> dict[str, list[str]]:
-    """What processes wrote into the log files of the one launch, without times."""
+    """Return the output of processes in the log files of the only launch, without times."""
     (launch,) = [path for path in folder.iterdir() if not path.is_symlink()]
     found = {path.name: sorted(path.read_text().splitlines()) for path in launch.iterdir()}
     of_processes = [line.partition(" ")[2] for line in found.pop("launch.log")]

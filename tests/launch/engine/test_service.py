@@ -1,4 +1,4 @@
-"""A user's own program that builds a launch description and runs it."""
+"""A user's program that builds and runs a launch description."""
 
 from __future__ import annotations
 

@@ -12,7 +12,7 @@ pytestmark = pytest.mark.skipif(sys.platform == "win32", reason="signals of user
 
 @pytest.fixture
 def before():
-    """What handles the signals outside of the manager: takes note of them."""
+    """Record the signals that are handled outside of the manager."""
     seen = []
 
     def note(number, _):

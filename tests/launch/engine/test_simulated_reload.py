@@ -1,4 +1,4 @@
-"""Saving the files of a world and of a robot that a launch file has put into it."""
+"""Changes of the files of a world and a robot while a launch file simulates them."""
 
 from __future__ import annotations
 
@@ -34,14 +34,14 @@ def world(*parts: str) -> str:
 
 
 class Launched:
-    """A running launch of a simulator that stands still, and of what puts a robot into its world."""
+    """A running launch of a paused simulator and of a program that spawns a robot in its world."""
 
     def __init__(self, session: LaunchSession, err: io.StringIO) -> None:
         self._session = session
         self.err = err
 
     async def when(self, condition: Callable[[Simulation], bool]) -> None:
-        """Wait until something is so in the thread of the simulation."""
+        """Wait until a condition holds in the thread of the simulation."""
         seen: list[bool] = []
 
         def is_so() -> bool:

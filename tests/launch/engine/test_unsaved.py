@@ -1,4 +1,4 @@
-"""Displays that were not saved when a launch ends."""
+"""Unsaved displays at the end of a launch."""
 
 from __future__ import annotations
 
@@ -24,7 +24,7 @@ def kept(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
 
 
 def add_axes(running: Running) -> None:
-    """As a page does."""
+    """Add a display of axes, as a page does."""
 
     async def add() -> None:
         address = running.url.replace("/?", "/ws?")

@@ -1,4 +1,4 @@
-"""Launch files read by their path, through the functions of ``launch.launch_description_sources``."""
+"""Launch files loaded with the functions of ``launch.launch_description_sources``."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""XML and YAML launch files: what they make, and what is said of those that are wrong."""
+"""XML and YAML launch files: the resulting actions, and the messages about errors."""
 
 from __future__ import annotations
 

@@ -25,7 +25,7 @@ def fault(path: Path) -> Diagnostic:
 
 
 def marked(diagnostic: Diagnostic) -> str:
-    """The text that the diagnostic points at, in one line."""
+    """Return the text at the location of the diagnostic, in one line."""
     span, source = diagnostic.span, diagnostic.source
     assert span is not None
     assert source is not None
@@ -211,7 +211,7 @@ def test_entities_that_are_none(write: Write) -> None:
 
 @pytest.mark.skipif(sys.platform == "win32", reason="links need a right there, without which none are made")
 class TestFilesThatArePutElsewhere:
-    """A package whose sources are not laid out as its share folder has one of links, which messages see through."""
+    """A package whose share folder has another layout than its sources, and contains links to them."""
 
     @pytest.fixture
     def share(self, write: Write, monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> Path:

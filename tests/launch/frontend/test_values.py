@@ -1,4 +1,4 @@
-"""Values of a type, as ``launch.utilities.type_utils`` makes them."""
+"""The conversion of values to types, as in ``launch.utilities.type_utils``."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Tags of packages in the workspace that Python does not find by itself."""
+"""Tags from packages in the workspace that are not on Python's path."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Event handlers by themselves, as users and ROS's own tests construct them."""
+"""Single event handlers, constructed as in users' programs and in the tests of ROS."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Programs are replaced by nodes through entry points, ours like those of other packages."""
+"""Programs that are replaced by nodes through entry points, from Linkwright and other packages."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ NOWHERE = {"PATH": "/nowhere"}
 
 
 def sail(words: Sequence[str]) -> NodeCommand | None:
-    """Parse a command line of a simulator that is not ours."""
+    """Parse a command line of a third-party simulator."""
     return NodeCommand("my_sea", "boat", {"wind": float(words[2])}) if words[1:2] == ["sail"] else None
 
 

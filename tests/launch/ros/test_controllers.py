@@ -1,4 +1,4 @@
-"""Controllers in launch files: their words come from the process that runs them."""
+"""Controllers in launch files, in processes that report their names."""
 
 from __future__ import annotations
 

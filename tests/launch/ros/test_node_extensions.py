@@ -1,4 +1,4 @@
-"""What installed packages have the node action do, found by entry points of launch_ros."""
+"""Extensions of the node action, found through the entry points of launch_ros."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ from linkwright.launch.ros import node_extensions
 
 
 class Remapping(NodeActionExtension):
-    """Names the node anew, and remaps a topic."""
+    """An extension that renames the node, and remaps a topic."""
 
     def prepare_for_execute(self, context: Any, ros_specific_arguments: Any, node_action: Any) -> Any:
         assert node_action.is_node_name_fully_specified()
@@ -42,7 +42,7 @@ class Entry:
 
 @pytest.fixture
 def install(monkeypatch: pytest.MonkeyPatch) -> Iterator[Callable[..., None]]:
-    """Has extensions installed, by their names."""
+    """Install extensions with given names."""
 
     def having(**found: Any) -> None:
         entries = {name: Entry(extension) for name, extension in found.items()}

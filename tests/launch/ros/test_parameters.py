@@ -249,7 +249,7 @@ def test_lists_of_a_type_in_markup(context: LaunchContext, kind: str, text: str,
 
 
 def parsed(text: str) -> list[Any]:
-    """The parameters of the one node of a launch file."""
+    """Return the parameters of the only node of a launch file."""
     entity, parser = Parser.load(io.StringIO(text))
     (node,) = parser.parse_description(entity).entities
     return node._Node__parameters

@@ -1,4 +1,4 @@
-"""Test files for launch_pytest, run by a pytest that has the stand-ins and nothing else of ours."""
+"""Test files for launch_pytest, run by pytest with the stand-ins only."""
 
 from __future__ import annotations
 

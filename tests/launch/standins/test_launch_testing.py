@@ -1,4 +1,4 @@
-"""Test files for launch_testing, run by ``launch_test`` and by pytest, with the stand-ins and nothing else of ours."""
+"""Test files for launch_testing, run by ``launch_test`` and by pytest with the stand-ins only."""
 
 from __future__ import annotations
 
@@ -116,7 +116,7 @@ class TestIt(unittest.TestCase):
 
 @pytest.fixture
 def run(tmp_path: Path):
-    """Run a test file with ``launch_test``, or with pytest where the words begin with that."""
+    """Run a test file with ``launch_test``, or with pytest if the arguments begin with it."""
 
     def run_file(text: str, *words: str) -> subprocess.CompletedProcess[str]:
         (tmp_path / "test_it.py").write_text(HEAD + text)

@@ -21,7 +21,7 @@ LASTS = "import time; time.sleep(600)"
 
 
 class Watched:
-    """A description with what tests it."""
+    """A launch description with its tests."""
 
     def __init__(self) -> None:
         self.description, self.service = LaunchDescription(), LaunchTestService()

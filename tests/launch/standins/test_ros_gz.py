@@ -29,7 +29,7 @@ TAGS = """
 
 @pytest.fixture
 def started(monkeypatch: pytest.MonkeyPatch) -> list[dict[str, Any]]:
-    """What nodes are made of."""
+    """Return the arguments from which nodes are created."""
     made: list[dict[str, Any]] = []
     init = Node.__init__
 

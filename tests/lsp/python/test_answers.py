@@ -1,4 +1,4 @@
-"""One answer out of those of several servers."""
+"""The combination of the answers of several servers."""
 
 from __future__ import annotations
 

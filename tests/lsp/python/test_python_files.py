@@ -93,7 +93,7 @@ TALKER = "src/my_package/my_package/talker.py"
 
 
 def place(text: str, wanted: str, more: int = 0) -> types.Position:
-    """Return the position of the first place with a text, in UTF-16 code units."""
+    """Return the position of the first occurrence of a text, in UTF-16 code units."""
     before, found, _ = text.partition(wanted)
     assert found
     line = before.rpartition("\n")[2] + wanted[:more]

@@ -46,7 +46,7 @@ URI = "file:///ws/a.py"
 
 
 class Peer:
-    """A peer that keeps its messages."""
+    """A peer that stores its messages."""
 
     def __init__(self, name: str) -> None:
         self.name = name
@@ -110,7 +110,7 @@ class Connection:
 
 
 def is_told(message: Message) -> bool:
-    text = "'ty' does not run, so Python files are edited without it"
+    text = "'ty' cannot be run, so Python files are edited without it"
     return message.get("method") == "window/showMessage" and message["params"]["message"] == text
 
 

@@ -1,4 +1,4 @@
-"""Robots to export, and a reader of what comes out; for tests."""
+"""Robots to export, and a reader of the exported files; for tests."""
 
 from __future__ import annotations
 
@@ -56,7 +56,7 @@ class Drawn:
 
 
 class Glb:
-    """What is in a .glb file."""
+    """The contents of a .glb file."""
 
     def __init__(self, data: bytes) -> None:
         magic, version, length, size, kind = struct.unpack_from("<5I", data)

@@ -1,4 +1,4 @@
-"""Robots as glTF, read back."""
+"""Robots as glTF, read again."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Robots as one HTML file; how it looks is tested in a browser."""
+"""Robots as one HTML file; a browser test checks its appearance."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ from tests.viewer.scene import ARM, world
 
 @pytest.fixture(autouse=True)
 def built(tmp_path, monkeypatch):
-    """A page that is built, whatever it does."""
+    """Create the files of a built page."""
     folder = tmp_path / "page" / "export"
     folder.mkdir(parents=True)
     (folder / "export.js").write_text('console.log("</script><!--")')

@@ -1,4 +1,4 @@
-"""Plots while another time than the present is shown: what was before it is plotted, and nothing else."""
+"""Plots for a past time: only the samples before it are plotted."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ SERIES = [{"id": 1, "topic": "/speed", "path": "data"}]
 
 
 async def plotted(client, values: list[float]) -> None:
-    """Wait until a page is sent these values of a series together."""
+    """Wait until a page receives these values of a series in one message."""
     while (await samples(client))[1][2].tolist() != values:
         pass
 

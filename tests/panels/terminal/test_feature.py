@@ -1,4 +1,4 @@
-"""Terminals as pages see them: who may have one, what is shown in which page, and how much is sent."""
+"""Terminals in pages: permissions, visible terminals, and the amount of output."""
 
 from __future__ import annotations
 
@@ -27,7 +27,7 @@ pytestmark = pytest.mark.skipif(sys.platform == "win32", reason="pseudoterminals
 
 
 def real(path: Path) -> str:
-    """The path that `pwd -P` prints."""
+    """Return the path that `pwd -P` prints."""
     return os.path.realpath(path)
 
 
@@ -36,7 +36,7 @@ SHELL = ("/bin/sh", "-i")
 
 
 class Reader:
-    """The output that a page receives, which it acknowledges unless told otherwise."""
+    """The output that a page receives, and normally acknowledges."""
 
     def __init__(self, client: Any, *, acknowledges: bool = True) -> None:
         self.client = client
@@ -117,7 +117,7 @@ async def test_a_page_that_opens_without_permission_hears_nothing_of_terminals()
 
 
 async def test_pages_of_other_machines_are_refused(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(server, "is_from_here", lambda _: False)
+    monkeypatch.setattr(server, "is_local_connection", lambda _: False)
     async with enabled(tmp_path) as scene, page(scene.viewer) as client:
         await client.until("terminals")
         await client.send("open_terminal", **SIZE)

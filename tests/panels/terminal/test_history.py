@@ -1,4 +1,4 @@
-"""What a page sees of the output before it."""
+"""The earlier output that a new page receives."""
 
 from __future__ import annotations
 

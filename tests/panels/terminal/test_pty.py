@@ -1,4 +1,4 @@
-"""A program in a pseudoterminal: its output and input, its size, its end and that of its children."""
+"""A program in a pseudoterminal: output, input, size, and the end of the program and its children."""
 
 from __future__ import annotations
 
@@ -21,12 +21,12 @@ pytestmark = pytest.mark.skipif(sys.platform == "win32", reason="pseudoterminals
 
 
 def real(path: Path) -> str:
-    """The path that `pwd -P` prints."""
+    """Return the path that `pwd -P` prints."""
     return os.path.realpath(path)
 
 
 class Running:
-    """A program in a terminal, which a test reads and writes."""
+    """A program in a terminal with which a test communicates."""
 
     def __init__(self, script: str, folder: Path, *, reads: bool = True) -> None:
         self.output = b""

@@ -1,4 +1,4 @@
-"""Adding to a world: what comes of it reads as what was added."""
+"""Adding to a world: the reader finds the added contents in the new text."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Edits of worlds that nobody wrote by hand: an edit and its inverse give the same text, and nothing else changes."""
+"""Edits of generated worlds: an edit and its inverse restore the text."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ ENDS = st.sampled_from(["\n", "\r\n"])
 
 @st.composite
 def boxes(draw, name: str) -> str:
-    """A box, written in some way, in some frame."""
+    """Generate a box in any notation and frame."""
     gap, quote, between = draw(SPACES), draw(QUOTES), draw(SEPARATORS)
     numbers = [format_length(each) for each in draw(POSES)]
     form = draw(st.sampled_from(["", ' relative_to="f"', " frame = 'f'"]))
@@ -37,7 +37,7 @@ def boxes(draw, name: str) -> str:
 
 @st.composite
 def worlds(draw) -> str:
-    """A world with three boxes and a frame."""
+    """Generate a world with three boxes and a frame."""
     frame = f"<frame name='f'><pose>{' '.join(format_length(each) for each in draw(POSES))}</pose></frame>"
     parts = [draw(boxes(name)) for name in ("a", "b&amp;c", "d")]
     text = f"<?xml version='1.0'?>\n<sdf version='1.9'>\n<world name='w'>{frame}{''.join(parts)}\n</world>\n</sdf>\n"
@@ -49,7 +49,7 @@ def places(world) -> dict[str, tuple[float, ...]]:
 
 
 def close(some, others, tolerance: float = 1e-6) -> bool:
-    """Whether transforms are the same; a quaternion and its negative are."""
+    """Return whether transforms are equal; a quaternion equals its negative."""
     straight = all(abs(a - b) <= tolerance for a, b in zip(some[:3], others[:3], strict=True))
     return straight and abs(abs(sum(a * b for a, b in zip(some[3:], others[3:], strict=True))) - 1) <= tolerance
 

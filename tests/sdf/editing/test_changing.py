@@ -1,4 +1,4 @@
-"""Changing what stands in a world: only what is said changes, wherever and however it is written."""
+"""Changing entities of a world: only the requested values change."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ from tests.sdf.editing.texts import BOX, PLAIN, inside, world_text
 
 
 def difference(before: str, after: str) -> list[str]:
-    """The lines that are gone and those that are new, without blanks around them."""
+    """Return the removed and the added lines, without surrounding spaces."""
     lines = difflib.ndiff(before.splitlines(), after.splitlines())
     return [f"{line[0]} {line[1:].strip()}" for line in lines if line[0] in "+-"]
 
@@ -118,7 +118,7 @@ def test_what_is_no_size_is_refused(size):
 def test_what_is_no_simple_shape_has_neither_size_nor_colour():
     with pytest.raises(EditError, match="'ground_plane' cannot be resized"):
         change(world_text(PLAIN), [Change("ground_plane", size=(1, 1, 1))])
-    with pytest.raises(EditError, match="the color of 'ground_plane' cannot be changed"):
+    with pytest.raises(EditError, match="the colour of 'ground_plane' cannot be changed"):
         change(world_text(PLAIN), [Change("ground_plane", color=(1, 1, 1, 1))])
 
 

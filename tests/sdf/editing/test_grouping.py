@@ -1,4 +1,4 @@
-"""Groups: models in a model, which stay where they were."""
+"""Groups: models inside a model, with unchanged poses in the world."""
 
 from __future__ import annotations
 

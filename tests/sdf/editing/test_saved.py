@@ -1,4 +1,4 @@
-"""Worlds that Gazebo classic saved: no edit is undone by what ``<state>`` says."""
+"""Edits of worlds from Gazebo classic take precedence over ``<state>``."""
 
 from __future__ import annotations
 

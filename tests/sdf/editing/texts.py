@@ -1,4 +1,4 @@
-"""Texts of worlds to edit."""
+"""Texts of worlds for tests of edits."""
 
 from __future__ import annotations
 
@@ -48,13 +48,13 @@ PLAIN = f"""\
 
 
 def world_text(text: str, models: str = "") -> WorldText:
-    """A world of a text, with the models that come with the program and those of a folder."""
+    """Return the world of a text, with the models of the program and of a folder."""
     packages = PackageFinder(start=Path("/nonexistent"), environment={})
     return WorldText(text, Path("/nowhere/w.world"), ResourceFinder(packages, {"GZ_SIM_RESOURCE_PATH": models}))
 
 
 def simulators_refuse(world: WorldText) -> bool:
-    """Whether the text, or a file that it includes, has an error."""
+    """Return whether the text, or a file that it includes, has an error."""
     document, findings = parse_as_gazebo(world.text, str(world.path))
     reading = read(document)
     included = resolve_includes(reading.sdf, world.path, world.finder)
@@ -62,5 +62,5 @@ def simulators_refuse(world: WorldText) -> bool:
 
 
 def inside(*parts: str, version: str = "1.9") -> WorldText:
-    """A world with some parts."""
+    """Return a world with some parts."""
     return world_text(f'<sdf version="{version}">\n  <world name="w">\n{"".join(parts)}  </world>\n</sdf>\n')

@@ -188,7 +188,9 @@ def _parse_remapping(rule: str) -> tuple[str, str]:
     source, separator, target = rule.partition(":=")
     if not separator or not source or not target:
         raise LinkwrightError(
-            Diagnostic("CLI109", phrase("'{rule}' is not a remapping", rule=rule), hint=phrase("write FROM:=TO"))
+            Diagnostic(
+                "CLI109", phrase("'{remapping}' is not a remapping", remapping=rule), hint=phrase("write FROM:=TO")
+            )
         )
     return source, target
 

@@ -1,4 +1,4 @@
-"""``linkwright learn open``: a course in the page, beside the learner's files, robot and terminal."""
+"""``linkwright learn open``: show a course in the page, with files, robot and terminal."""
 
 from __future__ import annotations
 

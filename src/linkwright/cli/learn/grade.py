@@ -1,4 +1,4 @@
-"""``linkwright learn grade``: the checks of a course in the folders of many students."""
+"""``linkwright learn grade``: check the folders of many students with the checks of a course."""
 
 from __future__ import annotations
 
@@ -133,7 +133,10 @@ def _choose_workers(arguments: argparse.Namespace) -> AbstractContextManager[Run
 
 
 def _select_steps(course: Course, arguments: argparse.Namespace) -> list[Step]:
-    """Return the steps of the given lessons and the given steps in the order of the course, or all steps."""
+    """Return the selected steps in the order of the course, or all steps if none is selected.
+
+    The options select lessons and individual steps.
+    """
     if not arguments.lesson and not arguments.step:
         return list(course.steps)
     lessons = {lesson.id for lesson in course.find_lessons(arguments.lesson)} if arguments.lesson else set()
@@ -142,7 +145,12 @@ def _select_steps(course: Course, arguments: argparse.Namespace) -> list[Step]:
 
 
 def _check_outputs(outputs: Sequence[Path]) -> None:
-    """Raise LEARN120 before the first check if two outputs are one file, or LEARN121 if there is no folder for one."""
+    """Check the paths of the output files before the first step is graded.
+
+    Raises:
+        LinkwrightError: LEARN120, two outputs have the same path; LEARN121, the folder of an output does not
+            exist.
+    """
     if len({path.absolute() for path in outputs}) < len(outputs):
         raise LinkwrightError(Diagnostic("LEARN120", phrase("two of the output files have the same name")))
     for path in outputs:
@@ -213,7 +221,7 @@ def _sign(mark: Mark) -> str:
 
 
 def _print_protections(students: Sequence[StudentMarks]) -> None:
-    """Print which protections were not in force."""
+    """Print the protections that were not in force."""
     from linkwright.learning.grading.formats import protections_in_force
     from linkwright.learning.sandbox import PROTECTIONS
 

@@ -1,4 +1,7 @@
-"""``linkwright learn exercises``, ``judge`` and ``world``: exercises that a judge scores in simulated worlds."""
+"""``linkwright learn exercises``, ``judge`` and ``world``: exercises in simulated worlds.
+
+A judge scores the programs.
+"""
 
 from __future__ import annotations
 
@@ -112,7 +115,7 @@ def configure_world(parser: argparse.ArgumentParser) -> None:
 
 
 def run_world(arguments: argparse.Namespace) -> int:
-    """Simulate the world of an exercise in real time, with its robot and its judge, beside the program."""
+    """Simulate the world of an exercise in real time, with its robot and its judge."""
     from linkwright.cli.command import parser_for
     from linkwright.cli.sim import run
     from linkwright.learning.judging.exercise import find_exercise
@@ -147,7 +150,9 @@ def _show_exercise(exercise: Exercise, program: Path, viewer: Viewer) -> None:
 
 def _copy_template(exercise: Exercise, program: Path) -> int:
     if program.exists():
-        raise LinkwrightError(Diagnostic("LEARN144", phrase("'{path}' exists and is kept", path=display_path(program))))
+        raise LinkwrightError(
+            Diagnostic("LEARN144", phrase("'{path}' already exists and is not changed", path=display_path(program)))
+        )
     program.write_text(exercise.template.read_text(encoding="utf-8"), encoding="utf-8")
     print(display_path(program))
     return 0

@@ -1,4 +1,4 @@
-"""``linkwright learn new`` and ``test``: lessons of one's own."""
+"""``linkwright learn new`` and ``test``: create courses, and test their lessons."""
 
 from __future__ import annotations
 

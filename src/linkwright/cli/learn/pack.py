@@ -1,4 +1,4 @@
-"""``linkwright learn pack``: a folder from which a class installs Linkwright without a network."""
+"""``linkwright learn pack``: make a folder for installation without a network."""
 
 from __future__ import annotations
 
@@ -71,7 +71,7 @@ def _names(text: str) -> list[str]:
 
 
 def run(arguments: argparse.Namespace) -> int:
-    """Make or check a pack; return 1 if it is not complete."""
+    """Make or check a pack, and return 1 if it is incomplete."""
     _require_packaging()
     from linkwright.learning.packing.pack_folder import PackFolder
 
@@ -163,7 +163,7 @@ def _check(folder: PackFolder) -> list[Diagnostic]:
 
 
 def _print_summary(folder: PackFolder, settings: PackSettings) -> None:
-    """Print what the pack contains, and what systems lack."""
+    """Print the contents of the pack, and the packages that it lacks for each system."""
     from linkwright.learning.packing.pack_folder import installed_size
     from linkwright.learning.packing.targets import SYSTEMS
 

@@ -137,7 +137,7 @@ def configure_answer(parser: argparse.ArgumentParser) -> None:
 
 
 def run_answer(arguments: argparse.Namespace) -> int:
-    """Note an answer, and check the step."""
+    """Store the answer to a step, and check the step."""
     classroom = _open(arguments)
     classroom.answer(classroom.course.find_step(arguments.step), arguments.number)
     return run_check(arguments)
@@ -168,7 +168,7 @@ def configure_solution(parser: argparse.ArgumentParser) -> None:
 
 
 def run_solution(arguments: argparse.Namespace) -> int:
-    """Copy the solution of a step into the workspace, and print the number that the step asks for."""
+    """Copy the solution of a step into the workspace, and print the requested number, if any."""
     classroom = _open(arguments)
     step = _step(classroom, arguments)
     for path in classroom.take_solution(step):
@@ -186,7 +186,11 @@ def configure_catch_up(parser: argparse.ArgumentParser) -> None:
 
 
 def run_catch_up(arguments: argparse.Namespace) -> int:
-    """List or write the files of the course's state before a step; return 1 if files are only listed."""
+    """List or write the files that the course has before a step.
+
+    Returns:
+        1 if files were only listed, otherwise 0.
+    """
     from linkwright.learning.classroom import REPLACED_FOLDER
 
     classroom = _open(arguments)

@@ -42,7 +42,7 @@ def configure(parser: argparse.ArgumentParser) -> None:
     )
     parser.add_argument(
         "--iou",
-        metavar="SHARE",
+        metavar="FRACTION",
         type=fraction,
         default=0.5,
         help="the maximum overlap of boxes of one class, as intersection over union, default 0.5",

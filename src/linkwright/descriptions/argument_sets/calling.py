@@ -22,7 +22,7 @@ from linkwright.packages.readers.xacro_calls.call import (
 )
 from linkwright.packages.readers.xacro_calls.texts import (
     MAX_VARIATIONS,
-    Open,
+    Placeholder,
     Selection,
     Share,
     Text,
@@ -165,7 +165,7 @@ class _CalledDescription:
                     is_mixed=any(selection.rows.values()) and bool(changed_choices),
                     is_offered=bool(changed_choices) and changed_choices <= launch_names(file.choices).keys(),
                 )
-        if first_set is None and _is_open(call.path):
+        if first_set is None and _has_placeholder(call.path):
             yield self._argument_set(call, file, Selection({}, launch_values), is_certain=False)
 
     def _argument_set(
@@ -249,7 +249,7 @@ class _CalledDescription:
             for outer_values in self._launches(including_package, including_file, depth + 1):
                 selection = Selection({}, outer_values)
                 texts = {launch_choice(name): text for name, text in inclusion.arguments.items()}
-                inherited_texts = {name: (Open(name),) for name in launch_names(including_file.choices)}
+                inherited_texts = {name: (Placeholder(name),) for name in launch_names(including_file.choices)}
                 values = {
                     name: value
                     for name, text in {**inherited_texts, **texts}.items()
@@ -273,9 +273,12 @@ class _CalledDescription:
         return inclusions
 
 
-def _is_open(path: Text) -> bool:
+def _has_placeholder(path: Text) -> bool:
     """Return whether a path has a part that is not known before runtime."""
-    return any(_is_open(piece.package) if isinstance(piece, Share) else isinstance(piece, Open) for piece in path)
+    return any(
+        _has_placeholder(piece.package) if isinstance(piece, Share) else isinstance(piece, Placeholder)
+        for piece in path
+    )
 
 
 def _varied(call: XacroCall, argument_set: ArgumentSet, reference_set: ArgumentSet) -> tuple[str, ...]:

@@ -160,8 +160,8 @@ class _Comparer:
     def _robot(self) -> Iterator[Difference]:
         old, new = self.old.robot, self.new.robot
         if old.name != new.name:
-            places = _location(old.element, "name"), _location(new.element, "name")
-            yield Difference("robot", new.name, "changed", "name", old.name, new.name, "", *places)
+            locations = _location(old.element, "name"), _location(new.element, "name")
+            yield Difference("robot", new.name, "changed", "name", old.name, new.name, "", *locations)
 
     def _link_differences(self) -> Iterator[Difference]:
         old, new = self.old.robot.links, self.new.robot.links
@@ -224,8 +224,8 @@ class _Comparer:
                 old_file, new_file = self.old.mesh(name), self.new.mesh(name)
                 if old_file and new_file and not _same_bytes(old_file, new_file):
                     values = _content_difference(old_file, new_file)
-                    places = _location(old_meshes[name]), _location(new_meshes[name])
-                    yield Difference("link", new.name, "changed", f"{tag} mesh {name}", *values, *places)
+                    locations = _location(old_meshes[name]), _location(new_meshes[name])
+                    yield Difference("link", new.name, "changed", f"{tag} mesh {name}", *values, *locations)
 
     # --- blocks of facts ------------------------------------------------------------------------------------------
 
@@ -292,16 +292,16 @@ class _Comparer:
                     None if old_element is None else _one_line(old_element),
                     None if new_element is None else _one_line(new_element),
                 )
-                places = _location(old_element or enclosing[1]), _location(new_element or enclosing[2])
-                yield Difference("extension", enclosing[0], "changed", element_path, *texts, "", *places)
+                locations = _location(old_element or enclosing[1]), _location(new_element or enclosing[2])
+                yield Difference("extension", enclosing[0], "changed", element_path, *texts, "", *locations)
 
     def _element_differences(self, name: str, path: str, old: Element, new: Element) -> Iterator[Difference]:
         for attribute in dict.fromkeys([*new.attributes, *old.attributes]):
             old_value, new_value = old.attributes.get(attribute), new.attributes.get(attribute)
             if not self._same_text(old_value, new_value):
-                places = _location(old, attribute), _location(new, attribute)
+                locations = _location(old, attribute), _location(new, attribute)
                 yield Difference(
-                    "extension", name, "changed", f"{path} @{attribute}".strip(), old_value, new_value, "", *places
+                    "extension", name, "changed", f"{path} @{attribute}".strip(), old_value, new_value, "", *locations
                 )
         texts = " ".join(old.text().split()), " ".join(new.text().split())
         if not self._same_text(*texts):
@@ -355,8 +355,8 @@ def _named_differences(
             continue
         old_item = old[names[name]]
         if old_item.name != name:
-            places = _location(old_item.element, "name"), _location(item.element, "name")
-            yield Difference(subject, name, "renamed", "name", old_item.name, name, "", *places)
+            locations = _location(old_item.element, "name"), _location(item.element, "name")
+            yield Difference(subject, name, "renamed", "name", old_item.name, name, "", *locations)
         yield from compare_pair(old_item, item)
     for name, item in old.items():
         if name not in matches:
@@ -366,7 +366,7 @@ def _named_differences(
 def _change(
     subject: Subject, name: str, fact: str, old: tuple[Fact | None, Block], new: tuple[Fact | None, Block]
 ) -> Difference:
-    def place(pair: tuple[Fact | None, Block]) -> DifferenceLocation | None:
+    def location_of_value(pair: tuple[Fact | None, Block]) -> DifferenceLocation | None:
         compared_fact, block = pair
         return (
             _location(block.element)
@@ -378,7 +378,14 @@ def _change(
     present_fact = new_fact or old_fact
     texts = None if old_fact is None else old_fact.text, None if new_fact is None else new_fact.text
     return Difference(
-        subject, name, "changed", fact, *texts, present_fact.unit if present_fact else "", place(old), place(new)
+        subject,
+        name,
+        "changed",
+        fact,
+        *texts,
+        present_fact.unit if present_fact else "",
+        location_of_value(old),
+        location_of_value(new),
     )
 
 

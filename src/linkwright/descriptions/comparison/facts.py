@@ -118,7 +118,7 @@ class Block:
 
 
 def nearest(element: Element | None, *tags: str) -> Element | None:
-    """Return the descendant at the end of a path of tags, or the last existing element on the path.
+    """Return the descendant at the end of a path of tags, or the last existing one on the path.
 
     Without an element, the result is None.
     """

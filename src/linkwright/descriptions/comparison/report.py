@@ -25,10 +25,12 @@ def as_text(comparison: Comparison, label: Label) -> str:
         return localized(phrase("no differences")) + "\n"
     lines = []
     for difference in differences:
-        places = [
-            _location_text(place, label) for place in (difference.old_place, difference.new_place) if place is not None
+        locations = [
+            _location_text(location, label)
+            for location in (difference.old_place, difference.new_place)
+            if location is not None
         ]
-        lines += [localized(sentence(difference)), *(["  " + " -> ".join(places)] if places else [])]
+        lines += [localized(sentence(difference)), *(["  " + " -> ".join(locations)] if locations else [])]
     lines.append(localized(counted("{count} difference", "{count} differences", len(differences))))
     return "\n".join(lines) + "\n"
 
@@ -66,32 +68,34 @@ def as_data(comparison: Comparison, label: Label) -> list[dict[str, Any]]:
             "old": difference.old,
             "new": difference.new,
             "unit": difference.unit,
-            "old_place": _place_data(difference.old_place, label),
-            "new_place": _place_data(difference.new_place, label),
+            "old_place": _location_data(difference.old_place, label),
+            "new_place": _location_data(difference.new_place, label),
         }
         for difference in comparison.differences
     ]
 
 
-def _place_data(place: DifferenceLocation | None, label: Label) -> dict[str, Any] | None:
-    if place is None:
+def _location_data(location: DifferenceLocation | None, label: Label) -> dict[str, Any] | None:
+    if location is None:
         return None
-    return {**_span_data(place.span, label), "calls": [_span_data(call, label) for call in place.calls]}
+    return {**_span_data(location.span, label), "calls": [_span_data(call, label) for call in location.calls]}
 
 
 def _span_data(span: Span, label: Label) -> dict[str, Any]:
     return {"file": label(span.file), "line": span.line, "column": span.column}
 
 
-def _location_text(place: DifferenceLocation, label: Label) -> str:
+def _location_text(location: DifferenceLocation, label: Label) -> str:
     """Return a location as text, with the innermost call or include that produced the element.
 
     Outer calls are only in the data for programs.
     """
-    position = _position_text(place.span, label)
-    if not place.calls:
+    position = _position_text(location.span, label)
+    if not location.calls:
         return position
-    return localized(phrase("{place} called at {call}", place=position, call=_position_text(place.calls[0], label)))
+    return localized(
+        phrase("{location} called at {call}", location=position, call=_position_text(location.calls[0], label))
+    )
 
 
 def _position_text(span: Span, label: Label) -> str:

@@ -8,7 +8,7 @@ from pathlib import Path
 
 import yaml
 
-from linkwright.descriptions.editing.places import Candidate, TextRange, literal, words
+from linkwright.descriptions.editing.text_ranges import Candidate, TextRange, literal, words
 from linkwright.diagnostics import LinkwrightError, SourceText
 from linkwright.loading.lean_typing import Any
 from linkwright.xacro.faults import Fault, Frame, frames
@@ -34,7 +34,7 @@ class Definitions:
     """
 
     def __init__(self, documents: Sequence[Document], other_files: Iterable[Path], overlay: Overlay) -> None:
-        self._places_by_name: dict[str, list[TextRange]] = {}
+        self._ranges_by_name: dict[str, list[TextRange]] = {}
         self._macros: dict[str, Element] = {}
         self._other_files, self._overlay = tuple(other_files), overlay
         self._scalars: list[tuple[tuple[str, ...], TextRange]] | None = None
@@ -55,10 +55,10 @@ class Definitions:
                 text_range = attribute(frame.site, reference.name) or self._default(frame, reference.name)
                 if text_range is not None:
                     yield text_range
-            yield from self._places_by_name.get(reference.name, ())
+            yield from self._ranges_by_name.get(reference.name, ())
             if keys:
-                yield from self._places_by_name.get(keys[-1], ())
-                yield from (place for path, place in self._values() if path[-len(keys) :] == keys)
+                yield from self._ranges_by_name.get(keys[-1], ())
+                yield from (value_range for path, value_range in self._values() if path[-len(keys) :] == keys)
 
     def addable_arguments(self, text: str, index: int | None, innermost: Frame | None) -> Iterator[Candidate]:
         """Yield arguments that could be added to calls, in place of a parameter's default.
@@ -85,7 +85,7 @@ class Definitions:
         for key in _VALUES.get(element.tag, ()):
             text_range = attribute(element, key)
             if text_range is not None:
-                self._places_by_name.setdefault(name, []).append(text_range)
+                self._ranges_by_name.setdefault(name, []).append(text_range)
 
     def _default(self, frame: Frame, name: str) -> TextRange | None:
         """Return the location of the default of a macro's parameter.

@@ -97,7 +97,7 @@ def describe_path(trail: tuple[Element, ...]) -> str:
     inner_tag = next((element.tag for element in trail[1:2] if outermost.tag == "link"), None)
     kind = term(outermost.tag)
     name_text = phrase("{kind} '{name}'", kind=kind, name=name) if named_elements and name else kind
-    return name_text if inner_tag is None else phrase("{what} ({part})", what=name_text, part=term(inner_tag))
+    return name_text if inner_tag is None else phrase("{owner} ({part})", owner=name_text, part=term(inner_tag))
 
 
 def _sibling_index(old: Element, child: Element, index: int, is_owner: bool) -> int:

@@ -15,11 +15,11 @@ from linkwright.descriptions.editing.definitions import attribute
 from linkwright.descriptions.editing.difference import Target, describe_path, other_differences, path_to
 from linkwright.descriptions.editing.errors import EditRefusedError
 from linkwright.descriptions.editing.numbers import EXACT, are_close, parse_numbers, shortest_text
-from linkwright.descriptions.editing.places import Candidate, TextRange, literal, words
 from linkwright.descriptions.editing.proposals import proposals
 from linkwright.descriptions.editing.refusals import Attempt, refusal
 from linkwright.descriptions.editing.request import EditRequest
 from linkwright.descriptions.editing.snapshot import Snapshot
+from linkwright.descriptions.editing.text_ranges import Candidate, TextRange, literal, words
 from linkwright.descriptions.service import Description
 from linkwright.diagnostics import Diagnostic, LinkwrightError, phrase
 from linkwright.geometry.single import quaternion_from_rpy
@@ -135,7 +135,7 @@ class _Planner:
         if element is None or name not in element.attributes:
             self._add(target, requested)
             return
-        text_range = self._attribute_place(element, name)
+        text_range = self._attribute_range(element, name)
         value_words = words(text_range)
         if (
             len(value_words) == len(requested)
@@ -161,7 +161,7 @@ class _Planner:
     def _set_one(self, target: Target, index: int, requested: float) -> None:
         element = target.element(self._current.root)
         assert element is not None, "it has the attribute"
-        text_range = self._attribute_place(element, target.attribute)
+        text_range = self._attribute_range(element, target.attribute)
         current_numbers = self._values(target.attribute)
         frame = element.origin if isinstance(element.origin, Frame) else None
         attempts: list[Attempt] = []
@@ -231,23 +231,23 @@ class _Planner:
         return None
 
     def _edit_together(
-        self, target: Target, place: TextRange, value_words: list[TextRange], new_numbers: dict[int, float]
+        self, target: Target, text_range: TextRange, value_words: list[TextRange], new_numbers: dict[int, float]
     ) -> Snapshot | None:
         """Return the description after one edit of several literal numbers in an attribute.
 
         The result is None if the file must not be edited, if the attribute would not get the requested values, or if
         other parts would change, too.
         """
-        if self._allowed(os.path.realpath(place.source.name)) is not None:
+        if self._allowed(os.path.realpath(text_range.source.name)) is not None:
             return None
-        text, offset = "", place.start
+        text, offset = "", text_range.start
         for i, value_word in enumerate(value_words):
-            text += place.source.text[offset : value_word.start] + (
+            text += text_range.source.text[offset : value_word.start] + (
                 shortest_text(new_numbers[i]) if i in new_numbers else value_word.text
             )
             offset = value_word.end
-        text += place.source.text[offset : place.end]
-        trial = self._try_text(place, text)
+        text += text_range.source.text[offset : text_range.end]
+        trial = self._try_text(text_range, text)
         values = None if trial is None else self._numbers_in(trial, target)
         if trial is None or values is None:
             return None
@@ -255,9 +255,9 @@ class _Planner:
         is_exact = all(map(are_close, values, requested)) and not self._differences(trial, target)
         return trial if is_exact else None
 
-    def _try_text(self, place: TextRange, text: str) -> Snapshot | None:
+    def _try_text(self, text_range: TextRange, text: str) -> Snapshot | None:
         try:
-            return self._current.with_text(place, text)
+            return self._current.with_text(text_range, text)
         except LinkwrightError:
             return None
 
@@ -350,7 +350,7 @@ class _Planner:
             return list(defaults)
         return parse_numbers(element.attributes[target.attribute], 4 if target.attribute == "quat_xyzw" else 3)
 
-    def _attribute_place(self, element: Element, name: str) -> TextRange:
+    def _attribute_range(self, element: Element, name: str) -> TextRange:
         """Return the range of an attribute's text, on its element or in an ``<xacro:attribute>``."""
         text_range = attribute(element, name)
         if text_range is not None:

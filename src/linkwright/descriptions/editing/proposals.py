@@ -1,4 +1,4 @@
-"""The candidates for editing a number of an attribute, starting with the most likely candidate."""
+"""The candidates for editing a number of an attribute, the most likely first."""
 
 from __future__ import annotations
 
@@ -6,7 +6,7 @@ from collections.abc import Iterator, Sequence
 
 from linkwright.descriptions.editing.definitions import Definitions
 from linkwright.descriptions.editing.numbers import shortest_text
-from linkwright.descriptions.editing.places import (
+from linkwright.descriptions.editing.text_ranges import (
     Candidate,
     TextRange,
     added_constants,
@@ -22,7 +22,7 @@ _MAX_DEPTH = 8
 
 
 def proposals(
-    place: TextRange,
+    text_range: TextRange,
     index: int,
     frame: Frame | None,
     definitions: Definitions,
@@ -33,14 +33,14 @@ def proposals(
     """Yield the candidates for editing one number of an attribute, the most likely first.
 
     Args:
-        place: the range of the attribute's text.
+        text_range: the range of the attribute's text.
         index: the index of the number.
         frame: the macro call in which the attribute is evaluated.
         definitions: the definitions of named values.
         present: the current numbers of the attribute.
         is_angle: whether the numbers are angles.
     """
-    determining_words = list(_determining_words(place, index, frame, definitions))
+    determining_words = list(_determining_words(text_range, index, frame, definitions))
     for word in determining_words:
         yield from _numbers_in(word, present[index])
     for word in determining_words:
@@ -49,22 +49,22 @@ def proposals(
         candidate = addition_candidate(word, is_angle=is_angle)
         if candidate is not None:
             yield candidate
-    attribute_words = words(place)
+    attribute_words = words(text_range)
     if len(attribute_words) == len(present):
         yield replacement_candidate(attribute_words[index], present[index])
     elif len(attribute_words) == 1:
-        yield _whole_candidate(place, index, present)
+        yield _whole_candidate(text_range, index, present)
 
 
 def _determining_words(
-    place: TextRange, index: int, frame: Frame | None, definitions: Definitions
+    text_range: TextRange, index: int, frame: Frame | None, definitions: Definitions
 ) -> Iterator[TextRange]:
     """Yield the ranges of the words that determine a number.
 
     These are the word in the attribute itself, then the words in the definitions of its names, recursively.
     """
     visited: set[tuple[str, int]] = set()
-    pending: list[tuple[TextRange, int]] = [(place, 0)]
+    pending: list[tuple[TextRange, int]] = [(text_range, 0)]
     while pending:
         text, depth = pending.pop(0)
         if (text.source.name, text.start) in visited:
@@ -91,7 +91,7 @@ def _numbers_in(word: TextRange, value: float) -> Iterator[Candidate]:
     yield from candidates
 
 
-def _whole_candidate(place: TextRange, index: int, present: Sequence[float]) -> Candidate:
+def _whole_candidate(text_range: TextRange, index: int, present: Sequence[float]) -> Candidate:
     """Return a candidate that replaces a single expression with all numbers of the attribute."""
 
     def write(number: float, tolerance: float) -> str:
@@ -100,4 +100,4 @@ def _whole_candidate(place: TextRange, index: int, present: Sequence[float]) -> 
             for i, current_number in enumerate(present)
         )
 
-    return Candidate(place, present[index], write)
+    return Candidate(text_range, present[index], write)

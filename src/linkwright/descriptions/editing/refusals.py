@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
-from linkwright.descriptions.editing.places import TextRange
+from linkwright.descriptions.editing.text_ranges import TextRange
 from linkwright.diagnostics import Diagnostic, Note, display_path, joined, phrase
 from linkwright.loading.lean_dataclasses import dataclass
 
@@ -32,20 +32,20 @@ class Attempt:
     fails_to_expand: bool = False
 
 
-def refusal(place: TextRange, index: int | None, attempts: Sequence[Attempt], tag: str = "") -> Diagnostic:
+def refusal(text_range: TextRange, index: int | None, attempts: Sequence[Attempt], tag: str = "") -> Diagnostic:
     """Return the finding with the reason why an edit is refused.
 
     Args:
-        place: the range of the attribute's text, or the position at which it would be added.
+        text_range: the range of the attribute's text, or the position at which it would be added.
         index: the index of the number that cannot be changed, or None for an attribute that is missing.
         attempts: the failed candidates, in the order in which they were tried.
         tag: the tag of the element that would be added.
     """
-    text = " ".join(place.text.split())
+    text = " ".join(text_range.text.split())
     attempts_by_span = {
         attempt.text_range.span: attempt
         for attempt in attempts
-        if attempt.text_range != place and (attempt.side_effects or attempt.is_choice)
+        if attempt.text_range != text_range and (attempt.side_effects or attempt.is_choice)
     }
     notes = tuple(map(_attempt_note, attempts_by_span.values()))[:_MAX_NAMES]
     best_attempt = min(
@@ -61,15 +61,17 @@ def refusal(place: TextRange, index: int | None, attempts: Sequence[Attempt], ta
             "text for all of these parts"
         )
         if index is None:
-            message = phrase("an <{tag}> written here would also change {what}", tag=tag, what=names_text)
+            message = phrase("an <{tag}> written here would also change {parts}", tag=tag, parts=names_text)
         else:
-            message = phrase("another number in '{written}' would also change {what}", written=text, what=names_text)
-        return Diagnostic("EDIT104", message, place.span, notes=notes, hint=hint, source=place.source)
+            message = phrase(
+                "another number in '{expression}' would also change {parts}", expression=text, parts=names_text
+            )
+        return Diagnostic("EDIT104", message, text_range.span, notes=notes, hint=hint, source=text_range.source)
     if forbidden is not None:
         return forbidden
-    message = phrase("no number gives '{written}' the requested value", written=text)
+    message = phrase("no number gives '{expression}' the requested value", expression=text)
     hint = phrase("write a number, or a sum that contains a number, in place of the expression")
-    return Diagnostic("EDIT105", message, place.span, notes=notes, hint=hint, source=place.source)
+    return Diagnostic("EDIT105", message, text_range.span, notes=notes, hint=hint, source=text_range.source)
 
 
 def _attempt_note(attempt: Attempt) -> Note:
@@ -80,7 +82,7 @@ def _attempt_note(attempt: Attempt) -> Note:
             attempt.text_range.span,
         )
     return Note(
-        phrase("'{text}' also determines {what}", text=text, what=_joined_names(attempt.side_effects)),
+        phrase("'{text}' also determines {parts}", text=text, parts=_joined_names(attempt.side_effects)),
         attempt.text_range.span,
     )
 
@@ -94,7 +96,7 @@ def _joined_names(names: Sequence[str]) -> object:
 
 def forbidden_file(path: str, reason: object) -> Diagnostic:
     """Return the finding that a file must not be written."""
-    message = phrase("'{path}' is not written: {why}", path=display_path(path), why=reason)
+    message = phrase("'{path}' is not written: {reason}", path=display_path(path), reason=reason)
     hint = phrase("open the description from your own workspace, or change a copy of the file")
     return Diagnostic("EDIT106", message, hint=hint)
 

@@ -9,7 +9,7 @@ from functools import cached_property
 from pathlib import Path
 
 from linkwright.descriptions.editing.definitions import Definitions
-from linkwright.descriptions.editing.places import TextRange
+from linkwright.descriptions.editing.text_ranges import TextRange
 from linkwright.descriptions.service import Description
 from linkwright.diagnostics import LinkwrightError
 from linkwright.loading.lean_dataclasses import dataclass
@@ -72,15 +72,15 @@ class Snapshot:
                     documents.append(read_document(str(path), overlay))
         return Definitions(documents, other_files, overlay)
 
-    def with_text(self, place: TextRange, text: str) -> Snapshot:
+    def with_text(self, text_range: TextRange, text: str) -> Snapshot:
         """Return a snapshot in which a text replaces one range of a file.
 
         Raises:
             LinkwrightError: if the description can no longer be expanded.
         """
-        source_text = place.source.text
-        changed_text = source_text[: place.start] + text + source_text[place.end :]
-        texts = {**self.texts, os.path.realpath(place.source.name): changed_text}
+        source_text = text_range.source.text
+        changed_text = source_text[: text_range.start] + text + source_text[text_range.end :]
+        texts = {**self.texts, os.path.realpath(text_range.source.name): changed_text}
         return self.with_texts(texts)
 
     def with_texts(self, texts: Mapping[str | os.PathLike[str], str]) -> Snapshot:

@@ -69,7 +69,7 @@ class ProcessTable:
             self._session.spawn(process.stop())
 
     def escalate(self) -> None:
-        """Send SIGTERM now to the processes that were asked to end, and SIGKILL half a second later."""
+        """Send SIGTERM now to the processes that must end, and SIGKILL half a second later."""
         for process in tuple(self._running):
             process.escalate()
 

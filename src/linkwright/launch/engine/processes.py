@@ -232,7 +232,7 @@ class RunningProcess:
         }
 
     def _start_failure(self, error: Exception) -> LinkwrightError:
-        from linkwright.launch.errors.places import error_at
+        from linkwright.launch.errors.locations import error_at
 
         program = self.plan.command[0]
         hint = None
@@ -264,7 +264,7 @@ class RunningProcess:
                 reason=foreign(reason),
                 program=program,
             )
-        return error_at(self.plan.action.place, "LAUNCH142", message, hint)
+        return error_at(self.plan.action.source_location, "LAUNCH142", message, hint)
 
     # --- output ---------------------------------------------------------------------------------------------
 

@@ -17,7 +17,7 @@ from linkwright.hosting.xacro_calls import DescriptionError, Descriptions, Xacro
 from linkwright.launch.engine.omissions import Omissions
 from linkwright.launch.engine.process_table import ProcessTable
 from linkwright.launch.engine.supervisor import SessionOptions
-from linkwright.launch.errors.places import located
+from linkwright.launch.errors.locations import with_location
 from linkwright.launch.errors.user_code import DEEPEST, endless_nesting_error, explain
 from linkwright.launch.log.loggers import launch_config
 from linkwright.launch.model import events
@@ -68,7 +68,7 @@ class LaunchSession:
         self._exception: BaseException | None = None
         self._scratch: ScratchFolder | None = None
         self._included_descriptions: deque[LaunchDescriptionEntity] = deque()
-        self.left_out: set[str] = set()
+        self.skipped_nodes: set[str] = set()
         self._omissions = Omissions(log, options.command_to_skip_missing, skip_all=options.skip_missing)
         self.processes = ProcessTable(self)
         self.host = NodeHost(self)
@@ -302,18 +302,18 @@ class LaunchSession:
 
     def _visit(self, entity: LaunchDescriptionEntity, context: LaunchContext, depth: int = 1) -> None:
         if depth > DEEPEST:
-            raise endless_nesting_error(entity.place)
+            raise endless_nesting_error(entity.source_location)
         try:
             next_entities = entity.visit(context)
         except DescriptionError as error:
             if not (error.is_missing or self.is_ending):
                 self._retry_when_fixed(entity, context.snapshot(), error)
-            elif not self._omissions.skip(located(error, entity.place)):
+            elif not self._omissions.skip(with_location(error, entity.source_location)):
                 raise
             return
         except (Exception, SystemExit) as error:
             name = type(entity).__name__
-            explained_error = explain(error, phrase("launch action {name}", name=name), entity.place)
+            explained_error = explain(error, phrase("launch action {name}", name=name), entity.source_location)
             if self._omissions.skip(explained_error):
                 return
             raise explained_error from error
@@ -324,7 +324,7 @@ class LaunchSession:
             for next_entity in next_entities or ():
                 self._visit(next_entity, context, depth + 1)
         except LinkwrightError as error:
-            raise located(entity.explain_inside(error), entity.place) from error
+            raise with_location(entity.explain_inside(error), entity.source_location) from error
 
     def _retry_when_fixed(
         self, entity: LaunchDescriptionEntity, context: LaunchContext, error: DescriptionError

@@ -1,4 +1,4 @@
-"""Marks for errors whose cause is missing third-party software, and not a mistake of the user.
+"""Marks for errors that missing third-party software causes, not a mistake of the user.
 
 A launch skips the parts whose software is missing, and continues. For example, the simulation of a robot is useful
 even without move_group.
@@ -29,5 +29,5 @@ def is_unavailable(error: LinkwrightError) -> bool:
 def is_missing_third_party(error: LinkwrightError) -> bool:
     """Return whether an error reports a missing third-party package or module."""
     if isinstance(error, PackageNotFoundError):
-        return not error.is_slip
+        return not error.is_misspelling
     return isinstance(error, ModuleNotFoundError) or is_unavailable(error)

@@ -28,7 +28,7 @@ from linkwright.diagnostics import (
     quoted_names,
 )
 from linkwright.launch.errors.exceptions import as_ros_error
-from linkwright.launch.errors.places import CodeLocation, SourceLocation, error_at, located, read_source
+from linkwright.launch.errors.locations import CodeLocation, SourceLocation, error_at, read_source, with_location
 from linkwright.packages.programs.code_files import is_user_file
 
 DEEPEST = 300
@@ -54,27 +54,27 @@ def explain(error: BaseException, subject: str, fallback: SourceLocation | None 
     Args:
         error: the exception; it may also come from ``sys.exit``.
         subject: the code that raised the exception, for the message, such as "launch file 'x.launch.py'".
-        fallback: the place to report if no line of user code was running.
+        fallback: the location to report if no line of user code was running.
 
     Returns:
-        The exception itself if it is a LinkwrightError, with the place added if it had none. Otherwise, a new error
+        The exception itself if it is a LinkwrightError, with the location added if it had none. Otherwise, a new error
             LAUNCH104.
     """
-    user_places = list(_user_places(error.__traceback__))
-    place = user_places[-1] if user_places else fallback
+    user_locations = list(_user_locations(error.__traceback__))
+    location = user_locations[-1] if user_locations else fallback
     if isinstance(error, LinkwrightError):
-        return located(error, place)
+        return with_location(error, location)
     type_name = type(error).__name__
     text = str(error.args[0]) if isinstance(error, KeyError) and error.args else str(error)
     text = _MODULE_PATH.sub("", (text.splitlines() or [""])[0]).rstrip(".")
     message = (
-        phrase("{where} raised {kind}: {text}", where=subject, kind=type_name, text=foreign(text))
+        phrase("{subject} raised {kind}: {text}", subject=subject, kind=type_name, text=foreign(text))
         if text
-        else phrase("{where} raised {kind}", where=subject, kind=type_name)
+        else phrase("{subject} raised {kind}", subject=subject, kind=type_name)
     )
-    source = place.source() if place else None
-    span = place.span(source) if place else None
-    callers = dict.fromkeys(reversed(user_places[:-1]))  # report a recursive function only once
+    source = location.source() if location else None
+    span = location.span(source) if location else None
+    callers = dict.fromkeys(reversed(user_locations[:-1]))  # report a recursive function only once
     notes = tuple(Note(phrase("called from here"), caller.span(read_source(caller.file))) for caller in callers)
     diagnostic = Diagnostic(
         "LAUNCH104", message, span, notes=notes, hint=hint_about(error, source, span), source=source
@@ -82,13 +82,13 @@ def explain(error: BaseException, subject: str, fallback: SourceLocation | None 
     return as_ros_error(error if isinstance(error, Exception) else None, diagnostic)
 
 
-def endless_nesting_error(place: SourceLocation | None) -> LinkwrightError:
+def endless_nesting_error(location: SourceLocation | None) -> LinkwrightError:
     """Return the error for launch actions that are nested more deeply than the limit."""
     message = phrase("launch actions are nested more than {count} levels deep, probably without end", count=DEEPEST)
     hint = phrase(
         "add a condition that ends the recursion, if a launch file includes itself or a function returns itself"
     )
-    return error_at(place, "LAUNCH156", message, hint)
+    return error_at(location, "LAUNCH156", message, hint)
 
 
 def too_deep_error(path: str) -> LinkwrightError:
@@ -97,7 +97,7 @@ def too_deep_error(path: str) -> LinkwrightError:
     return error_at(None, "LAUNCH156", message)
 
 
-def _user_places(traceback: TracebackType | None) -> Iterable[SourceLocation]:
+def _user_locations(traceback: TracebackType | None) -> Iterable[SourceLocation]:
     if traceback is None:
         return
     traceback_entry: TracebackType | None = traceback
@@ -136,10 +136,13 @@ def hint_about(error: BaseException, source: SourceText | None = None, span: Spa
 
 
 def _class_hint(error: AttributeError) -> Phrase | None:
-    """Return a hint about a class in place of its instance, or a method outside of its class, or None."""
+    """Return a hint about a class instead of an instance, or a method outside its class.
+
+    The result is None if the error has another cause.
+    """
     name, owner = getattr(error, "name", None) or "", getattr(error, "obj", None)
     if isinstance(owner, property):
-        return phrase("a class stands where its instance belongs; write its name with parentheses: NAME()")
+        return phrase("a class is used where its instance is required; write its name with parentheses: NAME()")
     if name.startswith("_Node__"):
         return phrase("call super().__init__('NAME') first in __init__")
     if hasattr(owner, "TYPE_NAME"):
@@ -148,7 +151,7 @@ def _class_hint(error: AttributeError) -> Phrase | None:
             return phrase("did you mean '{name}'?", name=f".{inner}.{name}")
     frame = _innermost_frame(error)
     if frame is not None and callable(frame.f_globals.get(name)) and "self" in frame.f_locals:
-        return phrase("'{name}' is a function outside of the class; indent it as the other methods", name=name)
+        return phrase("'{name}' is a function outside the class; indent it like the other methods", name=name)
     return None
 
 
@@ -160,15 +163,18 @@ def import_hint(name: str) -> Phrase | None:
     if name in sys.stdlib_module_names and name not in _MODULES:
         return phrase("write 'import {name}' at the top of the file", name=name)
     interfaces = [full for kind in ("msg", "srv", "action") for full in interface_names(kind)]
-    places = [".".join(full.split("/")[:-1]) for full in interfaces if full.endswith(f"/{name}")]
-    modules = [*_MODULES.get(name, ()), *places, *modules_providing(name)][:_MOST_MODULES]
+    locations = [".".join(full.split("/")[:-1]) for full in interfaces if full.endswith(f"/{name}")]
+    modules = [*_MODULES.get(name, ()), *locations, *modules_providing(name)][:_MOST_MODULES]
     if not modules:
         return None
     return phrase("import it from {modules}", modules=quoted_names(modules, " or "))
 
 
 def _substitution_hint(error: TypeError) -> Phrase | None:
-    """Return a hint for text that is joined with a substitution, or an action in place of a list, or None."""
+    """Return a hint about text joined with a substitution, or an action instead of a list.
+
+    The result is None if the error has another cause.
+    """
     text = str(error)
     if _JOINED_SUBSTITUTION.search(text):
         return phrase("a substitution has no text before the launch runs; put the parts into a list: ['xacro ', model]")
@@ -249,9 +255,9 @@ def _missing_hint(error: TypeError, source: SourceText | None, span: Span | None
         similar_names = nearest(missing_name, (name for name in keyword_names if name != missing_name))
         if similar_names:
             return phrase(
-                "argument '{missing}' is missing; the call passes {near}",
+                "argument '{missing}' is missing; the call passes {similar}",
                 missing=missing_name,
-                near=quoted_names(similar_names, " or "),
+                similar=quoted_names(similar_names, " or "),
             )
     return None
 

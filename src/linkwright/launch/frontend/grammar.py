@@ -11,9 +11,9 @@ import re
 from typing import Any, NoReturn
 
 from linkwright.diagnostics import Phrase, did_you_mean, phrase
-from linkwright.launch.errors.places import MarkupLocation, SourceLocation, error_at, reading_markup_at
+from linkwright.launch.errors.locations import MarkupLocation, SourceLocation, error_at, reading_markup_at
 from linkwright.launch.frontend.instantiate import instantiate_substitution
-from linkwright.launch.model.markup.entity import place_of
+from linkwright.launch.model.markup.entity import location_of
 from linkwright.launch.model.markup.expose import substitution_parse_methods
 from linkwright.launch.model.substitution import Substitution, TextSubstitution
 
@@ -37,7 +37,7 @@ def parse_substitution(string_value: str) -> list[Substitution]:
     """
     if not string_value:
         return [TextSubstitution(text=string_value)]
-    return _Reader(string_value, place_of(string_value)).template()
+    return _Reader(string_value, location_of(string_value)).template()
 
 
 def parse_if_substitutions(value: Any) -> Any:
@@ -72,13 +72,13 @@ class _Reader:
 
     Args:
         text: the text.
-        place: the location of the text, or None.
+        location: the location of the text, or None.
     """
 
-    def __init__(self, text: str, place: SourceLocation | None) -> None:
+    def __init__(self, text: str, location: SourceLocation | None) -> None:
         self._text = text
         self._at = 0
-        self._place = place
+        self._location = location
 
     def template(self) -> list[Substitution]:
         """Parse the entire text, and return its substitutions."""
@@ -183,9 +183,9 @@ class _Reader:
         )
 
     def _part(self, start: int, end: int) -> SourceLocation | None:
-        return self._place.part(start, end) if isinstance(self._place, MarkupLocation) else self._place
+        return self._location.part(start, end) if isinstance(self._location, MarkupLocation) else self._location
 
     def _fail(self, message: Phrase, hint: Phrase) -> NoReturn:
-        place = self._part(self._at, self._at + 1)
+        location = self._part(self._at, self._at + 1)
         text = phrase("substitution in '{text}' cannot be parsed: {message}", text=self._text, message=message)
-        raise error_at(place, "LAUNCH119", text, hint, ros_error=ValueError(text))
+        raise error_at(location, "LAUNCH119", text, hint, ros_error=ValueError(text))

@@ -15,7 +15,7 @@ from linkwright.diagnostics import (
     phrase,
     quoted_names,
 )
-from linkwright.launch.errors.places import MarkupLocation, error_at
+from linkwright.launch.errors.locations import MarkupLocation, error_at
 from linkwright.launch.errors.unavailable import is_missing_third_party, mark_unavailable
 from linkwright.launch.frontend.sources import AnyLaunchDescriptionSource, LaunchDescriptionSource
 from linkwright.launch.model.action import Action
@@ -164,8 +164,8 @@ class IncludeLaunchDescription(Action):
         Returns:
             The same error.
         """
-        if self.place is not None and self._source.location_path is not None:
-            note = Note(phrase("included from here"), self.place.span(self.place.source()))
+        if self.source_location is not None and self._source.location_path is not None:
+            note = Note(phrase("included from here"), self.source_location.span(self.source_location.source()))
             error.diagnostics = tuple(
                 diagnostic if note in diagnostic.notes else diagnostic.with_changes(notes=(*diagnostic.notes, note))
                 for diagnostic in error.diagnostics
@@ -220,7 +220,7 @@ class IncludeLaunchDescription(Action):
                 f"Included launch description missing required argument '{argument.name}' "
                 f"(description: '{argument.description}'), given: [{', '.join(given_names)}]"
             )
-            raise error_at(self.place, "LAUNCH114", message, hint, ros_error=RuntimeError(text))
+            raise error_at(self.source_location, "LAUNCH114", message, hint, ros_error=RuntimeError(text))
 
     def _check_values(self, names: list[str]) -> None:
         for name, (_, value) in zip(names, self._arguments, strict=True):
@@ -230,13 +230,13 @@ class IncludeLaunchDescription(Action):
                 )
                 hint = phrase("pass a string or a substitution, or omit the argument")
                 ros_error = TypeError(f"Failed to normalize given item of type '{type(value)}'")
-                raise error_at(self.place, "LAUNCH114", message, hint, ros_error=ros_error)
+                raise error_at(self.source_location, "LAUNCH114", message, hint, ros_error=ros_error)
 
     def _argument_hint(self, name: str) -> Phrase:
         """Return a hint that shows the argument in the language of the including file."""
-        if not isinstance(self.place, MarkupLocation):
+        if not isinstance(self.source_location, MarkupLocation):
             return phrase("add ('{name}', VALUE) to launch_arguments", name=name)
-        if self.place.text.text.lstrip().startswith("<"):
+        if self.source_location.text.text.lstrip().startswith("<"):
             return phrase('write <arg name="{name}" value="VALUE"/> inside <include>', name=name)
         return phrase("write 'arg: [{{name: {name}, value: VALUE}}]' below 'include'", name=name)
 

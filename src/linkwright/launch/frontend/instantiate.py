@@ -6,7 +6,7 @@ from collections.abc import Sequence
 from typing import TYPE_CHECKING, Any
 
 from linkwright.diagnostics import LinkwrightError, did_you_mean, foreign, phrase
-from linkwright.launch.errors.places import SourceLocation, error_at, located, reading_markup_at
+from linkwright.launch.errors.locations import SourceLocation, error_at, reading_markup_at, with_location
 from linkwright.launch.model.action import Action
 from linkwright.launch.model.markup.entity import Entity
 from linkwright.launch.model.markup.expose import action_parse_methods, substitution_parse_methods
@@ -17,7 +17,7 @@ if TYPE_CHECKING:
 
 
 def _method(parse_methods: dict[str, Any], name: str) -> Any:
-    """Return the parse function of a tag or substitution, or None if the name is not registered.
+    """Return the parse function of a tag or substitution, or None for an unregistered name.
 
     If the name is not registered, this function first loads the launch extensions in the workspace.
     """
@@ -35,25 +35,25 @@ def instantiate_action(entity: Entity, parser: Parser) -> Action:
         RuntimeError: LAUNCH115, no action has this tag.
     """
     parse = _method(action_parse_methods, entity.type_name)
-    place = entity.place
+    location = entity.source_location
     if parse is None:
         raise error_at(
-            place,
+            location,
             "LAUNCH115",
             phrase("no action has the tag '{type_name}'", type_name=entity.type_name),
             did_you_mean(entity.type_name, action_parse_methods),
             ros_error=RuntimeError(f"Unrecognized entity of the type: {entity.type_name}"),
         )
-    with reading_markup_at(place):
+    with reading_markup_at(location):
         try:
             action_type: type[Action]
             action_type, kwargs = parse(entity, parser)
             return action_type(**kwargs)
         except LinkwrightError as error:
-            raise located(error, place) from error
+            raise with_location(error, location) from error
         except (TypeError, ValueError) as error:
             raise error_at(
-                place,
+                location,
                 "LAUNCH118",
                 phrase("action '{type_name}' is not valid: {error}", type_name=entity.type_name, error=foreign(error)),
                 ros_error=error,
@@ -61,7 +61,7 @@ def instantiate_action(entity: Entity, parser: Parser) -> Action:
 
 
 def instantiate_substitution(
-    type_name: str, args: Sequence[Any] | None = None, place: SourceLocation | None = None
+    type_name: str, args: Sequence[Any] | None = None, location: SourceLocation | None = None
 ) -> Substitution:
     """Create the substitution with a name. Each argument is a list of substitutions.
 
@@ -71,23 +71,23 @@ def instantiate_substitution(
     parse = _method(substitution_parse_methods, type_name)
     if parse is None:
         raise error_at(
-            place,
+            location,
             "LAUNCH119",
             phrase("there is no substitution '{type_name}'", type_name=type_name),
             did_you_mean(type_name, substitution_parse_methods),
             ros_error=RuntimeError(f"Unknown substitution: {type_name}"),
         )
-    with reading_markup_at(place):
+    with reading_markup_at(location):
         try:
             substitution_type: type[Substitution]
             substitution_type, kwargs = parse([] if args is None else args)
             return substitution_type(**kwargs)
         except LinkwrightError as error:
-            raise located(error, place) from error
+            raise with_location(error, location) from error
         except (AttributeError, TypeError, ValueError, AssertionError) as error:
             message = (
                 phrase("substitution '{type_name}' is not valid: {error}", type_name=type_name, error=foreign(error))
                 if str(error)
                 else phrase("substitution '{type_name}' is not valid", type_name=type_name)
             )
-            raise error_at(place, "LAUNCH119", message, ros_error=error) from error
+            raise error_at(location, "LAUNCH119", message, ros_error=error) from error

@@ -11,7 +11,7 @@ from typing import Any
 
 from linkwright.diagnostics import LinkwrightError, display_path, phrase
 from linkwright.launch.errors.exceptions import InvalidLaunchFileError
-from linkwright.launch.errors.places import error_at
+from linkwright.launch.errors.locations import error_at
 from linkwright.launch.errors.user_code import too_deep_error
 from linkwright.launch.frontend.python_file import load_python_launch_file, load_python_module, read_launch_file
 from linkwright.launch.model.description import LaunchDescription

@@ -9,7 +9,7 @@ from collections.abc import Collection, Iterable
 from typing import Any, NoReturn
 
 from linkwright.diagnostics import Phrase, did_you_mean, nearest, phrase, quoted_names, term
-from linkwright.launch.errors.places import SourceLocation, error_at
+from linkwright.launch.errors.locations import SourceLocation, error_at
 from linkwright.launch.model.markup.entity import Entity
 
 
@@ -18,13 +18,13 @@ class MarkupEntity(Entity):
 
     Args:
         type_name: the tag of the entity.
-        place: the location of the entity.
+        location: the location of the entity.
         parent: the enclosing entity.
     """
 
-    def __init__(self, type_name: str, place: SourceLocation | None, parent: Entity | None) -> None:
+    def __init__(self, type_name: str, location: SourceLocation | None, parent: Entity | None) -> None:
         self._type_name = type_name
-        self._place = place
+        self._location = location
         self._parent = parent
         self._read_names: dict[str, None] = {}
 
@@ -39,9 +39,9 @@ class MarkupEntity(Entity):
         return self._parent
 
     @property
-    def place(self) -> SourceLocation | None:
+    def source_location(self) -> SourceLocation | None:
         """The location of the entity."""
-        return self._place
+        return self._location
 
     def _check_all_read(self, present: Iterable[str], part_kind: str, ros_text: str) -> None:
         """Raise an error if some parts of the entity were not read.
@@ -66,15 +66,20 @@ class MarkupEntity(Entity):
                 "'{type_name}' accepts {names}", type_name=self._type_name, names=quoted_names(sorted(known_names))
             )
         raise error_at(
-            self._place_of_part(name),
+            self._location_of_part(name),
             "LAUNCH116",
-            phrase("'{type_name}' has no {what} '{name}'", type_name=self._type_name, what=term(part_kind), name=name),
+            phrase(
+                "'{type_name}' has no {part_kind} '{name}'",
+                type_name=self._type_name,
+                part_kind=term(part_kind),
+                name=name,
+            ),
             hint,
             ros_error=ValueError(f"{ros_text} `{self._type_name}`: {{{names_text}}}"),
         )
 
-    def _place_of_part(self, name: str) -> SourceLocation | None:
-        return self._place
+    def _location_of_part(self, name: str) -> SourceLocation | None:
+        return self._location
 
     def _missing(self, name: str, present: Collection[str], ros_error: str) -> NoReturn:
         unread_names = [candidate for candidate in present if candidate not in self._read_names]
@@ -85,17 +90,17 @@ class MarkupEntity(Entity):
             else None
         )
         message = phrase("'{type_name}' needs an attribute '{name}'", type_name=self._type_name, name=name)
-        raise error_at(self._place, "LAUNCH117", message, hint, ros_error=AttributeError(ros_error))
+        raise error_at(self._location, "LAUNCH117", message, hint, ros_error=AttributeError(ros_error))
 
     def _fail_wrong_type(self, name: str, value: Any, data_type: Any, ros_error: str) -> NoReturn:
         message = phrase(
-            "attribute '{name}' of '{type_name}' is {value}, which is not {type_words}",
+            "attribute '{name}' of '{type_name}' is {value}, which is not {type}",
             name=name,
             type_name=self._type_name,
             value=repr(value),
-            type_words=describe_type(data_type),
+            type=describe_type(data_type),
         )
-        raise error_at(self._place_of_part(name), "LAUNCH118", message, ros_error=TypeError(ros_error))
+        raise error_at(self._location_of_part(name), "LAUNCH118", message, ros_error=TypeError(ros_error))
 
 
 def describe_type(data_type: Any) -> Phrase:

@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Any, ClassVar
 
 from linkwright.diagnostics import Diagnostic, LinkwrightError, display_path, phrase
 from linkwright.launch.errors.exceptions import InvalidFrontendLaunchFileError, as_ros_error
-from linkwright.launch.errors.places import error_at
+from linkwright.launch.errors.locations import error_at
 from linkwright.launch.frontend import extensions, grammar
 from linkwright.launch.frontend.instantiate import instantiate_action
 
@@ -33,7 +33,10 @@ class Parser:
 
     @classmethod
     def load_launch_extensions(cls) -> None:
-        """Import the modules of Linkwright and of installed packages that contain actions or substitutions."""
+        """Import the modules that register actions and substitutions.
+
+        The modules are those of Linkwright and of installed packages.
+        """
         if Parser.extensions_loaded:
             return
         for _ in extensions.load(extensions.ACTIONS):
@@ -84,7 +87,7 @@ class Parser:
             message = phrase(
                 "the root of a launch file must be 'launch', not '{type_name}'", type_name=entity.type_name
             )
-            raise error_at(entity.place, "LAUNCH109", message, ros_error=ros_error)
+            raise error_at(entity.source_location, "LAUNCH109", message, ros_error=ros_error)
         deprecated = entity.get_attr("deprecated", optional=True)
         entity.get_attr("version", optional=True)  # "version" is the format version in the ROS 2 launch design
         actions = []

@@ -23,7 +23,7 @@ from linkwright.diagnostics import (
 from linkwright.diagnostics.lookalikes import lookalike_hint
 from linkwright.files.input_files import read_text
 from linkwright.launch.errors.exceptions import InvalidPythonLaunchFileError, as_ros_error
-from linkwright.launch.errors.places import MarkupLocation, SourceLocation, error_at, outside_markup
+from linkwright.launch.errors.locations import MarkupLocation, SourceLocation, error_at, outside_markup
 from linkwright.launch.errors.user_code import explain
 from linkwright.launch.model.description import LaunchDescription
 from linkwright.packages.launch_files import is_launch_file_name
@@ -131,26 +131,26 @@ def read_launch_file(path: Path) -> SourceText:
         return SourceText(name, read_text(path, "utf-8-sig"))
     except FileNotFoundError as error:
         hint = missing_file_hint(path, is_launch_file_name)
-        message = phrase("launch file '{shown}' does not exist", shown=as_typed(shown_path))
+        message = phrase("launch file '{path}' does not exist", path=as_typed(shown_path))
         raise error_at(None, "LAUNCH101", message, hint, ros_error=error) from error
     except IsADirectoryError as error:
         hint = missing_file_hint(path / "_", is_launch_file_name)
         raise error_at(
             None,
             "LAUNCH101",
-            phrase("'{shown}' is a folder, not a launch file", shown=shown_path),
+            phrase("'{path}' is a folder, not a launch file", path=shown_path),
             hint,
             ros_error=error,
         ) from error
     except OSError as error:
         message = phrase(
-            "launch file '{shown}' cannot be read: {strerror}", shown=shown_path, strerror=foreign(error.strerror)
+            "launch file '{path}' cannot be read: {strerror}", path=shown_path, strerror=foreign(error.strerror)
         )
         raise error_at(None, "LAUNCH102", message, ros_error=error) from error
     except UnicodeDecodeError as error:
         raise _error(
             "LAUNCH102",
-            phrase("launch file '{shown}' is not UTF-8: {reason}", shown=shown_path, reason=foreign(error.reason)),
+            phrase("launch file '{path}' is not UTF-8: {reason}", path=shown_path, reason=foreign(error.reason)),
         ) from error
 
 

@@ -6,7 +6,7 @@ from pathlib import Path
 from typing import Any
 
 from linkwright.diagnostics import LinkwrightError
-from linkwright.launch.errors.places import Placed, located
+from linkwright.launch.errors.locations import Located, with_location
 from linkwright.launch.frontend.launch_file import load_launch_file, load_markup_launch_file
 from linkwright.launch.frontend.python_file import load_python_launch_file
 from linkwright.launch.model.context import LaunchContext
@@ -19,7 +19,7 @@ from linkwright.launch.model.substitution import (
 )
 
 
-class LaunchDescriptionSource(Placed):
+class LaunchDescriptionSource(Located):
     """A source of a launch description: an existing description, or a file to load it from.
 
     Args:
@@ -91,7 +91,7 @@ class LaunchDescriptionSource(Placed):
             try:
                 self._description = self._get_launch_description(self._evaluated_location)
             except LinkwrightError as error:
-                raise located(error, self.place) from error
+                raise with_location(error, self.source_location) from error
         return self._description
 
     def _get_launch_description(self, location: str) -> LaunchDescription:

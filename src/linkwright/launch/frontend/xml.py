@@ -4,12 +4,12 @@ from __future__ import annotations
 
 from typing import Any
 
-from linkwright.launch.errors.places import MarkupLocation, SourceLocation
+from linkwright.launch.errors.locations import MarkupLocation, SourceLocation
 from linkwright.launch.frontend.markup_entity import MarkupEntity
 from linkwright.launch.frontend.parser import Parser as AnyParser
 from linkwright.launch.frontend.parser import read_file
 from linkwright.launch.model.markup.entity import Entity as AnyEntity
-from linkwright.launch.model.markup.entity import PlacedText, is_list_of_entities
+from linkwright.launch.model.markup.entity import LocatedText, is_list_of_entities
 from linkwright.launch.model.markup.values import get_typed_value
 from linkwright.xmltree import Element, parse
 from linkwright.xmltree.positions import attribute_name_range, attribute_value_range
@@ -27,7 +27,7 @@ class Entity(MarkupEntity):
 
     def __init__(self, xml_element: Any, *, parent: AnyEntity | None = None) -> None:
         self._element = xml_element if isinstance(xml_element, Element) else _from_etree(xml_element)
-        super().__init__(self._element.tag, _place(self._element), parent)
+        super().__init__(self._element.tag, _location(self._element), parent)
 
     @property
     def children(self) -> list[AnyEntity]:
@@ -66,10 +66,10 @@ class Entity(MarkupEntity):
             if optional:
                 return None
             self._missing(name, attributes, ros_error)
-        value: Any = PlacedText(attributes[name], _attribute_place(self._element, name))
+        value: Any = LocatedText(attributes[name], _attribute_location(self._element, name))
         if name + _SEPARATOR in attributes:
             self._read_names[name + _SEPARATOR] = None
-            value = [PlacedText(item, value.place) for item in value.split(attributes[name + _SEPARATOR])]
+            value = [LocatedText(item, value.source_location) for item in value.split(attributes[name + _SEPARATOR])]
         try:
             return get_typed_value(value, data_type, can_be_str=can_be_str)
         except (TypeError, ValueError):
@@ -79,17 +79,17 @@ class Entity(MarkupEntity):
             )
             self._fail_wrong_type(name, str(value), data_type, ros_error)
 
-    def _place_of_part(self, name: str) -> SourceLocation | None:
+    def _location_of_part(self, name: str) -> SourceLocation | None:
         element, source = self._element, self._element.source
         if name not in element.attributes:
             child = element.first(name)
-            return self.place if child is None else _place(child)
+            return self.source_location if child is None else _location(child)
         if source is None:
             return None
         if name in self._read_names:
-            return _attribute_place(element, name)
+            return _attribute_location(element, name)
         name_range = attribute_name_range(source.text, element.offset, name)
-        return MarkupLocation(source, *name_range) if name_range else self.place
+        return MarkupLocation(source, *name_range) if name_range else self.source_location
 
 
 class Parser(AnyParser):
@@ -111,17 +111,17 @@ class Parser(AnyParser):
         return {"launch.xml"}
 
 
-def _place(element: Element) -> SourceLocation | None:
+def _location(element: Element) -> SourceLocation | None:
     if element.source is None:
         return None
     return MarkupLocation(element.source, element.offset, element.offset + 1 + len(element.tag))
 
 
-def _attribute_place(element: Element, name: str) -> SourceLocation | None:
+def _attribute_location(element: Element, name: str) -> SourceLocation | None:
     if element.source is None:
         return None
     value_range = attribute_value_range(element.source.text, element.offset, name)
-    return MarkupLocation(element.source, *value_range) if value_range else _place(element)
+    return MarkupLocation(element.source, *value_range) if value_range else _location(element)
 
 
 def _from_etree(element: Any) -> Element:

@@ -8,12 +8,12 @@ import yaml
 
 from linkwright.diagnostics import Diagnostic, LinkwrightError, SourceText, foreign, joined, phrase
 from linkwright.launch.errors.exceptions import as_ros_error
-from linkwright.launch.errors.places import MarkupLocation, SourceLocation, error_at
+from linkwright.launch.errors.locations import MarkupLocation, SourceLocation, error_at
 from linkwright.launch.frontend.markup_entity import MarkupEntity
 from linkwright.launch.frontend.parser import Parser as AnyParser
 from linkwright.launch.frontend.parser import read_file
 from linkwright.launch.model.markup.entity import Entity as AnyEntity
-from linkwright.launch.model.markup.entity import PlacedText, is_list_of_entities, place_of
+from linkwright.launch.model.markup.entity import LocatedText, is_list_of_entities, location_of
 from linkwright.launch.model.markup.values import is_instance_of
 
 _CHILDREN = "children"
@@ -32,7 +32,7 @@ class Entity(MarkupEntity):
     """
 
     def __init__(self, element: Any, type_name: str = "", *, parent: AnyEntity | None = None) -> None:
-        super().__init__(type_name, place_of(type_name) or getattr(element, "place", None), parent)
+        super().__init__(type_name, location_of(type_name) or getattr(element, "source_location", None), parent)
         self._element = element
         self._are_children_read = False
 
@@ -58,12 +58,12 @@ class Entity(MarkupEntity):
                     "'{type_name}' needs actions: write a list, or a key 'children' with a list",
                     type_name=self.type_name,
                 )
-                raise error_at(self.place, "LAUNCH117", message, ros_error=ValueError(text))
+                raise error_at(self.source_location, "LAUNCH117", message, ros_error=ValueError(text))
             children = children[_CHILDREN]
         if not isinstance(children, list):
             text = f"Expected a dict or list, got {type(children)}:\n---\n{children}\n---"
             message = phrase("'{type_name}' needs a list of actions", type_name=self.type_name)
-            raise error_at(self.place, "LAUNCH118", message, ros_error=TypeError(text))
+            raise error_at(self.source_location, "LAUNCH118", message, ros_error=TypeError(text))
         return [self._child(item) for item in children]
 
     def _child(self, item: Any) -> AnyEntity:
@@ -73,12 +73,12 @@ class Entity(MarkupEntity):
                 "an action in '{type_name}' must be a mapping with one key, its tag", type_name=self.type_name
             )
             hint = phrase("indent its attributes further than the tag") if isinstance(item, dict) and item else None
-            place = getattr(item, "place", None) or place_of(item) or self.place
-            raise error_at(place, "LAUNCH118", message, hint, ros_error=RuntimeError(text))
+            location = getattr(item, "source_location", None) or location_of(item) or self.source_location
+            raise error_at(location, "LAUNCH118", message, hint, ros_error=RuntimeError(text))
         [(name, element)] = item.items()
         if isinstance(element, str) and name in _SINGLE_VALUE_ATTRIBUTES:
-            mapping = PlacedMapping({_SINGLE_VALUE_ATTRIBUTES[name]: element})
-            mapping.place = place_of(element)
+            mapping = LocatedMapping({_SINGLE_VALUE_ATTRIBUTES[name]: element})
+            mapping.source_location = location_of(element)
             element = mapping
         return Entity({} if element is None else element, name, parent=self)
 
@@ -93,7 +93,7 @@ class Entity(MarkupEntity):
         elif isinstance(self._element, list) and not self._are_children_read:
             text = f"Unexpected nested entity(ies) found in `{self.type_name}`: {self._element}"
             message = phrase("'{type_name}' does not accept a list of actions", type_name=self.type_name)
-            raise error_at(self.place, "LAUNCH116", message, ros_error=ValueError(text))
+            raise error_at(self.source_location, "LAUNCH116", message, ros_error=ValueError(text))
 
     def get_attr(self, name: str, *, data_type: Any = str, optional: bool = False, can_be_str: bool = True) -> Any:
         """Return the value of an attribute, or the child entities with a given name.
@@ -104,7 +104,7 @@ class Entity(MarkupEntity):
         self._read_names[name] = None
         if not isinstance(self._element, (dict, list)):
             message = phrase("'{type_name}' must be a mapping of attributes", type_name=self.type_name)
-            raise error_at(self.place, "LAUNCH118", message, ros_error=TypeError(message))
+            raise error_at(self.source_location, "LAUNCH118", message, ros_error=TypeError(message))
         if name not in self._element:
             if optional:
                 return None
@@ -113,14 +113,17 @@ class Entity(MarkupEntity):
         value: Any = dict(self._element)[name]
         if is_list_of_entities(data_type):
             if isinstance(value, list) and value and all(isinstance(item, dict) for item in value):
-                return [Entity(item, PlacedText(name, getattr(item, "place", None)), parent=self) for item in value]
+                return [
+                    Entity(item, LocatedText(name, getattr(item, "source_location", None)), parent=self)
+                    for item in value
+                ]
             text = f"Attribute '{name}' of Entity '{self.type_name}' expected to be a list of dictionaries."
             message = phrase(
                 "key '{name}' of '{type_name}' must be a list of mappings", name=name, type_name=self.type_name
             )
-            raise error_at(self._place_of_part(name), "LAUNCH118", message, ros_error=TypeError(text))
+            raise error_at(self._location_of_part(name), "LAUNCH118", message, ros_error=TypeError(text))
         if data_type is str and isinstance(value, (bool, int, float)):
-            return PlacedText(_format_scalar(value), self._place_of_part(name))
+            return LocatedText(_format_scalar(value), self._location_of_part(name))
         if not is_instance_of(value, data_type, can_be_str=can_be_str):
             text = (
                 f"Attribute '{name}' of Entity '{self.type_name}' expected to be of type '{data_type}', "
@@ -129,11 +132,15 @@ class Entity(MarkupEntity):
             self._fail_wrong_type(name, value, data_type, text)
         return value
 
-    def _place_of_part(self, name: str) -> SourceLocation | None:
+    def _location_of_part(self, name: str) -> SourceLocation | None:
         for key, value in self._element.items() if isinstance(self._element, dict) else ():
             if key == name:
-                return (place_of(value) if name in self._read_names else None) or place_of(key) or self.place
-        return self.place
+                return (
+                    (location_of(value) if name in self._read_names else None)
+                    or location_of(key)
+                    or self.source_location
+                )
+        return self.source_location
 
 
 def _format_scalar(value: bool | float) -> str:
@@ -156,8 +163,8 @@ class Parser(AnyParser):
         if not isinstance(tree, dict) or len(tree) != 1:
             source = SourceText(name, text)
             message = phrase("a YAML launch file must be a mapping with the single key 'launch'")
-            place = getattr(tree, "place", None) or MarkupLocation(source, 0, 0)
-            raise error_at(place, "LAUNCH109", message, ros_error=RuntimeError("Expected only one root"))
+            location = getattr(tree, "source_location", None) or MarkupLocation(source, 0, 0)
+            raise error_at(location, "LAUNCH109", message, ros_error=RuntimeError("Expected only one root"))
         [(root, element)] = tree.items()
         return Entity(element, root), cls()
 
@@ -170,10 +177,10 @@ class Parser(AnyParser):
 # --- YAML with locations --------------------------------------------------------------------------------------
 
 
-class PlacedMapping(dict[Any, Any]):
+class LocatedMapping(dict[Any, Any]):
     """A mapping that records its location."""
 
-    place: SourceLocation | None = None
+    source_location: SourceLocation | None = None
 
 
 class _Loader(yaml.SafeLoader):
@@ -205,20 +212,20 @@ class _Loader(yaml.SafeLoader):
         finally:
             self._open_anchors.pop()
 
-    def place_of_node(self, node: yaml.Node) -> SourceLocation:
+    def location_of_node(self, node: yaml.Node) -> SourceLocation:
         return MarkupLocation(self.launch_text, node.start_mark.index, node.end_mark.index)
 
 
-def _text(loader: _Loader, node: yaml.ScalarNode) -> PlacedText:
+def _text(loader: _Loader, node: yaml.ScalarNode) -> LocatedText:
     start, end = node.start_mark.index, node.end_mark.index
     if node.style in ("'", '"'):
         start, end = start + 1, end - 1
-    return PlacedText(loader.construct_scalar(node), MarkupLocation(loader.launch_text, start, end))
+    return LocatedText(loader.construct_scalar(node), MarkupLocation(loader.launch_text, start, end))
 
 
 def _construct_mapping(loader: _Loader, node: yaml.MappingNode) -> Any:
-    mapping = PlacedMapping()
-    mapping.place = loader.place_of_node(node.value[0][0] if node.value else node)
+    mapping = LocatedMapping()
+    mapping.source_location = loader.location_of_node(node.value[0][0] if node.value else node)
     yield mapping
     mapping.update(loader.construct_mapping(node))
 
@@ -230,7 +237,7 @@ _Loader.add_constructor("tag:yaml.org,2002:map", _construct_mapping)
 def load(text: str, name: str) -> Any:
     """Load the data of a YAML text.
 
-    In the data, each string is a `PlacedText`, and each mapping is a `PlacedMapping`.
+    In the data, each string is a `LocatedText`, and each mapping is a `LocatedMapping`.
 
     Raises:
         LinkwrightError: LAUNCH108, the text is not valid YAML.

@@ -6,7 +6,7 @@ from collections.abc import Iterable, Sequence
 from typing import TYPE_CHECKING, Any
 
 from linkwright.diagnostics import phrase
-from linkwright.launch.errors.places import error_at
+from linkwright.launch.errors.locations import error_at
 from linkwright.launch.model.conditions import Condition, IfCondition, UnlessCondition
 from linkwright.launch.model.entity import LaunchDescriptionEntity, as_entities
 
@@ -105,5 +105,5 @@ def parse_condition(entity: Entity, parser: Parser) -> dict[str, Any]:
     if len(created_conditions) > 1:
         ros_error = RuntimeError("if and unless conditions can't be used simultaneously")
         message = phrase("'{type_name}' has both 'if' and 'unless'", type_name=entity.type_name)
-        raise error_at(entity.place, "LAUNCH118", message, ros_error=ros_error)
+        raise error_at(entity.source_location, "LAUNCH118", message, ros_error=ros_error)
     return {"condition": created_conditions[0]} if created_conditions else {}

@@ -6,7 +6,7 @@ from collections.abc import Callable
 from typing import Any
 
 from linkwright.diagnostics import LinkwrightError, Phrase, phrase
-from linkwright.launch.errors.places import Placed, error_at, located
+from linkwright.launch.errors.locations import Located, error_at, with_location
 from linkwright.launch.model.context import LaunchContext
 from linkwright.launch.model.substitution import (
     SomeSubstitutionsType,
@@ -35,7 +35,7 @@ class InvalidConditionExpressionError(Exception):
             super().__init__(*details)
 
 
-class Condition(Placed):
+class Condition(Located):
     """Decides at each visit of an action whether the action runs.
 
     Args:
@@ -67,9 +67,11 @@ class Condition(Placed):
         try:
             return self._predicate(context)
         except LinkwrightError as error:
-            raise located(error, self.place) from error
+            raise with_location(error, self.source_location) from error
         except InvalidConditionExpressionError as error:
-            raise error_at(self.place, "LAUNCH127", _condition_message(error.text), ros_error=error) from error
+            raise error_at(
+                self.source_location, "LAUNCH127", _condition_message(error.text), ros_error=error
+            ) from error
 
 
 class _ExpressionCondition(Condition):

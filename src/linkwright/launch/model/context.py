@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING, Any, Protocol
 
 from linkwright.diagnostics import Diagnostic, LinkwrightError, foreign, print_diagnostics
 from linkwright.launch.errors.exceptions import SubstitutionFailure
-from linkwright.launch.errors.places import SourceLocation, error_at, located
+from linkwright.launch.errors.locations import SourceLocation, error_at, with_location
 
 if TYPE_CHECKING:
     from linkwright.hosting.xacro_calls import Descriptions
@@ -24,7 +24,7 @@ if TYPE_CHECKING:
 class Performable(Protocol):
     """The interface through which the launch context uses substitutions."""
 
-    place: SourceLocation | None
+    source_location: SourceLocation | None
 
     def perform(self, context: LaunchContext) -> str:
         """Evaluate the substitution, and return the resulting text."""
@@ -127,9 +127,9 @@ class LaunchContext:
         try:
             return substitution.perform(self)
         except LinkwrightError as error:
-            raise located(error, substitution.place) from error
+            raise with_location(error, substitution.source_location) from error
         except SubstitutionFailure as error:
-            raise error_at(substitution.place, "LAUNCH120", foreign(error), ros_error=error) from error
+            raise error_at(substitution.source_location, "LAUNCH120", foreign(error), ros_error=error) from error
 
     # --- locals ---------------------------------------------------------------------------------------------
 

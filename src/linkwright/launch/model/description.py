@@ -7,7 +7,7 @@ from collections.abc import Iterable, Sequence
 from typing import TYPE_CHECKING, Any
 
 from linkwright.diagnostics import phrase
-from linkwright.launch.errors.places import SourceLocation, error_at
+from linkwright.launch.errors.locations import SourceLocation, error_at
 from linkwright.launch.model.action import Action
 from linkwright.launch.model.declared_arguments import declared_arguments
 from linkwright.launch.model.entity import LaunchDescriptionEntity

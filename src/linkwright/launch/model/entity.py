@@ -7,13 +7,13 @@ from collections.abc import Iterable, Sequence
 from typing import TYPE_CHECKING, Any
 
 from linkwright.diagnostics import LinkwrightError
-from linkwright.launch.errors.places import Placed
+from linkwright.launch.errors.locations import Located
 
 if TYPE_CHECKING:
     from linkwright.launch.model.context import LaunchContext
 
 
-class LaunchDescriptionEntity(Placed):
+class LaunchDescriptionEntity(Located):
     """An element of a launch description."""
 
     def visit(self, context: LaunchContext) -> Sequence[LaunchDescriptionEntity] | None:

@@ -6,18 +6,18 @@ import signal as signals
 from collections.abc import Callable, Mapping, Sequence
 from typing import Any, Protocol
 
-from linkwright.launch.errors.places import SourceLocation
+from linkwright.launch.errors.locations import SourceLocation
 
 
 class ProcessAction(Protocol):
     """The interface of actions that start a process, or a node in the launcher's process.
 
     Attributes:
-        place: the location of the action in the user's program.
+        source_location: the location of the action in the user's program.
         process_details: ``name``, ``cmd``, ``cwd``, ``env`` and ``pid`` of the process; None before the start.
     """
 
-    place: SourceLocation | None
+    source_location: SourceLocation | None
     process_details: dict[str, Any] | None
 
     def wrote(self, stream: int, text: bytes) -> None:

@@ -29,7 +29,7 @@ def format_launch_description(description: LaunchDescription) -> str:
 def _tree_lines(entities: Iterable[Any], depth: int = 1) -> list[str]:
     entity_list = list(entities)
     if depth > DEEPEST and entity_list:
-        raise endless_nesting_error(getattr(entity_list[0], "place", None))
+        raise endless_nesting_error(getattr(entity_list[0], "source_location", None))
     lines: list[str] = []
     for index, entity in enumerate(entity_list):
         is_last = index == len(entity_list) - 1

@@ -69,7 +69,7 @@ class RunningLaunch(Protocol):
         """The robot descriptions of this launch."""
 
     @property
-    def left_out(self) -> set[str]:
+    def skipped_nodes(self) -> set[str]:
         """The names, without namespaces, of nodes that were skipped because of missing software."""
 
     @property

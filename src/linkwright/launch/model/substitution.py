@@ -6,13 +6,13 @@ from collections.abc import Iterable
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from linkwright.launch.errors.places import Placed
+from linkwright.launch.errors.locations import Located
 
 if TYPE_CHECKING:
     from linkwright.launch.model.context import LaunchContext
 
 
-class Substitution(Placed):
+class Substitution(Located):
     """An object that evaluates to text in a launch context."""
 
     def __repr__(self) -> str:

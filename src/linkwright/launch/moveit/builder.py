@@ -8,7 +8,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from linkwright.diagnostics import Note, Severity, display_path, joined, phrase, print_diagnostics
-from linkwright.launch.errors.places import SourceLocation, error_at
+from linkwright.launch.errors.locations import SourceLocation, error_at
 from linkwright.launch.moveit.configs import MoveItConfigs, Parameters
 from linkwright.launch.moveit.files import (
     ParameterBuilderFileNotFoundError,

@@ -12,7 +12,7 @@ from typing import Any
 
 from linkwright.diagnostics import LinkwrightError, display_path, foreign, missing_file_hint, package_hint, phrase
 from linkwright.hosting.xacro_calls import Descriptions, XacroCall, current_descriptions
-from linkwright.launch.errors.places import SourceLocation, error_at, located
+from linkwright.launch.errors.locations import SourceLocation, error_at, with_location
 from linkwright.launch.model.context import LaunchContext
 from linkwright.launch.model.markup.expose import expose_substitution
 from linkwright.launch.model.substitution import (
@@ -180,7 +180,7 @@ class Xacro(Substitution):
         try:
             return load_xacro(Path(perform_substitutions(context, self._file_path)), arguments)
         except LinkwrightError as error:
-            raise located(error, self.place) from error
+            raise with_location(error, self.source_location) from error
 
 
 def _evaluate(context: LaunchContext, value: Any) -> str:

@@ -7,7 +7,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from linkwright.diagnostics import LinkwrightError
-from linkwright.launch.errors.places import Placed, located
+from linkwright.launch.errors.locations import Located, with_location
 from linkwright.launch.model.action import parse_condition
 from linkwright.launch.model.context import LaunchContext
 from linkwright.launch.model.markup.entity import parse_texts
@@ -36,7 +36,7 @@ if TYPE_CHECKING:
 
 
 @with_deprecated_arguments(node_plugin="plugin", node_name="name", node_namespace="namespace")
-class ComposableNode(Placed):
+class ComposableNode(Located):
     """A node that can be loaded into a container.
 
     Args:
@@ -199,12 +199,12 @@ def get_composable_node_load_request(description: ComposableNode, context: Launc
         node_parameters = own_parameters(description.parameters or (), context)
         parameters = NodeParameters([*scope.sources, *node_parameters.sources])
         request.parameters = _parameter_messages(context, full_name, parameters.sources)
-        parameters.check(context, full_name if request.node_name else None, description.place)
+        parameters.check(context, full_name if request.node_name else None, description.source_location)
         request.extra_arguments = _parameter_messages(
             context, full_name, own_parameters(description.extra_arguments or (), context).sources
         )
     except LinkwrightError as error:
-        raise located(error, description.place) from error
+        raise with_location(error, description.source_location) from error
     return request
 
 

@@ -6,7 +6,7 @@ from collections.abc import Sequence
 from typing import TYPE_CHECKING, Any
 
 from linkwright.diagnostics import Diagnostic, LinkwrightError, foreign, is_misspelt, phrase
-from linkwright.launch.errors.places import error_at, located
+from linkwright.launch.errors.locations import error_at, with_location
 from linkwright.launch.errors.unavailable import mark_unavailable
 from linkwright.launch.model import events
 from linkwright.launch.model.action import Action
@@ -19,12 +19,12 @@ from linkwright.launch.ros.components import (
 )
 from linkwright.launch.ros.deprecated_arguments import with_deprecated_arguments
 from linkwright.launch.ros.executables import Executable, find_installed_executable
-from linkwright.launch.ros.left_out import record_skipped_node, remove_skipped_nodes
 from linkwright.launch.ros.lifecycle import LifecycleEventManager, call_service, is_autostarted
 from linkwright.launch.ros.lifecycle_events import ChangeState
 from linkwright.launch.ros.names import make_namespace_absolute, record_node_start
 from linkwright.launch.ros.node import Node
 from linkwright.launch.ros.parsing import Entities
+from linkwright.launch.ros.skipped_nodes import record_skipped_node, remove_skipped_nodes
 from linkwright.packages import is_installed, is_substitute
 
 if TYPE_CHECKING:
@@ -62,7 +62,7 @@ class LoadComposableNodes(Action):
                     "'target_container' must be a container or its name, not {target_container}",
                     target_container=repr(target_container),
                 )
-                raise error_at(self.place, "LAUNCH139", message, ros_error=error) from error
+                raise error_at(self.source_location, "LAUNCH139", message, ros_error=error) from error
         self.__target_container = target_container
 
     @classmethod
@@ -84,7 +84,7 @@ class LoadComposableNodes(Action):
             try:
                 request = get_composable_node_load_request(description, context)
             except LinkwrightError as error:
-                raise located(error, description.place) from error
+                raise with_location(error, description.source_location) from error
             if request is not None:
                 requests.append((description, request))
         if requests:
@@ -126,7 +126,7 @@ class LoadComposableNodes(Action):
                 container=container,
                 reason=foreign(response.error_message),
             )
-            error = located(LinkwrightError(Diagnostic("LAUNCH139", message)), description.place)
+            error = with_location(LinkwrightError(Diagnostic("LAUNCH139", message)), description.source_location)
             if _is_third_party(context.session.finder, request.package_name, request.plugin_name):
                 mark_unavailable(error)
                 record_skipped_node(context, request.node_name)
@@ -189,7 +189,7 @@ class ComposableNodeContainer(Node):
             # The nodes must be loaded in the same scope as the container, so the action is visited right after the
             # container.
             load_action = LoadComposableNodes(composable_node_descriptions=enabled_descriptions, target_container=self)
-            load_action.place = self.place
+            load_action.source_location = self.source_location
             load_actions = [load_action]
         next_entities = super().execute(context)
         return [*(next_entities or ()), *load_actions] or None
@@ -248,7 +248,10 @@ def _parse_descriptions(entity: Entity, parser: Parser, *, optional: bool = Fals
 
 
 def _monitor_lifecycle_node(context: LaunchContext, description: ComposableLifecycleNode, full_name: str) -> None:
-    """Monitor the state of a loaded lifecycle node, and configure and activate it if ``autostart`` is set."""
+    """Monitor the state of a loaded lifecycle node.
+
+    If ``autostart`` is set, also configure and activate the node.
+    """
     description.record_full_name(full_name)
     LifecycleEventManager(description).setup_lifecycle_manager(context)
     if not is_autostarted(context, description.node_autostart):

@@ -1,4 +1,7 @@
-"""The executables of packages, which are part of Linkwright, installed, or in the sources of a package."""
+"""The executables of packages.
+
+They are part of Linkwright, installed, or in the sources of a package.
+"""
 
 from __future__ import annotations
 
@@ -28,7 +31,7 @@ from linkwright.packages import PackageFinder, PackageNotFoundError, install_pre
 from linkwright.packages.programs.child_python import python_command
 
 if TYPE_CHECKING:
-    from linkwright.packages.readers.entry_points import EntryPoint
+    from linkwright.packages.readers.installed import EntryPoint
 
 # The readers of sources and scripts are imported only where they are used. A launch of Linkwright's own nodes does
 # not need them.
@@ -224,11 +227,7 @@ def _check_module(executable: Executable, entry_point: EntryPoint, root: Path) -
         entry=entry_point,
         module=entry_point.module,
     )
-    notes = (
-        Note(
-            phrase("searched for {joinpath}.py", joinpath=display_path(root.joinpath(*entry_point.module.split("."))))
-        ),
-    )
+    notes = (Note(phrase("searched for {path}.py", path=display_path(root.joinpath(*entry_point.module.split("."))))),)
     raise LinkwrightError(
         Diagnostic("LAUNCH131", message, notes=notes, hint=suggestion or phrase("check entry_points in setup.py"))
     )
@@ -272,8 +271,8 @@ def _missing_executable_error(
         notes = (
             Note(
                 phrase(
-                    "searched for {install_prefix}",
-                    install_prefix=display_path(install_prefix(share) / "lib" / package / name),
+                    "searched for {folder}",
+                    folder=display_path(install_prefix(share) / "lib" / package / name),
                 )
             ),
         )

@@ -9,7 +9,7 @@ import asyncio
 from typing import TYPE_CHECKING, Any
 
 from linkwright.diagnostics import phrase
-from linkwright.launch.errors.places import error_at
+from linkwright.launch.errors.locations import error_at
 from linkwright.launch.model import events
 from linkwright.launch.model.actions import EmitEvent, OpaqueFunction, RegisterEventHandler
 from linkwright.launch.model.event_handlers import EventHandler
@@ -213,7 +213,7 @@ def autostart_actions(action: Any) -> list[Any]:
     ]
 
 
-def unknown_transition_error(place: Any, text: str) -> Exception:
+def unknown_transition_error(location: Any, text: str) -> Exception:
     """Return the error for a transition ID that is not a number."""
     message = phrase("expected integer for lifecycle transition, got {text}", text=text)
-    return error_at(place, "LAUNCH138", message, ros_error=ValueError(message))
+    return error_at(location, "LAUNCH138", message, ros_error=ValueError(message))

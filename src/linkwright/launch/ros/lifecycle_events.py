@@ -7,7 +7,7 @@ from collections.abc import Callable
 from typing import Any
 
 from linkwright.diagnostics import phrase
-from linkwright.launch.errors.places import SourceLocation, error_at
+from linkwright.launch.errors.locations import SourceLocation, error_at
 from linkwright.launch.model.event_handlers import EventHandler
 from linkwright.launch.model.events import Event
 
@@ -71,7 +71,7 @@ class ChangeState(Event):
                 SourceLocation.of_caller(),
                 "LAUNCH138",
                 message,
-                phrase("the available transitions are {listed}", listed=transitions_text),
+                phrase("the available transitions are {transitions}", transitions=transitions_text),
                 ros_error=ros_error,
             )
         self.lifecycle_node_matcher = lifecycle_node_matcher

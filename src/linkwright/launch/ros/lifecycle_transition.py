@@ -7,7 +7,7 @@ from contextlib import suppress
 from typing import TYPE_CHECKING, Any, ClassVar
 
 from linkwright.diagnostics import phrase
-from linkwright.launch.errors.places import error_at
+from linkwright.launch.errors.locations import error_at
 from linkwright.launch.model.action import Action
 from linkwright.launch.model.actions import EmitEvent, OpaqueFunction, RegisterEventHandler
 from linkwright.launch.model.event_handlers import BaseEventHandler, EventHandler
@@ -59,7 +59,7 @@ class LifecycleTransition(Action):
             if len(values) == 0:
                 text = f"No {argument_name} provided."
                 raise error_at(
-                    self.place,
+                    self.source_location,
                     "LAUNCH138",
                     phrase("'{name}' is empty", name=argument_name),
                     ros_error=ValueError(text),
@@ -106,10 +106,10 @@ class LifecycleTransition(Action):
         try:
             transition_id = int(text)
         except ValueError:
-            raise unknown_transition_error(self.place, text) from None
+            raise unknown_transition_error(self.source_location, text) from None
         if transition_id not in _STATES_BY_TRANSITION:
             message = phrase("the goal state of transition {number} is unknown", number=transition_id)
-            raise error_at(self.place, "LAUNCH138", message, ros_error=KeyError(transition_id))
+            raise error_at(self.source_location, "LAUNCH138", message, ros_error=KeyError(transition_id))
         return transition_id
 
     def _create_end_action(self, name: str, reason: str | None = None) -> OpaqueFunction:

@@ -10,7 +10,7 @@ from collections.abc import Iterable
 from typing import Any
 
 from linkwright.diagnostics import phrase
-from linkwright.launch.errors.places import SourceLocation, error_at
+from linkwright.launch.errors.locations import SourceLocation, error_at
 from linkwright.launch.model.context import LaunchContext
 from linkwright.launch.model.substitution import (
     Substitution,

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any
 
 from linkwright.diagnostics import LinkwrightError
 from linkwright.hosting.plans import HostedPlan, is_viewer
-from linkwright.launch.errors.places import located
+from linkwright.launch.errors.locations import with_location
 from linkwright.launch.errors.unavailable import is_unavailable
 from linkwright.launch.model.action import Action
 from linkwright.launch.model.actions.execute import ExecuteProcess
@@ -25,7 +25,6 @@ from linkwright.launch.model.substitution import (
 )
 from linkwright.launch.ros.deprecated_arguments import with_deprecated_arguments
 from linkwright.launch.ros.executables import Executable, find_executable, is_hosted
-from linkwright.launch.ros.left_out import record_skipped_node, without_skipped_nodes
 from linkwright.launch.ros.names import (
     check_name,
     check_namespace,
@@ -40,6 +39,7 @@ from linkwright.launch.ros.parameter_lists import normalize_parameters
 from linkwright.launch.ros.parameters import NodeParameters, own_parameters, scope_parameters
 from linkwright.launch.ros.parsing import parse_node
 from linkwright.launch.ros.scoping import NAMESPACE, PARAMETERS, REMAPPINGS
+from linkwright.launch.ros.skipped_nodes import record_skipped_node, without_skipped_nodes
 from linkwright.launch.ros.substitutions import ExecutableInPackage
 from linkwright.packages.programs.workspace_environment import workspace_environment
 
@@ -245,14 +245,16 @@ class Node(ExecuteProcess):
         try:
             self._expand_names(context)
         except LinkwrightError as error:
-            raise located(error, self.place) from error
+            raise with_location(error, self.source_location) from error
         scoped_parameters = scope_parameters(context.launch_configurations.get(PARAMETERS) or (), context)
-        node_parameters = own_parameters(self.__parameters, context).without_missing_files(context, self.place)
+        node_parameters = own_parameters(self.__parameters, context).without_missing_files(
+            context, self.source_location
+        )
         self.__node_parameters = NodeParameters([*scoped_parameters.sources, *node_parameters.sources])
         try:
-            self.__node_parameters.check(context, self.__name_in_files(context), self.place)
+            self.__node_parameters.check(context, self.__name_in_files(context), self.source_location)
         except LinkwrightError as error:
-            raise located(error, self.place) from error
+            raise with_location(error, self.source_location) from error
         self.__scope_count = len(scoped_parameters.sources)
         self.__scratch_folder = _scratch_folder(context)
         rules = [
@@ -363,7 +365,7 @@ class Node(ExecuteProcess):
         if (
             name is None and own_name is not None and package != _CONTAINER_PACKAGE
         ):  # other nodes were checked before, or cannot be checked
-            self.__node_parameters.check(context, full_name, self.place)
+            self.__node_parameters.check(context, full_name, self.source_location)
         plan = HostedPlan(
             self,
             session.number_process(base_name),
@@ -399,7 +401,7 @@ class Node(ExecuteProcess):
         except LinkwrightError as error:
             if is_unavailable(error):
                 record_skipped_node(context, executable if self.__node_name is None else self.__expanded_node_name)
-            raise located(error, self.place) from error
+            raise with_location(error, self.source_location) from error
 
     def _executable(self, finder: PackageFinder, package: str, executable: str) -> Executable:
         return find_executable(finder, package, executable)

@@ -20,11 +20,11 @@ from linkwright.diagnostics import (
 )
 from linkwright.files.input_files import read_text
 from linkwright.launch.errors.exceptions import SubstitutionFailure
-from linkwright.launch.errors.places import MarkupLocation, Placed, SourceLocation, error_at, located
+from linkwright.launch.errors.locations import Located, MarkupLocation, SourceLocation, error_at, with_location
 from linkwright.launch.frontend.grammar import parse_substitution
 from linkwright.launch.frontend.parser import Parser
 from linkwright.launch.model.context import LaunchContext
-from linkwright.launch.model.markup.entity import PlacedText
+from linkwright.launch.model.markup.entity import LocatedText
 from linkwright.launch.model.markup.values import normalize_typed_substitution, perform_typed_substitution
 from linkwright.launch.model.substitution import (
     SomeSubstitutionsType,
@@ -38,7 +38,7 @@ if TYPE_CHECKING:
     from linkwright.graph.parameters.parameter import ParameterRules
 
 
-class ParameterFile(Placed):
+class ParameterFile(Located):
     """A file with parameters for nodes.
 
     Args:
@@ -63,7 +63,7 @@ class ParameterFile(Placed):
             self._allow_substs = normalize_typed_substitution(allow_substs, bool)
         except (TypeError, ValueError) as error:
             raise error_at(
-                self.place,
+                self.source_location,
                 "LAUNCH133",
                 phrase("the arguments of ParameterFile are not valid: {error}", error=foreign(error)),
                 ros_error=error,
@@ -104,12 +104,12 @@ class ParameterFile(Placed):
 
         if self._rules is None:
             path = self.evaluate(context)
-            source = self._source or _read(path, self.place)
+            source = self._source or _read(path, self.source_location)
             try:
                 self._rules = parse_parameters(source)
                 self._rules.files.append(str(path))
             except LinkwrightError as error:
-                raise located(error, self.place) from error
+                raise with_location(error, self.source_location) from error
         return self._rules
 
     def cleanup(self) -> None:
@@ -128,11 +128,11 @@ class ParameterFile(Placed):
 
         from linkwright.launch.ros.parameter_files import substitute_text
 
-        source = _read(path, self.place)
+        source = _read(path, self.source_location)
         try:
             text = substitute_text(source, context)
         except LinkwrightError as error:
-            raise located(error, self.place) from error
+            raise with_location(error, self.source_location) from error
         self._check_yaml(SourceText(source.name, text))
         self._source = SourceText(source.name, text)
         folder = context.session.scratch_folder if context.is_running else None
@@ -157,23 +157,23 @@ class ParameterFile(Placed):
                 problem=foreign(reason),
             )
             failure = SubstitutionFailure("The substituted parameter file is not a valid yaml file")
-            error_with_place = error_at(None, "LAUNCH133", message, ros_error=failure)
-            error_with_place.diagnostics = (Diagnostic("LAUNCH133", message, span, source=source),)
-            raise located(error_with_place, self.place) from error
+            located_error = error_at(None, "LAUNCH133", message, ros_error=failure)
+            located_error.diagnostics = (Diagnostic("LAUNCH133", message, span, source=source),)
+            raise with_location(located_error, self.source_location) from error
 
 
-def _read(path: Path, place: SourceLocation | None) -> SourceText:
+def _read(path: Path, location: SourceLocation | None) -> SourceText:
     name = source_of(str(path))
     shown_path = display_path(name)
     try:
         return SourceText(name, read_text(path))
     except FileNotFoundError as error:
         message, hint = phrase("parameter file '{path}' does not exist", path=shown_path), missing_file_hint(path)
-        raise error_at(place, "LAUNCH133", message, hint, ros_error=error) from error
+        raise error_at(location, "LAUNCH133", message, hint, ros_error=error) from error
     except (OSError, UnicodeDecodeError) as error:
         reason = getattr(error, "strerror", None) or error
         raise error_at(
-            place,
+            location,
             "LAUNCH133",
             phrase("parameter file '{path}' cannot be read: {reason}", path=shown_path, reason=foreign(reason)),
         ) from error
@@ -200,11 +200,11 @@ def substitute_text(source: SourceText, context: LaunchContext) -> str:
         if start < end_offset or any(begin <= start < end for begin, end in comments):
             continue
         end = _substitution_end(text, start)
-        place = MarkupLocation(source, start, end)
+        location = MarkupLocation(source, start, end)
         try:
-            value = perform_substitutions(context, parse_substitution(PlacedText(text[start:end], place)))
+            value = perform_substitutions(context, parse_substitution(LocatedText(text[start:end], location)))
         except LinkwrightError as error:
-            raise located(error, place) from error
+            raise with_location(error, location) from error
         chunks += [text[end_offset:start], value]
         end_offset = end
     return "".join([*chunks, text[end_offset:]])

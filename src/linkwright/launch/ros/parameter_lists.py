@@ -12,7 +12,7 @@ from pathlib import Path
 from typing import Any
 
 from linkwright.diagnostics import phrase
-from linkwright.launch.errors.places import SourceLocation, error_at
+from linkwright.launch.errors.locations import SourceLocation, error_at
 from linkwright.launch.model.context import LaunchContext
 from linkwright.launch.model.substitution import (
     Substitution,
@@ -47,12 +47,14 @@ def normalize_parameters(parameters: Any) -> tuple[Any, ...]:
     Raises:
         LinkwrightError: LAUNCH132, the parameters are not a list, or an item is not valid; also a TypeError.
     """
-    place = SourceLocation.of_caller()
+    location = SourceLocation.of_caller()
     if isinstance(parameters, (str, Mapping)) or not isinstance(parameters, Sequence):
         ros_error = TypeError(f"Expecting list of parameters, got {parameters}")
         hint = phrase("put the parameters into a list: parameters=[...]")
-        raise error_at(place, "LAUNCH132", phrase("'parameters' of a node must be a list"), hint, ros_error=ros_error)
-    return tuple(_normalize_item(item, place) for item in parameters)
+        raise error_at(
+            location, "LAUNCH132", phrase("'parameters' of a node must be a list"), hint, ros_error=ros_error
+        )
+    return tuple(_normalize_item(item, location) for item in parameters)
 
 
 def normalize_parameter_dict(
@@ -110,16 +112,16 @@ def evaluate_parameter_dict(context: LaunchContext, parameters: NormalizedDict) 
 # --- normalization ----------------------------------------------------------------------------------------------
 
 
-def _normalize_item(item: Any, place: SourceLocation | None) -> Any:
+def _normalize_item(item: Any, location: SourceLocation | None) -> Any:
     if isinstance(item, Mapping):
         return normalize_parameter_dict(item)
     if isinstance(item, (Parameter, ParameterFile)):
         return item
     if isinstance(item, (str, Path, Substitution, list, tuple)):
         return ParameterFile(item)
-    message = phrase("'parameters' of a node contains an item of type {name}", name=type(item).__name__)
+    message = phrase("'parameters' of a node contains an item of type {type}", type=type(item).__name__)
     hint = phrase("items must be dictionaries or paths of YAML files")
-    raise error_at(place, "LAUNCH132", message, hint, ros_error=TypeError(message))
+    raise error_at(location, "LAUNCH132", message, hint, ros_error=TypeError(message))
 
 
 def _normalize_name(key: Any) -> Name:
@@ -141,7 +143,9 @@ def _normalize_value(value: Any, key: Any) -> Any:
         return _normalize_sequence(value, key)
     shown_name = key if isinstance(key, str) else "..."
     if isinstance(value, Path):
-        message = phrase("the value of parameter '{shown}' is a Path, which is not a parameter type", shown=shown_name)
+        message = phrase(
+            "the value of parameter '{parameter}' is a Path, which is not a parameter type", parameter=shown_name
+        )
         raise error_at(
             SourceLocation.of_caller(),
             "LAUNCH132",
@@ -150,9 +154,9 @@ def _normalize_value(value: Any, key: Any) -> Any:
             ros_error=TypeError(message),
         )
     message = phrase(
-        "parameter '{shown}' is of type {name}, which is not a parameter type",
-        shown=shown_name,
-        name=type(value).__name__,
+        "parameter '{parameter}' is of type {type}, which is not a parameter type",
+        parameter=shown_name,
+        type=type(value).__name__,
     )
     ros_error = TypeError(f"Unexpected type for parameter value {value!r}")
     raise error_at(SourceLocation.of_caller(), "LAUNCH132", message, ros_error=ros_error)
@@ -185,7 +189,9 @@ def _item_kind(item: Any, key: Any) -> type:
         return tuple
     shown_name = key if isinstance(key, str) else "..."
     message = phrase(
-        "the list of parameter '{shown}' contains an item of type {name}", shown=shown_name, name=type(item).__name__
+        "the list of parameter '{parameter}' contains an item of type {type}",
+        parameter=shown_name,
+        type=type(item).__name__,
     )
     hint = phrase("items must be of type bool, int, float or str")
     raise error_at(SourceLocation.of_caller(), "LAUNCH132", message, hint, ros_error=TypeError(message))
@@ -212,14 +218,20 @@ def _evaluate_value(context: LaunchContext, name: str, value: Any) -> Any:
     if isinstance(value[0], Substitution):
         return _evaluate_text(context, name, value)
     if isinstance(value[0], tuple):
-        place = next(
-            (substitution.place for item in value for substitution in item if substitution.place is not None), None
+        location = next(
+            (
+                substitution.source_location
+                for item in value
+                for substitution in item
+                if substitution.source_location is not None
+            ),
+            None,
         )
-        return uniform([_evaluate_text(context, name, item) for item in value], name, place)
+        return uniform([_evaluate_text(context, name, item) for item in value], name, location)
     return value
 
 
 def _evaluate_text(context: LaunchContext, name: str, substitutions: tuple[Substitution, ...]) -> Any:
     if len(substitutions) == 1 and isinstance(substitutions[0], PlainItem):
         return substitutions[0].value
-    return parse_yaml_value(perform_substitutions(context, substitutions), name, substitutions[0].place)
+    return parse_yaml_value(perform_substitutions(context, substitutions), name, substitutions[0].source_location)

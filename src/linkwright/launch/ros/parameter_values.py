@@ -10,7 +10,7 @@ from collections.abc import Sequence
 from typing import Any
 
 from linkwright.diagnostics import LinkwrightError, Phrase, foreign, joined, phrase
-from linkwright.launch.errors.places import Placed, SourceLocation, error_at, located
+from linkwright.launch.errors.locations import Located, SourceLocation, error_at, with_location
 from linkwright.launch.model.context import LaunchContext
 from linkwright.launch.model.markup.values import normalize_typed_substitution, perform_typed_substitution
 from linkwright.launch.model.substitution import (
@@ -34,7 +34,7 @@ _ALLOWED_TEXT = (
 )
 
 
-class ParameterValue(Placed):
+class ParameterValue(Located):
     """The value of a parameter, with an optional type.
 
     Args:
@@ -50,7 +50,7 @@ class ParameterValue(Placed):
             self._value = normalize_typed_substitution(value, value_type)
         except (TypeError, ValueError) as error:
             raise error_at(
-                self.place,
+                self.source_location,
                 "LAUNCH132",
                 phrase("the value of a parameter is not valid: {error}", error=foreign(error)),
                 ros_error=error,
@@ -83,23 +83,23 @@ class ParameterValue(Placed):
         try:
             self._evaluated = perform_typed_substitution(context, self._value, self._value_type)
         except LinkwrightError as error:
-            raise located(error, self.place) from error
+            raise with_location(error, self.source_location) from error
         except (TypeError, ValueError) as error:
             expected = getattr(self._value_type, "__name__", None) or str(self._value_type)
             if self._value_type is None:
                 message = phrase(
-                    "{called} has no type and is not YAML: {error}",
-                    called=subject,
+                    "{subject} has no type and is not YAML: {error}",
+                    subject=subject,
                     error=foreign(error),
                 )
-                raise error_at(self.place, "LAUNCH132", message, STRING_HINT, ros_error=error) from error
+                raise error_at(self.source_location, "LAUNCH132", message, STRING_HINT, ros_error=error) from error
             message = phrase(
-                "{called} is not of the requested type {expected}: {error}",
-                called=subject,
+                "{subject} is not of the requested type {expected}: {error}",
+                subject=subject,
                 expected=expected,
                 error=foreign(error),
             )
-            raise error_at(self.place, "LAUNCH132", message, ros_error=error) from error
+            raise error_at(self.source_location, "LAUNCH132", message, ros_error=error) from error
         return self._evaluated
 
 
@@ -118,9 +118,9 @@ class Parameter:
         self._rule: tuple[str, Any] | None = None
 
     @property
-    def place(self) -> SourceLocation | None:
+    def source_location(self) -> SourceLocation | None:
         """The location of the parameter in the launch file, or None."""
-        return self._parameter_value.place
+        return self._parameter_value.source_location
 
     @property
     def name(self) -> list[Substitution] | str:
@@ -149,7 +149,7 @@ class Parameter:
         return self._rule
 
 
-def parse_yaml_value(text: str, name: str, place: SourceLocation | None) -> Any:
+def parse_yaml_value(text: str, name: str, location: SourceLocation | None) -> Any:
     """Return the value of a parameter without a type.
 
     As in launch_ros, the text is read as YAML.
@@ -160,7 +160,7 @@ def parse_yaml_value(text: str, name: str, place: SourceLocation | None) -> Any:
         LinkwrightError: LAUNCH132, the text is not YAML, or its value is not valid for a parameter. As in launch_ros,
             the error is also a TypeError.
     """
-    value = _load_yaml(text, name, place)
+    value = _load_yaml(text, name, location)
     if value is None:
         return ""
     if isinstance(value, str):
@@ -170,17 +170,17 @@ def parse_yaml_value(text: str, name: str, place: SourceLocation | None) -> Any:
     if isinstance(value, (*SCALARS, bytes)):
         return value
     if isinstance(value, list):
-        return uniform(value, name, place)
+        return uniform(value, name, location)
     message = phrase(
         "parameter '{name}' has no type; read as YAML, its value is {kind}, which is not a parameter type",
         name=name,
         kind=_describe_type(value),
     )
     ros_error = TypeError(_ALLOWED_TEXT.format(type(value)))
-    raise error_at(place, "LAUNCH132", message, STRING_HINT, ros_error=ros_error)
+    raise error_at(location, "LAUNCH132", message, STRING_HINT, ros_error=ros_error)
 
 
-def uniform(items: Sequence[Any], name: str, place: SourceLocation | None) -> tuple[Any, ...]:
+def uniform(items: Sequence[Any], name: str, location: SourceLocation | None) -> tuple[Any, ...]:
     """Return the items of a list parameter as a tuple, if they all have the same valid type.
 
     Raises:
@@ -200,7 +200,7 @@ def uniform(items: Sequence[Any], name: str, place: SourceLocation | None) -> tu
         description = phrase("a list of items of type {kind}", kind=next(iter(item_types)).__name__)
     message = phrase("parameter '{name}' is {found}, which is not a parameter type", name=name, found=description)
     raise error_at(
-        place,
+        location,
         "LAUNCH132",
         message,
         phrase("give all items one type: bool, int, float or str"),
@@ -208,7 +208,7 @@ def uniform(items: Sequence[Any], name: str, place: SourceLocation | None) -> tu
     )
 
 
-def _load_yaml(text: str, name: str, place: SourceLocation | None) -> Any:
+def _load_yaml(text: str, name: str, location: SourceLocation | None) -> Any:
     import yaml
 
     try:
@@ -233,7 +233,7 @@ def _load_yaml(text: str, name: str, place: SourceLocation | None) -> Any:
             f"Unable to parse the value of parameter {name} as yaml. If the parameter is meant to be a string, try "
             "wrapping it in launch_ros.parameter_descriptions.ParameterValue(value, value_type=str)"
         )
-        raise error_at(place, "LAUNCH132", message, STRING_HINT, ros_error=ros_error) from error
+        raise error_at(location, "LAUNCH132", message, STRING_HINT, ros_error=ros_error) from error
 
 
 def _describe_type(value: Any) -> Phrase:

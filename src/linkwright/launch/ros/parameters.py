@@ -22,7 +22,7 @@ from linkwright.diagnostics import (
     phrase,
 )
 from linkwright.graph.parameters.parameter import ParameterRules
-from linkwright.launch.errors.places import SourceLocation
+from linkwright.launch.errors.locations import SourceLocation
 from linkwright.launch.model.context import LaunchContext
 from linkwright.launch.ros.parameter_files import ParameterFile
 from linkwright.launch.ros.parameter_lists import evaluate_parameters
@@ -54,32 +54,32 @@ class NodeParameters:
 
     sources: list[FileSource | dict[str, Any] | tuple[str, Any]] = field(default_factory=list)
 
-    def without_missing_files(self, context: LaunchContext, place: SourceLocation | None) -> NodeParameters:
+    def without_missing_files(self, context: LaunchContext, location: SourceLocation | None) -> NodeParameters:
         """Return the parameters without missing files, and warn about each missing file.
 
         launch_ros also ignores files that do not exist.
 
         Args:
             context: the launch context, which receives the warnings (LAUNCH133).
-            place: the location of the node, for the warnings; None if it is unknown.
+            location: the location of the node, for the warnings; None if it is unknown.
         """
         node_parameters = NodeParameters()
         for source in self.sources:
             if isinstance(source, FileSource) and not source.path.is_file():
                 message = phrase("parameter file '{path}' does not exist", path=display_path(source.path))
-                _warn(context, "LAUNCH133", message, missing_file_hint(source.path), place)
+                _warn(context, "LAUNCH133", message, missing_file_hint(source.path), location)
             else:
                 node_parameters.sources.append(source)
         return node_parameters
 
-    def check(self, context: LaunchContext, node: str | None, place: SourceLocation | None) -> None:
+    def check(self, context: LaunchContext, node: str | None, location: SourceLocation | None) -> None:
         """Report errors and warnings about the files before the node reads them.
 
         Args:
             context: the context of the launch, for warnings about files without parameters for the node (LAUNCH149) and
                 about skipped parameters (GRAPH212).
             node: the node's full name; None if it is not known.
-            place: the location of the node, for the warnings; None if it is unknown.
+            location: the location of the node, for the warnings; None if it is unknown.
 
         Raises:
             LinkwrightError: LAUNCH133 or GRAPH212, a file has errors.
@@ -97,7 +97,7 @@ class NodeParameters:
                 "parameter file '{path}' has no section for node '{node}'", path=display_path(source.path), node=node
             )
             hint = did_you_mean(node, names) or phrase("the file has sections for {names}", names=joined(names))
-            _warn(context, "LAUNCH149", message, hint, place)
+            _warn(context, "LAUNCH149", message, hint, location)
 
     def values(self, context: LaunchContext, node: str) -> dict[str, Any]:
         """Return the values of the parameters by name, for a node in this process.
@@ -156,10 +156,10 @@ class NodeParameters:
 
 
 def _warn(
-    context: LaunchContext, code: str, message: Phrase, hint: Phrase | None, place: SourceLocation | None
+    context: LaunchContext, code: str, message: Phrase, hint: Phrase | None, location: SourceLocation | None
 ) -> None:
-    source = place.source() if place else None
-    span = place.span(source) if place else None
+    source = location.source() if location else None
+    span = location.span(source) if location else None
     context.warn(Diagnostic(code, message, span, severity=Severity.WARNING, hint=hint, source=source))
 
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, Any
 
 from linkwright.diagnostics import LinkwrightError, Phrase, phrase
-from linkwright.launch.errors.places import error_at, reading_markup_at
+from linkwright.launch.errors.locations import error_at, reading_markup_at
 from linkwright.launch.model.markup.entity import Entity, parse_texts
 from linkwright.launch.ros.parameter_files import ParameterFile
 from linkwright.launch.ros.parameter_values import ParameterValue
@@ -100,7 +100,7 @@ def _parse_nested(tags: list[Entity], parser: Parser) -> dict[Any, Any]:
             raise _tag_error(tag, phrase("nested parameters and the attribute 'type' cannot be used together"))
         if value is not None:
             try:
-                with reading_markup_at(tag.place):
+                with reading_markup_at(tag.source_location):
                     values[name] = ParameterValue(parser.parse_if_substitutions(value), value_type=data_type)
             except (TypeError, ValueError) as error:
                 raise _type_error(tag, value, identifier, error) from error
@@ -126,12 +126,12 @@ def _type_error(tag: Entity, value: Any, identifier: str | None, error: Exceptio
             "parameter '{name}' is {value}, which is not of type '{type}'", name=name, value=value, type=identifier
         )
     )
-    return error_at(tag.place, "LAUNCH132", message, ros_error=error)
+    return error_at(tag.source_location, "LAUNCH132", message, ros_error=error)
 
 
 def _tag_error(tag: Entity, text: Phrase, kind: type[Exception] = RuntimeError) -> Exception:
     return error_at(
-        tag.place,
+        tag.source_location,
         "LAUNCH118",
         phrase("'{type_name}': {text}", type_name=tag.type_name, text=text),
         ros_error=kind(str(text)),

@@ -12,7 +12,7 @@ from pathlib import Path
 from typing import Any
 
 from linkwright.diagnostics import foreign, phrase
-from linkwright.launch.errors.places import error_at
+from linkwright.launch.errors.locations import error_at
 from linkwright.launch.model.conditions import Condition
 from linkwright.launch.model.context import LaunchContext
 from linkwright.launch.model.substitution import (
@@ -55,7 +55,7 @@ class _YamlFileSubstitution(Substitution):
                 path=path,
                 reason=foreign(reason),
             )
-            raise error_at(self.place, "LAUNCH152", message, ros_error=error) from error
+            raise error_at(self.source_location, "LAUNCH152", message, ros_error=error) from error
 
     def _load(self, context: LaunchContext) -> Any:
         import yaml
@@ -70,7 +70,7 @@ class _YamlFileSubstitution(Substitution):
                 path=path,
                 error=foreign(error),
             )
-            raise error_at(self.place, "LAUNCH152", message, ros_error=error) from error
+            raise error_at(self.source_location, "LAUNCH152", message, ros_error=error) from error
 
 
 class RewrittenYaml(_YamlFileSubstitution):
@@ -323,7 +323,7 @@ class ParseMultiRobotPose(Substitution):
                     pose=pose.strip(),
                     name=name.strip(),
                 )
-                raise error_at(self.place, "LAUNCH152", message)
+                raise error_at(self.source_location, "LAUNCH152", message)
             robots[name.strip()] = {**_DEFAULT_POSE, **pose_values}
         return robots
 

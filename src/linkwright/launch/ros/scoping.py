@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Any
 
 from linkwright.diagnostics import phrase
 from linkwright.hosting.launch_log import log_base
-from linkwright.launch.errors.places import error_at
+from linkwright.launch.errors.locations import error_at
 from linkwright.launch.model.action import Action
 from linkwright.launch.model.context import LaunchContext
 from linkwright.launch.model.markup.expose import expose_action
@@ -192,7 +192,7 @@ class SetUseSimTime(SetParameter):
         value = context.launch_configurations[PARAMETERS][-1][1]
         if not isinstance(value, bool):
             message = phrase("'use_sim_time' must be true or false, not {value}", value=repr(value))
-            raise error_at(self.place, "LAUNCH132", message, ros_error=ValueError(message))
+            raise error_at(self.source_location, "LAUNCH132", message, ros_error=ValueError(message))
         if context.is_running:
             context.session.host.use_simulated_time(value)
 
@@ -231,7 +231,7 @@ class SetROSLogDir(Action):
         if not folder.is_absolute():
             message = phrase("the log folder '{folder}' is not an absolute path", folder=folder)
             raise error_at(
-                self.place,
+                self.source_location,
                 "LAUNCH136",
                 message,
                 phrase("set ROS_LOG_DIR to an absolute path"),

@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING
 
 from linkwright.diagnostics import LinkwrightError, did_you_mean, phrase
 from linkwright.launch.errors.exceptions import SubstitutionFailure
-from linkwright.launch.errors.places import error_at, located
+from linkwright.launch.errors.locations import error_at, with_location
 from linkwright.launch.model.context import LaunchContext
 from linkwright.launch.model.declared_substitution import (
     AnyOptionalTexts,
@@ -95,7 +95,7 @@ class ExecutableInPackage(
         try:
             return str(_executable_path(package, executable))
         except LinkwrightError as error:
-            raise located(error, self.place) from error
+            raise with_location(error, self.source_location) from error
 
 
 class ParameterSubstitution(_LaunchRosSubstitution, tag="param", shown="Parameter(name={name})"):
@@ -121,7 +121,9 @@ class ParameterSubstitution(_LaunchRosSubstitution, tag="param", shown="Paramete
                 return perform_substitutions(context, self.default)
             message = phrase("no SetParameter in the scope sets parameter '{name}'", name=name)
             failure = SubstitutionFailure(f"parameter '{name}' not found")
-            raise error_at(self.place, "LAUNCH137", message, did_you_mean(name, scope_values), ros_error=failure)
+            raise error_at(
+                self.source_location, "LAUNCH137", message, did_you_mean(name, scope_values), ros_error=failure
+            )
         return str(scope_values[name])
 
 

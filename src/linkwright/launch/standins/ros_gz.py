@@ -62,7 +62,7 @@ class _SingleNodeAction(Action, ABC):
         """Return the action that starts the node, to be visited next."""
         texts = {name: perform_substitutions(context, text) for name, text in self._texts.items()}
         node = self._node(texts)
-        node.place = self.place
+        node.source_location = self.source_location
         return [node]
 
     @abstractmethod

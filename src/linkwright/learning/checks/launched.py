@@ -108,7 +108,7 @@ class LaunchCheck:
             options = SessionOptions("127.0.0.1", None, False, self._file, history=0)
             self._session = LaunchSession(self._finder, options, CheckedLog(self._output, self._findings), context)
             self._node = self._session.host.graph.create_node(_NODE)
-            self._session.host.network.join_soon(with_viewer=False)
+            self._session.host.join_network_soon()
             launch_locals = {"current_launch_file_path": str(path), "current_launch_file_directory": str(path.parent)}
             return await self._session.run(description, launch_locals)
 

@@ -18,7 +18,7 @@ from linkwright.learning.checks.findings import add_hint, describe_error
 from linkwright.learning.checks.not_yet import NotYet
 
 if TYPE_CHECKING:
-    from linkwright.packages.readers.entry_points import EntryPoint
+    from linkwright.packages.readers.installed import EntryPoint
 
 _BUDGET = re.compile(r"without waiting, at (.+?):(\d+)")
 _WITHOUT_COMMA = re.compile(r"""['"]\s*[\w-]+\s*=\s*[\w.]+:\w+\s*['"][ \t]*\n\s*['"]""")

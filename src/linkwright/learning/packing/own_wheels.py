@@ -56,8 +56,8 @@ def _copy(path: Path, wheels: Path) -> Path:
 
 def _checkout() -> Path | None:
     """Return the checkout that the running Linkwright was installed from, if it still exists."""
-    place = find_installation().origin.place
-    return Path(place) if place and Path(place, "core", "engine_build.py").is_file() else None
+    location = find_installation().origin.location
+    return Path(location) if location and Path(location, "core", "engine_build.py").is_file() else None
 
 
 def _check(paths: Sequence[Path]) -> None:

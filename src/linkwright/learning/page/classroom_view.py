@@ -65,7 +65,7 @@ class ClassroomView(ModelView):
         """Show a robot's file, unless it is shown already or does not exist yet."""
         if path is None or not path.is_file() or (self._is_shown and path == self._call.path):
             return
-        self.finder.forget()
+        self.finder.clear_cache()
         self._replace_description(XacroCall(path))
 
     def _plan_description(self) -> bool:

@@ -43,7 +43,7 @@ class CourseFeature(PageFeature):
         """Handle a request of a page, or report to the page why it was refused."""
         if self._guide is None:
             return
-        if not page.is_here:
+        if not page.is_local:
             problem = phrase("a course works only in pages on the machine where Linkwright runs")
             page.send(messages.CourseProblem(problem, ""))
             return

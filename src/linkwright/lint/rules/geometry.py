@@ -81,10 +81,10 @@ class NonPositiveSize(Rule):
                 shape_name = type(shape.geometry).__name__.lower()
                 yield self.report(
                     phrase(
-                        "'{name}' of the {shape} {what} of link '{link_name}' is {value}",
+                        "'{name}' of the {shape} {kind} of link '{link_name}' is {value}",
                         name=name,
                         shape=term(kind_of(shape)),
-                        what=shape_name,
+                        kind=shape_name,
                         link_name=link.name,
                         value=phrase("zero") if size == 0 else phrase("negative"),
                     ),
@@ -129,9 +129,9 @@ class HugeSize(Rule):
                 shape_name = type(shape.geometry).__name__.lower()
                 yield self.report(
                     phrase(
-                        "the {shape} {what} of link '{name}' measures {size:g} m",
+                        "the {shape} {kind} of link '{name}' measures {size:g} m",
                         shape=term(kind_of(shape)),
-                        what=shape_name,
+                        kind=shape_name,
                         name=link.name,
                         size=size,
                     ),
@@ -175,9 +175,9 @@ class TinySize(Rule):
                 shape_name = type(shape.geometry).__name__.lower()
                 yield self.report(
                     phrase(
-                        "the {shape} {what} of link '{name}' is smaller than {smallest:g} mm",
+                        "the {shape} {kind} of link '{name}' is smaller than {smallest:g} mm",
                         shape=term(kind_of(shape)),
-                        what=shape_name,
+                        kind=shape_name,
                         name=link.name,
                         smallest=smallest * 1000,
                     ),
@@ -221,9 +221,9 @@ class SeveralShapes(Rule):
                 for extra_shape in shapes[1:]:
                     yield self.report(
                         phrase(
-                            "<{tag}> is not the first shape in a <geometry> of link '{attributes}', and is ignored",
+                            "<{tag}> is not the first shape in a <geometry> of link '{link}', and is ignored",
                             tag=extra_shape.tag,
-                            attributes=link.attributes.get("name", ""),
+                            link=link.attributes.get("name", ""),
                         ),
                         extra_shape,
                         notes=[

@@ -91,8 +91,8 @@ class MissingInertial(Rule):
                 [
                     Note(
                         phrase(
-                            "the links that are fixed to it do not have one, either: {rest}",
-                            rest=quoted_names(fixed_links),
+                            "the links that are fixed to it do not have one, either: {links}",
+                            links=quoted_names(fixed_links),
                         )
                     )
                 ]
@@ -101,7 +101,7 @@ class MissingInertial(Rule):
             )
             notes.insert(0, Note(phrase("joint '{name}' moves it", name=body.joint.name), _span(body.joint.element)))
             yield self.report(
-                phrase("moving link '{name}' has no <inertial>, although {why}", name=links[0].name, why=reason),
+                phrase("moving link '{name}' has no <inertial>, although {reason}", name=links[0].name, reason=reason),
                 element,
                 "name",
                 notes=notes,

@@ -96,9 +96,9 @@ class DensityTooHigh(Rule):
                 )
                 yield self.report(
                     phrase(
-                        "link '{name}' would have a density of {thousands} kg/m3",
+                        "link '{name}' would have a density of {density} kg/m3",
                         name=link.name,
-                        thousands=_grouped_digits(inertial.mass / volume),
+                        density=_grouped_digits(inertial.mass / volume),
                     ),
                     child_or_inertial(inertial, "mass"),
                     "value",
@@ -400,9 +400,9 @@ class InertiaTooSmall(Rule):
             ):
                 yield self.report(
                     phrase(
-                        "the inertia of link '{name}' is {thousands} times smaller than that of a solid of its size",
+                        "the inertia of link '{name}' is {factor} times smaller than that of a solid of its size",
                         name=link.name,
-                        thousands=_grouped_digits(uniform_moment / largest),
+                        factor=_grouped_digits(uniform_moment / largest),
                     ),
                     child_or_inertial(inertial, "inertia"),
                     notes=[

@@ -110,7 +110,7 @@ class NonPositiveMoment(_TensorRule):
     def finding(self, name: str, inertial: Inertial, flaw: Flaw) -> Finding:
         problem = phrase("zero") if flaw.amount == 0 else phrase("negative: {amount:g}", amount=flaw.amount)
         return self.report(
-            phrase("'{attribute}' of link '{name}' is {what}", attribute=flaw.attribute, name=name, what=problem),
+            phrase("'{attribute}' of link '{name}' is {problem}", attribute=flaw.attribute, name=name, problem=problem),
             child_or_inertial(inertial, "inertia"),
             flaw.attribute,
             hint=phrase("run `linkwright inertia` to compute ixx, iyy and izz, which must be positive, in kg m2"),

@@ -254,9 +254,9 @@ class AxisTilted(Rule):
             exact_axis = " ".join(plain(float(round(part)) + 0.0) for part in _snap_to_axis(direction, main_index))
             yield self.report(
                 phrase(
-                    "the axis of joint '{name}' is almost {straight}: '{xyz}'",
+                    "the axis of joint '{name}' is almost {axis}: '{xyz}'",
                     name=joint.name,
-                    straight=exact_axis,
+                    axis=exact_axis,
                     xyz=axis.attributes["xyz"].strip(),
                 ),
                 axis,
@@ -282,7 +282,7 @@ class JointNotPublished(Rule):
 
     ## Use instead
 
-    Leave the joint out of the description, and let the node that knows the pose (odometry, localisation, simulator)
+    Leave the joint out of the description, and let the node that knows the pose (odometry, localization, simulator)
     broadcast the transform. A planar motion can also be built from two prismatic joints and a continuous one.
     """
 

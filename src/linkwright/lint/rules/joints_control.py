@@ -77,19 +77,19 @@ class SoftLimitsOutside(Rule):
         is_lower = end == "lower"
         return self.report(
             phrase(
-                "'{name}' of joint '{joint_name}' is {side} its limit: {soft}, but '{end}' is {limit}",
+                "'{name}' of joint '{joint_name}' is {comparison} its limit: {soft}, but '{bound}' is {limit}",
                 name=name,
                 joint_name=joint.name,
-                side=phrase("below") if is_lower else phrase("above"),
+                comparison=phrase("below") if is_lower else phrase("above"),
                 soft=format_number(soft_limit),
-                end=end,
+                bound=end,
                 limit=format_number(limit),
             ),
             safety,
             name,
             hint=phrase(
-                "write a value {side} than {limit}, so that the soft limit acts before the limit",
-                side=phrase("more") if is_lower else phrase("less"),
+                "write a value {comparison} than {limit}, so that the soft limit acts before the limit",
+                comparison=phrase("more") if is_lower else phrase("less"),
                 limit=format_number(limit),
             ),
         )
@@ -319,11 +319,11 @@ class CalibrationOutside(Rule):
                 if position is not None and not lower - _TOLERANCE <= position <= upper + _TOLERANCE:
                     yield self.report(
                         phrase(
-                            "'{name}' of joint '{joint_name}' is outside its limits: {place}, but the range is {lower} "
-                            "to {upper}",
+                            "'{name}' of joint '{joint_name}' is outside its limits: {position}, but the range is "
+                            "{lower} to {upper}",
                             name=name,
                             joint_name=joint.name,
-                            place=format_number(position),
+                            position=format_number(position),
                             lower=format_number(lower),
                             upper=format_number(upper),
                         ),

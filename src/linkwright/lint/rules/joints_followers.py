@@ -188,20 +188,20 @@ class MimicBeyondLimits(Rule):
                 continue
             yield self.report(
                 phrase(
-                    "joint '{joint_name}' mimics '{name}' from {least} to {most}, but has the limits "
+                    "joint '{joint_name}' mimics '{name}' from {reach_lower} to {reach_upper}, but has the limits "
                     "{lower} to {upper}",
                     name=leader.name,
                     joint_name=joint.name,
-                    least=format_number(positions[0]),
-                    most=format_number(positions[1]),
+                    reach_lower=format_number(positions[0]),
+                    reach_upper=format_number(positions[1]),
                     lower=format_number(follower_range[0]),
                     upper=format_number(follower_range[1]),
                 ),
                 mimic,
                 hint=phrase(
-                    'write lower="{ends}" upper="{other_ends}" to cover that range',
-                    ends=format_number(positions[0]),
-                    other_ends=format_number(positions[1]),
+                    'write lower="{lower}" upper="{upper}" to cover that range',
+                    lower=format_number(positions[0]),
+                    upper=format_number(positions[1]),
                 ),
                 notes=_definition_note(leader),
             )

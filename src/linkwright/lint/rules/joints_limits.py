@@ -63,17 +63,17 @@ class LimitInverted(Rule):
             complete_edits = [edit for edit in edits if edit is not None]
             yield self.report(
                 phrase(
-                    "'lower' in <limit> of joint '{name}' is above 'upper': {ends} > {other_ends}",
+                    "'lower' in <limit> of joint '{name}' is above 'upper': {lower} > {upper}",
                     name=joint.name,
-                    ends=format_number(range_bounds[0]),
-                    other_ends=format_number(range_bounds[1]),
+                    lower=format_number(range_bounds[0]),
+                    upper=format_number(range_bounds[1]),
                 ),
                 limit,
                 "lower" if "lower" in limit.attributes else "upper",
                 hint=phrase(
-                    'write lower="{ends}" upper="{other_ends}"',
-                    ends=format_number(range_bounds[1]),
-                    other_ends=format_number(range_bounds[0]),
+                    'write lower="{lower}" upper="{upper}"',
+                    lower=format_number(range_bounds[1]),
+                    upper=format_number(range_bounds[0]),
                 ),
                 fix=Fix(tuple(complete_edits), safe=False) if len(complete_edits) == 2 else None,
             )
@@ -113,10 +113,10 @@ class LimitEmpty(Rule):
             if range_bounds is not None and has_bounds and range_bounds[0] == range_bounds[1]:
                 yield self.report(
                     phrase(
-                        "{type} joint '{name}' cannot move: 'lower' and 'upper' are both {ends}",
+                        "{type} joint '{name}' cannot move: 'lower' and 'upper' are both {limit}",
                         type=joint.type,
                         name=joint.name,
-                        ends=format_number(range_bounds[0]),
+                        limit=format_number(range_bounds[0]),
                     ),
                     limit,
                     "lower" if "lower" in limit.attributes else "upper",
@@ -265,10 +265,10 @@ class LimitOnContinuous(Rule):
                 continue  # a full turn covers all positions
             yield self.report(
                 phrase(
-                    "continuous joint '{name}' has limits from {ends} to {other_ends}, which nothing enforces",
+                    "continuous joint '{name}' has limits from {lower} to {upper}, which nothing enforces",
                     name=joint.name,
-                    ends=format_number(range_bounds[0]),
-                    other_ends=format_number(range_bounds[1]),
+                    lower=format_number(range_bounds[0]),
+                    upper=format_number(range_bounds[1]),
                 ),
                 limit,
                 "lower" if "lower" in limit.attributes else "upper",
@@ -348,10 +348,10 @@ class ZeroOutsideLimits(Rule):
             ):
                 yield self.report(
                     phrase(
-                        "joint '{name}' cannot be at 0: its range is {ends} to {other_ends}",
+                        "joint '{name}' cannot be at 0: its range is {lower} to {upper}",
                         name=joint.name,
-                        ends=format_number(range_bounds[0]),
-                        other_ends=format_number(range_bounds[1]),
+                        lower=format_number(range_bounds[0]),
+                        upper=format_number(range_bounds[1]),
                     ),
                     limit,
                     "lower" if range_bounds[0] > 0 else "upper",

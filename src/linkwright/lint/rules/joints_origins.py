@@ -152,9 +152,9 @@ class AngleRounded(Rule):
                 edit = value_edit(origin, "rpy", suggestion)
                 yield self.report(
                     phrase(
-                        "'rpy' in <origin> of {owner} is a rounded fraction of pi: '{written}'",
+                        "'rpy' in <origin> of {owner} is a rounded fraction of pi: '{value}'",
                         owner=owner,
-                        written=" ".join(texts),
+                        value=" ".join(texts),
                     ),
                     origin,
                     "rpy",

@@ -101,10 +101,10 @@ class LimitPracticallyUnbounded(Rule):
             if range_bounds is not None and range_bounds[0] <= -UNBOUNDED and range_bounds[1] >= UNBOUNDED:
                 yield self.report(
                     phrase(
-                        "revolute joint '{name}' turns from {ends} to {other_ends} rad",
+                        "revolute joint '{name}' turns from {lower} to {upper} rad",
                         name=joint.name,
-                        ends=format_number(range_bounds[0]),
-                        other_ends=format_number(range_bounds[1]),
+                        lower=format_number(range_bounds[0]),
+                        upper=format_number(range_bounds[1]),
                     ),
                     limit,
                     "lower",
@@ -155,10 +155,10 @@ class LimitInMillimetres(Rule):
                 if position is not None and max_position < abs(position) <= 10 * UNBOUNDED:
                     yield self.report(
                         phrase(
-                            "'{name}' in <limit> of prismatic joint '{joint_name}' is {way} m",
+                            "'{name}' in <limit> of prismatic joint '{joint_name}' is {distance} m",
                             name=name,
                             joint_name=joint.name,
-                            way=format_number(position),
+                            distance=format_number(position),
                         ),
                         limit,
                         name,

@@ -275,7 +275,10 @@ def _intended_package(name: str, package: PackageContext, subject: Subject) -> s
 
 
 def _is_typo(name: str, similar_name: str) -> bool:
-    """Return whether two names of at least five letters are so similar that one is probably misspelt."""
+    """Return whether one of two similar names is probably misspelt.
+
+    Names with fewer than five letters are never considered similar.
+    """
     if abs(len(name) - len(similar_name)) > 2 or min(len(name), len(similar_name)) < 5:
         return False
     from difflib import SequenceMatcher

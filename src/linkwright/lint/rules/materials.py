@@ -98,7 +98,7 @@ class RedefinedMaterial(Rule):
                 "name",
                 notes=[
                     Note(
-                        phrase("the first definition, '{look}', is used", look=_appearance_text(first_definition)),
+                        phrase("the first definition, '{colour}', is used", colour=_appearance_text(first_definition)),
                         first_definition.element.span(),
                     )
                 ],
@@ -189,8 +189,8 @@ class EmptyReference(Rule):
                 if element.first("color") is None and element.first("texture") is None:
                     yield self.report(
                         phrase(
-                            "a material of link '{attributes}' has neither a name nor a colour",
-                            attributes=link.attributes.get("name", ""),
+                            "a material of link '{link}' has neither a name nor a colour",
+                            link=link.attributes.get("name", ""),
                         ),
                         element,
                         "name",

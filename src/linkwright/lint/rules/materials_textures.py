@@ -112,8 +112,8 @@ class TextureFormat(Rule):
             if suffix.lower() not in _IMAGE_SUFFIXES:
                 yield self.report(
                     phrase(
-                        "the texture '{rpartition}' is not in an image format that RViz reads",
-                        rpartition=uri.rpartition("/")[2],
+                        "the texture '{file}' is not in an image format that RViz reads",
+                        file=uri.rpartition("/")[2],
                     ),
                     element,
                     "filename",

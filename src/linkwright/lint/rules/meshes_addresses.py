@@ -173,9 +173,11 @@ class MachineSpecificPath(Rule):
                 corrected = f"package://{installed_match[1]}" if installed_match else _as_package_uri(path)
                 corrected = corrected or _in_known_package(subject, path)
                 message = (
-                    phrase("the mesh URI contains the folder of one ROS distribution, '{home}'", home=machine_folder[1])
+                    phrase(
+                        "the mesh URI contains the folder of one ROS distribution, '{folder}'", folder=machine_folder[1]
+                    )
                     if installed_match
-                    else phrase("the mesh URI contains a folder of one computer, '{home}'", home=machine_folder[1])
+                    else phrase("the mesh URI contains a folder of one computer, '{folder}'", folder=machine_folder[1])
                 )
                 yield self.report(
                     message,

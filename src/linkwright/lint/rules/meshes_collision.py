@@ -45,10 +45,10 @@ class HeavyCollision(Rule):
                 reported_paths.add(path)
                 yield self.report(
                     phrase(
-                        "the collision mesh '{file_name}' of link '{name}' has {thousands} triangles",
+                        "the collision mesh '{file_name}' of link '{name}' has {count} triangles",
                         file_name=file_name(use),
                         name=use.link.name,
-                        thousands=_grouped_digits(count),
+                        count=_grouped_digits(count),
                     ),
                     use.element,
                     "filename",
@@ -91,10 +91,10 @@ class VisualAsCollision(Rule):
                 yield self.report(
                     phrase(
                         "the collision of link '{name}' uses the mesh of its visual, '{file_name}', with"
-                        " {thousands} triangles",
+                        " {count} triangles",
                         name=use.link.name,
                         file_name=file_name(use),
-                        thousands=_grouped_digits(mesh.count),
+                        count=_grouped_digits(mesh.count),
                     ),
                     use.element,
                     "filename",

@@ -29,7 +29,7 @@ class BaseLinkMissing(Rule):
 
     ## Why
 
-    According to REP 105, the frame that is attached to a mobile robot is called `base_link`. Navigation, localisation
+    According to REP 105, the frame that is attached to a mobile robot is called `base_link`. Navigation, localization
     and teleoperation expect this name.
 
     ## Example
@@ -224,7 +224,7 @@ class FixedFrameInRobot(Rule):
 
     ## Why
 
-    REP 105 gives these names to frames that localisation and odometry publish. A frame has only one parent. If both the
+    REP 105 gives these names to frames that localization and odometry publish. A frame has only one parent. If both the
     description and a node publish the frame, its transform jumps between the two. A name from an argument or a property
     is the choice of the caller, and is not reported.
 
@@ -248,14 +248,14 @@ class FixedFrameInRobot(Rule):
             frame = link.name.rpartition("/")[2]
             if frame in ("map", "odom") and link.element is not None and frame in source_value(link.element, "name"):
                 message = phrase(
-                    "'{name}' is a frame that localisation publishes (REP 105), not a link",
+                    "'{name}' is a frame that localization publishes (REP 105), not a link",
                     name=link.name,
                 )
                 yield self.report(
                     message,
                     link.element,
                     "name",
-                    hint=phrase("remove the link, because localisation and odometry publish this frame"),
+                    hint=phrase("remove the link, because localization and odometry publish this frame"),
                 )
 
 
@@ -427,7 +427,7 @@ class HumanoidFrames(Rule):
         if has_feet and has_hands and missing_frames:
             names_text = ", ".join(f"'{name}'" for name in missing_frames)
             yield self.report(
-                phrase("this humanoid robot lacks frames that REP 120 names: {listed}", listed=names_text),
+                phrase("this humanoid robot lacks frames that REP 120 names: {frames}", frames=names_text),
                 subject.root,
                 "name",
             )

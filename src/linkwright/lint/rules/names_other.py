@@ -80,7 +80,7 @@ class RobotNameUnusual(Rule):
             return
         suggestion = re.sub(r"[^a-z0-9]+", "_", name.lower()).strip("_")
         hint = (
-            phrase("use a name such as '{better}'", better=suggestion)
+            phrase("use a name such as '{suggestion}'", suggestion=suggestion)
             if suggestion
             else phrase("use letters a to z, digits and underscores")
         )

@@ -167,10 +167,10 @@ class NameNotAscii(Rule):
             if non_ascii:
                 characters_text = ", ".join(f"'{character}' (U+{ord(character):04X})" for character in non_ascii)
                 message = phrase(
-                    "the name of the {kind} '{name}' contains non-ASCII letters: {listed}",
+                    "the name of the {kind} '{name}' contains non-ASCII letters: {characters}",
                     kind=term(kind),
                     name=name,
-                    listed=characters_text,
+                    characters=characters_text,
                 )
                 yield self.report(message, element, "name", hint=phrase("use letters a to z, digits and underscores"))
 
@@ -207,10 +207,10 @@ class NameUnusualCharacter(Rule):
             )
             if unusual and "${" not in name and "$(" not in name and not any(sign.isspace() for sign in unusual):
                 message = phrase(
-                    "the name of the {kind} '{name}' contains unusual characters: {strange}",
+                    "the name of the {kind} '{name}' contains unusual characters: {characters}",
                     kind=term(kind),
                     name=name,
-                    strange=" ".join(unusual),
+                    characters=" ".join(unusual),
                 )
                 yield self.report(message, element, "name", hint=phrase("use letters a to z, digits and underscores"))
 
@@ -287,9 +287,9 @@ class NamesDifferInCase(Rule):
             first_name, first_element = first_elements.setdefault((kind, name.casefold()), (name, element))
             if first_name != name:
                 message = phrase(
-                    "the {kind}s '{other}' and '{name}' differ only in upper and lower case",
+                    "the {kind}s '{first_name}' and '{name}' differ only in upper and lower case",
                     kind=term(kind),
-                    other=first_name,
+                    first_name=first_name,
                     name=name,
                 )
                 note = Note(phrase("'{name}' is defined here", name=first_name), first_element.attribute_span("name"))
@@ -325,10 +325,10 @@ class NameSuffixDoubled(Rule):
             match = _REPEATED_SUFFIX.fullmatch(name)
             if match:
                 message = phrase(
-                    "the name of the {kind} '{name}' ends with '{match}' twice",
+                    "the name of the {kind} '{name}' ends with '{suffix}' twice",
                     kind=term(kind),
                     name=name,
-                    match=match[1],
+                    suffix=match[1],
                 )
                 suggestion = name[: -len(match[1]) - 1]
                 yield self.report(message, element, "name", hint=phrase("write '{text}'", text=suggestion))

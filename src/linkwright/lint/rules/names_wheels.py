@@ -229,13 +229,13 @@ class WheelAxis(Rule):
             element = wheel.joint.element.first("axis")
             axis_text = " ".join(f"{value:g}" for value in axis)
             message = phrase(
-                "the wheel '{name}' turns about '{written}', but the axis of its cylinder is '{shown}'",
+                "the wheel '{name}' turns about '{joint_axis}', but the axis of its cylinder is '{cylinder_axis}'",
                 name=wheel.link.name,
-                written=axis_text,
-                shown=cylinder_axis_text,
+                joint_axis=axis_text,
+                cylinder_axis=cylinder_axis_text,
             )
             attribute = "xyz" if element is not None else None
-            hint = phrase('write <axis xyz="{shown}"/>, or turn the cylinder', shown=cylinder_axis_text)
+            hint = phrase('write <axis xyz="{cylinder_axis}"/>, or turn the cylinder', cylinder_axis=cylinder_axis_text)
             yield self.report(message, element if element is not None else wheel.joint.element, attribute, hint=hint)
 
 

@@ -211,7 +211,7 @@ class MaintainerEmail(ManifestRule):
             if not email:
                 if element.tag == "maintainer":
                     yield self.report(
-                        phrase("the maintainer '{who}' has no e-mail address", who=maintainer_name),
+                        phrase("the maintainer '{maintainer}' has no e-mail address", maintainer=maintainer_name),
                         element,
                         hint=phrase('add email="..."'),
                     )
@@ -226,7 +226,7 @@ class ManifestPlaceholder(ManifestRule):
 
     ## Why
 
-    The description, licence and maintainer of a published package are visible to its users. Without a licence, other
+    The description, license and maintainer of a published package are visible to its users. Without a license, other
     users are not allowed to use the package.
 
     ## Example

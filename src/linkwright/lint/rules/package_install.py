@@ -75,7 +75,9 @@ class PatternMatchesNothing(PackageRule):
             folder = item.text.rpartition("/")[0]
             suggested_folder = nearest_folder(package, folder)
             if suggested_folder:
-                hint: Phrase | None = phrase("did you mean the folder '{like}'?", like=suggested_folder)
+                hint: Phrase | None = phrase(
+                    "did you mean the folder '{similar_folder}'?", similar_folder=suggested_folder
+                )
             elif folder and package.has(folder):
                 hint = (
                     phrase("there are other files in '{folder}'", folder=folder)

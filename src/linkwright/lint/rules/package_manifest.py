@@ -103,7 +103,7 @@ class ManifestIncomplete(ManifestRule):
 
     ## Why
 
-    REP 149 requires name, version, description, maintainer and licence. colcon ignores a package without a name, and
+    REP 149 requires name, version, description, maintainer and license. colcon ignores a package without a name, and
     release tools refuse a package without the other elements.
 
     ## Example
@@ -138,9 +138,9 @@ class ManifestIncomplete(ManifestRule):
         if missing_tags:
             tags_text = " and ".join(f"<{tag}>" for tag in missing_tags)
             yield self.report(
-                phrase("package.xml lacks {listed}", listed=tags_text),
+                phrase("package.xml lacks {elements}", elements=tags_text),
                 root,
-                hint=phrase("add {listed}", listed=tags_text),
+                hint=phrase("add {elements}", elements=tags_text),
             )
         for element in root.elements():
             if element.tag not in _NON_EMPTY_ELEMENTS:
@@ -326,7 +326,9 @@ class BuildTypeDiffers(PackageRule):
                 "package.xml has no <build_type>, so it is catkin, but the package has a {file}", file=existing_file
             )
         yield self.report(
-            message, element, hint=phrase("write <build_type>{right}</build_type> in <export>", right=expected_type)
+            message,
+            element,
+            hint=phrase("write <build_type>{build_type}</build_type> in <export>", build_type=expected_type),
         )
 
 

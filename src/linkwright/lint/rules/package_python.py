@@ -139,11 +139,11 @@ class MarkerNotInstalled(PackageRule):
             message = phrase("setup.py does not install the marker file of the package '{name}'", name=package.name)
             has_marker = (package.folder / "resource" / package.name).is_file()
             hint = (
-                phrase("add ('{markers}', ['resource/{name}']) to data_files", markers=_INDEX_FOLDER, name=package.name)
+                phrase("add ('{folder}', ['resource/{name}']) to data_files", folder=_INDEX_FOLDER, name=package.name)
                 if has_marker
                 else phrase(
-                    "create an empty file 'resource/{name}', and add ('{markers}', ['resource/{name}']) to data_files",
-                    markers=_INDEX_FOLDER,
+                    "create an empty file 'resource/{name}', and add ('{folder}', ['resource/{name}']) to data_files",
+                    folder=_INDEX_FOLDER,
                     name=package.name,
                 )
             )
@@ -283,20 +283,20 @@ class SetupCfgDiffers(PackageRule):
         source = package.text("setup.cfg")
         if source is None:
             message = phrase("without a setup.cfg, ros2 run does not find the executables of this package")
-            hint = phrase("write a setup.cfg with install_scripts={wanted} in [install]", wanted=script_folder)
+            hint = phrase("write a setup.cfg with install_scripts={folder} in [install]", folder=script_folder)
             yield self.report(message, span=setup.entry_points[0].span, source=setup.source, hint=hint)
             return
         for match in _SCRIPT_FOLDERS.finditer(source.text):
             if match[2] != script_folder:
                 span = source.span(*match.span(2))
                 message = phrase(
-                    "setup.cfg puts executables into '{match}', where ros2 run does not look", match=match[2]
+                    "setup.cfg puts executables into '{folder}', where ros2 run does not look", folder=match[2]
                 )
                 yield self.report(
                     message,
                     span=span,
                     source=source,
-                    hint=phrase("write {match}={wanted}", match=match[1], wanted=script_folder),
+                    hint=phrase("write {option}={folder}", option=match[1], folder=script_folder),
                 )
 
 

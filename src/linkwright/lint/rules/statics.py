@@ -107,10 +107,11 @@ class WheelsNotLevel(Rule):
                 direction = phrase("above") if gap > 0 else phrase("below")
                 yield self.report(
                     phrase(
-                        "the lowest point of '{name}' is {gap:.3g} mm {where} the ground that '{lowest_name}' touches",
+                        "the lowest point of '{name}' is {distance:.3g} mm {side} the ground that "
+                        "'{lowest_name}' touches",
                         name=contact.link.name,
-                        gap=abs(gap) * 1000,
-                        where=direction,
+                        distance=abs(gap) * 1000,
+                        side=direction,
                         lowest_name=lowest.name,
                     ),
                     contact.link.element,

@@ -51,7 +51,7 @@ class MisspeltAttribute(Rule):
                 continue
             span = attribute_name_span(schema_element.element, attribute)
             yield self.report(
-                phrase("'{attribute}' in {place} is not read", attribute=attribute, place=schema_element),
+                phrase("'{attribute}' in {element} is not read", attribute=attribute, element=schema_element),
                 schema_element.element,
                 span=span,
                 hint=phrase("did you mean {names}?", names=quoted(intended)),
@@ -97,7 +97,7 @@ class UnknownAttribute(Rule):
                 continue
             allowed = ", ".join(f"'{rule.name}'" for rule in schema_element.rule.attributes)
             yield self.report(
-                phrase("'{attribute}' in {place} is not read", attribute=attribute, place=schema_element),
+                phrase("'{attribute}' in {element} is not read", attribute=attribute, element=schema_element),
                 schema_element.element,
                 span=attribute_name_span(schema_element.element, attribute),
                 hint=phrase("use only {known} here", known=allowed)

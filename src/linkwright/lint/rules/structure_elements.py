@@ -1,4 +1,4 @@
-"""Rules about elements that URDF readers ignore because they are misspelt, misplaced or unknown."""
+"""Rules about elements that URDF readers ignore: misspelt, misplaced or unknown ones."""
 
 from __future__ import annotations
 
@@ -57,7 +57,7 @@ class MisspeltElement(Rule):
             if intended is None or child.span() in reported_spans:
                 continue
             yield self.report(
-                phrase("<{tag}> in {place} is not read", tag=child.tag, place=location_phrase(schema_element)),
+                phrase("<{tag}> in {parent} is not read", tag=child.tag, parent=location_phrase(schema_element)),
                 child,
                 hint=phrase("did you mean <{tag}>?", tag=intended),
                 fix=rename_element(child, intended, safe=False) if is_misspelt(child.tag, intended) else None,
@@ -115,9 +115,9 @@ class MisplacedElement(Rule):
                 continue
             parents_text = " or ".join(f"<{tag}>" for tag in _nearest_parents(parent_tags, schema_element))
             yield self.report(
-                phrase("<{tag}> in {place} is not read", tag=child.tag, place=location_phrase(schema_element)),
+                phrase("<{tag}> in {parent} is not read", tag=child.tag, parent=location_phrase(schema_element)),
                 child,
-                hint=phrase("put it directly in {listed}", listed=parents_text),
+                hint=phrase("put it directly in {tags}", tags=parents_text),
             )
 
 
@@ -175,7 +175,7 @@ class UnknownElement(Rule):
             if intended_element(schema_element.rule, child) is None and child.span() not in reported_spans:
                 allowed = ", ".join(f"<{rule.tag}>" for rule in schema_element.rule.children)
                 yield self.report(
-                    phrase("<{tag}> in {place} is not read", tag=child.tag, place=location_phrase(schema_element)),
+                    phrase("<{tag}> in {parent} is not read", tag=child.tag, parent=location_phrase(schema_element)),
                     child,
                     hint=phrase("use only {known} here", known=allowed)
                     if allowed
@@ -219,7 +219,7 @@ class MaterialInCollision(Rule):
             if schema_element.rule.tag == "collision":
                 for material in schema_element.element.elements("material"):
                     yield self.report(
-                        phrase("<material> in {place} is not read", place=schema_element),
+                        phrase("<material> in {parent} is not read", parent=schema_element),
                         material,
                         hint=phrase("write it in the <visual>"),
                         fix=remove_element(material),

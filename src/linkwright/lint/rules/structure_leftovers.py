@@ -51,7 +51,7 @@ class XacroInUrdf(Rule):
                     continue
                 if "${" in value or "$(" in value:
                     yield self.report(
-                        phrase("'{written}' is not evaluated, because this file is plain URDF", written=value),
+                        phrase("'{expression}' is not evaluated, because this file is plain URDF", expression=value),
                         schema_element.element,
                         attribute,
                         hint=phrase(
@@ -106,9 +106,9 @@ class StrayText(Rule):
                     span = child.source.span(start, start + len(child.data.strip().partition("\n")[0]))
                 yield self.report(
                     phrase(
-                        "the text '{text}' in {place} is not read",
+                        "the text '{text}' in {element} is not read",
                         text=text,
-                        place=schema_element if schema_element.owner else "<robot>",
+                        element=schema_element if schema_element.owner else "<robot>",
                     ),
                     schema_element.element,
                     span=span,

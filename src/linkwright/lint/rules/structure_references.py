@@ -280,8 +280,8 @@ class ControlPluginMissing(Rule):
                 missing_tag = "<hardware>" if hardware is None else "<plugin>"
                 yield self.report(
                     phrase(
-                        "<ros2_control> '{attributes}' has no {missing}",
-                        attributes=system.attributes.get("name", ""),
+                        "<ros2_control> '{name}' has no {missing}",
+                        name=system.attributes.get("name", ""),
                         missing=missing_tag,
                     ),
                     plugin or hardware or system,

@@ -166,8 +166,8 @@ class RepeatedElement(Rule):
                 if first_element is not child:
                     yield self.report(
                         phrase(
-                            "{place} has more than one <{tag}>; only the first is read",
-                            place=schema_element,
+                            "{element} has more than one <{tag}>; only the first is read",
+                            element=schema_element,
                             tag=child.tag,
                         ),
                         child,
@@ -206,7 +206,7 @@ class NewerVersion(Rule):
         if robot is not None and robot.version > (1, 0):
             version = ".".join(map(str, robot.version))
             yield self.report(
-                phrase("urdfdom rejects URDF version '{written}' in ROS 2 Jazzy and older", written=version),
+                phrase("urdfdom rejects URDF version '{version}' in ROS 2 Jazzy and older", version=version),
                 subject.root,
                 "version",
                 hint=phrase('write version="1.0" if the file uses nothing newer'),

@@ -220,7 +220,10 @@ class ShadowedProperty(XacroRule):
     def _finding(self, element: Element, span: Span | None, subject: str, outer_property: Definition) -> Diagnostic:
         note = Note(phrase("the outer property is defined here"), outer_property.element.attribute_span("name"))
         return self.report(
-            phrase("{what} hides a property of the same name", what=subject), element, span=span, notes=[note]
+            phrase("{definition} hides a property of the same name", definition=subject),
+            element,
+            span=span,
+            notes=[note],
         )
 
 

@@ -1,1 +1,1 @@
-"""Python files in an editor: the answers of ty and ruff, beside those of Linkwright's own language server."""
+"""Python files in an editor: results of ty and ruff, and of Linkwright's own server."""

@@ -58,7 +58,7 @@ def combined(method: str, answers: Sequence[tuple[str, Any]], text: OpenText, pa
 
 
 def server_of_action(action: Mapping[str, Any]) -> tuple[str, dict[str, Any]] | None:
-    """Return the server of a code action and the server's own action, or None for Linkwright's own server."""
+    """Return the server of a code action with its own action, or None for Linkwright's server."""
     data = action.get(_DATA)
     if not isinstance(data, dict) or _SERVER not in data:
         return None
@@ -72,14 +72,19 @@ def marked_action(server: str, action: Mapping[str, Any]) -> dict[str, Any]:
 
 
 def _actions(server: str, actions: Sequence[Mapping[str, Any]]) -> list[Mapping[str, Any]]:
-    """Return the code actions of a server; those of other servers are marked, and their commands left out."""
+    """Return the code actions of a server in the form for the editor.
+
+    The actions of other servers are marked with the server's name, and their commands are omitted.
+    """
     if server == OWN:
         return list(actions)
     return [marked_action(server, action) for action in actions if action.get("command") is None]
 
 
 def _completions(found: Sequence[Any], text: OpenText, parameters: Mapping[str, Any]) -> Any:
-    """Return the items of all servers, or of the first that replaces more or less than the word at the cursor.
+    """Return the completions of all servers, or of the first with a range of its own.
+
+    Such a server replaces more or less than the word at the cursor.
 
     Editors take the range of the first item for that of all items.
     """
@@ -87,34 +92,36 @@ def _completions(found: Sequence[Any], text: OpenText, parameters: Mapping[str, 
         return found[0] if found else None
     lists = [answer if isinstance(answer, dict) else {"isIncomplete": False, "items": answer} for answer in found]
     first, *others = lists
-    place = _edited_range(first)
-    if place is not None and text.written(place) != text.word_before(parameters["position"]):
+    edited_range = _edited_range(first)
+    if edited_range is not None and text.written(edited_range) != text.word_before(parameters["position"]):
         return first
     names = {_plain(item["label"]) for item in first["items"]}
     items = list(map(_with_defaults(first), first["items"]))
-    for each in others:
-        items += [item for item in map(_with_defaults(each), each["items"]) if _plain(item["label"]) not in names]
-    return {"isIncomplete": any(each.get("isIncomplete") for each in lists), "items": items}
+    for other_list in others:
+        items += [
+            item for item in map(_with_defaults(other_list), other_list["items"]) if _plain(item["label"]) not in names
+        ]
+    return {"isIncomplete": any(other_list.get("isIncomplete") for other_list in lists), "items": items}
 
 
 def _edited_range(answer: Mapping[str, Any]) -> Mapping[str, Any] | None:
     """Return the range that the items of a list replace, or None for the word at the cursor."""
-    place = answer.get("itemDefaults", {}).get("editRange") or answer["items"][0].get("textEdit")
-    if place is None:
+    edit_range = answer.get("itemDefaults", {}).get("editRange") or answer["items"][0].get("textEdit")
+    if edit_range is None:
         return None
-    found: Mapping[str, Any] = place.get("range") or place.get("insert") or place
+    found: Mapping[str, Any] = edit_range.get("range") or edit_range.get("insert") or edit_range
     return found
 
 
 def _with_defaults(answer: Mapping[str, Any]) -> Callable[[Mapping[str, Any]], dict[str, Any]]:
     """Return a function that adds the defaults of a list to an item."""
     defaults = dict(answer.get("itemDefaults", {}))
-    place = defaults.pop("editRange", None)
+    edit_range = defaults.pop("editRange", None)
 
     def completed(item: Mapping[str, Any]) -> dict[str, Any]:
         result = {**defaults, **item}
-        if place is not None and "textEdit" not in item:
-            range_ = {"range": place} if "start" in place else place
+        if edit_range is not None and "textEdit" not in item:
+            range_ = {"range": edit_range} if "start" in edit_range else edit_range
             result["textEdit"] = {**range_, "newText": item.get("textEditText", item["label"])}
         return result
 

@@ -1,4 +1,4 @@
-"""The Python files that an editor has open: their texts, and the findings of each server about them."""
+"""The Python files that an editor has open, with the findings of each server."""
 
 from __future__ import annotations
 
@@ -52,15 +52,15 @@ class OpenText:
         findings = [finding for own in self._findings.values() for finding in own]
         places = [offsets(self._positions, finding["range"]) for finding in findings]
         for change in changes:
-            before, place = self.text, change.get("range")
-            if place is None:
+            before, changed_range = self.text, change.get("range")
+            if changed_range is None:
                 text = change["text"]
             else:
-                start, end = offsets(self._positions, place)
+                start, end = offsets(self._positions, changed_range)
                 text = before[:start] + change["text"] + before[end:]
             self._positions = TextPositions(text, self._encoding)
             moved = _Replacement(before, text).moved
-            places = [moved(*each) for each in places]
+            places = [moved(*offset_pair) for offset_pair in places]
         self.version = version
         for finding, (start, end) in zip(findings, places, strict=True):
             finding["range"] = as_range(self._positions, start, end)
@@ -85,9 +85,9 @@ class OpenText:
             start -= 1
         return self.text[start:offset]
 
-    def written(self, place: Mapping[str, Any]) -> str:
+    def written(self, range_: Mapping[str, Any]) -> str:
         """Return the text of a range."""
-        start, end = offsets(self._positions, place)
+        start, end = offsets(self._positions, range_)
         return self.text[start:end]
 
 
@@ -96,14 +96,17 @@ class _Replacement:
 
     def __init__(self, before: str, after: str) -> None:
         shortest = min(len(before), len(after))
-        start = next((at for at in range(shortest) if before[at] != after[at]), shortest)
+        start = next((index for index in range(shortest) if before[index] != after[index]), shortest)
         rest = shortest - start
-        kept = next((at for at in range(rest) if before[-1 - at] != after[-1 - at]), rest)
-        self._start, self._end = start, len(before) - kept
+        suffix_length = next((index for index in range(rest) if before[-1 - index] != after[-1 - index]), rest)
+        self._start, self._end = start, len(before) - suffix_length
         self._growth = len(after) - len(before)
 
     def moved(self, start: int, end: int) -> tuple[int, int]:
-        """Return the place of a range in the new text. Text that is inserted at one of its ends stays outside."""
+        """Return the position of a range in the new text.
+
+        Text that is inserted at one of its ends remains outside the range.
+        """
         first = start if start < self._start else self._after(start)
         last = end if end <= self._start else self._after(end)
         return first, max(first, last)
@@ -112,16 +115,16 @@ class _Replacement:
         return offset + self._growth if offset >= self._end else self._start
 
 
-def offsets(positions: TextPositions, place: Mapping[str, Any]) -> tuple[int, int]:
+def offsets(positions: TextPositions, range_: Mapping[str, Any]) -> tuple[int, int]:
     """Return the character offsets of a range of the protocol."""
-    return positions.offset(_position(place["start"])), positions.offset(_position(place["end"]))
+    return positions.offset(_position(range_["start"])), positions.offset(_position(range_["end"]))
 
 
 def as_range(positions: TextPositions, start: int, end: int) -> dict[str, Any]:
     """Return the range of the protocol between two character offsets."""
     places = {"start": positions.position(start), "end": positions.position(end)}
-    return {name: {"line": place.line, "character": place.character} for name, place in places.items()}
+    return {name: {"line": position.line, "character": position.character} for name, position in places.items()}
 
 
-def _position(place: Mapping[str, int]) -> types.Position:
-    return types.Position(place["line"], place["character"])
+def _position(position: Mapping[str, int]) -> types.Position:
+    return types.Position(position["line"], position["character"])

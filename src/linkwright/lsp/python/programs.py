@@ -31,7 +31,9 @@ class Program(NamedTuple):
 
 
 def installed_programs() -> list[Program]:
-    """Return the installed language servers: ``ty`` for types and completion, ``ruff`` for rules and the format.
+    """Return the installed language servers for Python files.
+
+    These are ``ty`` for types and completion, and ``ruff`` for rules and formatting.
 
     Programs beside the interpreter precede those on the search path.
     """
@@ -40,14 +42,17 @@ def installed_programs() -> list[Program]:
 
 
 def _path_of(name: str) -> Path | None:
-    """Return the path of a program, or None. A program in the current folder is not used, as it may be a stranger's."""
+    """Return the path of a program, or None if it is not installed.
+
+    A program in the current folder is not used, because it may be malicious.
+    """
     folders = [Path(sys.executable).parent, *map(Path, os.get_exec_path())]
     candidates = (folder / (f"{name}.exe" if os.name == "nt" else name) for folder in folders if folder.is_absolute())
-    return next((each for each in candidates if each.is_file() and os.access(each, os.X_OK)), None)
+    return next((candidate for candidate in candidates if candidate.is_file() and os.access(candidate, os.X_OK)), None)
 
 
 def program_environment(folders: Sequence[Path], workspace_stubs: Path) -> dict[str, str]:
-    """Return the environment in which a language server finds the modules that a user's programs can import.
+    """Return the environment in which a language server finds the user's modules.
 
     These are the Python packages of the workspace and, unless ROS 2 is installed, the stand-ins and messages.
 
@@ -56,7 +61,7 @@ def program_environment(folders: Sequence[Path], workspace_stubs: Path) -> dict[
         workspace_stubs: the folder with the type stubs of the messages of the workspace.
     """
     environment = process.environment(workspace_environment(PackageFinder(start=list(folders)), os.environ))
-    entries = [each for each in environment[_PYTHON_PATH].split(os.pathsep) if each != process.standin_path()]
+    entries = [entry for entry in environment[_PYTHON_PATH].split(os.pathsep) if entry != process.standin_path()]
     interpreter = process.python_command(())[0]
     is_own = interpreter == sys.executable
     if not _has_ros(entries):

@@ -71,7 +71,9 @@ class _Question:
 
 
 class Router:
-    """Forwards the messages of an editor to Linkwright's own server, and those about Python files to others, too.
+    """Forwards the messages of an editor to the language servers.
+
+    Linkwright's own server receives all of them, and the other servers those about Python files.
 
     The other servers start when the editor opens the first Python file. All work is done by one thread, in the order
     of `post`.
@@ -189,7 +191,7 @@ class Router:
             self._editor.send(_publication({"uri": text.uri, "diagnostics": text.findings_of(OWN)}))
 
     def _ask(self, message: Message, text: OpenText) -> None:
-        """Send a request to all servers, and remember to combine their answers."""
+        """Send a request to all servers, and record that their answers must be combined."""
         others = self._servers if self._held is None else self._programs
         question = _Question(message["method"], message["params"], text, awaited=[OWN, *others])
         self._questions[message["id"]] = question
@@ -284,7 +286,7 @@ class Router:
             self._editor.send({"jsonrpc": "2.0", "id": identifier, "result": result})
 
     def _answer_late(self) -> None:
-        """Answer the requests whose time is over, without the servers that are late."""
+        """Answer the requests that have timed out, without the answers of the late servers."""
         now = time.monotonic()
         for identifier, question in list(self._questions.items()):
             if question.deadline is not None and question.deadline <= now:
@@ -293,7 +295,7 @@ class Router:
     # --- the other servers ------------------------------------------------------------------------------------
 
     def _prepare(self) -> None:
-        """Search the workspace for modules and messages, and start the servers then."""
+        """Search the workspace for modules and messages, and then start the servers."""
         self._held = []
         folders = _folders(self._initialize)
 
@@ -314,7 +316,7 @@ class Router:
             self._send(name, message)
 
     def _start(self, program: Program) -> None:
-        """Start a server, and open the texts there; after too many starts, tell the user."""
+        """Start a server, and open the texts there, or notify the user after too many starts."""
         assert self._environment is not None, "it was prepared"
         self._starts[program.name] = starts = self._starts.get(program.name, 0) + 1
         if starts <= _MAX_STARTS:
@@ -328,9 +330,11 @@ class Router:
                 for text in self._texts.values():
                     server.send(_opening(text))
                 return
-        for identifier in [each for each, question in self._questions.items() if program.name in question.awaited]:
+        for identifier in [
+            pending for pending, question in self._questions.items() if program.name in question.awaited
+        ]:
             self._answered(program.name, {"id": identifier, "result": None})
-        message = phrase("'{program}' does not run, so Python files are edited without it", program=program.name)
+        message = phrase("'{program}' cannot be run, so Python files are edited without it", program=program.name)
         shown = {"type": _WARNING, "message": localized(message)}
         self._editor.send({"jsonrpc": "2.0", "method": "window/showMessage", "params": shown})
 
@@ -338,13 +342,13 @@ class Router:
         self._events.put(partial(self._on_server, server, message))
 
     def _ended(self, server: PythonServer) -> None:
-        """Complete what a server that has ended owes, and start it again."""
+        """Answer the open requests of a server that has ended, and start it again."""
         del self._servers[server.name]
         server.close()
         for identifier, question in list(self._questions.items()):
             if server.name in question.awaited:
                 self._answered(server.name, {"id": identifier, "result": None})
-        for identifier in [each for each, name in self._resolving.items() if name == server.name]:
+        for identifier in [pending for pending, name in self._resolving.items() if name == server.name]:
             del self._resolving[identifier]
             self._editor.send({"jsonrpc": "2.0", "id": identifier, "result": None})
         self._start(self._programs[server.name])
@@ -407,7 +411,9 @@ def _for_server(message: Message, name: str) -> Message:
     if message["method"] != CODE_ACTION:
         return message
     context = message["params"]["context"]
-    findings = [each for each in context["diagnostics"] if str(each.get("source", OWN)).lower() == name]
+    findings = [
+        diagnostic for diagnostic in context["diagnostics"] if str(diagnostic.get("source", OWN)).lower() == name
+    ]
     return {**message, "params": {**message["params"], "context": {**context, "diagnostics": findings}}}
 
 
@@ -416,7 +422,7 @@ def _resolved(name: str, message: Message) -> Message:
 
 
 def _with_python(message: Message) -> Message:
-    """Return the response to ``initialize`` with what the servers for Python files add."""
+    """Return the response to ``initialize`` with the features of the servers for Python files."""
     capabilities = dict(message["result"]["capabilities"])
     completion, actions = capabilities["completionProvider"], capabilities["codeActionProvider"]
     characters, kinds = completion["triggerCharacters"], actions["codeActionKinds"]
@@ -426,7 +432,10 @@ def _with_python(message: Message) -> Message:
 
 
 def _initialization(parameters: Message, encoding: str) -> Message:
-    """Return the parameters of ``initialize`` for a server: those of the editor, as far as the router supports them."""
+    """Return the parameters of ``initialize`` for a server.
+
+    They are the editor's parameters, without those that the router does not support.
+    """
     capabilities = parameters.get("capabilities", {})
     document, workspace = capabilities.get("textDocument", {}), capabilities.get("workspace", {})
     folders = parameters.get("workspaceFolders") or [

@@ -1,4 +1,4 @@
-"""The connections of the router: streams of messages, and language servers in processes of their own."""
+"""The connections of the router: streams of messages, and processes of language servers."""
 
 from __future__ import annotations
 

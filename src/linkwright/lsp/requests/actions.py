@@ -12,7 +12,7 @@ from pygls.exceptions import JsonRpcException
 from linkwright.diagnostics import LinkwrightError, phrase
 from linkwright.diagnostics.translation import localized
 from linkwright.language.extraction import selected_value
-from linkwright.language.includes import real
+from linkwright.language.includes import real_path
 from linkwright.language.refactoring import Action, Offer, Refactoring, offers_at, refactor
 from linkwright.lsp.edits import document_edits, new_file_edit
 from linkwright.lsp.positions import TextPositions
@@ -83,7 +83,7 @@ async def _refactoring_edit(
     project = server.project
     assert project is not None
     await server.when_indexed()
-    result = await server.run_in_check_thread(lambda: refactor(project, texts, action, real(path), start, end))
+    result = await server.run_in_check_thread(lambda: refactor(project, texts, action, real_path(path), start, end))
     if server.texts() != texts:
         raise _modified()
     return _workspace_edit(server, result)
@@ -154,8 +154,8 @@ def add_requests(server: LinkwrightServer) -> None:
         texts = server.texts()
         actions: list[types.CodeAction] = []
         if _may_be_requested(_KINDS[:2], only):
-            actions += fixes(server, project.fixable(real(path), texts), params, positions)
-            actions += suppressions(server, project.findings(real(path), texts), params, path, positions)
+            actions += fixes(server, project.fixable(real_path(path), texts), params, positions)
+            actions += suppressions(server, project.findings(real_path(path), texts), params, path, positions)
         if _may_be_requested(_KINDS[2:], only):
             start, end = positions.offset(params.range.start), positions.offset(params.range.end)
             names = await server.defined_names(path)

@@ -17,7 +17,7 @@ from pygls.exceptions import JsonRpcException
 from linkwright.diagnostics import LinkwrightError
 from linkwright.diagnostics.translation import localized
 from linkwright.language.expanded import ExpandedText, expanded_text
-from linkwright.language.includes import real
+from linkwright.language.includes import real_path
 from linkwright.language.workspace import Workspace
 from linkwright.lint.targets import DESCRIPTIONS
 from linkwright.lsp.positions import UTF_16, TextPositions
@@ -45,7 +45,7 @@ def description_of(uri: str) -> tuple[Path, dict[str, str]] | None:
     if entry is None:
         return None
     pairs = (unquote(pair).partition(":=") for pair in parts.query.split("&") if pair)
-    return real(entry), {name: value for name, _, value in pairs}
+    return real_path(entry), {name: value for name, _, value in pairs}
 
 
 def _expansions(
@@ -134,4 +134,6 @@ def add_requests(server: LinkwrightServer) -> None:
             return None
         await server.when_indexed()
         offset, encoding = positions.offset(params.position), server.workspace.position_encoding or UTF_16
-        return await server.run_in_check_thread(lambda: implementations(project, texts, real(path), offset, encoding))
+        return await server.run_in_check_thread(
+            lambda: implementations(project, texts, real_path(path), offset, encoding)
+        )

@@ -9,7 +9,7 @@ from lsprotocol import types
 
 from linkwright.diagnostics import Diagnostic, Span, phrase
 from linkwright.diagnostics.translation import localized
-from linkwright.language.includes import real
+from linkwright.language.includes import real_path
 from linkwright.language.proof import Edit
 from linkwright.language.suppressing import suppression
 from linkwright.lint.finding import Finding
@@ -68,7 +68,7 @@ def suppressions(
     for finding in findings:
         if finding.span is not None and _is_on_lines(finding.span, params.range, positions):
             offset = positions.offset(positions.range_of(finding.span).start)
-            edit = suppression(positions.text, real(path), finding.code, offset)
+            edit = suppression(positions.text, real_path(path), finding.code, offset)
             if edit is not None:
                 edits.setdefault(edit, (finding.code, []))[1].extend(_shown_diagnostics(params, finding))
     for edit, (code, shown) in edits.items():
@@ -93,7 +93,7 @@ def _edits(fixes: Iterable[Fix]) -> list[Edit]:
     edits: list[Edit] = []
     for fix in fixes:
         new = [
-            Edit(real(replacement.source_file), replacement.start, replacement.end, replacement.replacement)
+            Edit(real_path(replacement.source_file), replacement.start, replacement.end, replacement.replacement)
             for replacement in fix.edits
         ]
         if all(_fits(edit, edits) for edit in new):

@@ -11,7 +11,7 @@ from lsprotocol import types
 from linkwright.diagnostics import counted, phrase
 from linkwright.diagnostics.translation import localized
 from linkwright.language.definitions import NameDefinition, NameKind
-from linkwright.language.includes import real
+from linkwright.language.includes import real_path
 from linkwright.language.occurrences import occurrences_in
 from linkwright.language.outline import Outline
 from linkwright.language.parameters import block_parameters
@@ -60,7 +60,7 @@ def block_hints(
 def lenses(server: LinkwrightServer, path: Path, positions: TextPositions) -> list[types.CodeLens]:
     """Return the code lenses of a file: the uses of its names, and its robot in the page."""
     code_lenses = []
-    for name in occurrences_in(positions.text, real(path)):
+    for name in occurrences_in(positions.text, real_path(path)):
         if name.is_definition and name.kind in _COUNTED_KINDS:
             range_ = positions.range(name.start, name.end)
             code_lenses.append(types.CodeLens(range_, data={"uri": server.uri_of(path), "offset": name.start}))
@@ -81,7 +81,7 @@ async def _with_use_count(server: LinkwrightServer, lens: types.CodeLens) -> typ
     if positions is None or project is None:
         return lens
     await server.when_indexed()
-    texts, file = server.texts(), real(path)
+    texts, file = server.texts(), real_path(path)
     name = next((name for name in occurrences_in(positions.text, file) if name.start == data.get("offset")), None)
     uses = [] if name is None else await server.run_in_check_thread(lambda: references(project, texts, name))
     locations = []

@@ -16,7 +16,7 @@ from linkwright.language.format import Document, NotYetKnownError, Target
 from linkwright.language.formats import format_of
 from linkwright.language.hover import definitions_at
 from linkwright.language.hover_facts import facts_at
-from linkwright.language.includes import real
+from linkwright.language.includes import real_path
 from linkwright.language.links import file_references
 from linkwright.language.renaming import occurrence_at, references
 from linkwright.language.suppressing import code_at
@@ -147,7 +147,7 @@ async def parameter_definitions(
 ) -> list[types.Location]:
     """Return the declaration of the macro parameter at a position, or an empty list."""
     project, texts = server.project, server.texts()
-    name = occurrence_at(positions.text, real(path), positions.offset(position))
+    name = occurrence_at(positions.text, real_path(path), positions.offset(position))
     if project is None or name is None or name.kind is not NameKind.PARAMETER:
         return []
     await server.when_indexed()
@@ -211,7 +211,7 @@ def add_requests(server: LinkwrightServer) -> None:
         await server.when_prepared(path)
         names = await server.defined_names(path) if format_of(path) is None else []
         server.check_unchanged(path, positions)
-        document = Document(server.project, server.texts(), real(path), positions.text, waits=False)
+        document = Document(server.project, server.texts(), real_path(path), positions.text, waits=False)
         offset = positions.offset(params.position)
         try:
             completions = completions_at(document, offset, names)
@@ -237,9 +237,11 @@ def add_requests(server: LinkwrightServer) -> None:
             return None
         names, values = await server.defined_names(path), await server.expression_values(path)
         text, offset = positions.text, positions.offset(params.position)
-        facts = await server.run_in_check_thread(lambda: facts_at(project, texts, real(path), text, offset, values))
+        facts = await server.run_in_check_thread(
+            lambda: facts_at(project, texts, real_path(path), text, offset, values)
+        )
         server.check_unchanged(path, positions)
-        document = Document(project, texts, real(path), text)
+        document = Document(project, texts, real_path(path), text)
         return hover(document, names, values, facts, positions, params.position)
 
     @server.feature(types.TEXT_DOCUMENT_DEFINITION)
@@ -261,7 +263,7 @@ def add_requests(server: LinkwrightServer) -> None:
         locations = await parameter_definitions(server, path, positions, params.position) or definitions(
             names, positions, params.position, server.positions, server.uri_of
         )
-        offset, finder = positions.offset(params.position), server.project.finder(real(path))
+        offset, finder = positions.offset(params.position), server.project.finder(real_path(path))
         links = () if locations else file_references(positions.text, path, finder, values)
         top = types.Range(types.Position(0, 0), types.Position(0, 0))
         locations += [

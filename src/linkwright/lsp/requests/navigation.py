@@ -9,7 +9,7 @@ from typing import Any
 from lsprotocol import types
 
 from linkwright.language.definitions import NameDefinition, NameKind
-from linkwright.language.includes import real
+from linkwright.language.includes import real_path
 from linkwright.language.links import FileReference, file_references
 from linkwright.language.occurrences import Occurrence, occurrences_in
 from linkwright.language.renaming import occurrence_at, references
@@ -99,7 +99,7 @@ class _MacroCalls:
     def __init__(self, server: LinkwrightServer, texts: Mapping[Path, str], item: types.CallHierarchyItem) -> None:
         self._server = server
         path = path_of(item.uri)
-        self._file = real(path) if path is not None else Path()
+        self._file = real_path(path) if path is not None else Path()
         data: Any = item.data
         start = data.get("start") if isinstance(data, dict) else getattr(data, "start", None)
         positions = server.positions(self._file)
@@ -181,7 +181,7 @@ def add_requests(server: LinkwrightServer) -> None:
             return None
         values = await server.expression_values(path)
         server.check_unchanged(path, positions)
-        finder = server.project.finder(real(path))
+        finder = server.project.finder(real_path(path))
         return _document_links(server, positions, file_references(positions.text, path, finder, values))
 
     @server.feature(types.WORKSPACE_SYMBOL)
@@ -201,7 +201,7 @@ def add_requests(server: LinkwrightServer) -> None:
     ) -> list[types.DocumentHighlight] | None:
         path_at_cursor = path_of(params.text_document.uri)
         if path_at_cursor is not None:  # editors ask when the cursor has moved
-            server.robot_views.cursor_moved(real(path_at_cursor), params.position.line + 1)
+            server.robot_views.cursor_moved(real_path(path_at_cursor), params.position.line + 1)
         context = server.format_context(params.text_document)
         if context is not None:
             offset = context.positions.offset(params.position)
@@ -214,7 +214,7 @@ def add_requests(server: LinkwrightServer) -> None:
         kinds = {True: types.DocumentHighlightKind.Write, False: types.DocumentHighlightKind.Read}
         return [
             types.DocumentHighlight(positions.range(name.start, name.end), kinds[name.is_definition])
-            for name in uses_in_file(positions.text, real(path), positions.offset(params.position))
+            for name in uses_in_file(positions.text, real_path(path), positions.offset(params.position))
         ]
 
     @server.feature(types.TEXT_DOCUMENT_PREPARE_CALL_HIERARCHY)
@@ -225,7 +225,7 @@ def add_requests(server: LinkwrightServer) -> None:
         project, texts = server.project, server.texts()
         if positions is None or project is None:
             return None
-        name = occurrence_at(positions.text, real(path), positions.offset(params.position))
+        name = occurrence_at(positions.text, real_path(path), positions.offset(params.position))
         if name is None or name.kind is not NameKind.MACRO:
             return None
         await server.when_indexed()

@@ -11,11 +11,11 @@ from pygls.exceptions import JsonRpcException
 from linkwright.diagnostics import LinkwrightError, joined, phrase
 from linkwright.diagnostics.translation import localized
 from linkwright.language.file_renaming import rename_file
-from linkwright.language.includes import real
+from linkwright.language.includes import real_path
 from linkwright.language.mentions import Mention
 from linkwright.language.occurrences import Occurrence
 from linkwright.language.proof import Edit
-from linkwright.language.rename_places import RenamableName, renamable_name_at, rename_name
+from linkwright.language.renamable_names import RenamableName, renamable_name_at, rename_name
 from linkwright.language.renaming import occurrence_at, references
 from linkwright.language.uses import uses_at
 from linkwright.lsp.edits import document_edits
@@ -42,7 +42,7 @@ def file_edits(server: LinkwrightServer, files: Iterable[types.FileRename]) -> t
     for file in files:
         old, new = path_of(file.old_uri), path_of(file.new_uri)
         if server.project is not None and old is not None and new is not None and old.is_file():
-            renaming = rename_file(server.project, server.texts(), real(old), real(new))
+            renaming = rename_file(server.project, server.texts(), real_path(old), real_path(new))
             edits += renaming.edits
             unchanged += renaming.unchanged
     return edits, unchanged
@@ -57,7 +57,7 @@ def add_requests(server: LinkwrightServer) -> None:
         path, positions = server.xml_text(document)
         if positions is None or server.project is None:
             return {}, None
-        return server.texts(), occurrence_at(positions.text, real(path), positions.offset(position))
+        return server.texts(), occurrence_at(positions.text, real_path(path), positions.offset(position))
 
     @server.feature(types.TEXT_DOCUMENT_REFERENCES)
     async def references_request(
@@ -100,7 +100,7 @@ def add_requests(server: LinkwrightServer) -> None:
             return None
         await server.when_indexed()
         texts, offset = server.texts(), positions.offset(position)
-        return await server.run_in_check_thread(lambda: renamable_name_at(project, texts, real(path), offset))
+        return await server.run_in_check_thread(lambda: renamable_name_at(project, texts, real_path(path), offset))
 
     @server.feature(types.TEXT_DOCUMENT_RENAME, types.RenameOptions(prepare_provider=True))
     async def rename_request(server: LinkwrightServer, params: types.RenameParams) -> types.WorkspaceEdit | None:

@@ -1,4 +1,7 @@
-"""The command that shows a robot in a page. The page follows the texts and the cursor of the editor."""
+"""The command that shows a robot in a page.
+
+The page follows the texts and the cursor of the editor.
+"""
 
 from __future__ import annotations
 
@@ -9,7 +12,7 @@ from pygls.exceptions import JsonRpcException
 
 from linkwright.diagnostics import phrase
 from linkwright.diagnostics.translation import localized
-from linkwright.language.includes import real
+from linkwright.language.includes import real_path
 from linkwright.lint.targets import DESCRIPTIONS
 from linkwright.lsp.edits import document_edits, replacement
 from linkwright.lsp.server import LinkwrightServer, path_of
@@ -18,7 +21,9 @@ SHOW_ROBOT = "linkwright.showRobot"
 
 
 class PageEditor:
-    """The editor to which the pages of robots report, see `linkwright.lsp.robot_views.TextEditor`.
+    """The editor to which the pages of robots report.
+
+    It implements `linkwright.lsp.robot_views.TextEditor`.
 
     Args:
         server: the server.
@@ -65,7 +70,7 @@ async def show_robot(server: LinkwrightServer, uri: str, *, opens: bool) -> str:
     if path is None or project is None or not path.name.endswith(DESCRIPTIONS):
         raise _failed(localized(phrase("only the robots of URDF, xacro and SDF files can be shown")))
     await server.when_indexed()
-    entry = (await server.run_in_check_thread(lambda: project.index.entries(real(path), texts)))[0]
+    entry = (await server.run_in_check_thread(lambda: project.index.entries(real_path(path), texts)))[0]
     try:
         address = await server.robot_views.address(entry, server.documents())
     except OSError as error:

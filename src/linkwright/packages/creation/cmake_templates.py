@@ -23,7 +23,7 @@ _NO_DEPENDENCIES = """\
 _LINTERS = """
 if(BUILD_TESTING)
   find_package(ament_lint_auto REQUIRED)
-  # Remove this line once every source file names its copyright holder and licence.
+  # Remove this line once every source file names its copyright holder and license.
   set(ament_cmake_copyright_FOUND TRUE)
   # Remove this line once the package is in a git repository, which cpplint needs.
   set(ament_cmake_cpplint_FOUND TRUE)

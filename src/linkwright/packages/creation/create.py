@@ -67,7 +67,7 @@ def create_package(request: PackageRequest, report: Callable[[str], None]) -> li
         report: called with each line that ``ros2 pkg create`` prints, in the same order.
 
     Returns:
-        Warnings about the name, the licence, and a renamed node.
+        Warnings about the name, the license, and a renamed node.
 
     Raises:
         LinkwrightError: PKG201 to PKG206, the request is not valid, and nothing is written; PKG207, the folder exists;
@@ -90,7 +90,7 @@ def create_package(request: PackageRequest, report: Callable[[str], None]) -> li
         if is_created:
             shutil.rmtree(package, ignore_errors=True)  # an incomplete package would block the next attempt
         path = format_path(Path(error.filename)) if error.filename else format_path(package)
-        message = phrase("cannot create '{where}': {strerror}", where=path, strerror=foreign(error.strerror or error))
+        message = phrase("cannot create '{folder}': {strerror}", folder=path, strerror=foreign(error.strerror or error))
         hint = phrase("choose a folder that you may write to: --destination-directory FOLDER")
         raise LinkwrightError(Diagnostic("PKG208", message, hint=hint)) from None
     return findings
@@ -117,7 +117,7 @@ def check_request(request: PackageRequest) -> list[Diagnostic]:
         findings.append(
             Diagnostic(
                 "PKG207",
-                phrase("the {what} '{package}' already exists", what=term(member_kind), package=format_path(package)),
+                phrase("the {kind} '{package}' already exists", kind=term(member_kind), package=format_path(package)),
                 hint=hint,
             )
         )

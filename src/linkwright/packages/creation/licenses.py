@@ -8,12 +8,12 @@ _TEXT_FOLDER = Path(__file__).with_name("license_texts")
 
 
 def known_licenses() -> list[str]:
-    """Return the identifiers of the licences whose texts are available, in alphabetical order."""
+    """Return the identifiers of the licenses whose texts are available, in alphabetical order."""
     return sorted(path.name.removesuffix(".txt") for path in _TEXT_FOLDER.glob("*.txt"))
 
 
 def license_text(identifier: str, *, year: int, holder: str) -> str | None:
-    """Return the text of a licence with its copyright line, or None for an unknown identifier.
+    """Return the text of a license with its copyright line, or None for an unknown identifier.
 
     The Lesser GPL is a set of additional permissions to the GPL, so the text of the GPL follows its text.
     """

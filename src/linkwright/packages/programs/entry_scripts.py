@@ -13,7 +13,7 @@ from pathlib import Path
 from linkwright.files.user_folders import cache_folder
 from linkwright.files.whole_files import write_whole_file
 from linkwright.packages.programs.child_python import python_command
-from linkwright.packages.readers.entry_points import EntryPoint
+from linkwright.packages.readers.installed import EntryPoint
 
 _MAX_INTERPRETER_LINE = 120
 """The maximum length of the interpreter line in characters. Operating systems truncate longer lines."""

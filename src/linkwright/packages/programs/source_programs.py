@@ -19,14 +19,12 @@ from linkwright.loading.deferred import lazy_pattern
 from linkwright.loading.lean_dataclasses import dataclass, field
 from linkwright.loading.lean_typing import Any
 from linkwright.packages.readers.entry_points import (
-    LINE,
-    PROGRAMS,
-    EntryPoint,
     option_lines,
     read_pyproject_group,
     read_setup_cfg_group,
     text_of,
 )
+from linkwright.packages.readers.installed import ENTRY_POINT_LINE, PROGRAM_GROUP, EntryPoint
 
 _PYTHON_PACKAGE = lazy_pattern(r"^\s*ament_python_install_package\s*\(", re.MULTILINE | re.IGNORECASE)
 BUILD_FILES = ("setup.py", "setup.cfg", "pyproject.toml", "CMakeLists.txt")
@@ -117,8 +115,8 @@ def _read_configurations(programs: SourcePrograms) -> None:
     """Add the programs in ``pyproject.toml`` and ``setup.cfg``."""
     cfg = text_of(programs.folder / "setup.cfg")
     for line in (
-        *read_pyproject_group(text_of(programs.folder / "pyproject.toml"), PROGRAMS),
-        *read_setup_cfg_group(cfg, PROGRAMS),
+        *read_pyproject_group(text_of(programs.folder / "pyproject.toml"), PROGRAM_GROUP),
+        *read_setup_cfg_group(cfg, PROGRAM_GROUP),
     ):
         _add_entry(programs, line)
     for line in option_lines(cfg, "options", "scripts"):
@@ -179,7 +177,7 @@ def _read_cmake(programs: SourcePrograms) -> None:
 
 
 def _add_entry(programs: SourcePrograms, line: Any) -> None:
-    match = LINE.match(line) if isinstance(line, str) else None
+    match = ENTRY_POINT_LINE.match(line) if isinstance(line, str) else None
     if match is not None:
         programs.entry_points[match[1]] = EntryPoint(match[2], match[3] or "main")
 

@@ -23,7 +23,7 @@ from linkwright.packages.readers.cmake_language import (
     within_package,
 )
 from linkwright.packages.readers.cmake_syntax import is_open
-from linkwright.packages.readers.installed_file import InstalledFile
+from linkwright.packages.readers.installed import InstalledFile
 
 _KEYWORDS = frozenset(
     {

@@ -52,21 +52,21 @@ class Condition:
     Args:
         words: the words of the condition.
         variables: the known variables; ``MATCHES`` sets ``CMAKE_MATCH_...`` in them.
-        is_there: called with an operator and a path; returns whether the path exists or, for ``IS_DIRECTORY``, is a
+        path_exists: called with an operator and a path; returns whether the path exists or, for ``IS_DIRECTORY``, is a
             folder; returns None if that is not known.
     """
 
     words: Sequence[Word]
     variables: MutableMapping[str, str]
-    is_there: Callable[[str, str], bool | None]
+    path_exists: Callable[[str, str], bool | None]
     _index: int = 0
 
-    def answer(self) -> bool | None:
+    def evaluate(self) -> bool | None:
         """Return whether the condition is true, or None if that is not known."""
         if len(self.words) > _MAX_TOKENS:
             return None
-        evaluate = self._evaluate_or()
-        return evaluate if self._index == len(self.words) else None
+        result = self._evaluate_or()
+        return result if self._index == len(self.words) else None
 
     def _next(self, *keywords: str) -> bool:
         if self._index < len(self.words) and self.words[self._index].keyword in keywords:
@@ -119,7 +119,7 @@ class Condition:
             return None
         if operator == "DEFINED":
             return True if subject in self.variables else None
-        return self.is_there(operator, subject) if operator in ("EXISTS", "IS_DIRECTORY") else None
+        return self.path_exists(operator, subject) if operator in ("EXISTS", "IS_DIRECTORY") else None
 
     def _evaluate_binary(self, left: Word, operator: str) -> bool | None:
         if self._index >= len(self.words):
@@ -192,8 +192,8 @@ def _compare(kind: str, left: str, right: str) -> int | None:
     if kind == "VERSION_":
         versions = [[int(part) for part in re.findall(r"\d+", text)] for text in (left, right)]
         max_length = max(len(parts) for parts in versions)
-        one, other = ([*parts, *[0] * (max_length - len(parts))] for parts in versions)
-        return (one > other) - (one < other)
+        first, second = ([*parts, *[0] * (max_length - len(parts))] for parts in versions)
+        return (first > second) - (first < second)
     if not _NUMBER.fullmatch(left) or not _NUMBER.fullmatch(right):
         return None
     return (float(left) > float(right)) - (float(left) < float(right))

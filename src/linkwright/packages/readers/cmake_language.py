@@ -221,7 +221,7 @@ class CMakeProgram:
             text = self._substitute(token)
             items = [text] if token.is_quoted else items_of(text)
             condition_words += [Word(part, token.is_quoted) for part in items]
-        return Condition(condition_words, self.variables, self._path_exists).answer()
+        return Condition(condition_words, self.variables, self._path_exists).evaluate()
 
     def _path_exists(self, test: str, path: str) -> bool | None:
         if self.package is None or not path.startswith(SOURCE):

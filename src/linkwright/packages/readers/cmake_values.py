@@ -84,7 +84,7 @@ def _change_list(operation: str, items: list[str], words: list[str]) -> list[str
         return [item for item in items if item not in words]
     if operation == "REMOVE_AT":
         removed_indices = {int(word) % len(items) for word in words}
-        return [item for at, item in enumerate(items) if at not in removed_indices]
+        return [item for item_index, item in enumerate(items) if item_index not in removed_indices]
     if operation == "REMOVE_DUPLICATES":
         return list(dict.fromkeys(items))
     if operation == "REVERSE":

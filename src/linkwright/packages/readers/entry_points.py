@@ -10,30 +10,8 @@ import sys
 from contextlib import suppress
 from pathlib import Path
 
-from linkwright.loading.deferred import lazy_pattern
-from linkwright.loading.lean_dataclasses import NamedTuple
 from linkwright.loading.lean_typing import Any
-
-PROGRAMS = "console_scripts"
-"""The group of the programs that a package installs."""
-
-LINE = lazy_pattern(r"\s*([^\s=]+)\s*=\s*([\w.]+)\s*(?::\s*([\w.]+))?")
-"""The name and module of an entry point, and its attribute if there is one."""
-
-
-class EntryPoint(NamedTuple):
-    """A function that serves as a program.
-
-    Attributes:
-        module: the full name of the function's module.
-        function: the name of the function in the module, which may contain dots.
-    """
-
-    module: str
-    function: str
-
-    def __str__(self) -> str:
-        return f"{self.module}:{self.function}"
+from linkwright.packages.readers.installed import PROGRAM_GROUP
 
 
 def read_setup_py_group(text: str, group: str) -> list[str]:
@@ -61,7 +39,7 @@ def read_pyproject_group(text: str, group: str) -> list[str]:
         import tomli as tomllib  # type: ignore[import-not-found, unused-ignore]
     try:
         project: Any = tomllib.loads(text)["project"]
-        entry_points = project["scripts"] if group == PROGRAMS else project["entry-points"][group]
+        entry_points = project["scripts"] if group == PROGRAM_GROUP else project["entry-points"][group]
         return [f"{name} = {target}" for name, target in entry_points.items()]
     except (tomllib.TOMLDecodeError, KeyError, TypeError, AttributeError):
         return []

@@ -13,8 +13,7 @@ from pathlib import Path
 
 from linkwright.diagnostics import SourceText, Span
 from linkwright.loading.lean_dataclasses import NamedTuple
-from linkwright.packages.readers.entry_points import LINE, PROGRAMS
-from linkwright.packages.readers.installed_file import InstalledFile
+from linkwright.packages.readers.installed import ENTRY_POINT_LINE, PROGRAM_GROUP, InstalledFile
 from linkwright.packages.readers.python_values import Pattern, PythonFile, argument_of, called_name
 
 
@@ -247,7 +246,7 @@ def _read_entry_points(python: PythonFile, facts: SetupFile, node: ast.expr | No
         facts.entry_points_complete = False
         return
     for key, value in zip(node.keys, node.values, strict=True):
-        if python.text(key) != PROGRAMS:
+        if python.text(key) != PROGRAM_GROUP:
             continue
         scripts = python.resolved(value)
         if not isinstance(scripts, (ast.List, ast.Tuple)):
@@ -255,7 +254,7 @@ def _read_entry_points(python: PythonFile, facts: SetupFile, node: ast.expr | No
             continue
         for script in scripts.elts:
             text = python.text(script)
-            match = LINE.match(text) if text is not None else None
+            match = ENTRY_POINT_LINE.match(text) if text is not None else None
             if match is None:
                 facts.entry_points_complete = False
             else:

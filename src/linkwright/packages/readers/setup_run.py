@@ -13,7 +13,7 @@ from collections.abc import Callable, Iterable, Iterator, Mapping
 from pathlib import Path, PurePosixPath
 
 from linkwright.loading.lean_typing import Any
-from linkwright.packages.readers.installed_file import InstalledFile
+from linkwright.packages.readers.installed import InstalledFile
 from linkwright.packages.readers.setup_library import (
     ATTRIBUTES,
     METHODS,

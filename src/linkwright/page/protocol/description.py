@@ -64,7 +64,7 @@ class SourceRange(Record):
 
 
 class Written(Record):
-    """The positions of an element in the expanded text and in its file, and the calls that led to it.
+    """The positions of an element in the expanded text and in its file, with its calls.
 
     `origin` is None if only the position in the expanded text is known. `calls` lists macro calls and includes,
     beginning with the innermost. If there are very many, the outermost are omitted.

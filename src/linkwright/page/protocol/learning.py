@@ -1,4 +1,4 @@
-"""The course of a learner: its steps, their texts, the results of checks, hints and solutions.
+"""The course of a learner: steps, texts, results of checks, hints and solutions.
 
 The server owns the course and the learner's progress. All pages show the same step. Texts of courses are sent in all
 their languages, by the language's tag, and the page selects one.
@@ -71,7 +71,10 @@ class CourseStep(ServerMessage):
 
 
 class StepCheck(Record):
-    """The result of one check. `message` is what is not yet so, or None if the check is satisfied."""
+    """The result of one check.
+
+    `message` describes what is missing, or is None if the check is satisfied.
+    """
 
     title: dict[str, str]
     is_passed: bool
@@ -92,7 +95,7 @@ class StepChecks(ServerMessage):
 
 
 class CourseProblem(ServerMessage):
-    """The reason why the last request of a page was not carried out, and a hint, each of which may be empty."""
+    """The reason why the last request of a page failed, and a hint; both may be empty."""
 
     NEWEST_OF: ClassVar[tuple[str, ...]] = ()
 

@@ -72,7 +72,9 @@ class BadMessageError(ValueError):
 
 
 def plain(value: Any) -> Any:
-    """Return a string or number as a built-in type for JSON, even if its class is derived from one.
+    """Return a string or number as a built-in type, which JSON can represent.
+
+    Its class may be derived from the built-in type.
 
     An example is a NumPy float.
     """

@@ -325,7 +325,7 @@ class TeleopTarget(Record):
 
 
 class TeleopState(ServerMessage):
-    """The message type of a teleop pad, its number of subscribers, and the reason why it cannot publish."""
+    """The state of a teleop pad: message type, subscribers, and the reason for a failure."""
 
     topic: str
     kind: str

@@ -24,7 +24,7 @@ class TerminalItem(Record):
 
 
 class Terminals(ServerMessage):
-    """All terminals of the program. It is sent when a page opens, and again when something changes.
+    """All terminals of the program, sent when a page opens and after each change.
 
     `folder` is the folder in which shells start. `why_not` is the reason why the last request of the page was refused,
     or empty.
@@ -51,7 +51,7 @@ class TerminalOutput(ServerMessage):
 
 
 class TerminalInputLost(ServerMessage):
-    """A notice that input was discarded because the program in the terminal does not read its input."""
+    """A notice that input was discarded because the program in the terminal does not read it."""
 
     NEWEST_OF: ClassVar[tuple[str, ...]] = ("terminal",)
 
@@ -99,7 +99,7 @@ class ShowTerminal(PageMessage):
 
 
 class LeaveTerminal(PageMessage):
-    """A notice that the page does not show a terminal any more, for example because its tab is hidden."""
+    """A notice that the page no longer shows a terminal, for example because its tab is hidden."""
 
     terminal: int
 
@@ -121,7 +121,7 @@ class ResizeTerminal(PageMessage):
 
 
 class AcknowledgeTerminal(PageMessage):
-    """The acknowledgement that the page has processed the output up to the message with this number."""
+    """The acknowledgement of the output up to the message with this number."""
 
     terminal: int
     number: int

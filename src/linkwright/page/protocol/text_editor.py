@@ -1,4 +1,4 @@
-"""The connection of pages with a text editor: the element at its cursor, and selected elements."""
+"""The connection of pages with a text editor: elements at its cursor, and selected ones."""
 
 from __future__ import annotations
 

@@ -56,7 +56,10 @@ class RenameWord(PageMessage):
 
 
 class ImportWords(PageMessage):
-    """A request to import the words of a file. An imported word replaces a word with the same name."""
+    """A request to import the words of a file.
+
+    An imported word replaces a word with the same name.
+    """
 
     text: str
 

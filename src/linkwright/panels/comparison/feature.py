@@ -128,9 +128,9 @@ def without_paths(message: ComparedDescriptions) -> ComparedDescriptions:
     for robot in (message.old, message.new):
         robot.label = _shareable_name(robot.label)
     for item in message.items:
-        for place in (item.old_place, item.new_place):
-            if place is not None:
-                place.text, place.file = _shareable_name(place.text), ""
+        for location in (item.old_place, item.new_place):
+            if location is not None:
+                location.text, location.file = _shareable_name(location.text), ""
     return message
 
 
@@ -161,7 +161,7 @@ def _display_id(display: RobotModelDisplay | None) -> str:
 def _link_marks(comparison: Comparison, old: Robot, new: Robot) -> tuple[dict[str, Mark], dict[str, Mark]]:
     """Return the marks of the links that differ by name, for the old and for the new robot."""
     old_marks: dict[str, Mark] = {name: "removed" for name in old.links if name not in comparison.links}
-    old_names = {after: name for name, after in comparison.links.items()}
+    old_names = {new_name: name for name, new_name in comparison.links.items()}
     new_marks: dict[str, Mark] = {name: "added" for name in new.links if name not in old_names}
     for difference in comparison.differences:
         if difference.subject == "link":
@@ -221,8 +221,8 @@ def _element_of(difference: Difference, old: Robot, new: Robot) -> tuple[Literal
     return "link", "", False
 
 
-def _compared_place(place: DifferenceLocation | None, model: Model) -> ComparedPlace | None:
-    if place is None:
+def _compared_place(location: DifferenceLocation | None, model: Model) -> ComparedPlace | None:
+    if location is None:
         return None
-    span = place.span
+    span = location.span
     return ComparedPlace(f"{model.display_name(span.file)}:{span.line}:{span.column}", span.file, span.line)

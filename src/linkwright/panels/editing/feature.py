@@ -83,7 +83,7 @@ class EditingFeature(PageFeature):
             page.send(self._editable_parts(page, message))
             page.send(editing.EditHistory(self._history.can_undo, self._history.can_redo))
             return
-        if not page.is_here:
+        if not page.is_local:
             raise EditRefusedError(elsewhere())
         if isinstance(message, editing.PreviewEdit):
             if self._newest_numbers.get(page) == message.number:
@@ -140,7 +140,7 @@ class EditingFeature(PageFeature):
 
     def _editable_parts(self, page: Page, message: editing.AskEditableParts) -> editing.EditableParts:
         robot, description = self._robot_and_description(page, message.display)
-        refusal_reason = _refusal_reason(robot, description) if page.is_here else elsewhere().message
+        refusal_reason = _refusal_reason(robot, description) if page.is_local else elsewhere().message
         parts = [] if robot is None else parts_of(robot, message.link)
         problem = "" if refusal_reason is None else item_of(Diagnostic("EDIT101", refusal_reason)).message
         return editing.EditableParts(message.display, message.link, problem, parts)

@@ -350,16 +350,16 @@ def _mesh_name(shape: Shape) -> str:
     return urlsplit(shape.url).path.rpartition("/")[2] if shape.url else shape.kind
 
 
-def _unreadable_mesh_error(link: LinkScene, name: str, why: Phrase) -> LinkwrightError:
+def _unreadable_mesh_error(link: LinkScene, name: str, reason: Phrase) -> LinkwrightError:
     hint = phrase("export the mesh again, or remove it from the robot")
     return LinkwrightError(
         Diagnostic(
             "VIEW204",
             phrase(
-                "cannot read the mesh '{name}' of link '{link_name}': {why}",
+                "cannot read the mesh '{name}' of link '{link_name}': {reason}",
                 name=name,
                 link_name=link.name,
-                why=why,
+                reason=reason,
             ),
             hint=hint,
         )

@@ -198,7 +198,7 @@ def _element_fields(field: Field, values: Any, path: str, owners: Sequence[Any])
     if not is_number(field.type) and field.type.primitive is not None:
         return
     names = element_names(owners, values)
-    uses_indices = names is None or len(set(names)) < len(names) or any(_is_awkward(name) for name in names)
+    uses_indices = names is None or len(set(names)) < len(names) or any(_is_ambiguous(name) for name in names)
     for index in range(min(len(values), _MAX_ELEMENTS)):
         key = str(index) if uses_indices or names is None else names[index]
         yield from _value(field, values[index], f"{path}[{key}]", owners)
@@ -212,6 +212,6 @@ def _value(field: Field, value: Any, path: str, owners: Sequence[Any]) -> Iterat
         yield from _number_fields(get_message(field.type.base), value, f"{path}.", owners)
 
 
-def _is_awkward(name: str) -> bool:
+def _is_ambiguous(name: str) -> bool:
     """Return whether a name would be ambiguous in brackets, so that the index is used instead."""
     return not name or name.isdecimal() or "[" in name or "]" in name

@@ -273,7 +273,7 @@ def _changed(stamps: dict[str, tuple[int, ...]]) -> list[str]:
 
 def _refusal_reason(page: Page, file: str, known: frozenset[str], workspace: Path | None) -> Phrase | None:
     """Return the reason why a page may not edit the workspace of a file, or None."""
-    if not page.is_here:
+    if not page.is_local:
         return elsewhere().message
     if find_spec(EXTRAS["lsp"]) is None:
         return phrase("the editor needs the language server: {hint}", hint=install_hint("lsp"))

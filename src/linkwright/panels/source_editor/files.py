@@ -92,12 +92,12 @@ class SourceFiles:
         refusal = self._workspace.refusal(os.path.realpath(path))
         return FileContent(text, "" if refusal is None else refusal.message)
 
-    def plan(self, path: Path, before: str, text: str) -> EditPlan:
+    def plan(self, path: Path, previous_text: str, text: str) -> EditPlan:
         """Return the edit that writes a new text to a file.
 
         Args:
             path: the file.
-            before: the text of the file, with its line ends.
+            previous_text: the text of the file, with its line ends.
             text: the new text, with the line end LF.
 
         Raises:
@@ -108,13 +108,13 @@ class SourceFiles:
         refusal = Diagnostic("EDIT106", why_not) if why_not is not None else self._workspace.refusal(real)
         if refusal is not None:
             raise EditRefusedError(refusal)
-        return EditPlan({real: with_line_ends(text, before)}, {real: before})
+        return EditPlan({real: with_line_ends(text, previous_text)}, {real: previous_text})
 
     def create(self, path: Path, text: str = "") -> None:
         """Create a file in the workspace, with the folders above it.
 
         Raises:
-            EditRefusedError: the file exists or is outside of the workspace, or it cannot be created.
+            EditRefusedError: the file exists or is outside the workspace, or it cannot be created.
         """
         real = Path(os.path.realpath(path))
         refusal = self._creating_refusal(real)
@@ -182,20 +182,20 @@ def _is_hidden(path: Path, folder: Path) -> bool:
     return any(part.startswith(".") for part in path.relative_to(folder).parts)
 
 
-def with_line_ends(text: str, before: str) -> str:
+def with_line_ends(text: str, previous_text: str) -> str:
     """Return a text with the line ends of the file's previous text.
 
     Lines before and after the changed lines keep their line ends. The changed lines get the most frequent line end.
 
     Args:
         text: the new text, with the line end LF.
-        before: the previous text, with the file's line ends.
+        previous_text: the previous text, with the file's line ends.
     """
-    ends = _LINE_END.findall(before)
+    ends = _LINE_END.findall(previous_text)
     if not any(end != "\n" for end in ends):
         return text
     usual = max(set(ends), key=ends.count)
-    old, new = _LINE_END.split(before), text.split("\n")
+    old, new = _LINE_END.split(previous_text), text.split("\n")
     first = len(list(takewhile(lambda pair: pair[0] == pair[1], zip(old, new, strict=False))))
     same_end = zip(reversed(old[first:]), reversed(new[first:]), strict=False)
     last = len(list(takewhile(lambda pair: pair[0] == pair[1], same_end)))

@@ -124,7 +124,7 @@ class TerminalFeature(PageFeature):
     def _refusal(self, page: Page) -> Phrase | None:
         if self._folder is None:
             return phrase("this program was started without a terminal in the page: start it again with `--terminal`")
-        if not page.is_here:
+        if not page.is_local:
             return phrase("the terminal can be used only in pages on the machine of the program")
         if not page.may_be_own_user():
             return phrase("the terminal can be used only in a browser of the user who started the program")

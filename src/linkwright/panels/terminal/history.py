@@ -63,7 +63,10 @@ class TerminalHistory:
 
 
 def _follow_modes(modes: dict[str, str], text: str) -> None:
-    """Apply the changes of modes in a text: each mode is mapped to ``h`` if it is set, and to ``l`` if it is reset."""
+    """Apply the changes of terminal modes in a text to the current modes.
+
+    Each mode is mapped to ``h`` if it is set, and to ``l`` if it is reset.
+    """
     for numbers, action, reset in _MODE.findall(text):
         if reset:
             modes.clear()

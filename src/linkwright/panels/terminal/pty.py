@@ -32,7 +32,9 @@ class TerminalProgram:
 
 
 class Pty(Protocol):
-    """A program in a pseudoterminal. All methods except `wait_ended` are called on the event loop.
+    """A program in a pseudoterminal.
+
+    All methods except `wait_ended` are called on the event loop.
 
     Output is read only on request, so that a program cannot write more than its reader can handle.
     """
@@ -51,10 +53,13 @@ class Pty(Protocol):
         """Set the size of the terminal, and notify the program."""
 
     def hang_up(self) -> None:
-        """Close the terminal, as its window does: the program and its children receive SIGHUP, or its equivalent."""
+        """Close the terminal.
+
+        The program and its children receive SIGHUP, or its equivalent on the system.
+        """
 
     def wait_ended(self, grace: float) -> None:
-        """Wait, after `hang_up`, until all processes of the terminal have ended; kill them after `grace` seconds."""
+        """Wait after `hang_up` until all processes have ended, and kill them after `grace` seconds."""
 
 
 Receive = Callable[[bytes], object]

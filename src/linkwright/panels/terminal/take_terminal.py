@@ -1,4 +1,4 @@
-"""A script that takes a pseudoterminal as its controlling terminal, and then becomes another program.
+"""A script that makes a pseudoterminal its controlling terminal, and then runs a program.
 
 It is run as ``python -I -S take_terminal.py PROGRAM ARGUMENT...``, as the leader of a new session whose standard input
 is the pseudoterminal. The parent cannot do this between fork and exec, because it has threads.
@@ -17,7 +17,7 @@ _RESET = ("SIGHUP", "SIGINT", "SIGQUIT", "SIGPIPE", "SIGTERM", "SIGTSTP", "SIGTT
 
 
 def take_terminal() -> None:
-    """Make the terminal at standard input the controlling terminal of this session, and reset the signals."""
+    """Make standard input the controlling terminal of this session, and reset the signals."""
     import fcntl
     import termios
 

@@ -125,7 +125,7 @@ class Terminal:
         self._pty.hang_up()
 
     def wait_ended(self, grace: float) -> None:
-        """Wait, after `hang_up`, until all programs have ended; kill them after `grace` seconds."""
+        """Wait after `hang_up` until all programs have ended, and kill them after `grace` seconds."""
         self._pty.wait_ended(grace)
 
     def _receive(self, block: bytes) -> None:
@@ -137,7 +137,10 @@ class Terminal:
         self._continue()
 
     def _continue(self) -> None:
-        """Request more output, unless it is too early or the page has not processed the previous output."""
+        """Request more output, unless the page has not processed the previous output.
+
+        If the previous request is too recent, the next one is scheduled.
+        """
         is_page_late = self.page is not None and self._sent - self._acknowledged >= MAX_UNACKNOWLEDGED
         if self._pause is None and not is_page_late and self.status is None:
             self._pty.request_output()

@@ -337,7 +337,7 @@ class RobotModelDisplay(ViewerDisplay):
         text = phrase("URDF failed Model parse") if is_xml else phrase("URDF failed XML parse")
         self._description = [StatusRow("URDF", "error", text)]
         for error in errors[:_MAX_FINDINGS]:
-            self._description.append(StatusRow(error.code, "error", error.placed_message))
+            self._description.append(StatusRow(error.code, "error", error.located_message))
         self._show_status()
 
     def _show_robot(self, robot: Robot) -> None:

@@ -285,7 +285,7 @@ class WorldDisplay(TopicDisplay):
 
     def _refuse(self, diagnostics: tuple[Diagnostic, ...]) -> None:
         errors = [diagnostic for diagnostic in diagnostics if diagnostic.severity is Severity.ERROR][:_MAX_FINDINGS]
-        texts = [error.placed_message for error in errors] or [phrase("The description is not SDF")]
+        texts = [error.located_message for error in errors] or [phrase("The description is not SDF")]
         self.set_status_row(_WORLD_ROW, "error", joined(texts, "; "))
 
     def _report_problems(self) -> None:

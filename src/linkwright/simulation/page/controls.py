@@ -193,7 +193,7 @@ class SimulationFeature(PageFeature):
         try:
             model = await asyncio.to_thread(self._model_at, address.strip())
         except LinkwrightError as error:
-            refuse(page, error.diagnostics[0].placed_message)
+            refuse(page, error.diagnostics[0].located_message)
             return
         if model is None:
             refuse(page, phrase("there is no model in '{address}'", address=address))

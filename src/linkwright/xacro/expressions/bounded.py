@@ -159,7 +159,7 @@ def _sumprod(left: Iterable[Any], right: Iterable[Any]) -> Any:
     pairs = list(zip(left, right, strict=True))
     if len(pairs) > _MAX_NUMBERS and not all(isinstance(number, float) for pair in pairs for number in pair):
         raise RefusalError(phrase("'{name}' receives more than {count:,} numbers", name="sumprod", count=_MAX_NUMBERS))
-    return sum(one * other for one, other in pairs)
+    return sum(first_number * second_number for first_number, second_number in pairs)
 
 
 MATHEMATICS: dict[str, Any] = {

@@ -92,7 +92,7 @@ def failure(error: Exception, segment: str, start: int, end: int) -> Fault:
         reason = "division by zero"  # before Python 3.14, the message depends on the kind of number
     return Fault(
         "XAC202",
-        phrase("cannot evaluate '{segment}': {words}", segment=segment, words=foreign(reason)),
+        phrase("cannot evaluate '{segment}': {reason}", segment=segment, reason=foreign(reason)),
         start,
         end,
         hint,
@@ -168,21 +168,22 @@ class Compiler:
                 continue
             if isinstance(error, ZeroDivisionError) and node is operands[-1][0]:
                 return phrase(
-                    "'{written}' is {value} here; if that may happen, write 'A / {written} if {written} else B'",
-                    written=operand_text,
+                    "'{expression}' is {value} here; if that may happen, "
+                    "write 'A / {expression} if {expression} else B'",
+                    expression=operand_text,
                     value=repr(value),
                 )
             if isinstance(error, TypeError) and isinstance(value, str) and len(value) <= 40:
                 match = re.fullmatch(_NUMBER_WITH_UNIT, value)
                 if match:
                     return phrase(
-                        "'{written}' is the string '{value}' here; write the number alone: '{united}'",
-                        written=operand_text,
+                        "'{expression}' is the string '{value}' here; write the number alone: '{quantity}'",
+                        expression=operand_text,
                         value=value,
-                        united=match[1],
+                        quantity=match[1],
                     )
                 return phrase(
-                    "'{written}' is the string '{value}' here, not a number", written=operand_text, value=value
+                    "'{expression}' is the string '{value}' here, not a number", expression=operand_text, value=value
                 )
         return None
 

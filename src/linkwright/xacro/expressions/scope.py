@@ -247,7 +247,7 @@ class Scope:
             hint = phrase('write lazy_eval="false" in the definition of one of them')
             raise Fault(
                 "XAC203",
-                phrase("the property '{name}' depends on itself: {circle}", name=name, circle=cycle),
+                phrase("the property '{name}' depends on itself: {cycle}", name=name, cycle=cycle),
                 hint=hint,
             )
         if len(property_stack) >= self.session.limits.depth:

@@ -105,14 +105,16 @@ def _single_argument(command: str, argument_kind: str, words: list[str]) -> str:
         raise Fault(
             "XAC213",
             phrase(
-                "'$({command} ...)' takes one {what}, but {count} are given",
+                "'$({command} ...)' takes one {argument}, but {count} are given",
                 command=command,
-                what=term(argument_kind),
+                argument=term(argument_kind),
                 count=len(words),
             )
             if words
             else phrase(
-                "'$({command} ...)' takes one {what}, but none is given", command=command, what=term(argument_kind)
+                "'$({command} ...)' takes one {argument}, but none is given",
+                command=command,
+                argument=term(argument_kind),
             ),
         )
     return words[0]
@@ -377,9 +379,9 @@ def _joined_parts(texts: list[str], parts: list[_Part | None]) -> _Part:
 
     def join(scope: Scope) -> str:
         pieces = texts.copy()
-        for place, part in indexed_parts:
+        for position, part in indexed_parts:
             value = part(scope)
-            pieces[place] = value if value.__class__ is str else _checked_text(value)
+            pieces[position] = value if value.__class__ is str else _checked_text(value)
         try:
             return sandbox.joined(pieces)
         except RefusalError as error:

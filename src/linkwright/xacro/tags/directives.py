@@ -63,7 +63,7 @@ def _is_optional(expander: Expander, node: Element) -> bool:
     try:
         return truth(text)
     except ValueError:
-        message = phrase("'optional' is '{written}', which is neither true nor false", written=text)
+        message = phrase("'optional' is '{value}', which is neither true nor false", value=text)
         hint = phrase("write true or false; it is not evaluated")
         expander.fail_at("XAC305", message, node, node.attribute_span("optional"), hint)
 
@@ -371,7 +371,7 @@ def _warn_of_non_text(expander: Expander, site: Site, name: str, value: object) 
         )
     )
     expression = node.attributes["value"].strip()
-    hint = phrase("convert it to a string: {written}", written="${str(" + expression[2:-1].strip() + ")}")
+    hint = phrase("convert it to a string: {expression}", expression="${str(" + expression[2:-1].strip() + ")}")
     diagnostic = expander.session.warn("XAC903", message, node.attribute_span("value"), hint)
     if diagnostic is not None:
         expander.unwritable[id(site.parent), name] = (site.parent, diagnostic)
@@ -380,9 +380,9 @@ def _warn_of_non_text(expander: Expander, site: Site, name: str, value: object) 
 def _check_name(expander: Expander, node: Element, attribute: str, kind: str, name: str) -> None:
     if not re.fullmatch(_NAME, name):
         message = (
-            phrase("'{name}' cannot be the name of an {what}", name=name, what=term(kind))
+            phrase("'{name}' cannot be the name of an {kind}", name=name, kind=term(kind))
             if name
-            else phrase("this {what} has an empty name", what=term(kind))
+            else phrase("this {kind} has an empty name", kind=term(kind))
         )
         expander.fail_at("XAC309", message, node, node.attribute_span(attribute))
 

@@ -98,15 +98,15 @@ class _RecordingSession(Session):
         return value
 
     def _record(self, text: str, scope: Scope) -> None:
-        place = self.current_node
-        if "$" not in text or place is None or place.source is None or self.may_change_values(text):
+        node = self.current_node
+        if "$" not in text or node is None or node.source is None or self.may_change_values(text):
             return
-        if self.current_attribute == "params" and isinstance(place, Element) and text == place.attributes.get("params"):
+        if self.current_attribute == "params" and isinstance(node, Element) and text == node.attributes.get("params"):
             return  # a list of parameters; the value of each default is recorded when a call needs it
         start = self._start(text)
         if start is None:
             return
-        name = place.source.name
+        name = node.source.name
         for part_start, part_end in _ranges(text):
             key = (name, start + part_start, start + part_end)
             expression = self.expressions.get(key)
@@ -119,20 +119,20 @@ class _RecordingSession(Session):
 
     def _start(self, text: str) -> int | None:
         """Return the offset in the file of a text under evaluation, or None if it is not found."""
-        place = self.current_node
-        assert place is not None
-        assert place.source is not None
-        source = place.source.text
-        begin, end = place.offset, place.offset
-        if isinstance(place, Element):
-            found = attribute_value_range(source, place.offset, self.current_attribute or "")
+        node = self.current_node
+        assert node is not None
+        assert node.source is not None
+        source = node.source.text
+        begin, end = node.offset, node.offset
+        if isinstance(node, Element):
+            found = attribute_value_range(source, node.offset, self.current_attribute or "")
             if found is None:
                 return None
             begin, end = found
         else:
-            end = begin + len(place.data)
-        at = source.find(text, begin, end)
-        return at if at >= 0 and source.find(text, at + 1, end) < 0 else None
+            end = begin + len(node.data)
+        offset = source.find(text, begin, end)
+        return offset if offset >= 0 and source.find(text, offset + 1, end) < 0 else None
 
     def _names(self, part: str, scope: Scope) -> Iterator[tuple[str, str]]:
         for reference in _references(part):

@@ -6,7 +6,7 @@ from collections.abc import Iterable
 from typing import TYPE_CHECKING, Any
 
 from linkwright.diagnostics import Phrase, did_you_mean, phrase, quoted_names
-from linkwright.launch.errors.places import error_at
+from linkwright.launch.errors.locations import error_at
 from linkwright.launch.model.action import Action
 from linkwright.launch.model.context import LaunchContext
 from linkwright.launch.model.markup.entity import Entity, parse_texts
@@ -36,7 +36,7 @@ def _read_choice_list(entity: Entity) -> list[str] | None:
     except TypeError as error:
         ros_error = TypeError("Attribute 'choices' of Entity 'arg' expected to be a list of strings")
         message = phrase("key 'choices' of '{type_name}' must be a list of strings", type_name=entity.type_name)
-        raise error_at(entity.place, "LAUNCH118", message, ros_error=ros_error) from error
+        raise error_at(entity.source_location, "LAUNCH118", message, ros_error=ros_error) from error
     return choices
 
 
@@ -73,7 +73,7 @@ class DeclareLaunchArgument(Action):
         if not self._choices:
             ros_error = RuntimeError("Provided choices arg is empty. Use None to ignore the choice list.")
             message = phrase("argument '{name}' is declared with an empty list of choices", name=name)
-            raise error_at(self.place, "LAUNCH112", message, ros_error=ros_error)
+            raise error_at(self.source_location, "LAUNCH112", message, ros_error=ros_error)
         if isinstance(default_value, str) and default_value not in self._choices:
             text = f'Provided default_value "{default_value}" is not in provided choices "{self._choices}".'
             message = phrase(
@@ -82,7 +82,7 @@ class DeclareLaunchArgument(Action):
                 name=name,
             )
             hint = self._hint(default_value)
-            raise error_at(self.place, "LAUNCH112", message, hint, ros_error=RuntimeError(text))
+            raise error_at(self.source_location, "LAUNCH112", message, hint, ros_error=RuntimeError(text))
 
     @classmethod
     def parse(cls, entity: Entity, parser: Parser) -> tuple[type[Action], dict[str, Any]]:
@@ -162,7 +162,11 @@ class DeclareLaunchArgument(Action):
                 )
                 ros_error = RuntimeError(f'Required launch argument "{self._name}" was not provided.')
                 raise error_at(
-                    self.place, "LAUNCH114", message, phrase("add {name}:=VALUE", name=self._name), ros_error=ros_error
+                    self.source_location,
+                    "LAUNCH114",
+                    message,
+                    phrase("add {name}:=VALUE", name=self._name),
+                    ros_error=ros_error,
                 )
             configurations[self._name] = perform_substitutions(context, self._default)
         value = configurations[self._name]
@@ -174,7 +178,7 @@ class DeclareLaunchArgument(Action):
                 value=value,
             )
             hint = self._hint(str(value))
-            raise error_at(self.place, "LAUNCH112", message, hint, ros_error=RuntimeError(text))
+            raise error_at(self.source_location, "LAUNCH112", message, hint, ros_error=RuntimeError(text))
 
     def _hint(self, value: str) -> Phrase:
         choices = self._choices or []

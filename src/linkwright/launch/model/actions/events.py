@@ -45,7 +45,10 @@ class RegisterEventHandler(_HandlerAction):
         context.register_event_handler(self._event_handler)
 
     def describe_conditional_sub_entities(self) -> list[tuple[str, Iterable[LaunchDescriptionEntity]]]:
-        """Return the handler's entities with a text about the event, or an empty list if they are unknown."""
+        """Return the handler's entities with a text about the event.
+
+        The list is empty if the entities are unknown before the event.
+        """
         entities = self.get_sub_entities()
         return [(f"{self._event_handler} handles an event", entities)] if entities else []
 

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 from linkwright.diagnostics import did_you_mean, phrase
 from linkwright.hosting.launch_log import OUTPUT_MODES, output_destinations
 from linkwright.hosting.plans import HostedPlan
-from linkwright.launch.errors.places import error_at
+from linkwright.launch.errors.locations import error_at
 from linkwright.launch.model import events
 from linkwright.launch.model.action import Action
 from linkwright.launch.model.actions.executable import Executable
@@ -219,7 +219,7 @@ class ExecuteLocal(Action):
                 final_name=self._description.final_name,
             )
             hint = phrase("create a new action for each start, for example in a function")
-            raise error_at(self.place, "LAUNCH141", message, hint, ros_error=RuntimeError(text))
+            raise error_at(self.source_location, "LAUNCH141", message, hint, ros_error=RuntimeError(text))
         plan = self._plan(context, command)
         name = context.session.number_process(plan.name)
         description = self._description
@@ -232,7 +232,7 @@ class ExecuteLocal(Action):
     def _plan(self, context: LaunchContext, command: list[str]) -> ProcessPlan:
         description = self._description
         if not command or not command[0].strip():
-            raise error_at(self.place, "LAUNCH141", phrase("the command of the process is empty"))
+            raise error_at(self.source_location, "LAUNCH141", phrase("the command of the process is empty"))
         if self._split_arguments and not self._shell:
             command = [word for argument in command for word in self._split_argument(argument)]
         program = [shlex.split(command[0])[0]] if self._shell else command
@@ -261,7 +261,7 @@ class ExecuteLocal(Action):
             message = phrase(
                 "argument '{text}' cannot be split into words: {error}", text=text, error=str(error).lower()
             )
-            raise error_at(self.place, "LAUNCH118", message, ros_error=error) from error
+            raise error_at(self.source_location, "LAUNCH118", message, ros_error=error) from error
 
     def _environment(self, context: LaunchContext) -> dict[str, str]:
         return self._description.environment(context)
@@ -278,7 +278,7 @@ class ExecuteLocal(Action):
             hint = did_you_mean(invalid_mode, OUTPUT_MODES) or phrase("use one of {names}", names=modes)
             text = f'{invalid_mode} is not a valid standard output config i.e. "screen", "log" or "both"'
             message = phrase("output destination '{wrong}' does not exist", wrong=invalid_mode)
-            raise error_at(self.place, "LAUNCH141", message, hint, ros_error=ValueError(text)) from error
+            raise error_at(self.source_location, "LAUNCH141", message, hint, ros_error=ValueError(text)) from error
 
     def _evaluate_condition(self, context: LaunchContext, name: str, default: Any) -> bool:
         value = context.launch_configurations.get(name, default)
@@ -286,7 +286,7 @@ class ExecuteLocal(Action):
             return value if isinstance(value, bool) else evaluate_condition_expression(context, value)
         except InvalidConditionExpressionError as error:
             message = phrase("'{name}' is '{text}', which is neither true nor false", name=name, text=error.text)
-            raise error_at(self.place, "LAUNCH141", message, ros_error=error) from error
+            raise error_at(self.source_location, "LAUNCH141", message, ros_error=error) from error
 
     def _typed(self, context: LaunchContext, name: str, value: Any) -> Any:
         try:
@@ -297,7 +297,7 @@ class ExecuteLocal(Action):
                 name=name,
                 text=perform_substitutions(context, value),
             )
-            raise error_at(self.place, "LAUNCH141", message, ros_error=error) from error
+            raise error_at(self.source_location, "LAUNCH141", message, ros_error=error) from error
 
     def _seconds(self, context: LaunchContext, substitutions: list[Substitution], name: str) -> float:
         text = perform_substitutions(context, substitutions)
@@ -305,7 +305,7 @@ class ExecuteLocal(Action):
             return float(text)
         except ValueError as error:
             message = phrase("'{name}' is '{text}', which is not a number", name=name, text=text)
-            raise error_at(self.place, "LAUNCH141", message, ros_error=error) from error
+            raise error_at(self.source_location, "LAUNCH141", message, ros_error=error) from error
 
     def _read_cached_output(self, stream: int) -> str:
         if self._output_chunks is None:

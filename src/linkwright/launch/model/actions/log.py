@@ -7,7 +7,7 @@ import warnings
 from typing import TYPE_CHECKING, Any
 
 from linkwright.diagnostics import phrase, quoted_names
-from linkwright.launch.errors.places import error_at
+from linkwright.launch.errors.locations import error_at
 from linkwright.launch.model.action import Action
 from linkwright.launch.model.context import LaunchContext
 from linkwright.launch.model.markup.expose import expose_action
@@ -21,7 +21,7 @@ from linkwright.launch.model.substitution import (
 )
 
 if TYPE_CHECKING:
-    from linkwright.launch.errors.places import SourceLocation
+    from linkwright.launch.errors.locations import SourceLocation
     from linkwright.launch.model.markup.entity import Entity, Parser
 
 _LOGGER_NAME = "launch.user"
@@ -51,7 +51,7 @@ class Log(Action):
         self._level = normalize_to_list_of_substitutions(level)
         if all(isinstance(substitution, TextSubstitution) for substitution in self._level):
             _level_number(
-                "".join(part.text for part in self._level if isinstance(part, TextSubstitution)), self._level_place
+                "".join(part.text for part in self._level if isinstance(part, TextSubstitution)), self._level_location
             )
 
     @classmethod
@@ -65,11 +65,11 @@ class Log(Action):
                 warning = (
                     "The action log now expects a log level. Either provide one or switch to using the log_info action"
                 )
-                place = entity.place
-                if place is None:
+                location = entity.source_location
+                if location is None:
                     warnings.warn(warning, stacklevel=2)
                 else:
-                    warnings.warn_explicit(warning, UserWarning, place.file, place.span().line)
+                    warnings.warn_explicit(warning, UserWarning, location.file, location.span().line)
                 return LogInfo, kwargs  # Jazzy and earlier log this tag at level INFO
             level = "INFO"
         kwargs["level"] = parser.parse_substitution(level)
@@ -86,8 +86,11 @@ class Log(Action):
         return self._level
 
     @property
-    def _level_place(self) -> SourceLocation | None:
-        return next((substitution.place for substitution in self._level if substitution.place is not None), self.place)
+    def _level_location(self) -> SourceLocation | None:
+        return next(
+            (substitution.source_location for substitution in self._level if substitution.source_location is not None),
+            self.source_location,
+        )
 
     def describe(self) -> str:
         """Return a text with the logged line."""
@@ -99,11 +102,11 @@ class Log(Action):
         Raises:
             KeyError: LAUNCH150, there is no such level.
         """
-        level = _level_number(perform_substitutions(context, self._level), self._level_place)
+        level = _level_number(perform_substitutions(context, self._level), self._level_location)
         context.log(_LOGGER_NAME, level, perform_substitutions(context, self._msg))
 
 
-def _level_number(level: str, place: SourceLocation | None) -> int:
+def _level_number(level: str, location: SourceLocation | None) -> int:
     if level.upper() in LEVELS:
         return LEVELS[level.upper()]
     from linkwright.diagnostics import did_you_mean
@@ -111,7 +114,7 @@ def _level_number(level: str, place: SourceLocation | None) -> int:
     hint = did_you_mean(level, LEVELS) or phrase("use one of {names}", names=quoted_names(LEVELS))
     ros_error = KeyError(f"Invalid log level '{level}', expected: {list(LEVELS)}")
     raise error_at(
-        place, "LAUNCH150", phrase("there is no log level '{level}'", level=level), hint, ros_error=ros_error
+        location, "LAUNCH150", phrase("there is no log level '{level}'", level=level), hint, ros_error=ros_error
     )
 
 

@@ -7,7 +7,7 @@ from copy import deepcopy
 from typing import TYPE_CHECKING, Any
 
 from linkwright.diagnostics import foreign, phrase
-from linkwright.launch.errors.places import error_at
+from linkwright.launch.errors.locations import error_at
 from linkwright.launch.model.action import Action
 from linkwright.launch.model.actions.functions import OpaqueFunction
 from linkwright.launch.model.context import LaunchContext
@@ -81,7 +81,7 @@ class ForEach(Action):
                 values = yaml.safe_load(text)
             except yaml.YAMLError as error:
                 raise error_at(
-                    self.place,
+                    self.source_location,
                     "LAUNCH151",
                     phrase(
                         "values '{text}' of the loop are not valid YAML: {error}",
@@ -92,7 +92,7 @@ class ForEach(Action):
             if not isinstance(values, dict):
                 hint = phrase("write each set of values as {name: value, ...}, and separate them with ';'")
                 message = phrase("values '{text}' of the loop are not a mapping", text=text.strip())
-                raise error_at(self.place, "LAUNCH151", message, hint)
+                raise error_at(self.source_location, "LAUNCH151", message, hint)
             entities += as_entities(self._function(**values))
         return entities
 
@@ -156,7 +156,7 @@ class ForLoop(Action):
             length = int(text)
         except ValueError as error:
             message = phrase("the length '{text}' of a loop is not an integer", text=text)
-            raise error_at(self.place, "LAUNCH151", message, ros_error=error) from error
+            raise error_at(self.source_location, "LAUNCH151", message, ros_error=error) from error
         values = ForEach.SEPARATOR.join(f"{{i: {index}}}" for index in range(length))
         return [ForEach(values, function=self._function)]
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, Any
 
 from linkwright.diagnostics import phrase
-from linkwright.launch.errors.places import error_at
+from linkwright.launch.errors.locations import error_at
 from linkwright.launch.model.actions.named import parse_pairs
 from linkwright.launch.model.markup.command_line import parse_command_line
 
@@ -87,7 +87,7 @@ def _read_non_negative(entity: Entity, name: str) -> float | None:
         message = phrase(
             "attribute '{name}' of '{type_name}' must not be negative", name=name, type_name=entity.type_name
         )
-        raise error_at(entity.place, "LAUNCH118", message, ros_error=ValueError(text))
+        raise error_at(entity.source_location, "LAUNCH118", message, ros_error=ValueError(text))
     return value
 
 
@@ -107,5 +107,5 @@ def _parse_on_exit(entity: Entity, kwargs: dict[str, Any]) -> None:
             type_name=entity.type_name,
             on_exit=on_exit,
         )
-        raise error_at(entity.place, "LAUNCH118", message, ros_error=ValueError(text))
+        raise error_at(entity.source_location, "LAUNCH118", message, ros_error=ValueError(text))
     kwargs["on_exit"] = [Shutdown()]

@@ -6,7 +6,7 @@ from collections.abc import Callable, Iterable
 from typing import TYPE_CHECKING, Any
 
 from linkwright.diagnostics import phrase
-from linkwright.launch.errors.places import error_at
+from linkwright.launch.errors.locations import error_at
 from linkwright.launch.model import events
 from linkwright.launch.model.action import Action
 from linkwright.launch.model.context import LaunchContext
@@ -103,7 +103,7 @@ class TimerAction(Action):
         except ValueError as error:
             text = perform_substitutions(context, self._period) if isinstance(self._period, list) else self._period
             message = phrase("the period '{text}' of a timer is not a number", text=text)
-            raise error_at(self.place, "LAUNCH127", message, ros_error=error) from error
+            raise error_at(self.source_location, "LAUNCH127", message, ros_error=error) from error
         if not self._is_canceled:
             event = events.TimerEvent(timer_action=self, context=context)
             self._cancel = context.session.call_later(
@@ -131,4 +131,4 @@ def _normalize_period(period: Any, timer: TimerAction) -> Any:
         return float(period)
     except ValueError as error:
         message = phrase("the period '{text}' of a timer is not a number", text=period)
-        raise error_at(timer.place, "LAUNCH127", message, ros_error=error) from error
+        raise error_at(timer.source_location, "LAUNCH127", message, ros_error=error) from error

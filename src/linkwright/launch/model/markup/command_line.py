@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import Any
 
 from linkwright.diagnostics import phrase
-from linkwright.launch.errors.places import error_at, reading_markup_at
+from linkwright.launch.errors.locations import error_at, reading_markup_at
 from linkwright.launch.model.substitution import Substitution, TextSubstitution
 
 _ESCAPED_IN_DOUBLE_QUOTES = '"\\'
@@ -24,7 +24,7 @@ def parse_command_line(text: str, parser: Any) -> list[list[Substitution]]:
     substitutions: list[Substitution] = parser.parse_substitution(text)
     for substitution in substitutions:
         if isinstance(substitution, TextSubstitution):
-            with reading_markup_at(substitution.place):
+            with reading_markup_at(substitution.source_location):
                 splitter.add_text(substitution.text)
         else:
             splitter.add_substitution(substitution)
@@ -35,7 +35,7 @@ def parse_command_line(text: str, parser: Any) -> list[list[Substitution]]:
             text=text,
             quote=splitter.quote,
         )
-        raise error_at(substitutions[-1].place, "LAUNCH118", message, ros_error=ros_error)
+        raise error_at(substitutions[-1].source_location, "LAUNCH118", message, ros_error=ros_error)
     splitter.end_argument()
     return splitter.arguments
 

@@ -8,7 +8,7 @@ from __future__ import annotations
 import typing
 from typing import Any, Protocol
 
-from linkwright.launch.errors.places import SourceLocation
+from linkwright.launch.errors.locations import SourceLocation
 from linkwright.launch.model.entity import LaunchDescriptionEntity
 from linkwright.launch.model.substitution import Substitution
 
@@ -32,7 +32,7 @@ class Entity:
         raise NotImplementedError
 
     @property
-    def place(self) -> SourceLocation | None:
+    def source_location(self) -> SourceLocation | None:
         """The location of the entity in its file, or None if a program created the entity."""
         return None
 
@@ -76,23 +76,23 @@ def is_list_of_entities(data_type: Any) -> bool:
     )
 
 
-class PlacedText(str):
+class LocatedText(str):
     """A string from a launch file that has a location."""
 
-    __slots__ = ("place",)
+    __slots__ = ("source_location",)
 
-    place: SourceLocation | None
+    source_location: SourceLocation | None
 
-    def __new__(cls, text: str, place: SourceLocation | None) -> PlacedText:  # noqa: PYI034 - Self needs Python 3.11
+    def __new__(cls, text: str, location: SourceLocation | None) -> LocatedText:  # noqa: PYI034 - Self needs Python 3.11
         """Return a string with a location."""
-        placed_text = super().__new__(cls, text)
-        placed_text.place = place
-        return placed_text
+        located_text = super().__new__(cls, text)
+        located_text.source_location = location
+        return located_text
 
 
-def place_of(text: object) -> SourceLocation | None:
+def location_of(text: object) -> SourceLocation | None:
     """Return the location of a string, or None if it has none."""
-    return text.place if isinstance(text, PlacedText) else None
+    return text.source_location if isinstance(text, LocatedText) else None
 
 
 class Parser(Protocol):

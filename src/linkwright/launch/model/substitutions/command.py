@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING
 from linkwright.diagnostics import Diagnostic, LinkwrightError, Phrase, Severity, foreign, joined, phrase
 from linkwright.hosting.xacro_calls import Descriptions
 from linkwright.launch.errors.exceptions import SubstitutionFailure
-from linkwright.launch.errors.places import error_at, located
+from linkwright.launch.errors.locations import error_at, with_location
 from linkwright.launch.model.context import LaunchContext
 from linkwright.launch.model.declared_substitution import (
     DeclaredSubstitution,
@@ -22,7 +22,7 @@ from linkwright.launch.model.declared_substitution import (
 from linkwright.launch.model.substitution import (
     perform_substitutions,
 )
-from linkwright.launch.model.xacro_words import parse_xacro_arguments
+from linkwright.launch.model.xacro_arguments import parse_xacro_arguments
 from linkwright.packages import current_finder
 
 if TYPE_CHECKING:
@@ -60,12 +60,12 @@ class Command(DeclaredSubstitution, tag="command", shown="Command({command})"):
             arguments = shlex.split(text)
         except ValueError as error:
             raise error_at(
-                self.place,
+                self.source_location,
                 "LAUNCH128",
                 phrase("command '{text}' cannot be split into arguments: {error}", text=text, error=foreign(error)),
             ) from error
         if not arguments:
-            raise error_at(self.place, "LAUNCH128", phrase("the command is empty"))
+            raise error_at(self.source_location, "LAUNCH128", phrase("the command is empty"))
         xacro_arguments = _xacro_arguments(arguments)
         if xacro_arguments is not None:
             skipped_count = len(arguments) - len(xacro_arguments)
@@ -77,7 +77,7 @@ class Command(DeclaredSubstitution, tag="command", shown="Command({command})"):
         try:
             call, warning = parse_xacro_arguments(words, argument_text, Path.cwd())
         except LinkwrightError as error:
-            raise located(error, self.place) from error
+            raise with_location(error, self.source_location) from error
         if warning:
             self._warn(
                 context,
@@ -90,25 +90,25 @@ class Command(DeclaredSubstitution, tag="command", shown="Command({command})"):
     def _run(self, context: LaunchContext, text: str, words: list[str]) -> str:
         rule = perform_substitutions(context, self.on_stderr)
         if rule not in _STDERR_RULES:
-            message = phrase("'on_stderr' is '{rule}', not one of 'fail', 'warn', 'ignore', 'capture'", rule=rule)
+            message = phrase("'on_stderr' is '{value}', not one of 'fail', 'warn', 'ignore', 'capture'", value=rule)
             ros_error = SubstitutionFailure(
                 f"expected 'on_stderr' to be one of: ['fail', 'ignore', 'warn', 'capture'], got '{rule}'"
             )
-            raise error_at(self.place, "LAUNCH129", message, ros_error=ros_error)
+            raise error_at(self.source_location, "LAUNCH129", message, ros_error=ros_error)
         try:
             process = subprocess.run(  # noqa: S603 - the launch file's command
                 words, check=False, capture_output=True, text=True, errors="replace", env=dict(context.environment)
             )
         except OSError as error:
             message = phrase(
-                "command '{text}' cannot be run, because program '{words}' does not start: {strerror}",
+                "command '{text}' cannot be run, because program '{program}' does not start: {strerror}",
                 text=text,
                 strerror=foreign(error.strerror or error),
-                words=words[0],
+                program=words[0],
             )
             ros_error = SubstitutionFailure(f"file not found: {error}")
             hint = phrase("write a space after 'xacro'") if words[0].startswith("xacro/") else None
-            raise error_at(self.place, "LAUNCH129", message, hint, ros_error=ros_error) from error
+            raise error_at(self.source_location, "LAUNCH129", message, hint, ros_error=ros_error) from error
         if process.returncode != 0:
             message = _append_output(
                 phrase("command '{text}' failed with exit status {status}", text=text, status=process.returncode),
@@ -117,22 +117,22 @@ class Command(DeclaredSubstitution, tag="command", shown="Command({command})"):
             ros_error = SubstitutionFailure(
                 f"executed command failed. Command: {text}\nCaptured stderr output: {process.stderr}"
             )
-            raise error_at(self.place, "LAUNCH129", message, ros_error=ros_error)
+            raise error_at(self.source_location, "LAUNCH129", message, ros_error=ros_error)
         if process.stderr and rule == "fail":
             message = _append_output(phrase("command '{text}' wrote to stderr", text=text), process.stderr)
             hint = phrase("if that is not an error, pass on_stderr='warn' to Command")
             ros_error = SubstitutionFailure(
                 f"executed command showed stderr output. Command: {text}\nCaptured stderr output:\n{process.stderr}"
             )
-            raise error_at(self.place, "LAUNCH129", message, hint, ros_error=ros_error)
+            raise error_at(self.source_location, "LAUNCH129", message, hint, ros_error=ros_error)
         if process.stderr and rule == "warn":
             message = _append_output(phrase("command '{text}' wrote to stderr", text=text), process.stderr)
             self._warn(context, "LAUNCH129", message)
         return process.stdout + process.stderr if rule == "capture" else process.stdout
 
     def _warn(self, context: LaunchContext, code: str, message: Phrase, hint: Phrase | None = None) -> None:
-        source = self.place.source() if self.place else None
-        span = self.place.span(source) if self.place else None
+        source = self.source_location.source() if self.source_location else None
+        span = self.source_location.span(source) if self.source_location else None
         context.warn(Diagnostic(code, message, span, Severity.WARNING, hint=hint, source=source))
 
 

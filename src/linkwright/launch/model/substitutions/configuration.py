@@ -14,7 +14,7 @@ from typing import Any
 
 from linkwright.diagnostics import did_you_mean, phrase
 from linkwright.launch.errors.exceptions import SubstitutionFailure
-from linkwright.launch.errors.places import error_at
+from linkwright.launch.errors.locations import error_at
 from linkwright.launch.model.context import LaunchContext
 from linkwright.launch.model.declared_substitution import (
     AnyOptionalTexts,
@@ -72,7 +72,7 @@ class LaunchConfiguration(DeclaredSubstitution, tag="var", shown="LaunchConfig({
         )
         ros_error = SubstitutionFailure(f"launch configuration '{name}' does not exist")
         raise error_at(
-            self.place,
+            self.source_location,
             "LAUNCH121",
             phrase("launch configuration '{name}' is not set", name=name),
             hint,
@@ -105,7 +105,7 @@ class EnvironmentVariable(DeclaredSubstitution, tag="env", shown="EnvVar({name})
         hint = did_you_mean(name, context.environment) or phrase("set the variable, or pass a default_value")
         ros_error = SubstitutionFailure(f"environment variable '{name}' does not exist")
         raise error_at(
-            self.place,
+            self.source_location,
             "LAUNCH122",
             phrase("environment variable '{name}' is not set", name=name),
             hint,
@@ -140,7 +140,9 @@ class LocalSubstitution(Substitution):
         if local not in local_values:
             ros_error = SubstitutionFailure(f"no local '{local}' in this context")
             message = phrase("the launch context has no local '{first}' at this point", first=local)
-            raise error_at(self.place, "LAUNCH123", message, did_you_mean(local, local_values), ros_error=ros_error)
+            raise error_at(
+                self.source_location, "LAUNCH123", message, did_you_mean(local, local_values), ros_error=ros_error
+            )
         value = local_values[local]
         for attribute in attributes:
             if not hasattr(value, attribute):
@@ -151,7 +153,7 @@ class LocalSubstitution(Substitution):
                     name=attribute,
                 )
                 hint = did_you_mean(attribute, dir(value))
-                raise error_at(self.place, "LAUNCH123", message, hint, ros_error=SubstitutionFailure(message))
+                raise error_at(self.source_location, "LAUNCH123", message, hint, ros_error=SubstitutionFailure(message))
             value = getattr(value, attribute)
         return str(value)
 
@@ -169,7 +171,10 @@ class ThisLaunchFile(DeclaredSubstitution, tag="filename"):
         if path is None:
             ros_error = SubstitutionFailure(f"{type(self).__name__} used outside of a launch file (in a script)")
             raise error_at(
-                self.place, "LAUNCH123", phrase("the launch description was not read from a file"), ros_error=ros_error
+                self.source_location,
+                "LAUNCH123",
+                phrase("the launch description was not read from a file"),
+                ros_error=ros_error,
             )
         return str(path)
 

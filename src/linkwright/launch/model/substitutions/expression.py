@@ -7,7 +7,7 @@ from collections.abc import Sequence
 from typing import Any
 
 from linkwright.diagnostics import LinkwrightError, foreign, phrase
-from linkwright.launch.errors.places import error_at
+from linkwright.launch.errors.locations import error_at
 from linkwright.launch.model.context import LaunchContext
 from linkwright.launch.model.declared_substitution import (
     AnyTexts,
@@ -89,4 +89,4 @@ class PythonExpression(DeclaredSubstitution, tag="eval"):
                 hint = phrase(
                     "put quotes around the parts that are strings: [\"'\", LaunchConfiguration('x'), \"' == 'y'\"]"
                 )
-            raise error_at(self.place, "LAUNCH126", message, hint, ros_error=error) from error
+            raise error_at(self.source_location, "LAUNCH126", message, hint, ros_error=error) from error

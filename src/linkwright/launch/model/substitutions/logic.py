@@ -8,7 +8,7 @@ from typing import Any
 
 from linkwright.diagnostics import phrase
 from linkwright.launch.errors.exceptions import SubstitutionFailure
-from linkwright.launch.errors.places import error_at
+from linkwright.launch.errors.locations import error_at
 from linkwright.launch.model.context import LaunchContext
 from linkwright.launch.model.declared_substitution import (
     AnyTexts,
@@ -176,7 +176,7 @@ class IfElseSubstitution(
         if not if_value and not else_value and (if_value, else_value) == ("", ""):
             text = "One of if_value and else_value must be specified"
             raise error_at(
-                self.place,
+                self.source_location,
                 "LAUNCH127",
                 phrase("IfElseSubstitution needs an 'if_value' or an 'else_value'"),
                 ros_error=RuntimeError(text),
@@ -199,7 +199,9 @@ def _evaluate_boolean(substitution: Substitution, context: LaunchContext, value:
     except ValueError as error:
         name = type(substitution).__name__
         message = phrase("{name} needs 'true' or 'false', not '{text}'", name=name, text=text)
-        raise error_at(substitution.place, "LAUNCH127", message, ros_error=SubstitutionFailure(str(error))) from error
+        raise error_at(
+            substitution.source_location, "LAUNCH127", message, ros_error=SubstitutionFailure(str(error))
+        ) from error
 
 
 def _text(value: bool) -> str:

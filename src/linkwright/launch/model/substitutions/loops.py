@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import Any
 
 from linkwright.diagnostics import did_you_mean, phrase, quoted_names
-from linkwright.launch.errors.places import error_at
+from linkwright.launch.errors.locations import error_at
 from linkwright.launch.model.context import LaunchContext
 from linkwright.launch.model.declared_substitution import (
     DeclaredSubstitution,
@@ -68,7 +68,7 @@ class ForEachVar(DeclaredSubstitution, tag="for-var", shown="{kind}(name={name},
             )
         ros_error = RuntimeError(f"No value available for {type(self).__name__} '{name}' and no default value provided")
         raise error_at(
-            self.place,
+            self.source_location,
             "LAUNCH123",
             phrase("the loop has no value named '{name}'", name=name),
             hint,

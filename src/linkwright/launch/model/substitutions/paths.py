@@ -11,7 +11,7 @@ from typing import Any
 from linkwright.diagnostics import Phrase, did_you_mean, foreign, phrase
 from linkwright.files.input_files import read_text
 from linkwright.launch.errors.exceptions import SubstitutionFailure
-from linkwright.launch.errors.places import error_at
+from linkwright.launch.errors.locations import error_at
 from linkwright.launch.model.context import LaunchContext
 from linkwright.launch.model.declared_substitution import (
     DeclaredSubstitution,
@@ -103,7 +103,11 @@ class FindExecutable(DeclaredSubstitution, tag="find-exec", shown="FindExec({nam
         hint = did_you_mean(name, replaceable_programs) or phrase("install it, or add its folder to PATH")
         ros_error = SubstitutionFailure(f"executable '{name}' not found on the PATH")
         raise error_at(
-            self.place, "LAUNCH124", phrase("program '{name}' is not on PATH", name=name), hint, ros_error=ros_error
+            self.source_location,
+            "LAUNCH124",
+            phrase("program '{name}' is not on PATH", name=name),
+            hint,
+            ros_error=ros_error,
         )
 
 
@@ -124,12 +128,15 @@ class FileContent(DeclaredSubstitution, tag="file-content"):
         except FileNotFoundError as error:
             ros_error = SubstitutionFailure(f"File not found: {path}")
             raise error_at(
-                self.place, "LAUNCH125", phrase("file '{path}' does not exist", path=path), ros_error=ros_error
+                self.source_location,
+                "LAUNCH125",
+                phrase("file '{path}' does not exist", path=path),
+                ros_error=ros_error,
             ) from error
         except (OSError, UnicodeDecodeError) as error:
             ros_error = SubstitutionFailure(f"Failed to open file: {path}")
             message = phrase("file '{path}' cannot be read: {error}", path=path, error=foreign(error))
-            raise error_at(self.place, "LAUNCH125", message, ros_error=ros_error) from error
+            raise error_at(self.source_location, "LAUNCH125", message, ros_error=ros_error) from error
 
 
 class FindLaunchfile(DeclaredSubstitution, tag="find-launchfile", shown="FindLaunchfile(name={name}, path={path})"):
@@ -165,10 +172,10 @@ class FindLaunchfile(DeclaredSubstitution, tag="find-launchfile", shown="FindLau
             names_text = ", ".join(file.name for file in matching_files)
             raise self._create_error(
                 phrase(
-                    "folder '{folder}' has several launch files '{name}': {listed}",
+                    "folder '{folder}' has several launch files '{name}': {paths}",
                     name=name,
                     folder=folder,
-                    listed=names_text,
+                    paths=names_text,
                 )
             )
         raise self._create_error(
@@ -177,4 +184,4 @@ class FindLaunchfile(DeclaredSubstitution, tag="find-launchfile", shown="FindLau
         )
 
     def _create_error(self, message: Phrase, hint: Phrase | None = None) -> Exception:
-        return error_at(self.place, "LAUNCH125", message, hint, ros_error=SubstitutionFailure(message))
+        return error_at(self.source_location, "LAUNCH125", message, hint, ros_error=SubstitutionFailure(message))

@@ -139,13 +139,13 @@ launch_service = _create_fixture(_launch_service, "function")
 launch_context = _create_fixture(_launch_context, "function")
 
 
-def finish(service: LaunchService, phase: str, *, ask: bool = True) -> None:
+def finish(service: LaunchService, phase: str, *, shuts_down: bool = True) -> None:
     """Shut down a running launch, and wait until it has ended.
 
     Args:
         service: the launch service.
         phase: the phase of the test run, with which the failure message begins.
-        ask: whether to shut the launch down. If False, only wait until it ends on its own.
+        shuts_down: whether to shut the launch down. If False, only wait until it ends on its own.
 
     Raises:
         pytest.fail.Exception: something in the launch failed.
@@ -153,7 +153,7 @@ def finish(service: LaunchService, phase: str, *, ask: bool = True) -> None:
     loop, task = service.event_loop, service.task
     if loop is None or task is None or loop.is_closed():
         return
-    if ask:
+    if shuts_down:
         service.shutdown(force_sync=True)
     status = loop.run_until_complete(task)
     if status != 0:

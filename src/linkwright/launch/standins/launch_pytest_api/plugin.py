@@ -74,7 +74,7 @@ def pytest_fixture_setup(fixturedef: pytest.FixtureDef[Any], request: SubRequest
     loop = request.getfixturevalue("event_loop")
     fixture_value = yield
     phase = f"launch fixture '{options.fixture}'"
-    fixturedef.addfinalizer(functools.partial(finish, service, phase, ask=options.auto_shutdown))
+    fixturedef.addfinalizer(functools.partial(finish, service, phase, shuts_down=options.auto_shutdown))
     try:
         _launch(service, loop, _description_in(fixture_value, phase), options)
     except BaseException as error:  # cache the error, so that other tests that use the fixture fail with it
@@ -208,7 +208,7 @@ class LaunchTest(pytest.Function):
     def _end_launch(self) -> None:
         service = self.funcargs["launch_service"]
         assert isinstance(service, LaunchService)
-        finish(service, f"before test '{self.name}'", ask=self.options.auto_shutdown)
+        finish(service, f"before test '{self.name}'", shuts_down=self.options.auto_shutdown)
 
     def _resume(self, loop: asyncio.AbstractEventLoop, generator: Any) -> None:
         """End the launch, and run the part of the test after the ``yield``."""

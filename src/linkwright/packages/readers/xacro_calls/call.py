@@ -10,7 +10,7 @@ from functools import cached_property
 
 from linkwright.diagnostics import Span
 from linkwright.loading.lean_dataclasses import dataclass, field
-from linkwright.packages.readers.xacro_calls.texts import Choice, Open, Selection, Text, resolve, split_mark
+from linkwright.packages.readers.xacro_calls.texts import Choice, Placeholder, Selection, Text, resolve, split_mark
 
 _LAUNCH_PREFIX = "launch:"
 
@@ -82,9 +82,9 @@ class CallingFile:
             self.choices[_LAUNCH_PREFIX + name] = Choice(tuple((value,) for value in values))
 
 
-def launch_argument(name: str) -> Open:
+def launch_argument(name: str) -> Placeholder:
     """Return the placeholder for the value of a launch argument."""
-    return Open(_LAUNCH_PREFIX + name)
+    return Placeholder(_LAUNCH_PREFIX + name)
 
 
 def launch_choice(name: str) -> str:

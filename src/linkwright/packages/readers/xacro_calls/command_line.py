@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterable, Iterator
 
 from linkwright.loading.deferred import lazy_pattern
-from linkwright.packages.readers.xacro_calls.texts import Open, Share, Text, joined, literal
+from linkwright.packages.readers.xacro_calls.texts import Placeholder, Share, Text, joined, literal
 
 _PROGRAM = lazy_pattern(r"(^|/)xacro(\.py)?$")
 _NAME = lazy_pattern(r"[A-Za-z_][\w.-]*:=")
@@ -76,7 +76,7 @@ def _words(line: Text) -> Iterator[Text]:
 
 def _join_pieces(parts: Iterable[Text]) -> Text:
     """Concatenate texts, and merge adjacent strings."""
-    pieces: list[str | Share | Open] = []
+    pieces: list[str | Share | Placeholder] = []
     for piece in joined(parts):
         previous = pieces[-1] if pieces else None
         if isinstance(piece, str) and isinstance(previous, str):

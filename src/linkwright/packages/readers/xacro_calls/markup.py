@@ -11,7 +11,7 @@ from linkwright.loading.deferred import lazy_pattern
 from linkwright.loading.lean_typing import Any
 from linkwright.packages.readers.xacro_calls.call import CallingFile, Inclusion, XacroCall, launch_argument
 from linkwright.packages.readers.xacro_calls.command_line import parse_xacro_command
-from linkwright.packages.readers.xacro_calls.texts import UNKNOWN, Open, Share, Text, literal
+from linkwright.packages.readers.xacro_calls.texts import UNKNOWN, Placeholder, Share, Text, literal
 from linkwright.xmltree import Element, parse
 
 _TAG_AND_REST = lazy_pattern(r"\s*(\S+)\s*(.*)", re.DOTALL)
@@ -128,7 +128,7 @@ def parse_markup_text(text: str, file: str) -> Text:
         text: the text.
         file: the path of the launch file, for ``$(dirname)``.
     """
-    pieces: list[str | Share | Open] = []
+    pieces: list[str | Share | Placeholder] = []
     position = 0
     for start, end in _substitutions(text):
         pieces += literal(text[position:start])

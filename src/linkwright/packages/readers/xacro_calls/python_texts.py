@@ -17,7 +17,7 @@ from linkwright.packages.readers.xacro_calls.python_scopes import Binding, Scope
 from linkwright.packages.readers.xacro_calls.texts import (
     UNKNOWN,
     Choice,
-    Open,
+    Placeholder,
     Share,
     Text,
     joined,
@@ -309,7 +309,9 @@ class PythonTexts:
             tuple(map(_as_text, value.values)) if isinstance(value, Items) else (_as_text(value),) for value in values
         ]
         self.file.choices[name] = Choice(tuple(dict.fromkeys(rows)), is_certain)
-        return Items(tuple((Open(name, column),) for column in range(columns))) if columns else (Open(name),)
+        if not columns:
+            return (Placeholder(name),)
+        return Items(tuple((Placeholder(name, column),) for column in range(columns)))
 
     def _parameter(self, name: str, scope: Scope) -> Value:
         """Return the value of a function's parameter, from pytest or from calls in the same file."""

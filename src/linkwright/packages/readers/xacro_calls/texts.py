@@ -27,7 +27,7 @@ class Share:
 
 
 @dataclass(frozen=True, slots=True)
-class Open:
+class Placeholder:
     """A placeholder in a text for a value that is determined when the program runs.
 
     Attributes:
@@ -42,8 +42,8 @@ class Open:
     starts_component: bool = False
 
 
-Text = tuple[Union[str, Share, Open], ...]  # noqa: UP007 - Python 3.10 cannot join a name that is not yet there
-UNKNOWN = Open("")
+Text = tuple[Union[str, Share, Placeholder], ...]  # noqa: UP007 - Python 3.10 cannot join a name that is not yet there
+UNKNOWN = Placeholder("")
 """A placeholder with an unknown value."""
 
 
@@ -97,7 +97,7 @@ def joined_path(parts: Sequence[Text]) -> Text:
             continue
         if part and not (isinstance(path[-1], str) and path[-1].endswith("/")):
             path = (*path, "/")
-        if isinstance(first, Open) and first != UNKNOWN:
+        if isinstance(first, Placeholder) and first != UNKNOWN:
             part = (replace(first, starts_component=True), *part[1:])
         path = (*path, *part)
     return path
@@ -120,7 +120,7 @@ def resolve(text: Text, choices: Mapping[str, Choice], selection: Selection, dep
         if value is None and content != ():
             return None
         string = share_mark(value or "") if isinstance(piece, Share) else value or ""
-        if isinstance(piece, Open) and piece.starts_component and string.startswith(("/", _SHARE_DELIMITER)):
+        if isinstance(piece, Placeholder) and piece.starts_component and string.startswith(("/", _SHARE_DELIMITER)):
             strings.clear()
         strings.append(string)
     return "".join(strings)
@@ -142,14 +142,14 @@ def split_mark(path: str) -> tuple[str | None, str]:
     return package, rest
 
 
-def _selected_text(place: Open, choices: Mapping[str, Choice], selection: Selection) -> Text | str | None:
-    if place.choice in selection.fixed_texts:
-        return selection.fixed_texts[place.choice]
-    choice = choices.get(place.choice)
+def _selected_text(placeholder: Placeholder, choices: Mapping[str, Choice], selection: Selection) -> Text | str | None:
+    if placeholder.choice in selection.fixed_texts:
+        return selection.fixed_texts[placeholder.choice]
+    choice = choices.get(placeholder.choice)
     if choice is None or not choice.rows:
         return None
-    row = choice.rows[min(selection.rows.get(place.choice, 0), len(choice.rows) - 1)]
-    return row[place.column] if place.column < len(row) else None
+    row = choice.rows[min(selection.rows.get(placeholder.choice, 0), len(choice.rows) - 1)]
+    return row[placeholder.column] if placeholder.column < len(row) else None
 
 
 def choices_in(text: Text, choices: Mapping[str, Choice], fixed_texts: Mapping[str, str]) -> list[str]:
@@ -160,7 +160,7 @@ def choices_in(text: Text, choices: Mapping[str, Choice], fixed_texts: Mapping[s
         for piece in pending.pop():
             if isinstance(piece, Share):
                 pending.append(piece.package)
-            elif isinstance(piece, Open) and piece.choice not in names and piece.choice not in fixed_texts:
+            elif isinstance(piece, Placeholder) and piece.choice not in names and piece.choice not in fixed_texts:
                 choice = choices.get(piece.choice)
                 if choice is not None:
                     names[piece.choice] = None
@@ -194,6 +194,6 @@ def variations(
     alternatives = [(name, row) for name in unselected_names for row in range(1, len(choices[name].rows))]
     for name, row in alternatives[:MAX_VARIATIONS]:
         yield Selection({**start.rows, name: row}, start.fixed_texts), is_certain
-    pairs = ((one, other) for one, other in combinations(alternatives, 2) if one[0] != other[0])
+    pairs = ((first, second) for first, second in combinations(alternatives, 2) if first[0] != second[0])
     for pair in islice(pairs, MAX_VARIATIONS):
         yield Selection({**start.rows, **dict(pair)}, start.fixed_texts), False

@@ -141,7 +141,7 @@ class ModellingFeature(PageFeature):
                 refuse(page, error.message)
             except LinkwrightError as error:
                 finding = error.diagnostics[0]
-                refuse(page, finding.placed_message)
+                refuse(page, finding.located_message)
             except Exception as error:  # noqa: BLE001  # editing must continue after an error of this program
                 self.context.node.get_logger().error(f"The world cannot be edited: {type(error).__name__}: {error}")
                 refuse(page, f"{type(error).__name__}: {error}")

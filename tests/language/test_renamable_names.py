@@ -9,8 +9,8 @@ import pytest
 
 from linkwright.diagnostics import LinkwrightError
 from linkwright.language.file_renaming import rename_file
-from linkwright.language.includes import real
-from linkwright.language.rename_places import renamable_name_at, rename_name
+from linkwright.language.includes import real_path
+from linkwright.language.renamable_names import renamable_name_at, rename_name
 from linkwright.language.renaming import Renaming
 from linkwright.language.workspace import Workspace
 from linkwright.xacro import expand
@@ -98,7 +98,7 @@ class Files:
     """
 
     def __init__(self, folder: Path, files: Mapping[str, str]) -> None:
-        self.folder = real(folder)
+        self.folder = real_path(folder)
         for name, text in files.items():
             path = self.folder / name
             path.parent.mkdir(parents=True, exist_ok=True)

@@ -175,7 +175,7 @@ def _rename_mention(project: Workspace, texts: Mapping[Path, str], mention: Ment
         error = error or _refusal_error(
             mention.name, phrase("several robots have this name, and the file may refer to any")
         )
-    raise error or _refusal_error(mention.name, phrase("no description of the workspace has it"))
+    raise error or _refusal_error(mention.name, phrase("no description in the workspace contains it"))
 
 
 def _rename_in_srdf(project: Workspace, texts: Mapping[Path, str], name: Occurrence, new: str) -> Renaming:
@@ -201,7 +201,7 @@ def _rename_in_srdf(project: Workspace, texts: Mapping[Path, str], name: Occurre
                 continue
             if any((edit.file, edit.start) == (name.file, name.start) for edit in renaming.edits):
                 return renaming
-    raise error or _refusal_error(name.name, phrase("no description of the workspace has it"))
+    raise error or _refusal_error(name.name, phrase("no description in the workspace contains it"))
 
 
 def _definition(
@@ -221,7 +221,9 @@ def _definition(
 
 
 def _refusal_error(name: str, reason: Phrase, span: Span | None = None) -> LinkwrightError:
-    return LinkwrightError(Diagnostic(_UNPROVED, phrase("'{name}' is not renamed: {why}", name=name, why=reason), span))
+    return LinkwrightError(
+        Diagnostic(_UNPROVED, phrase("'{name}' is not renamed: {reason}", name=name, reason=reason), span)
+    )
 
 
 def _invalid_name_error(new: str, kind: Phrase) -> LinkwrightError:

@@ -18,7 +18,7 @@ from linkwright.diagnostics import Diagnostic, LinkwrightError, Phrase, SourceTe
 from linkwright.launch.errors.exceptions import as_ros_error
 from linkwright.packages.programs.code_files import is_linkwright_file
 
-T = TypeVar("T", bound="Placed")
+T = TypeVar("T", bound="Located")
 
 _STARTER_FOLDERS = (str(Path(__file__).parents[2] / "cli") + os.sep, str(Path(asyncio.__file__).parent) + os.sep)
 """The folders of code that may have started Linkwright.
@@ -33,18 +33,18 @@ class SourceLocation(ABC):
     __slots__ = ()
 
     def __deepcopy__(self, _: object) -> SourceLocation:
-        """Return the place itself, because it is immutable."""
+        """Return the location itself, because it is immutable."""
         return self
 
     @staticmethod
     def of_caller() -> SourceLocation | None:
-        """Return the place in the markup that is being read, or the caller's place in user code.
+        """Return the location in the markup being read, or the caller's location in user code.
 
         Returns:
-            The place; None if the call did not come from user code.
+            The location; None if the call did not come from user code.
         """
-        if _markup_places:
-            return _markup_places[-1]
+        if _markup_locations:
+            return _markup_locations[-1]
         frame: FrameType | None = sys._getframe(1)
         while frame is not None:
             filename = frame.f_code.co_filename
@@ -66,7 +66,7 @@ class SourceLocation(ABC):
 
     @abstractmethod
     def span(self, source: SourceText | None = None) -> Span:
-        """Return the lines and columns of the place, computed on request."""
+        """Return the lines and columns of the location, computed on request."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -106,53 +106,53 @@ class MarkupLocation(SourceLocation):
         return MarkupLocation(self.text, min(self.start + start, self.end), min(self.start + end, self.end))
 
 
-class Placed:
-    """An object that records the place where the user's program or launch file created it.
+class Located:
+    """An object that records the location where the user's program or launch file created it.
 
     Attributes:
-        place: the location; None if it is unknown.
+        source_location: the location; None if it is unknown.
     """
 
-    place: SourceLocation | None = None
+    source_location: SourceLocation | None = None
 
     def __new__(cls: type[T], *_: Any, **__: Any) -> T:  # noqa: PYI019 - Self needs Python 3.11
-        """Create the object, and record the place of the caller.
+        """Create the object, and record the location of the caller.
 
-        The place is not recorded in ``__init__``, because users' classes need not call the constructor of this class.
+        The location is not recorded in ``__init__``, because users' classes need not call this constructor.
         """
         created = super().__new__(cls)
-        created.place = SourceLocation.of_caller()
+        created.source_location = SourceLocation.of_caller()
         return created
 
 
-_markup_places: list[SourceLocation | None] = []
+_markup_locations: list[SourceLocation | None] = []
 
 
 @contextmanager
-def reading_markup_at(place: SourceLocation | None) -> Iterator[None]:
-    """Record a place in markup for the objects that are created in this context.
+def reading_markup_at(location: SourceLocation | None) -> Iterator[None]:
+    """Record a location in markup for the objects that are created in this context.
 
-    The place is None if it is unknown.
+    The location is None if it is unknown.
     """
-    _markup_places.append(place)
+    _markup_locations.append(location)
     try:
         yield
     finally:
-        _markup_places.pop()
+        _markup_locations.pop()
 
 
 @contextmanager
 def outside_markup() -> Iterator[None]:
-    """Record the caller's place in Python code for the objects that are created in this context.
+    """Record the caller's location in Python code for objects created in this context.
 
-    Without this context, the place in the markup that is being read would be recorded.
+    Without this context, the location in the markup that is being read would be recorded.
     """
-    saved_places = _markup_places[:]
-    _markup_places.clear()
+    saved_locations = _markup_locations[:]
+    _markup_locations.clear()
     try:
         yield
     finally:
-        _markup_places[:] = saved_places
+        _markup_locations[:] = saved_locations
 
 
 @dataclass(frozen=True, slots=True)
@@ -202,22 +202,22 @@ def read_source(filename: str) -> SourceText | None:
         return None
 
 
-def located(error: LinkwrightError, place: SourceLocation | None) -> LinkwrightError:
-    """Set the location of all findings of an error to a place, if none of them has a location.
+def with_location(error: LinkwrightError, location: SourceLocation | None) -> LinkwrightError:
+    """Set the location of all findings of an error to a location, if none of them has a location.
 
     Returns:
         The same error.
     """
-    if place is None or any(diagnostic.span for diagnostic in error.diagnostics):
+    if location is None or any(diagnostic.span for diagnostic in error.diagnostics):
         return error
-    source = place.source()
-    span = place.span(source)
+    source = location.source()
+    span = location.span(source)
     error.diagnostics = tuple(diagnostic.with_changes(span=span, source=source) for diagnostic in error.diagnostics)
     return error
 
 
 def error_at(
-    place: SourceLocation | None,
+    location: SourceLocation | None,
     code: str,
     message: Phrase,
     hint: Phrase | None = None,
@@ -227,14 +227,14 @@ def error_at(
     """Return a new error with a location.
 
     Args:
-        place: the location; None if it is unknown.
+        location: the location; None if it is unknown.
         code: the code of the finding.
         message: the message of the finding.
         hint: the hint of the finding, or None.
         ros_error: the exception that ROS raises in this case, or None. The new error has the class and text of this
             exception, because programs may check them.
     """
-    return located(as_ros_error(ros_error, Diagnostic(code, message, hint=hint)), place)
+    return with_location(as_ros_error(ros_error, Diagnostic(code, message, hint=hint)), location)
 
 
 def _characters(line: str, byte_offset: int) -> int:

@@ -1,4 +1,7 @@
-"""The record of a file that a package installs, for all kinds of build files."""
+"""The records of the files and programs that a package installs.
+
+They are the same for all kinds of build files.
+"""
 
 from __future__ import annotations
 
@@ -6,6 +9,7 @@ import re
 from collections.abc import Mapping
 from pathlib import Path
 
+from linkwright.loading.deferred import lazy_pattern
 from linkwright.loading.lean_dataclasses import NamedTuple
 
 _PLACEHOLDER = r"@(\w+)@|\$\{(\w+)\}"
@@ -42,3 +46,25 @@ class InstalledFile(NamedTuple):
         values = self.values or {}
         text = (package / self.source).read_text(encoding="utf-8", errors="replace")
         return re.sub(_PLACEHOLDER, lambda match: values.get(match[1] or match[2], ""), text)
+
+
+PROGRAM_GROUP = "console_scripts"
+"""The group of the programs that a package installs."""
+
+ENTRY_POINT_LINE = lazy_pattern(r"\s*([^\s=]+)\s*=\s*([\w.]+)\s*(?::\s*([\w.]+))?")
+"""The name and module of an entry point, and its attribute if there is one."""
+
+
+class EntryPoint(NamedTuple):
+    """A function that serves as a program.
+
+    Attributes:
+        module: the full name of the function's module.
+        function: the name of the function in the module, which may contain dots.
+    """
+
+    module: str
+    function: str
+
+    def __str__(self) -> str:
+        return f"{self.module}:{self.function}"

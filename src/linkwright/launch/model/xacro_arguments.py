@@ -35,7 +35,7 @@ def parse_xacro_arguments(words: Sequence[str], text: str, folder: Path) -> tupl
         if separator:
             if glued := _GLUED_FILE.match(name):
                 raise _usage_error(
-                    phrase("the argument '{name}' of xacro stands directly behind the file", name=glued[2]),
+                    phrase("no space separates the argument '{name}' of xacro from the file", name=glued[2]),
                     phrase("write a space before '{name}:='", name=glued[2]),
                 )
             if value and not name.startswith("_"):
@@ -45,7 +45,7 @@ def parse_xacro_arguments(words: Sequence[str], text: str, folder: Path) -> tupl
         elif argument.startswith("-") and len(argument) > 1:
             if argument not in _OPTIONS_WITHOUT_EFFECT and not argument.startswith(("-v", "--verbosity=")):
                 raise _usage_error(
-                    phrase("option '{word}' of xacro is not supported in a launch file", word=argument),
+                    phrase("option '{option}' of xacro is not supported in a launch file", option=argument),
                     phrase("remove the option"),
                 )
         else:

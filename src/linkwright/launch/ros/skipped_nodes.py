@@ -16,7 +16,7 @@ _NODES_PARAMETER = "node_names"
 
 def record_skipped_node(context: LaunchContext, name: str) -> None:
     """Record the name, without the namespace, of a node that is skipped."""
-    context.session.left_out.add(name)
+    context.session.skipped_nodes.add(name)
 
 
 def without_skipped_nodes(context: LaunchContext, package: str, parameters: dict[str, Any]) -> dict[str, Any]:
@@ -44,7 +44,7 @@ def remove_skipped_nodes(context: LaunchContext, request: Any) -> None:
 def _without_skipped(context: LaunchContext, names: Iterable[str]) -> list[str]:
     remaining_names = []
     for name in names:
-        if name.rpartition("/")[2] in context.session.left_out:
+        if name.rpartition("/")[2] in context.session.skipped_nodes:
             context.session.log.write_warning("launch", f"'{name}' is skipped, so no lifecycle manager waits for it")
         else:
             remaining_names.append(name)

@@ -56,18 +56,18 @@ class Candidate:
     is_choice: bool = False
 
 
-def words(place: TextRange) -> list[TextRange]:
+def words(text_range: TextRange) -> list[TextRange]:
     """Return the ranges of the words in a text, each expression as a single word."""
-    return [place.subrange(*match.span()) for match in _WORD.finditer(place.text)]
+    return [text_range.subrange(*match.span()) for match in _WORD.finditer(text_range.text)]
 
 
-def literal(place: TextRange) -> Candidate | None:
+def literal(text_range: TextRange) -> Candidate | None:
     """Return a candidate for a word that is a literal number, or None for any other word."""
     try:
-        value = float(place.text)
+        value = float(text_range.text)
     except ValueError:
         return None
-    return Candidate(place, value, shortest_text, value in (1.0, -1.0))
+    return Candidate(text_range, value, shortest_text, value in (1.0, -1.0))
 
 
 def added_constants(word: TextRange) -> Iterator[Candidate]:
@@ -80,12 +80,12 @@ def added_constants(word: TextRange) -> Iterator[Candidate]:
     if expression is None or not expression.isascii():
         return
     body = expression.strip()
-    expression_place = word.subrange(2, len(word.text) - 1)
+    expression_range = word.subrange(2, len(word.text) - 1)
     start = len(expression) - len(expression.lstrip())
-    expression_place = expression_place.subrange(start, start + len(body))
+    expression_range = expression_range.subrange(start, start + len(body))
     tree = _parse(body)
     if tree is not None:
-        yield from _terms(tree, expression_place)
+        yield from _terms(tree, expression_range)
 
 
 def is_constant(word: TextRange) -> bool:
@@ -152,24 +152,24 @@ def _used_names(tree: ast.AST) -> set[str]:
     return {node.id for node in ast.walk(tree) if isinstance(node, ast.Name)}
 
 
-def _terms(node: ast.expr, expression_place: TextRange) -> Iterator[Candidate]:
+def _terms(node: ast.expr, expression_range: TextRange) -> Iterator[Candidate]:
     value = _literal_value(node)
     if value is not None:
-        yield _number_candidate(expression_place, node, value)
+        yield _number_candidate(expression_range, node, value)
     elif isinstance(node, ast.BinOp) and isinstance(node.op, (ast.Add, ast.Sub)):
-        signed_candidate = _signed_term(node, expression_place)
-        yield from _terms(node.right, expression_place) if signed_candidate is None else (signed_candidate,)
-        yield from _terms(node.left, expression_place)
+        signed_candidate = _signed_term(node, expression_range)
+        yield from _terms(node.right, expression_range) if signed_candidate is None else (signed_candidate,)
+        yield from _terms(node.left, expression_range)
     elif isinstance(node, ast.BinOp) and _converts_degrees(node):
         while isinstance(node, ast.BinOp):
             node = node.left
-        yield from _terms(node, expression_place)
+        yield from _terms(node, expression_range)
     elif isinstance(node, ast.UnaryOp) and isinstance(node.op, (ast.UAdd, ast.USub)):
-        yield from _terms(node.operand, expression_place)
+        yield from _terms(node.operand, expression_range)
     elif isinstance(node, ast.Call) and len(node.args) == 1 and isinstance(node.func, (ast.Name, ast.Attribute)):
         name = node.func.id if isinstance(node.func, ast.Name) else node.func.attr
         if name == "radians":
-            yield from _terms(node.args[0], expression_place)
+            yield from _terms(node.args[0], expression_range)
 
 
 def _converts_degrees(node: ast.expr) -> bool:
@@ -181,7 +181,7 @@ def _converts_degrees(node: ast.expr) -> bool:
     )
 
 
-def _signed_term(node: ast.BinOp, expression_place: TextRange) -> Candidate | None:
+def _signed_term(node: ast.BinOp, expression_range: TextRange) -> Candidate | None:
     """Return a candidate for the last number of a sum, including its sign.
 
     The result is None if the last term is not a number, or is in brackets.
@@ -189,13 +189,13 @@ def _signed_term(node: ast.BinOp, expression_place: TextRange) -> Candidate | No
     value = _literal_value(node.right)
     if value is None:
         return None
-    end, text = node.right.end_col_offset or 0, expression_place.text
+    end, text = node.right.end_col_offset or 0, expression_range.text
     text_before = text[: node.right.col_offset].rstrip()
     sign = "+" if isinstance(node.op, ast.Add) else "-"
     if not text_before.endswith(sign):
         return None
     blanks = text[len(text_before) : node.right.col_offset]
-    term = expression_place.subrange(len(text_before) - 1, end)
+    term = expression_range.subrange(len(text_before) - 1, end)
 
     def write(number: float, tolerance: float) -> str:
         return f"{'-' if number < 0 else '+'}{blanks}{shortest_text(abs(number), tolerance)}"
@@ -213,6 +213,6 @@ def _literal_value(node: ast.AST) -> float | None:
     return None
 
 
-def _number_candidate(expression_place: TextRange, node: ast.expr, value: float) -> Candidate:
-    text_range = expression_place.subrange(node.col_offset, node.end_col_offset or node.col_offset)
+def _number_candidate(expression_range: TextRange, node: ast.expr, value: float) -> Candidate:
+    text_range = expression_range.subrange(node.col_offset, node.end_col_offset or node.col_offset)
     return Candidate(text_range, value, shortest_text, value in (1.0, -1.0))
