@@ -1,0 +1,197 @@
+"""Rendering of a scene into the pixels of an image."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from linkwright.picture.camera import VIEWS, Camera, View
+from linkwright.picture.edges import edge_strength
+from linkwright.picture.ground import ground_points, is_ground_visible, shadow_map
+from linkwright.picture.layers import Mesh
+from linkwright.picture.rasterizer import DepthBuffer, ScreenTriangles, SeenTriangles
+from linkwright.picture.scene import Scene, camera_for
+from linkwright.picture.shading import Lights, Shader
+from linkwright.picture.vectors import Floats, Indices
+
+Image = NDArray[np.uint8]
+
+_PER_PIXEL, _PER_PIXEL_OF_LARGE = 3, 2
+"""The samples per pixel along a row, in images of usual and of large size."""
+_LARGE_IMAGE = 2_500_000
+_BAND_SAMPLES = 6_000_000
+"""The number of samples to render at once, approximately."""
+_OVERLAP = 8
+"""The rows of pixels around a band that its lines depend on."""
+_PEELED_LAYERS = 3
+"""The number of transparent surfaces that are drawn one behind the other."""
+_GHOST_ALPHA = 0.38
+_EDGE_LIGHT = 0.012
+_UPPER, _LOWER = (250, 251, 252), (222, 227, 233)
+"""The colours of the background at its upper and lower side."""
+
+
+@dataclass(frozen=True, slots=True)
+class Style:
+    """What an image has besides the bodies.
+
+    Attributes:
+        transparent: whether the background is transparent.
+        grid: whether to draw a grid on the ground.
+    """
+
+    transparent: bool = False
+    grid: bool = False
+
+
+def render(
+    scene: Scene,
+    view: View = VIEWS["iso"],
+    size: tuple[int, int] = (800, 600),
+    style: Style = Style(),
+    camera: Camera | None = None,
+) -> Image:
+    """Return the image of a scene.
+
+    Args:
+        scene: the bodies.
+        view: the direction from which the scene is seen.
+        size: the width and height in pixels.
+        style: what the image has besides the bodies.
+        camera: a camera, instead of the one that fits the scene into the image (see `camera_for`).
+
+    Returns:
+        Red, green, blue and alpha, not multiplied by it, shape (height, width, 4).
+    """
+    return _Renderer(scene.mesh, camera or camera_for(view, size, scene), style).image()
+
+
+class _Renderer:
+    def __init__(self, mesh: Mesh, camera: Camera, style: Style) -> None:
+        self._mesh = mesh
+        self._camera = camera
+        self._style = style
+        self._width, self._height = camera.size
+        self._per_pixel = _PER_PIXEL if self._width * self._height <= _LARGE_IMAGE else _PER_PIXEL_OF_LARGE
+        x, y, nearness = camera.project(mesh.points)
+        self._screen = ScreenTriangles.of(x * self._per_pixel, y * self._per_pixel, nearness, mesh.faces)
+        self._range = (float(nearness.max()), float(nearness.min())) if len(nearness) else (1.0, 0.0)
+        lights = Lights.of(camera)
+        self._shader = Shader(mesh, self._screen, lights)
+        self._shadow = shadow_map(mesh, lights.key) if is_ground_visible(camera) else None
+        numbers = {id(body): number for number, body in enumerate(dict.fromkeys(mesh.bodies))}
+        self._body_numbers = np.array([numbers[id(body)] for body in mesh.bodies], np.int32)
+
+    def image(self) -> Image:
+        rows = max(1, _BAND_SAMPLES // (self._width * self._per_pixel**2))
+        bands = [self._band(first, min(first + rows, self._height)) for first in range(0, self._height, rows)]
+        return np.concatenate(bands)
+
+    def _band(self, first: int, last: int) -> Image:
+        """Return the pixels of some rows."""
+        upper, lower = max(0, first - _OVERLAP), min(self._height, last + _OVERLAP)
+        light, alpha = self._bodies(upper, lower)
+        kept = slice(first - upper, last - upper)
+        return self._on_ground(light[kept], alpha[kept], first, last)
+
+    # --- bodies ------------------------------------------------------------------------------------------------
+
+    def _bodies(self, upper: int, lower: int) -> tuple[Floats, Floats]:
+        """Return light multiplied by opacity, shape (rows, width, 3), and opacity, shape (rows, width), of pixels."""
+        mesh, scale = self._mesh, self._per_pixel
+        width = self._width * scale
+        opaque = DepthBuffer(width, upper * scale, lower * scale, *self._range)
+        opaque.add(self._screen, mesh.opaque)
+        rows = (lower - upper) * scale
+        light = np.zeros((rows, width, 3), np.float32)
+        alpha = np.zeros((rows, width), np.float32)
+        self._blend(light, alpha, opaque)
+        transparent = mesh.transparent
+        if len(transparent):
+            for layer in reversed(self._peeled(transparent, opaque)):
+                self._blend(light, alpha, layer)
+        ghosts = mesh.ghosts
+        if len(ghosts):
+            layer = opaque.empty_copy()
+            layer.add(self._screen, ghosts, before=opaque)
+            self._blend(light, alpha, layer, opacity=_GHOST_ALPHA)
+        shape = (lower - upper, scale, self._width, scale)
+        return _averages(light.reshape(*shape, 3)), _averages(alpha.reshape(shape))
+
+    def _peeled(self, transparent: Indices, opaque: DepthBuffer) -> list[DepthBuffer]:
+        """Return the transparent surfaces before the opaque ones, the nearest first."""
+        layers: list[DepthBuffer] = []
+        for _ in range(_PEELED_LAYERS):
+            layer = opaque.empty_copy()
+            layer.add(self._screen, transparent, behind=layers[-1] if layers else None, before=opaque)
+            layers.append(layer)
+        return layers
+
+    def _blend(self, light: Floats, alpha: Floats, buffer: DepthBuffer, opacity: float | None = None) -> None:
+        """Draw what a buffer shows over the light of samples and their opacity."""
+        seen = buffer.seen(self._per_pixel)
+        if seen is None:
+            return
+        shaded = self._shader.shade(seen)
+        lines = self._lines(seen, shaded.normals)
+        alphas = shaded.alpha if opacity is None else np.full(len(lines), opacity, np.float32)
+        alphas = alphas + (1.0 - alphas) * lines
+        colors = shaded.light
+        colors *= ((1.0 - lines) * alphas)[:, None]
+        colors += (lines * alphas * _EDGE_LIGHT)[:, None]
+        rest = 1.0 - alphas
+        light, alpha = light[seen.window], alpha[seen.window]
+        light[seen.mask] = colors + light[seen.mask] * rest[:, None]
+        alpha[seen.mask] = alphas + alpha[seen.mask] * rest
+
+    def _lines(self, seen: SeenTriangles, normals: Floats) -> Floats:
+        """Return how dark the lines are at samples."""
+        bodies = np.full(seen.mask.shape, -1, np.int32)
+        bodies[seen.mask] = self._body_numbers[self._mesh.parts[seen.triangles]]
+        distances = np.full(seen.mask.shape, 2.0, np.float32)
+        distances[seen.mask] = seen.distances
+        normal_grid = np.zeros((3, *seen.mask.shape), np.float32)
+        for axis in range(3):
+            normal_grid[axis][seen.mask] = normals[:, axis]
+        lines: Floats = edge_strength(distances, normal_grid, bodies, self._per_pixel)[seen.mask]
+        return lines
+
+    # --- ground ------------------------------------------------------------------------------------------------
+
+    def _on_ground(self, light: Floats, alpha: Floats, first: int, last: int) -> Image:
+        """Return the pixels of bodies over the ground and the background."""
+        shape = (last - first, self._width)
+        darkness = np.zeros(shape, np.float32)
+        if self._shadow is not None:
+            points = ground_points(self._camera, self._shadow.height, first, last)
+            darkness = self._shadow.at(points).reshape(shape)
+        if self._style.transparent:
+            covered = alpha + (1.0 - alpha) * darkness
+            divisor = np.maximum(covered, np.float32(1e-6))
+            return _quantised(light / divisor[:, :, None], covered)
+        position = (np.arange(first, last, dtype=np.float32) + 0.5) / self._height
+        background = np.stack(
+            [(top + (bottom - top) * position) / 255.0 for top, bottom in zip(_UPPER, _LOWER, strict=True)], axis=1
+        )[:, None, :]
+        behind = background * background * (1.0 - darkness)[:, :, None]
+        return _quantised(light + behind * (1.0 - alpha)[:, :, None], np.ones(shape, np.float32))
+
+
+def _averages(samples: Floats) -> Floats:
+    """Return the averages of the samples of each pixel, given shape (rows, n, width, n, ...)."""
+    count = samples.shape[1]
+    total = np.zeros((samples.shape[0], samples.shape[2], *samples.shape[4:]), np.float32)
+    for row in range(count):
+        for column in range(count):
+            total += samples[:, row, :, column]
+    total *= np.float32(1.0 / (count * count))
+    return total
+
+
+def _quantised(light: Floats, alpha: Floats) -> Image:
+    image = np.empty((*alpha.shape, 4), np.uint8)
+    image[:, :, :3] = np.rint(np.sqrt(np.clip(light, 0.0, 1.0)) * 255.0)
+    image[:, :, 3] = np.rint(np.clip(alpha, 0.0, 1.0) * 255.0)
+    return image
