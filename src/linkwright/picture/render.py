@@ -3,15 +3,17 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import Literal
 
 import numpy as np
 from numpy.typing import NDArray
 
 from linkwright.picture.camera import VIEWS, Camera, View
 from linkwright.picture.edges import edge_strength
-from linkwright.picture.ground import ground_points, is_ground_visible, shadow_map
-from linkwright.picture.layers import Mesh
-from linkwright.picture.rasterizer import DepthBuffer, ScreenTriangles, SeenTriangles
+from linkwright.picture.ground import GroundGrid, ground_points, is_ground_visible, shadow_map
+from linkwright.picture.labels import draw_labels
+from linkwright.picture.outlines import draw_outline
+from linkwright.picture.rasterizer import NOTHING, DepthBuffer, ScreenTriangles, SeenTriangles
 from linkwright.picture.scene import Scene, camera_for
 from linkwright.picture.shading import Lights, Shader
 from linkwright.picture.vectors import Floats, Indices
@@ -29,7 +31,7 @@ _PEELED_LAYERS = 3
 """The number of transparent surfaces that are drawn one behind the other."""
 _GHOST_ALPHA = 0.38
 _EDGE_LIGHT = 0.012
-_UPPER, _LOWER = (250, 251, 252), (222, 227, 233)
+_UPPER, _LOWER = (0.98, 0.984, 0.988), (0.87, 0.89, 0.914)
 """The colours of the background at its upper and lower side."""
 
 
@@ -40,10 +42,12 @@ class Style:
     Attributes:
         transparent: whether the background is transparent.
         grid: whether to draw a grid on the ground.
+        labels: whose names to draw: those of links, of joints, or None for no names.
     """
 
     transparent: bool = False
     grid: bool = False
+    labels: Literal["links", "joints"] | None = None
 
 
 def render(
@@ -65,12 +69,12 @@ def render(
     Returns:
         Red, green, blue and alpha, not multiplied by it, shape (height, width, 4).
     """
-    return _Renderer(scene.mesh, camera or camera_for(view, size, scene), style).image()
+    return _Renderer(scene, camera or camera_for(view, size, scene), style).image()
 
 
 class _Renderer:
-    def __init__(self, mesh: Mesh, camera: Camera, style: Style) -> None:
-        self._mesh = mesh
+    def __init__(self, scene: Scene, camera: Camera, style: Style) -> None:
+        self._mesh = mesh = scene.mesh
         self._camera = camera
         self._style = style
         self._width, self._height = camera.size
@@ -80,21 +84,29 @@ class _Renderer:
         self._range = (float(nearness.max()), float(nearness.min())) if len(nearness) else (1.0, 0.0)
         lights = Lights.of(camera)
         self._shader = Shader(mesh, self._screen, lights)
-        self._shadow = shadow_map(mesh, lights.key) if is_ground_visible(camera) else None
+        is_on_ground = is_ground_visible(camera)
+        self._shadow = shadow_map(mesh, lights.key) if is_on_ground else None
+        self._grid = GroundGrid.around(scene.points) if style.grid and is_on_ground else None
+        self._anchors = {None: (), "links": scene.labels.links, "joints": scene.labels.joints}[style.labels]
         numbers = {id(body): number for number, body in enumerate(dict.fromkeys(mesh.bodies))}
         self._body_numbers = np.array([numbers[id(body)] for body in mesh.bodies], np.int32)
 
     def image(self) -> Image:
         rows = max(1, _BAND_SAMPLES // (self._width * self._per_pixel**2))
         bands = [self._band(first, min(first + rows, self._height)) for first in range(0, self._height, rows)]
-        return np.concatenate(bands)
+        light, alpha = (np.concatenate(arrays) for arrays in zip(*bands, strict=True))
+        draw_labels(light, alpha, self._anchors, self._camera)
+        return _quantised(light, alpha)
 
-    def _band(self, first: int, last: int) -> Image:
-        """Return the pixels of some rows."""
+    def _band(self, first: int, last: int) -> tuple[Floats, Floats]:
+        """Return light multiplied by opacity, and opacity, of the pixels of some rows."""
         upper, lower = max(0, first - _OVERLAP), min(self._height, last + _OVERLAP)
         light, alpha = self._bodies(upper, lower)
         kept = slice(first - upper, last - upper)
-        return self._on_ground(light[kept], alpha[kept], first, last)
+        light, alpha = light[kept], alpha[kept]
+        light_below, alpha_below = self._ground(first, last)
+        rest = 1.0 - alpha
+        return light + light_below * rest[:, :, None], alpha + alpha_below * rest
 
     # --- bodies ------------------------------------------------------------------------------------------------
 
@@ -117,6 +129,10 @@ class _Renderer:
             layer = opaque.empty_copy()
             layer.add(self._screen, ghosts, before=opaque)
             self._blend(light, alpha, layer, opacity=_GHOST_ALPHA)
+        for color, triangles in mesh.outlined().items():
+            layer = opaque.empty_copy()
+            layer.add(self._screen, triangles)
+            draw_outline(light, alpha, (layer.keys != NOTHING).reshape(alpha.shape), color, scale)
         shape = (lower - upper, scale, self._width, scale)
         return _averages(light.reshape(*shape, 3)), _averages(alpha.reshape(shape))
 
@@ -160,23 +176,24 @@ class _Renderer:
 
     # --- ground ------------------------------------------------------------------------------------------------
 
-    def _on_ground(self, light: Floats, alpha: Floats, first: int, last: int) -> Image:
-        """Return the pixels of bodies over the ground and the background."""
+    def _ground(self, first: int, last: int) -> tuple[Floats, Floats]:
+        """Return light multiplied by opacity, and opacity, of the ground and background in some rows of pixels."""
         shape = (last - first, self._width)
-        darkness = np.zeros(shape, np.float32)
+        if self._style.transparent:
+            light, alpha = np.zeros((*shape, 3), np.float32), np.zeros(shape, np.float32)
+        else:
+            position = ((np.arange(first, last) + 0.5) / self._height)[:, None]
+            colors = np.array(_UPPER) + (np.array(_LOWER) - np.array(_UPPER)) * position
+            light = np.repeat((colors * colors)[:, None, :], self._width, axis=1).astype(np.float32)
+            alpha = np.ones(shape, np.float32)
+        if self._grid is not None:
+            self._grid.draw(light, alpha, self._camera, first)
         if self._shadow is not None:
             points = ground_points(self._camera, self._shadow.height, first, last)
             darkness = self._shadow.at(points).reshape(shape)
-        if self._style.transparent:
-            covered = alpha + (1.0 - alpha) * darkness
-            divisor = np.maximum(covered, np.float32(1e-6))
-            return _quantised(light / divisor[:, :, None], covered)
-        position = (np.arange(first, last, dtype=np.float32) + 0.5) / self._height
-        background = np.stack(
-            [(top + (bottom - top) * position) / 255.0 for top, bottom in zip(_UPPER, _LOWER, strict=True)], axis=1
-        )[:, None, :]
-        behind = background * background * (1.0 - darkness)[:, :, None]
-        return _quantised(light + behind * (1.0 - alpha)[:, :, None], np.ones(shape, np.float32))
+            light *= (1.0 - darkness)[:, :, None]
+            alpha += (1.0 - alpha) * darkness
+        return light, alpha
 
 
 def _averages(samples: Floats) -> Floats:
@@ -191,7 +208,9 @@ def _averages(samples: Floats) -> Floats:
 
 
 def _quantised(light: Floats, alpha: Floats) -> Image:
+    """Return the pixels of light multiplied by opacity."""
     image = np.empty((*alpha.shape, 4), np.uint8)
+    light = light / np.maximum(alpha, np.float32(1e-6))[:, :, None]
     image[:, :, :3] = np.rint(np.sqrt(np.clip(light, 0.0, 1.0)) * 255.0)
     image[:, :, 3] = np.rint(np.clip(alpha, 0.0, 1.0) * 255.0)
     return image
