@@ -119,7 +119,7 @@ def fitting_camera(view: View, size: tuple[int, int], points: Sequence[Array]) -
         size: the width and height of the image in pixels.
         points: arrays of points in m, each of shape (n, 3), with one point at least.
     """
-    right, up, toward = _axes(view)
+    right, up, toward = camera_axes(view)
     x, y, z = (np.concatenate([along(array, axis) for array in points]) for axis in (right, up, toward))
     width, height = size
     if not view.perspective:
@@ -141,7 +141,7 @@ def fitting_camera(view: View, size: tuple[int, int], points: Sequence[Array]) -
     return Camera(right, up, toward, (center[0], center[1], depth), distance, shorter / 2 / (FIELD * distance), size)
 
 
-def _axes(view: View) -> tuple[Vector3, Vector3, Vector3]:
+def camera_axes(view: View) -> tuple[Vector3, Vector3, Vector3]:
     """Return the directions right, up and toward the camera."""
     sine, cosine = sine_and_cosine(radians(view.azimuth))
     sine_up, cosine_up = sine_and_cosine(radians(view.elevation))

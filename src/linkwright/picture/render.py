@@ -23,7 +23,7 @@ Image = NDArray[np.uint8]
 _PER_PIXEL, _PER_PIXEL_OF_LARGE = 3, 2
 """The samples per pixel along a row, in images of usual and of large size."""
 _LARGE_IMAGE = 2_500_000
-_BAND_SAMPLES = 6_000_000
+_BAND_SAMPLES = 2_000_000
 """The number of samples to render at once, approximately."""
 _OVERLAP = 8
 """The rows of pixels around a band that its lines depend on."""
