@@ -49,9 +49,9 @@ class Surface:
     def of_triangles(cls, triangles: Triangles, texture: Texture | None = None) -> Surface:
         """Return the white surface of triangles, smooth except at creases. Normals of the file are not used."""
         faces = triangles.indices.reshape(-1, 3)
-        mesh = smooth_mesh(triangles.positions, faces)
         colors, coordinates = triangles.colors, triangles.coordinates
         has_texture = texture is not None and coordinates is not None
+        mesh = smooth_mesh(triangles.positions, faces, merged=colors is None and not has_texture)
         return cls(
             triangles.positions[mesh.sources],
             mesh.normals,

@@ -85,7 +85,7 @@ def shadow_map(mesh: Mesh, key: Vector3) -> ShadowMap | None:
     x = mesh.points[:, 0] - height * (key[0] / key[2])
     y = mesh.points[:, 1] - height * (key[1] / key[2])
     size = max(float(extent) for extent in high - low) or 1e-6
-    margin = 0.25 * size
+    margin = 2.2 * (_LEAST_SOFTNESS + _SOFTNESS * float(high[2] - low[2]) / size) * size
     left, right = float(x[used].min()) - margin, float(x[used].max()) + margin
     back, front = float(y[used].min()) - margin, float(y[used].max()) + margin
     cell = max(right - left, front - back) / _CELLS

@@ -12,21 +12,22 @@ from linkwright.picture.camera import VIEWS, Camera, View
 from linkwright.picture.edges import edge_strength
 from linkwright.picture.ground import GroundGrid, ground_points, is_ground_visible, shadow_map
 from linkwright.picture.labels import draw_labels
+from linkwright.picture.occlusion import ambient_light, occlusion_reach
 from linkwright.picture.outlines import draw_outline
 from linkwright.picture.rasterizer import NOTHING, DepthBuffer, ScreenTriangles, SeenTriangles
 from linkwright.picture.scene import Scene, camera_for
 from linkwright.picture.shading import Lights, Shader
-from linkwright.picture.vectors import Floats, Indices
+from linkwright.picture.vectors import Floats, Indices, along
 
 Image = NDArray[np.uint8]
 
 _PER_PIXEL, _PER_PIXEL_OF_LARGE = 3, 2
 """The samples per pixel along a row, in images of usual and of large size."""
 _LARGE_IMAGE = 2_500_000
-_BAND_SAMPLES = 2_000_000
+_BAND_SAMPLES = 6_000_000
 """The number of samples to render at once, approximately."""
-_OVERLAP = 8
-"""The rows of pixels around a band that its lines depend on."""
+_LINE_REACH = 8
+"""The pixels around a pixel on which its lines depend."""
 _PEELED_LAYERS = 3
 """The number of transparent surfaces that are drawn one behind the other."""
 _GHOST_ALPHA = 0.38
@@ -100,7 +101,8 @@ class _Renderer:
 
     def _band(self, first: int, last: int) -> tuple[Floats, Floats]:
         """Return light multiplied by opacity, and opacity, of the pixels of some rows."""
-        upper, lower = max(0, first - _OVERLAP), min(self._height, last + _OVERLAP)
+        overlap = _LINE_REACH + occlusion_reach(self._camera)
+        upper, lower = max(0, first - overlap), min(self._height, last + overlap)
         light, alpha = self._bodies(upper, lower)
         kept = slice(first - upper, last - upper)
         light, alpha = light[kept], alpha[kept]
@@ -119,7 +121,7 @@ class _Renderer:
         rows = (lower - upper) * scale
         light = np.zeros((rows, width, 3), np.float32)
         alpha = np.zeros((rows, width), np.float32)
-        self._blend(light, alpha, opaque)
+        self._blend(light, alpha, opaque, has_corners=True)
         transparent = mesh.transparent
         if len(transparent):
             for layer in reversed(self._peeled(transparent, opaque)):
@@ -145,8 +147,24 @@ class _Renderer:
             layers.append(layer)
         return layers
 
-    def _blend(self, light: Floats, alpha: Floats, buffer: DepthBuffer, opacity: float | None = None) -> None:
-        """Draw what a buffer shows over the light of samples and their opacity."""
+    def _blend(
+        self,
+        light: Floats,
+        alpha: Floats,
+        buffer: DepthBuffer,
+        *,
+        opacity: float | None = None,
+        has_corners: bool = False,
+    ) -> None:
+        """Draw what a buffer shows over the light of samples and their opacity.
+
+        Args:
+            light: the light of samples multiplied by their opacity, which is changed.
+            alpha: the opacity of samples, which is changed.
+            buffer: the triangles.
+            opacity: the opacity; None for that of the materials.
+            has_corners: whether to draw corners darker.
+        """
         seen = buffer.seen(self._per_pixel)
         if seen is None:
             return
@@ -155,12 +173,34 @@ class _Renderer:
         alphas = shaded.alpha if opacity is None else np.full(len(lines), opacity, np.float32)
         alphas = alphas + (1.0 - alphas) * lines
         colors = shaded.light
+        if has_corners:
+            colors *= self._ambient(seen, shaded.normals)[:, None]
         colors *= ((1.0 - lines) * alphas)[:, None]
         colors += (lines * alphas * _EDGE_LIGHT)[:, None]
         rest = 1.0 - alphas
         light, alpha = light[seen.window], alpha[seen.window]
         light[seen.mask] = colors + light[seen.mask] * rest[:, None]
         alpha[seen.mask] = alphas + alpha[seen.mask] * rest
+
+    def _ambient(self, seen: SeenTriangles, normals: Floats) -> Floats:
+        """Return the light that reaches samples, computed in the middle of each pixel."""
+        scale, camera = self._per_pixel, self._camera
+        middles = (slice(scale // 2, None, scale), slice(scale // 2, None, scale))
+        is_seen = seen.mask[middles]
+        nearness = np.zeros(seen.mask.shape, np.float32)
+        nearness[seen.mask] = self._range[0] - seen.distances * (self._range[0] - self._range[1])
+        depth = nearness[middles]
+        if camera.distance:
+            depth = (camera.distance - camera.distance / np.where(is_seen, depth, 1.0)).astype(np.float32)
+        turned = np.zeros((3, *is_seen.shape), np.float32)
+        at_middle = np.zeros(seen.mask.shape, dtype=bool)
+        at_middle[middles] = True
+        of_middles = normals[at_middle[seen.mask]]
+        for axis, direction in enumerate((camera.right, camera.up, camera.toward)):
+            turned[axis][is_seen] = along(of_middles, direction)
+        ambient = ambient_light(depth, turned, is_seen, camera)
+        spread: Floats = np.repeat(np.repeat(ambient, scale, axis=0), scale, axis=1)[seen.mask]
+        return spread
 
     def _lines(self, seen: SeenTriangles, normals: Floats) -> Floats:
         """Return how dark the lines are at samples."""

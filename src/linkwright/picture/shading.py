@@ -17,8 +17,10 @@ from linkwright.picture.layers import Mesh
 from linkwright.picture.rasterizer import ScreenTriangles, SeenTriangles
 from linkwright.picture.vectors import Floats, Indices, along, unit_vector, unit_vectors
 
-_KEY, _FILL, _SKY, _GROUND, _SHINE, _RIM = 0.80, 0.20, 0.36, 0.15, 0.09, 0.06
+_KEY, _FILL, _SKY, _GROUND, _SHINE, _RIM = 0.74, 0.14, 0.34, 0.14, 0.09, 0.05
 """The strengths of the lights."""
+_WRAP = 0.35
+"""How far the strongest light reaches around a shape, so that no side is black."""
 _BATCH = 1 << 18
 
 
@@ -44,7 +46,7 @@ class Lights:
             parts = add_vectors(scaled(camera.right, right), scaled(camera.up, up))
             return unit_vector(add_vectors(add_vectors(parts, scaled(camera.toward, toward)), (0.0, 0.0, vertical)))
 
-        return cls(direction(-0.5, 0.3, 0.4, 0.7), direction(0.8, 0.1, 0.5, 0.1), camera.toward)
+        return cls(direction(-0.62, 0.30, 0.45, 0.55), direction(0.8, 0.1, 0.5, 0.1), camera.toward)
 
 
 @dataclass(frozen=True, slots=True)
@@ -137,10 +139,11 @@ class Shader:
     def _lit(self, albedo: Floats, normals: Floats) -> Floats:
         lights = self._lights
         facing = np.maximum(along(normals, lights.toward), 0.0)
-        key = along(normals, lights.key) * 0.5 + 0.5  # the light reaches around, so that no shape ends in the dark
+        key = np.maximum((along(normals, lights.key) + _WRAP) / (1.0 + _WRAP), 0.0)
+        key = (key + key * key) * 0.5  # without a visible border between light and shade
         fill = along(normals, lights.fill) * 0.5 + 0.5
         sky = (normals[:, 2] + 1.0) * 0.5
-        diffuse = _KEY * key * key + _FILL * fill * fill + (_GROUND + (_SKY - _GROUND) * sky)
+        diffuse = _KEY * key + _FILL * fill * fill + (_GROUND + (_SKY - _GROUND) * sky)
         shine = np.maximum(along(normals, unit_vector(add_vectors(lights.key, lights.toward))), 0.0)
         for _ in range(5):
             shine = shine * shine

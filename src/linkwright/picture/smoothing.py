@@ -41,15 +41,18 @@ class SmoothMesh:
     faces: Indices
 
 
-def smooth_mesh(points: Array, faces: Indices) -> SmoothMesh:
+def smooth_mesh(points: Array, faces: Indices, *, merged: bool = True) -> SmoothMesh:
     """Split the vertices of a mesh at its creases, and compute their normals.
 
     Args:
         points: the corners, shape (n, 3); corners at the same place count as one.
         faces: the triangles, shape (m, 3).
+        merged: whether corners at the same place become one vertex; false if they differ in texture coordinates or
+            colours.
     """
     corners = faces.reshape(-1)
-    welded = _welded_points(points)[corners]
+    places = _welded_points(points)
+    welded = places[corners]
     face_normals, weights = _corner_weights(points, faces)
     count = int(welded.max()) + 1
     of_corners = np.repeat(np.arange(len(faces)), 3)
@@ -59,16 +62,18 @@ def smooth_mesh(points: Array, faces: Indices) -> SmoothMesh:
     is_rough[welded[~is_smooth_corner]] = True
     rough_corners = np.flatnonzero(is_rough[welded])
     rough_normals = _creased_normals(rough_corners, welded, face_normals, weights)
-    # Smooth vertices come first, one for each place; then a vertex for each rough corner.
-    smooth_places = np.flatnonzero(~is_rough)
-    new_index = np.zeros(count, dtype=np.int64)
-    new_index[smooth_places] = np.arange(len(smooth_places))
-    new_faces = new_index[welded]
-    new_faces[rough_corners] = len(smooth_places) + np.arange(len(rough_corners))
-    a_corner = np.zeros(count, dtype=np.int64)
-    a_corner[welded[::-1]] = corners[::-1]
-    sources = np.concatenate((a_corner[smooth_places], corners[rough_corners]))
-    normals = np.concatenate((means[smooth_places], rough_normals))
+    # Smooth vertices come first, then a vertex for each rough corner.
+    groups = welded if merged else corners
+    sources_of_groups = np.full(count if merged else len(points), -1)
+    sources_of_groups[groups[::-1]] = corners[::-1]
+    sources_of_groups[groups[rough_corners]] = -1
+    smooth_groups = np.flatnonzero(sources_of_groups >= 0)
+    new_index = np.zeros(len(sources_of_groups), dtype=np.int64)
+    new_index[smooth_groups] = np.arange(len(smooth_groups))
+    new_faces = new_index[groups]
+    new_faces[rough_corners] = len(smooth_groups) + np.arange(len(rough_corners))
+    sources = np.concatenate((sources_of_groups[smooth_groups], corners[rough_corners]))
+    normals = np.concatenate((means[places[sources_of_groups[smooth_groups]]], rough_normals))
     return SmoothMesh(sources, np.rint(normals * _NORMAL_GRID) / _NORMAL_GRID, new_faces.reshape(-1, 3))
 
 
