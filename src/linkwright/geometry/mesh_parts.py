@@ -14,6 +14,7 @@ from numpy.typing import NDArray
 
 from linkwright.diagnostics import missing_extra
 from linkwright.geometry.arrays import Array, transform_points
+from linkwright.geometry.collada_colors import read_colored_meshes
 from linkwright.geometry.mesh_files import BadMeshError, PlacedMesh, parser_fault, placed_meshes
 from linkwright.loading.lean_dataclasses import dataclass, replace
 from linkwright.loading.lean_typing import Any
@@ -75,6 +76,25 @@ class MeshPart:
     def moved(self, offset: Array) -> MeshPart:
         """Return a copy of the part moved by an offset in m, shape (3,)."""
         return replace(self, triangles=replace(self.triangles, positions=self.triangles.positions + offset))
+
+
+def read_simple_parts(path: Path) -> list[MeshPart] | None:
+    """Return the parts of a COLLADA file, without normals and names, or None for files that only `read_parts` reads.
+
+    Such a file has textures, unusual content or mistakes. Unlike `read_parts`, this needs no library.
+
+    Raises:
+        OSError: the file cannot be read.
+    """
+    meshes = read_colored_meshes(path.read_bytes()) if path.suffix.lower() == ".dae" else None
+    if not meshes:
+        return None
+    parts = []
+    for mesh, matrix, unit, color in meshes:
+        placed_mesh = PlacedMesh(mesh, np.diag([unit, unit, unit, 1.0]) @ matrix, 1.0, frozenset())
+        triangles = _triangles(placed_mesh, placed_mesh.matrix, smooth=False)
+        parts.append(MeshPart(triangles, None if color is None else FileMaterial(color)))
+    return parts
 
 
 def read_parts(path: Path, *, resolver: Any, with_normals: bool = True) -> list[MeshPart]:

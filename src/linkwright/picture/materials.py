@@ -3,14 +3,15 @@
 from __future__ import annotations
 
 import os
+from dataclasses import dataclass
 from io import BytesIO
 from pathlib import Path
 
 import numpy as np
 
 from linkwright.diagnostics import LinkwrightError
-from linkwright.geometry.mesh_files import BadMeshError, file_resolver
-from linkwright.geometry.mesh_parts import UNCOLOURED, FileMaterial, MeshPart, Triangles, read_parts
+from linkwright.geometry.mesh_files import MESH_ENDINGS, BadMeshError, file_resolver
+from linkwright.geometry.mesh_parts import UNCOLOURED, FileMaterial, MeshPart, Triangles, read_parts, read_simple_parts
 from linkwright.geometry.meshes import MAX_FILE_SIZE, read_mesh, unreadable
 from linkwright.geometry.shapes import Box, Capsule, Cylinder, SimpleShape
 from linkwright.geometry.surfaces import box, capsule, cylinder, sphere
@@ -25,6 +26,21 @@ _MAX_TEXTURE = 768
 _MISSING_EXTRA = "INR104"
 
 
+@dataclass(frozen=True, eq=False, slots=True)
+class MeshSurface:
+    """A part of a mesh file with one material.
+
+    Attributes:
+        surface: the part in m, in white.
+        file_material: the material in the file; None to use that of the description.
+        names: the names of the part in the file.
+    """
+
+    surface: Surface
+    file_material: FileMaterial | None
+    names: frozenset[str]
+
+
 class SurfaceLibrary:
     """A reader of mesh files that reads each file once, for one scene or several.
 
@@ -35,43 +51,48 @@ class SurfaceLibrary:
 
     def __init__(self) -> None:
         self.colorless: dict[Path, LinkwrightError] = {}
-        self._surfaces: dict[tuple[str, int, int], list[tuple[Surface, FileMaterial | None, frozenset[str]]]] = {}
+        self._surfaces: dict[tuple[str, int, int, bool], list[MeshSurface]] = {}
 
-    def read(self, path: Path) -> list[tuple[Surface, FileMaterial | None, frozenset[str]]]:
-        """Return the surfaces of a mesh file in m, each with its material in the file and its names.
+    def read(self, path: Path, *, has_names: bool = False) -> list[MeshSurface]:
+        """Return the surfaces of a mesh file.
+
+        Args:
+            path: the path of the file.
+            has_names: whether the surfaces must have their names.
 
         Raises:
             LinkwrightError: INR101 to INR104, the file cannot be read.
         """
         try:
             status = path.stat()
-            key = os.path.realpath(path), status.st_mtime_ns, status.st_size
-        except OSError:
+        except OSError as error:
             read_mesh(path)  # raises an error with the reason
-            raise
+            raise unreadable(path, error.strerror or str(error)) from None
+        key = os.path.realpath(path), status.st_mtime_ns, status.st_size, has_names
         if key not in self._surfaces:
-            parts = self._parts(path, status.st_size)
             self._surfaces[key] = [
-                (Surface.of_triangles(part.triangles, _texture(part)), part.file_material, part.names)
-                for part in parts
+                MeshSurface(Surface.of_triangles(part.triangles, _texture(part)), part.file_material, part.names)
+                for part in self._parts(path, status.st_size, has_names=has_names)
                 if len(part.triangles.indices)
             ]
         return self._surfaces[key]
 
-    def _parts(self, path: Path, size: int) -> list[MeshPart]:
+    def _parts(self, path: Path, size: int, *, has_names: bool) -> list[MeshPart]:
         kind = path.suffix.lower()
-        if size > MAX_FILE_SIZE or kind == ".stl" or not path.is_file():
+        if size > MAX_FILE_SIZE or kind == ".stl" or kind not in MESH_ENDINGS or not path.is_file():
             return [_plain_part(path)]
+        simple_parts = None if has_names else read_simple_parts(path)
+        if simple_parts is not None:
+            return simple_parts
         try:
             return read_parts(path, resolver=_resolver(path), with_normals=False)
         except BadMeshError as error:
             raise unreadable(path, error.reason) from None
-        except (LinkwrightError, ModuleNotFoundError) as error:
-            if isinstance(error, LinkwrightError) and error.diagnostics[0].code != _MISSING_EXTRA:
+        except LinkwrightError as error:
+            if error.diagnostics[0].code != _MISSING_EXTRA:
                 raise
             part = _plain_part(path)
-            if isinstance(error, LinkwrightError):
-                self.colorless[path] = error
+            self.colorless[path] = error
             return [part]
 
 

@@ -106,10 +106,10 @@ class _VisualReader:
             self._add_colorless(link, geometry.filename, self._library.colorless[path])
         is_grey = path.suffix.lower() != ".stl"
         return [
-            surface.scaled(geometry.scale).colored(
-                surface_color(file_material, rgb, is_textured=False, is_grey=is_grey), alpha
+            part.surface.scaled(geometry.scale).colored(
+                surface_color(part.file_material, rgb, is_textured=False, is_grey=is_grey), alpha
             )
-            for surface, file_material, _ in parts
+            for part in parts
         ]
 
     def _texture(self, link: Link, material: Material) -> Texture | None:

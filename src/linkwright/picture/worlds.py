@@ -121,14 +121,15 @@ class _WorldReader:
             self._add_incomplete(link, path.reason, path.hint)
             return
         try:
-            parts = self._library.read(path)
+            parts = self._library.read(path, has_names=mesh.submesh is not None)
         except LinkwrightError as error:
             self._add_incomplete(link, error.diagnostics[0].message, error.diagnostics[0].hint)
             return
         submesh = mesh.submesh
-        for surface, file_material, names in parts:
-            if submesh is not None and submesh.name not in names:
+        for part in parts:
+            if submesh is not None and submesh.name not in part.names:
                 continue
+            surface, file_material = part.surface, part.file_material
             if submesh is not None and submesh.center:
                 middle = (surface.points.min(axis=0) + surface.points.max(axis=0)) / 2
                 surface = replace(surface, points=surface.points - middle)
