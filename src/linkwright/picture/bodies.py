@@ -21,6 +21,11 @@ Texture: TypeAlias = NDArray[np.uint8]
 """Pixels of shape (height, width, 3), the upper row first."""
 
 
+_POSITION_GRID = float(1 << 30)
+"""Positions in mesh files are rounded to about 1 nm, as rotations in these files differ between machines in the last
+bits."""
+
+
 @dataclass(frozen=True, eq=False, slots=True)
 class Surface:
     """Triangles with one material.
@@ -51,9 +56,10 @@ class Surface:
         faces = triangles.indices.reshape(-1, 3)
         colors, coordinates = triangles.colors, triangles.coordinates
         has_texture = texture is not None and coordinates is not None
-        mesh = smooth_mesh(triangles.positions, faces, merged=colors is None and not has_texture)
+        positions = np.rint(triangles.positions * _POSITION_GRID) / _POSITION_GRID
+        mesh = smooth_mesh(positions, faces, merged=colors is None and not has_texture)
         return cls(
-            triangles.positions[mesh.sources],
+            positions[mesh.sources],
             mesh.normals,
             mesh.faces,
             vertex_colors=None if colors is None else colors[mesh.sources, :3],

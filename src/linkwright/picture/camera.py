@@ -37,10 +37,10 @@ class View:
 
 
 VIEWS = {
+    "iso": View(40.0, 28.0),
     "front": View(0.0, 0.0, perspective=False),
     "left": View(90.0, 0.0, perspective=False),
     "top": View(180.0, 90.0, perspective=False),
-    "iso": View(40.0, 28.0),
 }
 """The views that have a name. The top view has x up and y to the left, as on maps."""
 

@@ -45,12 +45,23 @@ def edge_strength(distances: Floats, normals: Floats, bodies: NDArray[np.int32],
         before, after = _pairs(axis)
         middle = (slice(1, -1), slice(None)) if axis == 0 else (slice(None), slice(1, -1))
         outer[middle] |= np.abs(steps[after] - steps[before]) > _JUMP
+    outer |= _neighbours(outer)
     outer &= is_seen
     inner &= is_seen & ~outer
     strength = np.where(outer, np.float32(_OUTER), np.where(inner, np.float32(_INNER), np.float32(0.0)))
     fading = _fading(outer | inner, is_seen, per_pixel)
     strength *= np.repeat(np.repeat(fading, per_pixel, axis=0), per_pixel, axis=1)
     return strength
+
+
+def _neighbours(mask: NDArray[np.bool_]) -> NDArray[np.bool_]:
+    """Return the samples beside those of a mask."""
+    beside = np.zeros_like(mask)
+    for axis in (0, 1):
+        first, second = _pairs(axis)
+        beside[first] |= mask[second]
+        beside[second] |= mask[first]
+    return beside
 
 
 def _pairs(axis: int) -> tuple[tuple[slice, slice], tuple[slice, slice]]:
