@@ -40,12 +40,12 @@ ARM = urdf(
 MBOT = REPOSITORY / "robots" / "my_robot_description" / "urdf" / "mbot_with_kinect.urdf"
 
 DIGESTS = {
-    "arm iso": "1b45af78b625c6d16bddc848a1aa8eb71f88ad54d0b5b7b8cedabea269d177f1",
-    "arm front": "d4e0b881602dc8917078cb780fa199fe843463aa9b5b1aeb3fa573f75b4505f8",
-    "arm from below": "5ae0b285144311bee0628722319b32361a3ad2fbe98ea08b95e9794c75717d15",
-    "arm compared": "e7217b8ed7e1bf125deeda33be42dec027348e5d6cb1d0571847e92799d13f32",
-    "mbot iso": "f718fbe38196265f1b36dd04c3fa68fababf9cfcd8d1d1b79a6e5447e95f7e06",
-    "mbot top": "2b71abef6a8be3387b1b8b415225b61d6e9736f9ebc063d32e6019dc29866a12",
+    "arm iso": "04e81c85046136f89636ffb0455fdfae0454b87f4e8da82cf23e0c868c267e8c",
+    "arm front": "c47f881c3b264278585f5a49d8ebef404f3170bb6d152be226339baddfb43da6",
+    "arm from below": "07cabd6056ca3c07e1c71ebfbcc5bb48c6071416d81d078b238408bb399e3aff",
+    "arm compared": "c2a29b5aaa3fbfb82af5b66dcfcbf39c5edad0388ee741291e3ba62d56f1dec2",
+    "mbot iso": "fb0efd362d5ab92a10465f96a4777453d33488c70ee65239f6a418fd04e8abf0",
+    "mbot top": "0e253ccaabead2e03dab3c06d6ea153b34d232621a5421bcf29333982e6bb376",
 }
 
 

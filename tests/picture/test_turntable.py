@@ -41,7 +41,8 @@ def test_the_axis_of_the_turn_stays_in_place() -> None:
 
 
 def test_images_are_those_of_their_cameras_whatever_thread_drew_them() -> None:
-    shown, finished = scene(LONG), []
+    shown = scene(LONG)
+    finished: list[int] = []
     images = turntable(shown, VIEWS["iso"], (64, 48), Style(), 4, finished.append)
     assert finished == [1, 2, 3, 4]
     cameras = turning_cameras(VIEWS["iso"], (64, 48), shown.points, 4)

@@ -21,11 +21,11 @@ if TYPE_CHECKING:
 
 _MIN_SIDE, _MAX_SIDE, _MAX_PIXELS = 16, 16384, 50_000_000
 _MIN_SECONDS, _MAX_SECONDS = 0.5, 60.0
-_USUAL_SECONDS = 4.0
+_USUAL_SECONDS = 4
 
 
 def configure(parser: argparse.ArgumentParser) -> None:
-    """Declare the arguments of ``picture``."""
+    """Declare the arguments of ``linkwright picture``."""
     parser.add_argument("file", metavar="FILE", help="the URDF, xacro or SDF file")
     add_values(parser, values_help="values for the file's <xacro:arg>")
     parser.add_argument(
@@ -68,7 +68,7 @@ def configure(parser: argparse.ArgumentParser) -> None:
         nargs="?",
         const=_USUAL_SECONDS,
         metavar="SECONDS",
-        help=f"write an animation of one turn, as APNG or WebP (default duration: {_USUAL_SECONDS:g} s)",
+        help="write an animation of one turn, as APNG or WebP (default duration: %(const)s s)",
     )
 
 

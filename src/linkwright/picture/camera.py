@@ -15,7 +15,7 @@ from linkwright.picture.vectors import along
 
 FIELD = 0.22
 """The tangent of half the field of view of the shorter side, for cameras with perspective."""
-_MARGIN = 1.12
+_MARGIN = 1.16
 """The size of the image in relation to what it must show."""
 _SMALLEST_EXTENT = 1e-6
 """The extent in m of an image of a single point."""
@@ -133,7 +133,7 @@ def fitting_camera(view: View, size: tuple[int, int], points: Sequence[Array]) -
     tangents = [FIELD * side / shorter / _MARGIN for side in (width, height)]
     center, distances = [], []
     for values, tangent in zip((x, y), tangents, strict=True):
-        # All points lie between two planes through the camera: |value - center| <= tangent * (distance - z).
+        # All points are between two planes through the camera: |value - center| <= tangent * (distance - z).
         upper, lower = float((values + tangent * z).max()), float((tangent * z - values).max())
         center.append((upper - lower) / 2)
         distances.append(max(upper + lower, _SMALLEST_EXTENT) / 2 / tangent)

@@ -1,4 +1,4 @@
-"""The bodies of a scene as one set of triangles, and tables of what shading needs."""
+"""The bodies of a scene as one set of triangles."""
 
 from __future__ import annotations
 

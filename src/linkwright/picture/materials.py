@@ -18,7 +18,7 @@ from linkwright.geometry.surfaces import box, capsule, cylinder, sphere
 from linkwright.picture.bodies import Color, Surface, Texture
 
 ROUND_SIDES = 72
-"""The sides of round shapes, of which the edges are not seen."""
+"""The number of sides of round shapes, so many that their edges are not seen."""
 DEFAULT_COLOR: Color = (1.0, 0.0, 0.0)
 """The colour of a shape without a material, as in RViz."""
 _MAX_TEXTURE = 768

@@ -263,7 +263,7 @@ class DepthBuffer:
         """Return what the buffer shows, or None if it shows nothing.
 
         Args:
-            aligned: the number of samples of which the extent of the result is a multiple.
+            aligned: a number of samples; the extent of the result is a multiple of it.
         """
         keys = self.keys.reshape(-1, self.width)
         is_seen = keys != NOTHING

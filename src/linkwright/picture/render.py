@@ -23,6 +23,8 @@ Image = NDArray[np.uint8]
 
 _PER_PIXEL, _PER_PIXEL_OF_LARGE = 3, 2
 """The samples per pixel along a row, in images of usual and of large size."""
+_FILTERS = {2: (1, 3, 3, 1), 3: (1, 2, 3, 2, 1)}
+"""The weights of the samples along a row in a pixel, from the last sample of the pixel before, by samples per pixel."""
 _LARGE_IMAGE = 2_500_000
 _BAND_SAMPLES = 6_000_000
 """The number of samples to render at once, approximately."""
@@ -38,7 +40,7 @@ _UPPER, _LOWER = (0.98, 0.984, 0.988), (0.87, 0.89, 0.914)
 
 @dataclass(frozen=True, slots=True)
 class Style:
-    """What an image has besides the bodies.
+    """The parts of an image besides the bodies.
 
     Attributes:
         transparent: whether the background is transparent.
@@ -64,7 +66,7 @@ def render(
         scene: the bodies.
         view: the direction from which the scene is seen.
         size: the width and height in pixels.
-        style: what the image has besides the bodies.
+        style: the parts of the image besides the bodies.
         camera: a camera, instead of the one that fits the scene into the image (see `camera_for`).
 
     Returns:
@@ -135,8 +137,7 @@ class _Renderer:
             layer = opaque.empty_copy()
             layer.add(self._screen, triangles)
             draw_outline(light, alpha, (layer.keys != NOTHING).reshape(alpha.shape), color, scale)
-        shape = (lower - upper, scale, self._width, scale)
-        return _averages(light.reshape(*shape, 3)), _averages(alpha.reshape(shape))
+        return _filtered(light, scale), _filtered(alpha, scale)
 
     def _peeled(self, transparent: Indices, opaque: DepthBuffer) -> list[DepthBuffer]:
         """Return the transparent surfaces before the opaque ones, the nearest first."""
@@ -236,14 +237,27 @@ class _Renderer:
         return light, alpha
 
 
-def _averages(samples: Floats) -> Floats:
-    """Return the averages of the samples of each pixel, given shape (rows, n, width, n, ...)."""
-    count = samples.shape[1]
-    total = np.zeros((samples.shape[0], samples.shape[2], *samples.shape[4:]), np.float32)
-    for row in range(count):
-        for column in range(count):
-            total += samples[:, row, :, column]
-    total *= np.float32(1.0 / (count * count))
+def _filtered(samples: Floats, per_pixel: int) -> Floats:
+    """Return pixels from samples, shape (rows, columns, ...): weighted averages that reach into neighbouring pixels."""
+    return _filtered_rows(_filtered_rows(samples.swapaxes(0, 1), per_pixel).swapaxes(0, 1), per_pixel)
+
+
+def _filtered_rows(samples: Floats, per_pixel: int) -> Floats:
+    """Return weighted averages along the first axis, one for each pixel."""
+    count = len(samples) // per_pixel
+    weights = _FILTERS[per_pixel]
+    total = np.zeros((count, *samples.shape[1:]), np.float32)
+    for place, weight in enumerate(weights):
+        factor = np.float32(weight / sum(weights))
+        offset = place - 1
+        if offset < 0:
+            total[1:] += samples[per_pixel + offset :: per_pixel][: count - 1] * factor
+            total[0] += samples[0] * factor
+        elif offset < per_pixel:
+            total += samples[offset::per_pixel] * factor
+        else:
+            total[:-1] += samples[offset::per_pixel] * factor
+            total[-1] += samples[-1] * factor
     return total
 
 

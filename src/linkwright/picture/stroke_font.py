@@ -16,8 +16,8 @@ LINE_HEIGHT = 8.0
 _GAP = 1.8
 _SPACE = 2.4
 
-# Lines are separated by spaces; each point is a digit for x and one for y. Letters stand on y = 2, small letters reach
-# y = 6, and capitals reach y = 8.
+# Lines are separated by spaces; each point is a digit for x and one for y. The baseline of letters is y = 2, small
+# letters reach y = 6, and capitals reach y = 8.
 _GLYPHS = {
     "!": "0804 0302",
     '"': "0806 2826",

@@ -31,7 +31,7 @@ def turntable(
         scene: the bodies.
         view: the view of the first image.
         size: the width and height in pixels.
-        style: what the images have besides the bodies.
+        style: the parts of the images besides the bodies.
         count: the number of images.
         report: called with the number of finished images after each.
     """
