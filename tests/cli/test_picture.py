@@ -143,7 +143,7 @@ def test_an_unknown_joint_is_an_error(folder: Path, capsys: pytest.CaptureFixtur
         (["-o", "a.png", "--view", "nan,10"], "'nan,10' is not one of"),
         (["-o", "a.png", "--size", "800"], "'800' is not WIDTHxHEIGHT"),
         (["-o", "a.png", "--size", "8x8"], "each side must have 16 to"),
-        (["-o", "a.png", "--size", "16000x16000"], "at most 50 million"),
+        (["-o", "a.png", "--size", "16000x16000"], "at most 25 million"),
         (["-o", "a.png", "--joint", "turn"], "'turn' is not NAME=VALUE"),
         (["-o", "a.png", "--joint", "turn=inf"], "'turn=inf' is not NAME=VALUE"),
         (["-o", "a.png", "--turntable", "0"], "'0' is not a duration from 0.5 to 60 s"),

@@ -10,7 +10,7 @@ import numpy as np
 from linkwright.descriptions import load
 from linkwright.packages import PackageFinder
 from linkwright.picture.camera import VIEWS
-from linkwright.picture.render import Image, Style, render
+from linkwright.picture.rendering import Image, Style, render
 from linkwright.picture.robots import robot_scene
 from linkwright.picture.scene import Scene
 

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from linkwright.picture.camera import VIEWS, View
-from linkwright.picture.render import Style, render
+from linkwright.picture.rendering import Style, render
 from linkwright.picture.robots import GHOST_COLOR, OUTLINE_COLOR
 from linkwright.picture.scene import Scene, camera_for
 from tests.picture.robots import BLUE, GREEN, RED, image, joint, link, mostly, scene, urdf
@@ -92,7 +92,7 @@ def test_everything_is_within_the_image_and_fills_it(view: View) -> None:
 
 def test_two_robots_have_one_camera() -> None:
     small, large = scene(ONE), scene(urdf(link("base", '<box size="3 3 3"/>', RED)))
-    camera = camera_for(VIEWS["front"], (120, 90), small, large)
+    camera = camera_for(VIEWS["front"], (480, 360), small, large)
     covered = [
         int((render(each, style=Style(transparent=True), camera=camera)[:, :, 3] == 255).sum())
         for each in (small, large)
@@ -172,9 +172,42 @@ def test_labels_are_dark_letters_in_light_areas(labels: str) -> None:
 def test_a_large_image_is_the_same_in_bands(monkeypatch: pytest.MonkeyPatch) -> None:
     text = two(RED, "0.1 0.1 0.9 0.5")
     whole = image(text, "iso", (160, 120), grid=True)
-    monkeypatch.setattr("linkwright.picture.render._BAND_SAMPLES", 20_000)
+    monkeypatch.setattr("linkwright.picture.rendering._BAND_SAMPLES", 20_000)
     assert np.abs(image(text, "iso", (160, 120), grid=True).astype(int) - whole).max() <= 1
 
 
 def test_a_robot_without_visuals_is_an_empty_image() -> None:
     assert image(urdf('<link name="base"/>'), transparent=True)[:, :, 3].max() == 0
+
+
+@pytest.mark.parametrize(
+    "shape",
+    [
+        '<sphere radius="0"/>',
+        '<box size="0 0 0"/>',
+        '<box size="1 0 0"/>',
+        '<cylinder radius="0" length="1"/>',
+        '<cylinder radius="1e-300" length="1e-300"/>',
+    ],
+)
+def test_shapes_without_a_size_do_no_harm(shape: str) -> None:
+    text = urdf(link("base", BOX, RED), link("other", shape, BLUE), joint("j", "base", "other"))
+    assert mostly(image(text)[45, 60]) == "red"
+
+
+def test_what_is_out_of_range_is_left_out_with_a_finding() -> None:
+    slide = '<axis xyz="1 0 0"/><limit lower="0" upper="1" effort="1" velocity="1"/>'
+    text = urdf(link("base", BOX, RED), link("other", BOX, BLUE), joint("j", "base", "other", "prismatic", rest=slide))
+    for broken, positions in (
+        (text, {"j": 1e300}),
+        (text.replace('<box size="1 1 1"/>', '<box size="1e300 1 1"/>', 1), {}),
+        (text.replace('<origin xyz="0 0 0" rpy', '<origin xyz="0 1e12 0" rpy', 1), {}),
+    ):
+        shown = scene(broken, positions)
+        assert [problem.code for problem in shown.problems] == ["PIC101"]
+        assert mostly(render(shown, VIEWS["front"], (120, 90))[45, 60]) in ("red", "blue")
+
+
+def test_a_large_angle_is_one_like_any_other() -> None:
+    text = urdf(link("base", BOX, RED), link("other", BOX, BLUE), joint("j", "base", "other", "continuous", "0 0 2"))
+    assert scene(text, {"j": 1e300}).problems == ()

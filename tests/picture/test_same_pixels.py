@@ -15,7 +15,7 @@ import numpy as np
 import pytest
 
 from linkwright.picture.camera import VIEWS
-from linkwright.picture.render import Style, render
+from linkwright.picture.rendering import Style, render
 from linkwright.picture.robots import GHOST_COLOR, OUTLINE_COLOR
 from tests.picture.robots import BLUE, GREEN, RED, joint, link, scene, urdf
 from tests.places import REPOSITORY

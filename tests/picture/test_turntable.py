@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from linkwright.picture.camera import VIEWS
-from linkwright.picture.render import Style, render
+from linkwright.picture.rendering import Style, render
 from linkwright.picture.turntable import turning_cameras, turntable
 from tests.picture.robots import BLUE, RED, joint, link, scene, urdf
 

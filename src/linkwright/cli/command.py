@@ -29,11 +29,11 @@ COMMANDS = {
     "check": "check URDF, xacro and SDF files and whole packages; for one file, print its link tree",
     "format": "format the XML files of a package: descriptions, worlds, launch files, manifests",
     "xacro": "expand a xacro file to URDF, list its arguments, or explain its elements",
-    "picture": "draw a robot or world as a PNG file, or as an animation, without a browser",
     "diff": "compare two descriptions, or a description with a commit: links, joints, origins, masses",
     "explain": "explain a diagnostic code, or an element or attribute of URDF",
     "inertia": "compare masses and inertias with the links' shapes, compute them, or write them",
     "convert": "convert a robot or world to SDF, to URDF, or to MJCF for MuJoCo",
+    "picture": "draw a robot or world as a PNG file, or as an animation, without a browser",
 }
 """The commands of linkwright-core, with their help texts.
 

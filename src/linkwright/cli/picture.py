@@ -16,10 +16,10 @@ from linkwright.process.assignments import parse_assignments
 if TYPE_CHECKING:
     from linkwright.packages import PackageFinder
     from linkwright.picture.camera import View
-    from linkwright.picture.render import Style
+    from linkwright.picture.rendering import Style
     from linkwright.picture.scene import Scene
 
-_MIN_SIDE, _MAX_SIDE, _MAX_PIXELS = 16, 16384, 50_000_000
+_MIN_SIDE, _MAX_SIDE, _MAX_PIXELS = 16, 16384, 25_000_000
 _MIN_SECONDS, _MAX_SECONDS = 0.5, 60.0
 _USUAL_SECONDS = 4
 
@@ -93,7 +93,7 @@ def run(arguments: argparse.Namespace) -> int:
     style = _style(arguments, scene)
     if arguments.turntable is None:
         from linkwright.images.png import png
-        from linkwright.picture.render import render
+        from linkwright.picture.rendering import render
 
         data = png(render(scene, arguments.view, arguments.size, style))
     else:
@@ -148,7 +148,7 @@ def _read_world(arguments: argparse.Namespace, path: Path, finder: PackageFinder
 
 def _style(arguments: argparse.Namespace, scene: Scene) -> Style:
     """Return the style of the image, and warn about labels that the font lacks."""
-    from linkwright.picture.render import Style
+    from linkwright.picture.rendering import Style
     from linkwright.picture.stroke_font import is_drawable
 
     anchors = {"links": scene.labels.links, "joints": scene.labels.joints}.get(arguments.labels, ())

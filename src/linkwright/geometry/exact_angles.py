@@ -6,11 +6,14 @@ additions and multiplications of floats, which IEEE 754 defines completely.
 
 from __future__ import annotations
 
+from math import fmod
+
 from linkwright.geometry.single import Quaternion, Vector3
 
 _QUARTER_TURN = 1.5707963267948966
 _QUARTER_TURN_REST = 6.123233995736766e-17
 """The part of pi/2 that the float above lacks."""
+_LARGE_ANGLE = 1e6
 _GRID = float(1 << 40)
 """Results are multiples of 1 / _GRID, so that rotations by quarter turns are exact."""
 _SINE_TERMS = (-1 / 6, 1 / 120, -1 / 5040, 1 / 362880, -1 / 39916800, 1 / 6227020800)
@@ -18,7 +21,13 @@ _COSINE_TERMS = (-1 / 2, 1 / 24, -1 / 720, 1 / 40320, -1 / 3628800, 1 / 47900160
 
 
 def sine_and_cosine(angle: float) -> tuple[float, float]:
-    """Return the sine and cosine of an angle in radians, rounded to 2^-40."""
+    """Return the sine and cosine of an angle in radians, rounded to 2^-40.
+
+    Raises:
+        ValueError: the angle is not finite.
+    """
+    if not -_LARGE_ANGLE < angle < _LARGE_ANGLE:
+        angle = fmod(angle, 4.0 * _QUARTER_TURN)  # exact in every library
     quarters = round(angle / _QUARTER_TURN)
     rest = angle - quarters * _QUARTER_TURN - quarters * _QUARTER_TURN_REST
     square = rest * rest

@@ -5,7 +5,7 @@ The same scene gives the same pixels on every machine (decision 0135).
 
 from linkwright.picture.camera import VIEWS, Camera, View
 from linkwright.picture.materials import SurfaceLibrary
-from linkwright.picture.render import Image, Style, render
+from linkwright.picture.rendering import Image, Style, render
 from linkwright.picture.robots import GHOST_COLOR, OUTLINE_COLOR, robot_scene
 from linkwright.picture.scene import Scene, camera_for
 

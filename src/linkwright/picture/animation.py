@@ -7,7 +7,7 @@ from io import BytesIO
 
 from linkwright.diagnostics import Diagnostic, LinkwrightError, missing_extra, phrase
 from linkwright.images.png import apng
-from linkwright.picture.render import Image
+from linkwright.picture.rendering import Image
 
 _WEBP_QUALITY = 88
 

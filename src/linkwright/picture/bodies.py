@@ -54,6 +54,8 @@ class Surface:
     def of_triangles(cls, triangles: Triangles, texture: Texture | None = None) -> Surface:
         """Return the white surface of triangles, smooth except at creases. Normals of the file are not used."""
         faces = triangles.indices.reshape(-1, 3)
+        if not len(faces) or not (np.abs(triangles.positions) <= MAX_COORDINATE).all():
+            return cls(triangles.positions, np.zeros_like(triangles.positions), faces)
         colors, coordinates = triangles.colors, triangles.coordinates
         has_texture = texture is not None and coordinates is not None
         positions = np.rint(triangles.positions * _POSITION_GRID) / _POSITION_GRID
@@ -78,10 +80,12 @@ class Surface:
         factors = np.array(scale)
         inverse = np.array([1.0 / factor if factor else 0.0 for factor in scale])
         is_mirrored = scale[0] * scale[1] * scale[2] < 0
+        with np.errstate(over="ignore", invalid="ignore"):  # `is_in_range` finds numbers that are too large
+            points, normals = self.points * factors, unit_vectors(self.normals * inverse)
         return replace(
             self,
-            points=self.points * factors,
-            normals=unit_vectors(self.normals * inverse),
+            points=points,
+            normals=normals,
             faces=self.faces[:, ::-1] if is_mirrored else self.faces,
         )
 
@@ -93,12 +97,14 @@ class Surface:
         matrix[:3, :3] = frame.rotation
         turn = matrix.copy()
         matrix[:3, 3] = frame.position
-        return replace(self, points=transform_points(matrix, self.points), normals=transform_points(turn, self.normals))
+        with np.errstate(over="ignore", invalid="ignore"):
+            points, normals = transform_points(matrix, self.points), transform_points(turn, self.normals)
+        return replace(self, points=points, normals=normals)
 
     @property
-    def is_drawable(self) -> bool:
+    def is_in_range(self) -> bool:
         """Whether all coordinates are numbers of a reasonable size."""
-        return bool(len(self.faces)) and bool((np.abs(self.points) <= MAX_COORDINATE).all())
+        return bool((np.abs(self.points) <= MAX_COORDINATE).all())
 
 
 @dataclass(frozen=True, eq=False, slots=True)

@@ -233,6 +233,11 @@ class DepthBuffer:
         copy._steps = self._steps
         return copy
 
+    @property
+    def is_empty(self) -> bool:
+        """Whether no triangle is seen."""
+        return bool((self.keys == NOTHING).all())
+
     def add(
         self,
         triangles: ScreenTriangles,

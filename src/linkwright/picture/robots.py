@@ -6,7 +6,7 @@ from collections.abc import Mapping
 from pathlib import Path
 
 from linkwright.diagnostics import Diagnostic, LinkwrightError, Severity, phrase
-from linkwright.geometry.shapes import Placement
+from linkwright.geometry.shapes import MAX_COORDINATE, Placement
 from linkwright.inertia.mesh_library import MeshLibrary
 from linkwright.packages import PackageFinder
 from linkwright.picture.bodies import Anchor, Body, Color, Labels, Surface, Texture
@@ -48,10 +48,14 @@ def robot_scene(
     reader = _VisualReader(library or SurfaceLibrary(), MeshLibrary(finder, folder or Path.cwd()))
     frames = link_frames(robot, positions or {})
     outline_colors = outlined or {}
-    bodies = [
-        Body(name, frame, reader.surfaces(robot.links[name]), ghost, outline_colors.get(name))
-        for name, frame in sorted(frames.items(), key=lambda item: list(robot.links).index(item[0]))
-    ]
+    bodies = []
+    for name in robot.links:
+        if name in frames and max(map(abs, frames[name].position)) <= MAX_COORDINATE:
+            surfaces = reader.surfaces(robot.links[name])
+            bodies.append(Body(name, frames[name], surfaces, ghost, outline_colors.get(name)))
+        elif name in frames:
+            reader.add_out_of_range(name)
+            del frames[name]
     return Scene(bodies, reader.problems, _labels(robot, frames))
 
 
@@ -77,12 +81,20 @@ class _VisualReader:
 
     def surfaces(self, link: Link) -> tuple[Surface, ...]:
         """Return the surfaces of a link's visuals in the link's frame."""
-        return tuple(
-            surface.placed(exact_placement(visual.origin))
-            for visual in link.visuals
-            for surface in self._visual(link, visual)
-            if surface.is_drawable
-        )
+        surfaces = []
+        for visual in link.visuals:
+            for surface in self._visual(link, visual):
+                placed = surface.placed(exact_placement(visual.origin))
+                if placed.is_in_range:
+                    surfaces.append(placed)
+                else:
+                    self.add_out_of_range(link.name)
+        return tuple(surfaces)
+
+    def add_out_of_range(self, link: str) -> None:
+        """Add the finding that a link is too large or too far away."""
+        message = phrase("link '{link}' is drawn incompletely: a coordinate is out of range", link=link)
+        self._add(Diagnostic("PIC101", message, severity=Severity.WARNING))
 
     def _visual(self, link: Link, visual: Visual) -> list[Surface]:
         material, geometry = visual.material, visual.geometry

@@ -12,7 +12,7 @@ from linkwright.geometry.arrays import Array
 from linkwright.geometry.exact_angles import circle
 from linkwright.geometry.single import Vector3, add_vectors, dot
 from linkwright.picture.camera import Camera, View, camera_axes, fitting_camera
-from linkwright.picture.render import Image, Style, render
+from linkwright.picture.rendering import Image, Style, render
 from linkwright.picture.scene import Scene
 from linkwright.process.processors import usable_processors
 

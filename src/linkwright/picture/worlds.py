@@ -84,8 +84,10 @@ class _WorldReader:
                 continue  # the check of references reports it
             for surface in self._visual(placed_link.name, visual):
                 placed = surface.placed(frame)
-                if placed.is_drawable:
+                if placed.is_in_range:
                     yield placed
+                else:
+                    self._add_incomplete(placed_link.name, phrase("a coordinate is out of range"))
 
     def _visual(self, link: str, visual: Visual) -> Iterator[Surface]:
         color, image = appearance(visual.material) if visual.material else (None, "")

@@ -145,6 +145,8 @@ class _Renderer:
         for _ in range(_PEELED_LAYERS):
             layer = opaque.empty_copy()
             layer.add(self._screen, transparent, behind=layers[-1] if layers else None, before=opaque)
+            if layer.is_empty:
+                break
             layers.append(layer)
         return layers
 
