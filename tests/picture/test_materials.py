@@ -10,6 +10,7 @@ import pytest
 from linkwright.diagnostics import LinkwrightError
 from linkwright.geometry.collada_colors import read_colored_meshes
 from linkwright.picture.materials import DEFAULT_COLOR, SurfaceLibrary, surface_color
+from tests.browser.golden import GOLDEN, golden_links, robot_of
 from tests.picture.robots import image, joint, link, mostly, scene, urdf
 from tests.places import REPOSITORY
 
@@ -111,6 +112,22 @@ def test_what_cannot_be_read_is_one_error(name: str, tmp_path: Path) -> None:
     with pytest.raises(LinkwrightError) as raised:
         SurfaceLibrary().read(path)
     assert raised.value.diagnostics[0].code in ("INR101", "INR102", "INR103", "INR104")
+
+
+@pytest.mark.extra("mesh")
+def test_meshes_are_as_large_and_as_coloured_as_the_page_draws_them(tmp_path: Path) -> None:
+    shown = scene(robot_of(golden_links(tmp_path)))
+    assert shown.problems == ()
+    drawn = {body.name: surface for body, surface in zip(shown.mesh.bodies, shown.mesh.surfaces, strict=True)}
+    wrong = {}
+    for name, (_, _, _, _, (least, most), color, opacity) in GOLDEN.items():
+        surface = drawn[name]
+        found = "#" + "".join(f"{round(value * 255):02x}" for value in surface.color)
+        low, high = surface.points.min(axis=0).tolist(), surface.points.max(axis=0).tolist()
+        is_in_place = low == pytest.approx(least, abs=1e-5) and high == pytest.approx(most, abs=1e-5)
+        if not is_in_place or found != color or surface.alpha != pytest.approx(opacity):
+            wrong[name] = (low, high, found, surface.alpha)
+    assert wrong == {}
 
 
 def test_two_robots_share_what_was_read(tmp_path: Path) -> None:

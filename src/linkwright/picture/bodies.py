@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, replace
 from typing import TypeAlias
 
 import numpy as np
@@ -144,4 +144,4 @@ class Labels:
     """The points that can have labels: the origins of links and of joints."""
 
     links: tuple[Anchor, ...] = ()
-    joints: tuple[Anchor, ...] = field(default=())
+    joints: tuple[Anchor, ...] = ()
