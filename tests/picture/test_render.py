@@ -211,3 +211,27 @@ def test_what_is_out_of_range_is_left_out_with_a_finding() -> None:
 def test_a_large_angle_is_one_like_any_other() -> None:
     text = urdf(link("base", BOX, RED), link("other", BOX, BLUE), joint("j", "base", "other", "continuous", "0 0 2"))
     assert scene(text, {"j": 1e300}).problems == ()
+
+
+def test_bodies_cast_shadows_on_each_other() -> None:
+    plate = link("base", '<box size="3 3 0.1"/>', "0.8 0.8 0.8 1")
+    above = link("other", '<box size="0.5 0.5 0.5"/>', RED, "0 0 1")
+    with_box = urdf(plate, above, joint("j", "base", "other"))
+    camera = camera_for(View(0.0, 50.0), (240, 180), scene(with_box))
+    alone, shaded = (
+        render(scene(text), camera=camera)[:, :, :3].astype(int).sum(axis=2) for text in (urdf(plate), with_box)
+    )
+    x, y, _ = camera.project(
+        np.stack(np.meshgrid(np.linspace(-1.4, 1.4, 57), np.linspace(-1.4, 1.4, 57), [0.05]), -1).reshape(-1, 3)
+    )
+    darker = [(alone - shaded)[int(row), int(column)] for row, column in zip(y, x, strict=True)]
+    assert sum(40 < difference < 250 for difference in darker) > 20
+
+
+@pytest.mark.parametrize("view", VIEWS.values(), ids=VIEWS)
+def test_points_are_found_again_from_their_pixels(view: View) -> None:
+    points = np.random.default_rng(4).uniform(-1, 1, (20, 3))
+    camera = camera_for(view, (160, 120), scene(ONE))
+    x, y, _ = camera.project(points)
+    depth = points @ camera.toward - camera.center[2]
+    np.testing.assert_allclose(camera.points_at(x, y, depth), points, atol=1e-9)

@@ -40,12 +40,12 @@ ARM = urdf(
 MBOT = REPOSITORY / "robots" / "my_robot_description" / "urdf" / "mbot_with_kinect.urdf"
 
 DIGESTS = {
-    "arm iso": "04e81c85046136f89636ffb0455fdfae0454b87f4e8da82cf23e0c868c267e8c",
-    "arm front": "c47f881c3b264278585f5a49d8ebef404f3170bb6d152be226339baddfb43da6",
-    "arm from below": "07cabd6056ca3c07e1c71ebfbcc5bb48c6071416d81d078b238408bb399e3aff",
-    "arm compared": "c2a29b5aaa3fbfb82af5b66dcfcbf39c5edad0388ee741291e3ba62d56f1dec2",
-    "mbot iso": "fb0efd362d5ab92a10465f96a4777453d33488c70ee65239f6a418fd04e8abf0",
-    "mbot top": "0e253ccaabead2e03dab3c06d6ea153b34d232621a5421bcf29333982e6bb376",
+    "arm iso": "82e2e64309f770b6854b721a813c99b4e446d9246ad875a9abea48697190401c",
+    "arm front": "be709f879b9513486e11503349c0331fdba560ca1c2a97e62176dcf2297116c8",
+    "arm from below": "77eaefe4f90a3559e702c93abedb09e1b7db27026dc01ec69f3b695bb4f80c87",
+    "arm compared": "2994d22ef49a5ae07a7e1526b21daa9c979d91961414f4852a12cc8b2e3a1761",
+    "mbot iso": "56e2b901f5958d37f39426e94db76f428922486f8c4ae0270aa6e067876fd1d2",
+    "mbot top": "56caff5a431c03eaf3b640af4aeb9f3ee885fc2b06471f5757608471a733806c",
 }
 
 

@@ -82,6 +82,23 @@ class Camera:
             nearness = z
         return self.size[0] / 2 + x * self.scale, self.size[1] / 2 - y * self.scale, nearness
 
+    def points_at(self, x: Array, y: Array, depth: Array) -> Array:
+        """Return the points that pixels show, shape (n, 3): the inverse of `project`.
+
+        Args:
+            x: the pixels from the left.
+            y: the pixels from the upper side.
+            depth: how much nearer than the middle's point each point is, along `toward`, in m.
+        """
+        size = (self.distance - depth) / self.distance if self.distance else np.ones_like(depth)
+        across = (x - self.size[0] / 2) / self.scale * size + self.center[0]
+        upward = (self.size[1] / 2 - y) / self.scale * size + self.center[1]
+        toward = depth + self.center[2]
+        coordinates = [
+            across * self.right[axis] + upward * self.up[axis] + toward * self.toward[axis] for axis in range(3)
+        ]
+        return np.stack(coordinates, axis=1)
+
     def to_plane(self, height: float, x: Array, y: Array) -> Array:
         """Return the points at which rays through pixels meet a horizontal plane, shape (n, 3).
 

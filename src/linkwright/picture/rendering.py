@@ -9,6 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from linkwright.picture.camera import VIEWS, Camera, View
+from linkwright.picture.cast_shadows import CastShadows
 from linkwright.picture.edges import edge_strength
 from linkwright.picture.ground import GroundGrid, ground_points, is_ground_visible, shadow_map
 from linkwright.picture.labels import draw_labels
@@ -87,6 +88,7 @@ class _Renderer:
         self._range = (float(nearness.max()), float(nearness.min())) if len(nearness) else (1.0, 0.0)
         lights = Lights.of(camera)
         self._shader = Shader(mesh, self._screen, lights)
+        self._cast = CastShadows(mesh, lights.key) if len(mesh.solid) else None
         is_on_ground = is_ground_visible(camera)
         self._shadow = shadow_map(mesh, lights.key) if is_on_ground else None
         self._grid = GroundGrid.around(scene.points) if style.grid and is_on_ground else None
@@ -123,7 +125,7 @@ class _Renderer:
         rows = (lower - upper) * scale
         light = np.zeros((rows, width, 3), np.float32)
         alpha = np.zeros((rows, width), np.float32)
-        self._blend(light, alpha, opaque, has_corners=True)
+        self._blend(light, alpha, opaque, is_first=True)
         transparent = mesh.transparent
         if len(transparent):
             for layer in reversed(self._peeled(transparent, opaque)):
@@ -157,7 +159,7 @@ class _Renderer:
         buffer: DepthBuffer,
         *,
         opacity: float | None = None,
-        has_corners: bool = False,
+        is_first: bool = False,
     ) -> None:
         """Draw what a buffer shows over the light of samples and their opacity.
 
@@ -166,7 +168,7 @@ class _Renderer:
             alpha: the opacity of samples, which is changed.
             buffer: the triangles.
             opacity: the opacity; None for that of the materials.
-            has_corners: whether to draw corners darker.
+            is_first: whether nothing was drawn yet; corners and shadows are those of the first surface.
         """
         seen = buffer.seen(self._per_pixel)
         if seen is None:
@@ -176,14 +178,17 @@ class _Renderer:
         alphas = shaded.alpha if opacity is None else np.full(len(lines), opacity, np.float32)
         alphas = alphas + (1.0 - alphas) * lines
         colors = shaded.light
-        if has_corners:
+        if is_first:
             colors *= self._ambient(seen, shaded.normals)[:, None]
         colors *= ((1.0 - lines) * alphas)[:, None]
         colors += (lines * alphas * _EDGE_LIGHT)[:, None]
-        rest = 1.0 - alphas
         light, alpha = light[seen.window], alpha[seen.window]
-        light[seen.mask] = colors + light[seen.mask] * rest[:, None]
-        alpha[seen.mask] = alphas + alpha[seen.mask] * rest
+        if not is_first:
+            rest = 1.0 - alphas
+            colors += light[seen.mask] * rest[:, None]
+            alphas = alphas + alpha[seen.mask] * rest
+        light[seen.mask] = colors
+        alpha[seen.mask] = alphas
 
     def _ambient(self, seen: SeenTriangles, normals: Floats) -> Floats:
         """Return the light that reaches samples, computed in the middle of each pixel."""
@@ -202,6 +207,10 @@ class _Renderer:
         for axis, direction in enumerate((camera.right, camera.up, camera.toward)):
             turned[axis][is_seen] = along(of_middles, direction)
         ambient = ambient_light(depth, turned, is_seen, camera)
+        if self._cast is not None:
+            x, y = (values[at_middle[seen.mask]].astype(np.float64) / scale for values in (seen.x, seen.y))
+            points = camera.points_at(x, y, depth[is_seen].astype(np.float64))
+            ambient[is_seen] *= self._cast.light(points, of_middles)
         spread: Floats = np.repeat(np.repeat(ambient, scale, axis=0), scale, axis=1)[seen.mask]
         return spread
 
