@@ -147,6 +147,7 @@ def test_an_unknown_joint_is_an_error(folder: Path, capsys: pytest.CaptureFixtur
         (["-o", "a.png", "--joint", "turn"], "'turn' is not NAME=VALUE"),
         (["-o", "a.png", "--joint", "turn=inf"], "'turn=inf' is not NAME=VALUE"),
         (["-o", "a.png", "--turntable", "0"], "'0' is not a duration from 0.5 to 60 s"),
+        (["-o", "a.png", "--turntable", "60", "--size", "4000x3000"], "400 million pixels together"),
         ([], "-o"),
     ],
 )

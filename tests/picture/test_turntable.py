@@ -2,7 +2,10 @@
 
 from __future__ import annotations
 
+import time
+
 import numpy as np
+import pytest
 
 from linkwright.picture.camera import VIEWS
 from linkwright.picture.rendering import Style, render
@@ -49,3 +52,20 @@ def test_images_are_those_of_their_cameras_whatever_thread_drew_them() -> None:
     for image, camera in zip(images, cameras, strict=True):
         assert (image == render(shown, VIEWS["iso"], (64, 48), Style(), camera)).all()
     assert not (images[0] == images[1]).all()
+
+
+def test_an_interruption_does_not_wait_for_the_remaining_images(monkeypatch: pytest.MonkeyPatch) -> None:
+    drawn: list[int] = []
+
+    def slow(*_: object) -> np.ndarray:
+        drawn.append(1)
+        time.sleep(0.05)
+        return np.zeros((1, 1, 4), np.uint8)
+
+    def interrupt(_: int) -> None:
+        raise KeyboardInterrupt
+
+    monkeypatch.setattr("linkwright.picture.turntable.render", slow)
+    with pytest.raises(KeyboardInterrupt):
+        turntable(scene(LONG), VIEWS["iso"], (64, 48), Style(), 200, interrupt)
+    assert len(drawn) < 50

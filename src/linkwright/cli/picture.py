@@ -20,6 +20,7 @@ if TYPE_CHECKING:
     from linkwright.picture.scene import Scene
 
 _MIN_SIDE, _MAX_SIDE, _MAX_PIXELS = 16, 16384, 25_000_000
+_MAX_ANIMATED_PIXELS = 400_000_000
 _MIN_SECONDS, _MAX_SECONDS = 0.5, 60.0
 _USUAL_SECONDS = 4
 
@@ -78,6 +79,10 @@ def run(arguments: argparse.Namespace) -> int:
     output = Path(arguments.output)
     if output.suffix.lower() not in endings:
         print(f"linkwright picture: '{output}' should end with {' or '.join(endings)}", file=sys.stderr)
+        return 2
+    if arguments.turntable is not None and _frame_count(arguments) * math.prod(arguments.size) > _MAX_ANIMATED_PIXELS:
+        limit = f"the images of an animation can have {_MAX_ANIMATED_PIXELS // 10**6} million pixels together"
+        print(f"linkwright picture: {limit}; choose a smaller --size or fewer seconds", file=sys.stderr)
         return 2
     if output.suffix.lower() == ".webp":
         from linkwright.picture.animation import require_webp
@@ -163,9 +168,9 @@ def _animation(arguments: argparse.Namespace, scene: Scene, style: Style, ending
     """Return the file of a turn around a scene, and show its progress."""
     from linkwright.cli.progress import ProgressLine
     from linkwright.picture.animation import animation
-    from linkwright.picture.turntable import FRAMES_PER_SECOND, turntable
+    from linkwright.picture.turntable import turntable
 
-    count = max(2, round(arguments.turntable * FRAMES_PER_SECOND))
+    count = _frame_count(arguments)
     progress = ProgressLine()
 
     def report(done: int) -> None:
@@ -176,6 +181,14 @@ def _animation(arguments: argparse.Namespace, scene: Scene, style: Style, ending
     finally:
         progress.end()
     return animation(images, arguments.turntable / count, ending)
+
+
+def _frame_count(arguments: argparse.Namespace) -> int:
+    """Return the number of images of an animation."""
+    from linkwright.picture.turntable import FRAMES_PER_SECOND
+
+    seconds: float = arguments.turntable
+    return max(2, round(seconds * FRAMES_PER_SECOND))
 
 
 def _view(text: str) -> View:

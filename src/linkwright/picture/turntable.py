@@ -39,9 +39,13 @@ def turntable(
     images = []
     with ThreadPoolExecutor(max_workers=min(usable_processors(), _MAX_THREADS)) as pool:
         scene.mesh  # noqa: B018 - computed once, before the threads need it
-        for image in pool.map(lambda camera: render(scene, view, size, style, camera), cameras):
-            images.append(image)
-            report(len(images))
+        try:
+            for image in pool.map(lambda camera: render(scene, view, size, style, camera), cameras):
+                images.append(image)
+                report(len(images))
+        except BaseException:  # such as Ctrl-C: do not wait for images that have not begun
+            pool.shutdown(wait=False, cancel_futures=True)
+            raise
     return images
 
 
