@@ -79,7 +79,7 @@ test-quick: $(VENV)/.dev
 # The tests of descriptions, or those named, without extras and the page, which take most of the time and the room. What needs them is
 # left out. One room's tests take less time than a second process takes to begin.
 BASE := .venv-base$(if $(VERSION),-$(VERSION))
-ENGINE := diagnostics xmltree schema geometry packages xacro urdf sdf descriptions kinematics inertia lint inference
+ENGINE := diagnostics xmltree schema geometry packages xacro urdf sdf descriptions kinematics inertia lint inference picture
 test-base: $(BASE)/.ready
 	$(BASE)/bin/pytest $(if $(ARGS),,$(WORKERS)) -m "not browser and not slow and not extra" $(or $(ARGS),$(ENGINE:%=tests/%))
 

@@ -1,0 +1,84 @@
+"""Shadows that bodies cast on each other."""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import NDArray
+
+from linkwright.geometry.arrays import Array
+from linkwright.geometry.single import Vector3, cross
+from linkwright.picture.layers import Mesh
+from linkwright.picture.rasterizer import DepthBuffer, ScreenTriangles
+from linkwright.picture.vectors import Floats, along, unit_vector
+
+_CELLS = 720
+"""The number of cells along the longer side of the map."""
+_REACH = 2
+"""The reach in cells of the blur of shadows' borders."""
+_OFFSET = 2.0
+"""The distance in cells from a surface at which it is tested, so that no surface shades itself."""
+_STRENGTH = 0.42
+"""The part of the light that a shadow takes."""
+
+
+class CastShadows:
+    """The shadows of the bodies of a scene.
+
+    Args:
+        mesh: the triangles of the scene, of which one at least casts a shadow.
+        key: the direction to the light.
+    """
+
+    def __init__(self, mesh: Mesh, key: Vector3) -> None:
+        self._toward = key
+        self._right = unit_vector(cross((0.0, 0.0, 1.0), key)) if abs(key[2]) < 0.999 else (1.0, 0.0, 0.0)
+        self._up = cross(key, self._right)
+        solid = mesh.solid
+        used = np.zeros(len(mesh.points), dtype=bool)
+        used[mesh.faces[solid].reshape(-1)] = True
+        x, y, z = self._components(mesh.points)
+        self._origin = float(x[used].min()), float(y[used].min())
+        extents = float(x[used].max()) - self._origin[0], float(y[used].max()) - self._origin[1]
+        self._cell = max(*extents, 1e-9) / (_CELLS - 2)
+        self._columns, rows = (int(extent / self._cell) + 2 for extent in extents)
+        self._high = float(z[used].max())
+        self._depth = max(self._high - float(z[used].min()), 1e-9)
+        cells = ((x - self._origin[0]) / self._cell, (y - self._origin[1]) / self._cell)
+        buffer = DepthBuffer(self._columns, 0, rows, self._high, self._high - self._depth)
+        buffer.add(ScreenTriangles.of(*cells, z, mesh.faces), solid)
+        self._distances = np.full((rows, self._columns), 2.0, np.float32)
+        seen = buffer.seen(1)
+        if seen is not None:
+            self._distances[seen.window][seen.mask] = seen.distances
+
+    def light(self, points: Array, normals: Floats) -> Floats:
+        """Return the light that shadows leave at points of surfaces, from 0 to 1.
+
+        Args:
+            points: the points in m, shape (n, 3).
+            normals: the unit normals of the surfaces, shape (n, 3).
+        """
+        facing = np.clip(along(normals, self._toward) * 3.0, 0.0, 1.0)
+        moved = points + normals * (self._cell * _OFFSET)
+        x, y, z = self._components(moved)
+        distance = ((self._high - z) / self._depth).astype(np.float32)
+        tolerance = np.float32(_OFFSET * self._cell / self._depth)
+        column = np.floor((x - self._origin[0]) / self._cell).astype(np.int64)
+        row = np.floor((y - self._origin[1]) / self._cell).astype(np.int64)
+        blocked = np.zeros(len(points), np.float32)
+        count = 0
+        for down in range(-_REACH, _REACH + 1):
+            for across in range(-_REACH, _REACH + 1):
+                if down * down + across * across <= _REACH * _REACH + 1:
+                    blocked += self._at(row + down, column + across) + tolerance < distance
+                    count += 1
+        shadow = blocked * (1.0 / count) * facing
+        light: Floats = (1.0 - shadow * _STRENGTH).astype(np.float32)
+        return light
+
+    def _at(self, rows: NDArray[np.int64], columns: NDArray[np.int64]) -> Floats:
+        height, width = self._distances.shape
+        return self._distances[np.clip(rows, 0, height - 1), np.clip(columns, 0, width - 1)]
+
+    def _components(self, points: Array) -> tuple[Array, Array, Array]:
+        return along(points, self._right), along(points, self._up), along(points, self._toward)
