@@ -28,23 +28,27 @@ class CommitFiles:
         repository: the repository.
         commit: the hash of the commit.
         name: the commit in git's notation, for users.
+        must_be_complete: whether it is an error if git cannot write some of the files.
 
     Attributes:
         name: the commit in git's notation.
         root: the temporary folder with the files, which corresponds to the root folder of the repository.
+        missing_files: the paths of the files that git cannot write, relative to the root.
         removed_links: the paths of the removed links, relative to the root.
 
     Raises:
         LinkwrightError: CLI345 if git cannot write the files.
     """
 
-    def __init__(self, repository: GitRepository, commit: str, name: str) -> None:
+    def __init__(self, repository: GitRepository, commit: str, name: str, *, must_be_complete: bool = True) -> None:
         self.name = name
         self._repository_root = repository.root
         self._folder = ScratchFolder("revision")
         self.root = Path(self._folder.name).resolve() / "files"
         try:
-            repository.write_files(commit, self.root, self.root.parent / "index")
+            self.missing_files = repository.write_files(
+                commit, self.root, self.root.parent / "index", must_be_complete=must_be_complete
+            )
             self.removed_links = tuple(self._remove_outward_links(repository.symbolic_links(commit)))
         except BaseException:
             self.close()
@@ -53,6 +57,10 @@ class CommitFiles:
     def close(self) -> None:
         """Remove the temporary folder."""
         self._folder.cleanup()
+
+    def __getstate__(self) -> dict[str, object]:
+        """Return the state for another process, which does not remove the folder."""
+        return {name: value for name, value in vars(self).items() if name != "_folder"}
 
     def finder(self, folder: Path) -> PackageFinder:
         """Return a finder for a file's folder that finds the commit's packages, and others from the working tree."""

@@ -145,30 +145,42 @@ class GitRepository:
         entries = self.run("ls-tree", "-r", "-z", commit).stdout.split("\0")
         return [entry.partition("\t")[2] for entry in entries if entry.startswith(_LINK_MODE)]
 
-    def write_files(self, commit: str, folder: Path, index: Path) -> None:
+    def write_files(self, commit: str, folder: Path, index: Path, *, must_be_complete: bool = True) -> list[str]:
         """Write all files of a commit into a folder.
 
         Args:
             commit: the hash of the commit.
             folder: the folder, which is created.
             index: a file for an index of git, which is created.
+            must_be_complete: whether it is an error if git cannot write some of the files, such as large ones that a
+                partial clone has not downloaded.
+
+        Returns:
+            The paths of the files that are missing, relative to the root.
 
         Raises:
             LinkwrightError: CLI345 if git cannot write the files.
         """
         environment = {"GIT_INDEX_FILE": str(index)}
         result = self.run("read-tree", commit, environment=environment)
-        if result.returncode == 0:
+        is_read = result.returncode == 0
+        if is_read:
             folder.mkdir(exist_ok=True)
             arguments = ("checkout-index", "--all", "--quiet", f"--prefix={folder}{os.sep}")
             result = self.run(*arguments, environment=environment)
-        if result.returncode != 0:
-            message = phrase(
-                "git cannot write the files of commit '{name}': {reason}",
-                name=commit,
-                reason=foreign(result.stderr.strip()),
-            )
-            raise LinkwrightError(Diagnostic("CLI345", message))
+        if result.returncode == 0:
+            return []
+        if is_read and not must_be_complete:
+            names = self.run("ls-files", "-z", environment=environment).stdout.split("\0")
+            missing = [name for name in names if name and not os.path.lexists(folder / name)]
+            if len(missing) < len(names) - 1:
+                return missing
+        message = phrase(
+            "git cannot write the files of commit '{name}': {reason}",
+            name=commit,
+            reason=foreign(result.stderr.strip()),
+        )
+        raise LinkwrightError(Diagnostic("CLI345", message))
 
     def changed_files(self, old: str, new: str | None = None) -> list[ChangedFile]:
         """Return the files that differ between two commits, sorted by path.
@@ -221,8 +233,8 @@ def lfs_hash(path: Path) -> str | None:
 def _parse_raw_changes(text: str) -> Iterator[ChangedFile]:
     """Yield the files in the output of ``git diff --raw -z``.
 
-    A file is ``:OLDMODE NEWMODE OLDHASH NEWHASH STATUS``, a path and, if it was renamed, its new path. Each of them ends
-    with a null byte.
+    A file is ``:OLDMODE NEWMODE OLDHASH NEWHASH STATUS``, a path and, if it was renamed, its new path. Each of them
+    ends with a null byte.
     """
     fields = iter(text.split("\0"))
     for header in fields:

@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Sequence
+from collections import Counter
+from collections.abc import Callable, Hashable, Iterator, Mapping, Sequence
+from itertools import zip_longest
 
 from linkwright.descriptions.comparison.difference import Difference, Kind, location_of
 from linkwright.loading.lean_dataclasses import dataclass
@@ -36,9 +38,7 @@ class ElementComparison:
             path: the names of the enclosing elements.
             enclosing: the name of the enclosing pair and the pair itself, or None for direct children of the robots.
         """
-        old_by_key, new_by_key = _elements_by_key(old), _elements_by_key(new)
-        for key in dict.fromkeys([*new_by_key, *old_by_key]):
-            old_element, new_element = old_by_key.get(key), new_by_key.get(key)
+        for key, old_element, new_element in self._pairs(old, new):
             element_path = f"{path} {key}".strip()
             if old_element is not None and new_element is not None:
                 name, start_path = (key, "") if enclosing is None else (enclosing[0], element_path)
@@ -55,6 +55,32 @@ class ElementComparison:
                 )
                 places = location_of(old_element or enclosing[1]), location_of(new_element or enclosing[2])
                 yield Difference("extension", enclosing[0], "changed", element_path, *texts, "", *places)
+
+    def _pairs(
+        self, old: Sequence[Element], new: Sequence[Element]
+    ) -> Iterator[tuple[str, Element | None, Element | None]]:
+        """Yield the pairs of elements that belong together and may differ, each with its key.
+
+        Elements without a name that have an equal counterpart are left out, so that an inserted element does not shift
+        the others.
+        """
+        contents = [[self._content(element, side) for element in elements] for side, elements in enumerate((old, new))]
+        common = Counter(contents[0]) & Counter(contents[1])
+        old_rest, new_rest = (
+            _without_common(_elements_by_key(elements), keys, common)
+            for elements, keys in zip((old, new), contents, strict=True)
+        )
+        for base in dict.fromkeys([*new_rest, *old_rest]):
+            for old_item, new_item in zip_longest(old_rest.get(base, ()), new_rest.get(base, ())):
+                key, _ = new_item or old_item
+                yield key, old_item and old_item[1], new_item and new_item[1]
+
+    def _content(self, element: Element, side: int) -> Hashable:
+        """Return the comparable content of an element of the old (0) or the new (1) version."""
+        normalize = (self.normalize_old, self.normalize_new)[side]
+        attributes = frozenset((name, " ".join(normalize(value).split())) for name, value in element.attributes.items())
+        children = tuple(self._content(child, side) for child in element.elements())
+        return element.tag, attributes, " ".join(normalize(element.text()).split()), children
 
     def _element_differences(self, name: str, path: str, old: Element, new: Element) -> Iterator[Difference]:
         for attribute in dict.fromkeys([*new.attributes, *old.attributes]):
@@ -82,7 +108,7 @@ def _elements_by_key(elements: Sequence[Element]) -> dict[str, Element]:
     """
     keyed_elements: dict[str, Element] = {}
     for element in elements:
-        name = element.attributes.get("name") or element.attributes.get("reference")
+        name = _name_of(element)
         key = f"{element.tag} {name}" if name else element.tag
         number = 2
         unique_key = key
@@ -91,6 +117,39 @@ def _elements_by_key(elements: Sequence[Element]) -> dict[str, Element]:
             number += 1
         keyed_elements[unique_key] = element
     return keyed_elements
+
+
+def _without_common(
+    elements: Mapping[str, Element], contents: Sequence[Hashable], common: Counter[Hashable]
+) -> dict[str, list[tuple[str, Element]]]:
+    """Return the elements, with their keys, by tag and name, except for nameless elements that have a counterpart.
+
+    Args:
+        elements: the elements by key.
+        contents: the contents of the elements.
+        common: the number of counterparts of each content.
+    """
+    remaining = Counter(common)
+    rest: dict[str, list[tuple[str, Element]]] = {}
+    for (key, element), content in zip(elements.items(), contents, strict=True):
+        name = _name_of(element)
+        if name is None and remaining[content]:
+            remaining[content] -= 1
+        else:
+            rest.setdefault(f"{element.tag} {name or ''}", []).append((key, element))
+    return rest
+
+
+def _name_of(element: Element) -> str | None:
+    """Return the name that identifies an element among its siblings, or None if it has none.
+
+    The included models of SDF have their names, or else their addresses, in children.
+    """
+    name = element.attributes.get("name") or element.attributes.get("reference")
+    if name is None and element.tag == "include":
+        child = element.first("name") or element.first("uri")
+        name = None if child is None else child.text().strip()
+    return name or None
 
 
 def _one_line(element: Element) -> str:
