@@ -92,7 +92,7 @@ def _conditions(text: str) -> list[str]:
 
 
 def _split_words(words: Sequence[str], folder: Path) -> tuple[str, Sequence[str]]:
-    """Return the range and the packages. The first word is a package if it is a folder, or if it does not name a commit."""
+    """Return the range and the packages. The first word is a package if it is a folder, or if it names no commit."""
     if not words or ".." in words[0]:
         return (words[0], words[1:]) if words else ("", ())
     from linkwright.review import names_commit

@@ -185,7 +185,7 @@ class GitRepository:
     def changed_files(self, old: str, new: str | None = None) -> list[ChangedFile]:
         """Return the files that differ between two commits, sorted by path.
 
-        Renamed files are recognized as git recognizes them.
+        Renamed files are recognized as git recognizes them, unless the clone lacks the contents of a file.
 
         Args:
             old: the hash of the old commit.
@@ -195,8 +195,12 @@ class GitRepository:
         Raises:
             LinkwrightError: CLI346 if git cannot compare them.
         """
-        arguments = ("diff", "--no-ext-diff", "--find-renames", "--raw", "-z", "--no-abbrev")
-        result = self.run(*arguments, old, *([] if new is None else [new]))
+        arguments = ("--raw", "-z", "--no-abbrev")
+        commits = [old] if new is None else [old, new]
+        result = self.run("diff", "--no-ext-diff", "--find-renames", *arguments, *commits)
+        if result.returncode != 0:  # a partial clone may lack files, which these commands do not read
+            command = ("diff-index",) if new is None else ("diff-tree", "-r")
+            result = self.run(*command, *arguments, *commits)
         if result.returncode != 0:
             message = phrase("git cannot compare the commits: {reason}", reason=foreign(result.stderr.strip()))
             raise LinkwrightError(Diagnostic("CLI346", message))
@@ -217,7 +221,7 @@ def file_hash(path: Path) -> str:
 
 
 def lfs_hash(path: Path) -> str | None:
-    """Return the SHA-256 hash of the file that a pointer of Git LFS stands for, or None for any other file.
+    """Return the SHA-256 hash of the file of a pointer of Git LFS, or None if the path is not a pointer.
 
     Source: the specification of Git LFS, docs/spec.md.
     """

@@ -1,19 +1,22 @@
-"""What a review reports: changes, grouped by the file that users open or start."""
+"""The changes that a review reports, grouped by the files that users open or start."""
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+import re
+from collections.abc import Hashable, Sequence
 from dataclasses import dataclass, field
 from enum import Enum
 
 from linkwright.diagnostics import Diagnostic, Phrase
 
+_QUOTED = re.compile("'[^']*'")
+
 
 class Effect(Enum):
-    """What a change means for programs that use the package."""
+    """The effect of a change on programs that use the package."""
 
     BREAKING = "breaking"
-    """Other programs name what was removed or renamed, or exchange data that no longer fits."""
+    """Other programs use a name that is gone, or exchange data that no longer fits."""
     CHANGED = "changed"
 
 
@@ -53,10 +56,11 @@ class Change:
 
     Attributes:
         sentence: the change, in one line.
-        effect: what the change means for other programs.
+        effect: the effect of the change on other programs.
         reason: why the change is breaking; None for other changes.
-        location: where the new value is, or the old value of what was removed; None if unknown.
+        location: the location of the new value, or of the old value if there is no new one; None if unknown.
         cases: the names of the argument sets with which the change occurs; empty for all of them.
+        other_names: the names of other links, joints or extensions that a macro changes in the same way.
     """
 
     sentence: Phrase
@@ -64,6 +68,30 @@ class Change:
     reason: Phrase | None = None
     location: Location | None = None
     cases: tuple[str, ...] = ()
+    other_names: tuple[str, ...] = ()
+
+    @property
+    def name(self) -> str:
+        """The name of the changed link, joint or extension; empty for other changes."""
+        return str(self._core.arguments.get("name", ""))
+
+    @property
+    def identity(self) -> Hashable:
+        """A key that is equal for the same change of other links and joints that a macro creates.
+
+        The label of a visual often contains the name of its link.
+        """
+        if self.location is None:
+            return str(self.sentence)
+        values = tuple(str(self._core.arguments.get(name)) for name in ("subject", "old", "new"))
+        property_name = _QUOTED.sub("", str(self._core.arguments.get("property")))
+        return self.location, self.effect, self._core.template, property_name, values
+
+    @property
+    def _core(self) -> Phrase:
+        """The sentence without what is added at its end."""
+        core = self.sentence.arguments.get("change", self.sentence)
+        return core if isinstance(core, Phrase) else self.sentence
 
 
 @dataclass(frozen=True)
@@ -96,7 +124,7 @@ class Subject:
         figures: the quantities that differ.
         problems: why a part of the comparison is missing.
         cases: the names of all argument sets that were compared.
-        pictures: PNG images, by name.
+        images: views of both versions.
     """
 
     kind: SubjectKind
@@ -107,7 +135,7 @@ class Subject:
     figures: Sequence[Figure] = ()
     problems: Sequence[Phrase] = ()
     cases: Sequence[str] = ()
-    pictures: Sequence[Picture] = ()
+    images: Sequence[ViewImages] = ()
 
     @property
     def is_empty(self) -> bool:
@@ -116,16 +144,16 @@ class Subject:
 
 
 @dataclass(frozen=True)
-class Picture:
-    """A view of both versions of a robot from the same side.
+class ViewImages:
+    """Images of both versions of a robot from the same side.
 
     Attributes:
-        view: the name of the view, such as ``front``.
+        name: the name of the view, such as ``front``.
         old: the old robot as PNG.
         new: the new robot as PNG.
     """
 
-    view: str
+    name: str
     old: bytes
     new: bytes
 
@@ -137,11 +165,11 @@ class Review:
     Attributes:
         old_name: the old version in git's notation.
         new_name: the new version in git's notation, or empty for the working tree.
-        subjects: the changed files that are compared, with what differs.
+        subjects: the compared files, with their differences.
         other_files: the changed files of other kinds, by path.
         new_findings: the findings of `linkwright check` that the old version does not have.
-        mended_findings: the findings of the old version that the new version does not have.
-        notes: what the review could not look at.
+        fixed_findings: the findings of the old version that the new version does not have.
+        notes: the parts that the review does not cover.
     """
 
     old_name: str
@@ -149,7 +177,7 @@ class Review:
     subjects: Sequence[Subject] = ()
     other_files: Sequence[str] = ()
     new_findings: Sequence[Diagnostic] = ()
-    mended_findings: Sequence[Diagnostic] = ()
+    fixed_findings: Sequence[Diagnostic] = ()
     notes: Sequence[Phrase] = field(default_factory=tuple)
 
     @property

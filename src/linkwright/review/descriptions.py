@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass, replace
+from collections.abc import Hashable, Iterator, Mapping, Sequence
+from dataclasses import dataclass, field, replace
 
 from linkwright.descriptions import Description
 from linkwright.descriptions.comparison import Comparison, Difference, sentence
@@ -42,22 +42,32 @@ class _Case:
 
 def compare_descriptions(pair: FilePair) -> None:
     """Compare two versions of a description with each set of argument values."""
-    occurrences: dict[str, list[str]] = {}
-    changes: dict[str, Change] = {}
+    groups: dict[Hashable, _Group] = {}
     for case in _cases(pair):
         pair.cases.append(case.name)
         if case.old.robot is None or case.new.robot is None:
             continue
         comparison = case.models.compare(case.old.robot, case.new.robot)
         for change in _changes(pair, comparison, case.old.robot, case.new.robot):
-            key = str(change.sentence)
-            changes.setdefault(key, change)
-            occurrences.setdefault(key, []).append(case.name)
+            group = groups.setdefault(change.identity, _Group(change))
+            group.names[change.name] = None
+            group.cases[case.name] = None
         if not pair.figures:
             pair.figures += figures_of(case.models, case.old.robot, case.new.robot)
-    for key, change in changes.items():
-        is_everywhere = len(occurrences[key]) == len(pair.cases)
-        pair.changes.append(change if is_everywhere else replace(change, cases=tuple(occurrences[key])))
+    pair.changes += (group.change(pair.cases) for group in groups.values())
+
+
+@dataclass
+class _Group:
+    """A change with the names of the links or joints, and of the argument sets, with which it occurs."""
+
+    first: Change
+    names: dict[str, None] = field(default_factory=dict)
+    cases: dict[str, None] = field(default_factory=dict)
+
+    def change(self, all_cases: Sequence[str]) -> Change:
+        cases = () if len(self.cases) == len(set(all_cases)) else tuple(self.cases)
+        return replace(self.first, cases=cases, other_names=tuple(self.names)[1:])
 
 
 def _cases(pair: FilePair) -> Iterator[_Case]:

@@ -1,4 +1,4 @@
-"""A file in both versions, and what its comparison has found."""
+"""A file in both versions, with the results of its comparison."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ from pathlib import Path
 from typing import TypeVar
 
 from linkwright.diagnostics import LinkwrightError, Phrase, Span, foreign, phrase
-from linkwright.review.changes import Change, Effect, Figure, Location, Picture
+from linkwright.review.changes import Change, Effect, Figure, Location, ViewImages
 from linkwright.review.versions import Version, Versions
 
 _Content = TypeVar("_Content")
@@ -28,7 +28,7 @@ class UnreadableFileError(Exception):
 
 @dataclass
 class FilePair:
-    """A file that both versions have, to which its comparison adds what it finds.
+    """A file that both versions have, to which its comparison adds its results.
 
     Attributes:
         versions: both versions.
@@ -38,7 +38,7 @@ class FilePair:
         figures: the quantities that differ.
         problems: why a part of the comparison is missing.
         cases: the names of the compared argument sets.
-        pictures: views of both versions.
+        images: images of both versions.
     """
 
     versions: Versions
@@ -48,7 +48,7 @@ class FilePair:
     figures: list[Figure] = field(default_factory=list)
     problems: list[Phrase] = field(default_factory=list)
     cases: list[str] = field(default_factory=list)
-    pictures: list[Picture] = field(default_factory=list)
+    images: list[ViewImages] = field(default_factory=list)
 
     @property
     def old_file(self) -> Path:

@@ -1,4 +1,4 @@
-"""The kinds of reviewed files: how they are recognized and compared, and what their additions and removals mean."""
+"""The kinds of reviewed files: how they are recognized and compared, and whether their removal is breaking."""
 
 from __future__ import annotations
 
@@ -25,18 +25,22 @@ _YAML_SUFFIXES = (".yaml", ".yml")
 
 @dataclass(frozen=True)
 class KindRule:
-    """What a review does with files of a kind.
+    """The rule for files of a kind.
 
     Attributes:
         kind: the kind.
         compare: the function that compares two versions.
         suffixes: the ends of the names.
+        added: the sentence for an added file.
+        removed: the sentence for a removed file.
         removal_reason: why it is breaking to remove or rename a file; None if it is not.
     """
 
     kind: SubjectKind
     compare: Callable[[FilePair], None]
     suffixes: tuple[str, ...]
+    added: Phrase
+    removed: Phrase
     removal_reason: Phrase | None = None
 
 
@@ -45,35 +49,57 @@ _RULES = (
         SubjectKind.DESCRIPTION,
         compare_descriptions,
         (".urdf", ".xacro"),
+        phrase("description added"),
+        phrase("description removed"),
         phrase("launch files and descriptions that name the file do not find it"),
     ),
     KindRule(
         SubjectKind.WORLD,
         compare_worlds,
         (".sdf", ".world"),
+        phrase("world added"),
+        phrase("world removed"),
         phrase("launch files and users that name the file do not find it"),
     ),
     KindRule(
         SubjectKind.LAUNCH_FILE,
         compare_launch_files,
         (".launch.py", "_launch.py", ".launch.xml", ".launch"),
+        phrase("launch file added"),
+        phrase("launch file removed"),
         phrase("launch files and users that start the file do not find it"),
     ),
     KindRule(
         SubjectKind.INTERFACE,
         compare_interfaces,
         (".msg", ".srv", ".action", ".idl"),
+        phrase("interface added"),
+        phrase("interface removed"),
         phrase("programs that use the type do not build or start"),
     ),
     KindRule(
         SubjectKind.MANIFEST,
         compare_manifests,
         (MANIFEST,),
+        phrase("package added"),
+        phrase("package removed"),
         phrase("packages that depend on the package do not build or start"),
     ),
-    KindRule(SubjectKind.MAP, compare_maps, (".pgm",)),
-    KindRule(SubjectKind.PARAMETERS, compare_parameter_files, _YAML_SUFFIXES),
-    KindRule(SubjectKind.MESH, compare_meshes, (".stl", ".dae", ".obj", ".glb", ".gltf")),
+    KindRule(SubjectKind.MAP, compare_maps, (".pgm",), phrase("map added"), phrase("map removed")),
+    KindRule(
+        SubjectKind.PARAMETERS,
+        compare_parameter_files,
+        _YAML_SUFFIXES,
+        phrase("parameter file added"),
+        phrase("parameter file removed"),
+    ),
+    KindRule(
+        SubjectKind.MESH,
+        compare_meshes,
+        (".stl", ".dae", ".obj", ".glb", ".gltf"),
+        phrase("mesh added"),
+        phrase("mesh removed"),
+    ),
 )
 
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from itertools import zip_longest
 
-from linkwright.diagnostics import Phrase, phrase, term
+from linkwright.diagnostics import Phrase, phrase
 from linkwright.review.file_pair import FilePair
 from linkwright.review.launch_outlines import Entry, read_outline
 
@@ -56,7 +56,13 @@ def _compare_settings(pair: FilePair, old: Entry, new: Entry) -> None:
 
 
 def _title(entry: Entry) -> Phrase:
-    return phrase("{kind} '{name}'", kind=term(entry.kind), name=entry.name)
+    if entry.kind == "argument":
+        return phrase("argument '{name}'", name=entry.name)
+    if entry.kind == "node":
+        return phrase("node '{name}'", name=entry.name)
+    if entry.kind == "process":
+        return phrase("process '{command}'", command=entry.name)
+    return phrase("include of '{file}'", file=entry.name)
 
 
 def _removal_reason(entry: Entry) -> Phrase | None:

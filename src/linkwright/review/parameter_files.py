@@ -11,8 +11,11 @@ from linkwright.review.file_pair import FilePair, UnreadableFileError
 from linkwright.review.yaml_values import YamlValue, read_yaml_values
 
 _MAX_BYTES = 4 << 20
-_NAMES = re.compile(r"topic|frame|namespace|\.joints?$|_joints?$|_joint_names?$|\.interfaces?$|_interfaces$|_names$")
-"""The parameters with names that other programs use: topics, frames, joints and interfaces."""
+_OFFERED_NAMES = re.compile(r"(^|[._])(joints?|joint_names?|wheel_names|interfaces|frame_id)$")
+"""The parameters with names that a controller or driver offers to other programs, which must not lose one of them."""
+_CONTROLLER_TYPE = re.compile(r"controller_manager\.ros__parameters\.(?P<controller>[^.]+)\.type")
+_STAMPED = re.compile(r"stamped", re.IGNORECASE)
+"""The parameters that choose between messages with and without a header, such as ``use_stamped_vel``."""
 _NUMBER_OR_TRUTH = re.compile(r"[-+.\deE]+|true|false", re.IGNORECASE)
 
 
@@ -27,7 +30,7 @@ def compare_parameter_files(pair: FilePair) -> None:
         if new_value is None and old_value is not None:
             location = Location(pair.old_path, old_value.line, old_value.column, is_old=True)
             text = phrase("{parameter} {value} removed", parameter=name, value=old_value.text)
-            pair.add(text, location, _breaking_reason(name, old_value.text, ""))
+            pair.add(text, location, _breaking_reason(name, old_value.text, None))
         elif new_value is not None and (old_value is None or not _are_equal(old_value.text, new_value.text)):
             location = Location(pair.new_path, new_value.line, new_value.column)
             if old_value is None:
@@ -55,12 +58,27 @@ def _are_equal(old: str, new: str) -> bool:
         return False
 
 
-def _breaking_reason(parameter: str, old: str, new: str) -> Phrase | None:
-    """Return why a changed value is breaking, or None: a name is gone that other programs use."""
-    gone = _items(old) - _items(new)
-    if not gone or not _NAMES.search(parameter.lower()):
+def _breaking_reason(parameter: str, old: str, new: str | None) -> Phrase | None:
+    """Return why a changed value is breaking, or None if it is not.
+
+    Args:
+        parameter: the path of the parameter.
+        old: the old value.
+        new: the new value; None for a removed parameter.
+    """
+    controller = _CONTROLLER_TYPE.fullmatch(parameter)
+    if controller is not None and new is None:
+        return phrase(
+            "programs that load or command the controller '{name}' do not find it", name=controller["controller"]
+        )
+    if new is None:
         return None
-    return phrase("programs that use the name '{name}' do not find it", name=", ".join(sorted(gone)))
+    if _STAMPED.search(parameter) and {old.lower(), new.lower()} == {"true", "false"}:
+        return phrase("the message type of a topic changes between one with and one without a header")
+    gone = _items(old) - _items(new)
+    if gone and _OFFERED_NAMES.search(parameter):
+        return phrase("programs that use the name '{name}' do not find it", name=", ".join(sorted(gone)))
+    return None
 
 
 def _items(text: str) -> set[str]:

@@ -10,7 +10,8 @@ from multiprocessing import get_context
 from pathlib import Path, PurePosixPath
 from typing import Any
 
-from linkwright.diagnostics import Diagnostic, LinkwrightError, Phrase, counted, did_you_mean, phrase, term
+from linkwright.diagnostics import Diagnostic, LinkwrightError, Phrase, counted, did_you_mean, phrase
+from linkwright.files.git_repository import ChangedFile
 from linkwright.lint.targets import Targets, find_targets
 from linkwright.packages.manifest import MANIFEST, package_name
 from linkwright.review.affected import TextFiles
@@ -92,12 +93,23 @@ class _Reviewer:
         paths |= {(self._old_path(path), path) for path in affected_new}
         for file in self._changed_files:
             rule = rule_of(file.path)
-            if rule is not None and rule.kind not in _EXPANDED and not file.is_submodule:
+            if rule is None or rule.kind in _EXPANDED or file.is_submodule:
+                continue
+            if self._is_part_of_a_robot(rule, file):
                 paths.add((file.old_path, file.new_path))
         for old_path, new_path in sorted(paths, key=lambda pair: (pair[1] or pair[0] or "", pair[0] or "")):
             rule = rule_of(new_path or old_path or "")
             if rule is not None:
                 yield rule, old_path, new_path
+
+    def _is_part_of_a_robot(self, rule: KindRule, file: ChangedFile) -> bool:
+        """Return whether a file is not a setting of a tool: hidden, or in YAML and outside all packages."""
+        if any(part.startswith(".") for part in PurePosixPath(file.path).parts):
+            return False
+        sides = ((self._versions.old, file.old_path), (self._versions.new, file.new_path))
+        return rule.kind is not SubjectKind.PARAMETERS or any(
+            _package_folder(version, path) for version, path in sides if path
+        )
 
     def _affected(self, version: Version) -> set[str]:
         """Return the complete descriptions and worlds of a version that changed files can affect."""
@@ -117,7 +129,7 @@ class _Reviewer:
         """Return the compared descriptions and worlds of a version, and the packages with changed files."""
         paths = [old_path if version.is_old else new_path for _, old_path, new_path in pairs]
         changed = (file.old_path if version.is_old else file.new_path for file in self._changed_files)
-        folders = {folder for path in changed if path for folder in _package_folder(version, path)}
+        folders = {folder for path in changed if path and (folder := _package_folder(version, path))}
         return Targets(tuple(version.file(path) for path in paths if path), tuple(sorted(folders)))
 
     def _notes(self) -> Iterator[Phrase]:
@@ -144,17 +156,16 @@ def _compare(versions: Versions, rule: KindRule, old_path: str | None, new_path:
     """Compare a file in both versions."""
     kind, path = rule.kind, new_path or old_path or ""
     if old_path is None:
-        return Subject(kind, path, None, new_path, [Change(phrase("{kind} added", kind=term(kind.value)))])
+        return Subject(kind, path, None, new_path, [Change(rule.added)])
     effect = Effect.CHANGED if rule.removal_reason is None else Effect.BREAKING
     if new_path is None:
-        text = phrase("{kind} removed", kind=term(kind.value))
-        return Subject(kind, path, old_path, None, [Change(text, effect, rule.removal_reason)])
+        return Subject(kind, path, old_path, None, [Change(rule.removed, effect, rule.removal_reason)])
     pair = FilePair(versions, old_path, new_path)
     if old_path != new_path:
         text = phrase("renamed from {path}", path=old_path)
         pair.changes.append(Change(text, effect, rule.removal_reason))
     rule.compare(pair)
-    return Subject(kind, path, old_path, new_path, pair.changes, pair.figures, pair.problems, pair.cases, pair.pictures)
+    return Subject(kind, path, old_path, new_path, pair.changes, pair.figures, pair.problems, pair.cases, pair.images)
 
 
 @contextmanager
@@ -176,14 +187,12 @@ def _targets(version: Version) -> set[str]:
     return {path for path in files if path is not None}
 
 
-def _package_folder(version: Version, path: str) -> Iterator[Path]:
-    """Yield the folder of the package that contains a file, if there is one."""
-    for folder in version.file(path).parents:
-        if (folder / MANIFEST).is_file():
-            yield folder
-            return
-        if folder == version.root:
-            return
+def _package_folder(version: Version, path: str) -> Path | None:
+    """Return the folder of the package that contains a file, or None if there is none."""
+    folders = version.file(path).parents
+    return next(
+        (folder for folder in folders if folder.is_relative_to(version.root) and (folder / MANIFEST).is_file()), None
+    )
 
 
 def _package_folders(versions: Versions, packages: Sequence[str]) -> list[str]:

@@ -30,7 +30,8 @@ def _elements(file: Path) -> list[Element]:
 def _sentence(difference: Difference) -> Phrase:
     name = f"{difference.name} {difference.property}".strip()
     if difference.kind == "added" or (difference.old is None and difference.kind == "changed"):
-        return phrase("{element} added", element=f"{name}: {difference.new}" if difference.new else name)
+        content = " ".join(word for word in (difference.new or "").split() if not word.startswith("<"))
+        return phrase("{element} added", element=f"{name} {content}".strip())
     if difference.kind == "removed" or difference.new is None:
         return phrase("{element} removed", element=name)
     return phrase("{element}: {old} -> {new}", element=name, old=difference.old or "-", new=difference.new or "-")

@@ -282,7 +282,7 @@ def _content_difference(old: Path, new: Path) -> tuple[str, str, str]:
 
 
 def _same_bytes(old: Path, new: Path) -> bool:
-    """Return whether two files have the same contents. A pointer of Git LFS is equal to the file it stands for."""
+    """Return whether two files have the same contents. A pointer of Git LFS is equal to its file."""
     try:
         if old.samefile(new) or filecmp.cmp(old, new, shallow=False):
             return True

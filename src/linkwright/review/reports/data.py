@@ -6,6 +6,7 @@ from typing import Any
 
 from linkwright.diagnostics import Diagnostic, Severity, Span, phrase, to_data
 from linkwright.review.changes import Change, Effect, Location, Review, Subject
+from linkwright.review.reports.sections import sentence_of
 
 BREAKING_CODE = "REV201"
 
@@ -18,7 +19,7 @@ def as_data(review: Review) -> dict[str, Any]:
         "subjects": [_subject(subject) for subject in review.subjects],
         "other_files": list(review.other_files),
         "new_findings": [to_data(finding) for finding in review.new_findings],
-        "mended_findings": [to_data(finding) for finding in review.mended_findings],
+        "fixed_findings": [to_data(finding) for finding in review.fixed_findings],
         "notes": list(review.notes),
     }
 
@@ -28,7 +29,7 @@ def as_diagnostics(review: Review) -> list[Diagnostic]:
     breaking = [
         Diagnostic(
             BREAKING_CODE,
-            phrase("{change}: {reason}", change=change.sentence, reason=change.reason or ""),
+            phrase("{change}: {reason}", change=sentence_of(change), reason=change.reason or ""),
             severity=Severity.WARNING,
             span=_span(change.location),
         )
@@ -38,7 +39,7 @@ def as_diagnostics(review: Review) -> list[Diagnostic]:
 
 
 def _span(location: Location | None) -> Span | None:
-    """Return the location in the new version; what was removed has none there."""
+    """Return the location in the new version, or None for a removed element."""
     if location is None or location.is_old:
         return None
     return Span(location.file, location.line, location.column, location.line, location.column)
@@ -66,6 +67,7 @@ def _change(change: Change) -> dict[str, Any]:
         "text": str(change.sentence),
         "is_breaking": change.effect is Effect.BREAKING,
         "reason": None if change.reason is None else str(change.reason),
+        "also": list(change.other_names),
         "argument_sets": list(change.cases),
         "location": None
         if location is None

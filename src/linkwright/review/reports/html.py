@@ -8,8 +8,8 @@ from html import escape
 
 from linkwright.diagnostics import Diagnostic, Phrase, phrase
 from linkwright.diagnostics.translation import language, localized
-from linkwright.review.changes import Change, Effect, Figure, Picture, Review, Subject
-from linkwright.review.reports.sections import Section, cases_text, repeated_text, sections_of, summary
+from linkwright.review.changes import Change, Effect, Figure, Review, Subject, ViewImages
+from linkwright.review.reports.sections import Section, cases_text, repeated_text, sections_of, sentence_of, summary
 
 _STYLE = """
 :root { color-scheme: light dark; --ink: #1d2733; --soft: #5c6a7d; --line: #d8dee6; --back: #f6f8fa; --card: #fff;
@@ -26,7 +26,7 @@ table { border-collapse: collapse; font-variant-numeric: tabular-nums; margin: 8
 th, td { padding: 3px 12px 3px 0; text-align: left; border-bottom: 1px solid var(--line); vertical-align: top; }
 th { color: var(--soft); font-weight: 600; }
 ul { padding-left: 20px; } li { margin: 2px 0; }
-.pictures { display: grid; grid-template-columns: repeat(auto-fit, minmax(300px, 1fr)); gap: 12px; margin: 12px 0; }
+.images { display: grid; grid-template-columns: repeat(auto-fit, minmax(300px, 1fr)); gap: 12px; margin: 12px 0; }
 figure { margin: 0; } figcaption { color: var(--soft); }
 .versions { position: relative; background: #fff; border: 1px solid var(--line); border-radius: 6px; overflow: hidden; }
 .versions img { display: block; width: 100%; } .versions img + img { position: absolute; inset: 0; }
@@ -53,7 +53,7 @@ def as_html(review: Review) -> str:
         *_breaking(review.breaking_changes),
         *(_section(section) for section in sections_of(review)),
         *_findings(phrase("New findings"), review.new_findings),
-        *_findings(phrase("Mended findings"), review.mended_findings),
+        *_findings(phrase("Fixed findings"), review.fixed_findings),
         *_list(phrase("Other changed files"), [f"<code>{escape(path)}</code>" for path in review.other_files]),
         *_list(phrase("Notes"), [_text(note) for note in review.notes]),
     ]
@@ -78,12 +78,12 @@ def _section(section: Section) -> str:
     changes = f"<ul>{''.join(f'<li>{item}</li>' for item in items)}</ul>" if items else ""
     return (
         f"<h2><code>{escape(subject.path)}</code></h2><section>"
-        f"{_pictures(subject.pictures)}{_figures(subject.figures)}{changes}</section>"
+        f"{_images(subject.images)}{_figures(subject.figures)}{changes}</section>"
     )
 
 
 def _change(change: Change, subject: Subject) -> str:
-    text = _text(change.sentence)
+    text = _text(sentence_of(change))
     if change.effect is Effect.BREAKING:
         text = f"<strong class='breaking'>{text}</strong>"
     if change.reason is not None:
@@ -109,20 +109,20 @@ def _figures(figures: Sequence[Figure]) -> str:
     return f"<table><tr>{head}</tr>{''.join(rows)}</table>"
 
 
-def _pictures(pictures: Sequence[Picture]) -> str:
-    if not pictures:
+def _images(images: Sequence[ViewImages]) -> str:
+    if not images:
         return ""
-    return f"<div class='pictures'>{''.join(map(_picture, pictures))}</div>"
+    return f"<div class='images'>{''.join(map(_image, images))}</div>"
 
 
-def _picture(picture: Picture) -> str:
+def _image(view: ViewImages) -> str:
     """Return a view of both versions; the slider moves the border between the old one, at the left, and the new one."""
-    old, new = (f"data:image/png;base64,{b64encode(image).decode()}" for image in (picture.old, picture.new))
-    label = escape(localized(phrase("old and new version, {view} view", view=picture.view)))
+    old, new = (f"data:image/png;base64,{b64encode(image).decode()}" for image in (view.old, view.new))
+    label = escape(localized(phrase("old and new version, {view} view", view=view.name)))
     return (
         f"<figure><div class='versions'><img src='{old}' alt='{label}'><img class='new' src='{new}' alt=''></div>"
         f"<input type='range' min='0' max='100' value='50' aria-label='{label}'>"
-        f"<figcaption>{escape(picture.view)}</figcaption></figure>"
+        f"<figcaption>{escape(view.name)}</figcaption></figure>"
     )
 
 

@@ -8,7 +8,7 @@ from collections.abc import Iterator, Sequence
 from linkwright.diagnostics import Diagnostic, Phrase, counted, phrase
 from linkwright.diagnostics.translation import localized
 from linkwright.review.changes import Change, Effect, Figure, Location, Review, Subject
-from linkwright.review.reports.sections import Section, cases_text, repeated_text, sections_of, summary
+from linkwright.review.reports.sections import Section, cases_text, repeated_text, sections_of, sentence_of, summary
 
 MARKER = "<!-- linkwright review -->"
 """The first line, by which a program finds the comment that it keeps up to date."""
@@ -23,8 +23,8 @@ _MENTION = re.compile(r"([@#])(?=\w)")
 def as_markdown(review: Review) -> str:
     """Return the report as Markdown in the user's language.
 
-    Names from the repository cannot form links, mentions or HTML. A report that would be too long for a comment ends
-    with a line that says so.
+    Names from the repository cannot form links, mentions or HTML. A report that is too long for a comment is cut, with
+    line about the missing parts at its end.
     """
     parts = [f"{MARKER}\n{_heading(review)}", *_parts(review)]
     text = ""
@@ -58,7 +58,7 @@ def _parts(review: Review) -> Iterator[str]:
         yield _section(section)
     for title, findings in (
         (phrase("New findings"), review.new_findings),
-        (phrase("Mended findings"), review.mended_findings),
+        (phrase("Fixed findings"), review.fixed_findings),
     ):
         if findings:
             yield _details(
@@ -73,7 +73,7 @@ def _parts(review: Review) -> Iterator[str]:
 
 def _breaking_line(subject: Subject, change: Change) -> str:
     reason = "" if change.reason is None else f": {_escape(change.reason)}"
-    return f"- **{_escape(change.sentence)}**{reason} ({_code(subject.path)})"
+    return f"- **{_escape(sentence_of(change))}**{reason} ({_code(subject.path)})"
 
 
 def _section(section: Section) -> str:
@@ -95,7 +95,7 @@ def _section(section: Section) -> str:
 def _change(change: Change, subject: Subject) -> str:
     cases = cases_text(change, subject)
     location = "" if change.location is None else f" ({_code(_location(change.location))})"
-    return f"- {_escape(change.sentence)}{'' if cases is None else ' ' + _escape(cases)}{location}"
+    return f"- {_escape(sentence_of(change))}{'' if cases is None else ' ' + _escape(cases)}{location}"
 
 
 def _location(location: Location) -> str:
@@ -123,7 +123,7 @@ def _details(title: str, lines: Iterator[str] | Sequence[str]) -> str:
 def _escape(text: str) -> str:
     """Return a text in the user's language in which nothing is markup, a mention or a reference to an issue."""
     shown = localized(text) if isinstance(text, Phrase) else text
-    return _MENTION.sub("\\1\u200b", _SPECIAL.sub(_entity, " ".join(shown.split())))
+    return _SPECIAL.sub(_entity, _MENTION.sub("\\1\u200b", " ".join(shown.split())))
 
 
 def _entity(match: re.Match[str]) -> str:

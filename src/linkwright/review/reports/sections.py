@@ -2,15 +2,15 @@
 
 from __future__ import annotations
 
-import re
 from collections import Counter
 from collections.abc import Hashable, Iterator, Sequence
 from dataclasses import dataclass
 
-from linkwright.diagnostics import Phrase, counted, phrase
+from linkwright.diagnostics import Phrase, counted, phrase, quoted_names
 from linkwright.review.changes import Change, Effect, Review, Subject
 
-_QUOTED = re.compile("'[^']*'")
+_MAX_NAMES = 3
+"""The number of other links or joints that a line names."""
 _MAX_NAMED_CASES = 1
 """The number of argument sets that a line names."""
 
@@ -40,28 +40,25 @@ def sections_of(review: Review) -> Iterator[Section]:
         changes = []
         repeated: Counter[str] = Counter()
         for change in subject.changes:
-            key = _key(change)
-            first = listed.get(key) if key is not None else None
-            if first is not None and first != subject.path:
+            first = listed.setdefault(change.identity, subject.path) if change.location else subject.path
+            if first != subject.path:
                 repeated[first] += 1
                 continue
-            if key is not None:
-                listed[key] = subject.path
             changes.append(change)
         changes.sort(key=lambda change: change.effect is not Effect.BREAKING)
         yield Section(subject, changes, list(repeated.items()))
 
 
-def _key(change: Change) -> Hashable:
-    """Return what the same change has in common in several robots, or None for a change without a location."""
-    if change.location is None:
-        return None
-    inner = change.sentence.arguments.get("change", change.sentence)
-    if not isinstance(inner, Phrase):
-        return None
-    values = tuple(str(inner.arguments.get(name)) for name in ("subject", "old", "new"))
-    property_name = _QUOTED.sub("", str(inner.arguments.get("property")))  # the label of a visual can contain its link
-    return change.location, change.effect, inner.template, property_name, values
+def sentence_of(change: Change) -> Phrase:
+    """Return a change in one line, with the other links or joints to which it applies."""
+    names = change.other_names
+    if not names:
+        return change.sentence
+    listed = quoted_names(names[:_MAX_NAMES])
+    if len(names) <= _MAX_NAMES:
+        return phrase("{change}; also {names}", change=change.sentence, names=listed)
+    more = len(names) - _MAX_NAMES
+    return phrase("{change}; also {names} and {count} more", change=change.sentence, names=listed, count=more)
 
 
 def cases_text(change: Change, subject: Subject) -> Phrase | None:
@@ -89,9 +86,9 @@ def summary(review: Review) -> Phrase:
     breaking = len(review.breaking_changes)
     total = sum(len(section.changes) for section in sections_of(review))
     return phrase(
-        "{breaking}, {changes}, {findings}, {mended}",
+        "{breaking}, {changes}, {findings}, {fixed}",
         breaking=counted("{count} breaking change", "{count} breaking changes", breaking),
         changes=counted("{count} change", "{count} changes", total),
         findings=counted("{count} new finding", "{count} new findings", len(review.new_findings)),
-        mended=counted("{count} mended", "{count} mended", len(review.mended_findings)),
+        fixed=counted("{count} fixed", "{count} fixed", len(review.fixed_findings)),
     )

@@ -8,7 +8,7 @@ from linkwright.diagnostics import Diagnostic, Phrase, phrase
 from linkwright.diagnostics.render import printable
 from linkwright.diagnostics.translation import localized
 from linkwright.review.changes import Effect, Review
-from linkwright.review.reports.sections import Section, cases_text, repeated_text, sections_of, summary
+from linkwright.review.reports.sections import Section, cases_text, repeated_text, sections_of, sentence_of, summary
 
 
 def as_text(review: Review) -> str:
@@ -25,7 +25,7 @@ def _lines(review: Review) -> Iterator[str]:
         yield ""
     for title, findings in (
         (phrase("new findings"), review.new_findings),
-        (phrase("mended findings"), review.mended_findings),
+        (phrase("fixed findings"), review.fixed_findings),
     ):
         if findings:
             yield localized(title)
@@ -42,7 +42,7 @@ def _section(section: Section) -> Iterator[str]:
     for change in section.changes:
         mark = "!" if change.effect is Effect.BREAKING else "-"
         cases = cases_text(change, subject)
-        yield f"  {mark} {localized(change.sentence)}{f' ({localized(cases)})' if cases else ''}"
+        yield f"  {mark} {localized(sentence_of(change))}{f' ({localized(cases)})' if cases else ''}"
         if change.reason is not None:
             yield f"    {localized(phrase('breaking: {reason}', reason=change.reason))}"
         if change.location is not None:
