@@ -21,10 +21,12 @@ _TEXT_SUFFIXES = (
     ".toml", ".dae", ".obj", ".mtl", ".gltf", ".inc", ".macro", ".gazebo", ".trans", ".rviz",
 )  # fmt: skip
 """The ends of the names of files that can name other files."""
-_MAX_TEXT_BYTES = 1 << 20
-"""Larger files are meshes or data, which name few files near their beginning."""
+_MESH_SUFFIXES = (".dae", ".obj", ".gltf")
+_MAX_TEXT_BYTES, _MAX_MESH_BYTES = 1 << 20, 1 << 16
+"""The number of bytes that are searched for names. Meshes name their textures near their beginning."""
 _EXPRESSION = re.compile(r"\$\{[^{}]*\}|\$\([^()]*\)|%[sd]|\{[\w.\[\]'\"]*\}")
-_NAME = re.compile(r"[\w.+*-]*\.(?:[A-Za-z]\w*)|model://([\w.+-]+)")
+_WORD = re.compile(r"model://[\w.+-]+|[\w.+*-]+")
+_MODEL = "model://"
 _MIN_FIXED_CHARACTERS = 3
 """The number of fixed characters besides the suffix that a computed name must have to be followed."""
 
@@ -95,19 +97,19 @@ class TextFiles:
                 file = Path(folder, name)
                 if name.endswith(_TEXT_SUFFIXES) and file.is_file() and not file.is_symlink():
                     with file.open("rb") as stream:
-                        text = stream.read(_MAX_TEXT_BYTES).decode("utf-8", errors="replace")
+                        size = _MAX_MESH_BYTES if name.endswith(_MESH_SUFFIXES) else _MAX_TEXT_BYTES
+                        text = stream.read(size).decode("utf-8", errors="replace")
                     yield file.relative_to(self._root).as_posix(), text
 
 
 def _file_names(text: str) -> Iterator[str]:
     """Yield the names of files in a text, with ``*`` for each computed part, and the names of models of SDF."""
-    for match in _NAME.finditer(_EXPRESSION.sub("*", text)):
-        if match[1]:
-            yield match[1]
+    for word in set(_WORD.findall(_EXPRESSION.sub("*", text))):
+        if word.startswith(_MODEL):
+            yield word.removeprefix(_MODEL)
             continue
-        name = match[0]
-        fixed = name.rpartition(".")[0].replace("*", "")
-        if "*" not in name or len(fixed) >= _MIN_FIXED_CHARACTERS:
-            yield name
-        else:
-            yield f"*.{name.rpartition('.')[2].replace('*', '')}"
+        stem, _, suffix = word.rpartition(".")
+        if not suffix[:1].isalpha():
+            continue
+        is_fixed = "*" not in word or len(stem.replace("*", "")) >= _MIN_FIXED_CHARACTERS
+        yield word if is_fixed else f"*.{suffix.replace('*', '')}"

@@ -52,7 +52,7 @@ def compare_descriptions(pair: FilePair) -> None:
             group = groups.setdefault(change.identity, _Group(change))
             group.names[change.name] = None
             group.cases[case.name] = None
-        if not pair.figures:
+        if len(pair.cases) == 1:
             pair.figures += figures_of(case.models, case.old.robot, case.new.robot)
     pair.changes += (group.change(pair.cases) for group in groups.values())
 
