@@ -4,7 +4,8 @@ from __future__ import annotations
 
 import pytest
 
-from tests.review.conftest import ARM, MACRO, breaking, sentences, subject
+from tests.repositories import ARM, MACRO
+from tests.review.conftest import breaking, sentences, subject
 
 PATH = "arm_description/urdf/arm.urdf.xacro"
 LAUNCH = """from launch import LaunchDescription

@@ -4,7 +4,8 @@ from __future__ import annotations
 
 import pytest
 
-from tests.review.conftest import PACKAGE_XML, breaking, sentences, subject
+from tests.repositories import PACKAGE_XML
+from tests.review.conftest import breaking, sentences, subject
 
 LAUNCH = """from launch import LaunchDescription
 from launch.actions import DeclareLaunchArgument, IncludeLaunchDescription

@@ -13,7 +13,7 @@ from linkwright.cli import main
 from linkwright.diagnostics import phrase
 from linkwright.review import Change, Review, Subject, SubjectKind
 from linkwright.review.reports import as_data, as_diagnostics, as_html, as_markdown, as_text
-from tests.review.conftest import ARM, MACRO
+from tests.repositories import ARM, MACRO
 
 OTHER = (
     ARM.replace('name="arm"', 'name="other"')

@@ -9,7 +9,8 @@ import pytest
 
 from linkwright.diagnostics import LinkwrightError
 from linkwright.review import open_versions
-from tests.review.conftest import ARM, MACRO, Repository, sentences, subject
+from tests.repositories import ARM, MACRO, Repository
+from tests.review.conftest import sentences, subject
 
 PATH = "arm_description/urdf/arm.urdf.xacro"
 
@@ -161,13 +162,3 @@ def test_findings_that_only_moved_are_neither(package, compare):
     result = compare(package)
     assert subject(result, PATH).changes
     assert (result.new_findings, result.fixed_findings) == ([], [])
-
-
-def test_a_finding_that_names_fewer_items_is_not_new():
-    from linkwright.diagnostics import Diagnostic
-    from linkwright.review.findings import without
-
-    one, two = Diagnostic("LW848", "not declared: 'a'"), Diagnostic("LW848", "not declared: 'a', 'b'")
-    few, many = ({("LW848", "package.xml", str(finding.message)): [finding]} for finding in (one, two))
-    assert without(few, many) == []
-    assert without(many, few) == [two]

@@ -12,12 +12,13 @@ from typing import Any
 
 from linkwright.diagnostics import Diagnostic, LinkwrightError, Phrase, counted, did_you_mean, phrase
 from linkwright.files.git_repository import ChangedFile
+from linkwright.lint.affected import TextFiles
+from linkwright.lint.checking import Checker
+from linkwright.lint.known_findings import count_keys, new_findings
 from linkwright.lint.targets import Targets, find_targets
 from linkwright.packages.manifest import MANIFEST, package_name
-from linkwright.review.affected import TextFiles
 from linkwright.review.changes import Change, Effect, Review, Subject, SubjectKind
 from linkwright.review.file_pair import FilePair
-from linkwright.review.findings import find, without
 from linkwright.review.kinds import KindRule, rule_of
 from linkwright.review.versions import Version, Versions
 
@@ -59,7 +60,7 @@ class _Reviewer:
         with _processes(workers if len(expanded) >= _MIN_EXPANDED else 1) as submit:
             subjects = [submit(_compare, self._versions, *pair) for pair in pairs]
             findings = [
-                submit(find, version, self._check_targets(version, expanded), self._new_paths if version.is_old else {})
+                submit(_find, version, self._check_targets(version, expanded))
                 for version in (self._versions.old, self._versions.new)
             ]
             old_findings, new_findings = (result() for result in findings)
@@ -76,10 +77,25 @@ class _Reviewer:
             self._versions.new.name,
             [subject for subject in all_subjects if not subject.is_empty],
             [file.path for file in self._changed_files if not {file.old_path, file.new_path} & (compared | parts)],
-            without(new_findings, old_findings),
-            without(old_findings, new_findings),
+            *self._compare_findings(old_findings, new_findings),
             list(self._notes()),
         )
+
+    def _compare_findings(
+        self, old: Sequence[Diagnostic], new: Sequence[Diagnostic]
+    ) -> tuple[list[Diagnostic], list[Diagnostic]]:
+        """Return the findings that only the new version has, and those that only the old version has."""
+        root, old_root = self._versions.new.root, self._versions.old.root
+        old_names = {new_path: old_path for old_path, new_path in self._new_paths.items()}
+        old_keys = {
+            key._replace(file=self._new_paths.get(key.file, key.file)): count
+            for key, count in count_keys(old, old_root).items()
+        }
+        new_keys = {
+            key._replace(file=old_names.get(key.file, key.file)): count for key, count in count_keys(new, root).items()
+        }
+        added, fixed = new_findings(new, root, old_keys), new_findings(old, old_root, new_keys)
+        return list(map(self._versions.new.labelled, added)), list(map(self._versions.old.labelled, fixed))
 
     def _is_in_scope(self, path: str) -> bool:
         return not self._folders or any(PurePosixPath(path).is_relative_to(folder) for folder in self._folders)
@@ -166,6 +182,11 @@ def _compare(versions: Versions, rule: KindRule, old_path: str | None, new_path:
         pair.changes.append(Change(text, effect, rule.removal_reason))
     rule.compare(pair)
     return Subject(kind, path, old_path, new_path, pair.changes, pair.figures, pair.problems, pair.cases, pair.images)
+
+
+def _find(version: Version, targets: Targets) -> list[Diagnostic]:
+    """Return the findings of a version about some files and packages."""
+    return Checker(folders=(version.root,)).check(targets, [version.root])[0]
 
 
 @contextmanager
