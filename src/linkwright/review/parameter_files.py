@@ -19,7 +19,7 @@ _OFFERED_NAMES = re.compile(r"(^|[._])(joints?|joint_names?|wheel_names|interfac
 _CONTROLLER_TYPE = re.compile(r"controller_manager\.ros__parameters\.(?P<controller>[^.]+)\.type")
 _STAMPED = re.compile(r"stamped", re.IGNORECASE)
 """The parameters that choose between messages with and without a header, such as ``use_stamped_vel``."""
-_NUMBER_OR_TRUTH = re.compile(r"[-+.\deE]+|true|false", re.IGNORECASE)
+_NUMBER_OR_TRUTH = re.compile(r"[-+]?(\d+\.?\d*|\.\d+)(e[-+]?\d+)?|true|false", re.IGNORECASE)
 
 
 def compare_parameter_files(pair: FilePair) -> None:
