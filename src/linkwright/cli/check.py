@@ -14,6 +14,7 @@ from linkwright.cli.exit_status import print_message
 from linkwright.diagnostics import (
     Diagnostic,
     LinkwrightError,
+    Phrase,
     Severity,
     counted,
     has_errors,
@@ -37,6 +38,8 @@ if TYPE_CHECKING:
 _USAGE_ERROR = 2
 _DEFAULTS: dict[str, Any] = {
     "all": False,
+    "baseline": None,
+    "changed": None,
     "config": None,
     "diff": False,
     "fix": False,
@@ -47,6 +50,7 @@ _DEFAULTS: dict[str, Any] = {
     "statistics": False,
     "strict": False,
     "unsafe_fixes": False,
+    "write_baseline": False,
 }
 """The values of options that the user does not pass."""
 
@@ -75,6 +79,18 @@ def configure(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
         "--config", metavar="FILE", help="the settings file to use instead of the nearest linkwright.toml"
     )
+    parser.add_argument(
+        "--changed",
+        metavar="COMMIT",
+        help="check only descriptions and packages that changes since a commit of git can affect, and report only the "
+        "findings that the commit does not have",
+    )
+    parser.add_argument(
+        "--baseline",
+        metavar="FILE",
+        help="do not report the findings that this file lists, such as those of an old package",
+    )
+    parser.add_argument("--write-baseline", action="store_true", help="write all findings to the file of --baseline")
     parser.add_argument("--statistics", action="store_true", help="print the number of findings for each code")
     parser.add_argument("--fix", action="store_true", help="apply safe fixes to the files")
     parser.add_argument("--unsafe-fixes", action="store_true", help="also apply fixes that may change the meaning")
@@ -115,6 +131,9 @@ def run(arguments: argparse.Namespace | SimpleNamespace) -> int:
         None if arguments.config is None else Path(arguments.config),
         tuple(path.absolute() for path in paths if path.is_dir()),
     )
+    problem = _option_problem(arguments)
+    if problem is not None:
+        return _report_usage_error(problem)
     fix_results: list[FixResult] = []
     if arguments.diff or arguments.fix or arguments.unsafe_fixes:
         fix_results = _apply_fixes(
@@ -126,7 +145,14 @@ def run(arguments: argparse.Namespace | SimpleNamespace) -> int:
         )
     if arguments.diff:
         return _print_diff(fix_results)
-    diagnostics, checked_file = _find_and_check(paths, checker, with_packages=arguments.package)
+    if arguments.changed is None:
+        diagnostics, checked_file = _find_and_check(paths, checker, with_packages=arguments.package)
+    else:
+        diagnostics, checked_file = _check_changed(paths, checker, arguments), None
+    if arguments.baseline is not None:
+        if arguments.write_baseline:
+            return _write_baseline(arguments.baseline, diagnostics)
+        diagnostics = _without_baseline(arguments.baseline, diagnostics)
     _print_findings(diagnostics, arguments.format, everything=arguments.all)
     if arguments.format == "text":
         if checked_file is not None:
@@ -175,6 +201,65 @@ def _find_and_check(
         )
     diagnostics, checked_file = checker.check(targets, paths)
     return diagnostics, checked_file if len(paths) == 1 and not paths[0].is_dir() else None
+
+
+def _option_problem(arguments: argparse.Namespace | SimpleNamespace) -> Phrase | None:
+    """Return why options contradict each other, or None if they do not."""
+    if arguments.write_baseline and arguments.baseline is None:
+        return phrase("'--write-baseline' needs the file: '--baseline FILE'")
+    if arguments.changed is not None and (arguments.baseline is not None or arguments.fix or arguments.unsafe_fixes):
+        return phrase("'--changed' cannot be combined with '--baseline' or fixes")
+    return None
+
+
+def _check_changed(
+    paths: Sequence[Path], checker: Checker, arguments: argparse.Namespace | SimpleNamespace
+) -> list[Diagnostic]:
+    """Return the findings that a commit does not have.
+
+    Raises:
+        LinkwrightError: CLI341 to CLI346, git cannot find or read the commit.
+    """
+    from linkwright.lint.changed_since import ChangedSince
+    from linkwright.lint.known_findings import new_findings
+
+    changed = ChangedSince(paths, arguments.changed, with_packages=arguments.package)
+    targets = changed.targets()
+    if not targets.files and not targets.packages:
+        return []
+    findings = checker.check(targets, paths)[0]
+    known = changed.known_findings(lambda targets, paths: checker.for_folders(paths).check(targets, paths)[0])
+    return new_findings(findings, changed.root, known)
+
+
+def _without_baseline(file: str, diagnostics: Sequence[Diagnostic]) -> list[Diagnostic]:
+    """Return the findings that a baseline does not list.
+
+    Raises:
+        LinkwrightError: LINT311, the file cannot be read or is not a baseline.
+    """
+    from linkwright.lint.known_findings import new_findings, read_baseline
+
+    return new_findings(diagnostics, Path(file).absolute().parent, read_baseline(Path(file)))
+
+
+def _write_baseline(file: str, diagnostics: Sequence[Diagnostic]) -> int:
+    """Write a baseline and print the number of findings.
+
+    Raises:
+        LinkwrightError: CLI201, the file cannot be written.
+    """
+    from linkwright.cli.output import cannot_write
+    from linkwright.lint.known_findings import write_baseline
+
+    path = Path(file)
+    try:
+        count = write_baseline(path, diagnostics, path.absolute().parent)
+    except OSError as error:
+        raise cannot_write(path, error) from None
+    findings = counted("{count} finding", "{count} findings", count)
+    print_message(localized(phrase("wrote {findings} to {path}", findings=findings, path=file)))
+    return 0
 
 
 def _unknown_selector(words: Iterable[str]) -> str | None:

@@ -68,7 +68,7 @@ def requested_pair(arguments: argparse.Namespace, stack: ExitStack) -> Pair | No
         stack: receives the resources to close.
 
     Raises:
-        LinkwrightError: see `linkwright.descriptions.revisions.Revision`.
+        LinkwrightError: see `linkwright.descriptions.revisions.file_in_commit`.
     """
     from pathlib import Path
 

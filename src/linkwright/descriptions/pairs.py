@@ -2,18 +2,18 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from pathlib import Path
 
 from linkwright.descriptions.comparison import Comparison, Side, compare
 from linkwright.descriptions.service import Description, examine
 from linkwright.diagnostics import Diagnostic, LinkwrightError, Span, display_path
-from linkwright.loading.lean_dataclasses import dataclass, replace
+from linkwright.loading.lean_dataclasses import dataclass
 from linkwright.loading.lean_typing import TYPE_CHECKING
 from linkwright.packages import PackageFinder
 
 if TYPE_CHECKING:
-    from linkwright.descriptions.revisions import Revision
+    from linkwright.descriptions.revisions import CommitFiles
     from linkwright.urdf import Robot
 
 
@@ -25,13 +25,13 @@ class Model:
         path: the absolute path of the file.
         values: the values of the file's ``<xacro:arg>``.
         finder: the finder of the file's packages.
-        revision: the commit that contains the file, or None for a file of the working tree.
+        commit: the files of the commit that contains the file, or None for a file of the working tree.
     """
 
     path: Path
     values: Mapping[str, str]
     finder: PackageFinder
-    revision: Revision | None = None
+    commit: CommitFiles | None = None
 
     def label(self) -> str:
         """Return the name of the file for users; see `display_name`."""
@@ -40,14 +40,14 @@ class Model:
     @property
     def title(self) -> str:
         """The name of the file without folders, such as ``HEAD:arm.urdf`` for a file of a commit."""
-        return self.path.name if self.revision is None else f"{self.revision.name}:{self.path.name}"
+        return self.path.name if self.commit is None else f"{self.commit.name}:{self.path.name}"
 
     def display_name(self, file: str) -> str:
         """Return the name of a file for users.
 
         Examples are ``HEAD:robots/arm.urdf``, and a path relative to the current folder.
         """
-        name = file if self.revision is None else self.revision.label(file)
+        name = file if self.commit is None else self.commit.label(file)
         return display_path(name) if name == file else name
 
     def read(self) -> Description:
@@ -82,9 +82,18 @@ class Model:
         """
         return self.finder.resolve(address, self.path.parent)
 
+    def normalizer(self, other: Model) -> Callable[[str], str]:
+        """Return a function that makes texts of this description comparable with those of another.
+
+        Paths in the folder of a commit are then equal to those in the working tree.
+        """
+        if self.commit is not None:
+            return self.commit.normalize
+        return other.commit.normalizer_for(self.finder) if other.commit is not None else str
+
     def _relabel(self, diagnostic: Diagnostic) -> Diagnostic:
         """Return a finding in which files of a commit have the names that git uses."""
-        if self.revision is None:
+        if self.commit is None:
             return diagnostic
         notes = tuple(note._replace(span=self._span(note.span)) for note in diagnostic.notes)
         return diagnostic.with_changes(span=self._span(diagnostic.span), notes=notes)
@@ -106,9 +115,10 @@ class Pair:
     new: Model
 
     def close(self) -> None:
-        """Remove the temporary folder of a commit, if there is one."""
-        if self.old.revision is not None:
-            self.old.revision.close()
+        """Remove the temporary folders of commits, if there are any."""
+        for model in (self.old, self.new):
+            if model.commit is not None:
+                model.commit.close()
 
     def label(self, file: str) -> str:
         """Return the name of a file of either description for users."""
@@ -124,11 +134,11 @@ class Pair:
 
     def compare(self, old: Robot, new: Robot) -> Comparison:
         """Return the differences between two robots that were read from the two descriptions."""
-        old_side, new_side = Side(old, resolve=self.old.resolve), Side(new, resolve=self.new.resolve)
-        if self.old.revision is not None:
-            normalize_old, normalize_new = self.old.revision.normalizers(self.new.finder)
-            old_side, new_side = replace(old_side, normalize=normalize_old), replace(new_side, normalize=normalize_new)
-        return compare(old_side, new_side)
+        sides = (
+            Side(robot, normalize=model.normalizer(other), resolve=model.resolve)
+            for robot, model, other in ((old, self.old, self.new), (new, self.new, self.old))
+        )
+        return compare(*sides)
 
 
 def old_description_key(description: Description) -> str:
@@ -159,10 +169,10 @@ def pair_with_commit(path: Path, commit: str, values: Mapping[str, str]) -> Pair
     The files of the commit exist until the pair is closed.
 
     Raises:
-        LinkwrightError: see `linkwright.descriptions.revisions.Revision`.
+        LinkwrightError: see `linkwright.descriptions.revisions.file_in_commit`.
     """
-    from linkwright.descriptions.revisions import Revision
+    from linkwright.descriptions.revisions import file_in_commit
 
-    revision = Revision(path, commit)
+    files, old_path = file_in_commit(path, commit)
     new = Model(path.absolute(), values, PackageFinder(start=[path.absolute().parent, Path.cwd()]))
-    return Pair(Model(revision.path, values, revision.finder, revision), new)
+    return Pair(Model(old_path, values, files.finder(old_path.parent), files), new)

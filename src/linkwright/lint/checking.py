@@ -100,6 +100,10 @@ class Checker:
         select = None if self.select is None else tuple(map(canonical, self.select))
         return settings.with_command_line(select, tuple(map(canonical, self.ignore))), settings_findings
 
+    def for_folders(self, folders: Sequence[Path]) -> Checker:
+        """Return a checker with the same settings for other folders, such as those of another version."""
+        return Checker(self.values, self.select, self.ignore, self.config, tuple(folders))
+
     def check(self, targets: Targets, paths: Sequence[Path]) -> tuple[list[Diagnostic], Checked | None]:
         """Check files and packages.
 

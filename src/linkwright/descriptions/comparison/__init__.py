@@ -3,21 +3,16 @@
 Changes to links, joints, origins, masses and other parts are reported with their locations in both descriptions.
 """
 
-from linkwright.descriptions.comparison.compare import (
-    Comparison,
-    Difference,
-    DifferenceLocation,
-    Kind,
-    Side,
-    Subject,
-    compare,
-)
+from linkwright.descriptions.comparison.compare import Comparison, Side, compare
+from linkwright.descriptions.comparison.difference import Difference, DifferenceLocation, Kind, Subject
+from linkwright.descriptions.comparison.elements import ElementComparison
 from linkwright.descriptions.comparison.report import as_data, as_text, sentence
 
 __all__ = [
     "Comparison",
     "Difference",
     "DifferenceLocation",
+    "ElementComparison",
     "Kind",
     "Side",
     "Subject",

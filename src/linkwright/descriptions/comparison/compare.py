@@ -3,10 +3,11 @@
 from __future__ import annotations
 
 import filecmp
-import hashlib
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from pathlib import Path
 
+from linkwright.descriptions.comparison.difference import Difference, DifferenceLocation, Subject, location_of
+from linkwright.descriptions.comparison.elements import ElementComparison
 from linkwright.descriptions.comparison.facts import (
     Block,
     Fact,
@@ -18,57 +19,16 @@ from linkwright.descriptions.comparison.facts import (
     visual_blocks,
 )
 from linkwright.descriptions.comparison.matching import Matches, match
-from linkwright.diagnostics import LinkwrightError, Span
+from linkwright.diagnostics import LinkwrightError
+from linkwright.files.git_repository import file_hash, lfs_hash
 from linkwright.loading.lean_dataclasses import dataclass, field
-from linkwright.loading.lean_typing import Literal, TypeVar
+from linkwright.loading.lean_typing import TypeVar
 from linkwright.urdf import Collision, Joint, Link, Mesh, Robot, Visual
-from linkwright.xacro.faults import Frame, frames
 from linkwright.xmltree import Element
 
-Kind = Literal["added", "removed", "renamed", "changed"]
-Subject = Literal["robot", "link", "joint", "extension"]
 _Pair = tuple[Element | None, Element | None]
 """The elements in the old and in the new description, each None if there is none."""
 _Part = TypeVar("_Part", Link, Joint)
-
-
-@dataclass(frozen=True, slots=True)
-class DifferenceLocation:
-    """The location of a difference.
-
-    `calls` are the macro calls and includes that produced the element at this location, innermost first.
-    """
-
-    span: Span
-    calls: tuple[Span, ...] = ()
-
-
-@dataclass(frozen=True, slots=True)
-class Difference:
-    """A difference between two descriptions.
-
-    Attributes:
-        subject: the kind of the changed object; ``extension`` is a ``<gazebo>``, ``<ros2_control>``,
-            ``<transmission>``, ...
-        name: the object's name in the new description or, for a removed object, in the old description.
-        kind: the kind of change.
-        property: the changed property, such as ``mass`` or ``visual 2 origin xyz``; empty for the whole object.
-        old: the value in the old description without its unit, or None if there is none.
-        new: the value in the new description without its unit, or None if there is none.
-        unit: the unit of both values; empty for text.
-        old_place: the location of the value in the old description, or of the beginning of its object.
-        new_place: the location of the value in the new description, or of the beginning of its object.
-    """
-
-    subject: Subject
-    name: str
-    kind: Kind
-    property: str = ""
-    old: str | None = None
-    new: str | None = None
-    unit: str = ""
-    old_place: DifferenceLocation | None = None
-    new_place: DifferenceLocation | None = None
 
 
 @dataclass(frozen=True, slots=True)
@@ -137,7 +97,9 @@ class _Comparer:
             *self._robot(),
             *self._link_differences(),
             *self._joint_differences(),
-            *self._extension_differences(),
+            *ElementComparison(self.old.normalize, self.new.normalize).child_differences(
+                old.extensions, new.extensions
+            ),
         ]
         return Comparison(tuple(differences), self.matches.links, self.matches.joints)
 
@@ -160,7 +122,7 @@ class _Comparer:
     def _robot(self) -> Iterator[Difference]:
         old, new = self.old.robot, self.new.robot
         if old.name != new.name:
-            locations = _location(old.element, "name"), _location(new.element, "name")
+            locations = location_of(old.element, "name"), location_of(new.element, "name")
             yield Difference("robot", new.name, "changed", "name", old.name, new.name, "", *locations)
 
     def _link_differences(self) -> Iterator[Difference]:
@@ -224,7 +186,7 @@ class _Comparer:
                 old_file, new_file = self.old.mesh(name), self.new.mesh(name)
                 if old_file and new_file and not _same_bytes(old_file, new_file):
                     values = _content_difference(old_file, new_file)
-                    locations = _location(old_meshes[name]), _location(new_meshes[name])
+                    locations = location_of(old_meshes[name]), location_of(new_meshes[name])
                     yield Difference("link", new.name, "changed", f"{tag} mesh {name}", *values, *locations)
 
     # --- blocks of facts ------------------------------------------------------------------------------------------
@@ -246,7 +208,7 @@ class _Comparer:
                 elements[1] if new is None else new.element,
             )
             yield Difference(
-                subject, name, "changed", block, *texts, "", _location(old_element), _location(new_element)
+                subject, name, "changed", block, *texts, "", location_of(old_element), location_of(new_element)
             )
             return
         for fact in dict.fromkeys([*new.facts, *old.facts]):
@@ -254,90 +216,6 @@ class _Comparer:
             if old_fact and new_fact and old_fact.equals(new_fact, self.old.normalize, self.new.normalize):
                 continue
             yield _change(subject, name, f"{block} {fact}".strip(), (old_fact, old), (new_fact, new))
-
-    # --- extensions ------------------------------------------------------------------------------------------------
-
-    def _extension_differences(self) -> Iterator[Difference]:
-        yield from self._child_differences(self.old.robot.extensions, self.new.robot.extensions, "", None)
-
-    def _child_differences(
-        self,
-        old: Sequence[Element],
-        new: Sequence[Element],
-        path: str,
-        enclosing: tuple[str, Element, Element] | None,
-    ) -> Iterator[Difference]:
-        """Yield the differences between the elements of two robots, or of a pair of elements.
-
-        Args:
-            old: the elements of the old description.
-            new: the elements of the new description.
-            path: the names of the enclosing elements.
-            enclosing: the name of the enclosing pair and the pair itself, or None for direct children of the robots.
-        """
-        old_by_key, new_by_key = _elements_by_key(old), _elements_by_key(new)
-        for key in dict.fromkeys([*new_by_key, *old_by_key]):
-            old_element, new_element = old_by_key.get(key), new_by_key.get(key)
-            element_path = f"{path} {key}".strip()
-            if old_element is not None and new_element is not None:
-                name, start_path = (key, "") if enclosing is None else (enclosing[0], element_path)
-                yield from self._element_differences(name, start_path, old_element, new_element)
-            elif enclosing is None:
-                kind: Kind = "added" if old_element is None else "removed"
-                yield Difference(
-                    "extension", key, kind, "", None, None, "", _location(old_element), _location(new_element)
-                )
-            else:
-                texts = (
-                    None if old_element is None else _one_line(old_element),
-                    None if new_element is None else _one_line(new_element),
-                )
-                locations = _location(old_element or enclosing[1]), _location(new_element or enclosing[2])
-                yield Difference("extension", enclosing[0], "changed", element_path, *texts, "", *locations)
-
-    def _element_differences(self, name: str, path: str, old: Element, new: Element) -> Iterator[Difference]:
-        for attribute in dict.fromkeys([*new.attributes, *old.attributes]):
-            old_value, new_value = old.attributes.get(attribute), new.attributes.get(attribute)
-            if not self._same_text(old_value, new_value):
-                locations = _location(old, attribute), _location(new, attribute)
-                yield Difference(
-                    "extension", name, "changed", f"{path} @{attribute}".strip(), old_value, new_value, "", *locations
-                )
-        texts = " ".join(old.text().split()), " ".join(new.text().split())
-        if not self._same_text(*texts):
-            yield Difference("extension", name, "changed", path, *texts, "", _location(old), _location(new))
-        yield from self._child_differences(list(old.elements()), list(new.elements()), path, (name, old, new))
-
-    def _same_text(self, old: str | None, new: str | None) -> bool:
-        if old is None or new is None:
-            return old is new
-        return " ".join(self.old.normalize(old).split()) == " ".join(self.new.normalize(new).split())
-
-
-def _elements_by_key(elements: Sequence[Element]) -> dict[str, Element]:
-    """Return elements in document order, by tag and name or reference.
-
-    The keys of elements with the same tag and name are numbered.
-    """
-    keyed_elements: dict[str, Element] = {}
-    for element in elements:
-        name = element.attributes.get("name") or element.attributes.get("reference")
-        key = f"{element.tag} {name}" if name else element.tag
-        number = 2
-        unique_key = key
-        while unique_key in keyed_elements:
-            unique_key = f"{key} {number}"
-            number += 1
-        keyed_elements[unique_key] = element
-    return keyed_elements
-
-
-def _one_line(element: Element) -> str:
-    """Return an element's attributes, text and child tags as one line."""
-    words = [f"{name}={value}" for name, value in element.attributes.items()]
-    words += element.text().split()
-    words += [f"<{child.tag}>" for child in element.elements()]
-    return " ".join(words)
 
 
 def _named_differences(
@@ -351,53 +229,35 @@ def _named_differences(
     names = {new_name: old_name for old_name, new_name in matches.items()}
     for name, item in new.items():
         if name not in names:
-            yield Difference(subject, name, "added", new_place=_location(item.element))
+            yield Difference(subject, name, "added", new_place=location_of(item.element))
             continue
         old_item = old[names[name]]
         if old_item.name != name:
-            locations = _location(old_item.element, "name"), _location(item.element, "name")
+            locations = location_of(old_item.element, "name"), location_of(item.element, "name")
             yield Difference(subject, name, "renamed", "name", old_item.name, name, "", *locations)
         yield from compare_pair(old_item, item)
     for name, item in old.items():
         if name not in matches:
-            yield Difference(subject, name, "removed", old_place=_location(item.element))
+            yield Difference(subject, name, "removed", old_place=location_of(item.element))
 
 
 def _change(
     subject: Subject, name: str, fact: str, old: tuple[Fact | None, Block], new: tuple[Fact | None, Block]
 ) -> Difference:
-    def location_of_value(pair: tuple[Fact | None, Block]) -> DifferenceLocation | None:
+    def place(pair: tuple[Fact | None, Block]) -> DifferenceLocation | None:
         compared_fact, block = pair
         return (
-            _location(block.element)
+            location_of(block.element)
             if compared_fact is None
-            else _location(compared_fact.element, compared_fact.attribute)
+            else location_of(compared_fact.element, compared_fact.attribute)
         )
 
     old_fact, new_fact = old[0], new[0]
     present_fact = new_fact or old_fact
     texts = None if old_fact is None else old_fact.text, None if new_fact is None else new_fact.text
     return Difference(
-        subject,
-        name,
-        "changed",
-        fact,
-        *texts,
-        present_fact.unit if present_fact else "",
-        location_of_value(old),
-        location_of_value(new),
+        subject, name, "changed", fact, *texts, present_fact.unit if present_fact else "", place(old), place(new)
     )
-
-
-def _location(element: Element | None, attribute: str = "") -> DifferenceLocation | None:
-    """Return the location of an element or of one of its attributes, or None if unknown."""
-    if element is None:
-        return None
-    span = element.attribute_span(attribute) if attribute in element.attributes else element.span()
-    if span is None:
-        return None
-    calls = (frame.site.span() for frame in frames(element.origin if isinstance(element.origin, Frame) else None))
-    return DifferenceLocation(span, tuple(call for call in calls if call is not None))
 
 
 def _mesh_elements(shapes: Sequence[Visual | Collision]) -> dict[str, Element | None]:
@@ -417,12 +277,16 @@ def _content_difference(old: Path, new: Path) -> tuple[str, str, str]:
     sizes = [path.stat().st_size for path in (old, new)]
     if sizes[0] != sizes[1]:
         return str(sizes[0]), str(sizes[1]), "bytes"
-    first, second = (hashlib.sha256(path.read_bytes()).hexdigest()[:8] for path in (old, new))
+    first, second = (file_hash(path)[:8] for path in (old, new))
     return first, second, f"(SHA-256), both of {sizes[0]} bytes"
 
 
 def _same_bytes(old: Path, new: Path) -> bool:
+    """Return whether two files have the same contents. A pointer of Git LFS is equal to its file."""
     try:
-        return old.samefile(new) or filecmp.cmp(old, new, shallow=False)
+        if old.samefile(new) or filecmp.cmp(old, new, shallow=False):
+            return True
+        hashes = lfs_hash(old), lfs_hash(new)
+        return any(hashes) and (hashes[0] or file_hash(old)) == (hashes[1] or file_hash(new))
     except OSError:
         return True

@@ -4,7 +4,8 @@ from __future__ import annotations
 
 from collections.abc import Callable
 
-from linkwright.descriptions.comparison.compare import Comparison, Difference, DifferenceLocation
+from linkwright.descriptions.comparison.compare import Comparison
+from linkwright.descriptions.comparison.difference import Difference, DifferenceLocation
 from linkwright.diagnostics import Phrase, Span, counted, phrase, term
 from linkwright.diagnostics.translation import localized
 from linkwright.loading.lean_typing import Any

@@ -166,7 +166,7 @@ class Library:
         if source is None:
             return None
         is_shipped = source.name[:1] == "<"
-        definition = _parse_source(source, base, _TrustedMessages() if is_shipped else self)
+        definition = parse_source(source, base, TrustedMessages() if is_shipped else self)
         self._sources[base] = source
         parts = parts_of(definition)
         self._definitions.update(parts)
@@ -189,7 +189,7 @@ class Library:
         package, kind, name = base.split("/")
         share = self._finder().find(package)
         path = interface_file(share, kind, name) if share is not None else None
-        return None if path is None else _read(path)
+        return None if path is None else read_source(path)
 
     def has_message(self, type_name: str) -> bool:
         """Return whether a message with a full name exists, even if its file has mistakes."""
@@ -293,7 +293,7 @@ class Library:
         return None
 
 
-class _TrustedMessages:
+class TrustedMessages:
     """A `KnownMessages` that accepts every message name.
 
     It is used for the files that come with Linkwright; a test has checked the names in them.
@@ -308,8 +308,17 @@ class _TrustedMessages:
         return None
 
 
-def _parse_source(source: SourceText, base: str, known: KnownMessages) -> Definition:
-    """Parse an interface file, as IDL if its suffix is ``.idl``."""
+def parse_source(source: SourceText, base: str, known: KnownMessages) -> Definition:
+    """Parse an interface file, as IDL if its suffix is ``.idl``.
+
+    Args:
+        source: the content of the file.
+        base: the name of the interface, such as ``my_msgs/srv/Count``.
+        known: determines which messages exist, to check references.
+
+    Raises:
+        DefinitionError: the file has mistakes.
+    """
     if source.name.endswith(".idl"):
         from linkwright.messages.definitions.idl import parse_idl
 
@@ -330,7 +339,12 @@ def wrong_kind_diagnostic(definition: Definition, kind: str) -> Diagnostic:
     )
 
 
-def _read(path: Path) -> SourceText:
+def read_source(path: Path) -> SourceText:
+    """Return the text of an interface file.
+
+    Raises:
+        DefinitionError: MSG121, the file cannot be read or is not text in UTF-8.
+    """
     name = display_path(path)
     try:
         return SourceText(name, path.read_text(encoding="utf-8-sig"))

@@ -1,0 +1,160 @@
+"""The comparison of XML elements by content: attributes, texts and children, matched by tag and name."""
+
+from __future__ import annotations
+
+from collections import Counter
+from collections.abc import Callable, Hashable, Iterator, Mapping, Sequence
+from itertools import zip_longest
+
+from linkwright.descriptions.comparison.difference import Difference, Kind, location_of
+from linkwright.loading.lean_dataclasses import dataclass
+from linkwright.xmltree import Element
+
+
+@dataclass(frozen=True)
+class ElementComparison:
+    """A comparison of elements that ignores white space, comments and the order of attributes.
+
+    Attributes:
+        normalize_old: a function that makes texts of the old version comparable.
+        normalize_new: a function that makes texts of the new version comparable.
+    """
+
+    normalize_old: Callable[[str], str] = str
+    normalize_new: Callable[[str], str] = str
+
+    def child_differences(
+        self,
+        old: Sequence[Element],
+        new: Sequence[Element],
+        path: str = "",
+        enclosing: tuple[str, Element, Element] | None = None,
+    ) -> Iterator[Difference]:
+        """Yield the differences between the elements of two robots, or of a pair of elements.
+
+        Args:
+            old: the elements of the old description.
+            new: the elements of the new description.
+            path: the names of the enclosing elements.
+            enclosing: the name of the enclosing pair and the pair itself, or None for direct children of the robots.
+        """
+        for key, old_element, new_element in self._pairs(old, new):
+            element_path = f"{path} {key}".strip()
+            if old_element is not None and new_element is not None:
+                name, start_path = (key, "") if enclosing is None else (enclosing[0], element_path)
+                yield from self._element_differences(name, start_path, old_element, new_element)
+            elif enclosing is None:
+                kind: Kind = "added" if old_element is None else "removed"
+                yield Difference(
+                    "extension", key, kind, "", None, None, "", location_of(old_element), location_of(new_element)
+                )
+            else:
+                texts = (
+                    None if old_element is None else _one_line(old_element),
+                    None if new_element is None else _one_line(new_element),
+                )
+                locations = location_of(old_element or enclosing[1]), location_of(new_element or enclosing[2])
+                yield Difference("extension", enclosing[0], "changed", element_path, *texts, "", *locations)
+
+    def _pairs(
+        self, old: Sequence[Element], new: Sequence[Element]
+    ) -> Iterator[tuple[str, Element | None, Element | None]]:
+        """Yield the pairs of elements that belong together and may differ, each with its key.
+
+        Elements without a name that have an equal counterpart are left out, so that an inserted element does not shift
+        the others.
+        """
+        contents = [[self._content(element, side) for element in elements] for side, elements in enumerate((old, new))]
+        common = Counter(contents[0]) & Counter(contents[1])
+        old_rest, new_rest = (
+            _without_common(_elements_by_key(elements), keys, common)
+            for elements, keys in zip((old, new), contents, strict=True)
+        )
+        for base in dict.fromkeys([*new_rest, *old_rest]):
+            for old_item, new_item in zip_longest(old_rest.get(base, ()), new_rest.get(base, ())):
+                key, _ = new_item or old_item
+                yield key, old_item and old_item[1], new_item and new_item[1]
+
+    def _content(self, element: Element, side: int) -> Hashable:
+        """Return the comparable content of an element of the old (0) or the new (1) version."""
+        normalize = (self.normalize_old, self.normalize_new)[side]
+        attributes = frozenset((name, " ".join(normalize(value).split())) for name, value in element.attributes.items())
+        children = tuple(self._content(child, side) for child in element.elements())
+        return element.tag, attributes, " ".join(normalize(element.text()).split()), children
+
+    def _element_differences(self, name: str, path: str, old: Element, new: Element) -> Iterator[Difference]:
+        for attribute in dict.fromkeys([*new.attributes, *old.attributes]):
+            old_value, new_value = old.attributes.get(attribute), new.attributes.get(attribute)
+            if not self._same_text(old_value, new_value):
+                locations = location_of(old, attribute), location_of(new, attribute)
+                yield Difference(
+                    "extension", name, "changed", f"{path} @{attribute}".strip(), old_value, new_value, "", *locations
+                )
+        texts = " ".join(old.text().split()), " ".join(new.text().split())
+        if not self._same_text(*texts):
+            yield Difference("extension", name, "changed", path, *texts, "", location_of(old), location_of(new))
+        yield from self.child_differences(list(old.elements()), list(new.elements()), path, (name, old, new))
+
+    def _same_text(self, old: str | None, new: str | None) -> bool:
+        if old is None or new is None:
+            return old is new
+        return " ".join(self.normalize_old(old).split()) == " ".join(self.normalize_new(new).split())
+
+
+def _elements_by_key(elements: Sequence[Element]) -> dict[str, Element]:
+    """Return elements in document order, by tag and name or reference.
+
+    The keys of elements with the same tag and name are numbered.
+    """
+    keyed_elements: dict[str, Element] = {}
+    for element in elements:
+        name = _name_of(element)
+        key = f"{element.tag} {name}" if name else element.tag
+        number = 2
+        unique_key = key
+        while unique_key in keyed_elements:
+            unique_key = f"{key} {number}"
+            number += 1
+        keyed_elements[unique_key] = element
+    return keyed_elements
+
+
+def _without_common(
+    elements: Mapping[str, Element], contents: Sequence[Hashable], common: Counter[Hashable]
+) -> dict[str, list[tuple[str, Element]]]:
+    """Return the elements, with their keys, by tag and name, except for nameless elements that have a counterpart.
+
+    Args:
+        elements: the elements by key.
+        contents: the contents of the elements.
+        common: the number of counterparts of each content.
+    """
+    remaining = Counter(common)
+    rest: dict[str, list[tuple[str, Element]]] = {}
+    for (key, element), content in zip(elements.items(), contents, strict=True):
+        name = _name_of(element)
+        if name is None and remaining[content]:
+            remaining[content] -= 1
+        else:
+            rest.setdefault(f"{element.tag} {name or ''}", []).append((key, element))
+    return rest
+
+
+def _name_of(element: Element) -> str | None:
+    """Return the name that identifies an element among its siblings, or None if it has none.
+
+    The included models of SDF have their names, or else their addresses, in children.
+    """
+    name = element.attributes.get("name") or element.attributes.get("reference")
+    if name is None and element.tag == "include":
+        child = element.first("name") or element.first("uri")
+        name = None if child is None else child.text().strip()
+    return name or None
+
+
+def _one_line(element: Element) -> str:
+    """Return an element's attributes, text and child tags as one line."""
+    words = [f"{name}={value}" for name, value in element.attributes.items()]
+    words += element.text().split()
+    words += [f"<{child.tag}>" for child in element.elements()]
+    return " ".join(words)

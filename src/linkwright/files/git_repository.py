@@ -1,0 +1,255 @@
+"""A git repository: its commits, the files of a commit, and the files that changed between commits."""
+
+from __future__ import annotations
+
+import hashlib
+import os
+import subprocess
+from collections.abc import Iterator, Mapping
+from pathlib import Path
+
+from linkwright.diagnostics import Diagnostic, LinkwrightError, Phrase, display_path, foreign, phrase
+from linkwright.loading.deferred import lazy_pattern
+from linkwright.loading.lean_dataclasses import dataclass
+
+_HOOK_VARIABLES = ("GIT_DIR", "GIT_WORK_TREE", "GIT_INDEX_FILE", "GIT_PREFIX")
+"""Variables that git sets for hooks, and that would override the repository of a folder."""
+
+_SUBMODULE_MODE = "160000"
+_LFS_POINTER_SIZE = 1024
+_LFS_POINTER = lazy_pattern(
+    rb"version https://git-lfs\.github\.com/spec/v1\n(?:[^\n]+\n)*?oid sha256:(?P<hash>[0-9a-f]{64})\n"
+)
+_LINK_MODE = "120000"
+_NO_FILE_MODE = "000000"
+
+
+@dataclass(frozen=True, slots=True)
+class ChangedFile:
+    """A file that differs between two commits, or between a commit and the working tree.
+
+    Attributes:
+        old_path: the path in the old commit, relative to the root of the repository; None for an added file.
+        new_path: the path in the new commit or in the working tree; None for a removed file.
+        is_submodule: whether the path is that of a submodule.
+    """
+
+    old_path: str | None
+    new_path: str | None
+    is_submodule: bool = False
+
+    @property
+    def path(self) -> str:
+        """The new path, or the old path of a removed file."""
+        return self.new_path or self.old_path or ""
+
+
+class GitRepository:
+    """The git repository of a folder. None of the methods changes the repository or its working tree.
+
+    Args:
+        folder: a folder of the working tree.
+        subject: the name of the file or folder that the user named, for messages.
+        hint: what the user can do if the folder is not in a repository.
+        downloads_lfs: whether files of Git LFS are written with their contents, which may download them. Otherwise
+            their pointers are written; see `lfs_hash`.
+
+    Attributes:
+        root: the root folder of the working tree.
+
+    Raises:
+        LinkwrightError: CLI341 if git is not installed, or CLI342 if the folder is not in a repository.
+    """
+
+    def __init__(self, folder: Path, subject: str, hint: Phrase, *, downloads_lfs: bool = True) -> None:
+        self.root = folder
+        self._variables = {} if downloads_lfs else {"GIT_LFS_SKIP_SMUDGE": "1"}
+        result = self.run("rev-parse", "--show-toplevel")
+        if result.returncode != 0:
+            message = phrase("'{path}' is not in a git repository", path=subject)
+            if "dubious ownership" in result.stderr:
+                message = phrase("git does not trust the repository of '{path}'", path=subject)
+                hint = phrase(
+                    "add the repository to git's setting safe.directory if you trust the other user who owns it"
+                )
+            raise LinkwrightError(Diagnostic("CLI342", message, hint=hint))
+        self.root = Path(result.stdout.rstrip("\r\n")).resolve()
+
+    def run(self, *arguments: str, environment: Mapping[str, str] | None = None) -> subprocess.CompletedProcess[str]:
+        """Run git in the repository with English output, and return the completed process.
+
+        Raises:
+            LinkwrightError: CLI341 if git is not installed.
+        """
+        variables = {name: value for name, value in os.environ.items() if name not in _HOOK_VARIABLES}
+        try:
+            return subprocess.run(  # noqa: S603 - no shell; the user's word is not an option
+                ["git", *arguments],  # noqa: S607 - the user's own git, found as the shell finds it
+                cwd=self.root,
+                env={**variables, "LC_ALL": "C", **self._variables, **(environment or {})},
+                capture_output=True,
+                encoding="utf-8",
+                errors="replace",
+                check=False,
+            )
+        except FileNotFoundError:
+            hint = phrase("install git, or compare two files: `linkwright diff OLD NEW`")
+            raise LinkwrightError(Diagnostic("CLI341", phrase("git is not installed"), hint=hint)) from None
+
+    def resolve(self, name: str) -> str | None:
+        """Return the hash of a commit in git's notation, such as ``HEAD~2``, or None if there is no such commit."""
+        if name.startswith("-"):
+            return None
+        result = self.run("rev-parse", "--verify", "--quiet", f"{name}^{{commit}}")
+        return result.stdout.strip() if result.returncode == 0 else None
+
+    def commit(self, name: str) -> str:
+        """Return the hash of a commit in git's notation.
+
+        Raises:
+            LinkwrightError: CLI343 if there is no such commit.
+        """
+        commit = self.resolve(name)
+        if commit is None:
+            message = phrase("there is no commit '{name}' in {folder}", name=name, folder=display_path(self.root))
+            raise LinkwrightError(Diagnostic("CLI343", message, hint=self._missing_commit_hint()))
+        return commit
+
+    def _missing_commit_hint(self) -> Phrase:
+        if self.is_shallow:
+            return phrase(
+                "the clone is shallow; `git fetch --unshallow` downloads its history (in GitHub Actions: "
+                "`fetch-depth: 0` for actions/checkout)"
+            )
+        return phrase(
+            "HEAD is the last commit; `git log --oneline` lists others, and `git fetch` downloads the commits "
+            "of a server"
+        )
+
+    @property
+    def is_shallow(self) -> bool:
+        """Whether the clone lacks a part of the history."""
+        return self.run("rev-parse", "--is-shallow-repository").stdout.strip() == "true"
+
+    def merge_base(self, commit: str, other: str) -> str | None:
+        """Return the hash of the best common ancestor of two commits, or None if they have none in this clone."""
+        result = self.run("merge-base", commit, other)
+        return result.stdout.strip() if result.returncode == 0 else None
+
+    def contains(self, commit: str, path: str) -> bool:
+        """Return whether a commit contains a file, whose path is relative to the root."""
+        return self.run("cat-file", "-e", f"{commit}:{path}").returncode == 0
+
+    def symbolic_links(self, commit: str) -> list[str]:
+        """Return the paths of a commit's symbolic links, relative to the root."""
+        entries = self.run("ls-tree", "-r", "-z", commit).stdout.split("\0")
+        return [entry.partition("\t")[2] for entry in entries if entry.startswith(_LINK_MODE)]
+
+    def write_files(self, commit: str, folder: Path, index: Path, *, must_be_complete: bool = True) -> list[str]:
+        """Write all files of a commit into a folder.
+
+        Args:
+            commit: the hash of the commit.
+            folder: the folder, which is created.
+            index: a file for an index of git, which is created.
+            must_be_complete: whether it is an error if git cannot write some of the files, such as large ones that a
+                partial clone has not downloaded.
+
+        Returns:
+            The paths of the files that are missing, relative to the root.
+
+        Raises:
+            LinkwrightError: CLI345 if git cannot write the files.
+        """
+        environment = {"GIT_INDEX_FILE": str(index)}
+        result = self.run("read-tree", commit, environment=environment)
+        is_read = result.returncode == 0
+        if is_read:
+            folder.mkdir(exist_ok=True)
+            arguments = ("checkout-index", "--all", "--quiet", f"--prefix={folder}{os.sep}")
+            result = self.run(*arguments, environment=environment)
+        if result.returncode == 0:
+            return []
+        if is_read and not must_be_complete:
+            names = self.run("ls-files", "-z", environment=environment).stdout.split("\0")
+            missing = [name for name in names if name and not os.path.lexists(folder / name)]
+            if len(missing) < len(names) - 1:
+                return missing
+        message = phrase(
+            "git cannot write the files of commit '{name}': {reason}",
+            name=commit,
+            reason=foreign(result.stderr.strip()),
+        )
+        raise LinkwrightError(Diagnostic("CLI345", message))
+
+    def changed_files(self, old: str, new: str | None = None) -> list[ChangedFile]:
+        """Return the files that differ between two commits, sorted by path.
+
+        Renamed files are recognized as git recognizes them, unless the clone lacks the contents of a file.
+
+        Args:
+            old: the hash of the old commit.
+            new: the hash of the new commit; None for the files of the working tree, including files that git does not
+                track and does not ignore.
+
+        Raises:
+            LinkwrightError: CLI346 if git cannot compare them.
+        """
+        arguments = ("--raw", "-z", "--no-abbrev")
+        commits = [old] if new is None else [old, new]
+        result = self.run("diff", "--no-ext-diff", "--find-renames", *arguments, *commits)
+        if result.returncode != 0:  # a partial clone may lack files, which these commands do not read
+            command = ("diff-index",) if new is None else ("diff-tree", "-r")
+            result = self.run(*command, *arguments, *commits)
+        if result.returncode != 0:
+            message = phrase("git cannot compare the commits: {reason}", reason=foreign(result.stderr.strip()))
+            raise LinkwrightError(Diagnostic("CLI346", message))
+        files = list(_parse_raw_changes(result.stdout))
+        if new is None:
+            names = self.run("ls-files", "--others", "--exclude-standard", "-z").stdout.split("\0")
+            files += [ChangedFile(None, name) for name in names if name]
+        return sorted(files, key=lambda file: file.path)
+
+
+def file_hash(path: Path) -> str:
+    """Return the SHA-256 hash of a file in hexadecimal.
+
+    Raises:
+        OSError: the file cannot be read.
+    """
+    return hashlib.sha256(path.read_bytes()).hexdigest()
+
+
+def lfs_hash(path: Path) -> str | None:
+    """Return the SHA-256 hash of the file of a pointer of Git LFS, or None if the path is not a pointer.
+
+    Source: the specification of Git LFS, docs/spec.md.
+    """
+    try:
+        with path.open("rb") as file:
+            start = file.read(_LFS_POINTER_SIZE)
+    except OSError:
+        return None
+    match = _LFS_POINTER.match(start)
+    return match["hash"].decode() if match else None
+
+
+def _parse_raw_changes(text: str) -> Iterator[ChangedFile]:
+    """Yield the files in the output of ``git diff --raw -z``.
+
+    A file is ``:OLDMODE NEWMODE OLDHASH NEWHASH STATUS``, a path and, if it was renamed, its new path. Each of them
+    ends with a null byte.
+    """
+    fields = iter(text.split("\0"))
+    for header in fields:
+        if not header:
+            return
+        old_mode, new_mode, _, _, status = header.lstrip(":").split(" ")
+        old_path = new_path = next(fields)
+        if status.startswith(("R", "C")):
+            new_path = next(fields)
+        yield ChangedFile(
+            None if old_mode == _NO_FILE_MODE or status.startswith("C") else old_path,
+            None if new_mode == _NO_FILE_MODE else new_path,
+            _SUBMODULE_MODE in (old_mode, new_mode),
+        )

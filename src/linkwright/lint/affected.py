@@ -1,0 +1,115 @@
+"""The search for files that changed files can affect, by the names of files in texts.
+
+A description can include a file under a name that only its expansion knows. Therefore, the search looks for the names
+of files in the texts of a version, without expanding anything, and follows a name with a computed part to all files
+that fit the rest. It may find files that the change does not affect; comparing these finds no difference.
+"""
+
+from __future__ import annotations
+
+import os
+import re
+from collections import defaultdict
+from collections.abc import Collection, Iterable, Iterator
+from functools import cached_property
+from pathlib import Path
+
+from linkwright.packages.manifest import SKIPPED_FOLDERS
+
+_TEXT_SUFFIXES = (
+    ".xacro", ".urdf", ".sdf", ".world", ".srdf", ".xml", ".launch", ".py", ".yaml", ".yml", ".config", ".json",
+    ".toml", ".dae", ".obj", ".mtl", ".gltf", ".inc", ".macro", ".gazebo", ".trans", ".rviz",
+)  # fmt: skip
+"""The ends of the names of files that can name other files."""
+_MESH_SUFFIXES = (".dae", ".obj", ".gltf")
+_MAX_TEXT_BYTES, _MAX_MESH_BYTES = 1 << 20, 1 << 16
+"""The number of bytes that are searched for names. Meshes name their textures near their beginning."""
+_EXPRESSION = re.compile(r"\$\{[^{}]*\}|\$\([^()]*\)|%[sd]|\{[\w.\[\]'\"]*\}")
+_WORD = re.compile(r"model://[\w.+-]+|[\w.+*-]+")
+_MODEL = "model://"
+_MIN_FIXED_CHARACTERS = 3
+"""The number of fixed characters besides the suffix that a computed name must have to be followed."""
+
+
+class TextFiles:
+    """The files of a version that can name other files.
+
+    Args:
+        root: the folder with the files of the version.
+    """
+
+    def __init__(self, root: Path) -> None:
+        self._root = root
+
+    def affected(self, changed: Iterable[str], candidates: Collection[str]) -> set[str]:
+        """Return the candidates that changed files can affect, with the candidates that changed themselves.
+
+        Args:
+            changed: the paths of changed files, also of removed ones, relative to the root.
+            candidates: paths relative to the root.
+        """
+        pending = list(changed)
+        found = set(pending)
+        while pending:
+            path = pending.pop()
+            for other in self._naming(path):
+                if other not in found:
+                    found.add(other)
+                    pending.append(other)
+        return found & set(candidates)
+
+    def _naming(self, path: str) -> Iterator[str]:
+        """Yield the files whose texts can name a file."""
+        name = Path(path).name
+        yield from self._files_by_name.get(name, ())
+        if name in ("model.config", "model.sdf"):
+            yield from self._files_by_name.get(Path(path).parent.name, ())
+        for pattern, files in self._files_by_pattern:
+            if pattern.fullmatch(name):
+                yield from files
+
+    @cached_property
+    def _names(self) -> tuple[dict[str, list[str]], dict[str, list[str]]]:
+        """The files that contain a name, and the files that contain a pattern of names, by name and by pattern."""
+        by_name: dict[str, list[str]] = defaultdict(list)
+        by_pattern: dict[str, list[str]] = defaultdict(list)
+        for path, text in self._texts():
+            for name in set(_file_names(text)):
+                (by_pattern if "*" in name else by_name)[name].append(path)
+        return by_name, by_pattern
+
+    @property
+    def _files_by_name(self) -> dict[str, list[str]]:
+        return self._names[0]
+
+    @cached_property
+    def _files_by_pattern(self) -> list[tuple[re.Pattern[str], list[str]]]:
+        return [
+            (re.compile(".*".join(map(re.escape, pattern.split("*")))), files)
+            for pattern, files in self._names[1].items()
+        ]
+
+    def _texts(self) -> Iterator[tuple[str, str]]:
+        """Yield the path and the text of each file."""
+        for folder, folders, names in os.walk(self._root):
+            folders[:] = sorted(name for name in folders if not name.startswith(".") and name not in SKIPPED_FOLDERS)
+            for name in sorted(names):
+                file = Path(folder, name)
+                if name.endswith(_TEXT_SUFFIXES) and file.is_file() and not file.is_symlink():
+                    with file.open("rb") as stream:
+                        size = _MAX_MESH_BYTES if name.endswith(_MESH_SUFFIXES) else _MAX_TEXT_BYTES
+                        text = stream.read(size).decode("utf-8", errors="replace")
+                    yield file.relative_to(self._root).as_posix(), text
+
+
+def _file_names(text: str) -> Iterator[str]:
+    """Yield the names of files in a text, with ``*`` for each computed part, and the names of models of SDF."""
+    for word in set(_WORD.findall(_EXPRESSION.sub("*", text))):
+        if word.startswith(_MODEL):
+            yield word.removeprefix(_MODEL)
+            continue
+        stem, _, suffix = word.rpartition(".")
+        if not suffix[:1].isalpha():
+            continue
+        is_fixed = "*" not in word or len(stem.replace("*", "")) >= _MIN_FIXED_CHARACTERS
+        yield word if is_fixed else f"*.{suffix.replace('*', '')}"

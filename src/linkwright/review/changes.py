@@ -1,0 +1,192 @@
+"""The changes that a review reports, grouped by the files that users open or start."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Hashable, Sequence
+from dataclasses import dataclass, field
+from enum import Enum
+
+from linkwright.diagnostics import Diagnostic, Phrase
+
+_QUOTED = re.compile("'[^']*'")
+
+
+class Effect(Enum):
+    """The effect of a change on programs that use the package."""
+
+    BREAKING = "breaking"
+    """Other programs use a name that is gone, or exchange data that no longer fits."""
+    CHANGED = "changed"
+
+
+class SubjectKind(Enum):
+    """The kind of a reviewed file."""
+
+    DESCRIPTION = "description"
+    WORLD = "world"
+    LAUNCH_FILE = "launch file"
+    PARAMETERS = "parameter file"
+    MAP = "map"
+    INTERFACE = "interface"
+    MANIFEST = "package manifest"
+    MESH = "mesh"
+    SCENARIO = "scenario"
+
+
+@dataclass(frozen=True)
+class Location:
+    """A location in a file of either version.
+
+    Attributes:
+        file: the path relative to the root of the repository.
+        line: the line, starting at 1.
+        column: the column, starting at 1.
+        is_old: whether the file is that of the old version.
+    """
+
+    file: str
+    line: int
+    column: int
+    is_old: bool = False
+
+
+@dataclass(frozen=True)
+class Change:
+    """A difference between the two versions of a subject.
+
+    Attributes:
+        sentence: the change, in one line.
+        effect: the effect of the change on other programs.
+        reason: why the change is breaking; None for other changes.
+        location: the location of the new value, or of the old value if there is no new one; None if unknown.
+        cases: the names of the argument sets with which the change occurs; empty for all of them.
+        other_names: the names of other links, joints or extensions that a macro changes in the same way.
+    """
+
+    sentence: Phrase
+    effect: Effect = Effect.CHANGED
+    reason: Phrase | None = None
+    location: Location | None = None
+    cases: tuple[str, ...] = ()
+    other_names: tuple[str, ...] = ()
+
+    @property
+    def name(self) -> str:
+        """The name of the changed link, joint or extension; empty for other changes."""
+        return str(self._core.arguments.get("name", ""))
+
+    @property
+    def identity(self) -> Hashable:
+        """A key that is equal for the same change of other links and joints that a macro creates.
+
+        The label of a visual often contains the name of its link.
+        """
+        if self.location is None:
+            return str(self.sentence)
+        values = tuple(str(self._core.arguments.get(name)) for name in ("subject", "old", "new"))
+        property_name = _QUOTED.sub("", str(self._core.arguments.get("property")))
+        return self.location, self.effect, self._core.template, property_name, values
+
+    @property
+    def _core(self) -> Phrase:
+        """The sentence without what is added at its end."""
+        core = self.sentence.arguments.get("change", self.sentence)
+        return core if isinstance(core, Phrase) else self.sentence
+
+
+@dataclass(frozen=True)
+class Figure:
+    """A quantity of the whole subject in both versions.
+
+    Attributes:
+        name: the quantity.
+        old: its old value as text; empty if there is none.
+        new: its new value as text; empty if there is none.
+        unit: the unit of both values; empty for counts.
+    """
+
+    name: Phrase
+    old: str
+    new: str
+    unit: str = ""
+
+
+@dataclass(frozen=True)
+class Subject:
+    """A reviewed file with its changes.
+
+    Attributes:
+        kind: the kind of the file.
+        path: the new path, relative to the root of the repository, or the old path of a removed file.
+        old_path: the old path; None for an added file.
+        new_path: the new path; None for a removed file.
+        changes: the changes, in the order of the new version.
+        figures: the quantities that differ.
+        problems: why a part of the comparison is missing.
+        cases: the names of all argument sets that were compared.
+        images: views of both versions.
+    """
+
+    kind: SubjectKind
+    path: str
+    old_path: str | None
+    new_path: str | None
+    changes: Sequence[Change] = ()
+    figures: Sequence[Figure] = ()
+    problems: Sequence[Phrase] = ()
+    cases: Sequence[str] = ()
+    images: Sequence[ViewImages] = ()
+
+    @property
+    def is_empty(self) -> bool:
+        """Whether there is nothing to report."""
+        return not (self.changes or self.figures or self.problems)
+
+
+@dataclass(frozen=True)
+class ViewImages:
+    """Images of both versions of a robot from the same side.
+
+    Attributes:
+        name: the name of the view, such as ``front``.
+        old: the old robot as PNG.
+        new: the new robot as PNG.
+    """
+
+    name: str
+    old: bytes
+    new: bytes
+
+
+@dataclass(frozen=True)
+class Review:
+    """The differences between two versions of a repository.
+
+    Attributes:
+        old_name: the old version in git's notation.
+        new_name: the new version in git's notation, or empty for the working tree.
+        subjects: the compared files, with their differences.
+        other_files: the changed files of other kinds, by path.
+        new_findings: the findings of `linkwright check` that the old version does not have.
+        fixed_findings: the findings of the old version that the new version does not have.
+        notes: the parts that the review does not cover.
+    """
+
+    old_name: str
+    new_name: str
+    subjects: Sequence[Subject] = ()
+    other_files: Sequence[str] = ()
+    new_findings: Sequence[Diagnostic] = ()
+    fixed_findings: Sequence[Diagnostic] = ()
+    notes: Sequence[Phrase] = field(default_factory=tuple)
+
+    @property
+    def breaking_changes(self) -> list[tuple[Subject, Change]]:
+        """The breaking changes, each with its subject."""
+        return [
+            (subject, change)
+            for subject in self.subjects
+            for change in subject.changes
+            if change.effect is Effect.BREAKING
+        ]

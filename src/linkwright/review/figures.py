@@ -1,0 +1,241 @@
+"""Quantities of a whole robot, in two versions."""
+
+from __future__ import annotations
+
+import zlib
+from collections.abc import Callable, Iterator
+from functools import cached_property
+
+import numpy as np
+from numpy.typing import NDArray
+
+from linkwright.descriptions.pairs import Model
+from linkwright.diagnostics import LinkwrightError, Phrase, phrase
+from linkwright.geometry.mass import MassProperties, combine
+from linkwright.geometry.shapes import Box, Capsule, SimpleShape, Sphere, placement
+from linkwright.inertia.mesh_library import MeshLibrary
+from linkwright.kinematics import KinematicTree
+from linkwright.review.changes import Figure
+from linkwright.urdf import Collision, Mesh, Robot, Visual
+from linkwright.xmltree import Element
+
+_RELATIVE_TOLERANCE = 1e-4
+"""The relative difference up to which a quantity is equal; it is shown with four digits."""
+_LENGTH_TOLERANCE = 1e-4
+"""The difference in m up to which a length is equal."""
+_REACH_SAMPLES = 2_000
+_MIN_CHAIN = 3
+"""The number of moving joints from which the end of a chain has a reach."""
+_MAX_CHAINS = 4
+"""The number of chains whose reach is compared; the fingers of a hand would fill the report."""
+_UNLIMITED = np.pi
+"""The positions of a continuous joint that are sampled, in rad, on both sides of zero."""
+
+Array = NDArray[np.float64]
+
+
+def figures_of(old: RobotMeasures, new: RobotMeasures) -> Iterator[Figure]:
+    """Yield the quantities that differ between two robots."""
+    for name, unit, measure in _QUANTITIES:
+        yield from _figure(name, unit, measure(old), measure(new))
+    old_reach, new_reach = old.reach(), new.reach()
+    for link in new_reach:
+        if link in old_reach:
+            yield from _figure(phrase("reach of '{link}'", link=link), "m", old_reach[link], new_reach[link])
+
+
+class RobotMeasures:
+    """The quantities of a robot with all joints at position 0, or at the nearest limit to 0.
+
+    Attributes:
+        robot: the robot.
+        meshes: the meshes of the robot.
+        link_names: the links in the order of the frames of `sampled_frames`.
+    """
+
+    def __init__(self, robot: Robot, model: Model) -> None:
+        self.robot = robot
+        self.meshes = MeshLibrary(model.finder, model.path.parent)
+        self._tree = KinematicTree(robot)
+        self.link_names = self._tree.link_names
+
+    @cached_property
+    def frames(self) -> dict[str, Array]:
+        """The frames of the links in the root link's frame, shape (4, 4) each."""
+        low, high = self._limits
+        return dict(zip(self._tree.link_names, self._tree.forward(np.clip(0.0, low, high)), strict=True))
+
+    @cached_property
+    def mass_properties(self) -> MassProperties:
+        """The mass properties of the whole robot in the root link's frame."""
+        parts = []
+        for name, frame in self.frames.items():
+            inertial = self.robot.links[name].inertial
+            if inertial is not None and inertial.has_mass:
+                own = inertial.properties
+                rotation = frame[:3, :3]
+                center = rotation @ own.center + frame[:3, 3]
+                parts.append(MassProperties(own.mass, center, rotation @ own.inertia @ rotation.T))
+        return combine(parts)
+
+    @cached_property
+    def size(self) -> Array | None:
+        """The lengths of the box around all visuals in m, shape (3,).
+
+        The result is None if a mesh cannot be read, or if there are no visuals.
+        """
+        boxes = []
+        for name, frame in self.frames.items():
+            for visual in self.robot.links[name].visuals:
+                box = self._bounds(visual, frame)
+                if box is None:
+                    return None
+                boxes.append(box)
+        if not boxes:
+            return None
+        edges: Array = np.max([box[1] for box in boxes], axis=0) - np.min([box[0] for box in boxes], axis=0)
+        return edges
+
+    @cached_property
+    def mesh_files(self) -> tuple[int, int] | None:
+        """The number of triangles and of bytes of all mesh files, or None if a mesh cannot be read."""
+        triangles = size = 0
+        elements: dict[str, Element | None] = {}
+        for link in self.robot.links.values():
+            shapes: tuple[Visual | Collision, ...] = (*link.visuals, *link.collisions)
+            for shape in shapes:
+                if isinstance(shape.geometry, Mesh):
+                    elements[shape.geometry.filename] = shape.element
+        try:
+            for uri, element in elements.items():
+                path = self.meshes.locate(uri, element)
+                triangles += self.meshes.read(path).count
+                size += path.stat().st_size
+        except (LinkwrightError, OSError):
+            return None
+        return triangles, size
+
+    def reach(self) -> dict[str, float]:
+        """Return how far the ends of chains get from the root link's origin, in m, by the name of the last link.
+
+        The distance is the largest one of many configurations within the limits, which depend only on the names and the
+        limits of the joints.
+        """
+        ends = dict(self._chain_ends())
+        if not ends:
+            return {}
+        frames = self.sampled_frames(_REACH_SAMPLES)
+        indexes = [self._tree.link_index(link) for link in ends]
+        distances = np.linalg.norm(frames[:, indexes][..., :3, 3], axis=-1).max(axis=0)
+        return dict(zip(ends, map(float, distances), strict=True))
+
+    def sampled_frames(self, count: int) -> Array:
+        """Return the frames of the links in the root link's frame in many configurations within the limits.
+
+        The configurations depend only on the names and the limits of the joints.
+
+        Args:
+            count: the number of configurations.
+
+        Returns:
+            Homogeneous matrices, shape (count, links, 4, 4).
+        """
+        low, high = self._limits
+        names = self._tree.joint_names
+        samples = np.zeros((count, len(names)))
+        for index, name in enumerate(names):
+            samples[:, index] = np.random.default_rng(zlib.crc32(name.encode())).random(count)
+        return self._tree.forward(low + samples * (high - low))
+
+    def _chain_ends(self) -> Iterator[tuple[str, str]]:
+        """Yield the last link of each chain of several moving joints, and the chain's last moving joint."""
+        joints_by_child = {joint.child: joint for joint in self.robot.joints.values()}
+        parents = {joint.parent for joint in self.robot.joints.values()}
+        farthest: dict[str, tuple[int, str]] = {}
+        for link in self._tree.link_names:
+            if link in parents:
+                continue
+            chain = []
+            name = link
+            while name in joints_by_child:
+                joint = joints_by_child[name]
+                chain.append(joint)
+                name = joint.parent
+            moving = [joint.name for joint in chain if joint.name in self._tree.joint_names]
+            if len(moving) >= _MIN_CHAIN and (moving[0] not in farthest or farthest[moving[0]][0] < len(chain)):
+                farthest[moving[0]] = len(chain), link
+        for joint_name, (_, link) in list(farthest.items())[:_MAX_CHAINS]:
+            yield link, joint_name
+
+    @cached_property
+    def _limits(self) -> tuple[Array, Array]:
+        """The limits of the joints in rad or m, shape (joints,) each."""
+        low, high = np.full((2, len(self._tree.joint_names)), _UNLIMITED) * np.array([[-1.0], [1.0]])
+        for index, name in enumerate(self._tree.joint_names):
+            joint = self.robot.joints[name]
+            if joint.limit is not None and joint.type != "continuous":
+                low[index], high[index] = sorted((joint.limit.lower, joint.limit.upper))
+        return low, high
+
+    def _bounds(self, visual: Visual, link_frame: Array) -> tuple[Array, Array] | None:
+        """Return the corners of the box around a visual in the root link's frame, shape (3,) each."""
+        placed = placement(visual.origin)
+        rotation = link_frame[:3, :3] @ np.array(placed.rotation)
+        center = link_frame[:3, :3] @ np.array(placed.position) + link_frame[:3, 3]
+        if isinstance(visual.geometry, Mesh):
+            try:
+                mesh = self.meshes.load(visual.geometry, visual.element)
+            except LinkwrightError:
+                return None
+            if not mesh.count:
+                return center, center
+            points = mesh.vertices[np.unique(mesh.faces)] @ rotation.T + center
+            return points.min(axis=0), points.max(axis=0)
+        half = _half_lengths(visual.geometry, rotation)
+        return center - half, center + half
+
+
+def _half_lengths(shape: SimpleShape, rotation: Array) -> Array:
+    """Return half the lengths of the box around a rotated shape in m, shape (3,)."""
+    if isinstance(shape, Box):
+        half: Array = np.abs(rotation) @ np.array(shape.size) / 2.0
+        return half
+    if isinstance(shape, Sphere):
+        return np.full(3, shape.radius)
+    along = np.abs(rotation[:, 2]) * shape.length / 2.0
+    across = 1.0 if isinstance(shape, Capsule) else np.sqrt(np.maximum(0.0, 1.0 - rotation[:, 2] ** 2))
+    return np.asarray(along + shape.radius * across)
+
+
+def _figure(name: Phrase, unit: str, old: object, new: object) -> Iterator[Figure]:
+    """Yield a quantity if it differs by more than the tolerance."""
+    if old is None or new is None:
+        return
+    values = np.atleast_1d(np.asarray(old, float)), np.atleast_1d(np.asarray(new, float))
+    tolerance = _LENGTH_TOLERANCE if unit == "m" else 0.0
+    if not np.allclose(*values, rtol=_RELATIVE_TOLERANCE, atol=tolerance):
+        old_text, new_text = (" x ".join(f"{number:.4g}" for number in value) for value in values)
+        yield Figure(name, old_text, new_text, unit)
+
+
+def _moving_joints(measures: RobotMeasures) -> int:
+    return sum(joint.type != "fixed" for joint in measures.robot.joints.values())
+
+
+def _principal_moments(measures: RobotMeasures) -> Array | None:
+    properties = measures.mass_properties
+    return properties.principal().moments if properties.mass > 0 else None
+
+
+_QUANTITIES: tuple[tuple[Phrase, str, Callable[[RobotMeasures], object]], ...] = (
+    (phrase("links"), "", lambda measures: len(measures.robot.links)),
+    (phrase("joints"), "", lambda measures: len(measures.robot.joints)),
+    (phrase("moving joints"), "", _moving_joints),
+    (phrase("mass"), "kg", lambda measures: measures.mass_properties.mass),
+    (phrase("center of mass"), "m", lambda measures: measures.mass_properties.center),
+    (phrase("principal moments of inertia"), "kg m2", _principal_moments),
+    (phrase("size"), "m", lambda measures: measures.size),
+    (phrase("triangles of the meshes"), "", lambda measures: measures.mesh_files and measures.mesh_files[0]),
+    (phrase("bytes of the meshes"), "", lambda measures: measures.mesh_files and measures.mesh_files[1]),
+)
+"""The quantities: their names, their units, and the functions that measure them."""

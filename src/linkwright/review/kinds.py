@@ -1,0 +1,115 @@
+"""The kinds of reviewed files: how they are recognized and compared, and whether their removal is breaking."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from pathlib import PurePosixPath
+
+from linkwright.diagnostics import Phrase, phrase
+from linkwright.packages.launch_files import is_launch_file_name
+from linkwright.packages.manifest import MANIFEST
+from linkwright.review.changes import SubjectKind
+from linkwright.review.descriptions import compare_descriptions
+from linkwright.review.file_pair import FilePair
+from linkwright.review.interfaces import compare_interfaces
+from linkwright.review.launch_files import compare_launch_files
+from linkwright.review.manifests import compare_manifests
+from linkwright.review.maps import compare_maps
+from linkwright.review.meshes import compare_meshes
+from linkwright.review.parameter_files import compare_parameter_files
+from linkwright.review.worlds import compare_worlds
+
+_YAML_SUFFIXES = (".yaml", ".yml")
+
+
+@dataclass(frozen=True)
+class KindRule:
+    """The rule for files of a kind.
+
+    Attributes:
+        kind: the kind.
+        compare: the function that compares two versions.
+        suffixes: the ends of the names.
+        added: the sentence for an added file.
+        removed: the sentence for a removed file.
+        removal_reason: why it is breaking to remove or rename a file; None if it is not.
+    """
+
+    kind: SubjectKind
+    compare: Callable[[FilePair], None]
+    suffixes: tuple[str, ...]
+    added: Phrase
+    removed: Phrase
+    removal_reason: Phrase | None = None
+
+
+_RULES = (
+    KindRule(
+        SubjectKind.DESCRIPTION,
+        compare_descriptions,
+        (".urdf", ".xacro"),
+        phrase("description added"),
+        phrase("description removed"),
+        phrase("launch files and descriptions that name the file do not find it"),
+    ),
+    KindRule(
+        SubjectKind.WORLD,
+        compare_worlds,
+        (".sdf", ".world"),
+        phrase("world added"),
+        phrase("world removed"),
+        phrase("launch files and users that name the file do not find it"),
+    ),
+    KindRule(
+        SubjectKind.LAUNCH_FILE,
+        compare_launch_files,
+        (".launch.py", "_launch.py", ".launch.xml", ".launch"),
+        phrase("launch file added"),
+        phrase("launch file removed"),
+        phrase("launch files and users that start the file do not find it"),
+    ),
+    KindRule(
+        SubjectKind.INTERFACE,
+        compare_interfaces,
+        (".msg", ".srv", ".action", ".idl"),
+        phrase("interface added"),
+        phrase("interface removed"),
+        phrase("programs that use the type do not build or start"),
+    ),
+    KindRule(
+        SubjectKind.MANIFEST,
+        compare_manifests,
+        (MANIFEST,),
+        phrase("package added"),
+        phrase("package removed"),
+        phrase("packages that depend on the package do not build or start"),
+    ),
+    KindRule(SubjectKind.MAP, compare_maps, (".pgm",), phrase("map added"), phrase("map removed")),
+    KindRule(
+        SubjectKind.PARAMETERS,
+        compare_parameter_files,
+        _YAML_SUFFIXES,
+        phrase("parameter file added"),
+        phrase("parameter file removed"),
+    ),
+    KindRule(
+        SubjectKind.MESH,
+        compare_meshes,
+        (".stl", ".dae", ".obj", ".glb", ".gltf"),
+        phrase("mesh added"),
+        phrase("mesh removed"),
+    ),
+)
+
+
+def rule_of(path: str) -> KindRule | None:
+    """Return the rule for a file, or None for a file that is not compared.
+
+    Args:
+        path: the path relative to the root of the repository.
+    """
+    name = PurePosixPath(path).name.lower()
+    if is_launch_file_name(name) and name.endswith(_YAML_SUFFIXES):
+        return next(rule for rule in _RULES if rule.kind is SubjectKind.PARAMETERS)
+    return next((rule for rule in _RULES if name.endswith(rule.suffixes)), None)

@@ -1,0 +1,49 @@
+"""The comparison of mesh files: bytes, triangles and size."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+from linkwright.diagnostics import phrase
+from linkwright.files.git_repository import lfs_hash
+from linkwright.geometry.meshes import TriangleMesh, read_mesh
+from linkwright.review.changes import Figure
+from linkwright.review.file_pair import FilePair, UnreadableFileError
+
+MESH_SUFFIXES = (".stl", ".dae", ".obj", ".glb", ".gltf")
+_MAX_BYTES = 100 << 20
+"""Larger meshes are compared by their sizes in bytes only."""
+_TOLERANCE = 1e-6
+
+
+def compare_meshes(pair: FilePair) -> None:
+    """Compare two versions of a mesh file."""
+    files = pair.old_file, pair.new_file
+    sizes = [None if lfs_hash(file) else file.stat().st_size for file in files]
+    if None not in sizes and sizes[0] != sizes[1]:
+        pair.figures.append(Figure(phrase("size of the file"), str(sizes[0]), str(sizes[1]), "bytes"))
+    meshes = pair.read(_read)
+    if meshes is None:
+        return
+    old, new = meshes
+    if old.count != new.count:
+        pair.figures.append(Figure(phrase("triangles"), str(old.count), str(new.count)))
+    for name, before, after in zip(
+        (phrase("lowest corner, in the units of the file"), phrase("highest corner, in the units of the file")),
+        old.bounds,
+        new.bounds,
+        strict=True,
+    ):
+        if any(abs(a - b) > _TOLERANCE * max(1.0, abs(a)) for a, b in zip(before, after, strict=True)):
+            old_text, new_text = (" ".join(f"{number:.6g}" for number in corner) for corner in (before, after))
+            pair.figures.append(Figure(name, old_text, new_text))
+    if not pair.figures:
+        pair.add(phrase("contents changed, with the same triangles and size"), None)
+
+
+def _read(file: Path) -> TriangleMesh:
+    if lfs_hash(file):
+        raise UnreadableFileError(phrase("the file is in Git LFS and is not downloaded"))
+    if file.stat().st_size > _MAX_BYTES:
+        raise UnreadableFileError(phrase("it is larger than {megabytes} MB", megabytes=_MAX_BYTES >> 20))
+    return read_mesh(file)

@@ -1,0 +1,80 @@
+"""The report of a review as data for programs."""
+
+from __future__ import annotations
+
+from typing import Any
+
+from linkwright.diagnostics import Diagnostic, Severity, Span, phrase, to_data
+from linkwright.review.changes import Change, Effect, Location, Review, Subject
+from linkwright.review.reports.sections import sentence_of
+
+BREAKING_CODE = "REV201"
+
+
+def as_data(review: Review) -> dict[str, Any]:
+    """Return the review as JSON-ready data. Texts are in English; lines and columns count from 1."""
+    return {
+        "old": review.old_name,
+        "new": review.new_name or None,
+        "subjects": [_subject(subject) for subject in review.subjects],
+        "other_files": list(review.other_files),
+        "new_findings": [to_data(finding) for finding in review.new_findings],
+        "fixed_findings": [to_data(finding) for finding in review.fixed_findings],
+        "notes": list(review.notes),
+    }
+
+
+def as_diagnostics(review: Review) -> list[Diagnostic]:
+    """Return the breaking changes (REV201) and the new findings, for SARIF and annotations of lines."""
+    breaking = [
+        Diagnostic(
+            BREAKING_CODE,
+            phrase("{change}: {reason}", change=sentence_of(change), reason=change.reason or ""),
+            severity=Severity.WARNING,
+            span=_span(change.location),
+        )
+        for _, change in review.breaking_changes
+    ]
+    return [*breaking, *review.new_findings]
+
+
+def _span(location: Location | None) -> Span | None:
+    """Return the location in the new version, or None for a removed element."""
+    if location is None or location.is_old:
+        return None
+    return Span(location.file, location.line, location.column, location.line, location.column)
+
+
+def _subject(subject: Subject) -> dict[str, Any]:
+    return {
+        "kind": subject.kind.value,
+        "path": subject.path,
+        "old_path": subject.old_path,
+        "new_path": subject.new_path,
+        "argument_sets": list(subject.cases),
+        "changes": [_change(change) for change in subject.changes],
+        "figures": [
+            {"name": str(figure.name), "old": figure.old, "new": figure.new, "unit": figure.unit}
+            for figure in subject.figures
+        ],
+        "problems": list(subject.problems),
+    }
+
+
+def _change(change: Change) -> dict[str, Any]:
+    location = change.location
+    return {
+        "text": str(change.sentence),
+        "is_breaking": change.effect is Effect.BREAKING,
+        "reason": None if change.reason is None else str(change.reason),
+        "also": list(change.other_names),
+        "argument_sets": list(change.cases),
+        "location": None
+        if location is None
+        else {
+            "file": location.file,
+            "line": location.line,
+            "column": location.column,
+            "version": "old" if location.is_old else "new",
+        },
+    }

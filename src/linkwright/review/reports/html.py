@@ -1,0 +1,150 @@
+"""The report of a review as one HTML page that needs no other file."""
+
+from __future__ import annotations
+
+from base64 import b64encode
+from collections.abc import Iterator, Sequence
+from html import escape
+
+from linkwright.diagnostics import Diagnostic, Phrase, phrase
+from linkwright.diagnostics.translation import language, localized
+from linkwright.review.changes import Change, Effect, Figure, Review, Subject, ViewImages
+from linkwright.review.reports.sections import Section, cases_text, repeated_text, sections_of, sentence_of, summary
+
+_STYLE = """
+:root { color-scheme: light dark; --ink: #1d2733; --soft: #5c6a7d; --line: #d8dee6; --back: #f6f8fa; --card: #fff;
+  --bad: #b3261e; }
+@media (prefers-color-scheme: dark) { :root { --ink: #e3e8ee; --soft: #93a1b3; --line: #323c49; --back: #14191f;
+  --card: #1c232b; --bad: #ff8a80; } }
+body { margin: 0; background: var(--back); color: var(--ink); font: 14px/1.5 system-ui, sans-serif; }
+main { max-width: 1100px; margin: 0 auto; padding: 20px 24px 60px; overflow-wrap: anywhere; }
+h1 { font-size: 22px; margin: 12px 0 4px; } h2 { font-size: 16px; margin: 28px 0 8px; }
+h2 code { font-size: 15px; } code { font-family: ui-monospace, monospace; font-size: 12.5px; }
+section { background: var(--card); border: 1px solid var(--line); border-radius: 8px; padding: 4px 16px 10px; }
+.soft { color: var(--soft); } .breaking { color: var(--bad); }
+table { border-collapse: collapse; font-variant-numeric: tabular-nums; margin: 8px 0; }
+th, td { padding: 3px 12px 3px 0; text-align: left; border-bottom: 1px solid var(--line); vertical-align: top; }
+th { color: var(--soft); font-weight: 600; }
+ul { padding-left: 20px; } li { margin: 2px 0; }
+.images { display: grid; grid-template-columns: repeat(auto-fit, minmax(440px, 1fr)); gap: 12px; margin: 12px 0; }
+figure { margin: 0; } figcaption { color: var(--soft); }
+.versions { position: relative; background: #fff; border: 1px solid var(--line); border-radius: 6px; overflow: hidden; }
+.versions img { display: block; width: 100%; } .versions img + img { position: absolute; inset: 0; }
+.versions .new { clip-path: inset(0 0 0 var(--share, 50%)); }
+input[type=range] { width: 100%; margin: 4px 0 0; }
+figcaption { display: flex; justify-content: space-between; }
+@media (max-width: 600px) { main { padding: 12px 12px 40px; } .images { grid-template-columns: 1fr; } }
+"""
+
+_SCRIPT = """
+for (const slider of document.querySelectorAll("input[type=range]")) {
+  const show = () => slider.previousElementSibling.style.setProperty("--share", `${slider.value}%`);
+  slider.addEventListener("input", show);
+  show();
+}
+"""
+
+
+def as_html(review: Review) -> str:
+    """Return the report as a page in the user's language, with views of both robots under a slider."""
+    new = review.new_name or localized(phrase("working tree"))
+    title = phrase("Robot review: {old} to {new}", old=review.old_name, new=new)
+    parts = [
+        f"<h1>{_text(title)}</h1><p class='soft'>{_text(summary(review))}</p>",
+        *_breaking(review.breaking_changes),
+        *(_section(section) for section in sections_of(review)),
+        *_findings(phrase("New findings"), review.new_findings),
+        *_findings(phrase("Fixed findings"), review.fixed_findings),
+        *_list(phrase("Other changed files"), [f"<code>{escape(path)}</code>" for path in review.other_files]),
+        *_list(phrase("Notes"), [_text(note) for note in review.notes]),
+    ]
+    head = f'<meta charset="utf-8"><meta name="viewport" content="width=device-width"><title>{_text(title)}</title>'
+    return (
+        f'<!doctype html>\n<html lang="{language()}"><head>{head}<style>{_STYLE}</style></head>'
+        f"<body><main>{''.join(parts)}</main><script>{_SCRIPT}</script></body></html>\n"
+    )
+
+
+def _breaking(changes: Sequence[tuple[Subject, Change]]) -> Iterator[str]:
+    if changes:
+        items = [f"{_change(change, subject)} <code>{escape(subject.path)}</code>" for subject, change in changes]
+        yield from _list(phrase("Breaking changes"), items)
+
+
+def _section(section: Section) -> str:
+    subject = section.subject
+    items = [_change(change, subject) for change in section.changes]
+    items += [_text(repeated_text(path, count)) for path, count in section.repeated]
+    items += [f"<span class='breaking'>{_text(problem)}</span>" for problem in subject.problems]
+    changes = f"<ul>{''.join(f'<li>{item}</li>' for item in items)}</ul>" if items else ""
+    return (
+        f"<h2><code>{escape(subject.path)}</code></h2><section>"
+        f"{_images(subject.images)}{_figures(subject.figures)}{changes}</section>"
+    )
+
+
+def _change(change: Change, subject: Subject) -> str:
+    text = _text(sentence_of(change))
+    if change.effect is Effect.BREAKING:
+        text = f"<strong class='breaking'>{text}</strong>"
+    if change.reason is not None:
+        text += f": {_text(change.reason)}"
+    cases = cases_text(change, subject)
+    if cases is not None:
+        text += f" <span class='soft' title='{escape(', '.join(change.cases))}'>{_text(cases)}</span>"
+    if change.location is not None:
+        text += f" <code class='soft'>{escape(change.location.file)}:{change.location.line}</code>"
+    return text
+
+
+def _figures(figures: Sequence[Figure]) -> str:
+    if not figures:
+        return ""
+    names = (phrase("quantity"), phrase("before"), phrase("after"), phrase("unit"))
+    head = "".join(f"<th>{_text(name)}</th>" for name in names)
+    rows = (
+        f"<tr><td>{_text(figure.name)}</td><td>{escape(figure.old)}</td><td>{escape(figure.new)}</td>"
+        f"<td>{escape(figure.unit)}</td></tr>"
+        for figure in figures
+    )
+    return f"<table><tr>{head}</tr>{''.join(rows)}</table>"
+
+
+def _images(images: Sequence[ViewImages]) -> str:
+    if not images:
+        return ""
+    return f"<div class='images'>{''.join(map(_image, images))}</div>"
+
+
+def _image(view: ViewImages) -> str:
+    """Return a view of both versions; the slider moves the border between the old one, at the left, and the new one."""
+    old, new = (f"data:image/png;base64,{b64encode(image).decode()}" for image in (view.old, view.new))
+    label = escape(localized(phrase("old and new version, {view} view", view=view.name)))
+    return (
+        f"<figure><div class='versions'><img src='{old}' alt='{label}'><img class='new' src='{new}' alt=''></div>"
+        f"<input type='range' min='0' max='100' value='50' aria-label='{label}'>"
+        f"<figcaption><span>{_text(phrase('before'))}</span><span>{escape(view.name)}</span>"
+        f"<span>{_text(phrase('after'))}</span></figcaption></figure>"
+    )
+
+
+def _findings(title: Phrase, findings: Sequence[Diagnostic]) -> Iterator[str]:
+    items = []
+    for finding in findings:
+        place = (
+            ""
+            if finding.span is None
+            else f" <code class='soft'>{escape(finding.span.file)}:{finding.span.line}</code>"
+        )
+        items.append(f"{finding.severity.value} {finding.code}: {_text(finding.message)}{place}")
+    yield from _list(title, items)
+
+
+def _list(title: Phrase, items: Sequence[str]) -> Iterator[str]:
+    if items:
+        lines = "".join(f"<li>{item}</li>" for item in items)
+        yield f"<h2>{_text(title)}</h2><section><ul>{lines}</ul></section>"
+
+
+def _text(text: str) -> str:
+    return escape(localized(text) if isinstance(text, Phrase) else text)

@@ -1,0 +1,135 @@
+"""The report of a review as Markdown for a comment on a pull request (GitHub, GitLab, Gitea)."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterator, Sequence
+
+from linkwright.diagnostics import Diagnostic, Phrase, counted, phrase
+from linkwright.diagnostics.translation import localized
+from linkwright.review.changes import Change, Effect, Figure, Location, Review, Subject
+from linkwright.review.reports.sections import Section, cases_text, repeated_text, sections_of, sentence_of, summary
+
+MARKER = "<!-- linkwright review -->"
+"""The first line, by which a program finds the comment that it keeps up to date."""
+_MAX_OPEN_CHANGES = 8
+"""The number of changes of a file that are shown without a click."""
+_MAX_CHARACTERS = 60_000
+"""The length of the text. GitHub refuses comments of more than 65 536 characters."""
+_SPECIAL = re.compile(r"[\\`*_{}\[\]<>|~]")
+_MENTION = re.compile(r"([@#])(?=\w)")
+
+
+def as_markdown(review: Review) -> str:
+    """Return the report as Markdown in the user's language.
+
+    Names from the repository cannot form links, mentions or HTML. A report that is too long for a comment is cut, with
+    line about the missing parts at its end.
+    """
+    parts = [f"{MARKER}\n{_heading(review)}", *_parts(review)]
+    text = ""
+    for index, part in enumerate(parts):
+        if len(text) + len(part) > _MAX_CHARACTERS:
+            return text + "\n" + _escape(_left_out(len(parts) - index)) + "\n"
+        text += ("\n" if text else "") + part + "\n"
+    return text
+
+
+def _left_out(count: int) -> Phrase:
+    return counted(
+        "{count} more part does not fit into a comment; the HTML report has it",
+        "{count} more parts do not fit into a comment; the HTML report has them",
+        count,
+    )
+
+
+def _heading(review: Review) -> str:
+    new = review.new_name or localized(phrase("working tree"))
+    title = _escape(phrase("Robot review: {old} to {new}", old=review.old_name, new=new))
+    return f"### {title}\n\n{_escape(summary(review))}"
+
+
+def _parts(review: Review) -> Iterator[str]:
+    breaking = review.breaking_changes
+    if breaking:
+        title = _escape(phrase("Breaking changes"))
+        yield "\n".join([f"#### {title}", "", *(_breaking_line(subject, change) for subject, change in breaking)])
+    for section in sections_of(review):
+        yield _section(section)
+    for title, findings in (
+        (phrase("New findings"), review.new_findings),
+        (phrase("Fixed findings"), review.fixed_findings),
+    ):
+        if findings:
+            yield _details(
+                _escape(phrase("{title} ({count})", title=title, count=len(findings))), map(_finding, findings)
+            )
+    if review.other_files:
+        title = phrase("Other changed files ({count})", count=len(review.other_files))
+        yield _details(_escape(title), (f"- {_code(path)}" for path in review.other_files))
+    if review.notes:
+        yield "\n".join(f"> {_escape(note)}" for note in review.notes)
+
+
+def _breaking_line(subject: Subject, change: Change) -> str:
+    reason = "" if change.reason is None else f": {_escape(change.reason)}"
+    return f"- **{_escape(sentence_of(change))}**{reason} ({_code(subject.path)})"
+
+
+def _section(section: Section) -> str:
+    subject = section.subject
+    lines = [f"#### {_code(subject.path)}", ""]
+    if subject.figures:
+        lines += [*_figures(subject.figures), ""]
+    changes = [_change(change, subject) for change in section.changes if change.effect is not Effect.BREAKING]
+    lines += changes[:_MAX_OPEN_CHANGES]
+    rest = changes[_MAX_OPEN_CHANGES:]
+    if rest:
+        title = counted("{count} more change", "{count} more changes", len(rest))
+        lines += ["", _details(_escape(title), rest)]
+    lines += [f"- {_escape(repeated_text(path, count))}" for path, count in section.repeated]
+    lines += [f"> {_escape(problem)}" for problem in subject.problems]
+    return "\n".join(lines).rstrip()
+
+
+def _change(change: Change, subject: Subject) -> str:
+    cases = cases_text(change, subject)
+    location = "" if change.location is None else f" ({_code(_location(change.location))})"
+    return f"- {_escape(sentence_of(change))}{'' if cases is None else ' ' + _escape(cases)}{location}"
+
+
+def _location(location: Location) -> str:
+    return f"{location.file}:{location.line}"
+
+
+def _figures(figures: Sequence[Figure]) -> list[str]:
+    head = " | ".join(map(_escape, (phrase("quantity"), phrase("before"), phrase("after"), phrase("unit"))))
+    rows = [
+        f"| {_escape(figure.name)} | {_escape(figure.old)} | {_escape(figure.new)} | {figure.unit} |"
+        for figure in figures
+    ]
+    return [f"| {head} |", "| --- | ---: | ---: | --- |", *rows]
+
+
+def _finding(finding: Diagnostic) -> str:
+    location = "" if finding.span is None else f" ({_code(f'{finding.span.file}:{finding.span.line}')})"
+    return f"- {finding.severity.value} {finding.code}: {_escape(finding.message)}{location}"
+
+
+def _details(title: str, lines: Iterator[str] | Sequence[str]) -> str:
+    return "\n".join([f"<details><summary>{title}</summary>", "", *lines, "", "</details>"])
+
+
+def _escape(text: str) -> str:
+    """Return a text in the user's language in which nothing is markup, a mention or a reference to an issue."""
+    shown = localized(text) if isinstance(text, Phrase) else text
+    return _SPECIAL.sub(_entity, _MENTION.sub("\\1\u200b", " ".join(shown.split())))
+
+
+def _entity(match: re.Match[str]) -> str:
+    return f"&#{ord(match[0])};"
+
+
+def _code(text: str) -> str:
+    """Return a name as code, which no backtick in it can end."""
+    return f"<code>{_escape(text)}</code>"

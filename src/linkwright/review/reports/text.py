@@ -1,0 +1,63 @@
+"""The report of a review as text for a terminal."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+from linkwright.diagnostics import Diagnostic, Phrase, phrase
+from linkwright.diagnostics.render import printable
+from linkwright.diagnostics.translation import localized
+from linkwright.review.changes import Effect, Review
+from linkwright.review.reports.sections import Section, cases_text, repeated_text, sections_of, sentence_of, summary
+
+
+def as_text(review: Review) -> str:
+    """Return the report as text in the user's language, a line for each change."""
+    return "".join(f"{printable(line)}\n" for line in _lines(review))
+
+
+def _lines(review: Review) -> Iterator[str]:
+    for section in sections_of(review):
+        yield from _section(section)
+    if review.other_files:
+        yield localized(phrase("other changed files"))
+        yield from (f"  {path}" for path in review.other_files)
+        yield ""
+    for title, findings in (
+        (phrase("new findings"), review.new_findings),
+        (phrase("fixed findings"), review.fixed_findings),
+    ):
+        if findings:
+            yield localized(title)
+            yield from map(_finding, findings)
+            yield ""
+    for note in review.notes:
+        yield localized(phrase("note: {text}", text=note))
+    yield localized(summary(review))
+
+
+def _section(section: Section) -> Iterator[str]:
+    subject = section.subject
+    yield subject.path
+    for change in section.changes:
+        mark = "!" if change.effect is Effect.BREAKING else "-"
+        cases = cases_text(change, subject)
+        yield f"  {mark} {localized(sentence_of(change))}{f' ({localized(cases)})' if cases else ''}"
+        if change.reason is not None:
+            yield f"    {localized(phrase('breaking: {reason}', reason=change.reason))}"
+        if change.location is not None:
+            yield f"    {change.location.file}:{change.location.line}:{change.location.column}"
+    for path, count in section.repeated:
+        yield f"  - {localized(repeated_text(path, count))}"
+    for figure in subject.figures:
+        yield f"  # {localized(figure.name)}: {figure.old or '-'} -> {figure.new or '-'} {figure.unit}".rstrip()
+    for problem in subject.problems:
+        yield f"  ? {localized(problem)}"
+    yield ""
+
+
+def _finding(finding: Diagnostic) -> str:
+    location = "" if finding.span is None else f"{finding.span.file}:{finding.span.line}: "
+    message: Phrase | str = finding.message
+    text = localized(message) if isinstance(message, Phrase) else message
+    return f"  {location}{finding.severity.value}[{finding.code}] {' '.join(text.split())}"

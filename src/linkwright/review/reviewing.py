@@ -1,0 +1,260 @@
+"""A review: which files a range of commits affects, and what differs in each of them."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator, Sequence
+from concurrent.futures import ProcessPoolExecutor
+from contextlib import contextmanager
+from dataclasses import replace
+from functools import partial
+from multiprocessing import get_context
+from pathlib import Path, PurePosixPath
+from typing import Any
+
+from linkwright.diagnostics import Diagnostic, LinkwrightError, Phrase, counted, did_you_mean, phrase
+from linkwright.files.git_repository import ChangedFile
+from linkwright.lint.affected import TextFiles
+from linkwright.lint.checking import Checker
+from linkwright.lint.known_findings import count_keys, new_findings
+from linkwright.lint.targets import Targets, find_targets
+from linkwright.packages.manifest import MANIFEST, package_name
+from linkwright.review.behavior import compare_behavior
+from linkwright.review.changes import Change, Effect, Review, Subject, SubjectKind
+from linkwright.review.file_pair import FilePair
+from linkwright.review.kinds import KindRule, rule_of
+from linkwright.review.versions import Version, Versions
+
+_Pair = tuple[KindRule, "str | None", "str | None"]
+"""The rule for a file, its old path and its new path."""
+_MIN_EXPANDED = 4
+"""The number of descriptions from which several processes are faster than one."""
+_EXPANDED = (SubjectKind.DESCRIPTION, SubjectKind.WORLD)
+"""The kinds that include other files. Parts of them are not compared on their own."""
+
+
+def review(
+    versions: Versions,
+    packages: Sequence[str] = (),
+    workers: int = 1,
+    scenarios: Sequence[str] = (),
+    seeds: int | None = None,
+    *,
+    with_images: bool = False,
+) -> Review:
+    """Compare two versions of a repository.
+
+    Args:
+        versions: the versions.
+        packages: the names or folders of the packages to which the review is limited; empty for all files.
+        workers: the number of parallel processes.
+        scenarios: scenarios to run in both versions, relative to the root. Their code, and that of the packages, runs.
+        seeds: the number of seeds of scenarios; None for their own.
+        with_images: whether to make images of robots that look different.
+
+    Raises:
+        LinkwrightError: REV103, there is no such package.
+    """
+    result = _Reviewer(versions, _package_folders(versions, packages), with_images=with_images).run(workers)
+    behavior = [compare_behavior(versions, path, seeds) for path in scenarios]
+    return replace(result, subjects=[*result.subjects, *(subject for subject in behavior if not subject.is_empty)])
+
+
+class _Reviewer:
+    def __init__(self, versions: Versions, folders: Sequence[str], *, with_images: bool) -> None:
+        self._versions = versions
+        self._with_images = with_images
+        self._folders = folders
+        self._changed_files = [file for file in versions.changed_files if self._is_in_scope(file.path)]
+        self._new_paths = {
+            file.old_path: file.new_path for file in self._changed_files if file.old_path and file.new_path
+        }
+        self._targets = {version.is_old: _targets(version) for version in (versions.old, versions.new)}
+
+    def run(self, workers: int) -> Review:
+        pairs = list(self._pairs())
+        expanded = [pair for pair in pairs if pair[0].kind in _EXPANDED]
+        with _processes(workers if len(expanded) >= _MIN_EXPANDED else 1) as submit:
+            subjects = [submit(_compare, self._versions, *pair, self._with_images) for pair in pairs]
+            findings = [
+                submit(_find, version, self._check_targets(version, expanded))
+                for version in (self._versions.old, self._versions.new)
+            ]
+            old_findings, new_findings = (result() for result in findings)
+            all_subjects = [result() for result in subjects]
+        compared = {path for _, *paths in pairs for path in paths}
+        parts = {
+            change.location.file
+            for subject in all_subjects
+            for change in subject.changes
+            if change.location is not None
+        }
+        return Review(
+            self._versions.old.name,
+            self._versions.new.name,
+            [subject for subject in all_subjects if not subject.is_empty],
+            [file.path for file in self._changed_files if not {file.old_path, file.new_path} & (compared | parts)],
+            *self._compare_findings(old_findings, new_findings),
+            list(self._notes()),
+        )
+
+    def _compare_findings(
+        self, old: Sequence[Diagnostic], new: Sequence[Diagnostic]
+    ) -> tuple[list[Diagnostic], list[Diagnostic]]:
+        """Return the findings that only the new version has, and those that only the old version has."""
+        root, old_root = self._versions.new.root, self._versions.old.root
+        old_names = {new_path: old_path for old_path, new_path in self._new_paths.items()}
+        old_keys = {
+            key._replace(file=self._new_paths.get(key.file, key.file)): count
+            for key, count in count_keys(old, old_root).items()
+        }
+        new_keys = {
+            key._replace(file=old_names.get(key.file, key.file)): count for key, count in count_keys(new, root).items()
+        }
+        added, fixed = new_findings(new, root, old_keys), new_findings(old, old_root, new_keys)
+        return list(map(self._versions.new.labelled, added)), list(map(self._versions.old.labelled, fixed))
+
+    def _is_in_scope(self, path: str) -> bool:
+        return not self._folders or any(PurePosixPath(path).is_relative_to(folder) for folder in self._folders)
+
+    # --- which files ------------------------------------------------------------------------------------------------
+
+    def _pairs(self) -> Iterator[_Pair]:
+        """Yield the files to compare: the rule of the kind, the old path and the new path."""
+        affected_old, affected_new = (self._affected(version) for version in (self._versions.old, self._versions.new))
+        paths: set[tuple[str | None, str | None]] = {(path, self._new_path(path)) for path in affected_old}
+        paths |= {(self._old_path(path), path) for path in affected_new}
+        for file in self._changed_files:
+            rule = rule_of(file.path)
+            if rule is None or rule.kind in _EXPANDED or file.is_submodule:
+                continue
+            if self._is_part_of_a_robot(rule, file):
+                paths.add((file.old_path, file.new_path))
+        for old_path, new_path in sorted(paths, key=lambda pair: (pair[1] or pair[0] or "", pair[0] or "")):
+            rule = rule_of(new_path or old_path or "")
+            if rule is not None:
+                yield rule, old_path, new_path
+
+    def _is_part_of_a_robot(self, rule: KindRule, file: ChangedFile) -> bool:
+        """Return whether a file is not a setting of a tool: hidden, or in YAML and outside all packages."""
+        if any(part.startswith(".") for part in PurePosixPath(file.path).parts):
+            return False
+        sides = ((self._versions.old, file.old_path), (self._versions.new, file.new_path))
+        return rule.kind is not SubjectKind.PARAMETERS or any(
+            _package_folder(version, path) for version, path in sides if path
+        )
+
+    def _affected(self, version: Version) -> set[str]:
+        """Return the complete descriptions and worlds of a version that changed files can affect."""
+        candidates = {path for path in self._targets[version.is_old] if self._is_in_scope(path)}
+        changed = {path for file in self._versions.changed_files for path in (file.old_path, file.new_path) if path}
+        return TextFiles(version.root).affected(changed, candidates)
+
+    def _new_path(self, old_path: str) -> str | None:
+        path = self._new_paths.get(old_path, old_path)
+        return path if self._versions.new.file(path).is_file() else None
+
+    def _old_path(self, new_path: str) -> str | None:
+        path = next((old for old, new in self._new_paths.items() if new == new_path), new_path)
+        return path if self._versions.old.file(path).is_file() else None
+
+    def _check_targets(self, version: Version, pairs: Sequence[_Pair]) -> Targets:
+        """Return the compared descriptions and worlds of a version, and the packages with changed files."""
+        paths = [old_path if version.is_old else new_path for _, old_path, new_path in pairs]
+        changed = (file.old_path if version.is_old else file.new_path for file in self._changed_files)
+        folders = {folder for path in changed if path and (folder := _package_folder(version, path))}
+        return Targets(tuple(version.file(path) for path in paths if path), tuple(sorted(folders)))
+
+    def _notes(self) -> Iterator[Phrase]:
+        """Yield what the review could not look at."""
+        for file in self._changed_files:
+            if file.is_submodule:
+                yield phrase("submodule '{path}' changed; its files are not compared", path=file.path)
+        for version in (self._versions.old, self._versions.new):
+            if version.commit is None:
+                continue
+            for link in version.commit.removed_links:
+                yield phrase("symbolic link '{path}' leads out of the repository and is ignored", path=link)
+            if version.commit.missing_files:
+                yield counted(
+                    "git cannot write one file of '{version}', such as '{path}'",
+                    "git cannot write {count} files of '{version}', such as '{path}'",
+                    len(version.commit.missing_files),
+                    version=version.name,
+                    path=version.commit.missing_files[0],
+                )
+
+
+def _compare(
+    versions: Versions, rule: KindRule, old_path: str | None, new_path: str | None, with_images: bool
+) -> Subject:
+    """Compare a file in both versions."""
+    kind, path = rule.kind, new_path or old_path or ""
+    if old_path is None:
+        return Subject(kind, path, None, new_path, [Change(rule.added)])
+    effect = Effect.CHANGED if rule.removal_reason is None else Effect.BREAKING
+    if new_path is None:
+        return Subject(kind, path, old_path, None, [Change(rule.removed, effect, rule.removal_reason)])
+    pair = FilePair(versions, old_path, new_path, with_images)
+    if old_path != new_path:
+        text = phrase("renamed from {path}", path=old_path)
+        pair.changes.append(Change(text, effect, rule.removal_reason))
+    try:
+        rule.compare(pair)
+    except LinkwrightError as error:
+        pair.problems.append(phrase("the versions cannot be compared: {reason}", reason=error.diagnostics[0].message))
+    except (RecursionError, MemoryError):
+        pair.problems.append(phrase("the versions cannot be compared: they are nested too deeply, or too large"))
+    return Subject(kind, path, old_path, new_path, pair.changes, pair.figures, pair.problems, pair.cases, pair.images)
+
+
+def _find(version: Version, targets: Targets) -> list[Diagnostic]:
+    """Return the findings of a version about some files and packages."""
+    return Checker(folders=(version.root,)).check(targets, [version.root])[0]
+
+
+@contextmanager
+def _processes(count: int) -> Iterator[Callable[..., Callable[[], Any]]]:
+    """Yield a function that calls a function in one of several processes, and returns a function for the result."""
+    if count == 1:
+        yield partial
+        return
+    pool = ProcessPoolExecutor(count, mp_context=get_context("spawn"))
+    try:
+        yield lambda function, *arguments: pool.submit(function, *arguments).result
+    finally:
+        pool.shutdown(cancel_futures=True)
+
+
+def _targets(version: Version) -> set[str]:
+    """Return the paths of the complete descriptions and worlds of a version."""
+    files = (version.relative(file) for file in find_targets([version.root]).files)
+    return {path for path in files if path is not None}
+
+
+def _package_folder(version: Version, path: str) -> Path | None:
+    """Return the folder of the package that contains a file, or None if there is none."""
+    folders = version.file(path).parents
+    return next(
+        (folder for folder in folders if folder.is_relative_to(version.root) and (folder / MANIFEST).is_file()), None
+    )
+
+
+def _package_folders(versions: Versions, packages: Sequence[str]) -> list[str]:
+    """Return the folders of packages, relative to the root.
+
+    Raises:
+        LinkwrightError: REV103, there is no such package.
+    """
+    if not packages:
+        return []
+    folders: dict[str, str] = {}
+    for version in (versions.old, versions.new):
+        for folder in find_targets([version.root]).packages:
+            path, name = version.relative(folder), package_name(folder)
+            if path is not None and name is not None:
+                folders[name] = folders[path] = path
+    for package in packages:
+        if package.rstrip("/") not in folders:
+            message = phrase("neither version has a package '{name}'", name=package)
+            raise LinkwrightError(Diagnostic("REV103", message, hint=did_you_mean(package, list(folders))))
+    return [folders[package.rstrip("/")] for package in packages]

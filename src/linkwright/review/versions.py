@@ -1,0 +1,178 @@
+"""The two versions of a repository that a review compares."""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Mapping
+from contextlib import ExitStack
+from dataclasses import dataclass
+from functools import cached_property
+from pathlib import Path
+
+from linkwright.descriptions.pairs import Model
+from linkwright.descriptions.revisions import CommitFiles
+from linkwright.diagnostics import Diagnostic, LinkwrightError, Span, display_path, phrase
+from linkwright.files.git_repository import ChangedFile, GitRepository
+from linkwright.packages import PackageFinder
+
+_DEFAULT_BRANCHES = ("origin/HEAD", "origin/main", "origin/master", "main", "master")
+
+
+@dataclass(frozen=True)
+class Version:
+    """One of the two versions.
+
+    Attributes:
+        name: the commit in git's notation, or empty for the working tree.
+        root: the folder with the files of the version, which corresponds to the root of the repository.
+        commit: the files of the commit; None for the working tree.
+        is_old: whether it is the old version.
+    """
+
+    name: str
+    root: Path
+    commit: CommitFiles | None
+    is_old: bool
+
+    def file(self, path: str) -> Path:
+        """Return the file at a path relative to the root."""
+        return self.root / path
+
+    def relative(self, file: str | Path) -> str | None:
+        """Return the path of a file relative to the root, or None for a file outside it."""
+        real_path = Path(os.path.realpath(file))
+        return real_path.relative_to(self.root).as_posix() if real_path.is_relative_to(self.root) else None
+
+    def finder(self, folder: Path) -> PackageFinder:
+        """Return the finder of packages for a file's folder."""
+        if self.commit is not None:
+            return self.commit.finder(folder)
+        return self._finder.starting_at([folder, self.root, Path.cwd()])
+
+    def model(self, path: str, values: Mapping[str, str]) -> Model:
+        """Return a description of this version with values of its arguments."""
+        file = self.file(path)
+        return Model(file, values, self.finder(file.parent), self.commit)
+
+    def labelled(self, finding: Diagnostic) -> Diagnostic:
+        """Return a finding in which files of the repository have paths relative to the root."""
+        notes = tuple(note._replace(span=self._relative_span(note.span)) for note in finding.notes)
+        return finding.with_changes(span=self._relative_span(finding.span), notes=notes)
+
+    def _relative_span(self, span: Span | None) -> Span | None:
+        return None if span is None else span._replace(file=self.relative(span.file) or span.file)
+
+    @cached_property
+    def _finder(self) -> PackageFinder:
+        return PackageFinder(start=[self.root, Path.cwd()], sources_first=True)
+
+
+@dataclass(frozen=True)
+class Versions:
+    """Both versions, and the files that differ.
+
+    Attributes:
+        old: the old version.
+        new: the new version.
+        changed_files: the files that differ.
+    """
+
+    old: Version
+    new: Version
+    changed_files: list[ChangedFile]
+
+    def close(self) -> None:
+        """Remove the temporary folders."""
+        for version in (self.old, self.new):
+            if version.commit is not None:
+                version.commit.close()
+
+
+def names_commit(folder: Path, name: str) -> bool:
+    """Return whether a word names a commit in the repository of a folder.
+
+    Raises:
+        LinkwrightError: CLI341, CLI342, git cannot find the repository.
+    """
+    return _open_repository(folder).resolve(name) is not None
+
+
+def open_versions(folder: Path, range_text: str) -> Versions:
+    """Return the versions that a range of commits names. The caller closes them.
+
+    Args:
+        folder: a folder of the repository.
+        range_text: ``OLD..NEW``; ``OLD...NEW``, whose old version is the last common commit; ``OLD``, to compare with
+            the working tree; or empty for the commits and changes since the default branch.
+
+    Raises:
+        LinkwrightError: CLI341 to CLI346, git cannot find or read the versions; REV101, the default branch is unknown;
+            REV102, the commits have no common history.
+    """
+    repository = _open_repository(folder)
+    old_name, new_name = _split_range(repository, range_text)
+    old_commit = repository.commit(old_name)
+    new_commit = repository.commit(new_name) if new_name else None
+    if "..." in range_text or not range_text:
+        old_commit = _common_commit(repository, old_commit, old_name, new_name or "HEAD")
+    changed_files = repository.changed_files(old_commit, new_commit)
+    with ExitStack() as stack:
+        old_files = CommitFiles(repository, old_commit, old_name, must_be_complete=False)
+        stack.callback(old_files.close)
+        old = Version(old_name, old_files.root, old_files, is_old=True)
+        if new_commit is None or _is_checked_out(repository, new_commit):
+            new = Version(new_name, repository.root, None, is_old=False)
+        else:
+            new_files = CommitFiles(repository, new_commit, new_name, must_be_complete=False)
+            stack.callback(new_files.close)
+            new = Version(new_name, new_files.root, new_files, is_old=False)
+        stack.pop_all()
+        return Versions(old, new, changed_files)
+
+
+def _open_repository(folder: Path) -> GitRepository:
+    hint = phrase("run the review in the working tree of a repository, or pass `--repository FOLDER`")
+    return GitRepository(folder, display_path(folder), hint, downloads_lfs=False)
+
+
+def _split_range(repository: GitRepository, range_text: str) -> tuple[str, str]:
+    """Return the names of the old version and of the new version, which is empty for the working tree."""
+    if not range_text:
+        return _default_branch(repository), ""
+    separator = "..." if "..." in range_text else ".."
+    old_name, is_range, new_name = range_text.partition(separator)
+    return old_name or "HEAD", (new_name or "HEAD") if is_range else ""
+
+
+def _default_branch(repository: GitRepository) -> str:
+    for name in _DEFAULT_BRANCHES:
+        if repository.resolve(name) is not None:
+            return name
+    raise LinkwrightError(
+        Diagnostic(
+            "REV101",
+            phrase("the default branch of {folder} is unknown", folder=display_path(repository.root)),
+            hint=phrase("pass the commit to compare with, such as `linkwright review main`"),
+        )
+    )
+
+
+def _common_commit(repository: GitRepository, old_commit: str, old_name: str, new_name: str) -> str:
+    common = repository.merge_base(old_commit, repository.commit(new_name))
+    if common is None:
+        message = phrase("'{old}' and '{new}' have no common commit in this clone", old=old_name, new=new_name)
+        hint = phrase(
+            "compare the two versions as they are: `linkwright review {old}..{new}`", old=old_name, new=new_name
+        )
+        if repository.is_shallow:
+            hint = phrase(
+                "the clone is shallow; `git fetch --unshallow` downloads its history (in GitHub Actions: "
+                "`fetch-depth: 0` for actions/checkout)"
+            )
+        raise LinkwrightError(Diagnostic("REV102", message, hint=hint))
+    return common
+
+
+def _is_checked_out(repository: GitRepository, commit: str) -> bool:
+    """Return whether the working tree contains exactly the files of a commit, so that they need not be written."""
+    return repository.resolve("HEAD") == commit and not repository.changed_files(commit)

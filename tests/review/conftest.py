@@ -1,0 +1,54 @@
+"""Repositories of git with a few commits."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from pathlib import Path
+
+import pytest
+
+from linkwright.review import Review, Subject, open_versions, review
+from tests.repositories import PACKAGE, Repository
+
+
+@pytest.fixture
+def repository(tmp_path: Path) -> Repository:
+    return Repository(tmp_path / "repository")
+
+
+@pytest.fixture
+def package(repository: Repository) -> Repository:
+    """A repository with a commit of a package of an arm."""
+    repository.commit(PACKAGE)
+    return repository
+
+
+Compare = Callable[..., Review]
+
+
+@pytest.fixture
+def compare() -> Compare:
+    """Review a range of commits, by default the working tree against the last commit."""
+
+    def run(repository: Repository, range_text: str = "HEAD", packages: tuple[str, ...] = ()) -> Review:
+        versions = open_versions(repository.root, range_text)
+        try:
+            return review(versions, packages)
+        finally:
+            versions.close()
+
+    return run
+
+
+def subject(result: Review, path: str) -> Subject:
+    """Return the subject with a path."""
+    (found,) = [subject for subject in result.subjects if subject.path == path]
+    return found
+
+
+def sentences(subject: Subject) -> list[str]:
+    return [str(change.sentence) for change in subject.changes]
+
+
+def breaking(result: Review) -> list[str]:
+    return [str(change.sentence) for _, change in result.breaking_changes]

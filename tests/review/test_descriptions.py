@@ -1,0 +1,200 @@
+"""What a review says of descriptions: with which arguments, what moved, what breaks, and what cannot be read."""
+
+from __future__ import annotations
+
+import pytest
+
+from tests.repositories import ARM, MACRO
+from tests.review.conftest import breaking, sentences, subject
+
+PATH = "arm_description/urdf/arm.urdf.xacro"
+LAUNCH = """from launch import LaunchDescription
+from launch.substitutions import Command, PathJoinSubstitution
+from launch_ros.actions import Node
+from launch_ros.substitutions import FindPackageShare
+
+
+def generate_launch_description():
+    model = PathJoinSubstitution([FindPackageShare("arm_description"), "urdf", "arm.urdf.xacro"])
+    description = Command(["xacro ", model, " tool:=probe"])
+    return LaunchDescription(
+        [Node(package="robot_state_publisher", executable="robot_state_publisher",
+              parameters=[{"robot_description": description}])]
+    )
+"""
+
+
+def test_a_changed_macro_changes_each_robot_that_includes_it(package, compare):
+    package.write({"arm_description/urdf/segment.xacro": MACRO.replace("length:=0.5", "length:=0.6")})
+    result = compare(package)
+    (found,) = [item for item in result.subjects if item.kind.value == "description"]
+    assert found.path == PATH
+    assert "joint 'upper_joint': origin xyz 0 0 0.5 -> 0 0 0.6 m (moved by 0.1 m)" in sentences(found)
+    change = next(change for change in found.changes if "upper_joint" in change.sentence)
+    assert (change.location.file, change.location.line) == ("arm_description/urdf/segment.xacro", 14)
+    figures = {str(figure.name): (figure.old, figure.new, figure.unit) for figure in found.figures}
+    assert figures["size"] == ("0.1 x 0.1 x 1.5", "0.1 x 0.1 x 1.8", "m")
+    assert float(figures["reach of 'lower'"][1]) == pytest.approx(1.8, abs=0.05)
+    assert result.breaking_changes == []
+
+
+def test_a_rotation_is_told_in_degrees(package, compare):
+    package.write(
+        {
+            "arm_description/urdf/segment.xacro": MACRO.replace(
+                '${length}"/>\n      <axis', '${length}" rpy="0 0 1.5707963268"/>\n      <axis'
+            )
+        }
+    )
+    assert any("(rotated by 90°)" in sentence for sentence in sentences(subject(compare(package), PATH)))
+
+
+def test_an_equal_robot_is_not_reported(package, compare):
+    package.write({"arm_description/urdf/segment.xacro": MACRO.replace("<mass value", "<!-- heavy --><mass value")})
+    result = compare(package)
+    assert result.subjects == []
+    assert result.other_files == ["arm_description/urdf/segment.xacro"]
+
+
+def test_the_argument_sets_of_callers_are_compared(package, compare):
+    package.commit({"arm_description/launch/arm.launch.py": LAUNCH})
+    package.write({PATH: ARM.replace('xyz="0 0 0.2"', 'xyz="0 0 0.3"')})
+    found = subject(compare(package), PATH)
+    assert found.cases == ["tool:=probe"]
+    assert sentences(found) == ["joint 'probe_joint': origin xyz 0 0 0.2 -> 0 0 0.3 m (moved by 0.1 m)"]
+
+
+def test_a_change_with_some_arguments_says_with_which(package, compare):
+    package.commit(
+        {
+            "arm_description/launch/arm.launch.py": LAUNCH,
+            "arm_description/launch/plain.launch.py": LAUNCH.replace("tool:=probe", "tool:=none"),
+        }
+    )
+    package.write({PATH: ARM.replace('xyz="0 0 0.2"', 'xyz="0 0 0.3"')})
+    found = subject(compare(package), PATH)
+    assert found.cases == ["tool:=probe", "tool:=none"]
+    assert [change.cases for change in found.changes] == [("tool:=probe",)]
+
+
+FOOTPRINT = """<link name="base_footprint"/>
+  <joint name="foot" type="fixed"><parent link="base_footprint"/><child link="base_link"/></joint>
+  <link name="base_link"/>"""
+CAMERA = """<link name="camera"/>
+  <joint name="camera_joint" type="fixed"><parent link="lower"/><child link="camera"/></joint>
+</robot>"""
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "sentence"),
+    [
+        ('name="lower"', 'name="forearm"', "link 'lower' renamed to 'forearm'"),
+        ('  <xacro:segment name="lower" parent="middle"/>\n', "", "joint 'lower_joint' removed"),
+        ('<link name="base_link"/>', FOOTPRINT,
+         "root link 'base_link' -> 'base_footprint'"),
+    ],
+)  # fmt: skip
+def test_names_that_others_use_are_breaking(package, compare, old, new, sentence):
+    package.write({PATH: ARM.replace(old, new)})
+    result = compare(package)
+    assert sentence in breaking(result)
+    assert all(change.reason for _, change in result.breaking_changes)
+
+
+@pytest.mark.parametrize(
+    ("old", "new"),
+    [
+        ('tool" default="none"', 'tool" default="probe"'),
+        ("</robot>", CAMERA),
+    ],
+)  # fmt: skip
+def test_what_is_only_added_breaks_nothing(package, compare, old, new):
+    package.write({PATH: ARM.replace(old, new)})
+    result = compare(package)
+    assert sentences(subject(result, PATH))
+    assert result.breaking_changes == []
+
+
+CONTROL = """  <ros2_control name="hardware" type="system">
+    <hardware><plugin>mock_components/GenericSystem</plugin></hardware>
+    <joint name="upper_joint">
+      <command_interface name="position"/>
+      <command_interface name="velocity"/>
+      <state_interface name="position"/>
+    </joint>
+  </ros2_control>
+  <gazebo>
+    <plugin name="drive" filename="libgazebo_ros_diff_drive.so">
+      <command_topic>cmd_vel</command_topic>
+      <max_wheel_torque>20</max_wheel_torque>
+    </plugin>
+  </gazebo>
+</robot>"""
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "reason"),
+    [
+        ('      <command_interface name="velocity"/>\n', "",
+         "controllers that claim 'upper_joint/velocity' do not start"),
+        ("cmd_vel", "base/cmd_vel", "programs that use the name 'cmd_vel' do not find it"),
+        (">20<", ">30<", None),
+    ],
+)  # fmt: skip
+def test_interfaces_and_topics_of_plugins(package, compare, old, new, reason):
+    text = ARM.replace("</robot>", CONTROL)
+    package.commit({PATH: text})
+    package.write({PATH: text.replace(old, new)})
+    (change,) = subject(compare(package), PATH).changes
+    assert (None if change.reason is None else str(change.reason)) == reason
+
+
+def test_a_version_that_cannot_be_read_is_a_problem_and_costs_nothing_else(package, compare):
+    package.commit(
+        {
+            PATH: ARM.replace("</robot>", "${missing}</robot>"),
+            "other/b.urdf": "<robot name='b'><link name='b'/></robot>",
+        }
+    )
+    package.write({PATH: ARM, "other/b.urdf": "<robot name='b'><link name='c'/></robot>"})
+    result = compare(package)
+    (problem,) = subject(result, PATH).problems
+    assert str(problem).startswith("the old version cannot be read: HEAD:arm_description/urdf/arm.urdf.xacro:")
+    assert "missing" in problem
+    assert breaking(result)
+
+
+def test_files_that_were_added_removed_and_renamed(package, compare):
+    package.commit({"arm_description/urdf/old.urdf": "<robot name='old'><link name='a'/></robot>"})
+    text = (package.root / PATH).read_text()
+    package.commit({PATH: None, "arm_description/urdf/new_arm.urdf.xacro": text})
+    package.git("rm", "--quiet", "arm_description/urdf/old.urdf")
+    package.commit({"arm_description/urdf/fresh.urdf": "<robot name='fresh'><link name='z'/><!-- other --></robot>"})
+    result = compare(package, "HEAD~2..HEAD")
+    assert sentences(subject(result, "arm_description/urdf/new_arm.urdf.xacro")) == [f"renamed from {PATH}"]
+    assert sentences(subject(result, "arm_description/urdf/old.urdf")) == ["description removed"]
+    assert sentences(subject(result, "arm_description/urdf/fresh.urdf")) == ["description added"]
+    assert len(breaking(result)) == 2
+
+
+def test_a_computed_include_is_followed(package, compare):
+    text = ARM.replace("urdf/segment.xacro", "urdf/$(arg kind)_segment.xacro").replace(
+        "<xacro:include", '<xacro:arg name="kind" default="plain"/><xacro:include'
+    )
+    package.commit({PATH: text, "arm_description/urdf/plain_segment.xacro": MACRO})
+    package.write({"arm_description/urdf/plain_segment.xacro": MACRO.replace('mass value="2"', 'mass value="3"')})
+    assert "link 'upper': inertial mass 2 -> 3 kg" in sentences(subject(compare(package), PATH))
+
+
+def test_a_description_that_is_nested_too_deeply_costs_only_itself(package, compare):
+    deep = "<robot name='d'><link name='a'/><gazebo>" + "<a>" * 3000 + "</a>" * 3000 + "</gazebo></robot>"
+    package.commit({"arm_description/urdf/deep.urdf": deep})
+    package.write(
+        {
+            "arm_description/urdf/deep.urdf": deep.replace("name='d'", "name='e'"),
+            PATH: ARM.replace('name="arm"', 'name="other"'),
+        }
+    )
+    result = compare(package)
+    assert "robot 'other': name arm -> other" in sentences(subject(result, PATH))
+    assert len(subject(result, "arm_description/urdf/deep.urdf").problems) in (1, 2)

@@ -1,0 +1,268 @@
+"""What a review says of launch files, worlds, parameters, interfaces, manifests, maps and meshes."""
+
+from __future__ import annotations
+
+import pytest
+
+from tests.repositories import PACKAGE_XML
+from tests.review.conftest import breaking, sentences, subject
+
+LAUNCH = """from launch import LaunchDescription
+from launch.actions import DeclareLaunchArgument, IncludeLaunchDescription
+from launch.substitutions import LaunchConfiguration
+from launch_ros.actions import Node
+
+RATE = 10
+
+
+def generate_launch_description():
+    return LaunchDescription([
+        DeclareLaunchArgument("use_sim_time", default_value="false"),
+        DeclareLaunchArgument("model"),
+        Node(package="arm", executable="driver", name="driver", parameters=[{"rate": RATE}],
+             remappings=[("cmd", "arm/cmd")]),
+        Node(package="arm", executable="camera", name="left"),
+        Node(package="arm", executable="camera", name="right"),
+    ])
+"""
+XML_LAUNCH = """<launch>
+  <arg name="use_sim_time" default="false"/>
+  <node pkg="arm" exec="driver" name="driver">
+    <param name="rate" value="10"/>
+    <remap from="cmd" to="arm/cmd"/>
+  </node>
+  <include file="$(find-pkg-share arm)/launch/other.launch.xml"><arg name="a" value="1"/></include>
+</launch>
+"""
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "sentence", "is_breaking"),
+    [
+        ("RATE = 10", "RATE = 20", "node 'arm/driver': parameters [{rate: 10}] -> [{rate: 20}]", False),
+        ('"false"', '"true"', "argument 'use_sim_time': default false -> true", False),
+        ('        DeclareLaunchArgument("model"),\n', "", "argument 'model' removed", True),
+        ('"use_sim_time", default_value="false"', '"use_sim_time"',
+         "argument 'use_sim_time': default false -> -", True),
+        ('name="right"', 'name="rear"', "node 'arm/camera' added", False),
+        ('"arm/cmd"', '"cmd_vel"', "node 'arm/driver': remappings [[cmd, arm/cmd]] -> [[cmd, cmd_vel]]", True),
+    ],
+)  # fmt: skip
+def test_launch_files_in_python(repository, compare, old, new, sentence, is_breaking):
+    repository.commit({"arm/launch/arm.launch.py": LAUNCH})
+    repository.write({"arm/launch/arm.launch.py": LAUNCH.replace(old, new)})
+    result = compare(repository)
+    assert sentence in sentences(subject(result, "arm/launch/arm.launch.py"))
+    assert (sentence in breaking(result)) is is_breaking
+
+
+def test_a_launch_file_that_only_looks_different_is_not_reported(repository, compare):
+    repository.commit({"arm/launch/arm.launch.py": LAUNCH})
+    text = LAUNCH.replace("RATE = 10", "SPEED = 10  # Hz").replace("RATE", "SPEED").replace('"', "'")
+    repository.write({"arm/launch/arm.launch.py": text})
+    assert compare(repository).subjects == []
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "sentence", "is_breaking"),
+    [
+        ('value="10"', 'value="20"', "node 'arm/driver': parameter rate 10 -> 20", False),
+        ('to="arm/cmd"', 'to="cmd"', "node 'arm/driver': remapping cmd arm/cmd -> cmd", True),
+        ('name="a" value="1"', 'name="a" value="2"',
+         "include of '$(find-pkg-share arm)/launch/other.launch.xml': a 1 -> 2", False),
+        ('name="driver">', 'name="driver" namespace="left">', "node 'arm/driver': namespace - -> left", True),
+    ],
+)  # fmt: skip
+def test_launch_files_in_xml(repository, compare, old, new, sentence, is_breaking):
+    repository.commit({"arm/launch/arm.launch.xml": XML_LAUNCH})
+    repository.write({"arm/launch/arm.launch.xml": XML_LAUNCH.replace(old, new)})
+    result = compare(repository)
+    assert sentences(subject(result, "arm/launch/arm.launch.xml")) == [sentence]
+    assert (breaking(result) == [sentence]) is is_breaking
+
+
+def test_a_launch_file_is_not_run(repository, compare, tmp_path):
+    repository.commit({"arm/launch/arm.launch.py": LAUNCH})
+    attack = f"open({str(tmp_path / 'stolen')!r}, 'w')\n"
+    repository.write({"arm/launch/arm.launch.py": attack + LAUNCH.replace("10", "20")})
+    assert compare(repository).subjects
+    assert not (tmp_path / "stolen").exists()
+
+
+WORLD = """<sdf version="1.9">
+  <world name="yard">
+    <include><uri>model://tree</uri><pose>1 0 0 0 0 0</pose></include>
+    <include><uri>model://rock</uri></include>
+    <model name="box"><pose>0 0 1 0 0 0</pose><link name="link"/></model>
+    <plugin name="p" filename="q"><topic>/a</topic></plugin>
+  </world>
+</sdf>
+"""
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "expected", "is_breaking"),
+    [
+        ("0 0 1 0 0 0", "0 0 2 0 0 0", ["world yard model box pose: 0 0 1 0 0 0 -> 0 0 2 0 0 0"], False),
+        ("    <include><uri>model://tree", "    <include><uri>model://bush</uri></include>\n    <include><uri>model://tree",
+         ["world yard include model://bush added"], False),
+        ("<topic>/a", "<topic>/b", ["world yard plugin p topic: /a -> /b"], True),
+        ('name="yard"', 'name="park"', ["world park added", "world yard removed"], True),
+    ],
+)  # fmt: skip
+def test_worlds(repository, compare, old, new, expected, is_breaking):
+    repository.commit({"w/worlds/yard.sdf": WORLD})
+    repository.write({"w/worlds/yard.sdf": WORLD.replace(old, new)})
+    result = compare(repository)
+    assert sentences(subject(result, "w/worlds/yard.sdf")) == expected
+    assert bool(breaking(result)) is is_breaking
+
+
+PARAMETERS = """controller_manager:
+  ros__parameters:
+    update_rate: 100
+    offset: 0
+    arm_controller:
+      type: a/B
+arm_controller:
+  ros__parameters:
+    joints: [upper, lower]
+    frame_id: base_link
+    odom_topic: odom
+    use_stamped: true
+    plugins: [a, b, c, d, e]
+"""
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "sentence", "is_breaking"),
+    [
+        ("100", "200", "controller_manager.ros__parameters.update_rate 100 -> 200", False),
+        ("lower]", "lower, tool]",
+         "arm_controller.ros__parameters.joints [upper, lower] -> [upper, lower, tool]", False),
+        ("[a, b, c, d, e]", "[a, b, c, d, e, f]", "arm_controller.ros__parameters.plugins: f added", False),
+        ("[a, b, c, d, e]", "[f, b, c, d, e]", "arm_controller.ros__parameters.plugins: f added, a removed", False),
+        ("lower]", "fore]", "arm_controller.ros__parameters.joints [upper, lower] -> [upper, fore]", True),
+        ("frame_id: base_link", "frame_id: base", "arm_controller.ros__parameters.frame_id base_link -> base", True),
+        ("stamped: true", "stamped: false", "arm_controller.ros__parameters.use_stamped true -> false", True),
+        ("    arm_controller:\n      type: a/B\n", "",
+         "controller_manager.ros__parameters.arm_controller.type a/B removed", True),
+        (PARAMETERS[PARAMETERS.index("arm_controller:\n  ros"):], "", "arm_controller with 5 values removed", False),
+        ("    odom_topic: odom\n", "", "arm_controller.ros__parameters.odom_topic odom removed", False),
+        ("    update_rate: 100\n", "", "controller_manager.ros__parameters.update_rate 100 removed", False),
+    ],
+)  # fmt: skip
+def test_parameters(repository, compare, old, new, sentence, is_breaking):
+    repository.commit({"a/package.xml": PACKAGE_XML, "a/config/c.yaml": PARAMETERS})
+    repository.write({"a/config/c.yaml": PARAMETERS.replace(old, new)})
+    result = compare(repository)
+    assert sentences(subject(result, "a/config/c.yaml")) == [sentence]
+    assert bool(breaking(result)) is is_breaking
+
+
+@pytest.mark.parametrize(
+    "text",
+    [
+        PARAMETERS.replace("offset: 0", "offset: 0.00"),
+        "# Hz\n" + PARAMETERS,
+        PARAMETERS.replace("[upper, lower]", "\n      - upper\n      - lower"),
+    ],
+)
+def test_parameters_that_only_look_different(repository, compare, text):
+    repository.commit({"a/package.xml": PACKAGE_XML, "a/config/c.yaml": PARAMETERS})
+    repository.write({"a/config/c.yaml": text})
+    assert compare(repository).subjects == []
+
+
+ALIASES = "\n".join(["a0: &a0 [{x: 1}]", *(f"a{n}: &a{n} [{', '.join([f'*a{n - 1}'] * 9)}]" for n in range(1, 9))])
+
+
+@pytest.mark.parametrize(("text", "reason"), [("a: [1", "while parsing"), (ALIASES, "more than 20000 values")])
+def test_hostile_yaml_is_a_problem(repository, compare, text, reason):
+    repository.commit({"a/package.xml": PACKAGE_XML, "a/config/c.yaml": PARAMETERS})
+    repository.write({"a/config/c.yaml": text})
+    (problem,) = subject(compare(repository), "a/config/c.yaml").problems
+    assert reason in problem
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "sentence", "is_breaking"),
+    [
+        ("int32 count", "int64 count", "field 'count': int32 -> int64", True),
+        ("int32 count\n", "", "field 'count' removed", True),
+        ("int32 count", "int32 count\nbool done", "field 'done' of type bool added", True),
+        ("KIND_A=1", "KIND_A=2", "constant 'KIND_A': 1 -> 2", True),
+        ("string name", "string name 'x'", "default of field 'name': None -> x", False),
+    ],
+)  # fmt: skip
+def test_interfaces(repository, compare, old, new, sentence, is_breaking):
+    text = "uint8 KIND_A=1\nint32 count\nstring name\ngeometry_msgs/Point point\n"
+    repository.commit({"m/package.xml": PACKAGE_XML.replace("arm_description", "m"), "m/msg/Count.msg": text})
+    repository.write({"m/msg/Count.msg": text.replace(old, new)})
+    result = compare(repository)
+    assert sentences(subject(result, "m/msg/Count.msg")) == [sentence]
+    assert (breaking(result) == [sentence]) is is_breaking
+
+
+def test_a_comment_in_an_interface_changes_nothing(repository, compare):
+    repository.commit({"m/msg/Count.msg": "int32 count\n"})
+    repository.write({"m/msg/Count.msg": "# How many\nint32 count\n"})
+    assert compare(repository).subjects == []
+
+
+def test_settings_of_tools_are_other_files(package, compare):
+    files = (".github/workflows/ci.yml", "mkdocs.yml", "arm_description/.clang-format.yaml")
+    package.commit(dict.fromkeys(files, "a: 1\n"))
+    package.write(dict.fromkeys(files, "a: 2\n"))
+    result = compare(package)
+    assert result.subjects == []
+    assert sorted(result.other_files) == sorted(files)
+
+
+def test_manifests(package, compare):
+    text = PACKAGE_XML.replace("1.0.0", "1.1.0").replace("<exec_depend>xacro", "<exec_depend>urdf")
+    package.write({"arm_description/package.xml": text})
+    found = subject(compare(package), "arm_description/package.xml")
+    assert sentences(found) == ["version: 1.0.0 -> 1.1.0", "exec_depend urdf added", "exec_depend xacro removed"]
+
+
+def test_a_renamed_package_is_breaking(package, compare):
+    package.write({"arm_description/package.xml": PACKAGE_XML.replace("arm_description", "robot_description")})
+    assert "name: arm_description -> robot_description" in breaking(compare(package))
+
+
+def _stl(height: float) -> bytes:
+    import numpy as np
+
+    record = np.dtype([("normal", "<f4", 3), ("corners", "<f4", (3, 3)), ("attribute", "<u2")])
+    triangles = np.zeros(2, record)
+    triangles["corners"] = [[[0, 0, 0], [1, 0, 0], [0, 1, 0]], [[0, 0, 0], [1, 0, 0], [0, 0, height]]]
+    return bytes(80) + len(triangles).to_bytes(4, "little") + triangles.tobytes()
+
+
+def test_meshes(repository, compare):
+    repository.commit({"a/meshes/m.stl": _stl(1.0)})
+    repository.write({"a/meshes/m.stl": _stl(2.0)})
+    (figure,) = subject(compare(repository), "a/meshes/m.stl").figures
+    assert (figure.old, figure.new) == ("1 1 1", "1 1 2")
+    assert "highest corner" in figure.name
+
+
+def test_a_mesh_in_git_lfs_is_not_downloaded(repository, compare):
+    pointer = "version https://git-lfs.github.com/spec/v1\noid sha256:{}\nsize 12\n"
+    repository.commit({"a/meshes/m.stl": pointer.format("0" * 64)})
+    repository.write({"a/meshes/m.stl": pointer.format("1" * 64)})
+    problems = subject(compare(repository), "a/meshes/m.stl").problems
+    assert [str(problem) for problem in problems] == [
+        "the old version cannot be read: the file is in Git LFS and is not downloaded",
+        "the new version cannot be read: the file is in Git LFS and is not downloaded",
+    ]
+
+
+def test_maps(repository, compare):
+    header = b"P5\n4 2\n255\n"
+    repository.commit({"n/maps/house.pgm": header + bytes([255] * 8)})
+    repository.write({"n/maps/house.pgm": header + bytes([255, 255, 0, 255, 255, 255, 0, 255])})
+    assert sentences(subject(compare(repository), "n/maps/house.pgm")) == [
+        "25 % of the cells changed, in columns 2 to 2 and rows 0 to 1 of the image"
+    ]

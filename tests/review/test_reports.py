@@ -1,0 +1,177 @@
+"""Reports: nothing of a repository becomes markup, and a change of a shared file is listed once."""
+
+from __future__ import annotations
+
+import json
+import re
+from dataclasses import replace
+from html.parser import HTMLParser
+
+import pytest
+
+from linkwright.cli import main
+from linkwright.diagnostics import phrase
+from linkwright.review import Change, Review, Subject, SubjectKind
+from linkwright.review.reports import as_data, as_diagnostics, as_html, as_markdown, as_text
+from tests.repositories import ARM, MACRO
+
+OTHER = (
+    ARM.replace('name="arm"', 'name="other"')
+    .replace('name="upper"', 'name="shoulder"')
+    .replace('"upper"', '"shoulder"')
+)
+HOSTILE = "<img src=x onerror=alert(1)> @octocat #12 [link](http://x) `code` | *bold*"
+
+
+@pytest.fixture
+def changed(package):
+    """A repository whose last commit changes a macro that two robots share, and renames a link of one."""
+    package.commit({"arm_description/urdf/other.urdf.xacro": OTHER})
+    package.commit(
+        {
+            "arm_description/urdf/segment.xacro": MACRO.replace("length:=0.5", "length:=0.6"),
+            "arm_description/urdf/arm.urdf.xacro": ARM.replace('name="lower"', 'name="forearm"'),
+            "README.md": "An arm.",
+        }
+    )
+    return package
+
+
+def test_changes_of_a_shared_file_are_listed_once(changed, compare):
+    result = compare(changed, "HEAD~1..HEAD")
+    text = as_text(result)
+    assert "joint 'upper_joint': origin xyz 0 0 0.5 -> 0 0 0.6 m (moved by 0.1 m); also 'middle_joint'" in text
+    assert "shoulder_joint" not in text
+    assert re.search(r"the same \d+ changes in shared files as in arm_description/urdf/arm.urdf.xacro", text)
+    assert text.count("arm_description/urdf/segment.xacro:14:") == 1
+
+
+def test_the_same_bytes_twice(changed, compare):
+    first, second = (compare(changed, "HEAD~1..HEAD") for _ in range(2))
+    for report in (as_text, as_markdown, as_html, as_data):
+        assert report(first) == report(second)
+
+
+def test_names_of_a_repository_are_no_markup():
+    change = Change(phrase("link '{name}' removed", name=HOSTILE))
+    subject = Subject(SubjectKind.DESCRIPTION, f"urdf/{HOSTILE}.urdf", "a", "b", [change], cases=[HOSTILE])
+    result = Review("main", HOSTILE, [subject], [HOSTILE], notes=[phrase("{path}", path=HOSTILE)])
+    markdown, page = as_markdown(result), as_html(result)
+    for text in (markdown, page):
+        assert "<img" not in text
+    assert "@octocat" not in markdown
+    assert not re.search("(?<!&)#12", markdown)
+    assert "[link]" not in markdown
+    assert "`" not in markdown.replace("```", "")
+    tags = _tags(page)
+    assert "img" not in tags
+    assert tags.count("script") == 1
+
+
+def test_a_long_review_fits_into_a_comment():
+    changes = [Change(phrase("link '{name}' removed", name=f"link_{number}")) for number in range(300)]
+    subjects = [Subject(SubjectKind.DESCRIPTION, f"urdf/{number}.urdf", "a", "b", changes) for number in range(30)]
+    text = as_markdown(Review("main", "", subjects))
+    assert len(text) < 65_536
+    assert "do not fit into a comment" in text.splitlines()[-1]
+    assert text.count("<details>") == text.count("</details>")
+
+
+def test_the_page_needs_no_other_file(changed, compare):
+    page = as_html(compare(changed, "HEAD~1..HEAD"))
+    assert not re.search(r"""(src|href)=['"](?!data:)""", page)
+
+
+def test_data_and_diagnostics(changed, compare):
+    result = compare(changed, "HEAD~1..HEAD")
+    data = json.loads(json.dumps(as_data(result)))
+    subject = next(item for item in data["subjects"] if item["path"] == "arm_description/urdf/arm.urdf.xacro")
+    removed = next(change for change in subject["changes"] if change["is_breaking"])
+    assert removed["text"] == "link 'lower' removed"
+    assert removed["reason"] == "programs that look up the frame 'lower' do not find it"
+    assert data["other_files"] == ["README.md"]
+    codes = [finding.code for finding in as_diagnostics(result)]
+    assert codes[: len(result.breaking_changes)] == ["REV201"] * len(result.breaking_changes)
+
+
+def test_a_removed_part_has_no_line_in_the_new_version(changed, compare):
+    result = compare(changed, "HEAD~1..HEAD")
+    for subject, change in result.breaking_changes:
+        if change.location is not None and change.location.is_old:
+            lone = replace(result, subjects=[replace(subject, changes=[change])], new_findings=[])
+            assert as_diagnostics(lone)[0].span is None
+
+
+# --- the command ----------------------------------------------------------------------------------------------------
+
+
+@pytest.fixture
+def run(changed, monkeypatch, capsys):
+    monkeypatch.chdir(changed.root)
+
+    def command(*words: str) -> tuple[int, str, str]:
+        status = main(["review", *words])
+        return status, *capsys.readouterr()
+
+    return command
+
+
+def test_the_command_writes_all_reports(run, tmp_path):
+    names = ("comment.md", "report.html", "report.json", "report.sarif")
+    options = [f"--{name.rpartition('.')[2].replace('md', 'markdown')}={tmp_path / name}" for name in names]
+    status, output, _ = run("HEAD~1..HEAD", *options)
+    assert status == 0
+    assert output.splitlines()[-1].startswith("2 breaking changes, ")
+    comment = (tmp_path / "comment.md").read_text()
+    assert comment.startswith("<!-- linkwright review -->\n### Robot review: HEAD&#126;1 to HEAD")
+    assert (tmp_path / "report.html").read_text().startswith("<!doctype html>")
+    sarif = json.loads((tmp_path / "report.sarif").read_text())
+    assert "REV201" in {result["ruleId"] for result in sarif["runs"][0]["results"]}
+    assert json.loads((tmp_path / "report.json").read_text())["old"] == "HEAD~1"
+
+
+@pytest.mark.parametrize(
+    ("conditions", "status"), [("breaking", 1), ("changes", 1), ("problems", 0), ("problems,breaking", 1)]
+)
+def test_conditions_of_failure(run, conditions, status):
+    assert run("HEAD~1..HEAD", "--fail-on", conditions)[0] == status
+
+
+def test_an_unknown_condition_is_wrong_usage(run):
+    status, _, errors = run("--fail-on", "anything")
+    assert status == 2
+    assert "'anything' is not one of breaking, findings, problems, changes" in errors
+
+
+def test_the_first_word_is_a_commit_or_a_package(run):
+    assert run("HEAD~1", "arm_description")[1] == run("HEAD~1..HEAD", "arm_description")[1]
+    status, output, _ = run("arm_description")
+    assert (status, output) == (0, "0 breaking changes, 0 changes, 0 new findings, 0 fixed\n")
+
+
+def test_annotations_of_github(run):
+    _, output, _ = run("HEAD~1..HEAD", "--github")
+    assert output.startswith("::warning ")
+    assert "title=REV201::" in output
+
+
+def test_chinese(run):
+    _, output, _ = run("HEAD~1..HEAD", "--lang", "zh")
+    assert "删除连杆“lower”" in output
+
+
+def test_an_error_is_one_message(run):
+    status, _, errors = run("nowhere..HEAD")
+    assert status == 1
+    assert "error[CLI343]" in errors
+    assert "Traceback" not in errors
+
+
+def _tags(page: str) -> list[str]:
+    class Reader(HTMLParser):
+        def handle_starttag(self, tag, attrs):
+            tags.append(tag)
+
+    tags: list[str] = []
+    Reader().feed(page)
+    return tags

@@ -1,0 +1,164 @@
+"""Which versions a range names, and repositories that are shallow, hostile or incomplete."""
+
+from __future__ import annotations
+
+import os
+import subprocess
+
+import pytest
+
+from linkwright.diagnostics import LinkwrightError
+from linkwright.review import open_versions
+from tests.repositories import ARM, MACRO, Repository
+from tests.review.conftest import sentences, subject
+
+PATH = "arm_description/urdf/arm.urdf.xacro"
+
+
+def heavier(kilograms: int) -> str:
+    return MACRO.replace('mass value="2"', f'mass value="{kilograms}"')
+
+
+def masses(result) -> list[str]:
+    return [sentence for sentence in sentences(subject(result, PATH)) if "mass" in sentence]
+
+
+def test_ranges(package, compare):
+    package.git("switch", "--quiet", "--create", "feature")
+    package.commit({"arm_description/urdf/segment.xacro": heavier(3)})
+    package.git("switch", "--quiet", "main")
+    package.commit({PATH: ARM.replace('name="arm"', 'name="robot"')})
+    package.git("switch", "--quiet", "feature")
+    package.write({"arm_description/urdf/segment.xacro": heavier(4)})
+    assert masses(compare(package, "main...feature")) == ["link 'upper': inertial mass 2 -> 3 kg"]
+    assert "robot 'arm': name robot -> arm" in sentences(subject(compare(package, "main..feature"), PATH))
+    assert masses(compare(package, "feature")) == ["link 'upper': inertial mass 3 -> 4 kg"]
+    assert masses(compare(package, "")) == ["link 'upper': inertial mass 2 -> 4 kg"]
+    assert masses(compare(package, "HEAD~1..")) == ["link 'upper': inertial mass 2 -> 3 kg"]
+
+
+def test_files_that_git_does_not_know_yet_are_new(package, compare):
+    package.write({"arm_description/urdf/b.urdf": "<robot name='b'><link name='b'/></robot>"})
+    assert sentences(subject(compare(package), "arm_description/urdf/b.urdf")) == ["description added"]
+
+
+def test_the_repository_is_not_changed(package, compare):
+    package.write({"arm_description/urdf/segment.xacro": heavier(3)})
+    before = package.git("status", "--porcelain=v2", "--branch")
+    compare(package, "main")
+    assert package.git("status", "--porcelain=v2", "--branch") == before
+
+
+def test_a_review_can_be_limited_to_packages(package, compare):
+    other = {
+        "b/package.xml": "<package format='3'><name>b</name></package>",
+        "b/b.urdf": "<robot name='b'><link name='l'/></robot>",
+    }
+    package.commit(other)
+    package.write(
+        {"arm_description/urdf/segment.xacro": heavier(3), "b/b.urdf": "<robot name='b'><link name='m'/></robot>"}
+    )
+    assert [item.path for item in compare(package, "HEAD", ("b",)).subjects] == ["b/b.urdf"]
+    assert [item.path for item in compare(package, "HEAD", ("arm_description/",)).subjects] == [PATH]
+    with pytest.raises(LinkwrightError, match="neither version has a package 'c'"):
+        compare(package, "HEAD", ("c",))
+
+
+@pytest.mark.parametrize(("range_text", "code"), [("nowhere..HEAD", "CLI343"), ("--output=x..HEAD", "CLI343")])
+def test_commits_that_do_not_exist(package, range_text, code):
+    with pytest.raises(LinkwrightError) as error:
+        open_versions(package.root, range_text)
+    assert error.value.diagnostics[0].code == code
+
+
+def test_a_shallow_clone_is_told_how_to_get_the_base(package, tmp_path):
+    base = package.git("rev-parse", "HEAD")
+    package.commit({"arm_description/urdf/segment.xacro": heavier(3)})
+    clone = tmp_path / "clone"
+    subprocess.run(["git", "clone", "--quiet", "--depth=1", package.root.as_uri(), clone], check=True)
+    with pytest.raises(LinkwrightError) as error:
+        open_versions(clone, f"{base}..HEAD")
+    assert "git fetch --unshallow" in error.value.diagnostics[0].hint
+
+
+def test_versions_without_a_common_commit(package):
+    package.git("switch", "--quiet", "--orphan", "island")
+    package.commit({"b.urdf": "<robot name='b'/>"})
+    with pytest.raises(LinkwrightError) as error:
+        open_versions(package.root, "main...island")
+    assert error.value.diagnostics[0].code == "REV102"
+
+
+def test_without_a_default_branch(tmp_path):
+    repository = Repository(tmp_path / "r")
+    repository.git("switch", "--quiet", "--create", "trunk")
+    repository.commit({"b.urdf": "<robot name='b'/>"})
+    with pytest.raises(LinkwrightError) as error:
+        open_versions(repository.root, "")
+    assert error.value.diagnostics[0].code == "REV101"
+
+
+def test_a_folder_that_is_not_in_a_repository(tmp_path):
+    with pytest.raises(LinkwrightError) as error:
+        open_versions(tmp_path, "HEAD")
+    assert error.value.diagnostics[0].code == "CLI342"
+
+
+@pytest.mark.skipif(os.name == "nt", reason="symbolic links of POSIX")
+def test_links_out_of_the_repository_are_not_followed(package, compare, tmp_path):
+    (tmp_path / "secret.xacro").write_text(MACRO.replace('value="2"', 'value="77"'))
+    path = package.root / "arm_description/urdf/segment.xacro"
+    path.unlink()
+    path.symlink_to(tmp_path / "secret.xacro")
+    package.commit({})
+    package.git("switch", "--quiet", "--detach", "HEAD~1")
+    result = compare(package, "main~1..main")
+    assert "77" not in str(result)
+    assert [str(note) for note in result.notes] == [
+        "symbolic link 'arm_description/urdf/segment.xacro' leads out of the repository and is ignored"
+    ]
+
+
+def test_a_submodule_is_a_note(package, compare, tmp_path):
+    other = Repository(tmp_path / "other")
+    other.commit({"a.urdf": "<robot name='a'><link name='a'/></robot>"})
+    package.git("submodule", "--quiet", "add", other.root.as_uri(), "vendor")
+    package.commit({})
+    result = compare(package, "HEAD~1..HEAD")
+    assert [str(note) for note in result.notes] == ["submodule 'vendor' changed; its files are not compared"]
+
+
+def test_files_that_a_partial_clone_lacks_cost_only_themselves(package, compare, tmp_path):
+    mesh = package.commit({"arm_description/meshes/a.stl": b"solid a\nendsolid a\n" * 1000})
+    package.commit({"arm_description/urdf/segment.xacro": heavier(3)})
+    blob = package.git("rev-parse", f"{mesh}:arm_description/meshes/a.stl")
+    (package.root / ".git/objects" / blob[:2] / blob[2:]).unlink()
+    (package.root / "arm_description/meshes/a.stl").write_bytes(b"")
+    result = compare(package, "HEAD~1..HEAD")
+    assert masses(result) == ["link 'upper': inertial mass 2 -> 3 kg"]
+    assert "git cannot write one file of 'HEAD~1', such as 'arm_description/meshes/a.stl'" in map(str, result.notes)
+
+
+def test_findings_that_are_new_and_fixed(package, compare):
+    package.commit({"arm_description/urdf/segment.xacro": MACRO.replace('velocity="1"', 'velocity="0"')})
+    text = MACRO.replace('mass value="2"', 'mass value="-1"')
+    package.write({"arm_description/urdf/segment.xacro": "\n\n" + text if text.startswith("<robot") else text})
+    result = compare(package)
+    assert result.new_findings
+    assert result.fixed_findings
+    assert {finding.code for finding in result.new_findings}.isdisjoint(
+        finding.code for finding in result.fixed_findings
+    )
+    assert all(finding.span.file.startswith("arm_description/") for finding in result.new_findings)
+
+
+def test_findings_that_only_moved_are_neither(package, compare):
+    faulty = MACRO.replace('mass value="2"', 'mass value="-1"')
+    package.commit({"arm_description/urdf/segment.xacro": faulty})
+    moved = faulty.replace("<xacro:macro", "<!-- a\n\n\ncomment -->\n<xacro:macro").replace(
+        'effort="10"', 'effort="11"'
+    )
+    package.write({"arm_description/urdf/segment.xacro": moved})
+    result = compare(package)
+    assert subject(result, PATH).changes
+    assert (result.new_findings, result.fixed_findings) == ([], [])
