@@ -20,7 +20,7 @@ OTHER = (
     .replace('name="upper"', 'name="shoulder"')
     .replace('"upper"', '"shoulder"')
 )
-HOSTILE = "<img src=x onerror=alert(1)> @octocat #12 [link](http://x) `code` | *bold*"
+HOSTILE = "<img src=x onerror=alert(1)> @octocat #12 [link](http://x) `code` | *bold* &commat;octocat &lt;"
 
 
 @pytest.fixture
@@ -63,6 +63,8 @@ def test_names_of_a_repository_are_no_markup():
     assert not re.search("(?<!&)#12", markdown)
     assert "[link]" not in markdown
     assert "`" not in markdown.replace("```", "")
+    assert "&commat;" not in markdown
+    assert "&lt;" not in markdown
     tags = _tags(page)
     assert "img" not in tags
     assert tags.count("script") == 1

@@ -16,7 +16,7 @@ _MAX_OPEN_CHANGES = 8
 """The number of changes of a file that are shown without a click."""
 _MAX_CHARACTERS = 60_000
 """The length of the text. GitHub refuses comments of more than 65 536 characters."""
-_SPECIAL = re.compile(r"[\\`*_{}\[\]<>|~]")
+_SPECIAL = re.compile(r"[&\\`*_{}\[\]<>|~]")
 _MENTION = re.compile(r"([@#])(?=\w)")
 
 
