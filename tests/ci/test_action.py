@@ -43,7 +43,7 @@ def test_a_pull_request_gets_the_report(example: Example, service: Service, runn
 def test_the_checkout_of_the_action_is_installed(example: Example, runner: Runner) -> None:
     run = runner.run("review", example.event())
     *options, folder = runner.installed.read_text(encoding="utf-8").splitlines()
-    assert options == ["-I", "-m", "pip", "install", "--quiet"]
+    assert options == ["-I", "-m", "pip", "install", "--quiet", "--editable"]
     assert Path(folder).resolve() == TEMPLATES.parent.parent
     assert run.used[0] == ("actions/setup-python@v5", {"python-version": "3.13"})
 
@@ -113,7 +113,7 @@ def test_inputs(example: Example, service: Service, runner: Runner) -> None:
     )
     assert run.failed == ""
     assert (run.used, run.uploaded, service.requests) == ([], {}, [])
-    assert runner.installed.read_text(encoding="utf-8").endswith("\nlinkwright[mesh]\n")
+    assert runner.installed.read_text(encoding="utf-8").endswith("\n--quiet\nlinkwright[mesh]\n")
     assert "删除连杆“lower”" in (Path(run.outputs["folder"]) / "comment.md").read_text(encoding="utf-8")
     example.assert_nothing_ran()
 
