@@ -45,7 +45,7 @@ def alone(monkeypatch):
 def test_the_help_lists_the_commands_of_the_engine(alone, capsys):
     assert main(["--help"]) == 0
     listed = [line.split()[0] for line in capsys.readouterr().out.splitlines() if line.startswith("  ")]
-    assert listed == ["check", "format", "xacro", "diff", "explain", "inertia", "convert", "--lang"]
+    assert listed == ["check", "format", "xacro", "diff", "explain", "inertia", "convert", "picture", "--lang"]
 
 
 def test_other_commands_are_those_of_linkwright(alone, capsys):

@@ -48,6 +48,7 @@ WRITING = {
     "xacro": ["xacro", "r.urdf", "-o", "out"],
     "export html": ["export", "out.html", "r.urdf"],
     "export glb": ["export", "out.glb", "r.urdf"],
+    "picture": ["picture", "r.urdf", "-o", "out.png"],
     "diagram": ["diagram", "r.urdf", "out"],
     "inertia": ["inertia", "r.urdf", "--write"],
     "drive": ["drive", "r.urdf", "--write"],
@@ -62,7 +63,7 @@ def test_a_command_on_a_full_disk_leaves_every_file_as_it_was(
 ) -> None:
     if words[0] == "check":  # what it mends
         robot.write_text(ROBOT.replace('name="a"', 'name="a" nmae="b"').replace("<robot ", "<robot version='1' "))
-    for name in ("out", "out.html", "out.glb", "out.gv", "out.pdf"):
+    for name in ("out", "out.html", "out.glb", "out.png", "out.gv", "out.pdf"):
         (robot.parent / name).write_text(OLD)
     before = files(robot.parent)
     with full_disk(ROOM):

@@ -33,6 +33,7 @@ COMMANDS = {
     "explain": "explain a diagnostic code, or an element or attribute of URDF",
     "inertia": "compare masses and inertias with the links' shapes, compute them, or write them",
     "convert": "convert a robot or world to SDF, to URDF, or to MJCF for MuJoCo",
+    "picture": "draw a robot or world as a PNG file, or as an animation, without a browser",
 }
 """The commands of linkwright-core, with their help texts.
 

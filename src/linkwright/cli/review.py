@@ -12,11 +12,13 @@ from typing import TYPE_CHECKING
 from linkwright.cli.exit_status import FINDINGS, FINE
 from linkwright.cli.numbers import positive_int
 from linkwright.cli.output import write_output
+from linkwright.diagnostics import Diagnostic, LinkwrightError, phrase
 from linkwright.diagnostics.formats import format_diagnostics
 from linkwright.process.processors import usable_processors
 
 if TYPE_CHECKING:
     from linkwright.review import Review
+    from linkwright.review.versions import Version
 
 _CONDITIONS: dict[str, Callable[[Review], object]] = {
     "breaking": lambda review: review.breaking_changes,
@@ -62,6 +64,16 @@ def configure(parser: argparse.ArgumentParser) -> None:
         "compared), changes (any)",
     )
     parser.add_argument(
+        "--scenario",
+        metavar="FILE",
+        action="append",
+        default=[],
+        help="run this scenario of `linkwright sweep` in both versions, and compare its results; the code of both runs",
+    )
+    parser.add_argument(
+        "--seeds", metavar="N", type=positive_int, help="the number of seeds of scenarios (default: their own)"
+    )
+    parser.add_argument(
         "--workers",
         metavar="N",
         type=positive_int,
@@ -76,7 +88,9 @@ def run(arguments: argparse.Namespace) -> int:
     range_text, packages = _split_words(arguments.words, arguments.repository)
     versions = open_versions(arguments.repository, range_text)
     try:
-        result = review(versions, packages, arguments.workers or usable_processors())
+        scenarios = [_relative(file, versions.new) for file in arguments.scenario]
+        workers = arguments.workers or usable_processors()
+        result = review(versions, packages, workers, scenarios, arguments.seeds)
     finally:
         versions.close()
     _write(result, arguments)
@@ -99,6 +113,22 @@ def _split_words(words: Sequence[str], folder: Path) -> tuple[str, Sequence[str]
 
     is_range = not (folder / words[0]).is_dir() and names_commit(folder, words[0])
     return (words[0], words[1:]) if is_range else ("", words)
+
+
+def _relative(file: str, version: Version) -> str:
+    """Return the path of a scenario relative to the root of the repository.
+
+    Raises:
+        LinkwrightError: REV104, there is no such file.
+    """
+    path = version.relative(file) if Path(file).is_file() else None
+    if path is None and version.file(file).is_file():
+        path = file
+    if path is None:
+        message = phrase("the new version has no scenario '{file}'", file=file)
+        hint = phrase("pass a Python file of the repository with a function decorated with @scenario(...)")
+        raise LinkwrightError(Diagnostic("REV104", message, hint=hint))
+    return path
 
 
 def _write(review: Review, arguments: argparse.Namespace) -> None:

@@ -109,6 +109,20 @@ def rotate(quaternion: ArrayLike, vector: ArrayLike) -> Array:
     return rotated
 
 
+def transform_points(matrix: ArrayLike, points: ArrayLike) -> Array:
+    """Return points, shape (n, 3), transformed by a homogeneous matrix, shape (4, 4).
+
+    The sums are written out, so that the result has the same bits on every machine. A product of matrices adds in an
+    order that depends on the processor.
+    """
+    m, p = np.asarray(matrix, dtype=np.float64), as_array(points, 3, "a point")
+    x, y, z = p[:, 0], p[:, 1], p[:, 2]
+    transformed = np.empty((len(p), 3))
+    for axis in range(3):
+        transformed[:, axis] = m[axis, 0] * x + m[axis, 1] * y + m[axis, 2] * z + m[axis, 3]
+    return transformed
+
+
 def slerp(first: ArrayLike, last: ArrayLike, ratios: ArrayLike) -> Array:
     """Interpolate rotations at constant speed along the shorter arc between two rotations.
 

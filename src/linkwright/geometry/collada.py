@@ -27,8 +27,11 @@ class Arrays:
 
     def moved(self, matrix: Array, tag: str, text: str | None) -> Array:
         """Return the product of a matrix and the matrix of a transform element."""
-        apply_transform: Array = matrix @ _transform(tag, parse_numbers(text, np.float32).astype(np.float64))
-        return apply_transform
+        transform = _transform(tag, parse_numbers(text, np.float32).astype(np.float64))
+        # Unlike a product of matrices, this adds in the same order on every machine.
+        columns = [matrix[:, place : place + 1] * transform[place] for place in range(4)]
+        product: Array = columns[0] + columns[1] + columns[2] + columns[3]
+        return product
 
     def faces(self, tag: str, texts: list[str], counted: str, width: int, column: int, limits: Limits) -> Faces:
         """Return the triangles of a ``<triangles>``, ``<polylist>`` or ``<polygons>`` element."""

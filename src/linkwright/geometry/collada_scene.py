@@ -16,7 +16,8 @@ from linkwright.loading.lean_typing import Any, Generic, Protocol, TypeVar
 
 _Node = ET.Element
 _TRANSFORMS = ("matrix", "translate", "rotate", "scale")
-_NO_FACES = ("source", "vertices", "lines", "extra")
+NO_FACES = ("source", "vertices", "lines", "extra")
+"""The children of a mesh that have no triangles."""
 _WITHOUT_TRIANGLES = ("instance_camera", "instance_light", "instance_controller", "extra", "asset")
 _DECLARATION = lazy_pattern(rb"<!(?!--)")
 """The beginning of a document type, which may define entities, or of a CDATA section."""
@@ -84,11 +85,17 @@ class ColladaFile(Generic[MeshT, MatrixT]):
     Attributes:
         unit: metres per unit.
         placed_meshes: each mesh with the matrix of its frame in the frame of the file; shape (4, 4).
+        instances: the ``<instance_geometry>`` of each mesh.
+        root: the root of the document.
     """
 
-    def __init__(self, unit: float, placed_meshes: list[tuple[MeshT, MatrixT]]) -> None:
+    def __init__(
+        self, unit: float, placed_meshes: list[tuple[MeshT, MatrixT]], instances: list[ET.Element], root: ET.Element
+    ) -> None:
         self.unit = unit
         self.placed_meshes = placed_meshes
+        self.instances = instances
+        self.root = root
 
 
 def read_scene(data: bytes, numbers: Numbers[MeshT, MatrixT, Any]) -> ColladaFile[MeshT, MatrixT] | None:
@@ -125,7 +132,8 @@ class _File(Generic[MeshT, MatrixT]):
         placed_meshes = [item for node in self._all(scene, "node") for item in self._placed_meshes(node, root)]
         if not placed_meshes:
             raise UnsupportedContent
-        return ColladaFile(self._unit(), placed_meshes)
+        instances = [instance for _, _, instance in placed_meshes]
+        return ColladaFile(self._unit(), [(mesh, matrix) for mesh, matrix, _ in placed_meshes], instances, self._root)
 
     # --- tree -------------------------------------------------------------------------------------------------
 
@@ -162,8 +170,8 @@ class _File(Generic[MeshT, MatrixT]):
 
     # --- scene ------------------------------------------------------------------------------------------------
 
-    def _placed_meshes(self, node: _Node, parent_matrix: MatrixT) -> Iterator[tuple[MeshT, MatrixT]]:
-        """Yield the meshes in a node, with their frames as matrices in the file's frame."""
+    def _placed_meshes(self, node: _Node, parent_matrix: MatrixT) -> Iterator[tuple[MeshT, MatrixT, _Node]]:
+        """Yield the meshes in a node, with their frames as matrices in the file's frame, and their instances."""
         self._instance_count += 1
         if self._instance_count > _MAX_INSTANCES:
             raise UnsupportedContent
@@ -180,7 +188,7 @@ class _File(Generic[MeshT, MatrixT]):
             elif tag == "instance_geometry":
                 mesh, has_faces = self._mesh(_reference(child))
                 if has_faces:
-                    yield mesh, matrix
+                    yield mesh, matrix, child
             elif tag not in _TRANSFORMS and tag not in _WITHOUT_TRIANGLES:
                 raise UnsupportedContent
 
@@ -203,7 +211,7 @@ class _File(Generic[MeshT, MatrixT]):
             raise UnsupportedContent
         name = f"#{vertices.get('id', '')}"
         rows = {name: corners.rows, **{source: source_data.rows for source, source_data in sources.items()}}
-        primitives = [part for part in mesh if self._tag(part) not in _NO_FACES]
+        primitives = [part for part in mesh if self._tag(part) not in NO_FACES]
         faces = [self._faces(part, self._tag(part), rows, name) for part in primitives]
         return self._numbers.mesh(corners.text, faces), any(len(face) for face in faces)
 

@@ -13,7 +13,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from linkwright.diagnostics import missing_extra
-from linkwright.geometry.arrays import Array
+from linkwright.geometry.arrays import Array, transform_points
+from linkwright.geometry.collada_colors import read_colored_meshes
 from linkwright.geometry.mesh_files import BadMeshError, PlacedMesh, parser_fault, placed_meshes
 from linkwright.loading.lean_dataclasses import dataclass, replace
 from linkwright.loading.lean_typing import Any
@@ -77,12 +78,32 @@ class MeshPart:
         return replace(self, triangles=replace(self.triangles, positions=self.triangles.positions + offset))
 
 
-def read_parts(path: Path, *, resolver: Any) -> list[MeshPart]:
+def read_simple_parts(path: Path) -> list[MeshPart] | None:
+    """Return the parts of a COLLADA file, without normals and names, or None for files that only `read_parts` reads.
+
+    Such a file has textures, unusual content or mistakes. Unlike `read_parts`, this needs no library.
+
+    Raises:
+        OSError: the file cannot be read.
+    """
+    meshes = read_colored_meshes(path.read_bytes()) if path.suffix.lower() == ".dae" else None
+    if not meshes:
+        return None
+    parts = []
+    for mesh, matrix, unit, color in meshes:
+        placed_mesh = PlacedMesh(mesh, np.diag([unit, unit, unit, 1.0]) @ matrix, 1.0, frozenset())
+        triangles = _triangles(placed_mesh, placed_mesh.matrix, smooth=False)
+        parts.append(MeshPart(triangles, None if color is None else FileMaterial(color)))
+    return parts
+
+
+def read_parts(path: Path, *, resolver: Any, with_normals: bool = True) -> list[MeshPart]:
     """Return the parts of an STL, COLLADA, OBJ or glTF file.
 
     Args:
         path: the path of the file.
         resolver: provides files that the mesh file refers to, by ``get(name)``, as trimesh expects.
+        with_normals: whether to return the normals of smooth surfaces.
 
     Raises:
         BadMeshError: the file cannot be read; the message gives the reason.
@@ -90,7 +111,7 @@ def read_parts(path: Path, *, resolver: Any) -> list[MeshPart]:
     """
     kind = path.suffix.lower().removeprefix(".")
     try:
-        return _read_parts(path.read_bytes(), "stl" if kind == "stlb" else kind, resolver)
+        return _read_parts(path.read_bytes(), "stl" if kind == "stlb" else kind, resolver, with_normals)
     except ModuleNotFoundError as error:
         raise missing_extra("INR104", error) from None
     except BadMeshError:
@@ -99,7 +120,7 @@ def read_parts(path: Path, *, resolver: Any) -> list[MeshPart]:
         raise BadMeshError(parser_fault(error)) from None
 
 
-def _read_parts(data: bytes, kind: str, resolver: Any) -> list[MeshPart]:
+def _read_parts(data: bytes, kind: str, resolver: Any, with_normals: bool) -> list[MeshPart]:
     parts = []
     for placed_mesh in placed_meshes(data, kind, resolver=resolver):
         matrix = placed_mesh.matrix
@@ -109,7 +130,7 @@ def _read_parts(data: bytes, kind: str, resolver: Any) -> list[MeshPart]:
             matrix = _Y_UP_TO_Z_UP @ matrix
         parts.append(
             MeshPart(
-                _triangles(placed_mesh, matrix, smooth=kind != "stl"),
+                _triangles(placed_mesh, matrix, smooth=with_normals and kind != "stl"),
                 _file_material(placed_mesh.mesh, kind),
                 placed_mesh.names,
             )
@@ -119,7 +140,7 @@ def _read_parts(data: bytes, kind: str, resolver: Any) -> list[MeshPart]:
 
 def _triangles(placed_mesh: PlacedMesh, matrix: Array, *, smooth: bool) -> Triangles:
     mesh, faces = placed_mesh.mesh, placed_mesh.faces
-    positions = np.asarray(mesh.vertices, dtype=np.float64) @ matrix[:3, :3].T + matrix[:3, 3]
+    positions = transform_points(matrix, mesh.vertices)
     normals = _normals(mesh, positions, faces, matrix) if smooth else None
     uv = getattr(mesh.visual, "uv", None)
     coordinates = None

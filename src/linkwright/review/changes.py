@@ -31,6 +31,7 @@ class SubjectKind(Enum):
     INTERFACE = "interface"
     MANIFEST = "package manifest"
     MESH = "mesh"
+    SCENARIO = "scenario"
 
 
 @dataclass(frozen=True)

@@ -129,7 +129,7 @@ def _changes(pair: FilePair, comparison: Comparison, old: Robot, new: Robot) -> 
     for difference in comparison.differences:
         reason = breaking_reason(difference, old, new)
         effect = Effect.CHANGED if reason is None else Effect.BREAKING
-        yield Change(_sentence(difference), effect, reason, _location(pair, difference))
+        yield Change(sentence_of_difference(difference), effect, reason, _location(pair, difference))
 
 
 def _location(pair: FilePair, difference: Difference) -> Location | None:
@@ -138,7 +138,7 @@ def _location(pair: FilePair, difference: Difference) -> Location | None:
     return (pair.location(new.span) if new else None) or (pair.location(old.span, is_old=True) if old else None)
 
 
-def _sentence(difference: Difference) -> Phrase:
+def sentence_of_difference(difference: Difference) -> Phrase:
     """Return a difference in one line. A moved or rotated frame also has the distance or angle."""
     text = sentence(difference)
     if difference.kind == "changed" and (difference.old is None or difference.new is None):

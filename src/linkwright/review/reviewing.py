@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Iterator, Sequence
 from concurrent.futures import ProcessPoolExecutor
 from contextlib import contextmanager
+from dataclasses import replace
 from functools import partial
 from multiprocessing import get_context
 from pathlib import Path, PurePosixPath
@@ -17,6 +18,7 @@ from linkwright.lint.checking import Checker
 from linkwright.lint.known_findings import count_keys, new_findings
 from linkwright.lint.targets import Targets, find_targets
 from linkwright.packages.manifest import MANIFEST, package_name
+from linkwright.review.behavior import compare_behavior
 from linkwright.review.changes import Change, Effect, Review, Subject, SubjectKind
 from linkwright.review.file_pair import FilePair
 from linkwright.review.kinds import KindRule, rule_of
@@ -30,18 +32,28 @@ _EXPANDED = (SubjectKind.DESCRIPTION, SubjectKind.WORLD)
 """The kinds that include other files. Parts of them are not compared on their own."""
 
 
-def review(versions: Versions, packages: Sequence[str] = (), workers: int = 1) -> Review:
+def review(
+    versions: Versions,
+    packages: Sequence[str] = (),
+    workers: int = 1,
+    scenarios: Sequence[str] = (),
+    seeds: int | None = None,
+) -> Review:
     """Compare two versions of a repository.
 
     Args:
         versions: the versions.
         packages: the names or folders of the packages to which the review is limited; empty for all files.
         workers: the number of parallel processes.
+        scenarios: scenarios to run in both versions, relative to the root. Their code, and that of the packages, runs.
+        seeds: the number of seeds of scenarios; None for their own.
 
     Raises:
         LinkwrightError: REV103, there is no such package.
     """
-    return _Reviewer(versions, _package_folders(versions, packages)).run(workers)
+    result = _Reviewer(versions, _package_folders(versions, packages)).run(workers)
+    behavior = [compare_behavior(versions, path, seeds) for path in scenarios]
+    return replace(result, subjects=[*result.subjects, *(subject for subject in behavior if not subject.is_empty)])
 
 
 class _Reviewer:

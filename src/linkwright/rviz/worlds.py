@@ -16,9 +16,9 @@ from linkwright.page.files import IMAGE_TYPES, MESH_TYPES, MeshIndex
 from linkwright.page.protocol.robot import LinkScene, Shape, Submesh, Surface
 from linkwright.sdf.frames import Frames, PlacedLink, links_of
 from linkwright.sdf.links import Collision, Visual
-from linkwright.sdf.materials import Material, Workflow
+from linkwright.sdf.materials import Workflow
 from linkwright.sdf.poses import RawPose
-from linkwright.sdf.scripts import gazebo_look, with_look
+from linkwright.sdf.scripts import appearance
 from linkwright.sdf.shapes import (
     Cone,
     Ellipsoid,
@@ -32,7 +32,7 @@ from linkwright.sdf.shapes import (
 from linkwright.sdf.shapes import Shape as SdfShape
 from linkwright.sdf.worlds import World
 
-_DEFAULT_COLOR = [0.7, 0.7, 0.7, 1.0]
+_DEFAULT_COLOR = (0.7, 0.7, 0.7, 1.0)
 """The colour of shapes without a material: grey, as in Gazebo."""
 _MAX_HEIGHTS = 257
 """The largest number of heights along a side of a heightmap."""
@@ -191,7 +191,7 @@ class _Builder:
 
     def _set_material(self, link: str, shape: Shape, visual: Visual) -> None:
         material = visual.material
-        color, image = _appearance(material) if material else (None, "")
+        color, image = appearance(material) if material else (None, "")
         shape.repaints = color is not None or image != ""
         if color is None:
             color = _DEFAULT_COLOR
@@ -226,16 +226,3 @@ def _has_surface(workflow: Workflow) -> bool:
     """Return whether a material has images other than the colour image, roughness or metalness."""
     default = Workflow()
     return any(_maps(workflow)) or (workflow.roughness, workflow.metalness) != (default.roughness, default.metalness)
-
-
-def _appearance(material: Material) -> tuple[Sequence[float] | None, str]:
-    """Return the colour of a material or None, and the address of its colour image or ``""``.
-
-    Material scripts were read with the world. For a model from text, only Gazebo's own material names are known here.
-    """
-    gazebo_material = gazebo_look(material.script.name) if material.script else None
-    if gazebo_material is not None:
-        material = with_look(material, gazebo_material)
-    workflow = material.pbr and (material.pbr.metal or material.pbr.specular)
-    image = workflow.albedo_map if workflow else ""
-    return material.diffuse or material.ambient, image

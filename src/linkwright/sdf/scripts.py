@@ -116,6 +116,19 @@ def with_look(material: Material, look: Look) -> Material:
     )
 
 
+def appearance(material: Material) -> tuple[Color | None, str]:
+    """Return the colour of a material or None, and the address of its colour image or ``""``.
+
+    Material scripts were read with the world. For a model from text, only Gazebo's own material names are known here.
+    """
+    gazebo_material = gazebo_look(material.script.name) if material.script else None
+    if gazebo_material is not None:
+        material = with_look(material, gazebo_material)
+    workflow = material.pbr and (material.pbr.metal or material.pbr.specular)
+    image = workflow.albedo_map if workflow else ""
+    return material.diffuse or material.ambient, image
+
+
 def with_scripts(sdf: Sdf, finder: ResourceFinder) -> Sdf:
     """Return the content of a file with its materials completed from the scripts that they name.
 

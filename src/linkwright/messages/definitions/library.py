@@ -309,7 +309,16 @@ class TrustedMessages:
 
 
 def parse_source(source: SourceText, base: str, known: KnownMessages) -> Definition:
-    """Parse an interface file, as IDL if its suffix is ``.idl``."""
+    """Parse an interface file, as IDL if its suffix is ``.idl``.
+
+    Args:
+        source: the content of the file.
+        base: the name of the interface, such as ``my_msgs/srv/Count``.
+        known: determines which messages exist, to check references.
+
+    Raises:
+        DefinitionError: the file has mistakes.
+    """
     if source.name.endswith(".idl"):
         from linkwright.messages.definitions.idl import parse_idl
 
@@ -331,6 +340,11 @@ def wrong_kind_diagnostic(definition: Definition, kind: str) -> Diagnostic:
 
 
 def read_source(path: Path) -> SourceText:
+    """Return the text of an interface file.
+
+    Raises:
+        DefinitionError: MSG121, the file cannot be read or is not text in UTF-8.
+    """
     name = display_path(path)
     try:
         return SourceText(name, path.read_text(encoding="utf-8-sig"))

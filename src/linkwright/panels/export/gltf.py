@@ -19,10 +19,10 @@ from linkwright.diagnostics import Diagnostic, LinkwrightError, Phrase, display_
 from linkwright.geometry.mesh_files import BadMeshError
 from linkwright.geometry.mesh_parts import UNCOLOURED, FileMaterial, MeshPart, read_parts
 from linkwright.geometry.single import normalized
+from linkwright.geometry.surfaces import box, capsule, cylinder, sphere
 from linkwright.nodes.robot_state_publisher import JointMotion
 from linkwright.page.files import FileRefusedError
 from linkwright.page.protocol.robot import LinkScene, Shape
-from linkwright.panels.export.shapes import box, capsule, cylinder, sphere
 from linkwright.panels.export.snapshot import FileSet, Snapshot
 
 _MAGIC, _VERSION = 0x46546C67, 2
@@ -212,11 +212,11 @@ class _RobotWriter:
         if shape.kind == "box":
             return [MeshPart(box(shape.size), None)]
         if shape.kind == "cylinder":
-            return [MeshPart(cylinder(*shape.size), None)]
+            return [MeshPart(cylinder(shape.size[0], shape.size[1]), None)]
         if shape.kind == "capsule":
-            return [MeshPart(capsule(*shape.size), None)]
+            return [MeshPart(capsule(shape.size[0], shape.size[1]), None)]
         if shape.kind == "sphere":
-            return [MeshPart(sphere(*shape.size), None)]
+            return [MeshPart(sphere(shape.size[0]), None)]
         assert shape.url is not None
         if shape.url not in self._lists:
             self._lists[shape.url] = self._read(link, shape.url)

@@ -1,4 +1,7 @@
-"""Triangulates the shapes of URDF."""
+"""The surfaces of primitive shapes, as triangles.
+
+The coordinates have the same bits on every machine.
+"""
 
 from __future__ import annotations
 
@@ -7,10 +10,11 @@ from collections.abc import Sequence
 import numpy as np
 
 from linkwright.geometry.arrays import Array
+from linkwright.geometry.exact_angles import circle
 from linkwright.geometry.mesh_parts import Triangles
 
-_SIDES = 32
-_RINGS = 16
+SIDES = 32
+"""The default number of sides of round shapes, a multiple of 4."""
 
 
 def box(size: Sequence[float]) -> Triangles:
@@ -29,7 +33,7 @@ def box(size: Sequence[float]) -> Triangles:
     return Triangles(np.array(positions) * scale, quads.reshape(-1), np.array(normals), np.array(coordinates))
 
 
-def cylinder(radius: float, length: float) -> Triangles:
+def cylinder(radius: float, length: float, sides: int = SIDES) -> Triangles:
     """Return the triangles of a cylinder along z with caps, centred at the origin."""
     half_length = length / 2
     profile = [
@@ -39,41 +43,54 @@ def cylinder(radius: float, length: float) -> Triangles:
         (radius, -half_length, 1, 0),
     ]
     profile += [(radius, -half_length, 0, -1), (0.0, -half_length, 0, -1)]
-    return _surface_of_revolution(np.array(profile, dtype=np.float64))
+    return _surface_of_revolution(np.array(profile, dtype=np.float64), sides)
 
 
-def sphere(radius: float) -> Triangles:
+def cone(radius: float, length: float, sides: int = SIDES) -> Triangles:
+    """Return the triangles of a cone along z with its tip at the top, centred at half its height."""
+    half_length = length / 2
+    profile = [(0.0, half_length, length, radius), (radius, -half_length, length, radius)]
+    profile += [(radius, -half_length, 0.0, -1.0), (0.0, -half_length, 0.0, -1.0)]
+    return _surface_of_revolution(np.array(profile, dtype=np.float64), sides)
+
+
+def sphere(radius: float, sides: int = SIDES) -> Triangles:
     """Return the triangles of a sphere that is centred at the origin."""
-    angles = np.linspace(np.pi / 2, -np.pi / 2, _RINGS + 1)
-    cosines, sines = np.cos(angles), np.sin(angles)
-    return _surface_of_revolution(np.stack([radius * cosines, radius * sines, cosines, sines], axis=1))
+    r, z = _half_circle(sides)
+    return _surface_of_revolution(np.stack([radius * r, radius * z, r, z], axis=1), sides)
 
 
-def capsule(radius: float, length: float) -> Triangles:
+def capsule(radius: float, length: float, sides: int = SIDES) -> Triangles:
     """Return the triangles of a cylinder along z with hemispherical ends, centred at the origin."""
-    angles = np.linspace(np.pi / 2, -np.pi / 2, _RINGS + 1)
-    angles = np.insert(angles, _RINGS // 2, 0.0)
-    shift = np.where(np.arange(_RINGS + 2) <= _RINGS // 2, length / 2, -length / 2)
-    cosines, sines = np.cos(angles), np.sin(angles)
-    return _surface_of_revolution(np.stack([radius * cosines, radius * sines + shift, cosines, sines], axis=1))
+    r, z = (np.insert(values, sides // 4, values[sides // 4]) for values in _half_circle(sides))
+    shift = np.where(np.arange(len(z)) <= sides // 4, length / 2, -length / 2)
+    return _surface_of_revolution(np.stack([radius * r, radius * z + shift, r, z], axis=1), sides)
 
 
-def _surface_of_revolution(profile: Array) -> Triangles:
+def _half_circle(sides: int) -> tuple[Array, Array]:
+    """Return r and z of the corners of a regular polygon from the top to the bottom."""
+    points = circle(sides)
+    quarter = [(abs(z), r) for r, z in points[: sides // 4 + 1]]
+    lower = [(abs(z), r) for r, z in points[sides // 4 + 1 : sides // 2 + 1]]
+    half = np.array([*quarter, *lower])
+    return half[:, 0], half[:, 1]
+
+
+def _surface_of_revolution(profile: Array, sides: int) -> Triangles:
     """Return the triangles of the surface that a profile generates when it rotates about z.
 
     The profile runs from top to bottom. Its columns are r and z of the points, and r and z of the normals.
     """
-    angles = np.linspace(0.0, 2 * np.pi, _SIDES + 1)
-    cosines, sines = np.cos(angles), np.sin(angles)
-    rows, columns = len(profile), _SIDES + 1
+    cosines, sines = np.array(circle(sides)).T
+    rows, columns = len(profile), sides + 1
     radius, height, normal_r, normal_z = (column[:, np.newaxis] for column in profile.T)
     ones = np.ones_like(cosines)
     positions = np.stack([radius * cosines, radius * sines, height * ones], axis=2).reshape(-1, 3)
     normals = np.stack([normal_r * cosines, normal_r * sines, normal_z * ones], axis=2).reshape(-1, 3)
-    lengths = np.linalg.norm(normals, axis=1, keepdims=True)
-    u = np.broadcast_to(angles / (2 * np.pi), (rows, columns))
+    lengths = np.sqrt(normals[:, :1] ** 2 + normals[:, 1:2] ** 2 + normals[:, 2:] ** 2)
+    u = np.broadcast_to(np.arange(columns) / sides, (rows, columns))
     v = np.broadcast_to(np.linspace(0.0, 1.0, rows)[:, np.newaxis], (rows, columns))
-    row, column = np.meshgrid(np.arange(rows - 1), np.arange(_SIDES), indexing="ij")
+    row, column = np.meshgrid(np.arange(rows - 1), np.arange(sides), indexing="ij")
     upper_vertices = (row * columns + column).reshape(-1)
     lower_vertices = upper_vertices + columns
     triangles = np.stack(

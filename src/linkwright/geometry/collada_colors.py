@@ -1,0 +1,120 @@
+"""Reading of COLLADA files with the colours of their materials, without a library.
+
+Files with textures or with unusual content are left to trimesh.
+"""
+
+from __future__ import annotations
+
+from xml.etree import ElementTree as ET
+
+import numpy as np
+
+from linkwright.geometry.arrays import Array
+from linkwright.geometry.collada import Arrays
+from linkwright.geometry.collada_scene import NO_FACES, UnsupportedContent, read_scene
+from linkwright.geometry.plain import PlainMesh, parse_numbers
+from linkwright.geometry.polyhedron import Faces
+from linkwright.loading.lean_dataclasses import NamedTuple
+
+_Color = tuple[float, float, float]
+_WHITE: _Color = (1.0, 1.0, 1.0)
+
+
+class ColoredMesh(NamedTuple):
+    """Triangles with one material.
+
+    Attributes:
+        mesh: the triangles, in the file's unit.
+        matrix: the matrix of the mesh's frame in the frame of the file, shape (4, 4).
+        unit: metres per unit.
+        color: the diffuse colour of the material, or None if the triangles have no material.
+    """
+
+    mesh: PlainMesh
+    matrix: Array
+    unit: float
+    color: _Color | None
+
+
+def read_colored_meshes(data: bytes) -> list[ColoredMesh] | None:
+    """Return the meshes of a file with their colours.
+
+    Returns None for a file with textures, unusual content or mistakes; only trimesh can read such a file.
+    """
+    file = read_scene(data, _ArraysByMaterial())
+    if file is None:
+        return None
+    materials = _Materials(file.root)
+    meshes = []
+    try:
+        for (parts, matrix), instance in zip(file.placed_meshes, file.instances, strict=True):
+            colors = materials.colors(instance)
+            meshes += [
+                ColoredMesh(part, matrix, file.unit, color)
+                for part, color in zip(parts, colors, strict=True)
+                if len(part.faces)
+            ]
+    except (UnsupportedContent, ValueError, LookupError):
+        return None
+    return meshes
+
+
+class _ArraysByMaterial:
+    """The implementation of `Numbers` that keeps the triangles of each element apart."""
+
+    def __init__(self) -> None:
+        self._arrays = Arrays()
+        self.identity = self._arrays.identity
+        self.moved = self._arrays.moved
+        self.faces = self._arrays.faces
+
+    def mesh(self, text: str, faces: list[Faces]) -> list[PlainMesh]:
+        """Return a mesh for the triangles of each element."""
+        points = parse_numbers(text, np.float32).reshape(-1, 3).astype(np.float64)
+        return [PlainMesh(points, element_faces) for element_faces in faces]
+
+
+class _Materials:
+    """The materials of a file.
+
+    Args:
+        root: the root of the document.
+    """
+
+    def __init__(self, root: ET.Element) -> None:
+        self._space = root.tag.rpartition("}")[0] + "}"
+        self._geometries = self._by_id(root, "library_geometries", "geometry")
+        self._materials = self._by_id(root, "library_materials", "material")
+        self._effects = self._by_id(root, "library_effects", "effect")
+
+    def colors(self, instance: ET.Element) -> list[_Color | None]:
+        """Return the colour of each element with triangles in an instance of a geometry."""
+        bound = {
+            material.get("symbol", ""): material.get("target", "").removeprefix("#")
+            for material in instance.iter(f"{self._space}instance_material")
+        }
+        mesh = self._only(self._geometries[instance.get("url", "").removeprefix("#")], "mesh")
+        symbols = [part.get("material") for part in mesh if part.tag.removeprefix(self._space) not in NO_FACES]
+        return [None if symbol is None or symbol not in bound else self._color(bound[symbol]) for symbol in symbols]
+
+    def _color(self, name: str) -> _Color:
+        effect = self._effects[self._only(self._materials[name], "instance_effect").get("url", "").removeprefix("#")]
+        technique = self._only(self._only(effect, "profile_COMMON"), "technique")
+        shading = [child for child in technique if child.find(f"{self._space}diffuse") is not None]
+        if not shading:
+            return _WHITE
+        numbers = parse_numbers(self._only(self._only(shading[0], "diffuse"), "color").text, np.float64).tolist()
+        if len(numbers) not in (3, 4):
+            raise UnsupportedContent
+        red, green, blue = (min(1.0, max(0.0, number)) for number in numbers[:3])
+        return red, green, blue
+
+    def _only(self, node: ET.Element, tag: str) -> ET.Element:
+        children = node.findall(self._space + tag)
+        if len(children) != 1:
+            raise UnsupportedContent
+        return children[0]
+
+    def _by_id(self, root: ET.Element, library: str, tag: str) -> dict[str, ET.Element]:
+        libraries = root.findall(self._space + library)
+        return {node.get("id", ""): node for element in libraries for node in element.findall(self._space + tag)}

@@ -1,0 +1,104 @@
+"""Thin dark lines where the visible surface ends, jumps or bends."""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import NDArray
+
+from linkwright.picture.smoothing import CREASE_COSINE
+from linkwright.picture.vectors import Floats
+
+_JUMP = 0.006
+"""The change of the distance's slope where a surface ends in front of another, as a part of the scene's depth."""
+_OUTER, _INNER = 0.88, 0.55
+"""How dark lines are at the ends of surfaces and at creases, 0 to 1."""
+_DENSE = 0.30
+"""The share of samples on lines from which details are smaller than lines, and lines fade."""
+_REACH = 2
+"""The pixels around a pixel in which lines are counted."""
+
+
+def edge_strength(distances: Floats, normals: Floats, bodies: NDArray[np.int32], per_pixel: int) -> Floats:
+    """Return how dark the lines are at each sample, 0 to 1.
+
+    Args:
+        distances: the distance at each sample, shape (rows, width); 2 where nothing is seen.
+        normals: the unit normals of the surface, shape (3, rows, width).
+        bodies: the number of the body at each sample, -1 where nothing is seen.
+        per_pixel: the samples per pixel along a row; `rows` and `width` are multiples of it.
+    """
+    is_seen = bodies >= 0
+    outer = np.zeros(bodies.shape, dtype=bool)
+    inner = np.zeros(bodies.shape, dtype=bool)
+    for axis in (0, 1):
+        first, second = _pairs(axis)
+        differs = bodies[first] != bodies[second]
+        outer[first] |= differs
+        outer[second] |= differs
+        bends = normals[0][first] * normals[0][second]
+        bends += normals[1][first] * normals[1][second]
+        bends += normals[2][first] * normals[2][second]
+        is_crease = bends < CREASE_COSINE
+        inner[first] |= is_crease
+        inner[second] |= is_crease
+        steps = distances[second] - distances[first]
+        before, after = _pairs(axis)
+        middle = (slice(1, -1), slice(None)) if axis == 0 else (slice(None), slice(1, -1))
+        outer[middle] |= np.abs(steps[after] - steps[before]) > _JUMP
+    outer |= _neighbours(outer)
+    outer &= is_seen
+    inner &= is_seen & ~outer
+    strength = np.where(outer, np.float32(_OUTER), np.where(inner, np.float32(_INNER), np.float32(0.0)))
+    fading = _fading(outer | inner, is_seen, per_pixel)
+    strength *= np.repeat(np.repeat(fading, per_pixel, axis=0), per_pixel, axis=1)
+    return strength
+
+
+def _neighbours(mask: NDArray[np.bool_]) -> NDArray[np.bool_]:
+    """Return the samples beside those of a mask."""
+    beside = np.zeros_like(mask)
+    for axis in (0, 1):
+        first, second = _pairs(axis)
+        beside[first] |= mask[second]
+        beside[second] |= mask[first]
+    return beside
+
+
+def _pairs(axis: int) -> tuple[tuple[slice, slice], tuple[slice, slice]]:
+    """Return the selections of all samples but the last, and of all but the first, along an axis."""
+    if axis == 0:
+        return (slice(None, -1), slice(None)), (slice(1, None), slice(None))
+    return (slice(None), slice(None, -1)), (slice(None), slice(1, None))
+
+
+def _fading(is_line: NDArray[np.bool_], is_seen: NDArray[np.bool_], per_pixel: int) -> Floats:
+    """Return a factor for each pixel, smaller than 1 where lines are denser than a drawing can show."""
+    lines, seen = (box_sums(pixel_sums(mask, per_pixel), _REACH) for mask in (is_line, is_seen))
+    density = lines.astype(np.float32) / np.maximum(seen, 1).astype(np.float32)
+    excess = np.maximum(density / np.float32(_DENSE), np.float32(1.0))
+    factor: Floats = np.float32(1.0) / (excess * excess)
+    return factor
+
+
+def pixel_sums(mask: NDArray[np.bool_], per_pixel: int) -> NDArray[np.int64]:
+    """Return the number of samples of each pixel in a mask."""
+    rows, width = mask.shape
+    counts = np.zeros((rows // per_pixel, width // per_pixel), np.int64)
+    for row in range(per_pixel):
+        for column in range(per_pixel):
+            counts += mask[row::per_pixel, column::per_pixel]
+    return counts
+
+
+def box_sums(values: NDArray[np.int64], reach: int) -> NDArray[np.int64]:
+    """Return the sums of integers over the squares around each place, cut off at the border."""
+    for axis in (0, 1):
+        totals = np.cumsum(values, axis=axis)
+        count = values.shape[axis]
+        places = np.arange(count)
+        upper = totals.take(np.minimum(places + reach, count - 1), axis=axis)
+        below = places - reach - 1
+        lower = totals.take(np.maximum(below, 0), axis=axis)
+        has_lower = (below >= 0)[:, None] if axis == 0 else (below >= 0)[None, :]
+        values = upper - np.where(has_lower, lower, 0)
+    return values

@@ -1,0 +1,134 @@
+"""Names of links or joints beside what they name."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from linkwright.geometry.arrays import Array
+from linkwright.picture.bodies import Anchor
+from linkwright.picture.camera import Camera
+from linkwright.picture.stroke_font import LINE_HEIGHT, text_lines
+from linkwright.picture.vectors import Floats
+
+_HEIGHT = 15.0
+"""The height of a line of text in pixels, in an image whose shorter side has `_USUAL_SIDE` pixels."""
+_USUAL_SIDE, _LEAST_SCALE = 600.0, 0.75
+_PEN, _HALO, _DOT = 0.75, 2.6, 2.4
+"""Half the width of lines, the reach of the light area around them, and the radius of the dots, in pixels."""
+_OFFSET, _SPACING, _BORDER = 14.0, 2.0, 4.0
+_INK, _PAPER = 0.008, 0.96
+"""The light of the text and of the area around it."""
+
+
+@dataclass(frozen=True, slots=True)
+class _Placed:
+    """A label in an image: its anchor, the upper left corner of its text, and the extent of the text, in pixels."""
+
+    text: str
+    anchor: tuple[float, float]
+    corner: tuple[float, float]
+    extent: tuple[float, float]
+
+    def overlaps(self, other: _Placed) -> bool:
+        return all(
+            self.corner[axis] < other.corner[axis] + other.extent[axis] + _SPACING
+            and other.corner[axis] < self.corner[axis] + self.extent[axis] + _SPACING
+            for axis in (0, 1)
+        )
+
+
+def draw_labels(light: Floats, alpha: Floats, anchors: Sequence[Anchor], camera: Camera) -> None:
+    """Draw labels over an image.
+
+    Args:
+        light: the light of the pixels multiplied by their opacity, shape (height, width, 3), which is changed.
+        alpha: the opacity of the pixels, shape (height, width), which is changed.
+        anchors: the texts and the points that they name.
+        camera: the camera of the image.
+    """
+    if not anchors:
+        return
+    x, y, _ = camera.project(np.array([anchor.position for anchor in anchors]))
+    scale = max(min(camera.size) / _USUAL_SIDE, _LEAST_SCALE)
+    placed: list[_Placed] = []
+    for index in sorted(range(len(anchors)), key=lambda number: (float(y[number]), number)):
+        placed.append(_place(anchors[index].text, (float(x[index]), float(y[index])), placed, camera.size, scale))
+    for label in placed:
+        _draw(light, alpha, _leader(label), _PEN * 0.7 * scale, _HALO * 0.5 * scale)
+    for label in placed:
+        _draw(light, alpha, np.array([(label.anchor, label.anchor)]), _DOT * scale, (_DOT + 1.0) * scale)
+    for label in placed:
+        _draw(light, alpha, _letters(label), _PEN * scale, _HALO * scale)
+
+
+def _place(
+    text: str, anchor: tuple[float, float], others: Sequence[_Placed], size: tuple[int, int], scale: float
+) -> _Placed:
+    """Return a label beside its anchor, at the first place where it overlaps no other label."""
+    unit = _HEIGHT * scale / LINE_HEIGHT
+    extent = (text_lines(text)[1] * unit, _HEIGHT * scale)
+    is_left = anchor[0] + _OFFSET * scale + extent[0] + _BORDER > size[0]
+    x = anchor[0] - _OFFSET * scale - extent[0] if is_left else anchor[0] + _OFFSET * scale
+    x = min(max(x, _BORDER), max(_BORDER, size[0] - extent[0] - _BORDER))
+    top = min(max(anchor[1] - extent[1] / 2, _BORDER), size[1] - extent[1] - _BORDER)
+    step = extent[1] / 2 + _SPACING
+    for number in range(2 * int(size[1] / step) + 2):
+        shift = (number + 1) // 2 * (step if number % 2 else -step)
+        label = _Placed(text, anchor, (x, top + shift), extent)
+        is_inside = _BORDER <= label.corner[1] <= size[1] - extent[1] - _BORDER
+        if is_inside and not any(label.overlaps(other) for other in others):
+            return label
+    return _Placed(text, anchor, (x, top), extent)
+
+
+def _leader(label: _Placed) -> Array:
+    """Return the line from an anchor to its text."""
+    is_right = label.corner[0] > label.anchor[0]
+    x = label.corner[0] - _SPACING if is_right else label.corner[0] + label.extent[0] + _SPACING
+    return np.array([(label.anchor, (x, label.corner[1] + label.extent[1] / 2))])
+
+
+def _letters(label: _Placed) -> Array:
+    lines, _ = text_lines(label.text)
+    unit = label.extent[1] / LINE_HEIGHT
+    lines = lines * unit
+    lines[:, :, 0] += label.corner[0]
+    lines[:, :, 1] = label.corner[1] + label.extent[1] - lines[:, :, 1]
+    return lines
+
+
+def _draw(light: Floats, alpha: Floats, lines: Array, pen: float, halo: float) -> None:
+    """Draw lines, shape (n, 2, 2) in pixels, with a light area around them."""
+    if not len(lines):
+        return
+    height, width = alpha.shape
+    reach = halo + 1.0
+    left, top = (int(max(0.0, np.floor(lines[:, :, axis].min() - reach))) for axis in (0, 1))
+    right, bottom = (
+        int(min(float(limit), np.ceil(lines[:, :, axis].max() + reach))) for axis, limit in ((0, width), (1, height))
+    )
+    if right <= left or bottom <= top:
+        return
+    distances = _distances(lines, left, top, right, bottom)
+    window = (slice(top, bottom), slice(left, right))
+    for radius, shade, strength in ((halo, _PAPER, 0.8), (pen, _INK, 1.0)):
+        cover = (np.clip(radius + 0.5 - distances, 0.0, 1.0) * strength).astype(np.float32)
+        light[window] = light[window] * (1.0 - cover)[:, :, None] + (cover * shade)[:, :, None]
+        alpha[window] = alpha[window] * (1.0 - cover) + cover
+
+
+def _distances(lines: Array, left: int, top: int, right: int, bottom: int) -> Array:
+    """Return the distance from each pixel of a window to the nearest line."""
+    x, y = (np.arange(left, right) + 0.5)[None, :], (np.arange(top, bottom) + 0.5)[:, None]
+    nearest = np.full((bottom - top, right - left), 1e12)
+    for (x0, y0), (x1, y1) in lines.tolist():
+        across, down = x1 - x0, y1 - y0
+        square = across * across + down * down
+        ratio = ((x - x0) * across + (y - y0) * down) / square if square > 0 else np.zeros_like(nearest)
+        ratio = np.clip(ratio, 0.0, 1.0)
+        dx, dy = x - (x0 + ratio * across), y - (y0 + ratio * down)
+        np.minimum(nearest, dx * dx + dy * dy, out=nearest)
+    return np.sqrt(nearest)

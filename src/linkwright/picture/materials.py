@@ -1,0 +1,168 @@
+"""Surfaces of shapes and mesh files, with their materials."""
+
+from __future__ import annotations
+
+import os
+from dataclasses import dataclass
+from io import BytesIO
+from pathlib import Path
+
+import numpy as np
+
+from linkwright.diagnostics import LinkwrightError
+from linkwright.geometry.mesh_files import MESH_ENDINGS, BadMeshError, file_resolver
+from linkwright.geometry.mesh_parts import UNCOLOURED, FileMaterial, MeshPart, Triangles, read_parts, read_simple_parts
+from linkwright.geometry.meshes import MAX_FILE_SIZE, read_mesh, unreadable
+from linkwright.geometry.shapes import Box, Capsule, Cylinder, SimpleShape
+from linkwright.geometry.surfaces import box, capsule, cylinder, sphere
+from linkwright.picture.bodies import Color, Surface, Texture
+
+ROUND_SIDES = 72
+"""The number of sides of round shapes, so many that their edges are not seen."""
+DEFAULT_COLOR: Color = (1.0, 0.0, 0.0)
+"""The colour of a shape without a material, as in RViz."""
+_MAX_TEXTURE = 768
+"""The maximum width and height of textures. Larger ones are reduced."""
+_MISSING_EXTRA = "INR104"
+
+
+@dataclass(frozen=True, eq=False, slots=True)
+class MeshSurface:
+    """A part of a mesh file with one material.
+
+    Attributes:
+        surface: the part in m, in white.
+        file_material: the material in the file; None to use that of the description.
+        names: the names of the part in the file.
+    """
+
+    surface: Surface
+    file_material: FileMaterial | None
+    names: frozenset[str]
+
+
+class SurfaceLibrary:
+    """A reader of mesh files that reads each file once, for one scene or several.
+
+    Attributes:
+        colorless: the files that were read without their colours, because a library is not installed, each with the
+            error that names it.
+    """
+
+    def __init__(self) -> None:
+        self.colorless: dict[Path, LinkwrightError] = {}
+        self._surfaces: dict[tuple[str, int, int, bool], list[MeshSurface]] = {}
+
+    def read(self, path: Path, *, has_names: bool = False) -> list[MeshSurface]:
+        """Return the surfaces of a mesh file.
+
+        Args:
+            path: the path of the file.
+            has_names: whether the surfaces must have their names.
+
+        Raises:
+            LinkwrightError: INR101 to INR104, the file cannot be read.
+        """
+        try:
+            status = path.stat()
+        except OSError as error:
+            read_mesh(path)  # raises an error with the reason
+            raise unreadable(path, error.strerror or str(error)) from None
+        key = os.path.realpath(path), status.st_mtime_ns, status.st_size, has_names
+        if key not in self._surfaces:
+            self._surfaces[key] = [
+                MeshSurface(Surface.of_triangles(part.triangles, _texture(part)), part.file_material, part.names)
+                for part in self._parts(path, status.st_size, has_names=has_names)
+                if len(part.triangles.indices)
+            ]
+        return self._surfaces[key]
+
+    def _parts(self, path: Path, size: int, *, has_names: bool) -> list[MeshPart]:
+        kind = path.suffix.lower()
+        if size > MAX_FILE_SIZE or kind == ".stl" or kind not in MESH_ENDINGS or not path.is_file():
+            return [_plain_part(path)]
+        simple_parts = None if has_names else read_simple_parts(path)
+        if simple_parts is not None:
+            return simple_parts
+        try:
+            return read_parts(path, resolver=_resolver(path), with_normals=False)
+        except BadMeshError as error:
+            raise unreadable(path, error.reason) from None
+        except LinkwrightError as error:
+            if error.diagnostics[0].code != _MISSING_EXTRA:
+                raise
+            part = _plain_part(path)
+            self.colorless[path] = error
+            return [part]
+
+
+def _resolver(path: Path) -> object:
+    try:
+        return file_resolver(str(path))
+    except ModuleNotFoundError:
+        return None  # the reader reports the missing library
+
+
+def _plain_part(path: Path) -> MeshPart:
+    """Return a mesh file without its colours."""
+    mesh = read_mesh(path)
+    return MeshPart(Triangles(mesh.vertices, np.asarray(mesh.faces, np.int64).reshape(-1)), None)
+
+
+def shape_surface(shape: SimpleShape, texture: Texture | None = None) -> Surface:
+    """Return the surface of a primitive shape."""
+    if isinstance(shape, Box):
+        triangles = box(shape.size)
+    elif isinstance(shape, Cylinder):
+        triangles = cylinder(shape.radius, shape.length, ROUND_SIDES)
+    elif isinstance(shape, Capsule):
+        triangles = capsule(shape.radius, shape.length, ROUND_SIDES)
+    else:
+        triangles = sphere(shape.radius, ROUND_SIDES)
+    return Surface.of_triangles(triangles, texture)
+
+
+def surface_color(
+    file_material: FileMaterial | None, described: Color | None, *, is_textured: bool, is_grey: bool
+) -> Color:
+    """Return the colour of a surface by the rules of RViz.
+
+    Args:
+        file_material: the material in the mesh file, which precedes the description's.
+        described: the colour in the description, or None.
+        is_textured: whether the description sets a texture.
+        is_grey: whether the surface is that of a mesh file whose format has colours.
+    """
+    if file_material is not None:
+        return file_material.color
+    if is_textured:
+        return 1.0, 1.0, 1.0
+    if described is not None:
+        return described
+    return (UNCOLOURED,) * 3 if is_grey else DEFAULT_COLOR
+
+
+def _texture(part: MeshPart) -> Texture | None:
+    image = part.file_material.image if part.file_material is not None else None
+    return None if image is None or part.triangles.coordinates is None else decoded_texture(image)
+
+
+def decoded_texture(data: bytes) -> Texture | None:
+    """Return the pixels of an image file, or None if it cannot be decoded or Pillow is not installed."""
+    try:
+        from PIL import Image
+    except ModuleNotFoundError:
+        return None
+    try:
+        pixels: Texture = np.asarray(Image.open(BytesIO(data)).convert("RGB"), np.uint8)
+    except (OSError, ValueError, SyntaxError, Image.DecompressionBombError):
+        return None
+    factor = -(-max(pixels.shape[:2]) // _MAX_TEXTURE)
+    height, width = (pixels.shape[0] // factor) * factor, (pixels.shape[1] // factor) * factor
+    if factor == 1 or not height or not width:
+        return pixels
+    sums = np.zeros((height // factor, width // factor, 3), np.int64)
+    for row in range(factor):
+        for column in range(factor):
+            sums += pixels[row:height:factor, column:width:factor]
+    return np.asarray(sums // (factor * factor), np.uint8)

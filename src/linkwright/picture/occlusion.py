@@ -1,0 +1,97 @@
+"""Ambient occlusion: less light in corners and where parts are close to each other.
+
+For each pixel, points of the image around it are examined. A point that is above the tangent plane keeps light away.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import NDArray
+
+from linkwright.geometry.exact_angles import circle
+from linkwright.picture.camera import Camera
+from linkwright.picture.edges import box_sums
+from linkwright.picture.vectors import Floats
+
+_DIRECTIONS = 10
+_RINGS = (0.10, 0.28, 0.56, 1.0)
+"""The distances of the examined points, as parts of the reach."""
+_REACH = 0.085
+"""The reach in relation to the shorter side of the image."""
+_BIAS = 0.12
+"""The sine of the angle above the tangent plane from which a point keeps light away; rounded surfaces stay light."""
+_STRENGTH = 2.6
+_BLUR = 2
+"""The reach in pixels of the blur that hides the pattern of the examined points."""
+_STEPS = 4096
+_LEAST = 0.30
+"""The light that remains in the deepest corner."""
+
+
+def occlusion_reach(camera: Camera) -> int:
+    """Return the number of pixels around a pixel that its light depends on."""
+    return _examined_reach(camera) + _BLUR
+
+
+def _examined_reach(camera: Camera) -> int:
+    return max(2, round(_REACH * min(camera.size)))
+
+
+def ambient_light(depth: Floats, normals: Floats, is_seen: NDArray[np.bool_], camera: Camera) -> Floats:
+    """Return the light that reaches each pixel, from 0 to 1.
+
+    Args:
+        depth: the component along the camera's `toward` of the surface at each pixel, in m, shape (rows, columns).
+        normals: the unit normals of the surface along `right`, `up` and `toward`, shape (3, rows, columns).
+        is_seen: whether a surface is seen, shape (rows, columns).
+        camera: the camera.
+    """
+    metres = _metres_per_pixel(depth, camera)
+    reach = float(_examined_reach(camera))
+    blocked = np.zeros(depth.shape, np.float32)
+    for ring, part in enumerate(_RINGS):
+        for direction in range(_DIRECTIONS):
+            cosine, sine = circle(_DIRECTIONS * len(_RINGS))[direction * len(_RINGS) + ring]
+            shift = round(cosine * part * reach), round(sine * part * reach)
+            if shift != (0, 0):
+                _add_blocked(blocked, depth, normals, is_seen, metres, shift, reach)
+    light = 1.0 - blocked * (_STRENGTH / (_DIRECTIONS * len(_RINGS)))
+    steps = np.where(is_seen, np.rint(np.maximum(light, np.float32(_LEAST)) * _STEPS), 0.0).astype(np.int64)
+    count = np.maximum(box_sums(is_seen.astype(np.int64), _BLUR), 1)
+    ambient: Floats = (box_sums(steps, _BLUR) / (count * _STEPS)).astype(np.float32)
+    return ambient
+
+
+def _metres_per_pixel(depth: Floats, camera: Camera) -> Floats:
+    if not camera.distance:
+        return np.full(depth.shape, 1.0 / camera.scale, np.float32)
+    metres: Floats = (camera.distance - depth) * np.float32(1.0 / (camera.scale * camera.distance))
+    return metres
+
+
+def _add_blocked(
+    blocked: Floats,
+    depth: Floats,
+    normals: Floats,
+    is_seen: NDArray[np.bool_],
+    metres: Floats,
+    shift: tuple[int, int],
+    reach: float,
+) -> None:
+    """Add the light that points of the image at a distance, in pixels to the right and downward, keep away."""
+    across, down = shift
+    rows, columns = depth.shape
+    here = (slice(max(0, -down), min(rows, rows - down)), slice(max(0, -across), min(columns, columns - across)))
+    there = (slice(max(0, down), min(rows, rows + down)), slice(max(0, across), min(columns, columns + across)))
+    if here[0].stop <= here[0].start or here[1].stop <= here[1].start:
+        return
+    size = metres[here]
+    x, y = size * float(across), size * float(-down)
+    z = depth[there] - depth[here]
+    square = x * x + y * y + z * z
+    above = normals[0][here] * x + normals[1][here] * y + normals[2][here] * z
+    sine = above / np.sqrt(np.maximum(square, np.float32(1e-20)))
+    limit = size * float(1.6 * reach)
+    nearness = np.maximum(1.0 - square / (limit * limit), np.float32(0.0))
+    gain = np.maximum(sine - np.float32(_BIAS), np.float32(0.0)) * nearness
+    blocked[here] += np.where(is_seen[there], gain, np.float32(0.0))

@@ -1,0 +1,62 @@
+"""Lines around bodies that a reader should notice."""
+
+from __future__ import annotations
+
+from math import isqrt
+
+import numpy as np
+from numpy.typing import NDArray
+
+from linkwright.picture.bodies import Color
+from linkwright.picture.vectors import Floats
+
+_WIDTH = 2.2
+"""The width of an outline in pixels."""
+_TINT = np.float32(0.20)
+"""How strongly the body itself takes the colour."""
+
+
+def draw_outline(light: Floats, alpha: Floats, mask: NDArray[np.bool_], color: Color, per_pixel: int) -> None:
+    """Draw a line around a mask, and tint what is inside.
+
+    Args:
+        light: the light of samples multiplied by their opacity, shape (rows, width, 3), which is changed.
+        alpha: the opacity of samples, shape (rows, width), which is changed.
+        mask: the samples of the body, shape (rows, width).
+        color: the colour of the line.
+        per_pixel: the samples per pixel along a row.
+    """
+    reach = max(1, round(_WIDTH * per_pixel))
+    line = _dilated(mask, reach) & ~mask
+    paint = np.array(color, np.float32)
+    paint *= paint
+    light[mask] = light[mask] * (1 - _TINT) + paint * (alpha[mask] * _TINT)[:, None]
+    light[line] = paint
+    alpha[line] = 1.0
+
+
+def _dilated(mask: NDArray[np.bool_], reach: int) -> NDArray[np.bool_]:
+    """Return the samples within a distance of a mask."""
+    dilated = np.zeros_like(mask)
+    rows = len(mask)
+    widened: dict[int, NDArray[np.bool_]] = {}
+    for shift in range(-reach, reach + 1):
+        width = isqrt(reach * reach - shift * shift)
+        if width not in widened:
+            widened[width] = _widened(mask, width)
+        source = widened[width]
+        if shift >= 0:
+            dilated[shift:] |= source[: rows - shift]
+        else:
+            dilated[:shift] |= source[-shift:]
+    return dilated
+
+
+def _widened(mask: NDArray[np.bool_], reach: int) -> NDArray[np.bool_]:
+    """Return a mask that extends further along the rows on both sides."""
+    columns = mask.shape[1]
+    totals = np.zeros((len(mask), columns + 2 * reach + 1), np.int32)
+    totals[:, reach + 1 : reach + 1 + columns] = np.cumsum(mask, axis=1, dtype=np.int32)
+    totals[:, reach + 1 + columns :] = totals[:, reach + columns][:, None]
+    widened: NDArray[np.bool_] = totals[:, 2 * reach + 1 :] != totals[:, :columns]
+    return widened

@@ -1,0 +1,272 @@
+"""Rendering of a scene into the pixels of an image."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Literal
+
+import numpy as np
+from numpy.typing import NDArray
+
+from linkwright.picture.camera import VIEWS, Camera, View
+from linkwright.picture.edges import edge_strength
+from linkwright.picture.ground import GroundGrid, ground_points, is_ground_visible, shadow_map
+from linkwright.picture.labels import draw_labels
+from linkwright.picture.occlusion import ambient_light, occlusion_reach
+from linkwright.picture.outlines import draw_outline
+from linkwright.picture.rasterizer import NOTHING, DepthBuffer, ScreenTriangles, SeenTriangles
+from linkwright.picture.scene import Scene, camera_for
+from linkwright.picture.shading import Lights, Shader
+from linkwright.picture.vectors import Floats, Indices, along
+
+Image = NDArray[np.uint8]
+
+_PER_PIXEL, _PER_PIXEL_OF_LARGE = 3, 2
+"""The samples per pixel along a row, in images of usual and of large size."""
+_FILTERS = {2: (1, 3, 3, 1), 3: (1, 2, 3, 2, 1)}
+"""The weights of the samples along a row in a pixel, from the last sample of the pixel before, by samples per pixel."""
+_LARGE_IMAGE = 2_500_000
+_BAND_SAMPLES = 6_000_000
+"""The number of samples to render at once, approximately."""
+_LINE_REACH = 8
+"""The pixels around a pixel on which its lines depend."""
+_PEELED_LAYERS = 3
+"""The number of transparent surfaces that are drawn one behind the other."""
+_GHOST_ALPHA = 0.38
+_EDGE_LIGHT = 0.012
+_UPPER, _LOWER = (0.98, 0.984, 0.988), (0.87, 0.89, 0.914)
+"""The colours of the background at its upper and lower side."""
+
+
+@dataclass(frozen=True, slots=True)
+class Style:
+    """The parts of an image besides the bodies.
+
+    Attributes:
+        transparent: whether the background is transparent.
+        grid: whether to draw a grid on the ground.
+        labels: whose names to draw: those of links, of joints, or None for no names.
+    """
+
+    transparent: bool = False
+    grid: bool = False
+    labels: Literal["links", "joints"] | None = None
+
+
+def render(
+    scene: Scene,
+    view: View = VIEWS["iso"],
+    size: tuple[int, int] = (800, 600),
+    style: Style = Style(),
+    camera: Camera | None = None,
+) -> Image:
+    """Return the image of a scene.
+
+    Args:
+        scene: the bodies.
+        view: the direction from which the scene is seen.
+        size: the width and height in pixels.
+        style: the parts of the image besides the bodies.
+        camera: a camera, instead of the one that fits the scene into the image (see `camera_for`).
+
+    Returns:
+        Red, green, blue and alpha, not multiplied by it, shape (height, width, 4).
+    """
+    return _Renderer(scene, camera or camera_for(view, size, scene), style).image()
+
+
+class _Renderer:
+    def __init__(self, scene: Scene, camera: Camera, style: Style) -> None:
+        self._mesh = mesh = scene.mesh
+        self._camera = camera
+        self._style = style
+        self._width, self._height = camera.size
+        self._per_pixel = _PER_PIXEL if self._width * self._height <= _LARGE_IMAGE else _PER_PIXEL_OF_LARGE
+        x, y, nearness = camera.project(mesh.points)
+        self._screen = ScreenTriangles.of(x * self._per_pixel, y * self._per_pixel, nearness, mesh.faces)
+        self._range = (float(nearness.max()), float(nearness.min())) if len(nearness) else (1.0, 0.0)
+        lights = Lights.of(camera)
+        self._shader = Shader(mesh, self._screen, lights)
+        is_on_ground = is_ground_visible(camera)
+        self._shadow = shadow_map(mesh, lights.key) if is_on_ground else None
+        self._grid = GroundGrid.around(scene.points) if style.grid and is_on_ground else None
+        self._anchors = {None: (), "links": scene.labels.links, "joints": scene.labels.joints}[style.labels]
+        numbers = {id(body): number for number, body in enumerate(dict.fromkeys(mesh.bodies))}
+        self._body_numbers = np.array([numbers[id(body)] for body in mesh.bodies], np.int32)
+
+    def image(self) -> Image:
+        rows = max(1, _BAND_SAMPLES // (self._width * self._per_pixel**2))
+        bands = [self._band(first, min(first + rows, self._height)) for first in range(0, self._height, rows)]
+        light, alpha = (np.concatenate(arrays) for arrays in zip(*bands, strict=True))
+        draw_labels(light, alpha, self._anchors, self._camera)
+        return _quantised(light, alpha)
+
+    def _band(self, first: int, last: int) -> tuple[Floats, Floats]:
+        """Return light multiplied by opacity, and opacity, of the pixels of some rows."""
+        overlap = _LINE_REACH + occlusion_reach(self._camera)
+        upper, lower = max(0, first - overlap), min(self._height, last + overlap)
+        light, alpha = self._bodies(upper, lower)
+        kept = slice(first - upper, last - upper)
+        light, alpha = light[kept], alpha[kept]
+        light_below, alpha_below = self._ground(first, last)
+        rest = 1.0 - alpha
+        return light + light_below * rest[:, :, None], alpha + alpha_below * rest
+
+    # --- bodies ------------------------------------------------------------------------------------------------
+
+    def _bodies(self, upper: int, lower: int) -> tuple[Floats, Floats]:
+        """Return light multiplied by opacity, shape (rows, width, 3), and opacity, shape (rows, width), of pixels."""
+        mesh, scale = self._mesh, self._per_pixel
+        width = self._width * scale
+        opaque = DepthBuffer(width, upper * scale, lower * scale, *self._range)
+        opaque.add(self._screen, mesh.opaque)
+        rows = (lower - upper) * scale
+        light = np.zeros((rows, width, 3), np.float32)
+        alpha = np.zeros((rows, width), np.float32)
+        self._blend(light, alpha, opaque, has_corners=True)
+        transparent = mesh.transparent
+        if len(transparent):
+            for layer in reversed(self._peeled(transparent, opaque)):
+                self._blend(light, alpha, layer)
+        ghosts = mesh.ghosts
+        if len(ghosts):
+            layer = opaque.empty_copy()
+            layer.add(self._screen, ghosts, before=opaque)
+            self._blend(light, alpha, layer, opacity=_GHOST_ALPHA)
+        for color, triangles in mesh.outlined().items():
+            layer = opaque.empty_copy()
+            layer.add(self._screen, triangles)
+            draw_outline(light, alpha, (layer.keys != NOTHING).reshape(alpha.shape), color, scale)
+        return _filtered(light, scale), _filtered(alpha, scale)
+
+    def _peeled(self, transparent: Indices, opaque: DepthBuffer) -> list[DepthBuffer]:
+        """Return the transparent surfaces before the opaque ones, the nearest first."""
+        layers: list[DepthBuffer] = []
+        for _ in range(_PEELED_LAYERS):
+            layer = opaque.empty_copy()
+            layer.add(self._screen, transparent, behind=layers[-1] if layers else None, before=opaque)
+            if layer.is_empty:
+                break
+            layers.append(layer)
+        return layers
+
+    def _blend(
+        self,
+        light: Floats,
+        alpha: Floats,
+        buffer: DepthBuffer,
+        *,
+        opacity: float | None = None,
+        has_corners: bool = False,
+    ) -> None:
+        """Draw what a buffer shows over the light of samples and their opacity.
+
+        Args:
+            light: the light of samples multiplied by their opacity, which is changed.
+            alpha: the opacity of samples, which is changed.
+            buffer: the triangles.
+            opacity: the opacity; None for that of the materials.
+            has_corners: whether to draw corners darker.
+        """
+        seen = buffer.seen(self._per_pixel)
+        if seen is None:
+            return
+        shaded = self._shader.shade(seen)
+        lines = self._lines(seen, shaded.normals)
+        alphas = shaded.alpha if opacity is None else np.full(len(lines), opacity, np.float32)
+        alphas = alphas + (1.0 - alphas) * lines
+        colors = shaded.light
+        if has_corners:
+            colors *= self._ambient(seen, shaded.normals)[:, None]
+        colors *= ((1.0 - lines) * alphas)[:, None]
+        colors += (lines * alphas * _EDGE_LIGHT)[:, None]
+        rest = 1.0 - alphas
+        light, alpha = light[seen.window], alpha[seen.window]
+        light[seen.mask] = colors + light[seen.mask] * rest[:, None]
+        alpha[seen.mask] = alphas + alpha[seen.mask] * rest
+
+    def _ambient(self, seen: SeenTriangles, normals: Floats) -> Floats:
+        """Return the light that reaches samples, computed in the middle of each pixel."""
+        scale, camera = self._per_pixel, self._camera
+        middles = (slice(scale // 2, None, scale), slice(scale // 2, None, scale))
+        is_seen = seen.mask[middles]
+        nearness = np.zeros(seen.mask.shape, np.float32)
+        nearness[seen.mask] = self._range[0] - seen.distances * (self._range[0] - self._range[1])
+        depth = nearness[middles]
+        if camera.distance:
+            depth = (camera.distance - camera.distance / np.where(is_seen, depth, 1.0)).astype(np.float32)
+        turned = np.zeros((3, *is_seen.shape), np.float32)
+        at_middle = np.zeros(seen.mask.shape, dtype=bool)
+        at_middle[middles] = True
+        of_middles = normals[at_middle[seen.mask]]
+        for axis, direction in enumerate((camera.right, camera.up, camera.toward)):
+            turned[axis][is_seen] = along(of_middles, direction)
+        ambient = ambient_light(depth, turned, is_seen, camera)
+        spread: Floats = np.repeat(np.repeat(ambient, scale, axis=0), scale, axis=1)[seen.mask]
+        return spread
+
+    def _lines(self, seen: SeenTriangles, normals: Floats) -> Floats:
+        """Return how dark the lines are at samples."""
+        bodies = np.full(seen.mask.shape, -1, np.int32)
+        bodies[seen.mask] = self._body_numbers[self._mesh.parts[seen.triangles]]
+        distances = np.full(seen.mask.shape, 2.0, np.float32)
+        distances[seen.mask] = seen.distances
+        normal_grid = np.zeros((3, *seen.mask.shape), np.float32)
+        for axis in range(3):
+            normal_grid[axis][seen.mask] = normals[:, axis]
+        lines: Floats = edge_strength(distances, normal_grid, bodies, self._per_pixel)[seen.mask]
+        return lines
+
+    # --- ground ------------------------------------------------------------------------------------------------
+
+    def _ground(self, first: int, last: int) -> tuple[Floats, Floats]:
+        """Return light multiplied by opacity, and opacity, of the ground and background in some rows of pixels."""
+        shape = (last - first, self._width)
+        if self._style.transparent:
+            light, alpha = np.zeros((*shape, 3), np.float32), np.zeros(shape, np.float32)
+        else:
+            position = ((np.arange(first, last) + 0.5) / self._height)[:, None]
+            colors = np.array(_UPPER) + (np.array(_LOWER) - np.array(_UPPER)) * position
+            light = np.repeat((colors * colors)[:, None, :], self._width, axis=1).astype(np.float32)
+            alpha = np.ones(shape, np.float32)
+        if self._grid is not None:
+            self._grid.draw(light, alpha, self._camera, first)
+        if self._shadow is not None:
+            points = ground_points(self._camera, self._shadow.height, first, last)
+            darkness = self._shadow.at(points).reshape(shape)
+            light *= (1.0 - darkness)[:, :, None]
+            alpha += (1.0 - alpha) * darkness
+        return light, alpha
+
+
+def _filtered(samples: Floats, per_pixel: int) -> Floats:
+    """Return pixels from samples, shape (rows, columns, ...): weighted averages that reach into neighbouring pixels."""
+    return _filtered_rows(_filtered_rows(samples.swapaxes(0, 1), per_pixel).swapaxes(0, 1), per_pixel)
+
+
+def _filtered_rows(samples: Floats, per_pixel: int) -> Floats:
+    """Return weighted averages along the first axis, one for each pixel."""
+    count = len(samples) // per_pixel
+    weights = _FILTERS[per_pixel]
+    total = np.zeros((count, *samples.shape[1:]), np.float32)
+    for place, weight in enumerate(weights):
+        factor = np.float32(weight / sum(weights))
+        offset = place - 1
+        if offset < 0:
+            total[1:] += samples[per_pixel + offset :: per_pixel][: count - 1] * factor
+            total[0] += samples[0] * factor
+        elif offset < per_pixel:
+            total += samples[offset::per_pixel] * factor
+        else:
+            total[:-1] += samples[offset::per_pixel] * factor
+            total[-1] += samples[-1] * factor
+    return total
+
+
+def _quantised(light: Floats, alpha: Floats) -> Image:
+    """Return the pixels of light multiplied by opacity."""
+    image = np.empty((*alpha.shape, 4), np.uint8)
+    light = light / np.maximum(alpha, np.float32(1e-6))[:, :, None]
+    image[:, :, :3] = np.rint(np.sqrt(np.clip(light, 0.0, 1.0)) * 255.0)
+    image[:, :, 3] = np.rint(np.clip(alpha, 0.0, 1.0) * 255.0)
+    return image

@@ -1,0 +1,63 @@
+"""Scenes: what an image shows, and the cameras for them."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from functools import cached_property
+
+import numpy as np
+
+from linkwright.diagnostics import Diagnostic
+from linkwright.geometry.arrays import Array
+from linkwright.picture.bodies import Body, Labels
+from linkwright.picture.camera import Camera, View, fitting_camera
+from linkwright.picture.layers import Mesh
+
+
+class Scene:
+    """Bodies to render together.
+
+    Args:
+        bodies: the bodies.
+        problems: the findings about surfaces that are missing.
+        labels: the points that can have labels.
+
+    Attributes:
+        bodies: the bodies.
+        problems: the findings about surfaces that are missing.
+        labels: the points that can have labels.
+    """
+
+    def __init__(
+        self, bodies: Sequence[Body], problems: Sequence[Diagnostic] = (), labels: Labels | None = None
+    ) -> None:
+        self.bodies = tuple(bodies)
+        self.problems = tuple(problems)
+        self.labels = labels or Labels()
+
+    def __add__(self, other: Scene) -> Scene:
+        """Return a scene with the bodies of both scenes, and the labels of the first."""
+        return Scene((*self.bodies, *other.bodies), (*self.problems, *other.problems), self.labels)
+
+    @cached_property
+    def mesh(self) -> Mesh:
+        """The triangles of all bodies."""
+        return Mesh.of(self.bodies)
+
+    @property
+    def points(self) -> Array:
+        """The points that an image must show: all vertices, or the origins of the bodies if nothing is drawn."""
+        if len(self.mesh.points):
+            return self.mesh.points
+        return np.array([body.frame.position for body in self.bodies] or [(0.0, 0.0, 0.0)])
+
+
+def camera_for(view: View, size: tuple[int, int], *scenes: Scene) -> Camera:
+    """Return the camera that shows all scenes as large as possible, so that their images can be compared.
+
+    Args:
+        view: the direction of the camera.
+        size: the width and height of the image in pixels.
+        scenes: one scene or several.
+    """
+    return fitting_camera(view, size, [scene.points for scene in scenes])

@@ -1,0 +1,187 @@
+"""Light on surfaces: the colour of samples from normals, materials and lights.
+
+Colours are computed in proportion to light, which is taken as the square of the displayed value. That is close to sRGB,
+and unlike its power it has the same bits on every machine.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from linkwright.geometry.single import Vector3, add_vectors, scaled
+from linkwright.picture.camera import Camera
+from linkwright.picture.layers import Mesh
+from linkwright.picture.rasterizer import ScreenTriangles, SeenTriangles
+from linkwright.picture.vectors import Floats, Indices, along, unit_vector, unit_vectors
+
+_KEY, _FILL, _SKY, _GROUND, _SHINE, _RIM = 0.74, 0.14, 0.34, 0.14, 0.09, 0.05
+"""The strengths of the lights."""
+_WRAP = 0.35
+"""How far the strongest light reaches around a shape, so that no side is black."""
+_BATCH = 1 << 18
+
+
+@dataclass(frozen=True, slots=True)
+class Lights:
+    """The directions to the lights, which move with the camera so that each view is lit alike.
+
+    Attributes:
+        key: the direction to the strongest light, from the upper left of the camera.
+        fill: the direction to a weak light from the right.
+        toward: the direction to the camera.
+    """
+
+    key: Vector3
+    fill: Vector3
+    toward: Vector3
+
+    @classmethod
+    def of(cls, camera: Camera) -> Lights:
+        """Return the lights for a camera."""
+
+        def direction(right: float, up: float, toward: float, vertical: float) -> Vector3:
+            parts = add_vectors(scaled(camera.right, right), scaled(camera.up, up))
+            return unit_vector(add_vectors(add_vectors(parts, scaled(camera.toward, toward)), (0.0, 0.0, vertical)))
+
+        return cls(direction(-0.62, 0.30, 0.45, 0.55), direction(0.8, 0.1, 0.5, 0.1), camera.toward)
+
+
+@dataclass(frozen=True, slots=True)
+class Shaded:
+    """The colours of samples.
+
+    Attributes:
+        light: red, green and blue in proportion to light, shape (n, 3).
+        alpha: the opacity, shape (n,).
+        normals: the unit normals on the side of the camera, shape (n, 3).
+    """
+
+    light: Floats
+    alpha: Floats
+    normals: Floats
+
+
+class Shader:
+    """Computes the colours of samples.
+
+    Args:
+        mesh: the triangles of the scene.
+        screen: the same triangles on the grid of samples.
+        lights: the lights.
+    """
+
+    def __init__(self, mesh: Mesh, screen: ScreenTriangles, lights: Lights) -> None:
+        self._mesh = mesh
+        self._screen = screen
+        self._lights = lights
+        colors = mesh.colors
+        self._light = colors * colors
+        self._alphas = mesh.alphas
+        self._textures = mesh.textures
+        self._colored = {
+            index: surface.vertex_colors
+            for index, (surface, body) in enumerate(zip(mesh.surfaces, mesh.bodies, strict=True))
+            if surface.vertex_colors is not None and body.ghost is None
+        }
+        self._starts = np.cumsum([0, *(len(surface.points) for surface in mesh.surfaces)])
+
+    def shade(self, seen: SeenTriangles) -> Shaded:
+        """Return the colours of the samples at which triangles are seen."""
+        table, rows = self._table(seen.triangles)
+        parts = [
+            self._shade(seen.x[part], seen.y[part], seen.triangles[part], table, rows[part])
+            for part in (slice(start, start + _BATCH) for start in range(0, len(rows), _BATCH))
+        ]
+        return Shaded(
+            np.concatenate([part.light for part in parts]),
+            np.concatenate([part.alpha for part in parts]),
+            np.concatenate([part.normals for part in parts]),
+        )
+
+    def _table(self, triangles: Indices) -> tuple[Floats, Indices]:
+        """Return what samples need of each visible triangle, and the row of each sample's triangle.
+
+        The columns are: the corner, the gradients of two barycentric coordinates, a normal and its two differences.
+        """
+        is_visible = np.zeros(len(self._mesh.faces), dtype=bool)
+        is_visible[triangles] = True
+        visible = np.flatnonzero(is_visible)
+        row_of = np.zeros(len(is_visible), np.int64)
+        row_of[visible] = np.arange(len(visible))
+        x, y = self._screen.x[visible], self._screen.y[visible]
+        x1, y1, x2, y2 = x[:, 1] - x[:, 0], y[:, 1] - y[:, 0], x[:, 2] - x[:, 0], y[:, 2] - y[:, 0]
+        area = x1 * y2 - x2 * y1
+        inverse = np.where(np.abs(area) > 1e-9, 1.0, 0.0) / np.where(np.abs(area) > 1e-9, area, 1.0)
+        normals = self._mesh.normals[self._mesh.faces[visible]] * np.where(area > 0, -1.0, 1.0)[:, None, None]
+        table = np.empty((len(visible), 15), np.float32)
+        table[:, 0], table[:, 1] = x[:, 0], y[:, 0]
+        table[:, 2], table[:, 3] = y2 * inverse, -x2 * inverse
+        table[:, 4], table[:, 5] = -y1 * inverse, x1 * inverse
+        table[:, 6:9] = normals[:, 0]
+        table[:, 9:12] = normals[:, 1] - normals[:, 0]
+        table[:, 12:15] = normals[:, 2] - normals[:, 0]
+        return table, row_of[triangles]
+
+    def _shade(self, x: Floats, y: Floats, triangles: Indices, table: Floats, rows: Indices) -> Shaded:
+        values = table[rows]
+        x, y = x - values[:, 0], y - values[:, 1]
+        second = np.clip(values[:, 2] * x + values[:, 3] * y, 0.0, 1.0)
+        third = np.clip(values[:, 4] * x + values[:, 5] * y, 0.0, 1.0)
+        normals = values[:, 6:9] + second[:, None] * values[:, 9:12] + third[:, None] * values[:, 12:15]
+        normals = unit_vectors(normals)
+        parts = self._mesh.parts[triangles]
+        albedo = self._albedo(triangles, parts, second, third)
+        return Shaded(self._lit(albedo, normals), self._alphas[parts], normals)
+
+    def _lit(self, albedo: Floats, normals: Floats) -> Floats:
+        lights = self._lights
+        facing = np.maximum(along(normals, lights.toward), 0.0)
+        key = np.maximum((along(normals, lights.key) + _WRAP) / (1.0 + _WRAP), 0.0)
+        key = (key + key * key) * 0.5  # without a visible border between light and shade
+        fill = along(normals, lights.fill) * 0.5 + 0.5
+        sky = (normals[:, 2] + 1.0) * 0.5
+        diffuse = _KEY * key + _FILL * fill * fill + (_GROUND + (_SKY - _GROUND) * sky)
+        shine = np.maximum(along(normals, unit_vector(add_vectors(lights.key, lights.toward))), 0.0)
+        for _ in range(5):
+            shine = shine * shine
+        away = 1.0 - facing
+        rim = away * away * away * sky
+        extra = _SHINE * shine + _RIM * rim
+        lit: Floats = albedo * diffuse[:, None] + extra[:, None]
+        return lit
+
+    def _albedo(self, triangles: Indices, parts: Indices, second: Floats, third: Floats) -> Floats:
+        """Return the colours of the materials, in proportion to light."""
+        albedo = self._light[parts]
+        for index, texture in self._textures.items():
+            selected = np.flatnonzero(parts == index)
+            coordinates = self._mesh.surfaces[index].coordinates
+            if len(selected) and coordinates is not None:
+                u, v = self._interpolated(coordinates, index, triangles[selected], second[selected], third[selected]).T
+                height, width = texture.shape[:2]
+                columns = np.clip(np.floor((u - np.floor(u)) * width), 0, width - 1).astype(np.int64)
+                rows = np.clip(np.floor((v - np.floor(v)) * height), 0, height - 1).astype(np.int64)
+                texels = texture[rows, columns].astype(np.float32) * (1.0 / 255.0)
+                albedo[selected] *= texels * texels
+        for index, colors in self._colored.items():
+            selected = np.flatnonzero(parts == index)
+            if len(selected):
+                mixed = self._interpolated(colors, index, triangles[selected], second[selected], third[selected])
+                albedo[selected] *= (mixed * mixed).astype(np.float32)
+        return albedo
+
+    def _interpolated(
+        self, values: NDArray[np.float64], part: int, triangles: Indices, second: Floats, third: Floats
+    ) -> NDArray[np.float64]:
+        """Return values at vertices of a surface, interpolated at samples."""
+        corners = values[self._mesh.faces[triangles] - self._starts[part]]
+        first_values = corners[:, 0]
+        mixed: NDArray[np.float64] = (
+            first_values
+            + second[:, None] * (corners[:, 1] - first_values)
+            + third[:, None] * (corners[:, 2] - first_values)
+        )
+        return mixed

@@ -1,0 +1,127 @@
+"""Normals of triangle meshes: smooth over curved surfaces, and sharp at creases."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from linkwright.geometry.arrays import Array
+from linkwright.picture.vectors import (
+    Indices,
+    cross_products,
+    dot_products,
+    expanded,
+    sums_by_index,
+    unit_vectors,
+)
+
+CREASE_COSINE = 0.8
+"""Triangles at a larger angle to each other, about 37 degrees, meet at a crease."""
+_WELDED_STEPS = (1 << 20) - 1
+"""Corners that agree in this fraction of the mesh's extent are one."""
+_MAX_NEIGHBOURS = 48
+"""The largest number of triangles at a creased corner to compare with each other; beyond, their shading is flat."""
+_NORMAL_GRID = 4096.0
+"""Components of normals are multiples of 1 / _NORMAL_GRID."""
+
+
+@dataclass(frozen=True, slots=True)
+class SmoothMesh:
+    """A mesh whose vertices have one normal each.
+
+    Attributes:
+        sources: the index of each vertex in the mesh that it comes from, shape (n,).
+        normals: the unit normal of each vertex, shape (n, 3).
+        faces: the triangles, as indices of vertices, shape (m, 3).
+    """
+
+    sources: Indices
+    normals: Array
+    faces: Indices
+
+
+def smooth_mesh(points: Array, faces: Indices, *, merged: bool = True) -> SmoothMesh:
+    """Split the vertices of a mesh at its creases, and compute their normals.
+
+    Args:
+        points: the corners, shape (n, 3); corners at the same place count as one.
+        faces: the triangles, shape (m, 3).
+        merged: whether corners at the same place become one vertex; false if they differ in texture coordinates or
+            colours.
+    """
+    corners = faces.reshape(-1)
+    places = _welded_points(points)
+    welded = places[corners]
+    face_normals, weights = _corner_weights(points, faces)
+    count = int(welded.max()) + 1
+    of_corners = np.repeat(np.arange(len(faces)), 3)
+    means = unit_vectors(sums_by_index(welded, face_normals[of_corners] * weights[:, None], count))
+    is_smooth_corner = dot_products(face_normals[of_corners], means[welded]) >= CREASE_COSINE
+    is_rough = np.zeros(count, dtype=bool)
+    is_rough[welded[~is_smooth_corner]] = True
+    rough_corners = np.flatnonzero(is_rough[welded])
+    rough_normals = _creased_normals(rough_corners, welded, face_normals, weights)
+    # Smooth vertices come first, then a vertex for each rough corner.
+    groups = welded if merged else corners
+    sources_of_groups = np.full(count if merged else len(points), -1)
+    sources_of_groups[groups[::-1]] = corners[::-1]
+    sources_of_groups[groups[rough_corners]] = -1
+    smooth_groups = np.flatnonzero(sources_of_groups >= 0)
+    new_index = np.zeros(len(sources_of_groups), dtype=np.int64)
+    new_index[smooth_groups] = np.arange(len(smooth_groups))
+    new_faces = new_index[groups]
+    new_faces[rough_corners] = len(smooth_groups) + np.arange(len(rough_corners))
+    sources = np.concatenate((sources_of_groups[smooth_groups], corners[rough_corners]))
+    normals = np.concatenate((means[places[sources_of_groups[smooth_groups]]], rough_normals))
+    return SmoothMesh(sources, np.rint(normals * _NORMAL_GRID) / _NORMAL_GRID, new_faces.reshape(-1, 3))
+
+
+def _welded_points(points: Array) -> Indices:
+    """Return a number for each point, which is the same for points at the same place."""
+    low = points.min(axis=0)
+    extent = float((points.max(axis=0) - low).max())
+    steps = np.rint((points - low) * (_WELDED_STEPS / extent if extent > 0 else 0.0)).astype(np.int64)
+    keys = (steps[:, 0] << 42) | (steps[:, 1] << 21) | steps[:, 2]
+    return np.asarray(np.unique(keys, return_inverse=True)[1], dtype=np.int64).reshape(-1)
+
+
+def _corner_weights(points: Array, faces: Indices) -> tuple[Array, Array]:
+    """Return the unit normals of triangles, and the weight of each triangle in the normals at its corners, flat.
+
+    The weights are those of N. Max, "Weights for computing vertex normals from facet normals" (1999): for points on a
+    sphere the normals are exact, and how a rectangle is split into triangles does not matter.
+    """
+    sides = [points[faces[:, (corner + 1) % 3]] - points[faces[:, corner]] for corner in range(3)]
+    squares = [dot_products(side, side) for side in sides]
+    areas = cross_products(sides[0], sides[1])
+    normals = unit_vectors(areas)
+    doubled = dot_products(areas, normals)
+    weights = np.empty(faces.shape)
+    for corner in range(3):
+        divisor = squares[corner] * squares[(corner + 2) % 3]
+        weights[:, corner] = np.where(divisor > 0, doubled / np.where(divisor > 0, divisor, 1.0), 0.0)
+    return normals, weights.reshape(-1)
+
+
+def _creased_normals(rough_corners: Indices, welded: Indices, face_normals: Array, weights: Array) -> Array:
+    """Return a normal for each corner at a crease: the mean of the triangles around it that it meets smoothly."""
+    faces = rough_corners // 3
+    places = welded[rough_corners]
+    order = np.argsort(places, kind="stable")
+    sorted_places = places[order]
+    starts = np.searchsorted(sorted_places, sorted_places, side="left")
+    neighbour_counts = np.searchsorted(sorted_places, sorted_places, side="right") - starts
+    neighbour_counts[neighbour_counts > _MAX_NEIGHBOURS] = 0
+    weighted = face_normals[faces[order]] * weights[rough_corners[order], None]
+    sums = weighted.copy()
+    items, numbers = expanded(neighbour_counts)
+    others = starts[items] + numbers
+    own_faces, other_faces = faces[order][items], faces[order][others]
+    meets = (own_faces != other_faces) & (
+        dot_products(face_normals[own_faces], face_normals[other_faces]) >= CREASE_COSINE
+    )
+    sums += sums_by_index(items[meets], weighted[others[meets]], len(order))
+    normals = np.empty_like(sums)
+    normals[order] = unit_vectors(sums)
+    return normals

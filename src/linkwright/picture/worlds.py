@@ -1,0 +1,162 @@
+"""Scenes of worlds and models in SDF."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import replace
+from pathlib import Path
+
+from linkwright.diagnostics import Diagnostic, LinkwrightError, Phrase, Severity, phrase
+from linkwright.geometry.shapes import Box, Capsule, Cylinder, Placement, Sphere
+from linkwright.geometry.single import IDENTITY, Transform, normalized, rotation_matrix
+from linkwright.geometry.surfaces import cone
+from linkwright.picture.bodies import Anchor, Body, Labels, Surface, Texture
+from linkwright.picture.materials import ROUND_SIDES, SurfaceLibrary, decoded_texture, shape_surface
+from linkwright.picture.scene import Scene
+from linkwright.sdf.frames import FrameError, Frames, PlacedLink, links_of, placed_links
+from linkwright.sdf.links import Visual
+from linkwright.sdf.resources import Missing, ResourceFinder
+from linkwright.sdf.scripts import appearance
+from linkwright.sdf.shapes import Cone, Ellipsoid, Empty, Mesh, Plane, Shape
+from linkwright.sdf.worlds import Sdf
+
+_DEFAULT_COLOR = (0.7, 0.7, 0.7, 1.0)
+"""The colour of shapes without a material: grey, as in Gazebo."""
+_POSE_GRID = float(1 << 36)
+"""Poses are rounded to multiples of 1 / _POSE_GRID, as sines differ between machines in the last bits."""
+
+
+def world_scene(sdf: Sdf, finder: ResourceFinder, *, library: SurfaceLibrary | None = None) -> Scene:
+    """Return the scene of the visuals of a world, or of the models in a file.
+
+    Planes are left out: a plane is the ground of an image. Heightmaps and extruded polygons are left out with a
+    finding.
+
+    Args:
+        sdf: the world, with its includes resolved.
+        finder: finds meshes and textures.
+        library: the meshes that were already read, to share them between scenes.
+
+    Raises:
+        FrameError: a link cannot be placed.
+    """
+    reader = _WorldReader(library or SurfaceLibrary(), finder)
+    bodies, anchors = [], []
+    for placed_link in _placed_links(sdf):
+        frame = _placement(placed_link.pose)
+        bodies.append(Body(placed_link.name, frame, tuple(reader.surfaces(placed_link))))
+        anchors.append(Anchor(placed_link.name, frame.position))
+    return Scene(bodies, reader.problems, Labels(tuple(anchors)))
+
+
+def _placed_links(sdf: Sdf) -> Iterator[PlacedLink]:
+    for world in sdf.worlds[:1]:
+        yield from placed_links(world)
+    if not sdf.worlds:
+        for model in sdf.models:
+            yield from links_of(model, Frames(model), IDENTITY, model.name)
+
+
+def _placement(pose: Transform) -> Placement:
+    x, y, z, *quaternion = (round(value * _POSE_GRID) / _POSE_GRID for value in pose)
+    return Placement(rotation_matrix(normalized(*quaternion)), (x, y, z))
+
+
+class _WorldReader:
+    """Converts visuals of SDF to surfaces.
+
+    Attributes:
+        problems: the findings about visuals that are drawn incompletely.
+    """
+
+    def __init__(self, library: SurfaceLibrary, finder: ResourceFinder) -> None:
+        self.problems: list[Diagnostic] = []
+        self._library = library
+        self._finder = finder
+
+    def surfaces(self, placed_link: PlacedLink) -> Iterator[Surface]:
+        """Yield the surfaces of a link's visuals, in the link's frame."""
+        link, frames = placed_link.link, placed_link.frames
+        for visual in link.visuals:
+            try:
+                frame = _placement(frames.in_link(visual.pose, link.name))
+            except FrameError:
+                continue  # the check of references reports it
+            for surface in self._visual(placed_link.name, visual):
+                placed = surface.placed(frame)
+                if placed.is_in_range:
+                    yield placed
+                else:
+                    self._add_incomplete(placed_link.name, phrase("a coordinate is out of range"))
+
+    def _visual(self, link: str, visual: Visual) -> Iterator[Surface]:
+        color, image = appearance(visual.material) if visual.material else (None, "")
+        red, green, blue, alpha = color or _DEFAULT_COLOR
+        alpha *= 1.0 - visual.transparency
+        texture = self._texture(link, visual, image) if image else None
+        if texture is not None:
+            red = green = blue = 1.0
+        geometry = visual.geometry
+        if isinstance(geometry, Mesh):
+            for surface, has_material in self._mesh(link, visual, geometry):
+                keeps_color = has_material and color is None and not image
+                yield surface.colored(surface.color if keeps_color else (red, green, blue), alpha)
+            return
+        simple = self._simple(link, geometry, texture)
+        if simple is not None:
+            yield simple.colored((red, green, blue), alpha)
+
+    def _simple(self, link: str, shape: Shape, texture: Texture | None) -> Surface | None:
+        if isinstance(shape, Box | Cylinder | Capsule | Sphere):
+            return shape_surface(shape, texture)
+        if isinstance(shape, Ellipsoid):
+            return shape_surface(Sphere(1.0), texture).scaled(shape.radii)
+        if isinstance(shape, Cone):
+            return Surface.of_triangles(cone(shape.radius, shape.length, ROUND_SIDES), texture)
+        if not isinstance(shape, Plane | Empty):
+            self._add_incomplete(link, phrase("its shape is neither a mesh nor a simple shape"))
+        return None
+
+    def _mesh(self, link: str, visual: Visual, mesh: Mesh) -> Iterator[tuple[Surface, bool]]:
+        path = self._file(visual, mesh.uri)
+        if isinstance(path, Missing):
+            self._add_incomplete(link, path.reason, path.hint)
+            return
+        try:
+            parts = self._library.read(path, has_names=mesh.submesh is not None)
+        except LinkwrightError as error:
+            self._add_incomplete(link, error.diagnostics[0].message, error.diagnostics[0].hint)
+            return
+        submesh = mesh.submesh
+        for part in parts:
+            if submesh is not None and submesh.name not in part.names:
+                continue
+            surface, file_material = part.surface, part.file_material
+            if submesh is not None and submesh.center:
+                middle = (surface.points.min(axis=0) + surface.points.max(axis=0)) / 2
+                surface = replace(surface, points=surface.points - middle)
+            own_color = (1.0, 1.0, 1.0) if file_material is None else file_material.color
+            yield surface.scaled(mesh.scale).colored(own_color, 1.0), file_material is not None
+
+    def _texture(self, link: str, visual: Visual, address: str) -> Texture | None:
+        path = self._file(visual, address)
+        try:
+            texture = None if isinstance(path, Missing) else decoded_texture(path.read_bytes())
+        except OSError:
+            texture = None
+        if texture is None:
+            message = phrase("link '{link}' is drawn without its texture '{name}'", link=link, name=address)
+            self._add(Diagnostic("PIC102", message, severity=Severity.WARNING))
+        return texture
+
+    def _file(self, visual: Visual, address: str) -> Path | Missing:
+        source = visual.element.source if visual.element is not None else None
+        return self._finder.file(address, Path.cwd() if source is None else Path(source.name).parent)
+
+    def _add_incomplete(self, link: str, reason: Phrase, hint: Phrase | None = None) -> None:
+        message = phrase("link '{link}' is drawn incompletely: {reason}", link=link, reason=reason)
+        self._add(Diagnostic("PIC101", message, severity=Severity.WARNING, hint=hint))
+
+    def _add(self, problem: Diagnostic) -> None:
+        if problem not in self.problems:
+            self.problems.append(problem)

@@ -1,0 +1,299 @@
+"""The search for the commit that changed a robot, by halving the history as git does."""
+
+from __future__ import annotations
+
+import subprocess
+from collections.abc import Callable, Hashable, Iterator, Mapping, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+
+import numpy as np
+
+from linkwright.descriptions.comparison import Comparison, Difference
+from linkwright.descriptions.pairs import Model, Pair
+from linkwright.descriptions.revisions import CommitFiles
+from linkwright.diagnostics import (
+    Diagnostic,
+    LinkwrightError,
+    Note,
+    Phrase,
+    counted,
+    did_you_mean,
+    display_path,
+    foreign,
+    phrase,
+)
+from linkwright.files.git_repository import GitRepository
+from linkwright.kinematics import KinematicTree
+from linkwright.review.descriptions import sentence_of_difference
+from linkwright.urdf import Robot
+
+_SKIPPED_STATUS = 125
+"""The exit status with which a command says that it cannot judge a commit, as for ``git bisect run``."""
+_TOLERANCE = 1e-6
+"""The difference in m, and between the entries of rotation matrices, up to which a link has not moved."""
+
+Outcome = Hashable
+"""The result of a check of a commit."""
+
+
+class UndecidedError(Exception):
+    """Raised by a check that cannot judge a commit, for example because the description cannot be expanded."""
+
+
+@dataclass(frozen=True)
+class Found:
+    """The first commit with the outcome of the newest one.
+
+    Attributes:
+        commit: the hash.
+        before: the hash of a commit before it with another outcome: its first parent, or the last one that was judged.
+        title: the short hash, date, author and subject.
+        undecided: the number of commits that could not be judged, one of which may be the first.
+    """
+
+    commit: str
+    before: str
+    title: str
+    undecided: int
+
+
+class History:
+    """The commits of a file's repository.
+
+    Args:
+        file: a file of the working tree.
+        old: the oldest commit in git's notation; empty for the first commit of the file.
+        new: the newest commit in git's notation.
+
+    Attributes:
+        old: the hash of the oldest commit.
+        new: the hash of the newest commit.
+
+    Raises:
+        LinkwrightError: CLI341 to CLI344, git cannot find the repository, a commit, or the file in a commit.
+    """
+
+    def __init__(self, file: Path, old: str, new: str) -> None:
+        real_path = file.resolve()
+        hint = phrase("`linkwright bisect` searches the commits of a git repository")
+        self._repository = GitRepository(real_path.parent, display_path(file), hint, downloads_lfs=False)
+        self.new = self._repository.commit(new)
+        self._names = self._names_of(real_path.relative_to(self._repository.root).as_posix())
+        self.old = self._repository.commit(old) if old else self._first_commit()
+        for commit, name in ((self.old, old), (self.new, new)):
+            if self.name_in(commit) is None:
+                message = phrase("commit '{name}' has no file '{inside}'", name=name or commit, inside=self._names[0])
+                raise LinkwrightError(Diagnostic("CLI344", message))
+
+    def name_in(self, commit: str) -> str | None:
+        """Return the name that the file has in a commit, relative to the root, or None if it does not exist."""
+        return next((name for name in self._names if self._repository.contains(commit, name)), None)
+
+    def files(self, commit: str) -> CommitFiles:
+        """Return the files of a commit. The caller closes them."""
+        return CommitFiles(self._repository, commit, commit[:9], must_be_complete=False)
+
+    def search(self, judge: Callable[[str], Outcome], on_step: Callable[[int], object]) -> Found | None:
+        """Return the first commit with the outcome of the newest one, or None if the oldest one has it already.
+
+        Args:
+            judge: a function that returns the outcome of a commit, and raises `UndecidedError` if it cannot.
+            on_step: called before each step with the number of commits among which the first one is.
+
+        Raises:
+            LinkwrightError: REV113, the oldest or the newest commit cannot be judged.
+        """
+        try:
+            outcome = judge(self.new)
+            is_unchanged = judge(self.old) == outcome
+        except UndecidedError as error:
+            raise self._undecided_end(error) from error.__cause__
+        if is_unchanged:
+            return None
+        first, earlier = self.new, [self.old]
+        undecided: set[str] = set()
+        while True:
+            candidates = self._candidates(first, earlier)
+            on_step(len(candidates) + 1)
+            commit = next((candidate for candidate in candidates if candidate not in undecided), None)
+            if commit is None:
+                parent = self._repository.resolve(f"{first}^")
+                before = parent if parent in earlier else earlier[-1]
+                return Found(first, before, self._title(first), len(undecided & set(candidates)))
+            try:
+                has_outcome = judge(commit) == outcome
+            except UndecidedError:
+                undecided.add(commit)
+                continue
+            if has_outcome:
+                first = commit
+            else:
+                earlier.append(commit)
+
+    def _undecided_end(self, error: UndecidedError) -> LinkwrightError:
+        """Return the error for an oldest or newest commit that cannot be judged."""
+        cause = error.__cause__
+        notes = (
+            tuple(Note(finding.message) for finding in cause.diagnostics) if isinstance(cause, LinkwrightError) else ()
+        )
+        message = phrase("the oldest or the newest commit cannot be judged")
+        hint = phrase("name commits that can be judged with `--old` and `--new`")
+        return LinkwrightError(Diagnostic("REV113", message, notes=notes, hint=hint))
+
+    def _candidates(self, first: str, earlier: Sequence[str]) -> list[str]:
+        """Return the commits that may be the first one besides `first`, those in the middle of the history first."""
+        excluded = [f"^{commit}" for commit in earlier]
+        lines = self._repository.run("rev-list", "--bisect-all", first, *excluded).stdout.splitlines()
+        return [commit for commit in (line.split(" ")[0] for line in lines) if commit != first]
+
+    def _title(self, commit: str) -> str:
+        return self._repository.run("log", "--max-count=1", "--format=%h %as %an: %s", commit).stdout.strip()
+
+    def _names_of(self, name: str) -> list[str]:
+        """Return the names that the file has had, the newest first."""
+        arguments = ("log", "--follow", "--name-only", "--format=", "--", name)
+        names = self._repository.run(*arguments).stdout.splitlines()
+        return list(dict.fromkeys([name, *filter(None, names)]))
+
+    def _first_commit(self) -> str:
+        commits = self._repository.run("log", "--follow", "--format=%H", "--", self._names[0]).stdout.split()
+        return commits[-1] if commits else self.new
+
+
+# --- checks ----------------------------------------------------------------------------------------------------------
+
+
+class PartCheck:
+    """A check whether a link or joint is the same as in the newest commit.
+
+    Args:
+        history: the commits.
+        values: the values of the description's arguments.
+        name: the name of the link or joint.
+
+    Raises:
+        LinkwrightError: the newest commit's description cannot be read; REV111, it has no such link or joint.
+    """
+
+    def __init__(self, history: History, values: Mapping[str, str], name: str) -> None:
+        self._history = history
+        self._values = values
+        self._name = name
+        self._new_files = history.files(history.new)
+        try:
+            self._new = self._model(self._new_files, history.new)
+            self._robot = self._new.read_robot()
+            _require_part(self._robot, name)
+        except BaseException:
+            self.close()
+            raise
+
+    def close(self) -> None:
+        """Remove the files of the newest commit."""
+        self._new_files.close()
+
+    def __call__(self, commit: str) -> Outcome:
+        """Return whether the link or joint is the same in a commit as in the newest one."""
+        return not self.differences(commit)
+
+    def differences(self, commit: str) -> list[Difference | Phrase]:
+        """Return the differences of the link or joint between a commit and the newest one.
+
+        Raises:
+            UndecidedError: the description of the commit cannot be read.
+        """
+        files = self._history.files(commit)
+        try:
+            old = self._model(files, commit)
+            robot = old.read_robot()
+            comparison = Pair(old, self._new).compare(robot, self._robot)
+            return list(self._relevant(comparison, robot))
+        except LinkwrightError as error:
+            raise UndecidedError from error
+        finally:
+            files.close()
+
+    def _relevant(self, comparison: Comparison, old: Robot) -> Iterator[Difference | Phrase]:
+        for difference in comparison.differences:
+            is_renamed = difference.kind == "renamed" and difference.old == self._name
+            if difference.subject in ("link", "joint") and (difference.name == self._name or is_renamed):
+                yield difference
+        if self._name in self._robot.links and self._name in old.links:
+            old_frame, new_frame = (_frame(robot, self._name) for robot in (old, self._robot))
+            if not np.allclose(old_frame, new_frame, rtol=0.0, atol=_TOLERANCE):
+                distance = float(np.linalg.norm(old_frame[:3, 3] - new_frame[:3, 3]))
+                yield phrase("link '{name}': moved by {distance:.4g} m", name=self._name, distance=distance)
+
+    def _model(self, files: CommitFiles, commit: str) -> Model:
+        name = self._history.name_in(commit)
+        if name is None:
+            raise UndecidedError
+        path = files.root / name
+        return Model(path, self._values, files.finder(path.parent), files)
+
+
+def _require_part(robot: Robot, name: str) -> None:
+    names = [*robot.links, *robot.joints]
+    if name not in names:
+        message = phrase("the robot has no link or joint '{name}'", name=name)
+        hint = did_you_mean(name, names) or phrase("a command has more than one word: `-- check_urdf FILE`")
+        raise LinkwrightError(Diagnostic("REV111", message, hint=hint))
+
+
+def _frame(robot: Robot, link: str) -> np.ndarray[tuple[int, ...], np.dtype[np.float64]]:
+    """Return the frame of a link in the root link's frame with all joints at position 0, shape (4, 4)."""
+    tree = KinematicTree(robot)
+    frames = tree.forward({})
+    return np.asarray(frames[tree.link_index(link)])
+
+
+@dataclass(frozen=True)
+class CommandCheck:
+    """A check by a command that runs in the folder with the files of a commit.
+
+    Attributes:
+        history: the commits.
+        words: the command; the word ``FILE`` is replaced by the path of the description.
+    """
+
+    history: History
+    words: Sequence[str]
+
+    def __call__(self, commit: str) -> Outcome:
+        """Return whether the command succeeds in a commit.
+
+        Raises:
+            UndecidedError: the command exits with status 125, or the commit does not contain the file.
+            LinkwrightError: REV112, the command cannot be started.
+        """
+        name = self.history.name_in(commit)
+        if name is None:
+            raise UndecidedError
+        files = self.history.files(commit)
+        try:
+            command = [str(files.root / name) if word == "FILE" else word for word in self.words]
+            result = subprocess.run(command, cwd=files.root, check=False, stdout=subprocess.DEVNULL)  # noqa: S603 - the user's command
+        except OSError as error:
+            reason = foreign(error.strerror or str(error))
+            message = phrase("cannot start '{command}': {reason}", command=self.words[0], reason=reason)
+            raise LinkwrightError(Diagnostic("REV112", message)) from None
+        finally:
+            files.close()
+        if result.returncode == _SKIPPED_STATUS:
+            raise UndecidedError
+        return result.returncode == 0
+
+
+def difference_text(difference: Difference | Phrase) -> Phrase:
+    """Return a difference in one line."""
+    return difference if isinstance(difference, Phrase) else sentence_of_difference(difference)
+
+
+def undecided_text(count: int) -> Phrase:
+    """Return the line about commits that could not be judged."""
+    return counted(
+        "one commit before it cannot be judged and may be the first",
+        "{count} commits before it cannot be judged, and one of them may be the first",
+        count,
+    )

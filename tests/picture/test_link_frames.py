@@ -1,0 +1,40 @@
+"""Frames of links, compared with those of the kinematics."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from linkwright.descriptions import load
+from linkwright.kinematics import KinematicTree, UnknownNameError
+from linkwright.picture.link_frames import link_frames
+from tests.picture.test_same_pixels import ARM, MBOT
+from tests.places import REPOSITORY
+
+ROBOTS = [ARM, MBOT, REPOSITORY / "robots" / "my_robot_description" / "urdf" / "mbot_with_laser.urdf"]
+
+
+@pytest.mark.parametrize("source", ROBOTS, ids=["arm", "kinect", "laser"])
+def test_frames_are_those_of_the_kinematics(source: str) -> None:
+    robot = load(source)
+    tree = KinematicTree(robot)
+    positions = {name: 0.5 + 0.3 * number for number, name in enumerate(tree.joint_names)}
+    frames = link_frames(robot, positions)
+    assert set(frames) == set(tree.link_names)
+    for name, matrix in zip(tree.link_names, tree.forward(positions), strict=True):
+        np.testing.assert_allclose(frames[name].rotation, matrix[:3, :3], atol=1e-10)
+        np.testing.assert_allclose(frames[name].position, matrix[:3, 3], atol=1e-10)
+
+
+def test_a_joint_that_cannot_be_at_0_starts_in_the_middle_of_its_limits() -> None:
+    robot = load(ARM)
+    started, given = link_frames(robot, {}), link_frames(robot, {"bend": 1.2})
+    assert started == given
+
+
+def test_an_unknown_joint_and_one_that_mimics_are_refused() -> None:
+    robot = load(ARM)
+    with pytest.raises(UnknownNameError, match="no joint 'elbow'"):
+        link_frames(robot, {"elbow": 1.0})
+    with pytest.raises(UnknownNameError, match="independent joint 'slide'"):
+        link_frames(robot, {"slide": 1.0})

@@ -1,0 +1,213 @@
+"""What is seen in an image."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from linkwright.picture.camera import VIEWS, View
+from linkwright.picture.rendering import Style, render
+from linkwright.picture.robots import GHOST_COLOR, OUTLINE_COLOR
+from linkwright.picture.scene import Scene, camera_for
+from tests.picture.robots import BLUE, GREEN, RED, image, joint, link, mostly, scene, urdf
+
+BOX = '<box size="1 1 1"/>'
+ONE = urdf(link("base", BOX, RED))
+
+
+def two(front: str, back: str) -> str:
+    """Two boxes, one before the other along x."""
+    return urdf(link("base", BOX, front, "1 0 0"), link("other", BOX, back, "-1 0 0"), joint("j", "base", "other"))
+
+
+def test_a_red_box_is_red_in_the_middle_and_the_background_is_not() -> None:
+    pixels = image(ONE)
+    assert pixels.shape == (90, 120, 4)
+    assert mostly(pixels[45, 60]) == "red"
+    assert mostly(pixels[2, 2]) == "grey"
+    assert (pixels[:, :, 3] == 255).all()
+
+
+def test_the_nearer_box_is_seen_from_each_side() -> None:
+    assert mostly(image(two(RED, BLUE), "front")[45, 60]) == "red"
+    back = render(scene(two(RED, BLUE)), View(180.0, 0.0), (120, 90))
+    assert mostly(back[45, 60]) == "blue"
+
+
+def test_the_order_of_links_does_not_decide_what_is_in_front() -> None:
+    reordered = urdf(link("other", BOX, BLUE, "-1 0 0"), link("base", BOX, RED, "1 0 0"), joint("j", "other", "base"))
+    assert mostly(image(reordered)[45, 60]) == "red"
+
+
+def test_surfaces_in_one_plane_do_not_flicker() -> None:
+    """The same face twice, as two meshes with their own rounding: the first one is seen everywhere."""
+    text = urdf(
+        link("base", BOX, RED, rpy="0.3 0.2 0.4"),
+        link("other", BOX, BLUE, rpy="0.3 0.2 0.4"),
+        joint("j", "base", "other"),
+    )
+    pixels = image(text, "iso")
+    assert not any(mostly(pixel) == "blue" for pixel in pixels.reshape(-1, 4))
+
+
+@pytest.mark.parametrize("view", ["front", "left", "top"])
+def test_a_sphere_is_symmetrical_in_its_extent(view: str) -> None:
+    alpha = image(urdf(link("base", '<sphere radius="1"/>', RED)), view, (101, 101), transparent=True)[:, :, 3]
+    covered = alpha > 127 if view != "top" else alpha == 255
+    assert (covered == covered[:, ::-1]).all()
+    assert (covered == covered[::-1]).all()
+
+
+def test_left_and_up_are_where_rep_103_has_them() -> None:
+    text = urdf(
+        link("base", BOX, RED),
+        link("left", BOX, GREEN, "0 2 0"),
+        link("up", BOX, BLUE, "0 0 2"),
+        joint("a", "base", "left"),
+        joint("b", "base", "up"),
+    )
+    front = image(text)
+    # Who stands before the robot sees its left side on the right.
+    assert mostly(front[68, 94]) == "green"
+    assert mostly(front[22, 26]) == "blue" or mostly(front[22, 35]) == "blue"
+    top = image(text, "top")
+    assert [mostly(top[45, column]) for column in (25, 95)] == ["green", "blue"]  # forward is up, left is left
+
+
+@pytest.mark.parametrize("view", [*VIEWS.values(), View(-70.0, -35.0), View(10.0, 75.0, perspective=False)])
+def test_everything_is_within_the_image_and_fills_it(view: View) -> None:
+    text = urdf(
+        link("base", '<box size="3 0.2 0.1"/>', RED),
+        link("mast", '<cylinder radius="0.05" length="2"/>', RED, "1 0 1"),
+        joint("j", "base", "mast"),
+    )
+    camera = camera_for(view, (160, 120), scene(text))
+    x, y, _ = camera.project(scene(text).points)
+    assert x.min() > 0
+    assert x.max() < 160
+    assert y.min() > 0
+    assert y.max() < 120
+    assert max((x.max() - x.min()) / 160, (y.max() - y.min()) / 120) > 0.8
+
+
+def test_two_robots_have_one_camera() -> None:
+    small, large = scene(ONE), scene(urdf(link("base", '<box size="3 3 3"/>', RED)))
+    camera = camera_for(VIEWS["front"], (480, 360), small, large)
+    covered = [
+        int((render(each, style=Style(transparent=True), camera=camera)[:, :, 3] == 255).sum())
+        for each in (small, large)
+    ]
+    assert covered[1] == pytest.approx(9 * covered[0], rel=0.1)
+
+
+def test_the_background_can_be_transparent() -> None:
+    pixels = image(ONE, "iso", transparent=True)
+    assert pixels[0, 0, 3] == 0
+    assert pixels[45, 60, 3] == 255
+    edge = pixels[(pixels[:, :, 3] > 0) & (pixels[:, :, 3] < 255)]
+    assert len(edge) > 20  # smooth outlines, and a shadow
+
+
+def test_transparent_materials_show_what_is_behind() -> None:
+    glass = two("0.9 0.1 0.1 0.4", BLUE)
+    red, _, blue, alpha = (int(value) for value in image(glass)[45, 60])
+    assert red > 80
+    assert blue > 80
+    assert alpha == 255
+    assert mostly(image(two("0.9 0.1 0.1 0", BLUE))[45, 60]) == "blue"
+
+
+def test_the_ground_has_a_shadow_unless_it_is_seen_from_the_side() -> None:
+    floating = urdf(link("base", '<sphere radius="0.5"/>', RED))
+    below = image(floating, "iso")[86, 60, :3].astype(int)
+    assert below.sum() < image(floating, "iso")[86, 2, :3].astype(int).sum() - 20
+    alpha = image(floating, "front", transparent=True)[:, :, 3]
+    assert alpha[:, :15].max() == 0
+
+
+def test_lines_are_dark_where_a_box_has_its_edges() -> None:
+    pixels = image(urdf(link("base", BOX, "1 1 1 1")), "front", (200, 200)).astype(int)
+    row = pixels[100, :, :3].sum(axis=1)
+    left = int(np.argmax(np.abs(np.diff(row)) > 60))
+    assert row[left : left + 4].min() < 530 < row[100]
+
+
+def test_an_outlined_link_has_a_line_even_behind_others() -> None:
+    text = two(RED, BLUE)
+    shown = render(scene(text, outlined={"other": OUTLINE_COLOR}), VIEWS["iso"], (240, 180))
+    plain = render(scene(text), VIEWS["iso"], (240, 180))
+    orange = np.abs(shown[:, :, :3].astype(int) - [round(value * 255) for value in OUTLINE_COLOR]).max(axis=2) < 6
+    assert orange.sum() > 150
+    assert not (np.abs(plain[:, :, :3].astype(int) - shown[:, :, :3]).max(axis=2) > 0)[:5].any()
+
+
+def test_a_ghost_is_seen_through_and_has_no_shadow() -> None:
+    moved = scene(urdf(link("base", BOX, RED, "0 1.5 0")), ghost=GHOST_COLOR)
+    both = Scene.__add__(scene(ONE), moved)
+    camera = camera_for(VIEWS["front"], (200, 100), both)
+    pixels = render(both, style=Style(transparent=True), camera=camera)
+    x, y, _ = camera.project(np.array([(0.5, 1.5, 0.0), (0.5, 0.0, 0.0)]))
+    ghost, solid = (pixels[int(row), int(column)] for row, column in zip(y, x, strict=True))
+    assert 40 < ghost[3] < 200
+    assert mostly(solid) == "red"
+    assert solid[3] == 255
+
+
+def test_a_grid_is_drawn_on_the_ground_only_when_asked() -> None:
+    plain, with_grid = image(ONE, "iso", (240, 180)), image(ONE, "iso", (240, 180), grid=True)
+    changed = np.abs(plain.astype(int) - with_grid).max(axis=2) > 8
+    assert 500 < changed.sum() < plain.shape[0] * plain.shape[1] / 2
+    assert not changed[85:95, 115:125].any()
+
+
+@pytest.mark.parametrize("labels", ["links", "joints"])
+def test_labels_are_dark_letters_in_light_areas(labels: str) -> None:
+    text = urdf(link("base", BOX, RED), link("other", BOX, RED), joint("shoulder", "base", "other", xyz="0 1 0"))
+    plain, labelled = image(text, size=(320, 240)), image(text, size=(320, 240), labels=labels)
+    changed = labelled[np.abs(plain.astype(int) - labelled).max(axis=2) > 30][:, :3]
+    assert (changed.max(axis=1) < 60).sum() > 10
+    assert (changed.min(axis=1) > 200).sum() > 10
+
+
+def test_a_large_image_is_the_same_in_bands(monkeypatch: pytest.MonkeyPatch) -> None:
+    text = two(RED, "0.1 0.1 0.9 0.5")
+    whole = image(text, "iso", (160, 120), grid=True)
+    monkeypatch.setattr("linkwright.picture.rendering._BAND_SAMPLES", 20_000)
+    assert np.abs(image(text, "iso", (160, 120), grid=True).astype(int) - whole).max() <= 1
+
+
+def test_a_robot_without_visuals_is_an_empty_image() -> None:
+    assert image(urdf('<link name="base"/>'), transparent=True)[:, :, 3].max() == 0
+
+
+@pytest.mark.parametrize(
+    "shape",
+    [
+        '<sphere radius="0"/>',
+        '<box size="0 0 0"/>',
+        '<box size="1 0 0"/>',
+        '<cylinder radius="0" length="1"/>',
+        '<cylinder radius="1e-300" length="1e-300"/>',
+    ],
+)
+def test_shapes_without_a_size_do_no_harm(shape: str) -> None:
+    text = urdf(link("base", BOX, RED), link("other", shape, BLUE), joint("j", "base", "other"))
+    assert mostly(image(text)[45, 60]) == "red"
+
+
+def test_what_is_out_of_range_is_left_out_with_a_finding() -> None:
+    slide = '<axis xyz="1 0 0"/><limit lower="0" upper="1" effort="1" velocity="1"/>'
+    text = urdf(link("base", BOX, RED), link("other", BOX, BLUE), joint("j", "base", "other", "prismatic", rest=slide))
+    for broken, positions in (
+        (text, {"j": 1e300}),
+        (text.replace('<box size="1 1 1"/>', '<box size="1e300 1 1"/>', 1), {}),
+        (text.replace('<origin xyz="0 0 0" rpy', '<origin xyz="0 1e12 0" rpy', 1), {}),
+    ):
+        shown = scene(broken, positions)
+        assert [problem.code for problem in shown.problems] == ["PIC101"]
+        assert mostly(render(shown, VIEWS["front"], (120, 90))[45, 60]) in ("red", "blue")
+
+
+def test_a_large_angle_is_one_like_any_other() -> None:
+    text = urdf(link("base", BOX, RED), link("other", BOX, BLUE), joint("j", "base", "other", "continuous", "0 0 2"))
+    assert scene(text, {"j": 1e300}).problems == ()

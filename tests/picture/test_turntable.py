@@ -1,0 +1,51 @@
+"""Animations of a turn around a robot."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from linkwright.picture.camera import VIEWS
+from linkwright.picture.rendering import Style, render
+from linkwright.picture.turntable import turning_cameras, turntable
+from tests.picture.robots import BLUE, RED, joint, link, scene, urdf
+
+LONG = urdf(
+    link("base", '<box size="2 0.3 0.3"/>', RED, "1 0 0"),
+    link("end", '<box size="0.3 0.3 1"/>', BLUE, "2 0 0.5"),
+    joint("j", "base", "end"),
+)
+
+
+def test_everything_stays_within_the_image_and_of_one_size() -> None:
+    shown = scene(LONG)
+    scales = set()
+    for camera in turning_cameras(VIEWS["iso"], (160, 120), shown.points, 24):
+        x, y, _ = camera.project(shown.points)
+        assert x.min() > 0
+        assert x.max() < 160
+        assert y.min() > 0
+        assert y.max() < 120
+        scales.add((camera.distance, camera.scale))
+    assert len(scales) == 1
+
+
+def test_the_axis_of_the_turn_stays_in_place() -> None:
+    shown = scene(LONG)
+    low, high = shown.points.min(axis=0), shown.points.max(axis=0)
+    middle = (low + high)[None, :] / 2
+    places = [
+        [float(value[0]) for value in camera.project(middle)[:2]]
+        for camera in turning_cameras(VIEWS["iso"], (160, 120), shown.points, 7)
+    ]
+    np.testing.assert_allclose(places, [places[0]] * 7, atol=1e-6)
+
+
+def test_images_are_those_of_their_cameras_whatever_thread_drew_them() -> None:
+    shown = scene(LONG)
+    finished: list[int] = []
+    images = turntable(shown, VIEWS["iso"], (64, 48), Style(), 4, finished.append)
+    assert finished == [1, 2, 3, 4]
+    cameras = turning_cameras(VIEWS["iso"], (64, 48), shown.points, 4)
+    for image, camera in zip(images, cameras, strict=True):
+        assert (image == render(shown, VIEWS["iso"], (64, 48), Style(), camera)).all()
+    assert not (images[0] == images[1]).all()

@@ -1,0 +1,76 @@
+"""Worlds as scenes."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from linkwright.descriptions import examine_world
+from linkwright.packages import PackageFinder
+from linkwright.picture.scene import Scene
+from linkwright.picture.worlds import world_scene
+from linkwright.sdf.resources import ResourceFinder
+from tests.places import REPOSITORY
+
+WORLDS = REPOSITORY / "robots" / "my_robot_gazebo" / "worlds"
+
+
+def world(path: Path) -> Scene:
+    finder = PackageFinder(start=[path.parent])
+    sdf = examine_world(path, packages=finder).sdf
+    assert sdf is not None
+    return world_scene(sdf, ResourceFinder(finder))
+
+
+def written(folder: Path, visual: str, pose: str = "1 2 3 0 0 1.5707963267948966") -> Scene:
+    path = folder / "a.world"
+    path.write_text(
+        f'<sdf version="1.9"><world name="w"><model name="m"><pose>{pose}</pose>'
+        f'<link name="l"><visual name="v">{visual}</visual></link></model></world></sdf>'
+    )
+    return world(path)
+
+
+@pytest.mark.parametrize("name", ["house.world", "playground.world"])
+def test_the_worlds_of_the_course_are_drawn_completely(name: str) -> None:
+    scene = world(WORLDS / name)
+    assert scene.problems == ()
+    assert len(scene.mesh.faces) > 100
+
+
+@pytest.mark.parametrize(
+    ("shape", "extent"),
+    [
+        ("<box><size>2 4 6</size></box>", (2, 1, 3)),
+        ("<cylinder><radius>1</radius><length>4</length></cylinder>", (1, 1, 2)),
+        ("<cone><radius>1</radius><length>4</length></cone>", (1, 1, 2)),
+        ("<ellipsoid><radii>1 2 3</radii></ellipsoid>", (2, 1, 3)),
+        ("<capsule><radius>1</radius><length>4</length></capsule>", (1, 1, 3)),
+        ("<sphere><radius>2</radius></sphere>", (2, 2, 2)),
+    ],
+)
+def test_shapes_are_where_the_file_puts_them(shape: str, extent: tuple[float, ...], tmp_path: Path) -> None:
+    points = written(tmp_path, f"<geometry>{shape}</geometry>").points - (1, 2, 3)
+    np.testing.assert_allclose(points.max(axis=0), extent, atol=1e-8)
+    np.testing.assert_allclose(points.min(axis=0), np.negative(extent), atol=1e-8)
+
+
+def test_colour_and_transparency_are_those_of_the_visual(tmp_path: Path) -> None:
+    material = "<material><diffuse>0.2 0.4 0.6 0.5</diffuse></material><transparency>0.5</transparency>"
+    scene = written(tmp_path, f"<geometry><sphere><radius>1</radius></sphere></geometry>{material}")
+    (surface,) = scene.mesh.surfaces
+    assert surface.color == (0.2, 0.4, 0.6)
+    assert surface.alpha == 0.25
+
+
+def test_planes_are_left_out_and_other_shapes_with_a_finding(tmp_path: Path) -> None:
+    plane = written(tmp_path, "<geometry><plane><normal>0 0 1</normal></plane></geometry>")
+    assert len(plane.mesh.faces) == 0
+    assert plane.problems == ()
+    polyline = "<polyline><point>0 0</point><point>1 0</point><point>0 1</point><height>1</height></polyline>"
+    (problem,) = written(tmp_path, f"<geometry>{polyline}</geometry>").problems
+    assert problem.code == "PIC101"
+    (problem,) = written(tmp_path, "<geometry><mesh><uri>no.dae</uri></mesh></geometry>").problems
+    assert problem.code == "PIC101"

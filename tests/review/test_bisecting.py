@@ -1,0 +1,122 @@
+"""The search for the commit that changed a robot."""
+
+from __future__ import annotations
+
+import sys
+
+import pytest
+
+from linkwright.cli import main
+from tests.repositories import ARM, MACRO, Repository
+
+PATH = "arm_description/urdf/arm.urdf.xacro"
+SEGMENT = "arm_description/urdf/segment.xacro"
+
+
+@pytest.fixture
+def history(package, monkeypatch) -> Repository:
+    """Twelve commits: the fourth makes the segments longer, the eighth renames the file, the ninth does not expand."""
+    monkeypatch.chdir(package.root)
+    for number in range(2, 13):
+        files: dict[str, str | None] = {"README.md": f"Commit {number}."}
+        if number == 4:
+            files[SEGMENT] = MACRO.replace("length:=0.5", "length:=0.6")
+        if number == 8:
+            files |= {PATH: None, "arm_description/urdf/robot.urdf.xacro": ARM}
+        if number == 9:
+            files["arm_description/urdf/robot.urdf.xacro"] = ARM.replace("</robot>", "${missing}</robot>")
+        if number == 10:
+            files["arm_description/urdf/robot.urdf.xacro"] = ARM.replace('xyz="0 0 0.2"', 'xyz="0 0 0.3"')
+        package.commit(files, f"Commit {number}")
+    return package
+
+
+@pytest.fixture
+def bisect(history, capsys):
+    def run(*words: str) -> tuple[int, str, str]:
+        status = main(["bisect", "arm_description/urdf/robot.urdf.xacro", *words])
+        return status, *capsys.readouterr()
+
+    return run
+
+
+def test_the_commit_that_changed_a_joint_is_found_across_a_renamed_file(bisect):
+    status, output, _ = bisect("--", "middle_joint")
+    assert status == 0
+    assert output.splitlines()[0].endswith("Ann: Commit 4")
+    assert "  joint 'middle_joint': origin xyz 0 0 0.5 -> 0 0 0.6 m (moved by 0.1 m)" in output
+
+
+def test_a_link_has_moved_when_a_joint_above_it_has(bisect):
+    _, output, _ = bisect("--", "lower")
+    assert output.splitlines()[0].endswith("Ann: Commit 4")
+    assert "  link 'lower': moved by 0.3 m" in output
+
+
+def test_a_commit_that_cannot_be_expanded_is_named_as_a_candidate(bisect):
+    _, output, _ = bisect("tool:=probe", "--", "probe_joint")
+    assert output.splitlines()[0].endswith("Ann: Commit 10")
+    assert "one commit before it cannot be judged and may be the first" in output
+
+
+def test_what_never_changed(bisect):
+    status, output, _ = bisect("--", "base_link")
+    assert (status, output) == (1, "'base_link' is the same in all commits\n")
+
+
+def test_a_range_of_commits(bisect, history):
+    assert bisect("--old", "HEAD~3", "--", "middle_joint")[0] == 1
+    assert bisect("--new", "HEAD~9", "--", "middle_joint")[0] == 1
+
+
+def test_a_command_runs_in_the_files_of_each_commit(bisect, history):
+    program = (
+        "import pathlib, sys; sys.exit('0.6' not in pathlib.Path('arm_description/urdf/segment.xacro').read_text())"
+    )
+    _, output, _ = bisect("--", sys.executable, "-c", program)
+    assert output.splitlines()[0].endswith("Ann: Commit 4")
+    program = "import pathlib, sys; sys.exit('0.3' in pathlib.Path(sys.argv[1]).read_text())"
+    _, output, _ = bisect("--", sys.executable, "-c", program, "FILE")
+    assert output.splitlines()[0].endswith("Ann: Commit 10")
+    assert history.git("status", "--porcelain") == ""
+
+
+def test_a_command_can_skip_a_commit(bisect):
+    program = """import pathlib, sys
+text = pathlib.Path(sys.argv[1]).read_text()
+sys.exit(125 if 'missing' in text else '0.3' in text)"""
+    _, output, _ = bisect("--", sys.executable, "-c", program, "FILE")
+    assert output.splitlines()[0].endswith("Ann: Commit 10")
+    assert "cannot be judged" in output
+
+
+def test_a_change_on_a_merged_branch_is_found_there(history, bisect):
+    history.git("switch", "--quiet", "--create", "heavy", "HEAD~2")
+    text = MACRO.replace("length:=0.5", "length:=0.6").replace('mass value="2"', 'mass value="3"')
+    history.commit({SEGMENT: text}, "Heavier")
+    history.git("switch", "--quiet", "main")
+    history.git("merge", "--quiet", "--no-edit", "heavy")
+    assert bisect("--", "upper")[1].splitlines()[0].endswith("Ann: Heavier")
+
+
+@pytest.mark.parametrize(
+    ("words", "status", "message"),
+    [
+        (["--", "midle_joint"], 1, "did you mean 'middle_joint'?"),
+        (["--", "no_such_program", "FILE"], 1, "error[REV112]"),
+        (["--old", "nowhere", "--", "lower"], 1, "error[CLI343]"),
+        (["--old", "--output=x", "--", "lower"], 2, "usage"),
+        (["tool:=probe"], 2, "pass a link, a joint or a command after --"),
+    ],
+)
+def test_bad_input(bisect, words, status, message):
+    result = bisect(*words)
+    assert result[0] == status
+    assert message in result[2]
+    assert "Traceback" not in result[2]
+
+
+def test_a_newest_commit_that_cannot_be_expanded_is_an_error(bisect):
+    status, _, errors = bisect("--new", "HEAD~3", "--", "lower")
+    assert status == 1
+    assert "missing" in errors
