@@ -130,6 +130,7 @@ arm_controller:
     frame_id: base_link
     odom_topic: odom
     use_stamped: true
+    plugins: [a, b, c, d, e]
 """
 
 
@@ -139,11 +140,14 @@ arm_controller:
         ("100", "200", "controller_manager.ros__parameters.update_rate 100 -> 200", False),
         ("lower]", "lower, tool]",
          "arm_controller.ros__parameters.joints [upper, lower] -> [upper, lower, tool]", False),
+        ("[a, b, c, d, e]", "[a, b, c, d, e, f]", "arm_controller.ros__parameters.plugins: f added", False),
+        ("[a, b, c, d, e]", "[f, b, c, d, e]", "arm_controller.ros__parameters.plugins: f added, a removed", False),
         ("lower]", "fore]", "arm_controller.ros__parameters.joints [upper, lower] -> [upper, fore]", True),
         ("frame_id: base_link", "frame_id: base", "arm_controller.ros__parameters.frame_id base_link -> base", True),
         ("stamped: true", "stamped: false", "arm_controller.ros__parameters.use_stamped true -> false", True),
         ("    arm_controller:\n      type: a/B\n", "",
          "controller_manager.ros__parameters.arm_controller.type a/B removed", True),
+        (PARAMETERS[PARAMETERS.index("arm_controller:\n  ros"):], "", "arm_controller with 5 values removed", False),
         ("    odom_topic: odom\n", "", "arm_controller.ros__parameters.odom_topic odom removed", False),
         ("    update_rate: 100\n", "", "controller_manager.ros__parameters.update_rate 100 removed", False),
     ],

@@ -90,7 +90,7 @@ def run(arguments: argparse.Namespace) -> int:
     try:
         scenarios = [_relative(file, versions.new) for file in arguments.scenario]
         workers = arguments.workers or usable_processors()
-        result = review(versions, packages, workers, scenarios, arguments.seeds)
+        result = review(versions, packages, workers, scenarios, arguments.seeds, with_images=arguments.html is not None)
     finally:
         versions.close()
     _write(result, arguments)

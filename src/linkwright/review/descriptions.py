@@ -16,6 +16,7 @@ from linkwright.review.breaking import breaking_reason
 from linkwright.review.changes import Change, Effect, Location
 from linkwright.review.figures import figures_of
 from linkwright.review.file_pair import FilePair
+from linkwright.review.images import view_images
 from linkwright.review.versions import Version
 from linkwright.urdf import Robot
 
@@ -52,6 +53,8 @@ def compare_descriptions(pair: FilePair) -> None:
             group = groups.setdefault(change.identity, _Group(change))
             group.names[change.name] = None
             group.cases[case.name] = None
+        if pair.with_images and not pair.images:
+            pair.images += view_images(case.models, case.old.robot, case.new.robot, comparison)
         if len(pair.cases) == 1:
             pair.figures += figures_of(case.models, case.old.robot, case.new.robot)
     pair.changes += (group.change(pair.cases) for group in groups.values())

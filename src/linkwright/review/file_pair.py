@@ -34,6 +34,7 @@ class FilePair:
         versions: both versions.
         old_path: the path in the old version, relative to the root of the repository.
         new_path: the path in the new version, relative to the root of the repository.
+        with_images: whether to make images of robots.
         changes: the changes found so far.
         figures: the quantities that differ.
         problems: why a part of the comparison is missing.
@@ -44,6 +45,7 @@ class FilePair:
     versions: Versions
     old_path: str
     new_path: str
+    with_images: bool = False
     changes: list[Change] = field(default_factory=list)
     figures: list[Figure] = field(default_factory=list)
     problems: list[Phrase] = field(default_factory=list)

@@ -3,20 +3,23 @@
 from __future__ import annotations
 
 import re
+from collections.abc import Iterator, Mapping, Sequence
 from pathlib import Path
 
-from linkwright.diagnostics import Phrase, phrase
+from linkwright.diagnostics import Phrase, counted, phrase
 from linkwright.review.changes import Location
 from linkwright.review.file_pair import FilePair, UnreadableFileError
 from linkwright.review.yaml_values import YamlValue, read_yaml_values
 
 _MAX_BYTES = 4 << 20
+_LONG_LIST = 4
+"""The number of items up to which both versions of a list are shown."""
 _OFFERED_NAMES = re.compile(r"(^|[._])(joints?|joint_names?|wheel_names|interfaces|frame_id)$")
 """The parameters with names that a controller or driver offers to other programs, which must not lose one of them."""
 _CONTROLLER_TYPE = re.compile(r"controller_manager\.ros__parameters\.(?P<controller>[^.]+)\.type")
 _STAMPED = re.compile(r"stamped", re.IGNORECASE)
 """The parameters that choose between messages with and without a header, such as ``use_stamped_vel``."""
-_NUMBER_OR_TRUTH = re.compile(r"[-+.\deE]+|true|false", re.IGNORECASE)
+_NUMBER_OR_TRUTH = re.compile(r"[-+]?(\d+\.?\d*|\.\d+)(e[-+]?\d+)?|true|false", re.IGNORECASE)
 
 
 def compare_parameter_files(pair: FilePair) -> None:
@@ -25,19 +28,72 @@ def compare_parameter_files(pair: FilePair) -> None:
     if values is None:
         return
     old, new = values
-    for name in dict.fromkeys([*new, *old]):
-        old_value, new_value = old.get(name), new.get(name)
-        if new_value is None and old_value is not None:
-            location = Location(pair.old_path, old_value.line, old_value.column, is_old=True)
-            text = phrase("{parameter} {value} removed", parameter=name, value=old_value.text)
-            pair.add(text, location, _breaking_reason(name, old_value.text, None))
-        elif new_value is not None and (old_value is None or not _are_equal(old_value.text, new_value.text)):
-            location = Location(pair.new_path, new_value.line, new_value.column)
-            if old_value is None:
-                pair.add(phrase("{parameter} {value} added", parameter=name, value=new_value.text), location)
-                continue
-            text = phrase("{parameter} {old} -> {new}", parameter=name, old=old_value.text, new=new_value.text)
-            pair.add(text, location, _breaking_reason(name, old_value.text, new_value.text))
+    for name, value in new.items():
+        old_value = old.get(name)
+        if old_value is not None and not _are_equal(old_value.text, value.text):
+            location = Location(pair.new_path, value.line, value.column)
+            pair.add(
+                _change_text(name, old_value.text, value.text),
+                location,
+                _breaking_reason(name, old_value.text, value.text),
+            )
+    for name, values_below in _lone_parts(new, old):
+        location = Location(pair.new_path, values_below[0].line, values_below[0].column)
+        pair.add(_lone_text(name, values_below, is_added=True), location)
+    for name, values_below in _lone_parts(old, new):
+        location = Location(pair.old_path, values_below[0].line, values_below[0].column, is_old=True)
+        reasons = (_breaking_reason(each, old[each].text, None) for each in old if _is_below(each, name))
+        reason = next((reason for reason in reasons if reason is not None), None)
+        pair.add(_lone_text(name, values_below, is_added=False), location, reason)
+
+
+def _change_text(name: str, old: str, new: str) -> Phrase:
+    """Return a changed value in one line; of long lists, the items that were added and removed."""
+    added, removed = _items(new) - _items(old), _items(old) - _items(new)
+    if min(len(_items(old)), len(_items(new))) <= _LONG_LIST or not (added or removed):
+        return phrase("{parameter} {old} -> {new}", parameter=name, old=old, new=new)
+    if not removed:
+        return phrase("{parameter}: {items} added", parameter=name, items=", ".join(sorted(added)))
+    if not added:
+        return phrase("{parameter}: {items} removed", parameter=name, items=", ".join(sorted(removed)))
+    return phrase(
+        "{parameter}: {added} added, {removed} removed",
+        parameter=name,
+        added=", ".join(sorted(added)),
+        removed=", ".join(sorted(removed)),
+    )
+
+
+def _lone_parts(
+    values: Mapping[str, YamlValue], others: Mapping[str, YamlValue]
+) -> Iterator[tuple[str, list[YamlValue]]]:
+    """Yield the parts of a file that another version does not have, as large as possible, with their values."""
+    other_parts = {part for name in others for part in _parts(name)}
+    parts: dict[str, list[tuple[str, YamlValue]]] = {}
+    for name, value in values.items():
+        if name not in others:
+            part = next((part for part in _parts(name) if part not in other_parts), name)
+            parts.setdefault(part, []).append((name, value))
+    for part, named_values in parts.items():
+        yield named_values[0][0] if len(named_values) == 1 else part, [value for _, value in named_values]
+
+
+def _parts(name: str) -> list[str]:
+    """Return the paths of the mappings that contain a value, the outermost first, and the path of the value."""
+    words = name.split(".")
+    return [".".join(words[: count + 1]) for count in range(len(words))]
+
+
+def _is_below(name: str, part: str) -> bool:
+    return name == part or name.startswith(f"{part}.")
+
+
+def _lone_text(name: str, values: Sequence[YamlValue], *, is_added: bool) -> Phrase:
+    if len(values) > 1:
+        part = counted("{parameter} with {count} value", "{parameter} with {count} values", len(values), parameter=name)
+    else:
+        part = phrase("{parameter} {value}", parameter=name, value=values[0].text)
+    return phrase("{part} added", part=part) if is_added else phrase("{part} removed", part=part)
 
 
 def _read(file: Path) -> dict[str, YamlValue]:

@@ -38,6 +38,8 @@ def review(
     workers: int = 1,
     scenarios: Sequence[str] = (),
     seeds: int | None = None,
+    *,
+    with_images: bool = False,
 ) -> Review:
     """Compare two versions of a repository.
 
@@ -47,18 +49,20 @@ def review(
         workers: the number of parallel processes.
         scenarios: scenarios to run in both versions, relative to the root. Their code, and that of the packages, runs.
         seeds: the number of seeds of scenarios; None for their own.
+        with_images: whether to make images of robots that look different.
 
     Raises:
         LinkwrightError: REV103, there is no such package.
     """
-    result = _Reviewer(versions, _package_folders(versions, packages)).run(workers)
+    result = _Reviewer(versions, _package_folders(versions, packages), with_images=with_images).run(workers)
     behavior = [compare_behavior(versions, path, seeds) for path in scenarios]
     return replace(result, subjects=[*result.subjects, *(subject for subject in behavior if not subject.is_empty)])
 
 
 class _Reviewer:
-    def __init__(self, versions: Versions, folders: Sequence[str]) -> None:
+    def __init__(self, versions: Versions, folders: Sequence[str], *, with_images: bool) -> None:
         self._versions = versions
+        self._with_images = with_images
         self._folders = folders
         self._changed_files = [file for file in versions.changed_files if self._is_in_scope(file.path)]
         self._new_paths = {
@@ -70,7 +74,7 @@ class _Reviewer:
         pairs = list(self._pairs())
         expanded = [pair for pair in pairs if pair[0].kind in _EXPANDED]
         with _processes(workers if len(expanded) >= _MIN_EXPANDED else 1) as submit:
-            subjects = [submit(_compare, self._versions, *pair) for pair in pairs]
+            subjects = [submit(_compare, self._versions, *pair, self._with_images) for pair in pairs]
             findings = [
                 submit(_find, version, self._check_targets(version, expanded))
                 for version in (self._versions.old, self._versions.new)
@@ -180,7 +184,9 @@ class _Reviewer:
                 )
 
 
-def _compare(versions: Versions, rule: KindRule, old_path: str | None, new_path: str | None) -> Subject:
+def _compare(
+    versions: Versions, rule: KindRule, old_path: str | None, new_path: str | None, with_images: bool
+) -> Subject:
     """Compare a file in both versions."""
     kind, path = rule.kind, new_path or old_path or ""
     if old_path is None:
@@ -188,7 +194,7 @@ def _compare(versions: Versions, rule: KindRule, old_path: str | None, new_path:
     effect = Effect.CHANGED if rule.removal_reason is None else Effect.BREAKING
     if new_path is None:
         return Subject(kind, path, old_path, None, [Change(rule.removed, effect, rule.removal_reason)])
-    pair = FilePair(versions, old_path, new_path)
+    pair = FilePair(versions, old_path, new_path, with_images)
     if old_path != new_path:
         text = phrase("renamed from {path}", path=old_path)
         pair.changes.append(Change(text, effect, rule.removal_reason))

@@ -26,13 +26,14 @@ table { border-collapse: collapse; font-variant-numeric: tabular-nums; margin: 8
 th, td { padding: 3px 12px 3px 0; text-align: left; border-bottom: 1px solid var(--line); vertical-align: top; }
 th { color: var(--soft); font-weight: 600; }
 ul { padding-left: 20px; } li { margin: 2px 0; }
-.images { display: grid; grid-template-columns: repeat(auto-fit, minmax(300px, 1fr)); gap: 12px; margin: 12px 0; }
+.images { display: grid; grid-template-columns: repeat(auto-fit, minmax(440px, 1fr)); gap: 12px; margin: 12px 0; }
 figure { margin: 0; } figcaption { color: var(--soft); }
 .versions { position: relative; background: #fff; border: 1px solid var(--line); border-radius: 6px; overflow: hidden; }
 .versions img { display: block; width: 100%; } .versions img + img { position: absolute; inset: 0; }
 .versions .new { clip-path: inset(0 0 0 var(--share, 50%)); }
 input[type=range] { width: 100%; margin: 4px 0 0; }
-@media (max-width: 600px) { main { padding: 12px 12px 40px; } }
+figcaption { display: flex; justify-content: space-between; }
+@media (max-width: 600px) { main { padding: 12px 12px 40px; } .images { grid-template-columns: 1fr; } }
 """
 
 _SCRIPT = """
@@ -122,7 +123,8 @@ def _image(view: ViewImages) -> str:
     return (
         f"<figure><div class='versions'><img src='{old}' alt='{label}'><img class='new' src='{new}' alt=''></div>"
         f"<input type='range' min='0' max='100' value='50' aria-label='{label}'>"
-        f"<figcaption>{escape(view.name)}</figcaption></figure>"
+        f"<figcaption><span>{_text(phrase('before'))}</span><span>{escape(view.name)}</span>"
+        f"<span>{_text(phrase('after'))}</span></figcaption></figure>"
     )
 
 

@@ -1,0 +1,101 @@
+"""Images of both versions of a robot, with the links outlined whose shape or place differs."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+import numpy as np
+from numpy.typing import NDArray
+
+from linkwright.descriptions.comparison import Comparison
+from linkwright.descriptions.pairs import Pair
+from linkwright.geometry.shapes import placement
+from linkwright.images.png import png
+from linkwright.kinematics import KinematicTree
+from linkwright.picture import OUTLINE_COLOR, VIEWS, SurfaceLibrary, camera_for, render, robot_scene
+from linkwright.review.changes import ViewImages
+from linkwright.urdf import Robot
+
+Array = NDArray[np.float64]
+
+_SIZE = (480, 360)
+_PLACES = ("origin xyz", "origin rpy")
+"""The ends of the names of properties with a place, which is compared as seen in the image."""
+_MOVED = 1e-5
+"""The difference in m, and between the entries of rotation matrices, up to which a link is in the same place."""
+
+
+def view_images(models: Pair, old: Robot, new: Robot, comparison: Comparison) -> list[ViewImages]:
+    """Return images from four sides, or none if both robots look the same.
+
+    All joints are at position 0, or at the middle of limits that exclude 0. Both images of a view have the same camera.
+    """
+    old_links = _changed_links(old, new, comparison, of_old=True)
+    new_links = _changed_links(old, new, comparison, of_old=False)
+    if not old_links and not new_links:
+        return []
+    library = SurfaceLibrary()
+    scenes = [
+        robot_scene(
+            robot,
+            model.finder,
+            folder=model.path.parent,
+            outlined=dict.fromkeys(links, OUTLINE_COLOR),
+            library=library,
+        )
+        for robot, model, links in ((old, models.old, old_links), (new, models.new, new_links))
+    ]
+    if not any(len(scene.mesh.faces) for scene in scenes):
+        return []
+    images = []
+    for name, view in VIEWS.items():
+        camera = camera_for(view, _SIZE, *scenes)
+        images.append(ViewImages(name, *(png(render(scene, camera=camera)) for scene in scenes)))
+    return images
+
+
+def _changed_links(old: Robot, new: Robot, comparison: Comparison, *, of_old: bool) -> set[str]:
+    """Return the links of one of the robots that look different or are in another place."""
+    robot, matched = (old, set(comparison.links)) if of_old else (new, set(comparison.links.values()))
+    changed = set(robot.links) - matched
+    for old_name, new_name in (*_other_surfaces(comparison), *_moved(old, new, comparison)):
+        changed.add(old_name if of_old else new_name)
+    return {name for name in changed if name in robot.links and robot.links[name].visuals}
+
+
+def _other_surfaces(comparison: Comparison) -> Iterator[tuple[str, str]]:
+    """Yield the old and new names of links with other shapes, colors or textures."""
+    old_names = {new_name: old_name for old_name, new_name in comparison.links.items()}
+    for difference in comparison.differences:
+        is_visual = difference.subject == "link" and difference.property.startswith("visual")
+        if is_visual and not difference.property.endswith(_PLACES) and difference.name in old_names:
+            yield old_names[difference.name], difference.name
+
+
+def _moved(old: Robot, new: Robot, comparison: Comparison) -> Iterator[tuple[str, str]]:
+    """Yield the old and new names of links whose visuals are elsewhere, relative to the old robot's root link."""
+    reference = comparison.links.get(old.root)
+    if reference is None:
+        return
+    old_frames, new_frames = _frames(old), _frames(new)
+    to_old_root = np.linalg.inv(new_frames[reference])
+    for old_name, new_name in comparison.links.items():
+        if old_name in old_frames and new_name in new_frames:
+            old_places = _places(old, old_name, old_frames[old_name])
+            new_places = _places(new, new_name, to_old_root @ new_frames[new_name])
+            if old_places.shape != new_places.shape or not np.allclose(old_places, new_places, rtol=0.0, atol=_MOVED):
+                yield old_name, new_name
+
+
+def _frames(robot: Robot) -> dict[str, Array]:
+    """Return the frames of the links in the root link's frame, with all joints at position 0, shape (4, 4) each."""
+    tree = KinematicTree(robot)
+    return dict(zip(tree.link_names, tree.forward({}), strict=True))
+
+
+def _places(robot: Robot, link: str, frame: Array) -> Array:
+    """Return the rotations and positions of a link's visuals, shape (visuals, 3, 4), from the frame of the link."""
+    places = [placement(visual.origin) for visual in robot.links[link].visuals]
+    origins = [np.column_stack([np.array(place.rotation), np.array(place.position)]) for place in places]
+    bottom = np.array([[0.0, 0.0, 0.0, 1.0]])
+    return np.array([(frame @ np.vstack([origin, bottom]))[:3] for origin in origins])

@@ -1,0 +1,76 @@
+"""Images of robots in the page: only of those that look different, with the changed links outlined."""
+
+from __future__ import annotations
+
+import io
+
+import numpy as np
+import pytest
+
+from linkwright.review import open_versions, review
+from linkwright.review.reports import as_html
+from tests.repositories import ARM, MACRO
+
+PATH = "arm_description/urdf/arm.urdf.xacro"
+SEGMENT = "arm_description/urdf/segment.xacro"
+TURNED = (
+    MACRO.replace('<axis xyz="0 1 0"/>', '<axis xyz="0 -1 0"/>')
+    .replace(
+        '<origin xyz="0 0 ${length}"/>', '<origin xyz="0 0 ${length}" rpy="0 0 ${pi if name == \'lower\' else 0}"/>'
+    )
+    .replace("<visual>", "<visual><origin rpy=\"0 0 ${pi if name == 'lower' else 0}\"/>")
+)
+
+
+@pytest.fixture
+def images_of(package):
+    def run(files: dict[str, str]):
+        package.write(files)
+        versions = open_versions(package.root, "HEAD")
+        try:
+            result = review(versions, with_images=True)
+        finally:
+            versions.close()
+        (subject,) = (subject for subject in result.subjects if subject.path == PATH)
+        return result, subject.images
+
+    return run
+
+
+def orange(image: bytes) -> int:
+    """Return the number of pixels with the color of outlines."""
+    pil = pytest.importorskip("PIL.Image")
+    pixels = np.asarray(pil.open(io.BytesIO(image)).convert("RGB")).astype(int)
+    red, green, blue = pixels[..., 0], pixels[..., 1], pixels[..., 2]
+    return int(np.count_nonzero((red > 200) & (green > 60) & (green < 140) & (blue < 60)))
+
+
+def test_a_moved_link_is_outlined_in_both_versions(images_of):
+    result, images = images_of({SEGMENT: MACRO.replace("length:=0.5", "length:=0.6")})
+    assert [view.name for view in images] == ["iso", "front", "left", "top"]
+    assert all(orange(image) > 50 for view in images[:3] for image in (view.old, view.new))
+    assert images[1].old != images[1].new
+    page = as_html(result)
+    assert page.count("data:image/png;base64,") == 8
+    assert page.count("type='range'") == 4
+
+
+def test_a_robot_that_looks_the_same_has_no_images(images_of):
+    assert images_of({SEGMENT: MACRO.replace('mass value="2"', 'mass value="3"')})[1] == []
+
+
+def test_a_frame_that_turned_together_with_its_visual_looks_the_same(images_of):
+    assert images_of({SEGMENT: TURNED})[1] == []
+
+
+def test_an_added_link_is_outlined_only_in_the_new_version(images_of):
+    sensor = """<link name="sensor"><visual><geometry><sphere radius="0.2"/></geometry></visual></link>
+  <joint name="sensor_joint" type="fixed"><parent link="lower"/><child link="sensor"/></joint></robot>"""
+    _, images = images_of({PATH: ARM.replace("</robot>", sensor)})
+    assert (orange(images[1].old), orange(images[1].new) > 50) == (0, True)
+
+
+def test_a_new_root_link_moves_nothing(images_of):
+    lifted = """<link name="foot"/><joint name="foot_joint" type="fixed"><parent link="foot"/><child link="base_link"/>
+    <origin xyz="0 0 0.3"/></joint><link name="base_link"/>"""
+    assert images_of({PATH: ARM.replace('<link name="base_link"/>', lifted)})[1] == []
