@@ -70,6 +70,14 @@ def test_names_of_a_repository_are_no_markup():
     assert tags.count("script") == 1
 
 
+def test_names_do_not_control_what_is_shown():
+    name = "arm\n::error::\x1b[31m\u202e.urdf"
+    result = Review("main", "HEAD", [Subject(SubjectKind.DESCRIPTION, name, None, name, [Change(phrase("added"))])])
+    assert "arm\N{SYMBOL FOR NEWLINE}::error::" in as_text(result).splitlines()[0]
+    for text in (as_text(result), as_markdown(result)):
+        assert not re.search("^::|\x1b|\u202e", text, re.MULTILINE)
+
+
 def test_a_long_review_fits_into_a_comment():
     changes = [Change(phrase("link '{name}' removed", name=f"link_{number}")) for number in range(300)]
     subjects = [Subject(SubjectKind.DESCRIPTION, f"urdf/{number}.urdf", "a", "b", changes) for number in range(30)]
