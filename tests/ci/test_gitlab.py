@@ -14,7 +14,7 @@ from tests.ci.conftest import HOSTILE_BRANCH, Example
 from tests.ci.runner import TEMPLATES, Runner
 from tests.ci.service import TOKEN, Service
 from tests.places import REPOSITORY
-from tests.repositories import ARM
+from tests.repositories import ARM, Repository
 
 TEMPLATE = yaml.safe_load((TEMPLATES / "gitlab" / "review.yml").read_text(encoding="utf-8"))
 JOB = TEMPLATE["linkwright-review"]
@@ -101,11 +101,18 @@ def test_merged_results_are_compared_from_the_branch(example: Example, gitlab: G
     assert "target.urdf" not in comment
 
 
-def test_linkwright_is_cloned_from_an_address(example: Example, runner: Runner, gitlab: GitLab) -> None:
-    address = f"file://{REPOSITORY}"
-    done = gitlab.run(LINKWRIGHT=address, LINKWRIGHT_REF="no-such-branch")
-    assert done.returncode != 0
-    assert "no-such-branch" in done.stdout
+def test_linkwright_is_cloned_from_an_address(service: Service, runner: Runner, gitlab: GitLab, tmp_path: Path) -> None:
+    linkwright = Repository(tmp_path / "linkwright")
+    programs = list(TEMPLATES.rglob("*.py"))
+    linkwright.commit({str(path.relative_to(REPOSITORY)): path.read_text(encoding="utf-8") for path in programs})
+    linkwright.git("tag", "v1")
+    linkwright.commit(dict.fromkeys((str(path.relative_to(REPOSITORY)) for path in programs), "raise SystemExit(9)"))
+    done = gitlab.run(LINKWRIGHT=f"file://{linkwright.root}", LINKWRIGHT_REF="v1")
+    assert done.returncode == 0, done.stdout
+    assert len(service.comments) == 1
+    *_, option, folder = runner.installed.read_text(encoding="utf-8").splitlines()
+    assert (option, Path(folder).name) == ("--editable", "linkwright")
+    assert Path(folder).is_relative_to(runner.temporary)
 
 
 def test_findings_are_reported_as_code_quality(example: Example, gitlab: GitLab) -> None:
