@@ -184,3 +184,17 @@ def test_a_computed_include_is_followed(package, compare):
     package.commit({PATH: text, "arm_description/urdf/plain_segment.xacro": MACRO})
     package.write({"arm_description/urdf/plain_segment.xacro": MACRO.replace('mass value="2"', 'mass value="3"')})
     assert "link 'upper': inertial mass 2 -> 3 kg" in sentences(subject(compare(package), PATH))
+
+
+def test_a_description_that_is_nested_too_deeply_costs_only_itself(package, compare):
+    deep = "<robot name='d'><link name='a'/><gazebo>" + "<a>" * 3000 + "</a>" * 3000 + "</gazebo></robot>"
+    package.commit({"arm_description/urdf/deep.urdf": deep})
+    package.write(
+        {
+            "arm_description/urdf/deep.urdf": deep.replace("name='d'", "name='e'"),
+            PATH: ARM.replace('name="arm"', 'name="other"'),
+        }
+    )
+    result = compare(package)
+    assert "robot 'other': name arm -> other" in sentences(subject(result, PATH))
+    assert len(subject(result, "arm_description/urdf/deep.urdf").problems) in (1, 2)

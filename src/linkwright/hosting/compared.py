@@ -40,7 +40,7 @@ def run_compared_view(pair: Pair, options: HostOptions, *, foxglove: int | None 
     """
     options = replace(options, title=f"{pair.old.title} → {pair.new.title}")
     log = LaunchLog()
-    if pair.old.revision is not None:
+    if pair.old.commit is not None:
         pair.old.read()  # The user cannot fix a version in a commit while the view is shown.
 
     def run(signals: SignalWatch) -> bool:
@@ -103,7 +103,7 @@ class ComparedView(ModelView):
         text = self._read_old()
         if text is not None:
             publish_old(text)
-        if self._pair.old.revision is None:
+        if self._pair.old.commit is None:
             self._old_reload.bind(self._old_call, publish_old)
             self._old_reload.start()
 

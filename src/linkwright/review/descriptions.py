@@ -14,7 +14,8 @@ from linkwright.geometry.single import Pose, pose_quaternion
 from linkwright.lint.checking import Checker
 from linkwright.review.breaking import breaking_reason
 from linkwright.review.changes import Change, Effect, Location
-from linkwright.review.figures import figures_of
+from linkwright.review.collisions import collision_changes
+from linkwright.review.figures import RobotMeasures, figures_of
 from linkwright.review.file_pair import FilePair
 from linkwright.review.images import view_images
 from linkwright.review.versions import Version
@@ -44,6 +45,7 @@ class _Case:
 def compare_descriptions(pair: FilePair) -> None:
     """Compare two versions of a description with each set of argument values."""
     groups: dict[Hashable, _Group] = {}
+    collisions: list[Change] = []
     for case in _cases(pair):
         pair.cases.append(case.name)
         if case.old.robot is None or case.new.robot is None:
@@ -56,8 +58,11 @@ def compare_descriptions(pair: FilePair) -> None:
         if pair.with_images and not pair.images:
             pair.images += view_images(case.models, case.old.robot, case.new.robot, comparison)
         if len(pair.cases) == 1:
-            pair.figures += figures_of(case.models, case.old.robot, case.new.robot)
+            old, new = RobotMeasures(case.old.robot, case.models.old), RobotMeasures(case.new.robot, case.models.new)
+            pair.figures += figures_of(old, new)
+            collisions = list(collision_changes(old, new))
     pair.changes += (group.change(pair.cases) for group in groups.values())
+    pair.changes += collisions
 
 
 @dataclass

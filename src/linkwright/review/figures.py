@@ -9,7 +9,7 @@ from functools import cached_property
 import numpy as np
 from numpy.typing import NDArray
 
-from linkwright.descriptions.pairs import Model, Pair
+from linkwright.descriptions.pairs import Model
 from linkwright.diagnostics import LinkwrightError, Phrase, phrase
 from linkwright.geometry.mass import MassProperties, combine
 from linkwright.geometry.shapes import Box, Capsule, SimpleShape, Sphere, placement
@@ -35,24 +35,30 @@ _UNLIMITED = np.pi
 Array = NDArray[np.float64]
 
 
-def figures_of(pair: Pair, old: Robot, new: Robot) -> Iterator[Figure]:
+def figures_of(old: RobotMeasures, new: RobotMeasures) -> Iterator[Figure]:
     """Yield the quantities that differ between two robots."""
-    measures = RobotMeasures(old, pair.old), RobotMeasures(new, pair.new)
     for name, unit, measure in _QUANTITIES:
-        yield from _figure(name, unit, *map(measure, measures))
-    old_reach, new_reach = (robot.reach() for robot in measures)
+        yield from _figure(name, unit, measure(old), measure(new))
+    old_reach, new_reach = old.reach(), new.reach()
     for link in new_reach:
         if link in old_reach:
             yield from _figure(phrase("reach of '{link}'", link=link), "m", old_reach[link], new_reach[link])
 
 
 class RobotMeasures:
-    """The quantities of a robot with all joints at position 0, or at the nearest limit to 0."""
+    """The quantities of a robot with all joints at position 0, or at the nearest limit to 0.
+
+    Attributes:
+        robot: the robot.
+        meshes: the meshes of the robot.
+        link_names: the links in the order of the frames of `sampled_frames`.
+    """
 
     def __init__(self, robot: Robot, model: Model) -> None:
         self.robot = robot
+        self.meshes = MeshLibrary(model.finder, model.path.parent)
         self._tree = KinematicTree(robot)
-        self._meshes = MeshLibrary(model.finder, model.path.parent)
+        self.link_names = self._tree.link_names
 
     @cached_property
     def frames(self) -> dict[str, Array]:
@@ -103,8 +109,8 @@ class RobotMeasures:
                     elements[shape.geometry.filename] = shape.element
         try:
             for uri, element in elements.items():
-                path = self._meshes.locate(uri, element)
-                triangles += self._meshes.read(path).count
+                path = self.meshes.locate(uri, element)
+                triangles += self.meshes.read(path).count
                 size += path.stat().st_size
         except (LinkwrightError, OSError):
             return None
@@ -119,18 +125,28 @@ class RobotMeasures:
         ends = dict(self._chain_ends())
         if not ends:
             return {}
-        low, high = self._limits
-        samples = np.stack(
-            [
-                np.random.default_rng(zlib.crc32(name.encode())).random(_REACH_SAMPLES)
-                for name in self._tree.joint_names
-            ],
-            axis=-1,
-        )
-        frames = self._tree.forward(low + samples * (high - low))
+        frames = self.sampled_frames(_REACH_SAMPLES)
         indexes = [self._tree.link_index(link) for link in ends]
         distances = np.linalg.norm(frames[:, indexes][..., :3, 3], axis=-1).max(axis=0)
         return dict(zip(ends, map(float, distances), strict=True))
+
+    def sampled_frames(self, count: int) -> Array:
+        """Return the frames of the links in the root link's frame in many configurations within the limits.
+
+        The configurations depend only on the names and the limits of the joints.
+
+        Args:
+            count: the number of configurations.
+
+        Returns:
+            Homogeneous matrices, shape (count, links, 4, 4).
+        """
+        low, high = self._limits
+        names = self._tree.joint_names
+        samples = np.zeros((count, len(names)))
+        for index, name in enumerate(names):
+            samples[:, index] = np.random.default_rng(zlib.crc32(name.encode())).random(count)
+        return self._tree.forward(low + samples * (high - low))
 
     def _chain_ends(self) -> Iterator[tuple[str, str]]:
         """Yield the last link of each chain of several moving joints, and the chain's last moving joint."""
@@ -169,7 +185,7 @@ class RobotMeasures:
         center = link_frame[:3, :3] @ np.array(placed.position) + link_frame[:3, 3]
         if isinstance(visual.geometry, Mesh):
             try:
-                mesh = self._meshes.load(visual.geometry, visual.element)
+                mesh = self.meshes.load(visual.geometry, visual.element)
             except LinkwrightError:
                 return None
             if not mesh.count:

@@ -198,7 +198,12 @@ def _compare(
     if old_path != new_path:
         text = phrase("renamed from {path}", path=old_path)
         pair.changes.append(Change(text, effect, rule.removal_reason))
-    rule.compare(pair)
+    try:
+        rule.compare(pair)
+    except LinkwrightError as error:
+        pair.problems.append(phrase("the versions cannot be compared: {reason}", reason=error.diagnostics[0].message))
+    except (RecursionError, MemoryError):
+        pair.problems.append(phrase("the versions cannot be compared: they are nested too deeply, or too large"))
     return Subject(kind, path, old_path, new_path, pair.changes, pair.figures, pair.problems, pair.cases, pair.images)
 
 

@@ -1,0 +1,167 @@
+"""Links of a robot that collide in the new version and not in the old one, computed by MuJoCo.
+
+Each mesh is replaced by its convex hull, as in simulations. Links that a joint connects directly, or fixed joints only,
+are left out: they touch where they are connected.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from importlib.util import find_spec
+from itertools import chain
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from linkwright.diagnostics import LinkwrightError, phrase
+from linkwright.geometry.arrays import quaternion_from_matrix
+from linkwright.geometry.hull import convex_hull
+from linkwright.geometry.shapes import Box, Capsule, Cylinder, Sphere, placement
+from linkwright.review.changes import Change
+from linkwright.review.figures import RobotMeasures
+from linkwright.simulation.library import load_mujoco
+from linkwright.urdf import Collision, Mesh
+from linkwright.urdf.bodies import Bodies
+
+_SAMPLES = 300
+_DEPTH = 1e-4
+"""The depth in m from which two shapes collide; shapes that only touch do not."""
+
+Array = NDArray[np.float64]
+Pair = tuple[str, str]
+
+
+def collision_changes(old: RobotMeasures, new: RobotMeasures) -> Iterator[Change]:
+    """Yield the pairs of links that collide in the new version only.
+
+    Nothing is found without MuJoCo (extra ``sim``).
+    """
+    if find_spec("mujoco") is None or not any(link.collisions for link in new.robot.links.values()):
+        return
+    old_counts, new_counts = _collisions(old), _collisions(new)
+    for pair, (is_home, count) in new_counts.items():
+        was_home, old_count = old_counts.get(pair, (False, 0))
+        if is_home and not was_home:
+            yield Change(phrase("links '{first}' and '{second}' collide at home", first=pair[0], second=pair[1]))
+        elif count and not old_count and not was_home:
+            text = phrase(
+                "links '{first}' and '{second}' can collide: in {share:.2g} % of {total} configurations, "
+                "in none before",
+                first=pair[0],
+                second=pair[1],
+                share=100.0 * count / _SAMPLES,
+                total=_SAMPLES,
+            )
+            yield Change(text)
+
+
+def _collisions(measures: RobotMeasures) -> dict[Pair, tuple[bool, int]]:
+    """Return the pairs of links that collide: whether at home, and in how many of the sampled configurations."""
+    scene = _Scene(measures)
+    if scene.model is None:
+        return {}
+    home = np.array([measures.frames[name] for name in measures.link_names])
+    at_home = scene.colliding_pairs(home)
+    counts: dict[Pair, int] = dict.fromkeys(at_home, 0)
+    for frames in measures.sampled_frames(_SAMPLES):
+        for pair in scene.colliding_pairs(frames):
+            counts[pair] = counts.get(pair, 0) + 1
+    return {pair: (pair in at_home, count) for pair, count in sorted(counts.items())}
+
+
+class _Scene:
+    """A model of MuJoCo in which each link with collisions is a free body.
+
+    Attributes:
+        model: the model, or None if fewer than two links have shapes that can be used.
+    """
+
+    def __init__(self, measures: RobotMeasures) -> None:
+        self._mujoco = mujoco = load_mujoco()
+        self._links: list[str] = []
+        self._measures = measures
+        spec = mujoco.MjSpec()
+        for name in measures.link_names:
+            self._add_link(spec, name)
+        self.model: Any = spec.compile() if len(self._links) > 1 else None
+        if self.model is not None:
+            self._data = mujoco.MjData(self.model)
+            self._indexes = [measures.link_names.index(name) for name in self._links]
+            self._ignored = _connected_pairs(measures)
+
+    def colliding_pairs(self, frames: Array) -> set[Pair]:
+        """Return the pairs of links that collide.
+
+        Args:
+            frames: the frames of all links in the root link's frame, shape (links, 4, 4).
+        """
+        positions = self._data.qpos.reshape(-1, 7)
+        for row, index in enumerate(self._indexes):
+            x, y, z, w = quaternion_from_matrix(frames[index, :3, :3])
+            positions[row] = [*frames[index, :3, 3], w, x, y, z]
+        self._mujoco.mj_kinematics(self.model, self._data)
+        self._mujoco.mj_collision(self.model, self._data)
+        contact = self._data.contact
+        deep = contact.geom[contact.dist < -_DEPTH]
+        bodies = self.model.geom_bodyid[deep].reshape(-1, 2) - 1
+        pairs = {(self._links[min(pair)], self._links[max(pair)]) for pair in bodies.tolist()}
+        return pairs - self._ignored
+
+    def _add_link(self, spec: Any, name: str) -> None:
+        collisions = self._measures.robot.links[name].collisions
+        body = spec.worldbody.add_body(mass=1.0, inertia=[1.0, 1.0, 1.0], explicitinertial=True)
+        added = [self._add_shape(spec, body, collision) for collision in collisions]
+        if not any(added):
+            spec.delete(body)
+            return
+        body.add_freejoint()
+        self._links.append(name)
+
+    def _add_shape(self, spec: Any, body: Any, collision: Collision) -> bool:
+        """Add a collision to a body, and return whether MuJoCo can use its shape."""
+        kinds, shape = self._mujoco.mjtGeom, collision.geometry
+        place = placement(collision.origin)
+        x, y, z, w = quaternion_from_matrix(np.array(place.rotation))
+        pose = {"pos": list(place.position), "quat": [w, x, y, z], "mass": 0.0}
+        if isinstance(shape, Mesh):
+            hull = self._hull_points(collision, shape)
+            if hull is None:
+                return False
+            mesh = spec.add_mesh(name=f"mesh {len(spec.meshes)}", uservert=hull.ravel().tolist())
+            body.add_geom(type=kinds.mjGEOM_MESH, meshname=mesh.name, **pose)
+        elif isinstance(shape, Box) and min(shape.size) > 0:
+            body.add_geom(type=kinds.mjGEOM_BOX, size=[length / 2 for length in shape.size], **pose)
+        elif isinstance(shape, Sphere) and shape.radius > 0:
+            body.add_geom(type=kinds.mjGEOM_SPHERE, size=[shape.radius, 0, 0], **pose)
+        elif isinstance(shape, (Cylinder, Capsule)) and min(shape.radius, shape.length) > 0:
+            kind = kinds.mjGEOM_CYLINDER if isinstance(shape, Cylinder) else kinds.mjGEOM_CAPSULE
+            body.add_geom(type=kind, size=[shape.radius, shape.length / 2, 0], **pose)
+        else:
+            return False
+        return True
+
+    def _hull_points(self, collision: Collision, shape: Mesh) -> Array | None:
+        """Return the corners of a mesh's convex hull, shape (corners, 3), or None if it has no volume."""
+        try:
+            mesh = self._measures.meshes.load(shape, collision.element)
+        except LinkwrightError:
+            return None
+        hull = convex_hull(mesh.vertices)
+        return None if hull is None else mesh.vertices[np.unique(hull)]
+
+
+def _connected_pairs(measures: RobotMeasures) -> set[Pair]:
+    """Return the pairs of links in the same rigid body, or in bodies that a joint connects."""
+    bodies = Bodies(measures.robot)
+    order = {name: index for index, name in enumerate(measures.link_names)}
+    pairs: set[Pair] = set()
+    for body in bodies.all:
+        parent = bodies.of(body.joint.parent) if body.joint is not None else None
+        group = [name for name in chain(body.links, parent.links if parent is not None else ()) if name in order]
+        for first in body.links:
+            for second in group:
+                if first in order and first != second:
+                    low, high = sorted((first, second), key=order.__getitem__)
+                    pairs.add((low, high))
+    return pairs

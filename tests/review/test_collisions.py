@@ -1,0 +1,57 @@
+"""Links that collide in the new version and not in the old one."""
+
+from __future__ import annotations
+
+import pytest
+
+from tests.repositories import MACRO, PACKAGE
+from tests.review.conftest import sentences, subject
+
+pytest.importorskip("mujoco")
+
+PATH = "arm_description/urdf/arm.urdf.xacro"
+SEGMENT = "arm_description/urdf/segment.xacro"
+SOLID = MACRO.replace(
+    "</link>",
+    """<collision>
+        <origin xyz="0 0 ${length / 2}"/>
+        <geometry><box size="0.1 0.1 ${length - 0.02}"/></geometry>
+      </collision>
+    </link>""",
+)
+
+
+@pytest.fixture
+def solid(repository):
+    repository.commit({**PACKAGE, SEGMENT: SOLID})
+    return repository
+
+
+def collisions(compare, repository, text: str) -> list[str]:
+    repository.write({SEGMENT: text})
+    return [sentence for sentence in sentences(subject(compare(repository), PATH)) if "collide" in sentence]
+
+
+def test_an_arm_that_can_fold_further_can_hit_itself(solid, compare):
+    (found,) = collisions(compare, solid, SOLID.replace('lower="-1.5" upper="1.5"', 'lower="-3" upper="3"'))
+    assert found.startswith("links 'upper' and 'lower' can collide: in ")
+    assert found.endswith(" % of 300 configurations, in none before")
+
+
+def test_a_collision_at_home(solid, compare):
+    text = SOLID.replace(
+        '<origin xyz="0 0 ${length}"/>', "<origin xyz=\"0 0 ${0.12 if name == 'lower' else length}\"/>"
+    )
+    text = text.replace('<origin xyz="0 0 ${0.12', "<origin xyz=\"0 0 ${-length if name == 'lower' else 0.12")
+    assert "links 'upper' and 'lower' collide at home" in collisions(compare, solid, text)
+
+
+def test_what_collided_before_is_not_new(solid, compare):
+    free = SOLID.replace('lower="-1.5" upper="1.5"', 'lower="-3" upper="3"')
+    solid.commit({SEGMENT: free})
+    assert collisions(compare, solid, free.replace('mass value="2"', 'mass value="3"')) == []
+    assert collisions(compare, solid, SOLID) == []
+
+
+def test_links_that_a_joint_connects_may_touch(solid, compare):
+    assert collisions(compare, solid, SOLID.replace("${length - 0.02}", "${length + 0.1}")) == []
