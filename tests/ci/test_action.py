@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import sys
 from pathlib import Path
 
 import pytest
@@ -12,6 +13,8 @@ from linkwright.review.reports.markdown import MARKER
 from tests.ci.conftest import HOSTILE_BRANCH, Example
 from tests.ci.runner import TEMPLATES, Runner
 from tests.ci.service import TOKEN, Service
+
+pytestmark = pytest.mark.skipif(sys.platform == "win32", reason="the scripts are for Linux and macOS")
 
 FILES = ["comment.md", "pull-request.txt", "report.html", "report.json", "report.sarif"]
 LINK = "\n[report.html](https://example.org/artifacts/8)\n"

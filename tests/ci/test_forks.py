@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import io
+import sys
 import zipfile
 from pathlib import Path
 from typing import Any
@@ -13,6 +14,8 @@ from linkwright.review.reports.markdown import MARKER
 from tests.ci.conftest import Example
 from tests.ci.runner import Run, Runner
 from tests.ci.service import Service
+
+pytestmark = pytest.mark.skipif(sys.platform == "win32", reason="the scripts are for Linux and macOS")
 
 GOOD = (
     f"{MARKER}\n### Robot review: a to b\n\n1 breaking change\n\n- **link &#60;a&#62; removed** (<code>a.urdf</code>)\n"

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import subprocess
+import sys
 from pathlib import Path
 
 import pytest
@@ -15,6 +16,8 @@ from tests.ci.runner import TEMPLATES, Runner
 from tests.ci.service import TOKEN, Service
 from tests.places import REPOSITORY
 from tests.repositories import ARM, Repository
+
+pytestmark = pytest.mark.skipif(sys.platform == "win32", reason="the scripts are for Linux and macOS")
 
 TEMPLATE = yaml.safe_load((TEMPLATES / "gitlab" / "review.yml").read_text(encoding="utf-8"))
 JOB = TEMPLATE["linkwright-review"]
