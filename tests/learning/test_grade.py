@@ -5,6 +5,7 @@ import errno
 import json
 import os
 import pickle
+import signal
 import subprocess
 import sys
 from contextlib import nullcontext
@@ -97,6 +98,17 @@ def test_malicious_students_hurt_only_themselves(folder):
     assert "limits" in data["protections"]
     assert all((folder / f"students/good{number}/program.py").read_text() == "print(42)" for number in range(8))
     wait_until(lambda: not processes_with("linkwright_grade_"), SECONDS)
+
+
+@pytest.mark.parametrize("number", [signal.SIGTERM, signal.SIGKILL, signal.SIGINT])
+def test_the_runs_end_with_the_grader(folder, number):
+    write_student(folder, "endless", ENDLESS)
+    words = ["learn", "grade", "--course", "course", "--cpu-seconds", "300", "students/endless"]
+    grader = subprocess.Popen([sys.executable, "-m", "linkwright", *words], cwd=folder, start_new_session=True)
+    wait_until(lambda: processes_with("program.py"), SECONDS)
+    grader.send_signal(number)
+    assert grader.wait(SECONDS) != 0
+    wait_until(lambda: not processes_with("program.py") and not processes_with("linkwright_grade_"), SECONDS)
 
 
 def test_points_claims_and_formats(folder):

@@ -3,6 +3,9 @@
 from __future__ import annotations
 
 import multiprocessing
+import os
+import signal
+import sys
 from collections.abc import Callable, Iterator, Sequence
 from concurrent.futures import BrokenExecutor, ProcessPoolExecutor, as_completed
 from contextlib import contextmanager
@@ -53,7 +56,8 @@ def ray_workers(address: str) -> Iterator[RunJobs]:
 
 
 def _run_locally(count: int, jobs: Sequence[Job]) -> Iterator[tuple[int, Ended]]:
-    pool = ProcessPoolExecutor(count, mp_context=multiprocessing.get_context("spawn"))
+    spawn = multiprocessing.get_context("spawn")
+    pool = ProcessPoolExecutor(count, mp_context=spawn, initializer=_end_with_grader, initargs=(os.getpid(),))
     try:
         futures = {pool.submit(run_job, job): index for index, job in enumerate(jobs)}
         for future in as_completed(futures):
@@ -66,6 +70,14 @@ def _run_locally(count: int, jobs: Sequence[Job]) -> Iterator[tuple[int, Ended]]
                 yield futures[future], future.result()
     finally:
         pool.shutdown(cancel_futures=True)
+
+
+def _end_with_grader(grader: int) -> None:
+    """End this process when the grader ends, however it ends. The supervisor of its run then ends the run."""
+    if sys.platform == "linux":
+        from linkwright.learning.sandbox.linux import die_with_parent
+
+        die_with_parent(signal.SIGTERM, grader)
 
 
 def _run_on_ray(cluster: RayCluster, jobs: Sequence[Job]) -> Iterator[tuple[int, Ended]]:
