@@ -135,6 +135,7 @@ def test_a_text_that_is_no_report_is_not_posted(fork: Service, runner: Runner, t
     assert run.failed == "Comment on the pull request", reason
     assert run.output.startswith("::error::")
     assert len(run.output.splitlines()) == 1
+    assert len(run.output) < 300
     assert fork.writes == []
 
 

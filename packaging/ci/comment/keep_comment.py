@@ -256,7 +256,7 @@ def is_empty(report: bytes) -> bool:
     """Return whether a review has nothing to say: no change of a robot, no finding and no note."""
     data = json.loads(report)
     if not isinstance(data, dict):
-        raise ValueError(data)  # noqa: TRY004 - the file is wrong, not the program
+        raise ValueError("the report is not an object")  # noqa: TRY004 - the file is wrong, not the program
     return not any(data.get(key) for key in ("subjects", "new_findings", "fixed_findings", "notes"))
 
 
@@ -360,7 +360,7 @@ def main(words: list[str], variables: Mapping[str, str]) -> int:
     except OSError as error:
         line, is_error = f"the comment is not posted: {error}", True
     except _BAD_ARTIFACT as error:
-        line, is_error = f"the comment is not posted, because a file is not one of a review: {error!r}", True
+        line, is_error = f"the comment is not posted, because a file is not one of a review: {error}", True
     level = "error" if is_error else "notice"
     line = " ".join(line.split())
     print(f"::{level}::{line}" if "GITHUB_ACTIONS" in variables else line)
