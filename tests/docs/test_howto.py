@@ -48,6 +48,20 @@ def test_a_finding_fails_the_check_and_is_mended(follow: Callable[..., Path]) ->
     assert (home / "linkwright.sarif").is_file()
 
 
+@pytest.mark.slow
+def test_a_change_is_reviewed_before_it_is_merged(follow: Callable[..., Path]) -> None:
+    home = follow(
+        DOCS / "howto-review.md",
+        {
+            "linkwright review": Known(shows="link 'camera' renamed to 'camera_link'", goes_on=False),
+            "linkwright check --strict --changed main src": Known(shows="URDF190", may_fail=True, goes_on=False),
+        },
+    )
+    assert (home / "review.html").is_file()
+    assert (home / "robots" / "build" / "review.html").is_file()
+    assert "URDF190" in (home / "robots" / "known-findings.json").read_text(encoding="utf-8")
+
+
 def test_the_workflow_and_the_hook_run_what_the_page_shows() -> None:
     files = {
         block.title: yaml.safe_load(block.text)

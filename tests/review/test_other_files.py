@@ -210,6 +210,14 @@ def test_a_comment_in_an_interface_changes_nothing(repository, compare):
     assert compare(repository).subjects == []
 
 
+def test_added_and_removed_files_are_other_files_beside_an_added_robot(package, compare):
+    package.commit({"old.txt": "An arm."})
+    added = {"arm_description/urdf/new.urdf": '<robot name="new"><link name="a"/></robot>', "new.txt": "Another arm."}
+    package.commit({**added, "old.txt": None})
+    result = compare(package, "HEAD~1..HEAD")
+    assert result.other_files == ["new.txt", "old.txt"]
+
+
 def test_settings_of_tools_are_other_files(package, compare):
     files = (".github/workflows/ci.yml", "mkdocs.yml", "arm_description/.clang-format.yaml")
     package.commit(dict.fromkeys(files, "a: 1\n"))

@@ -20,7 +20,7 @@ OTHER = (
     .replace('name="upper"', 'name="shoulder"')
     .replace('"upper"', '"shoulder"')
 )
-HOSTILE = "<img src=x onerror=alert(1)> @octocat #12 [link](http://x) `code` | *bold*"
+HOSTILE = "<img src=x onerror=alert(1)> @octocat #12 [link](http://x) `code` | *bold* &commat;octocat &lt;"
 
 
 @pytest.fixture
@@ -63,9 +63,19 @@ def test_names_of_a_repository_are_no_markup():
     assert not re.search("(?<!&)#12", markdown)
     assert "[link]" not in markdown
     assert "`" not in markdown.replace("```", "")
+    assert "&commat;" not in markdown
+    assert "&lt;" not in markdown
     tags = _tags(page)
     assert "img" not in tags
     assert tags.count("script") == 1
+
+
+def test_names_do_not_control_what_is_shown():
+    name = "arm\n::error::\x1b[31m\u202e.urdf"
+    result = Review("main", "HEAD", [Subject(SubjectKind.DESCRIPTION, name, None, name, [Change(phrase("added"))])])
+    assert "arm\N{SYMBOL FOR NEWLINE}::error::" in as_text(result).splitlines()[0]
+    for text in (as_text(result), as_markdown(result)):
+        assert not re.search("^::|\x1b|\u202e", text, re.MULTILINE)
 
 
 def test_a_long_review_fits_into_a_comment():

@@ -81,7 +81,7 @@ class _Reviewer:
             ]
             old_findings, new_findings = (result() for result in findings)
             all_subjects = [result() for result in subjects]
-        compared = {path for _, *paths in pairs for path in paths}
+        compared = {path for _, *paths in pairs for path in paths if path}
         parts = {
             change.location.file
             for subject in all_subjects

@@ -6,6 +6,7 @@ import re
 from collections.abc import Iterator, Sequence
 
 from linkwright.diagnostics import Diagnostic, Phrase, counted, phrase
+from linkwright.diagnostics.render import printable
 from linkwright.diagnostics.translation import localized
 from linkwright.review.changes import Change, Effect, Figure, Location, Review, Subject
 from linkwright.review.reports.sections import Section, cases_text, repeated_text, sections_of, sentence_of, summary
@@ -16,7 +17,7 @@ _MAX_OPEN_CHANGES = 8
 """The number of changes of a file that are shown without a click."""
 _MAX_CHARACTERS = 60_000
 """The length of the text. GitHub refuses comments of more than 65 536 characters."""
-_SPECIAL = re.compile(r"[\\`*_{}\[\]<>|~]")
+_SPECIAL = re.compile(r"[&\\`*_{}\[\]<>|~]")
 _MENTION = re.compile(r"([@#])(?=\w)")
 
 
@@ -123,7 +124,7 @@ def _details(title: str, lines: Iterator[str] | Sequence[str]) -> str:
 def _escape(text: str) -> str:
     """Return a text in the user's language in which nothing is markup, a mention or a reference to an issue."""
     shown = localized(text) if isinstance(text, Phrase) else text
-    return _SPECIAL.sub(_entity, _MENTION.sub("\\1\u200b", " ".join(shown.split())))
+    return _SPECIAL.sub(_entity, _MENTION.sub("\\1\u200b", printable(" ".join(shown.split()))))
 
 
 def _entity(match: re.Match[str]) -> str:

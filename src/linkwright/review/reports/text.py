@@ -10,10 +10,13 @@ from linkwright.diagnostics.translation import localized
 from linkwright.review.changes import Effect, Review
 from linkwright.review.reports.sections import Section, cases_text, repeated_text, sections_of, sentence_of, summary
 
+_NEWLINE = "\N{SYMBOL FOR NEWLINE}"
+"""The character for a newline in the name of a file, which must not begin a line of its own."""
+
 
 def as_text(review: Review) -> str:
     """Return the report as text in the user's language, a line for each change."""
-    return "".join(f"{printable(line)}\n" for line in _lines(review))
+    return "".join(printable(line).replace("\n", _NEWLINE) + "\n" for line in _lines(review))
 
 
 def _lines(review: Review) -> Iterator[str]:

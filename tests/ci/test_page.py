@@ -1,0 +1,96 @@
+"""The page about reviews shows what the program prints, and files that fit the templates."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Any
+
+import pytest
+import yaml
+
+from linkwright.cli import main
+from tests.ci.runner import TEMPLATES
+from tests.ci.test_pre_commit import HOOKS
+from tests.docs.pages import DOCS, Block, blocks
+from tests.docs.reader import write
+from tests.repositories import Repository
+
+PAGES = {"en": DOCS / "howto-review.md", "zh": DOCS / "zh" / "howto-review.md"}
+
+
+def files(page: Path = PAGES["en"]) -> dict[str, Any]:
+    """The YAML files of the page, by their names."""
+    return {block.title: yaml.safe_load(block.text) for block in blocks(page) if block.language == "yaml"}
+
+
+def steps(name: str) -> list[dict[str, Any]]:
+    (job,) = files()[name]["jobs"].values()
+    found: list[dict[str, Any]] = job["steps"]
+    return found
+
+
+@pytest.mark.parametrize("language", PAGES)
+def test_the_outputs_are_current(
+    language: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    shown = blocks(PAGES[language])
+    robot: list[Block] = [block for block in shown if block.title.endswith(".urdf")]
+    review, check = (block.text for block in shown if block.language == "text")
+    repository = Repository(tmp_path / "robots")
+    write(next(block for block in shown if block.title.endswith("package.xml")), repository.root)
+    write(robot[0], repository.root)
+    repository.commit({})
+    write(robot[1], repository.root)
+    monkeypatch.chdir(repository.root)
+    assert main(["review", "--lang", language]) == 0
+    assert capsys.readouterr().out == review
+    assert main(["check", "--strict", "--changed", "main", "src", "--lang", language]) == 1
+    assert capsys.readouterr().err == check
+
+
+@pytest.mark.parametrize("name", [".github/workflows/review.yml", ".gitea/workflows/review.yml"])
+def test_the_workflow_uses_the_action(name: str) -> None:
+    checkout, review, *_ = steps(name)
+    assert checkout["with"] == {"fetch-depth": 0}
+    _, _, path = review["uses"].partition("/linkwright/")
+    assert path == "packaging/ci/review@REF"
+    declared = yaml.safe_load((TEMPLATES / "review" / "action.yml").read_text(encoding="utf-8"))["inputs"]
+    assert review.get("with", {}).keys() <= declared.keys()
+
+
+def test_the_workflow_for_forks_checks_out_nothing() -> None:
+    workflow = files()[".github/workflows/review-comment.yml"]
+    (step,) = steps(".github/workflows/review-comment.yml")
+    assert step == {"uses": "OWNER/linkwright/packaging/ci/comment@REF"}
+    assert workflow[True]["workflow_run"]["workflows"] == [files()[".github/workflows/review.yml"]["name"]]
+    assert workflow["permissions"] == {"actions": "read", "pull-requests": "write"}
+
+
+def test_no_workflow_gives_the_token_to_code_of_a_pull_request() -> None:
+    for name, content in files().items():
+        assert "pull_request_target" not in str(content), name
+    for name in (".github/workflows/review.yml", ".gitea/workflows/review.yml"):
+        assert files()[name][True] == "pull_request"
+
+
+def test_gitlab_includes_the_template() -> None:
+    settings = files()[".gitlab-ci.yml"]
+    template = yaml.safe_load((TEMPLATES / "gitlab" / "review.yml").read_text(encoding="utf-8"))
+    assert (TEMPLATES.parent.parent / settings["include"][0]["file"]).is_file()
+    for name, job in settings.items():
+        if name != "include":
+            assert job["variables"].keys() <= template[name]["variables"].keys()
+
+
+def test_the_local_hook_is_the_one_that_others_can_use() -> None:
+    (local,) = files()[".pre-commit-config.yaml"]["repos"][0]["hooks"]
+    hook = HOOKS[local["id"]]
+    assert local["entry"] == " ".join([hook["entry"], *hook["args"]])
+    assert (local["name"], local["files"]) == (hook["name"], hook["files"])
+
+
+def test_the_inputs_are_described() -> None:
+    declared = yaml.safe_load((TEMPLATES / "review" / "action.yml").read_text(encoding="utf-8"))["inputs"]
+    for page in PAGES.values():
+        text = page.read_text(encoding="utf-8")
+        assert [name for name in declared if f"`{name}`" not in text] == []

@@ -1,0 +1,63 @@
+"""The hooks for pre-commit in an example repository: what is old passes, what is new fails."""
+
+from __future__ import annotations
+
+import re
+import subprocess
+import sys
+from pathlib import Path
+from typing import Any
+
+import pytest
+import yaml
+
+from tests.places import REPOSITORY
+from tests.repositories import ARM, PACKAGE, Repository
+
+HOOKS = {hook["id"]: hook for hook in yaml.safe_load((REPOSITORY / ".pre-commit-hooks.yaml").read_text("utf-8"))}
+WRONG = ARM.replace("</robot>", '<link name="loose"/></robot>')
+
+
+@pytest.fixture
+def repository(tmp_path: Path) -> Repository:
+    repository = Repository(tmp_path / "repository")
+    repository.commit({**PACKAGE, "arm_description/urdf/old.urdf.xacro": WRONG.replace('"arm"', '"old"')})
+    return repository
+
+
+def run(repository: Repository, name: str) -> subprocess.CompletedProcess[str]:
+    """Run a hook that checks all files, as pre-commit does."""
+    hook: dict[str, Any] = HOOKS[name]
+    command, *words = hook["entry"].split()
+    assert command == "linkwright"
+    assert not hook["pass_filenames"]
+    return subprocess.run(
+        [sys.executable, "-I", "-m", "linkwright", *words, *hook["args"]],
+        cwd=repository.root,
+        capture_output=True,
+        text=True,
+        check=False,
+    )
+
+
+def test_each_hook_has_what_pre_commit_asks_for() -> None:
+    for hook in HOOKS.values():
+        assert {"id", "name", "entry", "language", "files"} <= hook.keys()
+        assert hook["language"] == "python"
+        assert re.search(hook["files"], "arm_description/urdf/arm.urdf.xacro")
+        assert not re.search(hook["files"], "README.md")
+
+
+def test_old_findings_stop_only_the_hook_that_checks_everything(repository: Repository) -> None:
+    assert run(repository, "linkwright-check").returncode == 1
+    done = run(repository, "linkwright-check-changed")
+    assert done.returncode == 0, done.stderr
+
+
+def test_new_findings_stop_the_commit(repository: Repository) -> None:
+    repository.write({"arm_description/urdf/arm.urdf.xacro": WRONG})
+    repository.git("add", "--all")
+    done = run(repository, "linkwright-check-changed")
+    assert done.returncode == 1
+    assert "loose" in done.stderr
+    assert "old.urdf.xacro" not in done.stderr
