@@ -7,7 +7,7 @@ address of the service and the event from the variables of the job, and the toke
                                                  files of the review, and LINK leads to them
     keep_comment.py workflow-run ARTIFACT        on the pull request of a fork, whose run uploaded the files
 
-Files of a fork's run are untrusted, see `comment_of_run`. docs/decisions/0137 has the reasons.
+Files of a fork's run are untrusted, see `comment_of_run`. docs/decisions/0136 has the reasons.
 """
 
 from __future__ import annotations

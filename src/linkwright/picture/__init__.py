@@ -1,6 +1,6 @@
 """Images of robots and worlds, rendered without a browser, a graphics card or OpenGL.
 
-The same scene gives the same pixels on every machine (decision 0135).
+The same scene gives the same pixels on every machine (decision 0134).
 """
 
 from linkwright.picture.camera import VIEWS, Camera, View
