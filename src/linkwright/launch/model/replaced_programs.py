@@ -49,8 +49,8 @@ def replacing_node(words: Sequence[str], environment: Mapping[str, str]) -> Node
     except Exception as error:
         message = phrase("the node that replaces '{program}' cannot be imported", program=entry_point.name)
         hint = phrase(
-            "fix the Python package '{module}', whose import fails: {problem}",
-            module=entry_point.distribution,
+            "fix the Python package '{package}', whose import fails: {problem}",
+            package=entry_point.distribution,
             problem=foreign(error),
         )
         raise LinkwrightError(Diagnostic("NODE002", message, hint=hint)) from error
