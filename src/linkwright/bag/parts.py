@@ -71,6 +71,10 @@ class Part:
             name, type_name, msgdef=schema, rihs01=digest, offered_qos_profiles=list(offered_qos)
         )
 
+    def set_custom_data(self, name: str, value: str) -> None:
+        """Set an additional entry of the metadata."""
+        self._writer.custom_data[name] = value
+
     def write(self, topic: str, stamp_ns: int, data: bytes | memoryview) -> None:
         """Append a message."""
         self._writer.write(self._connections[topic], stamp_ns, data)

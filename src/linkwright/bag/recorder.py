@@ -6,6 +6,13 @@ from collections.abc import Callable, Mapping
 from typing import Any
 
 from linkwright.bag.qos import profile_for_recording
+from linkwright.bag.robot_description import (
+    DESCRIPTION_TOPIC,
+    DESCRIPTION_TYPE,
+    HASH_ENTRY,
+    description_of_message,
+    hash_of_description,
+)
 from linkwright.bag.selection import TopicSelection
 from linkwright.bag.writing import BagWriter
 from linkwright.diagnostics import LinkwrightError
@@ -21,7 +28,8 @@ class Recorder:
     """A recorder that subscribes to topics and writes their messages to a recording.
 
     The recorder passes the received messages to the operating system every second, so that at most one second is
-    missing if the process is killed.
+    missing if the process is killed. The metadata get the hash of the robot description, even if its topic is not
+    recorded, so that a reader can tell whether another description belongs to the recording.
 
     Args:
         node: the node that subscribes to the topics and logs events.
@@ -62,6 +70,7 @@ class Recorder:
         self._receive = wrap_callback(self._write)
         self._rejected: set[str] = set()
         self._count = 0
+        self._watches_description = False
         self.paused = paused
         self._logger.info("Listening for topics...")
         self._discovery_timer = (
@@ -98,6 +107,8 @@ class Recorder:
         if self._uses_sim_time and self._discovery_timer is not None and self._now() == 0:
             return  # simulated time is still unknown; a later subscription also receives latched messages
         for name, types in self._node.get_topic_names_and_types():
+            if name == DESCRIPTION_TOPIC and types == [DESCRIPTION_TYPE] and not self._watches_description:
+                self._watch_description()
             if name in self._writer.topics or name in self._rejected:
                 continue
             if len(types) > 1:
@@ -130,6 +141,20 @@ class Recorder:
             raw=True,
         )
         self._logger.info(f"Subscribed to topic '{name}'")
+
+    def _watch_description(self) -> None:
+        """Subscribe to the robot description, whose hash belongs into the metadata."""
+        offered = [info.qos_profile for info in self._node.get_publishers_info_by_topic(DESCRIPTION_TOPIC)]
+        if not offered:
+            return
+        self._watches_description = True
+        profile = profile_for_recording(offered)
+        self._node.create_subscription(
+            get_message(DESCRIPTION_TYPE), DESCRIPTION_TOPIC, self._note_description, profile, raw=True
+        )
+
+    def _note_description(self, data: bytes | memoryview) -> None:
+        self._writer.set_custom_data(HASH_ENTRY, hash_of_description(description_of_message(data)))
 
     def _reject(self, name: str, reason: str) -> None:
         self._rejected.add(name)

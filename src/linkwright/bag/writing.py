@@ -129,6 +129,13 @@ class BagWriter:
                 raise self._stop_with(error) from error
             self._topics[name] = topic_entry
 
+    def set_custom_data(self, name: str, value: str) -> None:
+        """Set an additional entry of the metadata of this and all later files."""
+        with self._lock:
+            self._custom_data[name] = value
+            if self._part is not None:
+                self._part.set_custom_data(name, value)
+
     def write(self, topic: str, stamp_ns: int, data: bytes | memoryview) -> None:
         """Write a message, or buffer it if `snapshot_size` is set.
 

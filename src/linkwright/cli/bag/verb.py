@@ -6,7 +6,7 @@ import argparse
 import sys
 from functools import partial
 
-from linkwright.cli.bag import play, record, rewrite
+from linkwright.cli.bag import description, play, record, rewrite
 from linkwright.cli.bag.options import add_storage_argument
 from linkwright.cli.nested import SubVerb, configure_nested, run_nested
 from linkwright.diagnostics import print_diagnostics
@@ -31,6 +31,11 @@ def run_info(arguments: argparse.Namespace) -> int:
 
 VERBS = {
     "convert": SubVerb(rewrite.configure_convert, rewrite.run_convert, help="rewrite recordings with other settings"),
+    "description": SubVerb(
+        description.configure_description,
+        description.run_description,
+        help="print the robot description of a recording, or compare it with a file",
+    ),
     "info": SubVerb(configure_info, run_info, help="print the files, times and topics of a recording"),
     "list": SubVerb(
         rewrite.configure_list, rewrite.run_list, help="list the storage formats, converters and compressions"
