@@ -133,7 +133,7 @@ def test_a_dataclass_may_derive_from_a_lean_one():
 
 
 class Leaned(lean_dataclasses.NamedTuple):
-    """A class from `lean_dataclasses`."""
+    """A named tuple of either module."""
 
     x: int
     others: tuple[int, ...] = ()
@@ -144,7 +144,7 @@ class Leaned(lean_dataclasses.NamedTuple):
 
 
 class Usual(NamedTuple):
-    """One of ours."""
+    """A named tuple of either module."""
 
     x: int
     others: tuple[int, ...] = ()

@@ -131,4 +131,5 @@ def _distances(lines: Array, left: int, top: int, right: int, bottom: int) -> Ar
         ratio = np.clip(ratio, 0.0, 1.0)
         dx, dy = x - (x0 + ratio * across), y - (y0 + ratio * down)
         np.minimum(nearest, dx * dx + dy * dy, out=nearest)
-    return np.sqrt(nearest)
+    distances: Array = np.sqrt(nearest)
+    return distances

@@ -231,6 +231,8 @@ class _Renderer:
     def _ground(self, first: int, last: int) -> tuple[Floats, Floats]:
         """Return light multiplied by opacity, and opacity, of the ground and background in some rows of pixels."""
         shape = (last - first, self._width)
+        light: Floats
+        alpha: Floats
         if self._style.transparent:
             light, alpha = np.zeros((*shape, 3), np.float32), np.zeros(shape, np.float32)
         else:
