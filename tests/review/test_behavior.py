@@ -80,7 +80,7 @@ def test_texts_and_seeds(compared):
 
 def test_a_scenario_that_cannot_run_is_a_problem(compared):
     (problem,) = compared({}, {"FAILS": "}"}).problems
-    assert str(problem).startswith("the scenario cannot run in the new version: ")
+    assert str(problem.text).startswith("the scenario cannot run in the new version: ")
 
 
 def test_nothing_runs_unless_asked(package, tmp_path, monkeypatch, capsys):

@@ -159,8 +159,8 @@ def test_a_version_that_cannot_be_read_is_a_problem_and_costs_nothing_else(packa
     package.write({PATH: ARM, "other/b.urdf": "<robot name='b'><link name='c'/></robot>"})
     result = compare(package)
     (problem,) = subject(result, PATH).problems
-    assert str(problem).startswith("the old version cannot be read: HEAD:arm_description/urdf/arm.urdf.xacro:")
-    assert "missing" in problem
+    assert str(problem.text).startswith("the old version cannot be read: HEAD:arm_description/urdf/arm.urdf.xacro:")
+    assert "missing" in problem.text
     assert breaking(result)
 
 

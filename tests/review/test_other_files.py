@@ -182,7 +182,7 @@ def test_hostile_yaml_is_a_problem(repository, compare, text, reason):
     repository.commit({"a/package.xml": PACKAGE_XML, "a/config/c.yaml": PARAMETERS})
     repository.write({"a/config/c.yaml": text})
     (problem,) = subject(compare(repository), "a/config/c.yaml").problems
-    assert reason in problem
+    assert reason in problem.text
 
 
 @pytest.mark.parametrize(
@@ -261,7 +261,7 @@ def test_a_mesh_in_git_lfs_is_not_downloaded(repository, compare):
     repository.commit({"a/meshes/m.stl": pointer.format("0" * 64)})
     repository.write({"a/meshes/m.stl": pointer.format("1" * 64)})
     problems = subject(compare(repository), "a/meshes/m.stl").problems
-    assert [str(problem) for problem in problems] == [
+    assert [str(problem.text) for problem in problems] == [
         "the old version cannot be read: the file is in Git LFS and is not downloaded",
         "the new version cannot be read: the file is in Git LFS and is not downloaded",
     ]

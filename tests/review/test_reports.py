@@ -147,6 +147,14 @@ def test_conditions_of_failure(run, conditions, status):
     assert run("HEAD~1..HEAD", "--fail-on", conditions)[0] == status
 
 
+def test_a_commit_that_mends_a_description_has_no_problem(run, changed):
+    text = ARM.replace("</robot>", "${missing}</robot>")
+    changed.commit({"arm_description/urdf/arm.urdf.xacro": text})
+    changed.commit({"arm_description/urdf/arm.urdf.xacro": ARM})
+    assert run("HEAD~2..HEAD~1", "--fail-on", "problems")[0] == 1
+    assert run("HEAD~1..HEAD", "--fail-on", "problems")[0] == 0
+
+
 def test_an_unknown_condition_is_wrong_usage(run):
     status, _, errors = run("--fail-on", "anything")
     assert status == 2

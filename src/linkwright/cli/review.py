@@ -23,7 +23,9 @@ if TYPE_CHECKING:
 _CONDITIONS: dict[str, Callable[[Review], object]] = {
     "breaking": lambda review: review.breaking_changes,
     "findings": lambda review: review.new_findings,
-    "problems": lambda review: any(subject.problems for subject in review.subjects),
+    "problems": lambda review: [
+        problem for subject in review.subjects for problem in subject.problems if not problem.is_of_old
+    ],
     "changes": lambda review: review.subjects,
 }
 """The values of ``--fail-on``, and what makes the command fail."""

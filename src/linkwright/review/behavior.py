@@ -15,9 +15,9 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import NDArray
 
-from linkwright.diagnostics import Phrase, foreign, phrase
+from linkwright.diagnostics import foreign, phrase
 from linkwright.files.scratch_folders import ScratchFolder
-from linkwright.review.changes import Change, Effect, Subject, SubjectKind
+from linkwright.review.changes import Change, Effect, Problem, Subject, SubjectKind
 from linkwright.review.versions import Version, Versions
 
 _RESAMPLES = 4_000
@@ -41,14 +41,14 @@ def compare_behavior(versions: Versions, path: str, seeds: int | None = None) ->
         path: the file of the scenario, relative to the root of the repository.
         seeds: the number of seeds; None for those of the scenario.
     """
-    problems: list[Phrase] = []
+    problems: list[Problem] = []
     old = _run(versions.old, path, seeds, problems)
     new = _run(versions.new, path, seeds, problems)
     changes = [] if old is None or new is None else list(_changes(old, new))
     return Subject(SubjectKind.SCENARIO, path, path, path, changes, problems=problems)
 
 
-def _run(version: Version, path: str, seeds: int | None, problems: list[Phrase]) -> dict[Parameters, Row] | None:
+def _run(version: Version, path: str, seeds: int | None, problems: list[Problem]) -> dict[Parameters, Row] | None:
     """Return the rows of the scenario's table by their parameters and seeds, or None if there are none."""
     with ScratchFolder("sweep") as folder:
         table = Path(folder) / "table.csv"
@@ -62,7 +62,7 @@ def _run(version: Version, path: str, seeds: int | None, problems: list[Phrase])
             text = phrase("the scenario cannot run in the new version: {reason}", reason=foreign(lines[0]))
             if version.is_old:
                 text = phrase("the scenario cannot run in the old version: {reason}", reason=foreign(lines[0]))
-            problems.append(text)
+            problems.append(Problem(text, version.is_old))
             return None
         with table.open(encoding="utf-8", newline="") as file:
             rows = list(csv.DictReader(file))

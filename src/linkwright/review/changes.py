@@ -113,6 +113,19 @@ class Figure:
 
 
 @dataclass(frozen=True)
+class Problem:
+    """The reason why a part of a comparison is missing.
+
+    Attributes:
+        text: the reason.
+        is_of_old: whether only the old version has the problem, so that the new one solves it.
+    """
+
+    text: Phrase
+    is_of_old: bool = False
+
+
+@dataclass(frozen=True)
 class Subject:
     """A reviewed file with its changes.
 
@@ -134,7 +147,7 @@ class Subject:
     new_path: str | None
     changes: Sequence[Change] = ()
     figures: Sequence[Figure] = ()
-    problems: Sequence[Phrase] = ()
+    problems: Sequence[Problem] = ()
     cases: Sequence[str] = ()
     images: Sequence[ViewImages] = ()
 

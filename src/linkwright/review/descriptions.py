@@ -91,7 +91,7 @@ def _cases(pair: FilePair) -> Iterator[_Case]:
         text = phrase(
             "only {count} of {total} sets of argument values were compared", count=_MAX_CASES, total=len(sets)
         )
-        pair.problems.append(text)
+        pair.add_problem(text)
     for name, values in list(sets.items())[:_MAX_CASES]:
         models = Pair(pair.versions.old.model(pair.old_path, values), pair.versions.new.model(pair.new_path, values))
         old = _read(pair, models.old, pair.versions.old)

@@ -8,7 +8,7 @@ from pathlib import Path
 from typing import TypeVar
 
 from linkwright.diagnostics import LinkwrightError, Phrase, Span, foreign, phrase
-from linkwright.review.changes import Change, Effect, Figure, Location, ViewImages
+from linkwright.review.changes import Change, Effect, Figure, Location, Problem, ViewImages
 from linkwright.review.versions import Version, Versions
 
 _Content = TypeVar("_Content")
@@ -48,7 +48,7 @@ class FilePair:
     with_images: bool = False
     changes: list[Change] = field(default_factory=list)
     figures: list[Figure] = field(default_factory=list)
-    problems: list[Phrase] = field(default_factory=list)
+    problems: list[Problem] = field(default_factory=list)
     cases: list[str] = field(default_factory=list)
     images: list[ViewImages] = field(default_factory=list)
 
@@ -93,8 +93,13 @@ class FilePair:
         text = phrase("the new version cannot be read: {reason}", reason=reason)
         if version.is_old:
             text = phrase("the old version cannot be read: {reason}", reason=reason)
-        if text not in self.problems:
-            self.problems.append(text)
+        self.add_problem(text, is_of_old=version.is_old)
+
+    def add_problem(self, text: Phrase, *, is_of_old: bool = False) -> None:
+        """Add a reason why a part of the comparison is missing, once."""
+        problem = Problem(text, is_of_old)
+        if problem not in self.problems:
+            self.problems.append(problem)
 
     def add(self, sentence: Phrase, location: Location | None, reason: Phrase | None = None) -> None:
         """Add a change, which is breaking if there is a reason why."""

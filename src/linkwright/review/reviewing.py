@@ -201,9 +201,9 @@ def _compare(
     try:
         rule.compare(pair)
     except LinkwrightError as error:
-        pair.problems.append(phrase("the versions cannot be compared: {reason}", reason=error.diagnostics[0].message))
+        pair.add_problem(phrase("the versions cannot be compared: {reason}", reason=error.diagnostics[0].message))
     except (RecursionError, MemoryError):
-        pair.problems.append(phrase("the versions cannot be compared: they are nested too deeply, or too large"))
+        pair.add_problem(phrase("the versions cannot be compared: they are nested too deeply, or too large"))
     return Subject(kind, path, old_path, new_path, pair.changes, pair.figures, pair.problems, pair.cases, pair.images)
 
 

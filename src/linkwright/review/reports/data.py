@@ -57,7 +57,7 @@ def _subject(subject: Subject) -> dict[str, Any]:
             {"name": str(figure.name), "old": figure.old, "new": figure.new, "unit": figure.unit}
             for figure in subject.figures
         ],
-        "problems": list(subject.problems),
+        "problems": [str(problem.text) for problem in subject.problems],
     }
 
 

@@ -75,7 +75,7 @@ def _section(section: Section) -> str:
     subject = section.subject
     items = [_change(change, subject) for change in section.changes]
     items += [_text(repeated_text(path, count)) for path, count in section.repeated]
-    items += [f"<span class='breaking'>{_text(problem)}</span>" for problem in subject.problems]
+    items += [f"<span class='breaking'>{_text(problem.text)}</span>" for problem in subject.problems]
     changes = f"<ul>{''.join(f'<li>{item}</li>' for item in items)}</ul>" if items else ""
     return (
         f"<h2><code>{escape(subject.path)}</code></h2><section>"

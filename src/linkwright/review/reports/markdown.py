@@ -89,7 +89,7 @@ def _section(section: Section) -> str:
         title = counted("{count} more change", "{count} more changes", len(rest))
         lines += ["", _details(_escape(title), rest)]
     lines += [f"- {_escape(repeated_text(path, count))}" for path, count in section.repeated]
-    lines += [f"> {_escape(problem)}" for problem in subject.problems]
+    lines += [f"> {_escape(problem.text)}" for problem in subject.problems]
     return "\n".join(lines).rstrip()
 
 

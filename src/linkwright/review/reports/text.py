@@ -55,7 +55,7 @@ def _section(section: Section) -> Iterator[str]:
     for figure in subject.figures:
         yield f"  # {localized(figure.name)}: {figure.old or '-'} -> {figure.new or '-'} {figure.unit}".rstrip()
     for problem in subject.problems:
-        yield f"  ? {localized(problem)}"
+        yield f"  ? {localized(problem.text)}"
     yield ""
 
 
