@@ -44,7 +44,10 @@ XML_LAUNCH = """<launch>
         ('        DeclareLaunchArgument("model"),\n', "", "argument 'model' removed", True),
         ('"use_sim_time", default_value="false"', '"use_sim_time"',
          "argument 'use_sim_time': default false -> -", True),
-        ('name="right"', 'name="rear"', "node 'arm/camera' added", False),
+        ('name="right"', 'name="rear"', "node 'arm/camera': name right -> rear", True),
+        ('        Node(package="arm", executable="camera", name="left"),\n', "", "node 'arm/camera' removed", True),
+        ("    return Launch", "    print('starting')\n    return Launch",
+         "code changed outside of arguments, nodes and includes", False),
         ('"arm/cmd"', '"cmd_vel"', "node 'arm/driver': remappings [[cmd, arm/cmd]] -> [[cmd, cmd_vel]]", True),
     ],
 )  # fmt: skip
@@ -58,9 +61,62 @@ def test_launch_files_in_python(repository, compare, old, new, sentence, is_brea
 
 def test_a_launch_file_that_only_looks_different_is_not_reported(repository, compare):
     repository.commit({"arm/launch/arm.launch.py": LAUNCH})
-    text = LAUNCH.replace("RATE = 10", "SPEED = 10  # Hz").replace("RATE", "SPEED").replace('"', "'")
+    text = LAUNCH.replace("RATE = 10", "RATE = (  # Hz\n    10\n)").replace('"', "'")
     repository.write({"arm/launch/arm.launch.py": text})
     assert compare(repository).subjects == []
+
+
+TRANSFORMS = """from launch import LaunchDescription
+from launch_ros.actions import Node
+
+def generate_launch_description():
+    return LaunchDescription([
+        Node(package="tf2_ros", executable="static_transform_publisher", arguments=["0", "0", "0", "base", "left"]),
+        Node(package="tf2_ros", executable="static_transform_publisher", arguments=["1", "0", "0", "base", "right"]),
+        Node(package="rviz2", executable="rviz2", name="rviz2"),
+        Node(package="controller_manager", executable="ros2_control_node", remappings=[("/arm/cmd", "/cmd")]),
+        Node(package="controller_manager", executable="spawner", arguments=["arm"]),
+    ])
+"""
+
+
+LEFT = '["0", "0", "0", "base", "left"]'
+ADDED = """    return LaunchDescription([
+        Node(package="tf2_ros", executable="static_transform_publisher", arguments=["5", "0", "0", "base", "top"]),"""
+RVIZ = '        Node(package="rviz2", executable="rviz2", name="rviz2"),\n'
+SPAWNER = '["arm", "--controller-ros-args", "-r /arm/cmd:=/cmd"]'
+
+
+@pytest.mark.parametrize(
+    ("changes", "expected"),
+    [
+        (
+            [(LEFT, LEFT.replace('"0", "base"', '"2", "base"')), ("    return LaunchDescription([", ADDED)],
+            [
+                "node 'tf2_ros/static_transform_publisher': arguments [0, 0, 0, base, left] -> [0, 0, 2, base, left]",
+                "node 'tf2_ros/static_transform_publisher' added",
+            ],
+        ),
+        ([(RVIZ, "")], ["node 'rviz2/rviz2' removed"]),
+        (
+            [(', remappings=[("/arm/cmd", "/cmd")]', ""), ('["arm"]', SPAWNER)],
+            [
+                "node 'controller_manager/ros2_control_node': remappings [[/arm/cmd, /cmd]] -> -",
+                "node 'controller_manager/spawner': arguments [arm] -> [arm, --controller-ros-args, -r /arm/cmd:=/cmd]",
+            ],
+        ),
+    ],
+)
+def test_similar_nodes_are_matched_and_names_that_only_moved_break_nothing(repository, compare, changes, expected):
+    repository.commit({"arm/launch/arm.launch.py": TRANSFORMS})
+    text = TRANSFORMS
+    for old, new in changes:
+        assert old in text
+        text = text.replace(old, new)
+    repository.write({"arm/launch/arm.launch.py": text})
+    result = compare(repository)
+    assert sorted(sentences(subject(result, "arm/launch/arm.launch.py"))) == sorted(expected)
+    assert breaking(result) == []
 
 
 @pytest.mark.parametrize(
@@ -158,6 +214,16 @@ def test_parameters(repository, compare, old, new, sentence, is_breaking):
     result = compare(repository)
     assert sentences(subject(result, "a/config/c.yaml")) == [sentence]
     assert bool(breaking(result)) is is_breaking
+
+
+def test_a_controller_whose_type_is_now_its_own_parameter_is_still_there(repository, compare):
+    repository.commit({"a/package.xml": PACKAGE_XML, "a/config/c.yaml": PARAMETERS})
+    text = PARAMETERS.replace("    arm_controller:\n      type: a/B\n", "")
+    text = text.replace("    joints: [upper", "    type: a/B\n    joints: [upper")
+    repository.write({"a/config/c.yaml": text})
+    result = compare(repository)
+    assert len(sentences(subject(result, "a/config/c.yaml"))) == 2
+    assert breaking(result) == []
 
 
 @pytest.mark.parametrize(

@@ -110,6 +110,8 @@ def rule_of(path: str) -> KindRule | None:
         path: the path relative to the root of the repository.
     """
     name = PurePosixPath(path).name.lower()
+    if name.startswith("test_") and name.endswith(".py"):
+        return None  # a test with launch_testing
     if is_launch_file_name(name) and name.endswith(_YAML_SUFFIXES):
         return next(rule for rule in _RULES if rule.kind is SubjectKind.PARAMETERS)
     return next((rule for rule in _RULES if name.endswith(rule.suffixes)), None)

@@ -38,8 +38,21 @@ class Entry:
     span: Span
 
 
-def read_outline(path: Path) -> list[Entry]:
-    """Return the entries of a launch file in Python or XML, in the order of the text.
+@dataclass(frozen=True)
+class LaunchOutline:
+    """The outline of a launch file.
+
+    Attributes:
+        entries: the entries in the order of the text.
+        code: the syntax tree of a file in Python as text, without comments and layout; empty for XML.
+    """
+
+    entries: list[Entry]
+    code: str = ""
+
+
+def read_outline(path: Path) -> LaunchOutline:
+    """Return the outline of a launch file in Python or XML.
 
     Raises:
         LinkwrightError: the file is not XML.
@@ -48,13 +61,14 @@ def read_outline(path: Path) -> list[Entry]:
         ValueError: the file is not text in UTF-8.
     """
     if path.suffix != ".py":
-        return list(_markup_entries(read_document(str(path)).root))
+        return LaunchOutline(list(_markup_entries(read_document(str(path)).root)))
     try:
-        return list(_python_entries(PythonFile(SourceText(str(path), path.read_text("utf-8")))))
+        python = PythonFile(SourceText(str(path), path.read_text("utf-8")))
     except SyntaxError as error:
         line, reason = error.lineno or 1, foreign(error.msg)
         message = phrase("line {line} is not valid Python: {reason}", line=line, reason=reason)
         raise UnreadableFileError(message) from None
+    return LaunchOutline(list(_python_entries(python)), ast.dump(python.tree))
 
 
 # --- Python ----------------------------------------------------------------------------------------------------

@@ -9,16 +9,17 @@ from pathlib import Path
 from linkwright.diagnostics import Phrase, counted, phrase
 from linkwright.review.changes import Location
 from linkwright.review.file_pair import FilePair, UnreadableFileError
+from linkwright.review.list_changes import change_text, list_items
 from linkwright.review.yaml_values import YamlValue, read_yaml_values
 
 _MAX_BYTES = 4 << 20
-_LONG_LIST = 4
-"""The number of items up to which both versions of a list are shown."""
 _OFFERED_NAMES = re.compile(r"(^|[._])(joints?|joint_names?|wheel_names|interfaces|frame_id)$")
 """The parameters with names that a controller or driver offers to other programs, which must not lose one of them."""
-_CONTROLLER_TYPE = re.compile(r"controller_manager\.ros__parameters\.(?P<controller>[^.]+)\.type")
+_CONTROLLER_TYPE = re.compile(r"(?:[^.]+\.)?controller_manager\.ros__parameters\.(?P<controller>[^.]+)\.type")
 _STAMPED = re.compile(r"stamped", re.IGNORECASE)
 """The parameters that choose between messages with and without a header, such as ``use_stamped_vel``."""
+_STAMPED_BY_DEFAULT = "use_stamped_vel"
+"""The parameter of diff_drive_controller and its relatives, which is true by default."""
 _NUMBER_OR_TRUTH = re.compile(r"[-+]?(\d+\.?\d*|\.\d+)(e[-+]?\d+)?|true|false", re.IGNORECASE)
 
 
@@ -33,7 +34,7 @@ def compare_parameter_files(pair: FilePair) -> None:
         if old_value is not None and not _are_equal(old_value.text, value.text):
             location = Location(pair.new_path, value.line, value.column)
             pair.add(
-                _change_text(name, old_value.text, value.text),
+                change_text(name, old_value.text, value.text),
                 location,
                 _breaking_reason(name, old_value.text, value.text),
             )
@@ -42,26 +43,10 @@ def compare_parameter_files(pair: FilePair) -> None:
         pair.add(_lone_text(name, values_below, is_added=True), location)
     for name, values_below in _lone_parts(old, new):
         location = Location(pair.old_path, values_below[0].line, values_below[0].column, is_old=True)
-        reasons = (_breaking_reason(each, old[each].text, None) for each in old if _is_below(each, name))
+        below = [(each, old[each].text) for each in old if each not in new and _is_below(each, name)]
+        reasons = (_removal_reason(parameter, value, new) for parameter, value in below)
         reason = next((reason for reason in reasons if reason is not None), None)
         pair.add(_lone_text(name, values_below, is_added=False), location, reason)
-
-
-def _change_text(name: str, old: str, new: str) -> Phrase:
-    """Return a changed value in one line; of long lists, the items that were added and removed."""
-    added, removed = _items(new) - _items(old), _items(old) - _items(new)
-    if min(len(_items(old)), len(_items(new))) <= _LONG_LIST or not (added or removed):
-        return phrase("{parameter} {old} -> {new}", parameter=name, old=old, new=new)
-    if not removed:
-        return phrase("{parameter}: {items} added", parameter=name, items=", ".join(sorted(added)))
-    if not added:
-        return phrase("{parameter}: {items} removed", parameter=name, items=", ".join(sorted(removed)))
-    return phrase(
-        "{parameter}: {added} added, {removed} removed",
-        parameter=name,
-        added=", ".join(sorted(added)),
-        removed=", ".join(sorted(removed)),
-    )
 
 
 def _lone_parts(
@@ -114,21 +99,8 @@ def _are_equal(old: str, new: str) -> bool:
         return False
 
 
-def _breaking_reason(parameter: str, old: str, new: str | None) -> Phrase | None:
-    """Return why a changed value is breaking, or None if it is not.
-
-    Args:
-        parameter: the path of the parameter.
-        old: the old value.
-        new: the new value; None for a removed parameter.
-    """
-    controller = _CONTROLLER_TYPE.fullmatch(parameter)
-    if controller is not None and new is None:
-        return phrase(
-            "programs that load or command the controller '{name}' do not find it", name=controller["controller"]
-        )
-    if new is None:
-        return None
+def _breaking_reason(parameter: str, old: str, new: str) -> Phrase | None:
+    """Return why a changed value is breaking, or None if it is not."""
     if _STAMPED.search(parameter) and {old.lower(), new.lower()} == {"true", "false"}:
         return phrase("the message type of a topic changes between one with and one without a header")
     gone = _items(old) - _items(new)
@@ -137,7 +109,19 @@ def _breaking_reason(parameter: str, old: str, new: str | None) -> Phrase | None
     return None
 
 
+def _removal_reason(parameter: str, old: str, new: Mapping[str, YamlValue]) -> Phrase | None:
+    """Return why a removed parameter is breaking, or None if it is not.
+
+    The type of a controller can also be one of its own parameters.
+    """
+    if parameter.endswith(_STAMPED_BY_DEFAULT) and old.lower() == "false":
+        return phrase("the message type of a topic changes between one with and one without a header")
+    controller = _CONTROLLER_TYPE.fullmatch(parameter)
+    if controller is None or any(name.endswith(f"{controller['controller']}.ros__parameters.type") for name in new):
+        return None
+    return phrase("programs that load or command the controller '{name}' do not find it", name=controller["controller"])
+
+
 def _items(text: str) -> set[str]:
     """Return the items of a value that is a list, or the value itself, without numbers and truth values."""
-    items = (item.strip() for item in text.strip("[]").split(","))
-    return {item for item in items if item and not _NUMBER_OR_TRUTH.fullmatch(item)}
+    return {item for item in list_items(text) if item and not _NUMBER_OR_TRUTH.fullmatch(item)}

@@ -1,0 +1,41 @@
+"""Changed values in one line: both values, or the items that lists have gained and lost."""
+
+from __future__ import annotations
+
+from linkwright.diagnostics import Phrase, phrase
+
+_LONG_LIST = 4
+"""The number of items up to which both versions of a list are shown."""
+
+
+def change_text(name: Phrase | str, old: str, new: str) -> Phrase:
+    """Return the change of a value in one line.
+
+    Args:
+        name: the name of the value.
+        old: the old value; a list is written as ``[a, b]``.
+        new: the new value.
+    """
+    old_items, new_items = list_items(old), list_items(new)
+    added, removed = set(new_items) - set(old_items), set(old_items) - set(new_items)
+    is_set = len(set(old_items)) == len(old_items) and len(set(new_items)) == len(new_items)
+    if min(len(old_items), len(new_items)) <= _LONG_LIST or not is_set or not (added or removed):
+        return phrase("{parameter} {old} -> {new}", parameter=name, old=old, new=new)
+    added_text = ", ".join(item for item in new_items if item in added)
+    removed_text = ", ".join(item for item in old_items if item in removed)
+    if not removed:
+        return phrase("{parameter}: {items} added", parameter=name, items=added_text)
+    if not added:
+        return phrase("{parameter}: {items} removed", parameter=name, items=removed_text)
+    return phrase(
+        "{parameter}: {added} added, {removed} removed", parameter=name, added=added_text, removed=removed_text
+    )
+
+
+def list_items(text: str) -> list[str]:
+    """Return the items of a value that is a list without lists in it, or the value itself."""
+    is_list = text.startswith("[") and text.endswith("]")
+    content = text[1:-1] if is_list else text
+    if not is_list or set(content) & set("[]{}"):
+        return [text]
+    return [item.strip() for item in content.split(",") if item.strip()]
