@@ -100,7 +100,7 @@ def test_malicious_students_hurt_only_themselves(folder):
     wait_until(lambda: not processes_with("linkwright_grade_"), SECONDS)
 
 
-@pytest.mark.parametrize("number", [signal.SIGTERM, signal.SIGKILL, signal.SIGINT])
+@pytest.mark.parametrize("number", [signal.SIGTERM, signal.SIGKILL, signal.SIGHUP])
 def test_the_runs_end_with_the_grader(folder, number):
     write_student(folder, "endless", ENDLESS)
     words = ["learn", "grade", "--course", "course", "--cpu-seconds", "300", "students/endless"]
