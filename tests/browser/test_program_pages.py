@@ -12,7 +12,7 @@ from playwright.sync_api import Frame, Page
 from linkwright.learning.course import find_course
 from tests.browser.axe import violations
 from tests.browser.conftest import becomes, until
-from tests.waiting import SECONDS, wait_until
+from tests.waiting import SECONDS
 
 pytestmark = [
     pytest.mark.browser,
@@ -39,8 +39,7 @@ def page(start, open_page, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> P
 def frames_of(page: Page) -> list[Frame]:
     """Wait for the pages of programs, and for what they show."""
     page.wait_for_selector(f"{FRAMES}:visible")
-    wait_until(lambda: all("127.0.0.1" in frame.url for frame in page.frames), SECONDS)
-    frames = [frame for frame in page.frames if frame is not page.main_frame]
+    frames = [frame for handle in page.locator(FRAMES).element_handles() if (frame := handle.content_frame())]
     for frame in frames:
         frame.wait_for_function("window.linkwright?.ready === true", timeout=1000 * SECONDS)
     return frames

@@ -167,7 +167,7 @@ def test_a_launch_file_in_yaml_is_no_parameter_file():
         (DRIVE + "left_wheel_names: [left|_wheel_joint]", ("joint left_wheel_joint", "continuous", "base_link")),
         (ARM + "gains:\n      x:\n        p|: 1", ("gains.x.p", "double")),
         (COSTMAP.replace("radius", "").replace("::Infl", "::In|fl"), ("inflation_radius", "local_costmap")),
-        (COSTMAP + "        inflation_rad|ius: 1.0", ("inflation_layer.inflation_radius", "0.55", "metres")),
+        (COSTMAP + "        inflation_rad|ius: 1.0", ("inflation_layer.inflation_radius", "0.55", "meters")),
         (MPPI, ("plugin of controller_server: follows a path by model predictive path integral control",)),
     ],
 )

@@ -74,8 +74,7 @@ def test_all_is_there_again_when_a_router_was_killed_and_comes_back(processes, s
             router.kill()
             router.wait()
             spin_both(lambda: "a" not in b.node.get_node_names() and "b" not in a.node.get_node_names())
-            assert not client.service_is_ready()
-            assert chatter.get_subscription_count() == 0
+            spin_both(lambda: not client.service_is_ready() and chatter.get_subscription_count() == 0)
             router = start_router()
         spin_both(sees_all)
         chatter.publish(String(data=word))
