@@ -166,6 +166,7 @@ def test_texts_are_whole_and_only_what_is_typed_can_be_copied(start, open_page, 
     page.get_by_role("button", name="步骤").click()
     page.locator(".outline-step", has_text="发布").first.click()
     until(page, "lw.panels.lesson.step === '05-nodes/publish'")
+    page.locator(".lesson-body h2", has_text="发布速度").wait_for()
     tops = page.evaluate(
         """() => document.querySelectorAll('.lesson-text').forEach(text => (text.style.width = '288px')) ??
         [...document.querySelectorAll('.lesson-text p > code')].filter(
