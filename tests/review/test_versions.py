@@ -105,18 +105,30 @@ def test_a_folder_that_is_not_in_a_repository(tmp_path):
 
 
 @pytest.mark.skipif(os.name == "nt", reason="symbolic links of POSIX")
-def test_links_out_of_the_repository_are_not_followed(package, compare, tmp_path):
-    (tmp_path / "secret.xacro").write_text(MACRO.replace('value="2"', 'value="77"'))
+@pytest.mark.parametrize("is_checked_out", [True, False])
+@pytest.mark.parametrize("target", ["{outside}/secret.xacro", "../../.git/secret.xacro"])
+def test_links_out_of_the_repository_are_not_followed(package, compare, tmp_path, target, is_checked_out):
+    for folder in (tmp_path, package.root / ".git"):
+        (folder / "secret.xacro").write_text(MACRO.replace('value="2"', 'value="77"'))
     path = package.root / "arm_description/urdf/segment.xacro"
     path.unlink()
-    path.symlink_to(tmp_path / "secret.xacro")
+    path.symlink_to(target.format(outside=tmp_path))
     package.commit({})
-    package.git("switch", "--quiet", "--detach", "HEAD~1")
+    if not is_checked_out:
+        package.git("switch", "--quiet", "--detach", "HEAD~1")
     result = compare(package, "main~1..main")
     assert "77" not in str(result)
     assert [str(note) for note in result.notes] == [
         "symbolic link 'arm_description/urdf/segment.xacro' leads out of the repository and is ignored"
     ]
+
+
+@pytest.mark.skipif(os.name == "nt", reason="symbolic links of POSIX")
+def test_loops_of_links_do_not_stop_a_review(package, compare):
+    (package.root / "arm_description/urdf/a.xacro").symlink_to("b.xacro")
+    (package.root / "arm_description/urdf/b.xacro").symlink_to("a.xacro")
+    package.commit({"arm_description/urdf/segment.xacro": heavier(3)})
+    assert masses(compare(package, "HEAD~1..HEAD")) == ["link 'upper': inertial mass 2 -> 3 kg"]
 
 
 def test_a_submodule_is_a_note(package, compare, tmp_path):

@@ -100,9 +100,20 @@ class CommitFiles:
     def _remove_outward_links(self, links: Sequence[str]) -> Iterator[str]:
         for link in links:
             path = self.root / link
-            if path.is_symlink() and not path.resolve().is_relative_to(self.root):
+            if leads_outside(path, self.root):
                 path.unlink()
                 yield link
+
+
+def leads_outside(path: Path, root: Path) -> bool:
+    """Return whether a symbolic link leads out of the files of a commit, or into git's own folder.
+
+    Args:
+        path: a path below the root.
+        root: the root folder of the repository or of the files, without symbolic links.
+    """
+    target = Path(os.path.realpath(path))  # Path.resolve refuses loops before Python 3.13
+    return path.is_symlink() and (not target.is_relative_to(root) or target.is_relative_to(root / ".git"))
 
 
 def file_in_commit(path: Path, name: str) -> tuple[CommitFiles, Path]:

@@ -10,7 +10,7 @@ from functools import cached_property
 from pathlib import Path
 
 from linkwright.descriptions.pairs import Model
-from linkwright.descriptions.revisions import CommitFiles
+from linkwright.descriptions.revisions import CommitFiles, leads_outside
 from linkwright.diagnostics import Diagnostic, LinkwrightError, Span, display_path, phrase
 from linkwright.files.git_repository import ChangedFile, GitRepository
 from linkwright.packages import PackageFinder
@@ -174,5 +174,11 @@ def _common_commit(repository: GitRepository, old_commit: str, old_name: str, ne
 
 
 def _is_checked_out(repository: GitRepository, commit: str) -> bool:
-    """Return whether the working tree contains exactly the files of a commit, so that they need not be written."""
-    return repository.resolve("HEAD") == commit and not repository.changed_files(commit)
+    """Return whether the working tree contains the files of a commit, so that they need not be written.
+
+    A working tree with links that lead out of it is not used: the files of others could appear in the report.
+    """
+    if repository.resolve("HEAD") != commit or repository.changed_files(commit):
+        return False
+    root = repository.root
+    return not any(leads_outside(root / link, root) for link in repository.symbolic_links(commit))
