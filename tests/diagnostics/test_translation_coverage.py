@@ -196,7 +196,7 @@ def test_the_meaning_of_every_element_and_attribute(words: Recording) -> None:
 
 
 def assert_translated(diagnostics: Iterable[Diagnostic], words: Recording) -> None:
-    """Fail for a text that is no phrase, and for a phrase or a part of one without a translation."""
+    """Fail for a text that is not a phrase, and for a phrase or a part of one without a translation."""
     for diagnostic in diagnostics:
         words.missing.clear()
         for text in (diagnostic.message, diagnostic.hint, *(note.message for note in diagnostic.notes)):

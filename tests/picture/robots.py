@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 
@@ -38,15 +39,15 @@ def urdf(*parts: str) -> str:
     return f'<robot name="r">{"".join(parts)}</robot>'
 
 
-def scene(text: str, positions: Mapping[str, float] | None = None, **options: object) -> Scene:
+def scene(text: str, positions: Mapping[str, float] | None = None, **options: Any) -> Scene:
     """Return the scene of a robot."""
     finder = PackageFinder(start=[Path.cwd()])
-    return robot_scene(load(text, packages=finder), finder, positions, **options)  # type: ignore[arg-type]
+    return robot_scene(load(text, packages=finder), finder, positions, **options)
 
 
-def image(text: str, view: str = "front", size: tuple[int, int] = (120, 90), **style: object) -> Image:
+def image(text: str, view: str = "front", size: tuple[int, int] = (120, 90), **style: Any) -> Image:
     """Return the image of a robot."""
-    return render(scene(text), VIEWS[view], size, Style(**style))  # type: ignore[arg-type]
+    return render(scene(text), VIEWS[view], size, Style(**style))
 
 
 def mostly(pixel: np.ndarray) -> str:

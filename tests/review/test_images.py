@@ -74,3 +74,9 @@ def test_a_new_root_link_moves_nothing(images_of):
     lifted = """<link name="foot"/><joint name="foot_joint" type="fixed"><parent link="foot"/><child link="base_link"/>
     <origin xyz="0 0 0.3"/></joint><link name="base_link"/>"""
     assert images_of({PATH: ARM.replace('<link name="base_link"/>', lifted)})[1] == []
+
+
+def test_a_joint_that_cannot_be_at_zero_any_more_moves_its_link(images_of):
+    _, images = images_of({SEGMENT: MACRO.replace('lower="-1.5"', 'lower="0.5"')})
+    assert orange(images[2].old) > 50
+    assert images[2].old != images[2].new

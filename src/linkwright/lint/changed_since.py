@@ -56,10 +56,7 @@ class ChangedSince:
             targets = self._affected(files.root, paths, filter(None, self._new_names))
             if not targets.files and not targets.packages:
                 return {}
-            counts = count_keys(check(targets, paths), files.root)
-            return {
-                key._replace(file=self._new_names.get(key.file) or key.file): count for key, count in counts.items()
-            }
+            return count_keys(check(targets, paths), files.root, self._new_names)
         finally:
             files.close()
 

@@ -9,6 +9,7 @@ import json
 import os
 from collections.abc import Iterable, Mapping, Sequence
 from pathlib import Path
+from types import MappingProxyType
 
 from linkwright.diagnostics import Diagnostic, LinkwrightError, display_path, foreign, phrase
 from linkwright.files.whole_files import write_whole_file
@@ -53,11 +54,20 @@ def key_of(finding: Diagnostic, folder: Path) -> Key:
     return Key(finding.code, Path(file).as_posix() if file else "", message)
 
 
-def count_keys(findings: Iterable[Diagnostic], folder: Path) -> dict[Key, int]:
-    """Return the number of findings with each key; see `key_of`."""
+def count_keys(
+    findings: Iterable[Diagnostic], folder: Path, names: Mapping[str, str | None] = MappingProxyType({})
+) -> dict[Key, int]:
+    """Return the number of findings with each key; see `key_of`.
+
+    Args:
+        findings: the findings.
+        folder: the absolute folder to which the paths in the keys are relative.
+        names: the other names that files have in the keys.
+    """
     counts: dict[Key, int] = {}
     for finding in findings:
         key = key_of(finding, folder)
+        key = key._replace(file=names.get(key.file) or key.file)
         counts[key] = counts.get(key, 0) + 1
     return counts
 

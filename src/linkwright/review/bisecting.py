@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import subprocess
-from collections.abc import Callable, Hashable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -32,9 +32,6 @@ _SKIPPED_STATUS = 125
 """The exit status with which a command says that it cannot judge a commit, as for ``git bisect run``."""
 _TOLERANCE = 1e-6
 """The difference in m, and between the entries of rotation matrices, up to which a link has not moved."""
-
-Outcome = Hashable
-"""The result of a check of a commit."""
 
 
 class UndecidedError(Exception):
@@ -94,7 +91,7 @@ class History:
         """Return the files of a commit. The caller closes them."""
         return CommitFiles(self._repository, commit, commit[:9], must_be_complete=False)
 
-    def search(self, judge: Callable[[str], Outcome], on_step: Callable[[int], object]) -> Found | None:
+    def search(self, judge: Callable[[str], bool], on_step: Callable[[int], object]) -> Found | None:
         """Return the first commit with the outcome of the newest one, or None if the oldest one has it already.
 
         Args:
@@ -193,7 +190,7 @@ class PartCheck:
         """Remove the files of the newest commit."""
         self._new_files.close()
 
-    def __call__(self, commit: str) -> Outcome:
+    def __call__(self, commit: str) -> bool:
         """Return whether the link or joint is the same in a commit as in the newest one."""
         return not self.differences(commit)
 
@@ -260,7 +257,7 @@ class CommandCheck:
     history: History
     words: Sequence[str]
 
-    def __call__(self, commit: str) -> Outcome:
+    def __call__(self, commit: str) -> bool:
         """Return whether the command succeeds in a commit.
 
         Raises:

@@ -13,21 +13,19 @@ _MOVING_TYPES = frozenset({"revolute", "continuous", "prismatic"})
 _NAME_TAGS = re.compile(r"topic|namespace|frame|remapping|\bservice", re.IGNORECASE)
 """The tags of plugins' parameters with names in the graph or in tf."""
 _INTERFACE = re.compile(r"joint (?P<joint>\S+) (?P<kind>command|state)_interface (?P<name>\S+)")
-_NOTHING = ("", None)
 
 
-def breaking_reason(difference: Difference, old: Robot, new: Robot) -> Phrase | None:
+def breaking_reason(difference: Difference, old: Robot) -> Phrase | None:
     """Return why a difference breaks programs that use the robot, or None if it does not.
 
     Args:
         difference: the difference.
         old: the old robot.
-        new: the new robot.
     """
     if difference.subject == "link":
         return _link_reason(difference)
     if difference.subject == "joint":
-        return _joint_reason(difference, old, new)
+        return _joint_reason(difference, old)
     if difference.subject == "extension":
         return _extension_reason(difference)
     return None
@@ -40,29 +38,22 @@ def _link_reason(difference: Difference) -> Phrase | None:
     return None
 
 
-def _joint_reason(difference: Difference, old: Robot, new: Robot) -> Phrase | None:
+def _joint_reason(difference: Difference, old: Robot) -> Phrase | None:
     if difference.kind in ("removed", "renamed"):
         name = (difference.old if difference.kind == "renamed" else difference.name) or ""
         joint = old.joints.get(name)
         if joint is None or joint.type not in _MOVING_TYPES:
             return None  # only tf knows fixed joints, by their links
         return phrase("controllers and programs that name the joint '{name}' do not find it", name=name)
-    joint = new.joints.get(difference.name)
     if difference.property == "type" and difference.old in _MOVING_TYPES and difference.new not in _MOVING_TYPES:
         return phrase("'{name}' has no position in /joint_states any more", name=difference.name)
-    if difference.property == "parent" and difference.old is not None and joint is not None:
-        return None if difference.old in new.links else _link_reason_of(difference.old)
     return None
-
-
-def _link_reason_of(link: str) -> Phrase:
-    return phrase("programs that look up the frame '{name}' do not find it", name=link)
 
 
 def _extension_reason(difference: Difference) -> Phrase | None:
     if difference.kind == "removed" and difference.name.startswith("ros2_control"):
         return phrase("controllers of this hardware do not find its interfaces")
-    if difference.kind != "changed" or difference.old in _NOTHING:
+    if difference.kind != "changed" or not difference.old:
         return None
     interface = _INTERFACE.fullmatch(difference.property)
     if interface is not None and difference.new is None:
@@ -76,6 +67,6 @@ def plugin_name_reason(difference: Difference) -> Phrase | None:
     """Return why a changed parameter of a plugin is breaking: it names topics, services or frames that others use."""
     last_word = difference.property.split(" ")[-1]
     tag = difference.property.split(" ")[-2] if last_word.startswith("@") and " " in difference.property else last_word
-    if difference.old not in _NOTHING and _NAME_TAGS.search(tag) and difference.old != difference.new:
-        return phrase("programs that use the name '{name}' do not find it", name=difference.old or "")
+    if difference.old and _NAME_TAGS.search(tag) and difference.old != difference.new:
+        return phrase("programs that use the name '{name}' do not find it", name=difference.old)
     return None

@@ -121,7 +121,7 @@ class RobotMeasures:
         The distance is the largest one of many configurations within the limits, which depend only on the names and the
         limits of the joints.
         """
-        ends = dict(self._chain_ends())
+        ends = self._chain_ends()
         if not ends:
             return {}
         frames = self.sampled_frames(_REACH_SAMPLES)
@@ -147,8 +147,8 @@ class RobotMeasures:
             samples[:, index] = np.random.default_rng(zlib.crc32(name.encode())).random(count)
         return self._tree.forward(low + samples * (high - low))
 
-    def _chain_ends(self) -> Iterator[tuple[str, str]]:
-        """Yield the last link of each chain of several moving joints, and the chain's last moving joint."""
+    def _chain_ends(self) -> list[str]:
+        """Return the last link of each chain of several moving joints."""
         joints_by_child = {joint.child: joint for joint in self.robot.joints.values()}
         parents = {joint.parent for joint in self.robot.joints.values()}
         farthest: dict[str, tuple[int, str]] = {}
@@ -164,8 +164,7 @@ class RobotMeasures:
             moving = [joint.name for joint in chain if joint.name in self._tree.joint_names]
             if len(moving) >= _MIN_CHAIN and (moving[0] not in farthest or farthest[moving[0]][0] < len(chain)):
                 farthest[moving[0]] = len(chain), link
-        for joint_name, (_, link) in list(farthest.items())[:_MAX_CHAINS]:
-            yield link, joint_name
+        return [link for _, link in list(farthest.values())[:_MAX_CHAINS]]
 
     @cached_property
     def _limits(self) -> tuple[Array, Array]:

@@ -9,10 +9,10 @@ from numpy.typing import NDArray
 
 from linkwright.descriptions.comparison import Comparison
 from linkwright.descriptions.pairs import Pair
-from linkwright.geometry.shapes import placement
+from linkwright.geometry.shapes import Placement
 from linkwright.images.png import png
-from linkwright.kinematics import KinematicTree
 from linkwright.picture import OUTLINE_COLOR, VIEWS, SurfaceLibrary, camera_for, render, robot_scene
+from linkwright.picture.link_frames import exact_placement, link_frames
 from linkwright.review.changes import ViewImages
 from linkwright.urdf import Robot
 
@@ -77,25 +77,17 @@ def _moved(old: Robot, new: Robot, comparison: Comparison) -> Iterator[tuple[str
     reference = comparison.links.get(old.root)
     if reference is None:
         return
-    old_frames, new_frames = _frames(old), _frames(new)
-    to_old_root = np.linalg.inv(new_frames[reference])
+    old_frames, new_frames = link_frames(old, {}), link_frames(new, {})
+    old_root = new_frames[reference]
     for old_name, new_name in comparison.links.items():
         if old_name in old_frames and new_name in new_frames:
             old_places = _places(old, old_name, old_frames[old_name])
-            new_places = _places(new, new_name, to_old_root @ new_frames[new_name])
+            new_places = _places(new, new_name, new_frames[new_name].seen_from(old_root))
             if old_places.shape != new_places.shape or not np.allclose(old_places, new_places, rtol=0.0, atol=_MOVED):
                 yield old_name, new_name
 
 
-def _frames(robot: Robot) -> dict[str, Array]:
-    """Return the frames of the links in the root link's frame, with all joints at position 0, shape (4, 4) each."""
-    tree = KinematicTree(robot)
-    return dict(zip(tree.link_names, tree.forward({}), strict=True))
-
-
-def _places(robot: Robot, link: str, frame: Array) -> Array:
-    """Return the rotations and positions of a link's visuals, shape (visuals, 3, 4), from the frame of the link."""
-    places = [placement(visual.origin) for visual in robot.links[link].visuals]
-    origins = [np.column_stack([np.array(place.rotation), np.array(place.position)]) for place in places]
-    bottom = np.array([[0.0, 0.0, 0.0, 1.0]])
-    return np.array([(frame @ np.vstack([origin, bottom]))[:3] for origin in origins])
+def _places(robot: Robot, link: str, frame: Placement) -> Array:
+    """Return the rotations and positions of a link's visuals, shape (visuals, 4, 3), from the frame of the link."""
+    places = [exact_placement(visual.origin).inside(frame) for visual in robot.links[link].visuals]
+    return np.array([[*place.rotation, place.position] for place in places])

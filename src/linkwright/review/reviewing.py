@@ -103,14 +103,8 @@ class _Reviewer:
         """Return the findings that only the new version has, and those that only the old version has."""
         root, old_root = self._versions.new.root, self._versions.old.root
         old_names = {new_path: old_path for old_path, new_path in self._new_paths.items()}
-        old_keys = {
-            key._replace(file=self._new_paths.get(key.file, key.file)): count
-            for key, count in count_keys(old, old_root).items()
-        }
-        new_keys = {
-            key._replace(file=old_names.get(key.file, key.file)): count for key, count in count_keys(new, root).items()
-        }
-        added, fixed = new_findings(new, root, old_keys), new_findings(old, old_root, new_keys)
+        added = new_findings(new, root, count_keys(old, old_root, self._new_paths))
+        fixed = new_findings(old, old_root, count_keys(new, root, old_names))
         return list(map(self._versions.new.labelled, added)), list(map(self._versions.old.labelled, fixed))
 
     def _is_in_scope(self, path: str) -> bool:

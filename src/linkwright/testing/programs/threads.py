@@ -242,7 +242,7 @@ class Turns:
         return False
 
     def _kill_running(self, thread: LockstepThread) -> None:
-        """End a thread that does not wait. A thread that cannot be ended is no longer scheduled."""
+        """End a thread that runs without waiting. If it does not end, it gets no further turn."""
         thread.is_killed = True
         ctypes.pythonapi.PyThreadState_SetAsyncExc(ctypes.c_ulong(thread.ident), ctypes.py_object(EndedByTest))
         if not self._returned.acquire(timeout=_KILL_TIMEOUT_S):
