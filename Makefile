@@ -144,9 +144,12 @@ test-train: .build/train/.ready
 		babel hypothesis psutil pytest pytest-asyncio pytest-timeout pytest-xdist
 	touch $@
 
+WORDS := README.md CHANGELOG.md CONTRIBUTING.md SECURITY.md pyproject.toml Makefile \
+	benchmarks core courses docs editors frontend fuzz robots src tests tools
 check: $(VENV)/.dev
 	$(BIN)/ruff check
 	$(BIN)/ruff format --check
+	$(BIN)/codespell $(WORDS)
 	MYPYPATH=src $(BIN)/mypy
 	$(BIN)/lint-imports
 	$(BIN)/python tools/lock.py check
@@ -160,7 +163,7 @@ check: $(VENV)/.dev
 	$(BIN)/python tools/node_parameters.py --check
 	$(BIN)/python tools/simulator_plugins.py --check
 	$(BIN)/python tools/node_topics.py --check
-	$(BIN)/python tools/catalogues.py check
+	$(BIN)/python tools/catalogs.py check
 	$(BIN)/python tools/plain_words.py
 	$(BIN)/python tools/rule_reference.py --check
 	$(BIN)/python tools/language_reference.py --check

@@ -41,7 +41,7 @@ def test_the_recipe_builds_with_what_the_build_needs(recipe, monkeypatch):
     assert (pinned, installer) == ("python ${{ python_min }}.*", "pip")
     hook = (REPOSITORY / "hatch_build.py").read_text(encoding="utf-8")
     ours = re.findall(r'"([a-z]+>=[\d.]+)"', hook.partition("*([]")[0])
-    assert len(ours) == 2  # what the stubs and the catalogues take; the source distribution has the page
+    assert len(ours) == 2  # what the stubs and the catalogs take; the source distribution has the page
     assert bounds(needed) == bounds([*PYPROJECT["build-system"]["requires"], *ours])
 
 

@@ -151,21 +151,21 @@ def test_an_environment_without_linkwright_has_no_bill(bill):
         bill.complete(listed().replace("linkwright", "another"))
 
 
-def test_licences_of_the_page_go_with_it(monkeypatch, tmp_path):
+def test_licenses_of_the_page_go_with_it(monkeypatch, tmp_path):
     page = load_tool("build_page")
     monkeypatch.setattr(page, "FRONTEND", tmp_path)
     monkeypatch.setattr(page, "bundled", lambda: {"wings": {"version": "1.0.0", "license": "MIT", "integrity": ""}})
-    with pytest.raises(SystemExit, match="wings comes without the text of its licence"):
-        page.licences()
+    with pytest.raises(SystemExit, match="wings comes without the text of its license"):
+        page.licenses()
     folder = tmp_path / "node_modules" / "wings"
     folder.mkdir(parents=True)
-    (folder / "LICENCE.md").write_text("Do what you like.\n", encoding="utf-8")
-    assert page.licences() == "wings 1.0.0 (MIT)\n\nDo what you like.\n"
+    (folder / "LICENSE.md").write_text("Do what you like.\n", encoding="utf-8")
+    assert page.licenses() == "wings 1.0.0 (MIT)\n\nDo what you like.\n"
 
 
-def test_compiled_catalogues_do_not_say_when_they_were_compiled(monkeypatch, tmp_path):
-    catalogues = load_tool("catalogues")
-    (tmp_path / "zh.po").write_bytes((catalogues.FOLDER / "zh.po").read_bytes())
-    monkeypatch.setattr(catalogues, "FOLDER", tmp_path)
-    catalogues.compile_catalogues()
+def test_compiled_catalogs_do_not_say_when_they_were_compiled(monkeypatch, tmp_path):
+    catalogs = load_tool("catalogs")
+    (tmp_path / "zh.po").write_bytes((catalogs.FOLDER / "zh.po").read_bytes())
+    monkeypatch.setattr(catalogs, "FOLDER", tmp_path)
+    catalogs.compile_catalogs()
     assert b"POT-Creation-Date: 1970-01-01 00:00+0000\n" in (tmp_path / "zh.mo").read_bytes()

@@ -48,7 +48,7 @@ def complete(listed: str) -> str:
 
 
 def check(path: Path) -> list[str]:
-    """Hold a bill against the schema of CycloneDX; which packages say nothing about their licence.
+    """Hold a bill against the schema of CycloneDX; which packages say nothing about their license.
 
     Raises:
         SystemExit: when it does not fit.

@@ -1,4 +1,4 @@
-"""Everything that the page can show is without a finding of axe-core, in dark and in light colours."""
+"""Everything that the page can show is without a finding of axe-core, in dark and in light colors."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ from tests.browser.arm import write_arm
 from tests.browser.axe import violations
 from tests.browser.conftest import SECONDS, becomes, state, until
 from tests.browser.live import LiveViewer, configuration
-from tests.browser.test_modelling import modelled
+from tests.browser.test_modeling import modeled
 from tests.browser.test_overlays import unfold
 
 pytestmark = pytest.mark.browser
@@ -77,7 +77,7 @@ def test_the_page_of_a_robot_and_the_panels_of_its_description(start, open_page,
     page.locator(".selection-card .provenance").wait_for()
     page.locator(".inspect > button").click()  # the clicks on rows have closed it
     assert violations(page) == []
-    for name in ("File", "Panels", "Share", "Colours"):
+    for name in ("File", "Panels", "Share", "Colors"):
         page.get_by_role("button", name=name, exact=True).click()
         assert found_in_menu(page) == []
     for keys in ("?", "Control+o", "Control+Shift+s"):
@@ -183,12 +183,12 @@ def test_the_live_panels(live: Callable[..., LiveViewer], open_page):
     assert found_in_panels(page, "Voice", "Teleop") == []
 
 
-def test_a_world_while_it_is_modelled(start, open_page, tmp_path: Path):
-    page, _ = modelled(start, open_page, tmp_path)
+def test_a_world_while_it_is_modeled(start, open_page, tmp_path: Path):
+    page, _ = modeled(start, open_page, tmp_path)
     page.get_by_role("option", name="crate").click()
     page.locator("[data-key='pose/0'] input").wait_for()
     assert violations(page) == []
-    page.get_by_role("button", name="End modelling").click()
+    page.get_by_role("button", name="End modeling").click()
     page.get_by_role("button", name="Add a model").click()
     page.locator("dialog[open]").wait_for()
     assert violations(page, "dialog") == []

@@ -38,7 +38,7 @@ NEW = """\
   <joint name="mast" type="fixed"><origin xyz="-0.4 -0.4 0.2"/><parent link="base"/><child link="lidar"/></joint>
 </robot>
 """
-BLUE, YELLOW, RED, GREY = "#56b4e9", "#f0c020", "#cc3377", "#c4ccd6"
+BLUE, YELLOW, RED, GRAY = "#56b4e9", "#f0c020", "#cc3377", "#c4ccd6"
 
 
 @pytest.fixture
@@ -53,7 +53,7 @@ def files(tmp_path: Path) -> tuple[Path, Path]:
 
 
 def looks(page: Page, which: int) -> dict[str, tuple[str, float]]:
-    """Colour and opacity of each link of the first or second robot."""
+    """Color and opacity of each link of the first or second robot."""
     robots = [each["drawn"] for each in state(page, "displays") if each["class"].endswith("RobotModel")]
     shown = {name: text["visuals"] for name, text in robots[which]["links"].items()}
     return {
@@ -75,20 +75,20 @@ def group(page: Page, name: str, kind: str = "Link"):
     )
 
 
-def test_both_robots_are_drawn_and_what_differs_has_a_colour(start, open_page, files):
+def test_both_robots_are_drawn_and_what_differs_has_a_color(start, open_page, files):
     page = open_page(start("view", *map(str, files)))
     page.get_by_text("5 differences").wait_for()
     green = "#009900"
     becomes(lambda: looks(page, 0), {"base": (green, 1), "arm": (YELLOW, 1), "lidar": (BLUE, 1)})
-    becomes(lambda: looks(page, 1), {"arm": (GREY, 0.4), "camera": (RED, 0.63)})
+    becomes(lambda: looks(page, 1), {"arm": (GRAY, 0.4), "camera": (RED, 0.63)})
     assert page.locator(".comparison-legend li").all_inner_texts() == ["added", "changed", "removed", "old"]
-    page.get_by_label("Colour the differences").uncheck()
+    page.get_by_label("Color the differences").uncheck()
     becomes(lambda: set(looks(page, 0).values()), {(green, 1)})
-    becomes(lambda: set(looks(page, 1).values()), {(GREY, 0.4)})
+    becomes(lambda: set(looks(page, 1).values()), {(GRAY, 0.4)})
 
 
 def pixels(page: Page) -> list[tuple[int, int, int]]:
-    """Colours of the scene at places in rows and columns."""
+    """Colors of the scene at places in rows and columns."""
     until(page, "lw.settled")
     box = page.locator(".canvas-box canvas").first.bounding_box()
     assert box is not None
@@ -133,7 +133,7 @@ def test_each_robot_can_be_shown_alone_and_the_old_one_as_opaque_as_wanted(start
     becomes(lambda: {alpha for _, alpha in looks(page, 1).values()}, {1})
     opaque = pixels(page)
     assert sum(sum(each) for each in opaque) < sum(sum(each) for each in old_only), (
-        "its grey is darker than the ground behind it"
+        "its gray is darker than the ground behind it"
     )
     show(page, "Show the new robot", on=True)
     show(page, "Show the old robot", on=False)
@@ -222,7 +222,7 @@ def test_a_review_opens_from_disk_with_both_robots_the_list_and_joints_that_move
     assert str(tmp_path) not in out.read_text(encoding="utf-8")
     page = open_file(out)
     assert page.locator(".comparison-count").inner_text() == "5 differences"
-    becomes(lambda: looks(page, 1), {"arm": (GREY, 0.4), "camera": (RED, 0.63)})
+    becomes(lambda: looks(page, 1), {"arm": (GRAY, 0.4), "camera": (RED, 0.63)})
     assert looks(page, 0)["lidar"] == (BLUE, 1)
     assert "old.urdf:6" in group(page, "turn", "Joint").inner_text()
     assert group(page, "turn", "Joint").get_by_role("button", name="old.urdf", exact=False).count() == 0

@@ -1,4 +1,4 @@
-"""The File menu, displays of a page's own, and the page as a whole: keyboard and colours."""
+"""The File menu, displays of a page's own, and the page as a whole: keyboard and colors."""
 
 from __future__ import annotations
 
@@ -123,7 +123,7 @@ def test_the_theme_is_chosen_and_remembered(grouped):
     page.wait_for_function("() => document.documentElement.dataset.theme === 'dark'")
     background = "getComputedStyle(document.body).backgroundColor"
     dark = page.evaluate(background)
-    page.get_by_role("button", name="Colours").click()
+    page.get_by_role("button", name="Colors").click()
     page.get_by_role("menuitemcheckbox", name="Light").click()
     assert page.evaluate(background) != dark
     page.reload()

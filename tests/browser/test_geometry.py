@@ -51,7 +51,7 @@ CRANE = """\
 
 
 def published(viewer) -> None:
-    """One message for each display; the frame ``tip`` is one metre above ``base``."""
+    """One message for each display; the frame ``tip`` is one meter above ``base``."""
     viewer.place("tip", 0.0, 0.0, 1.0)
     viewer.publish("/robot_description", String(data=CRANE), DESCRIPTION_QOS)
     viewer.publish("/pose", message("geometry_msgs/msg/PoseStamped", pose=pose(1)))

@@ -41,7 +41,7 @@ def test_masses_and_inertias_and_what_is_implausible(page):
     assert state(page, "inspected.totals[0]") == pytest.approx([0, 0, total], abs=1e-5)
     assert state(page, "inspected.centers") == 4  # three links, and the whole
 
-    # The centre follows the joints.
+    # The center follows the joints.
     page.locator('[data-joint="fore_joint"] input[type=text]').fill("1.5707963")
     page.keyboard.press("Enter")
     bent = [0.15 / 7, 0, (4 * 0.05 + 2 * 0.3 + 1 * 0.5) / 7]

@@ -65,10 +65,10 @@ def test_middle_drag_moves_the_focal_point_and_keeps_the_angles(page):
     drag(page, 80, 0, button="middle")
     view = state(page, "view")
     assert (view["yaw"], view["pitch"], view["distance"]) == pytest.approx((5.5, 0.33, 1.7))
-    # In the camera's plane: 2 d tan(fov/2) / height metres a pixel, to the camera's left.
-    metres = 80 * 2 * 1.7 * math.tan(math.radians(22.5)) / scene_box(page)["height"]
+    # In the camera's plane: 2 d tan(fov/2) / height meters a pixel, to the camera's left.
+    meters = 80 * 2 * 1.7 * math.tan(math.radians(22.5)) / scene_box(page)["height"]
     moved = view["focalPoint"]
-    assert math.hypot(*moved) == pytest.approx(metres, rel=0.02)
+    assert math.hypot(*moved) == pytest.approx(meters, rel=0.02)
     assert moved[2] == pytest.approx(0, abs=1e-6)
 
 

@@ -111,10 +111,10 @@ def test_a_link_that_is_dragged_moves_its_joint(page):
     until(page, "Math.abs(lw.view.pitch) < 1e-6 && lw.view.distance === 2")
     until(page, "lw.settled")
     box = page.locator(".canvas-box canvas").bounding_box()
-    metre = box["height"] / (2 * 2 * math.tan(math.radians(22.5)))
+    meter = box["height"] / (2 * 2 * math.tan(math.radians(22.5)))
 
     def at(x, z):
-        return box["x"] + box["width"] / 2 + x * metre, box["y"] + box["height"] / 2 - z * metre
+        return box["x"] + box["width"] / 2 + x * meter, box["y"] + box["height"] / 2 - z * meter
 
     page.keyboard.down("Alt")
     page.mouse.move(*at(0, 0.3))

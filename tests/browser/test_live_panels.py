@@ -158,7 +158,7 @@ def test_what_draws_diagrams_comes_with_the_first_one_and_with_its_style(page: P
 
 
 def colors_drawn(page: Page) -> set[str]:
-    """Which of the first two colours of series the canvas of the first plot has."""
+    """Which of the first two colors of series the canvas of the first plot has."""
     return set(
         page.evaluate(
             """() => {

@@ -107,5 +107,5 @@ def test_launch_files_run_from_the_folder_of_the_package(start, open_page, packa
 
 def test_top_plate_stands_above_the_base(start, open_page):
     page = open_page(start(*launch_words("mbot_base.xacro")))
-    # Its visual's centre is another 0.16 m above its frame: 0.32 m above base_link (tests/viewer has the shape).
+    # Its visual's center is another 0.16 m above its frame: 0.32 m above base_link (tests/viewer has the shape).
     assert state(page, "frames.base_link_upper.position") == pytest.approx([0, 0, 0.16], abs=1e-6)

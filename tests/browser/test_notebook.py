@@ -90,7 +90,7 @@ def test_a_cell_of_jupyterlab_shows_the_robot_and_its_slider_moves_it(browser, l
 
 
 def highest(frame) -> float:
-    """Return the height of the highest point of the tip, in metres."""
+    """Return the height of the highest point of the tip, in meters."""
     robot = next(display for display in state(frame, "displays") if display["class"].endswith("RobotModel"))
     (visual,) = robot["drawn"]["links"]["tip"]["visuals"]
     return visual["bounds"]["max"][2]

@@ -21,7 +21,7 @@ from tests.waiting import wait_until
 pytestmark = pytest.mark.browser
 
 SCALE = 50.0
-"""Pixels to a metre of the TopDownOrtho view: so each pixel is known in metres."""
+"""Pixels to a meter of the TopDownOrtho view: so each pixel is known in meters."""
 BACKGROUND = (48, 48, 48)
 RED, GREEN, BLUE = (255, 0, 0), (0, 255, 0), (0, 0, 255)
 
@@ -39,7 +39,7 @@ def config(*displays: dict[str, Any]) -> str:
 
 
 def seen(page: Any, *points: tuple[float, float]) -> list[Color]:
-    """The colours at points of the fixed frame, seen from above."""
+    """The colors at points of the fixed frame, seen from above."""
     box = page.locator(".canvas-box canvas").bounding_box()
     x0, y0 = box["x"] + box["width"] / 2, box["y"] + box["height"] / 2
     return colors_at(page, *((x0 + x * SCALE, y0 - y * SCALE) for x, y in points))
@@ -154,7 +154,7 @@ def test_a_map_is_drawn_and_updated(live, open_page):
     page = open_page(viewer, wait=False)
     viewer.publish("/map", grid(data=[0, 100, -1, 50, 110, -128]))
     until(page, "lw.displays[0]?.drawn?.cells === 6")
-    # The corner is at x -1, cells are half a metre wide.
+    # The corner is at x -1, cells are half a meter wide.
     places = [(-0.75, 0.25), (-0.25, 0.25), (0.25, 0.25), (-0.75, 0.75), (-0.25, 0.75), (0.25, 0.75)]
     shades = [(255, 255, 255), (0, 0, 0), (112, 137, 134), (128, 128, 128), (0, 255, 0), (255, 0, 0)]
     becomes(lambda: seen(page, *places), shades)
@@ -297,7 +297,7 @@ def test_a_depth_image_becomes_points(live, open_page):
     becomes(lambda: seen(page, (-0.3, 0.0), (2.8, 0.0)), [RED, GREEN])
 
 
-def test_depths_and_colours_come_by_the_transports_chosen(live, open_page):
+def test_depths_and_colors_come_by_the_transports_chosen(live, open_page):
     topics = {"Depth Map Topic": "/depth/image", "Color Image Topic": "/color/image"}
     hints = {"Depth Map Transport Hint": "theora", "Color Transport Hint": "compressed"}
     viewer = live(

@@ -35,7 +35,7 @@ SENSES = configuration(
 
 
 def noise(width: int, height: int) -> Any:
-    """An image of squares of any colour: hard to compress, and as large as its panel it is so still."""
+    """An image of squares of any color: hard to compress, and as large as its panel it is so still."""
     message = image(width, height)
     squares = np.random.default_rng(1).integers(0, 256, (height // _SQUARE, width // _SQUARE, 3), np.uint8)
     message.data = squares.repeat(_SQUARE, axis=0).repeat(_SQUARE, axis=1).tobytes()

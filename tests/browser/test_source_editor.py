@@ -407,7 +407,7 @@ def test_a_rename_shows_what_changes_and_what_stays_before_it_is_applied(start, 
     assert preview.count() == 0
 
 
-def test_values_meanings_and_colours_are_shown_beside_the_text(start, open_page, file):
+def test_values_meanings_and_colors_are_shown_beside_the_text(start, open_page, file):
     leg = file.parent / "leg.xacro"
     text_of_leg = LEG.replace("0.1 0.1 0.6", "${2 * 0.05} 0.1 0.6").replace(
         "</visual>", '<material name="m"><color rgba="0.2 0.6 1 0.5"/></material></visual>'
@@ -425,7 +425,7 @@ def test_values_meanings_and_colours_are_shown_beside_the_text(start, open_page,
 
     go_to(text, 3)
     text.press("Control+.")
-    choose(page, "Choose the colour…")
+    choose(page, "Choose the color…")
     field = page.locator("input[type=color]")
     field.evaluate("each => { each.value = '#ff0000'; each.dispatchEvent(new Event('change')); }")
     shows(page, 'rgba="1 0 0 0.5"')

@@ -190,7 +190,7 @@ def test_a_word_is_recorded_while_its_button_is_held(talking: tuple[Robot, Page]
     assert robot.samples == []
 
 
-def test_who_is_not_understood_enrols_words_where_they_stand(
+def test_who_is_not_understood_enrolls_words_where_they_stand(
     talking: tuple[Robot, Page], monkeypatch: pytest.MonkeyPatch, tmp_path: Path
 ) -> None:
     robot, page = talking
@@ -207,7 +207,7 @@ def test_who_is_not_understood_enrols_words_where_they_stand(
     until(page, "lw.panels.voice.serverState !== null")
     robot.viewer.publish("/voice/propose_enrolling", get_message("std_msgs/msg/Bool")(data=True))
     robot.says("response", "I know none of what you say")
-    page.locator(".voice-notice").get_by_role("button", name="Enrol here").click()
+    page.locator(".voice-notice").get_by_role("button", name="Enroll here").click()
     page.get_by_text("0 of 2 words are enrolled here.").wait_for()
     # What was said elsewhere does not count, and the first word can be said at once.
     expect(page.get_by_role("button", name="Hold and say: stop")).to_be_focused()

@@ -10,7 +10,7 @@ from linkwright.diagnostics import Diagnostic, Severity, phrase
 from linkwright.graph import DESCRIPTION_QOS, SENSOR_DATA_QOS, TF_QOS, DurabilityPolicy, QoSProfile
 from linkwright.messages import String, TFMessage, get_message, get_service
 from linkwright.page.protocol.simulation import ModelChoices
-from linkwright.simulation.page.modelling import entities
+from linkwright.simulation.page.modeling import entities
 from tests.browser.conftest import SECONDS, becomes, state, until
 from tests.browser.live import configuration
 from tests.waiting import wait_until

@@ -144,7 +144,7 @@ def test_what_is_no_model_does_not_become_urdf(folder, capsys):
     assert "error[CLI322]" in capsys.readouterr().err
 
 
-def test_mjcf_has_the_mean_colours_of_images(tmp_path: Path) -> None:
+def test_mjcf_has_the_mean_colors_of_images(tmp_path: Path) -> None:
     corners = "v 0 -1 -1\nv 0 1 -1\nv 0 1 1\nv 0.1 -1 1\nvt 0 0\nvt 1 0\nvt 1 1\nvt 0 1\n"
     (tmp_path / "quad.obj").write_text(corners + "f 1/1 2/2 3/3\nf 1/1 3/3 4/4\n")
     mujoco = pytest.importorskip("mujoco")

@@ -22,7 +22,7 @@ def words(tmp_path, monkeypatch):
 
 
 def test_a_dataset_is_made_and_counted(words, tmp_path, capsys):
-    assert main([*words, "-n", "3", "--format", "yolo", "--image-format", "png", "--keep", "colours,lens"]) == 0
+    assert main([*words, "-n", "3", "--format", "yolo", "--image-format", "png", "--keep", "colors,lens"]) == 0
     printed = capsys.readouterr()
     assert [line.split()[0] for line in printed.out.splitlines()] == ["class", "ball", "crate", "drums", "3"]
     assert "3 images in set" in printed.out
@@ -30,7 +30,7 @@ def test_a_dataset_is_made_and_counted(words, tmp_path, capsys):
     assert len(list((tmp_path / "set/images").rglob("*.png"))) == 3
     assert not (tmp_path / "set/annotations").exists()
     (run,) = json.loads((tmp_path / "set/dataset.json").read_text())["made"]
-    assert run["options"]["fixed_properties"] == ["colours", "lens"]
+    assert run["options"]["fixed_properties"] == ["colors", "lens"]
 
 
 def test_classes_that_nothing_is_of_are_told(words, tmp_path, capsys):

@@ -58,7 +58,7 @@ def test_in_chinese(in_graph, capsys):
     assert "1 个问题；1 个节点、" in output
 
 
-def test_a_joint_is_misspelt(in_graph, capsys):
+def test_a_joint_is_misspelled(in_graph, capsys):
     def make(graph: Graph) -> None:
         RobotStatePublisher(graph, NodeOptions(parameters=DESCRIBED))
         node = graph.create_node("driver")

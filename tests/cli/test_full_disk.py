@@ -82,7 +82,7 @@ def test_a_package_is_made_whole_or_not_at_all(
 ) -> None:
     monkeypatch.chdir(tmp_path)
     words = ["pkg", "create", "fine", "--license", "Apache-2.0"]
-    with full_disk(2000):  # the licence does not fit
+    with full_disk(2000):  # the license does not fit
         assert main(words) == 1
     assert "File too large" in capsys.readouterr().err
     assert list(tmp_path.iterdir()) == []

@@ -47,7 +47,7 @@ def test_unknown_command_names_the_nearest(capsys):
         (["--lang", "zh", "check", "r.urdf", "--strct"], "--strict"),
     ],
 )
-def test_a_misspelt_option_names_the_nearest(words, meant, capsys):
+def test_a_misspelled_option_names_the_nearest(words, meant, capsys):
     assert main(words) == 2
     assert meant in capsys.readouterr().err.splitlines()[-1].rpartition(";")[2]
 

@@ -50,7 +50,7 @@ def test_executables_of_one_package_and_of_all(capsys: pytest.CaptureFixture[str
 def test_the_manifest_and_parts_of_it(capsys: pytest.CaptureFixture[str]) -> None:
     assert output_of(capsys, "xml", "arm") == MANIFEST
     assert output_of(capsys, "xml", "arm", "-t", "depend") == "xacro\nurdf\n"
-    error = output_of(capsys, "xml", "arm", "-t", "licence", status=1)
-    assert "package.xml of 'arm' has no element <licence>" in error
+    error = output_of(capsys, "xml", "arm", "-t", "license", status=1)
+    assert "package.xml of 'arm' has no element <license>" in error
     assert "did you mean 'license'?" in error
     assert "choose from depend" in output_of(capsys, "xml", "arm", "-t", "zzzzzz", status=1)

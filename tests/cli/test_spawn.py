@@ -91,7 +91,7 @@ def test_addresses_lead_to_what_lies_beside_the_model(asked, tmp_path, monkeypat
     (tmp_path / "models/common/model.config").write_text("<model><sdf>model.sdf</sdf></model>")
     shape = "<visual name='{0}'><geometry><mesh><uri>{1}</uri></mesh></geometry></visual>"
     shapes = shape.format("a", "model://common/part.stl") + shape.format("b", "model://none/part.stl")
-    text = f"<sdf version='1.7'><model name='r'><link name='l'>{shapes}<colour/></link></model></sdf>"
+    text = f"<sdf version='1.7'><model name='r'><link name='l'>{shapes}<color/></link></model></sdf>"
     (tmp_path / "models/robot/model.sdf").write_text(text)
     monkeypatch.chdir(tmp_path / "far/away")
     monkeypatch.setenv("HOME", str(tmp_path))
@@ -99,4 +99,4 @@ def test_addresses_lead_to_what_lies_beside_the_model(asked, tmp_path, monkeypat
     (request,) = asked
     assert (tmp_path / "models/common/part.stl").as_uri() in request.xml
     assert "model://none/part.stl" in request.xml
-    assert "<colour> in <link> is not read" in capsys.readouterr().err
+    assert "<color> in <link> is not read" in capsys.readouterr().err

@@ -20,7 +20,7 @@ TEXTS = {FORWARD: "forward", STOP: "stop", OTHER: ""}
 
 
 class ByLevel(SpeechEngine):
-    """An engine that recognises a phrase by the level of a sound, half a second after its end."""
+    """An engine that recognizes a phrase by the level of a sound, half a second after its end."""
 
     def __init__(self, options):
         assert "stop" in options.phrases or options.language == "zh"
@@ -106,7 +106,7 @@ def test_partials_and_other_commands(capsys, home):
         (["try", "a.wav", "--engine", "level", "--commands", "nowhere.yaml"], "VOICE301"),
         (["try", "a.wav", "--engine", "level", "--language", "zh"], "VOICE105"),
         (["forget", "stop"], "VOICE210"),
-        (["enrol", "stop", "silence.wav"], "VOICE205"),
+        (["enroll", "stop", "silence.wav"], "VOICE205"),
     ],
 )
 def test_what_is_wrong_is_one_message(words, code, capsys):
@@ -124,7 +124,7 @@ def test_engines_say_what_they_lack(capsys):
 def test_words_are_enrolled_listed_and_forgotten(capsys, home):
     assert main(["voice", "words"]) == 0
     assert "no word is enrolled" in capsys.readouterr().err
-    assert main(["voice", "enrol", "前进", word("a.wav"), word("b.wav")]) == 0
+    assert main(["voice", "enroll", "前进", word("a.wav"), word("b.wav")]) == 0
     printed = capsys.readouterr()
     assert printed.out == "'前进': 2 recordings\n"
     assert "3 recordings make the recognition more reliable" in printed.err
@@ -138,7 +138,7 @@ def test_words_are_enrolled_listed_and_forgotten(capsys, home):
 
 def test_of_recordings_with_one_that_is_not_fit_none_is_learned(capsys, home):
     Path("silence.wav").write_bytes(encode_wav(np.zeros(RATE, np.int16)))
-    assert main(["voice", "enrol", "stop", word("a.wav"), "silence.wav", "--file", "mine.json"]) == 1
+    assert main(["voice", "enroll", "stop", word("a.wav"), "silence.wav", "--file", "mine.json"]) == 1
     printed = capsys.readouterr().err
     assert "'silence.wav'" in printed
     assert not (home / "mine.json").exists()
@@ -146,9 +146,9 @@ def test_of_recordings_with_one_that_is_not_fit_none_is_learned(capsys, home):
 
 @needs_limits
 def test_a_full_disk_leaves_the_words_that_were_there(capsys, home):
-    assert main(["voice", "enrol", "stop", word("a.wav"), "--file", "mine.json"]) == 0
+    assert main(["voice", "enroll", "stop", word("a.wav"), "--file", "mine.json"]) == 0
     before = (home / "mine.json").read_bytes()
     with full_disk(50):
-        assert main(["voice", "enrol", "stop", "a.wav", "--file", "mine.json"]) == 1
+        assert main(["voice", "enroll", "stop", "a.wav", "--file", "mine.json"]) == 1
     assert "error[CLI201]" in capsys.readouterr().err
     assert (home / "mine.json").read_bytes() == before

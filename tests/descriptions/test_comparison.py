@@ -127,7 +127,7 @@ def test_links_and_joints_come_and_go():
     ]
 
 
-def test_new_names_of_all_parts_are_recognised():
+def test_new_names_of_all_parts_are_recognized():
     new = ROBOT
     for name in ("base", "arm", "hand", "shoulder", "wrist"):
         new = new.replace(f'"{name}"', f'"left_{name}"')

@@ -14,7 +14,7 @@ from linkwright.diagnostics import (
     display_path,
     print_diagnostics,
     render,
-    wants_colour,
+    wants_color,
 )
 
 
@@ -98,14 +98,14 @@ def test_a_note_has_its_place_and_keeps_its_lines_together():
     )
 
 
-def test_colour_changes_nothing_else():
+def test_color_changes_nothing_else():
     source = SourceText("<test>", "<a/>")
     diagnostic = Diagnostic("X1", "m", source.span(1, 2), notes=(Note("n"),), hint="h", source=source)
-    coloured = render(diagnostic, colour=True)
-    assert coloured != render(diagnostic)
+    colored = render(diagnostic, color=True)
+    assert colored != render(diagnostic)
     for code in ("31;1", "31", "34", "32", "1", "0"):
-        coloured = coloured.replace(f"\x1b[{code}m", "")
-    assert coloured == render(diagnostic)
+        colored = colored.replace(f"\x1b[{code}m", "")
+    assert colored == render(diagnostic)
 
 
 class Terminal(io.StringIO):
@@ -113,15 +113,15 @@ class Terminal(io.StringIO):
         return True
 
 
-def test_colour_is_for_terminals_that_want_it(monkeypatch):
+def test_color_is_for_terminals_that_want_it(monkeypatch):
     monkeypatch.setenv("TERM", "xterm")
-    assert wants_colour(Terminal())
-    assert not wants_colour(io.StringIO())
+    assert wants_color(Terminal())
+    assert not wants_color(io.StringIO())
     monkeypatch.setenv("NO_COLOR", "1")
-    assert not wants_colour(Terminal())
+    assert not wants_color(Terminal())
     monkeypatch.delenv("NO_COLOR")
     monkeypatch.setenv("TERM", "dumb")
-    assert not wants_colour(Terminal())
+    assert not wants_color(Terminal())
 
 
 def test_printing_several(monkeypatch):

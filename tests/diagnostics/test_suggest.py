@@ -6,7 +6,7 @@ from pathlib import Path
 
 import pytest
 
-from linkwright.diagnostics import as_typed, did_you_mean, is_misspelt, missing_file_hint, nearest
+from linkwright.diagnostics import as_typed, did_you_mean, is_misspelled, missing_file_hint, nearest
 
 LINKS = ["base_link", "base_footprint", "left_wheel", "right_wheel"]
 
@@ -106,7 +106,7 @@ def test_names_that_share_a_common_word_are_of_other_things(name: str, other: st
 
 
 @pytest.mark.parametrize(
-    ("name", "other", "misspelt"),
+    ("name", "other", "misspelled"),
     [
         ("amr", "arm", True),
         ("taker", "talker", True),
@@ -119,5 +119,5 @@ def test_names_that_share_a_common_word_are_of_other_things(name: str, other: st
         ("move_group", "robot", False),
     ],
 )
-def test_a_misspelt_name_is_not_one_that_is_merely_alike(name: str, other: str, misspelt: bool) -> None:
-    assert is_misspelt(name, ["zzz", other]) is misspelt
+def test_a_misspelled_name_is_not_one_that_is_merely_alike(name: str, other: str, misspelled: bool) -> None:
+    assert is_misspelled(name, ["zzz", other]) is misspelled

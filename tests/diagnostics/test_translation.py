@@ -1,4 +1,4 @@
-"""Diagnostics in Chinese: the choice of the language, the catalogue, and inserted values."""
+"""Diagnostics in Chinese: the choice of the language, the catalog, and inserted values."""
 
 from __future__ import annotations
 
@@ -165,8 +165,8 @@ def test_any_text_can_be_filled_in(text: str) -> None:
         in_chinese(each)
 
 
-def test_signs_of_the_chinese_catalogue_are_chinese() -> None:
-    tool = load_tool("catalogues")
+def test_signs_of_the_chinese_catalog_are_chinese() -> None:
+    tool = load_tool("catalogs")
     for message in tool.read(tool.FOLDER / "zh.po"):
         english = "".join(message.id)
         for chinese in [message.string] if isinstance(message.string, str) else message.string:

@@ -36,7 +36,7 @@ def words(request: pytest.FixtureRequest) -> Recording:
 
 
 class Recording:
-    """A catalogue that records the templates without a translation."""
+    """A catalog that records the templates without a translation."""
 
     def __init__(self, translations: NullTranslations) -> None:
         self._translations = translations
@@ -61,20 +61,20 @@ class Recording:
 @pytest.fixture(scope="module")
 def source() -> Any:
     """Return the messages of all modules of the program."""
-    return load_tool("catalogues").Source()
+    return load_tool("catalogs").Source()
 
 
 @pytest.mark.slow  # reads all of the source, which is the same with each Python
-def test_the_catalogues_say_what_the_source_says(source: Any) -> None:
-    tool = load_tool("catalogues")
+def test_the_catalogs_say_what_the_source_says(source: Any) -> None:
+    tool = load_tool("catalogs")
     assert len(source.templates) > 1000
     for path in sorted(tool.FOLDER.glob("*.po")):
-        catalogue = tool.read(path)
-        assert list(tool.problems_of(catalogue, source)) == []
-        assert tool.as_text(tool.updated(catalogue, source)) == path.read_text(encoding="utf-8")
+        catalog = tool.read(path)
+        assert list(tool.problems_of(catalog, source)) == []
+        assert tool.as_text(tool.updated(catalog, source)) == path.read_text(encoding="utf-8")
 
 
-def test_what_is_wrong_with_a_catalogue_is_told(tmp_path: Path) -> None:
+def test_what_is_wrong_with_a_catalog_is_told(tmp_path: Path) -> None:
     room = tmp_path / "package" / "urdf"
     room.mkdir(parents=True)
     (room / "reader.py").write_text(
@@ -91,15 +91,15 @@ def test_what_is_wrong_with_a_catalogue_is_told(tmp_path: Path) -> None:
         'msgid "an old one"\nmsgstr "旧的"\n',
         encoding="utf-8",
     )
-    tool = load_tool("catalogues")
+    tool = load_tool("catalogs")
     source = tool.Source(tmp_path / "package")
     assert list(tool.problems_of(tool.read(tmp_path / "zh.po"), source)) == [
         "urdf/reader.py:3: the placeholders of '{a} is {b}' are not its arguments",
         "urdf/reader.py:4: the template is no literal",
         "the translation of ''{tag}' is odd' has other placeholders",
         "nothing says 'an old one'",
-        "urdf/reader.py:2: 'a new one' is not in the catalogue",
-        "urdf/reader.py:3: '{a} is {b}' is not in the catalogue",
+        "urdf/reader.py:2: 'a new one' is not in the catalog",
+        "urdf/reader.py:3: '{a} is {b}' is not in the catalog",
     ]
     new = tool.updated(tool.read(tmp_path / "zh.po"), source)
     assert [message.id for message in new if message.id] == [
@@ -126,12 +126,12 @@ def test_a_page_without_a_title_in_another_language_is_told(tmp_path: Path) -> N
         'msgctxt "rule"\nmsgid "A robot that is gone"\nmsgstr "没有了的机器人"\n',
         encoding="utf-8",
     )
-    tool = load_tool("catalogues")
+    tool = load_tool("catalogs")
     source = tool.Source(tmp_path / "package")
     assert list(tool.problems_of(tool.read(tmp_path / "zh.po"), source)) == [
         "no page has the title 'A robot that is gone'",
-        "lint/rules/own.py:1: the title 'A robot that is odd' is not in the catalogue",
-        "lint/pages/own.md: the title 'a thing is odd' is not in the catalogue",
+        "lint/rules/own.py:1: the title 'A robot that is odd' is not in the catalog",
+        "lint/pages/own.md: the title 'a thing is odd' is not in the catalog",
     ]
     new = tool.updated(tool.read(tmp_path / "zh.po"), source)
     assert [(message.context, message.id, message.string) for message in new if message.id] == [

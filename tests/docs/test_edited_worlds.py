@@ -1,4 +1,4 @@
-"""docs/worlds.md shows what modelling writes."""
+"""docs/worlds.md shows what modeling writes."""
 
 from __future__ import annotations
 

@@ -12,7 +12,7 @@ import pytest
 from linkwright.loading import extensions
 from linkwright.messages import get_message
 from linkwright.rviz import RvizConfig
-from linkwright.rviz.displays import catalogue
+from linkwright.rviz.displays import catalog
 from tests.docs.pages import DOCS, blocks
 from tests.toml_files import read_toml
 from tests.viewer.contents import shown_markers
@@ -51,12 +51,12 @@ def street(request, tmp_path, monkeypatch):
     monkeypatch.syspath_prepend(str(tmp_path / "street_displays"))
     monkeypatch.chdir(tmp_path)
     extensions._all_groups.cache_clear()
-    catalogue._display_class.cache_clear()
+    catalog._display_class.cache_clear()
     yield
     monkeypatch.undo()
     sys.modules.pop("street_displays", None)
     extensions._all_groups.cache_clear()
-    catalogue._display_class.cache_clear()
+    catalog._display_class.cache_clear()
 
 
 def car(number: int, x: float, *, label: str = "car", speed: float = 3.0, path: int = 0) -> Any:

@@ -68,10 +68,10 @@ def test_the_first_node_moves_the_robot_in_a_circle(load: Any) -> None:
         assert abs(x) < 0.2
 
 
-def test_one_metre_is_one_metre(load: Any) -> None:
+def test_one_meter_is_one_meter(load: Any) -> None:
     with SteppedSimulation("empty", ROBOT) as test:
         test.init_rclpy()
-        load("one_metre").OneMetre()
+        load("one_meter").OneMeter()
         odometry = test.record("/odom")
         test.advance(15.0)
         assert odometry.last.pose.pose.position.x == pytest.approx(1.0, abs=0.01)
@@ -81,7 +81,7 @@ def test_one_metre_is_one_metre(load: Any) -> None:
 def test_the_distance_is_a_parameter(load: Any) -> None:
     with SteppedSimulation("empty", ROBOT) as test:
         test.init_rclpy(["--ros-args", "-p", "distance:=0.5"])
-        load("one_metre").OneMetre()
+        load("one_meter").OneMeter()
         odometry = test.record("/odom")
         test.advance(10.0)
         assert odometry.last.pose.pose.position.x == pytest.approx(0.5, abs=0.01)
@@ -109,7 +109,7 @@ def test_the_nodes_are_found(
     monkeypatch.chdir(package)
     assert main(["pkg", "executables", "my_control"]) == 0
     assert capsys.readouterr().out.split() == [
-        *("my_control", "first_move", "my_control", "one_metre", "my_control", "stop_ahead")
+        *("my_control", "first_move", "my_control", "one_meter", "my_control", "stop_ahead")
     ]
 
 
@@ -145,7 +145,7 @@ def test_each_line_works_for_a_reader_with_the_wheel(follow: Callable[..., Path]
         {
             "linkwright run my_control first_move": Known(node="/first_move"),
             "linkwright run teleop_twist_keyboard teleop_twist_keyboard": Known(shows="stop"),
-            "linkwright run my_control one_metre --ros-args -p distance:=2.0": Known(node="/one_metre"),
+            "linkwright run my_control one_meter --ros-args -p distance:=2.0": Known(node="/one_meter"),
             "linkwright run my_control stop_ahead": Known(node="/stop_ahead"),
             "linkwright launch my_control stop_ahead.launch.py": Known(node="/stop_ahead"),
             **{

@@ -38,12 +38,12 @@ def test_the_nodes_of_the_page_are_there(page: Path):
 def test_the_program_of_the_page_drives_to_something_red(tmp_path: Path):
     pytest.importorskip("mujoco")
     standins.activate()
-    (program,) = [block for block in blocks(LANGUAGES["en"]) if block.title == "follow_colour.py"]
-    names: dict[str, Any] = {"__name__": "follow_colour"}
-    exec(compile(program.text, "follow_colour.py", "exec"), names)
+    (program,) = [block for block in blocks(LANGUAGES["en"]) if block.title == "follow_color.py"]
+    names: dict[str, Any] = {"__name__": "follow_color"}
+    exec(compile(program.text, "follow_color.py", "exec"), names)
     with SeekingRobot(tmp_path, (2.0, 0.6), thing="red") as test:
         test.init_rclpy()
-        names["FollowColour"]()
+        names["FollowColor"]()
         test.advance(20.0)
         assert test.distance() < 1.2
         assert abs(test.commands.last.angular.z) < 0.2, "it is in the middle of the image"
@@ -55,8 +55,8 @@ def test_each_line_works_for_a_reader_with_the_wheel(follow: Callable[..., Path]
         LANGUAGES["en"],
         {
             "linkwright topic hz /yolo/detections": Known(shows="average rate"),
-            "linkwright shell -- python follow_colour.py": Known(node="/follow_colour"),
-            "linkwright launch my_robot_vision follow_object.launch.py model:=colours thing:=red": Known(
+            "linkwright shell -- python follow_color.py": Known(node="/follow_color"),
+            "linkwright launch my_robot_vision follow_object.launch.py model:=colors thing:=red": Known(
                 node="/follow_object"
             ),
         },

@@ -34,7 +34,7 @@ def test_what_the_page_says_is_understood(language: str) -> None:
     table = [cell for row in re.findall(r"^\| (`.+?) \| (.+?) \|$", page, re.MULTILINE) for cell in row]
     shown = [text for cell in table[:8] for text in re.findall(r"`([^`]+)`", cell) or cell.split("、")]
     shown += [
-        "forward half a metre",
+        "forward half a meter",
         "前进半米",
         "后退半米",
         "go to the kitchen",
@@ -90,9 +90,9 @@ async def test_the_readers_own_commands_move_mbot(tmp_path: Path) -> None:
         x, y, _, _, _, z, w = playground.robot_pose()
         assert math.hypot(x, y) < 0.1
         assert abs(2.0 * math.atan2(z, w)) < 0.1, "two whole turns"
-        assert await tell("race one metre", 1.0) == "really?"
+        assert await tell("race one meter", 1.0) == "really?"
         assert math.hypot(*playground.robot_pose()[:2]) < 0.1
-        assert await tell("yes", 8.0) == "race one metre"
+        assert await tell("yes", 8.0) == "race one meter"
         assert math.hypot(*playground.robot_pose()[:2]) == pytest.approx(1.0, abs=0.12)
         running.close()
 
@@ -100,9 +100,9 @@ async def test_the_readers_own_commands_move_mbot(tmp_path: Path) -> None:
 def test_the_file_on_the_page_about_voice_is_right() -> None:
     (block,) = [block for block in blocks(DOCS / "voice.md") if block.title == "my_commands.yaml"]
     found = parse_commands(SourceText(block.title, block.text))
-    assert found.match_command("please go forward seven metres") is None
+    assert found.match_command("please go forward seven meters") is None
     for text in (
-        "go forward seven metres",
+        "go forward seven meters",
         "转圈",
         "go and recharge",
         "张开夹爪",

@@ -357,7 +357,7 @@ def test_velocities_that_reach_somebody_or_command_nothing_are_well(more_endpoin
     assert examine(more(WELL, *more_endpoints)) == []
 
 
-def test_a_misspelt_command_is_told_once():
+def test_a_misspelled_command_is_told_once():
     seen = more(WELL, publisher("/teleop", "/cmd_vel", TWIST), subscription("/drive", "/robot/cmd_vel", TWIST))
     assert codes(seen) == ["DOC204"]
 

@@ -38,7 +38,7 @@ def test_a_png_is_not_encoded_again(tmp_path: Path) -> None:
     assert image_of(tmp_path, "i.png", data) == data
 
 
-def test_a_jpeg_becomes_a_png_of_the_same_colour(tmp_path: Path) -> None:
+def test_a_jpeg_becomes_a_png_of_the_same_color(tmp_path: Path) -> None:
     image = image_of(tmp_path, "i.jpg", encoded("JPEG"))
     assert image is not None
     with Image.open(BytesIO(image)) as read:

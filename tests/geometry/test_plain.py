@@ -39,7 +39,7 @@ def kept(parts: str) -> str:
 
 
 def corners(data: bytes, kind: str, *, is_plain: bool) -> np.ndarray:
-    """Return the sorted corners of all triangles in metres, each from its lowest corner; shape (n, 9)."""
+    """Return the sorted corners of all triangles in meters, each from its lowest corner; shape (n, 9)."""
     found = []
     for mesh, matrix, unit, _ in (placed := placed_meshes(data, kind, is_plain=is_plain)):
         assert isinstance(mesh, PlainMesh) is is_plain
@@ -174,7 +174,7 @@ OBJ = "mtllib a.mtl\no a\nv 0 0 0\nv 1 0 0\nv 1 1 0.1\nv 0 1 0\nvn 0 0 1\nvt 0 0
         OBJ.replace(" 0\nv ", " 0 0.5 0.5 0.5\nv ").replace("0.1\n", "0.1 1 1 1\n").replace("1 0\nvn", "1 0 1 1 1\nvn")
         + "l 1 2\nf 1 2 4\n",
     ],
-    ids=["triangles", "polygons in groups", "lines as Windows ends them", "corners with colours"],
+    ids=["triangles", "polygons in groups", "lines as Windows ends them", "corners with colors"],
 )
 def test_an_obj_file_has_the_triangles_that_trimesh_reads(text: str) -> None:
     data = text.encode()
@@ -212,7 +212,7 @@ def test_what_is_unusual_in_an_obj_file_is_left_to_trimesh(text: str) -> None:
 
 @pytest.mark.extra("mesh")
 @pytest.mark.parametrize("header", [b"", b"COLOR=\x7f\x7f\x7f\xff"])
-def test_the_colours_of_stl_do_not_matter_to_who_wants_triangles(header: bytes) -> None:
+def test_the_colors_of_stl_do_not_matter_to_who_wants_triangles(header: bytes) -> None:
     facet = np.array([0, 0, 1, 0, 0, 0, 1, 0, 0, 0, 1, 0], dtype="<f4").tobytes() + b"\xff\x83"
     data = header.ljust(80) + (1).to_bytes(4, "little") + facet
     assert np.array_equal(corners(data, "stl", is_plain=True), corners(data, "stl", is_plain=False))

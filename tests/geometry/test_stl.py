@@ -51,8 +51,8 @@ def test_a_file_has_the_triangles_that_trimesh_reads(data):
     ids=[
         "short",
         "long",
-        "coloured",
-        "coloured triangles",
+        "colored",
+        "colored triangles",
         "empty",
         "two solids",
         "a wrong word",

@@ -116,12 +116,12 @@ def files(folder: Path) -> list[Path]:
     return [path, *([SHARED] if SHARED.exists() else [])]
 
 
-async def test_it_drives_one_metre_straight_and_then_turns(tmp_path):
+async def test_it_drives_one_meter_straight_and_then_turns(tmp_path):
     for path in files(tmp_path):
-        await _drives_one_metre_straight_and_then_turns(path)
+        await _drives_one_meter_straight_and_then_turns(path)
 
 
-async def _drives_one_metre_straight_and_then_turns(path: Path) -> None:
+async def _drives_one_meter_straight_and_then_turns(path: Path) -> None:
     async with driven(path) as mbot:
         await mbot.drive(0.5, 0.0, 1.5)
         start = mbot.pose

@@ -90,7 +90,7 @@ def test_only_images_of_more_than_eight_bits_have_a_range():
 
 
 @pytest.mark.parametrize("pattern", ["rggb", "bggr", "gbrg", "grbg"])
-def test_mosaics_give_their_colours(pattern):
+def test_mosaics_give_their_colors(pattern):
     value = {"r": 200, "g": 100, "b": 50}
     tile = np.array([value[color] for color in pattern], np.uint8).reshape(2, 2)
     mosaic = np.tile(tile, (3, 3))
@@ -100,7 +100,7 @@ def test_mosaics_give_their_colours(pattern):
     assert pixels(image(f"bayer_{pattern}16", 6, 6, deep)) == expected
 
 
-def test_chroma_becomes_colour():
+def test_chroma_becomes_color():
     # BT.601: black, white, and the red of 8-bit video
     gray = [[[0, 0, 0], [255, 255, 255]]]
     for encoding in ("yuv422", "uyvy"):
@@ -156,7 +156,7 @@ def test_an_image_is_not_reduced_to_nothing():
     assert decode_rvl.reduce_by(3) is decode_rvl
 
 
-def test_grey_and_translucent_images_have_rgb():
+def test_gray_and_translucent_images_have_rgb():
     assert DecodedImage(np.array([[7]], np.uint8)).rgb().tolist() == [[[7, 7, 7]]]
     assert DecodedImage(np.array([[[1, 2, 3, 4]]], np.uint8)).rgb().tolist() == [[[1, 2, 3]]]
 

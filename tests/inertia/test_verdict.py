@@ -52,8 +52,8 @@ def inertial(mass=4.0, moment=0.016, origin="0 0 0"):
             "its moments are 1/100 of the moments of a solid with its shapes",
         ),
         (inertial(moment=0.064), Grade.ROUGH, "its moments are 4 times the moments of a solid with its shapes"),
-        (inertial(origin="0 0.5 0"), Grade.DOUBTFUL, "its centre of mass is 500 mm from the centre of its shapes"),
-        (inertial(origin="0 0.05 0"), Grade.ROUGH, "its centre of mass is 50 mm from the centre of its shapes"),
+        (inertial(origin="0 0.5 0"), Grade.DOUBTFUL, "its center of mass is 500 mm from the center of its shapes"),
+        (inertial(origin="0 0.05 0"), Grade.ROUGH, "its center of mass is 50 mm from the center of its shapes"),
         ("", Grade.MISSING, "it has no <inertial>"),
     ],
 )
@@ -84,7 +84,7 @@ def test_a_part_of_the_shapes_tells_nothing(tmp_path):
     assert (verdict.grade, verdict.density) == (Grade.UNJUDGED, None)
 
 
-def test_a_mass_may_be_that_of_a_neighbour_without_one(tmp_path):
+def test_a_mass_may_be_that_of_a_neighbor_without_one(tmp_path):
     joint = '<joint name="f" type="fixed"><parent link="{}"/><child link="{}"/></joint><link name="{}">{}</link>'
     through_a_frame = joint.format("a", "frame", "frame", "") + joint.format("frame", "cover", "cover", BALL).replace(
         '"f"', '"g"'

@@ -64,7 +64,7 @@ def yaw(pose: Transform) -> float:
 TWO_WHEELS = "Visuals only, two wheels and two balls"
 
 
-def test_a_robot_of_visuals_only_drives_one_metre_straight():
+def test_a_robot_of_visuals_only_drives_one_meter_straight():
     simulation, drive = standing(TWO_WHEELS)
     sides = motors(simulation, drive)
     driven(simulation, sides, 0.5 / drive.radius, 0.5 / drive.radius)

@@ -70,13 +70,13 @@ def test_configurations_are_the_declared_arguments(at):
 
 @pytest.mark.parametrize("pairs", ["{'|'}.items()", "{'x': '1', '|': '2'}.items()", "[('|', 'red')]", "[('x', y), ('|"])
 def test_arguments_of_an_included_file_are_known(at, pairs):
-    assert at(INCLUDE.format(pairs)).labels() == ["colour", "x", "y"]
+    assert at(INCLUDE.format(pairs)).labels() == ["color", "x", "y"]
 
 
 def test_values_of_an_included_argument_are_its_choices(at):
-    assert at(INCLUDE.format("{'colour': '|'}.items()")).labels() == ["red", "blue"]
-    assert at(INCLUDE.format("[('colour', '|')]")).labels() == ["red", "blue"]
-    assert at(INCLUDE.format("{'col|our': 'red'}.items()")).targets() == ["parts.launch.py:colour"]
+    assert at(INCLUDE.format("{'color': '|'}.items()")).labels() == ["red", "blue"]
+    assert at(INCLUDE.format("[('color', '|')]")).labels() == ["red", "blue"]
+    assert at(INCLUDE.format("{'col|our': 'red'}.items()")).targets() == ["parts.launch.py:color"]
 
 
 def test_a_statement_ends_unfinished_brackets():
@@ -137,7 +137,7 @@ def test_a_configuration_in_a_path_has_its_default(at):
 
 
 def test_a_value_is_explained_by_its_argument(at):
-    assert "Its colour" in at(INCLUDE.format("{'colour': 're|d'}.items()")).hover()
+    assert "Its color" in at(INCLUDE.format("{'color': 're|d'}.items()")).hover()
     assert at("Node(name='ab|c')").hover() == "`name`: the name of the node; None for the name that the program sets."
     assert at("Node(package='nowh|ere')").hover() == "package 'nowhere' not found"
 

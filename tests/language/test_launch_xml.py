@@ -91,7 +91,7 @@ def test_variables_are_the_arguments_of_the_file(at):
 
 @pytest.mark.parametrize(
     ("file", "names"),
-    [("parts.launch.xml", ["rate", "mode"]), ("parts.launch.py", ["colour", "x", "y"])],
+    [("parts.launch.xml", ["rate", "mode"]), ("parts.launch.py", ["color", "x", "y"])],
 )
 def test_arguments_of_an_included_file_are_known(at, file, names):
     include = f'<include file="$(find-pkg-share lamp_bringup)/launch/{file}"><arg '

@@ -8,7 +8,7 @@ import pytest
 
 from linkwright.language.format import Document
 from linkwright.language.formats import format_of
-from linkwright.language.parameter_catalogue import node_names, node_parameters, plugins
+from linkwright.language.parameter_catalog import node_names, node_parameters, plugins
 from linkwright.language.parameter_files import PARAMETER_FILES
 from linkwright.language.rviz_files import RVIZ_FILES
 from linkwright.language.workspace import Workspace
@@ -249,7 +249,7 @@ def test_names_follow_an_open_description(typing):
     assert "trunk" in [item.label for item in PARAMETER_FILES.complete(changed, offset)]
 
 
-def test_the_catalogue_has_nodes_and_plugins_with_types():
+def test_the_catalog_has_nodes_and_plugins_with_types():
     assert {"amcl", "slam_toolbox", "ekf_filter_node", "robot_state_publisher", "map_server"} <= set(node_names())
     assert all(parameter.name for node in node_names() for parameter in node_parameters(node))
     assert plugins()["nav2_costmap_2d/VoxelLayer"].listed == "plugins"

@@ -47,8 +47,8 @@ def test_nodes_messages_and_transforms_are_waited_for(package):
         assert running.subscribers("/joint_states") == ["/robot_state_publisher"]
         assert running.wait_for_parameter("/robot_state_publisher", "publish_frequency") > 0
         begin = time.monotonic()
-        with pytest.raises(NotYet, match="'/robot_state_publisher' has no parameter 'colour'"):
-            running.wait_for_parameter("/robot_state_publisher", "colour")
+        with pytest.raises(NotYet, match="'/robot_state_publisher' has no parameter 'color'"):
+            running.wait_for_parameter("/robot_state_publisher", "color")
         with pytest.raises(NotYet, match="no node '/robot_state_publishr'; there is '/robot_state_publisher'"):
             running.expect_node("/robot_state_publishr")
         with pytest.raises(NotYet, match="no topic '/jont_states'; there is '/joint_states'"):

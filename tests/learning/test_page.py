@@ -218,7 +218,7 @@ def test_the_classroom_opens_without_a_verb(words, is_default):
     assert _begins_without_verb(words, VERBS) == is_default
 
 
-def test_a_misspelt_verb_is_no_folder(capsys):
+def test_a_misspelled_verb_is_no_folder(capsys):
     assert main(["learn", "lst"]) == 2
     assert "there is no command 'lst'; did you mean 'list'" in capsys.readouterr().err
 

@@ -157,7 +157,7 @@ def test_what_hangs_on_an_argument_that_the_root_names_too_early_is_no_error_of_
     assert codes(found) == [("info", "LINT303"), ("error", "XML101")]
 
 
-def test_a_misspelt_argument_stays_an_error(check):
+def test_a_misspelled_argument_stays_an_error(check):
     robot = f"""<robot {XACRO} name="r"><xacro:arg name="prefix" default=""/>
     <link name="$(arg prefix)base_link"/><link name="$(arg prefx)tool"/></robot>"""
     assert ("error", "XAC211") in codes(check({"arm/urdf/arm.urdf.xacro": robot}))
@@ -267,7 +267,7 @@ def generate_launch_description():
         ("", "", "error"),
     ],
 )
-def test_a_missing_package_is_a_warning_where_it_or_a_neighbour_declares_it(check, needs, beside, severity):
+def test_a_missing_package_is_a_warning_where_it_or_a_neighbor_declares_it(check, needs, beside, severity):
     robot = (
         f"""<robot {XACRO} name="r"><xacro:include filename="$(find far)/far.xacro"/><link name="base_link"/></robot>"""
     )

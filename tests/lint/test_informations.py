@@ -124,9 +124,9 @@ def test_what_only_simulators_read_need_not_be_good_xml(tmp_path, name, text, se
 
 
 @pytest.mark.parametrize(("second", "severity"), [("0.8 0.8 0.8 1", "INFO"), ("0.7 0.7 0.9 1", "WARNING")])
-def test_a_colour_that_nobody_tells_from_the_first_of_its_name_is_an_information(severity_of, second, severity):
-    grey = '<visual>{}<material name="grey"><color rgba="{}"/></material></visual>'
-    visuals = "".join(grey.format(BOX, colour) for colour in ("0.7 0.7 0.7 1", second))
+def test_a_color_that_nobody_tells_from_the_first_of_its_name_is_an_information(severity_of, second, severity):
+    gray = '<visual>{}<material name="grey"><color rgba="{}"/></material></visual>'
+    visuals = "".join(gray.format(BOX, color) for color in ("0.7 0.7 0.7 1", second))
     assert severity_of("LW501", moving("3").replace("<inertial>", visuals + "<inertial>")) == severity
 
 

@@ -58,14 +58,14 @@ def test_a_small_mass_on_a_small_frame(codes_of, mass, codes):
 
 
 @pytest.mark.parametrize(("origin", "codes"), [("", ["LW323"]), ('<origin xyz="0 0 0"/>', ["LW322"])])
-def test_a_centre_of_mass_far_from_its_shapes_is_told_of_once(codes_of, origin, codes):
+def test_a_center_of_mass_far_from_its_shapes_is_told_of_once(codes_of, origin, codes):
     shape = '<visual><origin xyz="0 0 0.5"/><geometry><box size="0.1 0.1 0.1"/></geometry></visual>'
     inside = shape + inertial(1, 0.002, origin)
     assert codes_of(robot(f'<link name="base"/>{moving("a", inside)}'), "LW322", "LW323") == codes
 
 
 @pytest.mark.parametrize(("moment", "codes"), [("0.002", ["LW315"]), ("0.00{}", ["LW322"] * 3)])
-def test_a_centre_of_mass_is_not_told_of_beside_an_inertia_that_was_copied(codes_of, moment, codes):
+def test_a_center_of_mass_is_not_told_of_beside_an_inertia_that_was_copied(codes_of, moment, codes):
     shape = '<visual><origin xyz="0 0 0.{0}"/><geometry><box size="0.1 0.1 0.{0}"/></geometry></visual>'
     links = (moving(f"l{n}", shape.format(n) + inertial(1, moment.format(n))) for n in (4, 5, 6))
     assert codes_of(robot(f'<link name="base"/>{"".join(links)}'), "LW315", "LW322") == codes
@@ -453,7 +453,7 @@ def test_a_gripper_that_presses_has_no_soft_limit_where_it_is_closed(codes_of, l
 @pytest.mark.parametrize(
     ("origin", "hint"),
     [
-        ("0 0 0.1", "the centre of the visuals is at 1.05 2 3.15 in the link frame"),
+        ("0 0 0.1", "the center of the visuals is at 1.05 2 3.15 in the link frame"),
         ("0 0 0", "give visuals and collisions the same"),
     ],
 )
@@ -468,7 +468,7 @@ def test_a_mesh_off_its_own_origin_needs_another_origin_for_its_collision(tmp_pa
 
 
 @pytest.mark.parametrize(("size", "codes"), [(60, ["LW433"]), (40, ["LW412", "LW413"])])
-def test_a_mesh_in_millimetres_is_told_of_once(codes_of, size, codes):
+def test_a_mesh_in_millimeters_is_told_of_once(codes_of, size, codes):
     facet = f"facet normal 0 0 1\nouter loop\nvertex 5 0 0\nvertex {5 + size} 0 0\nvertex 5 {size} 0\nendloop\nendfacet"
     seen = '<visual><geometry><mesh filename="a.stl"/></geometry></visual>'
     felt = '<collision><geometry><box size="0.1 0.1 0.1"/></geometry></collision>'
@@ -632,9 +632,9 @@ def test_a_package_of_meshes_that_a_package_beside_declares_is_only_not_here(tmp
 
 
 def test_what_an_include_that_is_not_here_may_define_is_not_missing(codes_of):
-    coloured = '<visual><geometry><box size="1 1 1"/></geometry><material name="dark"/></visual>'
-    include = '<xacro:include filename="$(find far_description)/colours.xacro"/>'
-    link = f'<link name="a">{coloured}</link>'
+    colored = '<visual><geometry><box size="1 1 1"/></geometry><material name="dark"/></visual>'
+    include = '<xacro:include filename="$(find far_description)/colors.xacro"/>'
+    link = f'<link name="a">{colored}</link>'
     assert codes_of(robot(link), "URDF160") == ["URDF160"]
     assert codes_of(robot(include + link, PREFIX), "URDF160") == []
 
@@ -689,7 +689,7 @@ def test_an_empty_macro_takes_what_those_take_that_it_stands_for(codes_of, body,
 
 
 @pytest.mark.parametrize(
-    ("name", "hint"), [("robot_description", False), ("my_robot_descripton", True)], ids=["another", "misspelt"]
+    ("name", "hint"), [("robot_description", False), ("my_robot_descripton", True)], ids=["another", "misspelled"]
 )
 def test_a_package_of_ours_is_proposed_for_its_own_name_alone(tmp_path, name, hint):
     mesh = f'<link name="l"><visual><geometry><mesh filename="package://{name}/a.stl"/></geometry></visual></link>'

@@ -117,7 +117,7 @@ def test_a_command_is_added_before_the_last_one(tmp_path):
     assert changed == text + "\ninstall(DIRECTORY meshes DESTINATION share/${PROJECT_NAME})\n\nament_package()\n"
 
 
-def test_a_dependency_is_added_after_the_licence_where_there_is_none(tmp_path):
+def test_a_dependency_is_added_after_the_license_where_there_is_none(tmp_path):
     for name in ("arm", "wheels"):
         (tmp_path / name).mkdir()
         manifest = MANIFEST.format(build_type="ament_cmake").replace("<name>arm", f"<name>{name}")

@@ -17,7 +17,7 @@ from tests.work import lines_run
 
 RULES = ("LW3", "LW4", "LW5")
 FOUND = {
-    # Steering links with a mass and a tensor of zero; a box of 1 kg in a cubic metre.
+    # Steering links with a mass and a tensor of zero; a box of 1 kg in a cubic meter.
     "gz_ros2_control/gz_ros2_control_demos/urdf/test_ackermann_drive.xacro.urdf": {"LW310", "LW321"},
     "gz_ros2_control/gz_ros2_control_demos/urdf/test_diff_drive.xacro.urdf": {"LW321"},
     "gz_ros2_control/gz_ros2_control_demos/urdf/test_tricycle_drive.xacro.urdf": {"LW321", "LW324"},

@@ -1,4 +1,4 @@
-"""Inlay hints, lenses, colours, semantic tokens, links, workspace symbols and macro calls, through the protocol."""
+"""Inlay hints, lenses, colors, semantic tokens, links, workspace symbols and macro calls, through the protocol."""
 
 from __future__ import annotations
 
@@ -91,7 +91,7 @@ async def test_a_lens_has_the_commands_of_the_client(editor_with_commands):
     assert location["uri"] == editor.uri(FILE)
 
 
-async def test_colours_are_found_and_written_in_the_form_of_the_file(editor):
+async def test_colors_are_found_and_written_in_the_form_of_the_file(editor):
     text = MAIN.replace("<link", '<material name="m"><color rgba="1 0.5 0 1"/></material>\n  <link', 1)
     editor.open(FILE, text)
     (found,) = await editor.client.text_document_document_color_async(types.DocumentColorParams(editor.document(FILE)))

@@ -106,12 +106,12 @@ async def test_build_files_have_no_symbols(editor):
     assert await editor.client.text_document_document_symbol_async(asked) is None
 
 
-async def test_a_file_of_another_kind_has_an_empty_list_of_colours_as_the_protocol_asks(editor):
+async def test_a_file_of_another_kind_has_an_empty_list_of_colors_as_the_protocol_asks(editor):
     (editor.folder / "notes.txt").write_text("red")
     editor.open("notes.txt")
     document = editor.document("notes.txt")
-    colours = editor.client.text_document_document_color_async(types.DocumentColorParams(document))
-    assert [*await asyncio.wait_for(colours, SECONDS)] == []
+    colors = editor.client.text_document_document_color_async(types.DocumentColorParams(document))
+    assert [*await asyncio.wait_for(colors, SECONDS)] == []
     place = types.Range(types.Position(0, 0), types.Position(0, 3))
     asked = types.ColorPresentationParams(document, types.Color(1.0, 0.0, 0.0, 1.0), place)
     assert [*await asyncio.wait_for(editor.client.text_document_color_presentation_async(asked), SECONDS)] == []

@@ -27,7 +27,7 @@ from linkwright.messages import (
     serialize,
     shipped_packages,
 )
-from linkwright.messages.catalogue import texts
+from linkwright.messages.catalog import texts
 from linkwright.messages.definitions.library import LIBRARY
 from linkwright.messages.definitions.slot_types import (
     Array,

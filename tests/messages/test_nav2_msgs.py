@@ -5,7 +5,7 @@ from __future__ import annotations
 import pytest
 
 from linkwright.messages import get_interface
-from linkwright.messages.catalogue import texts
+from linkwright.messages.catalog import texts
 from linkwright.messages.definitions.library import Library
 
 

@@ -56,7 +56,7 @@ class Wheel:
     """A wheel.
 
     Attributes:
-        radius: in metres,
+        radius: in meters,
             with the tyre.
     """
 
@@ -77,5 +77,5 @@ def test_a_table_describes_its_parameters_without_a_node():
     assert (radius.name, radius.keys, radius.description) == (
         "sizes.*.radius",
         ("wheels",),
-        "in metres, with the tyre.",
+        "in meters, with the tyre.",
     )

@@ -99,7 +99,7 @@ async def test_the_mesh_is_served_and_comes_again_only_when_it_changed(served, r
     assert (await raw(served.viewer, mesh_url(served.viewer), If_None_Match=tag))[1] == "solid arms"
 
 
-async def test_compressed_neighbours_are_never_sent_instead(served):
+async def test_compressed_neighbors_are_never_sent_instead(served):
     status, body, head = await raw(served.viewer, mesh_url(served.viewer), Accept_Encoding="gzip, br")
     assert (status, body) == (200, "solid arm")
     assert "content-encoding" not in head

@@ -242,7 +242,7 @@ class Hand:
         return self.now
 
 
-def test_a_line_learns_from_acknowledgements():
+def test_a_line_learns_from_acknowledgments():
     clock = Hand()
     line = ConnectionMeter(clock)
     line.sending(10)

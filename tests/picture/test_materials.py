@@ -1,4 +1,4 @@
-"""Meshes with their colours."""
+"""Meshes with their colors."""
 
 from __future__ import annotations
 
@@ -24,7 +24,7 @@ def stl(folder: Path, count: int = 1) -> Path:
     return path
 
 
-def test_a_collada_file_has_its_colours_without_a_library() -> None:
+def test_a_collada_file_has_its_colors_without_a_library() -> None:
     meshes = read_colored_meshes(KINECT.read_bytes())
     assert meshes is not None
     assert {mesh.color for mesh in meshes} >= {(0.055, 0.055, 0.062), (0.11, 0.11, 0.12), (0.2, 0.012, 0.02)}
@@ -65,17 +65,17 @@ def test_unusual_files_are_left_to_trimesh(change: tuple[bytes, bytes]) -> None:
     assert read_colored_meshes(data.replace(*change)) is None
 
 
-def test_the_colour_of_the_file_precedes_that_of_the_description() -> None:
+def test_the_color_of_the_file_precedes_that_of_the_description() -> None:
     from linkwright.geometry.mesh_parts import FileMaterial
 
     blue = FileMaterial((0.0, 0.0, 1.0))
-    assert surface_color(blue, (1.0, 0.0, 0.0), is_textured=False, is_grey=True) == (0.0, 0.0, 1.0)
-    assert surface_color(None, (0.0, 1.0, 0.0), is_textured=False, is_grey=True) == (0.0, 1.0, 0.0)
-    assert surface_color(None, None, is_textured=False, is_grey=False) == DEFAULT_COLOR
-    assert surface_color(None, None, is_textured=False, is_grey=True) == (0.6, 0.6, 0.6)
+    assert surface_color(blue, (1.0, 0.0, 0.0), is_textured=False, is_gray=True) == (0.0, 0.0, 1.0)
+    assert surface_color(None, (0.0, 1.0, 0.0), is_textured=False, is_gray=True) == (0.0, 1.0, 0.0)
+    assert surface_color(None, None, is_textured=False, is_gray=False) == DEFAULT_COLOR
+    assert surface_color(None, None, is_textured=False, is_gray=True) == (0.6, 0.6, 0.6)
 
 
-def test_a_mesh_takes_the_colour_and_the_scale_of_the_description(tmp_path: Path) -> None:
+def test_a_mesh_takes_the_color_and_the_scale_of_the_description(tmp_path: Path) -> None:
     mesh = f'<mesh filename="{stl(tmp_path).as_uri()}" scale="1 2 0.5"/>'
     text = urdf(link("base", mesh, "0.1 0.8 0.1 1"))
     assert mostly(image(text)[50, 60]) == "green"
@@ -115,7 +115,7 @@ def test_what_cannot_be_read_is_one_error(name: str, tmp_path: Path) -> None:
 
 
 @pytest.mark.extra("mesh")
-def test_meshes_are_as_large_and_as_coloured_as_the_page_draws_them(tmp_path: Path) -> None:
+def test_meshes_are_as_large_and_as_colored_as_the_page_draws_them(tmp_path: Path) -> None:
     shown = scene(robot_of(golden_links(tmp_path)))
     assert shown.problems == ()
     drawn = {body.name: surface for body, surface in zip(shown.mesh.bodies, shown.mesh.surfaces, strict=True)}

@@ -163,8 +163,8 @@ def test_a_grid_is_drawn_on_the_ground_only_when_asked() -> None:
 @pytest.mark.parametrize("labels", ["links", "joints"])
 def test_labels_are_dark_letters_in_light_areas(labels: str) -> None:
     text = urdf(link("base", BOX, RED), link("other", BOX, RED), joint("shoulder", "base", "other", xyz="0 1 0"))
-    plain, labelled = image(text, size=(320, 240)), image(text, size=(320, 240), labels=labels)
-    changed = labelled[np.abs(plain.astype(int) - labelled).max(axis=2) > 30][:, :3]
+    plain, labeled = image(text, size=(320, 240)), image(text, size=(320, 240), labels=labels)
+    changed = labeled[np.abs(plain.astype(int) - labeled).max(axis=2) > 30][:, :3]
     assert (changed.max(axis=1) < 60).sum() > 10
     assert (changed.min(axis=1) > 200).sum() > 10
 

@@ -57,7 +57,7 @@ def test_shapes_are_where_the_file_puts_them(shape: str, extent: tuple[float, ..
     np.testing.assert_allclose(points.min(axis=0), np.negative(extent), atol=1e-8)
 
 
-def test_colour_and_transparency_are_those_of_the_visual(tmp_path: Path) -> None:
+def test_color_and_transparency_are_those_of_the_visual(tmp_path: Path) -> None:
     material = "<material><diffuse>0.2 0.4 0.6 0.5</diffuse></material><transparency>0.5</transparency>"
     scene = written(tmp_path, f"<geometry><sphere><radius>1</radius></sphere></geometry>{material}")
     (surface,) = scene.mesh.surfaces

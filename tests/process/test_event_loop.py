@@ -1,4 +1,4 @@
-"""Coroutines and Ctrl-C, with the same behaviour on every Python."""
+"""Coroutines and Ctrl-C, with the same behavior on every Python."""
 
 from __future__ import annotations
 

@@ -110,7 +110,7 @@ def test_optical_frames_look_along_the_sensors_x_axis() -> None:
 
 
 def height(robot: Robot, link: str) -> float:
-    """How high a link's frame is above the footprint, in metres; the model's fixed joints are not turned."""
+    """How high a link's frame is above the footprint, in meters; the model's fixed joints are not turned."""
     by_child = {joint.child: joint for joint in robot.joints.values()}
     above = 0.0
     while link in by_child:
@@ -120,7 +120,7 @@ def height(robot: Robot, link: str) -> float:
 
 
 def extents(robot: Robot) -> dict[str, tuple[float, float]]:
-    """The lowest and the highest point of each link's collision above the ground, in metres."""
+    """The lowest and the highest point of each link's collision above the ground, in meters."""
     found = {}
     for link in robot.links.values():
         for collision in link.collisions:

@@ -23,7 +23,7 @@ MODELS = sorted((GAZEBO_PACKAGE / "models").iterdir())
 LAUNCH_FILES = sorted((GAZEBO_PACKAGE / "launch").glob("*.launch.py"))
 ROBOT_HEIGHT = 0.4
 START_RADIUS = 0.3
-"""What has to be free around the origin, in metres; mbot's own radius is 0.2."""
+"""What has to be free around the origin, in meters; mbot's own radius is 0.2."""
 
 
 @pytest.fixture(scope="module")
@@ -76,7 +76,7 @@ def test_the_robot_has_room_where_it_starts(path: Path) -> None:
 
 
 def solid_boxes(path: Path) -> Iterator[tuple[str, float, float, float, tuple[float, ...]]]:
-    """The boxes of a world that the robot can run into: name, x, y, yaw and size, metres and radians."""
+    """The boxes of a world that the robot can run into: name, x, y, yaw and size, meters and radians."""
     for model in ET.parse(path).getroot().iter("model"):
         for collision in model.iter("collision"):
             text = collision.findtext("geometry/box/size")

@@ -15,7 +15,7 @@ from tests.repository_tools import load_tool
 
 MESH = PACKAGE / "meshes" / "kinect.dae"
 COLLADA = {"c": "http://www.collada.org/2005/11/COLLADASchema"}
-PARTS = ["body", "foot", "emitter", "colour_lens", "depth_lens", "led"]
+PARTS = ["body", "foot", "emitter", "color_lens", "depth_lens", "led"]
 
 
 @pytest.fixture(scope="module")
@@ -130,6 +130,6 @@ def test_size_and_place(geometries: dict[str, Geometry]) -> None:
 
 def test_the_lenses_look_along_minus_y(geometries: dict[str, Geometry]) -> None:
     body = geometries["body"].mesh.bounds
-    for name in ("emitter", "colour_lens", "depth_lens", "led"):
+    for name in ("emitter", "color_lens", "depth_lens", "led"):
         bounds = geometries[name].mesh.bounds
         assert bounds[0][1] < body[0][1] < bounds[1][1], "stands out of the body's front and begins inside it"

@@ -76,7 +76,7 @@ def test_wheels_stand_on_the_ground_where_the_casters_do(name: str) -> None:
     assert robot.joints["front_caster_joint"].origin.xyz[2] - caster.radius == pytest.approx(ground)  # type: ignore[union-attr]
 
 
-def test_the_upper_deck_is_centred_0_32_m_above_base_link() -> None:
+def test_the_upper_deck_is_centered_0_32_m_above_base_link() -> None:
     robot = load_model("mbot_base.xacro")
     joint = robot.joints["base_link_to_upper"]
     plate = robot.links["base_link_upper"].visuals[0]
@@ -86,7 +86,7 @@ def test_the_upper_deck_is_centred_0_32_m_above_base_link() -> None:
 
 
 @pytest.mark.parametrize("name", LINKS)
-def test_every_visual_but_the_mesh_has_a_colour(name: str) -> None:
+def test_every_visual_but_the_mesh_has_a_color(name: str) -> None:
     for link in load_model(name).links.values():
         (visual,) = link.visuals
         colored = visual.material is not None and visual.material.rgba is not None
@@ -147,9 +147,9 @@ def _visuals(robot: Robot) -> dict[str, list[Any]]:
 
 
 def _visual(visual: Visual) -> list[Any]:
-    colour = list(visual.material.rgba) if visual.material and visual.material.rgba else None
+    color = list(visual.material.rgba) if visual.material and visual.material.rgba else None
     shape = type(visual.geometry).__name__
-    return [shape, *_numbers(visual.geometry), *visual.origin.xyz, *visual.origin.rpy, visual.material_name, colour]
+    return [shape, *_numbers(visual.geometry), *visual.origin.xyz, *visual.origin.rpy, visual.material_name, color]
 
 
 def _numbers(geometry: Any) -> list[Any]:

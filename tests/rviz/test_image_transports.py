@@ -32,7 +32,7 @@ from tests.viewer.packed_images import (
 from tests.viewer.scene import world
 
 CameraInfo = get_message("sensor_msgs/msg/CameraInfo")
-MILLIMETRES = np.array([[0, 1000, 1001], [65535, 0, 1]], np.uint16)
+MILLIMETERS = np.array([[0, 1000, 1001], [65535, 0, 1]], np.uint16)
 
 
 def decode_compressed(message, transport: str = "compressedDepth"):
@@ -68,14 +68,14 @@ def test_a_transport_has_a_topic_below_the_images(topic, hint, expected):
 
 @pytest.mark.parametrize("packing", ["png", "rvl"])
 def test_whole_depths_are_what_they_were(packing):
-    image = decode_compressed(depth_message(MILLIMETRES, packing))
+    image = decode_compressed(depth_message(MILLIMETERS, packing))
     assert (image.encoding, image.width, image.height, image.step) == ("16UC1", 3, 2, 6)
-    assert values(image, "<u2") == MILLIMETRES.tolist()
+    assert values(image, "<u2") == MILLIMETERS.tolist()
     assert image.header.frame_id == "base"
 
 
 @pytest.mark.parametrize("packing", ["png", "rvl"])
-def test_depths_in_metres_are_nearly_what_they_were(packing):
+def test_depths_in_meters_are_nearly_what_they_were(packing):
     meters = np.array([[0.5, 1.0, 4.0, 9.0], [np.nan, np.inf, 11.0, 2.0]])
     image = decode_compressed(depth_message(meters, packing))
     assert image.encoding == "32FC1"
@@ -87,22 +87,22 @@ def test_depths_in_metres_are_nearly_what_they_were(packing):
     "form", ["16UC1", "16UC1; compressedDepth", "mono16; compressedDepth png", "16UC1;compressedDepth"]
 )
 def test_formats_of_older_publishers_are_read(form):
-    assert values(decode_compressed(packed(form, header() + png(MILLIMETRES))), "<u2") == MILLIMETRES.tolist()
+    assert values(decode_compressed(packed(form, header() + png(MILLIMETERS))), "<u2") == MILLIMETERS.tolist()
 
 
-def test_colours_and_greys_come_out_of_files():
+def test_colors_and_grays_come_out_of_files():
     image = decode_compressed(packed("rgb8; jpeg compressed bgr8", jpeg((200, 100, 50), 16, 8)), "compressed")
     assert (image.encoding, image.width, image.height) == ("rgb8", 16, 8)
     assert np.allclose(image.data.reshape(-1, 3), [200, 100, 50], atol=3)
     image = decode_compressed(packed("mono8; jpeg compressed ", jpeg(90, 4, 4)), "compressed")
     assert (image.encoding, image.data.tolist()) == ("mono8", [90] * 16)
-    image = decode_compressed(packed("png", png(MILLIMETRES)), "compressed")
-    assert (image.encoding, values(image, "<u2")) == ("mono16", MILLIMETRES.tolist())
+    image = decode_compressed(packed("png", png(MILLIMETERS)), "compressed")
+    assert (image.encoding, values(image, "<u2")) == ("mono16", MILLIMETERS.tolist())
 
 
 def test_depths_may_come_as_files_too():
-    image = decode_compressed(packed("16UC1; png compressed ", png(MILLIMETRES)), "compressed")
-    assert (image.encoding, values(image, "<u2")) == ("16UC1", MILLIMETRES.tolist())
+    image = decode_compressed(packed("16UC1; png compressed ", png(MILLIMETERS)), "compressed")
+    assert (image.encoding, values(image, "<u2")) == ("16UC1", MILLIMETERS.tolist())
     image = decode_compressed(packed("16UC1; jpeg compressed mono8", jpeg(4, 1, 1)), "compressed")
     assert (image.encoding, values(image, "<u2")) == ("16UC1", [[1024]])
 
@@ -121,43 +121,43 @@ def test_no_bytes_upset_the_reader_of_rvl_streams(data, pixels):
 @pytest.mark.parametrize(
     ("form", "data", "text"),
     [
-        ("jpeg", header() + png(MILLIMETRES), "The format of the depth image is 'jpeg'; supported are 16UC1"),
-        ("16UC1; compressedDepth zip", header() + png(MILLIMETRES), "supported are 16UC1, mono16 and 32FC1"),
-        ("8UC1; compressedDepth png", header() + png(MILLIMETRES), "The format of the depth image is '8UC1;"),
+        ("jpeg", header() + png(MILLIMETERS), "The format of the depth image is 'jpeg'; supported are 16UC1"),
+        ("16UC1; compressedDepth zip", header() + png(MILLIMETERS), "supported are 16UC1, mono16 and 32FC1"),
+        ("8UC1; compressedDepth png", header() + png(MILLIMETERS), "The format of the depth image is '8UC1;"),
         ("16UC1; compressedDepth png", header()[:7], "has 7 bytes, so it has no data after its header"),
         ("16UC1; compressedDepth png", header() + b"depths", "neither a PNG nor a JPEG"),
-        ("16UC1; compressedDepth png", header() + png(MILLIMETRES)[:50], "The PNG cannot be read: "),
-        ("16UC1; compressedDepth png", header() + png(MILLIMETRES)[:20], "The PNG cannot be read: "),
+        ("16UC1; compressedDepth png", header() + png(MILLIMETERS)[:50], "The PNG cannot be read: "),
+        ("16UC1; compressedDepth png", header() + png(MILLIMETERS)[:20], "The PNG cannot be read: "),
         (
             "16UC1; compressedDepth png",
-            header() + png(MILLIMETRES, says=(60000, 60000)),
+            header() + png(MILLIMETERS, says=(60000, 60000)),
             "The PNG has 60000 x 60000 pixels; at most 16777216 are supported",
         ),
         (
             "16UC1; compressedDepth png",
-            header() + png(MILLIMETRES.astype(np.uint8)),
+            header() + png(MILLIMETERS.astype(np.uint8)),
             "not a PNG of 16 bits and one channel",
         ),
-        ("32FC1; compressedDepth png", header(0.0, 1.0) + png(MILLIMETRES), "has an invalid scale of the depths: 0, 1"),
+        ("32FC1; compressedDepth png", header(0.0, 1.0) + png(MILLIMETERS), "has an invalid scale of the depths: 0, 1"),
         (
             "32FC1; compressedDepth png",
-            header(np.nan, 1.0) + png(MILLIMETRES),
+            header(np.nan, 1.0) + png(MILLIMETERS),
             "has an invalid scale of the depths: nan, 1",
         ),
         ("16UC1; compressedDepth rvl", header() + b"1234567", "is too short to contain its size"),
         (
             "16UC1; compressedDepth rvl",
-            header() + sized_rvl(MILLIMETRES, says=(4_000_000_000, 4_000_000_000)),
+            header() + sized_rvl(MILLIMETERS, says=(4_000_000_000, 4_000_000_000)),
             "declares 4000000000 x 4000000000 pixels; 1 to 16777216 are supported",
         ),
-        ("16UC1; compressedDepth rvl", header() + sized_rvl(MILLIMETRES, says=(0, 7)), "declares 0 x 7"),
+        ("16UC1; compressedDepth rvl", header() + sized_rvl(MILLIMETERS, says=(0, 7)), "declares 0 x 7"),
         (
             "16UC1; compressedDepth rvl",
-            header() + sized_rvl(MILLIMETRES)[:-4],
+            header() + sized_rvl(MILLIMETERS)[:-4],
             "The RVL depth image of 3 x 2 pixels cannot be read: it ends",
         ),
-        ("16UC1; compressedDepth rvl", header() + sized_rvl(MILLIMETRES, says=(1, 2)), "pixels too many"),
-        ("16UC1; compressedDepth rvl", header() + sized_rvl(MILLIMETRES, says=(30, 20)), "empty run|pixels too early"),
+        ("16UC1; compressedDepth rvl", header() + sized_rvl(MILLIMETERS, says=(1, 2)), "pixels too many"),
+        ("16UC1; compressedDepth rvl", header() + sized_rvl(MILLIMETERS, says=(30, 20)), "empty run|pixels too early"),
         (
             "16UC1; compressedDepth rvl",
             header() + struct.pack("<II", 2, 2) + b"\xff" * 40 + bytes(4),
@@ -170,18 +170,18 @@ def test_what_is_wrong_with_a_depth_image_is_said(form, data, text):
         decode_compressed(packed(form, data))
 
 
-def test_what_is_wrong_with_a_colour_image_is_said():
+def test_what_is_wrong_with_a_color_image_is_said():
     for data, text in (
         (b"", "neither a PNG nor a JPEG"),
         (jpeg(9, 64, 64)[:100], "The JPEG cannot be read: "),
-        (png(MILLIMETRES, says=(1 << 30, 1 << 30)), r"The PNG has 1073741824 x 1073741824 pixels"),
+        (png(MILLIMETERS, says=(1 << 30, 1 << 30)), r"The PNG has 1073741824 x 1073741824 pixels"),
     ):
         with pytest.raises(BadImageError, match=text):
             decode_compressed(packed("rgb8; jpeg compressed bgr8", data), "compressed")
 
 
 def test_a_file_with_too_many_pixels_is_not_unpacked_to_be_made_smaller():
-    data = np.frombuffer(png(MILLIMETRES, says=(9000, 9000)), np.uint8)
+    data = np.frombuffer(png(MILLIMETERS, says=(9000, 9000)), np.uint8)
     frame = ImageFrame(0, 0, 0, 0, "file", data, None)
     assert ImageCompressor().compressed(frame, 10) is frame
 
@@ -256,7 +256,7 @@ async def test_a_depth_cloud_says_that_theora_is_not_read_until_another_transpor
         assert "Color Transport Hint" not in w.status("DepthCloud")
 
 
-async def test_an_image_display_shows_depths_as_greys():
+async def test_an_image_display_shows_depths_as_grays():
     async with world(images.config("Image", "/camera/depth/compressedDepth")) as w:
         display = w.display("Image")
         publisher = w.graph.create_node("camera").create_publisher(CompressedImage, "/camera/depth/compressedDepth", 5)
@@ -264,7 +264,7 @@ async def test_an_image_display_shows_depths_as_greys():
         await w.settle()
         (content,) = contents(display)
         fields = content.fields
-        assert (fields["encoding"], fields["width"], fields["height"]) == ("grey", 3, 1)
+        assert (fields["encoding"], fields["width"], fields["height"]) == ("gray", 3, 1)
         assert fields["data"].tolist() == [0, 127, 255]
         assert images.names(display) == {"Topic", "Normalize Range", "Median window"}
         display.set_property(("Normalize Range",), False)

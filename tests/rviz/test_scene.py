@@ -61,7 +61,7 @@ def test_poses_are_those_of_the_origin():
     assert shape.quaternion == pytest.approx([0, 0, math.sqrt(0.5), math.sqrt(0.5)])
 
 
-def test_colours_follow_the_materials():
+def test_colors_follow_the_materials():
     box = '<box size="1 1 1"/>'
     links, _ = built(
         robot(

@@ -11,7 +11,7 @@ from tests.places import REPOSITORY
 
 SAME = {"RGB", "RGB8", "RGBF32", "X", "XY", "XYZ", "XZ", "Y", "YZ", "Z", "compressed", "compressedDepth"}
 SAME |= {"costmap", "map", "raw", "theora"}
-"""What is called alike: axes, fields of messages, transports, and schemes of colours that ROS knows by these names."""
+"""What is called alike: axes, fields of messages, transports, and schemes of colors that ROS knows by these names."""
 
 OFFERED = """
 import gc, importlib, json, pkgutil

@@ -128,7 +128,7 @@ def test_addresses_of_meshes_stay_as_written():
     assert model.links[0].visuals[0].geometry == Mesh("package://p/m.dae", (1.0, 2.0, 3.0))
 
 
-def test_colours_are_as_gz_makes_them_and_those_of_gazebo_come_first():
+def test_colors_are_as_gz_makes_them_and_those_of_gazebo_come_first():
     visual = f'<visual>{BOX}<material name="m"><color rgba="0.4 0.8 1 0.5"/></material></visual>'
     material = converted(link("a", visual)).links[0].visuals[0].material
     assert material is not None
@@ -147,7 +147,7 @@ def test_a_material_of_gazebo_is_a_script():
     assert material.diffuse == (0, 0, 1, 1)
 
 
-def test_a_material_of_gazebo_comes_before_the_colour_of_the_visual():
+def test_a_material_of_gazebo_comes_before_the_color_of_the_visual():
     visual = f'<visual>{BOX}<material name="m"><color rgba="0.4 0.8 1 0.5"/></material></visual>'
     for name, diffuse in (("Gazebo/Red", (1, 0, 0, 1)), ("Mine/Red", (0.5, 1.0, 1.0, 0.5))):
         model = converted(link("a", visual) + f'<gazebo reference="a"><material>{name}</material></gazebo>')

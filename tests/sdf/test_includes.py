@@ -338,7 +338,7 @@ def test_a_model_is_found_from_every_folder_of_the_package_around_a_file(tmp_pat
     assert (None if isinstance(place, Missing) else place.relative_to(tmp_path).as_posix()) == found
 
 
-def test_a_misspelt_model_is_a_warning(tmp_path):
+def test_a_misspelled_model_is_a_warning(tmp_path):
     write(tmp_path, {"crate/model.sdf": BOX})
     finder = ResourceFinder(PackageFinder(start=tmp_path, environment={}), {"GZ_SIM_RESOURCE_PATH": str(tmp_path)})
     found = finder.file("model://craet", tmp_path)
@@ -346,7 +346,7 @@ def test_a_misspelt_model_is_a_warning(tmp_path):
     assert (found.severity.name, str(found.hint)) == ("WARNING", "did you mean 'crate'?")
 
 
-def test_a_misspelt_scheme_is_told_of(tmp_path):
+def test_a_misspelled_scheme_is_told_of(tmp_path):
     finder = ResourceFinder(PackageFinder(start=tmp_path, environment={}), {})
     found = finder.file("models://boat/meshes/hull.dae", tmp_path)
     assert isinstance(found, Missing)

@@ -57,7 +57,7 @@ def test_an_empty_element_is_read_as_its_class_is_by_default(rule: ElementRule):
     }
 
 
-def test_a_pose_is_in_metres_and_radians_and_may_be_in_degrees_or_a_quaternion():
+def test_a_pose_is_in_meters_and_radians_and_may_be_in_degrees_or_a_quaternion():
     assert model("<pose>1 2 3 0.1 0.2 0.3</pose>").pose == RawPose(Pose((1, 2, 3), (0.1, 0.2, 0.3)))
     turned = model('<pose degrees="true">0 0 0 90 0 -45</pose>').pose.pose
     assert turned.rpy == (radians(90), 0, radians(-45))
@@ -190,7 +190,7 @@ def test_a_joint():
     assert axis.mimic == AxisMimic("k", multiplier=2, reference=0.1)
 
 
-def test_the_pitch_of_a_screw_is_in_metres_for_each_turn_whichever_word_says_it():
+def test_the_pitch_of_a_screw_is_in_meters_for_each_turn_whichever_word_says_it():
     ends = "<parent>a</parent><child>b</child>"
     inside = '<link name="a"/><link name="b"/><joint name="j" type="screw">{}</joint>'
     new = model(inside.format(f"{ends}<screw_thread_pitch>.01</screw_thread_pitch>")).joints[0]

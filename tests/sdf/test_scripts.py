@@ -40,7 +40,7 @@ def script(name, *uris):
     return f"<script>{''.join(f'<uri>{each}</uri>' for each in uris)}<name>{name}</name></script>"
 
 
-def test_gazebos_own_materials_have_their_colours(tmp_path):
+def test_gazebos_own_materials_have_their_colors(tmp_path):
     material = material_of(tmp_path, script("Gazebo/Grey", "file://media/materials/scripts/gazebo.material"))
     assert (material.ambient, material.diffuse) == ((0.3, 0.3, 0.3, 1), (0.7, 0.7, 0.7, 1))
     assert material.script.name == "Gazebo/Grey"
@@ -49,7 +49,7 @@ def test_gazebos_own_materials_have_their_colours(tmp_path):
     assert glow.emissive == (0, 0, 1, 1)
 
 
-def test_colours_of_the_file_come_before_those_of_the_script(tmp_path):
+def test_colors_of_the_file_come_before_those_of_the_script(tmp_path):
     material = material_of(tmp_path, script("Gazebo/Grey") + "<ambient>1 0 0 1</ambient>")
     assert (material.ambient, material.diffuse) == ((1, 0, 0, 1), (0.7, 0.7, 0.7, 1))
 
@@ -60,7 +60,7 @@ def test_a_name_that_nobody_has_leaves_a_material_as_it_is(tmp_path):
     assert gazebo_look("Grey") is None
 
 
-def test_a_script_of_a_model_has_colours_and_an_image(tmp_path):
+def test_a_script_of_a_model_has_colors_and_an_image(tmp_path):
     write(tmp_path, {"box/materials/scripts/box.material": SCRIPT, "box/materials/textures/box.png": ""})
     uris = "file://box/materials/scripts", "file://box/materials/textures"
     material = material_of(tmp_path, script("Box/Child", *uris))
@@ -92,7 +92,7 @@ def test_an_image_that_is_not_there_and_a_folder_that_is_no_script(tmp_path):
     assert material.diffuse == (0.4, 0.5, 0.6, 0.7)
 
 
-def test_models_in_models_have_the_colours_too(tmp_path):
+def test_models_in_models_have_the_colors_too(tmp_path):
     inner = VISUAL.format(f"<material>{script('Gazebo/Red')}</material>")
     (tmp_path / "m.sdf").write_text(f'<sdf version="1.9"><model name="o">{inner}</model></sdf>')
     found = examine_world(tmp_path / "m.sdf", environment={"HOME": "/nowhere"})

@@ -47,7 +47,7 @@ async def test_velocities_in_the_frame_of_another_link(mistaken):
 
 
 @BOTH
-def test_the_colours_of_points(mistaken):
+def test_the_colors_of_points(mistaken):
     cloud = get_message("sensor_msgs/msg/PointCloud2")()
     fill_camera_cloud(cloud, np.zeros((1, 1, 3)), np.array([[[1, 2, 3]]], np.uint8), swap_red_blue=mistaken)
     assert list(bytes(cloud.data)[16:19]) == ([1, 2, 3] if mistaken else [3, 2, 1])

@@ -12,7 +12,7 @@ GRAVITY_PULLS = 1.0 * 9.81 * 0.5
 
 
 def arm(plugin: str, limit: str = "<lower>-2</lower><upper>2</upper>") -> str:
-    """An arm of 1 kg, level, that hangs on the world by a joint; its centre is 0.5 m before the joint."""
+    """An arm of 1 kg, level, that hangs on the world by a joint; its center is 0.5 m before the joint."""
     inertia = "<ixx>0.01</ixx><iyy>0.1</iyy><izz>0.1</izz>"
     return (
         '<model name="arm"><pose>0 0 2 0 0 0</pose><link name="link"><inertial><pose>0.5 0 0 0 0 0</pose>'

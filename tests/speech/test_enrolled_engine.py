@@ -10,7 +10,7 @@ import pytest
 from linkwright.diagnostics import LinkwrightError
 from linkwright.speech.engine import EngineOptions, make_engine
 from linkwright.speech.enrolled.engine import EnrolledEngine
-from linkwright.speech.enrolled.enrolment import enrol
+from linkwright.speech.enrolled.enrollment import enroll
 from linkwright.speech.enrolled.recognition import Guess
 from linkwright.speech.enrolled.words import Words
 from linkwright.speech.sound.samples import BLOCK, RATE
@@ -26,7 +26,7 @@ def words():
     for name, phones in WORDS.items():
         for number in range(3):
             assert (
-                enrol(found, name, say(phones, speed=0.95 + 0.05 * number, pitch=115 + 5 * number, seed=number)) == ()
+                enroll(found, name, say(phones, speed=0.95 + 0.05 * number, pitch=115 + 5 * number, seed=number)) == ()
             )
     return found
 
@@ -55,7 +55,7 @@ def finals(engine, samples):
 
 @pytest.mark.parametrize("name", WORDS)
 @pytest.mark.parametrize(("speed", "pitch", "level"), [(0.9, 122, 1000), (1.1, 117, 8000), (1.0, 120, 300)])
-def test_a_word_is_recognised_faster_slower_higher_lower_and_softer(engine, name, speed, pitch, level):
+def test_a_word_is_recognized_faster_slower_higher_lower_and_softer(engine, name, speed, pitch, level):
     samples = say(WORDS[name], speed=speed, pitch=pitch, level=level, silence=0.8, seed=9)
     (found,) = [one for one in heard(engine, samples) if one.final]
     assert found.text == name
@@ -65,7 +65,7 @@ def test_a_word_is_recognised_faster_slower_higher_lower_and_softer(engine, name
 
 
 @pytest.mark.parametrize("name", WORDS)
-def test_a_word_is_recognised_in_noise(engine, name):
+def test_a_word_is_recognized_in_noise(engine, name):
     samples = say(WORDS[name], speed=1.05, level=2000, noise=2000 / 10 ** (15 / 20), silence=0.8, seed=10)
     assert finals(engine, samples) == [name]
 
@@ -86,7 +86,7 @@ def heard_in_a_room(engine, phones, number):
     return finals(engine, in_a_room(samples, 8.0, number))
 
 
-def test_what_was_enrolled_close_is_recognised_two_metres_away_in_a_room(engine):
+def test_what_was_enrolled_close_is_recognized_two_meters_away_in_a_room(engine):
     result = [(name, heard_in_a_room(engine, WORDS[name], number)) for name in WORDS for number in range(3)]
     assert all(set(found) <= {name, ""} for name, found in result)
     assert sum(found == [name] for name, found in result) >= 13
@@ -98,7 +98,7 @@ def test_what_was_not_enrolled_is_no_command_in_a_room(engine, phones):
 
 
 def test_a_phrase_with_a_number_asks_for_more_confidence(words, tmp_path, monkeypatch):
-    phrases = ("stop", "two metres", "两米")
+    phrases = ("stop", "two meters", "两米")
     numbered = Words({name: words.takes("stop") for name in phrases})
     numbered.write(tmp_path / "words.json")
     engine = EnrolledEngine(EngineOptions(phrases, model=tmp_path / "words.json"))
@@ -115,7 +115,7 @@ def in_babble(phones, seed):
     return beside(samples, babble(len(samples) / RATE + 0.1, np.random.default_rng(seed)), 15.0, 2000.0)
 
 
-def test_words_are_recognised_while_others_talk(path):
+def test_words_are_recognized_while_others_talk(path):
     right = []
     for name in ("forward", "turn left", "turn right", "stop"):
         for seed in range(1, 4):

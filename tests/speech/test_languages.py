@@ -1,4 +1,4 @@
-"""What is written down by language covers the languages of the catalogue."""
+"""What is written down by language covers the languages of the catalog."""
 
 from __future__ import annotations
 

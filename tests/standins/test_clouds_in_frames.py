@@ -14,7 +14,7 @@ from tf_transformations import quaternion_from_euler
 
 @pytest.fixture
 def turned():
-    """One metre along x, and a quarter of a turn around z."""
+    """One meter along x, and a quarter of a turn around z."""
     made = TransformStamped(child_frame_id="lidar")
     made.header.frame_id = "base"
     made.transform.translation.x = 1.0

@@ -153,7 +153,7 @@ class TestCompressed:
         assert bytes(message.data[:2]) == b"\xff\xd8"
         assert BRIDGE.compressed_imgmsg_to_cv2(message, "rgb8")[8, 8].tolist() == pytest.approx([250, 0, 0], abs=4)
 
-    def test_grey(self):
+    def test_gray(self):
         message = BRIDGE.cv2_to_compressed_imgmsg(np.array([[1, 2], [3, 4]], np.uint8), "png")
         assert BRIDGE.compressed_imgmsg_to_cv2(message).tolist() == [[1, 2], [3, 4]]
         assert BRIDGE.compressed_imgmsg_to_cv2(message, "bgr8").shape == (2, 2, 3)

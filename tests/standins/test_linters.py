@@ -113,7 +113,7 @@ def test_headers_are_asked_for_once_the_skip_is_gone(package: Path) -> None:
     status, output = plain_pytest(package, "test/test_copyright.py")
     assert status == 1
     assert "second.py: could not find copyright notice" in output
-    assert "third.py: could not find a licence that is known" in output
+    assert "third.py: could not find a license that is known" in output
 
 
 @pytest.mark.parametrize("name", ["generated/AMENT_IGNORE", "_generated/x", ".generated/x"])

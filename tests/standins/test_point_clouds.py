@@ -46,7 +46,7 @@ def test_as_tuples_and_as_a_matrix(cloud):
     assert matrix.tolist() == [[1, 3], [4, 6], [7, 9], [10, 12]]
 
 
-def test_from_a_matrix_and_organised():
+def test_from_a_matrix_and_organized():
     matrix = np.arange(18, dtype=np.float32).reshape(3, 2, 3)
     cloud = point_cloud2.create_cloud_xyz32(Header(), matrix)
     assert (cloud.width, cloud.height) == (3, 2)

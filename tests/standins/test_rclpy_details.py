@@ -184,7 +184,7 @@ class TestTime:
             assert messages[0].expected_call_time.clock_type == timer.clock.clock_type
         assert timer not in node.timers
 
-    def test_sleep_needs_a_context_that_is_initialised(self, node):
+    def test_sleep_needs_a_context_that_is_initialized(self, node):
         with pytest.raises(NotInitializedException):
             Clock().sleep_for(Duration(seconds=60), context=Context())
         clock = node.get_clock()

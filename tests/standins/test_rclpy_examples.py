@@ -297,7 +297,7 @@ class TestLittleThings:
         assert heard == ["yes", "all"]
         assert not subscription.is_cft_enabled
 
-    def test_a_context_may_be_initialised_by_its_block(self):
+    def test_a_context_may_be_initialized_by_its_block(self):
         with rclpy.context.Context() as context:
             assert context.ok()
             assert Node("other", context=context).context is context

@@ -488,7 +488,7 @@ class TestParameters:
 
     def test_from_the_constructor_and_the_command_line(self, ros):
         node = rclpy.create_node(
-            "parametrised",
+            "parametrized",
             namespace="/ns",
             parameter_overrides=[Parameter("mine", value=1)],
             cli_args=["--ros-args", "-p", "mine:=2", "-p", "theirs:=3", "-r", "__ns:=/other", "-r", "chatter:=news"],

@@ -44,7 +44,7 @@ def test_the_example_of_the_documentation_runs():
     assert results.failed == 0
 
 
-def test_mbot_drives_a_metre_and_its_odometry_says_so():
+def test_mbot_drives_a_meter_and_its_odometry_says_so():
     with SteppedSimulation("empty", MBOT) as test:
         odometry = test.record("/odom")
         test.drive(0.5)
@@ -104,7 +104,7 @@ def test_a_node_for_rclpy_drives_it_without_a_thread():
     from linkwright.standins.rclpy_api.node import Node
 
     class Keeper(Node):
-        """Drives on until odometry says half a metre, and looks at the clock."""
+        """Drives on until odometry says half a meter, and looks at the clock."""
 
         def __init__(self):
             super().__init__("keeper", parameter_overrides=[Parameter("use_sim_time", value=True)])

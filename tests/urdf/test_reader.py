@@ -150,14 +150,14 @@ class TestMaterials:
 
     @staticmethod
     def material(name, rgba=None):
-        colour = f'<color rgba="{" ".join(map(str, rgba))}"/>' if rgba else ""
-        return f'<material name="{name}">{colour}</material>'
+        color = f'<color rgba="{" ".join(map(str, rgba))}"/>' if rgba else ""
+        return f'<material name="{name}">{color}</material>'
 
     def link(self, name, material):
         return f'<link name="{name}"><visual>{BOX}{material}</visual></link>'
 
     @staticmethod
-    def colour(read_robot, link):
+    def color(read_robot, link):
         material = read_robot.links[link].visuals[0].material
         return material and material.rgba
 
@@ -166,32 +166,32 @@ class TestMaterials:
 
     def test_a_global_material_may_follow_its_use(self):
         read_robot = robot(self.link("a", self.material("m")), self.material("m", self.RED))
-        assert self.colour(read_robot, "a") == self.RED
+        assert self.color(read_robot, "a") == self.RED
 
-    def test_a_global_material_wins_over_the_visuals_own_colour(self):
+    def test_a_global_material_wins_over_the_visuals_own_color(self):
         read_robot = robot(self.material("m", self.RED), self.link("a", self.material("m", self.GREEN)))
-        assert self.colour(read_robot, "a") == self.RED
+        assert self.color(read_robot, "a") == self.RED
 
     def test_the_first_link_to_define_it_wins(self):
         read_robot = self.two(
             self.link("a", self.material("m", self.RED)), self.link("b", self.material("m", self.GREEN))
         )
-        assert self.colour(read_robot, "b") == self.RED
+        assert self.color(read_robot, "b") == self.RED
         assert list(read_robot.materials) == ["m"]
 
     def test_a_later_link_may_use_it(self):
         read_robot = self.two(self.link("a", self.material("m", self.RED)), self.link("b", self.material("m")))
-        assert self.colour(read_robot, "b") == self.RED
+        assert self.color(read_robot, "b") == self.RED
 
     def test_an_earlier_link_may_not(self):
         read_robot = self.two(self.link("a", self.material("m")), self.link("b", self.material("m", self.RED)))
-        assert self.colour(read_robot, "a") is None
+        assert self.color(read_robot, "a") is None
         assert read_robot.links["a"].visuals[0].material_name == "m"
 
     def test_a_material_without_a_name_is_its_visuals_own(self):
         read_robot = self.two(self.link("a", self.material("", self.RED)), self.link("b", self.material("")))
-        assert self.colour(read_robot, "a") == self.RED
-        assert self.colour(read_robot, "b") is None
+        assert self.color(read_robot, "a") == self.RED
+        assert self.color(read_robot, "b") is None
         assert read_robot.materials == {}
 
     def test_a_texture_is_a_definition(self):

@@ -113,7 +113,7 @@ def test_hints_never_fail(text):
         ("", "give a number"),
         ("1 2", "give one number"),
         ("90 deg", "angles are in radians: '1.5708'"),
-        ("5 mm", "lengths are in metres: '0.005'"),
+        ("5 mm", "lengths are in meters: '0.005'"),
         ("250g", "masses are in kilograms: '0.25'"),
         ("1e999", "only finite numbers are read"),
         ("foo", None),

@@ -10,7 +10,7 @@ import pytest
 
 from linkwright.loading import extensions
 from linkwright.rviz import RvizConfig
-from linkwright.rviz.displays import catalogue
+from linkwright.rviz.displays import catalog
 from tests.viewer.scene import page, world
 
 MODULE = """\
@@ -61,12 +61,12 @@ def brought(tmp_path, monkeypatch):
     (facts / "entry_points.txt").write_text(ENTRY_POINTS)
     monkeypatch.syspath_prepend(str(tmp_path))
     extensions._all_groups.cache_clear()
-    catalogue._display_class.cache_clear()
+    catalog._display_class.cache_clear()
     yield
     monkeypatch.undo()
     sys.modules.pop("brought_to_linkwright", None)
     extensions._all_groups.cache_clear()
-    catalogue._display_class.cache_clear()
+    catalog._display_class.cache_clear()
 
 
 def config_with(cls: str) -> RvizConfig:

@@ -53,7 +53,7 @@ def recorded(path: Path, lifts: Sequence[float], transforms: bool = False) -> Pa
 
 
 class Shown:
-    """A published recording, and the last positions of the links: x, y, z in the parent link, in metres."""
+    """A published recording, and the last positions of the links: x, y, z in the parent link, in meters."""
 
     def __init__(self, bag: BagReader) -> None:
         self.graph = Graph()

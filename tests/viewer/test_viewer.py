@@ -44,7 +44,7 @@ async def test_a_page_that_opens_gets_everything_in_order():
     whatever_is_shown = [
         "diagnostics",
         "joints",
-        "modelling_state",
+        "modeling_state",
         "recording_state",
         "simulation_status",
         "view_classes",

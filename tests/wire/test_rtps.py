@@ -50,7 +50,7 @@ def test_the_identity_of_a_reply_stands_under_both_parameters_of_fast_dds():
     assert inline == b"\x83\0\x18\0" + identity + b"\x0f\x80\x18\0" + identity + b"\1\0\0\0"
 
 
-def test_an_acknowledgement_names_what_is_missing():
+def test_an_acknowledgment_names_what_is_missing():
     packet = message(THEIRS, acknack(READER[12:], WRITER[12:], 40, [41, 72], 1), to=OURS)
     (parsed,) = parse(packet, OURS)
     assert parsed == AckNack(THEIRS, READER, WRITER[12:], 40, [41, 72], final=True)

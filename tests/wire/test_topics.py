@@ -42,7 +42,7 @@ def test_a_message_goes_from_process_to_process_once(processes):
 
 
 @both_wires
-def test_nothing_is_serialised_while_nobody_outside_listens(processes):
+def test_nothing_is_serialized_while_nobody_outside_listens(processes):
     a, b = processes("a"), processes("b")
     publisher = a.node.create_publisher(String, "chatter", 10)
     assert a.transport.wait_until_ready(60)

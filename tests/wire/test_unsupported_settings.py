@@ -86,7 +86,7 @@ def test_graphs_that_join_log_it(monkeypatch):
     assert text.startswith("warning[DDS123]: ROS_DISCOVERY_SERVER is set")
 
 
-def test_rclpy_does_not_initialise_where_security_is_enforced(monkeypatch):
+def test_rclpy_does_not_initialize_where_security_is_enforced(monkeypatch):
     for name, value in ENFORCED.items():
         monkeypatch.setenv(name, value)
     context = Context()

@@ -54,7 +54,7 @@ def test_arguments_do_not_leak(tmp_path: Path) -> None:
     assert 'v="1"' in str(expand(main))
 
 
-def test_an_argument_that_nothing_uses_is_probably_misspelt(tmp_path: Path) -> None:
+def test_an_argument_that_nothing_uses_is_probably_misspelled(tmp_path: Path) -> None:
     main = write(tmp_path, main='<xacro:arg name="radius" default="1"/><x v="$(arg given)"/>')
     (warning,) = expand(main, {"given": "1", "raduis": "2"}).diagnostics
     assert (warning.code, warning.hint) == ("XAC215", "did you mean 'radius'?")

@@ -87,7 +87,7 @@ def test_internal_entities_are_expanded() -> None:
     assert document.doctype == '<!DOCTYPE r [<!ENTITY e "v"><!ENTITY f "&e;&e;">]>'
 
 
-def test_line_ends_are_normalised_in_the_tree_only() -> None:
+def test_line_ends_are_normalized_in_the_tree_only() -> None:
     document = parse("<r>a\r\nb</r>", "x")
     assert document.root.text() == "a\nb"
     assert document.source is not None

@@ -6,8 +6,8 @@ export interface CameraModel {
   height: number;
   focal_x: number;
   focal_y: number;
-  centre_x: number;
-  centre_y: number;
+  center_x: number;
+  center_y: number;
   offset_x: number;
   offset_y: number;
 }
@@ -18,7 +18,7 @@ export interface ImageFrame {
   height: number;
   columns: number;
   rows: number;
-  encoding: "grey" | "rgb" | "rgba" | "file";
+  encoding: "gray" | "rgb" | "rgba" | "file";
   data: Uint8Array;
   camera: CameraModel | null;
   quality: number;

@@ -68,7 +68,7 @@ def _pillow_image(frame: ImageFrame) -> Any:
         if file.width * file.height > _MAX_PIXELS:
             raise ValueError("too many pixels")
         return file.convert("L" if file.mode in ("1", "L", "I;16") else "RGB")
-    channels = {"grey": (), "rgb": (3,), "rgba": (4,)}[frame.encoding]
+    channels = {"gray": (), "rgb": (3,), "rgba": (4,)}[frame.encoding]
     image = Image.fromarray(frame.data.reshape(frame.rows, frame.columns, *channels))
     return image.convert("RGB") if frame.encoding == "rgba" else image
 

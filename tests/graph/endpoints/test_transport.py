@@ -179,7 +179,7 @@ async def test_nothing_is_held_when_nobody_listens(graph):
     assert sent == []
 
 
-async def test_acknowledgements_are_waited_for(graph):
+async def test_acknowledgments_are_waited_for(graph):
     from linkwright.graph import Duration
 
     publisher = graph.create_node("node").create_publisher(String, "topic", LATCHED)

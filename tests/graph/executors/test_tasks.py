@@ -91,13 +91,13 @@ class TestByHand:
         assert not task.done()
         assert runs == []
 
-    def test_cancelling_after_the_end_does_nothing(self):
+    def test_canceling_after_the_end_does_nothing(self):
         task = Task(lambda: None)
         task()
         task.cancel()
         assert not task.cancelled()
 
-    def test_cancelling_closes_the_coroutine(self):
+    def test_canceling_closes_the_coroutine(self):
         closed = []
 
         async def work():

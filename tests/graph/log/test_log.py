@@ -58,7 +58,7 @@ def test_newer_tokens_of_the_format(monkeypatch):
     assert re.fullmatch(r"2023-11-1\d \d\d:\d\d:20\.123 \d+", console_line(RECORD))
 
 
-async def test_a_terminal_gets_colours_unless_it_asks_for_none(capsys, monkeypatch):
+async def test_a_terminal_gets_colors_unless_it_asks_for_none(capsys, monkeypatch):
     monkeypatch.setattr("sys.stderr.isatty", lambda: True, raising=False)
     monkeypatch.delenv("NO_COLOR", raising=False)
     graph = Graph(clock=JumpClock(0))

@@ -36,7 +36,7 @@ def test_an_exception_that_nobody_asks_for_is_told(capsys):
     assert capsys.readouterr().err == "The following exception was never retrieved: lost\n"
 
 
-def test_cancelling():
+def test_canceling():
     future, received = Future(), []
     future.add_done_callback(received.append)
     future.cancel()

@@ -137,7 +137,7 @@ class TestWithoutTheOption:
         assert "'zzz::Driver'" in done.err
         assert done.succeeded
 
-    async def test_what_is_misspelt_ends_the_launch(self, launch, write: Write) -> None:
+    async def test_what_is_misspelled_ends_the_launch(self, launch, write: Write) -> None:
         for wrong in (
             Node(package="robot_state_publishr", executable="robot_state_publisher"),
             Node(package="robot_state_publisher", executable="robot_state_publishr"),

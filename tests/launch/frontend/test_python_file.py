@@ -142,7 +142,7 @@ def test_messages_and_hints(write: Write, line: str, message: str, hint: str | N
 NODE = "from launch_ros.actions import Node\n"
 
 
-def test_a_misspelt_argument_of_a_node(write: Write) -> None:
+def test_a_misspelled_argument_of_a_node(write: Write) -> None:
     diagnostic = fault(write("a.launch.py", f"{NODE}Node(executable='a', paramters=[])\n"))
     assert diagnostic.hint == "did you mean 'parameters'?"
     diagnostic = fault(write("b.launch.py", f"{NODE}Node(exectuable='a')\n"))

@@ -81,12 +81,12 @@ def test_an_unset_launch_configuration_names_the_nearest_and_the_line(context: L
 
 
 def test_environment_variable(context: LaunchContext, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setenv("MBOT_COLOUR", "here")
-    assert text(EnvironmentVariable("MBOT_COLOUR"), context) == "here"
+    monkeypatch.setenv("MBOT_COLOR", "here")
+    assert text(EnvironmentVariable("MBOT_COLOR"), context) == "here"
     assert text(EnvironmentVariable("LINKWRIGHT_NONE", default_value="d"), context) == "d"
     with pytest.raises(LinkwrightError, match="environment variable 'MBOT_COLUOR' is not set") as caught:
         text(EnvironmentVariable("MBOT_COLUOR"), context)
-    assert caught.value.diagnostics[0].hint == "did you mean 'MBOT_COLOUR'?"
+    assert caught.value.diagnostics[0].hint == "did you mean 'MBOT_COLOR'?"
 
 
 def test_local_substitution(context: LaunchContext) -> None:

@@ -144,7 +144,7 @@ class TestSources:
         assert caught.value.diagnostics[0].message == "executable 'motion_control' of package 'p' is not available"
         assert is_unavailable(caught.value)
 
-    def test_a_name_that_is_nearly_that_of_another_program_is_misspelt(
+    def test_a_name_that_is_nearly_that_of_another_program_is_misspelled(
         self, write: Write, finder: PackageFinder
     ) -> None:
         write("ws/src/p/package.xml", "<package><name>p</name></package>")

@@ -29,7 +29,7 @@ class Remapping(NodeActionExtension):
 
 class Broken:
     def __init__(self) -> None:
-        raise RuntimeError("no licence")
+        raise RuntimeError("no license")
 
 
 @dataclass
@@ -83,7 +83,7 @@ async def test_one_that_cannot_be_loaded(launch, install, tmp_path: Path) -> Non
     install(broken=Broken)
     done = await launch(tell(tmp_path))
     assert not done.succeeded
-    assert "error[LAUNCH155]: the node extension 'broken' cannot be loaded: no licence" in done.err
+    assert "error[LAUNCH155]: the node extension 'broken' cannot be loaded: no license" in done.err
 
 
 async def test_without_any(launch, install, tmp_path: Path) -> None:

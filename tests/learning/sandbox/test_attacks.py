@@ -142,10 +142,10 @@ def test_temporary_folders_of_the_system_are_not_filled(situation: str, student:
 
 def test_what_would_harm_a_reader_is_deleted_after_the_run(situation: str, student: Path) -> None:
     (student / "data").write_text("mine")
-    (student.parent / "neighbour").mkdir()
+    (student.parent / "neighbor").mkdir()
     outcome = attack(situation, student, attacks.TRAPS)
     assert outcome.status == 0, outcome.stderr
-    assert outcome.removed == ("neighbour", "outside", "package/further", "pipe", "root")
+    assert outcome.removed == ("neighbor", "outside", "package/further", "pipe", "root")
     assert (student / "inside").is_symlink()
     assert (student / "closed" / "file").read_text() == ""
     assert (student / "program").stat().st_mode & 0o7777 == 0o777
@@ -153,7 +153,7 @@ def test_what_would_harm_a_reader_is_deleted_after_the_run(situation: str, stude
 
 
 def test_a_run_stays_in_its_sandbox(situation: str, student: Path) -> None:
-    neighbor = student.parent / "neighbour"
+    neighbor = student.parent / "neighbor"
     neighbor.mkdir(mode=0o777)
     (neighbor / "secret").write_text("secret")
     for path, mode in ((neighbor, 0o777), (neighbor / "secret", 0o666), (student.parent, 0o777)):
@@ -172,18 +172,18 @@ def test_a_run_stays_in_its_sandbox(situation: str, student: Path) -> None:
     assert done <= _possible(outcome.protections)
     if Protection.WRITE in outcome.protections:
         assert (neighbor / "secret").read_text() == "secret"
-        assert sorted(path.name for path in student.parent.iterdir()) == ["neighbour", "server", "student"]
+        assert sorted(path.name for path in student.parent.iterdir()) == ["neighbor", "server", "student"]
 
 
 def _possible(protections: frozenset[Protection]) -> set[str]:
     """What a program may do that the protections do not forbid."""
     possible = {"write above its folder"}  # which may be a folder of the sandbox
     if Protection.READ not in protections:
-        possible |= {"read a neighbour's file", "list a neighbour's folder", "read by /proc/self/root"}
+        possible |= {"read a neighbor's file", "list a neighbor's folder", "read by /proc/self/root"}
         possible |= {"read by the grader's root"}
     if Protection.WRITE not in protections:
-        possible |= {"write into a neighbour's folder", "change a neighbour's file", "truncate a neighbour's file"}
-        possible |= {"write into /var/tmp", "link a neighbour's file"}
+        possible |= {"write into a neighbor's folder", "change a neighbor's file", "truncate a neighbor's file"}
+        possible |= {"write into /var/tmp", "link a neighbor's file"}
     if Protection.PROCESSES not in protections:
         possible |= {"read the grader's environment", "open the grader's memory", "trace the grader"}
         possible |= {"trace its parent", "signal the grader"}

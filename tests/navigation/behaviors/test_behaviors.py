@@ -1,4 +1,4 @@
-"""Behaviours: how far they turn and drive, obstacles, and the time that is allowed."""
+"""Behaviors: how far they turn and drive, obstacles, and the time that is allowed."""
 
 from __future__ import annotations
 

@@ -40,7 +40,7 @@ def test_along_the_middle_of_a_zone_northing_is_the_meridian_shrunk(latitude):
     assert northing == pytest.approx(0.9996 * meridian_arc(latitude), abs=1e-5)
 
 
-def test_the_southern_half_counts_from_ten_thousand_kilometres():
+def test_the_southern_half_counts_from_ten_thousand_kilometers():
     _, north = utm_from_degrees(30.0, 10.0, UtmZone(32, True))
     _, south = utm_from_degrees(-30.0, 10.0, UtmZone(32, False))
     assert south == pytest.approx(10000000.0 - north)

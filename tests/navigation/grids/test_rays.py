@@ -87,7 +87,7 @@ def test_rays_are_counted_where_they_end_and_where_they_pass() -> None:
     assert passed.tolist() == [[3, 3, 3, 2, 2]]
 
 
-def test_distances_are_metres_to_the_nearest_marked_cell() -> None:
+def test_distances_are_meters_to_the_nearest_marked_cell() -> None:
     marked = np.zeros((3, 4), bool)
     assert np.isposinf(distance_field(marked, 0.1)).all()
     marked[0, 0] = True

@@ -89,7 +89,7 @@ def test_likelihoods_of_nothing_leave_all_alike() -> None:
     assert particles.weights == pytest.approx(1.0 / 2000)
 
 
-def test_a_pose_that_is_half_a_metre_wrong_is_put_right_while_driving() -> None:
+def test_a_pose_that_is_half_a_meter_wrong_is_put_right_while_driving() -> None:
     """In a room, scans exact, odometry too: off by 0.5 m and 0.3 rad at first."""
     likelihoods = room()
     particles = ParticleFilter(FilterSettings())

@@ -23,7 +23,7 @@ _QUIET = Noise(0.0, 0.0, 0.0, 0.0, 0.0)
 
 
 def room(yaw: float = 0.0) -> MapLikelihoods:
-    """A room of 6 by 4 metres with walls, its corner at (0, 0)."""
+    """A room of 6 by 4 meters with walls, its corner at (0, 0)."""
     cells = np.full((80, 120), FREE, np.int8)
     cells[[0, -1]] = cells[:, [0, -1]] = OCCUPIED
     return MapLikelihoods(Grid(cells=cells, resolution=0.05, yaw=yaw), LaserSettings())

@@ -53,7 +53,7 @@ def test_pixels_mean_what_they_mean_in_nav2(
     assert cells_of_image(_row(*pixels), _said(mode, negate=negate)).tolist() == [list(cells)]
 
 
-def test_opacity_is_a_fourth_colour_with_trinary_and_unknown_with_scale() -> None:
+def test_opacity_is_a_fourth_color_with_trinary_and_unknown_with_scale() -> None:
     image = MapImage(np.array([[0.0, 0.0, 1.0]]), np.array([[1.0, 0.0, 0.0]]))
     # (0 + 0 + 0 + 1) / 4 is a darkness of 0.75
     assert cells_of_image(image, _said(MapMode.TRINARY)).tolist() == [[100, 100, -1]]

@@ -72,7 +72,7 @@ class House:
         self.test.settle()
 
     def error(self) -> tuple[float, float]:
-        """How far, in metres and radians, the transforms have the robot from where it is."""
+        """How far, in meters and radians, the transforms have the robot from where it is."""
         true = self.test.robot_pose()
         found, _ = self.buffer.lookup("map", "base_footprint", 0)
         turn = rpy_from_quaternion(found[3:])[2] - rpy_from_quaternion(true[3:])[2]

@@ -1,4 +1,4 @@
-"""behavior_server: behaviours as actions, with obstacles, time and cancellation."""
+"""behavior_server: behaviors as actions, with obstacles, time and cancellation."""
 
 from __future__ import annotations
 

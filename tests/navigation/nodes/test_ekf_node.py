@@ -306,8 +306,10 @@ async def test_parameters_that_mean_nothing(test, parameters, text):
 
 async def test_parameters_of_sensors_that_are_not_there_are_named(test):
     start(test, odom0="wheels", odom0_config=config(X), odom0_diferential=True, odom2_config=config(X))
-    (misspelt,) = logged(test, "WARN")
-    assert misspelt.startswith("'odom0_diferential' is not a parameter of this node; did you mean 'odom0_differential'")
+    (misspelled,) = logged(test, "WARN")
+    assert misspelled.startswith(
+        "'odom0_diferential' is not a parameter of this node; did you mean 'odom0_differential'"
+    )
     assert "parameters that this node does not have are ignored: odom2_config" in logged(test, "INFO")
 
 

@@ -31,7 +31,7 @@ def test_the_walls_of_our_house_are_mapped_within_5_cm_and_the_loop_is_closed(mo
     monkeypatch.delenv("ROS_DISTRO", raising=False)
     walls, solid = faces(), faces(("walls", "furniture"))
     with simulation() as test:
-        drift = Drift(test, scale=1.03, yaw_per_metre=0.03, noise=0.05)
+        drift = Drift(test, scale=1.03, yaw_per_meter=0.03, noise=0.05)
         options = NodeOptions(parameters={"use_sim_time": True}, remappings=[("/tf", "/drifting_tf")])
         mapper = AsyncSlamToolbox(test.graph, options)
         transforms = test.record("/drifting_tf")
@@ -48,7 +48,7 @@ def test_the_walls_of_our_house_are_mapped_within_5_cm_and_the_loop_is_closed(mo
             if transform.header.frame_id == "map"
         ][-1]
         mapper.close()
-    # The loop: odometry ends a metre from where the robot is, and the map does not.
+    # The loop: odometry ends a meter from where the robot is, and the map does not.
     at, turned = correction.transform.translation, correction.transform.rotation
     yaw = rpy_from_quaternion((turned.x, turned.y, turned.z, turned.w))[2]
     assert np.hypot(*relative_pose(true, drift.pose)[:2]) > 0.8

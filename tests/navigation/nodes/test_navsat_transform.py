@@ -39,7 +39,7 @@ def turn(message, yaw):
 
 
 async def fix(test, east=0.0, north=0.0, altitude=200.0, frame="gps"):
-    """What a receiver says that is some metres away from where it began, on the grid."""
+    """What a receiver says that is some meters away from where it began, on the grid."""
     zone = zone_from_degrees(*HERE)
     x, y = utm_from_degrees(*HERE, zone)
     message = headed(test, "sensor_msgs/msg/NavSatFix", frame)

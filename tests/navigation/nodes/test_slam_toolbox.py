@@ -331,7 +331,7 @@ def test_a_file_that_is_no_graph_is_refused_with_a_reason(test, tmp_path):
     assert "match_type is not set" in errors[-1]
 
 
-def test_who_localises_without_a_map_is_told_so(test):
+def test_who_localizes_without_a_map_is_told_so(test):
     start(test, LocalizationSlamToolbox)
     Robot(test).go(PATH[:3], relative_pose(PATH[0], PATH[:3]))
     assert any("map_file_name" in line for line in logged(test, "ERROR"))
@@ -359,7 +359,7 @@ def test_in_jazzy_the_node_is_managed(test, monkeypatch):
     running.close()
 
 
-def test_what_a_file_has_that_changes_nothing_is_known_and_what_is_misspelt_is_told(test):
+def test_what_a_file_has_that_changes_nothing_is_known_and_what_is_misspelled_is_told(test):
     start(test, solver_plugin="solver_plugins::SpaSolver", ceres_loss_function="None", resolutoin=0.1, resolution=-1.0)
     assert any("solver_plugins::SpaSolver" in line for line in logged(test, "INFO"))
     warnings = logged(test, "WARN")

@@ -16,7 +16,7 @@ from tests.places import GAZEBO_PACKAGE
 
 ROBOT = 0.22
 WALLS = np.array((4.9, 3.9))
-"""Metres from the origin to the inner sides of the outer walls, along x and y."""
+"""Meters from the origin to the inner sides of the outer walls, along x and y."""
 PLACES = {
     "living room": (0.0, 0.0),
     "bedroom": (-1.9, 1.6),

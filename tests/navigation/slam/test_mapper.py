@@ -38,10 +38,10 @@ def furthest(errors):
     return float(np.hypot(errors[:, 0], errors[:, 1]).max())
 
 
-@pytest.mark.parametrize("yaw_per_metre", [0.0, 0.03, 0.08])
-def test_a_flat_is_mapped_whatever_odometry_says(yaw_per_metre):
+@pytest.mark.parametrize("yaw_per_meter", [0.0, 0.03, 0.08])
+def test_a_flat_is_mapped_whatever_odometry_says(yaw_per_meter):
     path = AROUND_IT
-    odometry = drifting(path, 1.03, yaw_per_metre, 0.02, np.random.default_rng(1))
+    odometry = drifting(path, 1.03, yaw_per_meter, 0.02, np.random.default_rng(1))
     mapper, outcomes, taken = mapped(house(), path, odometry)
     errors = relative_pose(taken, mapper.graph.poses)
     assert furthest(errors) < 0.02

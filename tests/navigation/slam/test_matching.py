@@ -33,7 +33,7 @@ def reference():
 @pytest.mark.parametrize(
     "away", [(0, 0, 0), (0.2, -0.2, 0.3), (-0.24, 0.1, -0.3), (0.05, 0.24, 0.1), (0.0, -0.1, -0.34)]
 )
-def test_a_scan_is_found_to_millimetres(reference, away):
+def test_a_scan_is_found_to_millimeters(reference, away):
     true = np.array([-1.8, -2.9, 0.4])
     scan = scan_at(WALLS, true, rng=np.random.default_rng(5))
     found = run_to_end(match_scan(reference, scan, true + away, Search()))
@@ -47,7 +47,7 @@ def test_a_scan_is_found_to_millimetres(reference, away):
     assert deviations.max() < 0.02
 
 
-def test_the_search_for_a_loop_finds_a_robot_that_is_metres_off(reference):
+def test_the_search_for_a_loop_finds_a_robot_that_is_meters_off(reference):
     true = np.array([-1.8, -2.9, 0.4])
     scan = scan_at(WALLS, true, rng=np.random.default_rng(6))
     found = run_to_end(match_scan(reference, scan, true + np.array([1.9, 1.2, -0.3]), EVERYWHERE))

@@ -25,7 +25,7 @@ def test_links_are_nodes_where_their_joints_put_them():
     assert extras == {"turn", "open", "open_too"}
 
 
-def test_shapes_have_their_size_and_colour():
+def test_shapes_have_their_size_and_color():
     drawn = {each.link: each for each in Glb(export_snapshot(snapshot(GRIPPER), "glb")).drawn}
     assert (drawn["base"].color, drawn["base"].opacity) == ("#0080ff", 0.75)
     np.testing.assert_allclose(drawn["base"].bounds, ((-0.5, -1, -0.25), (0.5, 1, 0.25)), atol=1e-6)
@@ -53,7 +53,7 @@ def test_every_triangle_faces_outwards():
         np.testing.assert_allclose(np.linalg.norm(normals, axis=1), 1, atol=1e-5)
 
 
-def test_meshes_are_as_large_and_as_coloured_as_the_page_draws_them(tmp_path):
+def test_meshes_are_as_large_and_as_colored_as_the_page_draws_them(tmp_path):
     drawn = {each.link: each for each in Glb(export_snapshot(snapshot(robot_of(golden_links(tmp_path))), "glb")).drawn}
     wrong = {}
     for name, (_, _, _, _, (least, most), color, opacity) in GOLDEN.items():

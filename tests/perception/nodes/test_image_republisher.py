@@ -57,7 +57,7 @@ async def test_raw_becomes_compressed_and_raw_again(test):
     assert back.last.header.frame_id == "camera"
 
 
-async def test_depths_in_metres_go_through(test):
+async def test_depths_in_meters_go_through(test):
     start(test, "raw", "compressedDepth")
     start(test, "compressedDepth", "raw", remappings=[("in", "/out"), ("out", "/back")])
     back = test.record("/back")
@@ -68,7 +68,7 @@ async def test_depths_in_metres_go_through(test):
     assert read_depths(back.last)[0] == pytest.approx([0.5, 1.0, 2.0, 5.0, np.nan, np.nan], rel=0.01, nan_ok=True)
 
 
-async def test_depths_in_millimetres_go_through_unchanged(test):
+async def test_depths_in_millimeters_go_through_unchanged(test):
     start(test, "raw", "compressedDepth")
     start(test, "compressedDepth", "raw", remappings=[("in", "/out"), ("out", "/back")])
     back = test.record("/back")

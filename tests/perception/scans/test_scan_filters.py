@@ -121,7 +121,7 @@ def test_a_sector_may_go_over_the_back():
 
 
 def turned(target, source, time_ns):
-    """The laser looks to the left of the body, half a metre ahead of its middle."""
+    """The laser looks to the left of the body, half a meter ahead of its middle."""
     assert (target, source, time_ns) == ("base_link", "laser", 5_000_000_000)
     return (0.5, 0.0, 0.3, *quaternion_from_rpy((0.0, 0.0, pi / 2)))
 

@@ -1,4 +1,4 @@
-"""Points of clouds, scans and depth images, and their colours."""
+"""Points of clouds, scans and depth images, and their colors."""
 
 from __future__ import annotations
 
@@ -129,7 +129,7 @@ def test_without_coordinates_in_float32_there_is_no_position_transformer(change)
         points_of_cloud(message)
 
 
-# --- colours ---------------------------------------------------------------------------------------------------------
+# --- colors ---------------------------------------------------------------------------------------------------------
 
 
 def test_the_rainbow_goes_from_red_to_magenta():
@@ -149,13 +149,13 @@ def test_the_bounds_are_computed_or_given():
     assert colored(points, ColorSettings(intensities=(0.0, 1.0)))[1] is None
 
 
-def test_two_colours_are_mixed():
+def test_two_colors_are_mixed():
     points = Points(np.zeros((3, 3), np.float32), {"intensity": np.array([0.0, 1.0, 2.0])})
     mixed = colors(points, rainbow=False, darkest=(0, 0, 100), brightest=(200, 0, 100))
     assert mixed == [(0, 0, 100, 255), (100, 0, 100, 255), (200, 0, 100, 255)]
 
 
-def test_equal_and_missing_intensities_colour_evenly():
+def test_equal_and_missing_intensities_color_evenly():
     points = Points(np.zeros((2, 3), np.float32), {"intensity": np.array([5.0, 5.0])})
     assert colors(points) == [RED, RED]
     assert colors(points, channel="other") == [(255, 255, 255, 255)] * 2
@@ -171,7 +171,7 @@ def test_intensities_that_are_no_numbers_do_not_count():
     assert [tuple(row) for row in found.tolist()] == [RED, RED, MAGENTA, MAGENTA]
 
 
-def test_axis_colour_looks_at_the_fixed_frame_or_at_the_clouds_own():
+def test_axis_color_looks_at_the_fixed_frame_or_at_the_clouds_own():
     points = Points(np.array([[0, 0, 0], [1, 0, 0]], np.float32))
     upright = np.array([0, 0, 10, 0, -math.sqrt(0.5), 0, math.sqrt(0.5)])  # x points up
     found, bounds = colored(points, ColorSettings("AxisColor"), upright)
@@ -181,7 +181,7 @@ def test_axis_colour_looks_at_the_fixed_frame_or_at_the_clouds_own():
     assert colors(points, upright, transformer="AxisColor", in_fixed_frame=False, axis=0) == [RED, MAGENTA]
 
 
-def test_packed_colours_are_unpacked():
+def test_packed_colors_are_unpacked():
     array = xyz([(0, 0, 0)], ("rgb", "f4"))
     array["rgb"] = np.array([0x40102030], "<u4").view("<f4")
     points = points_of_cloud(cloud(array))
@@ -192,7 +192,7 @@ def test_packed_colours_are_unpacked():
     assert colors(points_of_cloud(cloud(with_alpha)), transformer="RGB8") == [(0x10, 0x20, 0x30, 0x40)]
 
 
-def test_colours_of_floats_are_taken():
+def test_colors_of_floats_are_taken():
     array = xyz([(0, 0, 0)], ("r", "f4"), ("g", "f4"), ("b", "f4"))
     array["r"], array["g"], array["b"] = 1.0, 0.5, 7.0
     points = points_of_cloud(cloud(array))
@@ -289,13 +289,13 @@ def test_depths_become_points_along_the_cameras_rays():
     assert camera().pixel == 0.5
 
 
-def test_millimetres_become_metres_and_zero_is_no_depth():
+def test_millimeters_become_meters_and_zero_is_no_depth():
     points = DepthCloudBuilder().points(depth_image([[0, 1500]], "16UC1"), camera(), None)
     np.testing.assert_allclose(points.positions, [[0.75, 0, 1.5]])
     assert len(DepthCloudBuilder().points(depth_image([[math.nan, math.inf]]), camera(), None)) == 0
 
 
-def test_points_get_the_colours_of_the_image():
+def test_points_get_the_colors_of_the_image():
     color = DecodedImage(np.array([[[1, 2, 3], [4, 5, 6]]], np.uint8))
     points = DepthCloudBuilder().points(depth_image([[math.nan, 1.0]]), camera(), color)
     assert points.channels["rgb"].tolist() == [0x040506]
@@ -317,7 +317,7 @@ def test_images_that_do_not_fit_are_refused():
         DepthCamera.of(CameraInfo(width=2, height=1), 2, 1)
 
 
-def test_covered_points_stay_for_a_while_in_half_their_colour():
+def test_covered_points_stay_for_a_while_in_half_their_color():
     builder = DepthCloudBuilder()
     color = DecodedImage(np.full((1, 1, 3), 200, np.uint8))
     view = camera(1)
@@ -337,7 +337,7 @@ def test_covered_points_stay_for_a_while_in_half_their_colour():
 def test_each_ray_is_placed_where_the_scanner_was_when_it_was_sent():
     points = Points(np.array([[1, 0, 0]] * 3, np.float32), {"index": np.arange(3)})
     first = np.array([0.0, 0, 0, 0, 0, 0, 1])
-    last = np.array([2.0, 0, 0, 0, 0, 1, 0])  # two metres on, and half a turn
+    last = np.array([2.0, 0, 0, 0, 0, 1, 0])  # two meters on, and half a turn
     moved = deskew(points, np.array([0.0, 0.5, 1.0]), first, last).positions
     np.testing.assert_allclose(moved, [[1, 0, 0], [1, 1, 0], [1, 0, 0]], atol=1e-6)
 

@@ -40,7 +40,7 @@ def config(cls: str = "PointCloud2", **properties: str) -> RvizConfig:
     return RvizConfig.parse(FILE.format(cls=cls, extra=extra))
 
 
-def coloured_cloud(count: int = 2):
+def colored_cloud(count: int = 2):
     array = xyz([(i, 0, 0) for i in range(count)], ("intensity", "f4"), ("rgb", "u4"))
     array["intensity"], array["rgb"] = np.arange(count), 0x102030
     return cloud(array)
@@ -52,7 +52,7 @@ def shown(display) -> list[list[float]]:
 
 def colors(display) -> list[list[int]]:
     (content,) = contents(display)
-    return content.fields["colours"].reshape(-1, 4).tolist()
+    return content.fields["colors"].reshape(-1, 4).tolist()
 
 
 def store_rows(display) -> dict[str, dict]:
@@ -76,10 +76,10 @@ async def test_a_cloud_is_sent_with_the_pose_of_its_frame():
         }
 
 
-async def test_a_cloud_with_colours_is_shown_with_them():
+async def test_a_cloud_with_colors_is_shown_with_them():
     async with world(config()) as w:
         publisher = w.graph.create_node("lidar").create_publisher(PointCloud2, "/points", 5)
-        publisher.publish(coloured_cloud())
+        publisher.publish(colored_cloud())
         await w.settle()
         display = w.display("PointCloud2")
         assert display.properties.text("Color Transformer") == "RGB8"
@@ -115,10 +115,10 @@ async def test_rows_come_and_go_with_the_transformer():
         assert names.isdisjoint({"Channel Name", "Min Color", "Min Intensity"})
 
 
-async def test_another_colour_is_seen_without_another_message():
+async def test_another_color_is_seen_without_another_message():
     async with world(config(Color_Transformer="Intensity")) as w:
         publisher = w.graph.create_node("lidar").create_publisher(PointCloud2, "/points", 5)
-        publisher.publish(coloured_cloud())
+        publisher.publish(colored_cloud())
         await w.settle()
         display = w.display("PointCloud2")
         assert colors(display) == [[255, 0, 0, 255], [255, 0, 255, 255]]
@@ -131,7 +131,7 @@ async def test_another_colour_is_seen_without_another_message():
 async def test_bounds_that_were_computed_are_where_the_users_begin():
     async with world(config(Color_Transformer="Intensity")) as w:
         publisher = w.graph.create_node("lidar").create_publisher(PointCloud2, "/points", 5)
-        publisher.publish(coloured_cloud(6))
+        publisher.publish(colored_cloud(6))
         await w.settle()
         display = w.display("PointCloud2")
         display.set_property(("Autocompute Intensity Bounds",), False)
@@ -141,15 +141,15 @@ async def test_bounds_that_were_computed_are_where_the_users_begin():
 async def test_malformed_messages_are_said_and_what_was_shown_stays():
     async with world(config()) as w:
         publisher = w.graph.create_node("lidar").create_publisher(PointCloud2, "/points", 5)
-        publisher.publish(coloured_cloud())
-        broken = coloured_cloud()
+        publisher.publish(colored_cloud())
+        broken = colored_cloud()
         broken.width = 7
         publisher.publish(broken)
         await w.settle()
         level, text = w.status("PointCloud2")["Message"]
         assert (level, text[:20]) == ("error", "Data size (40 bytes)")
         assert len(shown(w.display("PointCloud2"))[0]) == 2
-        publisher.publish(coloured_cloud(3))
+        publisher.publish(colored_cloud(3))
         await w.settle()
         assert "Message" not in w.status("PointCloud2")
 
@@ -158,8 +158,8 @@ async def test_points_stay_for_the_decay_time():
     async with world(config(Decay_Time="0.3")) as w:
         publisher = w.graph.create_node("lidar").create_publisher(PointCloud2, "/points", 5)
         display = w.display("PointCloud2")
-        publisher.publish(coloured_cloud(1))
-        publisher.publish(coloured_cloud(2))
+        publisher.publish(colored_cloud(1))
+        publisher.publish(colored_cloud(2))
         await w.settle()
         assert [len(each) for each in shown(display)] == [1, 2]
         assert w.status("PointCloud2")["Points"][1].startswith("Showing [")
@@ -174,11 +174,11 @@ async def test_without_a_decay_time_the_newest_message_stays():
         publisher = w.graph.create_node("lidar").create_publisher(PointCloud2, "/points", 5)
         display = w.display("PointCloud2")
         for count in (1, 2, 3):
-            publisher.publish(coloured_cloud(count))
+            publisher.publish(colored_cloud(count))
         await w.settle()
         display.set_property(("Decay Time",), 0)
         assert [len(each) for each in shown(display)] == [3]
-        publisher.publish(coloured_cloud(4))
+        publisher.publish(colored_cloud(4))
         await w.settle()
         assert [len(each) for each in shown(display)] == [4]
 
@@ -187,7 +187,7 @@ async def test_a_page_learns_the_fields_of_a_point():
     async with world(config()) as w, page(w.viewer) as client:
         await client.opened()
         publisher = w.graph.create_node("lidar").create_publisher(PointCloud2, "/points", 5)
-        publisher.publish(coloured_cloud())
+        publisher.publish(colored_cloud())
         await w.settle()
         identity = w.display("PointCloud2").id
         await client.send("ask_point", display=identity, key="", index=7)
@@ -239,7 +239,7 @@ async def test_a_scan_of_which_no_ray_counts_says_why_but_for_a_wide_open_space(
 async def test_a_cloud_of_nothing_but_nan_says_so():
     async with world(config()) as w:
         publisher = w.graph.create_node("lidar").create_publisher(PointCloud2, "/points", 5)
-        message = coloured_cloud()
+        message = colored_cloud()
         message.data = b"\xff" * len(message.data)
         publisher.publish(message)
         await w.settle()
@@ -276,7 +276,7 @@ async def test_a_scanner_that_moves_draws_no_skewed_image():
         ("Temperature", "temperature", 100.0, [255, 0, 0, 255]),
     ],
 )
-async def test_a_number_is_a_coloured_point(cls, field, value, color):
+async def test_a_number_is_a_colored_point(cls, field, value, color):
     async with world(config(cls)) as w:
         message_type = get_message(f"sensor_msgs/msg/{cls}")
         publisher = w.graph.create_node("sensor").create_publisher(message_type, "/points", 5)
@@ -334,7 +334,7 @@ async def test_a_depth_image_is_a_cloud_once_its_camera_is_known():
         assert contents(display)[0].fields["pixel"] == 0.0
 
 
-async def test_a_depth_image_waits_for_its_colours():
+async def test_a_depth_image_waits_for_its_colors():
     topics = {"Depth_Map_Topic": "/depth/image", "Color_Image_Topic": "/color/image"}
     async with world(config("DepthCloud", **topics)) as w:
         node = w.graph.create_node("camera")

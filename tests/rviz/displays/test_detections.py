@@ -99,16 +99,16 @@ async def test_boxes_that_are_no_numbers_are_refused():
         assert "invalid floating point" in " ".join(text for _, text in w.status("BoundingBox3D").values())
 
 
-async def test_colours_of_classes_come_from_a_file(tmp_path):
-    path = tmp_path / "colours.yaml"
+async def test_colors_of_classes_come_from_a_file(tmp_path):
+    path = tmp_path / "colors.yaml"
     path.write_text("Ball: {r: 1, g: 2, b: 3}\n")
     fields = await shown("Detection3DArray", array(detection(result("ball", 1.0))), f", ConfigPath: {path}")
     assert fields["colors"].tolist() == [1, 2, 3]
 
 
 @pytest.mark.parametrize("text", ["- 1", "ball: red", "ball: {r: 1, g: 2}", "ball: {r: 256, g: 0, b: 0}", "{"])
-async def test_a_file_without_colours_is_told_of(tmp_path, text):
-    path = tmp_path / "colours.yaml"
+async def test_a_file_without_colors_is_told_of(tmp_path, text):
+    path = tmp_path / "colors.yaml"
     path.write_text(text)
     async with world(config(f"{PLUGINS}/Detection3DArray", f", ConfigPath: {path}")) as w:
         level, status = w.status("Detection3DArray")["ConfigPath"]
@@ -118,13 +118,13 @@ async def test_a_file_without_colours_is_told_of(tmp_path, text):
         read_class_colors(str(tmp_path / "none.yaml"))
 
 
-def test_a_class_has_the_same_colour_everywhere():
+def test_a_class_has_the_same_color_everywhere():
     assert class_color("ball", {}) == class_color("ball", {})
     assert class_color("Person", {}) == (0, 0, 255)
     assert len({class_color(name, {}) for name in ("ball", "crate", "cone", "can")}) > 2
 
 
-def test_a_class_named_for_a_colour_has_it_unless_the_file_says_another():
+def test_a_class_named_for_a_color_has_it_unless_the_file_says_another():
     assert class_color("red", {}) == class_color("Red_cube", {}) == RGB_BY_COLOR_WORD["red"]
     assert class_color("ball-gray", {}) == RGB_BY_COLOR_WORD["grey"]
     assert class_color("infrared lamp", {}) != RGB_BY_COLOR_WORD["red"]

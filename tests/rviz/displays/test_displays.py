@@ -6,7 +6,7 @@ import sys
 import pytest
 
 from linkwright.rviz import RvizConfig
-from linkwright.rviz.displays.catalogue import display_classes, has_display
+from linkwright.rviz.displays.catalog import display_classes, has_display
 from tests.viewer.scene import ARM, IDENTITY, page, rows_by_id, world
 
 

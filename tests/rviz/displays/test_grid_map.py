@@ -109,7 +109,7 @@ async def test_cells_without_a_number_are_not_there():
         assert content["colors"].reshape(-1, 4)[:, 3].tolist() == [255, 0, 255, 0]
 
 
-async def test_colours_of_a_rainbow_between_two_and_one_for_all():
+async def test_colors_of_a_rainbow_between_two_and_one_for_all():
     async with shown() as (w, say):
         content = await say(grid(elevation=[[0, 10]], other=[[5, 0]]))
         first, last = content["colors"].reshape(-1, 4)[:, :3].tolist()
@@ -135,7 +135,7 @@ async def test_colours_of_a_rainbow_between_two_and_one_for_all():
         assert contents(display)[-1].fields["filled"] is False
 
 
-async def test_a_layer_may_have_colours_in_it():
+async def test_a_layer_may_have_colors_in_it():
     packed = np.array([0x00FF8000, 0x000000FF], dtype=np.uint32).view(np.float32).tolist()
     async with shown(", Color Transformer: ColorLayer, Color Layer: color") as (_, say):
         content = await say(grid(elevation=[[0, 0]], color=[packed]))

@@ -61,7 +61,7 @@ async def test_an_image_is_sent():
         await w.settle()
         (content,) = contents(w.display("Image"))
         fields = content.fields
-        assert (fields["kind"], fields["encoding"], fields["width"], fields["height"]) == ("image_frame", "grey", 3, 1)
+        assert (fields["kind"], fields["encoding"], fields["width"], fields["height"]) == ("image_frame", "gray", 3, 1)
         assert fields["data"].tolist() == [1, 2, 3]
         assert fields["camera"] is None
         assert w.status("Image") == {"Topic": ("ok", "1 messages received")}
@@ -248,8 +248,8 @@ async def test_a_camera_waits_for_its_camera_info():
             "height": 2.0,
             "focal_x": 100.0,
             "focal_y": 50.0,
-            "centre_x": 2.0,
-            "centre_y": 1.0,
+            "center_x": 2.0,
+            "center_y": 1.0,
             "offset_x": 0.1,
             "offset_y": 0.0,
         }

@@ -198,7 +198,7 @@ def read(message: InteractiveMarker, transparent: bool = True):
     )
 
 
-def test_a_control_that_moves_along_an_axis_has_two_arrows_of_its_colour():
+def test_a_control_that_moves_along_an_axis_has_two_arrows_of_its_color():
     control = Control(name="x", interaction_mode=Control.MOVE_AXIS)
     (control,) = read(marker("one", control)).controls
     first, second = control.markers

@@ -16,7 +16,7 @@ _TEXT_OF = {"set_status_row": 2, "refuse": 0, "_refuse": 1, "StatusRow": 2}
 
 
 def _is_plain(text: ast.expr) -> bool:
-    """Whether the source has a text here that is no phrase; the catalogues are checked for phrases."""
+    """Whether the source has a text here that is no phrase; the catalogs are checked for phrases."""
     if isinstance(text, ast.IfExp):
         return _is_plain(text.body) or _is_plain(text.orelse)
     if isinstance(text, ast.BoolOp):
@@ -37,7 +37,7 @@ def _statuses(folder: Path) -> list[tuple[str, ast.expr]]:
     return found
 
 
-def test_every_status_is_a_phrase_and_so_in_the_catalogues():
+def test_every_status_is_a_phrase_and_so_in_the_catalogs():
     statuses = [status for room in ("displays", "frames", "visualization") for status in _statuses(RVIZ / room)]
     assert len(statuses) > 100
     assert [place for place, text in statuses if _is_plain(text)] == []

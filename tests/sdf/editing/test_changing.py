@@ -115,14 +115,14 @@ def test_what_is_no_size_is_refused(size):
         change(world_text(PLAIN), [Change("box", size=size)])
 
 
-def test_what_is_no_simple_shape_has_neither_size_nor_colour():
+def test_what_is_no_simple_shape_has_neither_size_nor_color():
     with pytest.raises(EditError, match="'ground_plane' cannot be resized"):
         change(world_text(PLAIN), [Change("ground_plane", size=(1, 1, 1))])
-    with pytest.raises(EditError, match="the colour of 'ground_plane' cannot be changed"):
+    with pytest.raises(EditError, match="the color of 'ground_plane' cannot be changed"):
         change(world_text(PLAIN), [Change("ground_plane", color=(1, 1, 1, 1))])
 
 
-def test_a_colour_takes_the_place_of_a_script():
+def test_a_color_takes_the_place_of_a_script():
     text = PLAIN.replace(
         "<material><ambient>0.9 0.4 0.1 1</ambient><diffuse>0.9 0.4 0.1 1</diffuse></material>",
         "<material><script><uri>file://media/gazebo.material</uri><name>Gazebo/Red</name></script></material>",

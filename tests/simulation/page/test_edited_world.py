@@ -10,7 +10,7 @@ import pytest
 from linkwright.packages import PackageFinder
 from linkwright.sdf.editing import Change, EditError, change
 from linkwright.sdf.resources import model_file
-from linkwright.simulation.page.modelling.edited_world import EditedWorld
+from linkwright.simulation.page.modeling.edited_world import EditedWorld
 from tests.sdf.editing.texts import PLAIN
 
 NOWHERE = PackageFinder(start=Path("/nonexistent"), environment={})

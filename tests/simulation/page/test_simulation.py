@@ -83,8 +83,8 @@ async def test_what_serves_a_simulation_is_made_when_its_topic_comes_or_a_page_a
         return {type(feature).__name__ for feature in viewer._features}
 
     async with world() as made, page(made.viewer) as client:
-        assert not (await client.opened())["modelling_state"]["available"]
-        needless = {"SimulationFeature", "ModellingFeature", "RecordingFeature", "ComparisonFeature", "PointsFeature"}
+        assert not (await client.opened())["modeling_state"]["available"]
+        needless = {"SimulationFeature", "ModelingFeature", "RecordingFeature", "ComparisonFeature", "PointsFeature"}
         assert not needless & kinds(made.viewer)
         Simulation(made).state.publish(STATE(state=1))
         await client.until("simulation_status", present=True)

@@ -1,4 +1,4 @@
-"""Pictures, whichever way they are made: colours, distances, and where in the picture things are."""
+"""Pictures, whichever way they are made: colors, distances, and where in the picture things are."""
 
 from __future__ import annotations
 
@@ -60,7 +60,7 @@ def test_walls_are_as_far_as_they_are(make):
     assert np.abs(depth[:, 100:] - 3.0).max() < 1e-3
 
 
-def test_distances_are_the_same_with_colours_and_without(make):
+def test_distances_are_the_same_with_colors_and_without(make):
     simulation = simulated(FLOOR, block("box", "2 0.5 0 0 0 0", "0.5 0.5 0.5", color="1 0 0 1"))
     renderer, optics, pose = make(simulation), optics_of(CAMERA), (0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0)
     both = renderer.render(optics, pose, Channels.DEPTH | Channels.COLOR)
@@ -110,7 +110,7 @@ def test_what_is_too_near_or_too_far_is_not_seen(make):
     assert (rendered.color == round(0.7 * 255)).all()
 
 
-def test_colours_are_those_of_the_things(make):
+def test_colors_are_those_of_the_things(make):
     simulation = simulated(
         block("left", "2 1 0 0 0 0", "0.1 1 1", color="1 0 0 1"),
         block("right", "2 -1 0 0 0 0", "0.1 1 1", color="0 1 0 1"),
@@ -142,7 +142,7 @@ def test_meshes_wear_the_images_of_their_materials(make, tmp_path, kind, request
     color = make(simulation).render(optics_of(CAMERA), IDENTITY, Channels.COLOR).color.astype(int)
     left, right = color[60, 60], color[60, 100]
     assert left[1] == right[1] == 0
-    if request.node.callspec.params["make"] in ("embree", "mujoco"):  # rays: one colour a shape
+    if request.node.callspec.params["make"] in ("embree", "mujoco"):  # rays: one color a shape
         assert left[0] == left[2] > 50
         return
     assert left[2] > 50
@@ -163,7 +163,7 @@ def test_an_image_that_is_not_there_is_told_once(tmp_path):
 
 
 QUARTERS = ((255, 0, 0), (0, 255, 0), (0, 0, 255), (255, 255, 0))
-"""The colours of an image: above left and right, below left and right."""
+"""The colors of an image: above left and right, below left and right."""
 WEARING = """<model name="thing"><static>true</static><pose>2 0 0 0 0 0</pose><link name="link"><visual name="v">
 <geometry>{shape}</geometry><material><pbr><metal><albedo_map>file://{image}</albedo_map></metal></pbr></material></visual></link></model>"""
 
@@ -188,7 +188,7 @@ def test_simple_shapes_wear_images(make, tmp_path, shape, distance, order, reque
     assert not simulation.scene.diagnostics
     rendered = make(simulation).render(optics_of(CAMERA), IDENTITY, Channels.COLOR | Channels.DEPTH)
     assert rendered.depth[60, 80] == pytest.approx(distance, abs=2e-3)
-    if request.node.callspec.params["make"] in ("embree", "mujoco"):  # rays: one colour a shape
+    if request.node.callspec.params["make"] in ("embree", "mujoco"):  # rays: one color a shape
         red, green, blue = rendered.color[60, 80].astype(int)
         assert red == green > 0
         assert blue == pytest.approx(red / 2, abs=2)
@@ -202,7 +202,7 @@ def test_simple_shapes_wear_images(make, tmp_path, shape, distance, order, reque
         assert corners == [known[each] for each in order]
 
 
-def test_a_box_whose_image_is_missing_has_its_own_colour_and_that_is_told(tmp_path):
+def test_a_box_whose_image_is_missing_has_its_own_color_and_that_is_told(tmp_path):
     simulation = simulated(WEARING.format(shape="<box><size>1 1 1</size></box>", image=tmp_path / "none.png"))
     assert [each.code for each in simulation.scene.diagnostics] == ["SIM112"]
     assert simulation.model.nmesh == 0

@@ -166,7 +166,7 @@ async def driven(robot: Robot, folder: Path) -> AsyncIterator[Drive]:
 
 
 @ALL
-async def test_five_metres_straight(robot, tmp_path):
+async def test_five_meters_straight(robot, tmp_path):
     async with driven(robot, tmp_path) as drive:
         await drive.drive(5.0, 1.0)
         await drive.advance(1.0)

@@ -49,7 +49,7 @@ def test_an_imu_that_falls_feels_nothing():
     assert imu(simulation, "box::link").measure().linear_acceleration == pytest.approx([0, 0, 0], abs=1e-9)
 
 
-def test_an_imu_in_a_turn_feels_the_acceleration_towards_the_centre():
+def test_an_imu_in_a_turn_feels_the_acceleration_towards_the_center():
     simulation = simulated(GROUND, mbot())
     motors = [simulation.add_velocity_motor(f"mbot::{side}_joint", 20.0, 5.0) for side in ("left", "right")]
     forwards, turning = 0.3, 0.5

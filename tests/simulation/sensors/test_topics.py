@@ -478,7 +478,7 @@ async def test_labels_are_seen_and_all_else_is_background():
         assert not pixels_of(colored)[0, 0].any()
 
 
-async def test_boxes_are_around_what_is_labelled():
+async def test_boxes_are_around_what_is_labeled():
     world = labeled("cup", "1.55 0.5 0 0 0 0", 7), labeled("ball", "1.55 -0.5 0 0 0 0", 9), WALL
     text = carrier(sensor("boundingbox_camera", f"<topic>boxes</topic>{EYE}"))
     async with served(*world, text) as (server, graph, _):
@@ -492,7 +492,7 @@ async def test_boxes_are_around_what_is_labelled():
         assert ((pixels_of(image) == (0, 255, 0)).all(axis=-1)).sum() > 20
 
 
-async def test_noise_on_colours_is_the_same_for_the_same_seed():
+async def test_noise_on_colors_is_the_same_for_the_same_seed():
     noise = "<noise><type>gaussian</type><mean>0</mean><stddev>0.02</stddev></noise>"
     text = carrier(sensor("camera", EYE.replace("</camera>", noise + "</camera>") + plugin("libgazebo_ros_camera.so")))
     seen = []

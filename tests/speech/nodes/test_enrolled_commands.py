@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from linkwright.speech.enrolled.enrolment import enrol
+from linkwright.speech.enrolled.enrollment import enroll
 from linkwright.speech.enrolled.words import Words
 from linkwright.speech.nodes.audio_messages import audio_stamped
 from linkwright.speech.sound.samples import BLOCK, RATE
@@ -23,7 +23,7 @@ def words_file(tmp_path_factory):
     for name, phones in WORDS.items():
         for number in range(3):
             samples = say(phones, speed=0.95 + 0.05 * number, pitch=115 + 5 * number, seed=number)
-            assert enrol(words, name, samples) == ()
+            assert enroll(words, name, samples) == ()
     path = tmp_path_factory.mktemp("voice") / "words.json"
     words.write(path)
     return path

@@ -86,17 +86,17 @@ def missed(presses, times):
     for _ in range(times):
         presses.begin()
         presses.record_unknown_speech(final(""))
-        answers.append("enrol" in str(presses.end()))
+        answers.append("enroll" in str(presses.end()))
     return answers
 
 
 def test_after_three_presses_without_a_command_enrolling_is_proposed():
-    assert missed(ButtonPresses(can_enrol=True), 7) == [False, False, True, False, False, True, False]
+    assert missed(ButtonPresses(can_enroll=True), 7) == [False, False, True, False, False, True, False]
     assert missed(ButtonPresses(), 6) == [False] * 6
 
 
 def test_a_command_between_them_begins_the_count_anew():
-    presses = ButtonPresses(can_enrol=True)
+    presses = ButtonPresses(can_enroll=True)
     missed(presses, 2)
     presses.begin()
     presses.record_command()
@@ -105,7 +105,7 @@ def test_a_command_between_them_begins_the_count_anew():
 
 
 def test_the_proposal_stands_until_the_next_press_or_command():
-    presses = ButtonPresses(can_enrol=True)
+    presses = ButtonPresses(can_enroll=True)
     missed(presses, 3)
     assert presses.proposes_enrolling
     presses.begin()

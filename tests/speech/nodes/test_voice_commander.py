@@ -71,7 +71,7 @@ async def test_nobody_says_anything_and_it_stops(stage, talk):
 
 
 def travelled(robot):
-    """Metres and radians that the velocities make, each for the 50 ms between them."""
+    """Meters and radians that the velocities make, each for the 50 ms between them."""
     return sum(velocity.linear.x for velocity in robot.velocities) * 0.05, sum(
         velocity.angular.z for velocity in robot.velocities
     ) * 0.05
@@ -80,7 +80,7 @@ def travelled(robot):
 @pytest.mark.parametrize(
     ("text", "distance", "angle"),
     [
-        ("drive forward half a metre", 0.5, 0.0),
+        ("drive forward half a meter", 0.5, 0.0),
         ("后退 一米", -1.0, 0.0),
         ("左转九十度", 0.0, pi / 2),
         ("转两圈", 0.0, 4 * pi),
@@ -124,7 +124,7 @@ async def test_who_is_stuck_stops_and_says_so(stage, talk):
     robot = talk()
     Slipping(stage, robot, part=0.0)
     await stage.clock.advance(0.1)
-    await robot.type("forward one metre")
+    await robot.type("forward one meter")
     await stage.clock.advance(30.0)
     assert robot.speed == (0.0, 0.0, 0.0)
     assert robot.said["response"][-1] == "I am stuck, so I am stopping"
@@ -138,7 +138,7 @@ async def test_faster_slower_and_a_speed(talk):
     await robot.type("slower")
     await robot.type("forward")
     assert robot.speed[0] == pytest.approx(0.2)
-    await robot.type("drive at half a metre per second")
+    await robot.type("drive at half a meter per second")
     await robot.type("forward")
     assert robot.speed[0] == pytest.approx(0.5)
     for _ in range(20):
@@ -288,10 +288,10 @@ async def test_after_a_stop_nothing_else_of_the_utterance_is_done(engine, talk):
 
 
 async def test_it_is_told_why_an_engine_hears_nothing(engine, talk, logged):
-    engine.trouble.append(Diagnostic("VOICE201", phrase("nothing is enrolled"), hint=phrase("enrol something")))
+    engine.trouble.append(Diagnostic("VOICE201", phrase("nothing is enrolled"), hint=phrase("enroll something")))
     robot = talk(engine="told")
     await eventually(lambda: logged("WARN"))
-    assert logged("WARN") == ["nothing is enrolled", "enrol something"]
+    assert logged("WARN") == ["nothing is enrolled", "enroll something"]
     assert not robot.running.finished.done()
 
 

@@ -1,4 +1,4 @@
-"""Words that pages enrol, in the user's file."""
+"""Words that pages enroll, in the user's file."""
 
 from __future__ import annotations
 

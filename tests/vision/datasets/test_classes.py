@@ -15,7 +15,7 @@ from tests.vision.datasets.places import yard
     [("ball", "ball"), ("red_ball", "ball"), ("ball_2", "ball"), ("Blue-Ball (3)", "ball"), ("box12", "box"),
      ("traffic_cone_clone_1", "traffic_cone"), ("red", "red"), ("7", "7"), ("stop_sign", "stop_sign")],
 )  # fmt: skip
-def test_a_class_is_a_name_without_numbers_and_colours(name, expected):
+def test_a_class_is_a_name_without_numbers_and_colors(name, expected):
     assert default_class(name) == expected
 
 

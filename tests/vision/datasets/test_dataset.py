@@ -66,7 +66,7 @@ def test_lights_and_background_of_the_world_are_kept_where_that_is_asked_for(tmp
             (str(path),),
             (),
             None,
-            replace(OPTIONS, distractors=0, form="png", fixed_properties=("colours", "lens", *kept)),
+            replace(OPTIONS, distractors=0, form="png", fixed_properties=("colors", "lens", *kept)),
         )
         studio = Studio(source)
         try:

@@ -312,9 +312,9 @@ def test_where_in_labels_the_mistake_is(tmp_path):
 
 def test_a_file_that_is_not_there_and_names_that_are_wrong(tmp_path):
     code, _, hint = refused(tmp_path / "no.onnx")
-    assert (code, "colours" in hint) == ("VISION102", True)
-    assert refused("colour")[2] == "did you mean 'colours'?"
-    assert set(detector_names()) >= {"apriltag", "aruco", "colours", "line", "qr"}
+    assert (code, "colors" in hint) == ("VISION102", True)
+    assert refused("color")[2] == "did you mean 'colors'?"
+    assert set(detector_names()) >= {"apriltag", "aruco", "colors", "line", "qr"}
 
 
 @pytest.mark.parametrize("ending", ["pt", "engine", "torchscript"])

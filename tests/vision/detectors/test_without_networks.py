@@ -1,4 +1,4 @@
-"""Colours, markers, codes and lines: found in drawn images."""
+"""Colors, markers, codes and lines: found in drawn images."""
 
 from __future__ import annotations
 
@@ -32,27 +32,27 @@ def names(found):
     return [found.name(index) for index in range(len(found))]
 
 
-def test_balls_and_boxes_of_different_colours():
+def test_balls_and_boxes_of_different_colors():
     image = blank()
     cv2.circle(image, (80, 100), 30, (200, 20, 30), cv2.FILLED)
     image[40:80, 200:260] = (20, 60, 200)
     image[150:152, 10:14] = (20, 200, 40)
-    found = detector("colours").detect(image, LIMITS)
+    found = detector("colors").detect(image, LIMITS)
     assert names(found) == ["blue", "red"]
     assert found.boxes[0].tolist() == [200, 40, 260, 80]
     assert found.boxes[1] == pytest.approx([50, 70, 111, 131], abs=1)
     assert found.scores == pytest.approx([1.0, 0.785], abs=0.05)
 
 
-def test_colours_of_ones_own_and_only_those_that_are_wanted():
+def test_colors_of_ones_own_and_only_those_that_are_wanted():
     image = blank()
     image[40:80, 200:260] = (20, 60, 200)
     image[40:80, 20:60] = (200, 20, 30)
-    own = detector("colours", colours={"sky": [100, 100, 50, 130, 255, 255], "rose": [170, 100, 50, 5, 255, 255]})
+    own = detector("colors", colors={"sky": [100, 100, 50, 130, 255, 255], "rose": [170, 100, 50, 5, 255, 255]})
     assert sorted(names(own.detect(image, LIMITS))) == ["rose", "sky"]
     assert names(own.detect(image, Limits(classes=frozenset({"sky"})))) == ["sky"]
     assert names(own.detect(image, Limits(max_detections=1))) == ["sky"]
-    assert len(detector("colours", least_area=1e6).detect(image, LIMITS)) == 0
+    assert len(detector("colors", least_area=1e6).detect(image, LIMITS)) == 0
 
 
 @pytest.mark.parametrize(
@@ -131,11 +131,11 @@ def test_a_line_on_the_floor():
     assert (left + right) / 2 == pytest.approx(200.5, abs=1)
     assert (top, bottom) == (180, 240)
     assert found.scores[0] == 1.0
-    whole = detector("line", part=1.0, colour=[0, 0, 100, 179, 60, 200]).detect(image, LIMITS)
+    whole = detector("line", part=1.0, color=[0, 0, 100, 179, 60, 200]).detect(image, LIMITS)
     assert whole.boxes[0][1] == 100
 
 
-@pytest.mark.parametrize("name", ["colours", "aruco", "apriltag", "qr", "line"])
+@pytest.mark.parametrize("name", ["colors", "aruco", "apriltag", "qr", "line"])
 @pytest.mark.parametrize("shape", [(240, 320), (1, 1), (3, 400), (0, 0)])
 def test_images_without_anything(name, shape):
     image = np.full((*shape, 3), 200, np.uint8)
@@ -145,13 +145,13 @@ def test_images_without_anything(name, shape):
 @pytest.mark.parametrize(
     ("name", "settings", "words"),
     [
-        ("colours", {"colours": {}}, "'colours'"),
-        ("colours", {"colours": {"red": [1, 2, 3]}}, "'colours.red'"),
-        ("colours", {"colours": {"red": [200, 0, 0, 10, 255, 255]}}, "'colours.red'"),
-        ("colours", {"least_area": "much"}, "'least_area'"),
+        ("colors", {"colors": {}}, "'colors'"),
+        ("colors", {"colors": {"red": [1, 2, 3]}}, "'colors.red'"),
+        ("colors", {"colors": {"red": [200, 0, 0, 10, 255, 255]}}, "'colors.red'"),
+        ("colors", {"least_area": "much"}, "'least_area'"),
         ("aruco", {"dictionary": "4X4_5"}, "'dictionary'"),
         ("line", {"part": 2.0}, "'part'"),
-        ("line", {"colour": "black"}, "'colour'"),
+        ("line", {"color": "black"}, "'color'"),
     ],
 )
 def test_settings_that_mean_nothing(name, settings, words):
@@ -182,7 +182,7 @@ def test_what_was_found_is_drawn_and_the_image_is_left_as_it_is():
     assert class_color("red") == class_color("red cube") == RGB_BY_COLOR_WORD["red"]
 
 
-WITHOUT = ("colours", "aruco", "apriltag", "qr", "line")
+WITHOUT = ("colors", "aruco", "apriltag", "qr", "line")
 
 
 @pytest.mark.parametrize("name", WITHOUT)

@@ -1,4 +1,4 @@
-"""detect_3d_node: boxes in images become boxes in metres."""
+"""detect_3d_node: boxes in images become boxes in meters."""
 
 from __future__ import annotations
 
@@ -26,7 +26,7 @@ def start(test, kind=Detect3DNode, **parameters):
     found = test.record("/detections_3d")
     markers = test.record("/markers")
     test.settle()
-    # A camera that looks forward, half a metre above the ground.
+    # A camera that looks forward, half a meter above the ground.
     batch = TransformBatch(("base_link",), ("camera",), 0, np.array([[0.1, 0.0, 0.5, -0.5, 0.5, -0.5, 0.5]]))
     test.publish("/tf_static", TFMessage(batch=batch), STATIC_TF_PUBLISHER_QOS)
     test.settle()

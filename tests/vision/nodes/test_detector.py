@@ -90,8 +90,8 @@ def classes(message):
 
 
 @pytest.mark.parametrize("encoding", ["rgb8", "bgr8"])
-async def test_detections_have_names_centres_sizes_and_the_header_of_the_image(test, start, encoding):
-    await start(model="colours")
+async def test_detections_have_names_centers_sizes_and_the_header_of_the_image(test, start, encoding):
+    await start(model="colors")
     recording = test.record("/yolo/detections")
     await test.settle()
     message = await seen(test, recording, "/yolo/image_raw", image(encoding))
@@ -105,7 +105,7 @@ async def test_detections_have_names_centres_sizes_and_the_header_of_the_image(t
 
 
 async def test_compressed_images(test, start):
-    await start(model="colours", input_image_topic="/camera/image_raw/compressed")
+    await start(model="colors", input_image_topic="/camera/image_raw/compressed")
     recording = test.record("/yolo/detections")
     await test.settle()
     message = await seen(test, recording, "/camera/image_raw/compressed", compressed())
@@ -123,7 +123,7 @@ async def test_a_network(test, start, tmp_path):
 
 
 async def test_the_image_with_boxes_is_made_when_somebody_wants_it(test, start):
-    await start(model="colours")
+    await start(model="colors")
     recording = test.record("/yolo/debug_image")
     await test.settle()
     message = await seen(test, recording, "/yolo/image_raw", image())
@@ -133,7 +133,7 @@ async def test_the_image_with_boxes_is_made_when_somebody_wants_it(test, start):
 
 
 async def test_images_are_taken_only_while_somebody_listens(test, start):
-    await start(model="colours")
+    await start(model="colors")
     await test.settle()
     assert test.graph.count_subscribers("/yolo/image_raw") == 0
     test.record("/yolo/detections")
@@ -142,7 +142,7 @@ async def test_images_are_taken_only_while_somebody_listens(test, start):
 
 
 async def test_limits_change_while_it_runs(test, start):
-    node = (await start(model="colours")).node
+    node = (await start(model="colors")).node
     recording = test.record("/yolo/detections")
     await test.settle()
     for name, value, expected in [
@@ -165,14 +165,14 @@ async def test_limits_change_while_it_runs(test, start):
     ],
 )
 async def test_values_that_cannot_be_are_refused(test, start, name, value, words):
-    node = (await start(model="colours")).node
+    node = (await start(model="colors")).node
     (result,) = node.set_parameters([Parameter(name, value=value)])
     assert not result.successful
     assert words in result.reason
 
 
 async def test_services_enable_and_set_classes(test, start):
-    await start(model="colours")
+    await start(model="colors")
     recording = test.record("/yolo/detections")
     await test.settle()
     switch, choose = get_service("std_srvs/srv/SetBool"), get_service("yolo_msgs/srv/SetClasses")
@@ -190,7 +190,7 @@ async def test_services_enable_and_set_classes(test, start):
 
 
 async def test_no_more_images_a_second_than_wanted(test, start):
-    await start(model="colours", max_rate=10.0)
+    await start(model="colors", max_rate=10.0)
     recording = test.record("/yolo/detections")
     await test.settle()
     await seen(test, recording, "/yolo/image_raw", image(seconds=1))
@@ -203,7 +203,7 @@ async def test_no_more_images_a_second_than_wanted(test, start):
 
 
 async def test_a_broken_image_is_told_of_and_the_next_one_looked_at(test, start):
-    await start(model="colours")
+    await start(model="colors")
     recording = test.record("/yolo/detections")
     await test.settle()
     broken = image()
@@ -214,15 +214,15 @@ async def test_a_broken_image_is_told_of_and_the_next_one_looked_at(test, start)
     assert classes(await seen(test, recording, "/yolo/image_raw", image())) == ["blue", "red"]
 
 
-async def test_colours_of_ones_own(test, start):
-    await start(model="colours", colours={"sky": [95, 110, 50, 130, 255, 255]}, least_area=10.0)
+async def test_colors_of_ones_own(test, start):
+    await start(model="colors", colors={"sky": [95, 110, 50, 130, 255, 255]}, least_area=10.0)
     recording = test.record("/yolo/detections")
     await test.settle()
     assert classes(await seen(test, recording, "/yolo/image_raw", image())) == ["sky"]
 
 
 async def test_as_yolo_ros_with_its_messages_and_its_older_topic(test, start):
-    await start(YoloRosNode, model="colours", remappings=[("image_raw", "/camera/rgb/image_raw")])
+    await start(YoloRosNode, model="colors", remappings=[("image_raw", "/camera/rgb/image_raw")])
     recording, debug_images = test.record("/yolo/detections"), test.record("/yolo/dbg_image")
     await test.settle()
     message = await seen(test, recording, "/camera/rgb/image_raw", image())
@@ -237,14 +237,14 @@ async def test_as_yolo_ros_with_its_messages_and_its_older_topic(test, start):
     [
         (
             Yolov5RosNode,
-            {"weights": "colours", "confidence_threshold": 0.5, "input_image_topic": "/image", "output_topic": "/out"},
+            {"weights": "colors", "confidence_threshold": 0.5, "input_image_topic": "/image", "output_topic": "/out"},
             "/image",
             "/out",
         ),
-        (Yolov5Ros2Node, {"model": "colours", "image_topic": "/camera/image_raw"}, "/camera/image_raw", "/yolo_result"),
+        (Yolov5Ros2Node, {"model": "colors", "image_topic": "/camera/image_raw"}, "/camera/image_raw", "/yolo_result"),
         (
             DarknetRosNode,
-            {"network": {"weights": "colours"}, "detection": {"threshold": 0.5, "nms_threshold": 0.4}},
+            {"network": {"weights": "colors"}, "detection": {"threshold": 0.5, "nms_threshold": 0.4}},
             "/detector_node/images",
             "/detector_node/detections",
         ),
@@ -261,11 +261,11 @@ async def test_as_other_packages_name_things(test, start, kind, parameters, topi
 @pytest.mark.parametrize(
     ("parameters", "code"),
     [
-        ({"model": "colours", "image_transport": "theora"}, "NODE433"),
-        ({"model": "colours", "image_reliability": 9}, "NODE433"),
-        ({"model": "colours", "max_det": 0}, "NODE433"),
-        ({"model": "colours", "threshold": 2.0}, "GRAPH204"),
-        ({"model": "colours", "max_rate": -5.0}, "GRAPH204"),
+        ({"model": "colors", "image_transport": "theora"}, "NODE433"),
+        ({"model": "colors", "image_reliability": 9}, "NODE433"),
+        ({"model": "colors", "max_det": 0}, "NODE433"),
+        ({"model": "colors", "threshold": 2.0}, "GRAPH204"),
+        ({"model": "colors", "max_rate": -5.0}, "GRAPH204"),
         ({"model": "things", "imgsz_height": -3, "imgsz_width": 320}, "GRAPH204"),
         ({"model": "things", "imgsz_width": 320}, "VISION109"),
     ],
@@ -283,7 +283,7 @@ async def test_parameters_that_it_cannot_start_with(test, start, parameters, cod
         ({"model": "yolov8n.pt"}, "'yolov8n.pt' is not an ONNX file"),
         ({"model": "aruco", "dictionary": "5X"}, "'dictionary' of the detector cannot be '5X'"),
         ({"model": "things", "device": "gpu"}, "'device' of the detector cannot be 'gpu'"),
-        ({"model": "colours", "classes": ["blu"]}, "parameter 'classes' of 'yolo_node' cannot be 'blu'"),
+        ({"model": "colors", "classes": ["blu"]}, "parameter 'classes' of 'yolo_node' cannot be 'blu'"),
     ],
 )
 async def test_detectors_that_cannot_be_loaded_end_the_node_with_one_error_and_what_to_do(
@@ -309,7 +309,7 @@ def warnings(test):
 
 
 async def test_a_topic_that_nobody_publishes_is_told_once_with_those_that_have_images(test, start, warnings):
-    await start(model="colours")
+    await start(model="colors")
     test.record("/yolo/detections")
     test.record("/yolo/debug_image")
     test.node.create_publisher(get_message(IMAGE), "/camera/image_raw", 1)
@@ -321,7 +321,7 @@ async def test_a_topic_that_nobody_publishes_is_told_once_with_those_that_have_i
 
 
 async def test_a_topic_of_another_type_is_told(test, start, warnings):
-    await start(DarknetRosNode, namespace="/", network={"weights": "colours"}, remappings=[("~/images", "/camera")])
+    await start(DarknetRosNode, namespace="/", network={"weights": "colors"}, remappings=[("~/images", "/camera")])
     test.record("/detector_node/detections")
     test.node.create_publisher(get_message(COMPRESSED), "/camera", 1)
     test.node.create_publisher(get_message(IMAGE), "/kinect/image_raw", 1)
@@ -333,7 +333,7 @@ async def test_a_topic_of_another_type_is_told(test, start, warnings):
 
 
 async def test_qos_that_does_not_fit_is_told(test, start, warnings):
-    await start(model="colours", image_reliability=1)
+    await start(model="colors", image_reliability=1)
     test.record("/yolo/detections")
     offered = QoSProfile(depth=1, reliability=ReliabilityPolicy.BEST_EFFORT)
     test.node.create_publisher(get_message(IMAGE), "/yolo/image_raw", offered)
@@ -348,7 +348,7 @@ async def test_qos_that_does_not_fit_is_told(test, start, warnings):
 
 
 async def test_a_camera_that_stops_and_goes_on_is_told_of_and_the_next_time_later(test, start, warnings):
-    await start(model="colours")
+    await start(model="colors")
     recording = test.record("/yolo/detections")
     await test.settle()
     stopped = "no image has arrived on '/yolo/image_raw' for {} s".format
@@ -367,7 +367,7 @@ async def test_a_camera_that_stops_and_goes_on_is_told_of_and_the_next_time_late
 
 
 async def test_where_nobody_wants_detections_nothing_is_missed(test, start, warnings):
-    await start(model="colours")
+    await start(model="colors")
     await test.advance(30.0)
     assert warnings() == []
 
@@ -396,7 +396,7 @@ def slow(monkeypatch):
 
 
 async def test_the_node_answers_while_its_detector_is_loaded(test, start, slow):
-    running = await start(model="colours", loads=False)
+    running = await start(model="colors", loads=False)
     recording = test.record("/yolo/detections")
     await eventually(slow.begun.is_set)
     switch = get_service("std_srvs/srv/SetBool")
@@ -414,7 +414,7 @@ async def test_the_node_answers_while_its_detector_is_loaded(test, start, slow):
 
 
 async def test_classes_that_are_chosen_while_the_detector_is_loaded_count_when_it_is_there(test, start, slow):
-    await start(model="colours", loads=False)
+    await start(model="colors", loads=False)
     recording = test.record("/yolo/detections")
     await eventually(slow.begun.is_set)
     choose = get_service("yolo_msgs/srv/SetClasses")
@@ -438,7 +438,7 @@ async def test_a_node_that_ends_while_its_detector_is_loaded_waits_for_it_and_sa
         raise LinkwrightError(Diagnostic("VISION102", phrase("gone")))
 
     monkeypatch.setattr(detector, "make_detector", load)
-    running = await start(model="colours", loads=False)
+    running = await start(model="colors", loads=False)
     await eventually(begun.is_set)
     running.close()
     await test.settle()

@@ -1,4 +1,4 @@
-"""Colours in words."""
+"""Colors in words."""
 
 from __future__ import annotations
 
@@ -24,7 +24,7 @@ SAMPLES = {
 
 
 @pytest.mark.parametrize("name", COLORS)
-def test_colours_have_the_names_that_people_give_them(name):
+def test_colors_have_the_names_that_people_give_them(name):
     pixels = np.array(SAMPLES[name], np.uint8)
     assert [COLORS[named_color] for named_color in classify_colors(pixels)] == [name] * len(pixels)
 
@@ -39,7 +39,7 @@ def disc(color, ground=(180, 180, 180), shade=1.0):
 
 
 @pytest.mark.parametrize("shade", [1.0, 0.4])
-def test_a_ball_with_a_shadow_on_grey_ground(shade):
+def test_a_ball_with_a_shadow_on_gray_ground(shade):
     assert object_color(*disc((200, 20, 20), shade=shade)) == "red"
     assert object_color(*disc((30, 60, 180), shade=shade)) == "blue"
 

@@ -76,14 +76,14 @@ def test_whether_this_is_it(asked, name, color, is_it):
     assert parse_request(asked).matches(name, color) is is_it
 
 
-def test_a_patch_of_a_colour_is_a_ball_if_it_is_as_wide_as_high():
+def test_a_patch_of_a_color_is_a_ball_if_it_is_as_wide_as_high():
     assert parse_request("red ball").matches("red", None, 1.1)
     assert not parse_request("red ball").matches("red", None, 0.4)
     assert parse_request("red ball").matches("ball", "red", 0.4), "a class counts whatever part of the thing is seen"
     assert parse_request("red").matches("red", None, 0.4)
 
 
-def test_a_round_patch_of_any_colour_is_a_ball_and_a_square_one_is_none():
+def test_a_round_patch_of_any_color_is_a_ball_and_a_square_one_is_none():
     assert parse_request("ball").matches("orange", None, 1.0, 0.79)
     assert not parse_request("ball").matches("orange", None, 1.0, 0.99)
     assert not parse_request("ball").matches("orange", None, 0.5, 0.79)

@@ -13,7 +13,7 @@ PERIOD = 1 / 30
 
 
 def found(*objects):
-    """Detections of (centre x, centre y, size, score, class)."""
+    """Detections of (center x, center y, size, score, class)."""
     if not objects:
         return Detections.empty(NAMES)
     boxes = [[x - size / 2, y - size / 2, x + size / 2, y + size / 2] for x, y, size, *_ in objects]

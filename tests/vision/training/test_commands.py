@@ -14,8 +14,8 @@ from tests.vision.training.images_of_shapes import write_shapes
 
 @pytest.fixture
 def colors(tmp_path):
-    """Red discs and blue squares, which the detector `colours` finds."""
-    return write_shapes(tmp_path / "colours", 6, names=("red", "blue"))
+    """Red discs and blue squares, which the detector `colors` finds."""
+    return write_shapes(tmp_path / "colors", 6, names=("red", "blue"))
 
 
 def test_without_pytorch_training_says_what_to_install(colors, tmp_path, capsys, monkeypatch):
@@ -34,7 +34,7 @@ def test_a_size_that_the_network_cannot_have_is_wrong_usage(size, capsys):
 
 
 def test_a_detector_is_judged(colors, capsys):
-    assert main(["vision", "evaluate", "colours", str(colors), "--confusion"]) == 0
+    assert main(["vision", "evaluate", "colors", str(colors), "--confusion"]) == 0
     output = capsys.readouterr().out
     assert output.startswith("6 images: mAP50 1.000, ")
     assert "| red | 6 | 1.000 |" in output
@@ -42,7 +42,7 @@ def test_a_detector_is_judged(colors, capsys):
 
 
 def test_figures_are_printed_for_programs(colors, capsys):
-    assert main(["vision", "evaluate", "colours", str(colors), "--split", "train", "--format", "json"]) == 0
+    assert main(["vision", "evaluate", "colors", str(colors), "--split", "train", "--format", "json"]) == 0
     figures = json.loads(capsys.readouterr().out)
     assert figures["images"] == 6
     assert figures["map50"] == pytest.approx(1)
@@ -50,7 +50,7 @@ def test_figures_are_printed_for_programs(colors, capsys):
 
 
 def test_a_folder_that_is_no_dataset_is_one_error(tmp_path, capsys):
-    assert main(["vision", "evaluate", "colours", str(tmp_path)]) == 1
+    assert main(["vision", "evaluate", "colors", str(tmp_path)]) == 1
     output = capsys.readouterr()
     assert "VISION302" in output.err
     assert output.out == ""

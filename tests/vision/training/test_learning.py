@@ -148,7 +148,7 @@ def test_the_exported_network_says_what_the_network_says():
 
 @pytest.fixture
 def exported(tmp_path):
-    """A network of three classes whose normalisations are not those of the beginning, and its file."""
+    """A network of three classes whose normalizations are not those of the beginning, and its file."""
     torch.manual_seed(3)
     network = Network(Shape(3, 4))
     with torch.no_grad():
@@ -229,12 +229,12 @@ def test_a_training_begins_with_weights_of_an_earlier_one_and_its_card_says_so(s
     assert "| started from | first.onnx, sha256 " in (tmp_path / "second" / "detector.md").read_text(encoding="utf-8")
 
 
-def test_boxes_that_do_not_touch_are_told_apart_by_the_generalised_overlap():
+def test_boxes_that_do_not_touch_are_told_apart_by_the_generalized_overlap():
     first = torch.tensor([[0.0, 0.0, 10.0, 10.0]] * 3)
     second = torch.tensor([[0.0, 0.0, 10.0, 10.0], [20.0, 0.0, 30.0, 10.0], [90.0, 0.0, 100.0, 10.0]])
-    plain, generalised = pairwise_iou(first, second)
+    plain, generalized = pairwise_iou(first, second)
     assert plain.tolist() == pytest.approx([1, 0, 0])
-    assert generalised.tolist() == pytest.approx([1, -1 / 3, -0.8])
+    assert generalized.tolist() == pytest.approx([1, -1 / 3, -0.8])
 
 
 def test_cells_answer_for_the_thing_they_are_in_and_may_say_what_they_like_of_what_is_ignored():
@@ -278,7 +278,7 @@ def test_the_command_trains_judges_and_writes_a_card(shapes, tmp_path, capsys, m
     assert capsys.readouterr().err.startswith("epoch 3 of 3")
 
 
-def test_what_was_learnt_until_ctrl_c_is_kept(shapes, tmp_path):
+def test_what_was_learned_until_ctrl_c_is_kept(shapes, tmp_path):
     def stop_after_two(epoch):
         if epoch.number == 2:
             raise KeyboardInterrupt

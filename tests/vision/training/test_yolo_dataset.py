@@ -43,7 +43,7 @@ def test_a_dataset_is_read(shapes):
     assert (images[0].boxes <= 1).all()
 
 
-def test_the_boxes_are_where_the_colours_are(shapes):
+def test_the_boxes_are_where_the_colors_are(shapes):
     for each in open_dataset(shapes).read("train"):
         left, top, right, bottom = np.rint(each.boxes[0] * 96).astype(int)
         red = read_image(each)[..., 0] > 200
@@ -142,7 +142,7 @@ def test_a_image_that_is_none_is_said(shapes):
     assert (found.code, "001.png" in str(found.message)) == ("VISION305", True)
 
 
-def test_images_of_another_shape_are_fitted_in_with_grey(shapes):
+def test_images_of_another_shape_are_fitted_in_with_gray(shapes):
     images = open_dataset(shapes).read("train")
     labeled_images = read_labeled_images(images, 160, 96)
     assert labeled_images.images.shape == (3, 96, 160, 3)

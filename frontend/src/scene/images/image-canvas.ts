@@ -62,7 +62,7 @@ export class ImageCanvas {
     this.canvas.width = this.canvas.height = 0;
   }
 
-  /** Returns the colour of a pixel, for tests. */
+  /** Returns the color of a pixel, for tests. */
   colorAt(x: number, y: number): number[] {
     return this.isEmpty ? [] : [...this.context.getImageData(x, y, 1, 1).data];
   }
@@ -124,8 +124,8 @@ function isBitmap(image: ImageFrame | ImageBitmap): image is ImageBitmap {
 /** Returns red, green, blue and alpha of each pixel. */
 export function rgbaOf({ encoding, data }: ImageFrame): Uint8ClampedArray<ArrayBuffer> {
   if (encoding === "rgba") return new Uint8ClampedArray(data);
-  const step = encoding === "grey" ? 1 : 3;
-  const [green, blue] = encoding === "grey" ? [0, 0] : [1, 2];
+  const step = encoding === "gray" ? 1 : 3;
+  const [green, blue] = encoding === "gray" ? [0, 0] : [1, 2];
   const result = new Uint32Array(data.length / step);
   for (let i = 0, at = 0; i < result.length; i++, at += step) {
     result[i] = 0xff000000 | ((data[at + blue] ?? 0) << 16) | ((data[at + green] ?? 0) << 8) | (data[at] ?? 0);

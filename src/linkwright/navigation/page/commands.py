@@ -230,13 +230,13 @@ class _Watch:
         """
         if not self._cancel_client.service_is_ready():
             return phrase(
-                "the goal could not be cancelled: no node provides the action '{name}'", name="navigate_to_pose"
+                "the goal could not be canceled: no node provides the action '{name}'", name="navigate_to_pose"
             )
         response = await self._call(self._cancel_client)
         if response is None:
-            return phrase("the goal could not be cancelled: the server does not respond")
+            return phrase("the goal could not be canceled: the server does not respond")
         if response.return_code != 0:
-            return phrase("the goal could not be cancelled: code {code}", code=response.return_code)
+            return phrase("the goal could not be canceled: code {code}", code=response.return_code)
         return None
 
 

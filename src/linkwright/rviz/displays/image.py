@@ -32,7 +32,7 @@ from linkwright.rviz.displays.base.display import DisplayHost, Pose, ViewerDispl
 from linkwright.rviz.displays.base.topic_display import TOPIC, SideTopic, TopicDisplay, camera_info_topic
 from linkwright.rviz.image_compression import ImageCompressor
 
-_ENCODINGS: dict[int, Literal["grey", "rgb", "rgba"]] = {1: "grey", 3: "rgb", 4: "rgba"}
+_ENCODINGS: dict[int, Literal["gray", "rgb", "rgba"]] = {1: "gray", 3: "rgb", 4: "rgba"}
 MAX_PIXELS = 2_100_000
 """The largest number of pixels of an image that is sent to pages, about Full HD, because pixels are not compressed."""
 
@@ -435,8 +435,8 @@ class CameraDisplay(ImageTopicDisplay):
             height=float(height),
             focal_x=float(p[0]),
             focal_y=float(p[5]),
-            centre_x=float(p[2]),
-            centre_y=float(p[6]),
+            center_x=float(p[2]),
+            center_y=float(p[6]),
             offset_x=float(-p[3] / p[0]),
             offset_y=float(-p[7] / p[5]),
         )

@@ -176,7 +176,7 @@ async def test_bad_motions_are_said():
         assert "Joints" not in w.status("Trajectory")
 
 
-async def test_a_state_with_links_in_colours_of_their_own():
+async def test_a_state_with_links_in_colors_of_their_own():
     async with shown("RobotState", "moveit_msgs/msg/DisplayRobotState", "/display_robot_state") as (w, say):
         red = ObjectColor(id="hand")
         red.color.r = red.color.a = 1.0
@@ -190,7 +190,7 @@ async def test_a_state_with_links_in_colours_of_their_own():
         assert w.status("RobotState")["Highlights"] == ("warn", "The robot has no link 'foot'")
         display = w.display("RobotState")
         display.set_property(("Show Highlights",), False)
-        assert shown_markers(display)["Robot State/hand"]["color"] == [1, 0, 0, 1]  # RViz's red of no colour
+        assert shown_markers(display)["Robot State/hand"]["color"] == [1, 0, 0, 1]  # RViz's red of no color
         display.set_property(("Visual Enabled",), False)
         assert list(shown_markers(display)) == ["Robot State holds/cup"]
         assert await say(DisplayRobotState(hide=True)) == {}

@@ -49,7 +49,7 @@ def test_the_full_form_has_a_probability_for_each_leaf():
     assert cells.centers[:, 0].tolist() == [-0.5 * 2**14, 0.5 * 2**14]
 
 
-def test_a_tree_with_colours_is_read_too():
+def test_a_tree_with_colors_is_read_too():
     cells = read(struct.pack("<fBBBB", 1.0, 255, 0, 0, 0), binary=False, kind="ColorOcTree")
     assert cells.sizes.tolist() == [0.5 * 2**16]
 
@@ -100,7 +100,7 @@ def test_a_cell_that_others_hide_is_not_drawn():
     assert low.tolist() != high.tolist()
 
 
-def test_colours_may_tell_how_probable_a_cell_is():
+def test_colors_may_tell_how_probable_a_cell_is():
     cells = read(node(c0=OCCUPIED))
     (marker,) = octomap_markers(cells, "map", frame="base", base=HERE, alpha=1.0, by_probability=True)
     assert marker.colors[0].tolist() == pytest.approx([0.029, 0.971, 0, 1])

@@ -171,7 +171,7 @@ async def test_what_the_robot_holds_moves_with_its_link():
         assert "Scene Robot holds/cup" not in await talker.say(scene(robot=let_go, diff=True))
 
 
-async def test_objects_have_the_colours_that_the_scene_gives_them():
+async def test_objects_have_the_colors_that_the_scene_gives_them():
     async with scened() as (_, talker):
         color = ObjectColor(id="a")
         color.color.b, color.color.a = 1.0, 0.25
