@@ -46,7 +46,7 @@ def shown(live, open_page, links: str, names):
     return open_page(viewer)
 
 
-def test_bounds_and_colors_are_those_of_rviz(live, open_page, tmp_path):
+def test_bounds_and_colors_match_rviz(live, open_page, tmp_path):
     page = shown(live, open_page, golden_links(tmp_path), GOLDEN)
     wrong = {}
     for name, (_, _, _, _, (least, most), color, opacity) in GOLDEN.items():
@@ -111,7 +111,7 @@ LAYERS = (
 )
 
 
-def test_what_is_behind_shows_through(live, open_page):
+def test_transparent_layers_are_blended_by_depth(live, open_page):
     names = ("near", "far")
     viewer = live(ROBOT)
     for name in names:

@@ -41,7 +41,7 @@ def grays(start, open_page, tmp_path: Path, light: str) -> list[int]:
     return [r for r, _, _ in colors]
 
 
-def test_the_studio_keeps_the_shape_of_what_is_lit_strongly(start, open_page, tmp_path):
+def test_studio_light_does_not_saturate_lit_surfaces(start, open_page, tmp_path):
     camera, studio = (grays(start, open_page, tmp_path, light) for light in ("Camera", "Studio"))
     assert max(camera) >= 254, "what faces the camera has its own color"
     assert 225 < max(studio) < 252
@@ -61,7 +61,7 @@ def column(page, across: float = 0.5) -> list[int]:
 
 @pytest.mark.parametrize("theme", ["light", "dark"])
 @pytest.mark.parametrize("robot", [BLACK, BALL], ids=["black", "white"])
-def test_view_shows_the_shape_of_robots_of_any_color_before_its_ground(start, open_page, tmp_path, theme, robot):
+def test_default_view_shows_shape_of_black_and_white_robots(start, open_page, tmp_path, theme, robot):
     (tmp_path / "ball.urdf").write_text(robot)
     page = open_page(start("view", str(tmp_path / "ball.urdf")), theme=theme)
     until(page, "lw.settled")
@@ -73,7 +73,7 @@ def test_view_shows_the_shape_of_robots_of_any_color_before_its_ground(start, op
     assert max(abs(ground[30] - each) for each in ball) > 40
 
 
-def test_the_colors_of_an_rviz_file_are_kept(start, open_page, tmp_path):
+def test_rviz_file_colors_are_kept(start, open_page, tmp_path):
     (tmp_path / "ball.urdf").write_text(BALL)
     (tmp_path / "plain.rviz").write_text(VIEW.format(light="Camera"))
     page = open_page(start("view", str(tmp_path / "ball.urdf"), "-d", str(tmp_path / "plain.rviz")))
@@ -81,7 +81,7 @@ def test_the_colors_of_an_rviz_file_are_kept(start, open_page, tmp_path):
     assert set(column(page, 0.02)) == {0x30}
 
 
-def test_a_color_is_behind_the_scene_where_the_user_wants_one(start, open_page, tmp_path):
+def test_background_color_can_be_chosen(start, open_page, tmp_path):
     (tmp_path / "ball.urdf").write_text(BALL)
     page = open_page(start("view", str(tmp_path / "ball.urdf")))
     until(page, "lw.settled")

@@ -51,7 +51,7 @@ def number(page, key: str):
     return page.locator(f"[data-key='{key}'] input")
 
 
-def test_a_box_is_added_moved_by_numbers_undone_and_saved(start, open_page, tmp_path):
+def test_added_box_is_moved_undone_and_saved(start, open_page, tmp_path):
     page, path = modeled(start, open_page, tmp_path)
     bar = page.get_by_role("toolbar", name="Model the world")
     undo, redo, save = (bar.get_by_role("button", name=name) for name in ("Undo", "Redo", "Save the world"))
@@ -77,7 +77,7 @@ def test_a_box_is_added_moved_by_numbers_undone_and_saved(start, open_page, tmp_
     assert text.replace(added[0], "") == YARD
 
 
-def test_the_gizmo_moves_what_it_holds_and_keys_group_and_delete(start, open_page, tmp_path):
+def test_gizmo_moves_selection_and_keys_group_and_delete(start, open_page, tmp_path):
     page, path = modeled(start, open_page, tmp_path)
     page.get_by_role("button", name="Snap to the grid").click()
     add_box(page)

@@ -19,7 +19,7 @@ from linkwright.lint.extension_names import CHILDREN
         ("positon", "position"),
     ],
 )
-def test_a_slip_in_one_word_is_a_misspelling(written, meant):
+def test_single_typo_is_a_misspelling(written, meant):
     assert find_misspelled(written, [meant, "something_else"]) == meant
 
 
@@ -38,20 +38,20 @@ def test_a_slip_in_one_word_is_a_misspelling(written, meant):
         ("left_front", "left_rear"),
     ],
 )
-def test_a_siblings_name_is_not_a_misspelling(written, other):
+def test_sibling_name_is_not_a_misspelling(written, other):
     assert find_misspelled(written, [other]) is None
 
 
-def test_between_two_names_nothing_is_chosen():
+def test_ambiguous_misspelling_matches_nothing():
     assert find_misspelled("weel_link", ["wheel_link", "welel_link"]) is None
 
 
-def test_two_spellings_of_one_name_are_one_name():
+def test_spellings_of_same_name_are_not_ambiguous():
     assert find_misspelled("slefCollide", ["selfCollide", "self_collide"]) == "selfCollide"
 
 
 @pytest.mark.parametrize("path", CHILDREN)
-def test_no_known_element_is_taken_for_another(path):
+def test_known_elements_are_not_misspellings_of_each_other(path):
     names = CHILDREN[path]
     spellings = {name: "".join(filter(str.isalpha, name)).casefold() for name in names}
     for name in names:

@@ -18,7 +18,7 @@ from tests.vision.nodes.seeking_robot import SeekingRobot
 LANGUAGES = {"en": DOCS / "tutorial-vision.md", "zh": DOCS / "zh" / "tutorial-vision.md"}
 
 
-def test_the_launch_files_have_the_arguments_that_the_page_uses(capsys: pytest.CaptureFixture[str]):
+def test_launch_files_have_arguments_of_page(capsys: pytest.CaptureFixture[str]):
     assert main(["launch", "my_robot_vision", "detect.launch.py", "--show-args"]) == 0
     output = capsys.readouterr().out
     for argument in ("depth", "voice", "language", "model", "threshold"):
@@ -28,14 +28,14 @@ def test_the_launch_files_have_the_arguments_that_the_page_uses(capsys: pytest.C
 
 
 @pytest.mark.parametrize("page", LANGUAGES.values(), ids=LANGUAGES)
-def test_the_nodes_of_the_page_are_there(page: Path):
+def test_nodes_of_page_exist(page: Path):
     text = page.read_text(encoding="utf-8")
     for name in ("detector", "tracking_node", "detect_3d_node", "object_seeker"):
         assert f"| `{name}` |" in text
         assert ("my_robot_vision", name) in EXECUTABLES
 
 
-def test_the_program_of_the_page_drives_to_something_red(tmp_path: Path):
+def test_program_of_page_drives_to_red_object(tmp_path: Path):
     pytest.importorskip("mujoco")
     standins.activate()
     (program,) = [block for block in blocks(LANGUAGES["en"]) if block.title == "follow_color.py"]
@@ -50,7 +50,7 @@ def test_the_program_of_the_page_drives_to_something_red(tmp_path: Path):
 
 
 @pytest.mark.slow
-def test_each_line_works_for_a_reader_with_the_wheel(follow: Callable[..., Path]) -> None:
+def test_tutorial_commands_run_with_installed_wheel(follow: Callable[..., Path]) -> None:
     follow(
         LANGUAGES["en"],
         {

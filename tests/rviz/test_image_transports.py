@@ -57,7 +57,7 @@ def values(image, kind: str) -> list:
         ("", "compressed", ("", "raw", "")),
     ],
 )
-def test_a_transport_has_a_topic_below_the_images(topic, hint, expected):
+def test_image_source_resolves_transport_topic(topic, hint, expected):
     source = ImageSource.of(topic, hint)
     assert (source.base, source.transport, source.topic) == expected
     assert source.message_type.endswith("/Image") == (source.transport == "raw")
@@ -67,7 +67,7 @@ def test_a_transport_has_a_topic_below_the_images(topic, hint, expected):
 
 
 @pytest.mark.parametrize("packing", ["png", "rvl"])
-def test_whole_depths_are_what_they_were(packing):
+def test_integer_depths_are_decoded_losslessly(packing):
     image = decode_compressed(depth_message(MILLIMETERS, packing))
     assert (image.encoding, image.width, image.height, image.step) == ("16UC1", 3, 2, 6)
     assert values(image, "<u2") == MILLIMETERS.tolist()
@@ -75,7 +75,7 @@ def test_whole_depths_are_what_they_were(packing):
 
 
 @pytest.mark.parametrize("packing", ["png", "rvl"])
-def test_depths_in_meters_are_nearly_what_they_were(packing):
+def test_depths_in_meters_are_decoded_within_quantization(packing):
     meters = np.array([[0.5, 1.0, 4.0, 9.0], [np.nan, np.inf, 11.0, 2.0]])
     image = decode_compressed(depth_message(meters, packing))
     assert image.encoding == "32FC1"
@@ -90,7 +90,7 @@ def test_formats_of_older_publishers_are_read(form):
     assert values(decode_compressed(packed(form, header() + png(MILLIMETERS))), "<u2") == MILLIMETERS.tolist()
 
 
-def test_colors_and_grays_come_out_of_files():
+def test_color_and_gray_images_are_decoded():
     image = decode_compressed(packed("rgb8; jpeg compressed bgr8", jpeg((200, 100, 50), 16, 8)), "compressed")
     assert (image.encoding, image.width, image.height) == ("rgb8", 16, 8)
     assert np.allclose(image.data.reshape(-1, 3), [200, 100, 50], atol=3)
@@ -100,7 +100,7 @@ def test_colors_and_grays_come_out_of_files():
     assert (image.encoding, values(image, "<u2")) == ("mono16", MILLIMETERS.tolist())
 
 
-def test_depths_may_come_as_files_too():
+def test_depths_are_decoded_from_compressed_transport():
     image = decode_compressed(packed("16UC1; png compressed ", png(MILLIMETERS)), "compressed")
     assert (image.encoding, values(image, "<u2")) == ("16UC1", MILLIMETERS.tolist())
     image = decode_compressed(packed("16UC1; jpeg compressed mono8", jpeg(4, 1, 1)), "compressed")
@@ -108,12 +108,12 @@ def test_depths_may_come_as_files_too():
 
 
 @given(arrays(np.uint16, st.integers(1, 60), elements=st.sampled_from([0, 0, 0, 1, 2, 900, 901, 40000, 65535])))
-def test_every_rvl_stream_comes_out_as_it_went_in(pixels):
+def test_rvl_round_trip(pixels):
     assert decode_rvl(np.frombuffer(rvl(pixels), np.uint8), len(pixels)).tolist() == pixels.tolist()
 
 
 @given(st.binary(max_size=200), st.integers(1, 5000))
-def test_no_bytes_upset_the_reader_of_rvl_streams(data, pixels):
+def test_rvl_decoder_survives_arbitrary_bytes(data, pixels):
     with suppress(BadRvlError):
         assert len(decode_rvl(np.frombuffer(data, np.uint8), pixels)) == pixels
 
@@ -165,12 +165,12 @@ def test_no_bytes_upset_the_reader_of_rvl_streams(data, pixels):
         ),
     ],
 )
-def test_what_is_wrong_with_a_depth_image_is_said(form, data, text):
+def test_malformed_depth_image_is_rejected_with_reason(form, data, text):
     with pytest.raises(BadImageError, match=text):
         decode_compressed(packed(form, data))
 
 
-def test_what_is_wrong_with_a_color_image_is_said():
+def test_malformed_color_image_is_rejected_with_reason():
     for data, text in (
         (b"", "neither a PNG nor a JPEG"),
         (jpeg(9, 64, 64)[:100], "The JPEG cannot be read: "),
@@ -180,7 +180,7 @@ def test_what_is_wrong_with_a_color_image_is_said():
             decode_compressed(packed("rgb8; jpeg compressed bgr8", data), "compressed")
 
 
-def test_a_file_with_too_many_pixels_is_not_unpacked_to_be_made_smaller():
+def test_image_with_too_many_pixels_is_not_compressed():
     data = np.frombuffer(png(MILLIMETERS, says=(9000, 9000)), np.uint8)
     frame = ImageFrame(0, 0, 0, 0, "file", data, None)
     assert ImageCompressor().compressed(frame, 10) is frame
@@ -194,7 +194,7 @@ def info(node):
 
 
 @pytest.mark.parametrize("packing", ["png", "rvl"])
-async def test_a_depth_cloud_takes_the_transports_of_its_hints(packing):
+async def test_depth_cloud_follows_transport_hints(packing):
     topics = {
         "Depth_Map_Topic": "/depth/image",
         "Depth_Map_Transport_Hint": "compressedDepth",
@@ -218,7 +218,7 @@ async def test_a_depth_cloud_takes_the_transports_of_its_hints(packing):
         assert (status["Depth Image Size"], status["Image Size"]) == (("ok", "2 x 1"), ("ok", "2 x 1"))
 
 
-async def test_a_depth_topic_may_name_its_transport_itself():
+async def test_depth_topic_may_name_its_transport():
     async with world(clouds.config("DepthCloud", Depth_Map_Topic="/depth/image/compressedDepth")) as w:
         node = w.graph.create_node("camera")
         info(node)
@@ -230,7 +230,7 @@ async def test_a_depth_topic_may_name_its_transport_itself():
         assert (x, y, round(z, 2)) == (0.0, 0.0, 2.0)
 
 
-async def test_a_broken_depth_image_is_one_row_of_the_status_until_a_whole_one_comes():
+async def test_malformed_depth_image_status_is_cleared_by_valid_image():
     topics = {"Depth_Map_Topic": "/depth/image", "Depth_Map_Transport_Hint": "compressedDepth"}
     async with world(clouds.config("DepthCloud", **topics)) as w:
         node = w.graph.create_node("camera")
@@ -246,7 +246,7 @@ async def test_a_broken_depth_image_is_one_row_of_the_status_until_a_whole_one_c
         assert w.status("DepthCloud")["Message"] == ("ok", "Ok")
 
 
-async def test_a_depth_cloud_says_that_theora_is_not_read_until_another_transport_is_chosen():
+async def test_depth_cloud_reports_unsupported_theora_transport():
     topics = {"Depth_Map_Topic": "/depth/image", "Color_Image_Topic": "/c", "Color_Transport_Hint": "theora"}
     async with world(clouds.config("DepthCloud", **topics)) as w:
         text = "Images of transport 'theora' are not supported: choose raw, compressed or compressedDepth"
@@ -256,7 +256,7 @@ async def test_a_depth_cloud_says_that_theora_is_not_read_until_another_transpor
         assert "Color Transport Hint" not in w.status("DepthCloud")
 
 
-async def test_an_image_display_shows_depths_as_grays():
+async def test_image_display_shows_depths_in_gray():
     async with world(images.config("Image", "/camera/depth/compressedDepth")) as w:
         display = w.display("Image")
         publisher = w.graph.create_node("camera").create_publisher(CompressedImage, "/camera/depth/compressedDepth", 5)
@@ -276,7 +276,7 @@ async def test_an_image_display_shows_depths_as_grays():
         assert w.status("Image")["Image"] == ("error", text)
 
 
-async def test_files_of_more_than_eight_bits_are_given_a_range():
+async def test_compressed_16_bit_images_have_range():
     async with world(images.config("Image", "/camera/depth/compressed")) as w:
         publisher = w.graph.create_node("camera").create_publisher(CompressedImage, "/camera/depth/compressed", 5)
         publisher.publish(packed("16UC1; png compressed ", png(np.array([[0, 500, 1000]], np.uint16))))
@@ -284,7 +284,7 @@ async def test_files_of_more_than_eight_bits_are_given_a_range():
         assert contents(w.display("Image"))[0].fields["data"].tolist() == [0, 127, 255]
 
 
-async def test_a_camera_shows_depths_beside_its_camera_info():
+async def test_camera_display_shows_compressed_depths():
     async with world(images.config("Camera", "/camera/depth/compressedDepth")) as w:
         node = w.graph.create_node("camera")
         node.create_publisher(CameraInfo, "/camera/camera_info", 5).publish(images.info(2, 1))
@@ -297,7 +297,7 @@ async def test_a_camera_shows_depths_beside_its_camera_info():
 
 
 @pytest.mark.parametrize("cls", ["Image", "Camera"])
-async def test_images_of_theora_are_not_read_and_their_topics_that_are_named(cls):
+async def test_theora_image_status_names_supported_topics(cls):
     async with world(images.config(cls, "/camera/image/theora")) as w:
         text = "Images of transport 'theora' are not supported: choose /camera/image or /camera/image/compressed"
         assert w.status(cls)["Topic"] == ("error", text)

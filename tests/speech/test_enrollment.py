@@ -22,7 +22,7 @@ def enrolled(names=("forward", "stop")):
     return words
 
 
-def test_words_are_kept_in_their_order_with_their_takes():
+def test_words_keep_order_and_takes():
     words = enrolled()
     assert words.names == ("forward", "stop")
     assert len(words.takes("stop")) == 3
@@ -30,14 +30,14 @@ def test_words_are_kept_in_their_order_with_their_takes():
     assert words.takes("back") == ()
 
 
-def test_a_word_can_be_removed():
+def test_word_can_be_removed():
     words = enrolled()
     words.remove("forward")
     words.remove("forward")
     assert words.names == ("stop",)
 
 
-def test_what_is_written_is_read_to_the_last_bit(tmp_path):
+def test_words_file_round_trip_is_exact(tmp_path):
     words = enrolled()
     path = tmp_path / "a" / "words.json"
     words.write(path)
@@ -49,7 +49,7 @@ def test_what_is_written_is_read_to_the_last_bit(tmp_path):
             assert np.array_equal(ours.noise, theirs.noise)
 
 
-def test_names_of_any_language_are_kept(tmp_path):
+def test_word_names_in_any_language_are_kept(tmp_path):
     words = Words()
     enroll(words, "前进", say(WORDS["forward"]))
     words.write(tmp_path / "words.json")
@@ -57,7 +57,7 @@ def test_names_of_any_language_are_kept(tmp_path):
     assert "前进" in (tmp_path / "words.json").read_text(encoding="utf-8")
 
 
-def test_only_the_newest_takes_are_kept():
+def test_only_newest_takes_are_kept():
     words = Words()
     for number in range(MAX_TAKES + 2):
         enroll(words, "stop", say(WORDS["stop"], seed=number))
@@ -76,7 +76,7 @@ def test_only_the_newest_takes_are_kept():
         (say(WORDS["forward"], level=60_000.0), "VOICE207"),
     ],
 )
-def test_what_cannot_serve_as_an_example_is_not_taken_and_told_why(samples, code):
+def test_unsuitable_recording_is_rejected_with_reason(samples, code):
     words = Words()
     (finding,) = enroll(words, "stop", samples)
     assert (finding.code, finding.severity) == (code, Severity.ERROR)
@@ -86,14 +86,14 @@ def test_what_cannot_serve_as_an_example_is_not_taken_and_told_why(samples, code
 
 
 @pytest.mark.parametrize("kept", [slice(9_200, None), slice(0, 12_000)], ids=["beginning", "end"])
-def test_a_word_that_is_cut_off_is_not_taken(kept):
+def test_truncated_word_is_rejected(kept):
     words = Words()
     (finding,) = enroll(words, "forward", say(WORDS["forward"])[kept])
     assert (finding.code, finding.severity) == ("VOICE211", Severity.ERROR)
     assert words.names == ()
 
 
-def test_a_recording_with_gaps_is_not_taken_as_good_as_it_looks():
+def test_recording_with_gaps_is_rejected():
     words = Words()
     (finding,) = enroll(words, "forward", say(WORDS["forward"]), has_gaps=True)
     assert (finding.code, finding.severity) == ("VOICE212", Severity.ERROR)
@@ -101,7 +101,7 @@ def test_a_recording_with_gaps_is_not_taken_as_good_as_it_looks():
 
 
 @pytest.mark.parametrize(("name", "other"), [("forward", "back"), ("back", "stop"), ("stop", "turn left")])
-def test_another_word_is_not_taken_after_one_take(name, other):
+def test_different_word_is_rejected_as_second_take(name, other):
     words = Words()
     assert enroll(words, name, say(WORDS[name], seed=1)) == ()
     (finding,) = enroll(words, name, say(WORDS[other], seed=2))
@@ -110,14 +110,14 @@ def test_another_word_is_not_taken_after_one_take(name, other):
     assert len(words.takes(name)) == 2
 
 
-def test_a_take_that_is_unlike_the_word_is_not_taken():
+def test_take_unlike_previous_takes_is_rejected():
     words = enrolled()
     (finding,) = enroll(words, "stop", say("mumi", seed=5))
     assert (finding.code, finding.severity) == ("VOICE208", Severity.ERROR)
     assert len(words.takes("stop")) == 3
 
 
-def test_a_word_that_sounds_like_another_is_taken_with_a_warning_that_names_it():
+def test_word_similar_to_other_is_enrolled_with_warning():
     words = enrolled()
     assert enroll(words, "halt", say(WORDS["stop"], seed=6)) == ()
     (finding,) = enroll(words, "halt", say(WORDS["stop"], seed=7))
@@ -128,12 +128,12 @@ def test_a_word_that_sounds_like_another_is_taken_with_a_warning_that_names_it()
 
 
 @pytest.mark.parametrize("name", ["", "  ", "a\nb", "x" * 200])
-def test_a_name_that_cannot_be_shown_is_not_taken(name):
+def test_invalid_word_name_is_rejected(name):
     (finding,) = enroll(Words(), name, say(WORDS["stop"]))
     assert finding.code == "VOICE204"
 
 
-def test_there_is_a_most_of_words():
+def test_number_of_words_is_limited():
     take = enrolled(("stop",)).takes("stop")
     words = Words({str(number): take[:1] for number in range(MAX_WORDS)})
     assert enroll(words, "more", say(WORDS["stop"]))[0].code == "VOICE204"
@@ -156,7 +156,7 @@ def test_there_is_a_most_of_words():
         (lambda document: document["words"][1]["takes"][0].update(frames="AAAA"), "the wrong length"),
     ],
 )
-def test_a_damaged_file_is_one_error_that_says_what_and_how_to_mend_it(tmp_path, change, why):
+def test_damaged_words_file_is_reported_with_hint(tmp_path, change, why):
     path = tmp_path / "words.json"
     enrolled().write(path)
     document = json.loads(path.read_text(encoding="utf-8"))
@@ -171,7 +171,7 @@ def test_a_damaged_file_is_one_error_that_says_what_and_how_to_mend_it(tmp_path,
 
 
 @pytest.mark.parametrize("data", [b"", b"[1, 2", b"\xff\xfe", b"[" * 100_000, b"[]", b"null"])
-def test_what_is_no_file_of_words_is_one_error(tmp_path, data):
+def test_file_that_is_not_a_words_file_is_reported(tmp_path, data):
     path = tmp_path / "words.json"
     path.write_bytes(data)
     with pytest.raises(LinkwrightError) as caught:
@@ -179,7 +179,7 @@ def test_what_is_no_file_of_words_is_one_error(tmp_path, data):
     assert caught.value.diagnostics[0].code == "VOICE203"
 
 
-def test_the_place_in_a_file_that_is_no_json_is_told(tmp_path):
+def test_json_error_is_reported_with_position(tmp_path):
     path = tmp_path / "words.json"
     path.write_text('{\n "format": }', encoding="utf-8")
     with pytest.raises(LinkwrightError) as caught:
@@ -188,12 +188,12 @@ def test_the_place_in_a_file_that_is_no_json_is_told(tmp_path):
     assert (span.line, span.column) == (2, 12)
 
 
-def test_a_file_that_is_not_there_is_one_error(tmp_path):
+def test_missing_words_file_is_reported(tmp_path):
     with pytest.raises(LinkwrightError) as caught:
         Words.read(tmp_path / "none.json")
     assert caught.value.diagnostics[0].code == "VOICE202"
 
 
-def test_the_file_is_where_configurations_of_users_are(monkeypatch, tmp_path):
+def test_words_file_is_in_user_configuration_folder(monkeypatch, tmp_path):
     monkeypatch.setenv("XDG_CONFIG_HOME", str(tmp_path))
     assert words_path() == tmp_path / "linkwright" / "voice" / "words.json"

@@ -36,7 +36,7 @@ TEXT = PropertySpec("Text", "string", "")
         (TEXT, "", ""),
     ],
 )
-def test_values_of_the_kind_are_taken_and_clamped(spec, value, taken):
+def test_valid_values_are_accepted_and_clamped(spec, value, taken):
     got = accept(spec, value)
     assert got == taken
     assert type(got) is type(taken)
@@ -67,7 +67,7 @@ def test_values_of_the_kind_are_taken_and_clamped(spec, value, taken):
         (PropertySpec("Group", "group"), "x"),
     ],
 )
-def test_other_values_are_refused(spec, value):
+def test_invalid_values_are_rejected(spec, value):
     with pytest.raises(ValueError, match="expected"):
         accept(spec, value)
 
@@ -97,7 +97,7 @@ def test_other_values_are_refused(spec, value):
         (FRAME, "/base_footprint", "base_footprint"),
     ],
 )
-def test_spellings_of_files_are_read(spec, text, value):
+def test_spellings_in_files_are_parsed(spec, text, value):
     assert from_text(spec, text) == value
 
 
@@ -117,17 +117,17 @@ SPELLINGS_OF_NOTHING = [
 
 
 @pytest.mark.parametrize(("spec", "text"), SPELLINGS_OF_NOTHING)
-def test_spellings_that_mean_nothing_are_named(spec, text):
+def test_invalid_spellings_are_rejected(spec, text):
     with pytest.raises(ValueError, match="expected"):
         from_text(spec, text)
 
 
 @given(st.floats(allow_nan=False, allow_infinity=False))
-def test_floats_survive_the_file(value):
+def test_floats_survive_round_trip(value):
     spec = PropertySpec("x", "float", 0.0)
     assert from_text(spec, to_text(spec, value)) == value
 
 
 @given(st.from_regex(r"#[0-9a-f]{6}", fullmatch=True))
-def test_colors_survive_the_file(color):
+def test_colors_survive_round_trip(color):
     assert from_text(COLOR, to_text(COLOR, color)) == color

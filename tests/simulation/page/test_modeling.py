@@ -58,7 +58,7 @@ class Simulation:
 
 
 @asynccontextmanager
-async def modeled(path: Path | None = None, *, loads: bool = True):
+async def modeling_session(path: Path | None = None, *, loads: bool = True):
     """A simulation whose world stands in a file, and a page that edits it."""
     async with world() as made:
         simulation = Simulation(made, path, loads=loads)
@@ -69,7 +69,7 @@ async def modeled(path: Path | None = None, *, loads: bool = True):
             yield simulation, client, made
 
 
-def written(tmp_path: Path, text: str = PLAIN) -> Path:
+def write_world(tmp_path: Path, text: str = PLAIN) -> Path:
     path = tmp_path / "my.world"
     path.write_bytes(text.encode())
     return path
@@ -79,7 +79,7 @@ def change(name: str, **fields) -> dict:
     return dict.fromkeys(("pose", "size", "new_name", "static", "color")) | {"name": name} | fields
 
 
-async def test_without_a_simulation_there_is_no_world_to_edit():
+async def test_modeling_is_unavailable_without_simulation():
     async with world() as made, page(made.viewer) as client:
         state = (await client.opened())["modeling_state"]
         assert (state["available"], state["active"], state["entities"]) == (False, False, [])
@@ -87,9 +87,9 @@ async def test_without_a_simulation_there_is_no_world_to_edit():
         assert "there is no world to edit" in (await client.until("simulation_notice"))["text"]
 
 
-async def test_a_page_that_models_has_the_simulation_stand_at_its_beginning(tmp_path):
-    path = written(tmp_path)
-    async with modeled(path) as (simulation, client, _):
+async def test_modeling_pauses_and_resets_simulation(tmp_path):
+    path = write_world(tmp_path)
+    async with modeling_session(path) as (simulation, client, _):
         assert [name for name, _ in simulation.asked] == ["/pause_physics", "/reset_simulation"]
         assert client.state["file"] == str(path)
         assert not client.state["unsaved"]
@@ -107,10 +107,10 @@ async def test_a_page_that_models_has_the_simulation_stand_at_its_beginning(tmp_
         assert simulation.asked[-1][0] == "/unpause_physics"
 
 
-async def test_what_is_changed_is_loaded_undone_and_saved(tmp_path):
-    path = written(tmp_path)
+async def test_changes_are_loaded_undone_and_saved(tmp_path):
+    path = write_world(tmp_path)
     path.chmod(0o640)
-    async with modeled(path) as (simulation, client, _):
+    async with modeling_session(path) as (simulation, client, _):
         await client.send("change_entities", changes=[change("box", pose=[3, 0, 0.25, 0, 0, 0])])
         state = await client.until("modeling_state", unsaved=True)
         assert (state["can_undo"], state["can_redo"]) == (True, False)
@@ -128,8 +128,8 @@ async def test_what_is_changed_is_loaded_undone_and_saved(tmp_path):
         assert path.stat().st_mode & 0o777 == 0o640
 
 
-async def test_everything_that_a_page_can_ask_for(tmp_path):
-    async with modeled(written(tmp_path)) as (_, client, _):
+async def test_modeling_messages_edit_entities(tmp_path):
+    async with modeling_session(write_world(tmp_path)) as (_, client, _):
 
         async def names(kind: str, **fields) -> list[str]:
             await client.send(kind, **fields)
@@ -158,15 +158,15 @@ async def test_everything_that_a_page_can_ask_for(tmp_path):
         assert {"name": "sun", "address": "model://sun"} in found
 
 
-async def test_nothing_gets_the_name_of_what_was_put_into_the_world(tmp_path):
-    async with modeled(written(tmp_path, PLAIN.replace(BOX, ""))) as (_, client, _):
+async def test_new_entity_gets_unused_name(tmp_path):
+    async with modeling_session(write_world(tmp_path, PLAIN.replace(BOX, ""))) as (_, client, _):
         assert [each["name"] for each in client.state["entities"]] == ["ground_plane", "lamp"]
         await client.send("add_entity", shape="box", address="", pose=POSE, size=[])
         assert (await client.until("modeling_state", unsaved=True))["entities"][-1]["name"] == "box_2"
 
 
-async def test_pages_share_what_is_edited(tmp_path):
-    async with modeled(written(tmp_path)) as (_, client, made), page(made.viewer) as other:
+async def test_pages_share_edited_world(tmp_path):
+    async with modeling_session(write_world(tmp_path)) as (_, client, made), page(made.viewer) as other:
         assert (await other.opened())["modeling_state"]["active"] is True
         await client.send("delete_entities", names=["box"])
         assert len((await other.until("modeling_state", unsaved=True))["entities"]) == 2
@@ -174,8 +174,8 @@ async def test_pages_share_what_is_edited(tmp_path):
         assert len((await client.until("modeling_state", can_redo=True))["entities"]) == 3
 
 
-async def test_what_cannot_be_is_told_to_who_asked(tmp_path):
-    async with modeled(written(tmp_path)) as (simulation, client, _):
+async def test_failed_edit_is_reported_to_page(tmp_path):
+    async with modeling_session(write_world(tmp_path)) as (simulation, client, _):
         await client.send("delete_entities", names=["nobody"])
         assert (await client.until("simulation_notice"))[
             "text"
@@ -187,14 +187,14 @@ async def test_what_cannot_be_is_told_to_who_asked(tmp_path):
         assert "it must end in .world or .sdf" in (await client.until("simulation_notice"))["text"]
 
 
-async def test_a_simulator_that_loads_no_worlds_is_told(tmp_path):
-    async with modeled(written(tmp_path), loads=False) as (_, client, _):
+async def test_missing_load_world_service_is_reported(tmp_path):
+    async with modeling_session(write_world(tmp_path), loads=False) as (_, client, _):
         await client.send("delete_entities", names=["box"])
         assert (await client.until("simulation_notice"))["text"] == "there is no service '/load_world'"
 
 
-async def test_a_world_without_a_file_is_saved_as_one(tmp_path):
-    async with modeled() as (simulation, client, _):
+async def test_world_without_file_is_saved_to_new_file(tmp_path):
+    async with modeling_session() as (simulation, client, _):
         assert client.state["file"] is None
         await client.send("delete_entities", names=["box"])
         assert (await simulation.loaded()).resource_string == PLAIN.replace(BOX, "")
@@ -207,16 +207,16 @@ async def test_a_world_without_a_file_is_saved_as_one(tmp_path):
 
 
 @pytest.mark.parametrize("text", [None, PLAIN.replace('name="w"', 'name="other"'), "<sdf"])
-async def test_a_file_with_another_world_is_of_another_machine(tmp_path, text):
-    path = tmp_path / "none.world" if text is None else written(tmp_path, text)
-    async with modeled(path) as (_, client, _):
+async def test_missing_or_different_world_file_is_ignored(tmp_path, text):
+    path = tmp_path / "none.world" if text is None else write_world(tmp_path, text)
+    async with modeling_session(path) as (_, client, _):
         assert client.state["file"] is None
         assert len(client.state["entities"]) == 3
 
 
-async def test_a_file_that_another_program_changed_is_read_again_or_not_overwritten(tmp_path):
-    path = written(tmp_path)
-    async with modeled(path) as (_, client, _):
+async def test_externally_changed_file_is_reloaded_or_not_overwritten(tmp_path):
+    path = write_world(tmp_path)
+    async with modeling_session(path) as (_, client, _):
         path.write_text(PLAIN.replace("'box'", "'crate'"))
         await client.send("delete_entities", names=["crate"])
         assert len((await client.until("modeling_state"))["entities"]) == 2
@@ -228,9 +228,9 @@ async def test_a_file_that_another_program_changed_is_read_again_or_not_overwrit
         assert (await client.until("modeling_state"))["file"] == str(tmp_path / "other.world")
 
 
-async def test_what_is_not_saved_when_the_program_ends_is_kept(tmp_path):
-    path = written(tmp_path)
-    async with modeled(path) as (_, client, made):
+async def test_unsaved_changes_are_kept_at_exit(tmp_path):
+    path = write_world(tmp_path)
+    async with modeling_session(path) as (_, client, made):
         assert made.viewer.keep_unsaved() == []
         await client.send("delete_entities", names=["box"])
         await client.until("modeling_state", unsaved=True)

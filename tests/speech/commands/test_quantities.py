@@ -95,17 +95,17 @@ QUANTITIES = [
 
 
 @pytest.mark.parametrize(("text", "value"), NUMBERS.items())
-def test_numbers(text: str, value: float) -> None:
+def test_spoken_number_is_parsed(text: str, value: float) -> None:
     assert parse_number(words_of(text)) == value
 
 
 @pytest.mark.parametrize("text", NO_NUMBERS)
-def test_what_is_no_number(text: str) -> None:
+def test_text_that_is_not_a_number_is_rejected(text: str) -> None:
     assert parse_number(words_of(text)) is None
 
 
 @pytest.mark.parametrize(("slot", "text", "value"), QUANTITIES)
-def test_quantities(slot: str, text: str, value: float) -> None:
+def test_spoken_quantity_is_parsed(slot: str, text: str, value: float) -> None:
     assert parse_quantity(slot, words_of(text)) == pytest.approx(value)
 
 
@@ -119,12 +119,12 @@ def test_quantities(slot: str, text: str, value: float) -> None:
         ("distance", "half a meter and a half"),
     ],
 )
-def test_what_is_no_quantity(slot: str, text: str) -> None:
+def test_text_that_is_not_a_quantity_is_rejected(slot: str, text: str) -> None:
     assert parse_quantity(slot, words_of(text)) is None
 
 
 @pytest.mark.parametrize("slot", GRAMMAR_VALUES)
-def test_what_engines_are_told_is_understood(slot: str) -> None:
+def test_grammar_values_are_parsed(slot: str) -> None:
     assert [
         text
         for texts in GRAMMAR_VALUES[slot].values()

@@ -32,7 +32,7 @@ def names(found):
     return [found.name(index) for index in range(len(found))]
 
 
-def test_balls_and_boxes_of_different_colors():
+def test_color_detector_finds_balls_and_boxes():
     image = blank()
     cv2.circle(image, (80, 100), 30, (200, 20, 30), cv2.FILLED)
     image[40:80, 200:260] = (20, 60, 200)
@@ -44,7 +44,7 @@ def test_balls_and_boxes_of_different_colors():
     assert found.scores == pytest.approx([1.0, 0.785], abs=0.05)
 
 
-def test_colors_of_ones_own_and_only_those_that_are_wanted():
+def test_custom_colors_and_class_selection_are_applied():
     image = blank()
     image[40:80, 200:260] = (20, 60, 200)
     image[40:80, 20:60] = (200, 20, 30)
@@ -63,7 +63,7 @@ def test_colors_of_ones_own_and_only_those_that_are_wanted():
         ("apriltag", None, cv2.aruco.DICT_APRILTAG_36h11, 3),
     ],
 )
-def test_markers_are_named_by_their_numbers(name, dictionary, kind, number):
+def test_marker_detections_are_named_by_id(name, dictionary, kind, number):
     image = np.full((240, 320, 3), 255, np.uint8)
     marker = cv2.aruco.generateImageMarker(cv2.aruco.getPredefinedDictionary(kind), number, 80)
     image[60:140, 100:180] = marker[..., np.newaxis]
@@ -74,7 +74,7 @@ def test_markers_are_named_by_their_numbers(name, dictionary, kind, number):
     assert found.corners[0] == pytest.approx(np.array([[100, 60], [180, 60], [180, 140], [100, 140]]), abs=1)
 
 
-def test_qr_codes_are_named_by_their_texts():
+def test_qr_code_detections_are_named_by_text():
     code = cv2.QRCodeEncoder.create().encode("kitchen")
     large = cv2.resize(code, None, fx=5, fy=5, interpolation=cv2.INTER_NEAREST)
     image = np.full((300, 400, 3), 255, np.uint8)
@@ -88,7 +88,7 @@ def test_qr_codes_are_named_by_their_texts():
 
 
 @pytest.mark.parametrize("turned", [0.0, 0.3], ids=["from the front", "from the side"])
-def test_a_qr_code_is_read_that_is_small_in_the_image(turned):
+def test_small_qr_code_is_read(turned):
     code = cv2.copyMakeBorder(cv2.QRCodeEncoder.create().encode("kitchen"), *(4,) * 4, cv2.BORDER_CONSTANT, value=255)
     side = code.shape[0]
     corners = np.array([(0, 0), (side, 0), (side, side), (0, side)], np.float32)
@@ -105,7 +105,7 @@ def test_a_qr_code_is_read_that_is_small_in_the_image(turned):
     assert found.boxes[0] == pytest.approx([118, 98, 182, 162], abs=4)
 
 
-def test_images_in_which_a_code_is_only_half_there_are_no_error():
+def test_partial_qr_codes_are_not_an_error():
     code = cv2.resize(cv2.QRCodeEncoder.create().encode("kitchen"), None, fx=6, fy=6, interpolation=cv2.INTER_NEAREST)
     numbers = np.random.default_rng(4)
     look = detector("qr")
@@ -121,7 +121,7 @@ def test_images_in_which_a_code_is_only_half_there_are_no_error():
         assert set(names(found)) <= {"kitchen"}
 
 
-def test_a_line_on_the_floor():
+def test_line_on_floor_is_detected():
     image = blank()
     cv2.line(image, (200, 239), (200, 100), (20, 20, 20), 21)
     image[:100] = 0  # above the part that is looked at
@@ -137,7 +137,7 @@ def test_a_line_on_the_floor():
 
 @pytest.mark.parametrize("name", ["colors", "aruco", "apriltag", "qr", "line"])
 @pytest.mark.parametrize("shape", [(240, 320), (1, 1), (3, 400), (0, 0)])
-def test_images_without_anything(name, shape):
+def test_empty_images_have_no_detections(name, shape):
     image = np.full((*shape, 3), 200, np.uint8)
     assert len(detector(name).detect(image, LIMITS)) == 0
 
@@ -154,7 +154,7 @@ def test_images_without_anything(name, shape):
         ("line", {"color": "black"}, "'color'"),
     ],
 )
-def test_settings_that_mean_nothing(name, settings, words):
+def test_invalid_settings_are_rejected(name, settings, words):
     with pytest.raises(LinkwrightError) as raised:
         detector(name, **settings)
     (finding,) = raised.value.diagnostics
@@ -162,7 +162,7 @@ def test_settings_that_mean_nothing(name, settings, words):
     assert words in str(finding.message)
 
 
-def test_what_was_found_is_drawn_and_the_image_is_left_as_it_is():
+def test_detections_are_drawn_on_copy_of_image():
     image = blank()
     boxes = np.array([[50, 60, 150, 160], [200, 5, 400, 90]], np.float32)
     found = Detections(boxes, np.array([0.9, 0.6], np.float32), np.array([0, 1], np.int32), ("ball", "box"))
@@ -194,7 +194,7 @@ WITHOUT = ("colors", "aruco", "apriltag", "qr", "line")
         ("'device'", {"device": "gpu"}),
     ],
 )
-def test_what_only_networks_have_is_refused(name, setting, options):
+def test_network_options_are_rejected(name, setting, options):
     with pytest.raises(LinkwrightError) as caught:
         make_detector(name, DetectorOptions(**options))
     (found,) = caught.value.diagnostics
@@ -204,7 +204,7 @@ def test_what_only_networks_have_is_refused(name, setting, options):
 
 
 @pytest.mark.parametrize("name", WITHOUT)
-def test_a_gpu_is_of_no_use_to_them_and_they_say_so(name):
+def test_unused_gpu_is_noted(name):
     (note,) = make_detector(name, DetectorOptions(device="cuda:0")).notes
     assert "'cuda:0'" in str(note)
     assert make_detector(name, DetectorOptions()).notes == ()

@@ -90,7 +90,7 @@ def classes(message):
 
 
 @pytest.mark.parametrize("encoding", ["rgb8", "bgr8"])
-async def test_detections_have_names_centers_sizes_and_the_header_of_the_image(test, start, encoding):
+async def test_detections_have_class_center_size_and_image_header(test, start, encoding):
     await start(model="colors")
     recording = test.record("/yolo/detections")
     await test.settle()
@@ -104,7 +104,7 @@ async def test_detections_have_names_centers_sizes_and_the_header_of_the_image(t
     assert blue.header == message.header
 
 
-async def test_compressed_images(test, start):
+async def test_compressed_images_are_detected(test, start):
     await start(model="colors", input_image_topic="/camera/image_raw/compressed")
     recording = test.record("/yolo/detections")
     await test.settle()
@@ -112,7 +112,7 @@ async def test_compressed_images(test, start):
     assert classes(message) == ["blue", "red"]
 
 
-async def test_a_network(test, start, tmp_path):
+async def test_onnx_network_is_used(test, start, tmp_path):
     names = {"names": "{0: 'ball', 1: 'box', 2: 'cat'}"}
     await start(model=str(columns(tmp_path / "v8.onnx", metadata=names)), threshold=0.6, max_det=5)
     recording = test.record("/yolo/detections")
@@ -122,7 +122,7 @@ async def test_a_network(test, start, tmp_path):
     assert set(classes(message)) <= {"ball", "box", "cat"}
 
 
-async def test_the_image_with_boxes_is_made_when_somebody_wants_it(test, start):
+async def test_debug_image_is_published_if_subscribed(test, start):
     await start(model="colors")
     recording = test.record("/yolo/debug_image")
     await test.settle()
@@ -132,7 +132,7 @@ async def test_the_image_with_boxes_is_made_when_somebody_wants_it(test, start):
     assert (np.frombuffer(bytes(message.data), np.uint8) != scene().reshape(-1)).any()
 
 
-async def test_images_are_taken_only_while_somebody_listens(test, start):
+async def test_images_are_subscribed_only_while_outputs_are_subscribed(test, start):
     await start(model="colors")
     await test.settle()
     assert test.graph.count_subscribers("/yolo/image_raw") == 0
@@ -141,7 +141,7 @@ async def test_images_are_taken_only_while_somebody_listens(test, start):
     assert test.graph.count_subscribers("/yolo/image_raw") == 1
 
 
-async def test_limits_change_while_it_runs(test, start):
+async def test_limits_can_change_at_runtime(test, start):
     node = (await start(model="colors")).node
     recording = test.record("/yolo/detections")
     await test.settle()
@@ -164,7 +164,7 @@ async def test_limits_change_while_it_runs(test, start):
         ("model", "aruco", ""),
     ],
 )
-async def test_values_that_cannot_be_are_refused(test, start, name, value, words):
+async def test_invalid_parameter_values_are_rejected(test, start, name, value, words):
     node = (await start(model="colors")).node
     (result,) = node.set_parameters([Parameter(name, value=value)])
     assert not result.successful
@@ -189,7 +189,7 @@ async def test_services_enable_and_set_classes(test, start):
     assert (message.header.stamp.sec, len(recording) - before) == (9, 1)
 
 
-async def test_no_more_images_a_second_than_wanted(test, start):
+async def test_max_rate_limits_images_per_second(test, start):
     await start(model="colors", max_rate=10.0)
     recording = test.record("/yolo/detections")
     await test.settle()
@@ -202,7 +202,7 @@ async def test_no_more_images_a_second_than_wanted(test, start):
     assert (message.header.stamp.sec, len(recording)) == (3, 2)
 
 
-async def test_a_broken_image_is_told_of_and_the_next_one_looked_at(test, start):
+async def test_malformed_image_is_reported_and_next_one_is_processed(test, start):
     await start(model="colors")
     recording = test.record("/yolo/detections")
     await test.settle()
@@ -214,14 +214,14 @@ async def test_a_broken_image_is_told_of_and_the_next_one_looked_at(test, start)
     assert classes(await seen(test, recording, "/yolo/image_raw", image())) == ["blue", "red"]
 
 
-async def test_colors_of_ones_own(test, start):
+async def test_custom_colors_are_detected(test, start):
     await start(model="colors", colors={"sky": [95, 110, 50, 130, 255, 255]}, least_area=10.0)
     recording = test.record("/yolo/detections")
     await test.settle()
     assert classes(await seen(test, recording, "/yolo/image_raw", image())) == ["sky"]
 
 
-async def test_as_yolo_ros_with_its_messages_and_its_older_topic(test, start):
+async def test_yolo_ros_messages_and_older_topic_are_supported(test, start):
     await start(YoloRosNode, model="colors", remappings=[("image_raw", "/camera/rgb/image_raw")])
     recording, debug_images = test.record("/yolo/detections"), test.record("/yolo/dbg_image")
     await test.settle()
@@ -250,7 +250,7 @@ async def test_as_yolo_ros_with_its_messages_and_its_older_topic(test, start):
         ),
     ],
 )
-async def test_as_other_packages_name_things(test, start, kind, parameters, topic, output):
+async def test_topics_and_parameters_of_other_packages_are_supported(test, start, kind, parameters, topic, output):
     await start(kind, namespace="/", **parameters)
     recording = test.record(output)
     await test.settle()
@@ -270,7 +270,7 @@ async def test_as_other_packages_name_things(test, start, kind, parameters, topi
         ({"model": "things", "imgsz_width": 320}, "VISION109"),
     ],
 )
-async def test_parameters_that_it_cannot_start_with(test, start, parameters, code):
+async def test_invalid_start_parameters_are_rejected(test, start, parameters, code):
     with pytest.raises(LinkwrightError) as caught:
         await start(**parameters)
     assert [diagnostic.code for diagnostic in caught.value.diagnostics] == [code]
@@ -286,9 +286,7 @@ async def test_parameters_that_it_cannot_start_with(test, start, parameters, cod
         ({"model": "colors", "classes": ["blu"]}, "parameter 'classes' of 'yolo_node' cannot be 'blu'"),
     ],
 )
-async def test_detectors_that_cannot_be_loaded_end_the_node_with_one_error_and_what_to_do(
-    test, start, parameters, words
-):
+async def test_unloadable_detector_ends_node_with_one_error_and_hint(test, start, parameters, words):
     running = await start(**parameters)
     assert running.finished.result() == 1
     logged = [record.text for record in test.log if record.level is LogLevel.FATAL]
@@ -308,7 +306,7 @@ def warnings(test):
     return lambda: [record.text for record in test.log if record.level is LogLevel.WARN]
 
 
-async def test_a_topic_that_nobody_publishes_is_told_once_with_those_that_have_images(test, start, warnings):
+async def test_unpublished_topic_is_reported_once_with_image_topics(test, start, warnings):
     await start(model="colors")
     test.record("/yolo/detections")
     test.record("/yolo/debug_image")
@@ -320,7 +318,7 @@ async def test_a_topic_that_nobody_publishes_is_told_once_with_those_that_have_i
     ]
 
 
-async def test_a_topic_of_another_type_is_told(test, start, warnings):
+async def test_topic_type_mismatch_is_reported(test, start, warnings):
     await start(DarknetRosNode, namespace="/", network={"weights": "colors"}, remappings=[("~/images", "/camera")])
     test.record("/detector_node/detections")
     test.node.create_publisher(get_message(COMPRESSED), "/camera", 1)
@@ -332,7 +330,7 @@ async def test_a_topic_of_another_type_is_told(test, start, warnings):
     ]
 
 
-async def test_qos_that_does_not_fit_is_told(test, start, warnings):
+async def test_incompatible_qos_is_reported(test, start, warnings):
     await start(model="colors", image_reliability=1)
     test.record("/yolo/detections")
     offered = QoSProfile(depth=1, reliability=ReliabilityPolicy.BEST_EFFORT)
@@ -347,7 +345,7 @@ async def test_qos_that_does_not_fit_is_told(test, start, warnings):
     ]
 
 
-async def test_a_camera_that_stops_and_goes_on_is_told_of_and_the_next_time_later(test, start, warnings):
+async def test_stopped_camera_is_reported_and_later_each_time(test, start, warnings):
     await start(model="colors")
     recording = test.record("/yolo/detections")
     await test.settle()
@@ -366,7 +364,7 @@ async def test_a_camera_that_stops_and_goes_on_is_told_of_and_the_next_time_late
     assert warnings() == [stopped(5), stopped(10)]
 
 
-async def test_where_nobody_wants_detections_nothing_is_missed(test, start, warnings):
+async def test_missing_images_are_not_reported_without_subscribers(test, start, warnings):
     await start(model="colors")
     await test.advance(30.0)
     assert warnings() == []
@@ -395,7 +393,7 @@ def slow(monkeypatch):
     made.proceed.set()
 
 
-async def test_the_node_answers_while_its_detector_is_loaded(test, start, slow):
+async def test_node_answers_services_while_detector_loads(test, start, slow):
     running = await start(model="colors", loads=False)
     recording = test.record("/yolo/detections")
     await eventually(slow.begun.is_set)
@@ -413,7 +411,7 @@ async def test_the_node_answers_while_its_detector_is_loaded(test, start, slow):
     assert classes(await seen(test, recording, "/yolo/image_raw", image())) == ["blue", "red"]
 
 
-async def test_classes_that_are_chosen_while_the_detector_is_loaded_count_when_it_is_there(test, start, slow):
+async def test_classes_set_during_loading_apply_after_loading(test, start, slow):
     await start(model="colors", loads=False)
     recording = test.record("/yolo/detections")
     await eventually(slow.begun.is_set)
@@ -429,7 +427,7 @@ async def test_classes_that_are_chosen_while_the_detector_is_loaded_count_when_i
     assert classes(await seen(test, recording, "/yolo/image_raw", image())) == ["red"]
 
 
-async def test_a_node_that_ends_while_its_detector_is_loaded_waits_for_it_and_says_nothing(test, start, monkeypatch):
+async def test_closing_node_waits_silently_for_loading_detector(test, start, monkeypatch):
     main, begun = threading.current_thread(), threading.Event()
 
     def load(model, options):
@@ -457,7 +455,7 @@ class Odd(Detector):
         raise KeyError("odd")
 
 
-async def test_what_a_detector_of_others_raises_is_told_of(test, start, monkeypatch):
+async def test_exception_of_third_party_detector_is_reported(test, start, monkeypatch):
     monkeypatch.setattr(detector, "make_detector", lambda model, options: Odd())
     await start(model="odd")
     test.record("/yolo/detections")

@@ -76,7 +76,7 @@ CUT = """async () => {
 
 
 @pytest.mark.parametrize("locale", ["en-US", "zh-CN"])
-def test_no_text_of_a_control_is_cut(start: Start, browser: Browser, tmp_path, locale: str) -> None:
+def test_control_texts_are_not_clipped(start: Start, browser: Browser, tmp_path, locale: str) -> None:
     (tmp_path / "two.urdf").write_text(ROBOT)
     program = start("view", "two.urdf")
     context = browser.new_context(viewport={"width": 1280, "height": 800}, locale=locale)
@@ -96,9 +96,7 @@ def test_no_text_of_a_control_is_cut(start: Start, browser: Browser, tmp_path, l
 
 
 @pytest.mark.parametrize(("width", "height"), [(800, 600), (390, 844)])
-def test_the_scene_has_half_of_a_small_window(
-    start: Start, browser: Browser, tmp_path, width: int, height: int
-) -> None:
+def test_scene_takes_half_of_small_window(start: Start, browser: Browser, tmp_path, width: int, height: int) -> None:
     (tmp_path / "two.urdf").write_text(ROBOT)
     program = start("view", "two.urdf")
     page = browser.new_page(viewport={"width": width, "height": height}, locale="en-US")
@@ -111,7 +109,7 @@ def test_the_scene_has_half_of_a_small_window(
     page.close()
 
 
-def test_all_of_inspect_is_seen_in_a_low_window(start: Start, browser: Browser, tmp_path) -> None:
+def test_inspect_card_fits_low_window(start: Start, browser: Browser, tmp_path) -> None:
     (tmp_path / "two.urdf").write_text(ROBOT)
     program = start("view", "two.urdf")
     page = browser.new_page(viewport={"width": 800, "height": 600}, locale="en-US")
@@ -124,7 +122,7 @@ def test_all_of_inspect_is_seen_in_a_low_window(start: Start, browser: Browser, 
     page.close()
 
 
-def test_the_row_of_a_link_that_is_clicked_is_seen_above_its_help(start: Start, browser: Browser, tmp_path) -> None:
+def test_row_of_clicked_link_is_visible_above_help(start: Start, browser: Browser, tmp_path) -> None:
     joint = '<joint name="j{0}" type="fixed"><parent link="base_link"/><child link="l{0}"/></joint><link name="l{0}"/>'
     base = '<link name="base_link"/>'
     last = '<link name="z"><visual><geometry><box size="1 1 1"/></geometry></visual></link>'
@@ -150,7 +148,7 @@ def test_the_row_of_a_link_that_is_clicked_is_seen_above_its_help(start: Start, 
     page.close()
 
 
-def test_names_of_a_deep_tree_have_room(start, browser, tmp_path: Path) -> None:
+def test_link_names_in_deep_tree_are_not_clipped(start, browser, tmp_path: Path) -> None:
     names = [f"left_front_leg_segment_{number:02}" for number in range(15)]
     joints = [
         f'<joint name="{child}_joint" type="fixed"><parent link="{parent}"/><child link="{child}"/></joint>'

@@ -5,7 +5,7 @@ from __future__ import annotations
 from tests.places import REPOSITORY
 
 
-def test_each_folder_file_and_test_that_is_named_is_there():
+def test_each_python_list_names_existing_tests():
     lines = (REPOSITORY / "tests" / "each_python.txt").read_text(encoding="utf-8").splitlines()
     for line in filter(None, lines):
         path, _, test = line.partition("::")

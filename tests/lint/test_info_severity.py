@@ -57,7 +57,7 @@ def surface(name, inside="<mu1>1</mu1>"):
         ),
     ],
 )
-def test_the_surface_of_a_part_that_the_robot_lacks_is_an_information(severity_of, gazebo, severity):
+def test_gazebo_surface_of_unknown_link_is_an_info(severity_of, gazebo, severity):
     assert severity_of("LW120", ARM.replace("arm", "arm_link") + ARM + gazebo) == severity
 
 
@@ -68,24 +68,24 @@ def moving(mass):
 
 
 @pytest.mark.parametrize(("mass", "severity"), [("3", "INFO"), ("3.2", "WARNING"), ("20", "WARNING")])
-def test_a_rough_mass_is_no_mistake_in_its_unit(severity_of, mass, severity):
+def test_round_mass_of_small_part_is_an_info(severity_of, mass, severity):
     assert severity_of("LW320", moving(mass)) == severity
 
 
 @pytest.mark.parametrize(("mass", "severity"), [("20.5", "INFO"), ("205", "WARNING")])
-def test_a_base_may_have_ballast(severity_of, mass, severity):
+def test_high_density_of_fixed_part_is_an_info(severity_of, mass, severity):
     assert severity_of("LW320", moving(mass).replace("continuous", "fixed")) == severity
 
 
 @pytest.mark.parametrize(
     ("more", "severity"), [("", "INFO"), (STATES, "INFO"), (DRIVEN, "WARNING"), (PLUGIN, "WARNING")]
 )
-def test_wheels_that_turn_against_each_other_matter_where_something_drives_them(severity_of, more, severity):
+def test_opposing_wheels_are_warning_only_if_driven(severity_of, more, severity):
     assert severity_of("LW643", WHEELS + more) == severity
 
 
 @pytest.mark.parametrize(("triangles", "severity"), [(40_000, "INFO"), (40_001, "WARNING")])
-def test_a_collision_mesh_of_twice_the_triangles_is_a_warning(severity_of, tmp_path, triangles, severity):
+def test_collision_mesh_above_40000_triangles_is_a_warning(severity_of, tmp_path, triangles, severity):
     one = struct.pack("<12fH", *([0.0] * 3), 0, 0, 0, 1, 0, 0, 0, 1, 1, 0)
     (tmp_path / "a.stl").write_bytes(bytes(80) + struct.pack("<I", triangles) + one * triangles)
     mesh = '<link name="a"><collision><geometry><mesh filename="a.stl"/></geometry></collision></link>'
@@ -97,14 +97,14 @@ def test_a_collision_mesh_of_twice_the_triangles_is_a_warning(severity_of, tmp_p
     ("name", "end", "severity"),
     [("imu", 0, "INFO"), ("ft_sensor", 0, "INFO"), ("imu", 1, "WARNING"), ("limuzin", 0, "WARNING")],
 )
-def test_a_joint_that_holds_a_sensor_for_a_simulator_need_not_move(severity_of, name, end, severity):
+def test_locked_sensor_joint_is_an_info(severity_of, name, end, severity):
     joint = f'<joint name="{name}_joint" type="revolute"><parent link="base"/><child link="{name}_link"/>'
     limit = f'<axis xyz="0 0 1"/><limit lower="{end}" upper="{end}" effort="1" velocity="1"/></joint>'
     assert severity_of("LW202", f'<link name="{name}_link"/>{joint}{limit}') == severity
 
 
 @pytest.mark.parametrize(("more", "severity"), [("", "WARNING"), (f"<visual>{BOX}</visual>", "INFO")])
-def test_a_footprint_may_be_the_name_of_the_whole_body(severity_of, more, severity):
+def test_footprint_that_is_whole_body_is_an_info(severity_of, more, severity):
     joint = '<joint name="j" type="fixed"><parent link="base"/><child link="base_footprint"/></joint>'
     link = f'<link name="base_footprint"><collision>{BOX.replace("0.01", "1")}</collision>{more}</link>'
     assert severity_of("LW623", joint + link) == severity
@@ -117,26 +117,26 @@ def test_a_footprint_may_be_the_name_of_the_whole_body(severity_of, more, severi
         ("a.urdf", '<robot name="r"><!-- a -- b --><link name="l"/></robot>', "WARNING"),
     ],
 )
-def test_what_only_simulators_read_need_not_be_good_xml(tmp_path, name, text, severity):
+def test_malformed_xml_comment_in_world_is_an_info(tmp_path, name, text, severity):
     (tmp_path / name).write_text(text)
     found = examine(tmp_path / name, settings=Settings()).diagnostics
     assert [each.severity.name for each in found if each.code == "XML206"] == [severity]
 
 
 @pytest.mark.parametrize(("second", "severity"), [("0.8 0.8 0.8 1", "INFO"), ("0.7 0.7 0.9 1", "WARNING")])
-def test_a_color_that_nobody_tells_from_the_first_of_its_name_is_an_information(severity_of, second, severity):
+def test_similar_color_of_same_material_is_an_info(severity_of, second, severity):
     gray = '<visual>{}<material name="grey"><color rgba="{}"/></material></visual>'
     visuals = "".join(gray.format(BOX, color) for color in ("0.7 0.7 0.7 1", second))
     assert severity_of("LW501", moving("3").replace("<inertial>", visuals + "<inertial>")) == severity
 
 
 @pytest.mark.parametrize(("kind", "severity"), [("fixed", "INFO"), ("continuous", "WARNING")])
-def test_a_description_of_frames_alone_needs_no_shapes(severity_of, kind, severity):
+def test_missing_shapes_of_fixed_frames_are_an_info(severity_of, kind, severity):
     assert severity_of("LW102", ARM.replace("fixed", kind)) == severity
 
 
 @pytest.mark.parametrize(("name", "severity"), [("叶片", "INFO"), ("left arm", "WARNING")])
-def test_letters_beyond_ascii_are_found_where_blanks_are_not(severity_of, name, severity):
+def test_non_ascii_mesh_name_is_an_info_and_blank_is_a_warning(severity_of, name, severity):
     mesh = f'<visual><geometry><mesh filename="package://p/{name}.stl"/></geometry></visual>'
     assert severity_of("LW427", f'{ARM}<link name="b">{mesh}</link>') == severity
 
@@ -151,7 +151,7 @@ def test_letters_beyond_ascii_are_found_where_blanks_are_not(severity_of, name, 
         ("d4_wheel_radios d4_wheel_radius d4_wheel_width", 2, "WARNING"),
     ],
 )
-def test_a_table_of_dimensions_may_be_complete(tmp_path, names, used, severity):
+def test_unused_property_of_dimension_table_is_an_info(tmp_path, names, used, severity):
     first, *others = names.split()
     text = "".join(f'<xacro:property name="{name}" value="0.2"/>' for name in (first, *others))
     links = "".join(f'<link name="l_${{{name}}}_{name}"/>' for name in others[:used])
@@ -162,7 +162,7 @@ def test_a_table_of_dimensions_may_be_complete(tmp_path, names, used, severity):
 
 
 @pytest.mark.parametrize(("depends", "severity"), [("gazebo_ros", "INFO"), ("ros_gz_sim", "WARNING")])
-def test_a_world_named_world_is_fine_for_gazebo_classic(tmp_path, depends, severity):
+def test_world_named_world_is_an_info_for_gazebo_classic(tmp_path, depends, severity):
     manifest = f"<package><name>p</name><exec_depend>{depends}</exec_depend></package>"
     (tmp_path / "package.xml").write_text(manifest)
     (tmp_path / "worlds").mkdir()
@@ -172,7 +172,7 @@ def test_a_world_named_world_is_fine_for_gazebo_classic(tmp_path, depends, sever
 
 
 @pytest.mark.parametrize(("beside", "severity"), [('<mujoco model="r"/>', "INFO"), ("<launch/>", "WARNING")])
-def test_a_description_beside_a_model_for_mujoco_has_relative_addresses(severity_of, tmp_path, beside, severity):
+def test_relative_mesh_path_beside_mujoco_model_is_an_info(severity_of, tmp_path, beside, severity):
     (tmp_path / "package.xml").write_text("<package><name>p</name></package>")
     (tmp_path / "r.xml").write_text(f"<!-- made by hand -->\n{beside}")
     mesh = '<visual><geometry><mesh filename="assets/a.stl"/></geometry></visual>'
@@ -183,7 +183,7 @@ def test_a_description_beside_a_model_for_mujoco_has_relative_addresses(severity
     ("more", "shape", "severity"),
     [("", "", "INFO"), ("<gazebo/>", "", "WARNING"), ("", f"<visual>{BOX}</visual>", "WARNING")],
 )
-def test_what_moves_without_shape_and_simulator_needs_no_inertia(severity_of, more, shape, severity):
+def test_missing_inertial_without_shape_and_simulator_is_an_info(severity_of, more, shape, severity):
     robot = moving("3") + f'<link name="command">{shape}</link>'
     joint = '<joint name="k" type="continuous"><parent link="base"/><child link="command"/></joint>'
     assert severity_of("LW301", robot + joint + more) == severity

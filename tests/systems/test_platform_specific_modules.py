@@ -92,7 +92,7 @@ KNOWN: dict[str, str] = {
 
 
 @pytest.mark.slow  # reads all of the source, which is the same with each Python
-def test_each_module_that_uses_what_one_system_has_is_listed() -> None:
+def test_modules_with_platform_specific_code_are_listed() -> None:
     found = {
         path.relative_to(ROOT).as_posix(): " ".join(sorted(set(used(path)))) for path in sorted(ROOT.rglob("*.py"))
     }
@@ -100,7 +100,7 @@ def test_each_module_that_uses_what_one_system_has_is_listed() -> None:
 
 
 @pytest.mark.parametrize("path", sorted(path for path, names in KNOWN.items() if set(names.split()) & set(MODULES)))
-def test_modules_of_one_system_are_imported_where_they_are_used_only(path: str) -> None:
+def test_platform_specific_modules_are_imported_only_in_functions(path: str) -> None:
     """A module whose head imports one of them cannot be imported elsewhere at all."""
     head = ast.parse((ROOT / path).read_text(encoding="utf-8")).body
     assert not {name for node in head for name in imported(node)} & set(MODULES)

@@ -27,7 +27,7 @@ def _files() -> dict[str, list[str]]:
 
 
 @pytest.mark.parametrize("way", MOST)
-def test_a_way_leads_through_few_files(way: str):
+def test_data_path_uses_few_files(way: str):
     files = _files()[way]
     rooms = Counter(Path(file).parts[0] for file in files)
     listed = "\n".join(files)

@@ -57,7 +57,7 @@ def behind_looks_for_signals(code: CodeType) -> frozenset[int]:
     )
 
 
-def test_an_interrupt_at_any_moment_of_a_wait_is_a_keyboard_interrupt_and_harms_nothing() -> None:
+def test_interrupt_during_wait_raises_keyboard_interrupt_and_keeps_queue() -> None:
     queue = WorkQueue()
     for moment in count(1):
         queue.call_at(2**62, str)
@@ -79,7 +79,7 @@ def test_an_interrupt_at_any_moment_of_a_wait_is_a_keyboard_interrupt_and_harms_
 
 
 @pytest.mark.parametrize("rouse", [lambda queue: queue.add(1), lambda queue: queue.add_first([1]), WorkQueue.wake])
-def test_all_who_wait_are_roused(rouse: Any) -> None:
+def test_wake_notifies_all_waiting_threads(rouse: Any) -> None:
     queue = WorkQueue()
     threads = [threading.Thread(target=queue.wait, args=(None,), daemon=True) for _ in range(3)]
     for thread in threads:
@@ -91,7 +91,7 @@ def test_all_who_wait_are_roused(rouse: Any) -> None:
         assert not thread.is_alive()
 
 
-def test_what_is_ready_does_not_end_the_wait_for_a_wake() -> None:
+def test_ready_work_does_not_end_wait_for_wake() -> None:
     queue = WorkQueue()
     queue.add(1)
     queue.wait_for_wake(0)
@@ -100,7 +100,7 @@ def test_what_is_ready_does_not_end_the_wait_for_a_wake() -> None:
     assert queue.take() == 1
 
 
-def test_an_alarm_that_is_due_before_all_others_shortens_the_wait() -> None:
+def test_earlier_alarm_shortens_wait() -> None:
     queue = WorkQueue()
     thread = threading.Thread(target=queue.wait, args=(None,), daemon=True)
     thread.start()

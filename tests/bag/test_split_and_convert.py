@@ -50,7 +50,7 @@ def whole(topic: str = "/words", count: int = 40) -> list[tuple[str, int, bytes]
 
 
 @pytest.mark.parametrize(("storage", "compression"), FORMS)
-def test_files_of_a_second_each_hold_the_recording_and_the_metadata_list_them(tmp_path, storage, compression) -> None:
+def test_recording_splits_by_duration_and_metadata_lists_files(tmp_path, storage, compression) -> None:
     folder = write(tmp_path / "drive", storage, compression=compression, max_seconds=1)
     suffix = (".mcap" if storage == "mcap" else ".db3") + (".zstd" if compression == "file" else "")
     names = [f"drive_{number}{suffix}" for number in range(4)]
@@ -66,7 +66,7 @@ def test_files_of_a_second_each_hold_the_recording_and_the_metadata_list_them(tm
 
 
 @pytest.mark.parametrize("storage", STORAGES)
-def test_files_are_split_by_their_size(tmp_path, storage) -> None:
+def test_recording_splits_by_size(tmp_path, storage) -> None:
     folder = write(tmp_path / "drive", storage, max_size=150_000)
     sizes = [path.stat().st_size for path in folder.iterdir() if path.suffix in (".mcap", ".db3")]
     assert len(sizes) >= 3
@@ -74,18 +74,18 @@ def test_files_are_split_by_their_size(tmp_path, storage) -> None:
     assert content(folder) == whole()
 
 
-def test_a_single_file_has_the_number_that_rosbag2_gives_it(tmp_path) -> None:
+def test_single_file_is_numbered_like_rosbag2(tmp_path) -> None:
     assert (write(tmp_path / "drive") / "drive_0.mcap").exists()
 
 
 @pytest.mark.parametrize("storage", STORAGES)
-def test_files_smaller_than_rosbag2_allows_are_refused(tmp_path, storage) -> None:
+def test_split_size_below_rosbag2_minimum_is_rejected(tmp_path, storage) -> None:
     with pytest.raises(LinkwrightError, match="cannot be split into files as small as 10 bytes"):
         BagWriter(tmp_path / "drive", storage, max_size=10)
     assert not (tmp_path / "drive").exists()
 
 
-def test_a_snapshot_writes_the_last_messages_that_there_is_room_for(tmp_path) -> None:
+def test_snapshot_writes_last_messages_within_size_limit(tmp_path) -> None:
     with BagWriter(tmp_path / "drive", snapshot_size=3 * len(text(0))) as writer:
         writer.add_topic("/words", "std_msgs/msg/String")
         for number in range(8):
@@ -95,13 +95,13 @@ def test_a_snapshot_writes_the_last_messages_that_there_is_room_for(tmp_path) ->
     assert content(tmp_path / "drive") == whole(count=8)[5:]
 
 
-def test_there_are_no_snapshots_of_an_ordinary_recording(tmp_path) -> None:
+def test_normal_recording_has_no_snapshots(tmp_path) -> None:
     with BagWriter(tmp_path / "drive") as writer:
         assert not writer.take_snapshot()
 
 
 @pytest.mark.parametrize(("storage", "compression"), FORMS)
-def test_metadata_made_anew_are_those_that_were_lost(tmp_path, storage, compression) -> None:
+def test_reindex_restores_metadata(tmp_path, storage, compression) -> None:
     folder = write(tmp_path / "drive", storage, compression=compression, max_seconds=1)
     before = metadata(folder)
     (folder / "metadata.yaml").unlink()
@@ -111,7 +111,7 @@ def test_metadata_made_anew_are_those_that_were_lost(tmp_path, storage, compress
     assert content(folder) == whole()
 
 
-def test_a_killed_recording_of_several_files_is_read_with_metadata_made_anew(tmp_path) -> None:
+def test_reindex_restores_killed_recording_of_several_files(tmp_path) -> None:
     folder = write(tmp_path / "drive", max_seconds=1)
     last = folder / "drive_3.mcap"
     last.write_bytes(last.read_bytes()[:-200])
@@ -121,7 +121,7 @@ def test_a_killed_recording_of_several_files_is_read_with_metadata_made_anew(tmp
         assert [stamp for _, stamp, _ in bag.messages()] == [stamp for _, stamp, _ in whole()]
 
 
-def test_a_folder_without_files_of_a_recording_cannot_be_reindexed(tmp_path) -> None:
+def test_reindex_rejects_folder_without_recording_files(tmp_path) -> None:
     with pytest.raises(LinkwrightError, match="no files of a recording"):
         reindex(tmp_path)
 
@@ -132,7 +132,7 @@ def options(tmp_path: Path, *outputs: dict[str, Any]) -> Path:
     return path
 
 
-def test_recordings_are_merged_by_time_and_divided_by_topics(tmp_path) -> None:
+def test_rewrite_merges_by_time_and_splits_by_topics(tmp_path) -> None:
     one, other = write(tmp_path / "one"), write(tmp_path / "other", "sqlite3", topic="/others", count=10)
     made = rewrite(
         [one, other],
@@ -164,7 +164,7 @@ def test_recordings_are_merged_by_time_and_divided_by_topics(tmp_path) -> None:
         ("output_bags: [", "the recording options in '.*options.yaml' cannot be used: while parsing"),
     ],
 )
-def test_options_of_another_form_are_refused_before_anything_is_made(tmp_path, document, message) -> None:
+def test_malformed_rewrite_options_are_rejected_before_writing(tmp_path, document, message) -> None:
     source = write(tmp_path / "one", count=1)
     path = tmp_path / "options.yaml"
     path.write_text(document, encoding="utf-8")

@@ -40,46 +40,46 @@ def inertial(mass, moment, origin='<origin xyz="0 0 0"/>'):
 
 
 @pytest.mark.parametrize(("inside", "codes"), [("", ["LW102"]), (inertial(1, 1), [])])
-def test_a_model_for_dynamics_needs_no_shapes(codes_of, inside, codes):
+def test_model_with_inertials_needs_no_shapes(codes_of, inside, codes):
     assert codes_of(robot(f'<link name="base"/>{moving("a", inside)}'), "LW102") == codes
 
 
 @pytest.mark.parametrize(
     ("axis", "codes"), [("1.2e-16 0 -1", []), ("1.2e-7 0 -1.0000002", []), ("0.0001 0 -1", ["LW224"])]
 )
-def test_an_axis_that_only_doubles_tilt(codes_of, axis, codes):
+def test_axis_tilted_by_rounding_is_accepted(codes_of, axis, codes):
     assert codes_of(robot(f'<link name="base"/>{moving("a", "", axis=axis)}'), "LW224") == codes
 
 
 @pytest.mark.parametrize(("mass", "codes"), [(0.1, []), (300, ["LW320"])])
-def test_a_small_mass_on_a_small_frame(codes_of, mass, codes):
+def test_small_mass_on_small_frame_is_accepted(codes_of, mass, codes):
     shape = BOX.format(0.0063) + '<collision><geometry><box size="0.0063 0.0063 0.0063"/></geometry></collision>'
     assert codes_of(robot(f'<link name="base"/>{moving("tool", shape + inertial(mass, 1e-6))}'), "LW320") == codes
 
 
 @pytest.mark.parametrize(("origin", "codes"), [("", ["LW323"]), ('<origin xyz="0 0 0"/>', ["LW322"])])
-def test_a_center_of_mass_far_from_its_shapes_is_told_of_once(codes_of, origin, codes):
+def test_center_of_mass_far_from_shapes_is_reported_once(codes_of, origin, codes):
     shape = '<visual><origin xyz="0 0 0.5"/><geometry><box size="0.1 0.1 0.1"/></geometry></visual>'
     inside = shape + inertial(1, 0.002, origin)
     assert codes_of(robot(f'<link name="base"/>{moving("a", inside)}'), "LW322", "LW323") == codes
 
 
 @pytest.mark.parametrize(("moment", "codes"), [("0.002", ["LW315"]), ("0.00{}", ["LW322"] * 3)])
-def test_a_center_of_mass_is_not_told_of_beside_an_inertia_that_was_copied(codes_of, moment, codes):
+def test_center_of_mass_is_not_reported_beside_copied_inertia(codes_of, moment, codes):
     shape = '<visual><origin xyz="0 0 0.{0}"/><geometry><box size="0.1 0.1 0.{0}"/></geometry></visual>'
     links = (moving(f"l{n}", shape.format(n) + inertial(1, moment.format(n))) for n in (4, 5, 6))
     assert codes_of(robot(f'<link name="base"/>{"".join(links)}'), "LW315", "LW322") == codes
 
 
 @pytest.mark.parametrize(("root", "codes"), [("world", []), ("floor", ["LW325"])])
-def test_the_inertia_of_what_is_fixed_to_the_world(codes_of, root, codes):
+def test_inertia_of_link_fixed_to_world_is_accepted(codes_of, root, codes):
     stand = f'<link name="stand">{BOX.format(1)}{inertial(1000, 0.01)}</link>'
     joint = f'<joint name="j" type="fixed"><parent link="{root}"/><child link="stand"/></joint>'
     assert codes_of(robot(f'<link name="{root}"/>{stand}{joint}'), "LW325") == codes
 
 
 @pytest.mark.parametrize(("ignored", "codes"), [("*.obj", ["LW424"]), ("meshes/", []), ("*.stl\n!wheel.stl", [])])
-def test_a_mesh_that_git_ignores(codes_of, ignored, codes):
+def test_missing_mesh_that_git_ignores_is_accepted(codes_of, ignored, codes):
     manifest = "<package format='3'><name>p</name></package>"
     mesh = '<visual><geometry><mesh filename="package://p/meshes/body.stl"/></geometry></visual>'
     files = {"package_dot_xml": manifest, "_dot_gitignore": ignored}
@@ -98,7 +98,7 @@ _HARDWARE = "<hardware><plugin>p/P</plugin></hardware>"
         ("", ["LW124"]),
     ],
 )
-def test_hardware_that_an_argument_chooses(codes_of, inside, codes):
+def test_conditional_hardware_plugin_is_accepted(codes_of, inside, codes):
     control = f'<ros2_control name="c" type="system">{inside}</ros2_control>'
     assert codes_of(robot(f'<link name="base"/>{control}', PREFIX), "LW124", name="r.urdf.xacro") == codes
 
@@ -110,16 +110,16 @@ _PACKAGE = "<package format='3'><name>arm</name><version>0.1.0</version></packag
 @pytest.mark.parametrize(
     ("control", "codes"), [("", ["LW127"]), (f'<ros2_control name="c" type="system">{_HARDWARE}</ros2_control>', [])]
 )
-def test_transmissions_beside_ros2_control(codes_of, control, codes):
+def test_transmissions_beside_ros2_control_are_accepted(codes_of, control, codes):
     assert codes_of(robot(_TRANSMISSION + control), "LW127", package_dot_xml=_PACKAGE) == codes
 
 
-def test_transmissions_of_a_file_in_no_package(codes_of):
+def test_transmissions_outside_package_are_accepted(codes_of):
     assert codes_of(robot(_TRANSMISSION), "LW127") == []
 
 
 @pytest.mark.parametrize(("files", "severity"), [({}, "info"), ({"package.xml": _PACKAGE}, "warning")])
-def test_a_relative_mesh_path_is_a_warning_in_a_package(tmp_path, files, severity):
+def test_relative_mesh_path_is_a_warning_in_package(tmp_path, files, severity):
     path = tmp_path / "r.urdf"
     path.write_text(robot('<link name="a"><visual><geometry><mesh filename="a.stl"/></geometry></visual></link>'))
     for name, text in files.items():
@@ -131,14 +131,14 @@ def test_a_relative_mesh_path_is_a_warning_in_a_package(tmp_path, files, severit
 @pytest.mark.parametrize(
     ("included", "codes"), [("", []), ('<xacro:macro name="laser"><link name="laser"/></xacro:macro>', ["LW704"])]
 )
-def test_an_include_of_a_file_that_is_yet_to_be_filled(codes_of, included, codes):
+def test_include_of_empty_file_is_accepted(codes_of, included, codes):
     text = robot('<xacro:include filename="more.xacro"/><link name="base"/>', PREFIX)
     files = {"more_dot_xacro": f"<robot {PREFIX}>{included}</robot>"}
     assert codes_of(text, "LW704", name="r.urdf.xacro", **files) == codes
 
 
 @pytest.mark.parametrize(("name", "codes"), [("map", ["LW624"]), ("$(arg parent)", [])])
-def test_a_frame_that_the_caller_names(codes_of, name, codes):
+def test_fixed_frame_from_argument_is_accepted(codes_of, name, codes):
     text = robot(f'<xacro:arg name="parent" default="map"/><link name="{name}"/>', PREFIX)
     assert codes_of(text, "LW624", name="r.urdf.xacro") == codes
 
@@ -148,7 +148,7 @@ _ARM = '<xacro:macro name="arm" params="prefix"><link name="${prefix}arm"/></xac
 
 
 @pytest.mark.parametrize(("more", "codes"), [("", ["LW705"]), (_ARM + '<xacro:arm prefix="l_"/>', [])])
-def test_a_parameter_that_other_macros_take_too(codes_of, more, codes):
+def test_unused_parameter_shared_with_other_macros_is_accepted(codes_of, more, codes):
     text = robot(f'{_WHEEL}<xacro:wheel name="w" prefix=""/>{more}', PREFIX)
     assert codes_of(text, "LW705", name="r.urdf.xacro") == codes
 
@@ -157,7 +157,7 @@ def test_a_parameter_that_other_macros_take_too(codes_of, more, codes):
     ("unused", "hint"),
     [("image_px", "use it with ${...}, or remove it"), ("imge_pz", "rename it to 'image_pz', which is used")],
 )
-def test_a_siblings_name_is_not_proposed_for_an_unused_property(tmp_path, unused, hint):
+def test_sibling_name_is_not_suggested_for_unused_property(tmp_path, unused, hint):
     properties = "".join(f'<xacro:property name="{name}" value="1"/>' for name in (unused, "image_pz"))
     (tmp_path / "r.urdf.xacro").write_text(robot(properties + '<link name="l${image_pz}"/>', PREFIX))
     (found,) = examine(tmp_path / "r.urdf.xacro", settings=Settings(select=("LW701",))).diagnostics
@@ -165,7 +165,7 @@ def test_a_siblings_name_is_not_proposed_for_an_unused_property(tmp_path, unused
 
 
 @pytest.mark.parametrize(("frame", "codes"), [("link", []), ("base_lnk", ["LW849"])])
-def test_a_fixed_frame_of_another_robot(tmp_path, frame, codes):
+def test_fixed_frame_of_another_robot_is_accepted(tmp_path, frame, codes):
     (tmp_path / "package.xml").write_text("<package format='3'><name>p</name></package>")
     (tmp_path / "r.urdf").write_text(robot('<link name="base_link"/><link name="link3"/>'))
     (tmp_path / "r.rviz").write_text(f"Visualization Manager:\n  Global Options:\n    Fixed Frame: {frame}\n")
@@ -174,20 +174,20 @@ def test_a_fixed_frame_of_another_robot(tmp_path, frame, codes):
 
 
 @pytest.mark.parametrize(("shape", "codes"), [("", []), ("c", ["LW410"])])
-def test_a_hip_between_parts_with_collisions_needs_none(codes_of, shape, codes):
+def test_link_between_colliding_links_needs_no_collision(codes_of, shape, codes):
     body = BOX.format(0.2) + '<collision><geometry><box size="0.2 0.2 0.2"/></geometry></collision>'
     leg = moving("hip", BOX.format(0.1)) + (moving("thigh", body, "hip") if not shape else moving("thigh", body))
     assert codes_of(robot(f'<link name="base">{body}</link>{leg}'), "LW410") == codes
 
 
-def test_a_visual_without_any_extent_marks_a_place(tmp_path):
+def test_visual_with_zero_size_is_an_info(tmp_path):
     flat = '<visual><geometry><box size="0.1 0 0.1"/></geometry></visual>'
     (tmp_path / "r.urdf").write_text(robot(f'<link name="a">{BOX.format(0)}{flat}</link>'))
     found = examine(tmp_path / "r.urdf", settings=Settings(select=("LW401",))).diagnostics
     assert [each.severity.name for each in found if each.code == "LW401"] == ["INFO", "WARNING"]
 
 
-def test_an_attribute_that_keeps_isaac_gym_from_merging_links_is_known(codes_of):
+def test_dont_collapse_attribute_of_isaac_gym_is_recognized(codes_of):
     joint = (
         '<joint name="j" type="fixed" dont_collapse="true" origin="0 0 0"><parent link="a"/><child link="b"/></joint>'
     )
@@ -195,27 +195,27 @@ def test_an_attribute_that_keeps_isaac_gym_from_merging_links_is_known(codes_of)
 
 
 @pytest.mark.parametrize(("kind", "codes"), [("fixed", ["LW230"]), ("$(arg kind)", [])])
-def test_a_type_that_an_argument_chooses_may_follow_another_time(codes_of, kind, codes):
+def test_mimic_on_joint_with_type_from_argument_is_accepted(codes_of, kind, codes):
     joint = f'<joint name="r" type="{kind}"><parent link="a"/><child link="c"/><mimic joint="j_b"/></joint>'
     text = f'<xacro:arg name="kind" default="fixed"/><link name="a"/>{moving("b", "", "a")}<link name="c"/>{joint}'
     assert codes_of(robot(text, PREFIX), "LW230", name="r.urdf.xacro") == codes
 
 
 @pytest.mark.parametrize(("size", "codes"), [(0.2, []), (8, ["LW321"])])
-def test_a_stray_visual_does_not_make_a_link_too_light(codes_of, size, codes):
+def test_density_follows_collision_beside_large_visual(codes_of, size, codes):
     shape = BOX.format(8) + f'<collision><geometry><box size="{size} {size} {size}"/></geometry></collision>'
     assert codes_of(robot(f'<link name="base"/>{moving("a", shape + inertial(1, 0.0067))}'), "LW321") == codes
 
 
 @pytest.mark.parametrize(("upper", "codes"), [("0", ["LW202"]), ("1", ["LW205", "LW206", "LW222"])])
-def test_a_joint_without_a_range_is_told_of_once(codes_of, upper, codes):
+def test_joint_without_range_is_reported_once(codes_of, upper, codes):
     joint = '<joint name="j" type="revolute"><parent link="a"/><child link="b"/>'
     joint += f'<limit lower="0" upper="{upper}" effort="0" velocity="0"/></joint><gazebo/>'
     assert sorted(codes_of(robot(f'<link name="a"/><link name="b"/>{joint}'), "LW2")) == codes
 
 
 @pytest.mark.parametrize(("tag", "codes"), [("insert_block", ["LW720"]), ("visual", ["LW705"])])
-def test_what_a_tag_without_its_prefix_would_use_is_not_called_unused(codes_of, tag, codes):
+def test_parameter_of_tag_without_prefix_is_not_reported_as_unused(codes_of, tag, codes):
     inside = f'<xacro:macro name="m" params="*origin"><link name="l"/><{tag} name="origin"/></xacro:macro>'
     call = '<xacro:m><origin xyz="0 0 1"/></xacro:m>'
     assert codes_of(robot(inside + call, PREFIX), "LW705", "LW720", name="r.urdf.xacro") == codes
@@ -226,7 +226,7 @@ MANIFEST = """<package format="3"><name>p</name><version>1.0.0</version><descrip
 
 
 @pytest.mark.parametrize(("more", "severity"), [("", "WARNING"), ("<exec_depend>far</exec_depend>", "INFO")])
-def test_meshes_of_a_package_that_is_declared_are_only_not_here(tmp_path, more, severity):
+def test_mesh_of_declared_missing_package_is_an_info(tmp_path, more, severity):
     mesh = '<link name="l"><visual><geometry><mesh filename="package://far/a.stl"/></geometry></visual></link>'
     (tmp_path / "package.xml").write_text(MANIFEST.format(more=more))
     (tmp_path / "r.urdf").write_text(robot(mesh))
@@ -235,7 +235,7 @@ def test_meshes_of_a_package_that_is_declared_are_only_not_here(tmp_path, more, 
 
 
 @pytest.mark.parametrize(("build", "codes"), [("ament_cmake", []), ("ament_python", ["LW827"])])
-def test_cmake_does_not_read_a_setup_py(tmp_path, build, codes):
+def test_setup_py_of_cmake_package_is_ignored(tmp_path, build, codes):
     (tmp_path / "package.xml").write_text(MANIFEST.format(more=f"<export><build_type>{build}</build_type></export>"))
     (tmp_path / "CMakeLists.txt").write_text("project(p)\n")
     (tmp_path / "p").mkdir()
@@ -251,7 +251,7 @@ def test_cmake_does_not_read_a_setup_py(tmp_path, build, codes):
 @pytest.mark.parametrize(
     ("driver", "codes"), [("init(self, webots_node, properties)", []), ("__init__(self, a, b)", ["LW827"])]
 )
-def test_a_driver_that_webots_loads_needs_no_main(tmp_path, driver, codes):
+def test_webots_driver_needs_no_main(tmp_path, driver, codes):
     (tmp_path / "package.xml").write_text(
         MANIFEST.format(more="<export><build_type>ament_python</build_type></export>")
     )
@@ -266,7 +266,7 @@ def test_a_driver_that_webots_loads_needs_no_main(tmp_path, driver, codes):
 
 
 @pytest.mark.parametrize("path", ["sdk", "sdk/cxx"])
-def test_what_a_submodule_would_bring_is_told_with_how_to_get_it(tmp_path, path):
+def test_missing_folder_of_submodule_hints_at_git_submodule_update(tmp_path, path):
     (tmp_path / ".gitmodules").write_text(f'[submodule "{path}"]\n\tpath = {path}\n\turl = x\n')
     (tmp_path / "package.xml").write_text(MANIFEST.format(more=""))
     (tmp_path / "CMakeLists.txt").write_text(
@@ -278,7 +278,7 @@ def test_what_a_submodule_would_bring_is_told_with_how_to_get_it(tmp_path, path)
 
 
 @pytest.mark.parametrize(("ignored", "codes"), [("dist/", []), ("*.log", ["LW824"])])
-def test_what_git_ignores_is_made_before_it_is_installed(tmp_path, ignored, codes):
+def test_missing_installed_folder_that_git_ignores_is_accepted(tmp_path, ignored, codes):
     (tmp_path / ".git").mkdir()
     (tmp_path / ".gitignore").write_text(f"{ignored}\n")
     (tmp_path / "package.xml").write_text(MANIFEST.format(more=""))
@@ -302,7 +302,7 @@ _DOWNLOAD = 'set(net "${PROJECT_SOURCE_DIR}/nets/a.onnx")\nfile(DOWNLOAD "https:
         ("file(MAKE_DIRECTORY ${CMAKE_CURRENT_SOURCE_DIR}/nets)\n", []),
     ],
 )
-def test_what_cmake_makes_is_there_when_it_is_installed(tmp_path, before, codes):
+def test_installed_folder_that_cmake_creates_is_accepted(tmp_path, before, codes):
     (tmp_path / "package.xml").write_text(MANIFEST.format(more=""))
     (tmp_path / "CMakeLists.txt").write_text(
         f"project(p)\nfind_package(ament_cmake REQUIRED)\n{before}"
@@ -321,14 +321,14 @@ def test_what_cmake_makes_is_there_when_it_is_installed(tmp_path, before, codes)
         ("<depend>xacro</depend><test_depend>xacro</test_depend>", []),
     ],
 )
-def test_a_dependency_twice_is_an_information_and_beside_depend_what_catkin_pkg_refuses(tmp_path, lines, message):
+def test_repeated_dependency_is_an_info_or_error_beside_depend(tmp_path, lines, message):
     (tmp_path / "package.xml").write_text(MANIFEST.format(more=lines))
     found = examine_package(tmp_path, Settings(select=("LW809",))).diagnostics
     assert [each.severity.value for each in found] == message
 
 
 @pytest.mark.parametrize("name", ["iCub", "neo-mpo"])
-def test_a_name_that_colcon_takes_is_an_information(tmp_path, name):
+def test_package_name_that_colcon_accepts_is_an_info(tmp_path, name):
     """Whoever published a package cannot rename it."""
     (tmp_path / "package.xml").write_text(MANIFEST.format(more="").replace("<name>p</name>", f"<name>{name}</name>"))
     found = examine_package(tmp_path, Settings(select=("LW805",))).diagnostics
@@ -339,7 +339,7 @@ def test_a_name_that_colcon_takes_is_an_information(tmp_path, name):
     ("text", "message"),
     [("", "info"), ("# from launch import LaunchDescription\n", "info"), ("import launch\n", "warning")],
 )
-def test_a_launch_file_to_be_written_is_an_information(tmp_path, text, message):
+def test_empty_launch_file_is_an_info(tmp_path, text, message):
     (tmp_path / "package.xml").write_text(MANIFEST.format(more=""))
     (tmp_path / "launch").mkdir()
     (tmp_path / "launch" / "a.launch.py").write_text(text)
@@ -356,7 +356,7 @@ def test_a_launch_file_to_be_written_is_an_information(tmp_path, text, message):
     ],
     ids=["pytest", "a module", "neither"],
 )
-def test_what_is_called_as_a_launch_file_and_runs_otherwise_is_none(tmp_path, text, files, count):
+def test_tests_and_modules_named_like_launch_files_are_accepted(tmp_path, text, files, count):
     (tmp_path / "package.xml").write_text(MANIFEST.format(more=""))
     (tmp_path / "p").mkdir()
     for name in ("a_launch.py", *files):
@@ -369,20 +369,20 @@ def test_what_is_called_as_a_launch_file_and_runs_otherwise_is_none(tmp_path, te
     ("value", "codes"),
     [("3.14159265", []), ("${pi/2}", []), ("1.5708", []), ("0.0174533", []), ("57.29578", []), ("3.2", ["LW701"])],
 )
-def test_a_constant_of_mathematics_may_stand_by(codes_of, value, codes):
+def test_unused_mathematical_constant_is_accepted(codes_of, value, codes):
     text = robot(f'<xacro:property name="constant" value="{value}"/><link name="a"/>', PREFIX)
     assert codes_of(text, "LW701", name="r.urdf.xacro") == codes
 
 
 @pytest.mark.parametrize(("default", "codes"), [("^|false", []), ("^", []), ("false", ["LW705"])])
-def test_a_parameter_that_is_taken_from_around_costs_no_call_anything(codes_of, default, codes):
+def test_unused_parameter_with_outer_default_is_accepted(codes_of, default, codes):
     macro = f'<xacro:macro name="m" params="use_sim:={default}"><link name="m"/></xacro:macro>'
     outer = '<xacro:property name="use_sim" value="1"/><joint name="${use_sim}"/>'
     text = robot(f'{outer}<link name="base"/>{macro}<xacro:m/>', PREFIX)
     assert codes_of(text, "LW705", name="r.urdf.xacro") == codes
 
 
-def test_a_bare_call_beside_that_of_the_group_is_for_older_releases(codes_of):
+def test_bare_call_beside_namespaced_call_is_accepted(codes_of):
     chosen = (
         '<xacro:property name="a" value="${xacro.load_yaml(f)}"/><xacro:property name="b" value="${load_yaml(f)}"/>'
     )
@@ -392,7 +392,7 @@ def test_a_bare_call_beside_that_of_the_group_is_for_older_releases(codes_of):
     assert codes_of(robot(f'<link name="base"/>{alone}', PREFIX), "LW714", name="r.urdf.xacro") == ["LW714"]
 
 
-def test_folders_beside_each_other_that_are_not_installed_are_one_finding(tmp_path):
+def test_uninstalled_sibling_folders_are_one_finding(tmp_path):
     (tmp_path / "package.xml").write_text(MANIFEST.format(more="").replace("ament_cmake", "ament_python"))
     (tmp_path / "setup.py").write_text(
         "from setuptools import setup\n\nsetup(name='p', packages=['p'], data_files=[('share/p', ['package.xml'])])\n"
@@ -407,7 +407,7 @@ def test_folders_beside_each_other_that_are_not_installed_are_one_finding(tmp_pa
 
 
 @pytest.mark.parametrize(("needs", "codes"), [("q", ["LW724"]), ("p", []), ("helper", [])])
-def test_a_package_that_depends_on_this_one_cannot_be_declared(tmp_path, needs, codes):
+def test_circular_dependency_is_not_requested(tmp_path, needs, codes):
     depend = "<exec_depend>{}</exec_depend>"
     for name, more in (("p", ""), ("q", depend.format(needs)), ("helper", depend.format("p"))):
         (tmp_path / name).mkdir()
@@ -435,7 +435,7 @@ def test_a_package_that_depends_on_this_one_cannot_be_declared(tmp_path, needs, 
         ("<visual acme_layer='2'><geometry><sphere radius='1'/></geometry></visual>", []),
     ],
 )
-def test_names_that_are_of_no_format_are_a_vendors_own(codes_of, inside, codes):
+def test_vendor_elements_and_attributes_are_accepted(codes_of, inside, codes):
     assert codes_of(robot(f'<link name="base">{inside}</link>'), "LW107", "LW108") == codes
 
 
@@ -443,7 +443,7 @@ def test_names_that_are_of_no_format_are_a_vendors_own(codes_of, inside, codes):
     ("lower", "upper", "codes"),
     [(-0.01, 0.088, []), (-0.01, 0.1, ["LW240", "LW240"]), (-0.01, 0.09, ["LW240"]), (-0.05, 0.088, ["LW240"])],
 )
-def test_a_gripper_that_presses_has_no_soft_limit_where_it_is_closed(codes_of, lower, upper, codes):
+def test_small_soft_limit_overrun_of_gripper_is_accepted(codes_of, lower, upper, codes):
     soft = f'soft_lower_limit="{lower}" soft_upper_limit="{upper}"'
     limits = f'<limit lower="0" upper="0.09" effort="1" velocity="1"/><safety_controller k_velocity="1" {soft}/>'
     joint = f'<joint name="j" type="prismatic"><parent link="base"/><child link="a"/>{limits}</joint>'
@@ -457,7 +457,7 @@ def test_a_gripper_that_presses_has_no_soft_limit_where_it_is_closed(codes_of, l
         ("0 0 0", "give visuals and collisions the same"),
     ],
 )
-def test_a_mesh_off_its_own_origin_needs_another_origin_for_its_collision(tmp_path, origin, hint):
+def test_collision_apart_hint_names_center_of_offset_mesh(tmp_path, origin, hint):
     corners = "".join(f"vertex {corner}\n" for corner in ("1 2 3", "1.1 2 3", "1 2 3.1"))
     (tmp_path / "a.stl").write_text(f"solid a\nfacet normal 0 1 0\nouter loop\n{corners}endloop\nendfacet\nendsolid\n")
     seen = '<visual><origin xyz="0 0 0.1"/><geometry><mesh filename="a.stl"/></geometry></visual>'
@@ -468,7 +468,7 @@ def test_a_mesh_off_its_own_origin_needs_another_origin_for_its_collision(tmp_pa
 
 
 @pytest.mark.parametrize(("size", "codes"), [(60, ["LW433"]), (40, ["LW412", "LW413"])])
-def test_a_mesh_in_millimeters_is_told_of_once(codes_of, size, codes):
+def test_mesh_in_millimeters_is_reported_once(codes_of, size, codes):
     facet = f"facet normal 0 0 1\nouter loop\nvertex 5 0 0\nvertex {5 + size} 0 0\nvertex 5 {size} 0\nendloop\nendfacet"
     seen = '<visual><geometry><mesh filename="a.stl"/></geometry></visual>'
     felt = '<collision><geometry><box size="0.1 0.1 0.1"/></geometry></collision>'
@@ -478,7 +478,7 @@ def test_a_mesh_in_millimeters_is_told_of_once(codes_of, size, codes):
 
 
 @pytest.mark.parametrize(("far", "codes"), [(25, ["LW405"]), (2.5, ["LW412"])])
-def test_a_shape_that_is_far_away_is_told_of_once(codes_of, far, codes):
+def test_far_shape_is_reported_once(codes_of, far, codes):
     seen = f'<visual><origin xyz="{far} 0 0"/><geometry><box size="1 1 1"/></geometry></visual>'
     felt = '<collision><geometry><box size="1 1 1"/></geometry></collision>'
     assert codes_of(robot(f'<link name="a">{seen}{felt}</link>'), "LW405", "LW412") == codes
@@ -488,7 +488,7 @@ def test_a_shape_that_is_far_away_is_told_of_once(codes_of, far, codes):
     ("part", "codes"),
     [('<ros2_control name="c" type="system"/>', ["LINT302"]), ('<gazebo reference="a"/>', ["URDF106"])],
 )
-def test_the_ros2_control_of_a_robot_may_stand_alone(codes_of, part, codes):
+def test_separate_ros2_control_file_is_not_missing_links(codes_of, part, codes):
     assert codes_of(robot(part, PREFIX), "LINT302", "URDF106", name="r.urdf.xacro") == codes
 
 
@@ -499,7 +499,7 @@ def test_the_ros2_control_of_a_robot_may_stand_alone(codes_of, part, codes):
         ("/opt/ros/humble/lib/base.stl", "write 'package://PACKAGE/PATH'"),
     ],
 )
-def test_the_folder_of_a_distribution_is_told_of_once(tmp_path, address, hint):
+def test_mesh_path_in_ros_installation_is_reported_once(tmp_path, address, hint):
     path = tmp_path / "r.urdf"
     mesh = f'<visual><geometry><mesh filename="{address}"/></geometry></visual>'
     path.write_text(robot(f'<link name="a">{mesh}</link>'))
@@ -516,7 +516,7 @@ def test_the_folder_of_a_distribution_is_told_of_once(tmp_path, address, hint):
         ("a.urdf", "", "WARNING"),
     ],
 )
-def test_settings_that_no_launch_file_reads_are_not_missed(tmp_path, file, launch, severity):
+def test_uninstalled_file_that_no_launch_file_reads_is_an_info(tmp_path, file, launch, severity):
     (tmp_path / "package.xml").write_text(MANIFEST.format(more=""))
     (tmp_path / "CMakeLists.txt").write_text(
         "project(p)\nfind_package(ament_cmake REQUIRED)\n"
@@ -542,7 +542,7 @@ def test_settings_that_no_launch_file_reads_are_not_missed(tmp_path, file, launc
         ("('share/p', ['p/driver.py'])", ["LW844"]),
     ],
 )
-def test_a_program_that_setup_py_copies_is_an_executable(tmp_path, data, codes):
+def test_program_in_data_files_is_an_executable(tmp_path, data, codes):
     (tmp_path / "package.xml").write_text(
         MANIFEST.format(more="<export><build_type>ament_python</build_type></export>")
     )
@@ -562,7 +562,7 @@ def test_a_program_that_setup_py_copies_is_an_executable(tmp_path, data, codes):
 
 
 @pytest.mark.parametrize("big", ["a", "b"])
-def test_of_two_parts_that_are_not_connected_one_is_told(codes_of, big):
+def test_disconnected_parts_are_reported_once(codes_of, big):
     text = robot(f'<link name="a"/><link name="b"/>{moving("c", "", parent=big)}')
     assert codes_of(text, "LW103", "URDF152") == ["URDF152"]
 
@@ -576,7 +576,7 @@ def test_of_two_parts_that_are_not_connected_one_is_told(codes_of, big):
         ("xacro_add_files(urdf/base.urdf.xacro TARGET t)", "ERROR"),
     ],
 )
-def test_a_file_that_the_build_makes_is_not_missing(tmp_path, cmake, severity):
+def test_missing_include_that_build_generates_is_an_info(tmp_path, cmake, severity):
     (tmp_path / "package.xml").write_text(MANIFEST.format(more=""))
     (tmp_path / "CMakeLists.txt").write_text(f"project(p)\n{cmake}\n")
     (tmp_path / "urdf").mkdir()
@@ -587,7 +587,7 @@ def test_a_file_that_the_build_makes_is_not_missing(tmp_path, cmake, severity):
 
 
 @pytest.mark.parametrize(("name", "severity"), [("urdf/arm.xacro", "WARNING"), ("urdf/leg.xacro", "ERROR")])
-def test_a_file_that_another_program_finds_from_the_packages_folder(tmp_path, name, severity):
+def test_include_relative_to_package_folder_is_a_warning(tmp_path, name, severity):
     (tmp_path / "package.xml").write_text(MANIFEST.format(more=""))
     (tmp_path / "urdf").mkdir()
     (tmp_path / "urdf/arm.xacro").write_text("<robot/>")
@@ -600,7 +600,7 @@ def test_a_file_that_another_program_finds_from_the_packages_folder(tmp_path, na
     assert ("write 'arm.xacro'" in (found.hint or "")) is (severity == "WARNING")
 
 
-def test_files_that_another_program_finds_from_the_packages_folder_are_one_finding_for_each_that_includes_them(
+def test_includes_relative_to_package_folder_are_one_finding_per_file(
     tmp_path,
 ):
     (tmp_path / "package.xml").write_text(MANIFEST.format(more=""))
@@ -619,7 +619,7 @@ def test_files_that_another_program_finds_from_the_packages_folder_are_one_findi
 
 
 @pytest.mark.parametrize("declaring", ["p", "beside"])
-def test_a_package_of_meshes_that_a_package_beside_declares_is_only_not_here(tmp_path, declaring):
+def test_mesh_package_declared_by_sibling_package_is_an_info(tmp_path, declaring):
     for name in ("p", "beside"):
         (tmp_path / name).mkdir()
         more = "<exec_depend>arm_description</exec_depend>" if name == declaring else ""
@@ -631,7 +631,7 @@ def test_a_package_of_meshes_that_a_package_beside_declares_is_only_not_here(tmp
     assert [each.severity.name for each in found if each.code == "LW423"] == ["INFO", "WARNING"]
 
 
-def test_what_an_include_that_is_not_here_may_define_is_not_missing(codes_of):
+def test_material_is_not_reported_beside_missing_include(codes_of):
     colored = '<visual><geometry><box size="1 1 1"/></geometry><material name="dark"/></visual>'
     include = '<xacro:include filename="$(find far_description)/colors.xacro"/>'
     link = f'<link name="a">{colored}</link>'
@@ -640,16 +640,16 @@ def test_what_an_include_that_is_not_here_may_define_is_not_missing(codes_of):
 
 
 @pytest.mark.parametrize(("more", "codes"), [("", ["LW102"]), ('<ros2_control name="c" type="system"/>', [])])
-def test_hardware_on_a_bench_has_no_shapes(codes_of, more, codes):
+def test_robot_with_ros2_control_needs_no_shapes(codes_of, more, codes):
     assert codes_of(robot(f'<link name="base"/>{moving("a", "")}{more}'), "LW102") == codes
 
 
 @pytest.mark.parametrize(("xyz", "codes"), [("0 0 0", []), ("0 0 1", ["LW105"])])
-def test_an_origin_that_would_move_nothing(codes_of, xyz, codes):
+def test_misplaced_zero_origin_is_accepted(codes_of, xyz, codes):
     assert codes_of(robot(f'<link name="base"><origin xyz="{xyz}" rpy="0 0 0"/></link>'), "LW105") == codes
 
 
-def test_a_misplaced_element_belongs_where_it_stands_nearly(tmp_path):
+def test_misplaced_material_hint_names_visual(tmp_path):
     (tmp_path / "r.urdf").write_text(robot('<link name="base"><material name="red"/></link>'))
     (found,) = examine(tmp_path / "r.urdf", settings=Settings(select=("LW105",))).diagnostics
     assert found.hint == "put it directly in <visual>"
@@ -663,12 +663,12 @@ def test_a_misplaced_element_belongs_where_it_stands_nearly(tmp_path):
         (f'<link name="base"/>{moving("rock", BOX.format(1) + inertial(0, 0))}', ["LW302"]),
     ],
 )
-def test_scenery_of_one_link_never_moves(codes_of, text, codes):
+def test_zero_mass_of_single_link_is_accepted(codes_of, text, codes):
     assert codes_of(robot(text), "LW302") == codes
 
 
 @pytest.mark.parametrize(("second", "count"), [(1.0, 1), (2.0, 2)])
-def test_an_inertia_that_is_too_large_on_many_links_is_told_of_once(codes_of, second, count):
+def test_equal_too_large_inertias_are_reported_once(codes_of, second, count):
     fingers = moving("a", BOX.format(0.01) + inertial(0.01, 1.0)) + moving(
         "b", BOX.format(0.02) + inertial(0.01, second)
     )
@@ -676,14 +676,14 @@ def test_an_inertia_that_is_too_large_on_many_links_is_told_of_once(codes_of, se
 
 
 @pytest.mark.parametrize(("call", "codes"), [("<!-- <xacro:m/> -->", []), ("<!-- <xacro:n/> -->", ["LW704"])])
-def test_an_include_whose_call_is_switched_off(codes_of, call, codes):
+def test_include_with_commented_out_call_is_accepted(codes_of, call, codes):
     part = f'<robot {PREFIX}><xacro:macro name="m"><link name="m"/></xacro:macro></robot>'
     text = robot(f'<link name="base"/><xacro:include filename="part.xacro"/>{call}', PREFIX)
     assert codes_of(text, "LW704", name="r.urdf.xacro", part_dot_xacro=part) == codes
 
 
 @pytest.mark.parametrize(("body", "codes"), [("", []), ('<link name="m"/>', ["LW705"])])
-def test_an_empty_macro_takes_what_those_take_that_it_stands_for(codes_of, body, codes):
+def test_unused_parameter_of_empty_macro_is_accepted(codes_of, body, codes):
     macro = f'<xacro:macro name="m" params="sim">{body}</xacro:macro><xacro:m sim="1"/>'
     assert codes_of(robot(f'<link name="base"/>{macro}', PREFIX), "LW705", name="r.urdf.xacro") == codes
 
@@ -691,7 +691,7 @@ def test_an_empty_macro_takes_what_those_take_that_it_stands_for(codes_of, body,
 @pytest.mark.parametrize(
     ("name", "hint"), [("robot_description", False), ("my_robot_descripton", True)], ids=["another", "misspelled"]
 )
-def test_a_package_of_ours_is_proposed_for_its_own_name_alone(tmp_path, name, hint):
+def test_shipped_package_is_suggested_only_for_misspelled_name(tmp_path, name, hint):
     mesh = f'<link name="l"><visual><geometry><mesh filename="package://{name}/a.stl"/></geometry></visual></link>'
     (tmp_path / "r.urdf").write_text(robot(mesh))
     (found,) = (diagnostic for diagnostic in examine(tmp_path / "r.urdf").diagnostics if diagnostic.code == "LW423")
@@ -699,7 +699,7 @@ def test_a_package_of_ours_is_proposed_for_its_own_name_alone(tmp_path, name, hi
 
 
 @pytest.mark.parametrize(("there", "codes"), [("launch/sensors.launch.py", []), ("launch/other.launch.py", ["LW842"])])
-def test_a_file_that_is_in_the_sources_but_not_in_an_old_build(tmp_path, there, codes):
+def test_launched_file_missing_only_from_old_build_is_accepted(tmp_path, there, codes):
     for name in ("p", "q"):
         (tmp_path / "src" / name / "launch").mkdir(parents=True)
         manifest = MANIFEST.format(more="").replace("<name>p<", f"<name>{name}<")
@@ -719,7 +719,7 @@ def test_a_file_that_is_in_the_sources_but_not_in_an_old_build(tmp_path, there, 
 
 
 @pytest.mark.parametrize(("izz", "codes"), [(1, ["LW324"]), (3, ["LW314"])])
-def test_an_inertia_that_no_body_has_is_not_called_too_large_as_well(codes_of, izz, codes):
+def test_impossible_inertia_is_not_reported_as_too_large(codes_of, izz, codes):
     part = moving("a", BOX.format(0.1) + inertial(0.1, 1).replace('izz="1"', f'izz="{izz}"'))
     assert codes_of(robot(f'<link name="base"/>{part}'), "LW314", "LW324") == codes
 
@@ -732,7 +732,7 @@ def test_an_inertia_that_no_body_has_is_not_called_too_large_as_well(codes_of, i
         ("base", "prismatic", ["LW324"]),
     ],
 )
-def test_the_inertia_of_what_only_slides_on_the_world_does_nothing(codes_of, root, kind, codes):
+def test_inertia_of_link_that_slides_on_world_is_accepted(codes_of, root, kind, codes):
     part = moving("cart", BOX.format(0.1) + inertial(0.1, 1), parent=root).replace("continuous", kind)
     part = part.replace("</joint>", '<limit lower="0" upper="1" effort="1" velocity="1"/></joint>')
     assert codes_of(robot(f'<link name="{root}"/>{part}'), "LW322", "LW324") == codes
@@ -742,7 +742,7 @@ def test_the_inertia_of_what_only_slides_on_the_world_does_nothing(codes_of, roo
     ("lower", "upper", "count"),
     [("-100", "100", 0), ("-1000.0", "1e3", 0), ("0", "100", 1), ("-120", "120", 2), ("-100", "1000", 2)],
 )
-def test_a_round_limit_to_both_sides_of_a_slide_means_no_end(codes_of, lower, upper, count):
+def test_symmetric_round_limits_of_prismatic_joint_are_accepted(codes_of, lower, upper, count):
     slide = moving("cart", "").replace("continuous", "prismatic")
     limit = f'<limit lower="{lower}" upper="{upper}" effort="1" velocity="1"/></joint>'
     assert codes_of(robot(f'<link name="base"/>{slide.replace("</joint>", limit)}'), "LW213") == ["LW213"] * count
@@ -758,14 +758,14 @@ WHEEL = """<link name="{0}_wheel"><visual><origin rpy="1.5707963 0 0"/>
 
 
 @pytest.mark.parametrize(("axis", "codes"), [("0 1 0", []), ("0 0 1", ["LW390"])])
-def test_wheels_on_a_rocker_find_the_ground_by_themselves(codes_of, axis, codes):
+def test_wheels_on_rocker_need_not_be_level(codes_of, axis, codes):
     wheels = WHEEL.format("front", "rocker", 0.2, 0) + WHEEL.format("rear", "base", -0.2, 0.05)
     rocker = ROVER.format(rocker="rocker", axis=axis)
     assert codes_of(robot(f'<link name="base"/>{rocker}{wheels}'), "LW390") == codes
 
 
 @pytest.mark.parametrize(("between", "codes"), [(False, ["LW641"]), (True, [])])
-def test_what_carries_wheels_is_no_wheel(codes_of, between, codes):
+def test_link_that_carries_wheel_is_not_a_wheel(codes_of, between, codes):
     carrier = ROVER.replace('name="rocker"', 'name="left_wheel_connector"').format(
         rocker="left_wheel_connector", axis="0 1 0"
     )
@@ -776,12 +776,12 @@ def test_what_carries_wheels_is_no_wheel(codes_of, between, codes):
 
 
 @pytest.mark.parametrize(("parent", "codes"), [("world", []), ("base", ["LW226"])])
-def test_a_robot_may_stand_anywhere_in_its_world(codes_of, parent, codes):
+def test_far_origin_of_joint_from_world_is_accepted(codes_of, parent, codes):
     joint = f'<joint name="j" type="fixed"><origin xyz="33 17 2"/><parent link="{parent}"/><child link="a"/></joint>'
     assert codes_of(robot(f'<link name="{parent}"/><link name="a"/>{joint}'), "LW226") == codes
 
 
-def test_of_two_joints_with_one_name_it_is_not_told_that_their_link_has_two(codes_of):
+def test_duplicate_joint_name_hides_second_parent_finding(codes_of):
     joint = '<joint name="{}" type="fixed"><parent link="base"/><child link="a"/></joint>'
     links = '<link name="base"/><link name="a"/>'
     assert codes_of(robot(links + joint.format("j") + joint.format("j")), "URDF1") == ["URDF110"]

@@ -18,7 +18,7 @@ from tests.waiting import eventually
         ("zh", "左转", "我听到了声音，但不是任何命令，最接近的是“左转”"),
     ],
 )
-async def test_who_held_the_button_is_told_once_that_it_was_no_command(engine, talk, language, nearest, answer):
+async def test_unknown_speech_during_press_is_answered_once(engine, talk, language, nearest, answer):
     robot = talk(engine="told", language=language)
     await robot.hold(True)
     await robot.say(final(""), final("forward", 0.2))
@@ -31,7 +31,7 @@ async def test_who_held_the_button_is_told_once_that_it_was_no_command(engine, t
 
 @pytest.mark.parametrize("heard", [final("forward"), final("forward", 0.4), partial("stop"), final("stop", 0.1)])
 @pytest.mark.parametrize("is_first", [True, False])
-async def test_who_was_understood_or_answered_is_not_told_of_what_else_was_heard(engine, talk, heard, is_first):
+async def test_answered_press_does_not_report_unknown_speech(engine, talk, heard, is_first):
     robot = talk(engine="told")
     await robot.hold(True)
     await robot.say(*((heard, final("")) if is_first else (final(""), heard)))
@@ -43,7 +43,7 @@ async def test_who_was_understood_or_answered_is_not_told_of_what_else_was_heard
     assert robot.said["response"] == answers
 
 
-async def test_of_a_press_with_a_gap_anywhere_it_is_asked_for_again(engine, talk):
+async def test_press_with_gap_asks_to_repeat(engine, talk):
     robot = talk(engine="told")
     await robot.hold(True)
     for each in range(5):
@@ -55,7 +55,7 @@ async def test_of_a_press_with_a_gap_anywhere_it_is_asked_for_again(engine, talk
     assert robot.said["response"] == ["I did not hear all of that, please repeat"]
 
 
-async def test_each_press_is_answered_by_itself_however_late_the_engine_is(engine, talk):
+async def test_presses_are_answered_separately_by_slow_engine(engine, talk):
     robot = talk(engine="told")
     engine.says_at_end.append(final(""))
     for held in (True, False, True, False):
@@ -70,7 +70,7 @@ async def test_each_press_is_answered_by_itself_however_late_the_engine_is(engin
     assert len(robot.said["response"]) == 2
 
 
-async def test_who_listens_to_all_does_not_tell_what_is_no_command(engine, talk):
+async def test_open_listening_does_not_report_unknown_speech(engine, talk):
     robot = talk(engine="told", open_listening=True)
     await robot.say(final(""))
     await robot.hold(True)
@@ -81,7 +81,7 @@ async def test_who_listens_to_all_does_not_tell_what_is_no_command(engine, talk)
     assert robot.said["response"] == []
 
 
-def missed(presses, times):
+def fail_presses(presses, times):
     answers = []
     for _ in range(times):
         presses.begin()
@@ -90,28 +90,28 @@ def missed(presses, times):
     return answers
 
 
-def test_after_three_presses_without_a_command_enrolling_is_proposed():
-    assert missed(ButtonPresses(can_enroll=True), 7) == [False, False, True, False, False, True, False]
-    assert missed(ButtonPresses(), 6) == [False] * 6
+def test_enrolling_is_proposed_after_three_failed_presses():
+    assert fail_presses(ButtonPresses(can_enroll=True), 7) == [False, False, True, False, False, True, False]
+    assert fail_presses(ButtonPresses(), 6) == [False] * 6
 
 
-def test_a_command_between_them_begins_the_count_anew():
+def test_command_resets_count_of_failed_presses():
     presses = ButtonPresses(can_enroll=True)
-    missed(presses, 2)
+    fail_presses(presses, 2)
     presses.begin()
     presses.record_command()
     presses.end()
-    assert missed(presses, 3) == [False, False, True]
+    assert fail_presses(presses, 3) == [False, False, True]
 
 
-def test_the_proposal_stands_until_the_next_press_or_command():
+def test_proposal_lasts_until_next_press_or_command():
     presses = ButtonPresses(can_enroll=True)
-    missed(presses, 3)
+    fail_presses(presses, 3)
     assert presses.proposes_enrolling
     presses.begin()
     assert not presses.proposes_enrolling
     presses.end()
-    missed(presses, 3)
+    fail_presses(presses, 3)
     presses.record_command()
     assert not presses.proposes_enrolling
 
@@ -121,9 +121,7 @@ def test_the_proposal_stands_until_the_next_press_or_command():
     [({}, [True, False]), ({"words_file": "/words.json"}, []), ({"open_listening": True}, [])],
     ids=["usual file", "a file that pages do not write", "listens to all"],
 )
-async def test_pages_are_told_when_enrolling_is_proposed_and_when_no_longer(
-    engine, talk, stage, monkeypatch, parameters, proposed
-):
+async def test_enrolling_proposal_is_published_and_withdrawn(engine, talk, stage, monkeypatch, parameters, proposed):
     monkeypatch.setattr("linkwright.speech.engine.extensions", lambda group: {"enrolled": ENTRY})
     messages = []
     stage.node.create_subscription(BOOL, "/voice/propose_enrolling", lambda message: messages.append(message.data), 10)

@@ -26,18 +26,18 @@ def model(tmp_path: Path) -> Path:
     return path
 
 
-def test_every_program_of_the_shell_is_one_of_these() -> None:
+def test_shell_programs_match_tools() -> None:
     assert {word for _, word in PROGRAMS.values() if word} == set(TOOLS)
 
 
-def test_ros2_lists_its_commands(capsys: pytest.CaptureFixture[str]) -> None:
+def test_ros2_help_lists_commands(capsys: pytest.CaptureFixture[str]) -> None:
     assert main("ros2", []) == 0
     listed = {line.split()[0] for line in capsys.readouterr().out.splitlines() if line.startswith("  ")}
     assert listed == set(COMMANDS)
 
 
 @pytest.mark.parametrize("name", COMMANDS)
-def test_each_command_of_ros2_explains_itself_under_that_name(name: str, capsys: pytest.CaptureFixture[str]) -> None:
+def test_ros2_command_help_shows_ros2_usage(name: str, capsys: pytest.CaptureFixture[str]) -> None:
     assert main("ros2", [name, "-h"]) == 0
     assert capsys.readouterr().out.startswith("usage: ros2 ")
 
@@ -45,17 +45,17 @@ def test_each_command_of_ros2_explains_itself_under_that_name(name: str, capsys:
 @pytest.mark.parametrize(
     ("word", "message"), [("lunch", "launch"), ("security", "real ROS 2"), ("xyzzy", "`ros2 --help`")]
 )
-def test_what_ros2_does_not_have(word: str, message: str, capsys: pytest.CaptureFixture[str]) -> None:
+def test_unknown_ros2_command_suggests_alternative(word: str, message: str, capsys: pytest.CaptureFixture[str]) -> None:
     assert main("ros2", [word]) == 2
     assert message in capsys.readouterr().err
 
 
-def test_an_option_for_buffering_is_accepted(capsys: pytest.CaptureFixture[str]) -> None:
+def test_python_default_buffering_option_is_accepted(capsys: pytest.CaptureFixture[str]) -> None:
     assert main("ros2", ["--use-python-default-buffering", "pkg", "list"]) == 0
     assert "my_robot_description" in capsys.readouterr().out.splitlines()
 
 
-def test_check_urdf_prints_the_tree(model: Path, capsys: pytest.CaptureFixture[str]) -> None:
+def test_check_urdf_prints_tree(model: Path, capsys: pytest.CaptureFixture[str]) -> None:
     assert main("check_urdf", [str(model)]) == 0
     assert capsys.readouterr().out == (
         "robot name is: cart\n"
@@ -65,7 +65,7 @@ def test_check_urdf_prints_the_tree(model: Path, capsys: pytest.CaptureFixture[s
     )
 
 
-def test_check_urdf_refuses_what_urdfdom_refuses(model: Path, capsys: pytest.CaptureFixture[str]) -> None:
+def test_check_urdf_rejects_model_rejected_by_urdfdom(model: Path, capsys: pytest.CaptureFixture[str]) -> None:
     model.write_text(MODEL.replace('child link="wheel"', 'child link="whel"'))
     assert main("check_urdf", [str(model)]) == 255
     output = capsys.readouterr()
@@ -74,12 +74,12 @@ def test_check_urdf_refuses_what_urdfdom_refuses(model: Path, capsys: pytest.Cap
     assert "whel" in output.err
 
 
-def test_check_urdf_of_a_file_that_is_not_there(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+def test_check_urdf_reports_missing_file(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     assert main("check_urdf", [str(tmp_path / "none.urdf")]) == 255
     assert "none.urdf" in capsys.readouterr().err
 
 
-def test_check_urdf_without_a_file(capsys: pytest.CaptureFixture[str]) -> None:
+def test_check_urdf_requires_file(capsys: pytest.CaptureFixture[str]) -> None:
     assert main("check_urdf", []) == 255
     assert capsys.readouterr().err == "Expect URDF xml file to parse\n"
 
@@ -95,18 +95,18 @@ def test_urdf_to_graphviz_writes_both_files(
     assert (tmp_path / "other.gv").exists()
 
 
-def test_urdf_to_graphviz_without_a_file(capsys: pytest.CaptureFixture[str]) -> None:
+def test_urdf_to_graphviz_requires_file(capsys: pytest.CaptureFixture[str]) -> None:
     assert main("urdf_to_graphviz", []) == 255
     assert "Usage: urdf_to_graphviz" in capsys.readouterr().err
 
 
-def test_xacro_expands(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+def test_xacro_expands_file(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     path = tmp_path / "cart.xacro"
     path.write_text('<robot name="cart" xmlns:xacro="http://www.ros.org/wiki/xacro"><link name="${1 + 1}"/></robot>')
     assert main("xacro", [str(path)]) == 0
     assert '<link name="2"/>' in capsys.readouterr().out
 
 
-def test_xacro_is_called_xacro(capsys: pytest.CaptureFixture[str]) -> None:
+def test_xacro_usage_shows_program_name(capsys: pytest.CaptureFixture[str]) -> None:
     assert main("xacro", ["-h"]) == 0
     assert capsys.readouterr().out.startswith("usage: xacro ")

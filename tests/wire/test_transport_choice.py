@@ -44,20 +44,22 @@ def installed(monkeypatch):
         (["cyclonedds", "zenoh", "xxhash"], {**ASKED, "LINKWRIGHT_DDS": "0"}, ZENOH, False),
     ],
 )
-def test_the_variable_of_ros_chooses_and_then_what_is_installed(installed, packages, variables, chosen, is_there):
+def test_rmw_implementation_selects_transport_before_installed_packages(
+    installed, packages, variables, chosen, is_there
+):
     installed(*packages)
     assert middleware(variables) == chosen
     assert available(variables) is is_there
 
 
-def test_what_is_missing_is_named(installed):
+def test_missing_packages_are_reported(installed):
     installed()
     assert f"neither DDS nor Zenoh is installed: {install_hint('zenoh')}, or with 'dds'" in unavailable_reason({})
     assert "the package 'eclipse-zenoh' is not installed" in unavailable_reason(ASKED)
     assert "the package 'cyclonedds' is not installed" in unavailable_reason({"RMW_IMPLEMENTATION": CYCLONE})
 
 
-def test_a_process_with_neither_says_so_and_goes_on(installed):
+def test_process_without_transport_logs_and_continues(installed):
     installed()
     log = []
     graph = Graph(threads=True, on_log=log.append)
@@ -74,7 +76,7 @@ def test_a_process_with_neither_says_so_and_goes_on(installed):
 
 
 @pytest.mark.skipif(importlib.util.find_spec("cyclonedds") is None, reason="there is no DDS here")
-def test_settings_are_those_of_the_transport_that_is_chosen():
+def test_settings_of_chosen_transport_are_checked():
     wrong = {"ZENOH_CONFIG_OVERRIDE": "mode"}
     check_settings(wrong)
     with pytest.raises(LinkwrightError, match="is not a Zenoh setting"):
@@ -85,7 +87,7 @@ def test_settings_are_those_of_the_transport_that_is_chosen():
 
 
 @pytest.mark.parametrize(("variables", "kind"), [({}, DdsTransport), (ASKED, ZenohTransport)])
-def test_a_graph_joins_over_what_is_chosen(variables, kind, domain):
+def test_graph_joins_with_chosen_transport(variables, kind, domain):
     pytest.importorskip("cyclonedds" if kind is DdsTransport else "zenoh", reason="it is not installed here")
     graph = Graph(threads=True)
     try:

@@ -30,13 +30,13 @@ CHECKS: dict[str, Callable[[str], None]] = {
 
 
 @pytest.mark.parametrize("path", INPUTS, ids=lambda path: path.name)
-def test_what_was_found_stays_mended(path: Path) -> None:
+def test_fuzzer_finding_stays_fixed(path: Path) -> None:
     check = CHECKS[path.name.partition("--")[0]]
     with ends():
         check(path.read_bytes().decode("utf-8", "surrogatepass"))
 
 
 @pytest.mark.parametrize("name", [name for name in targets.TARGETS if targets.hard_seeds(name)])
-def test_what_was_slow_or_large_once_is_read_or_refused(name: str) -> None:
+def test_slow_and_large_inputs_are_read_or_rejected(name: str) -> None:
     for text in targets.hard_seeds(name):
         targets.TARGETS[name](text.encode())

@@ -14,7 +14,7 @@ Trigger = get_service("std_srvs/srv/Trigger")
 NODES = 500
 
 
-async def test_five_hundred_nodes_hear_each_other():
+async def test_five_hundred_nodes_exchange_messages():
     clock = JumpClock()
     graph = Graph(clock=clock, on_log=print)
     heard = [0] * NODES
@@ -43,7 +43,7 @@ async def test_five_hundred_nodes_hear_each_other():
     assert graph.endpoints() == []
 
 
-def test_the_graph_changes_while_others_use_it():
+def test_graph_can_change_while_other_threads_use_it():
     """Nodes come and go in some threads while others publish, ask and look."""
     graph = Graph(threads=True, on_log=lambda _record: None)
     steady = graph.create_node("steady")
@@ -100,7 +100,7 @@ def test_the_graph_changes_while_others_use_it():
     assert graph.endpoints() == []
 
 
-async def test_nothing_reliable_is_lost_between_a_thread_and_the_loop():
+async def test_thread_loses_no_reliable_messages_to_event_loop():
     """A hundred thousand messages into a queue that holds them."""
     graph = Graph(on_log=print)
     node = graph.create_node("node")
@@ -126,7 +126,7 @@ async def test_nothing_reliable_is_lost_between_a_thread_and_the_loop():
     await graph.close()
 
 
-async def test_a_node_that_cannot_begin_leaves_nothing_behind(graph, monkeypatch):
+async def test_failed_node_creation_leaves_nothing_in_graph(graph, monkeypatch):
     from linkwright.graph.simulated_time import SimulatedTime
 
     def refuse(*_arguments):

@@ -36,7 +36,7 @@ def numbers(path: Path) -> list[int]:
     return found
 
 
-def test_a_recording_is_finished_while_its_thread_goes_on_writing(writer: BagWriter) -> None:
+def test_finish_all_completes_recording_while_thread_writes(writer: BagWriter) -> None:
     written = 0
     over = threading.Event()
 
@@ -62,7 +62,7 @@ def test_a_recording_is_finished_while_its_thread_goes_on_writing(writer: BagWri
     assert numbers(writer.path) == found
 
 
-def test_a_recording_that_was_closed_is_not_finished_again(writer: BagWriter) -> None:
+def test_finish_all_leaves_closed_recording_unchanged(writer: BagWriter) -> None:
     writer.write("/chatter", 1, serialize(String(data="word")))
     writer.close()
     before = {each: each.stat().st_mtime_ns for each in (writer.path, *writer.path.glob("*"))}

@@ -27,7 +27,7 @@ CELL = 0.05
 
 
 @pytest.mark.slow
-def test_the_walls_of_our_house_are_mapped_within_5_cm_and_the_loop_is_closed(monkeypatch):
+def test_house_walls_are_mapped_within_5_cm_and_loop_is_closed(monkeypatch):
     monkeypatch.delenv("ROS_DISTRO", raising=False)
     walls, solid = faces(), faces(("walls", "furniture"))
     with simulation() as test:

@@ -98,7 +98,7 @@ def desk(site, robot) -> Program:
     return desk
 
 
-def begin(robot: Program, desk: Program, topic: str, qos: str, **saying: Any) -> None:
+def start_publishing(robot: Program, desk: Program, topic: str, qos: str, **saying: Any) -> None:
     """Have the robot say numbers that the desk takes down."""
     robot.ask("offer", topic, qos)
     desk.ask("hear", topic, qos)
@@ -106,10 +106,10 @@ def begin(robot: Program, desk: Program, topic: str, qos: str, **saying: Any) ->
     robot.ask("say", topic, saying["count"], saying["rate"], saying["size"])
 
 
-def test_nothing_is_lost_on_a_line_that_breaks_and_loses_packets(site, robot, desk):
+def test_reliable_topics_survive_link_failure_and_packet_loss(site, robot, desk):
     topics = {"/robot1/everything": "everything", "/robot1/lasting": "lasting"}
     for topic, qos in topics.items():
-        begin(robot, desk, topic, qos, count=COUNT, rate=40.0, size=100)
+        start_publishing(robot, desk, topic, qos, count=COUNT, rate=40.0, size=100)
     desk.ask_until(lambda heard: len(heard) > COUNT // 10, "heard", "/robot1/everything")
     site.hosts.link(is_up=False)
     answer = robot.ask_until(lambda answer: answer > COUNT // 2, "said", "/robot1/lasting")
@@ -122,8 +122,8 @@ def test_nothing_is_lost_on_a_line_that_breaks_and_loses_packets(site, robot, de
         assert heard == list(range(COUNT))
 
 
-def test_what_lasts_is_made_up_for_where_the_connection_itself_was_lost(site, robot, desk):
-    begin(robot, desk, "/robot1/lasting", "lasting", count=COUNT, rate=40.0, size=100)
+def test_latched_topic_catches_up_after_reconnect(site, robot, desk):
+    start_publishing(robot, desk, "/robot1/lasting", "lasting", count=COUNT, rate=40.0, size=100)
     desk.ask_until(lambda heard: len(heard) > COUNT // 10, "heard", "/robot1/lasting")
     site.hosts.run(GATEWAY, "ip", "link", "set", f"to{CLOUD}", "down")  # which has it forget whom it translates for
     robot.ask_until(lambda text: text > COUNT // 2, "said", "/robot1/lasting")
@@ -132,7 +132,7 @@ def test_what_lasts_is_made_up_for_where_the_connection_itself_was_lost(site, ro
     assert sorted(set(heard)) == list(range(COUNT))
 
 
-def test_a_desk_takes_only_what_it_listens_to_and_says_only_what_it_may(site, robot, desk):
+def test_desk_receives_only_subscribed_and_publishes_only_allowed_topics(site, robot, desk):
     for topic in ("/robot1/cmd_vel", "/robot1/secret"):
         desk.ask("offer", topic, "everything")
         robot.ask("hear", topic, "everything")
@@ -154,7 +154,7 @@ def test_a_desk_takes_only_what_it_listens_to_and_says_only_what_it_may(site, ro
     assert site.hosts.received(DESK, CLOUD) - before > image * heard
 
 
-def test_who_has_no_certificate_of_the_authority_stays_outside(site, robot, tmp_path):
+def test_host_without_valid_certificate_is_rejected(site, robot, tmp_path):
     stranger = "openssl req -x509 -newkey rsa:2048 -nodes -keyout desk-key.pem -out desk.pem -days 1 -subj /CN=desk"
     subprocess.run(stranger.split(), cwd=tmp_path, check=True, capture_output=True)
     outsider = site.program(DESK, "outsider", ZENOH_SESSION_CONFIG_URI="desk.json5")

@@ -89,7 +89,7 @@ def write(path: Path, declared: bytes, kind: str, profile: str = "") -> Path:
 
 @pytest.mark.parametrize("profile", ["", "ros2", "x"])
 @pytest.mark.parametrize("kind", ["indexed", "unindexed", "loose", "cut off"])
-def test_topics_of_ros_2_are_read_and_the_others_are_named(tmp_path: Path, kind: str, profile: str) -> None:
+def test_bag_reader_reads_ros2_topics_and_names_others(tmp_path: Path, kind: str, profile: str) -> None:
     with BagReader(write(tmp_path / "x.mcap", OURS + OTHERS, kind, profile)) as bag:
         assert [(topic.name, topic.type_name, topic.count) for topic in bag.topics] == [
             ("/chatter", "std_msgs/msg/String", 5)
@@ -105,7 +105,7 @@ def test_topics_of_ros_2_are_read_and_the_others_are_named(tmp_path: Path, kind:
             bag.messages(["/pose"])
 
 
-def test_a_file_without_a_topic_of_ros_2_is_one_error(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+def test_mcap_without_ros2_topics_is_reported_as_one_error(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     path = write(tmp_path / "x.mcap", OTHERS, "indexed")
     assert main(["bag", "info", str(path)]) == 1
     output = capsys.readouterr()
@@ -114,7 +114,7 @@ def test_a_file_without_a_topic_of_ros_2_is_one_error(tmp_path: Path, capsys: py
     assert "is not a ROS 2 recording: /pose (protobuf), /thing (json)" in output.err
 
 
-def test_a_recording_of_ros_1_says_how_it_becomes_one_of_ros_2(tmp_path: Path) -> None:
+def test_ros1_bag_error_explains_conversion_to_ros2(tmp_path: Path) -> None:
     path = tmp_path / "old.bag"
     path.write_bytes(b"#ROSBAG V2.0\n")
     with pytest.raises(LinkwrightError) as error:

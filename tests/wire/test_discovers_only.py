@@ -20,7 +20,7 @@ on_linux = pytest.mark.skipif(not sys.platform.startswith("linux"), reason="the 
 
 
 @pytest.fixture
-def looking():
+def observer():
     graph = Graph(threads=True)
     transport = join(graph, discovers_only=True)
     assert transport is not None
@@ -30,13 +30,13 @@ def looking():
 
 
 @pytest.fixture
-def never_quiet(monkeypatch):
+def never_settled(monkeypatch):
     """Nobody concludes from silence that all have answered."""
     monkeypatch.setattr(module, "SETTLED_AFTER", float("inf"))
 
 
-def test_it_sees_others_and_is_not_seen(looking, processes):
-    graph, _ = looking
+def test_discovers_only_transport_sees_others_and_is_not_seen(observer, processes):
+    graph, _ = observer
     node = graph.create_node("looks")
     node.create_publisher(String, "unheard", 10)
     others = processes("others")
@@ -50,13 +50,13 @@ def test_it_sees_others_and_is_not_seen(looking, processes):
 
 
 @on_linux
-def test_alone_it_has_nothing_to_wait_for(looking, never_quiet):
-    _, transport = looking
+def test_wait_for_discovery_ends_without_peers(observer, never_settled):
+    _, transport = observer
     assert transport.wait_for_discovery(SECONDS)
 
 
 @on_linux
-def test_where_all_are_known_it_waits_no_longer(programs, never_quiet):
+def test_wait_for_discovery_ends_when_all_processes_are_discovered(programs, never_settled):
     programs("our_program", "one")
     programs("our_program", "two")
     graph = Graph(threads=True)
@@ -69,8 +69,8 @@ def test_where_all_are_known_it_waits_no_longer(programs, never_quiet):
 
 
 @on_linux
-def test_somebody_who_has_not_answered_is_waited_for(looking, monkeypatch):
-    _, transport = looking
+def test_unanswered_process_is_waited_for(observer, monkeypatch):
+    _, transport = observer
     here = 1
     monkeypatch.setattr(module, "other_processes", lambda _domain: here)
     assert not transport._knows_all_processes()
@@ -78,8 +78,8 @@ def test_somebody_who_has_not_answered_is_waited_for(looking, monkeypatch):
     assert transport._knows_all_processes()
 
 
-def test_of_several_participants_of_a_process_the_system_cannot_tell(looking, processes, monkeypatch):
-    _, transport = looking
+def test_process_count_is_inconclusive_with_several_participants(observer, processes, monkeypatch):
+    _, transport = observer
     monkeypatch.setattr(module, "other_processes", lambda _domain: 0)
     assert transport._knows_all_processes()
     processes("beside")
@@ -88,7 +88,7 @@ def test_of_several_participants_of_a_process_the_system_cannot_tell(looking, pr
 
 
 @pytest.mark.parametrize("range_name", ["SUBNET", "LOCALHOST"])
-def test_beyond_the_own_machine_the_system_cannot_tell(range_name, monkeypatch):
+def test_process_count_is_inconclusive_beyond_own_machine(range_name, monkeypatch):
     monkeypatch.setenv("ROS_AUTOMATIC_DISCOVERY_RANGE", range_name)
     monkeypatch.setattr(module, "other_processes", lambda _domain: 0)
     graph = Graph(threads=True)
@@ -98,7 +98,7 @@ def test_beyond_the_own_machine_the_system_cannot_tell(range_name, monkeypatch):
     graph.close_threadsafe()
 
 
-def test_neither_numpy_nor_what_it_does_not_use_of_cyclone_is_imported():
+def test_numpy_and_unused_cyclonedds_modules_are_not_imported():
     code = """
         import sys
         from linkwright.graph import Graph

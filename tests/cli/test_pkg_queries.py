@@ -29,25 +29,25 @@ def output_of(capsys: pytest.CaptureFixture[str], *words: str, status: int = 0) 
     return captured.err if status else captured.out
 
 
-def test_the_list_has_packages_of_the_workspace_and_ours(capsys: pytest.CaptureFixture[str]) -> None:
+def test_pkg_list_contains_workspace_and_built_in_packages(capsys: pytest.CaptureFixture[str]) -> None:
     names = output_of(capsys, "list").splitlines()
     assert names == sorted(names)
     assert {"arm", "robot_state_publisher"} <= set(names)
 
 
-def test_where_a_package_is(capsys: pytest.CaptureFixture[str], package: Path) -> None:
+def test_pkg_prefix_prints_package_location(capsys: pytest.CaptureFixture[str], package: Path) -> None:
     assert output_of(capsys, "prefix", "--share", "arm") == f"{package}\n"
     assert output_of(capsys, "prefix", "arm").strip()
     assert "arm" in output_of(capsys, "prefix", "armm", status=1)
 
 
-def test_executables_of_one_package_and_of_all(capsys: pytest.CaptureFixture[str]) -> None:
+def test_pkg_executables_lists_one_package_or_all(capsys: pytest.CaptureFixture[str]) -> None:
     assert "demo_nodes_cpp talker" in output_of(capsys, "executables", "demo_nodes_cpp").splitlines()
     assert "demo_nodes_cpp talker" in output_of(capsys, "executables").splitlines()
     assert "demo_nodes_cpp talker" not in output_of(capsys, "executables", "--full-path", "demo_nodes_cpp").splitlines()
 
 
-def test_the_manifest_and_parts_of_it(capsys: pytest.CaptureFixture[str]) -> None:
+def test_pkg_xml_prints_manifest_or_tag(capsys: pytest.CaptureFixture[str]) -> None:
     assert output_of(capsys, "xml", "arm") == MANIFEST
     assert output_of(capsys, "xml", "arm", "-t", "depend") == "xacro\nurdf\n"
     error = output_of(capsys, "xml", "arm", "-t", "license", status=1)

@@ -36,7 +36,9 @@ def recorded(folder: Path, plugin: StoragePlugin, mode: CompressionMode, length:
 
 @pytest.mark.parametrize("mode", MODES)
 @pytest.mark.parametrize("plugin", PLUGINS)
-def test_the_file_alone_says_what_its_folder_says(tmp_path: Path, plugin: StoragePlugin, mode: CompressionMode) -> None:
+def test_compressed_file_without_folder_has_same_messages(
+    tmp_path: Path, plugin: StoragePlugin, mode: CompressionMode
+) -> None:
     folder = recorded(tmp_path / "bag", plugin, mode)
     (file,) = (path for path in folder.iterdir() if path.name != "metadata.yaml")
     alone = tmp_path / file.name
@@ -53,7 +55,7 @@ def test_the_file_alone_says_what_its_folder_says(tmp_path: Path, plugin: Storag
         assert len(list(bag.messages())) == 20
 
 
-def test_of_a_packed_file_that_was_cut_off_what_is_whole_is_read(tmp_path: Path) -> None:
+def test_truncated_compressed_mcap_gives_complete_messages(tmp_path: Path) -> None:
     folder = recorded(tmp_path / "bag", StoragePlugin.MCAP, CompressionMode.FILE, length=20_000)
     (file,) = folder.glob("*.mcap.zstd")
     cut = tmp_path / "cut.mcap.zstd"
@@ -63,7 +65,7 @@ def test_of_a_packed_file_that_was_cut_off_what_is_whole_is_read(tmp_path: Path)
         assert 0 < len(list(bag.messages())) < 20_000
 
 
-def test_what_is_wrong_is_said(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+def test_damaged_compressed_files_are_reported(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     plain = tmp_path / "plain.mcap.zstd"
     plain.write_text("not compressed")
     with pytest.raises(LinkwrightError, match="it does not begin with a zstd header"):
@@ -75,7 +77,7 @@ def test_what_is_wrong_is_said(tmp_path: Path, capsys: pytest.CaptureFixture[str
     assert "its content is damaged or truncated" in capsys.readouterr().err
 
 
-def test_files_that_the_metadata_name_and_that_are_missing_are_named(tmp_path: Path) -> None:
+def test_missing_files_listed_in_metadata_are_named(tmp_path: Path) -> None:
     folder = recorded(tmp_path / "bag", StoragePlugin.SQLITE3, CompressionMode.MESSAGE)
     (folder / "bag.db3").unlink()
     with pytest.raises(LinkwrightError, match=r"files that its metadata.yaml lists are missing: bag\.db3$"):

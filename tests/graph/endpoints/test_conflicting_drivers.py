@@ -51,22 +51,22 @@ def disputes(*streams: Iterable[Sent], dispute: Dispute | None = None) -> list[t
     ],
     ids=["one", "handover", "alike", "both still", "stops", "a smoother that runs out", "taps", "recoveries"],
 )
-def test_ordinary_practice_is_no_dispute(streams):
+def test_normal_command_patterns_are_no_dispute(streams):
     assert disputes(*streams) == []
 
 
 @pytest.mark.parametrize(("first", "second"), [(10.0, 10.0), (1.0, 1.0), (50.0, 1.0), (100.0, 20.0)])
-def test_two_that_go_on_contradicting_each_other_are_told_once(first, second):
+def test_contradicting_publishers_are_reported_once(first, second):
     ((when, who),) = disputes(stream("keys", 5, 60, first, 0.3), stream("planner", 10.003, 60, second, -0.1))
     assert who == {"keys", "planner"}
     assert 12.9 <= when <= 14.1
 
 
-def test_one_that_is_still_is_a_driver_too_while_it_says_so():
+def test_publisher_of_zero_commands_counts_as_driver():
     assert disputes(stream("joystick", 0, 9, 10, 0.0), stream("planner", 0.03, 9, 20, 0.5))
 
 
-def test_a_third_is_told_when_it_joins_and_all_again_after_a_rest():
+def test_third_driver_is_reported_and_all_again_after_a_break():
     heard = disputes(
         stream("a", 0, 20, 10, 0.1),
         stream("b", 0.01, 20, 10, 0.2),
@@ -77,7 +77,7 @@ def test_a_third_is_told_when_it_joins_and_all_again_after_a_rest():
     assert [who for _, who in heard] == [{"a", "b"}, {"a", "b", "c"}, {"a", "b"}]
 
 
-def test_a_short_pause_is_no_news():
+def test_short_break_is_not_reported_again():
     bursts = [(0, 5), (9, 14), (18, 23)]
     streams = [
         stream(who, begin + shift, end, 10, 0.1 + shift)
@@ -87,7 +87,7 @@ def test_a_short_pause_is_no_news():
     assert len(disputes(*streams)) == 1
 
 
-def test_time_that_jumps_back_begins_anew():
+def test_time_jump_back_resets_dispute():
     dispute = Dispute()
     assert disputes(stream("a", 100, 102, 10, 0.1), stream("b", 100.01, 102, 10, 0.2), dispute=dispute) == []
     assert disputes(stream("a", 0, 2, 10, 0.1), stream("b", 0.01, 2, 10, 0.2), dispute=dispute) == []
@@ -131,7 +131,7 @@ def warned(graph: Known, message_type: type = Twist) -> list[str]:
 
 
 @pytest.mark.parametrize("message_type", [Twist, Stamped])
-def test_the_warning_names_the_nodes_and_says_what_to_do(message_type):
+def test_warning_names_nodes_and_suggests_fixes(message_type):
     (text,) = warned(Known({b"1": "keys", b"2": "planner", b"3": "keys"}), message_type)
     assert text == (
         "several nodes drive the robot: '/keys', '/planner' send commands on '/cmd_vel', and the robot jerks because "
@@ -140,11 +140,11 @@ def test_the_warning_names_the_nodes_and_says_what_to_do(message_type):
     )
 
 
-def test_two_nodes_of_one_name_are_two_and_two_publishers_of_one_node_are_one():
+def test_dispute_compares_nodes_instead_of_publishers():
     assert warned(Known({b"1": "keys", b"2": "keys"})) == []
     (text,) = warned(Known({b"1": "keys", b"2": "keys"}, twice="keys"))
     assert text.startswith("several nodes drive the robot: '/keys', '/keys' send commands on")
 
 
-def test_nothing_is_said_of_publishers_that_nobody_knows():
+def test_unknown_publishers_are_not_reported():
     assert warned(Known({b"1": "keys", b"2": None})) == []

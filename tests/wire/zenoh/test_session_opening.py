@@ -37,9 +37,7 @@ def silent_port() -> Iterator[int]:
         yield server.getsockname()[1]
 
 
-def test_a_client_says_what_it_waits_for_and_joins_when_the_router_comes(
-    processes, start_router, monkeypatch, router_port
-):
+def test_client_reports_missing_router_and_joins_when_it_starts(processes, start_router, monkeypatch, router_port):
     monkeypatch.setenv(OVERRIDES, client_of(router_port))
     us = processes("ours", join_now=False)
     joining = threading.Thread(target=us.join)
@@ -53,7 +51,7 @@ def test_a_client_says_what_it_waits_for_and_joins_when_the_router_comes(
     other.close()
 
 
-def test_waiting_ends_after_the_time_that_is_set(processes, monkeypatch, router_port):
+def test_wait_for_router_ends_after_timeout(processes, monkeypatch, router_port):
     monkeypatch.setenv(OVERRIDES, client_of(router_port, 1500))
     us = processes("ours", join_now=False)
     with pytest.raises(AssertionError):
@@ -64,7 +62,7 @@ def test_waiting_ends_after_the_time_that_is_set(processes, monkeypatch, router_
 
 @pytest.mark.skipif(sys.platform == "win32", reason="processes are not interrupted so on Windows")
 @pytest.mark.parametrize("words", [("topic", "list"), ("node", "list"), ("doctor",), ("bridge", "zenoh", "zenoh:7")])
-def test_ctrl_c_ends_what_waits_for_a_router_at_once(monkeypatch, silent_port, words):
+def test_ctrl_c_ends_wait_for_router(monkeypatch, silent_port, words):
     monkeypatch.setenv(OVERRIDES, client_of(silent_port))
     verb = subprocess.Popen(
         [sys.executable, "-m", "linkwright", *words], stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True
@@ -78,7 +76,7 @@ def test_ctrl_c_ends_what_waits_for_a_router_at_once(monkeypatch, silent_port, w
     assert verb.returncode == 130
 
 
-def test_a_router_says_whom_it_does_not_reach(router_port, silent_port):
+def test_router_reports_unreachable_endpoint(router_port, silent_port):
     settings = (
         f'listen/endpoints=["tcp/localhost:{router_port}"];connect/endpoints=["tls/localhost:{silent_port}"];'
         'transport/link/tls/root_ca_certificate="nowhere.pem"'
@@ -94,14 +92,14 @@ def test_a_router_says_whom_it_does_not_reach(router_port, silent_port):
     assert "Not connected yet; retrying: cannot read 'nowhere.pem': No such file" in output[1]
 
 
-def test_addresses_that_are_none_or_unknown():
+def test_malformed_and_unknown_addresses_are_reported():
     assert "is not an address: write it as tcp/HOST:PORT" in obstacle("tcp/localhost", {})
     assert "its port must be at most 65535" in obstacle("tcp/127.0.0.1:70000", {})
     assert "the host name of tcp/robot.invalid:7447 cannot be resolved" in obstacle("tcp/robot.invalid:7447", {})
     assert not obstacle("udp/127.0.0.1:9", {}), "Zenoh's alone"
 
 
-def test_a_session_with_the_id_of_another_one(silent_port):
+def test_duplicate_session_id_is_reported(silent_port):
     config = zenoh.Config()
     for key, value in (("id", '"abc1"'), ("connect/endpoints", f'["tcp/127.0.0.1:{silent_port}"]')):
         config.insert_json5(key, value)
@@ -173,7 +171,7 @@ def obstacle_at(certificates) -> Callable[..., str]:
     return ask
 
 
-def test_certificates_that_do_not_fit(obstacle_at):
+def test_invalid_certificates_are_reported(obstacle_at):
     assert not obstacle_at()
     assert "the certificate of tls/localhost" in obstacle_at(authority="other")
     assert "is not accepted: " in obstacle_at(authority="other")
@@ -186,7 +184,7 @@ def test_certificates_that_do_not_fit(obstacle_at):
     assert "missing-key.pem': No such file" in missing
 
 
-def test_who_speaks_no_tls_and_who_does(certificates, silent_port):
+def test_tls_and_tcp_mismatch_is_reported(certificates, silent_port):
     assert "does not speak TLS: write tcp/" in obstacle(f"tls/localhost:{silent_port}", certificates.settings())
     with socket.create_server(("127.0.0.1", 0)) as server:
 

@@ -64,7 +64,7 @@ class Page:
         return self.told.get("frame_table", {"names": []})["names"]
 
 
-async def test_views_are_islands(start: Callable[..., Running], tmp_path: Path) -> None:
+async def test_views_are_isolated_unless_joined(start: Callable[..., Running], tmp_path: Path) -> None:
     views = {name: start("view", write_robot(tmp_path, name)) for name in ("red", "blue")}
     joined = start("view", write_robot(tmp_path, "green"), "--join")
     for each in (*views.values(), joined):
@@ -77,7 +77,7 @@ async def test_views_are_islands(start: Callable[..., Running], tmp_path: Path) 
         assert not is_on_network(view), "it would join sooner than the one that joined, which began later"
 
 
-async def test_launches_that_share_names_say_so_once_and_on_the_page(
+async def test_launches_with_shared_node_names_are_reported_once(
     start: Callable[..., Running], tmp_path: Path, domain: int
 ) -> None:
     robot = write_robot(tmp_path, "red")
