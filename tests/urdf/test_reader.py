@@ -141,8 +141,8 @@ class TestTruncation:
         assert self.parts(inside) == (True, 1, 0)
 
     def test_malformed_collision_drops_later_collisions(self):
-        inside = self.GOOD_COLLISION + "<collision/>" + self.GOOD_COLLISION + self.GOOD_VISUAL
-        assert self.parts(inside) == (False, 1, 1)
+        inside = self.GOOD_COLLISION + "<collision/>" + self.GOOD_COLLISION + self.GOOD_VISUAL + self.INERTIAL.format(1)
+        assert self.parts(inside) == (True, 1, 1)
 
 
 class TestMaterials:
