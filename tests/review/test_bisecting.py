@@ -120,3 +120,34 @@ def test_a_newest_commit_that_cannot_be_expanded_is_an_error(bisect):
     status, _, errors = bisect("--new", "HEAD~3", "--", "lower")
     assert status == 1
     assert "missing" in errors
+
+
+def test_an_oldest_commit_of_another_branch_is_refused_with_the_common_commit(bisect, history):
+    common = history.git("rev-parse", "HEAD~4")
+    history.git("switch", "--quiet", "--create", "side", common)
+    history.commit({"README.md": "Side."}, "Side")
+    history.git("switch", "--quiet", "main")
+    status, output, errors = bisect("--old", "side", "--", "middle_joint")
+    assert (status, output) == (1, "")
+    assert "error[REV114]: commit 'side' is not in the history of 'HEAD'" in errors
+    assert f"`--old {common[:9]} --new HEAD`" in errors
+
+
+def test_swapped_ends_are_named(bisect):
+    status, _, errors = bisect("--old", "HEAD", "--new", "HEAD~2", "--", "middle_joint")
+    assert status == 1
+    assert "'HEAD~2' is the older one: `--old HEAD~2 --new HEAD`" in errors
+
+
+def test_commits_without_a_common_history_are_refused(bisect, history):
+    history.git("switch", "--quiet", "--orphan", "island")
+    history.commit({"arm_description/urdf/robot.urdf.xacro": ARM, SEGMENT: MACRO}, "Island")
+    history.git("switch", "--quiet", "main")
+    assert "error[REV114]" in bisect("--old", "island", "--", "middle_joint")[2]
+
+
+def test_the_first_commit_of_a_file_is_that_of_the_newest_commit(bisect, history):
+    history.git("switch", "--quiet", "--create", "side", "HEAD~2")
+    history.commit({SEGMENT: MACRO.replace("length:=0.5", "length:=0.9")}, "Longer")
+    history.git("switch", "--quiet", "main")
+    assert bisect("--new", "side", "--", "middle_joint")[1].splitlines()[0].endswith("Ann: Longer")

@@ -23,7 +23,7 @@ from linkwright.diagnostics import (
     foreign,
     phrase,
 )
-from linkwright.files.git_repository import GitRepository
+from linkwright.files.git_repository import SHALLOW_HINT, GitRepository
 from linkwright.kinematics import KinematicTree
 from linkwright.review.descriptions import sentence_of_difference
 from linkwright.urdf import Robot
@@ -68,7 +68,8 @@ class History:
         new: the hash of the newest commit.
 
     Raises:
-        LinkwrightError: CLI341 to CLI344, git cannot find the repository, a commit, or the file in a commit.
+        LinkwrightError: CLI341 to CLI344, git cannot find the repository, a commit, or the file in a commit; REV114,
+            the oldest commit is not in the history of the newest one.
     """
 
     def __init__(self, file: Path, old: str, new: str) -> None:
@@ -77,11 +78,10 @@ class History:
         self._repository = GitRepository(real_path.parent, display_path(file), hint, downloads_lfs=False)
         self.new = self._repository.commit(new)
         self._names = self._names_of(real_path.relative_to(self._repository.root).as_posix())
+        self._require_file(self.new, new)
         self.old = self._repository.commit(old) if old else self._first_commit()
-        for commit, name in ((self.old, old), (self.new, new)):
-            if self.name_in(commit) is None:
-                message = phrase("commit '{name}' has no file '{inside}'", name=name or commit, inside=self._names[0])
-                raise LinkwrightError(Diagnostic("CLI344", message))
+        self._require_ancestor(old, new)
+        self._require_file(self.old, old or self.old)
 
     def name_in(self, commit: str) -> str | None:
         """Return the name that the file has in a commit, relative to the root, or None if it does not exist."""
@@ -128,6 +128,30 @@ class History:
             else:
                 earlier.append(commit)
 
+    def _require_file(self, commit: str, name: str) -> None:
+        if self.name_in(commit) is None:
+            message = phrase("commit '{name}' has no file '{inside}'", name=name, inside=self._names[0])
+            raise LinkwrightError(Diagnostic("CLI344", message))
+
+    def _require_ancestor(self, old: str, new: str) -> None:
+        """Raise if the oldest commit is not in the history of the newest one, so that no commit is between them."""
+        if self._repository.is_ancestor(self.old, self.new):
+            return
+        message = phrase("commit '{old}' is not in the history of '{new}'", old=old, new=new)
+        common = self._repository.merge_base(self.old, self.new)
+        hint = phrase("pass commits of one history, such as `--old {old}~5 --new {old}`", old=old)
+        if common == self.new:
+            hint = phrase("'{new}' is the older one: `--old {new} --new {old}`", old=old, new=new)
+        elif common is not None:
+            hint = phrase(
+                "begin with the last commit that both have in common: `--old {common} --new {new}`",
+                common=common[:9],
+                new=new,
+            )
+        elif self._repository.is_shallow:
+            hint = SHALLOW_HINT
+        raise LinkwrightError(Diagnostic("REV114", message, hint=hint))
+
     def _undecided_end(self, error: UndecidedError) -> LinkwrightError:
         """Return the error for an oldest or newest commit that cannot be judged."""
         cause = error.__cause__
@@ -154,7 +178,9 @@ class History:
         return list(dict.fromkeys([name, *filter(None, names)]))
 
     def _first_commit(self) -> str:
-        commits = self._repository.run("log", "--follow", "--format=%H", "--", self._names[0]).stdout.split()
+        """Return the commit that added the file to the history of the newest commit."""
+        name = self.name_in(self.new) or self._names[0]
+        commits = self._repository.run("log", "--follow", "--format=%H", self.new, "--", name).stdout.split()
         return commits[-1] if commits else self.new
 
 
