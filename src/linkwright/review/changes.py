@@ -8,6 +8,7 @@ from dataclasses import dataclass, field
 from enum import Enum
 
 from linkwright.diagnostics import Diagnostic, Phrase
+from linkwright.review.paths import PathComparison
 
 _QUOTED = re.compile("'[^']*'")
 
@@ -139,6 +140,7 @@ class Subject:
         problems: why a part of the comparison is missing.
         cases: the names of all argument sets that were compared.
         images: views of both versions.
+        paths: the paths of robots that differ.
     """
 
     kind: SubjectKind
@@ -150,6 +152,7 @@ class Subject:
     problems: Sequence[Problem] = ()
     cases: Sequence[str] = ()
     images: Sequence[ViewImages] = ()
+    paths: Sequence[PathComparison] = ()
 
     @property
     def is_empty(self) -> bool:

@@ -56,7 +56,11 @@ def review(
     """
     result = _Reviewer(versions, _package_folders(versions, packages), with_images=with_images).run(workers)
     behavior = [compare_behavior(versions, path, seeds) for path in scenarios]
-    return replace(result, subjects=[*result.subjects, *(subject for subject in behavior if not subject.is_empty)])
+    return replace(
+        result,
+        subjects=[*result.subjects, *(subject for subject in behavior if not subject.is_empty)],
+        other_files=[path for path in result.other_files if path not in scenarios],
+    )
 
 
 class _Reviewer:

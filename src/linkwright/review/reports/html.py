@@ -9,6 +9,7 @@ from html import escape
 from linkwright.diagnostics import Diagnostic, Phrase, phrase
 from linkwright.diagnostics.translation import language, localized
 from linkwright.review.changes import Change, Effect, Figure, Review, Subject, ViewImages
+from linkwright.review.reports.path_plots import PLOT_STYLE, path_plot
 from linkwright.review.reports.sections import Section, cases_text, repeated_text, sections_of, sentence_of, summary
 
 _STYLE = """
@@ -60,7 +61,7 @@ def as_html(review: Review) -> str:
     ]
     head = f'<meta charset="utf-8"><meta name="viewport" content="width=device-width"><title>{_text(title)}</title>'
     return (
-        f'<!doctype html>\n<html lang="{language()}"><head>{head}<style>{_STYLE}</style></head>'
+        f'<!doctype html>\n<html lang="{language()}"><head>{head}<style>{_STYLE}{PLOT_STYLE}</style></head>'
         f"<body><main>{''.join(parts)}</main><script>{_SCRIPT}</script></body></html>\n"
     )
 
@@ -77,9 +78,10 @@ def _section(section: Section) -> str:
     items += [_text(repeated_text(path, count)) for path, count in section.repeated]
     items += [f"<span class='breaking'>{_text(problem.text)}</span>" for problem in subject.problems]
     changes = f"<ul>{''.join(f'<li>{item}</li>' for item in items)}</ul>" if items else ""
+    plots = "".join(map(path_plot, subject.paths))
     return (
         f"<h2><code>{escape(subject.path)}</code></h2><section>"
-        f"{_images(subject.images)}{_figures(subject.figures)}{changes}</section>"
+        f"{_images(subject.images)}{_figures(subject.figures)}{changes}{plots}</section>"
     )
 
 
