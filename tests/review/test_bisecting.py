@@ -122,6 +122,22 @@ def test_a_newest_commit_that_cannot_be_expanded_is_an_error(bisect):
     assert "missing" in errors
 
 
+def test_renamed_link_is_found_with_its_motion(history, capsys, bisect):
+    probe = ARM.replace('"probe', '"probe_link').replace('xyz="0 0 0.2"', 'xyz="0 0 0.4"')
+    history.commit({"arm_description/urdf/robot.urdf.xacro": probe}, "Renamed")
+    _, output, _ = bisect("tool:=probe", "--", "probe_link")
+    assert output.splitlines()[0].endswith("Ann: Renamed")
+    assert "moved by 0.1 m" in output
+
+
+def test_new_root_link_moves_no_other(history, bisect):
+    foot = """<link name="foot"/><joint name="foot_joint" type="fixed"><parent link="foot"/><child link="base_link"/>
+    <origin xyz="0 0 0.3"/></joint><link name="base_link"/>"""
+    text = ARM.replace('<link name="base_link"/>', foot)
+    history.commit({"arm_description/urdf/robot.urdf.xacro": text}, "Lifted")
+    assert bisect("--", "lower")[1].splitlines()[0].endswith("Ann: Commit 4")
+
+
 def test_an_oldest_commit_of_another_branch_is_refused_with_the_common_commit(bisect, history):
     common = history.git("rev-parse", "HEAD~4")
     history.git("switch", "--quiet", "--create", "side", common)

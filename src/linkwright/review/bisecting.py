@@ -7,8 +7,6 @@ from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
-import numpy as np
-
 from linkwright.descriptions.comparison import Comparison, Difference
 from linkwright.descriptions.pairs import Model, Pair
 from linkwright.descriptions.revisions import CommitFiles
@@ -24,14 +22,12 @@ from linkwright.diagnostics import (
     phrase,
 )
 from linkwright.files.git_repository import SHALLOW_HINT, GitRepository
-from linkwright.kinematics import KinematicTree
 from linkwright.review.descriptions import sentence_of_difference
+from linkwright.review.frames import SharedFrames
 from linkwright.urdf import Robot
 
 _SKIPPED_STATUS = 125
 """The exit status with which a command says that it cannot judge a commit, as for ``git bisect run``."""
-_TOLERANCE = 1e-6
-"""The difference in m, and between the entries of rotation matrices, up to which a link has not moved."""
 
 
 class UndecidedError(Exception):
@@ -242,10 +238,10 @@ class PartCheck:
             is_renamed = difference.kind == "renamed" and difference.old == self._name
             if difference.subject in ("link", "joint") and (difference.name == self._name or is_renamed):
                 yield difference
-        if self._name in self._robot.links and self._name in old.links:
-            old_frame, new_frame = (_frame(robot, self._name) for robot in (old, self._robot))
-            if not np.allclose(old_frame, new_frame, rtol=0.0, atol=_TOLERANCE):
-                distance = float(np.linalg.norm(old_frame[:3, 3] - new_frame[:3, 3]))
+        old_name = next((before for before, after in comparison.links.items() if after == self._name), None)
+        if old_name is not None:
+            distance = SharedFrames(old, self._robot, comparison.links).distance(old_name)
+            if distance is not None:
                 yield phrase("link '{name}': moved by {distance:.4g} m", name=self._name, distance=distance)
 
     def _model(self, files: CommitFiles, commit: str) -> Model:
@@ -262,13 +258,6 @@ def _require_part(robot: Robot, name: str) -> None:
         message = phrase("the robot has no link or joint '{name}'", name=name)
         hint = did_you_mean(name, names) or phrase("a command has more than one word: `-- check_urdf FILE`")
         raise LinkwrightError(Diagnostic("REV111", message, hint=hint))
-
-
-def _frame(robot: Robot, link: str) -> np.ndarray[tuple[int, ...], np.dtype[np.float64]]:
-    """Return the frame of a link in the root link's frame with all joints at position 0, shape (4, 4)."""
-    tree = KinematicTree(robot)
-    frames = tree.forward({})
-    return np.asarray(frames[tree.link_index(link)])
 
 
 @dataclass(frozen=True)

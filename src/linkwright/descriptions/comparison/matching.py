@@ -27,7 +27,7 @@ class Matches:
 
 def match(
     old: Robot, new: Robot, same_link: Callable[[Link, Link], bool], same_joint: Callable[[Joint, Joint], bool]
-) -> Matches:
+) -> tuple[dict[str, str], dict[str, str]]:
     """Match the links and joints of two robots, from the root down.
 
     Links or joints with the same name match. A joint that is only in the old robot was renamed if a joint that is only
@@ -40,6 +40,9 @@ def match(
         same_link: a function that returns whether two links are equal except for their names.
         same_joint: a function that returns whether two joints are equal except for their own names and the names of
             their links.
+
+    Returns:
+        The new names of links and of joints, by old name.
     """
     links = {name: name for name in old.links if name in new.links}
     joints = {name: name for name in old.joints if name in new.joints}
@@ -73,4 +76,4 @@ def match(
                         matched_joints.add(candidate.name)
                         break
             pending.append(joint.child)
-    return Matches(links, joints)
+    return links, joints
