@@ -240,6 +240,16 @@ def test_renamed_parts_that_moved_are_recognized(old, new, expected):
             id="frames of other words",
         ),
         pytest.param(
+            (body("world"), below("world", "base")),
+            (body("foot"), below("foot", "base")),
+            id="the world",
+        ),
+        pytest.param(
+            (body("foot"), below("foot", "pole"), body("pole"), below("pole", "base")),
+            (body("mast"), below("mast", "tower", xyz="1 0 0"), body("tower"), below("tower", "base", xyz="0 0 1")),
+            id="a root without the same children",
+        ),
+        pytest.param(
             (body("arm", MESH), below("base", "arm")),
             (body("boom", OTHER_MESH), below("base", "boom", xyz="0 0 1")),
             id="another mesh",

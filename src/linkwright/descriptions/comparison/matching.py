@@ -6,10 +6,13 @@ Links and joints match by name, or as renamed if everything else is equal.
 from __future__ import annotations
 
 from collections import deque
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 
 from linkwright.loading.lean_dataclasses import dataclass
 from linkwright.urdf import Joint, Link, Robot, children_of
+
+WORLD = "world"
+"""The link that Gazebo fixes to the world. A link of another name is another one."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -32,7 +35,7 @@ def match(
 
     Links or joints with the same name match. A joint that is only in the old robot was renamed if a joint that is only
     in the new robot has the same parent, an equal child and equal properties. A link was renamed if an equal link
-    has the same parent joint.
+    has the same parent joint. The root link was renamed if the new root is equal and has one of the same children.
 
     Args:
         old: the old robot.
@@ -53,6 +56,8 @@ def match(
         if links.get(old_name) == new_name:
             return True
         if old_name in new.links or new_name in old.links or old_name in links or new_name in links.values():
+            return False
+        if WORLD in (old_name, new_name):
             return False
         if not same_link(old.links[old_name], new.links[new_name]):
             return False
@@ -76,4 +81,17 @@ def match(
                         matched_joints.add(candidate.name)
                         break
             pending.append(joint.child)
+    if old.root not in new.links and not _has_matched_child(old.root, old_children, new_children, links):
+        links.pop(old.root, None)
     return links, joints
+
+
+def _has_matched_child(
+    parent: str,
+    old_children: Mapping[str, Sequence[Joint]],
+    new_children: Mapping[str, Sequence[Joint]],
+    links: Mapping[str, str],
+) -> bool:
+    """Return whether a child of a link matches a child of the link that matches it."""
+    children = {joint.child for joint in new_children.get(links.get(parent, ""), ())}
+    return any(links.get(joint.child) in children for joint in old_children[parent])

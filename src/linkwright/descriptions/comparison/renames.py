@@ -12,6 +12,7 @@ from collections import defaultdict
 from collections.abc import Callable, Hashable, Iterable, Iterator, Mapping, Sequence
 
 from linkwright.descriptions.comparison.facts import Block, collision_blocks, visual_blocks
+from linkwright.descriptions.comparison.matching import WORLD
 from linkwright.loading.deferred import lazy_pattern
 from linkwright.loading.lean_dataclasses import dataclass
 from linkwright.urdf import Collision, Joint, Link, Mesh, Robot, Visual, children_of, parent_joints
@@ -56,7 +57,7 @@ class _Side:
 
     @classmethod
     def of(cls, robot: Robot, matched: Mapping[str, str], normalize: Callable[[str], str]) -> _Side:
-        names = [name for name in robot.links if name not in matched]
+        names = [name for name in robot.links if name not in matched and name != WORLD]
         shapes = {name: _shape_key(robot.links[name], normalize) for name in names}
         return cls(robot, dict.fromkeys(names), parent_joints(robot), children_of(robot), shapes)
 
