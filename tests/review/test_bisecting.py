@@ -167,3 +167,14 @@ def test_the_first_commit_of_a_file_is_that_of_the_newest_commit(bisect, history
     history.commit({SEGMENT: MACRO.replace("length:=0.5", "length:=0.9")}, "Longer")
     history.git("switch", "--quiet", "main")
     assert bisect("--new", "side", "--", "middle_joint")[1].splitlines()[0].endswith("Ann: Longer")
+
+
+def test_file_with_letters_of_other_languages_is_followed_across_a_new_name(package, monkeypatch, capsys):
+    monkeypatch.chdir(package.root)
+    package.commit({PATH: None, "arm_description/urdf/grün ärm.urdf.xacro": ARM}, "Renamed")
+    package.commit({PATH: ARM, "arm_description/urdf/grün ärm.urdf.xacro": None}, "Renamed again")
+    package.commit({SEGMENT: MACRO.replace("length:=0.5", "length:=0.6")}, "Longer")
+    package.commit({PATH: None, "arm_description/urdf/臂.urdf.xacro": ARM}, "Renamed at last")
+    package.commit({"README.md": "Later"}, "Later")
+    assert main(["bisect", "arm_description/urdf/臂.urdf.xacro", "--", "middle_joint"]) == 0
+    assert capsys.readouterr().out.splitlines()[0].endswith("Ann: Longer")

@@ -84,6 +84,9 @@ class GitRepository:
     def run(self, *arguments: str, environment: Mapping[str, str] | None = None) -> subprocess.CompletedProcess[str]:
         """Run git in the repository with English output, and return the completed process.
 
+        Bytes of its output that are not UTF-8 become surrogates, as in the names of files that Python reads. Without
+        them, a file of such a name would not be found, nor a symbolic link of such a name checked.
+
         Raises:
             LinkwrightError: CLI341 if git is not installed.
         """
@@ -95,7 +98,7 @@ class GitRepository:
                 env={**variables, "LC_ALL": "C", **self._variables, **(environment or {})},
                 capture_output=True,
                 encoding="utf-8",
-                errors="replace",
+                errors="surrogateescape",
                 check=False,
             )
         except FileNotFoundError:

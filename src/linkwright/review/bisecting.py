@@ -169,8 +169,8 @@ class History:
 
     def _names_of(self, name: str) -> list[str]:
         """Return the names that the file has had, the newest first."""
-        arguments = ("log", "--follow", "--name-only", "--format=", "--", name)
-        names = self._repository.run(*arguments).stdout.splitlines()
+        arguments = ("log", "--follow", "--name-only", "-z", "--format=", "--", name)
+        names = self._repository.run(*arguments).stdout.split("\0")
         return list(dict.fromkeys([name, *filter(None, names)]))
 
     def _first_commit(self) -> str:

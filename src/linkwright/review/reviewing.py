@@ -98,7 +98,7 @@ class _Reviewer:
             [subject for subject in all_subjects if not subject.is_empty],
             [file.path for file in self._changed_files if not {file.old_path, file.new_path} & (compared | parts)],
             *self._compare_findings(old_findings, new_findings),
-            list(self._notes()),
+            list(dict.fromkeys(self._notes())),
         )
 
     def _compare_findings(
