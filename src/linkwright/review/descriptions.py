@@ -19,6 +19,7 @@ from linkwright.review.figures import RobotMeasures, figures_of
 from linkwright.review.file_pair import FilePair
 from linkwright.review.frames import UNMOVED, SharedFrames
 from linkwright.review.images import view_images
+from linkwright.review.scenes import robot_scene
 from linkwright.review.versions import Version
 from linkwright.urdf import Robot
 
@@ -57,8 +58,11 @@ def compare_descriptions(pair: FilePair) -> None:
             group = groups.setdefault(change.identity, _Group(change))
             group.names[change.name] = None
             group.cases[case.name] = None
-        if pair.with_images and not pair.images:
+        if pair.drawings.images and not pair.images:
             pair.images += view_images(case.models, case.old.robot, case.new.robot, comparison, frames)
+            if pair.images and pair.drawings.scenes:
+                roots = pair.versions.old.root, pair.versions.new.root
+                pair.scene = robot_scene(case.models, case.old, case.new, roots)
         if len(pair.cases) == 1:
             old = RobotMeasures(case.old.robot, case.models.old, UNMOVED, frames.old)
             new = RobotMeasures(case.new.robot, case.models.new, frames.new_root, frames.new)
