@@ -11,6 +11,7 @@ import pytest
 
 from linkwright.cli import main
 from linkwright.page.server import PAGE_FOLDER
+from linkwright.panels.export import html
 from linkwright.review import open_versions, review, scenes
 from linkwright.review.reports import as_html, scene_page
 from tests.repositories import PACKAGE, Repository
@@ -56,6 +57,7 @@ def scene_of(result, path=PATH):
     return subject.scene
 
 
+@needs_page
 def test_scene_has_the_meshes_of_both_versions(boxed):
     data = json.loads(gzip.decompress(scene_of(reviewed(boxed)).data))
     files = {base64.b64decode(content) for content in data["files"].values()}
@@ -84,6 +86,7 @@ def test_page_without_scenes_has_no_program(boxed):
     assert "<details class='scene'>" not in page
 
 
+@needs_page
 def test_files_from_elsewhere_are_in_no_scene(boxed, tmp_path):
     secret = tmp_path / "secret.stl"
     secret.write_bytes(stl(7.0))
@@ -93,6 +96,7 @@ def test_files_from_elsewhere_are_in_no_scene(boxed, tmp_path):
     assert "it would contain files outside the repository" in str(scene.reason)
 
 
+@needs_page
 def test_meshes_of_a_repository_without_packages_are_in_the_scene(repository):
     repository.commit({"urdf/box.urdf": URDF.format(uri="../meshes/a.stl"), "meshes/a.stl": stl(1.0)})
     repository.commit({"meshes/a.stl": stl(2.0)})
@@ -101,6 +105,14 @@ def test_meshes_of_a_repository_without_packages_are_in_the_scene(repository):
     assert len(json.loads(gzip.decompress(scene.data))["files"]) == 2
 
 
+def test_installation_without_the_page_says_so(boxed, tmp_path, monkeypatch):
+    monkeypatch.setattr(html, "PAGE_FOLDER", tmp_path)
+    result = reviewed(boxed)
+    assert "the page for exports was not built" in str(scene_of(result).reason)
+    assert "the page for exports was not built" in as_html(result)
+
+
+@needs_page
 def test_large_scene_is_left_out(boxed, monkeypatch):
     monkeypatch.setattr(scenes, "_MAX_BYTES", 100)
     scene = scene_of(reviewed(boxed))
