@@ -77,6 +77,7 @@ class Sweep:
             contents.append((self.paths, paths_text(runs, journal.outcomes)))
         for path, content in contents:
             with reporting_write_errors(path):
+                path.parent.mkdir(parents=True, exist_ok=True)
                 write_whole_file(path, content)
         if len(table) == len(runs):
             journal.remove()
