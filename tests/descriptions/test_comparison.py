@@ -58,7 +58,7 @@ def test_robot_equals_itself():
         ('<mass value="2"/>', '<mass value="2.0000001"/>'),
     ],
 )
-def test_equivalent_notation_is_no_difference(written, instead):
+def test_equivalent_notation_is_equal(written, instead):
     assert found(ROBOT, ROBOT.replace(written, instead)) == []
 
 

@@ -71,7 +71,7 @@ def test_plot_of_a_robot_that_stood_still_has_a_frame():
     assert ">0.001 m<" in plot
 
 
-def test_names_of_paths_are_no_markup():
+def test_path_names_are_escaped():
     found = PathComparison("<b>'", "n=<i>", [path_pair("<s>", line(1.0), line(2.0))])
     plot = path_plot(found)
     assert not re.search("<(b|i|s)>", plot)

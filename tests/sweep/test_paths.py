@@ -29,7 +29,7 @@ def test_rows_of_time_and_position_are_a_path():
         [(0.0, 1.0, 2.0), (1.0, 2.0)],
     ],
 )
-def test_other_values_are_no_path(value):
+def test_other_values_are_not_a_path(value):
     assert as_path(value) is None
 
 

@@ -256,7 +256,7 @@ class TestVersions:
         assert reading(chain(f'revolute:<limit lower="0" upper="1" {name}="-1"/>'), version="1.2").robot is None
 
 
-class TestRest:
+class TestExtensionElements:
     def test_extension_elements_are_kept_in_order(self):
         result = robot('<gazebo reference="a"/>', '<link name="a"/>', "<transmission/>", "<ros2_control/>")
         assert [element.tag for element in result.extensions] == ["gazebo", "transmission", "ros2_control"]

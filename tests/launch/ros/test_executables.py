@@ -204,7 +204,7 @@ class TestInstalled:
         assert needs_our_interpreter(write("script", f"#!{other}\nprint()\n"))
 
 
-class TestOurs:
+class TestBuiltinExecutables:
     def test_builtin_packages_and_executables_are_listed(self, finder: PackageFinder) -> None:
         assert {"robot_state_publisher", "tf2_ros", "rviz2", "rclcpp_components"} <= builtin_packages()
         found = executables_of(finder, "robot_state_publisher")
