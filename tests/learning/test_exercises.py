@@ -100,6 +100,20 @@ def test_a_program_cannot_ask_the_simulator(tmp_path):
         test.call("/get_entity_state", None)
 
 
+def test_an_exercise_uses_its_own_robot_in_a_workspace_with_a_package_of_the_same_name(tmp_path, monkeypatch):
+    package = tmp_path / "src" / "my_robot_description"
+    (package / "urdf" / "base").mkdir(parents=True)
+    (package / "package.xml").write_text(
+        "<package format='3'><name>my_robot_description</name></package>", encoding="utf-8"
+    )
+    own_base = "<robot><joint/></robot>"
+    (package / "urdf" / "base" / "mbot_base_gazebo.xacro").write_text(own_base, encoding="utf-8")
+    monkeypatch.chdir(tmp_path)
+    exercise = find_exercise(FAST)
+    (result,) = judge_program(exercise, exercise.template, [0])
+    assert result.error is None
+
+
 def test_the_command_prints_a_table_or_json(tmp_path, monkeypatch, capsys):
     monkeypatch.chdir(tmp_path)
     assert main(["learn", "judge", FAST, "--start"]) == 0

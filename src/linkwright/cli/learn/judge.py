@@ -120,7 +120,6 @@ def run_world(arguments: argparse.Namespace) -> int:
     from linkwright.cli.sim import run
     from linkwright.learning.judging.exercise import find_exercise
     from linkwright.learning.judging.world import write_world
-    from linkwright.packages import PackageFinder
 
     exercise = find_exercise(arguments.exercise)
     program = (arguments.program or Path(f"{exercise.id}.py")).absolute()
@@ -129,9 +128,8 @@ def run_world(arguments: argparse.Namespace) -> int:
     with ScratchFolder("exercise") as folder:
         arrangement = write_world(exercise, arguments.seed, Path(folder), publishes=True)
         words = [str(arrangement.world)]
-        if exercise.robot:
-            words.append(str(PackageFinder(start=[exercise.folder]).resolve(exercise.robot, exercise.folder)))
-            words += [f"{name}:={str(value).lower()}" for name, value in exercise.arguments.items()]
+        if arrangement.robot is not None:
+            words.append(str(arrangement.robot))
         simulated = parser_for("sim").parse_args(words)
         vars(simulated).update(vars(arguments), terminal=not arguments.headless)
         simulated.x, simulated.y, simulated.z, _, _, simulated.Y = arrangement.pose

@@ -74,12 +74,11 @@ def _run(exercise: Exercise, program: Path, seed: int, folder: Path, budget: flo
     error: BaseException | None = None
     with SteppedSimulation(
         arrangement.world,
-        exercise.robot or None,
-        arguments=exercise.arguments,
+        arrangement.robot,
         pose=arrangement.pose,
         seed=seed,
         services=False,
-        robot_state_publisher=bool(exercise.robot),
+        robot_state_publisher=arrangement.robot is not None,
         strict=False,
     ) as test:
         judge = _find_judge(test)
