@@ -19,7 +19,7 @@ from linkwright.diagnostics import phrase
 from linkwright.learning.errors import file_error
 from linkwright.learning.judging.exercise import Exercise, load_exercise
 from linkwright.learning.judging.judge import Judge
-from linkwright.learning.judging.robots import write_robot
+from linkwright.learning.judging.robots import include_robot, write_robot
 from linkwright.learning.judging.scene import Scene
 from linkwright.messages import String
 from linkwright.simulation.plugins.plugin import SimulatedPlugin
@@ -77,6 +77,8 @@ def write_world(exercise: Exercise, seed: int, folder: Path, *, publishes: bool)
     """
     scene = Scene()
     create_judge(exercise, seed).arrange(scene)
+    for other in scene.robots:
+        scene.add_sdf(include_robot(other, exercise.folder, folder))
     plugin = (
         f'<plugin name="judge" filename="liblinkwright_judge.so"><exercise>{escape(str(exercise.folder))}</exercise>'
         f"<seed>{seed}</seed><publish>{str(publishes).lower()}</publish></plugin>"
@@ -126,7 +128,7 @@ class JudgePlugin(SimulatedPlugin[Parameters]):
 
     def _watch(self) -> None:
         if not self._has_begun:
-            if self._exercise.model not in self.simulation.scene.models:
+            if not all(model in self.simulation.scene.models for model in self._exercise.models):
                 return
             self.judge.begin(self.simulation)
             self._has_begun = True

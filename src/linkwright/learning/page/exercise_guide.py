@@ -39,11 +39,15 @@ class ExerciseGuide(Guide):
         program: the learner's program.
         publish: sends a message to all pages.
         node: the node that subscribes to the state of the judge.
+        rival: the program of the other robot, if the exercise has one.
     """
 
-    def __init__(self, exercise: Exercise, program: Path, publish: Publish, node: Node) -> None:
+    def __init__(
+        self, exercise: Exercise, program: Path, publish: Publish, node: Node, rival: Path | None = None
+    ) -> None:
         self._exercise = exercise
         self._program = program
+        self._rival = rival
         self._publish = publish
         self._state: Mapping[str, Any] | None = None
         self._scores: list[messages.StepCheck] = []
@@ -80,6 +84,8 @@ class ExerciseGuide(Guide):
     async def _judge(self) -> None:
         self._call(self._pause)
         command = [sys.executable, "-m", "linkwright", "learn", "judge", str(self._exercise.folder), str(self._program)]
+        if self._rival is not None:
+            command += ["--rival", str(self._rival)]
         process = await asyncio.create_subprocess_exec(
             *command, "--json", stdout=asyncio.subprocess.PIPE, stderr=asyncio.subprocess.PIPE
         )
