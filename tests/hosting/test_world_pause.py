@@ -16,12 +16,10 @@ async def test_a_running_world_is_paused_and_resumed() -> None:
     async with AsyncSteppedGraph() as test:
         simulator, pause = FakeSimulator(test.graph), create_pause(test.graph)
         await test.advance(0.1)
-        pause.begin()
-        assert pause.is_active
+        assert pause.set_active(True)
         await test.advance(0.1)
-        pause.end()
+        assert not pause.set_active(False)
         await test.advance(0.1)
-        assert not pause.is_active
     assert simulator.calls == ["pause", "resume"]
 
 

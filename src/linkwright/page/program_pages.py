@@ -6,7 +6,7 @@ as the program, so that the server notices its end, even if it was killed. The p
 server's origin to show its page in a frame.
 
 In the response, which lasts as long, the server asks programs to pause their worlds and to resume them. A program whose
-world is paused says so in a further line of its request.
+world is paused confirms it in a further line of its request.
 """
 
 from __future__ import annotations
