@@ -185,8 +185,23 @@ def test_the_rival_drives_in_real_time(tmp_path):
     )
     words = ["learn", "world", "race", "--headless", "--seconds", "60", "--rival", str(rival)]
     environment = {**os.environ, "ROS_DOMAIN_ID": str(own_domain())}
-    with subprocess.Popen([sys.executable, "-m", "linkwright", *words], cwd=tmp_path, env=environment) as process:
+    program = tmp_path / "mine.py"
+    program.write_text(
+        "import pathlib, rclpy, time\nfrom geometry_msgs.msg import Twist\nrclpy.init()\n"
+        "node = rclpy.create_node('m')\n"
+        "publisher = node.create_publisher(Twist, 'cmd_vel', 10)\n"
+        "while not publisher.get_subscription_count():\n    time.sleep(0.1)\n"
+        "time.sleep(1.0)\n"
+        f"assert not pathlib.Path({str(tmp_path / 'seen')!r}).exists()\n"
+        f"while not pathlib.Path({str(tmp_path / 'seen')!r}).exists():\n"
+        "    publisher.publish(Twist())\n    time.sleep(0.1)\n",
+        encoding="utf-8",
+    )
+    command = [sys.executable, "-m", "linkwright"]
+    with subprocess.Popen([*command, *words], cwd=tmp_path, env=environment) as process:
         try:
+            started = subprocess.run([*command, "shell", "--", sys.executable, program], env=environment, check=False)
+            assert started.returncode == 0
             wait_until((tmp_path / "seen").exists, pause=0.1)
         finally:
             process.send_signal(signal.SIGINT)

@@ -165,12 +165,16 @@ def run_world(arguments: argparse.Namespace) -> int:
 
 @contextmanager
 def _running_rival(exercise: Exercise, program: Path | None) -> Iterator[None]:
-    """Run the program of the other robot, if any, in a process with the environment of ``linkwright shell``."""
+    """Run the program of the other robot, if any, in a process with the environment of ``linkwright shell``.
+
+    It starts with the first command to the learner's robot.
+    """
     if exercise.rival is None or program is None:
         yield
         return
-    shell = [sys.executable, "-m", "linkwright", "shell", "--", sys.executable, str(program)]
-    command = [*shell, *exercise.rival.ros_arguments, "-p", "use_sim_time:=true"]
+    shell = [sys.executable, "-m", "linkwright", "shell", "--", sys.executable]
+    waiting = ["-m", "linkwright.cli.learn.rival", f"/{exercise.rival.start}", str(program)]
+    command = [*shell, *waiting, *exercise.rival.ros_arguments, "-p", "use_sim_time:=true"]
     with subprocess.Popen(command, stdin=subprocess.DEVNULL) as process:  # noqa: S603 - the user's own program
         try:
             yield

@@ -56,11 +56,13 @@ class Rival:
         model: its name in the world, which is also the namespace of its topics.
         program: the file of the program that drives it, unless another one is chosen.
         topics: the topics of the robot, without the namespace.
+        start: the topic of them whose first message to the learner's robot starts the program in real time.
     """
 
     model: str
     program: Path
     topics: tuple[str, ...]
+    start: str
 
     @property
     def ros_arguments(self) -> list[str]:
@@ -213,4 +215,4 @@ def _exercise_from(folder: Path, data: Mapping[str, Any]) -> Exercise:
 
 
 def _rival_from(folder: Path, data: Mapping[str, Any]) -> Rival:
-    return Rival(str(data["model"]), folder / str(data["program"]), tuple(map(str, data["topics"])))
+    return Rival(str(data["model"]), folder / str(data["program"]), tuple(map(str, data["topics"])), str(data["start"]))
