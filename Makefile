@@ -160,7 +160,7 @@ check: $(VENV)/.dev
 	$(BIN)/python tools/node_parameters.py --check
 	$(BIN)/python tools/simulator_plugins.py --check
 	$(BIN)/python tools/node_topics.py --check
-	$(BIN)/python tools/catalogues.py check
+	$(BIN)/python tools/catalogs.py check
 	$(BIN)/python tools/plain_words.py
 	$(BIN)/python tools/rule_reference.py --check
 	$(BIN)/python tools/language_reference.py --check

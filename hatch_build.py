@@ -42,10 +42,10 @@ class GeneratedFiles(BuildHookInterface):
         """Make the files and take them into the artifact, although git ignores them."""
         if version != "editable" or not WITHOUT_PAGE:
             build_page.build()
-        import catalogues  # what these import, `dependencies` names
+        import catalogs  # what these import, `dependencies` names
         import standin_stubs
 
-        catalogues.compile_catalogues()
+        catalogs.compile_catalogs()
         standin_stubs.write()
         if self.target_name == "sdist":
             build_data["artifacts"] += ["src/linkwright/page/built/**", "src/linkwright/standins/stubs/**"]

@@ -28,12 +28,12 @@ QUALITIES = {
     "10 %, 0.1 rad/m": (1.1, 0.1, 0.2),
     "-10 %, -0.15 rad/m": (0.9, -0.15, 0.3),
 }
-"""Names, and scale, radians a metre, and noise of `house.Drift`."""
+"""Names, and scale, radians a meter, and noise of `house.Drift`."""
 
 
 @dataclass
 class _Tour:
-    """What a tour gave: metres, radians, and seconds of each step of the mapper and of each scan."""
+    """What a tour gave: meters, radians, and seconds of each step of the mapper and of each scan."""
 
     odometry_off: float
     pose_off: float
@@ -43,13 +43,13 @@ class _Tour:
     scans: int
 
 
-def toured(scale: float, yaw_per_metre: float, noise: float) -> _Tour:
+def toured(scale: float, yaw_per_meter: float, noise: float) -> _Tour:
     """Drive and map."""
     walls, solid = house.faces(), house.faces(("walls", "furniture"))
     steps: list[float] = []
     os.environ.pop("ROS_DISTRO", None)
     with house.simulation() as test:
-        drift = house.Drift(test, scale, yaw_per_metre, noise=noise)
+        drift = house.Drift(test, scale, yaw_per_meter, noise=noise)
         options = NodeOptions(parameters={"use_sim_time": True}, remappings=[("/tf", "/drifting_tf")])
         node: Any = AsyncSlamToolbox(test.graph, options)
         toolbox = node._work[0]

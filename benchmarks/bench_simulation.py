@@ -46,7 +46,7 @@ _LONGEST = 10.0
 """At most so many turns are measured of each, at least so many, and no more after so many seconds."""
 _SLICE = NANOSECONDS_PER_SECOND // 10
 _BESIDE = 1.5
-"""Metres from one robot to the next."""
+"""Meters from one robot to the next."""
 _LISTENED = {
     "/scan": "sensor_msgs/msg/LaserScan",
     "/imu": "sensor_msgs/msg/Imu",

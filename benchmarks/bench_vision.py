@@ -35,7 +35,7 @@ from linkwright.vision.detectors.registry import make_detector
 from linkwright.vision.nodes.detection_messages import image_message, vision_message
 from linkwright.wire.dds import join
 
-MODELS = ("colours", "things")
+MODELS = ("colors", "things")
 _PICTURES = 60
 _SECONDS = 20.0
 _START_SECONDS = 120.0
@@ -69,7 +69,7 @@ def _one_image() -> Iterator[Row]:
 
 
 def _scene() -> NDArray[np.uint8]:
-    """Things of plain colours on a floor, with noise as cameras have it; the same each time."""
+    """Things of plain colors on a floor, with noise as cameras have it; the same each time."""
     cv2 = load_opencv()
     image = np.full((*_SIZE, 3), 150, np.uint8)
     image[: _SIZE[0] // 2] = (150, 175, 205)

@@ -1,8 +1,8 @@
 """Enrolled words on synthetic speech: right, confused, false; noise, music, reading; how soon and at what cost.
 
 Run it with ``python -m benchmarks voice``. The voices are those of espeak-ng, flite and festival that are installed.
-Each speaker enrols eight commands, three times each at speeds and pitches some percent apart; it says them again
-faster, slower, higher and lower, and words that are no commands. **No person was recorded**: a synthesiser says a word
+Each speaker enrolls eight commands, three times each at speeds and pitches some percent apart; it says them again
+faster, slower, higher and lower, and words that are no commands. **No person was recorded**: a synthesizer says a word
 much more alike each time than people do, so the figures are an upper bound.
 """
 
@@ -22,7 +22,7 @@ from benchmarks import voices
 from benchmarks.measure import Row
 from linkwright.speech.engine import EngineOptions, Heard
 from linkwright.speech.enrolled.engine import EnrolledEngine
-from linkwright.speech.enrolled.enrolment import enrol
+from linkwright.speech.enrolled.enrollment import enroll
 from linkwright.speech.enrolled.words import Words
 from linkwright.speech.sound.samples import BLOCK, RATE, Samples
 
@@ -73,7 +73,7 @@ def engine(speaker: voices.Speaker, folder: Path) -> EnrolledEngine:
     for name in voices.COMMANDS[speaker.language]:
         for speed, pitch in ENROLLED:
             said = voices.clip(voices.say(speaker, name, speed=speed, pitch=pitch), rng, level=3000.0)
-            for finding in enrol(words, name, said):
+            for finding in enroll(words, name, said):
                 print(f"{speaker.voice}, '{name}': {finding.message}")
     words.write(_words_file(speaker, folder))
     return _made(speaker, folder)

@@ -15,7 +15,7 @@ from benchmarks import peers
 
 _STEP = 0.001
 _BESIDE = 1.5
-"""Metres from one robot to the next."""
+"""Meters from one robot to the next."""
 _WHEELS = ("left_wheel_joint", "right_wheel_joint")
 _TORQUE = 5.0
 

@@ -1,4 +1,4 @@
-"""The peer of `dds_sides`: `cyclonedds` alone, with IdlStructs that serialise themselves.
+"""The peer of `dds_sides`: `cyclonedds` alone, with IdlStructs that serialize themselves.
 
 Its annotations are not postponed: `cyclonedds` reads them as types.
 """

@@ -46,7 +46,7 @@ def arm(server: Any) -> None:
 
 
 def points(server: Any) -> None:
-    """The clouds of 100 000 points of `data_scenes`, ten a second, coloured by their heights."""
+    """The clouds of 100 000 points of `data_scenes`, ten a second, colored by their heights."""
     made = []
     for message in clouds():
         array = np.frombuffer(message.data, np.float32).reshape(-1, 4)

@@ -1,4 +1,4 @@
-"""Speech of the synthesisers that are installed: espeak-ng, flite and festival. Nothing of it is part of the project.
+"""Speech of the synthesizers that are installed: espeak-ng, flite and festival. Nothing of it is part of the project.
 
 Each clip is made once and kept below ``.build/voices``. Speed and pitch are relative to the speaker's own.
 """
@@ -64,7 +64,7 @@ READING = {
 
 @dataclass(frozen=True, slots=True)
 class Speaker:
-    """A voice of a synthesiser, and a language."""
+    """A voice of a synthesizer, and a language."""
 
     program: str
     voice: str

@@ -1,7 +1,7 @@
 """Hatchling's hook of linkwright-core: the modules of the engine, out of the sources of the whole.
 
 In a checkout they are in ``../src``, and the contract of import-linter in ``../pyproject.toml`` names them. A source
-distribution has them alone, in ``src``, with the compiled catalogues.
+distribution has them alone, in ``src``, with the compiled catalogs.
 """
 
 from __future__ import annotations
@@ -56,18 +56,18 @@ class Engine(BuildHookInterface):
     """Take the files of the engine into a wheel or a source distribution."""
 
     def dependencies(self) -> list[str]:
-        """What compiling the catalogues and reading the contract need."""
+        """What compiling the catalogs and reading the contract need."""
         if SOURCES == OF_SDIST:
             return []
         return ["babel>=2.16", *(["tomli>=2.0"] if sys.version_info < (3, 11) else [])]
 
     def initialize(self, version: str, build_data: dict[str, Any]) -> None:
-        """Name the files; catalogues are compiled first, in a checkout."""
+        """Name the files; catalogs are compiled first, in a checkout."""
         if SOURCES != OF_SDIST:
             sys.path.insert(0, str(HERE.parent / "tools"))
-            import catalogues  # what it imports, `dependencies` names
+            import catalogs  # what it imports, `dependencies` names
 
-            catalogues.compile_catalogues()
+            catalogs.compile_catalogs()
         if version == "editable":
             return
         folder = "src/linkwright" if self.target_name == "sdist" else "linkwright"

@@ -24,7 +24,7 @@ export default defineConfig({
   },
   test: {
     include: ["test/**/*.test.ts"],
-    // Colours and edges are tested; other styles are nothing to tests.
+    // Colors and edges are tested; other styles are nothing to tests.
     css: { include: [/theme\.css/, /controls\.css/] },
   },
 });

@@ -64,9 +64,9 @@ def _state_of_the_user(tmp_path_factory):
 
 
 @pytest.fixture(autouse=True, scope="session")
-def _catalogues():
-    """The program speaks other languages as the catalogues of the checkout have it."""
-    load_tool("catalogues").compile_catalogues()
+def _catalogs():
+    """The program speaks other languages as the catalogs of the checkout have it."""
+    load_tool("catalogs").compile_catalogs()
 
 
 @pytest.fixture(scope="session")
@@ -79,7 +79,7 @@ def fork_server() -> Iterator[ForkServer]:
 
 @pytest.fixture(autouse=True)
 def plain_environment(monkeypatch):
-    """No workspace, colour or language setting of the machine reaches a test, nor does a node of another test run."""
+    """No workspace, color or language setting of the machine reaches a test, nor does a node of another test run."""
     for name in ("AMENT_PREFIX_PATH", "COLCON_PREFIX_PATH", "ROS_PACKAGE_PATH", "NO_COLOR", "FORCE_COLOR"):
         monkeypatch.delenv(name, raising=False)
     monkeypatch.setenv("LINKWRIGHT_LANG", "en")

@@ -1,7 +1,7 @@
 """Robots with what ros/xacro and urdfdom make of them.
 
 The corpus of the repository, ``tests/corpus``, is always there. Another one of the same form, for instance of public
-robots, whose licences keep it out of the repository, is tested as well where it lies beside the checkout
+robots, whose licenses keep it out of the repository, is tested as well where it lies beside the checkout
 (``../shared/corpus``) or where ``LINKWRIGHT_CORPUS`` names it.
 """
 

@@ -14,5 +14,5 @@ MODULES = {iter_module.name for iter_module in pkgutil.iter_modules(benchmarks._
 
 
 @pytest.mark.parametrize("name", sorted(MODULES))
-def test_what_a_benchmark_imports_is_there(name: str) -> None:
+def test_benchmark_can_be_imported(name: str) -> None:
     importlib.import_module(f"benchmarks.{name}")

@@ -17,14 +17,14 @@ def container() -> str:
     return (REPOSITORY / "Containerfile").read_text(encoding="utf-8").replace("\\\n", "")
 
 
-def test_the_container_takes_a_python_and_extras_that_there_are(container):
+def test_container_python_and_extras_are_declared_in_project(container):
     (python,) = re.findall(r"^ARG PYTHON=(\S+)$", container, re.MULTILINE)
     assert f"Programming Language :: Python :: {python}" in PROJECT["classifiers"]
     (extras,) = re.findall(r"^ARG EXTRAS=(\S+)$", container, re.MULTILINE)
     assert set(extras.split(",")) <= set(PROJECT["optional-dependencies"])
 
 
-def test_the_container_runs_the_demo_of_the_makefile_and_not_as_root(container):
+def test_container_runs_makefile_demo_as_non_root(container):
     (command,) = re.findall(r"^CMD (.+)$", container, re.MULTILINE)
     words = json.loads(command)
     arguments = parser_for(words[0]).parse_intermixed_args(words[1:])
@@ -39,7 +39,7 @@ def test_the_container_runs_the_demo_of_the_makefile_and_not_as_root(container):
     assert container.rindex("\nRUN ") < user < container.index("\nENTRYPOINT ")
 
 
-def test_the_build_of_the_container_finds_what_the_build_reads():
+def test_dockerignore_keeps_files_needed_by_build():
     taken = (REPOSITORY / ".dockerignore").read_text(encoding="utf-8").splitlines()
     allowed = {line[1:] for line in taken if line.startswith("!")}
     included = PYPROJECT["tool"]["hatch"]["build"]["targets"]["sdist"]["include"]

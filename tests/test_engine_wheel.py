@@ -22,7 +22,7 @@ def engine(tmp_path_factory) -> Path:
     return install(tmp_path_factory.mktemp("engine"), extra="", project=REPOSITORY / "core")
 
 
-def test_it_installs_few_packages_and_runs_its_commands(engine, tmp_path):
+def test_engine_wheel_is_small_and_runs_its_commands(engine, tmp_path):
     words = [engine / "bin" / "python", "-I", REPOSITORY / "tools" / "try_installation.py", __version__, "--engine"]
     done = subprocess.run(words, capture_output=True, text=True, cwd=tmp_path, check=False)
     assert done.returncode == 0, done.stderr
@@ -31,7 +31,7 @@ def test_it_installs_few_packages_and_runs_its_commands(engine, tmp_path):
 
 
 @pytest.mark.parametrize("package", sorted(path.name for path in (REPOSITORY / "robots").iterdir() if path.is_dir()))
-def test_it_finds_what_the_whole_finds(engine, package):
+def test_engine_wheel_reports_same_findings_as_full_package(engine, package):
     found = []
     for python in (engine / "bin" / "python", sys.executable):
         words = [python, "-I", "-m", "linkwright", "check", "--format", "json", "--select", "ALL", package]

@@ -29,7 +29,7 @@ def ended(program: Program) -> tuple[str, int]:
         return program.stdout.read(), program.wait(SECONDS)
 
 
-def test_what_a_program_prints_and_its_status(start, tmp_path):
+def test_forked_program_returns_output_and_status(start, tmp_path):
     printed, status = ended(start(["xacro", str(ROBOT)], cwd=tmp_path, env=QUIET))
     assert printed.rstrip().endswith("</robot>")
     assert status == 0
@@ -41,7 +41,7 @@ def test_what_a_program_prints_and_its_status(start, tmp_path):
     assert status == 2
 
 
-def test_its_folder_environment_and_input_are_its_own(start, tmp_path):
+def test_forked_program_has_own_folder_environment_and_input(start, tmp_path):
     launch = tmp_path / "told.launch.py"
     launch.write_text(
         "import os, sys\n"
@@ -63,7 +63,7 @@ def test_its_folder_environment_and_input_are_its_own(start, tmp_path):
 @pytest.mark.parametrize(
     ("number", "status"), [(signal.SIGINT, 130), (signal.SIGTERM, 143), (signal.SIGKILL, -signal.SIGKILL)]
 )
-def test_signals_end_it(start, tmp_path, number, status):
+def test_signals_end_forked_program(start, tmp_path, number, status):
     program = start(["view", str(ROBOT), "--no-open"], cwd=tmp_path, env={**QUIET, "PYTHONUNBUFFERED": "1"})
     with program.stdout:
         assert any(line.startswith("Viewer: ") for line in program.stdout)
@@ -77,7 +77,7 @@ def test_signals_end_it(start, tmp_path, number, status):
         program.send_signal(number)  # to nobody
 
 
-def test_several_run_at_once_and_one_that_nobody_waits_for_hinders_none(fork_server, tmp_path):
+def test_forked_programs_run_in_parallel(fork_server, tmp_path):
     first, second = (fork_server.start(["view", str(ROBOT), "--no-open"], cwd=tmp_path, env=QUIET) for _ in range(2))
     forgotten = fork_server.start(["--version"], cwd=tmp_path, env=QUIET)
     printed_of_forgotten = forgotten.stdout
@@ -92,7 +92,7 @@ def test_several_run_at_once_and_one_that_nobody_waits_for_hinders_none(fork_ser
         assert first.wait(SECONDS) == -signal.SIGKILL
 
 
-def test_programs_start_afresh_where_the_server_cannot_begin(tmp_path, monkeypatch):
+def test_programs_start_as_processes_if_fork_server_fails(tmp_path, monkeypatch):
     monkeypatch.setattr(forked, "_MODULE", "no_such_module")
     server = ForkServer()
     program = server.start(["--version"], cwd=tmp_path, env=QUIET)
@@ -101,7 +101,7 @@ def test_programs_start_afresh_where_the_server_cannot_begin(tmp_path, monkeypat
     server.close()
 
 
-def test_it_is_ready_when_it_has_imported():
+def test_fork_server_is_ready_after_imports():
     server = forked.ForkServer(["linkwright.process.nanoseconds"])
     assert not server.is_ready
     server.prepare()
@@ -110,7 +110,7 @@ def test_it_is_ready_when_it_has_imported():
     assert not server.is_ready
 
 
-def test_a_server_that_was_killed_is_replaced(tmp_path):
+def test_killed_fork_server_is_replaced(tmp_path):
     server = ForkServer()
     program = server.start(["view", str(ROBOT), "--no-open"], cwd=tmp_path, env={**QUIET, "PYTHONUNBUFFERED": "1"})
     with program.stdout:
@@ -125,7 +125,7 @@ def test_a_server_that_was_killed_is_replaced(tmp_path):
     server.close()
 
 
-def test_programs_go_on_when_the_server_ends(tmp_path):
+def test_forked_programs_survive_end_of_server(tmp_path):
     server = ForkServer()
     program = server.start(["view", str(ROBOT), "--no-open"], cwd=tmp_path, env={**QUIET, "PYTHONUNBUFFERED": "1"})
     with program.stdout:

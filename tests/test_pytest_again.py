@@ -37,14 +37,14 @@ def run(*arguments: str) -> int:
     return int(load_tool("pytest_again").main(["-q", *arguments]))
 
 
-def test_what_passes_runs_once(project, capfd):
+def test_passing_test_runs_once(project, capfd):
     write(project, UNSTEADY.replace("FAILING", "()"))
     assert run() == 0
     assert (project / "runs").read_text() == "x"
     assert "UNSTEADY" not in capfd.readouterr().out
 
 
-def test_what_fails_once_passes_three_times_over_and_is_named(project, capfd):
+def test_flaky_test_is_rerun_three_times_and_named(project, capfd):
     write(project, UNSTEADY.replace("FAILING", "(1,)"))
     assert run() == 0
     assert (project / "runs").read_text() == "xxxx"
@@ -54,7 +54,7 @@ def test_what_fails_once_passes_three_times_over_and_is_named(project, capfd):
 
 
 @pytest.mark.parametrize("failing", ["(1, 2)", "(1, 4)", "range(9)"])
-def test_what_fails_twice_fails(project, failing):
+def test_test_that_fails_twice_fails(project, failing):
     write(project, UNSTEADY.replace("FAILING", failing))
     assert run() == 1
 
@@ -69,11 +69,11 @@ def test_many_failures_are_final(project):
     assert (project / "runs").read_text() == "x" * 11
 
 
-def test_a_run_that_does_not_come_to_its_end_is_final(project):
+def test_aborted_run_is_final(project):
     write(project, "import pytest\ndef test_a(): assert 0\ndef test_b(): pytest.exit('stop', 3)\n")
     assert run() == 3
 
 
-def test_a_file_that_cannot_be_loaded_is_final(project):
+def test_collection_error_is_final(project):
     write(project, "import nothing_like_it\n")
     assert run() != 0

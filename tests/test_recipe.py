@@ -28,7 +28,7 @@ def bounds(requirements: list[str]) -> dict[str, str]:
     return {requirement.name: str(requirement.specifier) for requirement in parsed}
 
 
-def test_the_recipe_needs_what_the_project_needs(recipe):
+def test_recipe_run_requirements_match_pyproject(recipe):
     interpreter, *needed = recipe["requirements"]["run"]
     both = [*ENGINE["dependencies"], *PROJECT["dependencies"]]
     assert bounds(needed) == bounds([name for name in both if not name.startswith(ENGINE["name"])])
@@ -36,16 +36,16 @@ def test_the_recipe_needs_what_the_project_needs(recipe):
     assert PROJECT["requires-python"] == f">={recipe['context']['python_min']}"
 
 
-def test_the_recipe_builds_with_what_the_build_needs(recipe, monkeypatch):
+def test_recipe_host_requirements_match_build_requirements(recipe, monkeypatch):
     pinned, installer, *needed = recipe["requirements"]["host"]
     assert (pinned, installer) == ("python ${{ python_min }}.*", "pip")
     hook = (REPOSITORY / "hatch_build.py").read_text(encoding="utf-8")
     ours = re.findall(r'"([a-z]+>=[\d.]+)"', hook.partition("*([]")[0])
-    assert len(ours) == 2  # what the stubs and the catalogues take; the source distribution has the page
+    assert len(ours) == 2  # what the stubs and the catalogs take; the source distribution has the page
     assert bounds(needed) == bounds([*PYPROJECT["build-system"]["requires"], *ours])
 
 
-def test_the_recipe_says_of_the_project_what_that_says_of_itself(recipe):
+def test_recipe_metadata_matches_pyproject(recipe):
     version = (REPOSITORY / "src" / "linkwright" / "_version.py").read_text(encoding="utf-8")
     assert f'__version__ = "{recipe["context"]["version"]}"' in version
     assert recipe["about"]["summary"] == PROJECT["description"]
@@ -54,7 +54,7 @@ def test_the_recipe_says_of_the_project_what_that_says_of_itself(recipe):
     assert recipe["build"]["python"]["entry_points"] == scripts
 
 
-def test_what_the_recipe_tries_works(recipe, tmp_path, monkeypatch, capfd):
+def test_recipe_test_commands_succeed(recipe, tmp_path, monkeypatch, capfd):
     monkeypatch.chdir(tmp_path)
     (script,) = [test["script"] for test in recipe["tests"] if "script" in test]
     for line in script:

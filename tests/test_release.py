@@ -40,20 +40,20 @@ def release():
     return load_tool("release")
 
 
-def test_notes_are_those_of_the_version(notes):
+def test_release_notes_contain_section_of_version(notes):
     assert notes.section(CHANGELOG, "0.2.0") == ("0.2.0", "# Linkwright 0.2.0\n\n### Changed\n\n- Legs are longer.\n")
 
 
-def test_notes_of_a_version_without_a_section_are_what_is_unreleased(notes):
+def test_release_notes_fall_back_to_unreleased_section(notes):
     assert notes.section(CHANGELOG, "0.3.0") == ("Unreleased", "# Linkwright 0.3.0\n\n### Added\n\n- Wings.\n")
 
 
-def test_there_are_no_notes_about_nothing(notes):
+def test_release_notes_require_unreleased_changes(notes):
     with pytest.raises(SystemExit, match="nothing unreleased"):
         notes.section("# Changelog\n\n## [Unreleased]\n\n## [0.2.0] - 2026-05-01\n\n- Legs.\n", "0.3.0")
 
 
-def test_what_is_unreleased_becomes_the_section_of_a_version(notes):
+def test_unreleased_changes_become_section_of_new_version(notes):
     begun = notes.begun(CHANGELOG, "0.3.0", "2026-11-22", "0.2.0")
     assert "## [Unreleased]\n\n## [0.3.0] - 2026-11-22\n\n### Added\n\n- Wings.\n\n## [0.2.0]" in begun
     assert notes.sections(begun) == {
@@ -72,12 +72,12 @@ def test_what_is_unreleased_becomes_the_section_of_a_version(notes):
         ("0.2.0", "has a section about 0.2.0 already"),
     ],
 )
-def test_versions_that_cannot_be_begun_are_refused(notes, version, reason):
+def test_invalid_new_version_is_rejected(notes, version, reason):
     with pytest.raises(SystemExit, match=reason):
         notes.begun(CHANGELOG, version, "2026-11-22", "0.2.0")
 
 
-def test_a_version_is_begun_in_all_files_that_name_it(release, tmp_path):
+def test_new_version_is_written_to_all_files(release, tmp_path):
     (tmp_path / "CHANGELOG.md").write_text(CHANGELOG, encoding="utf-8")
     texts = {
         release.VERSION: '__version__ = "0.2.0"\n',
@@ -95,7 +95,7 @@ def test_a_version_is_begun_in_all_files_that_name_it(release, tmp_path):
     assert "\n## [0.3.0] - 20" in (tmp_path / "CHANGELOG.md").read_text(encoding="utf-8")
 
 
-def test_the_changelog_of_this_version_can_be_taken_out(release, notes):
+def test_changelog_has_section_of_current_version(release, notes):
     text = (REPOSITORY / "CHANGELOG.md").read_text(encoding="utf-8")
     _, section = notes.section(text, release.read_version())
     assert section.startswith(f"# Linkwright {release.read_version()}\n\n### ")
@@ -114,7 +114,7 @@ def listed() -> str:
     return json.dumps({"metadata": {}, "components": components, "dependencies": dependencies})
 
 
-def test_the_bill_has_packages_of_python_and_of_the_page(bill):
+def test_bill_of_materials_lists_python_and_npm_packages(bill):
     whole = json.loads(bill.complete(listed()))
     assert whole["metadata"]["component"] == {
         "bom-ref": "linkwright==0.1.0",
@@ -140,32 +140,32 @@ def test_the_bill_has_packages_of_python_and_of_the_page(bill):
     assert set(depending) == {"linkwright==0.1.0", *depending["linkwright==0.1.0"]}
 
 
-def test_the_bill_tells_nothing_of_the_machine(bill):
+def test_bill_of_materials_contains_no_local_paths(bill):
     whole = bill.complete(listed())
     assert "file:" not in whole
     assert "https://example.org" in whole
 
 
-def test_an_environment_without_linkwright_has_no_bill(bill):
+def test_bill_of_materials_requires_linkwright(bill):
     with pytest.raises(SystemExit, match="without Linkwright"):
         bill.complete(listed().replace("linkwright", "another"))
 
 
-def test_licences_of_the_page_go_with_it(monkeypatch, tmp_path):
+def test_page_licenses_require_license_texts(monkeypatch, tmp_path):
     page = load_tool("build_page")
     monkeypatch.setattr(page, "FRONTEND", tmp_path)
     monkeypatch.setattr(page, "bundled", lambda: {"wings": {"version": "1.0.0", "license": "MIT", "integrity": ""}})
-    with pytest.raises(SystemExit, match="wings comes without the text of its licence"):
-        page.licences()
+    with pytest.raises(SystemExit, match="wings comes without the text of its license"):
+        page.licenses()
     folder = tmp_path / "node_modules" / "wings"
     folder.mkdir(parents=True)
-    (folder / "LICENCE.md").write_text("Do what you like.\n", encoding="utf-8")
-    assert page.licences() == "wings 1.0.0 (MIT)\n\nDo what you like.\n"
+    (folder / "LICENSE.md").write_text("Do what you like.\n", encoding="utf-8")
+    assert page.licenses() == "wings 1.0.0 (MIT)\n\nDo what you like.\n"
 
 
-def test_compiled_catalogues_do_not_say_when_they_were_compiled(monkeypatch, tmp_path):
-    catalogues = load_tool("catalogues")
-    (tmp_path / "zh.po").write_bytes((catalogues.FOLDER / "zh.po").read_bytes())
-    monkeypatch.setattr(catalogues, "FOLDER", tmp_path)
-    catalogues.compile_catalogues()
+def test_compiled_catalogs_have_no_creation_date(monkeypatch, tmp_path):
+    catalogs = load_tool("catalogs")
+    (tmp_path / "zh.po").write_bytes((catalogs.FOLDER / "zh.po").read_bytes())
+    monkeypatch.setattr(catalogs, "FOLDER", tmp_path)
+    catalogs.compile_catalogs()
     assert b"POT-Creation-Date: 1970-01-01 00:00+0000\n" in (tmp_path / "zh.mo").read_bytes()

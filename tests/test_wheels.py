@@ -42,7 +42,7 @@ def lock() -> dict[str, list[dict[str, Any]]]:
 
 @pytest.mark.parametrize("python", PYTHONS)
 @pytest.mark.parametrize("system", SYSTEMS)
-def test_everything_is_installed_without_a_compiler(
+def test_all_dependencies_install_without_compiler(
     system: str, python: str, lock: dict[str, list[dict[str, Any]]]
 ) -> None:
     allowed = PLAIN | {
@@ -56,12 +56,12 @@ def test_everything_is_installed_without_a_compiler(
     assert without >= PLAIN, "what has wheels is no exception any more"
 
 
-def test_exceptions_for_new_pythons_are_still_needed(lock: dict[str, list[dict[str, Any]]]) -> None:
+def test_exceptions_for_new_python_versions_are_needed(lock: dict[str, list[dict[str, Any]]]) -> None:
     for name, since in PLAIN_IF_NEED_BE.items():
         assert not _has_wheel(lock[name][0], _tags("Linux x86_64", since)), name
 
 
-def test_each_python_of_the_workflows_is_one_of_these() -> None:
+def test_python_versions_of_workflows_are_covered() -> None:
     text = (REPOSITORY / ".github" / "workflows" / "tests.yml").read_text(encoding="utf-8")
     named = set(re.findall(r'"(3\.\d+)"', text))
     assert {"3.10", "3.14"} <= named <= set(PYTHONS)

@@ -24,7 +24,7 @@ _STAMP = ".inputs.sha256"
 _OLDEST_NODE = 20
 _PACKED = (".js", ".css")
 _INSTALLED = "node_modules/"
-LICENCES = "LICENCES.txt"
+LICENSES = "LICENSES.txt"
 _INPUTS = (
     "src",
     "public",
@@ -73,7 +73,7 @@ def build() -> None:
     npm("ci", "--no-fund", "--no-audit")
     npm("run", "build")
     pack()
-    (PAGE / LICENCES).write_text(licences(), encoding="utf-8")
+    (PAGE / LICENSES).write_text(licenses(), encoding="utf-8")
     (PAGE / _STAMP).write_text(digest, encoding="ascii")
 
 
@@ -96,8 +96,8 @@ def bundled() -> dict[str, dict[str, str]]:
     }
 
 
-def licences() -> str:
-    """The licences of the npm packages in the page, which ask to go wherever their code goes.
+def licenses() -> str:
+    """The licenses of the npm packages in the page, which ask to go wherever their code goes.
 
     Raises:
         SystemExit: when a package comes without one.
@@ -106,7 +106,7 @@ def licences() -> str:
     for name, package in bundled().items():
         files = sorted((FRONTEND / _INSTALLED / name).glob("[Ll][Ii][Cc][Ee][Nn][CcSs][Ee]*"))
         if not files:
-            raise SystemExit(f"the npm package {name} comes without the text of its licence ({package['license']})")
+            raise SystemExit(f"the npm package {name} comes without the text of its license ({package['license']})")
         text = files[0].read_text(encoding="utf-8").strip()
         texts.append(f"{name} {package['version']} ({package['license']})\n\n{text}\n")
     return "\n\n".join(texts)

@@ -21,7 +21,7 @@ from linkwright.cli.command import help_texts, parser_for
 from linkwright.cli.completion.candidates import TABLE
 from linkwright.cli.tools.ros2 import COMMANDS
 from linkwright.launch.ros.executables import hosted_executables
-from linkwright.messages import catalogue
+from linkwright.messages import catalog
 
 ROOT = Path(__file__).resolve().parent.parent
 TARGET = ROOT / "docs" / "commands.md"
@@ -64,7 +64,7 @@ def completion_table() -> str:
     executables: dict[str, list[str]] = {}
     for package, name in sorted(hosted_executables()):
         executables.setdefault(package, []).append(name)
-    names = [f"{package}/{name}" for package in catalogue.packages() for name in catalogue.texts(package)]
+    names = [f"{package}/{name}" for package in catalog.packages() for name in catalog.texts(package)]
     types = {kind: sorted(name for name in names if f"/{kind}/" in name) for kind in ("msg", "srv", "action")}
     verbs = {name: _completed(parser_for(name)) for name in help_texts()}
     table = {"verbs": verbs, "ros2": list(COMMANDS), "executables": executables, "types": types}

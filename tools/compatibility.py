@@ -10,7 +10,7 @@ from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass
 from pathlib import Path
 
-from linkwright.messages import catalogue
+from linkwright.messages import catalog
 from linkwright.packages.programs.missing_modules import ROS_MODULES
 from linkwright.standins import table
 
@@ -119,7 +119,7 @@ def _page(words: Words) -> str:
     for package, modules in tables.items():
         parts.append(f"\n## {package}\n")
         parts += [line for module in modules.values() if _is_public(module.name) for line in _module(module, words)]
-    names = ", ".join(f"`{name}`" for name in sorted(catalogue.packages()))
+    names = ", ".join(f"`{name}`" for name in sorted(catalog.packages()))
     absent = _listed(ROS_MODULES)
     return "\n".join([*parts, words.messages.format(packages=names), words.missing.format(modules=absent)])
 

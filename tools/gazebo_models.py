@@ -20,7 +20,7 @@ from gazebo_sdf import (
     WOOD,
     YELLOW,
     Body,
-    Colour,
+    Color,
     Model,
     Part,
     Pose,
@@ -38,7 +38,7 @@ def prism(name: str, rings: Sequence[tuple[float, float]], sides: int, turn: flo
 
     Args:
         name: the solid's name.
-        rings: radius and height of each ring of corners, from below, in metres.
+        rings: radius and height of each ring of corners, from below, in meters.
         sides: how many corners a ring has.
         turn: where the first corner is, radians.
     """
@@ -70,7 +70,7 @@ def normal(a: Vector, b: Vector, c: Vector) -> Vector:
 
 
 def cone_radius(z: float) -> float:
-    """The traffic cone's radius at a height, metres."""
+    """The traffic cone's radius at a height, meters."""
     return 0.13 - 0.105 * (z - 0.03) / 0.47
 
 
@@ -113,7 +113,7 @@ def crate() -> tuple[Model, dict[str, str]]:
     return Model("crate", parts, body=Body(mass, (cube, cube, cube), (0, 0, size / 2))), {}
 
 
-def person(name: str, scale: float, shirt: Colour, trousers: Colour) -> tuple[Model, dict[str, str]]:
+def person(name: str, scale: float, shirt: Color, trousers: Color) -> tuple[Model, dict[str, str]]:
     """A standing figure, 1.75 m tall times the scale, that looks along x."""
 
     def at(y: float, z: float, x: float = 0.0) -> Pose:
@@ -146,8 +146,8 @@ STROKES: dict[str, list[tuple[float, float, float, float]]] = {
 }
 
 
-def lettering(word: str, step: float, pose: Pose, colour: Colour) -> list[Part]:
-    """A word of flat boxes on a plate that faces along x, read from there; `step` is the width of a stroke, metres."""
+def lettering(word: str, step: float, pose: Pose, color: Color) -> list[Part]:
+    """A word of flat boxes on a plate that faces along x, read from there; `step` is the width of a stroke, meters."""
     parts = []
     for at, letter in enumerate(word):
         middle = (at - (len(word) - 1) / 2) * 4
@@ -155,17 +155,15 @@ def lettering(word: str, step: float, pose: Pose, colour: Colour) -> list[Part]:
             # Whoever reads it looks along -x and has y on the right.
             place = Pose(pose.x, pose.y + (middle + across) * step, pose.z + up * step)
             size = (0.004, width * step, tall * step)
-            parts.append(box(f"{letter}{at + 1}_{stroke}", size, place, colour, solid=False))
+            parts.append(box(f"{letter}{at + 1}_{stroke}", size, place, color, solid=False))
     return parts
 
 
-def sign(name: str, plates: Sequence[tuple[str, str, Colour]], height: float) -> list[Part]:
+def sign(name: str, plates: Sequence[tuple[str, str, Color]], height: float) -> list[Part]:
     """A pole with plates that face along x, each a mesh before the one before it."""
     upright = [
-        mesh(
-            part, f"{name}/meshes/{file}", Pose(0.03 + 0.004 * at, 0, height, pitch=math.pi / 2), colour, solid=at == 0
-        )
-        for at, (part, file, colour) in enumerate(plates)
+        mesh(part, f"{name}/meshes/{file}", Pose(0.03 + 0.004 * at, 0, height, pitch=math.pi / 2), color, solid=at == 0)
+        for at, (part, file, color) in enumerate(plates)
     ]
     pole = cylinder("pole", 0.025, height, Pose(z=height / 2), GRAY)
     return [pole, *upright]

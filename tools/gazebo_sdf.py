@@ -1,6 +1,6 @@
 """What the worlds and models of ``robots/my_robot_gazebo`` are written with: elements of SDF 1.6.
 
-Gazebo Classic and the newer Gazebo read 1.6 alike. Lengths are metres, angles radians, masses kilograms.
+Gazebo Classic and the newer Gazebo read 1.6 alike. Lengths are meters, angles radians, masses kilograms.
 """
 
 from __future__ import annotations
@@ -9,7 +9,7 @@ from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, field
 
 Vector = tuple[float, float, float]
-Colour = tuple[float, float, float]
+Color = tuple[float, float, float]
 
 WALL = (0.82, 0.80, 0.76)
 WOOD = (0.55, 0.38, 0.22)
@@ -37,7 +37,7 @@ def numbers(values: Iterable[float]) -> str:
 
 @dataclass(frozen=True)
 class Pose:
-    """A place in metres and a turn about z in radians; `pitch` is one about y, for what leans or lies."""
+    """A place in meters and a turn about z in radians; `pitch` is one about y, for what leans or lies."""
 
     x: float = 0.0
     y: float = 0.0
@@ -52,12 +52,12 @@ class Pose:
 
 @dataclass(frozen=True)
 class Part:
-    """A shape of one colour in a link: seen, and where it is solid, touched."""
+    """A shape of one color in a link: seen, and where it is solid, touched."""
 
     name: str
     geometry: str
     pose: Pose
-    colour: Colour
+    color: Color
     solid: bool = True
 
     def xml(self, indent: str) -> str:
@@ -65,12 +65,12 @@ class Part:
         rows = []
         if self.solid:
             rows += [f'<collision name="{self.name}">', *self._place(), "</collision>"]
-        colour = numbers((*self.colour, 1))
-        colours = f"<ambient>{colour}</ambient><diffuse>{colour}</diffuse><specular>0.1 0.1 0.1 1</specular>"
+        color = numbers((*self.color, 1))
+        colors = f"<ambient>{color}</ambient><diffuse>{color}</diffuse><specular>0.1 0.1 0.1 1</specular>"
         rows += [
             f'<visual name="{self.name}">',
             *self._place(),
-            f"  <material>{colours}</material>",
+            f"  <material>{colors}</material>",
             "</visual>",
         ]
         return "\n".join(indent + row for row in rows)
@@ -80,41 +80,41 @@ class Part:
         return [*pose, f"  <geometry>{self.geometry}</geometry>"]
 
 
-def box(name: str, size: Vector, pose: Pose, colour: Colour, *, solid: bool = True) -> Part:
+def box(name: str, size: Vector, pose: Pose, color: Color, *, solid: bool = True) -> Part:
     """A box about its pose."""
-    return Part(name, f"<box><size>{numbers(size)}</size></box>", pose, colour, solid)
+    return Part(name, f"<box><size>{numbers(size)}</size></box>", pose, color, solid)
 
 
-def cylinder(name: str, radius: float, length: float, pose: Pose, colour: Colour, *, solid: bool = True) -> Part:
+def cylinder(name: str, radius: float, length: float, pose: Pose, color: Color, *, solid: bool = True) -> Part:
     """A cylinder along z about its pose."""
     geometry = f"<cylinder><radius>{number(radius)}</radius><length>{number(length)}</length></cylinder>"
-    return Part(name, geometry, pose, colour, solid)
+    return Part(name, geometry, pose, color, solid)
 
 
-def sphere(name: str, radius: float, pose: Pose, colour: Colour, *, solid: bool = True) -> Part:
+def sphere(name: str, radius: float, pose: Pose, color: Color, *, solid: bool = True) -> Part:
     """A sphere about its pose."""
-    return Part(name, f"<sphere><radius>{number(radius)}</radius></sphere>", pose, colour, solid)
+    return Part(name, f"<sphere><radius>{number(radius)}</radius></sphere>", pose, color, solid)
 
 
-def mesh(name: str, file: str, pose: Pose, colour: Colour, *, solid: bool = True) -> Part:
+def mesh(name: str, file: str, pose: Pose, color: Color, *, solid: bool = True) -> Part:
     """A mesh of a model of this package: MODEL/meshes/FILE."""
-    return Part(name, f"<mesh><uri>model://{file}</uri></mesh>", pose, colour, solid)
+    return Part(name, f"<mesh><uri>model://{file}</uri></mesh>", pose, color, solid)
 
 
 @dataclass(frozen=True)
 class Body:
-    """What a thing that can be pushed weighs: kilograms, and moments about its centre in kg m^2."""
+    """What a thing that can be pushed weighs: kilograms, and moments about its center in kg m^2."""
 
     mass: float
     moments: Vector
-    centre: Vector = (0.0, 0.0, 0.0)
+    center: Vector = (0.0, 0.0, 0.0)
 
     def xml(self, indent: str) -> str:
         """The link's inertial."""
         xx, yy, zz = map(moment, self.moments)
         rows = [
             "<inertial>",
-            f"  <pose>{numbers((*self.centre, 0, 0, 0))}</pose>",
+            f"  <pose>{numbers((*self.center, 0, 0, 0))}</pose>",
             f"  <mass>{number(self.mass)}</mass>",
             f"  <inertia><ixx>{xx}</ixx><ixy>0</ixy><ixz>0</ixz><iyy>{yy}</iyy><iyz>0</iyz><izz>{zz}</izz></inertia>",
             "</inertial>",

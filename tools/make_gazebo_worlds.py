@@ -40,7 +40,7 @@ from gazebo_sdf import (
 PACKAGE = Path(__file__).resolve().parent.parent / "robots" / "my_robot_gazebo"
 
 Point = tuple[float, float]
-"""A point on the ground: x and y in metres."""
+"""A point on the ground: x and y in meters."""
 Line = tuple[Point, Point]
 
 GROUND = """\
@@ -109,13 +109,13 @@ def walls(lines: Iterable[Line], height: float, thickness: float) -> Model:
 
 
 def rectangle(left: float, right: float, low: float, high: float) -> list[Line]:
-    """The four sides of a rectangle in x and y, metres."""
+    """The four sides of a rectangle in x and y, meters."""
     corners = [(left, low), (right, low), (right, high), (left, high)]
     return [(corners[at], corners[(at + 1) % 4]) for at in range(4)]
 
 
 def obstacles() -> list[Model | Include]:
-    """A room of 10 by 8 metres with pillars, blocks, a ramp and two crates that can be pushed."""
+    """A room of 10 by 8 meters with pillars, blocks, a ramp and two crates that can be pushed."""
     blocks = [
         (2.5, 1.5, 0.8, 0.5, 0.6, 0.5, RED),
         (-2.2, 2.4, 1.2, 0.4, 0.8, -0.3, BLUE),
@@ -125,8 +125,8 @@ def obstacles() -> list[Model | Include]:
     ]
     pillars = [(1.0, 2.9), (-1.2, -1.2), (3.2, 2.8), (-3.9, 0.7), (3.4, -2.9)]
     parts = [
-        box(f"block_{at}", (x_size, y_size, tall), Pose(x, y, tall / 2, yaw), colour)
-        for at, (x, y, x_size, y_size, tall, yaw, colour) in enumerate(blocks, start=1)
+        box(f"block_{at}", (x_size, y_size, tall), Pose(x, y, tall / 2, yaw), color)
+        for at, (x, y, x_size, y_size, tall, yaw, color) in enumerate(blocks, start=1)
     ]
     parts += [cylinder(f"pillar_{at}", 0.15, 1.2, Pose(x, y, 0.6), GRAY) for at, (x, y) in enumerate(pillars, start=1)]
     ramp = box("ramp", (1.2, 0.9, 0.05), Pose(-3.6, 3.0, 0.08, pitch=-0.12), WOOD)
@@ -139,7 +139,7 @@ def obstacles() -> list[Model | Include]:
 
 
 def house() -> list[Model | Include]:
-    """A house of 10 by 8 metres without a roof: living room, kitchen, bedroom, bath and a hall; doors are 1 m wide."""
+    """A house of 10 by 8 meters without a roof: living room, kitchen, bedroom, bath and a hall; doors are 1 m wide."""
     lines: list[Line] = [
         *rectangle(-5, 5, -4, 4)[1:],
         ((-5, -4), (-0.5, -4)),  # the front door is between these two
@@ -181,8 +181,8 @@ def house() -> list[Model | Include]:
         ("bath_floor", 2.95, 2.45, 3.95, 2.95, (0.55, 0.70, 0.72)),
     ]
     carpet = [
-        box(name, (x_size, y_size, 0.002), Pose(x, y, 0.001), colour, solid=False)
-        for name, x, y, x_size, y_size, colour in floors
+        box(name, (x_size, y_size, 0.002), Pose(x, y, 0.001), color, solid=False)
+        for name, x, y, x_size, y_size, color in floors
     ]
     return [
         walls(lines, 1.8, 0.15),
@@ -222,7 +222,7 @@ def maze(size: int = 9, cell: float = 1.1, seed: int = 7) -> list[Model | Includ
 
 
 def _runs(line: int, closed: Sequence[bool], cell: float) -> Iterator[tuple[float, float, float]]:
-    """Where a line of the grid is, and where each of its walls begins and ends; cell 0 has its middle in 0, metres."""
+    """Where a line of the grid is, and where each of its walls begins and ends; cell 0 has its middle in 0, meters."""
     start = None
     for at, wanted in enumerate([*closed, False]):
         if wanted:
@@ -238,11 +238,11 @@ def playground() -> list[Model | Include]:
     colored = [
         Model(
             f"{word}_ball",
-            [sphere("ball", 0.15, Pose(), colour)],
+            [sphere("ball", 0.15, Pose(), color)],
             Pose(x, y, 0.15),
             Body(0.5, (0.0075, 0.0075, 0.0075)),
         )
-        for word, colour, x, y in (("red", RED, 2.0, -1.6), ("green", GREEN, 2.8, -2.2), ("blue", BLUE, 1.4, -2.6))
+        for word, color, x, y in (("red", RED, 2.0, -1.6), ("green", GREEN, 2.8, -2.2), ("blue", BLUE, 1.4, -2.6))
     ]
     stacked = [
         Include("crate", "crate_1", Pose(3.2, 2.4, 0, 0.2)),

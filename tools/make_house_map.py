@@ -27,7 +27,7 @@ from linkwright.testing.scenes import read_world
 
 PACKAGE = Path(__file__).resolve().parent.parent / "robots" / "my_robot_gazebo"
 HEIGHT = 0.215
-"""Of the laser of mbot_gazebo.xacro above the ground, in metres."""
+"""Of the laser of mbot_gazebo.xacro above the ground, in meters."""
 RAYS = 2880
 REACH = 20.0
 APART = 10
@@ -35,7 +35,7 @@ APART = 10
 WALLS = "walls"
 """The model of the walls."""
 INSIDE = np.array((4.9, 3.9))
-"""Metres from the origin to the walls around the house, along x and y; its front door stands open."""
+"""Meters from the origin to the walls around the house, along x and y; its front door stands open."""
 
 
 def house_map() -> Grid:

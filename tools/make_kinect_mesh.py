@@ -2,7 +2,7 @@
 
 Usage: python tools/make_kinect_mesh.py [--check]
 
-The mesh is COLLADA 1.4.1 in metres with z up. The long side lies along x and the lenses look along -y, so that the
+The mesh is COLLADA 1.4.1 in meters with z up. The long side lies along x and the lenses look along -y, so that the
 quarter turn about z in the URDF makes them look along the robot's +x. The origin is 34 mm above the underside of the
 foot: mbot's models place it 30 mm and 35 mm above a deck. The same program writes the same bytes everywhere.
 """
@@ -30,7 +30,7 @@ LENS_FRONT = -0.035
 
 @dataclass(frozen=True)
 class Material:
-    """A surface: colours are red, green, blue from 0 to 1."""
+    """A surface: colors are red, green, blue from 0 to 1."""
 
     name: str
     diffuse: Vector
@@ -179,7 +179,7 @@ def kinect() -> list[Part]:
         body(),
         foot(),
         lens("emitter", EMITTER, -0.068, 0.0085),
-        lens("colour_lens", LENS, 0.0, 0.0085),
+        lens("color_lens", LENS, 0.0, 0.0085),
         lens("depth_lens", LENS, 0.030, 0.0085),
         lens("led", LED, -0.026, 0.0025, front=LENS_FRONT + 0.0005),
     ]
@@ -194,12 +194,12 @@ def number(value: float) -> str:
 def effect(material: Material) -> str:
     """The COLLADA effect of a material: Phong shading."""
     rows = []
-    for tag, colour in (
+    for tag, color in (
         ("emission", material.emission),
         ("diffuse", material.diffuse),
         ("specular", material.specular),
     ):
-        rows.append(f"          <{tag}><color>{' '.join(map(number, colour))} 1</color></{tag}>")
+        rows.append(f"          <{tag}><color>{' '.join(map(number, color))} 1</color></{tag}>")
     return "\n".join(
         [
             f'    <effect id="{material.name}-effect">',

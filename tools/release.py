@@ -179,7 +179,7 @@ def make() -> None:
     listing = (_beside("cyclonedx-py"), "environment", "--output-reproducible", "--gather-license-texts", everything)
     bill.write_text(bill_of_materials.complete(run(*listing, SOURCE_DATE_EPOCH=time)), encoding="utf-8")
     if silent := bill_of_materials.check(bill):
-        _say(f"packages that tell no licence: {', '.join(silent)}")
+        _say(f"packages that tell no license: {', '.join(silent)}")
     sums = "".join(f"{digest(path)}  {path.name}\n" for path in results)
     (RESULTS / "SHA256SUMS").write_text(sums, encoding="utf-8")
     _say(f"in {RESULTS.name}/:\n{sums.strip()}")

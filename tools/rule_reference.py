@@ -3,7 +3,7 @@
 Usage: python tools/rule_reference.py [--check]
 
 The text of a rule is its docstring, which `linkwright explain` prints too; that of other diagnostics is in
-``src/linkwright/lint/pages/``. Chinese titles are in the catalogue, `diagnostics/translation/zh.po`.
+``src/linkwright/lint/pages/``. Chinese titles are in the catalog, `diagnostics/translation/zh.po`.
 """
 
 from __future__ import annotations
@@ -23,7 +23,7 @@ from linkwright.lint.rule import Rule
 
 ROOT = Path(__file__).resolve().parent.parent
 DOCS = ROOT / "docs"
-CATALOGUE = ROOT / "src" / "linkwright" / "diagnostics" / "translation" / "zh.po"
+CATALOG = ROOT / "src" / "linkwright" / "diagnostics" / "translation" / "zh.po"
 
 GROUPS: Mapping[str, tuple[str, str, str]] = {
     "LW0": ("comments", "Suppressing comments", "抑制注释"),
@@ -77,9 +77,9 @@ def generate() -> dict[Path, str]:
 @cache
 def chinese_titles() -> dict[str, str]:
     """Code -> what the rule reports, in Chinese."""
-    with CATALOGUE.open("rb") as file:
-        catalogue = read_po(file)
-    found = {rule.code: catalogue.get(rule_page(rule).title, RULES) for rule in all_rules()}
+    with CATALOG.open("rb") as file:
+        catalog = read_po(file)
+    found = {rule.code: catalog.get(rule_page(rule).title, RULES) for rule in all_rules()}
     return {code: str(message.string) for code, message in found.items() if message is not None}
 
 

@@ -59,7 +59,7 @@ def on_page_context(context: dict[str, Any], *, page: Page, config: MkDocsConfig
         {"name": name, "lang": other, "link": page.url if other == language else _sister(page, other).url}
         for other, name in NAMES.items()
     ]
-    config.extra["scope"] = context["base_url"]  # the colours that a reader chose hold in both languages
+    config.extra["scope"] = context["base_url"]  # the colors that a reader chose hold in both languages
     if language == CHINESE:
         context["base_url"] += f"/{CHINESE}/"  # where the page looks for its search index
 

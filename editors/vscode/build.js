@@ -1,4 +1,4 @@
-// Bundle the extension into dist/extension.cjs, and write the licences of the packages in it.
+// Bundle the extension into dist/extension.cjs, and write the licenses of the packages in it.
 import { copyFileSync, readdirSync, readFileSync, writeFileSync } from "node:fs";
 import { build } from "esbuild";
 
@@ -16,15 +16,15 @@ const { metafile } = await build({
 });
 
 const folders = Object.keys(metafile.inputs).flatMap((path) => /^.*node_modules\/(?:@[^/]+\/)?[^/]+/.exec(path) ?? []);
-const licences = [...new Set(folders)].sort().map((folder) => {
+const licenses = [...new Set(folders)].sort().map((folder) => {
   const { name, version, license } = JSON.parse(readFileSync(`${folder}/package.json`, "utf8"));
-  return `${name} ${version} (${license})\n\n${licenceText(folder)}\n`;
+  return `${name} ${version} (${license})\n\n${licenseText(folder)}\n`;
 });
-writeFileSync("dist/LICENCES.txt", licences.join("\n\n"));
+writeFileSync("dist/LICENSES.txt", licenses.join("\n\n"));
 copyFileSync("../../LICENSE", "LICENSE");
 
-function licenceText(folder) {
+function licenseText(folder) {
   const file = readdirSync(folder).find((name) => /^licen[cs]e/i.test(name));
-  if (!file) throw new Error(`${folder} has no file with its licence`);
+  if (!file) throw new Error(`${folder} has no file with its license`);
   return readFileSync(`${folder}/${file}`, "utf8").trim();
 }

@@ -28,7 +28,7 @@ interface Inspection {
     enabled: boolean;
     level: StatusLevel;
     status: StatusRow[];
-    /** What the drawing reports of itself: counts, bounds, colours. */
+    /** What the drawing reports of itself: counts, bounds, colors. */
     drawn: object | null;
   }[];
   readonly view: {

@@ -10,7 +10,7 @@ import "./styles/images.css";
 import "./styles/description.css";
 import "./styles/monitor.css";
 import "./styles/plots.css";
-import "./styles/modelling.css";
+import "./styles/modeling.css";
 import "./styles/voice.css";
 import "./styles/timeline.css";
 import "./styles/comparison.css";
@@ -32,8 +32,8 @@ import { Layouts } from "./panels/dock/layouts";
 import { EditingPanel } from "./panels/editing/editing-panel";
 import { JointTablePanel } from "./panels/joints/joint-table-panel";
 import { JointsPanel } from "./panels/joints/joints-panel";
-import { WorldCommands } from "./panels/modelling/world-commands";
-import { WorldPanel } from "./panels/modelling/world-panel";
+import { WorldCommands } from "./panels/modeling/world-commands";
+import { WorldPanel } from "./panels/modeling/world-panel";
 import { preserveSearches } from "./panels/preserve-searches";
 import { ChecksPanel } from "./panels/learning/checks-panel";
 import { LessonPanel } from "./panels/learning/lesson-panel";
@@ -59,7 +59,7 @@ import { JointDrag } from "./scene/joint-drag";
 import { Keyboard, TAKES_LETTERS } from "./scene/keyboard";
 import { SERVED } from "./scene/meshes/mesh-files";
 import { StandIns } from "./scene/meshes/stand-ins";
-import type { Modeller } from "./scene/modelling/modeller";
+import type { Modeler } from "./scene/modeling/modeler";
 import { Stage } from "./scene/stage";
 import type { ToolEvent } from "./scene/tools/tool";
 import { Toolbox } from "./scene/tools/toolbox";
@@ -107,9 +107,9 @@ function start(app: HTMLElement): void {
   languageChosen.on(() => session.memory.store());
 
   const sheet = new KeySheet(session.tools);
-  let modeller: Modeller | null = null;
+  let modeler: Modeler | null = null;
   let handles: PartHandles | null = null;
-  const commands = new WorldCommands(session.modelling, () => modeller?.escape());
+  const commands = new WorldCommands(session.modeling, () => modeler?.escape());
   const scene = new ScenePanel(
     session,
     commands,
@@ -137,7 +137,7 @@ function start(app: HTMLElement): void {
     source,
     new JointTablePanel(session),
     new DiagnosticsPanel(session),
-    new WorldPanel(session.modelling, session.angles, commands),
+    new WorldPanel(session.modeling, session.angles, commands),
     new ComparisonPanel(session, () => stage?.fit()),
     new EditingPanel(session),
     voice,
@@ -165,9 +165,9 @@ function start(app: HTMLElement): void {
     source.edit(path);
   });
 
-  session.words.enrolRequested.on(() => {
+  session.words.enrollRequested.on(() => {
     dock.open("voice");
-    voice.enrolHere();
+    voice.enrollHere();
   });
 
   session.editing.editRequested.on(() => dock.open("editing"));
@@ -177,10 +177,10 @@ function start(app: HTMLElement): void {
   commands.bindKeys();
   const toolbox = stage && connectTools(stage, session, (event) => {
     if (handles?.pointer(event)) return null;
-    return modeller ? modeller.pointer(event) : event;
+    return modeler ? modeler.pointer(event) : event;
   });
   if (stage) {
-    loadModeller(stage, session, (made) => (modeller = made));
+    loadModeler(stage, session, (made) => (modeler = made));
     loadPartHandles(stage, session, (made) => (handles = made));
   }
   const files = new FileCommands(session.configuration);
@@ -225,7 +225,7 @@ function addressBar(): AddressBar {
 /** Opens and closes the panels that depend on available data, in whichever arrangement is shown. */
 function followAvailability(dock: Dock, session: Session): void {
   const followJoints = openWhile(dock, "joints", () => session.joints.controls !== null);
-  const followWorld = openWhile(dock, "world", () => session.modelling.active);
+  const followWorld = openWhile(dock, "world", () => session.modeling.active);
   const followComparison = openWhile(dock, "comparison", () => session.comparison.compared !== null);
   const followCourse = (["lesson", "checks"] as const).map((id) => openWhile(dock, id, () => session.course.isAvailable));
   const followTerminals = openWhile(dock, "terminal", () => session.terminals.isAvailable);
@@ -235,7 +235,7 @@ function followAvailability(dock: Dock, session: Session): void {
   const countFindings = (): void => dock.setCount("diagnostics", session.diagnostics.length + displays.failingCount);
   const countBeforePaint = coalesced(countFindings);
   session.joints.controlsChanged.on(followJoints);
-  session.modelling.changed.on(followWorld);
+  session.modeling.changed.on(followWorld);
   session.comparison.changed.on(followComparison);
   session.terminals.availabilityChanged.on(followTerminals);
   session.terminals.programsChanged.on((hasNew) => {
@@ -288,12 +288,12 @@ function connectTools(stage: Stage, session: Session, model: (event: ToolEvent) 
   return toolbox;
 }
 
-/** Loads the code for modelling the world when it is needed first. */
-function loadModeller(stage: Stage, session: Session, made: (modeller: Modeller) => void): void {
-  const stop = session.modelling.changed.on(() => {
-    if (!session.modelling.active) return;
+/** Loads the code for modeling the world when it is needed first. */
+function loadModeler(stage: Stage, session: Session, made: (modeler: Modeler) => void): void {
+  const stop = session.modeling.changed.on(() => {
+    if (!session.modeling.active) return;
     stop();
-    void import("./scene/modelling/modeller").then(({ Modeller }) => made(new Modeller(stage, session)));
+    void import("./scene/modeling/modeler").then(({ Modeler }) => made(new Modeler(stage, session)));
   });
 }
 

@@ -42,7 +42,7 @@ describe("two descriptions in one scene", () => {
     connection.message.emit(TOLD);
   });
 
-  it("draws the old robot in one colour, behind the new one, and removed links more opaque in a colour of their own", () => {
+  it("draws the old robot in one color, behind the new one, and removed links more opaque in a color of their own", () => {
     const ghost = comparison.overrideOf("display-2", "arm");
     const gone = comparison.overrideOf("display-2", "camera");
     expect(ghost).toMatchObject({ behind: true, firm: false });
@@ -51,7 +51,7 @@ describe("two descriptions in one scene", () => {
     expect(comparison.isOld("display-2")).toBe(true);
   });
 
-  it("colours only the differences of the new robot, and nothing while marks are off", () => {
+  it("colors only the differences of the new robot, and nothing while marks are off", () => {
     expect(comparison.overrideOf("display-1", "arm")?.behind).toBeUndefined();
     expect(comparison.overrideOf("display-1", "base")).toBeNull();
     expect(comparison.overrideOf("display-7", "arm")).toBeNull();
@@ -84,7 +84,7 @@ describe("two descriptions in one scene", () => {
   });
 });
 
-/** Machado, Oliveira and Fernandes (2009), severity 1: how people without one type of cone see linear colours. */
+/** Machado, Oliveira and Fernandes (2009), severity 1: how people without one type of cone see linear colors. */
 const SIGHT: Readonly<Record<string, readonly (readonly number[])[]>> = {
   all: [[1, 0, 0], [0, 1, 0], [0, 0, 1]],
   "no red": [[0.152286, 1.052583, -0.204868], [0.114503, 0.786281, 0.099216], [-0.003882, -0.048116, 1.051998]],
@@ -96,7 +96,7 @@ function times(matrix: readonly (readonly number[])[], vector: readonly number[]
   return matrix.map((row) => row.reduce((sum, each, i) => sum + each * (vector[i] ?? 0), 0));
 }
 
-/** Returns CIE L*a*b* of a colour as seen with a colour vision deficiency. */
+/** Returns CIE L*a*b* of a color as seen with a color vision deficiency. */
 function lab(hex: string, sight: readonly (readonly number[])[]): number[] {
   const linear = [1, 3, 5].map((from) => {
     const part = parseInt(hex.slice(from, from + 2), 16) / 255;

@@ -19,7 +19,7 @@ function color(text: string | undefined, below: Rgb = [0, 0, 0]): Rgb {
   const hex = /^#(..)(..)(..)$/.exec(text ?? "");
   if (hex) return hex.slice(1).map((part) => parseInt(part, 16)) as unknown as Rgb;
   const mixed = /^rgb\((\d+) (\d+) (\d+) \/ (\d+)%\)$/.exec(text ?? "");
-  if (!mixed) throw new Error(`no colour: ${String(text)}`);
+  if (!mixed) throw new Error(`no color: ${String(text)}`);
   const [r = 0, g = 0, b = 0, percent = 0] = mixed.slice(1).map(Number);
   const mix = (over: number, under: number): number => (over * percent + under * (100 - percent)) / 100;
   return [mix(r, below[0]), mix(g, below[1]), mix(b, below[2])];
@@ -68,7 +68,7 @@ describe.each([
     }
   });
 
-  it("text on the accent colour is readable", () => {
+  it("text on the accent color is readable", () => {
     expect(contrast(at("--text-on-accent"), at("--accent-deep"))).toBeGreaterThanOrEqual(4.5);
   });
 

@@ -6,7 +6,7 @@ function kinds(line: string, state: LineState = "text"): string[] {
   return tokenize(line, state).tokens.map((token) => `${token.kind}:${token.text}`);
 }
 
-describe("colours of XML", () => {
+describe("colors of XML", () => {
   it("distinguish tags, attributes, values and expressions", () => {
     expect(kinds('<link name="${side}_wheel"/>')).toEqual([
       "punctuation:<",
@@ -67,7 +67,7 @@ describe("colours of XML", () => {
 describe("the diagram's layout", () => {
   const leaf = (id: string, width = 10): TreeNode => ({ id, width, height: 4, children: [] });
 
-  it("centres parents over their children, level by level", () => {
+  it("centers parents over their children, level by level", () => {
     const { nodes, width, height } = layOutTree({ ...leaf("a"), children: [leaf("b"), leaf("c")] }, 2, 6);
     expect(nodes.map(({ node, x, y, parent }) => [node.id, x, y, parent?.node.id])).toEqual([
       ["a", 11, 2, undefined],

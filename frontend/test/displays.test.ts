@@ -45,12 +45,12 @@ describe("Grid", () => {
 });
 
 describe("the age of a frame", () => {
-  it("is drawn in thirds of the timeout: unchanged, turning grey, fading out", () => {
-    expect(fadeForAge(0, 15)).toEqual({ grey: 0, alpha: 1 });
-    expect(fadeForAge(5, 15)).toEqual({ grey: 0, alpha: 1 });
-    expect(fadeForAge(7.5, 15)).toEqual({ grey: 0.5, alpha: 1 });
-    expect(fadeForAge(12.5, 15)).toEqual({ grey: 1, alpha: 0.5 });
-    expect(fadeForAge(20, 15)).toEqual({ grey: 1, alpha: 0 });
-    expect(fadeForAge(NaN, 15)).toEqual({ grey: 0, alpha: 1 });
+  it("is drawn in thirds of the timeout: unchanged, turning gray, fading out", () => {
+    expect(fadeForAge(0, 15)).toEqual({ gray: 0, alpha: 1 });
+    expect(fadeForAge(5, 15)).toEqual({ gray: 0, alpha: 1 });
+    expect(fadeForAge(7.5, 15)).toEqual({ gray: 0.5, alpha: 1 });
+    expect(fadeForAge(12.5, 15)).toEqual({ gray: 1, alpha: 0.5 });
+    expect(fadeForAge(20, 15)).toEqual({ gray: 1, alpha: 0 });
+    expect(fadeForAge(NaN, 15)).toEqual({ gray: 0, alpha: 1 });
   });
 });

@@ -36,7 +36,7 @@ describe("numbers in rows", () => {
   });
 });
 
-describe("colours in rows", () => {
+describe("colors in rows", () => {
   it("are formatted as in RViz and parsed in either form", () => {
     expect(formatColor("#303030")).toBe("48; 48; 48");
     expect(["48; 48; 48", "48 48 48", "48,48,48", "#303030"].map(parseColor)).toEqual(Array(4).fill("#303030"));

@@ -31,7 +31,7 @@ const ROBOT: RobotScene = {
   ],
 };
 const TABLE: FrameTable = { type: "frame_table", revision: 3, names: ["hand", "arm", "base", "cup"], parents: [1, 2, -1, 0] };
-/** All links at zero; the cup is half a metre above the hand. */
+/** All links at zero; the cup is half a meter above the hand. */
 const AT_ZERO = { revision: 3, stamp: 0, ages: new Float32Array(4), poses: rows([1, 0, 0], [1, 0, 0], [0, 0, 0], [1, 0, 0.5]) };
 
 function rows(...positions: number[][]): Float32Array {

@@ -13,7 +13,7 @@ test("the tone mapping is inserted into the shader at three.js's own", () => {
   expect(shader.fragmentShader).toContain("vec3 shoulder");
 });
 
-test("only the studio has it: the light of cameras and worlds shows colours unchanged", () => {
+test("only the studio has it: the light of cameras and worlds shows colors unchanged", () => {
   const pool = new MaterialPool();
   const toned = new Map(
     (["Camera", "Studio", "World"] as const).map((lighting) => {

@@ -85,12 +85,12 @@ it("the ground of both themes is darker than white robots and brighter than blac
     ColorManagement.enabled = false; // as in the page
     const backdrop = new Backdrop();
     backdrop.theme = theme;
-    const grey = (name: string): number => {
+    const gray = (name: string): number => {
       const { r, g, b } = backdrop.root.material.uniforms[name]?.value as Color;
       return (r + g + b) / 3;
     };
-    expect(grey("ground")).toBeGreaterThan(0.3);
-    expect(grey("ground")).toBeLessThan(0.8);
-    expect(grey("horizon")).toBeGreaterThan(grey("ground"));
+    expect(gray("ground")).toBeGreaterThan(0.3);
+    expect(gray("ground")).toBeLessThan(0.8);
+    expect(gray("horizon")).toBeGreaterThan(gray("ground"));
   }
 });

@@ -2,7 +2,7 @@ import { describe, expect, it } from "vitest";
 import { legibleView } from "../src/widgets/legible-view";
 
 describe("the first view", () => {
-  it("shows the whole drawing, centred, if its texts are legible", () => {
+  it("shows the whole drawing, centered, if its texts are legible", () => {
     expect(legibleView([400, 100], [832, 332], 12, [0, 0])).toEqual({ x: 216, y: 116, scale: 1 });
     expect(legibleView([880, 100], [832, 332], 11, [0, 0])).toEqual({ x: 16, y: (332 - 100 * (800 / 880)) / 2, scale: 800 / 880 });
   });

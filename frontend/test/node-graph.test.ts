@@ -85,7 +85,7 @@ describe("the layout", () => {
   });
 });
 
-describe("averaging unordered neighbours", () => {
+describe("averaging unordered neighbors", () => {
   it("does not change ordered values", () => expect(isotonic([1, 2, 2, 5])).toEqual([1, 2, 2, 5]));
   it("averages values out of order", () => expect(isotonic([3, 1, 2, 10])).toEqual([2, 2, 2, 10]));
 });

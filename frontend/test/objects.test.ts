@@ -236,7 +236,7 @@ describe("CovarianceBatch", () => {
   });
 });
 
-describe("colours of efforts", () => {
+describe("colors of efforts", () => {
   it("range from violet to red", () => {
     expect([0, 0.2, 0.4, 0.6, 0.8, 1].map((value) => rainbow(value).map((part) => Math.round(part)))).toEqual([
       [1, 0, 1],

@@ -2,17 +2,17 @@ import { Group, Raycaster, Vector3 } from "three";
 import { beforeEach, describe, expect, it, vi } from "vitest";
 import { Connection } from "../src/connection/connection";
 import type { PageMessage } from "../src/protocol";
-import { Placer } from "../src/scene/modelling/placer";
+import { Placer } from "../src/scene/modeling/placer";
 import type { Stage } from "../src/scene/stage";
 import type { ToolEvent } from "../src/scene/tools/tool";
-import { Modelling } from "../src/state/modelling/modelling";
+import { Modeling } from "../src/state/modeling/modeling";
 import { browserStorage } from "../src/storage";
 
 let sent: PageMessage[];
-let modelling: Modelling;
+let modeling: Modeling;
 let placer: Placer;
 
-/** A canvas seen from above, with one metre per pixel. */
+/** A canvas seen from above, with one meter per pixel. */
 function pointer(type: ToolEvent["type"], x: number, y: number, part: Partial<ToolEvent> = {}): boolean {
   const button = type === "move" ? null : "left";
   const rest = { dx: 0, dy: 0, wheel: 0, left: type !== "up", middle: false, right: false, shift: false, ctrl: false, alt: false, click: false };
@@ -23,15 +23,15 @@ beforeEach(() => {
   sent = [];
   const connection = new Connection("ws://localhost/ws");
   vi.spyOn(connection, "send").mockImplementation((message) => void sent.push(message));
-  modelling = new Modelling(connection, browserStorage());
+  modeling = new Modeling(connection, browserStorage());
   const rayAt = (x: number, y: number): Raycaster => new Raycaster(new Vector3(x, y, 5), new Vector3(0, 0, -1));
   const stage = { overlays: new Group(), world: null, picker: { rayAt }, loop: { invalidate: () => undefined } };
-  placer = new Placer(stage as unknown as Stage, modelling);
+  placer = new Placer(stage as unknown as Stage, modeling);
 });
 
 describe("placing entities in the world", () => {
   it("takes a click, snapped to the grid unless Ctrl is held; Shift continues placing", () => {
-    modelling.place({ kind: "sphere", address: "" });
+    modeling.place({ kind: "sphere", address: "" });
     pointer("down", 1.04, 2);
     pointer("up", 1.04, 2, { click: true, shift: true });
     pointer("up", 1.04, 2, { click: true, ctrl: true });
@@ -39,11 +39,11 @@ describe("placing entities in the world", () => {
       { type: "add_entity", shape: "sphere", address: "", pose: [1, 2, 0.25, 0, 0, 0], size: [0.25] },
       { type: "add_entity", shape: "sphere", address: "", pose: [1.04, 2, 0.25, 0, 0, 0], size: [0.25] },
     ]);
-    expect(modelling.placing).toBeNull();
+    expect(modeling.placing).toBeNull();
   });
 
   it("leaves dragging to the camera", () => {
-    modelling.place({ kind: "box", address: "" });
+    modeling.place({ kind: "box", address: "" });
     expect(pointer("down", 0, 0)).toBe(false);
     expect(pointer("move", 3, 0)).toBe(false);
     expect(pointer("up", 3, 0)).toBe(false);
@@ -51,7 +51,7 @@ describe("placing entities in the world", () => {
   });
 
   it("draws walls from point to point, one after another", () => {
-    modelling.place({ kind: "wall", address: "" });
+    modeling.place({ kind: "wall", address: "" });
     expect(pointer("down", 0, 0)).toBe(true);
     expect(pointer("move", 4, 0)).toBe(true);
     pointer("up", 4, 0);
@@ -61,7 +61,7 @@ describe("placing entities in the world", () => {
     pointer("down", 4, 3);
     pointer("up", 4, 3, { click: true });
     expect(sent.at(-1)).toMatchObject({ pose: [4, 1.5, 0.5, 0, 0, Math.PI / 2], size: [3, 0.1, 1] });
-    expect(modelling.placing?.kind).toBe("wall");
+    expect(modeling.placing?.kind).toBe("wall");
   });
 
   it("places an entity dragged from the bar", () => {

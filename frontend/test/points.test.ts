@@ -43,7 +43,7 @@ function color(palette: Uint8Array, value: number): number[] {
   return [...palette.subarray(value * 4, value * 4 + 4)];
 }
 
-test("maps have RViz's shades of grey", () => {
+test("maps have RViz's shades of gray", () => {
   const map = mapPalette("map", null);
   expect([0, 50, 100].map((value) => color(map, value)[0])).toEqual([255, 128, 0]);
   expect(color(map, 101)).toEqual([0, 255, 0, 255]);
@@ -84,8 +84,8 @@ const CAMERA = {
   height: 480,
   focal_x: 320,
   focal_y: 320,
-  centre_x: 320,
-  centre_y: 240,
+  center_x: 320,
+  center_y: 240,
   offset_x: 0.1,
   offset_y: 0,
 };
@@ -100,11 +100,11 @@ test("an image keeps its aspect ratio in any window", () => {
 
 test("the camera projects according to its matrix", () => {
   const matrix = projection(CAMERA, [1, 1], 100);
-  // One metre to the right at a distance of two: 160 pixels of the 320 from the centre to the edge.
+  // One meter to the right at a distance of two: 160 pixels of the 320 from the center to the edge.
   const at = new Vector3(1, 0, -2).applyMatrix4(matrix);
   expect(at.x).toBeCloseTo(0.5);
   expect(at.y).toBeCloseTo(0);
-  const shifted = projection({ ...CAMERA, centre_x: 480 }, [1, 1], 100);
+  const shifted = projection({ ...CAMERA, center_x: 480 }, [1, 1], 100);
   expect(new Vector3(0, 0, -1).applyMatrix4(shifted).x).toBeCloseTo(0.5);
   expect(new Vector3(0, 0, -100).applyMatrix4(matrix).z).toBeCloseTo(1);
 });

@@ -10,7 +10,7 @@ function named(...names: string[]): { name: string; file: Blob }[] {
 }
 
 describe("dropped files", () => {
-  it("are recognised as a recording by their names", () => {
+  it("are recognized as a recording by their names", () => {
     const { name, files } = recordingAmong("drive", named("notes.txt", "metadata.yaml", "drive_0.db3", "drive_1.db3.zstd", ".DS_Store"));
     expect(name).toBe("drive");
     expect(files.map((each) => each.name)).toEqual(["metadata.yaml", "drive_0.db3", "drive_1.db3.zstd"]);

@@ -37,7 +37,7 @@ function link(name: string, ...visuals: Shape[]): LinkScene {
   return { name, frame: name, parent_joint: null, visuals, collisions: [], place: null, inertia: null };
 }
 
-/** Returns a robot whose links are in a row along y, one metre apart. */
+/** Returns a robot whose links are in a row along y, one meter apart. */
 function robot(links: LinkScene[]): { drawing: RobotDrawing; frames: FrameStore } {
   const frames = new FrameStore();
   const names = links.map(({ name }) => name);
@@ -56,7 +56,7 @@ function draw({ drawing, frames }: ReturnType<typeof robot>, rows = new Property
   return drawing.inspect() as Record<string, unknown>;
 }
 
-/** Returns a camera that looks at the row from this many metres in front of it. */
+/** Returns a camera that looks at the row from this many meters in front of it. */
 function from(distance: number): PerspectiveCamera {
   const camera = new PerspectiveCamera(45, 1, 0.01, 100);
   camera.position.set(distance, 0, 0);

@@ -12,7 +12,7 @@ function store() {
 }
 
 function cloud(step: number): DisplayData {
-  const content = { kind: "cloud_points", positions: new Float32Array(3), colours: new Uint8Array(4), translucent: false, pixel: 0, step } as const;
+  const content = { kind: "cloud_points", positions: new Float32Array(3), colors: new Uint8Array(4), translucent: false, pixel: 0, step } as const;
   return { display: "cloud", key: "", frame: "", stamp: 0, pose: null, content };
 }
 

@@ -157,7 +157,7 @@ it("semantic tokens are relative to the token before", () => {
   ]);
 });
 
-it("colours are written as the browser's field has them, and read back", () => {
+it("colors are written as the browser's field has them, and read back", () => {
   expect(hexOf({ red: 0.2, green: 0.6, blue: 1, alpha: 0.5 })).toBe("#3399ff");
   expect(colorOf("#3399ff")).toEqual({ red: 0.2, green: 0.6, blue: 1, alpha: 1 });
 });

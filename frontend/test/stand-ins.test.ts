@@ -54,7 +54,7 @@ describe("a stand-in", () => {
     for (const { error, index } of levels) {
       let off = 0;
       for (let i = 0; i < index.length; i += 3) {
-        // The centre of a flat triangle is the farthest from the sphere.
+        // The center of a flat triangle is the farthest from the sphere.
         const middle = [0, 1, 2].map((axis) => [0, 1, 2].reduce((sum, k) => sum + positions[3 * index[i + k]! + axis]! / 3, 0));
         off = Math.max(off, 1 - Math.hypot(...middle));
       }

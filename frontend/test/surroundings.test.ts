@@ -24,13 +24,13 @@ describe("sky and fog", () => {
     expect([scene.background, scene.fog]).toEqual([null, null]);
   });
 
-  it("have one colour for an orthographic camera", () => {
+  it("have one color for an orthographic camera", () => {
     const scene = new Scene();
     new SkyAndFog(scene).set({ ...NONE, daylight: 1 }, true);
     expect(scene.background).toBeInstanceOf(Color);
   });
 
-  it("are a backdrop in a studio, with its colour at the zenith and a brighter horizon", () => {
+  it("are a backdrop in a studio, with its color at the zenith and a brighter horizon", () => {
     const scene = new Scene();
     const around = new SkyAndFog(scene);
     around.set({ ...NONE, backdrop: "#303030" }, false);

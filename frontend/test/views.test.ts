@@ -32,7 +32,7 @@ function forward({ back }: Camera): Vector {
   return [-back[0], -back[1], -back[2]];
 }
 
-/** Returns the position of a point on the screen: right and up from the centre, per metre of depth. */
+/** Returns the position of a point on the screen: right and up from the center, per meter of depth. */
 function seen(camera: Camera, point: Vector): [number, number] {
   const off = point.map((value, i) => value - (camera.position[i] ?? 0));
   const along = (axis: Vector): number => axis.reduce((sum, value, i) => sum + value * (off[i] ?? 0), 0);
@@ -113,7 +113,7 @@ describe("XYOrbit", () => {
     close(ground.position, orbit.position.map((each, i) => each + 2 * (orbit.up[i] ?? 0)));
   });
 
-  it("keeps the ground under the pointer, at most one metre per step", () => {
+  it("keeps the ground under the pointer, at most one meter per step", () => {
     const drag = dragged({ middle: true, dx: 12, dy: -7 });
     const before = onGround(rayThrough(GROUND.camera(values), drag.x, drag.y, SIZE));
     const after = { ...values, ...GROUND.drag(values, drag) };
@@ -225,7 +225,7 @@ describe("changing the class of a view", () => {
 });
 
 describe("a fitted view", () => {
-  /** Returns the distances of a box's corners from the centre of the canvas, right and up; 1 is the edge. */
+  /** Returns the distances of a box's corners from the center of the canvas, right and up; 1 is the edge. */
   function reach(values: ViewValues, min: Vector, max: Vector, { width, height }: typeof SIZE): [number, number] {
     const camera = ORBIT.camera(values);
     const edge = Math.tan(FIELD_OF_VIEW / 2);

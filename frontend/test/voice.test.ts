@@ -276,7 +276,7 @@ describe("talking", () => {
     const judge = (name: string, code: string | null): void =>
       connection.message.emit({ type: "take_judged", number: 1, name, code, text: "", peak: 0.5, seconds: 0.5 });
     judge("stop", null);
-    words.enrolHere(true);
+    words.enrollHere(true);
     for (const code of [null, "VOICE205", null]) judge("stop", code);
     expect(words.missingHere.map(({ name }) => name)).toEqual(["stop", "forward"]);
     judge("stop", null);

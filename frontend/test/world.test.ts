@@ -70,7 +70,7 @@ describe("the position proposed for a model", () => {
   const box = (x: number, y: number, side: number): Box3 => new Box3().setFromCenterAndSize(new Vector3(x, y, 0.2), new Vector3(side, side, 0.4));
   const origin = new Matrix4();
 
-  it("is the origin, or the nearest free metre", () => {
+  it("is the origin, or the nearest free meter", () => {
     expect(freePlace([], origin)).toEqual([0, 0, 0]);
     expect(freePlace([box(5, 0, 1)], origin)).toEqual([0, 0, 0]);
     expect(freePlace([box(0, 0, 0.4)], origin)).toEqual([1, 0, 0]);

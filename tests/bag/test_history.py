@@ -46,7 +46,7 @@ def numbers(messages: object) -> list[int]:
     return [data[0] for _, _, data in messages]  # type: ignore[attr-defined]  # an iterable of recorded messages
 
 
-def test_no_more_is_kept_than_so_many_bytes_and_the_oldest_go_first() -> None:
+def test_history_drops_oldest_messages_beyond_byte_limit() -> None:
     history, _ = filled(most=5 * 1200, count=3000)
     assert history.size <= 5 * 1200
     kept = list(history.messages(["/a"], 0))
@@ -58,7 +58,7 @@ def test_no_more_is_kept_than_so_many_bytes_and_the_oldest_go_first() -> None:
     assert history.count == 3000, "what alone is too large is not kept"
 
 
-def test_the_state_is_the_last_of_each_topic_and_all_static_transforms_even_those_dropped() -> None:
+def test_state_at_returns_last_messages_and_dropped_static_transforms() -> None:
     history, clock = filled(most=10**5)
     for child in ("one", "two", "one"):
         history.add("/tf_static", static(child))
@@ -74,7 +74,7 @@ def test_the_state_is_the_last_of_each_topic_and_all_static_transforms_even_thos
     assert history.time_before(["/a"], history.start_ns) is None
 
 
-def test_who_has_read_to_the_end_reads_on_when_more_has_come() -> None:
+def test_message_stream_continues_after_end_when_messages_arrive() -> None:
     history, clock = filled(count=3)
     stream = history.messages(["/a", "/b"], SECOND)
     assert numbers([next(stream), next(stream)]) == [1, 2]
@@ -97,7 +97,7 @@ def packed(history: History, most: int) -> None:
     wait_until(lambda: history.size <= most)
 
 
-def test_large_messages_that_repeat_themselves_take_less_room_and_are_read_as_they_came() -> None:
+def test_repetitive_large_messages_are_compressed_and_read_unchanged() -> None:
     clock = Clock()
     history = History(10**6, clock)
     for second in range(100):  # as they are, these would be 20 MB
@@ -113,7 +113,7 @@ def test_large_messages_that_repeat_themselves_take_less_room_and_are_read_as_th
     history.close()
 
 
-def test_noise_is_kept_as_it_is() -> None:
+def test_incompressible_messages_are_stored_uncompressed() -> None:
     noise = np.random.default_rng(0).integers(0, 256, 200_000).astype(np.uint8).tobytes()
     history, _ = filled(count=0, most=10**7)
     history.add("/camera", noise)
@@ -125,7 +125,7 @@ def test_noise_is_kept_as_it_is() -> None:
     history.close()
 
 
-def test_what_was_dropped_before_it_was_packed_does_no_harm(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_messages_dropped_before_compression_are_harmless(monkeypatch: pytest.MonkeyPatch) -> None:
     proceed = threading.Event()
     compress = _zstd().compress
 
@@ -160,7 +160,7 @@ def positions(messages: list[tuple[str, int, bytes]]) -> list[tuple[float, float
     return [(each.position[0], each.header.stamp.sec + each.header.stamp.nanosec / 1e9) for each in read]
 
 
-def test_a_robot_that_stands_still_takes_two_messages_in_ten_seconds() -> None:
+def test_unmoving_joint_states_keep_two_messages_per_ten_seconds() -> None:
     clock = Clock()
     history = History(10**8, clock)
     states(clock, history, [1.5] * 6000)
@@ -175,7 +175,7 @@ def test_a_robot_that_stands_still_takes_two_messages_in_ten_seconds() -> None:
         assert stamp >= second
 
 
-def test_what_moves_again_is_kept_as_it_came() -> None:
+def test_moving_joint_states_are_all_kept() -> None:
     clock = Clock()
     history = History(10**8, clock)
     still, moves = [0.0] * 300, [number / 100 for number in range(1, 301)]
@@ -189,7 +189,7 @@ def test_what_moves_again_is_kept_as_it_came() -> None:
     assert back_and_forth.count == 200
 
 
-def test_a_part_of_a_robot_that_stands_still_is_as_long_as_it_was_asked_for() -> None:
+def test_messages_between_spans_requested_interval_of_unmoving_robot() -> None:
     clock = Clock()
     history = History(10**8, clock)
     still, moves = [0.0] * 300, [number / 100 for number in range(1, 301)]
@@ -200,7 +200,7 @@ def test_a_part_of_a_robot_that_stands_still_is_as_long_as_it_was_asked_for() ->
         assert positions(part)[-1][0] == pytest.approx(last)
 
 
-def test_transforms_of_each_publisher_stand_still_by_themselves() -> None:
+def test_transforms_of_unmoving_publishers_are_thinned_separately() -> None:
     clock = Clock()
     history = History(10**8, clock)
     for number in range(3000):
@@ -232,14 +232,14 @@ def tick(history: History, clock: Clock, told_ns: int) -> None:
     history.add("/clock", data, content=content_of(SimulatedTime.TYPE_NAME, data))
 
 
-def told_at(history: History, second: float) -> float:
+def simulated_time_at(history: History, second: float) -> float:
     """The simulated time at a time, both in seconds."""
     ((_, _, data),) = history.state_at(["/clock"], int(second * SECOND))
     time = deserialize(data, SimulatedTime).clock
     return time.sec + time.nanosec / SECOND
 
 
-def test_a_simulated_robot_that_trembles_by_rounding_stands_still() -> None:
+def test_transforms_with_rounding_noise_count_as_unmoving() -> None:
     clock = Clock()
     history = History(10**8, clock)
     for number in range(6000):
@@ -248,7 +248,7 @@ def test_a_simulated_robot_that_trembles_by_rounding_stands_still() -> None:
     assert history.count == 12
 
 
-def test_a_robot_that_creeps_is_kept_within_a_nanometre() -> None:
+def test_slowly_moving_transforms_are_kept_within_nanometer() -> None:
     clock = Clock()
     history = History(10**8, clock)
     for number in range(3000):
@@ -259,7 +259,7 @@ def test_a_robot_that_creeps_is_kept_within_a_nanometre() -> None:
         assert found[-1].poses[0][0] == pytest.approx(second * 1e-8, abs=2e-9)
 
 
-def test_a_clock_alone_takes_two_messages_in_ten_seconds_and_tells_each_time_between_them() -> None:
+def test_clock_alone_is_thinned_and_interpolated() -> None:
     clock = Clock()
     history = History(10**8, clock)
     for number in range(6000):
@@ -267,10 +267,10 @@ def test_a_clock_alone_takes_two_messages_in_ten_seconds_and_tells_each_time_bet
         tick(history, clock, 5 * SECOND + clock.ns // 2)
     assert history.count == 12
     for second in (0.0, 0.5, 7.25, 29.99, 59.99):
-        assert told_at(history, second) == pytest.approx(5 + second / 2, abs=0.01)
+        assert simulated_time_at(history, second) == pytest.approx(5 + second / 2, abs=0.01)
 
 
-def test_a_clock_is_kept_as_it_came_while_something_moves() -> None:
+def test_clock_is_kept_completely_while_robot_moves() -> None:
     clock = Clock()
     history = History(10**8, clock)
     for number in range(500):
@@ -280,7 +280,7 @@ def test_a_clock_is_kept_as_it_came_while_something_moves() -> None:
     assert history.count == 1000
 
 
-def test_a_clock_that_begins_anew_is_seen_to() -> None:
+def test_clock_reset_is_detected() -> None:
     clock = Clock()
     history = History(10**8, clock)
     for number in range(800):
@@ -288,11 +288,11 @@ def test_a_clock_that_begins_anew_is_seen_to() -> None:
         tick(history, clock, clock.ns % (4 * SECOND))
     part = history.messages_between(0, clock.ns)
     assert last_reset_ns(part) == 4 * SECOND
-    assert told_at(history, 3.99) == pytest.approx(3.99)
-    assert told_at(history, 4.0) == 0.0
+    assert simulated_time_at(history, 3.99) == pytest.approx(3.99)
+    assert simulated_time_at(history, 4.0) == 0.0
 
 
-def test_messages_between_which_a_clock_ran_alone_have_the_simulated_times_that_they_came_at() -> None:
+def test_messages_between_thinned_clock_ticks_keep_simulated_times() -> None:
     clock = Clock()
     history = History(10**8, clock)
     for number in range(1000):
@@ -304,22 +304,22 @@ def test_messages_between_which_a_clock_ran_alone_have_the_simulated_times_that_
     assert moved[:2] == [int(4.33 * SECOND), int(7.67 * SECOND)]
 
 
-def test_bytes_that_are_no_clock_have_no_content() -> None:
+def test_content_of_malformed_clock_is_none() -> None:
     for data in (b"", b"\0\1\0\0", b"\0\0\0\0" + bytes(8)):
         assert content_of(SimulatedTime.TYPE_NAME, data) is None
 
 
-def test_events_without_a_stamp_are_all_kept() -> None:
+def test_content_of_message_without_stamp_is_none() -> None:
     assert content_of("std_msgs/msg/Bool", serialize(get_message("std_msgs/msg/Bool")(data=True))) is None
 
 
 @pytest.mark.parametrize("data", [b"", b"\0\1\0\0", b"\0\1\0\0\xff\0\0\0", b"\0\0\0\0\0\0\0\1" + bytes(80)])
-def test_bytes_that_are_no_transforms_have_no_content(data: bytes) -> None:
+def test_content_of_malformed_transforms_is_empty(data: bytes) -> None:
     found = content_of(TFMessage.TYPE_NAME, data)
     assert found is None or found.child_frames == ""
 
 
-def test_images_that_fill_the_room_are_thinned_and_minutes_of_them_stay() -> None:
+def test_images_beyond_limit_are_thinned_over_minutes() -> None:
     clock = Clock()
     history = History(most := 4_000_000, clock)
     noise = np.random.default_rng(1).bytes(15_000)  # 266 of them fill the room: nine seconds
@@ -339,7 +339,7 @@ def test_images_that_fill_the_room_are_thinned_and_minutes_of_them_stay() -> Non
     assert history.state_at(["/camera"], 100 * SECOND)
 
 
-def test_what_is_thinned_goes_back_ten_minutes_and_no_further() -> None:
+def test_thinned_images_reach_back_at_most_ten_minutes() -> None:
     clock = Clock()
     history = History(1_000_000, clock)
     for frame in range(2000):
@@ -355,7 +355,7 @@ def content_of_poses(children: tuple[str, ...], numbers: list[list[float]], stam
     return found
 
 
-def test_the_content_of_transforms_has_their_frames_and_poses_without_stamps() -> None:
+def test_content_of_transforms_has_frames_and_poses_without_stamps() -> None:
     left, right = [1.0, 2, 3, 0, 0, 0, 1], [4.0, 5, 6, 0, 0, 1, 0]
     for children, numbers in ((("a", "b"), [left, right]), (("c", "d"), [left, right]), (("c", "d"), [right, left])):
         found = content_of_poses(children, numbers, 7)
@@ -367,7 +367,7 @@ def test_the_content_of_transforms_has_their_frames_and_poses_without_stamps() -
 
 
 @pytest.mark.parametrize("number", [float("inf"), float("nan")])
-def test_poses_that_are_not_finite_repeat_themselves_to_the_bit_alone(number: float) -> None:
+def test_non_finite_poses_repeat_only_if_bitwise_equal(number: float) -> None:
     pose = content_of_poses(("a",), [[number, 2, 3, 0, 0, 0, 1]])
     assert pose.is_repeated_by(content_of_poses(("a",), [[number, 2, 3, 0, 0, 0, 1]], 5))
     assert not pose.is_repeated_by(content_of_poses(("a",), [[number, 2, 3.1, 0, 0, 0, 1]]))

@@ -72,7 +72,7 @@ TOPICS = ("/a", "/b", "/robot_description", "/tf", "/tf_static")
 
 
 @pytest.mark.parametrize(("storage", "compressed"), [("mcap", False), ("mcap", True), ("sqlite3", False)])
-def test_the_state_at_a_time_is_the_last_message_of_each_topic_and_the_transforms(
+def test_state_at_returns_last_message_of_each_topic_and_transforms(
     tmp_path: Path, storage: str, compressed: bool
 ) -> None:
     with BagReader(recorded(tmp_path, storage, compressed=compressed)) as bag:
@@ -102,7 +102,7 @@ def without_index(whole: bytes, *, message_indexes: bool) -> bytes:
 
 @pytest.mark.parametrize("compressed", [False, True])
 @pytest.mark.parametrize("way", ["cut off", "without a summary", "without any index"])
-def test_a_recording_without_an_index_is_given_one(tmp_path: Path, way: str, compressed: bool) -> None:
+def test_bag_reader_indexes_mcap_without_index(tmp_path: Path, way: str, compressed: bool) -> None:
     folder = recorded(tmp_path, chunk=3, compressed=compressed)
     (file,) = folder.glob("*.mcap")
     with BagReader(file) as bag:
@@ -123,7 +123,7 @@ def test_a_recording_without_an_index_is_given_one(tmp_path: Path, way: str, com
 
 
 @pytest.mark.parametrize("storage", ["mcap", "sqlite3"])
-def test_messages_are_counted_by_the_parts_of_a_recording_without_reading_them(tmp_path: Path, storage: str) -> None:
+def test_message_counts_per_interval_are_returned(tmp_path: Path, storage: str) -> None:
     with BagReader(recorded(tmp_path, storage, chunk=1)) as bag:
         counts = bag.counts(2)
     assert counts["/a"] == [10, 10]
@@ -131,7 +131,7 @@ def test_messages_are_counted_by_the_parts_of_a_recording_without_reading_them(t
 
 
 @pytest.mark.parametrize("storage", ["mcap", "sqlite3"])
-def test_any_moment_is_found_as_if_all_were_read(tmp_path: Path, storage: str) -> None:
+def test_state_at_matches_reading_all_messages(tmp_path: Path, storage: str) -> None:
     """Also before and after all, where topics pause for long, and where messages came at one time."""
     stamps = [0, 1, 1, 5, 9_000, 9_001, 9_001, 500_000_000, 500_000_001, 7 * SECOND, 90 * SECOND]
     topics = ("/a", "/b", "/tf", "/tf_static")
@@ -201,7 +201,7 @@ async def shown(tmp_path: Path, request: pytest.FixtureRequest) -> AsyncIterator
 
 
 @pytest.mark.parametrize("shown", STORAGES, indirect=True)
-async def test_it_plays_what_somebody_listens_to_with_its_time(shown: Shown) -> None:
+async def test_playback_publishes_subscribed_topics_and_clock(shown: Shown) -> None:
     shown.listen("/a")
     assert await shown.taken() == ["a 0"]
     shown.playback.play()
@@ -219,7 +219,7 @@ async def test_it_plays_what_somebody_listens_to_with_its_time(shown: Shown) -> 
     assert await shown.taken() == []
 
 
-async def test_a_seek_shows_the_state_of_its_time_after_listeners_began_anew(shown: Shown) -> None:
+async def test_seek_resets_listeners_before_publishing_state(shown: Shown) -> None:
     shown.listen("/a")
     shown.listen("/b")
     await shown.taken()
@@ -235,7 +235,7 @@ async def test_a_seek_shows_the_state_of_its_time_after_listeners_began_anew(sho
     assert await shown.taken() == ["a 3"]
 
 
-async def test_steps_go_from_message_to_message_of_what_somebody_listens_to(shown: Shown) -> None:
+async def test_step_moves_between_messages_of_subscribed_topics(shown: Shown) -> None:
     shown.listen("/b")
     await shown.taken()
     shown.playback.step(forward=True)
@@ -250,7 +250,7 @@ async def test_steps_go_from_message_to_message_of_what_somebody_listens_to(show
     assert await shown.taken() == []
 
 
-async def test_steps_may_go_by_the_messages_of_one_topic(shown: Shown) -> None:
+async def test_step_by_topic_publishes_messages_between(shown: Shown) -> None:
     shown.listen("/a")
     await shown.taken()
     shown.playback.step(True, "/b")
@@ -265,7 +265,7 @@ async def test_steps_may_go_by_the_messages_of_one_topic(shown: Shown) -> None:
     assert shown.playback.position_ns == START + 19 * SECOND
 
 
-async def test_a_step_over_more_than_goes_in_a_turn_is_a_jump(shown: Shown, monkeypatch: pytest.MonkeyPatch) -> None:
+async def test_step_over_too_many_messages_becomes_seek(shown: Shown, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr("linkwright.bag.playback._MAX_TICK_MESSAGES", 2)
     shown.listen("/a")
     await shown.taken()
@@ -274,7 +274,7 @@ async def test_a_step_over_more_than_goes_in_a_turn_is_a_jump(shown: Shown, monk
     assert shown.playback.position_ns == START + 4 * SECOND
 
 
-async def test_a_step_back_stays_where_nobody_listens(shown: Shown) -> None:
+async def test_step_back_without_subscriptions_keeps_position(shown: Shown) -> None:
     shown.playback.seek(START + 8 * SECOND)
     await shown.settle()
     shown.playback.step(forward=False)
@@ -283,7 +283,7 @@ async def test_a_step_back_stays_where_nobody_listens(shown: Shown) -> None:
 
 
 @pytest.mark.parametrize("storage", ["mcap", "sqlite3"])
-def test_after_a_pause_of_the_transforms_those_before_it_hold(tmp_path: Path, storage: str) -> None:
+def test_state_at_keeps_transforms_from_before_a_pause(tmp_path: Path, storage: str) -> None:
     """One a minute: whoever goes to a time between two sees where the robot was."""
     with BagWriter(tmp_path / "bag", storage) as writer:
         writer.add_topic("/tf", TF, [DEFAULT_QOS])
@@ -296,14 +296,14 @@ def test_after_a_pause_of_the_transforms_those_before_it_hold(tmp_path: Path, st
             ]
 
 
-def test_a_recording_without_messages_says_so(tmp_path: Path) -> None:
+def test_empty_recording_is_reported(tmp_path: Path) -> None:
     with BagWriter(tmp_path / "bag") as writer:
         writer.add_topic("/tf", TF, [DEFAULT_QOS])
     with BagReader(tmp_path / "bag") as bag:
         assert [finding.code for finding in bag.findings] == ["BAG113"]
 
 
-async def test_at_the_end_it_stays_or_begins_anew(shown: Shown) -> None:
+async def test_playback_stops_at_end_or_loops(shown: Shown) -> None:
     shown.listen("/b")
     shown.playback.seek(START + 19 * SECOND)
     await shown.taken()
@@ -320,7 +320,7 @@ async def test_at_the_end_it_stays_or_begins_anew(shown: Shown) -> None:
     assert shown.playback.position_ns < START + 2 * SECOND, "it has begun anew"
 
 
-async def test_when_more_is_due_than_can_be_published_time_goes_slower(tmp_path: Path) -> None:
+async def test_playback_slows_down_when_messages_exceed_tick_limit(tmp_path: Path) -> None:
     path = tmp_path / "dense"
     with BagWriter(path) as writer:
         writer.add_topic("/a", STRING, [DEFAULT_QOS])
@@ -339,7 +339,7 @@ async def test_when_more_is_due_than_can_be_published_time_goes_slower(tmp_path:
     await shown.graph.close()
 
 
-async def test_a_chunk_that_is_damaged_pauses_and_tells(tmp_path: Path) -> None:
+async def test_damaged_chunk_pauses_playback_and_is_reported(tmp_path: Path) -> None:
     path = recorded(tmp_path, compressed=True)
     (file,) = path.glob("*.mcap")
     magic = b"\x28\xb5\x2f\xfd"  # of zstd

@@ -54,7 +54,7 @@ async def scene(clock, tmp_path: Path):
         await graph.close()
 
 
-async def test_it_pauses_and_goes_on(scene, clock):
+async def test_player_pauses_and_resumes(scene, clock):
     scene = scene(paused=True)
     await clock.advance(5)
     assert scene.heard == []
@@ -73,7 +73,7 @@ async def test_it_pauses_and_goes_on(scene, clock):
     assert scene.player.finished
 
 
-async def test_its_rate_is_told_and_set(scene, clock):
+async def test_player_rate_is_set_and_returned(scene, clock):
     scene = scene()
     await clock.advance(0.5)
     assert (await scene.call("set_rate", rate=10.0)).success
@@ -84,7 +84,7 @@ async def test_its_rate_is_told_and_set(scene, clock):
     assert scene.heard == ["0", "1", "2", "3"]
 
 
-async def test_messages_one_by_one_and_some_at_once_while_paused(scene, clock):
+async def test_play_next_and_burst_require_pause(scene, clock):
     scene = scene()
     await clock.advance(0.5)
     assert not (await scene.call("play_next")).success
@@ -97,7 +97,7 @@ async def test_messages_one_by_one_and_some_at_once_while_paused(scene, clock):
     assert scene.player.finished
 
 
-async def test_a_burst_of_all_ends_with_the_round(scene):
+async def test_burst_of_all_messages_ends_after_one_loop(scene):
     scene = scene(paused=True, loop=True)
     assert (await scene.call("burst", num_messages=0)).actually_burst == 5
     assert (await scene.call("burst", num_messages=7)).actually_burst == 5
@@ -105,7 +105,7 @@ async def test_a_burst_of_all_ends_with_the_round(scene):
     assert not scene.player.finished
 
 
-async def test_a_looped_recording_without_a_span_leaves_time_for_others(clock, tmp_path):
+async def test_loop_over_zero_duration_recording_does_not_block(clock, tmp_path):
     with BagWriter(tmp_path / "short") as writer:
         writer.add_topic("/chatter", "std_msgs/msg/String", [DEFAULT_QOS])
         for number in range(3):
@@ -120,7 +120,7 @@ async def test_a_looped_recording_without_a_span_leaves_time_for_others(clock, t
 
 
 @pytest.mark.parametrize("paused", [True, False])
-async def test_it_goes_on_from_another_time(scene, clock, paused):
+async def test_player_seek_continues_from_given_time(scene, clock, paused):
     scene = scene(paused=paused)
     await clock.advance(0.5)
     there = START // SECOND + 3
@@ -134,7 +134,7 @@ async def test_it_goes_on_from_another_time(scene, clock, paused):
     assert scene.heard[-2:] == ["0", "1"]
 
 
-async def test_it_is_stopped_and_does_not_restart(scene, clock):
+async def test_stopped_player_does_not_restart(scene, clock):
     scene = scene()
     await clock.advance(0.5)
     assert not (await scene.call("play")).success

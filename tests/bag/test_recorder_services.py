@@ -57,7 +57,7 @@ async def scene(tmp_path: Path):
     await graph.close()
 
 
-async def test_it_pauses_and_goes_on(scene) -> None:
+async def test_recorder_pauses_and_resumes(scene) -> None:
     scene = scene()
     await scene.say("one")
     await scene.call("pause")
@@ -70,7 +70,7 @@ async def test_it_pauses_and_goes_on(scene) -> None:
     assert scene.recorded() == ["one", "three"]
 
 
-async def test_another_file_is_begun_and_told_of(scene, tmp_path: Path) -> None:
+async def test_split_bagfile_starts_next_file_and_publishes_event(scene, tmp_path: Path) -> None:
     scene = scene()
     await scene.say("one")
     await scene.call("split_bagfile")
@@ -81,7 +81,7 @@ async def test_another_file_is_begun_and_told_of(scene, tmp_path: Path) -> None:
         assert [file.name for file in bag.files] == ["bag_0.mcap", "bag_1.mcap"]
 
 
-async def test_a_snapshot_is_all_that_is_written_in_snapshot_mode(scene) -> None:
+async def test_snapshot_mode_writes_only_snapshots(scene) -> None:
     scene = scene(snapshot_size=1000)
     await scene.say("one")
     assert (await scene.call("snapshot")).success
@@ -89,7 +89,7 @@ async def test_a_snapshot_is_all_that_is_written_in_snapshot_mode(scene) -> None
     assert scene.recorded() == ["one"]
 
 
-async def test_snapshots_are_offered_in_snapshot_mode_only(scene) -> None:
+async def test_snapshot_service_exists_only_in_snapshot_mode(scene) -> None:
     scene = scene()
     names = [name for name, _ in scene.graph.get_service_names_and_types()]
     assert "/rosbag2_recorder/split_bagfile" in names

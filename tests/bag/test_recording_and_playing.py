@@ -43,9 +43,7 @@ def texts(path: Path) -> list[str]:
         return [deserialize(data, String).data for topic, _, data in bag.messages() if topic == "/chatter"]
 
 
-async def test_topics_are_recorded_with_the_times_of_their_messages(
-    graph: Graph, clock: JumpClock, tmp_path: Path
-) -> None:
+async def test_recorder_writes_topics_with_message_times(graph: Graph, clock: JumpClock, tmp_path: Path) -> None:
     publisher = graph.create_node("talker").create_publisher(String, "chatter", DEFAULT_QOS)
     recorder = Recorder(graph.create_node("recorder"), TopicSelection(names=["/chatter"]), BagWriter(tmp_path / "bag"))
     for number in range(4):
@@ -58,7 +56,7 @@ async def test_topics_are_recorded_with_the_times_of_their_messages(
     assert texts(tmp_path / "bag") == ["0", "1", "2", "3"]
 
 
-async def test_topics_that_appear_later_are_recorded_until_all_are_there(
+async def test_recorder_subscribes_to_later_topics_until_all_exist(
     graph: Graph, clock: JumpClock, tmp_path: Path, log: list[LogRecord]
 ) -> None:
     recorder = Recorder(graph.create_node("recorder"), TopicSelection(names=["/chatter"]), BagWriter(tmp_path / "bag"))
@@ -78,7 +76,7 @@ async def test_topics_that_appear_later_are_recorded_until_all_are_there(
     ]
 
 
-async def test_what_was_published_before_is_recorded_where_it_is_kept(
+async def test_recorder_receives_latched_messages_published_earlier(
     graph: Graph, clock: JumpClock, tmp_path: Path
 ) -> None:
     publisher = graph.create_node("talker").create_publisher(String, "chatter", DESCRIPTION_QOS)
@@ -89,7 +87,7 @@ async def test_what_was_published_before_is_recorded_where_it_is_kept(
     assert texts(tmp_path / "bag") == ["before"]
 
 
-async def test_while_paused_nothing_is_written(graph: Graph, clock: JumpClock, tmp_path: Path) -> None:
+async def test_paused_recorder_writes_nothing(graph: Graph, clock: JumpClock, tmp_path: Path) -> None:
     publisher = graph.create_node("talker").create_publisher(String, "chatter", SENSOR_DATA_QOS)
     recorder = Recorder(
         graph.create_node("recorder"), TopicSelection(everything=True), BagWriter(tmp_path / "bag"), paused=True
@@ -102,7 +100,7 @@ async def test_while_paused_nothing_is_written(graph: Graph, clock: JumpClock, t
     assert texts(tmp_path / "bag") == ["yes"]
 
 
-async def test_an_unknown_type_is_told_once(
+async def test_unknown_type_is_reported_once(
     graph: Graph, clock: JumpClock, tmp_path: Path, log: list[LogRecord], monkeypatch: pytest.MonkeyPatch
 ) -> None:
     node = graph.create_node("recorder")
@@ -116,14 +114,16 @@ async def test_an_unknown_type_is_told_once(
     assert log[-1].text == "Not in the recording: /odd"
 
 
-async def test_what_never_came_is_told_at_the_end(graph: Graph, tmp_path: Path, log: list[LogRecord]) -> None:
+async def test_recorder_reports_topics_without_messages_at_end(
+    graph: Graph, tmp_path: Path, log: list[LogRecord]
+) -> None:
     graph.create_node("talker").create_publisher(String, "chatter", DEFAULT_QOS)
     selection = TopicSelection(names=["/chatter", "/silent"], services=["/asked"])
     Recorder(graph.create_node("recorder"), selection, BagWriter(tmp_path / "bag")).close()
     assert log[-1].text == "Not in the recording: /asked/_service_event, /silent"
 
 
-async def test_topics_that_nobody_hears_can_be_left_out(graph: Graph, clock: JumpClock, tmp_path: Path) -> None:
+async def test_recorder_can_skip_topics_without_subscriptions(graph: Graph, clock: JumpClock, tmp_path: Path) -> None:
     node = graph.create_node("talker")
     node.create_publisher(String, "heard", DEFAULT_QOS)
     node.create_publisher(String, "unheard", DEFAULT_QOS)
@@ -135,7 +135,7 @@ async def test_topics_that_nobody_hears_can_be_left_out(graph: Graph, clock: Jum
     recorder.close()
 
 
-async def test_what_a_service_tells_is_recorded_and_played(graph: Graph, clock: JumpClock, tmp_path: Path) -> None:
+async def test_service_events_are_recorded_and_played(graph: Graph, clock: JumpClock, tmp_path: Path) -> None:
     node = graph.create_node("server")
     service = node.create_service("example_interfaces/srv/AddTwoInts", "sum", lambda _request, response: response)
     service.configure_introspection(node.get_clock(), DEFAULT_QOS, ServiceIntrospectionState.CONTENTS)
@@ -181,7 +181,7 @@ def player_node(graph: Graph) -> Node:
     return graph.create_node("player")
 
 
-async def test_messages_come_at_the_distances_at_which_they_were_received(
+async def test_player_keeps_intervals_between_messages(
     graph: Graph, clock: JumpClock, player_node: Node, tmp_path: Path
 ) -> None:
     listener = Listener(graph, clock)
@@ -196,7 +196,7 @@ async def test_messages_come_at_the_distances_at_which_they_were_received(
     assert player.message_count == 4
 
 
-async def test_rate_delay_offset_and_duration(
+async def test_player_applies_rate_delay_offset_and_duration(
     graph: Graph, clock: JumpClock, player_node: Node, tmp_path: Path
 ) -> None:
     listener = Listener(graph, clock)
@@ -208,7 +208,7 @@ async def test_rate_delay_offset_and_duration(
     assert listener.heard == [(1.0, "1"), (1.5, "2"), (2.0, "3")]
 
 
-async def test_pausing_stops_the_time_of_the_recording(
+async def test_player_pause_stops_recording_time(
     graph: Graph, clock: JumpClock, player_node: Node, tmp_path: Path
 ) -> None:
     listener = Listener(graph, clock)
@@ -227,7 +227,7 @@ async def test_pausing_stops_the_time_of_the_recording(
     assert listener.heard == [(0.0, "0"), (5.5, "1"), (6.5, "2")]
 
 
-async def test_the_rate_may_change_on_the_way(
+async def test_player_rate_can_change_during_playback(
     graph: Graph, clock: JumpClock, player_node: Node, tmp_path: Path
 ) -> None:
     listener = Listener(graph, clock)
@@ -242,7 +242,7 @@ async def test_the_rate_may_change_on_the_way(
     assert listener.heard == [(0.0, "0"), (1.0, "1"), (1.6, "2"), (1.8, "3")]
 
 
-async def test_a_loop_begins_anew_until_it_is_closed(
+async def test_looping_player_restarts_until_closed(
     graph: Graph, clock: JumpClock, player_node: Node, tmp_path: Path
 ) -> None:
     listener = Listener(graph, clock)
@@ -257,7 +257,7 @@ async def test_a_loop_begins_anew_until_it_is_closed(
     assert len(listener.heard) == count
 
 
-async def test_the_time_of_the_recording_on_clock(
+async def test_player_publishes_recording_time_on_clock(
     graph: Graph, clock: JumpClock, player_node: Node, tmp_path: Path
 ) -> None:
     clocks: list[int] = []
@@ -270,7 +270,7 @@ async def test_the_time_of_the_recording_on_clock(
     assert clocks == [SECOND * 3 // 2, SECOND * 2, SECOND * 5 // 2, SECOND * 3]
 
 
-async def test_a_topic_that_is_not_there_is_told_before_anything_is_played(player_node: Node, tmp_path: Path) -> None:
+async def test_unknown_topic_is_reported_before_playing(player_node: Node, tmp_path: Path) -> None:
     with record(tmp_path, [0]) as bag, pytest.raises(LinkwrightError, match="'/chater'"):
         Player(player_node, bag, PlayOptions(topics=["/chater"]))
 
@@ -296,7 +296,7 @@ def record_of_a_foreign_type(path: Path, package: str, storage: StoragePlugin, *
 
 
 @pytest.mark.parametrize("storage", [StoragePlugin.MCAP, StoragePlugin.SQLITE3])
-async def test_a_type_that_no_package_has_is_known_by_what_the_recording_carries(
+async def test_unknown_type_is_played_with_definition_from_recording(
     graph: Graph, clock: JumpClock, player_node: Node, tmp_path: Path, storage: StoragePlugin
 ) -> None:
     package = f"soil_{storage.name.lower()}_msgs"
@@ -323,7 +323,7 @@ async def test_a_type_that_no_package_has_is_known_by_what_the_recording_carries
     assert type_hash(probe) == store.hash_rihs01(f"{package}/msg/Probe")
 
 
-async def test_a_malformed_definition_in_a_recording_is_told_and_the_rest_is_played(
+async def test_malformed_definition_is_reported_and_other_topics_play(
     graph: Graph, clock: JumpClock, player_node: Node, tmp_path: Path, log: list[LogRecord]
 ) -> None:
     record_of_a_foreign_type(tmp_path / "bag", "mud_msgs", StoragePlugin.MCAP, Sample=SAMPLE, Probe=PROBE)
@@ -340,7 +340,7 @@ async def test_a_malformed_definition_in_a_recording_is_told_and_the_rest_is_pla
     assert f"{file.name}/mud_msgs/msg/Probe.msg:1:1: there is no type 'flaot64'" in warning
 
 
-async def test_a_topic_may_be_left_out(graph: Graph, clock: JumpClock, player_node: Node, tmp_path: Path) -> None:
+async def test_player_excludes_given_topics(graph: Graph, clock: JumpClock, player_node: Node, tmp_path: Path) -> None:
     with record(tmp_path, [0]) as bag:
         player = Player(player_node, bag, PlayOptions(without=["/chatter"]))
         player.start()
@@ -349,7 +349,7 @@ async def test_a_topic_may_be_left_out(graph: Graph, clock: JumpClock, player_no
     assert player.publishers == ()
 
 
-async def test_only_topics_that_an_expression_finds_are_played(
+async def test_player_selects_topics_by_regular_expression(
     graph: Graph, clock: JumpClock, player_node: Node, tmp_path: Path
 ) -> None:
     with record(tmp_path, [0]) as bag:
@@ -360,7 +360,7 @@ async def test_only_topics_that_an_expression_finds_are_played(
         ]
 
 
-async def test_playing_ends_at_a_moment(graph: Graph, clock: JumpClock, player_node: Node, tmp_path: Path) -> None:
+async def test_player_stops_at_given_time(graph: Graph, clock: JumpClock, player_node: Node, tmp_path: Path) -> None:
     listener = Listener(graph, clock)
     with record(tmp_path, [0, 1, 2]) as bag:
         player = Player(player_node, bag, PlayOptions(until_ns=round(2.5 * SECOND), duration=9.0))
@@ -371,7 +371,7 @@ async def test_playing_ends_at_a_moment(graph: Graph, clock: JumpClock, player_n
 
 
 @pytest.mark.parametrize("options", [PlayOptions(clock_topics=["/chatter"]), PlayOptions(clock_before_all=True)])
-async def test_the_time_is_told_before_messages(
+async def test_player_publishes_clock_before_messages(
     graph: Graph, clock: JumpClock, player_node: Node, tmp_path: Path, options: PlayOptions
 ) -> None:
     times = []
@@ -384,9 +384,7 @@ async def test_the_time_is_told_before_messages(
     assert times == [1, 2, 4]
 
 
-async def test_by_simulated_time_nothing_is_looked_for_before_the_time_is_told(
-    graph: Graph, clock: JumpClock, tmp_path: Path
-) -> None:
+async def test_recorder_on_simulated_time_waits_for_first_clock(graph: Graph, clock: JumpClock, tmp_path: Path) -> None:
     node = graph.create_node("recorder", parameters={"use_sim_time": True})
     talker = graph.create_node("talker")
     talker.create_publisher(String, "chatter", DESCRIPTION_QOS).publish(String(data="kept"))

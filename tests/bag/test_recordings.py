@@ -54,7 +54,7 @@ def code_of(error: pytest.ExceptionInfo[LinkwrightError]) -> str:
 
 @pytest.mark.parametrize("storage", STORAGES)
 @pytest.mark.parametrize("key", ["offered_qos_profiles", "type_description_hash"])
-def test_metadata_that_tell_otherwise_than_the_files_hide_no_messages(tmp_path: Path, storage: str, key: str) -> None:
+def test_metadata_contradicting_files_hides_no_messages(tmp_path: Path, storage: str, key: str) -> None:
     path = write(tmp_path, storage) / "metadata.yaml"
     document = yaml.safe_load(path.read_text(encoding="utf-8"))
     for each in document["rosbag2_bagfile_information"]["topics_with_message_count"]:
@@ -66,7 +66,7 @@ def test_metadata_that_tell_otherwise_than_the_files_hide_no_messages(tmp_path: 
 
 
 @pytest.mark.parametrize("storage", STORAGES)
-def test_what_is_written_is_read_in_the_order_of_its_times(tmp_path: Path, storage: str) -> None:
+def test_bag_reader_returns_messages_ordered_by_time(tmp_path: Path, storage: str) -> None:
     with BagReader(write(tmp_path, storage)) as bag:
         assert bag.storage == storage
         assert [(topic.name, topic.type_name, topic.count) for topic in bag.topics] == [
@@ -87,7 +87,7 @@ def test_what_is_written_is_read_in_the_order_of_its_times(tmp_path: Path, stora
 
 
 @pytest.mark.parametrize("storage", STORAGES)
-def test_another_reader_understands_types_and_content(tmp_path: Path, storage: str) -> None:
+def test_rosbags_library_reads_types_and_content(tmp_path: Path, storage: str) -> None:
     path = write(tmp_path, storage)
     with AnyReader([path], default_typestore=get_typestore(Stores.ROS2_HUMBLE)) as reader:
         texts = [
@@ -100,7 +100,7 @@ def test_another_reader_understands_types_and_content(tmp_path: Path, storage: s
     assert hashes["/chatter"] == "RIHS01_df668c740482bbd48fb39d76a70dfd4bd59db1288021743503259e948f6b1a18"
 
 
-def test_a_compressed_recording_is_smaller_and_reads_the_same(tmp_path: Path) -> None:
+def test_compressed_recording_is_smaller_with_equal_messages(tmp_path: Path) -> None:
     (tmp_path / "plain").mkdir()
     (tmp_path / "small").mkdir()
     plain, small = write(tmp_path / "plain", count=400), write(tmp_path / "small", count=400, compression="storage")
@@ -109,7 +109,7 @@ def test_a_compressed_recording_is_smaller_and_reads_the_same(tmp_path: Path) ->
         assert other.files[0].stat().st_size < one.files[0].stat().st_size / 2
 
 
-def test_messages_of_some_topics_from_some_time_on(tmp_path: Path) -> None:
+def test_messages_can_be_filtered_by_topic_and_start_time(tmp_path: Path) -> None:
     with BagReader(write(tmp_path)) as bag:
         assert [stamp - START for _, stamp, _ in bag.messages(["/chatter"], START + 1)] == [
             1_000_000_000,
@@ -118,7 +118,7 @@ def test_messages_of_some_topics_from_some_time_on(tmp_path: Path) -> None:
 
 
 @pytest.mark.parametrize("options", [*({"storage": storage} for storage in STORAGES), {"single_file": True}])
-def test_a_recording_whose_program_was_killed_is_read_from_its_file(tmp_path: Path, options: dict[str, Any]) -> None:
+def test_recording_of_killed_process_is_read_from_file(tmp_path: Path, options: dict[str, Any]) -> None:
     path = tmp_path / "bag.mcap"
     program = f"""
 import os
@@ -138,7 +138,7 @@ os._exit(1)
         assert len(list(bag.messages())) == 5
 
 
-def test_a_recording_that_is_one_file(tmp_path: Path) -> None:
+def test_single_file_recording_has_no_folder(tmp_path: Path) -> None:
     path = write(tmp_path / "new", name="run.mcap", single_file=True)
     assert [each.name for each in path.parent.iterdir()] == ["run.mcap"]
     with BagReader(path) as bag, BagReader(write(tmp_path)) as folder:
@@ -178,7 +178,7 @@ def texts(messages: Iterable[tuple[str, int, bytes]]) -> list[str]:
 
 
 @pytest.mark.parametrize("storage", STORAGES)
-def test_numbered_files_without_metadata_are_one_recording(tmp_path: Path, storage: str) -> None:
+def test_numbered_files_without_metadata_form_one_recording(tmp_path: Path, storage: str) -> None:
     files = parts(tmp_path, storage, ["drive_10", "drive_9", "drive_11"])
     with BagReader(tmp_path / "drive") as bag:
         assert {topic.name: topic.count for topic in bag.topics} == {"/chatter": 9, "/other": 1}
@@ -194,7 +194,7 @@ def test_numbered_files_without_metadata_are_one_recording(tmp_path: Path, stora
         assert summary_text(bag).count("Type: std_msgs/msg/String | Count: 9") == 1
 
 
-def test_a_part_in_which_nothing_was_written_is_left_out(tmp_path: Path) -> None:
+def test_empty_part_is_skipped_with_warning(tmp_path: Path) -> None:
     parts(tmp_path, "mcap", ["drive_0", "drive_1"])
     (tmp_path / "drive" / "drive_2.mcap").touch()
     with BagReader(tmp_path / "drive") as bag:
@@ -202,7 +202,7 @@ def test_a_part_in_which_nothing_was_written_is_left_out(tmp_path: Path) -> None
         assert len(list(bag.messages())) == 7
 
 
-def test_files_of_other_names_are_one_recording_where_all_are_named(tmp_path: Path) -> None:
+def test_differently_named_files_form_one_recording_only_if_listed(tmp_path: Path) -> None:
     files = parts(tmp_path, "mcap", ["morning", "noon"])
     with pytest.raises(
         LinkwrightError, match=r"show that they belong to different recordings: morning.mcap, noon.mcap"
@@ -214,7 +214,7 @@ def test_files_of_other_names_are_one_recording_where_all_are_named(tmp_path: Pa
         assert len(list(bag.messages())) == 7
 
 
-def test_a_part_that_is_damaged_is_named(tmp_path: Path) -> None:
+def test_damaged_part_is_named(tmp_path: Path) -> None:
     files = parts(tmp_path, "mcap", ["drive_0", "drive_1"])
     files[1].write_bytes(b"nothing of the kind")
     with pytest.raises(LinkwrightError, match=r"'drive_1.mcap' cannot be read") as caught:
@@ -234,18 +234,18 @@ def test_a_part_that_is_damaged_is_named(tmp_path: Path) -> None:
         (["a.mcap", "b.mcap"], False),
     ],
 )
-def test_which_files_are_of_one_recording(names: list[str], are: bool) -> None:
+def test_belong_together_matches_file_names(names: list[str], are: bool) -> None:
     assert belong_together([Path(name) for name in names]) is are
 
 
-def test_an_empty_recording(tmp_path: Path) -> None:
+def test_empty_recording_can_be_read(tmp_path: Path) -> None:
     BagWriter(tmp_path / "bag").close()
     with BagReader(tmp_path / "bag") as bag:
         assert list(bag.messages()) == []
         assert "Messages:          0" in summary_text(bag)
 
 
-def test_summary(tmp_path: Path) -> None:
+def test_summary_lists_files_and_topics(tmp_path: Path) -> None:
     with BagReader(write(tmp_path)) as bag:
         lines = summary_text(bag).splitlines()
         assert summary_text(bag, topic_names_only=True) == "/chatter\n/joint_states\n"
@@ -261,19 +261,19 @@ def test_summary(tmp_path: Path) -> None:
     assert lines[9].startswith(" " * 19 + "Topic: /joint_states | ")
 
 
-def test_nothing_there(tmp_path: Path) -> None:
+def test_missing_recording_is_an_error(tmp_path: Path) -> None:
     with pytest.raises(LinkwrightError) as error:
         BagReader(tmp_path / "none")
     assert code_of(error) == "BAG101"
 
 
-def test_a_folder_that_is_no_recording(tmp_path: Path) -> None:
+def test_folder_without_recording_is_an_error(tmp_path: Path) -> None:
     with pytest.raises(LinkwrightError, match=r"neither a metadata\.yaml nor recording files"):
         BagReader(tmp_path)
 
 
 @pytest.mark.parametrize("content", [b"", b"\x89MCAP", b"not a recording at all", b"\x89MCAP0\r\n" + bytes(100)])
-def test_a_damaged_file(tmp_path: Path, content: bytes) -> None:
+def test_damaged_file_is_an_error(tmp_path: Path, content: bytes) -> None:
     path = tmp_path / "broken.mcap"
     path.write_bytes(content)
     with pytest.raises(LinkwrightError) as error:
@@ -282,7 +282,7 @@ def test_a_damaged_file(tmp_path: Path, content: bytes) -> None:
 
 
 @pytest.mark.parametrize(("cut", "left"), [(1, 300), (700, 300), (3000, 300), (10_000, 100), (20_000, 0)])
-def test_a_file_that_was_cut_off_gives_the_chunks_that_are_whole(tmp_path: Path, cut: int, left: int) -> None:
+def test_truncated_file_gives_complete_chunks(tmp_path: Path, cut: int, left: int) -> None:
     path = tmp_path / "bag"
     with BagWriter(path) as writer:
         writer.add_topic("/chatter", "std_msgs/msg/String")
@@ -299,7 +299,7 @@ def test_a_file_that_was_cut_off_gives_the_chunks_that_are_whole(tmp_path: Path,
     assert stamps == list(range(left))
 
 
-def test_info_and_play_say_that_a_recording_has_no_end(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+def test_bag_info_warns_about_truncated_recording(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     path = write(tmp_path)
     assert main(["bag", "info", str(path)]) == 0
     assert capsys.readouterr().err == ""
@@ -311,14 +311,14 @@ def test_info_and_play_say_that_a_recording_has_no_end(tmp_path: Path, capsys: p
     assert "warning[BAG109]" in capsys.readouterr().err
 
 
-def test_a_folder_that_exists_is_not_written_over(tmp_path: Path) -> None:
+def test_existing_folder_is_not_overwritten(tmp_path: Path) -> None:
     write(tmp_path)
     with pytest.raises(LinkwrightError) as error:
         BagWriter(tmp_path / "bag")
     assert code_of(error) == "BAG105"
 
 
-def test_an_unknown_topic_is_told_with_the_nearest(tmp_path: Path) -> None:
+def test_unknown_topic_error_suggests_nearest(tmp_path: Path) -> None:
     with BagReader(write(tmp_path)) as bag, pytest.raises(LinkwrightError) as error:
         bag.messages(["/chater"])
     assert code_of(error) == "BAG103"
@@ -343,7 +343,7 @@ def test_an_unknown_topic_is_told_with_the_nearest(tmp_path: Path) -> None:
         (TopicSelection(pattern="^/[sa]$"), ["/a", "/s/_service_event"]),
     ],
 )
-def test_selection(selection: TopicSelection, taken: list[str]) -> None:
+def test_topic_selection_filters_topics(selection: TopicSelection, taken: list[str]) -> None:
     topics = [
         ("/a", "std_msgs/msg/String"),
         ("/b/c", "std_msgs/msg/Int32"),
@@ -354,13 +354,13 @@ def test_selection(selection: TopicSelection, taken: list[str]) -> None:
     assert not selection.is_empty
 
 
-def test_a_wrong_pattern_is_told() -> None:
+def test_invalid_topic_pattern_is_reported() -> None:
     with pytest.raises(LinkwrightError) as error:
         TopicSelection(pattern="(")
     assert code_of(error) == "BAG104"
 
 
-def test_profiles_survive_a_recording() -> None:
+def test_qos_profiles_survive_recording() -> None:
     qos = QoSProfile(
         history=HistoryPolicy.KEEP_ALL,
         reliability=ReliabilityPolicy.BEST_EFFORT,
@@ -373,19 +373,19 @@ def test_profiles_survive_a_recording() -> None:
         assert getattr(again, policy) == getattr(qos, policy)
 
 
-def test_recording_asks_for_no_more_than_all_publishers_offer() -> None:
+def test_recording_qos_requests_no_more_than_publishers_offer() -> None:
     assert profile_for_recording([DEFAULT_QOS, SENSOR_DATA_QOS]).reliability is ReliabilityPolicy.BEST_EFFORT
     assert profile_for_recording([DEFAULT_QOS]).reliability is ReliabilityPolicy.RELIABLE
     assert profile_for_recording([DESCRIPTION_QOS]).durability is DurabilityPolicy.TRANSIENT_LOCAL
     assert profile_for_recording([DESCRIPTION_QOS, DEFAULT_QOS]).durability is DurabilityPolicy.VOLATILE
 
 
-def test_playing_offers_what_was_recorded_where_publishers_agreed() -> None:
+def test_playing_qos_matches_recorded_qos_if_publishers_agree() -> None:
     assert profile_for_playing([DESCRIPTION_QOS, DESCRIPTION_QOS]) == DESCRIPTION_QOS
     assert profile_for_playing([DESCRIPTION_QOS, SENSOR_DATA_QOS]) == QoSProfile(depth=10)
 
 
-def test_playing_keeps_the_most_that_any_publisher_kept() -> None:
+def test_playing_qos_uses_largest_recorded_history() -> None:
     """What is kept, and for how long, is no matter of agreement (as in rosbag2)."""
     kept = [QoSProfile(depth=20), QoSProfile(depth=50, lifespan=Duration(seconds=1.0)), QoSProfile(depth=1)]
     assert profile_for_playing(kept) == kept[1]
@@ -393,13 +393,13 @@ def test_playing_keeps_the_most_that_any_publisher_kept() -> None:
     assert profile_for_playing([*kept, everything]) == everything
 
 
-def test_playing_keeps_as_much_as_rosbag2_where_publishers_did_not_tell() -> None:
+def test_playing_qos_defaults_to_depth_ten_if_history_is_unknown() -> None:
     """Those of Fast DDS do not."""
     untold = QoSProfile(history=HistoryPolicy.UNKNOWN, depth=0)
     assert profile_for_playing([from_library(to_library(untold))]) == QoSProfile(depth=10)
 
 
-def test_overrides() -> None:
+def test_qos_overrides_are_parsed() -> None:
     document = {"/a": {"reliability": "best_effort", "depth": 3, "deadline": {"sec": 1, "nsec": 5}}}
     (qos,) = parse_overrides(document, "file").values()
     assert (qos.reliability, qos.depth) == (ReliabilityPolicy.BEST_EFFORT, 3)
@@ -416,7 +416,7 @@ def test_overrides() -> None:
         ({"/a": {"deadline": 5}}, "not a duration"),
     ],
 )
-def test_wrong_overrides_are_told(document: object, message: str) -> None:
+def test_invalid_qos_overrides_are_reported(document: object, message: str) -> None:
     with pytest.raises(LinkwrightError) as error:
         parse_overrides(document, "qos.yaml")
     (diagnostic,) = error.value.diagnostics
@@ -437,16 +437,14 @@ def test_wrong_overrides_are_told(document: object, message: str) -> None:
         ("a.mcap", b"\x28\xb5\x2f\xfd1234", "it is compressed with zstd"),
     ],
 )
-def test_what_a_file_is_instead_of_a_recording_is_told(
-    tmp_path: Path, name: str, beginning: bytes, message: str
-) -> None:
+def test_wrong_file_format_is_identified(tmp_path: Path, name: str, beginning: bytes, message: str) -> None:
     (tmp_path / name).write_bytes(beginning)
     with pytest.raises(LinkwrightError, match=message) as error:
         BagReader(tmp_path / name)
     assert error.value.diagnostics[0].hint
 
 
-def test_a_database_of_something_else_is_told(tmp_path: Path) -> None:
+def test_foreign_sqlite_database_is_reported(tmp_path: Path) -> None:
     with closing(sqlite3.connect(tmp_path / "a.db3")) as database:
         database.execute("CREATE TABLE cats (name TEXT)")
     with pytest.raises(LinkwrightError, match="an SQLite database without the tables of a recording"):

@@ -47,13 +47,13 @@ def record(tmp_path):
     return run
 
 
-async def test_a_recorded_description_and_its_hash(record):
+async def test_recorded_description_and_hash_are_returned(record):
     with BagReader(await record("/chatter", "/robot_description")) as bag:
         assert recorded_description(bag) == ROBOT
         assert recorded_hash(bag) == hash_of_description(ROBOT)
 
 
-async def test_the_hash_of_a_description_that_is_not_recorded(record):
+async def test_description_hash_is_recorded_without_description_topic(record):
     folder = await record("/chatter")
     with BagReader(folder) as bag:
         assert [topic.name for topic in bag.topics] == ["/chatter"]
@@ -62,7 +62,7 @@ async def test_the_hash_of_a_description_that_is_not_recorded(record):
     assert "robot_description_sha256" in (folder / "metadata.yaml").read_text()
 
 
-async def test_a_recording_without_a_robot(record, capsys):
+async def test_recording_without_robot_has_no_description(record, capsys):
     folder = await record("/chatter", description=None)
     with BagReader(folder) as bag:
         assert recorded_hash(bag) is None
@@ -70,13 +70,13 @@ async def test_a_recording_without_a_robot(record, capsys):
     assert "error[BAG118]" in capsys.readouterr().err
 
 
-async def test_the_command_prints_the_description(record, capsys):
+async def test_bag_description_prints_description(record, capsys):
     folder = await record("/chatter", "/robot_description")
     assert main(["bag", "description", str(folder)]) == 0
     assert capsys.readouterr().out == ROBOT
 
 
-async def test_the_command_compares_the_description_with_a_file(record, tmp_path, capsys):
+async def test_bag_description_compares_with_file(record, tmp_path, capsys):
     folder = await record("/chatter", "/robot_description")
     file = tmp_path / "robot.urdf.xacro"
     file.write_text(
@@ -91,7 +91,7 @@ async def test_the_command_compares_the_description_with_a_file(record, tmp_path
     assert f"{folder}:7:" in output
 
 
-async def test_the_command_compares_hashes_where_there_is_no_text(record, tmp_path, capsys):
+async def test_bag_description_compares_hashes_without_text(record, tmp_path, capsys):
     folder = await record("/chatter")
     file = tmp_path / "robot.urdf"
     file.write_text(ROBOT)
@@ -101,7 +101,7 @@ async def test_the_command_compares_hashes_where_there_is_no_text(record, tmp_pa
     assert "the description differs from that of the recording" in capsys.readouterr().out
 
 
-async def test_bad_input(record, tmp_path, capsys):
+async def test_bag_description_rejects_missing_files_and_extra_arguments(record, tmp_path, capsys):
     folder = await record("/chatter", "/robot_description")
     for words in ([str(tmp_path / "nothing")], [str(folder), str(tmp_path / "no.urdf")], [str(folder), "a", "b"]):
         assert main(["bag", "description", *words]) == 2

@@ -41,7 +41,7 @@ def listen(process, topic, qos):
 
 
 @pytest.mark.parametrize(("source", "target"), WAYS)
-def test_each_message_of_a_topic_goes_over_once_and_in_order(networks, source, target):
+def test_topic_messages_are_bridged_once_and_in_order(networks, source, target):
     networks.bridge()
     there, here = networks.make(source)("there"), networks.make(target)("here")
     got = listen(here, "chatter", EVERYTHING)
@@ -63,7 +63,7 @@ def test_each_message_of_a_topic_goes_over_once_and_in_order(networks, source, t
 
 
 @pytest.mark.parametrize(("source", "target"), WAYS)
-def test_nodes_are_seen_by_their_names_with_what_they_publish_and_vanish_with_it(networks, source, target):
+def test_bridged_node_is_listed_with_its_publishers_until_it_closes(networks, source, target):
     networks.bridge()
     there, here = networks.make(source)("there"), networks.make(target)("here")
     qos = QoSProfile(7, reliability=ReliabilityPolicy.BEST_EFFORT)
@@ -85,7 +85,7 @@ def test_nodes_are_seen_by_their_names_with_what_they_publish_and_vanish_with_it
 
 
 @pytest.mark.parametrize(("source", "target"), WAYS)
-def test_nodes_are_seen_with_what_they_subscribe_to_and_call(networks, source, target):
+def test_bridged_node_is_listed_with_its_subscriptions_and_clients(networks, source, target):
     networks.bridge()
     there, here = networks.make(source)("there"), networks.make(target)("here")
     qos = QoSProfile(7, reliability=ReliabilityPolicy.BEST_EFFORT, deadline=Duration(seconds=2))
@@ -114,9 +114,7 @@ def test_nodes_are_seen_with_what_they_subscribe_to_and_call(networks, source, t
 
 @pytest.mark.parametrize(("source", "target"), WAYS)
 @pytest.mark.parametrize("reliability", [ReliabilityPolicy.RELIABLE, ReliabilityPolicy.BEST_EFFORT])
-def test_what_the_first_publisher_of_a_topic_says_to_who_is_shown_there_is_not_lost(
-    networks, source, target, reliability
-):
+def test_first_messages_of_new_publisher_reach_existing_subscription(networks, source, target, reliability):
     networks.bridge()
     here = networks.make(target)("here")
     got = listen(here, "chatter", QoSProfile(10, reliability=reliability))
@@ -133,7 +131,7 @@ def test_what_the_first_publisher_of_a_topic_says_to_who_is_shown_there_is_not_l
 
 
 @pytest.mark.parametrize(("source", "target"), WAYS)
-def test_late_joiners_get_what_was_kept_once(networks, source, target):
+def test_late_subscription_receives_latched_messages_once(networks, source, target):
     there = networks.make(source)("there")
     publisher = there.node.create_publisher(String, "described", LASTING)
     for word in ("one", "two", "three", "four"):
@@ -150,7 +148,7 @@ def test_late_joiners_get_what_was_kept_once(networks, source, target):
 
 
 @pytest.mark.parametrize(("source", "target"), WAYS)
-def test_what_a_publisher_says_that_comes_while_the_topic_is_carried_is_not_lost(networks, source, target):
+def test_first_message_of_second_publisher_on_bridged_topic_is_not_lost(networks, source, target):
     networks.bridge()
     first, here = networks.make(source)("first"), networks.make(target)("here")
     got = listen(here, "chatter", EVERYTHING)
@@ -165,7 +163,7 @@ def test_what_a_publisher_says_that_comes_while_the_topic_is_carried_is_not_lost
 
 
 @pytest.mark.parametrize(("source", "target"), WAYS)
-def test_what_a_publisher_said_last_goes_over_though_it_has_left(networks, monkeypatch, source, target):
+def test_last_message_of_closed_publisher_is_delivered(networks, monkeypatch, source, target):
     """Once the way is open; on a busy machine a second is not enough for all to be acknowledged."""
     monkeypatch.setattr("linkwright.wire.dds.engine.CLOSING_TIME", SECONDS)
     networks.bridge()
@@ -184,7 +182,7 @@ def test_what_a_publisher_said_last_goes_over_though_it_has_left(networks, monke
 
 
 @pytest.mark.parametrize(("server", "client"), WAYS)
-def test_requests_of_three_clients_are_answered_each_to_who_asked(networks, server, client):
+def test_service_responses_reach_the_client_that_sent_the_request(networks, server, client):
     networks.bridge()
     there = networks.make(server)("there")
 
@@ -215,7 +213,7 @@ def test_requests_of_three_clients_are_answered_each_to_who_asked(networks, serv
 
 
 @pytest.mark.parametrize(("server", "client"), WAYS)
-def test_actions_go_over_with_their_feedback(networks, server, client):
+def test_action_goals_and_feedback_are_bridged(networks, server, client):
     networks.bridge()
     there, here = networks.make(server)("there"), networks.make(client)("here")
 
@@ -252,7 +250,7 @@ def test_actions_go_over_with_their_feedback(networks, server, client):
         raise AssertionError(heard)
 
 
-def test_who_waits_for_a_listener_that_has_stopped_holds_up_nothing_else():
+def test_outlet_queues_messages_while_publish_blocks():
     goes_on, published, failures = threading.Event(), [], []
 
     def publish(data: bytes) -> None:
@@ -271,7 +269,7 @@ def test_who_waits_for_a_listener_that_has_stopped_holds_up_nothing_else():
     outlet.close()
 
 
-def test_what_cannot_be_published_is_told_and_the_next_is_published():
+def test_outlet_reports_failed_publish_and_sends_next_message():
     published, failures = [], []
 
     def publish(data: bytes) -> None:
@@ -287,7 +285,7 @@ def test_what_cannot_be_published_is_told_and_the_next_is_published():
     outlet.close()
 
 
-def test_a_bridge_looks_again_when_a_process_was_killed():
+def test_lost_endpoint_triggers_new_discovery():
     """Long before the lease of its participant is over."""
     messages = []
 
@@ -311,7 +309,7 @@ def test_a_bridge_looks_again_when_a_process_was_killed():
     graph.close_threadsafe()
 
 
-def test_a_service_that_both_networks_have_is_left_alone(networks):
+def test_service_present_on_both_networks_is_not_bridged(networks):
     networks.bridge()
     there, here = networks.dds("there"), networks.zenoh("here")
     for process, answer in ((there, 1), (here, 2)):
@@ -333,7 +331,7 @@ def test_a_service_that_both_networks_have_is_left_alone(networks):
     assert set(answers) <= {1, 2}
 
 
-def test_two_bridges_carry_each_message_once_and_one_goes_on_alone(networks):
+def test_two_bridges_deliver_each_message_once_and_one_takes_over(networks):
     first = networks.bridge("b0")
     networks.bridge("b1")
     there, here = networks.dds("there"), networks.zenoh("here")
@@ -356,7 +354,7 @@ def test_two_bridges_carry_each_message_once_and_one_goes_on_alone(networks):
     assert got[100:] == ["end"]
 
 
-def test_names_that_are_denied_or_not_allowed_stay_where_they_are(networks):
+def test_denied_and_not_allowed_names_are_not_bridged(networks):
     networks.bridge(allowed=("/robot*",), denied=("/*/secret",))
     there, here = networks.dds("there"), networks.zenoh("here")
     for name in ("/robot1/scan", "/robot2/secret/key", "/other"):
@@ -368,7 +366,7 @@ def test_names_that_are_denied_or_not_allowed_stay_where_they_are(networks):
     assert not {"/robot2/secret/key", "/other"} & names
 
 
-def test_messages_of_types_that_are_not_known_here_go_over_as_they_are(networks):
+def test_messages_of_unknown_type_are_bridged_as_raw_bytes(networks):
     networks.bridge()
     here = networks.dds("here")
     got = []
@@ -394,7 +392,7 @@ def test_messages_of_types_that_are_not_known_here_go_over_as_they_are(networks)
 
 
 @pytest.mark.parametrize(("expects", "seconds"), [(False, 1.0), (True, 10.0)])
-def test_what_a_new_publisher_says_waits_for_who_is_known_to_be_able_to_hear_it(monkeypatch, expects, seconds):
+def test_mirrored_publisher_waits_longer_if_listeners_are_expected(monkeypatch, expects, seconds):
     """A machine that is very busy matches late, and closes nothing meanwhile that somebody is about to hear."""
     now = [1000.0]
     monkeypatch.setattr("linkwright.bridge.mirrors.time", SimpleNamespace(monotonic=lambda: now[0]))
@@ -415,7 +413,7 @@ def test_what_a_new_publisher_says_waits_for_who_is_known_to_be_able_to_hear_it(
 
 
 @pytest.mark.parametrize(("server", "client"), WAYS)
-def test_services_of_types_that_are_not_known_here_are_called_with_bytes(networks, server, client):
+def test_services_of_unknown_type_are_called_with_raw_bytes(networks, server, client):
     networks.bridge()
     there, here = networks.make(server)("there"), networks.make(client)("here")
     type_name, name, qos = "strange_msgs/srv/Odd", "/odd", QoSProfile(10)
@@ -440,7 +438,7 @@ def test_services_of_types_that_are_not_known_here_are_called_with_bytes(network
     assert answers == [b"\0\1\0\0odd%dodd%d" % (number, number) for number in range(5)]
 
 
-def test_what_cannot_be_carried_is_told_once(networks):
+def test_topic_that_cannot_be_bridged_is_reported_once(networks):
     bridge = networks.bridge()
     there, here = networks.dds("there"), networks.zenoh("here")
     strange = Publisher(there.node.handle, "strange_msgs/msg/Odd", "/odd", QoSProfile(10))

@@ -19,13 +19,13 @@ from linkwright.diagnostics import LinkwrightError
         (("/*",), (), ["/a", "/a/b/c"], []),
     ],
 )
-def test_names_pass_by_themselves_and_below_what_is_allowed(allowed, denied, passing, kept_back):
+def test_name_filter_matches_allowed_names_and_those_below_them(allowed, denied, passing, kept_back):
     names = NameFilter(allowed, denied)
     assert [each for each in (*passing, *kept_back) if names.passes(each)] == passing
 
 
 @pytest.mark.parametrize("pattern", ["", "scan", "/a/", "//", "/a b", "/a.*", "/[ab]"])
-def test_what_is_no_pattern_is_refused(pattern):
+def test_malformed_pattern_is_rejected(pattern):
     for names in (((pattern,), ()), ((), (pattern,))):
         with pytest.raises(LinkwrightError) as refused:
             NameFilter(*names)

@@ -94,7 +94,7 @@ async def world(**parameters):
 
 
 @pytest.mark.parametrize("steps", range(8))
-async def test_wherever_its_start_is_broken_off_it_listens_no_longer(steps):
+async def test_server_socket_is_closed_when_startup_is_interrupted(steps):
     made = World()
     for _ in range(steps):
         await asyncio.sleep(0)
@@ -104,11 +104,11 @@ async def test_wherever_its_start_is_broken_off_it_listens_no_longer(steps):
     await made.graph.close()
 
 
-def test_launch_files_that_start_it_find_it():
+def test_executable_is_registered_for_launch_files():
     assert ("foxglove_bridge", "foxglove_bridge") in EXECUTABLES
 
 
-async def test_a_client_is_greeted_with_what_there_is():
+async def test_new_client_receives_server_info_and_channels():
     async with world() as w:
         w.node.create_publisher(String, "/chatter", 10)
         await w.offers("/chatter")
@@ -127,7 +127,7 @@ async def test_a_client_is_greeted_with_what_there_is():
                 assert "string data" in chatter["schema"]
 
 
-async def test_messages_come_as_cdr_and_stop_on_demand():
+async def test_messages_are_sent_as_cdr_until_unsubscribed():
     async with world() as w, w.client() as client:
         publisher = w.node.create_publisher(String, "/chatter", 10)
         channel = await client.channel("/chatter")
@@ -143,7 +143,7 @@ async def test_messages_come_as_cdr_and_stop_on_demand():
         await eventually(lambda: publisher.get_subscription_count() == 0)
 
 
-async def test_a_late_client_gets_what_lasts():
+async def test_late_client_receives_latched_message():
     async with world() as w:
         w.node.create_publisher(String, "/robot_description", DESCRIPTION_QOS).publish(String(data="<robot/>"))
         async with w.client() as client:
@@ -152,7 +152,7 @@ async def test_a_late_client_gets_what_lasts():
             assert deserialize((await client.frame(1))[13:], String).data == "<robot/>"
 
 
-async def test_channels_come_and_go():
+async def test_channels_are_advertised_and_unadvertised():
     async with world() as w, w.client() as client:
         publisher = w.node.create_publisher(String, "/brief", 10)
         channel = await client.channel("/brief")
@@ -162,7 +162,7 @@ async def test_channels_come_and_go():
         assert (await client.until("status"))["level"] == 2
 
 
-async def test_clients_publish():
+async def test_client_publishes_to_ros_topic():
     heard = []
     async with world() as w, w.client() as client:
         twist = get_message("geometry_msgs/msg/Twist")
@@ -179,7 +179,7 @@ async def test_clients_publish():
         assert "was not advertised" in (await client.until("status"))["message"]
 
 
-async def test_services_are_called():
+async def test_client_calls_service():
     set_bool = get_service("std_srvs/srv/SetBool")
 
     def answer(request, response):
@@ -204,7 +204,7 @@ async def test_services_are_called():
         assert (failed["callId"], failed["serviceId"]) == (78, 9999)
 
 
-async def test_parameters_are_read_set_and_followed():
+async def test_parameters_are_read_set_and_subscribed():
     async with world() as w, w.client() as client:
         w.node.declare_parameter("speed", 1.5)
         await client.send("getParameters", parameterNames=["/robot.speed"], id="one")
@@ -225,7 +225,7 @@ async def test_parameters_are_read_set_and_followed():
         assert {"/robot.speed", "/robot.use_sim_time"} <= names
 
 
-async def test_the_connections_are_told_and_then_their_changes():
+async def test_connection_graph_is_sent_and_updated():
     async with world() as w, w.client() as client:
         w.node.create_publisher(String, "/chatter", 10)
         await w.offers("/chatter")
@@ -238,7 +238,7 @@ async def test_the_connections_are_told_and_then_their_changes():
         assert then["publishedTopics"] == []
 
 
-async def test_the_time_of_a_simulation_is_told():
+async def test_simulated_time_is_sent_to_clients():
     async with world(use_sim_time=True) as w, w.client() as client:
         assert "time" in (await client.next())["capabilities"]
         clock = get_message("rosgraph_msgs/msg/Clock")
@@ -260,7 +260,7 @@ async def fetched(client: Foxglove, uri: str) -> tuple[int, bytes]:
     return failed, frame[10 + length :] if not failed else frame[10 : 10 + length]
 
 
-async def test_only_meshes_of_packages_that_a_description_names_are_given(tmp_path, monkeypatch):
+async def test_only_meshes_of_packages_in_robot_description_are_served(tmp_path, monkeypatch):
     share = tmp_path / "robot"
     (share / "meshes").mkdir(parents=True)
     (share / "package.xml").write_text("<package format='3'><name>arm_pkg</name><version>1.0.0</version></package>")
@@ -316,11 +316,11 @@ async def test_only_meshes_of_packages_that_a_description_names_are_given(tmp_pa
         ("http://[", False),
     ],
 )
-def test_only_pages_that_are_welcome_connect(origin, welcome):
+def test_origin_is_allowed_only_if_listed_or_local(origin, welcome):
     assert is_allowed_origin(origin) is welcome
 
 
-async def test_a_page_of_another_site_is_refused():
+async def test_connection_from_other_origin_is_rejected():
     async with world() as w:
         with pytest.raises(aiohttp.WSServerHandshakeError) as caught:
             async with w.client(origin="https://evil.example"):
@@ -330,14 +330,14 @@ async def test_a_page_of_another_site_is_refused():
         assert (await client.next())["op"] == "serverInfo"
 
 
-async def test_another_protocol_is_refused():
+async def test_connection_without_foxglove_subprotocol_is_closed():
     async with world() as w, w.client(()) as client:
         message = await client.socket.receive(timeout=SECONDS)
         assert message.type is aiohttp.WSMsgType.CLOSE
         assert client.socket.close_code == 1002
 
 
-async def test_nonsense_is_answered_and_the_bridge_lives_on():
+async def test_malformed_client_messages_are_reported_and_bridge_survives():
     async with world() as w, w.client() as client:
         empty = '{"op": "advertise", "channels": [{}]}'
         for text in ("nonsense", "[]", "{}", '{"op": "fly"}', '{"op": "subscribe"}', empty, "[" * 100_000):
@@ -356,7 +356,7 @@ async def test_nonsense_is_answered_and_the_bridge_lives_on():
         assert (await client.until("connectionGraphUpdate"))["publishedTopics"]
 
 
-async def test_lists_of_names_hide_the_rest():
+async def test_whitelists_hide_other_topics_and_services():
     lists = {"topic_whitelist": ["/seen.*"], "client_topic_whitelist": ["/cmd_vel"], "service_whitelist": ["/none"]}
     async with world(**lists) as w:
         w.node.create_publisher(String, "/seen_one", 10)
@@ -370,7 +370,7 @@ async def test_lists_of_names_hide_the_rest():
             assert "may not publish" in (await client.until("status"))["message"]
 
 
-async def test_no_list_of_names_keeps_it_busy():
+async def test_slow_whitelist_pattern_does_not_block_bridge():
     async with world(topic_whitelist=["/(s|ss)+", "/seen"]) as w:
         w.node.create_publisher(String, "/seen", 10)
         w.node.create_publisher(String, f"/{'s' * 60}_", 10)
@@ -379,7 +379,7 @@ async def test_no_list_of_names_keeps_it_busy():
             assert [each["topic"] for each in (await client.until("advertise"))["channels"]] == ["/seen"]
 
 
-async def test_a_client_that_leaves_writes_nothing_on_the_terminal(caplog):
+async def test_disconnecting_client_logs_nothing(caplog):
     async with world() as w:
         for headers in ("", f"{UPGRADE}Sec-WebSocket-Protocol: {V1[0]}\r\n"):
             await ask_and_leave(w.port, "/", headers)
@@ -388,7 +388,7 @@ async def test_a_client_that_leaves_writes_nothing_on_the_terminal(caplog):
     assert [record.getMessage() for record in caplog.records] == []
 
 
-async def test_what_it_cannot_start_with_is_said():
+async def test_startup_fails_if_port_is_in_use_or_whitelist_is_invalid():
     graph = Graph(on_log=lambda _: None)
     with socket.create_server(("127.0.0.1", 0)) as taken:
         port = taken.getsockname()[1]

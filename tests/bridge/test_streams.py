@@ -20,7 +20,7 @@ def endpoint(kind: EndpointKind, type_name: str, hashed: str, qos: QoSProfile | 
 
 @pytest.mark.parametrize("message", ["", OTHER_HASH], ids=["told no hash", "told its hash"])
 @pytest.mark.parametrize("type_name", ["std_msgs/msg/String", "strange_msgs/msg/Odd"])
-def test_what_is_listened_to_before_its_publisher_comes_is_what_the_publisher_says(type_name, message):
+def test_subscription_awaits_the_stream_that_its_publisher_uses(type_name, message):
     """Else what it says first would be lost, while the bridge listens to another stream instead."""
     hashed = type_hash(type_name) if type_name.startswith("std_msgs") else OTHER_HASH
     publisher = endpoint(EndpointKind.PUBLISHER, type_name, hashed)
@@ -28,7 +28,7 @@ def test_what_is_listened_to_before_its_publisher_comes_is_what_the_publisher_sa
     assert publisher_stream(publisher, keyed=True) in awaited_streams(subscription, keyed=True)
 
 
-def test_types_of_one_name_with_other_hashes_are_other_streams_where_the_type_is_known():
+def test_type_hash_distinguishes_streams_only_when_keyed():
     ours, theirs = (endpoint(EndpointKind.PUBLISHER, "std_msgs/msg/String", each) for each in ("", OTHER_HASH))
     assert publisher_stream(ours, keyed=True) != publisher_stream(theirs, keyed=True)
     assert publisher_stream(ours, keyed=False) == publisher_stream(theirs, keyed=False)
@@ -44,7 +44,7 @@ def test_types_of_one_name_with_other_hashes_are_other_streams_where_the_type_is
     ],
     ids=["alike", "another type", "another hash", "less reliable"],
 )
-def test_who_can_hear_a_publisher(type_name, hashed, qos, over_dds, over_zenoh):
+def test_can_receive_depends_on_type_hash_and_reliability(type_name, hashed, qos, over_dds, over_zenoh):
     subscription = endpoint(EndpointKind.SUBSCRIPTION, "std_msgs/msg/String", "")
     publisher = endpoint(EndpointKind.PUBLISHER, type_name, hashed, qos)
     assert can_receive(subscription, publisher, keyed=False) == over_dds

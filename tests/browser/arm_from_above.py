@@ -1,4 +1,4 @@
-"""The arm seen from above, where every pixel is known in metres, and what is heard of the page's tools."""
+"""The arm seen from above, where every pixel is known in meters, and what is heard of the page's tools."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ from tests.viewer.scene import ARM
 from tests.waiting import wait_until
 
 SCALE = 50.0
-"""Pixels to a metre of the file's TopDownOrtho view: so each pixel is known in metres."""
+"""Pixels to a meter of the file's TopDownOrtho view: so each pixel is known in meters."""
 CONFIG = {
     "Visualization Manager": {
         "Displays": [
@@ -36,7 +36,7 @@ CONFIG = {
     }
 }
 TIP = (3.0, 1.0)
-"""Where the ball of the arm is seen from above, metres."""
+"""Where the ball of the arm is seen from above, meters."""
 
 
 class Scene:

@@ -1,10 +1,10 @@
 """What axe-core finds in a page: the rules of WCAG 2.1, levels A and AA, that a program can judge.
 
 axe-core leaves a contrast undecided where an image is behind the text. So that each is judged, the scene is one
-colour meanwhile, the one that is worst for what lies over it; the arrows of choices, and what ``::before`` and
+color meanwhile, the one that is worst for what lies over it; the arrows of choices, and what ``::before`` and
 ``::after`` draw, marks and lines beside texts, are left out; and what is undecided even so, such as texts in boxes of
 drawings, is computed here. The letters of the axes belong to the scene: nobody is told of them (``aria-hidden``), and
-their colours mean axes.
+their colors mean axes.
 """
 
 from __future__ import annotations
@@ -16,7 +16,7 @@ from playwright.sync_api import Page
 SCRIPT = Path(__file__).parents[2] / "frontend" / "node_modules" / "axe-core" / "axe.min.js"
 """A development package of the page (MPL-2.0); nothing of it is in what is built."""
 THEMES = {"dark": "#ffffff", "light": "#000000"}
-"""The page's colours, and those of the scene that are farthest from them."""
+"""The page's colors, and those of the scene that are farthest from them."""
 
 _PREPARE = """
 const plain = new CSSStyleSheet();
@@ -74,7 +74,7 @@ _RUN = """async ([selector, worst]) => {
 
 
 def violations(page: Page, within: str | None = None) -> list[str]:
-    """What is against the rules, in the page or in one element of it, in its dark and in its light colours.
+    """What is against the rules, in the page or in one element of it, in its dark and in its light colors.
 
     Raises:
         FileNotFoundError: where the page's development packages are not installed (``npm ci`` in ``frontend/``).

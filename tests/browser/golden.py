@@ -1,4 +1,4 @@
-"""Small meshes with known bounds and colours, and robots made of them: what a page, and an export, must draw."""
+"""Small meshes with known bounds and colors, and robots made of them: what a page, and an export, must draw."""
 
 from __future__ import annotations
 
@@ -18,12 +18,12 @@ STANDING = ((0.0, 0.0, 0.0), SIZE)
 GREEN = '<material name="green"><color rgba="0 0.8 0.2 1"/></material>'
 HALF = '<material name="half"><color rgba="0 0.8 0.2 0.5"/></material>'
 
-# name: file name, content, material and scale in the URDF -> bounds (least, most), colour, opacity
+# name: file name, content, material and scale in the URDF -> bounds (least, most), color, opacity
 GOLDEN: dict[str, tuple[str, bytes, str, str, tuple[tuple[float, ...], tuple[float, ...]], str, float]] = {
     "stl_text": ("text.stl", stl_text(), GREEN, "", STANDING, "#00cc33", 1.0),
     "stl_binary": ("binary.stl", stl_binary(), HALF, "", STANDING, "#00cc33", 0.5),
     "stl_bare": ("bare.STL", stl_binary(), "", "", STANDING, "#ff0000", 1.0),
-    "stl_coloured": ("coloured.stl", stl_binary(color=True), GREEN, "", STANDING, "#00cc33", 1.0),
+    "stl_colored": ("colored.stl", stl_binary(color=True), GREEN, "", STANDING, "#00cc33", 1.0),
     "stl_scaled": ("scaled.stl", stl_binary(), GREEN, "10 1 1", ((0, 0, 0), (1, 0.2, 0.3)), "#00cc33", 1.0),
     "stl_mirrored": ("mirrored.stl", stl_binary(), GREEN, "1 -1 1", ((0, -0.2, 0), (0.1, 0, 0.3)), "#00cc33", 1.0),
     "obj_bare": ("bare.obj", obj(), "", "", STANDING, "#999999", 1.0),
@@ -33,7 +33,7 @@ GOLDEN: dict[str, tuple[str, bytes, str, str, tuple[tuple[float, ...], tuple[flo
     "dae_y_up": ("y.dae", dae(up="Y_UP"), GREEN, "", STANDING, "#00cc33", 1.0),
     "dae_x_up": ("x.dae", dae(up="X_UP"), GREEN, "", STANDING, "#00cc33", 1.0),
     "dae_inches": ("inches.dae", dae(unit=0.0254), GREEN, "", STANDING, "#00cc33", 1.0),
-    "dae_millimetres": ("mm.dae", dae(unit=0.001), GREEN, "2 2 2", ((0, 0, 0), (0.2, 0.4, 0.6)), "#00cc33", 1.0),
+    "dae_millimeters": ("mm.dae", dae(unit=0.001), GREEN, "2 2 2", ((0, 0, 0), (0.2, 0.4, 0.6)), "#00cc33", 1.0),
     "dae_own": ("own.dae", dae(diffuse=BLUE), GREEN, "", STANDING, "#0000ff", 1.0),
     "dae_own_half": ("own.dae", dae(diffuse=BLUE), HALF, "", STANDING, "#0000ff", 0.5),
     "dae_transparency": (

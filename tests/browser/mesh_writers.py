@@ -42,7 +42,7 @@ def stl_text() -> bytes:
 
 
 def stl_binary(*, color: bool = False) -> bytes:
-    """With `color`, as Materialise Magics writes colours; RViz knows none."""
+    """With `color`, as Materialise Magics writes colors; RViz knows none."""
     header = b"COLOR=" + bytes((0, 255, 0, 255)) if color else b""
     points = corners()
     facets = b"".join(
@@ -72,7 +72,7 @@ def dae(
 
     Args:
         up: its up axis.
-        unit: metres; the box has its size whatever it is, unless `scale` is given.
+        unit: meters; the box has its size whatever it is, unless `scale` is given.
         node: the nodes around ``GEOMETRY``.
         diffuse: what its material says, which it has not without.
         scale: what the corners are multiplied with.

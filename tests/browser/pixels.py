@@ -1,4 +1,4 @@
-"""Colours on the screen, read from screenshots."""
+"""Colors on the screen, read from screenshots."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ Color = tuple[int, int, int]
 
 
 def colors_at(page: Any, *places: tuple[float, float]) -> list[Color]:
-    """The colours of the page at some places, pixels from its upper left corner, at one moment."""
+    """The colors of the page at some places, pixels from its upper left corner, at one moment."""
     xs, ys = ([math.floor(place[axis]) for place in places] for axis in (0, 1))
     x, y = min(xs), min(ys)
     clip = {"x": x, "y": y, "width": max(xs) - x + 1, "height": max(ys) - y + 1}

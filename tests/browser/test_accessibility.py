@@ -1,4 +1,4 @@
-"""Everything that the page can show is without a finding of axe-core, in dark and in light colours."""
+"""Everything that the page can show is without a finding of axe-core, in dark and in light colors."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ from tests.browser.arm import write_arm
 from tests.browser.axe import violations
 from tests.browser.conftest import SECONDS, becomes, state, until
 from tests.browser.live import LiveViewer, configuration
-from tests.browser.test_modelling import modelled
+from tests.browser.test_modeling import modeled
 from tests.browser.test_overlays import unfold
 
 pytestmark = pytest.mark.browser
@@ -64,7 +64,7 @@ def found_in_dialog(page: Page, keys: str) -> list[str]:
     return found
 
 
-def test_the_page_of_a_robot_and_the_panels_of_its_description(start, open_page, tmp_path: Path):
+def test_robot_page_and_description_panels_pass_axe(start, open_page, tmp_path: Path):
     file = write_arm(tmp_path)
     page = open_page(start("view", str(file)))
     page.locator(".inspect > button").click()
@@ -77,7 +77,7 @@ def test_the_page_of_a_robot_and_the_panels_of_its_description(start, open_page,
     page.locator(".selection-card .provenance").wait_for()
     page.locator(".inspect > button").click()  # the clicks on rows have closed it
     assert violations(page) == []
-    for name in ("File", "Panels", "Share", "Colours"):
+    for name in ("File", "Panels", "Share", "Colors"):
         page.get_by_role("button", name=name, exact=True).click()
         assert found_in_menu(page) == []
     for keys in ("?", "Control+o", "Control+Shift+s"):
@@ -99,7 +99,7 @@ RING = """() => {
 """A slider's thumb has the ring."""
 
 
-def test_what_the_keyboard_reaches_has_a_ring_of_two_pixels(start, open_page, tmp_path: Path):
+def test_keyboard_focus_has_visible_ring(start, open_page, tmp_path: Path):
     page = open_page(start("view", str(write_arm(tmp_path))))
     reached: list[str] = []
     for _ in range(150):
@@ -112,7 +112,7 @@ def test_what_the_keyboard_reaches_has_a_ring_of_two_pixels(start, open_page, tm
     assert len(reached) > 40, reached
 
 
-def test_displays_their_menu_and_their_dialogs(live: Callable[..., LiveViewer], open_page):
+def test_displays_menu_and_dialogs_pass_axe(live: Callable[..., LiveViewer], open_page):
     page = open_page(live(configuration(DISPLAYS)), wait=False)
     until(page, "lw.displays.length === 3")
     row = page.locator("[data-key='display-1'] .row-title")
@@ -135,7 +135,7 @@ def heard(say: Callable[[], None], answer: Locator) -> None:
     becomes(is_shown, True)
 
 
-def test_the_live_panels(live: Callable[..., LiveViewer], open_page):
+def test_live_panels_pass_axe(live: Callable[..., LiveViewer], open_page):
     viewer = live(configuration(DISPLAYS))
 
     def join() -> Logger:
@@ -183,18 +183,18 @@ def test_the_live_panels(live: Callable[..., LiveViewer], open_page):
     assert found_in_panels(page, "Voice", "Teleop") == []
 
 
-def test_a_world_while_it_is_modelled(start, open_page, tmp_path: Path):
-    page, _ = modelled(start, open_page, tmp_path)
+def test_world_modeling_passes_axe(start, open_page, tmp_path: Path):
+    page, _ = modeled(start, open_page, tmp_path)
     page.get_by_role("option", name="crate").click()
     page.locator("[data-key='pose/0'] input").wait_for()
     assert violations(page) == []
-    page.get_by_role("button", name="End modelling").click()
+    page.get_by_role("button", name="End modeling").click()
     page.get_by_role("button", name="Add a model").click()
     page.locator("dialog[open]").wait_for()
     assert violations(page, "dialog") == []
 
 
-def test_the_door_and_a_page_without_webgl(live: Callable[..., LiveViewer], browser: Browser):
+def test_token_form_and_page_without_webgl_pass_axe(live: Callable[..., LiveViewer], browser: Browser):
     viewer = live(configuration(DISPLAYS))
     with browser.new_context(locale="en-US") as context:
         context.set_default_timeout(1000 * SECONDS)
@@ -208,7 +208,7 @@ def test_the_door_and_a_page_without_webgl(live: Callable[..., LiveViewer], brow
         assert violations(page) == []
 
 
-def test_an_exported_page(browser: Browser, tmp_path: Path):
+def test_exported_page_passes_axe(browser: Browser, tmp_path: Path):
     out = tmp_path / "arm.html"
     subprocess.run([sys.executable, "-m", "linkwright", "export", str(out), str(write_arm(tmp_path))], check=True)
     with browser.new_context(locale="en-US", bypass_csp=True) as context:
@@ -219,7 +219,7 @@ def test_an_exported_page(browser: Browser, tmp_path: Path):
         assert violations(page) == []
 
 
-def test_recording_and_a_recording_that_is_shown(start, open_page, tmp_path: Path):
+def test_recording_menu_and_playback_pass_axe(start, open_page, tmp_path: Path):
     page = open_page(start("view", str(write_arm(tmp_path))))
     until(page, "lw.timeline?.live && lw.timeline.length > 2")
     record = page.get_by_role("button", name="Record", exact=True)
@@ -243,7 +243,7 @@ def test_recording_and_a_recording_that_is_shown(start, open_page, tmp_path: Pat
     assert violations(shown) == []
 
 
-def test_editing_a_robot_and_comparing_two(start, open_page, tmp_path: Path):
+def test_robot_editing_and_comparison_pass_axe(start, open_page, tmp_path: Path):
     file = write_arm(tmp_path)
     page = open_page(start("view", str(file)))
     page.get_by_role("tab", name="Links").click()

@@ -10,7 +10,7 @@ from tests.hosting.test_argument_form import box as box  # a fixture
 pytestmark = pytest.mark.browser
 
 
-def test_the_values_of_a_launch_file_are_chosen_by_keyboard_and_make_a_robot(start_fresh, open_page, box):
+def test_argument_form_accepts_keyboard_choice_and_shows_robot(start_fresh, open_page, box):
     page = open_page(start_fresh("view", str(box)), wait=False)
     form = page.get_by_role("form", name="Arguments of the description")
     form.wait_for()

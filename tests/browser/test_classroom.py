@@ -51,7 +51,7 @@ def is_passed(step: str) -> str:
     )
 
 
-def test_ctrl_s_saves_the_source_wherever_the_focus_is(start, open_page, workspace):
+def test_ctrl_s_saves_source_from_any_focus(start, open_page, workspace):
     page = open_classroom(start, open_page, workspace)
     page.get_by_role("button", name="robot.urdf").click()
     until(page, "lw.panels.source.editor?.file?.endsWith('robot.urdf')")
@@ -71,7 +71,7 @@ def test_ctrl_s_saves_the_source_wherever_the_focus_is(start, open_page, workspa
 
 
 @pytest.mark.parametrize("language", ["en", "zh"])
-def test_a_learner_walks_through_two_steps(start, open_page, workspace, language):
+def test_learner_completes_two_steps(start, open_page, workspace, language):
     words = WORDS[language]
     page = open_classroom(start, open_page, workspace)
     if language == "zh":
@@ -103,7 +103,7 @@ def test_a_learner_walks_through_two_steps(start, open_page, workspace, language
     assert "hints: 1" in (workspace / "learn.yaml").read_text()
 
 
-def test_the_solution_is_taken_after_a_question(start, open_page, workspace):
+def test_solution_is_applied_after_confirmation(start, open_page, workspace):
     page = open_classroom(start, open_page, workspace)
     page.get_by_role("button", name="Solution").click()
     becomes(page.locator("dialog li").all_inner_texts, ["robot.urdf"])
@@ -112,7 +112,7 @@ def test_the_solution_is_taken_after_a_question(start, open_page, workspace):
     assert (workspace / "robot.urdf").read_text() == ROBOT.read_text()
 
 
-def test_a_learner_who_jumps_to_a_later_step_catches_up(start, open_page, workspace):
+def test_catch_up_on_later_step_applies_solution_and_keeps_backup(start, open_page, workspace):
     workspace.mkdir()
     (workspace / "robot.urdf").write_text("mine")
     page = open_classroom(start, open_page, workspace)
@@ -129,7 +129,7 @@ def test_a_learner_who_jumps_to_a_later_step_catches_up(start, open_page, worksp
     page.locator(".outline-step[title*='taken over']").wait_for()
 
 
-def test_work_in_the_terminal_is_checked(start, open_page, workspace):
+def test_terminal_commands_are_checked(start, open_page, workspace):
     page = open_classroom(start, open_page, workspace)
     until(page, "/[$#] *$/.test(lw.panels.terminal.text ?? '')")
     page.locator(".terminal-screen:visible .xterm-helper-textarea").focus()
@@ -139,7 +139,7 @@ def test_work_in_the_terminal_is_checked(start, open_page, workspace):
     until(page, "lw.panels.lesson.step === '01-one-link/mass'")
 
 
-def test_a_file_that_another_program_creates_meanwhile_is_shown(start, open_page, workspace):
+def test_file_created_by_another_program_is_shown(start, open_page, workspace):
     page = open_classroom(start, open_page, workspace)
     page.get_by_role("button", name="robot.urdf").click()
     page.wait_for_selector(".editor-notice:has-text('does not exist yet')")
@@ -148,7 +148,7 @@ def test_a_file_that_another_program_creates_meanwhile_is_shown(start, open_page
     page.locator(".editor-notice").wait_for(state="hidden")
 
 
-def test_texts_are_whole_and_only_what_is_typed_can_be_copied(start, open_page, workspace):
+def test_lesson_texts_fit_and_only_commands_have_copy_button(start, open_page, workspace):
     page = open_page(start("learn", str(workspace)), wait=False, size=(1024, 700))
     until(page, f"{CHECKS}?.checked_at")
     assert page.locator(".source-heading").first.is_hidden()
@@ -182,7 +182,7 @@ def test_texts_are_whole_and_only_what_is_typed_can_be_copied(start, open_page, 
     assert all(abs(top) < 8 for top in tops), "punctuation is on the line of the code before it"
 
 
-def test_the_classroom_fits_a_small_screen_and_is_accessible(start, open_page, workspace):
+def test_classroom_fits_small_screen_and_passes_axe(start, open_page, workspace):
     workspace.mkdir()
     shutil.copy(ROBOT, workspace)
     page = open_classroom(start, open_page, workspace, size=(1024, 700))

@@ -38,7 +38,7 @@ NEW = """\
   <joint name="mast" type="fixed"><origin xyz="-0.4 -0.4 0.2"/><parent link="base"/><child link="lidar"/></joint>
 </robot>
 """
-BLUE, YELLOW, RED, GREY = "#56b4e9", "#f0c020", "#cc3377", "#c4ccd6"
+BLUE, YELLOW, RED, GRAY = "#56b4e9", "#f0c020", "#cc3377", "#c4ccd6"
 
 
 @pytest.fixture
@@ -53,7 +53,7 @@ def files(tmp_path: Path) -> tuple[Path, Path]:
 
 
 def looks(page: Page, which: int) -> dict[str, tuple[str, float]]:
-    """Colour and opacity of each link of the first or second robot."""
+    """Color and opacity of each link of the first or second robot."""
     robots = [each["drawn"] for each in state(page, "displays") if each["class"].endswith("RobotModel")]
     shown = {name: text["visuals"] for name, text in robots[which]["links"].items()}
     return {
@@ -75,20 +75,20 @@ def group(page: Page, name: str, kind: str = "Link"):
     )
 
 
-def test_both_robots_are_drawn_and_what_differs_has_a_colour(start, open_page, files):
+def test_both_robots_are_drawn_with_difference_colors(start, open_page, files):
     page = open_page(start("view", *map(str, files)))
     page.get_by_text("5 differences").wait_for()
     green = "#009900"
     becomes(lambda: looks(page, 0), {"base": (green, 1), "arm": (YELLOW, 1), "lidar": (BLUE, 1)})
-    becomes(lambda: looks(page, 1), {"arm": (GREY, 0.4), "camera": (RED, 0.63)})
+    becomes(lambda: looks(page, 1), {"arm": (GRAY, 0.4), "camera": (RED, 0.63)})
     assert page.locator(".comparison-legend li").all_inner_texts() == ["added", "changed", "removed", "old"]
-    page.get_by_label("Colour the differences").uncheck()
+    page.get_by_label("Color the differences").uncheck()
     becomes(lambda: set(looks(page, 0).values()), {(green, 1)})
-    becomes(lambda: set(looks(page, 1).values()), {(GREY, 0.4)})
+    becomes(lambda: set(looks(page, 1).values()), {(GRAY, 0.4)})
 
 
 def pixels(page: Page) -> list[tuple[int, int, int]]:
-    """Colours of the scene at places in rows and columns."""
+    """Colors of the scene at places in rows and columns."""
     until(page, "lw.settled")
     box = page.locator(".canvas-box canvas").first.bounding_box()
     assert box is not None
@@ -109,7 +109,7 @@ def show(page: Page, title: str, *, on: bool) -> None:
     until(page, f"{count} === {before + (1 if on else -1)}")
 
 
-def test_an_old_robot_in_the_same_place_is_not_seen(start, open_page, files):
+def test_identical_old_robot_is_hidden(start, open_page, files):
     old, new = files
     old.write_text(NEW, encoding="utf-8")
     page = open_page(start("view", str(old), str(new)))
@@ -121,7 +121,7 @@ def test_an_old_robot_in_the_same_place_is_not_seen(start, open_page, files):
     assert [(one, other) for one, other in zip(both, alone, strict=True) if one != other] == []
 
 
-def test_each_robot_can_be_shown_alone_and_the_old_one_as_opaque_as_wanted(start, open_page, files):
+def test_robots_can_be_shown_alone_and_old_opacity_is_adjustable(start, open_page, files):
     page = open_page(start("view", *map(str, files)))
     page.get_by_text("5 differences").wait_for()
     both = pixels(page)
@@ -133,14 +133,14 @@ def test_each_robot_can_be_shown_alone_and_the_old_one_as_opaque_as_wanted(start
     becomes(lambda: {alpha for _, alpha in looks(page, 1).values()}, {1})
     opaque = pixels(page)
     assert sum(sum(each) for each in opaque) < sum(sum(each) for each in old_only), (
-        "its grey is darker than the ground behind it"
+        "its gray is darker than the ground behind it"
     )
     show(page, "Show the new robot", on=True)
     show(page, "Show the old robot", on=False)
     becomes(lambda: sum(b > 1.5 * r and b > 60 for r, g, b in pixels(page)) > 0, True)
 
 
-def test_a_difference_selects_what_shows_it_and_leads_to_both_places(start, open_page, files):
+def test_difference_selects_link_and_opens_both_sources(start, open_page, files):
     page = open_page(start("view", *map(str, files)))
     group(page, "lidar").locator("button.difference-name").click()
     page.locator(".selection-card strong", has_text="lidar").wait_for()
@@ -159,7 +159,7 @@ def test_a_difference_selects_what_shows_it_and_leads_to_both_places(start, open
         becomes(lambda: [each["from"] for each in state(page, "panels.source.origin.marks")][-1:], [number])
 
 
-def test_joints_move_both_and_edits_of_either_are_followed(start, open_page, files):
+def test_joint_sliders_move_both_robots_and_edits_are_followed(start, open_page, files):
     old, new = files
     page = open_page(start("view", *map(str, files)))
     page.get_by_text("5 differences").wait_for()
@@ -177,7 +177,7 @@ def test_joints_move_both_and_edits_of_either_are_followed(start, open_page, fil
     page.get_by_text("1 difference", exact=True).wait_for()
 
 
-def test_a_commit_is_the_old_one(start, open_page, files):
+def test_git_commit_is_compared_as_old_version(start, open_page, files):
     _, new = files
     folder = new.parent
     identity = ["-c", "user.name=t", "-c", "user.email=t@example.org"]
@@ -194,7 +194,7 @@ def test_a_commit_is_the_old_one(start, open_page, files):
     assert page.locator(".source-file").evaluate("(e) => e.selectedOptions[0].textContent") == "HEAD:new.urdf"
 
 
-def test_the_list_is_in_front_in_a_small_window(start, open_page, files):
+def test_comparison_list_is_in_front_in_small_window(start, open_page, files):
     page = open_page(start("view", *map(str, files)))
     page.get_by_text("5 differences").wait_for()
     page.set_viewport_size({"width": 800, "height": 600})
@@ -208,21 +208,21 @@ def test_the_list_is_in_front_in_a_small_window(start, open_page, files):
     assert max(group["x"] + group["width"] for group in groups) > 700, "they stand in columns"
 
 
-def test_the_panel_has_no_finding_of_axe_core(start, open_page, files):
+def test_comparison_panel_passes_axe(start, open_page, files):
     page = open_page(start("view", *map(str, files)))
     group(page, "camera").locator("button.difference-name").click()
     page.locator(".difference-group.selected").wait_for()
     assert violations(page, ".comparison") == []
 
 
-def test_a_review_opens_from_disk_with_both_robots_the_list_and_joints_that_move_both(open_file, files, tmp_path):  # noqa: F811 - the fixture
+def test_exported_review_shows_both_robots_list_and_joint_sliders(open_file, files, tmp_path):  # noqa: F811 - the fixture
     old, new = files
     out = tmp_path / "review.html"
     export(out, old, str(new))
     assert str(tmp_path) not in out.read_text(encoding="utf-8")
     page = open_file(out)
     assert page.locator(".comparison-count").inner_text() == "5 differences"
-    becomes(lambda: looks(page, 1), {"arm": (GREY, 0.4), "camera": (RED, 0.63)})
+    becomes(lambda: looks(page, 1), {"arm": (GRAY, 0.4), "camera": (RED, 0.63)})
     assert looks(page, 0)["lidar"] == (BLUE, 1)
     assert "old.urdf:6" in group(page, "turn", "Joint").inner_text()
     assert group(page, "turn", "Joint").get_by_role("button", name="old.urdf", exact=False).count() == 0

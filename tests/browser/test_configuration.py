@@ -1,4 +1,4 @@
-"""The File menu, displays of a page's own, and the page as a whole: keyboard and colours."""
+"""The File menu, displays of a page's own, and the page as a whole: keyboard and colors."""
 
 from __future__ import annotations
 
@@ -27,7 +27,7 @@ def row(page, identity: str):
     return page.locator(f"[data-key='{identity}'] .row-title")
 
 
-def test_the_file_is_saved_and_opened(grouped, tmp_path: Path):
+def test_configuration_file_is_saved_and_opened(grouped, tmp_path: Path):
     _, page = grouped
     path = tmp_path / "mine.rviz"
     page.keyboard.press("Control+s")  # it has no file yet
@@ -57,7 +57,7 @@ def test_the_file_is_saved_and_opened(grouped, tmp_path: Path):
     assert page.get_by_role("menuitem", name="mine.rviz").get_attribute("title") == str(path)
 
 
-def test_the_file_is_downloaded_and_loaded_from_this_computer(grouped, tmp_path: Path):
+def test_configuration_file_is_downloaded_and_uploaded(grouped, tmp_path: Path):
     viewer, page = grouped
     text = viewer.viewer.config.text()
     with page.expect_download() as downloads:
@@ -74,7 +74,7 @@ def test_the_file_is_downloaded_and_loaded_from_this_computer(grouped, tmp_path:
     until(page, "lw.displays[3].name === 'Sonar'")
 
 
-def test_a_page_has_displays_of_its_own(grouped, open_page):
+def test_page_can_use_its_own_displays(grouped, open_page):
     viewer, page = grouped
     other = open_page(viewer, wait=False)
     other.wait_for_selector("[data-key='display-4']")
@@ -93,7 +93,7 @@ def test_a_page_has_displays_of_its_own(grouped, open_page):
     assert len(names(other)) == 4
 
 
-def test_the_keyboard_reaches_everything_and_dialogs_keep_it(grouped):
+def test_keyboard_reaches_all_controls_and_dialogs_trap_focus(grouped):
     _, page = grouped
     reached = set()
     page.locator("body").click(position={"x": 640, "y": 8})
@@ -117,13 +117,13 @@ def test_the_keyboard_reaches_everything_and_dialogs_keep_it(grouped):
     page.wait_for_selector(".add-dialog", state="detached")
 
 
-def test_the_theme_is_chosen_and_remembered(grouped):
+def test_theme_choice_is_remembered(grouped):
     _, page = grouped
     page.emulate_media(color_scheme="dark")
     page.wait_for_function("() => document.documentElement.dataset.theme === 'dark'")
     background = "getComputedStyle(document.body).backgroundColor"
     dark = page.evaluate(background)
-    page.get_by_role("button", name="Colours").click()
+    page.get_by_role("button", name="Colors").click()
     page.get_by_role("menuitemcheckbox", name="Light").click()
     assert page.evaluate(background) != dark
     page.reload()

@@ -34,7 +34,7 @@ def marks(page, pane):
     return [(mark["from"], mark["to"]) for mark in state(page, f"panels.source.{pane}.marks")]
 
 
-def test_an_element_is_selected_in_the_scene_and_marked_in_both_texts(page, arm):
+def test_clicked_link_is_selected_and_marked_in_both_sources(page, arm):
     open_panel(page, "Source")
     page.locator('[data-link="fore"]').click()
     until(page, "lw.selected?.link === 'fore' && lw.panels.source.origin.marks.length === 1")
@@ -65,7 +65,7 @@ def test_an_element_is_selected_in_the_scene_and_marked_in_both_texts(page, arm)
     until(page, "lw.description.focus.name === 'upper_joint'")
 
 
-def test_the_tree_is_searched_and_walked_with_keys(page):
+def test_link_tree_is_searched_and_navigated_by_keyboard(page):
     search = page.get_by_label("Find links and joints")
     search.fill("finger_jo")
     page.wait_for_function("document.querySelectorAll('.link-row').length === 5")
@@ -83,7 +83,7 @@ def test_the_tree_is_searched_and_walked_with_keys(page):
     page.wait_for_function("document.querySelectorAll('.link-row').length === 3")
 
 
-def test_diagram_and_table_show_all_links_and_joints_and_select_them(page):
+def test_diagram_and_joint_table_show_and_select_all_elements(page):
     open_panel(page, "Diagram")
     until(page, "lw.panels.diagram.links === 5 && lw.panels.diagram.joints === 4")
     assert "xyz: 0 0 0.4" in page.locator('.node[data-joint="fore_joint"]').text_content()
@@ -113,7 +113,7 @@ def test_diagram_and_table_show_all_links_and_joints_and_select_them(page):
     until(page, "lw.description.focus.name === 'slide_joint' && lw.selected.link === 'slide'")
 
 
-def test_an_edit_lights_up_and_a_mistake_leads_to_its_place(page, arm):
+def test_edited_link_flashes_and_finding_leads_to_source(page, arm):
     page.locator('.link-row[data-link="fore"]').wait_for()  # what lights up is there
     revision = state(page, "description.revision")
     page.evaluate("""() => {
@@ -138,7 +138,7 @@ def test_an_edit_lights_up_and_a_mistake_leads_to_its_place(page, arm):
     problem.wait_for(state="detached")
 
 
-def test_a_robot_that_was_broken_at_first_is_shown_without_axes_when_it_is_mended(start, open_page, tmp_path):
+def test_robot_broken_at_start_is_shown_without_tf_once_fixed(start, open_page, tmp_path):
     file = tmp_path / "robot.urdf.xacro"
     good = Path(write_arm(tmp_path)).read_text()
     file.write_text(good.replace("</robot>", "<link/></robot>"))

@@ -35,7 +35,7 @@ def saved(viewer) -> list[dict]:
     return yaml.safe_load(viewer.viewer.config.text())["Visualization Manager"]["Displays"]
 
 
-def test_displays_are_added_by_type_and_taken_back(grouped):
+def test_display_added_by_type_can_be_undone(grouped):
     viewer, page = grouped
     row(page, "display-2").click()
     page.keyboard.press("Alt+a")
@@ -56,7 +56,7 @@ def test_displays_are_added_by_type_and_taken_back(grouped):
     until(page, "lw.displays.length === 5")
 
 
-def test_displays_are_added_by_topic(grouped):
+def test_display_is_added_by_topic(grouped):
     viewer, page = grouped
     viewer.publish("/found", PointStamped())
     viewer.publish("/other/robot_description", String())
@@ -91,7 +91,7 @@ def test_displays_are_renamed_duplicated_and_removed_by_keys(grouped):
     assert not viewer.viewer.manager.history.has_unsaved_edits
 
 
-def test_keys_for_displays_do_nothing_on_rows_of_properties_and_the_keyboard_stays_in_the_tree(grouped):
+def test_display_keys_are_ignored_on_property_rows(grouped):
     _, page = grouped
     row(page, "display-1").click()
     page.keyboard.press("ArrowRight")
@@ -105,7 +105,7 @@ def test_keys_for_displays_do_nothing_on_rows_of_properties_and_the_keyboard_sta
     page.wait_for_function("() => document.activeElement?.matches('[role=treeitem]')")
 
 
-def test_a_group_switches_off_what_it_holds(grouped):
+def test_disabled_group_disables_its_displays(grouped):
     _, page = grouped
     page.locator("[data-key='display-2'] .check").click()
     until(page, "lw.displays.every((each) => each.enabled === (each.name === 'Grid'))")
@@ -114,7 +114,7 @@ def test_a_group_switches_off_what_it_holds(grouped):
     until(page, "lw.displays.every((each) => each.enabled)")
 
 
-def test_displays_are_dragged(grouped):
+def test_displays_are_reordered_by_drag_and_keys(grouped):
     viewer, page = grouped
     page.locator("[data-key='display-1'] .row-title").drag_to(page.locator("[data-key='display-2']"))
     until(page, "lw.displays[0].name === 'Marks'")
@@ -127,7 +127,7 @@ def test_displays_are_dragged(grouped):
     until(page, "lw.displays[0].name === 'Grid'")
 
 
-def test_the_filter_finds_properties(grouped):
+def test_filter_finds_properties(grouped):
     _, page = grouped
     page.get_by_label("Filter displays and properties").fill("cell size")
     page.wait_for_function("() => document.querySelectorAll('.displays-panel .row').length === 2")
@@ -136,7 +136,7 @@ def test_the_filter_finds_properties(grouped):
     page.get_by_text("No name of a display or property contains this text.").wait_for()
 
 
-def test_a_menu_of_each_display(grouped):
+def test_context_menu_renames_and_groups_display(grouped):
     _, page = grouped
     row(page, "display-3").click(button="right")
     page.keyboard.press("r")
@@ -149,7 +149,7 @@ def test_a_menu_of_each_display(grouped):
     assert names(page) == ["Grid", "Marks", "Group", "Axes", "Radar"]
 
 
-def test_why_a_display_shows_nothing_is_told_where_one_looks(live, open_page):
+def test_reason_for_empty_display_is_shown_in_row_and_diagnostics(live, open_page):
     """On its name, below the list when it is selected, and in the diagnostics, from where its row is found."""
     viewer = live(configuration(_SILENT))
     page = open_page(viewer, wait=False)

@@ -49,7 +49,7 @@ def plays(page: Page, name: str) -> None:
     until(page, "!lw.timeline.playing")
 
 
-def test_a_file_that_is_dropped_plays_and_the_robot_is_one_step_back(page: Page, tmp_path: Path):
+def test_dropped_mcap_file_plays_and_back_returns_to_robot(page: Page, tmp_path: Path):
     file = recorded(tmp_path)
     drop(page, file)
     plays(page, file.name)
@@ -63,7 +63,7 @@ def test_a_file_that_is_dropped_plays_and_the_robot_is_one_step_back(page: Page,
     until(page, "lw.timeline?.live && lw.robot")
 
 
-def test_a_folder_with_sqlite_files_plays_and_another_takes_its_place(page: Page, tmp_path: Path):
+def test_dropped_sqlite_folder_plays_and_next_recording_replaces_it(page: Page, tmp_path: Path):
     folder = tmp_path / "numbers"
     with BagWriter(folder, "sqlite3") as writer:
         number = get_message("std_msgs/msg/Float64")
@@ -77,7 +77,7 @@ def test_a_folder_with_sqlite_files_plays_and_another_takes_its_place(page: Page
     plays(page, file.name)
 
 
-def test_a_recording_is_chosen_in_the_menu(page: Page, tmp_path: Path):
+def test_recording_is_opened_from_file_menu(page: Page, tmp_path: Path):
     file = recorded(tmp_path)
     page.get_by_role("button", name="File", exact=True).click()
     with page.expect_file_chooser() as choosing:
@@ -86,7 +86,7 @@ def test_a_recording_is_chosen_in_the_menu(page: Page, tmp_path: Path):
     plays(page, file.name)
 
 
-def test_what_is_no_recording_is_said_and_the_page_stays(page: Page, tmp_path: Path):
+def test_invalid_recording_is_reported_and_page_stays(page: Page, tmp_path: Path):
     dialog = page.get_by_role("dialog")
     drop(page, tmp_path / "arm.urdf")
     expect(dialog).to_contain_text("There is no .mcap or .db3 file in 'arm.urdf'.")
@@ -100,7 +100,7 @@ def test_what_is_no_recording_is_said_and_the_page_stays(page: Page, tmp_path: P
     until(page, "lw.timeline?.live && lw.robot")
 
 
-def test_sending_is_cancelled(page: Page, tmp_path: Path):
+def test_upload_is_canceled(page: Page, tmp_path: Path):
     def wait(route) -> None:
         held.append(route)
 

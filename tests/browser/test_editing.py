@@ -58,7 +58,7 @@ def type_in(page, name: str, text: str) -> None:
     number(page, name).press("Enter")
 
 
-def test_a_number_is_shown_at_once_written_on_request_and_taken_back(start, open_page, file):
+def test_number_edit_is_previewed_written_and_undone(start, open_page, file):
     page = open_page(start("view", str(file)))
     edited(page, "mast")
     becomes(lambda: number(page, "xyz2").input_value(), "0.5")
@@ -80,7 +80,7 @@ def test_a_number_is_shown_at_once_written_on_request_and_taken_back(start, open
     becomes(lambda: number(page, "xyz2").input_value(), "0.5")
 
 
-def test_a_visual_is_turned_in_degrees_and_put_back(start, open_page, file):
+def test_visual_is_rotated_in_degrees_and_reset(start, open_page, file):
     page = open_page(start("view", str(file)))
     edited(page, "mast")
     page.get_by_role("button", name="Visual box").click()
@@ -94,7 +94,7 @@ def test_a_visual_is_turned_in_degrees_and_put_back(start, open_page, file):
     assert file.read_text() == ROBOT
 
 
-def test_handles_move_a_link_along_one_axis(start, open_page, file):
+def test_handle_moves_link_along_one_axis(start, open_page, file):
     page = open_page(start("view", str(file)))
     edited(page, "left")
     becomes(lambda: number(page, "xyz0").input_value(), "0.6")
@@ -115,7 +115,7 @@ def test_handles_move_a_link_along_one_axis(start, open_page, file):
     page.get_by_text("would also change joint 'right_joint'", exact=False).wait_for()
 
 
-def test_what_a_macro_makes_twice_is_refused_and_changed_together_on_request(start, open_page, file):
+def test_edit_of_macro_used_twice_requires_confirmation(start, open_page, file):
     page = open_page(start("view", str(file)))
     edited(page, "left")
     type_in(page, "xyz2", "0.1")
@@ -128,7 +128,7 @@ def test_what_a_macro_makes_twice_is_refused_and_changed_together_on_request(sta
     assert file.read_text() == ROBOT.replace("${y} 0", "${y} 0.1")
 
 
-def test_a_file_that_was_changed_meanwhile_is_not_written_over(start, open_page, file):
+def test_file_changed_meanwhile_is_not_overwritten(start, open_page, file):
     page = open_page(start("view", str(file)))
     edited(page, "mast")
     type_in(page, "xyz2", "0.8")
@@ -141,7 +141,7 @@ def test_a_file_that_was_changed_meanwhile_is_not_written_over(start, open_page,
     assert file.read_text() == mine
 
 
-def test_what_an_edit_comes_to_has_room_beside_its_numbers(start, browser, file: Path) -> None:
+def test_edit_diff_is_shown_beside_numbers(start, browser, file: Path) -> None:
     page = browser.new_page(viewport={"width": 1024, "height": 768}, locale="en-US")
     page.goto(start("view", str(file)).url)
     page.wait_for_function("window.linkwright?.ready === true")
@@ -156,7 +156,7 @@ def test_what_an_edit_comes_to_has_room_beside_its_numbers(start, browser, file:
     page.close()
 
 
-def test_a_long_line_shows_what_differs_of_it_old_and_new(start, browser, file: Path) -> None:
+def test_diff_of_long_line_shows_changed_values(start, browser, file: Path) -> None:
     line = '<joint name="mast_joint" type="revolute"> <!-- {} -->\n    <origin'.format(
         "how the mast stands on its base, " * 5
     )
@@ -176,7 +176,7 @@ def test_a_long_line_shows_what_differs_of_it_old_and_new(start, browser, file: 
     page.close()
 
 
-def test_the_card_of_the_link_makes_room_for_the_handles(start, open_page, file: Path) -> None:
+def test_link_card_is_hidden_while_editing(start, open_page, file: Path) -> None:
     page = open_page(start("view", str(file)))
     edited(page, "mast")
     card = page.locator(".selection-card")
@@ -186,7 +186,7 @@ def test_the_card_of_the_link_makes_room_for_the_handles(start, open_page, file:
     card.wait_for(state="visible")
 
 
-def test_handles_that_are_out_of_sight_are_looked_at(start, open_page, file: Path) -> None:
+def test_camera_moves_to_handles_that_are_out_of_view(start, open_page, file: Path) -> None:
     joint = '<origin xyz="0 0 4"/><parent link="base"/><child link="far"/>'
     far = f'<link name="far"/><joint name="far_joint" type="fixed">{joint}</joint>\n</robot>'
     file.write_text(ROBOT.replace("</robot>", far))
@@ -209,7 +209,7 @@ def test_handles_that_are_out_of_sight_are_looked_at(start, open_page, file: Pat
     assert state(page, "view.distance") > 4, "and with the robot beside them"
 
 
-def test_an_axis_is_turned_and_has_no_place_to_be_moved_to(start, open_page, file: Path) -> None:
+def test_joint_axis_has_only_rotation_handles(start, open_page, file: Path) -> None:
     page = open_page(start("view", str(file)))
     edited(page, "mast")
     tools = page.locator(".editing-tools")
@@ -223,7 +223,7 @@ def test_an_axis_is_turned_and_has_no_place_to_be_moved_to(start, open_page, fil
     frames.wait_for()
 
 
-def test_a_low_panel_shows_parts_numbers_and_what_differs_without_scrolling(start, browser, file: Path) -> None:
+def test_low_panel_shows_parts_numbers_and_diff_without_scrolling(start, browser, file: Path) -> None:
     file.write_text(
         ROBOT.replace('name="mast_joint" type="revolute">\n    <origin', 'name="mast_joint" type="revolute"><origin')
     )

@@ -94,7 +94,7 @@ def robot_with_meshes(folder: Path) -> str:
 MESHES = (".dae", ".obj", ".stl")
 
 
-def test_the_page_from_disk_draws_what_the_viewer_draws(live, open_page, open_file, tmp_path):
+def test_exported_page_draws_the_same_as_viewer(live, open_page, open_file, tmp_path):
     folder = tmp_path / "meshes"
     folder.mkdir()
     text = robot_with_meshes(folder)
@@ -109,7 +109,7 @@ def test_the_page_from_disk_draws_what_the_viewer_draws(live, open_page, open_fi
     assert exported["skin"][0]["materials"][0]["textured"]
 
 
-def test_sliders_move_the_robot_and_what_mimics(open_file, tmp_path):
+def test_exported_sliders_move_joints_and_mimic_joints(open_file, tmp_path):
     (tmp_path / "gripper.urdf").write_text(GRIPPER)
     export(tmp_path / "gripper.html", tmp_path / "gripper.urdf")
     page = open_file(tmp_path / "gripper.html")
@@ -130,7 +130,7 @@ def test_sliders_move_the_robot_and_what_mimics(open_file, tmp_path):
     assert state(page, "frames")["base"]["position"] == pytest.approx([0, 0, 0])
 
 
-def test_boxes_views_and_words(open_file, tmp_path):
+def test_exported_page_has_visual_switches_views_and_translation(open_file, tmp_path):
     (tmp_path / "gripper.urdf").write_text(GRIPPER)
     export(tmp_path / "gripper.html", tmp_path / "gripper.urdf")
     page = open_file(tmp_path / "gripper.html")
@@ -159,14 +159,14 @@ def grid(page) -> dict:
     return next(each for each in state(page, "displays") if each["class"].endswith("/Grid"))["drawn"]
 
 
-def test_the_grid_lies_where_the_robot_stands(open_file, tmp_path):
+def test_exported_grid_is_at_wheel_contact_height(open_file, tmp_path):
     (tmp_path / "cart.urdf").write_text(WHEELED)
     export(tmp_path / "cart.html", tmp_path / "cart.urdf")
     page = open_file(tmp_path / "cart.html")
     becomes(lambda: grid(page)["offset"][2], pytest.approx(-0.25, abs=0.005))
 
 
-def test_a_small_robot_of_one_mesh_has_a_grid_of_its_size(open_file, tmp_path):
+def test_exported_grid_fits_small_mesh_robot(open_file, tmp_path):
     (tmp_path / "small.stl").write_bytes(stl_binary())
     visual = '<visual><geometry><mesh filename="small.stl" scale="0.1 0.1 0.1"/></geometry></visual>'
     (tmp_path / "small.urdf").write_text(f'<robot name="small"><link name="base">{visual}</link></robot>')
@@ -197,7 +197,7 @@ def saved(page, entry: str, folder: Path) -> Path:
     return path
 
 
-def test_a_running_viewer_exports_what_is_seen(live, open_page, open_file, tmp_path):
+def test_viewer_exports_current_joints_and_view(live, open_page, open_file, tmp_path):
     _, page = shown_gripper(live, open_page)
     path = saved(page, "Export HTML…", tmp_path)
     assert path.name == "gripper.html"
@@ -208,7 +208,7 @@ def test_a_running_viewer_exports_what_is_seen(live, open_page, open_file, tmp_p
     assert_alike(drawn(exported), drawn(page))
 
 
-def test_a_glb_that_is_shown_again_is_the_same_robot(live, open_page, tmp_path):
+def test_exported_glb_shows_the_same_robot(live, open_page, tmp_path):
     _, page = shown_gripper(live, open_page)
     path = saved(page, "Export glb…", tmp_path)
     before = drawn(page)
@@ -223,7 +223,7 @@ def test_a_glb_that_is_shown_again_is_the_same_robot(live, open_page, tmp_path):
     assert len(drawing["materials"]) == 4
 
 
-def test_files_from_outside_are_named_when_they_go_into_an_export(start, open_page, tmp_path):
+def test_files_outside_package_are_listed_before_export(start, open_page, tmp_path):
     share, elsewhere = tmp_path / "robot", tmp_path / "elsewhere"
     share.mkdir()
     elsewhere.mkdir()
@@ -240,7 +240,7 @@ def test_files_from_outside_are_named_when_they_go_into_an_export(start, open_pa
     becomes(dialog.get_by_role("listitem").all_inner_texts, ["elsewhere/part.urdf"])
 
 
-def test_images_and_videos(live, open_page, tmp_path):
+def test_screenshots_and_videos_are_saved(live, open_page, tmp_path):
     from PIL import Image
 
     _, page = shown_gripper(live, open_page)

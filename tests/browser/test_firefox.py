@@ -52,7 +52,7 @@ def launch(tmp_path: Path) -> Iterator[Callable[..., Firefox]]:
         yield run
 
 
-def test_the_robot_is_drawn_and_moved(start, launch, tmp_path):
+def test_firefox_draws_and_moves_robot(start, launch, tmp_path):
     (tmp_path / "crate.urdf").write_text(CRATE)
     program = start("view", str(tmp_path / "crate.urdf"))
     browser = launch(headless=False)
@@ -81,7 +81,7 @@ def test_the_robot_is_drawn_and_moved(start, launch, tmp_path):
     assert browser.errors == []
 
 
-def test_two_robots_are_compared_and_one_is_edited(start, launch, tmp_path):
+def test_firefox_compares_two_robots_and_edits_one(start, launch, tmp_path):
     file = tmp_path / "crate.urdf"
     file.write_text(CRATE)
     (tmp_path / "old.urdf").write_text(CRATE.replace('size="1 1 1"', 'size="1 1 2"'))
@@ -106,7 +106,7 @@ def test_two_robots_are_compared_and_one_is_edited(start, launch, tmp_path):
     assert browser.errors == []
 
 
-def test_a_handle_is_dragged(start, launch, tmp_path):
+def test_firefox_drags_handle(start, launch, tmp_path):
     file = tmp_path / "crate.urdf"
     file.write_text(CRATE)
     program = start("view", str(file))
@@ -139,7 +139,7 @@ def test_a_handle_is_dragged(start, launch, tmp_path):
     assert browser.errors == []
 
 
-def test_a_file_is_edited_with_the_language_server(start, launch, tmp_path):
+def test_firefox_edits_file_with_language_server(start, launch, tmp_path):
     file = tmp_path / "crate.urdf"
     file.write_text(CRATE)
     program = start("view", str(file))
@@ -181,7 +181,7 @@ def test_a_file_is_edited_with_the_language_server(start, launch, tmp_path):
     assert browser.errors == []
 
 
-def test_without_webgl_the_page_says_so_and_its_panels_work(start, launch, tmp_path):
+def test_firefox_without_webgl_shows_message_and_panels(start, launch, tmp_path):
     program = start("view", str(write_arm(tmp_path)))
     browser = launch(headless=True)
     browser.goto(program.url)

@@ -51,7 +51,7 @@ CRANE = """\
 
 
 def published(viewer) -> None:
-    """One message for each display; the frame ``tip`` is one metre above ``base``."""
+    """One message for each display; the frame ``tip`` is one meter above ``base``."""
     viewer.place("tip", 0.0, 0.0, 1.0)
     viewer.publish("/robot_description", String(data=CRANE), DESCRIPTION_QOS)
     viewer.publish("/pose", message("geometry_msgs/msg/PoseStamped", pose=pose(1)))
@@ -95,7 +95,7 @@ def size(told: dict) -> list[float]:
     return [most - least for least, most in zip(told["bounds"]["min"], told["bounds"]["max"], strict=True)]
 
 
-def test_every_display_draws_its_message_where_it_is(live, open_page):
+def test_displays_draw_their_messages_at_the_right_pose(live, open_page):
     viewer = live(DISPLAYS)
     published(viewer)
     page = open_page(viewer, wait=False)
@@ -124,7 +124,7 @@ def test_every_display_draws_its_message_where_it_is(live, open_page):
     becomes(lambda: {each["level"] for each in state(page, "displays")}, {"ok"})
 
 
-def test_properties_act_at_once_and_content_goes_with_its_display(live, open_page):
+def test_property_changes_and_disabling_act_at_once(live, open_page):
     viewer = live(DISPLAYS)
     published(viewer)
     page = open_page(viewer, wait=False)
@@ -157,7 +157,7 @@ def test_properties_act_at_once_and_content_goes_with_its_display(live, open_pag
     assert drawing["Guess"]["bounds"]["max"] == pytest.approx([1.3, 2.05, 1.05], abs=1e-3)
 
 
-def test_only_the_frames_that_the_filters_leave_are_drawn(live, open_page):
+def test_tf_filters_limit_drawn_frames(live, open_page):
     viewer = live(configuration("- {Class: rviz_default_plugins/TF, Enabled: true, Filter (whitelist): wheel}"))
     for number, name in enumerate(("left_wheel", "right_wheel", "camera")):
         viewer.place(name, 0.0, 0.0, 1.0 + number)
@@ -200,7 +200,7 @@ def row(page, key: str):
     return page.locator(f'.row[data-key="{key}"]')
 
 
-def test_rows_of_frames_links_and_joints_follow_what_is_drawn(live, open_page):
+def test_tree_rows_of_frames_links_and_joints_match_scene(live, open_page):
     viewer = live(ROWS)
     viewer.publish("/robot_description", String(data=CRANE), DESCRIPTION_QOS)
     viewer.place("tip", 0.0, 0.0, 1.0)

@@ -1,4 +1,4 @@
-"""Small meshes of every kind, as large and as coloured as RViz draws them; read back from the page.
+"""Small meshes of every kind, as large and as colored as RViz draws them; read back from the page.
 
 Every mesh is the same box, 0.1 x 0.2 x 0.3 m with a corner at the origin, written in another way: a wrong axis, unit or
 transform shows in its bounds.
@@ -46,7 +46,7 @@ def shown(live, open_page, links: str, names):
     return open_page(viewer)
 
 
-def test_bounds_and_colours_are_those_of_rviz(live, open_page, tmp_path):
+def test_bounds_and_colors_match_rviz(live, open_page, tmp_path):
     page = shown(live, open_page, golden_links(tmp_path), GOLDEN)
     wrong = {}
     for name, (_, _, _, _, (least, most), color, opacity) in GOLDEN.items():
@@ -96,7 +96,7 @@ def box(x: float, color: str, size: float = 0.5) -> str:
 
 
 def middle(page) -> Color:
-    """The colour in the middle of the scene."""
+    """The color in the middle of the scene."""
     place = page.locator("canvas").first.bounding_box()
     (color,) = colors_at(page, (place["x"] + place["width"] / 2, place["y"] + place["height"] / 2))
     return color
@@ -111,7 +111,7 @@ LAYERS = (
 )
 
 
-def test_what_is_behind_shows_through(live, open_page):
+def test_transparent_layers_are_blended_by_depth(live, open_page):
     names = ("near", "far")
     viewer = live(ROBOT)
     for name in names:
@@ -129,7 +129,7 @@ def test_what_is_behind_shows_through(live, open_page):
 
 
 def alphas(*colors: str) -> str:
-    """Whether the boxes are drawn with these colours."""
+    """Whether the boxes are drawn with these colors."""
     parts = []
     for name, color in zip(("near", "far"), colors, strict=True):
         r, g, b, a = (float(part) for part in color.split())

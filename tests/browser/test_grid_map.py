@@ -14,7 +14,7 @@ pytestmark = pytest.mark.browser
 DISPLAY = "- {Class: grid_map_rviz_plugin/GridMap, Enabled: true, Name: Map, Topic: /grid_map}"
 
 
-def test_a_hill_with_a_hole_is_drawn(live, open_page, tmp_path):
+def test_grid_map_with_missing_cell_is_drawn(live, open_page, tmp_path):
     viewer = live(configuration(DISPLAY, distance=9))
     page = open_page(viewer, wait=False)
     x, y = np.meshgrid(np.linspace(-2, 2, 21), np.linspace(-2, 2, 21))

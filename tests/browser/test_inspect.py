@@ -33,7 +33,7 @@ def orange(page):
     return sum(r > 100 and 0.3 * r < g < 0.8 * r and b < 0.7 * g for r, g, b in seen)
 
 
-def test_masses_and_inertias_and_what_is_implausible(page):
+def test_masses_inertias_and_implausible_values_are_shown(page):
     switch(page, "centers", "boxes", "ellipsoids")
     until(page, "lw.inspected.boxes === 3 && lw.inspected.ellipsoids === 3 && lw.inspected.totals?.length === 1")
     # base at 0.05 with 4 kg, upper arm at 0.1 + 0.2 with 2 kg, forearm at 0.5 + 0.15 with 1 kg
@@ -41,7 +41,7 @@ def test_masses_and_inertias_and_what_is_implausible(page):
     assert state(page, "inspected.totals[0]") == pytest.approx([0, 0, total], abs=1e-5)
     assert state(page, "inspected.centers") == 4  # three links, and the whole
 
-    # The centre follows the joints.
+    # The center follows the joints.
     page.locator('[data-joint="fore_joint"] input[type=text]').fill("1.5707963")
     page.keyboard.press("Enter")
     bent = [0.15 / 7, 0, (4 * 0.05 + 2 * 0.3 + 1 * 0.5) / 7]
@@ -54,7 +54,7 @@ def test_masses_and_inertias_and_what_is_implausible(page):
     until(page, "lw.selected.link === 'fore'")
 
 
-def test_inspect_says_what_is_not_there_and_closes_as_a_menu_does(start, open_page, tmp_path):
+def test_inspect_card_names_missing_parts_and_closes_like_menu(start, open_page, tmp_path):
     (tmp_path / "bare.urdf").write_text(
         '<robot name="bare"><link name="base"><visual><geometry><box size="1 1 1"/></geometry></visual></link></robot>'
     )
@@ -78,7 +78,7 @@ def test_inspect_says_what_is_not_there_and_closes_as_a_menu_does(start, open_pa
     assert card.is_hidden()
 
 
-def test_joint_axes_show_limits_and_where_joints_stand(page):
+def test_joint_axes_show_limits_and_positions(page):
     switch(page, "joints")
     until(page, "lw.inspected.joints?.length === 4")
     page.locator('[data-joint="upper_joint"] input[type=text]').fill("0.7")
@@ -94,7 +94,7 @@ def test_joint_axes_show_limits_and_where_joints_stand(page):
     until(page, "lw.inspected.joints.length === 0 && lw.inspected.vertices === 0")
 
 
-def test_frames_by_depth_and_collisions_in_contrast(page):
+def test_frames_are_drawn_by_depth_and_collisions_in_contrast(page):
     page.keyboard.press("z")
     distance = page.locator(".row").filter(has=page.get_by_text("Distance", exact=True)).locator("input").first
     distance.fill("3")

@@ -37,7 +37,7 @@ def robot_model(page):
     return next(display for display in state(page, "displays") if display["name"] == "RobotModel")
 
 
-def test_left_drag_turns_the_camera_as_in_rviz(page):
+def test_left_drag_orbits_camera_as_in_rviz(page):
     drag(page, 100, -40)
     view = state(page, "view")
     assert view["yaw"] == pytest.approx(5.5 - 0.005 * 100, abs=1e-6)
@@ -46,7 +46,7 @@ def test_left_drag_turns_the_camera_as_in_rviz(page):
     assert view["focalPoint"] == pytest.approx([0, 0, 0])
 
 
-def test_pitch_stops_short_of_the_pole(page):
+def test_pitch_is_clamped_before_pole(page):
     drag(page, 0, -500)
     assert state(page, "view.pitch") == pytest.approx(-(math.pi / 2 - 0.001), abs=1e-6) or state(
         page, "view.pitch"
@@ -61,18 +61,18 @@ def test_wheel_zooms_by_a_twelfth(page):
     assert state(page, "view.distance") == pytest.approx(1.7 * (1 - 0.12), rel=0.02)
 
 
-def test_middle_drag_moves_the_focal_point_and_keeps_the_angles(page):
+def test_middle_drag_moves_focal_point_and_keeps_angles(page):
     drag(page, 80, 0, button="middle")
     view = state(page, "view")
     assert (view["yaw"], view["pitch"], view["distance"]) == pytest.approx((5.5, 0.33, 1.7))
-    # In the camera's plane: 2 d tan(fov/2) / height metres a pixel, to the camera's left.
-    metres = 80 * 2 * 1.7 * math.tan(math.radians(22.5)) / scene_box(page)["height"]
+    # In the camera's plane: 2 d tan(fov/2) / height meters a pixel, to the camera's left.
+    meters = 80 * 2 * 1.7 * math.tan(math.radians(22.5)) / scene_box(page)["height"]
     moved = view["focalPoint"]
-    assert math.hypot(*moved) == pytest.approx(metres, rel=0.02)
+    assert math.hypot(*moved) == pytest.approx(meters, rel=0.02)
     assert moved[2] == pytest.approx(0, abs=1e-6)
 
 
-def test_toggling_a_display_takes_it_away_and_back(page):
+def test_display_checkbox_hides_and_shows_robot(page):
     box = page.locator('.row[data-key="d1"]').get_by_role("checkbox")
     names = [display["name"] for display in state(page, "displays")]
     row = page.get_by_role("treeitem").filter(has_text="RobotModel").first
@@ -85,7 +85,7 @@ def test_toggling_a_display_takes_it_away_and_back(page):
     until(page, "lw.robot.visuals === 12 && lw.displays[1].enabled === true")
 
 
-def test_a_slider_turns_the_wheel_about_its_axis(page):
+def test_slider_rotates_wheel_about_its_axis(page):
     slider = page.locator('[data-joint="left_wheel_joint"] input[type=range]')
     slider.fill("1.2")
     until(page, "Math.abs(lw.joints.left_wheel_joint - 1.2) < 0.01")
@@ -108,14 +108,14 @@ def test_number_field_center_and_randomize(page):
     until(page, "Object.values(lw.joints).every((position) => position === 0)")
 
 
-def test_a_position_beyond_the_limits_is_clamped(page):
+def test_position_beyond_limits_is_clamped(page):
     field = page.locator('[data-joint="right_wheel_joint"] input[type=text]')
     field.fill("12")
     field.press("Enter")
     until(page, "Math.abs(lw.joints.right_wheel_joint - Math.PI) < 1e-6")
 
 
-def test_a_clicked_link_is_selected_with_its_place(page):
+def test_clicked_link_is_selected_with_source_location(page):
     box = scene_box(page)
     # The lower deck's front, below the scene's middle, where nothing stands before it.
     page.mouse.click(box["x"] + box["width"] * 0.56, box["y"] + box["height"] * 0.53)
@@ -132,14 +132,14 @@ def test_a_clicked_link_is_selected_with_its_place(page):
     until(page, "lw.selected === null")
 
 
-def test_nothing_is_drawn_when_nothing_changes(page):
+def test_idle_scene_is_not_redrawn(page):
     page.get_by_role("button", name="Panels", exact=True).click()
     page.get_by_role("menuitemcheckbox", name="Time", exact=True).click()
     becomes(lambda: frames_drawn_meanwhile(page) <= 2, True)
     assert frames_drawn_meanwhile(page) <= 2
 
 
-def test_a_clicked_link_tells_its_macro_call_and_values(page):
+def test_selected_link_shows_macro_call_and_values(page):
     row = page.get_by_role("treeitem").filter(has_text="Links").last
     row.locator(".row-name").dblclick()
     page.get_by_role("treeitem").filter(has_text="left_wheel_link").first.locator(".row-name").click()

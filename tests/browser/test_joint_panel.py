@@ -23,7 +23,7 @@ def move(page, joint, text):
     field.press("Enter")
 
 
-def test_units_limits_and_followers(page):
+def test_units_limits_and_mimic_joints_are_shown(page):
     row = page.locator('.joint[data-joint="fore_joint"]')
     assert "-0.500 rad" in row.inner_text()
     page.get_by_role("button", name="deg").first.click()
@@ -35,7 +35,7 @@ def test_units_limits_and_followers(page):
     assert follower.locator("input[type=range]").is_disabled()
 
 
-def test_long_names_keep_their_ends_which_tell_them_apart(start, open_page, tmp_path):
+def test_long_joint_names_keep_their_ends(start, open_page, tmp_path):
     name = "hand_at_the_end_of_the_left_arm_of_the_upper_body_finger_{}_joint"
     parts = ['<link name="base"/>']
     for number in (1, 2):
@@ -56,7 +56,7 @@ def test_long_names_keep_their_ends_which_tell_them_apart(start, open_page, tmp_
         assert page.get_by_role("slider", name=name.format(number), exact=True).is_visible()
 
 
-def test_poses_are_saved_recalled_and_outlive_a_reload(page):
+def test_saved_poses_are_recalled_and_survive_reload(page):
     move(page, "upper_joint", "0.5")
     until(page, "lw.joints.upper_joint === 0.5")
     page.get_by_label("Name of the pose").fill("bent")
@@ -79,7 +79,7 @@ def test_poses_are_saved_recalled_and_outlive_a_reload(page):
     page.locator(".chip").wait_for(state="detached")
 
 
-def test_a_sweep_moves_joints_until_it_is_stopped(page):
+def test_sweep_moves_joints_until_stopped(page):
     page.get_by_label("Order of the joints").select_option("all")
     page.get_by_role("group", name="Sweep").get_by_label("Speed").select_option("4")
     page.get_by_role("button", name="Start the sweep").click()
@@ -100,7 +100,7 @@ def test_a_sweep_moves_joints_until_it_is_stopped(page):
     becomes(stand, True)
 
 
-def test_a_link_that_is_dragged_moves_its_joint(page):
+def test_dragged_link_moves_its_joint(page):
     # Seen along the joints' axis, from the right: x to the right of the image, z up.
     page.keyboard.press("z")  # about the root
     for name, value in (("Yaw", "-1.5707963"), ("Pitch", "0"), ("Distance", "2")):
@@ -111,10 +111,10 @@ def test_a_link_that_is_dragged_moves_its_joint(page):
     until(page, "Math.abs(lw.view.pitch) < 1e-6 && lw.view.distance === 2")
     until(page, "lw.settled")
     box = page.locator(".canvas-box canvas").bounding_box()
-    metre = box["height"] / (2 * 2 * math.tan(math.radians(22.5)))
+    meter = box["height"] / (2 * 2 * math.tan(math.radians(22.5)))
 
     def at(x, z):
-        return box["x"] + box["width"] / 2 + x * metre, box["y"] + box["height"] / 2 - z * metre
+        return box["x"] + box["width"] / 2 + x * meter, box["y"] + box["height"] / 2 - z * meter
 
     page.keyboard.down("Alt")
     page.mouse.move(*at(0, 0.3))

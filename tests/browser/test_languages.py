@@ -24,7 +24,7 @@ _SHOWN = """({
 })"""
 
 
-def test_another_language_leaves_camera_selection_tool_and_panels_and_fetches_no_mesh_again(start, open_page):
+def test_language_switch_keeps_view_state_and_reloads_no_mesh(start, open_page):
     page = open_page(start("view", str(MBOT)))
     page.mouse.move(640, 400)
     page.mouse.wheel(0, -360)

@@ -1,6 +1,6 @@
-"""The studio shows what lamps light as film would; the light at the camera shows colours as they are written.
+"""The studio shows what lamps light as film would; the light at the camera shows colors as they are written.
 
-`view` shows robots of any colour before a ground that they stand out from, also where the processor draws.
+`view` shows robots of any color before a ground that they stand out from, also where the processor draws.
 """
 
 from __future__ import annotations
@@ -28,7 +28,7 @@ Visualization Manager:
 """
 
 
-def greys(start, open_page, tmp_path: Path, light: str) -> list[int]:
+def grays(start, open_page, tmp_path: Path, light: str) -> list[int]:
     """How bright the ball is along a line through its middle, from its top to its foot."""
     (tmp_path / "ball.urdf").write_text(BALL)
     (tmp_path / f"{light}.rviz").write_text(VIEW.format(light=light))
@@ -41,9 +41,9 @@ def greys(start, open_page, tmp_path: Path, light: str) -> list[int]:
     return [r for r, _, _ in colors]
 
 
-def test_the_studio_keeps_the_shape_of_what_is_lit_strongly(start, open_page, tmp_path):
-    camera, studio = (greys(start, open_page, tmp_path, light) for light in ("Camera", "Studio"))
-    assert max(camera) >= 254, "what faces the camera has its own colour"
+def test_studio_light_does_not_saturate_lit_surfaces(start, open_page, tmp_path):
+    camera, studio = (grays(start, open_page, tmp_path, light) for light in ("Camera", "Studio"))
+    assert max(camera) >= 254, "what faces the camera has its own color"
     assert 225 < max(studio) < 252
     assert studio.count(max(studio)) < len(studio) / 5, "brightness tells the shape: nothing is cut off at white"
 
@@ -61,19 +61,19 @@ def column(page, across: float = 0.5) -> list[int]:
 
 @pytest.mark.parametrize("theme", ["light", "dark"])
 @pytest.mark.parametrize("robot", [BLACK, BALL], ids=["black", "white"])
-def test_view_shows_the_shape_of_robots_of_any_colour_before_its_ground(start, open_page, tmp_path, theme, robot):
+def test_default_view_shows_shape_of_black_and_white_robots(start, open_page, tmp_path, theme, robot):
     (tmp_path / "ball.urdf").write_text(robot)
     page = open_page(start("view", str(tmp_path / "ball.urdf")), theme=theme)
     until(page, "lw.settled")
-    greys = column(page)
-    ball, ground = greys[16:45], column(page, 0.02)
+    grays = column(page)
+    ball, ground = grays[16:45], column(page, 0.02)
     assert min(ground) > 60
     assert max(ground) < 245
-    assert max(ball) - min(ball) > 25, "the ball is round, whatever its colour"
+    assert max(ball) - min(ball) > 25, "the ball is round, whatever its color"
     assert max(abs(ground[30] - each) for each in ball) > 40
 
 
-def test_the_colours_of_an_rviz_file_are_kept(start, open_page, tmp_path):
+def test_rviz_file_colors_are_kept(start, open_page, tmp_path):
     (tmp_path / "ball.urdf").write_text(BALL)
     (tmp_path / "plain.rviz").write_text(VIEW.format(light="Camera"))
     page = open_page(start("view", str(tmp_path / "ball.urdf"), "-d", str(tmp_path / "plain.rviz")))
@@ -81,7 +81,7 @@ def test_the_colours_of_an_rviz_file_are_kept(start, open_page, tmp_path):
     assert set(column(page, 0.02)) == {0x30}
 
 
-def test_a_colour_is_behind_the_scene_where_the_user_wants_one(start, open_page, tmp_path):
+def test_background_color_can_be_chosen(start, open_page, tmp_path):
     (tmp_path / "ball.urdf").write_text(BALL)
     page = open_page(start("view", str(tmp_path / "ball.urdf")))
     until(page, "lw.settled")

@@ -102,7 +102,7 @@ def subscribers(robot: Robot, topic: str) -> int:
 MONITOR = "lw.panels.monitor"
 
 
-def test_numbers_of_topics_are_plotted(page: Page, robot: Robot):
+def test_topic_fields_are_plotted(page: Page, robot: Robot):
     show(page, "Plots")
     # The fields of a topic are offered with the names that its messages give.
     page.get_by_role("button", name="Add a series").click()
@@ -138,7 +138,7 @@ def test_numbers_of_topics_are_plotted(page: Page, robot: Robot):
     wait_until(lambda: subscribers(robot, "/left/current") == 1)
 
 
-def test_what_draws_diagrams_comes_with_the_first_one_and_with_its_style(page: Page):
+def test_plot_library_loads_with_first_plot_and_its_style(page: Page):
     until(page, "document.querySelectorAll('main canvas').length > 0")
     fetched = "performance.getEntriesByType('resource').filter(({ name }) => name.includes('plot-library')).length"
     assert page.evaluate(fetched) == 0
@@ -158,7 +158,7 @@ def test_what_draws_diagrams_comes_with_the_first_one_and_with_its_style(page: P
 
 
 def colors_drawn(page: Page) -> set[str]:
-    """Which of the first two colours of series the canvas of the first plot has."""
+    """Which of the first two colors of series the canvas of the first plot has."""
     return set(
         page.evaluate(
             """() => {
@@ -177,7 +177,7 @@ def colors_drawn(page: Page) -> set[str]:
     )
 
 
-def test_mistakes_in_a_field_are_told(page: Page):
+def test_misspelled_field_is_reported_with_suggestion(page: Page):
     show(page, "Plots")
     add_series(page, "/left/current.dta")
     page.get_by_text("did you mean 'data'").wait_for()
@@ -207,7 +207,7 @@ def test_topics_are_measured_and_opened(page: Page, robot: Robot):
     wait_until(lambda: subscribers(robot, "/left/current") == 1)
 
 
-def test_the_node_graph_shows_who_talks_to_whom(page: Page, robot: Robot):
+def test_node_graph_shows_publishers_and_subscribers(page: Page, robot: Robot):
     show(page, "Node graph")
     page.locator(".vertex[data-id='node:/arm']").wait_for()
     row = ["node:/arm", "topic:/joint_states", "node:/planner"]
@@ -260,7 +260,7 @@ def test_parameters_are_edited(page: Page, robot: Robot):
     assert "    speed: 0.75\n" in download.value.path().read_text()
 
 
-def test_the_log_is_filtered_and_only_what_is_seen_is_in_the_page(page: Page, robot: Robot):
+def test_log_is_filtered_and_renders_only_visible_rows(page: Page, robot: Robot):
     show(page, "Log")
     until(page, f"{MONITOR}.log !== undefined")
     robot.say(*(f"line {number}" for number in range(300)))
@@ -287,7 +287,7 @@ GAMEPAD = """() => {
 }"""
 
 
-def test_the_pad_drives_while_it_is_held(page: Page, robot: Robot):
+def test_teleop_pad_publishes_while_held(page: Page, robot: Robot):
     show(page, "Teleop")
     until(page, f"{MONITOR}.teleop.aim?.subscribers === 1")
     pad = page.locator(".pad")
@@ -328,7 +328,7 @@ def test_the_pad_drives_while_it_is_held(page: Page, robot: Robot):
     wait_until(lambda: robot.live.run(lambda: robot.live.node.graph.count_publishers("/cmd_vel")) == 0)
 
 
-def test_the_pad_lets_go_when_the_finger_leaves_the_tab_is_hidden_or_the_page_crashes(page: Page, robot: Robot):
+def test_teleop_pad_stops_when_touch_ends_tab_hides_or_page_crashes(page: Page, robot: Robot):
     show(page, "Teleop")
     until(page, f"{MONITOR}.teleop.aim?.subscribers === 1")
     pad = page.locator(".pad")

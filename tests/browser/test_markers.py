@@ -80,7 +80,7 @@ def all_kinds(mesh: Path) -> list[Marker]:
     return made
 
 
-def test_markers_of_every_type_are_drawn(live, open_page, tmp_path):
+def test_all_marker_types_are_drawn(live, open_page, tmp_path):
     mesh = tmp_path / "triangle.stl"
     mesh.write_bytes(CUBE_STL)
     viewer = live(MARKERS)
@@ -101,7 +101,7 @@ def test_markers_of_every_type_are_drawn(live, open_page, tmp_path):
     until(page, "Object.keys(lw.displays[1].drawn.markers).length === 0")
 
 
-def test_a_mesh_that_cannot_be_read_is_told(live, open_page, tmp_path):
+def test_unreadable_marker_mesh_is_reported(live, open_page, tmp_path):
     mesh = tmp_path / "broken.glb"
     mesh.write_text("no mesh")
     viewer = live(MARKERS)
@@ -112,7 +112,7 @@ def test_a_mesh_that_cannot_be_read_is_told(live, open_page, tmp_path):
     assert "Mesh resource marker [a/1]" in viewer.status("Marks")["a/1"][1]
 
 
-def test_a_box_selects_what_is_seen_and_not_what_is_behind_it(live, open_page):
+def test_box_selection_ignores_hidden_markers(live, open_page):
     viewer = live(MARKERS.replace("Pitch: 0.6", "Pitch: 0").replace("Yaw: 0.8", "Yaw: 0"))
     page = open_page(viewer, wait=False)
     wall, hidden, beside = (marker(number, kind=Marker.CUBE, color=color(0.0, 1.0, 0.0)) for number in range(3))
@@ -147,7 +147,7 @@ INTERACTIVE = configuration(
 )
 
 
-def test_an_interactive_marker_is_dragged_along_its_axis(live, open_page):
+def test_interactive_marker_is_dragged_along_its_axis(live, open_page):
     along_x = Control(name="x", interaction_mode=Control.MOVE_AXIS)
     viewer = live(INTERACTIVE)
     server = viewer.run(lambda: Server(viewer._graph, interactive_marker("one", along_x)))
@@ -160,12 +160,12 @@ def test_an_interactive_marker_is_dragged_along_its_axis(live, open_page):
     box = page.locator("canvas").first.bounding_box()
     # The eye is above, x to the right: the arrow ends at x = 1.8.
     middle = (box["x"] + box["width"] / 2, box["y"] + box["height"] / 2)
-    metre = box["height"] / (2 * 8 * 0.4142)
-    start = (middle[0] + 1.4 * metre, middle[1])
+    meter = box["height"] / (2 * 8 * 0.4142)
+    start = (middle[0] + 1.4 * meter, middle[1])
     page.mouse.move(*start)
     page.mouse.down()
-    page.mouse.move(start[0] + metre / 2, start[1] + 5, steps=4)
-    page.mouse.move(start[0] + metre, start[1] + 10, steps=4)
+    page.mouse.move(start[0] + meter / 2, start[1] + 5, steps=4)
+    page.mouse.move(start[0] + meter, start[1] + 10, steps=4)
     until(page, "lw.displays[0].drawn.one.aided")
     page.mouse.up()
     until(page, "!lw.displays[0].drawn.one.aided")

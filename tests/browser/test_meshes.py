@@ -47,13 +47,13 @@ def rows(page):
     return {row["name"]: (row["level"], row["text"]) for row in display["status"]}
 
 
-def test_every_kind_is_drawn(start, open_page, robot):
+def test_all_mesh_formats_are_drawn(start, open_page, robot):
     page = open_page(start("view", robot()))
     assert state(page, "robot.visuals") == len(KINDS)
     becomes(lambda: [rows(page).get(kind, ("", ""))[0] for kind in KINDS], ["ok"] * len(KINDS))
 
 
-def test_collada_is_read_as_loosely_as_rviz_reads_it(start, open_page, robot, tmp_path):
+def test_malformed_collada_is_read_as_leniently_as_by_rviz(start, open_page, robot, tmp_path):
     """Exporters write what XML forbids: assimp names the nodes of an STL ``<STL_BINARY>``."""
     proper = (tmp_path / "box.dae").read_text()
     loose = proper.replace('<node id="body"', '<!-- made -- by hand --><node id="<STL_BINARY>"', 1)
@@ -80,7 +80,7 @@ BROKEN = {
 """Files with what is to be said of them."""
 
 
-def test_what_is_wrong_with_a_mesh_is_said_in_words_at_its_link_alone(start, open_page, robot, tmp_path):
+def test_broken_mesh_is_reported_at_its_link(start, open_page, robot, tmp_path):
     for name, (data, _) in BROKEN.items():
         (tmp_path / name).write_bytes(data)
     links = [link(f"broken_{name[:-4]}", f"file://{tmp_path}/{name}", -0.4) for name in BROKEN]
@@ -95,7 +95,7 @@ def test_what_is_wrong_with_a_mesh_is_said_in_words_at_its_link_alone(start, ope
     assert state(page, "robot.visuals") == len(KINDS)
 
 
-def test_a_mesh_that_comes_slowly_is_told_until_it_is_there(start, open_page, robot):
+def test_slow_mesh_is_reported_until_loaded(start, open_page, robot):
     page = open_page(start("view", robot()))
     held = []
 
@@ -115,7 +115,7 @@ def test_a_mesh_that_comes_slowly_is_told_until_it_is_there(start, open_page, ro
     assert state(page, "robot.visuals") == len(KINDS)
 
 
-def test_a_robot_none_of_whose_meshes_is_there_is_told_of_and_shown_by_its_frames(start, open_page, tmp_path):
+def test_robot_without_readable_meshes_is_reported_and_shown_by_frames(start, open_page, tmp_path):
     gone = '<visual><geometry><mesh filename="package://elsewhere/arm.stl"/></geometry></visual>'
     joint = '<joint name="j" type="fixed"><origin xyz="0 0 1"/><parent link="base"/><child link="arm"/></joint>'
     text = f'<robot name="r"><link name="base">{gone}</link><link name="arm">{gone}</link>{joint}</robot>'

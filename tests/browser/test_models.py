@@ -39,7 +39,7 @@ def launch_words(model: str, package: Path = PACKAGE) -> list[str]:
 
 
 @pytest.mark.parametrize(("model", "links"), MODELS.items())
-def test_model_shows(start, open_page, model, links):
+def test_model_is_shown(start, open_page, model, links):
     page = open_page(start(*launch_words(model)))
     assert state(page, "robot.name") == "mbot"
     assert state(page, "robot.links") == links
@@ -53,7 +53,7 @@ def test_model_shows(start, open_page, model, links):
 
 
 @pytest.mark.parametrize("size", [0.05, 20.0])
-def test_a_model_without_a_configuration_is_shown_whole_whatever_its_size(start, open_page, tmp_path, size):
+def test_view_fits_model_without_configuration(start, open_page, tmp_path, size):
     model = tmp_path / "tower.urdf"
     model.write_text(TOWER.format(width=size / 5, height=size, middle=size / 2))
     page = open_page(start("view", str(model)))
@@ -67,7 +67,7 @@ def test_a_model_without_a_configuration_is_shown_whole_whatever_its_size(start,
     until(page, f"Math.abs(lw.view.distance - {view['distance']}) < {size / 100}")
 
 
-def test_the_grid_of_a_ship_that_is_one_mesh_fits_unless_somebody_works_with_it(start, open_page, tmp_path):
+def test_grid_fits_single_mesh_model_unless_user_changed_it(start, open_page, tmp_path):
     trimesh.creation.box((100.0, 20.0, 15.0)).export(tmp_path / "hull.stl")
     ship = tmp_path / "ship.urdf"
     visual = f'<visual><geometry><mesh filename="file://{tmp_path}/hull.stl"/></geometry></visual>'
@@ -87,7 +87,7 @@ def test_the_grid_of_a_ship_that_is_one_mesh_fits_unless_somebody_works_with_it(
 
 @pytest.mark.parametrize("package", TUTORIAL_PACKAGES, ids=lambda package: package.parent.name)
 @pytest.mark.parametrize(("launch", "links"), [("display.launch.py", 5), ("display_xacro.launch.py", 12)])
-def test_launch_files_run_from_the_folder_of_the_package(start, open_page, package, launch, links, tmp_path):
+def test_launch_files_run_from_package_folder(start, open_page, package, launch, links, tmp_path):
     share = without_meshes(package, tmp_path)
     program = start("launch", "my_robot_description", launch, cwd=share.parent)
     page = open_page(program)
@@ -105,7 +105,7 @@ def test_launch_files_run_from_the_folder_of_the_package(start, open_page, packa
         until(page, f"{robot_model}.level === 'ok'")
 
 
-def test_top_plate_stands_above_the_base(start, open_page):
+def test_top_plate_is_above_base(start, open_page):
     page = open_page(start(*launch_words("mbot_base.xacro")))
-    # Its visual's centre is another 0.16 m above its frame: 0.32 m above base_link (tests/viewer has the shape).
+    # Its visual's center is another 0.16 m above its frame: 0.32 m above base_link (tests/viewer has the shape).
     assert state(page, "frames.base_link_upper.position") == pytest.approx([0, 0, 0.16], abs=1e-6)

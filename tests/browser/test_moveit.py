@@ -64,7 +64,7 @@ def kitchen(*, wrist: float = 0.2):
     return made
 
 
-def test_a_scene_and_a_motion_are_drawn(live, open_page, tmp_path):
+def test_planning_scene_and_trajectory_are_drawn(live, open_page, tmp_path):
     (tmp_path / "hand.stl").write_bytes(CUBE_STL)
     mesh = f'<mesh filename="{(tmp_path / "hand.stl").as_uri()}" scale="0.2 0.2 0.2"/>'
     viewer = live(MOTION_PLANNING)
@@ -83,7 +83,7 @@ def test_a_scene_and_a_motion_are_drawn(live, open_page, tmp_path):
     assert viewer.run(lambda: [row.text for row in viewer.viewer.displays[1].status if row.level != "ok"]) == []
 
 
-def test_a_mesh_that_only_moves_is_not_loaded_again(live, open_page, tmp_path):
+def test_moving_mesh_is_not_reloaded(live, open_page, tmp_path):
     (tmp_path / "hand.stl").write_bytes(CUBE_STL)
     mesh = f'<mesh filename="{(tmp_path / "hand.stl").as_uri()}"/>'
     viewer = live(configuration("- {Class: moveit_rviz_plugin/PlanningScene, Enabled: true, Name: Scene}"))
@@ -102,7 +102,7 @@ def test_a_mesh_that_only_moves_is_not_loaded_again(live, open_page, tmp_path):
     assert page.evaluate(loads) == 1
 
 
-def test_a_missing_mesh_is_said(live, open_page):
+def test_missing_mesh_is_reported(live, open_page):
     viewer = live(configuration("- {Class: moveit_rviz_plugin/PlanningScene, Enabled: true, Name: Scene}"))
     text = ARM.replace('<sphere radius="0.1"/>', '<mesh filename="file:///nowhere/hand.stl"/>')
     viewer.publish("/robot_description", String(data=text), DESCRIPTION_QOS)

@@ -70,7 +70,7 @@ def pixels(page: Any) -> np.ndarray:
         return np.asarray(image.convert("RGB")).astype(int)
 
 
-def test_moving_meshes_have_fewer_triangles_and_look_as_they_are(live, open_page, tmp_path):
+def test_moving_meshes_are_simplified_and_look_the_same(live, open_page, tmp_path):
     trimesh.creation.icosphere(subdivisions=5, radius=0.5).export(tmp_path / "ball.stl")
     box = trimesh.creation.box((0.6, 0.6, 0.6)).subdivide_loop(0)
     for _ in range(4):

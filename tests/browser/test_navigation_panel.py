@@ -20,7 +20,7 @@ Panels:
 VALUES = "[...document.querySelectorAll('.navigation-value')].map((each) => each.textContent)"
 
 
-def test_a_file_with_the_panel_opens_it_and_its_buttons_work(live, open_page, tmp_path):
+def test_configuration_opens_navigation_panel_and_its_buttons_work(live, open_page, tmp_path):
     viewer = live(PANELS + configuration("- {Class: rviz_default_plugins/Grid, Enabled: true, Name: Grid}"))
     nav2 = viewer.run(lambda: Nav2(viewer.node.graph))
     page = open_page(viewer, wait=False)

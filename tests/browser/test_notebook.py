@@ -75,7 +75,7 @@ def lab(tmp_path: Path):
         process.wait()
 
 
-def test_a_cell_of_jupyterlab_shows_the_robot_and_its_slider_moves_it(browser, lab):
+def test_jupyterlab_cell_shows_robot_with_working_slider(browser, lab):
     page = browser.new_page(viewport={"width": 1280, "height": 900})
     page.goto(lab)
     page.get_by_text("(ipykernel) | Idle").wait_for()  # a cell that is run earlier is forgotten
@@ -90,13 +90,13 @@ def test_a_cell_of_jupyterlab_shows_the_robot_and_its_slider_moves_it(browser, l
 
 
 def highest(frame) -> float:
-    """Return the height of the highest point of the tip, in metres."""
+    """Return the height of the highest point of the tip, in meters."""
     robot = next(display for display in state(frame, "displays") if display["class"].endswith("RobotModel"))
     (visual,) = robot["drawn"]["links"]["tip"]["visuals"]
     return visual["bounds"]["max"][2]
 
 
-def test_a_description_without_a_robot_raises_what_is_wrong():
+def test_show_raises_if_description_is_invalid():
     with pytest.raises(LinkwrightError) as raised:
         show("<robot name='a'><joint/></robot>")
     assert raised.value.diagnostics

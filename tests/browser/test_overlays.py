@@ -63,7 +63,7 @@ def overlapping(boxes: dict[str, list[float]]) -> list[str]:
     ]
 
 
-def test_nothing_that_lies_over_the_scene_lies_over_something_else(start, open_page, tmp_path):
+def test_scene_overlays_do_not_overlap(start, open_page, tmp_path):
     file = write_arm(tmp_path)
     page = open_page(start("view", str(file)))
     page.locator(".inspect > button").click()
@@ -92,7 +92,7 @@ WIDE = '<robot name="wide"><link name="base"><visual><geometry><box size="2 2 1"
 
 
 @pytest.mark.parametrize(("width", "height"), SIZES)
-def test_the_card_does_not_lie_over_the_robot(start, open_page, tmp_path, width, height):
+def test_selection_card_does_not_cover_robot(start, open_page, tmp_path, width, height):
     """One that would is folded, and unfolded by hand it has the robot go aside, until it is gone."""
     (tmp_path / "wide.urdf").write_text(WIDE)
     page = open_page(start("view", str(tmp_path / "wide.urdf")))
@@ -125,7 +125,7 @@ def test_the_card_does_not_lie_over_the_robot(start, open_page, tmp_path, width,
     becomes(lambda: state(page, "robotsReach"), pytest.approx(before, abs=1))
 
 
-def test_what_makes_room_stays_on_the_canvas(start, open_page, tmp_path):
+def test_robot_shifted_aside_stays_on_canvas(start, open_page, tmp_path):
     """A robot that takes nearly all of the canvas goes aside only until it meets the canvas's edge."""
     (tmp_path / "flat.urdf").write_text(WIDE.replace("2 2 1", "2 2 0.1"))
     page = open_page(start("view", str(tmp_path / "flat.urdf")))
@@ -150,7 +150,7 @@ TALL = """\
 
 
 @pytest.mark.parametrize(("width", "height"), SIZES)
-def test_a_tall_robot_goes_below_the_banner_and_comes_back(start, open_page, tmp_path, width, height):
+def test_tall_robot_moves_below_banner_and_returns(start, open_page, tmp_path, width, height):
     file = tmp_path / "tall.urdf"
     file.write_text(TALL)
     page = open_page(start("view", str(file)))
@@ -178,7 +178,7 @@ def test_a_tall_robot_goes_below_the_banner_and_comes_back(start, open_page, tmp
     becomes(head, whole)
 
 
-def test_fit_shows_all_of_the_robot_again(start, open_page, tmp_path):
+def test_fit_button_shows_whole_robot(start, open_page, tmp_path):
     page = open_page(start("view", str(write_arm(tmp_path))))
     until(page, "lw.settled")
     before = state(page, "view.values")
@@ -193,7 +193,7 @@ def test_fit_shows_all_of_the_robot_again(start, open_page, tmp_path):
     until(page, "lw.view.values.Distance < 10")
 
 
-def test_a_description_that_takes_the_place_of_another_is_told(live, open_page):
+def test_replaced_description_is_reported(live, open_page):
     viewer = live(configuration("- {Class: rviz_default_plugins/RobotModel, Name: Robot, Enabled: true}"))
     viewer.publish("/robot_description", String(data=WIDE), DESCRIPTION_QOS)
     page = open_page(viewer)
@@ -206,9 +206,7 @@ def test_a_description_that_takes_the_place_of_another_is_told(live, open_page):
     becomes(lambda: "Robot The description of /other is shown" in notice.inner_text(), True)
 
 
-def test_of_a_fixed_frame_that_is_missing_one_that_exists_is_proposed_with_the_robot_which_is_then_seen(
-    live, open_page
-):
+def test_missing_fixed_frame_offers_existing_frame_and_robot_display(live, open_page):
     grid = "- {Class: rviz_default_plugins/Grid, Name: Grid, Enabled: true}"
     viewer = live(configuration(grid, distance=100.0).replace("Fixed Frame: base", "Fixed Frame: map"))
     viewer.publish("/robot_description", String(data=WIDE), DESCRIPTION_QOS)

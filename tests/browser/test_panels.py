@@ -63,7 +63,7 @@ def is_unsaved(page) -> bool:
     return page.locator(".file-name .unsaved").count() == 1
 
 
-def test_a_file_of_rviz_opens_with_the_panels_that_rviz_shows(live, open_page, tmp_path: Path):
+def test_rviz_file_opens_panels_that_rviz_shows(live, open_page, tmp_path: Path):
     path, other = tmp_path / "robot.rviz", tmp_path / "other.rviz"
     path.write_text(RVIZ_PANELS + configuration(GRID) + window_state(Selection=False, **{"Tool Properties": False}))
     other.write_text("Panels:\n  - {Class: rviz_common/Time, Name: Time}\n" + configuration(GRID))
@@ -84,7 +84,7 @@ def test_a_file_of_rviz_opens_with_the_panels_that_rviz_shows(live, open_page, t
     assert viewer.run(viewer.viewer.config.text) == path.read_text()
 
 
-def test_what_the_user_opens_and_closes_is_remembered_and_saved(live, open_page, tmp_path: Path):
+def test_opened_and_closed_panels_are_remembered_and_saved(live, open_page, tmp_path: Path):
     path = tmp_path / "robot.rviz"
     path.write_text(RVIZ_PANELS + configuration(GRID) + window_state(Selection=False, **{"Tool Properties": False}))
     viewer = live(configuration(GRID))
@@ -92,8 +92,8 @@ def test_what_the_user_opens_and_closes_is_remembered_and_saved(live, open_page,
     settled(page, *USUAL)
     opened(page, path)
     settled(page, "Displays", "Views")
-    neighbour = open_page(viewer, wait=False)
-    settled(neighbour, "Displays", "Views")
+    neighbor = open_page(viewer, wait=False)
+    settled(neighbor, "Displays", "Views")
     close(page, "Views")
     choose(page, "Selection")
     settled(page, "Displays", "Selection")
@@ -104,7 +104,7 @@ def test_what_the_user_opens_and_closes_is_remembered_and_saved(live, open_page,
     close(page, "Plots")
     settled(page, "Displays", "Selection")
     # Nobody else's panels come or go, and whoever comes later begins with the file's.
-    settled(neighbour, "Displays", "Views")
+    settled(neighbor, "Displays", "Views")
     settled(open_page(viewer, wait=False), "Displays", "Selection")
     page.keyboard.press("Control+s")
     page.locator(".file-name .unsaved").wait_for(state="detached")
@@ -120,7 +120,7 @@ BROKEN = (
 )
 
 
-def test_a_panel_that_is_opened_again_has_its_number(start, open_page, tmp_path: Path):
+def test_reopened_diagnostics_tab_shows_count(start, open_page, tmp_path: Path):
     (tmp_path / "broken.urdf").write_text(BROKEN)
     page = open_page(start("view", str(tmp_path / "broken.urdf")), wait=False)
     page.get_by_role("tab", name="Diagnostics (").wait_for()
@@ -131,7 +131,7 @@ def test_a_panel_that_is_opened_again_has_its_number(start, open_page, tmp_path:
     page.get_by_role("tab", name=text.strip(), exact=True).wait_for()
 
 
-def test_the_cross_of_a_tab_lies_beside_its_name(live, open_page):
+def test_close_button_of_tab_is_beside_its_title(live, open_page):
     page = open_page(live(configuration(GRID)), wait=False)
     tab = page.locator(".panel-tab", has_text="Tool Properties")
     tab.locator(".tab-title").click()

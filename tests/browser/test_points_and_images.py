@@ -21,7 +21,7 @@ from tests.waiting import wait_until
 pytestmark = pytest.mark.browser
 
 SCALE = 50.0
-"""Pixels to a metre of the TopDownOrtho view: so each pixel is known in metres."""
+"""Pixels to a meter of the TopDownOrtho view: so each pixel is known in meters."""
 BACKGROUND = (48, 48, 48)
 RED, GREEN, BLUE = (255, 0, 0), (0, 255, 0), (0, 0, 255)
 
@@ -39,7 +39,7 @@ def config(*displays: dict[str, Any]) -> str:
 
 
 def seen(page: Any, *points: tuple[float, float]) -> list[Color]:
-    """The colours at points of the fixed frame, seen from above."""
+    """The colors at points of the fixed frame, seen from above."""
     box = page.locator(".canvas-box canvas").bounding_box()
     x0, y0 = box["x"] + box["width"] / 2, box["y"] + box["height"] / 2
     return colors_at(page, *((x0 + x * SCALE, y0 - y * SCALE) for x, y in points))
@@ -60,7 +60,7 @@ def set_property(viewer: Any, display: int, path: tuple[str, ...], value: object
     viewer.run(lambda: viewer.viewer.displays[display].set_property(path, value))
 
 
-def test_a_cloud_is_drawn_in_every_style(live, open_page):
+def test_point_cloud_is_drawn_in_all_styles(live, open_page):
     size = {"Size (m)": 0.6, "Size (Pixels)": 30}
     viewer = live(config(entry("PointCloud2", Topic={"Value": "/cloud"}, **size)))
     page = open_page(viewer, wait=False)
@@ -85,7 +85,7 @@ def test_a_cloud_is_drawn_in_every_style(live, open_page):
     becomes(lambda: seen(page, (-2.0, 1.0)), [pytest.approx((152, 24, 24), abs=2)])
 
 
-def test_a_point_is_selected_and_its_fields_are_shown(live, open_page):
+def test_clicked_point_is_selected_and_shows_fields(live, open_page):
     viewer = live(config(entry("PointCloud2", Topic={"Value": "/cloud"}, **{"Size (m)": 0.2})))
     page = open_page(viewer, wait=False)
     viewer.publish("/cloud", three_points())
@@ -106,7 +106,7 @@ def test_a_point_is_selected_and_its_fields_are_shown(live, open_page):
     assert "0; 255; 0" in text
 
 
-def test_a_large_cloud_keeps_coming(live, open_page):
+def test_large_cloud_is_updated_continuously(live, open_page):
     viewer = live(config(entry("PointCloud2", Topic={"Value": "/cloud"}, Color_Transformer="AxisColor")))
     page = open_page(viewer, wait=False)
     rng = np.random.default_rng(0)
@@ -125,7 +125,7 @@ def test_a_large_cloud_keeps_coming(live, open_page):
         until(page, f"lw.displays[0].drawn.bounds[1][0] === {20 + number} && lw.displays[0].drawn.points === 100000")
 
 
-def test_a_scan_and_single_numbers_are_drawn(live, open_page):
+def test_laser_scan_temperature_and_grid_cells_are_drawn(live, open_page):
     displays = (
         entry("LaserScan", Topic={"Value": "/scan"}, **{"Size (m)": 0.5}),
         entry("Temperature", Topic={"Value": "/warm"}, **{"Size (m)": 0.5}),
@@ -145,7 +145,7 @@ def test_a_scan_and_single_numbers_are_drawn(live, open_page):
     becomes(lambda: seen(page, *places), [RED, (255, 0, 255), RED, (25, 255, 0), BACKGROUND])
 
 
-def test_a_map_is_drawn_and_updated(live, open_page):
+def test_map_is_drawn_and_updated(live, open_page):
     displays = (
         entry("Map", Topic={"Value": "/map"}, Alpha=1.0),
         entry("PointCloud2", Topic={"Value": "/cloud"}, **{"Size (m)": 0.2}),
@@ -154,7 +154,7 @@ def test_a_map_is_drawn_and_updated(live, open_page):
     page = open_page(viewer, wait=False)
     viewer.publish("/map", grid(data=[0, 100, -1, 50, 110, -128]))
     until(page, "lw.displays[0]?.drawn?.cells === 6")
-    # The corner is at x -1, cells are half a metre wide.
+    # The corner is at x -1, cells are half a meter wide.
     places = [(-0.75, 0.25), (-0.25, 0.25), (0.25, 0.25), (-0.75, 0.75), (-0.25, 0.75), (0.25, 0.75)]
     shades = [(255, 255, 255), (0, 0, 0), (112, 137, 134), (128, 128, 128), (0, 255, 0), (255, 0, 0)]
     becomes(lambda: seen(page, *places), shades)
@@ -171,7 +171,7 @@ def test_a_map_is_drawn_and_updated(live, open_page):
     becomes(lambda: seen(page, places[0]), [(0, 0, 0)])
 
 
-def test_what_a_map_is_drawn_behind_is_seen(live, open_page):
+def test_map_drawn_behind_does_not_hide_points(live, open_page):
     displays = (
         entry("PointCloud2", Topic={"Value": "/cloud"}, **{"Size (m)": 0.4}),
         entry("Map", Topic={"Value": "/map"}, Alpha=1.0, Draw_Behind=True),
@@ -189,7 +189,7 @@ def test_what_a_map_is_drawn_behind_is_seen(live, open_page):
     becomes(lambda: seen(page, (0.1, 0.1)) != [GREEN], True)
 
 
-def test_an_image_has_a_panel_of_its_own(live, open_page):
+def test_image_has_its_own_panel(live, open_page):
     viewer = live(config(entry("Image", Topic={"Value": "/image"})))
     page = open_page(viewer, wait=False)
     page.get_by_text("No image").wait_for()
@@ -233,7 +233,7 @@ def layers(page: Any) -> list[str]:
     return [" ".join([node["nodeName"], *node.get("attributes", [])]) for node in found]
 
 
-def test_an_image_is_composed_without_painting_the_page_around_it(live, open_page):
+def test_image_is_composited_without_repainting_page(live, open_page):
     viewer = live(config(entry("Image", Topic={"Value": "/image"})))
     page = open_page(viewer, wait=False)
     viewer.publish("/image", image("rgb8", 40, 20, bytes(2400)))
@@ -242,7 +242,7 @@ def test_an_image_is_composed_without_painting_the_page_around_it(live, open_pag
     becomes(lambda: [any(layer.startswith(what) for layer in layers(page)) for what in own], [True, True, True])
 
 
-def test_a_compressed_image_is_read_by_the_browser(live, open_page):
+def test_compressed_image_is_decoded_by_browser(live, open_page):
     viewer = live(config(entry("Image", Topic={"Value": "/image/compressed"})))
     page = open_page(viewer, wait=False)
     # An image of one blue pixel.
@@ -256,7 +256,7 @@ def test_a_compressed_image_is_read_by_the_browser(live, open_page):
     until(page, "lw.displays[0]?.drawn?.width === 1 && lw.displays[0].drawn.corner[2] === 255")
 
 
-def test_a_camera_shows_the_scene_over_its_image(live, open_page):
+def test_camera_display_shows_scene_over_image(live, open_page):
     displays = (
         entry("Camera", Topic={"Value": "/eye/image"}, **{"Image Rendering": "background"}),
         entry("PointCloud2", Topic={"Value": "/cloud"}, Style="Boxes", **{"Size (m)": 0.4}),
@@ -284,7 +284,7 @@ def test_a_camera_shows_the_scene_over_its_image(live, open_page):
     until(page, "lw.displays[0].drawn.middle[1] === 255")
 
 
-def test_a_depth_image_becomes_points(live, open_page):
+def test_depth_image_is_drawn_as_points(live, open_page):
     topics = {"Depth Map Topic": "/depth/image", "Color Image Topic": "/color/image"}
     viewer = live(config(entry("DepthCloud", **topics)))
     page = open_page(viewer, wait=False)
@@ -297,7 +297,7 @@ def test_a_depth_image_becomes_points(live, open_page):
     becomes(lambda: seen(page, (-0.3, 0.0), (2.8, 0.0)), [RED, GREEN])
 
 
-def test_depths_and_colours_come_by_the_transports_chosen(live, open_page):
+def test_depth_cloud_uses_chosen_image_transports(live, open_page):
     topics = {"Depth Map Topic": "/depth/image", "Color Image Topic": "/color/image"}
     hints = {"Depth Map Transport Hint": "theora", "Color Transport Hint": "compressed"}
     viewer = live(
@@ -316,7 +316,7 @@ def test_depths_and_colours_come_by_the_transports_chosen(live, open_page):
     assert drawn(page, 1)["corner"] == [0, 0, 0, 255]
 
 
-def test_nothing_is_drawn_when_nothing_comes(live, open_page):
+def test_idle_displays_are_not_redrawn(live, open_page):
     viewer = live(config(entry("PointCloud2", Topic={"Value": "/cloud"}), entry("Map", Topic={"Value": "/map"})))
     page = open_page(viewer, wait=False)
     viewer.publish("/cloud", three_points())

@@ -45,7 +45,7 @@ def frames_of(page: Page) -> list[Frame]:
     return frames
 
 
-def test_it_is_shown_until_the_program_ends(page):
+def test_program_page_is_shown_until_program_ends(page):
     page.keyboard.type("linkwright view robot.urdf\n")
     (frame,) = frames_of(page)
     assert page.locator(FRAMES).is_visible()
@@ -81,7 +81,7 @@ def test_it_is_shown_until_the_program_ends(page):
     until(page, "lw.ready && /[$#] *$/.test(lw.panels.terminal.text)")
 
 
-def test_a_second_program_has_a_button_and_a_killed_one_goes(page):
+def test_second_program_has_button_and_killed_one_is_removed(page):
     page.keyboard.type("linkwright view robot.urdf & linkwright view robot.urdf --no-open --port 0 & sleep 1\n")
     frames_of(page)
     page.keyboard.type("linkwright view robot.urdf\n")

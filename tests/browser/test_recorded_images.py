@@ -76,7 +76,7 @@ def switch(page: Page, name: str) -> None:
 
 
 @pytest.mark.parametrize("size", [(1280, 800), (800, 600)])
-def test_where_there_are_only_images_they_have_the_place_of_the_scene(shown, size):
+def test_recording_with_only_images_shows_them_in_place_of_scene(shown, size):
     page = shown(*size, scans=False)
     becomes(lambda: place(page, ".image-panel")["width"] >= size[0] / 2 and page.locator(".canvas-box").count(), 0)
     page.locator(".dv-tab", has_text="3D View").dispatch_event("pointerdown")
@@ -88,7 +88,7 @@ def test_where_there_are_only_images_they_have_the_place_of_the_scene(shown, siz
     assert left["x"] + left["width"] <= right["x"], "they are beside each other"
 
 
-def test_in_a_small_window_the_image_stands_beside_the_scene(shown):
+def test_image_is_beside_scene_in_small_window(shown):
     page = shown(800, 600, scans=True)
     becomes(lambda: place(page, ".canvas-box")["width"] > 400, True)
     scene, panel = place(page, ".canvas-box"), place(page, ".image-panel")
@@ -98,7 +98,7 @@ def test_in_a_small_window_the_image_stands_beside_the_scene(shown):
     assert page.locator(".dv-tab[aria-selected=true]", has_text="Displays").count() == 1
 
 
-def test_in_place_of_an_image_stands_why_there_is_none(shown):
+def test_unreadable_image_shows_reason(shown):
     page = shown(1280, 800, scans=False)
     switch(page, "cut/compressed")
     notice = page.locator(".image-notice", has_text="The image cannot be read")

@@ -60,7 +60,7 @@ def span(page: Page) -> float:
         return (bag.end_ns - bag.start_ns) / 1e9
 
 
-def test_all_topics_are_recorded_fetched_and_open_again(page: Page, open_page, start, tmp_path: Path):
+def test_all_topics_are_recorded_downloaded_and_reopened(page: Page, open_page, start, tmp_path: Path):
     choose(page, "Record all topics")
     until(page, "lw.recording.path !== ''")
     folder = Path(state(page, "recording")["path"])
@@ -82,7 +82,7 @@ def test_all_topics_are_recorded_fetched_and_open_again(page: Page, open_page, s
     assert again.get_by_role("button", name="Record", exact=True).count() == 0
 
 
-def test_what_was_recorded_is_seen_at_once(page: Page):
+def test_finished_recording_opens_in_page(page: Page):
     choose(page, "Record all topics")
     until(page, "lw.recording.length >= 2")
     stop(page)
@@ -106,7 +106,7 @@ def test_chosen_topics_are_recorded(page: Page):
     assert topics(page).keys() == {"/joint_states"}
 
 
-def test_all_pages_see_a_recording_that_goes_on_without_its_page(program: Program, page: Page, open_page):
+def test_all_pages_show_recording_after_its_page_closes(program: Program, page: Page, open_page):
     other = open_page(program, wait=False)
     choose(page, "Record all topics")
     until(other, "lw.recording?.path !== ''")
@@ -120,7 +120,7 @@ def test_all_pages_see_a_recording_that_goes_on_without_its_page(program: Progra
     assert other.get_by_role("menuitem", name=f"Download {name}").count() == 1
 
 
-def test_the_last_minutes_are_saved_and_a_part_that_is_marked(page: Page):
+def test_last_minutes_and_marked_range_are_saved(page: Page):
     choose(page, "Save the last minutes")
     is_stopped(page, 1)
     assert topics(page)["/robot_description"] == 1
@@ -148,7 +148,7 @@ def test_the_last_minutes_are_saved_and_a_part_that_is_marked(page: Page):
     assert span(page) == pytest.approx(end - begin, abs=0.1)
 
 
-def test_a_part_is_marked_by_keys_and_unmarked(page: Page):
+def test_range_is_marked_by_keys_and_cleared(page: Page):
     page.get_by_role("button", name="Pause (Space)").click()
     until(page, "!lw.timeline.live")
     page.locator("body").focus()
@@ -158,7 +158,7 @@ def test_a_part_is_marked_by_keys_and_unmarked(page: Page):
     becomes(lambda: state(page, "recording")["mark"], None)
 
 
-def test_a_viewer_that_keeps_no_minutes_records(start, open_page, tmp_path: Path):
+def test_viewer_without_history_can_record(start, open_page, tmp_path: Path):
     (tmp_path / "arm.urdf").write_text(MODEL)
     page = open_page(start("view", "arm.urdf", "--history", "0"))
     choose(page, "Record all topics")
@@ -169,7 +169,7 @@ def test_a_viewer_that_keeps_no_minutes_records(start, open_page, tmp_path: Path
     expect(page.get_by_role("dialog")).to_contain_text("linkwright view rosbag2_")
 
 
-def test_a_folder_that_is_gone_is_said_on_the_page(start, open_page, tmp_path: Path):
+def test_recording_folder_that_cannot_be_created_is_reported(start, open_page, tmp_path: Path):
     folder = tmp_path / "here"
     folder.mkdir()
     (folder / "arm.urdf").write_text(MODEL)

@@ -25,7 +25,7 @@ def edit(path, before, after):
     path.write_text(text.replace(before, after), encoding="utf-8")
 
 
-def test_change_break_and_repair(start_fresh, open_page, model):
+def test_model_reloads_after_change_error_and_fix(start_fresh, open_page, model):
     program = start_fresh("launch", "my_robot_description", "display_xacro.launch.py", f"model:={model}")
     page = open_page(program)
     page.locator('[data-joint="left_wheel_joint"] input[type=range]').fill("1.2")
@@ -59,7 +59,7 @@ def test_change_break_and_repair(start_fresh, open_page, model):
     assert program.interrupt() == 130
 
 
-def test_a_link_that_goes_leaves_no_ghost(start_fresh, open_page, model):
+def test_removed_link_leaves_no_visual(start_fresh, open_page, model):
     page = open_page(start_fresh("view", str(model)))
     assert state(page, "robot.links") == 12
     edit(model, "<xacro:laser ", "<!-- <xacro:laser ")
@@ -68,7 +68,7 @@ def test_a_link_that_goes_leaves_no_ghost(start_fresh, open_page, model):
     until(page, "!('laser_link' in lw.frames)")
 
 
-def test_a_model_broken_at_the_start_is_shown_when_it_is_mended(start_fresh, open_page, model):
+def test_model_broken_at_start_is_shown_once_fixed(start_fresh, open_page, model):
     edit(model, "</robot>", "</robott>")
     program = start_fresh("view", str(model))
     page = open_page(program, wait=False)

@@ -35,7 +35,7 @@ SENSES = configuration(
 
 
 def noise(width: int, height: int) -> Any:
-    """An image of squares of any colour: hard to compress, and as large as its panel it is so still."""
+    """An image of squares of any color: hard to compress, and as large as its panel it is so still."""
     message = image(width, height)
     squares = np.random.default_rng(1).integers(0, 256, (height // _SQUARE, width // _SQUARE, 3), np.uint8)
     message.data = squares.repeat(_SQUARE, axis=0).repeat(_SQUARE, axis=1).tobytes()
@@ -70,7 +70,7 @@ class Through:
         self.url = url
 
 
-def test_a_slow_line_thins_what_is_heavy_and_says_so(live, open_page):
+def test_slow_connection_thins_heavy_topics_and_shows_notice(live, open_page):
     viewer = live(SENSES)
     viewer.place("tip", 1.0, 0.0, 0.0)
     line = slow_line(viewer.url, 100_000.0)  # images come no larger than their panel
@@ -105,7 +105,7 @@ def test_a_slow_line_thins_what_is_heavy_and_says_so(live, open_page):
     viewer.run(lambda: line.__aexit__(None, None, None))
 
 
-def test_a_line_that_is_quick_says_nothing(live, open_page):
+def test_fast_connection_shows_no_notice(live, open_page):
     viewer = live(SENSES)
     page = open_page(viewer, wait=False)
     until(page, "lw.displays.length === 2")
@@ -116,7 +116,7 @@ def test_a_line_that_is_quick_says_nothing(live, open_page):
     until(page, "document.querySelector('.line-notice').hidden")
 
 
-def test_nothing_is_drawn_before_the_displays_are_known(live, browser):
+def test_scene_is_not_drawn_before_displays_are_known(live, browser):
     """Each frame of a waiting page is one less of the robot's where no graphics card draws."""
     viewer = live(SENSES)
     context = browser.new_context(viewport={"width": 1280, "height": 800})
@@ -131,7 +131,7 @@ def test_nothing_is_drawn_before_the_displays_are_known(live, browser):
     context.close()
 
 
-def test_nothing_is_fetched_from_outside_of_the_server(live, browser):
+def test_page_requests_nothing_from_other_hosts(live, browser):
     viewer = live(SENSES)
     own = urlsplit(viewer.url).netloc
     context = browser.new_context(viewport={"width": 1280, "height": 800})

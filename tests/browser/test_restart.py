@@ -55,7 +55,7 @@ def is_back(page) -> None:
     page.locator(".notice[data-state=connected]").wait_for(state="attached")
 
 
-def test_pages_keep_panels_pose_and_camera(start, context, port):
+def test_pages_keep_panels_joint_pose_and_camera_after_restart(start, context, port):
     program = start("view", str(MBOT), "--port", port)
     page, second = opened(context, program.url), opened(context, program.url)
     page.locator('[data-joint="left_wheel_joint"] input[type=range]').fill("1.2")
@@ -81,7 +81,7 @@ def test_pages_keep_panels_pose_and_camera(start, context, port):
     assert page.get_by_role("tab", name="Links").get_attribute("aria-selected") == "true"
 
 
-def test_another_file_is_seen_from_where_all_of_it_is_seen_and_panels_stay(start, context, port, tmp_path):
+def test_restart_with_other_file_resets_view_and_keeps_panels(start, context, port, tmp_path):
     other = tmp_path / "other.xacro"
     shutil.copy(MBOT, other)
     program = start("view", str(MBOT), "--port", port)
@@ -122,7 +122,7 @@ def runs(page, command: str) -> None:
 
 @posix
 @pytest.mark.parametrize("words", [("view", str(MBOT), "--terminal"), ("learn", "ws")], ids=["view", "learn"])
-def test_tabs_have_or_find_the_terminal_of_the_program_started_again(start, context, port, shell, words):
+def test_tabs_reattach_to_terminal_of_restarted_program(start, context, port, shell, words):
     program = start(*words, "--port", port)
     first = context.new_page()
     first.goto(program.url)
@@ -148,7 +148,7 @@ def test_tabs_have_or_find_the_terminal_of_the_program_started_again(start, cont
 
 
 @posix
-def test_a_page_whose_connection_was_lost_without_a_word_has_its_terminal_back(start, context, shell):
+def test_page_with_lost_connection_reclaims_its_terminal(start, context, shell):
     """The program does not notice the loss for seconds, and another page could have the terminal."""
     sockets = []
 
@@ -171,7 +171,7 @@ def test_a_page_whose_connection_was_lost_without_a_word_has_its_terminal_back(s
     shows(page, "again=42")
 
 
-def test_a_program_that_does_not_know_the_token_is_not_told_it(start, context, port, monkeypatch, tmp_path):
+def test_token_is_not_sent_to_program_without_it(start, context, port, monkeypatch, tmp_path):
     program = start("view", str(MBOT), "--port", port)
     page = opened(context, program.url)
     asked: list[str] = []

@@ -69,7 +69,7 @@ def place(page: Page, name: str) -> dict[str, float]:
 
 
 @pytest.mark.parametrize(("width", "height"), [(500, 800), (900, 700)])
-def test_up_to_a_tablet_the_scene_is_above_everything_else(sized, width, height):
+def test_scene_is_above_panels_up_to_tablet_width(sized, width, height):
     page = sized(width, height)
     beside = place(page, "Front")["width"] if width >= 600 else 0
     becomes(lambda: box(page, ".canvas-box")["width"] + beside, pytest.approx(width, abs=8))
@@ -81,7 +81,7 @@ def test_up_to_a_tablet_the_scene_is_above_everything_else(sized, width, height)
     assert box(page, ".displays-panel")["y"] > canvas["y"] + canvas["height"]
 
 
-def test_images_stand_beside_the_scene_where_that_is_wide_enough(sized):
+def test_images_are_beside_scene_in_wide_enough_window(sized):
     page = sized(800, 600)
     assert page.locator(".dv-tab[aria-selected=true]", has_text="Displays").count() == 1
     becomes(lambda: place(page, "Front") == place(page, "Back"), True)
@@ -90,14 +90,14 @@ def test_images_stand_beside_the_scene_where_that_is_wide_enough(sized):
     assert scene["width"] > images["width"] > 300
 
 
-def test_images_do_not_come_before_the_displays_where_all_panels_share_a_place(sized):
+def test_displays_tab_is_in_front_of_images_when_panels_share_space(sized):
     page = sized(500, 800)
     assert page.locator(".dv-tab[aria-selected=true]", has_text="Displays").count() == 1
     page.locator(".dv-tab", has_text="Front").dispatch_event("pointerdown")
     page.locator(".dv-tab[aria-selected=true]", has_text="Front").wait_for()
 
 
-def test_the_filter_of_displays_does_not_lie_over_the_tabs(sized):
+def test_displays_filter_does_not_overlap_tabs(sized):
     page = sized(800, 600)
     tabs, filter_ = box(page, ".dv-tab", text="Displays", part=".panel-tab"), box(page, ".displays-panel .search-box")
     assert filter_["y"] >= tabs["y"] + tabs["height"]
@@ -105,7 +105,7 @@ def test_the_filter_of_displays_does_not_lie_over_the_tabs(sized):
 
 
 @pytest.mark.parametrize("width", [360, 390])
-def test_a_phone_has_all_of_the_title_bar(sized, width):
+def test_title_bar_fits_phone(sized, width):
     page = sized(width, 844)
     edges = page.locator(".title-bar button:visible").evaluate_all(
         "all => all.map(each => each.getBoundingClientRect()).map(({ left, right }) => [left, right])"
@@ -115,7 +115,7 @@ def test_a_phone_has_all_of_the_title_bar(sized, width):
     assert all(before[1] <= after[0] + 0.5 for before, after in pairwise(edges)), edges
 
 
-def test_a_phone_shows_all_of_a_map_also_when_it_is_turned_until_the_user_moves_the_camera(browser, live):
+def test_phone_view_fits_map_until_user_moves_camera(browser, live):
     displays = "- {Class: rviz_default_plugins/Map, Name: Map, Enabled: true, Topic: {Value: /map}}"
     above = configuration(displays).replace("rviz_default_plugins/Orbit", "rviz_default_plugins/TopDownOrtho")
     viewer = live(above.replace("Distance: 10.0", "Scale: 60"))
@@ -146,7 +146,7 @@ def test_a_phone_shows_all_of_a_map_also_when_it_is_turned_until_the_user_moves_
 
 
 @pytest.mark.parametrize(("width", "height"), [(1024, 600), (1280, 800)])
-def test_every_panel_that_is_open_has_room(sized, width, height):
+def test_open_panels_have_enough_space(sized, width, height):
     page = sized(width, height)
     foot = box(page, ".foot")
     assert foot["height"] < 45, "the last minutes and the status are one line"
@@ -168,7 +168,7 @@ def test_every_panel_that_is_open_has_room(sized, width, height):
 
 
 @pytest.mark.parametrize(("width", "height"), [(844, 390), (667, 375), (932, 430)])
-def test_on_a_phone_that_is_held_across_the_panels_stand_beside_the_scene(sized, width, height):
+def test_panels_are_beside_scene_on_phone_in_landscape(sized, width, height):
     page = sized(width, height)
     canvas = box(page, ".canvas-box")
     assert canvas["height"] > 0.65 * height
@@ -183,7 +183,7 @@ def test_on_a_phone_that_is_held_across_the_panels_stand_beside_the_scene(sized,
     becomes(lambda: box(page, ".canvas-box")["height"] > 0.65 * height, True)
 
 
-def test_a_window_that_becomes_narrow_and_wide_again_has_the_panels_that_it_had(sized):
+def test_window_resized_narrow_and_wide_keeps_its_panels(sized):
     page = sized(1280, 800)
     page.get_by_role("button", name="Panels", exact=True).click()
     page.get_by_role("menuitemcheckbox", name="Topics", exact=True).click()
@@ -195,7 +195,7 @@ def test_a_window_that_becomes_narrow_and_wide_again_has_the_panels_that_it_had(
     becomes(lambda: place(page, "Topics")["x"] > place(page, "Displays")["x"], True)
 
 
-def test_panels_that_are_read_in_lines_share_one_place(sized):
+def test_wide_text_panels_share_one_group(sized):
     page = sized(1280, 800)
     for name in ("Source", "Topics", "Diagram", "Log"):
         page.get_by_role("button", name="Panels", exact=True).click()
@@ -204,7 +204,7 @@ def test_panels_that_are_read_in_lines_share_one_place(sized):
     assert page.locator(".dv-tab[aria-selected=true]", has_text="Log").count() == 1
 
 
-def test_tabs_are_for_the_keyboard_too(sized):
+def test_tabs_are_operable_by_keyboard(sized):
     page = sized(1280, 800)
     tabs = page.locator("[role=tablist]", has=page.locator(".dv-tab", has_text="Views")).get_by_role("tab")
     assert tabs.evaluate_all("all => all.map(each => each.tabIndex)").count(0) == 1
@@ -232,7 +232,7 @@ def test_tabs_are_for_the_keyboard_too(sized):
     until(page, f"lw.view.yaw !== {yaw}")
 
 
-def test_several_displays_are_selected_duplicated_removed_and_brought_back(sized):
+def test_multiple_displays_are_selected_duplicated_removed_and_restored(sized):
     page = sized(1280, 800)
 
     def row(name: str) -> Any:
@@ -266,7 +266,7 @@ def test_several_displays_are_selected_duplicated_removed_and_brought_back(sized
     assert names() == ["Grid", "Axes", "Axes", "Front", "Back", "TF", "TF"]
 
 
-def test_the_three_tabs_beside_views_are_whole_in_chinese(sized):
+def test_tabs_beside_views_are_not_clipped_in_chinese(sized):
     """At 1280 pixels the third was cut. Where no font has the characters, each is made as wide as one that has them."""
     page = sized(1280, 800, "zh-CN")
     page.evaluate(
@@ -292,13 +292,13 @@ def test_the_three_tabs_beside_views_are_whole_in_chinese(sized):
     becomes(fit, (3, True, 0))
 
 
-def test_the_three_tabs_beside_views_are_whole_in_english(sized):
+def test_tabs_beside_views_are_not_clipped_in_english(sized):
     page = sized(1280, 800)
     group = page.locator(".dv-tabs-and-actions-container", has=page.locator(".dv-tab", has_text="Views"))
     becomes(lambda: (group.locator(".dv-tab").count(), group.locator("[class*=overflow-dropdown]").count()), (3, 0))
 
 
-def test_the_label_of_the_type_of_view_stays_on_one_line_in_chinese(sized):
+def test_view_type_label_stays_on_one_line_in_chinese(sized):
     page = sized(800, 600, "zh-CN")
     page.locator(".dv-tab", has_text="视角").click()
     label = page.locator(".view-type > .toolbar-label")

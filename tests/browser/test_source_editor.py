@@ -70,7 +70,7 @@ def go_to(text, line: int, column: int = 0) -> None:
         text.press("ArrowRight")
 
 
-def test_a_file_is_edited_saved_and_the_robot_follows(start, open_page, file):
+def test_file_is_edited_and_saved_and_robot_follows(start, open_page, file):
     page = open_page(start("view", str(file)))
     text = open_editor(page)
     go_to(text, 4)
@@ -86,7 +86,7 @@ def test_a_file_is_edited_saved_and_the_robot_follows(start, open_page, file):
     becomes(file.read_text, ROBOT)
 
 
-def test_a_change_on_the_disk_is_merged_or_told_and_nothing_is_lost(start, open_page, file):
+def test_change_on_disk_is_merged_or_reported_as_conflict(start, open_page, file):
     page = open_page(start("view", str(file)))
     text = open_editor(page)
     go_to(text, 1)
@@ -107,7 +107,7 @@ def test_a_change_on_the_disk_is_merged_or_told_and_nothing_is_lost(start, open_
     becomes(file.read_text, ROBOT.replace("0.2", "0.3").replace('wiki/xacro">', 'wiki/xacro"><!-- mine -->'))
 
 
-def test_an_edit_of_the_robot_and_a_saved_text_have_one_history(start, open_page, file):
+def test_robot_edits_and_text_edits_share_undo_history(start, open_page, file):
     page = open_page(start("view", str(file)))
     text = open_editor(page)
     page.get_by_role("tab", name="Links").click()
@@ -169,7 +169,7 @@ def test_findings_completion_hover_definition_and_rename(start, open_page, file)
     page.locator(".cm-lsp-hover-tooltip").wait_for()
 
 
-def test_a_file_is_created_in_the_tree_and_the_keyboard_leaves_the_editor(start, open_page, file):
+def test_file_is_created_in_tree_and_escape_leaves_editor(start, open_page, file):
     page = open_page(start("view", str(file)))
     text = open_editor(page)
     page.get_by_role("button", name="Files", exact=True).click()
@@ -193,7 +193,7 @@ def test_a_file_is_created_in_the_tree_and_the_keyboard_leaves_the_editor(start,
     page.wait_for_function("!document.activeElement.closest('.cm-editor')")
 
 
-def test_the_editor_is_accessible(start, open_page, file):
+def test_source_editor_passes_axe(start, open_page, file):
     page = open_page(start("view", str(file)))
     text = open_editor(page)
     page.get_by_role("button", name="Files", exact=True).click()
@@ -217,7 +217,7 @@ def choose(page, label: str) -> None:
     page.keyboard.press("Enter")
 
 
-def test_findings_are_fixed_and_values_extracted_with_the_menu_of_actions(start, open_page, file):
+def test_code_actions_fix_findings_and_extract_values(start, open_page, file):
     leg = file.parent / "leg.xacro"
     turning = LEG.replace('type="fixed">', 'type="continuous"><axis xyz="0 0 2"/>')
     leg.write_text(turning)
@@ -249,7 +249,7 @@ def test_findings_are_fixed_and_values_extracted_with_the_menu_of_actions(start,
     assert leg.read_text() == turning
 
 
-def test_a_urdf_becomes_a_new_xacro_file(start, open_page, file):
+def test_urdf_is_converted_to_new_xacro_file(start, open_page, file):
     urdf = file.parent / "plain.urdf"
     urdf.write_text('<robot name="r">\n  <link name="base"/>\n</robot>\n')
     page = open_page(start("view", str(file)))
@@ -267,7 +267,7 @@ def test_a_urdf_becomes_a_new_xacro_file(start, open_page, file):
     becomes(lambda: "xmlns:xacro" in (file.parent / "plain.urdf.xacro").read_text(), True)
 
 
-def test_definitions_and_references_lead_through_files_and_back(start, open_page, file):
+def test_definitions_and_references_navigate_across_files(start, open_page, file):
     page = open_page(start("view", str(file)))
     text = open_editor(page)
     go_to(text, 4, 9)  # in xacro:leg
@@ -306,7 +306,7 @@ def test_definitions_and_references_lead_through_files_and_back(start, open_page
     page.get_by_text("There is no definition of this.").wait_for()
 
 
-def test_the_scene_shows_what_is_typed_and_the_last_good_robot_while_it_has_errors(start, open_page, file):
+def test_scene_follows_unsaved_text_and_keeps_last_valid_robot(start, open_page, file):
     program = start("view", str(file))
     page = open_page(program)
     text = open_editor(page)
@@ -338,7 +338,7 @@ def test_the_scene_shows_what_is_typed_and_the_last_good_robot_while_it_has_erro
     assert "right" in file.read_text()
 
 
-def test_an_edit_in_the_scene_changes_the_unsaved_text_and_is_undone_with_it(start, open_page, file):
+def test_scene_edit_changes_unsaved_text_and_shares_undo(start, open_page, file):
     page = open_page(start("view", str(file)))
     text = open_editor(page)
     go_to(text, 3)
@@ -371,7 +371,7 @@ def test_an_edit_in_the_scene_changes_the_unsaved_text_and_is_undone_with_it(sta
     until(page, f"lw.frames.tip === undefined && {EDITOR}.unsaved.length === 0")
 
 
-def test_a_rename_shows_what_changes_and_what_stays_before_it_is_applied(start, open_page, file):
+def test_rename_preview_lists_changed_and_unchanged_places(start, open_page, file):
     launch = file.parent / "config" / "arm.yaml"
     launch.parent.mkdir()
     launch.write_text("arm:\n  ros__parameters:\n    base: base\n    base_frame: base\n")
@@ -407,7 +407,7 @@ def test_a_rename_shows_what_changes_and_what_stays_before_it_is_applied(start, 
     assert preview.count() == 0
 
 
-def test_values_meanings_and_colours_are_shown_beside_the_text(start, open_page, file):
+def test_inlay_values_hover_and_colors_are_shown_in_text(start, open_page, file):
     leg = file.parent / "leg.xacro"
     text_of_leg = LEG.replace("0.1 0.1 0.6", "${2 * 0.05} 0.1 0.6").replace(
         "</visual>", '<material name="m"><color rgba="0.2 0.6 1 0.5"/></material></visual>'
@@ -425,7 +425,7 @@ def test_values_meanings_and_colours_are_shown_beside_the_text(start, open_page,
 
     go_to(text, 3)
     text.press("Control+.")
-    choose(page, "Choose the colour…")
+    choose(page, "Choose the color…")
     field = page.locator("input[type=color]")
     field.evaluate("each => { each.value = '#ff0000'; each.dispatchEvent(new Event('change')); }")
     shows(page, 'rgba="1 0 0 0.5"')
@@ -434,7 +434,7 @@ def test_values_meanings_and_colours_are_shown_beside_the_text(start, open_page,
     assert violations(page, ".source-panel") == []
 
 
-def test_names_are_searched_in_the_file_and_in_the_workspace(start, open_page, file):
+def test_symbols_are_searched_in_file_and_workspace(start, open_page, file):
     page = open_page(start("view", str(file)))
     text = open_editor(page)
     text.press("Control+Shift+O")

@@ -67,7 +67,7 @@ def hover(page, line: int, text: str) -> None:
     page.mouse.move(*page.evaluate(find, [line, text]))
 
 
-def test_findings_hover_and_completion_follow_the_unsaved_text(start, open_page, package):
+def test_findings_hover_and_completion_follow_unsaved_text(start, open_page, package):
     page = open_page(start("view", str(package / "robot.urdf.xacro")))
     text = open_walker(page)
     until(page, f"{EDITOR}.findings.join() === 'F401'")  # rclpy is found
@@ -89,7 +89,7 @@ def test_findings_hover_and_completion_follow_the_unsaved_text(start, open_page,
     assert (package / "walker.py").read_text(encoding="utf-8") == WALKER
 
 
-def test_a_finding_is_fixed_and_the_file_formatted(start, open_page, package):
+def test_finding_is_fixed_and_file_is_formatted(start, open_page, package):
     page = open_page(start("view", str(package / "robot.urdf.xacro")))
     text = open_walker(page)
     until(page, f"{EDITOR}.findings.join() === 'F401'")
@@ -105,7 +105,7 @@ def test_a_finding_is_fixed_and_the_file_formatted(start, open_page, package):
     becomes(lambda: (package / "walker.py").read_text(encoding="utf-8"), formatted.replace("steps\n", "steps\n"))
 
 
-def test_a_name_is_renamed_in_all_files_and_its_definition_shown(start, open_page, package):
+def test_symbol_is_renamed_in_all_files_and_definition_opens(start, open_page, package):
     page = open_page(start("view", str(package / "robot.urdf.xacro")))
     text = open_walker(page)
     until(page, f"{EDITOR}.findings.join() === 'F401'")

@@ -45,7 +45,7 @@ def run(page, command: str) -> None:
     page.keyboard.type(f"{command}\n")
 
 
-def test_commands_run_and_keys_stop_them(start, open_page, file):
+def test_commands_run_and_are_stopped_by_keys(start, open_page, file):
     page = open_page(start("view", str(file), "--terminal"))
     open_terminal(page)
     run(page, "echo 你好-$((40+2)); pwd")
@@ -70,7 +70,7 @@ def test_commands_run_and_keys_stop_them(start, open_page, file):
     shows(page, f"columns={state(page, 'panels.terminal.size.rows')} {state(page, 'panels.terminal.size.columns')}\n")
 
 
-def test_endless_output_neither_hangs_the_page_nor_the_program(start, open_page, file):
+def test_endless_output_does_not_block_page_or_program(start, open_page, file):
     page = open_page(start("view", str(file), "--terminal"))
     open_terminal(page)
     run(page, "yes")
@@ -81,7 +81,7 @@ def test_endless_output_neither_hangs_the_page_nor_the_program(start, open_page,
     shows(page, "\ndone=2")
 
 
-def test_an_ended_shell_is_shown_and_starts_again(start, open_page, file):
+def test_exited_shell_is_reported_and_restarts(start, open_page, file):
     page = open_page(start("view", str(file), "--terminal"))
     open_terminal(page)
     run(page, "exit 3")
@@ -92,7 +92,7 @@ def test_an_ended_shell_is_shown_and_starts_again(start, open_page, file):
     shows(page, "\nagain=2")
 
 
-def test_several_terminals_survive_a_reload(start, open_page, file):
+def test_multiple_terminals_survive_reload(start, open_page, file):
     page = open_page(start("view", str(file), "--terminal"))
     open_terminal(page)
     run(page, "name=first; echo $name")
@@ -113,7 +113,7 @@ def test_several_terminals_survive_a_reload(start, open_page, file):
     until(page, f"{TERMINAL}.terminals.length === 1 && {TERMINAL}.text.includes('again=first')")
 
 
-def test_a_second_page_tells_where_the_terminal_is_and_can_take_it(start, open_page, file):
+def test_second_page_shows_terminal_owner_and_can_take_over(start, open_page, file):
     program = start("view", str(file), "--terminal")
     first = open_page(program)
     open_terminal(first)
@@ -127,7 +127,7 @@ def test_a_second_page_tells_where_the_terminal_is_and_can_take_it(start, open_p
     until(first, f"{TERMINAL}.notice.includes('another page')")
 
 
-def test_text_is_copied_and_pasted_with_keys(start, open_page, file):
+def test_text_is_copied_and_pasted_by_keys(start, open_page, file):
     page = open_page(start("view", str(file), "--terminal"))
     page.context.grant_permissions(["clipboard-read", "clipboard-write"])
     open_terminal(page)
@@ -142,7 +142,7 @@ def test_text_is_copied_and_pasted_with_keys(start, open_page, file):
     shows(page, "\npasted-copy-2-me")
 
 
-def test_the_keyboard_leaves_the_terminal_and_the_page_keeps_its_keys_out(start, open_page, file):
+def test_keyboard_can_leave_terminal_and_page_shortcuts_are_ignored(start, open_page, file):
     page = open_page(start("view", str(file), "--terminal"))
     open_terminal(page)
     run(page, "cat -v")
@@ -159,7 +159,7 @@ def test_the_keyboard_leaves_the_terminal_and_the_page_keeps_its_keys_out(start,
     until(page, f"{TERMINAL}.focused")
 
 
-def test_the_terminal_is_accessible_in_both_themes(start, open_page, file):
+def test_terminal_passes_axe_in_both_themes(start, open_page, file):
     page = open_page(start("view", str(file), "--terminal"))
     open_terminal(page)
     run(page, r"printf '\033[31mred\033[33myellow\033[90mgrey\033[44mon blue\033[0m\n'")
@@ -167,7 +167,7 @@ def test_the_terminal_is_accessible_in_both_themes(start, open_page, file):
     assert violations(page) == []
 
 
-def test_a_screen_reader_reads_the_output(start, open_page, file):
+def test_screen_reader_can_read_output(start, open_page, file):
     page = open_page(start("view", str(file), "--terminal"))
     open_terminal(page)
     page.get_by_role("button", name="Let a screen reader read the terminal").click()
@@ -177,7 +177,7 @@ def test_a_screen_reader_reads_the_output(start, open_page, file):
     assert "Ctrl+Shift+M" in page.locator(INPUT).get_attribute("aria-label")
 
 
-def test_without_the_option_there_is_no_terminal(start, open_page, file):
+def test_terminal_is_unavailable_without_option(start, open_page, file):
     page = open_page(start("view", str(file)))
     assert not state(page, "panels.terminal.available")
     page.locator(".title-bar").get_by_text("Panels", exact=True).click()

@@ -83,7 +83,7 @@ def shows(page: Page, second: int) -> None:
     becomes(lambda: page.evaluate(corner), [*color(second), 255])
 
 
-def test_a_seek_shows_frames_and_images_of_its_time(page: Page):
+def test_seek_shows_frames_and_images_of_that_time(page: Page):
     assert state(page, "timeline")["length"] == LENGTH
     for seconds in (20.55, 4.55, 12.55):
         seek(page, seconds)
@@ -91,7 +91,7 @@ def test_a_seek_shows_frames_and_images_of_its_time(page: Page):
     assert not state(page, "timeline")["playing"]
 
 
-def test_what_is_dragged_to_is_shown_while_the_pointer_is_down(page: Page):
+def test_dragging_slider_updates_scene_before_release(page: Page):
     box = track(page)
     middle = box["y"] + box["height"] / 2
     page.mouse.move(box["x"] + 0.1 * box["width"], middle)
@@ -105,7 +105,7 @@ def test_what_is_dragged_to_is_shown_while_the_pointer_is_down(page: Page):
     page.mouse.up()
 
 
-def test_steps_go_from_message_to_message(page: Page):
+def test_step_buttons_move_between_messages(page: Page):
     seek(page, 9.95)
     shows(page, 9)
     # At each time there are three messages; a step shows all of them.
@@ -119,7 +119,7 @@ def test_steps_go_from_message_to_message(page: Page):
     until(page, "Math.abs(lw.timeline.position - 9.8) < 1e-5")
 
 
-def test_after_a_click_into_the_scene_the_arrows_step_as_well(page: Page):
+def test_arrow_keys_step_after_click_into_scene(page: Page):
     seek(page, 9.95)
     page.locator(".canvas-box canvas").first.click(position={"x": 30, "y": 30})
     page.keyboard.press("ArrowLeft")
@@ -128,7 +128,7 @@ def test_after_a_click_into_the_scene_the_arrows_step_as_well(page: Page):
     until(page, "Math.abs(lw.timeline.position - 10) < 1e-5")
 
 
-def test_steps_go_by_the_topic_that_is_chosen(start, open_page, tmp_path: Path):
+def test_steps_follow_the_chosen_topic(start, open_page, tmp_path: Path):
     with BagWriter(tmp_path / "rare") as writer:
         writer.add_topic("/second", "std_msgs/msg/Float64", [DEFAULT_QOS])
         writer.add_topic("/rare", "std_msgs/msg/Float64", [DEFAULT_QOS])
@@ -151,7 +151,7 @@ def test_steps_go_by_the_topic_that_is_chosen(start, open_page, tmp_path: Path):
     until(page, "Math.abs(lw.timeline.position - 4) < 1e-5")
 
 
-def test_space_plays_and_pauses_at_the_speed_that_is_chosen(page: Page):
+def test_space_plays_and_pauses_at_chosen_speed(page: Page):
     page.get_by_role("combobox", name="Speed").select_option("10")
     seek(page, 2.05)
     page.locator("body").focus()
@@ -168,7 +168,7 @@ def test_space_plays_and_pauses_at_the_speed_that_is_chosen(page: Page):
     until(page, "!lw.timeline.playing")
 
 
-def test_at_the_end_it_stays_or_begins_anew(page: Page):
+def test_playback_stops_or_repeats_at_end(page: Page):
     page.get_by_role("combobox", name="Speed").select_option("10")
     seek(page, LENGTH - 3)
     page.get_by_role("button", name="Play (Space)").click()
@@ -180,7 +180,7 @@ def test_at_the_end_it_stays_or_begins_anew(page: Page):
     until(page, "lw.timeline.playing && lw.timeline.position < 20")
 
 
-def test_plots_are_of_the_time_that_is_shown(page: Page):
+def test_plots_follow_timeline_position(page: Page):
     seek(page, 5.05)
     page.get_by_role("button", name="Panels").click()
     page.get_by_role("menuitemcheckbox", name="Plots", exact=True).click()
@@ -196,7 +196,7 @@ def test_plots_are_of_the_time_that_is_shown(page: Page):
     until(page, f"{last} >= 1")
 
 
-def test_the_last_minutes_are_gone_back_to_and_left_for_the_present(start, open_page, tmp_path: Path):
+def test_history_supports_pause_seek_and_return_to_live(start, open_page, tmp_path: Path):
     model = tmp_path / "arm.urdf"
     model.write_text(
         '<robot name="arm"><link name="base"/><link name="tip"/><joint name="turn" type="continuous">'
@@ -219,7 +219,7 @@ def test_the_last_minutes_are_gone_back_to_and_left_for_the_present(start, open_
     until(page, "lw.timeline.live && lw.timeline.kept <= 1e6 && lw.frames.tip")
 
 
-def test_a_viewer_that_keeps_nothing_has_no_timeline(start, open_page, tmp_path: Path):
+def test_viewer_without_history_has_no_timeline(start, open_page, tmp_path: Path):
     model = tmp_path / "arm.urdf"
     model.write_text('<robot name="arm"><link name="base"/></robot>')
     page = open_page(start("view", str(model), "--history", "0"), wait=False)

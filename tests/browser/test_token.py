@@ -62,7 +62,7 @@ def is_let_in(page) -> None:
     assert page.locator(".door").is_hidden()
 
 
-def test_the_token_leaves_the_address_bar_and_every_tab_of_the_browser_knows_it(viewer, context):
+def test_token_leaves_address_bar_and_is_shared_by_all_tabs(viewer, context):
     page = context.new_page()
     page.goto(viewer.url)
     is_let_in(page)
@@ -82,7 +82,7 @@ def test_the_token_leaves_the_address_bar_and_every_tab_of_the_browser_knows_it(
     becomes(lambda: second.url, bare(viewer))
 
 
-def test_no_other_server_of_the_host_is_told_anything(viewer, context, other_server):
+def test_token_is_not_sent_to_other_server_on_same_host(viewer, context, other_server):
     url, heard = other_server
     page = context.new_page()
     page.goto(viewer.url)
@@ -100,7 +100,7 @@ def test_no_other_server_of_the_host_is_told_anything(viewer, context, other_ser
     is_let_in(page)
 
 
-def test_a_browser_without_the_token_is_told_where_it_is_and_may_be_given_it(viewer, context):
+def test_browser_without_token_shows_form_that_accepts_it(viewer, context):
     page = context.new_page()
     page.goto(bare(viewer))
     door = page.locator(".door")
@@ -122,7 +122,7 @@ def test_a_browser_without_the_token_is_told_where_it_is_and_may_be_given_it(vie
     assert page.evaluate("() => document.getElementById('app').inert") is False
 
 
-def test_the_link_to_the_page_is_in_the_share_menu(viewer, context):
+def test_share_menu_copies_link(viewer, context):
     context.grant_permissions(["clipboard-read", "clipboard-write"])
     page = context.new_page()
     page.goto(viewer.url)

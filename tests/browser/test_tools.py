@@ -23,7 +23,7 @@ def scene(live, open_page) -> Scene:
 # --- tools -----------------------------------------------------------------------------------------------------------
 
 
-def test_keys_take_tools_in_hand_and_put_them_away(scene):
+def test_shortcut_keys_select_and_deselect_tools(scene):
     assert state(scene.page, "tool.class").endswith("/Interact")
     for key, tool in zip(
         "mcnpgu", ("MoveCamera", "FocusCamera", "Measure", "SetInitialPose", "SetGoal", "PublishPoint"), strict=True
@@ -39,7 +39,7 @@ def test_keys_take_tools_in_hand_and_put_them_away(scene):
     assert state(scene.page, "tool.class").endswith("/Measure")
 
 
-def test_letters_typed_into_a_field_are_text(scene):
+def test_letters_typed_into_field_do_not_select_tools(scene):
     field = scene.page.get_by_role("treeitem").filter(has_text="Target Frame").locator("input")
     field.click()
     field.fill("")
@@ -48,7 +48,7 @@ def test_letters_typed_into_a_field_are_text(scene):
     assert field.input_value() == "map"
 
 
-def test_a_goal_is_published_where_it_was_dragged(scene):
+def test_goal_pose_is_published_where_dragged(scene):
     scene.press("g")
     (x0, y0), (x1, y1) = scene.pixel(-2, 1), scene.pixel(-2, 3)
     scene.page.mouse.move(x0, y0)
@@ -65,7 +65,7 @@ def test_a_goal_is_published_where_it_was_dragged(scene):
     assert (goal.pose.orientation.z, goal.pose.orientation.w) == pytest.approx((math.sqrt(0.5),) * 2, abs=0.01)
 
 
-def test_a_pose_estimate_has_the_covariance_of_the_tool_properties(scene):
+def test_pose_estimate_uses_covariance_of_tool_properties(scene):
     scene.page.get_by_text("Tool Properties", exact=True).click()
     row = scene.page.get_by_role("treeitem").filter(has_text="Covariance yaw")
     row.locator("input").fill("0.5")
@@ -82,7 +82,7 @@ def test_a_pose_estimate_has_the_covariance_of_the_tool_properties(scene):
     assert listed["Covariance yaw"] == 0.5
 
 
-def test_a_clicked_point_is_published_and_drawn(scene):
+def test_clicked_point_is_published_and_drawn(scene):
     scene.press("u")
     scene.page.mouse.move(*scene.pixel(-3, -3))
     becomes(lambda: state(scene.page, "tool.hint"), "Move over an object to select the target point.")
@@ -93,7 +93,7 @@ def test_a_clicked_point_is_published_and_drawn(scene):
     until(scene.page, "lw.displays[2].drawn !== null")
 
 
-def test_measure_shows_the_distance_of_two_points(scene):
+def test_measure_shows_distance_between_two_points(scene):
     scene.press("n")
     scene.click(-0.4, 0)
     scene.click(0.4, 0.5)
@@ -104,7 +104,7 @@ def test_measure_shows_the_distance_of_two_points(scene):
     assert state(scene.page, "tool.state")["length"] is None
 
 
-def test_a_measurement_that_hits_nothing_says_so(scene):
+def test_measure_without_hit_shows_notice(scene):
     scene.press("n")
     box = scene.page.locator(".canvas-box canvas").bounding_box()
     scene.page.mouse.click(box["x"] + 3, box["y"] + box["height"] - 3)
@@ -114,7 +114,7 @@ def test_a_measurement_that_hits_nothing_says_so(scene):
     notice.wait_for(state="hidden")
 
 
-def test_focus_camera_looks_at_the_point(scene):
+def test_focus_camera_centers_clicked_point(scene):
     scene.press("c")
     scene.click(0.25, 0.5)
     until(scene.page, "lw.tool.class.endsWith('/Interact')")
@@ -140,7 +140,7 @@ def test_tools_are_added_and_removed(scene):
 # --- selection -------------------------------------------------------------------------------------------------------
 
 
-def test_things_are_selected_one_by_one_and_with_a_box(scene):
+def test_links_are_selected_by_click_and_box(scene):
     page = scene.page
     scene.press("s")
     scene.click(0, 0)
@@ -163,7 +163,7 @@ def test_things_are_selected_one_by_one_and_with_a_box(scene):
     assert sorted(scene.selected()) == ["base", "tip"]
 
 
-def test_the_selection_panel_tells_where_links_are(scene):
+def test_selection_panel_shows_link_poses(scene):
     page = scene.page
     scene.press("s")
     scene.click(*TIP)
@@ -178,7 +178,7 @@ def test_the_selection_panel_tells_where_links_are(scene):
 # --- time and keys ---------------------------------------------------------------------------------------------------
 
 
-def test_pause_freezes_what_is_shown(scene):
+def test_pause_freezes_displayed_scene(scene):
     page = scene.page
     page.get_by_role("button", name="Time", exact=True).click()
     page.get_by_role("button", name="Pause").click()
@@ -202,7 +202,7 @@ def test_pause_freezes_what_is_shown(scene):
     assert not state(page, "time.paused")
 
 
-def test_the_sheet_of_keys_opens_and_closes(scene):
+def test_keyboard_shortcuts_dialog_opens_and_closes(scene):
     page = scene.page
     page.keyboard.press("?")
     sheet = page.get_by_role("dialog", name="Keyboard shortcuts")

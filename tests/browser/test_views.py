@@ -17,7 +17,7 @@ def scene(live, open_page) -> Scene:
     return open_scene(live, open_page)
 
 
-def test_every_type_of_view_looks_as_the_one_before(scene):
+def test_view_type_change_keeps_camera_pose(scene):
     above = state(scene.page, "view")
     assert (above["type"], above["values"]["Scale"]) == ("TopDownOrtho", SCALE)
     assert above["camera"]["position"] == [0, 0, 500]
@@ -40,7 +40,7 @@ def test_every_type_of_view_looks_as_the_one_before(scene):
     assert "Focal Point" not in tree.inner_text()
 
 
-def test_the_mouse_moves_an_orthographic_view_by_its_scale(scene):
+def test_mouse_moves_orthographic_view_by_its_scale(scene):
     scene.drag((0, -3), (1, -3), "middle")
     values = state(scene.page, "view.values")
     assert (values["X"], values["Y"]) == pytest.approx((-1, 0), abs=0.03)
@@ -50,7 +50,7 @@ def test_the_mouse_moves_an_orthographic_view_by_its_scale(scene):
     until(scene.page, f"Math.abs(lw.view.values.Scale - {SCALE * 1.12}) < 0.5")
 
 
-def test_fps_flies_and_turns(scene):
+def test_fps_view_moves_and_rotates(scene):
     scene.show("FPS")
     scene.page.keyboard.press("z")
     before = state(scene.page, "view")
@@ -64,7 +64,7 @@ def test_fps_flies_and_turns(scene):
     assert math.dist(moved, [5, 5, 10]) == pytest.approx(1.2, rel=0.02)
 
 
-def test_a_follower_moves_and_turns_with_its_frame_but_does_not_tilt(scene):
+def test_follower_view_follows_position_and_yaw_of_frame(scene):
     scene.show("ThirdPersonFollower")
     scene.page.keyboard.press("z")
     scene.page.evaluate("() => undefined")

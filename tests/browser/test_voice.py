@@ -72,7 +72,7 @@ class Robot:
 
 
 @pytest.fixture
-def talking(live: Callable[..., LiveViewer], open_page: Callable[..., Page]) -> tuple[Robot, Page]:
+def voice_page(live: Callable[..., LiveViewer], open_page: Callable[..., Page]) -> tuple[Robot, Page]:
     viewer = live(configuration(GRID))
     robot = Robot(viewer)
     page = open_page(viewer, wait=False)
@@ -86,8 +86,8 @@ def open_panel(page: Page) -> None:
     page.wait_for_selector(".voice-talk")
 
 
-def test_the_key_talks_while_it_is_held(talking: tuple[Robot, Page]) -> None:
-    robot, page = talking
+def test_push_to_talk_key_records_while_held(voice_page: tuple[Robot, Page]) -> None:
+    robot, page = voice_page
     page.keyboard.down("v")
     wait_until(lambda: robot.seconds > 1.0, SECONDS)
     assert robot.held == [True]
@@ -103,8 +103,8 @@ def test_the_key_talks_while_it_is_held(talking: tuple[Robot, Page]) -> None:
     assert spectrum[strongest - 8 : strongest + 9].sum() > 0.9 * spectrum.sum()
 
 
-def test_the_conversation_is_shown_and_commands_are_typed(talking: tuple[Robot, Page]) -> None:
-    robot, page = talking
+def test_conversation_is_shown_and_commands_can_be_typed(voice_page: tuple[Robot, Page]) -> None:
+    robot, page = voice_page
     open_panel(page)
     until(page, "lw.panels.voice.serverState?.text_listeners === 1")
     robot.says("partial_text", "turn")
@@ -121,8 +121,8 @@ def test_the_conversation_is_shown_and_commands_are_typed(talking: tuple[Robot, 
     assert robot.held == []
 
 
-def test_the_button_talks_and_lets_go_when_the_page_is_left(talking: tuple[Robot, Page]) -> None:
-    robot, page = talking
+def test_talk_button_releases_when_page_loses_focus(voice_page: tuple[Robot, Page]) -> None:
+    robot, page = voice_page
     open_panel(page)
     page.locator(".voice-talk").focus()
     page.keyboard.down("Space")
@@ -149,8 +149,8 @@ _REFUSE = "navigator.mediaDevices.getUserMedia = () => Promise.reject(new DOMExc
     ],
     ids=["insecure", "denied", "none"],
 )
-def test_why_there_is_no_sound_is_said(talking: tuple[Robot, Page], breaks: str, words: str) -> None:
-    robot, page = talking
+def test_reason_for_missing_audio_is_shown(voice_page: tuple[Robot, Page], breaks: str, words: str) -> None:
+    robot, page = voice_page
     page.evaluate(breaks)
     page.locator(".scene-tool.talk").hover()
     page.mouse.down()
@@ -159,8 +159,8 @@ def test_why_there_is_no_sound_is_said(talking: tuple[Robot, Page], breaks: str,
     assert robot.samples == []
 
 
-def test_a_microphone_that_goes_away_is_told_of(talking: tuple[Robot, Page]) -> None:
-    robot, page = talking
+def test_lost_microphone_is_reported(voice_page: tuple[Robot, Page]) -> None:
+    robot, page = voice_page
     page.evaluate(
         "const get = navigator.mediaDevices.getUserMedia.bind(navigator.mediaDevices);"
         "navigator.mediaDevices.getUserMedia = async (wanted) => (window.heard = await get(wanted)); 0"
@@ -173,8 +173,8 @@ def test_a_microphone_that_goes_away_is_told_of(talking: tuple[Robot, Page]) -> 
     page.keyboard.up("v")
 
 
-def test_a_word_is_recorded_while_its_button_is_held(talking: tuple[Robot, Page], monkeypatch, tmp_path: Path) -> None:
-    robot, page = talking
+def test_word_is_recorded_while_button_is_held(voice_page: tuple[Robot, Page], monkeypatch, tmp_path: Path) -> None:
+    robot, page = voice_page
     monkeypatch.setenv("XDG_CONFIG_HOME", str(tmp_path))
     open_panel(page)
     page.locator(".word-box summary").click()
@@ -190,10 +190,10 @@ def test_a_word_is_recorded_while_its_button_is_held(talking: tuple[Robot, Page]
     assert robot.samples == []
 
 
-def test_who_is_not_understood_enrols_words_where_they_stand(
-    talking: tuple[Robot, Page], monkeypatch: pytest.MonkeyPatch, tmp_path: Path
+def test_unrecognized_speaker_can_enroll_words_at_this_place(
+    voice_page: tuple[Robot, Page], monkeypatch: pytest.MonkeyPatch, tmp_path: Path
 ) -> None:
-    robot, page = talking
+    robot, page = voice_page
     monkeypatch.setenv("XDG_CONFIG_HOME", str(tmp_path))
     rng = np.random.default_rng(1)
     words = Words()
@@ -207,7 +207,7 @@ def test_who_is_not_understood_enrols_words_where_they_stand(
     until(page, "lw.panels.voice.serverState !== null")
     robot.viewer.publish("/voice/propose_enrolling", get_message("std_msgs/msg/Bool")(data=True))
     robot.says("response", "I know none of what you say")
-    page.locator(".voice-notice").get_by_role("button", name="Enrol here").click()
+    page.locator(".voice-notice").get_by_role("button", name="Enroll here").click()
     page.get_by_text("0 of 2 words are enrolled here.").wait_for()
     # What was said elsewhere does not count, and the first word can be said at once.
     expect(page.get_by_role("button", name="Hold and say: stop")).to_be_focused()

@@ -88,7 +88,7 @@ def place(page: Page) -> tuple[float, float]:
     return x, y
 
 
-def test_words_enrolled_with_the_microphone_drive_mbot_and_stop_it(
+def test_enrolled_words_drive_and_stop_mbot(
     start: Start,
     open_page: Callable[..., Page],
     microphone: Microphone,

@@ -10,7 +10,7 @@ from linkwright.diagnostics import Diagnostic, Severity, phrase
 from linkwright.graph import DESCRIPTION_QOS, SENSOR_DATA_QOS, TF_QOS, DurabilityPolicy, QoSProfile
 from linkwright.messages import String, TFMessage, get_message, get_service
 from linkwright.page.protocol.simulation import ModelChoices
-from linkwright.simulation.page.modelling import entities
+from linkwright.simulation.page.modeling import entities
 from tests.browser.conftest import SECONDS, becomes, state, until
 from tests.browser.live import configuration
 from tests.waiting import wait_until
@@ -61,7 +61,7 @@ def bounds(page, link: str, shape: int = 0) -> list[list[float]]:
     return [[round(each, 2) for each in box[end]] for end in ("min", "max")]
 
 
-def test_models_are_drawn_and_move(live, open_page):
+def test_models_are_drawn_and_moved(live, open_page):
     viewer = described(live)
     page = open_page(viewer)
     viewer.settle(page)
@@ -73,7 +73,7 @@ def test_models_are_drawn_and_move(live, open_page):
     assert bounds(page, "crate::link") == [[1, -2, -0.5], [5, 2, 0.5]]
 
 
-def test_the_bar_is_there_with_the_simulation_and_the_mouse_handles_models(live, open_page, monkeypatch, tmp_path):
+def test_simulation_bar_and_mouse_control_models(live, open_page, monkeypatch, tmp_path):
     listed = threading.Event()
     monkeypatch.setattr(entities, "model_choices", lambda packages: (listed.wait(SECONDS), ModelChoices([]))[1])
     viewer = described(live)
@@ -174,7 +174,7 @@ SEEN = """\
 """
 
 
-def test_the_camera_looks_at_the_world_and_not_at_a_robot_that_fell_which_is_told(start, open_page, tmp_path):
+def test_camera_shows_world_origin_when_robot_falls_out_of_view(start, open_page, tmp_path):
     (tmp_path / "seen.urdf").write_text(SEEN)
     page = open_page(start("sim", "empty", "seen.urdf", "-x", "7", "-z", "-900"))
     page.locator(".banner").get_by_text("no link of 'seen' has a <collision>").wait_for()
@@ -184,7 +184,7 @@ def test_the_camera_looks_at_the_world_and_not_at_a_robot_that_fell_which_is_tol
     assert abs(state(page, "view.values['Focal Point/Z']")) < 1
 
 
-def test_a_robot_that_touches_nothing_is_told_over_the_scene_until_that_is_closed(live, open_page):
+def test_model_without_collision_is_reported_until_dismissed(live, open_page):
     viewer = described(live)
     page = open_page(viewer)
     falls = phrase("no link of '{name}' has a <collision>, so the model has no contacts and falls", name="seen")
@@ -203,7 +203,7 @@ def test_a_robot_that_touches_nothing_is_told_over_the_scene_until_that_is_close
     banner.wait_for(state="hidden")
 
 
-def test_a_slow_world_is_told_over_the_scene_with_a_button_for_a_lighter_one(live, open_page):
+def test_slow_world_is_reported_with_button_to_switch_off_images(live, open_page):
     image = "\n- {Class: rviz_default_plugins/Image, Name: Front, Enabled: true, Topic: {Value: /front}}"
     viewer = described(live, image)
     page = open_page(viewer)
@@ -229,7 +229,7 @@ LAMPS = """
 </world>"""
 
 
-def test_a_world_is_in_the_light_of_the_camera_a_studio_or_its_own_lights(live, open_page):
+def test_world_lighting_follows_chosen_light(live, open_page):
     def lit(page) -> dict:
         return page.evaluate("() => window.linkwright.displays[0].drawn.light")
 
@@ -256,7 +256,7 @@ SENSING = """
 </world>"""
 
 
-def test_rays_and_frustums_are_drawn_as_the_display_chooses(live, open_page):
+def test_sensor_rays_and_frustums_follow_display_properties(live, open_page):
     def drawn(page) -> dict:
         return page.evaluate("() => window.linkwright.displays[0].drawn.sensors")
 

@@ -29,7 +29,7 @@ def expected(example: Example, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) 
     return (tmp_path / "expected.md").read_text(encoding="utf-8")
 
 
-def test_a_pull_request_gets_the_report(example: Example, service: Service, runner: Runner, expected: str) -> None:
+def test_report_is_posted_on_pull_request(example: Example, service: Service, runner: Runner, expected: str) -> None:
     run = runner.run("review", example.event())
     assert run.failed == ""
     assert service.bodies == [expected + LINK]
@@ -43,7 +43,7 @@ def test_a_pull_request_gets_the_report(example: Example, service: Service, runn
     example.assert_nothing_ran()
 
 
-def test_the_checkout_of_the_action_is_installed(example: Example, runner: Runner) -> None:
+def test_checkout_of_action_is_installed(example: Example, runner: Runner) -> None:
     run = runner.run("review", example.event())
     *options, folder = runner.installed.read_text(encoding="utf-8").splitlines()
     assert options == ["-I", "-m", "pip", "install", "--quiet", "--editable"]
@@ -51,7 +51,7 @@ def test_the_checkout_of_the_action_is_installed(example: Example, runner: Runne
     assert run.used[0] == ("actions/setup-python@v5", {"python-version": "3.13"})
 
 
-def test_the_second_run_edits_the_comment(example: Example, service: Service, runner: Runner) -> None:
+def test_second_run_edits_comment(example: Example, service: Service, runner: Runner) -> None:
     runner.run("review", example.event())
     head = example.repository.commit({"arm_description/urdf/more.urdf": '<robot name="more"><link name="a"/></robot>'})
     run = runner.run("review", Example(example.repository, example.base, head).event())
@@ -64,14 +64,14 @@ def test_the_second_run_edits_the_comment(example: Example, service: Service, ru
     ]
 
 
-def test_the_same_report_is_not_written_again(example: Example, service: Service, runner: Runner) -> None:
+def test_unchanged_report_is_not_posted_again(example: Example, service: Service, runner: Runner) -> None:
     for _ in range(2):
         run = runner.run("review", example.event())
     assert "the comment is up to date" in run.output
     assert len(service.writes) == 1
 
 
-def test_nothing_to_say_makes_no_comment(example: Example, service: Service, runner: Runner) -> None:
+def test_empty_report_posts_no_comment(example: Example, service: Service, runner: Runner) -> None:
     base = example.head
     head = example.repository.commit({"README.md": "An arm."})
     quiet = Example(example.repository, base, head)
@@ -83,7 +83,7 @@ def test_nothing_to_say_makes_no_comment(example: Example, service: Service, run
     assert "0 breaking changes" in service.bodies[0]
 
 
-def test_a_read_only_token_is_told_in_a_line(example: Example, service: Service, runner: Runner) -> None:
+def test_read_only_token_is_reported_in_one_notice(example: Example, service: Service, runner: Runner) -> None:
     service.can_write = False
     run = runner.run("review", example.event(is_fork=True))
     assert run.failed == ""
@@ -93,7 +93,7 @@ def test_a_read_only_token_is_told_in_a_line(example: Example, service: Service,
     assert (run.uploaded["linkwright-review"] / "pull-request.txt").read_text(encoding="utf-8") == "5\n"
 
 
-def test_conditions_fail_the_job_after_the_comment(example: Example, service: Service, runner: Runner) -> None:
+def test_fail_on_condition_fails_job_after_comment(example: Example, service: Service, runner: Runner) -> None:
     run = runner.run("review", example.event(), fail_on="breaking")
     assert run.failed == "Result"
     assert "::error::the review ended with status 1 (fail-on: breaking)" in run.output
@@ -101,7 +101,7 @@ def test_conditions_fail_the_job_after_the_comment(example: Example, service: Se
     assert run.outputs["status"] == "1"
 
 
-def test_inputs(example: Example, service: Service, runner: Runner) -> None:
+def test_inputs_of_review_action_are_applied(example: Example, service: Service, runner: Runner) -> None:
     run = runner.run(
         "review",
         example.event(),
@@ -121,7 +121,7 @@ def test_inputs(example: Example, service: Service, runner: Runner) -> None:
     example.assert_nothing_ran()
 
 
-def test_an_event_without_a_pull_request(example: Example, runner: Runner) -> None:
+def test_event_without_pull_request_requires_base_and_head(example: Example, runner: Runner) -> None:
     run = runner.run("review", {"ref": "refs/heads/main"})
     assert run.failed == "Review"
     assert "::error::run the review on the event pull_request, or pass the inputs base and head" in run.output
@@ -130,14 +130,14 @@ def test_an_event_without_a_pull_request(example: Example, runner: Runner) -> No
     assert "comment" not in run.output.split("::notice::")[-1]
 
 
-def test_a_commit_that_the_clone_lacks(example: Example, service: Service, runner: Runner) -> None:
+def test_commit_missing_from_clone_is_reported(example: Example, service: Service, runner: Runner) -> None:
     run = runner.run("review", example.event(), base="0123456789" * 4)
     assert run.failed == "Review"
     assert "error[CLI343]" in run.output
     assert service.requests == []
 
 
-def test_gitea(example: Example, service: Service, runner: Runner) -> None:
+def test_gitea_updates_comment_without_pagination(example: Example, service: Service, runner: Runner) -> None:
     service.ignores_pages = True
     for number in range(120):
         service.add(f"comment {number}", "ann", "")
@@ -151,7 +151,7 @@ def test_gitea(example: Example, service: Service, runner: Runner) -> None:
     assert "report.html" not in service.bodies[-1]
 
 
-def test_data_has_what_decides_about_a_comment(example: Example, runner: Runner) -> None:
+def test_report_json_has_fields_that_decide_on_comment(example: Example, runner: Runner) -> None:
     run = runner.run("review", example.event())
     data = json.loads((Path(run.outputs["folder"]) / "report.json").read_text(encoding="utf-8"))
     assert {"subjects", "new_findings", "fixed_findings", "notes"} < data.keys()

@@ -67,7 +67,7 @@ def comment(runner: Runner, head: str = HEAD, **changes: Any) -> Run:
     return runner.run("comment", event(head, **changes))
 
 
-def test_the_report_of_the_review_is_posted(example: Example, fork: Service) -> None:
+def test_review_report_is_posted(example: Example, fork: Service) -> None:
     runner = make_runner(example.repository.root, fork)
     fork.can_write = False
     folder = runner.run("review", example.event(is_fork=True)).uploaded["linkwright-review"]
@@ -86,7 +86,7 @@ def test_the_report_of_the_review_is_posted(example: Example, fork: Service) -> 
     example.assert_nothing_ran()
 
 
-def test_the_comment_is_edited(fork: Service, runner: Runner) -> None:
+def test_comment_is_edited(fork: Service, runner: Runner) -> None:
     comment(runner)
     fork.artifact = packed(GOOD.replace("1 breaking", "2 breaking"))
     assert comment(runner).output == "::notice::the comment is updated\n"
@@ -101,7 +101,7 @@ def test_comments_of_others_are_not_edited(fork: Service, runner: Runner) -> Non
     assert fork.bodies[0] == f"{MARKER}\nmine"
 
 
-def test_the_owner_of_another_token_edits_their_own(fork: Service, runner: Runner) -> None:
+def test_owner_of_other_token_edits_own_comment(fork: Service, runner: Runner) -> None:
     fork.me = "robot-team"
     fork.add(f"{MARKER}\nold", "github-actions[bot]", "Bot")
     comment(runner)
@@ -129,7 +129,7 @@ def test_the_owner_of_another_token_edits_their_own(fork: Service, runner: Runne
     ],
     ids=lambda value: value if isinstance(value, str) and len(value) < 30 and "\n" not in value else "",
 )
-def test_a_text_that_is_no_report_is_not_posted(fork: Service, runner: Runner, text: str | bytes, reason: str) -> None:
+def test_text_that_is_not_a_report_is_not_posted(fork: Service, runner: Runner, text: str | bytes, reason: str) -> None:
     fork.artifact = packed(text)
     run = comment(runner)
     assert run.failed == "Comment on the pull request", reason
@@ -139,21 +139,21 @@ def test_a_text_that_is_no_report_is_not_posted(fork: Service, runner: Runner, t
     assert fork.writes == []
 
 
-def test_addresses_in_names_are_no_links(fork: Service, runner: Runner) -> None:
+def test_urls_in_names_are_not_links(fork: Service, runner: Runner) -> None:
     fork.artifact = packed(f"{MARKER}\n- mesh https://example.org/a.stl and www.example.org\n")
     comment(runner)
     assert fork.bodies[0].endswith("- mesh https://\u200bexample.org/a.stl and www.\u200bexample.org\n")
 
 
 @pytest.mark.parametrize("number", ["", "5; touch pwned", "$(touch pwned)", "-5", "5\n6", "5" * 20, "../5", "0"])
-def test_a_number_that_is_none(fork: Service, runner: Runner, number: str, tmp_path: Path) -> None:
+def test_malformed_pull_request_number_is_rejected(fork: Service, runner: Runner, number: str, tmp_path: Path) -> None:
     fork.artifact = packed(number=number)
     assert comment(runner).output.startswith("::error::")
     assert fork.writes == []
     assert not list(tmp_path.rglob("pwned"))
 
 
-def test_the_pull_request_of_somebody_else(fork: Service, runner: Runner) -> None:
+def test_pull_request_of_another_repository_is_rejected(fork: Service, runner: Runner) -> None:
     fork.pulls[6] = {"state": "open", "head": {"sha": HEAD, "repo": {"id": 3}}}
     fork.pulls[7] = {"state": "open", "head": {"sha": HEAD, "repo": None}}
     for number in ("6", "7"):
@@ -165,7 +165,7 @@ def test_the_pull_request_of_somebody_else(fork: Service, runner: Runner) -> Non
 
 
 @pytest.mark.parametrize("changes", [{"state": "closed"}, {"head": {"sha": "d" * 40, "repo": {"id": 2}}}])
-def test_an_older_run_posts_nothing(fork: Service, runner: Runner, changes: dict[str, Any]) -> None:
+def test_outdated_run_posts_nothing(fork: Service, runner: Runner, changes: dict[str, Any]) -> None:
     fork.pulls[5] |= changes
     run = comment(runner)
     assert (run.failed, fork.writes) == ("", [])
@@ -173,13 +173,13 @@ def test_an_older_run_posts_nothing(fork: Service, runner: Runner, changes: dict
 
 
 @pytest.mark.parametrize("changes", [{"event": "push"}, {"head_repository": {"id": 1}}, {"head_repository": None}])
-def test_runs_of_the_repository_itself(fork: Service, runner: Runner, changes: dict[str, Any]) -> None:
+def test_runs_without_fork_post_nothing(fork: Service, runner: Runner, changes: dict[str, Any]) -> None:
     run = comment(runner, **changes)
     assert (run.failed, fork.requests) == ("", [])
     assert "is not one of a fork's pull request" in run.output
 
 
-def test_artifacts_that_are_none(fork: Service, runner: Runner) -> None:
+def test_missing_or_malformed_artifact_is_reported(fork: Service, runner: Runner) -> None:
     fork.artifact = None
     assert comment(runner).output == "::notice::the run has no artifact 'linkwright-review'\n"
     for artifact in (b"no archive", packed(report="[" * 100_000), packed(report="[]"), zip_without_report()):
@@ -190,7 +190,7 @@ def test_artifacts_that_are_none(fork: Service, runner: Runner) -> None:
     assert fork.writes == []
 
 
-def test_nothing_of_an_artifact_is_written_to_disk(fork: Service, runner: Runner, tmp_path: Path) -> None:
+def test_artifact_files_are_not_written_to_disk(fork: Service, runner: Runner, tmp_path: Path) -> None:
     before = set(tmp_path.rglob("*"))
     fork.artifact = packed(**{"../../pwned": "x", "pwned": "x"})
     comment(runner)
@@ -199,7 +199,7 @@ def test_nothing_of_an_artifact_is_written_to_disk(fork: Service, runner: Runner
     assert len(fork.comments) == 1
 
 
-def test_a_service_that_fails_for_a_moment(fork: Service, runner: Runner) -> None:
+def test_temporary_service_failures_are_retried(fork: Service, runner: Runner) -> None:
     fork.failures = [502, 429]
     assert comment(runner).output == "::notice::the comment is posted\n"
     fork.failures = [500] * 3
@@ -210,7 +210,7 @@ def test_a_service_that_fails_for_a_moment(fork: Service, runner: Runner) -> Non
     )
 
 
-def test_no_token_and_no_service(runner: Runner, tmp_path: Path) -> None:
+def test_missing_token_and_unreachable_service_are_reported(runner: Runner, tmp_path: Path) -> None:
     run = runner.run("comment", event(), token="")
     assert run.output == "::notice::there is no comment, because the variable LINKWRIGHT_TOKEN is not set\n"
     variables = {"GITHUB_API_URL": "http://127.0.0.1:1", "GITHUB_REPOSITORY": "team/robots"}

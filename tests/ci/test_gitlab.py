@@ -56,7 +56,7 @@ def gitlab(example: Example, service: Service, runner: Runner) -> GitLab:
     return GitLab(example, service, runner)
 
 
-def test_a_merge_request_gets_the_report(example: Example, service: Service, gitlab: GitLab) -> None:
+def test_report_is_posted_on_merge_request(example: Example, service: Service, gitlab: GitLab) -> None:
     done = gitlab.run()
     assert done.returncode == 0, done.stdout
     assert done.stdout.endswith("the comment is posted\n")
@@ -71,7 +71,7 @@ def test_a_merge_request_gets_the_report(example: Example, service: Service, git
     example.assert_nothing_ran()
 
 
-def test_the_second_run_edits_the_note(example: Example, service: Service, gitlab: GitLab) -> None:
+def test_second_run_edits_note(example: Example, service: Service, gitlab: GitLab) -> None:
     gitlab.run()
     example.repository.commit({"arm_description/urdf/more.urdf": '<robot name="more"><link name="a"/></robot>'})
     assert gitlab.run().stdout.endswith("the comment is updated\n")
@@ -79,7 +79,7 @@ def test_the_second_run_edits_the_note(example: Example, service: Service, gitla
     assert len(service.comments) == 1
 
 
-def test_without_a_token_the_files_are_the_report(service: Service, gitlab: GitLab) -> None:
+def test_report_files_are_written_without_token(service: Service, gitlab: GitLab) -> None:
     done = gitlab.run(LINKWRIGHT_TOKEN="")
     assert done.returncode == 0
     assert "there is no comment, because the variable LINKWRIGHT_TOKEN is not set" in done.stdout
@@ -87,13 +87,13 @@ def test_without_a_token_the_files_are_the_report(service: Service, gitlab: GitL
     assert (gitlab.folder / "report.html").is_file()
 
 
-def test_conditions_fail_the_job_after_the_note(service: Service, gitlab: GitLab) -> None:
+def test_fail_on_condition_fails_job_after_note(service: Service, gitlab: GitLab) -> None:
     done = gitlab.run(LINKWRIGHT_FAIL_ON="breaking", LINKWRIGHT_PACKAGES="arm_description")
     assert done.returncode == 1
     assert len(service.comments) == 1
 
 
-def test_merged_results_are_compared_from_the_branch(example: Example, gitlab: GitLab) -> None:
+def test_merged_results_pipeline_compares_from_source_branch(example: Example, gitlab: GitLab) -> None:
     repository = example.repository
     repository.git("checkout", "--quiet", "main")
     repository.commit({"arm_description/urdf/target.urdf": '<robot name="t"><link name="a"/></robot>'})
@@ -104,7 +104,7 @@ def test_merged_results_are_compared_from_the_branch(example: Example, gitlab: G
     assert "target.urdf" not in comment
 
 
-def test_linkwright_is_cloned_from_an_address(service: Service, runner: Runner, gitlab: GitLab, tmp_path: Path) -> None:
+def test_linkwright_is_cloned_from_url(service: Service, runner: Runner, gitlab: GitLab, tmp_path: Path) -> None:
     linkwright = Repository(tmp_path / "linkwright")
     programs = list(TEMPLATES.rglob("*.py"))
     linkwright.commit({str(path.relative_to(REPOSITORY)): path.read_text(encoding="utf-8") for path in programs})
@@ -133,13 +133,13 @@ def test_findings_are_reported_as_code_quality(example: Example, gitlab: GitLab)
     assert "arm_description/urdf/arm #1.urdf.xacro" in {entry["location"]["path"] for entry in report}
 
 
-def test_the_target_branch_has_an_empty_report(tmp_path: Path) -> None:
+def test_target_branch_has_empty_code_quality_report(tmp_path: Path) -> None:
     job = TEMPLATE["linkwright-review-base"]
     subprocess.run(["bash", "-e", "-c", "\n".join(job["script"])], cwd=tmp_path, check=True)
     assert json.loads((tmp_path / job["artifacts"]["reports"]["codequality"]).read_text(encoding="utf-8")) == []
 
 
-def test_the_artifacts_are_what_the_script_writes(gitlab: GitLab) -> None:
+def test_artifacts_match_files_written_by_script(gitlab: GitLab) -> None:
     gitlab.run()
     root = gitlab.folder.parent
     artifacts = JOB["artifacts"]

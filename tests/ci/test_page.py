@@ -30,7 +30,7 @@ def steps(name: str) -> list[dict[str, Any]]:
 
 
 @pytest.mark.parametrize("language", PAGES)
-def test_the_outputs_are_current(
+def test_outputs_on_page_are_current(
     language: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
     shown = blocks(PAGES[language])
@@ -49,7 +49,7 @@ def test_the_outputs_are_current(
 
 
 @pytest.mark.parametrize("name", [".github/workflows/review.yml", ".gitea/workflows/review.yml"])
-def test_the_workflow_uses_the_action(name: str) -> None:
+def test_workflow_uses_review_action(name: str) -> None:
     checkout, review, *_ = steps(name)
     assert checkout["with"] == {"fetch-depth": 0}
     _, _, path = review["uses"].partition("/linkwright/")
@@ -58,7 +58,7 @@ def test_the_workflow_uses_the_action(name: str) -> None:
     assert review.get("with", {}).keys() <= declared.keys()
 
 
-def test_the_workflow_for_forks_checks_out_nothing() -> None:
+def test_workflow_for_forks_checks_out_nothing() -> None:
     workflow = files()[".github/workflows/review-comment.yml"]
     (step,) = steps(".github/workflows/review-comment.yml")
     assert step == {"uses": "OWNER/linkwright/packaging/ci/comment@REF"}
@@ -66,14 +66,14 @@ def test_the_workflow_for_forks_checks_out_nothing() -> None:
     assert workflow["permissions"] == {"actions": "read", "pull-requests": "write"}
 
 
-def test_no_workflow_gives_the_token_to_code_of_a_pull_request() -> None:
+def test_workflows_do_not_give_token_to_pull_request_code() -> None:
     for name, content in files().items():
         assert "pull_request_target" not in str(content), name
     for name in (".github/workflows/review.yml", ".gitea/workflows/review.yml"):
         assert files()[name][True] == "pull_request"
 
 
-def test_gitlab_includes_the_template() -> None:
+def test_gitlab_file_includes_template() -> None:
     settings = files()[".gitlab-ci.yml"]
     template = yaml.safe_load((TEMPLATES / "gitlab" / "review.yml").read_text(encoding="utf-8"))
     assert (TEMPLATES.parent.parent / settings["include"][0]["file"]).is_file()
@@ -82,14 +82,14 @@ def test_gitlab_includes_the_template() -> None:
             assert job["variables"].keys() <= template[name]["variables"].keys()
 
 
-def test_the_local_hook_is_the_one_that_others_can_use() -> None:
+def test_local_hook_matches_published_hook() -> None:
     (local,) = files()[".pre-commit-config.yaml"]["repos"][0]["hooks"]
     hook = HOOKS[local["id"]]
     assert local["entry"] == " ".join([hook["entry"], *hook["args"]])
     assert (local["name"], local["files"]) == (hook["name"], hook["files"])
 
 
-def test_the_inputs_are_described() -> None:
+def test_action_inputs_are_documented() -> None:
     declared = yaml.safe_load((TEMPLATES / "review" / "action.yml").read_text(encoding="utf-8"))["inputs"]
     for page in PAGES.values():
         text = page.read_text(encoding="utf-8")

@@ -40,7 +40,7 @@ def run(repository: Repository, name: str) -> subprocess.CompletedProcess[str]:
     )
 
 
-def test_each_hook_has_what_pre_commit_asks_for() -> None:
+def test_hooks_have_fields_that_pre_commit_requires() -> None:
     for hook in HOOKS.values():
         assert {"id", "name", "entry", "language", "files"} <= hook.keys()
         assert hook["language"] == "python"
@@ -48,13 +48,13 @@ def test_each_hook_has_what_pre_commit_asks_for() -> None:
         assert not re.search(hook["files"], "README.md")
 
 
-def test_old_findings_stop_only_the_hook_that_checks_everything(repository: Repository) -> None:
+def test_old_findings_fail_only_hook_that_checks_all(repository: Repository) -> None:
     assert run(repository, "linkwright-check").returncode == 1
     done = run(repository, "linkwright-check-changed")
     assert done.returncode == 0, done.stderr
 
 
-def test_new_findings_stop_the_commit(repository: Repository) -> None:
+def test_new_findings_stop_commit(repository: Repository) -> None:
     repository.write({"arm_description/urdf/arm.urdf.xacro": WRONG})
     repository.git("add", "--all")
     done = run(repository, "linkwright-check-changed")

@@ -20,7 +20,7 @@ def load(path: Path) -> dict[str, Any]:
 
 
 @pytest.mark.parametrize("path", ACTIONS, ids=lambda path: path.parent.name)
-def test_actions(path: Path) -> None:
+def test_action_files_have_valid_structure(path: Path) -> None:
     action = load(path)
     assert (
         {"name", "description", "inputs", "runs"}
@@ -40,7 +40,7 @@ def test_actions(path: Path) -> None:
 
 
 @pytest.mark.parametrize("path", sorted(TEMPLATES.rglob("*.yml")), ids=lambda path: path.parent.name)
-def test_no_script_contains_an_expression(path: Path) -> None:
+def test_scripts_contain_no_expressions(path: Path) -> None:
     """An expression is inserted into the script before a shell reads it, with whatever a branch is called."""
     definition = load(path)
     steps = definition["runs"]["steps"] if "runs" in definition else definition.values()
@@ -49,6 +49,6 @@ def test_no_script_contains_an_expression(path: Path) -> None:
 
 
 @pytest.mark.parametrize("path", sorted(TEMPLATES.rglob("*.yml")), ids=lambda path: path.parent.name)
-def test_python_does_not_look_into_the_working_folder(path: Path) -> None:
+def test_python_runs_isolated_from_working_folder(path: Path) -> None:
     for line in re.findall(r".*python3?\"? .*", path.read_text(encoding="utf-8")):
         assert line.lstrip().startswith("#") or re.search(r'python3?"? -I ', line), line

@@ -52,7 +52,7 @@ def _verdict(order: int) -> GoalResponse:
 GOAL = ["action", "send_goal", "/fibonacci", "example_interfaces/action/Fibonacci"]
 
 
-def test_action_list_info_type(in_graph, capsys):
+def test_action_list_info_and_type_print_action(in_graph, capsys):
     in_graph(fibonacci)
     assert run(capsys, "action", "list")[0] == "/fibonacci\n"
     assert run(capsys, "action", "list", "-t")[0] == "/fibonacci [example_interfaces/action/Fibonacci]\n"
@@ -70,7 +70,7 @@ def test_action_list_info_type(in_graph, capsys):
     )
 
 
-def test_the_parts_of_an_action_are_hidden_topics_and_services(in_graph, capsys):
+def test_action_topics_and_services_are_hidden(in_graph, capsys):
     in_graph(fibonacci)
     assert "/_action/" not in run(capsys, "topic", "list")[0]
     assert "/_action/" not in run(capsys, "service", "list")[0]
@@ -80,7 +80,7 @@ def test_the_parts_of_an_action_are_hidden_topics_and_services(in_graph, capsys)
     )
 
 
-def test_send_goal(in_graph, capsys):
+def test_send_goal_prints_goal_and_result(in_graph, capsys):
     in_graph(fibonacci)
     out, _ = run(capsys, *GOAL, "{order: 3}")
     assert re.fullmatch(
@@ -93,13 +93,13 @@ def test_send_goal(in_graph, capsys):
     ), out
 
 
-def test_send_goal_with_feedback(in_graph, capsys):
+def test_send_goal_prints_feedback(in_graph, capsys):
     in_graph(fibonacci)
     out, _ = run(capsys, *GOAL, "{order: 3}", "--feedback")
     assert "Feedback:\n    sequence:\n- 0\n- 1\n- 1\n\n" in out
 
 
-def test_a_goal_that_is_rejected(in_graph, capsys):
+def test_send_goal_reports_rejected_goal(in_graph, capsys):
     in_graph(fibonacci)
     assert run(capsys, *GOAL, "{order: 30}", status=1)[0].endswith("Goal was rejected.\n")
 
@@ -112,7 +112,7 @@ def test_a_goal_that_is_rejected(in_graph, capsys):
         (["/no", "example_interfaces/action/Fibonacci", "{}", "--timeout", "0.1"], "no server of action '/no'"),
     ],
 )
-def test_mistakes_of_send_goal(in_graph, capsys, words, message):
+def test_send_goal_reports_invalid_arguments(in_graph, capsys, words, message):
     in_graph(fibonacci)
     assert message in run(capsys, "action", "send_goal", *words, status=1)[1]
 
@@ -136,20 +136,20 @@ def camera(graph: Graph) -> None:
     graph.create_node("other")
 
 
-def test_lifecycle_nodes(in_graph, capsys):
+def test_lifecycle_nodes_prints_managed_nodes(in_graph, capsys):
     in_graph(camera)
     assert run(capsys, "lifecycle", "nodes")[0] == "/camera\n"
     assert run(capsys, "lifecycle", "nodes", "-c")[0] == "1\n"
 
 
-def test_lifecycle_get(in_graph, capsys):
+def test_lifecycle_get_prints_state(in_graph, capsys):
     in_graph(camera)
     assert run(capsys, "lifecycle", "get", "/camera")[0] == "unconfigured [1]\n"
     assert run(capsys, "lifecycle", "get")[0] == "/camera: unconfigured [1]\n"
     assert "Node not found" in run(capsys, "lifecycle", "get", "/nothing", status=1)[1]
 
 
-def test_lifecycle_list(in_graph, capsys):
+def test_lifecycle_list_prints_transitions(in_graph, capsys):
     in_graph(camera)
     assert run(capsys, "lifecycle", "list", "camera")[0].splitlines() == [
         "- configure [1]",
@@ -163,7 +163,7 @@ def test_lifecycle_list(in_graph, capsys):
     assert len(everything) == 3 * 25
 
 
-def test_lifecycle_set(in_graph, capsys):
+def test_lifecycle_set_changes_state(in_graph, capsys):
     in_graph(camera)
     assert run(capsys, "lifecycle", "set", "/camera", "configure")[0] == "Transitioning successful\n"
     _, err = run(capsys, "lifecycle", "set", "/camera", "configur", status=1)
@@ -180,13 +180,13 @@ def container(graph: Graph) -> None:
     loaded.load("demo_nodes_cpp", "demo_nodes_cpp::Talker", NodeOptions(name="talker"))
 
 
-def test_component_types(capsys):
+def test_component_types_prints_registered_types(capsys):
     out, _ = run(capsys, "component", "types")
     assert "demo_nodes_cpp\n  demo_nodes_cpp::Listener\n  demo_nodes_cpp::Talker" in out
     assert "did you mean" in run(capsys, "component", "types", "demo_nodes_cp", status=1)[1]
 
 
-def test_component_list(in_graph, capsys):
+def test_component_list_prints_containers_and_components(in_graph, capsys):
     in_graph(container)
     assert run(capsys, "component", "list")[0] == "/box\n  1  /talker\n"
     assert run(capsys, "component", "list", "--containers-only")[0] == "/box\n"
@@ -196,7 +196,7 @@ def test_component_list(in_graph, capsys):
     assert "did you mean '/box'?" in err
 
 
-def test_component_load_and_unload(in_graph, capsys):
+def test_component_load_and_unload_change_container(in_graph, capsys):
     in_graph(container)
     words = ["demo_nodes_cpp", "demo_nodes_cpp::Listener", "-n", "ear", "--node-namespace", "/head", "-r", "chatter:=c"]
     assert run(capsys, "component", "load", "/box", *words)[0] == (
@@ -255,7 +255,7 @@ def standalone(monkeypatch, deaf_to: set[int], status: int | None) -> list[_Cont
 STANDALONE = ["component", "standalone", "-c", "box", "demo_nodes_cpp"]
 
 
-def test_a_component_on_its_own_runs_until_its_container_ends(in_graph, capsys, monkeypatch):
+def test_standalone_component_runs_until_container_ends(in_graph, capsys, monkeypatch):
     in_graph(container)
     started = standalone(monkeypatch, set(), 3)
     run(capsys, *STANDALONE, "demo_nodes_cpp::Listener", status=3)
@@ -270,14 +270,14 @@ def test_a_component_on_its_own_runs_until_its_container_ends(in_graph, capsys, 
         ({signal.SIGINT, signal.SIGTERM}, [signal.SIGINT, signal.SIGTERM, signal.SIGKILL]),
     ],
 )
-def test_a_component_that_cannot_be_loaded_ends_its_container(in_graph, capsys, monkeypatch, deaf_to, message):
+def test_standalone_component_ends_container_if_loading_fails(in_graph, capsys, monkeypatch, deaf_to, message):
     in_graph(container)
     started = standalone(monkeypatch, deaf_to, None)
     run(capsys, *STANDALONE, "demo_nodes_cpp::Nobody", status=1)
     assert started[0].told == message
 
 
-def test_mistakes_of_components(in_graph, capsys):
+def test_component_commands_report_invalid_arguments(in_graph, capsys):
     in_graph(container)
     _, err = run(capsys, "component", "load", "/box", "demo_nodes_cpp", "demo_nodes_cpp::Talkr", status=1)
     assert "Failed to load component" in err

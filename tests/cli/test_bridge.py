@@ -18,7 +18,7 @@ from linkwright.cli.command import main
         (("dds", "zenoh", "--allow", "/scan", "--deny", "/a b"), "CLI453"),
     ],
 )
-def test_what_cannot_be_bridged_is_told_in_one_error(capsys, monkeypatch, words, code):
+def test_invalid_bridge_arguments_are_one_error(capsys, monkeypatch, words, code):
     monkeypatch.setenv("ROS_DOMAIN_ID", "7")
     assert main(["bridge", *words]) == 1
     output = capsys.readouterr()
@@ -28,12 +28,12 @@ def test_what_cannot_be_bridged_is_told_in_one_error(capsys, monkeypatch, words,
 
 
 @pytest.mark.parametrize("words", [(), ("dds",), ("dds", "zenoh", "dds")])
-def test_a_bridge_has_two_ends(capsys, words):
+def test_bridge_requires_two_networks(capsys, words):
     assert main(["bridge", *words]) == 2
     assert "NETWORK" in capsys.readouterr().err
 
 
-def test_a_network_whose_package_is_missing_is_told(capsys, monkeypatch):
+def test_bridge_reports_missing_network_package(capsys, monkeypatch):
     monkeypatch.setenv("LINKWRIGHT_DDS", "0")
     assert main(["bridge", "dds", "zenoh"]) == 1
     assert "error[CLI454]: DDS (domain" in capsys.readouterr().err

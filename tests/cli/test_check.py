@@ -14,7 +14,7 @@ from tests.imports import loaded_by
 from tests.places import PACKAGE
 
 
-def test_tree_of_a_good_model(capsys):
+def test_check_prints_tree_of_valid_model(capsys):
     assert main(["check", str(PACKAGE / "urdf" / "mbot_base.urdf")]) == 0
     captured = capsys.readouterr()
     assert captured.out.splitlines()[:4] == [
@@ -26,7 +26,7 @@ def test_tree_of_a_good_model(capsys):
     assert captured.err == "0 errors, 0 warnings\n"
 
 
-def test_checking_a_robot_loads_nothing_of_worlds():
+def test_checking_robot_imports_no_world_modules():
     """Their elements and attributes are many, and making tables of them takes longer than checking a robot.
 
     As long takes `importlib.metadata`, which `linkwright.loading.extensions` does without.
@@ -39,7 +39,7 @@ def test_checking_a_robot_loads_nothing_of_worlds():
     assert not {"linkwright.lint.rules.launch_nodes", "linkwright.lint.rules.package_manifest"} & loaded
 
 
-def test_checking_a_robot_with_masses_and_a_small_mesh_loads_no_arrays(tmp_path):
+def test_checking_masses_and_small_meshes_imports_no_numpy(tmp_path):
     """To import numpy takes longer than all the rest of the check, and nothing is there for xacro to expand."""
     box = [(0, 0, 0), (1, 0, 0), (1, 1, 0)]
     triangle = struct.pack("<12fH", 0, 0, 1, *(part for corner in box for part in corner), 0)
@@ -66,7 +66,7 @@ def test_checking_a_robot_with_masses_and_a_small_mesh_loads_no_arrays(tmp_path)
     assert not {"dataclasses", "inspect", "numpy", "pkgutil", "typing", "linkwright.xacro.expansion"} & loaded
 
 
-def test_checking_a_plain_robot_loads_nothing_of_xacro_and_no_parser_of_command_lines():
+def test_checking_plain_urdf_imports_neither_xacro_nor_argparse():
     words = ["check", str(PACKAGE / "urdf" / "mbot_base.urdf")]
     loaded = loaded_by(f"from linkwright.cli import main; main({words})")
     assert "linkwright.lint.rules.xacro_tags" in loaded
@@ -75,13 +75,13 @@ def test_checking_a_plain_robot_loads_nothing_of_xacro_and_no_parser_of_command_
     )
 
 
-def test_a_command_line_without_options_asks_for_the_same_without_a_parser():
+def test_arguments_without_options_match_full_parser():
     words = ["robot.urdf", "a:=1"]
     assert vars(without_options(words)) == vars(parser_for("check").parse_args(words))
     assert without_options([]) is None
 
 
-def test_xacro_is_expanded_first(capsys):
+def test_xacro_is_expanded_before_check(capsys):
     assert main(["check", str(PACKAGE / "urdf" / "mbot_base.xacro")]) == 0
     assert "base_link has 11 child(ren)" in capsys.readouterr().out
 
@@ -103,7 +103,7 @@ def test_independent_errors_are_reported_together(tmp_path, capsys):
     assert f"{model}:5:" in err
 
 
-def test_a_place_behind_a_macro_names_the_call(tmp_path, capsys):
+def test_finding_in_macro_names_macro_call(tmp_path, capsys):
     model = tmp_path / "bad.xacro"
     model.write_text(
         '<robot name="r" xmlns:xacro="http://www.ros.org/wiki/xacro">\n'

@@ -49,18 +49,18 @@ def write(folder, files):
         (folder / name).write_text(text)
 
 
-def test_of_a_folder_the_descriptions_are_checked_that_stand_by_themselves(here):
+def test_folder_check_selects_standalone_descriptions(here):
     write(
         here,
         {
             "a/plain.urdf": GOOD,
             "a/robot.urdf.xacro": f'<robot name="r" {XACRO}><xacro:include filename="parts/arm.xacro"/><x/></robot>',
-            "a/parts/colours.urdf": f'<robot name="c" {XACRO}/>',
+            "a/parts/colors.urdf": f'<robot name="c" {XACRO}/>',
             "a/parts/arm.xacro": f'<robot name="arm" {XACRO}><link name="b"/></robot>',
             "a/macros.xacro": f'<robot name="m" {XACRO}><xacro:macro name="m"><link name="c"/></xacro:macro></robot>',
             "a/unnamed.xacro": f'<robot {XACRO}><link name="c"/></robot>',
             "a/wrapper.xacro": f'<robot name="w" {XACRO}><xacro:include filename="robot2.xacro"/></robot>',
-            "a/unnamed2.xacro": f'<robot {XACRO}><xacro:include filename="parts/colours.urdf"/></robot>',
+            "a/unnamed2.xacro": f'<robot {XACRO}><xacro:include filename="parts/colors.urdf"/></robot>',
             "a/r.srdf.xacro": f'<robot name="s" {XACRO}><group name="arm"/></robot>',
             "a/broken.xacro": "<robot",
             "build/copy.urdf": GOOD,
@@ -73,7 +73,7 @@ def test_of_a_folder_the_descriptions_are_checked_that_stand_by_themselves(here)
     assert found == ["a/broken.xacro", "a/plain.urdf", "a/robot.urdf.xacro", "a/wrapper.xacro"]
 
 
-def test_what_arguments_and_the_environment_choose_to_include_stands_not_by_itself(here):
+def test_files_included_by_argument_or_environment_are_not_standalone(here):
     text = """<robot name="r" xmlns:xacro="http://www.ros.org/wiki/xacro">
       <xacro:arg name="accessories" default="empty.urdf"/><xacro:arg name="model" default="other.urdf"/>
       <xacro:include filename="$(find r)/urdf/$(arg accessories)"/>
@@ -86,12 +86,12 @@ def test_what_arguments_and_the_environment_choose_to_include_stands_not_by_itse
 
 
 @pytest.mark.parametrize(("text", "files"), [("<robot></robot>", []), ('<robot name="r"></robot>', ["r.urdf"])])
-def test_a_robot_without_name_and_content_is_a_place_for_others_to_fill(here, text, files):
+def test_robot_without_name_and_content_is_not_checked_in_folder(here, text, files):
     write(here, {"r.urdf": text})
     assert [path.name for path in find_targets([here]).files] == files
 
 
-def test_a_package_and_its_files_are_looked_into_once_for_all_of_its_descriptions(here, monkeypatch):
+def test_package_files_are_read_once_for_all_descriptions(here, monkeypatch):
     walks, walked = [], []
     files = {f"p/urdf/{name}.xacro": ROBOT_WITH_A_PROPERTY.format(name=name) for name in ("a", "b", "c")}
     write(here, {"p/package.xml": "<package><name>p</name></package>", **files})
@@ -105,7 +105,7 @@ def test_a_package_and_its_files_are_looked_into_once_for_all_of_its_description
     assert sorted(Path(name).name for name in walked) == ["a.xacro", "b.xacro", "c.xacro"]
 
 
-def test_packages_are_those_around_the_files_and_those_in_the_folders(here):
+def test_packages_are_found_around_files_and_in_folders(here):
     manifest = "<package><name>{}</name></package>"
     write(
         here,
@@ -121,7 +121,7 @@ def test_packages_are_those_around_the_files_and_those_in_the_folders(here):
     assert find_targets([here / "src/one/urdf/r.urdf"], with_packages=True).packages == (here / "src" / "one",)
 
 
-def test_a_file_is_judged_without_its_package_unless_asked(here, capsys):
+def test_file_is_checked_without_package_by_default(here, capsys):
     manifest = "<package><name>one</name><exec_depend>xacro</exec_depend><exec_depend>xacro</exec_depend></package>"
     write(here, {"one/package.xml": manifest, "one/urdf/r.urdf": GOOD})
     assert main(["check", "one/urdf/r.urdf"]) == 0
@@ -134,7 +134,7 @@ def test_a_file_is_judged_without_its_package_unless_asked(here, capsys):
     assert (here / "one/package.xml").read_text().count("<exec_depend>") == 1
 
 
-def test_a_diff_shows_each_fix_of_a_package_once(here, capsys):
+def test_diff_shows_each_package_fix_once(here, capsys):
     line = "  <exec_depend>xacro</exec_depend>\n"
     write(here, {"one/package.xml": f"<package>\n  <name>one</name>\n{line * 3}</package>\n", "one/r.urdf": GOOD})
     assert main(["check", "--diff", "one"]) == 1
@@ -156,7 +156,7 @@ def _joints(count):
     return f'<robot name="r">\n{links}{joints}</robot>\n'
 
 
-def test_many_findings_that_are_alike_are_one_for_people(here, capsys):
+def test_many_similar_findings_are_grouped_in_text_output(here, capsys):
     write(here, {"r.urdf": _joints(70)})
     main(["check", "r.urdf", *ONLY])
     output = capsys.readouterr().err
@@ -170,13 +170,13 @@ def test_many_findings_that_are_alike_are_one_for_people(here, capsys):
     assert len(json.loads(capsys.readouterr().out)["diagnostics"]) == 70
 
 
-def test_few_findings_that_are_alike_are_shown_one_by_one(here, capsys):
+def test_few_similar_findings_are_shown_separately(here, capsys):
     write(here, {"r.urdf": _joints(3)})
     main(["check", "r.urdf", *ONLY])
     assert capsys.readouterr().err.count("warning[LW221]") == 3
 
 
-def test_nothing_stays_of_a_robot_that_was_checked(here, monkeypatch):
+def test_checked_robot_is_freed_without_garbage_collector(here, monkeypatch):
     """Counted while the next is checked, without the garbage collector, which may not come for long."""
     robot = _joints(3).replace('<robot name="r">', f'<robot name="r" {XACRO}><xacro:property name="x" value="1"/>')
     names = [f"r{number}.{ending}" for number in range(6) for ending in ("urdf", "urdf.xacro")]
@@ -197,7 +197,7 @@ def test_nothing_stays_of_a_robot_that_was_checked(here, monkeypatch):
     assert alive == [0, *[1] * (len(names) - 1)] or alive == [0] * len(names)
 
 
-def test_of_several_files_no_tree_is_printed_but_a_summary(here, capsys):
+def test_several_files_print_summary_instead_of_tree(here, capsys):
     write(here, {"a.urdf": GOOD, "b.urdf": LONG_AXIS})
     assert main(["check", "a.urdf", "b.urdf", *ONLY]) == 0
     captured = capsys.readouterr()
@@ -206,14 +206,14 @@ def test_of_several_files_no_tree_is_printed_but_a_summary(here, capsys):
     assert captured.err.endswith("0 errors, 1 warning\n")
 
 
-def test_warnings_fail_when_strict(here):
+def test_strict_exits_with_1_on_warnings(here):
     write(here, {"b.urdf": LONG_AXIS})
     assert main(["check", "b.urdf", *ONLY]) == 0
     assert main(["check", "b.urdf", *ONLY, "--strict"]) == 1
     assert main(["check", "b.urdf", *ONLY, "--strict", "--ignore", "axis-not-unit"]) == 0
 
 
-def test_forms_go_to_standard_output(here, capsys):
+def test_format_option_writes_findings_to_standard_output(here, capsys):
     write(here, {"b.urdf": LONG_AXIS})
     main(["check", "b.urdf", *ONLY, "--format", "concise"])
     assert capsys.readouterr().out.startswith("b.urdf:7:16: warning[LW221] ")
@@ -228,14 +228,14 @@ def test_forms_go_to_standard_output(here, capsys):
     assert captured.err == ""
 
 
-def test_a_file_that_two_robots_include_is_told_of_once(here, capsys):
+def test_file_included_by_two_robots_is_reported_once(here, capsys):
     robot = f'<robot name="r" {XACRO}><xacro:include filename="../arm.xacro"/></robot>'
     write(here, {"a/one.xacro": robot, "a/two.xacro": robot, "arm.xacro": LONG_AXIS.replace('name="r"', XACRO, 1)})
     main(["check", "a", *ONLY, "--format", "json"])
     assert len(json.loads(capsys.readouterr().out)["diagnostics"]) == 1
 
 
-def test_values_are_for_all_files(here, capsys):
+def test_argument_values_apply_to_all_files(here, capsys):
     text = f'<robot name="r" {XACRO}><link name="$(arg n)"/></robot>'
     write(here, {"a.xacro": text, "b.xacro": text})
     assert main(["check", "a.xacro", "n:=x", "b.xacro", *ONLY]) == 0
@@ -253,13 +253,13 @@ def test_fixes_are_written_and_counted(here, capsys):
     assert main(["check", "b.urdf", "--diff", *ONLY]) == 0
 
 
-def test_statistics(here, capsys):
+def test_statistics_count_findings_by_rule(here, capsys):
     write(here, {"b.urdf": LONG_AXIS})
     main(["check", "b.urdf", "--statistics", *ONLY])
     assert capsys.readouterr().err.endswith("     1  LW221     axis-not-unit\n")
 
 
-def test_a_configuration_is_found_or_named(here, capsys):
+def test_configuration_is_found_or_given_by_option(here, capsys):
     write(here, {"r/b.urdf": LONG_AXIS, "r/linkwright.toml": 'select = ["LW1"]\n', "other.toml": 'select = ["LW2"]\n'})
     main(["check", "r/b.urdf", "--format", "concise"])
     assert "LW221" not in capsys.readouterr().out
@@ -267,7 +267,7 @@ def test_a_configuration_is_found_or_named(here, capsys):
     assert "LW221" in capsys.readouterr().out
 
 
-def test_mistakes_in_the_configuration_are_told_once(here, capsys):
+def test_configuration_errors_are_reported_once(here, capsys):
     write(here, {"a.urdf": GOOD, "b.urdf": GOOD, "linkwright.toml": 'ignore = ["nonsens"]\n'})
     assert main(["check", "a.urdf", "b.urdf"]) == 1
     assert capsys.readouterr().err.count("error[LINT104]") == 1
@@ -281,26 +281,26 @@ def test_mistakes_in_the_configuration_are_told_once(here, capsys):
         (["b.urdf", "--config", "none.toml"], "no such file: 'none.toml'"),
     ],
 )
-def test_wrong_usage(here, capsys, words, message):
+def test_invalid_usage_is_rejected(here, capsys, words, message):
     write(here, {"b.urdf": GOOD})
     assert main(["check", *words]) == 2
     assert message in capsys.readouterr().err
 
 
-def test_a_missing_file_is_told(here, capsys):
+def test_missing_file_error_suggests_existing_files(here, capsys):
     write(here, {"b.urdf": GOOD})
     assert main(["check", "c.urdf"]) == 1
     assert "choose from b.urdf" in capsys.readouterr().err
 
 
-def test_an_address_is_shown_as_it_was_typed(here, capsys):
+def test_url_argument_is_printed_as_typed(here, capsys):
     for command in ("check", "xacro", "convert", "launch"):
         assert main([command, "https://example.org/r.urdf"]) == 1
         assert "'https://example.org/r.urdf'" in capsys.readouterr().err
 
 
 @pytest.mark.parametrize(("manifest", "is_told"), [("web/package.json", False), ("package.json", True)])
-def test_a_web_page_in_a_package_reads_urdf_in_its_own_way(here, manifest, is_told):
+def test_public_folder_of_nested_web_package_is_skipped(here, manifest, is_told):
     write(here, {"package.xml": "<package/>", manifest: "{}", "web/public/robot.urdf": GOOD, "urdf/robot.urdf": GOOD})
     write(here, {"inner/package.xml": "<package/>"})
     for folder in (here, Path()):
@@ -308,13 +308,13 @@ def test_a_web_page_in_a_package_reads_urdf_in_its_own_way(here, manifest, is_to
         assert found == (["urdf", "public"] if is_told else ["urdf"])
 
 
-def test_a_folder_with_nothing_in_it_is_told(here, capsys):
+def test_empty_folder_is_an_error(here, capsys):
     (here / "empty").mkdir()
     assert main(["check", "empty"]) == 1
     assert "error[CLI302]: there is nothing to check in 'empty'" in capsys.readouterr().err
 
 
-def test_an_empty_file_is_one_yet_to_be_written(tmp_path, capsys):
+def test_empty_file_is_skipped_in_folder(tmp_path, capsys):
     (tmp_path / "later.xacro").write_text("\n")
     (tmp_path / "robot.urdf").write_text('<robot name="r"><link name="base_link"/></robot>')
     assert main(["check", str(tmp_path)]) == 0
@@ -322,7 +322,7 @@ def test_an_empty_file_is_one_yet_to_be_written(tmp_path, capsys):
     assert main(["check", str(tmp_path / "later.xacro")]) == 1
 
 
-def test_what_tests_need_has_errors_only_in_a_folder(here, capsys):
+def test_warnings_in_test_folders_are_skipped_in_folder_check(here, capsys):
     joint = '<joint name="j" type="fixed"><parent link="a"/>{}</joint>'
     robot = f'<robot name="r"><link name="a"/><link name="b"/>{joint}</robot>'
     for folder, child in (
@@ -356,14 +356,14 @@ def test_what_tests_need_has_errors_only_in_a_folder(here, capsys):
         ("vendors_arm", True),
     ],
 )
-def test_what_is_put_aside_has_errors_only_in_a_folder(here, capsys, folder, is_told):
+def test_warnings_in_backup_and_vendor_folders_are_skipped(here, capsys, folder, is_told):
     write(here, {f"p/{folder}/r.urdf": LONG_AXIS})
     main(["check", *ONLY, "p"])
     assert ("LW221" in capsys.readouterr().err) is is_told
 
 
 @pytest.mark.parametrize(("parent", "is_told"), [("lb", False), ("lost", True)])
-def test_a_part_that_a_robot_of_its_package_includes_no_more_is_no_broken_robot(here, capsys, parent, is_told):
+def test_unused_part_of_robot_is_not_reported_as_broken(here, capsys, parent, is_told):
     joint = '<joint name="{0}" type="fixed"><parent link="base_link"/><child link="l{0}"/></joint>'
     chain = LONG_AXIS.replace("</robot>", "") + "".join(f'<link name="l{name}"/>{joint.format(name)}' for name in "bc")
     camera = f'<joint name="camera" type="fixed"><parent link="{parent}"/><child link="camera"/></joint>'
@@ -382,7 +382,7 @@ def test_a_part_that_a_robot_of_its_package_includes_no_more_is_no_broken_robot(
 
 
 @pytest.mark.parametrize(("folder", "is_told"), [("launch", True), ("launch/past", False), ("launch/old", False)])
-def test_of_launch_files_that_are_put_aside_a_folder_check_tells_errors_only(here, capsys, folder, is_told):
+def test_backup_launch_files_report_no_warnings_in_folder_check(here, capsys, folder, is_told):
     text = """from launch_ros.actions import Node
 from ament_index_python.packages import get_package_share_directory
 import os
@@ -396,14 +396,14 @@ def generate_launch_description():
 
 
 @pytest.mark.parametrize(("folder", "count"), [("urdf", 1), ("vendor", 0)])
-def test_a_package_that_only_a_vendors_copy_names_is_not_missed_in_a_folder(here, capsys, folder, count):
+def test_missing_package_of_vendor_copy_is_not_reported_in_folder(here, capsys, folder, count):
     include = '<xacro:include filename="$(find far_description)/arm.xacro"/>'
     write(here, {f"{folder}/r.urdf.xacro": f'<robot name="r" {XACRO}>{include}<link name="a"/></robot>'})
     main(["check", ".", "--format", "concise"])
     assert capsys.readouterr().out.count("PKG101") == count
 
 
-def test_a_package_that_an_include_misses_is_not_missed_once_more_by_meshes(here, capsys):
+def test_missing_package_of_include_is_not_repeated_for_meshes(here, capsys):
     mesh = '<visual><geometry><mesh filename="package://{}/a.stl"/></geometry></visual>'
     links = "".join(f'<link name="{name}">{mesh.format(name)}</link>' for name in ("far_description", "other"))
     include = '<xacro:include filename="$(find far_description)/arm.xacro"/>'
@@ -413,7 +413,7 @@ def test_a_package_that_an_include_misses_is_not_missed_once_more_by_meshes(here
     assert [("far_description" in line, "PKG101" in line) for line in output] == [(True, True), (False, False)]
 
 
-def test_what_a_xacro_file_says_is_not_said_again_of_the_urdf_made_of_it(here, capsys):
+def test_findings_of_xacro_are_not_repeated_for_generated_urdf(here, capsys):
     joint = LONG_AXIS.partition("<joint")[2]
     chain = LONG_AXIS.replace('"arm_joint"', '"a"') + "".join(
         f'<link name="l{name}"/><joint{joint}'.replace("arm_joint", name).replace("arm_link", f"l{name}")
@@ -436,7 +436,7 @@ def test_what_a_xacro_file_says_is_not_said_again_of_the_urdf_made_of_it(here, c
 
 
 @pytest.mark.parametrize(("source", "is_told"), [("r.urdf.xacro", False), ("other.urdf.xacro", True)])
-def test_what_xacro_made_of_a_file_that_is_checked_has_errors_only_in_a_folder(here, capsys, source, is_told):
+def test_warnings_in_urdf_generated_from_checked_xacro_are_skipped(here, capsys, source, is_told):
     header = "<!-- |    This document was autogenerated by xacro from /home/me/ws/r.urdf.xacro      | -->\n"
     write(here, {"p/r.urdf": header + LONG_AXIS, f"p/{source}": GOOD})
     main(["check", *ONLY, "p"])
@@ -449,7 +449,7 @@ INCLUDE = '<xacro:include filename="$(find arm)/urdf/part.xacro"/>'
 
 
 @pytest.mark.parametrize("user", ["arm", "robot"])
-def test_packages_are_checked_as_their_sources_are_whatever_a_build_installed_of_them(here, capsys, user):
+def test_package_sources_take_precedence_over_installed_copies(here, capsys, user):
     manifest = '<package format="3"><name>{}</name><version>1.0.0</version></package>'
     share = "ws/install/arm/share/arm"
     write(
@@ -468,7 +468,7 @@ def test_packages_are_checked_as_their_sources_are_whatever_a_build_installed_of
     assert main(["check", *ONLY, "--strict", f"ws/src/{user}/urdf/r.urdf.xacro"]) == 0, capsys.readouterr().out
 
 
-def test_a_variable_that_whoever_starts_the_robot_sets_is_an_information_in_a_folder(here, capsys):
+def test_unset_environment_variable_is_info_in_folder_check(here, capsys):
     write(here, {"p/r.urdf.xacro": f'<robot {XACRO} name="$(env KIND_OF_ROBOT)"><link name="base_link"/></robot>'})
     assert main(["check", "p"]) == 0
     assert "info[XAC214]" in capsys.readouterr().err
@@ -484,7 +484,7 @@ def test_a_variable_that_whoever_starts_the_robot_sets_is_an_information_in_a_fo
         ('<limit lower="0"/>', True),
     ],
 )
-def test_a_urdf_without_links_of_its_own_is_a_part_of_a_robot(here, capsys, inside, is_told):
+def test_urdf_without_links_is_a_part_in_folder_check(here, capsys, inside, is_told):
     (here / "p").mkdir()
     (here / "p" / "part.urdf").write_text(f'<robot xmlns:xacro="http://www.ros.org/wiki/xacro">{inside}</robot>')
     (here / "p" / "whole.urdf").write_text('<robot name="r"><link name="base_link"/></robot>')
@@ -509,14 +509,14 @@ def test_a_urdf_without_links_of_its_own_is_a_part_of_a_robot(here, capsys, insi
         ("r.urdf", "<!-- <robot/> --> robot", True),
     ],
 )
-def test_an_element_by_itself_and_a_file_yet_to_be_written_are_no_robot(here, capsys, name, text, is_told):
+def test_fragments_and_unfinished_files_are_skipped_in_folder(here, capsys, name, text, is_told):
     write(here, {f"p/{name}": text, "p/whole.urdf": GOOD})
     assert main(["check", "p"]) == int(is_told)
     assert (name in capsys.readouterr().err) is is_told
     assert main(["check", f"p/{name}"]) == 1
 
 
-def test_packages_are_looked_for_in_the_folder_that_is_checked(here, capsys, monkeypatch):
+def test_packages_are_searched_in_checked_folder(here, capsys, monkeypatch):
     manifest = '<package format="3"><name>{}</name></package>'
     whole = f'<robot name="r" {XACRO}><xacro:include filename="$(find yonder)/part.xacro"/></robot>'
     files = {"a/b/here_by/package.xml": manifest.format("here_by"), "a/b/here_by/urdf/r.urdf.xacro": whole}
@@ -528,7 +528,7 @@ def test_packages_are_looked_for_in_the_folder_that_is_checked(here, capsys, mon
     assert "PKG101" not in capsys.readouterr().err
 
 
-def test_plugins_for_webots_are_no_robot(here, capsys):
+def test_webots_plugin_file_is_not_a_robot(here, capsys):
     (here / "p").mkdir()
     (here / "p" / "driver.urdf").write_text('<robot name="r"><webots><plugin type="p.Driver"/></webots></robot>')
     (here / "p" / "robot.urdf").write_text('<robot name="r"><link name="a"/></robot>')
@@ -536,7 +536,7 @@ def test_plugins_for_webots_are_no_robot(here, capsys):
     assert "driver.urdf" not in capsys.readouterr().out
 
 
-def test_one_thing_to_mend_is_told_once(here, capsys, monkeypatch):
+def test_same_problem_in_several_files_is_reported_once(here, capsys, monkeypatch):
     """A package that two files want, and a model's mistake that is found in the model and in its world."""
     (here / "p" / "models" / "box").mkdir(parents=True)
     box = '<model name="box"><link name="l"><pose>0 0 0 0 0</pose></link></model>'
@@ -555,7 +555,7 @@ def test_one_thing_to_mend_is_told_once(here, capsys, monkeypatch):
     assert sum("PKG101" in line for line in lines) == 1
 
 
-def test_models_that_gazebo_fetches_are_told_of_where_their_world_is_named(here, capsys):
+def test_fuel_models_are_reported_only_for_explicit_world(here, capsys):
     (here / "p").mkdir()
     place = "https://fuel.gazebosim.org/1.0/OpenRobotics/models/Table"
     include = f"<include><uri>{place}</uri></include>"

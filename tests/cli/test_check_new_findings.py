@@ -34,7 +34,7 @@ def check(capsys):
     return run
 
 
-def test_a_baseline_hides_known_findings_wherever_their_lines_are(repository, check, capsys):
+def test_baseline_hides_known_findings_despite_moved_lines(repository, check, capsys):
     _, codes = check(".")
     assert codes
     assert main(["check", "--baseline", "known.json", "--write-baseline", "."]) == 0
@@ -48,7 +48,7 @@ def test_a_baseline_hides_known_findings_wherever_their_lines_are(repository, ch
     assert new_codes.isdisjoint(codes)
 
 
-def test_a_baseline_has_the_same_bytes_in_another_folder(repository, tmp_path):
+def test_baseline_is_identical_in_another_folder(repository, tmp_path):
     main(["check", "--baseline", "known.json", "--write-baseline", "."])
     first = (repository.root / "known.json").read_bytes()
     other = tmp_path / "other"
@@ -61,7 +61,7 @@ def test_a_baseline_has_the_same_bytes_in_another_folder(repository, tmp_path):
 @pytest.mark.parametrize(
     "content", [None, "[", "[]", '{"version": 2, "findings": []}', '{"version": 1, "findings": [1]}']
 )
-def test_a_broken_baseline_is_an_error_and_hides_nothing(repository, capsys, content):
+def test_malformed_baseline_is_an_error_and_hides_nothing(repository, capsys, content):
     if content is not None:
         (repository.root / "known.json").write_text(content)
     assert main(["check", "--baseline", "known.json", "."]) == 1
@@ -70,7 +70,7 @@ def test_a_broken_baseline_is_an_error_and_hides_nothing(repository, capsys, con
     assert "--write-baseline" in errors
 
 
-def test_findings_of_a_commit_are_not_new(repository, check):
+def test_changed_hides_findings_of_commit(repository, check):
     assert check("--changed", "HEAD", ".") == (0, set())
     repository.write({SEGMENT: MOVED})
     assert check("--changed", "HEAD", ".") == (0, set())
@@ -82,13 +82,13 @@ def test_findings_of_a_commit_are_not_new(repository, check):
     assert check("--changed", "HEAD~1", "arm_description/urdf/arm.urdf.xacro")[1] == codes
 
 
-def test_a_renamed_file_keeps_its_findings(repository, check):
+def test_changed_matches_findings_of_renamed_file(repository, check):
     text = (repository.root / "arm_description/urdf/arm.urdf.xacro").read_text()
     repository.commit({"arm_description/urdf/arm.urdf.xacro": None, "arm_description/urdf/robot.urdf.xacro": text})
     assert check("--changed", "HEAD~1", ".") == (0, set())
 
 
-def test_what_the_change_cannot_affect_is_not_checked(repository, monkeypatch, check):
+def test_changed_skips_descriptions_unaffected_by_change(repository, monkeypatch, check):
     from linkwright.lint.checking import Checker
 
     def refuse(*_):
@@ -107,24 +107,24 @@ def test_what_the_change_cannot_affect_is_not_checked(repository, monkeypatch, c
         (["--changed", "HEAD", "--baseline", "known.json"], "'--changed' cannot be combined"),
     ],
 )
-def test_options_that_contradict_each_other(repository, capsys, words, message):
+def test_contradictory_options_are_rejected(repository, capsys, words, message):
     assert main(["check", *words, "."]) == 2
     assert message in capsys.readouterr().err
 
 
-def test_a_commit_that_does_not_exist(repository, capsys):
+def test_changed_rejects_unknown_commit(repository, capsys):
     assert main(["check", "--changed", "nowhere", "."]) == 1
     assert "error[CLI343]" in capsys.readouterr().err
 
 
-def test_outside_a_repository(tmp_path, monkeypatch, capsys):
+def test_changed_outside_repository_suggests_baseline(tmp_path, monkeypatch, capsys):
     (tmp_path / "a.urdf").write_text("<robot name='a'><link name='a'/></robot>")
     monkeypatch.chdir(tmp_path)
     assert main(["check", "--changed", "HEAD", "a.urdf"]) == 1
     assert "`--baseline`" in capsys.readouterr().err
 
 
-def test_a_finding_that_names_fewer_items_is_not_new(tmp_path):
+def test_finding_with_fewer_items_is_not_new(tmp_path):
     from linkwright.diagnostics import Diagnostic
     from linkwright.lint.known_findings import count_keys, new_findings
 

@@ -53,7 +53,7 @@ def after(line: str) -> list[str]:
     return complete(split_line(line))
 
 
-def test_commands() -> None:
+def test_command_names_are_completed() -> None:
     assert after("linkwright ")[: len(help_texts())] == list(help_texts())
     assert after("linkwright la") == ["launch"]
     assert "launch" in after("/some/bin/ros2 ")
@@ -62,7 +62,7 @@ def test_commands() -> None:
     assert after("linkwright nonsense ") == []
 
 
-def test_options_and_what_they_take() -> None:
+def test_options_and_option_values_are_completed() -> None:
     assert "--no-open" in after("linkwright launch arm a.launch.py --")
     assert after("linkwright topic echo --qos-reliability best") == ["best_effort", "best_available"]
     assert "--times" in after("ros2 topic pub /a std_msgs/msg/String '{}' --t")
@@ -71,14 +71,14 @@ def test_options_and_what_they_take() -> None:
     assert after("linkwright completion ") == ["bash", "zsh", "fish"]
 
 
-def test_packages_and_executables() -> None:
+def test_packages_and_executables_are_completed() -> None:
     assert after("linkwright pkg prefix ar") == ["arm"]
     assert after("ros2 run arm ") == ["move"]
     assert after("ros2 run demo_nodes_cpp ta") == ["talker"]
     assert {"arm", "hand", "demo_nodes_cpp"} <= set(after("ros2 run "))
 
 
-def test_launch_files_and_their_arguments() -> None:
+def test_launch_files_and_launch_arguments_are_completed() -> None:
     assert after("ros2 launch ar") == ["arm", FILES]
     assert after("ros2 launch arm ") == ["a.launch.py", "b.launch.xml", "c_launch.yaml"]
     for file in ("a.launch.py", "b.launch.xml", "c_launch.yaml"):
@@ -87,7 +87,7 @@ def test_launch_files_and_their_arguments() -> None:
     assert after("linkwright launch nowhere ") == []
 
 
-def test_types() -> None:
+def test_interface_types_are_completed() -> None:
     assert after("linkwright topic pub /a arm") == ["arm/msg/Grip"]
     assert after("linkwright service call /a std_srvs/srv/T") == ["std_srvs/srv/Trigger"]
     assert after("linkwright interface show action_tutorials_interfaces/action/F") == [
@@ -95,12 +95,12 @@ def test_types() -> None:
     ]
 
 
-def test_files_and_arguments_of_descriptions() -> None:
+def test_description_files_and_arguments_are_completed() -> None:
     assert after("linkwright view ") == [FILES]
     assert after("linkwright view arm/arm.urdf.xacro ") == ["side:=", FILES]  # or a second one
 
 
-def test_names_of_the_graph_are_those_of_the_last_look(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_graph_names_are_completed_from_cache(monkeypatch: pytest.MonkeyPatch) -> None:
     begun: list[object] = []
     monkeypatch.setattr(subprocess, "Popen", lambda *words, **_: begun.append(words))
     assert after("linkwright topic echo /") == []
@@ -120,7 +120,7 @@ def test_names_of_the_graph_are_those_of_the_last_look(monkeypatch: pytest.Monke
     assert len(begun) == 2
 
 
-def test_a_look_at_the_graph(in_graph: Callable[[Callable[[Graph], object]], None]) -> None:
+def test_graph_discovery_stores_names_of_running_nodes(in_graph: Callable[[Callable[[Graph], object]], None]) -> None:
     def make(graph: Graph) -> None:
         node = graph.create_node("talker", namespace="left")
         node.create_publisher(get_message("std_msgs/msg/String"), "chatter", 1)
@@ -133,7 +133,7 @@ def test_a_look_at_the_graph(in_graph: Callable[[Callable[[Graph], object]], Non
     assert graph_names.names_of("actions") == []
 
 
-def test_nothing_heavy_is_loaded() -> None:
+def test_completion_imports_no_slow_modules() -> None:
     """A completion is there in less than a tenth of a second."""
     line = "ros2 launch arm a.launch.py "
     program = (
@@ -155,7 +155,7 @@ def test_nothing_heavy_is_loaded() -> None:
         ("linkwright 'open quote", []),
     ],
 )
-def test_in_bash(line: str, offered: list[str]) -> None:
+def test_completion_in_bash(line: str, offered: list[str]) -> None:
     program = (
         script("bash", sys.executable, ["linkwright"])
         + f'COMP_LINE="{line}"; COMP_POINT=${{#COMP_LINE}}; _linkwright_complete 2>/dev/null\n'
@@ -178,12 +178,12 @@ SHELL_LINES = [
 
 
 @pytest.mark.parametrize(("words", "offered"), SHELL_LINES)
-def test_what_any_shell_hands_over(words: list[str], offered: list[str]) -> None:
+def test_completion_of_words_from_any_shell(words: list[str], offered: list[str]) -> None:
     assert complete(words) == offered
 
 
 @pytest.mark.parametrize("quote", ["'", '"'])
-def test_a_quote_that_is_still_open(quote: str) -> None:
+def test_completion_inside_open_quote(quote: str) -> None:
     assert complete(["linkwright", "topic", "pub", "/a", f"{quote}arm/msg/"]) == ["arm/msg/Grip"]
     assert after(f"linkwright topic pub /a {quote}arm/msg/") == ["arm/msg/Grip"]
 
@@ -198,7 +198,7 @@ _files() { print -r -- FILES }
 
 @pytest.mark.skipif(shutil.which("zsh") is None, reason="there is no zsh")
 @pytest.mark.parametrize(("words", "offered"), [*SHELL_LINES, (["linkwright", "check", "ar"], ["FILES"])])
-def test_in_zsh(words: list[str], offered: list[str]) -> None:
+def test_completion_in_zsh(words: list[str], offered: list[str]) -> None:
     typed = " ".join(f"'{word}'" for word in [*words[:-1], words[-1] + "after-the-cursor"])
     program = (
         ZSH_WITHOUT_ITS_COMPLETION
@@ -215,7 +215,7 @@ def test_in_zsh(words: list[str], offered: list[str]) -> None:
 @pytest.mark.parametrize(
     ("words", "offered"), [*SHELL_LINES, (["linkwright", "check", "arm/a"], ["arm/arm.urdf.xacro"])]
 )
-def test_in_fish(words: list[str], offered: list[str], tmp_path: Path) -> None:
+def test_completion_in_fish(words: list[str], offered: list[str], tmp_path: Path) -> None:
     program = script("fish", sys.executable, ["linkwright"]) + f"complete -C {shlex.quote(' '.join(words))}"
     environment = {**os.environ, "HOME": str(tmp_path)}
     done = subprocess.run(
@@ -225,7 +225,7 @@ def test_in_fish(words: list[str], offered: list[str], tmp_path: Path) -> None:
 
 
 @pytest.mark.parametrize("shell", ["bash", "zsh", "fish"])
-def test_each_shell_accepts_its_script(shell: str, capsys: pytest.CaptureFixture[str]) -> None:
+def test_shell_accepts_generated_script(shell: str, capsys: pytest.CaptureFixture[str]) -> None:
     assert main(["completion", shell]) == 0
     text = capsys.readouterr().out
     assert text == script(shell, sys.executable, ["linkwright"])
@@ -235,7 +235,7 @@ def test_each_shell_accepts_its_script(shell: str, capsys: pytest.CaptureFixture
 
 
 @pytest.mark.skipif(shutil.which("bash") is None, reason="there is no bash")
-def test_programs_of_ros_that_are_not_here_say_what_to_use() -> None:
+def test_missing_ros_programs_print_alternatives() -> None:
     program = "command_not_found_handle() { echo other $1; return 9; }\n"
     program += shell_script("bash", sys.executable, "LINKWRIGHT_SHELL", ["rosdep", "gazebo"])
     program += "rosdep install; echo $?; gazebo --verbose; no_such_program; echo $?"

@@ -47,7 +47,7 @@ def run(capsys, *words: str, status: int = 0) -> str:
     return captured.err if status else captured.out
 
 
-def test_controllers_are_listed(manager, capsys):
+def test_list_controllers_prints_states(manager, capsys):
     manager()
     assert run(capsys, "list_controllers") == "No controllers are currently loaded!\n"
     manager("active")
@@ -60,7 +60,7 @@ def test_controllers_are_listed(manager, capsys):
     assert "\texported reference interfaces:" in run(capsys, "list_controllers", "-v").splitlines()
 
 
-def test_types_and_hardware_are_listed(manager, capsys):
+def test_controller_types_and_hardware_are_listed(manager, capsys):
     manager("active")
     types = run(capsys, "list_controller_types")
     name = "joint_state_broadcaster/JointStateBroadcaster"
@@ -83,7 +83,7 @@ def test_types_and_hardware_are_listed(manager, capsys):
     ]
 
 
-def test_controllers_are_loaded_and_unloaded(manager, capsys):
+def test_load_and_unload_controller_report_result(manager, capsys):
     manager()
     assert run(capsys, "load_controller", "positions") == "Successfully loaded controller positions\n"
     assert run(capsys, "load_controller", "positions", "--set-state", "active").endswith("into state active\n")
@@ -96,14 +96,14 @@ def test_controllers_are_loaded_and_unloaded(manager, capsys):
     assert "Error reloading" in run(capsys, "reload_controller_libraries", status=1)
 
 
-def test_states_by_their_names_before_humble(manager, capsys):
+def test_controller_state_names_before_humble_are_accepted(manager, capsys):
     manager()
     assert run(capsys, "load_controller", "positions", "--set-state", "start").endswith("into state active\n")
     manager("active")
     assert run(capsys, "set_controller_state", "positions", "stop") == "Successfully deactivated positions\n"
 
 
-def test_states_are_set(manager, capsys):
+def test_set_controller_state_changes_state(manager, capsys):
     manager("unconfigured")
     assert run(capsys, "set_controller_state", "positions", "inactive") == "Successfully configured positions\n"
     output = run(capsys, "set_controller_state", "positions", "active", status=1)
@@ -117,7 +117,7 @@ def test_states_are_set(manager, capsys):
     assert output.endswith("controller nobody does not seem to be loaded\n")
 
 
-def test_controllers_are_switched(manager, capsys):
+def test_switch_controllers_reports_result(manager, capsys):
     manager("active")
     words = ("switch_controllers", "--deactivate", "positions", "--strict")
     assert run(capsys, *words) == "Successfully switched controllers\n"
@@ -125,7 +125,7 @@ def test_controllers_are_switched(manager, capsys):
     assert output.endswith("Error switching controllers, check controller_manager logs\n")
 
 
-def test_hardware_is_led(manager, capsys):
+def test_set_hardware_component_state_changes_state(manager, capsys):
     manager("active")
     output = run(capsys, "set_hardware_component_state", "arm", "inactive")
     assert output.startswith("Successfully set arm to state lifecycle_msgs.msg.State(id=2, label='inactive')")
@@ -133,7 +133,7 @@ def test_hardware_is_led(manager, capsys):
     assert output.endswith("component leg does not seem to be loaded\n")
 
 
-def test_chains_are_drawn(manager, capsys, tmp_path, monkeypatch):
+def test_view_controller_chains_writes_diagram(manager, capsys, tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)
     manager("active")
     assert run(capsys, "view_controller_chains").startswith("Saved controller diagram to")
@@ -141,7 +141,7 @@ def test_chains_are_drawn(manager, capsys, tmp_path, monkeypatch):
     assert '"positions" -> "hw command_interfaces" [label="hip/position"];' in text
 
 
-def test_a_manager_that_comes_later_than_other_services_may_is_waited_for(in_graph, capsys, monkeypatch):
+def test_list_controllers_waits_for_late_controller_manager(in_graph, capsys, monkeypatch):
     monkeypatch.setattr(calls, "APPEARS_WITHIN", 0.0)
 
     def later(graph: Graph) -> None:
@@ -152,7 +152,7 @@ def test_a_manager_that_comes_later_than_other_services_may_is_waited_for(in_gra
     assert run(capsys, "list_controllers") == "No controllers are currently loaded!\n"
 
 
-def test_another_manager_is_asked(manager, capsys, monkeypatch):
+def test_controller_manager_option_selects_manager(manager, capsys, monkeypatch):
     monkeypatch.setattr(calls, "APPEARS_WITHIN", 0.3)
     monkeypatch.setattr(control, "MANAGER_WITHIN", 0.2)
     manager()

@@ -43,7 +43,7 @@ def folder(tmp_path, monkeypatch):
     return tmp_path
 
 
-def test_a_robot_is_printed_as_sdf_with_the_arguments_given(folder, capsys):
+def test_xacro_is_converted_to_sdf_with_arguments(folder, capsys):
     assert main(["convert", "arm.xacro", "size:=4"]) == 0
     printed = capsys.readouterr()
     assert printed.out.startswith('<?xml version="1.0" ?>\n<sdf version="1.11">\n  <model name="arm">\n')
@@ -52,7 +52,7 @@ def test_a_robot_is_printed_as_sdf_with_the_arguments_given(folder, capsys):
     assert printed.err == ""
 
 
-def test_fixed_joints_stay_where_that_is_wanted(folder, capsys):
+def test_keep_fixed_joints_preserves_links(folder, capsys):
     assert main(["convert", "arm.xacro", "--keep-fixed-joints", "-o", "out/arm.sdf"]) == 0
     assert "Created file out/arm.sdf" in capsys.readouterr().out
     sdf = examine_world(folder / "out/arm.sdf").sdf
@@ -61,7 +61,7 @@ def test_fixed_joints_stay_where_that_is_wanted(folder, capsys):
     assert [joint.name for joint in sdf.models[0].joints] == ["fix"]
 
 
-def test_a_world_has_all_that_it_includes_where_it_was_saved(folder):
+def test_converted_world_contains_includes_at_saved_poses(folder):
     assert main(["convert", "w.world", "-o", "flat.world"]) == 0
     found = examine_world(folder / "flat.world", environment={"HOME": "/nowhere"})
     assert found.diagnostics == ()
@@ -71,7 +71,7 @@ def test_a_world_has_all_that_it_includes_where_it_was_saved(folder):
     assert world.models[0].pose.pose.xyz == (4.0, 5.0, 6.0)
 
 
-def test_paths_of_meshes_start_from_the_folder_of_the_file(folder):
+def test_mesh_uris_are_relative_only_below_output_folder(folder):
     assert main(["convert", "w.world", "-o", "flat.world"]) == 0
     assert "<uri>models/ball/meshes/ball.stl</uri>" in (folder / "flat.world").read_text()
     assert main(["convert", "w.world", "-o", "elsewhere/flat.world"]) == 0
@@ -79,7 +79,7 @@ def test_paths_of_meshes_start_from_the_folder_of_the_file(folder):
     assert f"<uri>{address}</uri>" in (folder / "elsewhere/flat.world").read_text()
 
 
-def test_a_model_that_is_not_there_stays_an_include_and_is_told_of(folder, capsys):
+def test_missing_model_stays_an_include_and_is_reported(folder, capsys):
     (folder / "w.world").write_text(WORLD.replace("model://ball", "model://cube"))
     assert main(["convert", "w.world"]) == 0
     printed = capsys.readouterr()
@@ -87,7 +87,7 @@ def test_a_model_that_is_not_there_stays_an_include_and_is_told_of(folder, capsy
     assert "SDF160" in printed.err
 
 
-def test_a_file_that_is_no_robot_is_an_error(folder, capsys):
+def test_file_without_robot_is_an_error(folder, capsys):
     (folder / "no.urdf").write_text("<launch/>")
     assert main(["convert", "no.urdf"]) == 1
     printed = capsys.readouterr()
@@ -95,7 +95,7 @@ def test_a_file_that_is_no_robot_is_an_error(folder, capsys):
     assert "URDF101" in printed.err
 
 
-def test_a_robot_becomes_what_mujoco_simulates(folder):
+def test_robot_is_converted_to_mjcf(folder):
     mujoco = pytest.importorskip("mujoco")
     assert main(["convert", "arm.xacro", "--to", "mjcf", "-o", "arm.xml"]) == 0
     model = mujoco.MjModel.from_xml_path(str(folder / "arm.xml"))
@@ -103,7 +103,7 @@ def test_a_robot_becomes_what_mujoco_simulates(folder):
     assert sum(model.body_mass) == pytest.approx(2.0)
 
 
-def test_what_has_errors_does_not_become_mjcf(folder, capsys):
+def test_invalid_model_is_not_converted_to_mjcf(folder, capsys):
     pytest.importorskip("mujoco")
     (folder / "m.sdf").write_text(
         '<sdf version="1.9"><model name="m"><link name="a"><pose relative_to="b"/></link></model></sdf>'
@@ -114,7 +114,7 @@ def test_what_has_errors_does_not_become_mjcf(folder, capsys):
     assert "SDF141" in printed.err
 
 
-def test_what_mujoco_refuses_is_said(folder, capsys, monkeypatch):
+def test_mujoco_error_is_reported(folder, capsys, monkeypatch):
     pytest.importorskip("mujoco")
 
     class Refused:
@@ -129,7 +129,7 @@ def test_what_mujoco_refuses_is_said(folder, capsys, monkeypatch):
     assert "MuJoCo rejects the model: mesh volume is too small: mesh0" in capsys.readouterr().err
 
 
-def test_a_model_becomes_urdf(folder, capsys):
+def test_sdf_model_is_converted_to_urdf(folder, capsys):
     assert main(["convert", "models/ball/model.sdf", "--to", "urdf", "-o", "ball.urdf"]) == 0
     written = (folder / "ball.urdf").read_text()
     assert '<robot name="ball"' in written
@@ -137,14 +137,14 @@ def test_a_model_becomes_urdf(folder, capsys):
     assert capsys.readouterr().err == ""
 
 
-def test_what_is_no_model_does_not_become_urdf(folder, capsys):
+def test_worlds_and_urdf_are_not_converted_to_urdf(folder, capsys):
     assert main(["convert", "w.world", "--to", "urdf"]) == 1
     assert "error[SDF180]" in capsys.readouterr().err
     assert main(["convert", "arm.xacro", "--to", "urdf"]) == 1
     assert "error[CLI322]" in capsys.readouterr().err
 
 
-def test_mjcf_has_the_mean_colours_of_images(tmp_path: Path) -> None:
+def test_mjcf_materials_have_mean_texture_colors(tmp_path: Path) -> None:
     corners = "v 0 -1 -1\nv 0 1 -1\nv 0 1 1\nv 0.1 -1 1\nvt 0 0\nvt 1 0\nvt 1 1\nvt 0 1\n"
     (tmp_path / "quad.obj").write_text(corners + "f 1/1 2/2 3/3\nf 1/1 3/3 4/4\n")
     mujoco = pytest.importorskip("mujoco")

@@ -21,8 +21,8 @@ def words(tmp_path, monkeypatch):
     return ["dataset", str(yard(tmp_path)), "-o", "set", *SMALL]
 
 
-def test_a_dataset_is_made_and_counted(words, tmp_path, capsys):
-    assert main([*words, "-n", "3", "--format", "yolo", "--image-format", "png", "--keep", "colours,lens"]) == 0
+def test_dataset_is_written_and_counted(words, tmp_path, capsys):
+    assert main([*words, "-n", "3", "--format", "yolo", "--image-format", "png", "--keep", "colors,lens"]) == 0
     printed = capsys.readouterr()
     assert [line.split()[0] for line in printed.out.splitlines()] == ["class", "ball", "crate", "drums", "3"]
     assert "3 images in set" in printed.out
@@ -30,16 +30,16 @@ def test_a_dataset_is_made_and_counted(words, tmp_path, capsys):
     assert len(list((tmp_path / "set/images").rglob("*.png"))) == 3
     assert not (tmp_path / "set/annotations").exists()
     (run,) = json.loads((tmp_path / "set/dataset.json").read_text())["made"]
-    assert run["options"]["fixed_properties"] == ["colours", "lens"]
+    assert run["options"]["fixed_properties"] == ["colors", "lens"]
 
 
-def test_classes_that_nothing_is_of_are_told(words, tmp_path, capsys):
+def test_classes_without_objects_are_reported(words, tmp_path, capsys):
     (tmp_path / "classes.yaml").write_text("ball: '*ball*'\nunicorn:\n")
     assert main([*words, "-n", "1", "--classes", "classes.yaml"]) == 0
     assert "These worlds have no object of the classes unicorn" in capsys.readouterr().err
 
 
-def test_ctrl_c_leaves_what_is_complete(words, tmp_path, capsys, monkeypatch):
+def test_interrupt_keeps_completed_images(words, tmp_path, capsys, monkeypatch):
     add = DatasetFolder.add
 
     def interrupted(folder, taken):
@@ -54,7 +54,7 @@ def test_ctrl_c_leaves_what_is_complete(words, tmp_path, capsys, monkeypatch):
 
 
 @needs_limits
-def test_a_full_disk_leaves_nothing_that_is_not_whole(words, tmp_path, capsys):
+def test_full_disk_leaves_no_partial_files(words, tmp_path, capsys):
     with full_disk(50):
         assert main([*words, "-n", "2"]) == 1
     printed = capsys.readouterr().err
@@ -69,12 +69,12 @@ def test_a_full_disk_leaves_nothing_that_is_not_whole(words, tmp_path, capsys):
      ["--splits", "1,2"], ["--splits", "0,0,0"], ["--splits", "a,b,c"], ["--min-visible", "2"], ["--images", "0"],
      ["--seed", "-1"], ["--append", "--force"]],
 )  # fmt: skip
-def test_wrong_words_are_told(words, wrong, capsys):
+def test_invalid_options_are_rejected(words, wrong, capsys):
     assert main([*words, *wrong]) == 2
     assert wrong[0] in capsys.readouterr().err
 
 
-def test_a_world_that_is_not_there_is_told(tmp_path, monkeypatch, capsys):
+def test_missing_world_is_reported(tmp_path, monkeypatch, capsys):
     monkeypatch.chdir(tmp_path)
     assert main(["dataset", "nowhere", "-o", "set"]) == 1
     assert "SIM150" in capsys.readouterr().err

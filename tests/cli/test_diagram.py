@@ -13,7 +13,7 @@ MODEL = str(PACKAGE / "urdf" / "mbot_base.urdf")
 @pytest.mark.parametrize(
     ("out", "diagram", "magic"), [("m", "m.pdf", b"%PDF"), ("m.svg", "m.svg", b"<?xml"), ("m.png", "m.png", b"\x89PNG")]
 )
-def test_writes_text_and_picture(tmp_path, monkeypatch, capsys, out, diagram, magic):
+def test_diagram_writes_graphviz_and_image(tmp_path, monkeypatch, capsys, out, diagram, magic):
     monkeypatch.chdir(tmp_path)
     assert main(["diagram", MODEL, out]) == 0
     assert capsys.readouterr().out == f"Created file m.gv\nCreated file {diagram}\n"
@@ -21,13 +21,13 @@ def test_writes_text_and_picture(tmp_path, monkeypatch, capsys, out, diagram, ma
     assert (tmp_path / diagram).read_bytes().startswith(magic)
 
 
-def test_default_name_is_the_robots(tmp_path, monkeypatch):
+def test_default_file_name_is_robot_name(tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)
     assert main(["diagram", MODEL]) == 0
     assert sorted(path.name for path in tmp_path.iterdir()) == ["mbot.gv", "mbot.pdf"]
 
 
-def test_no_robot_no_file(tmp_path, monkeypatch, capsys):
+def test_invalid_robot_writes_no_file(tmp_path, monkeypatch, capsys):
     monkeypatch.chdir(tmp_path)
     (tmp_path / "bad.urdf").write_text('<robot name="r"/>')
     assert main(["diagram", "bad.urdf"]) == 1

@@ -75,13 +75,13 @@ def edit(path: Path, old: str, new: str) -> None:
     path.write_text(text.replace(old, new))
 
 
-def test_two_files_that_say_the_same_end_with_0(package, capsys):
+def test_equal_files_exit_with_0(package, capsys):
     shutil.copy("urdf/arm.urdf.xacro", "urdf/other.urdf.xacro")
     assert main(["diff", "urdf/arm.urdf.xacro", "urdf/other.urdf.xacro"]) == 0
     assert capsys.readouterr().out == "no differences\n"
 
 
-def test_two_files_that_differ_end_with_1(package, capsys):
+def test_different_files_exit_with_1(package, capsys):
     Path("urdf/other.urdf.xacro").write_text(ARM.replace('name="base"', 'name="foot"').replace('p"', 'q"'))
     assert main(["diff", "urdf/arm.urdf.xacro", "urdf/other.urdf.xacro", "mass:=3"]) == 1
     assert capsys.readouterr().out == (
@@ -96,7 +96,7 @@ def test_two_files_that_differ_end_with_1(package, capsys):
     )
 
 
-def test_meshes_of_one_address_are_compared_by_their_bytes(package, tmp_path, monkeypatch, capsys):
+def test_meshes_at_same_uri_are_compared_by_content(package, tmp_path, monkeypatch, capsys):
     other = tmp_path / "before/arm"
     shutil.copytree(package, other)
     (tmp_path / "elsewhere").mkdir()
@@ -117,13 +117,13 @@ def test_meshes_of_one_address_are_compared_by_their_bytes(package, tmp_path, mo
 
 
 @needs_git
-def test_a_file_does_not_differ_from_its_commit_in_paths(committed, capsys):
+def test_unchanged_file_has_no_differences_against_commit(committed, capsys):
     assert main(["diff", "urdf/arm.urdf.xacro", "--against", "HEAD"]) == 0
     assert capsys.readouterr().out == "no differences\n"
 
 
 @needs_git
-def test_includes_and_meshes_of_a_commit_are_those_of_the_commit(committed, capsys):
+def test_against_uses_includes_and_meshes_of_commit(committed, capsys):
     edit(committed / "urdf/body.xacro", 'mass value="${mass}"', 'mass value="${2 * mass}"')
     edit(committed / "meshes/body.stl", "solid", "solid body")
     assert main(["diff", "urdf/arm.urdf.xacro", "--against", "HEAD", "--format", "json"]) == 1
@@ -143,7 +143,7 @@ def test_includes_and_meshes_of_a_commit_are_those_of_the_commit(committed, caps
 
 
 @needs_git
-def test_asking_changes_nothing_in_the_repository_and_leaves_no_folder(committed, monkeypatch, tmp_path):
+def test_against_leaves_repository_and_temporary_folder_unchanged(committed, monkeypatch, tmp_path):
     monkeypatch.setenv("TMPDIR", str(tmp_path / "temporary"))
     (tmp_path / "temporary").mkdir()
     monkeypatch.setattr("tempfile.tempdir", None)
@@ -154,7 +154,7 @@ def test_asking_changes_nothing_in_the_repository_and_leaves_no_folder(committed
 
 
 @needs_git
-def test_a_commit_that_cannot_be_read_is_told_by_its_name(committed, capsys):
+def test_errors_in_commit_are_reported_with_commit_name(committed, capsys):
     edit(committed / "urdf/body.xacro", "</link>", "</lnk>")
     git(committed, "commit", "--all", "--message", "broken")
     git(committed, "checkout", "HEAD~1", "--", ".")
@@ -164,7 +164,7 @@ def test_a_commit_that_cannot_be_read_is_told_by_its_name(committed, capsys):
 
 @needs_git
 @pytest.mark.parametrize("staged", [False, True])
-def test_a_file_that_was_renamed_is_found_by_its_old_name(committed, capsys, staged):
+def test_renamed_file_is_found_in_commit(committed, capsys, staged):
     before = (committed / ".git/index").read_bytes()
     if staged:
         git(committed, "mv", "urdf/arm.urdf.xacro", "urdf/hand.urdf.xacro")
@@ -179,7 +179,7 @@ def test_a_file_that_was_renamed_is_found_by_its_old_name(committed, capsys, sta
 
 
 @needs_git
-def test_a_file_that_no_commit_has_is_told_from_one_that_came_later(committed, capsys):
+def test_file_missing_from_commit_is_explained(committed, capsys):
     (committed / "urdf/new.urdf").write_text("<robot name='r'><link name='a'/></robot>")
     assert main(["diff", "urdf/new.urdf", "--against", "HEAD"]) == 2
     assert "no commit has it yet" in capsys.readouterr().err
@@ -200,14 +200,14 @@ def test_a_file_that_no_commit_has_is_told_from_one_that_came_later(committed, c
         (["../outside.urdf", "--against", "HEAD"], "CLI342"),
     ],
 )
-def test_what_git_does_not_have_is_trouble(committed, capsys, words, code):
+def test_unknown_commits_and_files_exit_with_2(committed, capsys, words, code):
     for name in ("urdf/new.urdf", "../outside.urdf"):
         Path(name).write_text("<robot name='r'><link name='a'/></robot>")
     assert main(["diff", *words]) == 2
     assert f"error[{code}]" in capsys.readouterr().err
 
 
-def test_without_git_one_error_says_so(package, capsys, monkeypatch):
+def test_missing_git_is_reported(package, capsys, monkeypatch):
     monkeypatch.setenv("PATH", "")
     assert main(["diff", "urdf/arm.urdf.xacro", "--against", "HEAD"]) == 2
     assert "error[CLI341]: git is not installed" in capsys.readouterr().err
@@ -216,11 +216,11 @@ def test_without_git_one_error_says_so(package, capsys, monkeypatch):
 @pytest.mark.parametrize(
     "words", [["a.urdf"], ["a.urdf", "b.urdf", "c.urdf"], ["a.urdf", "b.urdf", "--against", "HEAD"]]
 )
-def test_the_wrong_number_of_files_is_wrong_usage(package, capsys, words):
+def test_wrong_number_of_files_is_rejected(package, capsys, words):
     assert main(["diff", *words]) == 2
     assert capsys.readouterr().err == "linkwright diff: pass two files, or one and --against COMMIT\n"
 
 
-def test_a_file_that_is_not_there_is_trouble(package, capsys):
+def test_missing_file_exits_with_2(package, capsys):
     assert main(["diff", "urdf/arm.urdf.xacro", "missing.urdf"]) == 2
     assert "error[XML101]" in capsys.readouterr().err

@@ -38,19 +38,19 @@ def doctor(capsys, *words: str, status: int) -> str:
     return captured.out + captured.err
 
 
-def test_a_robot_that_is_well(in_graph, capsys):
+def test_healthy_robot_has_no_problems(in_graph, capsys):
     in_graph(robot)
     assert "No problems found: 2 nodes, 6 topics, 3 frames" in doctor(capsys, status=0)
 
 
-def test_nobody_publishes_joint_states(in_graph, capsys):
+def test_missing_joint_states_publisher_is_reported(in_graph, capsys):
     in_graph(lambda graph: RobotStatePublisher(graph, NodeOptions(parameters=DESCRIBED)))
     output = doctor(capsys, status=1)
     assert "[DOC401]: no node publishes joint states, so there is no transform of frame 'wheel'" in output
     assert "start joint_state_publisher" in output
 
 
-def test_in_chinese(in_graph, capsys):
+def test_doctor_output_is_translated_to_chinese(in_graph, capsys):
     in_graph(lambda graph: RobotStatePublisher(graph, NodeOptions(parameters=DESCRIBED)))
     output = doctor(capsys, "--lang", "zh", status=1)
     assert "正在观察运行中的计算图，1 秒……\n" in output
@@ -58,7 +58,7 @@ def test_in_chinese(in_graph, capsys):
     assert "1 个问题；1 个节点、" in output
 
 
-def test_a_joint_is_misspelt(in_graph, capsys):
+def test_misspelled_joint_name_is_reported(in_graph, capsys):
     def make(graph: Graph) -> None:
         RobotStatePublisher(graph, NodeOptions(parameters=DESCRIBED))
         node = graph.create_node("driver")
@@ -95,13 +95,13 @@ def second_publisher(graph: Graph) -> None:
     )
 
 
-def test_two_publishers_of_one_transform(in_graph, capsys):
+def test_two_publishers_of_same_transform_are_reported(in_graph, capsys):
     in_graph(second_publisher)
     output = doctor(capsys, status=1)
     assert "2 nodes publish the transform of frame 'wheel': '/odometry', '/robot_state_publisher'" in output
 
 
-def test_two_trees_and_a_fixed_frame_that_is_not_there(in_graph, capsys, tmp_path: Path):
+def test_disconnected_trees_and_missing_fixed_frame_are_reported(in_graph, capsys, tmp_path: Path):
     def make(graph: Graph) -> None:
         robot(graph)
         publisher = graph.create_node("camera").create_publisher(TFMessage, "/tf_static", STATIC_TF_PUBLISHER_QOS)
@@ -116,7 +116,7 @@ def test_two_trees_and_a_fixed_frame_that_is_not_there(in_graph, capsys, tmp_pat
     assert "robot.rviz' does not exist, so nothing is shown" in output
 
 
-def test_the_viewers_fixed_frame(in_graph, capsys):
+def test_fixed_frame_of_viewer_is_checked(in_graph, capsys):
     def make(graph: Graph) -> None:
         robot(graph)
         viewer = graph.create_node("rviz2", parameters={"fixed_frame": "odom"})
@@ -127,7 +127,7 @@ def test_the_viewers_fixed_frame(in_graph, capsys):
     assert "the fixed frame 'odom' of '/rviz2' does not exist" in doctor(capsys, status=1)
 
 
-def test_a_clock_that_is_far_off(in_graph, capsys):
+def test_stamps_far_from_clock_are_reported(in_graph, capsys):
     def make(graph: Graph) -> None:
         node = graph.create_node("lidar")
         publisher = node.create_publisher("sensor_msgs/msg/LaserScan", "scan", 5)
@@ -139,7 +139,7 @@ def test_a_clock_that_is_far_off(in_graph, capsys):
     assert "the stamps of '/lidar' on '/scan' are" in doctor(capsys, status=1)
 
 
-def test_twist_quality_of_service_and_lonely_clients(in_graph, capsys):
+def test_twist_type_qos_and_unserved_client_problems_are_reported(in_graph, capsys):
     def make(graph: Graph) -> None:
         graph.create_node("teleop").create_publisher("geometry_msgs/msg/Twist", "cmd_vel", 10)
         base = graph.create_node("base")
@@ -157,7 +157,7 @@ def test_twist_quality_of_service_and_lonely_clients(in_graph, capsys):
     assert "no node provides service '/reset', which '/base' calls" in output
 
 
-def test_simulated_time_for_some(in_graph, capsys):
+def test_mixed_use_sim_time_is_reported(in_graph, capsys):
     def make(graph: Graph) -> None:
         graph.create_node("one", parameters={"use_sim_time": True})
         graph.create_node("two")
@@ -168,13 +168,13 @@ def test_simulated_time_for_some(in_graph, capsys):
     assert "use_sim_time is true for '/one', but false for '/two'" in output
 
 
-def test_nobody_is_there(in_graph, capsys):
+def test_empty_graph_is_reported(in_graph, capsys):
     in_graph(lambda graph: None)
     assert "no running nodes were found" in doctor(capsys, status=1)
 
 
 @pytest.mark.parametrize("form", ["json", "concise"])
-def test_forms_for_programs(in_graph, capsys, form):
+def test_json_and_other_formats_are_printed(in_graph, capsys, form):
     in_graph(second_publisher)
     assert main(["doctor", "--seconds", "1", "--format", form]) == 1
     printed = capsys.readouterr().out
@@ -184,7 +184,7 @@ def test_forms_for_programs(in_graph, capsys, form):
         assert "DOC302" in printed
 
 
-def test_the_report(in_graph, capsys):
+def test_report_has_sections_of_ros2_doctor(in_graph, capsys):
     in_graph(robot)
     output = doctor(capsys, "--report", status=0)
     for title in ("PLATFORM INFORMATION", "RMW MIDDLEWARE", "PACKAGE VERSIONS", "NETWORK CONFIGURATION"):
@@ -194,12 +194,12 @@ def test_the_report(in_graph, capsys):
     assert re.search(r"^publisher count +: 1$", output, re.MULTILINE)
 
 
-def test_the_report_only_when_something_is_wrong(in_graph, capsys):
+def test_report_failed_prints_only_with_problems(in_graph, capsys):
     in_graph(robot)
     assert "PLATFORM" not in doctor(capsys, "--report-failed", status=0)
 
 
-def test_a_parameter_file_for_nodes_that_do_not_run(in_graph, capsys, tmp_path):
+def test_parameter_file_sections_without_nodes_are_reported(in_graph, capsys, tmp_path):
     in_graph(robot)
     path = tmp_path / "params.yaml"
     sections = ("/**", "robot_state_publisher", "joint_state_publsher", "/left/*")

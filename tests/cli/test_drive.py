@@ -16,7 +16,7 @@ def file(tmp_path, monkeypatch):
     return tmp_path / "mbot.urdf"
 
 
-def test_what_is_inferred_is_shown_with_place_reason_and_text(file, capsys):
+def test_show_prints_inferred_elements_with_location_and_reason(file, capsys):
     assert main(["drive", "mbot.urdf", "--show"]) == 0
     printed = capsys.readouterr().out
     assert (
@@ -27,7 +27,7 @@ def test_what_is_inferred_is_shown_with_place_reason_and_text(file, capsys):
     assert file.read_text() == MBOT
 
 
-def test_what_is_written_is_all_there_is_to_infer(file, capsys):
+def test_write_adds_all_inferred_elements(file, capsys):
     assert main(["drive", "mbot.urdf", "--write"]) == 0
     assert "Changed file mbot.urdf" in capsys.readouterr().out
     assert file.read_text() != MBOT
@@ -35,30 +35,30 @@ def test_what_is_written_is_all_there_is_to_infer(file, capsys):
     assert [line.split()[1] for line in capsys.readouterr().out.splitlines()] == ["DRIVE202"]
 
 
-def test_a_kind_of_drive_that_the_robot_has_not_is_refused(file, capsys):
+def test_unsupported_drive_type_is_rejected(file, capsys):
     assert main(["drive", "mbot.urdf", "--drive", "ackermann"]) == 1
     assert "DRIVE211" in capsys.readouterr().err
 
 
 @pytest.mark.parametrize(("text", "message"), [("<html/>", "URDF"), ("<sdf/>", "neither a world nor a model")])
-def test_a_file_that_is_no_robot_is_refused(file, capsys, text, message):
+def test_file_without_robot_is_rejected(file, capsys, text, message):
     file.write_text(text)
     assert main(["drive", "mbot.urdf"]) == 1
     assert message in capsys.readouterr().err
 
 
 @pytest.mark.parametrize("words", [["--seconds", "0"], ["--rate", "fast"], ["--drive", "legs"]])
-def test_a_value_that_is_none_is_a_mistake_in_use(file, words):
+def test_invalid_option_values_are_usage_errors(file, words):
     assert main(["drive", str(file), *words]) == 2
 
 
-def test_what_ends_it_is_the_exit_status(file, monkeypatch):
+def test_exit_status_of_simulation_is_returned(file, monkeypatch):
     monkeypatch.setattr("linkwright.hosting.simulated.run_simulated", lambda *_, **__: 130)
     assert main(["drive", "mbot.urdf", "--headless"]) == 130
 
 
 @pytest.mark.parametrize("command", ["drive", "sim"])
-def test_a_terminal_without_a_page_is_refused(file, capsys, command):
+def test_terminal_option_requires_page(file, capsys, command):
     words = ["drive", "mbot.urdf"] if command == "drive" else ["sim", "playground", "mbot.urdf"]
     assert main([*words, "--headless", "--terminal"]) == 1
     error = capsys.readouterr().err

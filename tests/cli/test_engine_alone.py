@@ -21,14 +21,14 @@ def rooms() -> tuple[set[str], set[str]]:
     return set(contract["source_modules"]), set(contract["forbidden_modules"])
 
 
-def test_each_room_is_in_the_engine_or_forbidden_to_it() -> None:
+def test_every_package_is_in_engine_or_excluded() -> None:
     engine, others = rooms()
     package = REPOSITORY / "src" / "linkwright"
     found = {f"linkwright.{folder.parent.name}" for folder in package.glob("*/__init__.py")} - {"linkwright.cli"}
     assert found == {name for name in engine | others if not name.startswith("linkwright.cli.")}
 
 
-def test_linkwright_needs_the_engine_of_its_own_version() -> None:
+def test_linkwright_requires_same_version_of_linkwright_core() -> None:
     assert f"linkwright-core=={__version__}" in PROJECT["dependencies"]
 
 
@@ -42,24 +42,24 @@ def alone(monkeypatch):
     monkeypatch.setattr("linkwright.loading.extensions._all_groups", dict)
 
 
-def test_the_help_lists_the_commands_of_the_engine(alone, capsys):
+def test_help_lists_engine_commands(alone, capsys):
     assert main(["--help"]) == 0
     listed = [line.split()[0] for line in capsys.readouterr().out.splitlines() if line.startswith("  ")]
     assert listed == ["check", "format", "xacro", "diff", "explain", "inertia", "convert", "picture", "--lang"]
 
 
-def test_other_commands_are_those_of_linkwright(alone, capsys):
+def test_other_commands_require_linkwright(alone, capsys):
     assert main(["view", "robot.urdf"]) == 2
     assert "only linkwright-core is installed, and linkwright has more commands" in capsys.readouterr().err
 
 
-def test_mjcf_needs_linkwright(alone, capsys, tmp_path):
+def test_mjcf_requires_linkwright(alone, capsys, tmp_path):
     (tmp_path / "robot.urdf").write_text("<robot name='r'><link name='base'/></robot>")
     assert main(["convert", str(tmp_path / "robot.urdf"), "--to", "mjcf"]) == 1
     assert "error[CLI323]" in capsys.readouterr().err
 
 
-def test_names_of_linkwright_are_refused_with_the_reason(alone):
+def test_importing_linkwright_names_explains_missing_package(alone):
     import linkwright
 
     assert linkwright.load is not None

@@ -22,7 +22,7 @@ def model(tmp_path, monkeypatch):
     return tmp_path
 
 
-def test_glb_is_written_with_the_arguments_given(model, capsys):
+def test_export_writes_glb_with_arguments(model, capsys):
     assert main(["export", "out/box.glb", "box.xacro", "size:=4"]) == 0
     data = (model / "out" / "box.glb").read_bytes()
     assert data.startswith(b"glTF")
@@ -30,7 +30,7 @@ def test_glb_is_written_with_the_arguments_given(model, capsys):
     assert "Created file out/box.glb" in capsys.readouterr().out
 
 
-def test_html_is_written(model, monkeypatch):
+def test_export_writes_html(model, monkeypatch):
     folder = model / "page" / "export"
     folder.mkdir(parents=True)
     for name in ("export.js", "export.css"):
@@ -40,20 +40,20 @@ def test_html_is_written(model, monkeypatch):
     assert (model / "box.html").read_text().startswith("<!doctype html>")
 
 
-def test_a_page_that_was_not_built_is_said(model, monkeypatch, capsys):
+def test_unbuilt_page_is_reported(model, monkeypatch, capsys):
     monkeypatch.setattr(html, "PAGE_FOLDER", model / "nowhere")
     assert main(["export", "box.html", "box.xacro"]) == 1
     assert "VIEW202" in capsys.readouterr().err
 
 
-def test_other_endings_and_swapped_files_are_wrong_usage(model, capsys):
+def test_wrong_suffix_and_swapped_files_are_usage_errors(model, capsys):
     assert main(["export", "box.obj", "box.xacro"]) == 2
     assert "should end with .html or .glb" in capsys.readouterr().err
     assert main(["export", "box.xacro", "box.glb"]) == 2
     assert "the file to write comes first" in capsys.readouterr().err
 
 
-def test_what_is_left_out_is_told_and_the_rest_written(model, capsys):
+def test_missing_mesh_is_reported_and_rest_is_exported(model, capsys):
     (model / "arm.urdf").write_text(MODEL.replace('<box size="$(arg size) 1 1"/>', '<mesh filename="file:///no.stl"/>'))
     assert main(["export", "arm.glb", "arm.urdf"]) == 1
     printed = capsys.readouterr()
@@ -62,14 +62,14 @@ def test_what_is_left_out_is_told_and_the_rest_written(model, capsys):
     assert (model / "arm.glb").is_file()
 
 
-def test_a_model_that_is_broken_is_explained(model, capsys):
+def test_invalid_model_is_reported_and_not_exported(model, capsys):
     (model / "broken.urdf").write_text("<robot name='x'><link/></robot>")
     assert main(["export", "x.glb", "broken.urdf"]) == 1
     assert "broken.urdf" in capsys.readouterr().err
     assert not (model / "x.glb").exists()
 
 
-def test_files_outside_the_packages_that_went_in_are_told(model, capsys, monkeypatch):
+def test_exported_files_from_outside_packages_are_listed(model, capsys, monkeypatch):
     """Neither what lies below the folder of the description, nor what is in a package, is a surprise."""
     home, other, package = (model / name for name in ("home", "other", "package"))
     for folder in (home / "parts", other, package):
@@ -98,7 +98,7 @@ def test_files_outside_the_packages_that_went_in_are_told(model, capsys, monkeyp
     assert [name.rpartition("/")[2] for name in named] == ["secret.xacro", "secret.yaml", "secret.obj"]
 
 
-def test_two_descriptions_are_one_page_without_paths_of_the_machine(model, monkeypatch):
+def test_comparison_page_contains_no_local_paths(model, monkeypatch):
     folder = model / "page" / "export"
     folder.mkdir(parents=True)
     for name in ("export.js", "export.css"):
@@ -124,13 +124,13 @@ def test_two_descriptions_are_one_page_without_paths_of_the_machine(model, monke
         (["r.html", "box.xacro", "box.xacro", "--against", "HEAD"], "pass one file, two to compare"),
     ],
 )
-def test_what_cannot_be_compared_is_wrong_usage(model, words, message, capsys):
+def test_invalid_comparison_arguments_are_usage_errors(model, words, message, capsys):
     assert main(["export", *words]) == 2
     assert message in capsys.readouterr().err
     assert not list(model.glob("r.*"))
 
 
-def test_a_broken_old_one_is_told_with_its_place(model, capsys):
+def test_error_in_old_description_is_reported_with_location(model, capsys):
     (model / "old.xacro").write_text(MODEL.replace("</robot>", ""))
     assert main(["export", "r.html", "old.xacro", "box.xacro"]) == 1
     assert "old.xacro:" in capsys.readouterr().err

@@ -27,7 +27,7 @@ def package(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
     return tmp_path
 
 
-def test_files_of_a_folder_are_written_but_not_what_a_build_or_xacro_made(package, capsys):
+def test_folder_is_formatted_except_build_and_generated_files(package, capsys):
     assert main(["format"]) == 0
     assert [(package / path).read_text() for path in ("urdf/a.urdf", "urdf/b.xacro", "urdf/tidy.urdf")] == [TIDY] * 3
     assert (package / "build/c.urdf").read_text() == MESSY
@@ -37,7 +37,7 @@ def test_files_of_a_folder_are_written_but_not_what_a_build_or_xacro_made(packag
     assert capsys.readouterr().err == "3 files left unchanged\n"
 
 
-def test_a_named_file_is_formatted_whatever_its_name(package, capsys):
+def test_named_file_is_formatted_regardless_of_suffix(package, capsys):
     assert main(["format", "notes.xml"]) == 0
     assert (package / "notes.xml").read_text() == "<a>\n  <b/>\n</a>\n"
 
@@ -53,7 +53,7 @@ def test_check_and_diff_write_nothing(package, capsys):
     assert main(["format", "--check", "--diff", "urdf/tidy.urdf"]) == 0
 
 
-def test_options_of_the_command_line_replace_those_of_the_file(package):
+def test_command_line_options_override_settings_file(package):
     (package / "linkwright.toml").write_text("[format]\nindent = 4\nwidth = 20\n")
     assert main(["format", "urdf/a.urdf"]) == 0
     assert "\n    <link name='b'/>\n" in (package / "urdf/a.urdf").read_text()
@@ -69,14 +69,14 @@ def test_options_of_the_command_line_replace_those_of_the_file(package):
         ("format = 2", "'format' is not a table"),
     ],
 )
-def test_mistakes_in_the_settings_are_told_and_the_defaults_apply(package, capsys, text, message):
+def test_invalid_settings_are_reported_and_defaults_apply(package, capsys, text, message):
     (package / "linkwright.toml").write_text(text)
     assert main(["format", "urdf/a.urdf"]) == 0
     assert message in capsys.readouterr().err
     assert (package / "urdf/a.urdf").read_text() == TIDY
 
 
-def test_only_some_lines(package, capsys):
+def test_range_formats_only_given_lines(package, capsys):
     (package / "a.urdf").write_text("<robot name='a'>\n<link name='b'/>\n<link name='c'/>\n</robot>\n")
     assert main(["format", "--range", "3-3", "a.urdf"]) == 0
     # The change is of both lines, for neither is like one of the formatted text.
@@ -88,7 +88,7 @@ def test_only_some_lines(package, capsys):
     assert ended.value.code == 2
 
 
-def test_one_broken_file_does_not_keep_others_from_being_formatted(package, capsys):
+def test_malformed_file_does_not_stop_formatting_others(package, capsys):
     (package / "urdf/a.urdf").write_text("<robot>")
     assert main(["format", "urdf"]) == 1
     assert "error[XML202]" in capsys.readouterr().err
@@ -97,14 +97,14 @@ def test_one_broken_file_does_not_keep_others_from_being_formatted(package, caps
 
 
 @pytest.mark.parametrize("encoding", ["gbk", "utf-8-sig"])
-def test_the_encoding_of_a_file_stays(package, encoding):
+def test_file_encoding_is_preserved(package, encoding):
     declared = "<?xml version='1.0' encoding='gbk'?>\n" if encoding == "gbk" else ""
     (package / "a.urdf").write_bytes(f"{declared}<robot>\n<!-- 机器人 -->\n</robot>\n".encode(encoding))
     assert main(["format", "a.urdf"]) == 0
     assert (package / "a.urdf").read_bytes() == f"{declared}<robot>\n  <!-- 机器人 -->\n</robot>\n".encode(encoding)
 
 
-def test_standard_input(package, capsysbinary, monkeypatch):
+def test_standard_input_is_formatted(package, capsysbinary, monkeypatch):
     (package / "linkwright.toml").write_text("[format]\nindent = 1\n")
     monkeypatch.setattr(sys, "stdin", io.TextIOWrapper(io.BytesIO(MESSY.encode())))
     assert main(["format", "-", "--stdin-filename", "urdf/new.xacro"]) == 0
@@ -114,7 +114,7 @@ def test_standard_input(package, capsysbinary, monkeypatch):
     assert b"<stdin>:1" in capsysbinary.readouterr().err
 
 
-def test_a_folder_without_such_files(package, capsys):
+def test_folder_without_xml_files_is_an_error(package, capsys):
     (package / "empty").mkdir()
     assert main(["format", "empty"]) == 1
     assert "error[CLI305]: there is no XML file to format in 'empty'" in capsys.readouterr().err

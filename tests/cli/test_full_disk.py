@@ -58,7 +58,7 @@ WRITING = {
 
 @needs_limits
 @pytest.mark.parametrize("words", WRITING.values(), ids=WRITING)
-def test_a_command_on_a_full_disk_leaves_every_file_as_it_was(
+def test_command_on_full_disk_leaves_files_unchanged(
     words: Sequence[str], robot: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
     if words[0] == "check":  # what it mends
@@ -77,12 +77,12 @@ def test_a_command_on_a_full_disk_leaves_every_file_as_it_was(
 
 
 @needs_limits
-def test_a_package_is_made_whole_or_not_at_all(
+def test_package_is_created_completely_or_not_at_all(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
     monkeypatch.chdir(tmp_path)
     words = ["pkg", "create", "fine", "--license", "Apache-2.0"]
-    with full_disk(2000):  # the licence does not fit
+    with full_disk(2000):  # the license does not fit
         assert main(words) == 1
     assert "File too large" in capsys.readouterr().err
     assert list(tmp_path.iterdir()) == []
@@ -90,7 +90,7 @@ def test_a_package_is_made_whole_or_not_at_all(
 
 
 @needs_limits
-def test_a_configuration_that_cannot_be_saved_stays_as_it_was(tmp_path: Path) -> None:
+def test_unsaved_configuration_keeps_old_file(tmp_path: Path) -> None:
     path = tmp_path / "a.rviz"
     path.write_text("Panels: []\nVisualization Manager:\n  Displays: []\n")
     before = path.read_bytes()
@@ -109,9 +109,7 @@ def test_a_configuration_that_cannot_be_saved_stays_as_it_was(tmp_path: Path) ->
 @needs_limits
 @needs_rosbags
 @pytest.mark.parametrize(("storage", "single_file"), [*((storage, False) for storage in STORAGES), ("mcap", True)])
-def test_a_recording_on_a_full_disk_ends_once_and_keeps_what_it_has(
-    tmp_path: Path, storage: str, single_file: bool
-) -> None:
+def test_recording_on_full_disk_fails_once_and_keeps_messages(tmp_path: Path, storage: str, single_file: bool) -> None:
     path = tmp_path / "bag.mcap"
     writer = BagWriter(path, storage, single_file=single_file)
     writer.add_topic("/chatter", "std_msgs/msg/String")
@@ -138,7 +136,7 @@ def test_a_recording_on_a_full_disk_ends_once_and_keeps_what_it_has(
 
 @needs_rosbags
 @needs_limits
-def test_bag_record_says_once_that_the_disk_is_full(
+def test_bag_record_reports_full_disk_once(
     in_graph: Callable[[Callable[[Graph], object]], None],
     tmp_path: Path,
     monkeypatch: pytest.MonkeyPatch,
@@ -216,7 +214,7 @@ def statuses(commands: Mapping[str, Sequence[str]], folder: Path, redirection: s
 
 @pytest.mark.skipif(sys.platform != "linux", reason="/dev/full is Linux's")
 @pytest.mark.parametrize(("redirection", "reason"), [(">/dev/full", "No space left"), (">&-", "Bad file descriptor")])
-def test_output_that_takes_nothing_is_one_error(robot: Path, redirection: str, reason: str) -> None:
+def test_unwritable_standard_output_is_one_error(robot: Path, redirection: str, reason: str) -> None:
     found, printed = statuses(QUICK, robot.parent, redirection)
     assert found == dict.fromkeys(QUICK, 1)
     assert printed.count(f"error[CLI202]: cannot write to standard output: {reason}") == len(QUICK)
@@ -235,7 +233,7 @@ LONG = {
 
 @needs_limits
 @pytest.mark.parametrize("unbuffered", ["", "1"])
-def test_output_that_a_full_disk_cuts_is_an_error(
+def test_output_truncated_by_full_disk_is_an_error(
     robot: Path, unbuffered: str, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     """The disk takes the first bytes of each."""
@@ -256,7 +254,7 @@ def test_output_that_a_full_disk_cuts_is_an_error(
 
 
 @pytest.mark.skipif(sys.platform == "win32", reason="there is no fork")
-def test_an_input_that_is_closed_is_an_empty_one(robot: Path) -> None:
+def test_closed_standard_input_is_treated_as_empty(robot: Path) -> None:
     commands = {**QUICK, "check -": ["xacro", "-"], "pub": ["interface", "show", "-"]}
     found, printed = statuses(commands, robot.parent, "<&-")
     assert {name for name, status in found.items() if status} == {"check -", "pub"}
@@ -265,7 +263,7 @@ def test_an_input_that_is_closed_is_an_empty_one(robot: Path) -> None:
 
 @pytest.mark.skipif(sys.platform != "linux", reason="/dev/full is Linux's")
 @pytest.mark.parametrize("redirection", ["2>/dev/full", "2>&-"])
-def test_messages_that_nobody_can_read_change_no_status(robot: Path, redirection: str) -> None:
+def test_unwritable_standard_error_keeps_exit_status(robot: Path, redirection: str) -> None:
     for words, status in ((["check", "r.urdf"], 0), (["check", "missing.urdf"], 1)):
         program = f'"$0" -m linkwright {" ".join(words)} {redirection}'
         environment = {**os.environ, "PYTHONPATH": str(REPOSITORY / "src")}
@@ -281,7 +279,7 @@ def test_messages_that_nobody_can_read_change_no_status(robot: Path, redirection
 
 
 @pytest.mark.skipif(sys.platform == "win32", reason="Windows keeps folders that are in use")
-def test_a_folder_that_was_removed_under_the_command(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_removed_working_directory_is_handled(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     robot = tmp_path / "r.urdf"
     robot.write_text(ROBOT)
     here = Path.cwd()

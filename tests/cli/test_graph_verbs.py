@@ -45,13 +45,13 @@ def run(capsys, *words: str, status: int = 0) -> tuple[str, str]:
 # node
 
 
-def test_node_list(capsys):
+def test_node_list_prints_nodes(capsys):
     assert run(capsys, "node", "list")[0] == "/complex_node\n"
     assert run(capsys, "node", "list", "-c")[0] == "1\n"
     assert "/_hidden_node\n" in run(capsys, "node", "list", "-a")[0]
 
 
-def test_nodes_of_one_name_are_warned_of(in_graph, capsys):
+def test_duplicate_node_names_cause_warning(in_graph, capsys):
     def twice(graph: Graph) -> None:
         robot(graph)
         robot(graph)
@@ -62,7 +62,7 @@ def test_nodes_of_one_name_are_warned_of(in_graph, capsys):
     assert "WARNING: Be aware that there are nodes in the graph that share an exact name" in err
 
 
-def test_node_info(capsys):
+def test_node_info_prints_endpoints(capsys):
     assert run(capsys, "node", "info", "/complex_node")[0].splitlines() == [
         "/complex_node",
         "  Subscribers:",
@@ -89,13 +89,13 @@ def test_node_info(capsys):
 
 
 @pytest.mark.parametrize("name", ["/complex_nod", "complex_nod"])
-def test_node_info_of_an_unknown_node(capsys, name):
+def test_node_info_of_unknown_node_suggests_nearest(capsys, name):
     _, err = run(capsys, "node", "info", name, status=1)
     assert f"Unable to find node '{name}'" in err
     assert "did you mean '/complex_node'?" in err
 
 
-def test_node_info_of_a_hidden_node(capsys):
+def test_node_info_of_hidden_node_requires_option(capsys):
     run(capsys, "node", "info", "/_hidden_node", status=1)
     assert run(capsys, "node", "info", "--include-hidden", "/_hidden_node")[0].startswith("/_hidden_node\n")
 
@@ -103,7 +103,7 @@ def test_node_info_of_a_hidden_node(capsys):
 # param
 
 
-def test_param_list(capsys):
+def test_param_list_prints_names(capsys):
     names = ["  fixed", "  gains", "  names.left", "  speed", "  use_sim_time"]
     assert run(capsys, "param", "list")[0].splitlines() == ["/complex_node:", *names]
     assert run(capsys, "param", "list", "complex_node")[0].splitlines() == names
@@ -111,7 +111,7 @@ def test_param_list(capsys):
     assert run(capsys, "param", "list", "/complex_node", "--param-prefixes", "names")[0] == "  names.left\n"
 
 
-def test_param_list_with_types(capsys):
+def test_param_list_prints_types(capsys):
     assert run(capsys, "param", "list", "/complex_node", "--param-type")[0].splitlines() == [
         "  fixed (type: integer)",
         "  gains (type: double array)",
@@ -131,26 +131,26 @@ def test_param_list_with_types(capsys):
         ("gains", "Double values are: array('d', [1.0, 2.0])\n"),
     ],
 )
-def test_param_get(capsys, name, printed):
+def test_param_get_prints_value(capsys, name, printed):
     assert run(capsys, "param", "get", "/complex_node", name)[0] == printed
 
 
-def test_param_get_without_type(capsys):
+def test_param_get_can_hide_type(capsys):
     assert run(capsys, "param", "get", "--hide-type", "/complex_node", "speed")[0] == "1.5\n"
 
 
-def test_param_get_of_an_unknown_parameter(capsys):
+def test_param_get_of_unknown_parameter_suggests_nearest(capsys):
     _, err = run(capsys, "param", "get", "/complex_node", "sped", status=1)
     assert "did you mean 'speed'?" in err
 
 
-def test_param_of_an_unknown_node(capsys):
+def test_param_get_of_unknown_node_suggests_nearest(capsys):
     _, err = run(capsys, "param", "get", "/complx_node", "speed", "--timeout", "0.1", status=1)
     assert "Node not found: '/complx_node'" in err
     assert "did you mean '/complex_node'?" in err
 
 
-def test_param_set(capsys):
+def test_param_set_accepts_several_parameters(capsys):
     assert run(capsys, "param", "set", "/complex_node", "speed", "2.5")[0] == "Set parameter successful\n"
     out, _ = run(capsys, "param", "set", "/complex_node", "speed", "2.5", "names.left", "x")
     assert out == "speed: Set parameter successful\nnames.left: Set parameter successful\n"
@@ -158,21 +158,21 @@ def test_param_set(capsys):
     assert out == "Set parameters atomically successful\n"
 
 
-def test_param_set_to_another_type(capsys):
+def test_param_set_rejects_wrong_type(capsys):
     _, err = run(capsys, "param", "set", "/complex_node", "speed", "fast", status=1)
     assert err.startswith("Setting parameter failed: Wrong parameter type")
 
 
-def test_param_set_of_a_read_only_parameter(capsys):
+def test_param_set_rejects_read_only_parameter(capsys):
     _, err = run(capsys, "param", "set", "/complex_node", "fixed", "4", status=1)
     assert err.startswith("Setting parameter failed: ")
 
 
-def test_param_set_without_a_value_is_usage(capsys):
+def test_param_set_requires_value(capsys):
     assert "name/value pairs" in run(capsys, "param", "set", "/complex_node", "speed", status=2)[1]
 
 
-def test_param_describe(capsys):
+def test_param_describe_prints_descriptors(capsys):
     assert run(capsys, "param", "describe", "/complex_node", "speed", "fixed")[0].splitlines() == [
         "Parameter name: speed",
         "  Type: double",
@@ -200,7 +200,7 @@ DUMPED = """\
 """
 
 
-def test_param_dump(capsys, tmp_path):
+def test_param_dump_prints_or_writes_yaml(capsys, tmp_path):
     assert run(capsys, "param", "dump", "/complex_node")[0] == DUMPED + "\n"
     out, _ = run(capsys, "param", "dump", "/complex_node", "--output-dir", str(tmp_path))
     file = tmp_path / "complex_node.yaml"
@@ -208,7 +208,7 @@ def test_param_dump(capsys, tmp_path):
     assert yaml.safe_load(file.read_text(encoding="utf-8")) == yaml.safe_load(DUMPED)
 
 
-def test_param_load(capsys, tmp_path):
+def test_param_load_reports_each_parameter(capsys, tmp_path):
     file = tmp_path / "p.yaml"
     file.write_text("/**:\n  ros__parameters:\n    speed: 9.0\n/complex_node:\n  ros__parameters:\n    fixed: 3.5\n")
     out, err = run(capsys, "param", "load", "/complex_node", str(file), status=1)
@@ -218,18 +218,18 @@ def test_param_load(capsys, tmp_path):
     assert out == ""
 
 
-def test_param_load_of_a_file_for_others(capsys, tmp_path):
+def test_param_load_rejects_file_for_other_nodes(capsys, tmp_path):
     file = tmp_path / "p.yaml"
     file.write_text("/other:\n  ros__parameters:\n    speed: 9.0\n")
     _, err = run(capsys, "param", "load", "/complex_node", str(file), status=1)
     assert "Param file does not contain parameters for /complex_node, only for nodes: ['/other']" in err
 
 
-def test_param_load_of_a_file_that_is_not_there(capsys):
+def test_param_load_rejects_missing_file(capsys):
     assert "does not exist" in run(capsys, "param", "load", "/complex_node", "nothing.yaml", status=1)[1]
 
 
-def test_param_delete(capsys):
+def test_param_delete_reports_failures(capsys):
     _, err = run(capsys, "param", "delete", "/complex_node", "speed", status=1)
     assert err.startswith("Deleting parameter failed")
     assert "did you mean 'speed'?" in run(capsys, "param", "delete", "/complex_node", "speeed", status=1)[1]
@@ -238,7 +238,7 @@ def test_param_delete(capsys):
 # service
 
 
-def test_service_list(capsys):
+def test_service_list_prints_names_types_and_count(capsys):
     out, _ = run(capsys, "service", "list", "-t")
     lines = out.splitlines()
     assert lines[0] == "/add_two_ints [example_interfaces/srv/AddTwoInts]"
@@ -246,7 +246,7 @@ def test_service_list(capsys):
     assert run(capsys, "service", "list", "-c")[0] == "7\n"
 
 
-def test_service_type_find_info(capsys):
+def test_service_type_find_and_info_print_results(capsys):
     kind = "example_interfaces/srv/AddTwoInts"
     assert run(capsys, "service", "type", "/add_two_ints")[0] == f"{kind}\n"
     assert run(capsys, "service", "find", kind)[0] == "/add_two_ints\n"
@@ -255,7 +255,7 @@ def test_service_type_find_info(capsys):
     assert out == f"Type: {kind}\nClients count: 0\nServices count: 1\n"
 
 
-def test_service_call(capsys):
+def test_service_call_prints_request_and_response(capsys):
     words = ["service", "call", "/add_two_ints", "example_interfaces/srv/AddTwoInts", "{a: 2, b: 3}"]
     assert run(capsys, *words)[0] == (
         "requester: making request: example_interfaces.srv.AddTwoInts_Request(a=2, b=3)\n\n"
@@ -263,12 +263,12 @@ def test_service_call(capsys):
     )
 
 
-def test_service_call_with_another_type(capsys):
+def test_service_call_rejects_wrong_type(capsys):
     _, err = run(capsys, "service", "call", "/add_two_ints", "std_srvs/srv/Empty", status=1)
     assert "service '/add_two_ints' is of type example_interfaces/srv/AddTwoInts, not std_srvs/srv/Empty" in err
 
 
-def test_service_call_gives_up(capsys):
+def test_service_call_times_out_without_server(capsys):
     words = ["service", "call", "/nothing", "std_srvs/srv/Empty", "--timeout", "0.1"]
     out, err = run(capsys, *words, status=1)
     assert out == "waiting for service to become available...\n"
@@ -283,7 +283,7 @@ def test_service_call_gives_up(capsys):
         (["/add_two_ints", "example_interfaces/srv/AddTwoInts", "{a: x}"], "field 'a' is of type int64"),
     ],
 )
-def test_mistakes_of_service_call(capsys, words, message):
+def test_service_call_reports_invalid_requests(capsys, words, message):
     assert message in run(capsys, "service", "call", *words, status=1)[1]
 
 
@@ -307,7 +307,7 @@ def watched(graph: Graph) -> None:
     node.create_timer(0.05, ask)
 
 
-def test_service_echo(in_graph, capsys):
+def test_service_echo_prints_events(in_graph, capsys):
     in_graph(watched)
     out, _ = run(capsys, "service", "echo", "/sum", "--flow-style", status=130)
     received, sent = out.split("---\n")[:2]
@@ -317,14 +317,14 @@ def test_service_echo(in_graph, capsys):
     assert sent.endswith("request: []\nresponse: [{sum: 5}]\n")
 
 
-def test_service_echo_of_a_type_with_commas(in_graph, capsys):
+def test_service_echo_prints_csv(in_graph, capsys):
     in_graph(watched)
     out, _ = run(capsys, "service", "echo", "/sum", "example_interfaces/srv/AddTwoInts", "--csv", status=130)
     first = out.splitlines()[0].split(",")
     assert (first[0], first[-4:]) == ("1", ["1", "2", "3", ""])
 
 
-def test_service_echo_says_when_nothing_is_told(in_graph, capsys):
+def test_service_echo_reports_missing_introspection(in_graph, capsys):
     def silent(graph: Graph) -> None:
         robot(graph)
         graph.create_node("user").create_timer(0.05, lambda: signal.raise_signal(signal.SIGINT))
@@ -333,11 +333,11 @@ def test_service_echo_says_when_nothing_is_told(in_graph, capsys):
     assert "service '/add_two_ints' has no events yet" in run(capsys, "service", "echo", "/add_two_ints", status=130)[1]
 
 
-def test_unknown_service(capsys):
+def test_unknown_service_suggests_nearest(capsys):
     assert "did you mean '/add_two_ints'?" in run(capsys, "service", "type", "/add_two_int", status=1)[1]
 
 
-def test_a_service_that_hangs_is_given_up(in_graph, capsys):
+def test_service_call_times_out_if_server_hangs(in_graph, capsys):
     async def never(_request, _response):
         import asyncio
 
@@ -348,7 +348,7 @@ def test_a_service_that_hangs_is_given_up(in_graph, capsys):
     assert "did not respond within 0.2 s" in run(capsys, *words, status=1)[1]
 
 
-def test_get_service_is_the_class_that_is_called():
+def test_get_service_returns_service_class():
     assert get_service("example_interfaces/srv/AddTwoInts").Request(a=1).a == 1
 
 
@@ -356,27 +356,27 @@ def test_get_service_is_the_class_that_is_called():
 
 
 @pytest.mark.parametrize("verb", ["topic", "node", "param", "service", "action", "interface", "lifecycle", "component"])
-def test_a_verb_alone_prints_its_help(capsys, verb):
+def test_command_group_without_subcommand_prints_help(capsys, verb):
     out, _ = run(capsys, verb)
     assert out.startswith(f"usage: linkwright {verb}")
 
 
-def test_an_unknown_verb_names_the_nearest(capsys):
+def test_unknown_subcommand_suggests_nearest(capsys):
     _, err = run(capsys, "topic", "ecko", "/chatter", status=2)
     assert err == "linkwright topic: there is no command 'ecko'; did you mean 'echo'?\n"
 
 
-def test_the_programs_name_in_usage(capsys):
+def test_usage_shows_program_name(capsys):
     assert main(["topic", "echo", "-h"], program="ros2") == 0
     assert capsys.readouterr().out.startswith("usage: ros2 topic echo ")
 
 
 @pytest.mark.parametrize("verb", ["start", "stop", "status"])
-def test_daemon(capsys, verb):
+def test_daemon_commands_are_accepted(capsys, verb):
     assert "daemon" in run(capsys, "daemon", verb)[0]
 
 
-def test_without_dds_one_message_says_what_is_missing(monkeypatch, capsys):
+def test_missing_dds_is_one_error(monkeypatch, capsys):
     monkeypatch.undo()
     monkeypatch.setenv("LINKWRIGHT_DDS", "0")
     _, err = run(capsys, "node", "list", status=1)

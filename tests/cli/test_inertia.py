@@ -36,7 +36,7 @@ def model(tmp_path):
     return path
 
 
-def test_a_table_with_a_verdict_on_each_link_worst_first(model, capsys):
+def test_table_lists_links_by_severity(model, capsys):
     assert main(["inertia", str(model)]) == 0
     captured = capsys.readouterr()
     assert captured.out.splitlines() == [
@@ -48,14 +48,14 @@ def test_a_table_with_a_verdict_on_each_link_worst_first(model, capsys):
     assert "--link NAME" in captured.err
 
 
-def test_the_table_in_chinese(model, capsys):
+def test_table_is_translated_to_chinese(model, capsys):
     assert main(["--lang", "zh", "inertia", str(model)]) == 0
     head, wheel, *_ = capsys.readouterr().out.splitlines()
     assert head == "连杆            质量 (kg)        密度 (kg/m3)  主惯量 (kg m2)  评判"
     assert wheel == "wheel           -（算出 4.189）  -             -               缺少：没有 <inertial>"
 
 
-def test_the_block_of_a_link_follows_the_table(model, capsys):
+def test_link_option_prints_inertial_block_after_table(model, capsys):
     words = ["inertia", str(model), "--density", "100", "--mass", "wheel=0.5", "--link", "wheel", "--link", "base_link"]
     assert main(words) == 0
     table, *details = capsys.readouterr().out.split("\n\n")
@@ -77,7 +77,7 @@ def test_the_block_of_a_link_follows_the_table(model, capsys):
     )
 
 
-def test_json(model, capsys):
+def test_json_output_contains_inertials_of_links(model, capsys):
     assert main(["inertia", str(model), "--format", "json"]) == 0
     data = json.loads(capsys.readouterr().out)
     empty, base, wheel = data["links"]
@@ -95,7 +95,7 @@ def test_json(model, capsys):
     assert wheel["xml"].startswith("<inertial>\n  <origin")
 
 
-def test_writing(model, capsys):
+def test_write_updates_file(model, capsys):
     assert main(["inertia", str(model), "--write"]) == 0
     out = capsys.readouterr().out
     assert out.endswith(f"wrote 2 <inertial> to '{model}'\n")
@@ -107,7 +107,7 @@ def test_writing(model, capsys):
     assert capsys.readouterr().out.count("it matches its shapes") == 2
 
 
-def test_what_a_macro_writes_is_printed_and_refused(tmp_path, capsys):
+def test_inertial_from_macro_is_printed_but_not_written(tmp_path, capsys):
     path = tmp_path / "r.xacro"
     path.write_text(
         '<robot name="r" xmlns:xacro="http://www.ros.org/wiki/xacro">\n'
@@ -129,7 +129,7 @@ def test_what_a_macro_writes_is_printed_and_refused(tmp_path, capsys):
     assert path.read_text() == before
 
 
-def test_names_are_checked(model, capsys):
+def test_unknown_link_names_and_invalid_masses_are_rejected(model, capsys):
     assert main(["inertia", str(model), "--link", "weel"]) == 1
     err = capsys.readouterr().err
     assert "CLI311" in err
@@ -140,19 +140,19 @@ def test_names_are_checked(model, capsys):
     assert "CLI311" in err
 
 
-def test_a_density_is_positive(model, capsys):
+def test_density_must_be_positive(model, capsys):
     assert main(["inertia", str(model), "--density", "-3"]) == 2
     assert "'-3' is not a positive number" in capsys.readouterr().err
 
 
-def test_a_description_without_a_robot(tmp_path, capsys):
+def test_description_without_robot_is_an_error(tmp_path, capsys):
     path = tmp_path / "r.urdf"
     path.write_text('<robot name="r"/>')
     assert main(["inertia", str(path)]) == 1
     assert "URDF106" in capsys.readouterr().err
 
 
-def test_errors_in_the_description_are_told_and_the_rest_is_computed(tmp_path, capsys):
+def test_description_errors_are_reported_and_rest_is_computed(tmp_path, capsys):
     path = tmp_path / "r.urdf"
     path.write_text(MODEL.replace('<mass value="2"/>', '<mass value="2 kg"/>'))
     assert main(["inertia", str(path)]) == 1

@@ -22,7 +22,7 @@ def lines(name: str, **options: bool) -> list[str]:
     return list(definition_lines(name, DEFINITIONS.__getitem__, **options))
 
 
-def test_nested_definitions_are_indented_without_their_comments():
+def test_nested_definitions_are_indented_without_comments():
     assert lines("p/msg/Nested") == [
         "# Nested",
         "Short short # inside",
@@ -34,7 +34,7 @@ def test_nested_definitions_are_indented_without_their_comments():
     ]
 
 
-def test_with_all_comments():
+def test_nested_comments_are_shown_with_option():
     assert lines("p/msg/Nested", nested_comments=True) == [
         "# Nested",
         "Short short # inside",
@@ -49,7 +49,7 @@ def test_with_all_comments():
     ]
 
 
-def test_without_comments():
+def test_comments_can_be_omitted():
     assert lines("p/msg/Nested", comments=False) == [
         "Short short",
         "\tbool BOOL_CONST=true",
@@ -59,7 +59,7 @@ def test_without_comments():
     ]
 
 
-def test_arrays_headers_and_other_packages_of_a_service():
+def test_service_definition_expands_arrays_and_headers():
     assert lines("p/srv/Ask", comments=False) == [
         "Nested[] n",
         "\tShort short",
@@ -87,7 +87,7 @@ def test_arrays_headers_and_other_packages_of_a_service():
         ("geometry_msgs/msg/Point p", "geometry_msgs/msg/Point"),
     ],
 )
-def test_which_lines_have_a_nested_type(line, found):
+def test_nested_type_is_found_in_definition_line(line, found):
     assert nested_type(line, "p") == found
 
 
@@ -97,7 +97,7 @@ def run(capsys, *words: str, status: int = 0) -> tuple[str, str]:
     return captured.out, captured.err
 
 
-def test_show(capsys):
+def test_show_prints_definition(capsys):
     assert run(capsys, "show", "geometry_msgs/msg/Twist", "--no-comments")[0].splitlines() == [
         "Vector3 linear",
         "\tfloat64 x",
@@ -110,16 +110,16 @@ def test_show(capsys):
     ]
 
 
-def test_show_from_standard_input(capsys, monkeypatch):
+def test_show_reads_type_from_standard_input(capsys, monkeypatch):
     monkeypatch.setattr("sys.stdin", io.StringIO("std_msgs/msg/String\n"))
     assert run(capsys, "show", "-")[0] == "# A text.\nstring data\n"
 
 
-def test_show_of_an_unknown_type(capsys):
+def test_show_of_unknown_type_suggests_nearest(capsys):
     assert "did you mean" in run(capsys, "show", "std_msgs/msg/Strin", status=1)[1]
 
 
-def test_list(capsys):
+def test_list_prints_interfaces_by_kind(capsys):
     out, _ = run(capsys, "list")
     text = out.splitlines()
     assert text[0] == "Messages:"
@@ -128,37 +128,37 @@ def test_list(capsys):
     assert "    example_interfaces/action/Fibonacci" in text[text.index("Actions:") :]
 
 
-def test_list_of_one_kind(capsys):
+def test_list_prints_only_actions(capsys):
     out, _ = run(capsys, "list", "-a")
     assert out.startswith("Actions:\n")
     assert "Messages:" not in out
 
 
-def test_package(capsys):
+def test_package_lists_types(capsys):
     out, _ = run(capsys, "package", "std_srvs")
     assert out.splitlines() == ["std_srvs/srv/Empty", "std_srvs/srv/SetBool", "std_srvs/srv/Trigger"]
     assert run(capsys, "package", "std_srvs", "-m")[0] == ""
 
 
-def test_unknown_package(capsys):
+def test_unknown_package_suggests_nearest(capsys):
     _, err = run(capsys, "package", "std_srv", status=1)
     assert "Unknown package 'std_srv'" in err
     assert "did you mean 'std_srvs'" in err
 
 
-def test_packages(capsys):
+def test_packages_lists_packages_with_interfaces(capsys):
     packages = run(capsys, "packages")[0].splitlines()
     assert {"std_msgs", "std_srvs", "action_msgs"} <= set(packages)
     assert packages == sorted(packages)
     assert "std_msgs" not in run(capsys, "packages", "-s")[0].splitlines()
 
 
-def test_proto(capsys):
+def test_proto_prints_prototype(capsys):
     assert run(capsys, "proto", "std_msgs/msg/String")[0] == "\"data: ''\n\"\n"
     assert run(capsys, "proto", "--no-quotes", "std_srvs/srv/SetBool")[0] == "data: false\n\n"
 
 
-def test_types_of_the_workspace(capsys, tmp_path: Path, monkeypatch):
+def test_types_of_workspace_package_are_found(capsys, tmp_path: Path, monkeypatch):
     package = tmp_path / "src" / "my_interfaces"
     (package / "msg").mkdir(parents=True)
     (package / "package.xml").write_text(

@@ -27,7 +27,7 @@ def keyboard(monkeypatch: pytest.MonkeyPatch) -> Iterator[int]:
     os.close(main)
 
 
-async def test_keys_do_what_they_stand_for_and_the_terminal_is_as_it_was(keyboard: int) -> None:
+async def test_reading_keys_calls_actions_and_restores_terminal(keyboard: int) -> None:
     before = termios.tcgetattr(sys.stdin)
     pressed: list[str] = []
     actions = {SPACE: lambda: pressed.append("space"), UP: lambda: pressed.append("up")}
@@ -41,13 +41,13 @@ async def test_keys_do_what_they_stand_for_and_the_terminal_is_as_it_was(keyboar
     assert termios.tcgetattr(sys.stdin) == before
 
 
-async def test_in_the_background_the_terminal_is_left_alone(keyboard: int, monkeypatch: pytest.MonkeyPatch) -> None:
+async def test_reading_keys_ignores_terminal_in_background(keyboard: int, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(os, "tcgetpgrp", lambda _: os.getpgrp() + 1)
     with reading_keys({}) as listens:
         assert not listens
 
 
-async def test_without_a_terminal_there_are_no_keys(monkeypatch: pytest.MonkeyPatch) -> None:
+async def test_reading_keys_requires_terminal(monkeypatch: pytest.MonkeyPatch) -> None:
     with Path(os.devnull).open() as nothing:  # noqa: ASYNC230  # which does not block
         monkeypatch.setattr(sys, "stdin", nothing)
         with reading_keys({}) as listens:

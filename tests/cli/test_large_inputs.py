@@ -91,7 +91,7 @@ def work(make: Callable[[int], str], count: int, folder: Path, capsys: pytest.Ca
 
 
 @pytest.mark.parametrize("make", KINDS, ids=lambda make: make.__name__)
-def test_check_is_linear_in_its_input(
+def test_check_work_is_linear_in_input_size(
     make: Callable[[int], str], tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
     work(make, 20, tmp_path, capsys)  # what is imported and worked out once
@@ -100,7 +100,7 @@ def test_check_is_linear_in_its_input(
     assert many[1] < few[1] * 6 + 2000
 
 
-def test_the_tree_of_a_long_chain_has_an_end_to_its_blanks() -> None:
+def test_tree_indentation_of_long_chain_is_limited() -> None:
     count = 20_000
     names = [f"l{number}" for number in range(count)]
     joints = {
@@ -113,7 +113,7 @@ def test_the_tree_of_a_long_chain_has_an_end_to_its_blanks() -> None:
     assert lines[-1] == f"{'    ' * DEEPEST}child(1):  l{count - 1}"
 
 
-def test_of_many_findings_the_errors_and_a_number_are_printed() -> None:
+def test_many_findings_print_errors_and_count() -> None:
     found = [Diagnostic("LW101", phrase("warning"), severity=Severity.WARNING) for _ in range(2_000)]
     found += [Diagnostic("LW102", phrase("mistake"))] * 3
     stream = io.StringIO()
@@ -124,7 +124,7 @@ def test_of_many_findings_the_errors_and_a_number_are_printed() -> None:
     assert lines[-1] == "... and 1,503 more findings"
 
 
-def test_a_tag_is_read_once_for_all_its_attributes() -> None:
+def test_tag_attributes_are_parsed_once() -> None:
     names = [f"a{number}" for number in range(20_000)]
     text = "<x " + " ".join(f'{name}="1"' for name in names) + "/>"
     first = positions.attribute_value_range(text, 0, names[0])
@@ -136,7 +136,7 @@ def test_a_tag_is_read_once_for_all_its_attributes() -> None:
 
 
 @pytest.mark.skipif(sys.platform == "win32", reason="Windows has no such pipes")
-def test_a_pipe_beside_a_file_is_not_read(tmp_path: Path) -> None:
+def test_named_pipe_beside_file_is_not_opened(tmp_path: Path) -> None:
     path = tmp_path / "r.xacro"
     path.write_text('<robot name="r" xmlns:xacro="http://www.ros.org/wiki/xacro"><link name="a"/></robot>')
     (tmp_path / "package.xml").write_text("<package format='3'><name>p</name></package>")

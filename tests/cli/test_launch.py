@@ -50,7 +50,7 @@ def launched(*words: object) -> subprocess.CompletedProcess[str]:
     )
 
 
-def test_the_output_of_processes_goes_to_the_log_unless_asked_for(write: Write, tmp_path: Path) -> None:
+def test_process_output_goes_to_log_by_default(write: Write, tmp_path: Path) -> None:
     path = write(PRINTS)
     quiet = launched(path)
     assert quiet.returncode == 0
@@ -59,25 +59,25 @@ def test_the_output_of_processes_goes_to_the_log_unless_asked_for(write: Write, 
     assert launched("-a", path).stdout == "[py-1] out\n"
 
 
-def test_debug(write: Write) -> None:
+def test_debug_option_sets_log_level(write: Write) -> None:
     done = launched("--debug", write(PRINTS))
     assert "[INFO] [launch]: Default logging verbosity is set to DEBUG" in done.stderr
     assert "[DEBUG] [launch]: processing event: 'launch.events.process.ProcessStarted'" in done.stderr
 
 
-def test_a_prefix_for_some_programs(write: Write) -> None:
+def test_launch_prefix_applies_to_filtered_programs(write: Write) -> None:
     path = write("ExecuteProcess(cmd=['echo', 'a'])", "ExecuteProcess(cmd=['true', 'b'])")
     done = launched("-a", "--launch-prefix", "echo before", "--launch-prefix-filter", "tr", path)
     assert sorted(done.stdout.splitlines()) == ["[echo-1] a", "[true-2] before true b"]
 
 
-def test_isolate(write: Write) -> None:
+def test_isolate_starts_separate_process(write: Write) -> None:
     node = "Node(package='demo_nodes_py', executable='talker_qos', arguments=['-n', '1'])"
     assert "[talker_qos-1]: started in the launcher's process" in launched(write(node)).stderr
     assert "[talker_qos-1]: process started with pid [" in launched("--isolate", write(node)).stderr
 
 
-def test_the_description_is_printed(write: Write, capsys: pytest.CaptureFixture[str]) -> None:
+def test_print_option_shows_launch_description(write: Write, capsys: pytest.CaptureFixture[str]) -> None:
     path = write("LogInfo(msg='hello')", "Node(package='p', executable='e', name='n')")
     assert main(["launch", "--print", str(path)]) == 0
     out = capsys.readouterr().out
@@ -85,7 +85,7 @@ def test_the_description_is_printed(write: Write, capsys: pytest.CaptureFixture[
     assert "Node(cmd=[ExecInPkg(pkg='p', exec='e'), '--ros-args', '-r'," in out
 
 
-def test_show_arguments_has_two_spellings(write: Write, capsys: pytest.CaptureFixture[str]) -> None:
+def test_show_arguments_and_short_option_are_equivalent(write: Write, capsys: pytest.CaptureFixture[str]) -> None:
     path = str(write("DeclareLaunchArgument('gui', default_value='true')"))
     assert main(["launch", "--show-arguments", path]) == 0
     listed = capsys.readouterr().out

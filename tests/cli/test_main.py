@@ -15,24 +15,24 @@ from linkwright.cli.command import help_texts, parser_for
 from linkwright.diagnostics.translation import set_language
 
 
-def test_no_words_prints_the_overview_as_usage(capsys):
+def test_missing_arguments_print_overview_as_usage(capsys):
     assert main([]) == 2
     printed = capsys.readouterr().out
     assert all(verb in printed for verb in help_texts())
 
 
-def test_help_lists_every_verb(capsys):
+def test_help_lists_every_command(capsys):
     assert main(["--help"]) == 0
     printed = capsys.readouterr().out
     assert all(f"  {verb} " in printed for verb in help_texts())
 
 
-def test_version(capsys):
+def test_version_is_printed(capsys):
     assert main(["--version"]) == 0
     assert capsys.readouterr().out == f"linkwright {__version__}\n"
 
 
-def test_unknown_command_names_the_nearest(capsys):
+def test_unknown_command_suggests_nearest(capsys):
     assert main(["xarco"]) == 2
     assert capsys.readouterr().err == "linkwright: there is no command 'xarco'; did you mean 'xacro'?\n"
 
@@ -47,31 +47,31 @@ def test_unknown_command_names_the_nearest(capsys):
         (["--lang", "zh", "check", "r.urdf", "--strct"], "--strict"),
     ],
 )
-def test_a_misspelt_option_names_the_nearest(words, meant, capsys):
+def test_misspelled_option_suggests_nearest(words, meant, capsys):
     assert main(words) == 2
     assert meant in capsys.readouterr().err.splitlines()[-1].rpartition(";")[2]
 
 
 @pytest.mark.parametrize("verb", help_texts())
-def test_every_verb_has_help(verb, capsys):
+def test_every_command_has_help(verb, capsys):
     assert main([verb, "--help"]) == 0
     assert f"usage: linkwright {verb}" in capsys.readouterr().out
 
 
-def test_wrong_option_is_usage(capsys):
+def test_unknown_option_is_usage_error(capsys):
     assert main(["xacro", "--nonsense", "a.xacro"]) == 2
     assert "--nonsense" in capsys.readouterr().err
 
 
 @pytest.mark.parametrize("verb", ["check", "view", "xacro", "inertia", "diagram"])
-def test_of_words_that_may_be_left_out_none_is_missed(verb, capsys):
+def test_missing_file_argument_is_named(verb, capsys):
     with pytest.raises(SystemExit):
         parser_for(verb).parse_args([])
     assert "the following arguments are required: FILE" in (printed := capsys.readouterr().err)
     assert printed.rstrip().endswith(("FILE", "FILE|FOLDER|NAME:=VALUE"))
 
 
-def test_a_bug_of_ours_is_said_without_a_traceback(monkeypatch, capsys):
+def test_internal_error_is_reported_without_traceback(monkeypatch, capsys):
     def broken(*_words):
         raise ZeroDivisionError("seeded")
 
@@ -85,7 +85,7 @@ def test_a_bug_of_ours_is_said_without_a_traceback(monkeypatch, capsys):
         assert "Traceback" in file.read()
 
 
-def test_interrupt_is_130(monkeypatch):
+def test_interrupt_exits_with_130(monkeypatch):
     def interrupted(*_words):
         raise KeyboardInterrupt
 
@@ -93,7 +93,7 @@ def test_interrupt_is_130(monkeypatch):
     assert main(["xacro", "x"]) == 130
 
 
-def test_a_reader_that_goes_away_is_no_error(tmp_path):
+def test_closed_pipe_is_not_an_error(tmp_path):
     model = tmp_path / "long.urdf"
     links = "".join(f'<link name="l{number}"/>' for number in range(20000))
     model.write_text(f'<robot name="r">{links}</robot>')
@@ -103,7 +103,7 @@ def test_a_reader_that_goes_away_is_no_error(tmp_path):
     assert done.stderr == ""
 
 
-def test_what_is_imported_at_the_start_is_not_searched_for_garbage():
+def test_garbage_collector_skips_startup_imports():
     program = (
         "import gc, sys\n"
         "sys.argv[1:] = ['--version']\n"
@@ -130,7 +130,7 @@ def texts_in(parser: argparse.ArgumentParser) -> Iterator[str]:
 
 
 @pytest.mark.parametrize("verb", help_texts())
-def test_all_that_the_help_of_a_command_says_is_translated(verb):
+def test_command_help_is_fully_translated(verb):
     set_language("en")
     try:
         english = list(texts_in(parser_for(verb)))

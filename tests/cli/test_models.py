@@ -27,7 +27,7 @@ def toy(monkeypatch):
         yield shop
 
 
-def test_the_models_are_listed(capsys):
+def test_models_list_prints_license_and_status(capsys):
     assert main(["models", "list"]) == 0
     lines = capsys.readouterr().out.splitlines()
     assert [line.split()[0] for line in lines] == ["vosk-en", "vosk-zh", "efficientdet-lite0", "efficientdet-lite2"]
@@ -39,7 +39,7 @@ def test_the_models_are_listed(capsys):
     assert (first["name"], first["path"]) == ("vosk-en", None)
 
 
-def test_a_model_is_fetched_found_checked_and_removed(toy, home, capsys):
+def test_model_is_downloaded_found_verified_and_removed(toy, home, capsys):
     assert main(["models", "get", "toy"]) == 0
     printed = capsys.readouterr()
     assert printed.out == f"{home / 'toy-1.0'}\n"
@@ -60,11 +60,11 @@ def test_a_model_is_fetched_found_checked_and_removed(toy, home, capsys):
     assert "MODEL102" in capsys.readouterr().err
 
 
-def test_how_far_it_has_come_is_shown_on_a_terminal(toy, capsys, monkeypatch):
+def test_download_progress_is_shown_on_terminal(toy, capsys, monkeypatch):
     monkeypatch.setattr("linkwright.cli.progress.sys.stderr.isatty", lambda: True)
     assert main(["models", "get", "toy"]) == 0
     assert f"{'#' * 30} 0.0 of 0.0 MB" in capsys.readouterr().err
 
 
-def test_names_are_completed():
+def test_model_names_are_completed():
     assert complete(["linkwright", "models", "get", "vosk"]) == ["vosk-en", "vosk-zh"]

@@ -40,7 +40,7 @@ def address() -> list[str]:
 
 
 @with_multicast
-def test_what_is_sent_to_a_group_is_received(address):
+def test_multicast_receive_gets_sent_datagram(address):
     words = [sys.executable, "-m", "linkwright", "multicast", "receive", *address]
     with subprocess.Popen(words, stdout=subprocess.PIPE, text=True) as receiving:
         assert receiving.stdout.readline() == "Waiting for UDP multicast datagram...\n"
@@ -54,12 +54,12 @@ def test_what_is_sent_to_a_group_is_received(address):
 @pytest.mark.parametrize(
     "words", [["--group", "10.0.0.1"], ["--group", "all"], ["--port", "0"], ["--port", "70000"], ["--ttl", "256"]]
 )
-def test_what_is_no_address_is_wrong_usage(words, capsys):
+def test_invalid_address_options_are_usage_errors(words, capsys):
     assert main(["multicast", "send", *words]) == 2
     assert "value must be" in capsys.readouterr().err
 
 
-def test_a_system_that_refuses_is_told(monkeypatch, capsys):
+def test_unreachable_network_is_reported(monkeypatch, capsys):
     def refuse(*_):
         raise OSError(101, "Network is unreachable")
 
@@ -70,7 +70,7 @@ def test_a_system_that_refuses_is_told(monkeypatch, capsys):
     assert "Network is unreachable" in err
 
 
-def test_greetings_are_counted_by_computer_until_the_table_is_taken():
+def test_greetings_are_counted_by_host_until_table_is_taken():
     counts = Greetings("desk", published=2, sent=1)
     for host in ("robot", "desk", "robot", "laptop"):
         counts.count_topic_greeting(greeting(host))
@@ -94,7 +94,7 @@ def test_greetings_are_counted_by_computer_until_the_table_is_taken():
 
 @with_multicast
 @pytest.mark.parametrize("name", ["doctor", "wtf"])
-def test_hello_once_prints_one_table(name, monkeypatch, capsys):
+def test_doctor_hello_once_prints_one_table(name, monkeypatch, capsys):
     monkeypatch.setenv("ROS_DOMAIN_ID", str(own_domain()))
     monkeypatch.delenv("LINKWRIGHT_DDS", raising=False)
     assert main([name, "hello", "--once", "--topic", "/greetings"]) == 0

@@ -47,7 +47,7 @@ def size(path: Path) -> tuple[int, ...]:
     return struct.unpack_from(">II", data, 16)
 
 
-def test_an_image_has_the_size_and_the_arguments_given(folder: Path, capsys: pytest.CaptureFixture[str]) -> None:
+def test_picture_applies_size_and_arguments(folder: Path, capsys: pytest.CaptureFixture[str]) -> None:
     assert main(["picture", "box.xacro", "size:=4", "-o", "out/a.png", "--size", "80x60"]) == 0
     assert capsys.readouterr().out == f"Created file {Path('out/a.png')}\n"
     assert size(folder / "out" / "a.png") == (80, 60)
@@ -69,20 +69,20 @@ def test_an_image_has_the_size_and_the_arguments_given(folder: Path, capsys: pyt
     ],
     ids=" ".join,
 )
-def test_each_option_changes_the_image(words: list[str], folder: Path) -> None:
+def test_option_changes_image(words: list[str], folder: Path) -> None:
     assert main(["picture", "arm.urdf", "-o", "plain.png", *SMALL]) == 0
     assert main(["picture", "arm.urdf", "-o", "other.png", *SMALL, *words]) == 0
     assert (folder / "plain.png").read_bytes() != (folder / "other.png").read_bytes()
 
 
-def test_a_world_is_drawn(folder: Path, capsys: pytest.CaptureFixture[str]) -> None:
+def test_picture_draws_world(folder: Path, capsys: pytest.CaptureFixture[str]) -> None:
     assert main(["picture", "room.world", "-o", "room.png", *SMALL]) == 0
     assert size(folder / "room.png") == (64, 48)
     assert main(["picture", "room.world", "-o", "room.png", "--joint", "a=1"]) == 1
     assert "error[PIC111]" in capsys.readouterr().err
 
 
-def test_a_turn_is_an_animation(folder: Path) -> None:
+def test_turntable_writes_animated_png(folder: Path) -> None:
     assert main(["picture", "arm.urdf", "-o", "arm.png", *SMALL, "--turntable", "0.5"]) == 0
     data = (folder / "arm.png").read_bytes()
     assert data.count(b"fcTL") == 6
@@ -90,12 +90,12 @@ def test_a_turn_is_an_animation(folder: Path) -> None:
 
 
 @pytest.mark.extra("image")
-def test_an_animation_can_be_webp(folder: Path) -> None:
+def test_turntable_writes_animated_webp(folder: Path) -> None:
     assert main(["picture", "arm.urdf", "-o", "arm.webp", *SMALL, "--turntable", "0.5"]) == 0
     assert (folder / "arm.webp").read_bytes()[8:12] == b"WEBP"
 
 
-def test_webp_without_pillow_says_what_to_install(
+def test_webp_without_pillow_suggests_installation(
     folder: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
     monkeypatch.setitem(__import__("sys").modules, "PIL", None)
@@ -105,7 +105,7 @@ def test_webp_without_pillow_says_what_to_install(
     assert not (folder / "arm.webp").exists()
 
 
-def test_missing_meshes_are_named_and_the_rest_is_drawn(folder: Path, capsys: pytest.CaptureFixture[str]) -> None:
+def test_missing_mesh_is_reported_and_rest_is_drawn(folder: Path, capsys: pytest.CaptureFixture[str]) -> None:
     broken = ARM.replace('<box size="1 1 1"/>', '<mesh filename="package://nowhere/arm.stl"/>', 1)
     (folder / "broken.urdf").write_text(broken)
     assert main(["picture", "broken.urdf", "-o", "broken.png", *SMALL]) == 1
@@ -114,20 +114,20 @@ def test_missing_meshes_are_named_and_the_rest_is_drawn(folder: Path, capsys: py
     assert size(folder / "broken.png") == (64, 48)
 
 
-def test_labels_in_other_letters_are_told(folder: Path, capsys: pytest.CaptureFixture[str]) -> None:
+def test_unsupported_label_characters_are_reported(folder: Path, capsys: pytest.CaptureFixture[str]) -> None:
     (folder / "arm.urdf").write_text(ARM.replace('"arm"', '"手臂"'), encoding="utf-8")
     assert main(["picture", "arm.urdf", "-o", "arm.png", *SMALL, "--labels", "links"]) == 0
     assert "warning[PIC104]" in capsys.readouterr().err
 
 
-def test_a_robot_without_visuals_is_an_error(folder: Path, capsys: pytest.CaptureFixture[str]) -> None:
+def test_robot_without_visuals_is_an_error(folder: Path, capsys: pytest.CaptureFixture[str]) -> None:
     (folder / "none.urdf").write_text('<robot name="r"><link name="base"/></robot>')
     assert main(["picture", "none.urdf", "-o", "none.png"]) == 1
     assert "error[PIC110]" in capsys.readouterr().err
     assert not (folder / "none.png").exists()
 
 
-def test_an_unknown_joint_is_an_error(folder: Path, capsys: pytest.CaptureFixture[str]) -> None:
+def test_unknown_joint_is_an_error(folder: Path, capsys: pytest.CaptureFixture[str]) -> None:
     assert main(["picture", "arm.urdf", "-o", "arm.png", "--joint", "elbow=1"]) == 1
     assert "error[KIN101]: the robot has no joint 'elbow'" in capsys.readouterr().err
 
@@ -151,7 +151,7 @@ def test_an_unknown_joint_is_an_error(folder: Path, capsys: pytest.CaptureFixtur
         ([], "-o"),
     ],
 )
-def test_wrong_usage_is_one_message(
+def test_invalid_usage_is_one_message(
     words: list[str], message: str, folder: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
     assert main(["picture", "arm.urdf", *words]) == 2

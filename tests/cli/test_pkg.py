@@ -35,7 +35,7 @@ def files(package: str) -> list[str]:
     return sorted(str(path.relative_to(package)) for path in Path(package).rglob("*") if path.is_file())
 
 
-def test_the_tutorials_command(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+def test_pkg_create_matches_tutorial(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     words = ["my_robot", "--build-type", "ament_python", "--dependencies", "urdf", "xacro", "--license", "MIT", *ADA]
     assert main(["pkg", "create", *words]) == 0
     assert files("my_robot") == [
@@ -78,7 +78,7 @@ def test_the_tutorials_command(tmp_path: Path, capsys: pytest.CaptureFixture[str
     ]
 
 
-def test_cmake_layout_and_lines(capsys: pytest.CaptureFixture[str]) -> None:
+def test_cmake_package_has_expected_files(capsys: pytest.CaptureFixture[str]) -> None:
     assert main(["pkg", "create", "arm", "--node-name", "mover", "--library-name", "chain", *ADA]) == 0
     assert files("arm") == [
         "CMakeLists.txt",
@@ -108,7 +108,7 @@ def test_cmake_layout_and_lines(capsys: pytest.CaptureFixture[str]) -> None:
     assert lists.endswith("\nament_package()\n")
 
 
-def test_an_empty_cmake_package_keeps_its_folders() -> None:
+def test_empty_cmake_package_keeps_folders() -> None:
     assert main(["pkg", "create", "arm", "--build-type", "cmake", *ADA]) == 0
     assert files("arm") == ["CMakeLists.txt", "package.xml"]
     assert Path("arm/src").is_dir()
@@ -117,7 +117,7 @@ def test_an_empty_cmake_package_keeps_its_folders() -> None:
 
 @pytest.mark.parametrize("build_type", BUILD_TYPES)
 @pytest.mark.parametrize("package_format", ["2", "3"])
-def test_the_manifest_is_what_colcon_expects(build_type: str, package_format: str) -> None:
+def test_manifest_is_valid_for_colcon(build_type: str, package_format: str) -> None:
     words = ["--build-type", build_type, "--package-format", package_format, "--dependencies", "urdf", "xacro", "urdf"]
     text = 'Arms & <legs> of "Ada"'
     assert main(["pkg", "create", "arm", *words, "--description", text, "--license", "MIT", *ADA]) == 0
@@ -136,7 +136,7 @@ def test_the_manifest_is_what_colcon_expects(build_type: str, package_format: st
     assert package.get_build_type() == build_type
 
 
-def test_a_node_and_a_library_in_python() -> None:
+def test_python_package_has_node_and_library() -> None:
     words = ["--build-type", "ament_python", "--node-name", "talker", "--library-name", "words", *ADA]
     assert main(["pkg", "create", "arm", *words]) == 0
     assert "'talker = arm.talker:main'" in Path("arm/setup.py").read_text(encoding="utf-8")
@@ -145,7 +145,7 @@ def test_a_node_and_a_library_in_python() -> None:
     assert result.stdout == "Hello from arm.\n"
 
 
-def test_a_node_gives_way_to_a_library_of_its_name(capsys: pytest.CaptureFixture[str]) -> None:
+def test_node_is_renamed_if_library_has_same_name(capsys: pytest.CaptureFixture[str]) -> None:
     assert main(["pkg", "create", "arm", "--node-name", "move", "--library-name", "move", *ADA]) == 0
     assert Path("arm/src/move_node.cpp").is_file()
     output = capsys.readouterr()
@@ -153,7 +153,7 @@ def test_a_node_gives_way_to_a_library_of_its_name(capsys: pytest.CaptureFixture
     assert "PKG209" in output.err
 
 
-def test_a_python_package_tells_colcon_to_run_its_tests_with_pytest() -> None:
+def test_python_package_requires_pytest_for_tests() -> None:
     """Without it, `colcon test` runs those of unittest, of which there are none."""
     main(["pkg", "create", "arm", "--build-type", "ament_python", *ADA])
     call = ast.parse(Path("arm/setup.py").read_text(encoding="utf-8")).body[-1]
@@ -163,7 +163,7 @@ def test_a_python_package_tells_colcon_to_run_its_tests_with_pytest() -> None:
     assert ast.literal_eval(options["extras_require"]) == {"test": ["pytest"]}
 
 
-def test_text_with_quotes_survives_in_setup_py() -> None:
+def test_quotes_in_description_survive_in_setup_py() -> None:
     text = """It's "quoted" \\ 机器人"""
     request = PackageRequest(name="arm", maintainer=Maintainer("O'Neil", "o@example.org"), year=2026, description=text)
     call = ast.parse(package_templates.setup_py(request)).body[-1]
@@ -174,14 +174,14 @@ def test_text_with_quotes_survives_in_setup_py() -> None:
     assert ast.literal_eval(values["maintainer"]) == "O'Neil"
 
 
-def test_destination_directory_is_made(capsys: pytest.CaptureFixture[str]) -> None:
+def test_destination_directory_is_created(capsys: pytest.CaptureFixture[str]) -> None:
     assert main(["pkg", "create", "arm", "--destination-directory", "ws/src", "--license", "MIT", *ADA]) == 0
     assert Path("ws/src/arm/package.xml").is_file()
     assert "creating ./ws/src/arm/package.xml" in capsys.readouterr().out
 
 
 @pytest.mark.parametrize("existing", ["folder", "file"])
-def test_an_existing_folder_is_left_alone(existing: str, capsys: pytest.CaptureFixture[str]) -> None:
+def test_existing_folder_is_not_overwritten(existing: str, capsys: pytest.CaptureFixture[str]) -> None:
     place = Path("arm")
     place.mkdir() if existing == "folder" else place.write_text("mine", encoding="utf-8")
     assert main(["pkg", "create", "arm", "--license", "MIT", *ADA]) == 1
@@ -191,13 +191,13 @@ def test_an_existing_folder_is_left_alone(existing: str, capsys: pytest.CaptureF
     assert list(place.iterdir()) == [] if existing == "folder" else place.read_text(encoding="utf-8") == "mine"
 
 
-def test_a_place_that_cannot_be_written_is_named(capsys: pytest.CaptureFixture[str]) -> None:
+def test_unwritable_destination_is_reported(capsys: pytest.CaptureFixture[str]) -> None:
     Path("notes").write_text("a file", encoding="utf-8")
     assert main(["pkg", "create", "arm", "--destination-directory", "notes", *ADA]) == 1
     assert "error[PKG208]: cannot create './notes/arm': Not a directory" in capsys.readouterr().err
 
 
-def test_every_mistake_is_reported_at_once(capsys: pytest.CaptureFixture[str]) -> None:
+def test_all_invalid_arguments_are_reported_together(capsys: pytest.CaptureFixture[str]) -> None:
     words = ["my-Robot", "--node-name", "2go", "--library-name", "class", "--dependencies", "urdf,xacro"]
     assert main(["pkg", "create", *words, "--maintainer-email", "ada@home"]) == 1
     errors = capsys.readouterr().err
@@ -229,33 +229,33 @@ def test_every_mistake_is_reported_at_once(capsys: pytest.CaptureFixture[str]) -
         ("import", "PKG201"),
     ],
 )
-def test_names(name: str, code: str | None) -> None:
+def test_package_names_are_checked(name: str, code: str | None) -> None:
     assert [finding.code for finding in check_package_name(name)] == ([code] if code else [])
 
 
 @given(st.text())
-def test_an_accepted_name_is_a_module_and_a_plain_folder(name: str) -> None:
+def test_accepted_name_is_an_identifier_and_plain_folder(name: str) -> None:
     if not any(finding.code == "PKG201" for finding in check_package_name(name)):
         assert name.isidentifier()
         assert name.isascii()
         assert Path(name).name == name
 
 
-def test_a_python_package_cannot_be_named_test(capsys: pytest.CaptureFixture[str]) -> None:
+def test_python_package_cannot_be_named_test(capsys: pytest.CaptureFixture[str]) -> None:
     assert main(["pkg", "create", "test", "--build-type", "ament_python", *ADA]) == 1
     assert "error[PKG206]" in capsys.readouterr().err
     assert main(["pkg", "create", "test", "--build-type", "ament_cmake", *ADA]) == 0
 
 
 @pytest.mark.parametrize("address", ["ada@example.org", "a.b+c@sub.example.museum", "lll@todo.todo"])
-def test_addresses_that_colcon_accepts(address: str) -> None:
+def test_email_addresses_accepted_by_colcon(address: str) -> None:
     assert is_email(address)
 
 
 @pytest.mark.parametrize(
     "address", ["ada", "ada@home", "ada@home.x", "@example.org", "a b@example.org", "艾达@例子.中国"]
 )
-def test_addresses_that_colcon_refuses(address: str) -> None:
+def test_email_addresses_rejected_by_colcon(address: str) -> None:
     assert not is_email(address)
 
 
@@ -267,7 +267,7 @@ def test_maintainer_comes_from_git(monkeypatch: pytest.MonkeyPatch, capsys: pyte
 
 
 @pytest.mark.parametrize("email", ["", "\temail = grace@laptop\n"], ids=["none", "one that colcon refuses"])
-def test_maintainer_falls_back_to_the_login(
+def test_maintainer_falls_back_to_login_with_invalid_git_email(
     email: str, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
     Path("gitconfig").write_text(f"[user]\n{email}", encoding="utf-8")
@@ -278,7 +278,9 @@ def test_maintainer_falls_back_to_the_login(
     assert r"maintainer: ['DOMAIN\\grace <DOMAIN-grace@todo.todo>']" in capsys.readouterr().out
 
 
-def test_without_git_the_login_is_used(monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]) -> None:
+def test_maintainer_falls_back_to_login_without_git(
+    monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
     monkeypatch.setenv("PATH", str(Path.cwd()))
     monkeypatch.setenv("LOGNAME", "grace")
     assert main(["pkg", "create", "arm"]) == 0
@@ -313,7 +315,7 @@ def test_license_texts_are_complete(identifier: str) -> None:
         (["--license", "Proprietary"], "Linkwright has no text for the license 'Proprietary'"),
     ],
 )
-def test_a_license_without_a_text_is_a_warning(
+def test_license_without_text_causes_warning(
     words: list[str], message: str, capsys: pytest.CaptureFixture[str]
 ) -> None:
     assert main(["pkg", "create", "arm", *words, *ADA]) == 0
@@ -327,7 +329,7 @@ def test_a_license_without_a_text_is_a_warning(
     "words",
     [[], ["make"], ["create"], ["create", "arm", "--build-type", "meson"], ["create", "arm", "--package-format", "1"]],
 )
-def test_wrong_usage(words: list[str], capsys: pytest.CaptureFixture[str]) -> None:
+def test_invalid_usage_is_rejected(words: list[str], capsys: pytest.CaptureFixture[str]) -> None:
     assert main(["pkg", *words]) == 2
     assert capsys.readouterr().err.startswith("usage: linkwright pkg")
     assert list(Path().iterdir()) == []
@@ -335,7 +337,7 @@ def test_wrong_usage(words: list[str], capsys: pytest.CaptureFixture[str]) -> No
 
 @pytest.mark.slow
 @pytest.mark.parametrize("options", [(), ("--symlink-install",)], ids=["copied", "symlinked"])
-def test_colcon_builds_a_new_package(options: tuple[str, ...], tmp_path: Path) -> None:
+def test_colcon_builds_created_package(options: tuple[str, ...], tmp_path: Path) -> None:
     words = ["my_robot", "--build-type", "ament_python", "--dependencies", "urdf", "xacro", "--license", "MIT"]
     more = ["--node-name", "hello", "--destination-directory", "src"]
     assert main(["pkg", "create", *words, *more, *ADA]) == 0
@@ -352,7 +354,7 @@ def _setup_arguments(text: str) -> dict[str, str]:
     return {str(keyword.arg): ast.unparse(keyword.value) for keyword in call.keywords}
 
 
-def test_packages_of_the_course_the_robots_and_the_tutorials_declare_their_tests_as_new_packages_do() -> None:
+def test_bundled_packages_declare_tests_like_created_packages() -> None:
     request = PackageRequest(name="p", maintainer=Maintainer("Ada", "ada@example.org"), year=2026)
     expected = _setup_arguments(package_templates.setup_py(request))
     texts = {path: path.read_text(encoding="utf-8") for top in ("courses", "robots") for path in _setup_files(top)}

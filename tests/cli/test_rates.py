@@ -9,7 +9,7 @@ from linkwright.cli.topic.rates import BandwidthWindow, DelayWindow, RateWindow,
 MS = 1_000_000
 
 
-def test_a_steady_rate():
+def test_rate_window_measures_steady_rate():
     window = RateWindow(100)
     for tick in range(11):
         assert not window.add(tick * 100 * MS)
@@ -18,7 +18,7 @@ def test_a_steady_rate():
     assert rate_text(spread) == "average rate: 10.000\n\tmin: 0.100s max: 0.100s std dev: 0.00000s window: 10"
 
 
-def test_nothing_is_told_twice():
+def test_rate_window_returns_spread_once():
     window = RateWindow(100)
     window.add(0)
     assert window.spread() is None
@@ -27,7 +27,7 @@ def test_nothing_is_told_twice():
     assert window.spread() is None
 
 
-def test_a_window_forgets():
+def test_rate_window_drops_old_messages():
     window = RateWindow(2)
     for now in (0, 10 * MS, 20 * MS, 120 * MS):
         window.add(now)
@@ -36,7 +36,7 @@ def test_a_window_forgets():
     assert (spread.count, spread.minimum, spread.maximum) == (2, 10 * MS, 100 * MS)
 
 
-def test_time_that_goes_back_begins_anew():
+def test_rate_window_restarts_when_time_jumps_back():
     window = RateWindow(10)
     window.add(100 * MS)
     window.add(200 * MS)
@@ -44,7 +44,7 @@ def test_time_that_goes_back_begins_anew():
     assert window.spread() is None
 
 
-def test_several_topics_are_a_table():
+def test_rate_table_lists_several_topics():
     table = rate_table({"/a": Spread(100 * MS, 90 * MS, 110 * MS, MS, 7), "/longer": Spread(MS, MS, MS, 0, 1000)})
     assert table.splitlines() == [
         "  topic        rate       min_delta     max_delta      stddev     window ",
@@ -54,7 +54,7 @@ def test_several_topics_are_a_table():
     ]
 
 
-def test_a_delay():
+def test_delay_window_prints_average():
     window = DelayWindow(10)
     assert window.text() is None
     window.add(1000 * MS, 900 * MS)
@@ -71,7 +71,7 @@ def test_a_delay():
         (2_000_000, "4.00 MB/s from 2 messages\n\tMessage size mean: 2.00 MB min: 2.00 MB max: 2.00 MB"),
     ],
 )
-def test_bandwidth(size, printed):
+def test_bandwidth_window_prints_rate(size, printed):
     window = BandwidthWindow(10)
     window.add(0, size)
     assert window.text(500 * MS) is None

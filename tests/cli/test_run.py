@@ -69,7 +69,7 @@ def run() -> Iterator[Run]:
         each.communicate()
 
 
-def test_an_entry_point_gets_its_words_and_gives_its_exit_status(run: Run) -> None:
+def test_entry_point_receives_arguments_and_returns_exit_status(run: Run) -> None:
     process = run("arm", "wave", "--fast", "-h", "--ros-args", "-r", "a:=b")
     out, err = process.communicate(timeout=60)
     assert out == "['--fast', '-h', '--ros-args', '-r', 'a:=b']\n", err
@@ -77,7 +77,7 @@ def test_an_entry_point_gets_its_words_and_gives_its_exit_status(run: Run) -> No
 
 
 @pytest.mark.parametrize(("number", "status"), [(signal.SIGINT, 4), (signal.SIGTERM, 9)])
-def test_signals_are_the_executables(run: Run, number: int, status: int) -> None:
+def test_executable_receives_signals(run: Run, number: int, status: int) -> None:
     process = run("arm", "wave", "wait")
     assert process.stdout is not None
     assert process.stdout.readline() == "['wait']\n"
@@ -85,21 +85,21 @@ def test_signals_are_the_executables(run: Run, number: int, status: int) -> None
     assert process.wait(60) == status
 
 
-def test_a_prefix(run: Run, workspace: Path) -> None:
+def test_prefix_precedes_executable(run: Run, workspace: Path) -> None:
     process = run("--prefix", "echo 'a b'", "arm", "wave", "c")
     out, _ = process.communicate(timeout=60)
     assert out.startswith(f"a b {workspace}")
     assert out.endswith("/lib/arm/wave c\n")
 
 
-def test_one_of_our_nodes(run: Run) -> None:
+def test_run_starts_built_in_node(run: Run) -> None:
     process = run("demo_nodes_py", "talker_qos", "-n", "1", "--ros-args", "-r", "__node:=tk", "-r", "__ns:=/x")
     _, err = process.communicate(timeout=60)
     assert process.returncode == 0
     assert '] [x.tk]: Publishing: "Hello World: 0"' in err
 
 
-def test_one_of_our_nodes_ends_with_a_signal(run: Run) -> None:
+def test_built_in_node_ends_on_sigint(run: Run) -> None:
     process = run("demo_nodes_cpp", "talker")
     assert process.stderr is not None
     assert "Publishing" in process.stderr.readline()
@@ -107,7 +107,7 @@ def test_one_of_our_nodes_ends_with_a_signal(run: Run) -> None:
     assert process.wait(SECONDS) == 0
 
 
-def test_the_viewer(run: Run) -> None:
+def test_run_starts_viewer(run: Run) -> None:
     process = run("--no-open", "rviz2", "rviz2")
     assert process.stdout is not None
     assert process.stdout.readline().startswith("Viewer: http://127.0.0.1:")
@@ -123,7 +123,7 @@ def test_the_viewer(run: Run) -> None:
         (["tf2_ros", "tf2_ecko"], "package 'tf2_ros' has no executable 'tf2_ecko'", "did you mean 'tf2_echo'"),
     ],
 )
-def test_names_that_are_not_there(
+def test_unknown_packages_and_executables_are_reported(
     capsys: pytest.CaptureFixture[str], words: list[str], message: str, hint: str
 ) -> None:
     assert main(["run", *words]) == FINDINGS
@@ -132,19 +132,19 @@ def test_names_that_are_not_there(
     assert hint in err
 
 
-def test_a_prefix_that_does_not_exist(run: Run) -> None:
+def test_missing_prefix_program_is_reported(run: Run) -> None:
     process = run("--prefix", "no-such-program", "arm", "wave")
     _, err = process.communicate(timeout=60)
     assert process.returncode == FINDINGS
     assert "error[CLI110]: 'no-such-program' cannot be run: No such file or directory" in err
 
 
-def test_usage(capsys: pytest.CaptureFixture[str]) -> None:
+def test_missing_arguments_are_usage_error(capsys: pytest.CaptureFixture[str]) -> None:
     assert main(["run", "arm"]) == USAGE
     assert "usage: linkwright run [options] PACKAGE EXECUTABLE [ARGUMENT ...]" in capsys.readouterr().err
 
 
-def test_a_node_that_is_killed_leaves_nothing_behind(run: Run) -> None:
+def test_killed_run_returns_signal(run: Run) -> None:
     process = run("arm", "wave", "wait")
     assert process.stdout is not None
     process.stdout.readline()

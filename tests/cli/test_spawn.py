@@ -17,7 +17,7 @@ ROBOT = """<robot name="r"><link name="base"><inertial><mass value="1"/>
 
 
 @pytest.fixture
-def asked(in_graph) -> list[Any]:
+def spawn_requests(in_graph) -> list[Any]:
     """Return the requests for entities; a used name is refused."""
     requests: list[Any] = []
 
@@ -40,11 +40,11 @@ def robot(folder: Path) -> str:
     return str(path)
 
 
-def test_a_robot_is_put_where_it_is_wanted(asked, tmp_path, capsys):
+def test_spawn_places_robot_at_pose_and_namespace(spawn_requests, tmp_path, capsys):
     place = ("-x", "1.5", "-y", "-2", "-z", "0.1", "-Y", str(math.pi / 2))
     assert main(["spawn", robot(tmp_path), "-name", "second", *place, "--namespace", "two"]) == 0
     assert capsys.readouterr().out == "spawned second\n"
-    (request,) = asked
+    (request,) = spawn_requests
     assert (request.name, request.robot_namespace) == ("second", "two")
     assert '<link name="base"' in request.xml
     pose = request.initial_pose
@@ -52,15 +52,15 @@ def test_a_robot_is_put_where_it_is_wanted(asked, tmp_path, capsys):
     assert pose.orientation.z == pytest.approx(math.sqrt(0.5))
 
 
-def test_its_name_is_that_of_the_file(asked, tmp_path):
+def test_default_name_is_taken_from_file(spawn_requests, tmp_path):
     (tmp_path / "box.sdf").write_text('<sdf version="1.7"><model name="box"><link name="a"/></model></sdf>')
     assert main(["spawn", robot(tmp_path)]) == 0
     assert main(["spawn", str(tmp_path / "box.sdf")]) == 0
-    assert [request.name for request in asked] == ["r", "box"]
-    assert asked[1].xml.count("<model") == 1
+    assert [request.name for request in spawn_requests] == ["r", "box"]
+    assert spawn_requests[1].xml.count("<model") == 1
 
 
-def test_what_the_simulation_refuses_is_one_error(asked, tmp_path, capsys):
+def test_simulation_rejection_is_one_error(spawn_requests, tmp_path, capsys):
     assert main(["spawn", robot(tmp_path)]) == 0
     assert main(["spawn", robot(tmp_path)]) == 1
     output = capsys.readouterr().err
@@ -68,7 +68,7 @@ def test_what_the_simulation_refuses_is_one_error(asked, tmp_path, capsys):
     assert "rejects 'r': it is there" in output
 
 
-def test_without_a_simulation_it_is_said_how_to_start_one(in_graph, tmp_path, capsys, monkeypatch):
+def test_missing_simulation_is_reported_with_hint(in_graph, tmp_path, capsys, monkeypatch):
     in_graph(lambda graph: None)
     monkeypatch.setattr(calls, "APPEARS_WITHIN", 0.0)
     assert main(["spawn", robot(tmp_path)]) == 1
@@ -77,26 +77,26 @@ def test_without_a_simulation_it_is_said_how_to_start_one(in_graph, tmp_path, ca
     assert "linkwright sim empty" in output
 
 
-def test_a_file_that_is_no_model_is_one_error(asked, tmp_path, capsys):
+def test_malformed_model_is_one_error(spawn_requests, tmp_path, capsys):
     (tmp_path / "robot.urdf").write_text("<robot")
     assert main(["spawn", str(tmp_path / "robot.urdf")]) == 1
     assert capsys.readouterr().err.count("error[") == 1
-    assert asked == []
+    assert spawn_requests == []
 
 
-def test_addresses_lead_to_what_lies_beside_the_model(asked, tmp_path, monkeypatch, capsys):
+def test_model_uris_are_resolved_beside_model(spawn_requests, tmp_path, monkeypatch, capsys):
     for folder in ("models/robot", "models/common", "far/away"):
         (tmp_path / folder).mkdir(parents=True)
     (tmp_path / "models/common/part.stl").write_bytes(b"solid")
     (tmp_path / "models/common/model.config").write_text("<model><sdf>model.sdf</sdf></model>")
     shape = "<visual name='{0}'><geometry><mesh><uri>{1}</uri></mesh></geometry></visual>"
     shapes = shape.format("a", "model://common/part.stl") + shape.format("b", "model://none/part.stl")
-    text = f"<sdf version='1.7'><model name='r'><link name='l'>{shapes}<colour/></link></model></sdf>"
+    text = f"<sdf version='1.7'><model name='r'><link name='l'>{shapes}<color/></link></model></sdf>"
     (tmp_path / "models/robot/model.sdf").write_text(text)
     monkeypatch.chdir(tmp_path / "far/away")
     monkeypatch.setenv("HOME", str(tmp_path))
     assert main(["spawn", str(tmp_path / "models/robot/model.sdf")]) == 0
-    (request,) = asked
+    (request,) = spawn_requests
     assert (tmp_path / "models/common/part.stl").as_uri() in request.xml
     assert "model://none/part.stl" in request.xml
-    assert "<colour> in <link> is not read" in capsys.readouterr().err
+    assert "<color> in <link> is not read" in capsys.readouterr().err

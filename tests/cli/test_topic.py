@@ -34,19 +34,19 @@ def out(capsys) -> str:
 # list, type, find, info
 
 
-def test_list(in_graph, capsys):
+def test_topic_list_prints_names(in_graph, capsys):
     in_graph(talker)
     assert main(["topic", "list"]) == 0
     assert out(capsys).splitlines() == ["/chatter", *COMMON]
 
 
-def test_list_with_types(in_graph, capsys):
+def test_topic_list_prints_types(in_graph, capsys):
     in_graph(talker)
     assert main(["topic", "list", "-t"]) == 0
     assert "/chatter [std_msgs/msg/String]" in out(capsys).splitlines()
 
 
-def test_list_counts(in_graph, capsys):
+def test_topic_list_prints_count(in_graph, capsys):
     in_graph(talker)
     assert main(["topic", "list", "-c"]) == 0
     assert out(capsys) == "3\n"
@@ -55,7 +55,7 @@ def test_list_counts(in_graph, capsys):
 @pytest.mark.parametrize(
     "words", [["list", "-a"], ["list", "--include-hidden-topics"], ["--include-hidden-topics", "list"]]
 )
-def test_hidden_topics_are_listed_when_asked_for(in_graph, capsys, words):
+def test_hidden_topics_are_listed_only_with_option(in_graph, capsys, words):
     in_graph(lambda graph: talker(graph, topic="_secret"))
     assert main(["topic", *words]) == 0
     assert "/_secret" in out(capsys)
@@ -63,7 +63,7 @@ def test_hidden_topics_are_listed_when_asked_for(in_graph, capsys, words):
     assert "/_secret" not in out(capsys)
 
 
-def test_list_verbose(in_graph, capsys):
+def test_topic_list_verbose_prints_publishers_and_subscribers(in_graph, capsys):
     in_graph(talker)
     assert main(["topic", "list", "-v"]) == 0
     lines = out(capsys).splitlines()
@@ -72,13 +72,13 @@ def test_list_verbose(in_graph, capsys):
     assert lines[lines.index("") + 1] == "Subscribed topics:"
 
 
-def test_type(in_graph, capsys):
+def test_topic_type_prints_type(in_graph, capsys):
     in_graph(talker)
     assert main(["topic", "type", "chatter"]) == 0
     assert out(capsys) == "std_msgs/msg/String\n"
 
 
-def test_type_of_an_unknown_topic_names_the_nearest(in_graph, capsys):
+def test_topic_type_of_unknown_topic_suggests_nearest(in_graph, capsys):
     in_graph(talker)
     assert main(["topic", "type", "/chater"]) == 1
     captured = capsys.readouterr()
@@ -86,7 +86,7 @@ def test_type_of_an_unknown_topic_names_the_nearest(in_graph, capsys):
     assert "did you mean '/chatter'?" in captured.err
 
 
-def test_find(in_graph, capsys):
+def test_topic_find_prints_topics_of_type(in_graph, capsys):
     in_graph(talker)
     assert main(["topic", "find", "std_msgs/msg/String"]) == 0
     assert out(capsys) == "/chatter\n"
@@ -94,19 +94,19 @@ def test_find(in_graph, capsys):
     assert out(capsys) == "1\n"
 
 
-def test_info(in_graph, capsys):
+def test_topic_info_prints_type_and_counts(in_graph, capsys):
     in_graph(talker)
     assert main(["topic", "info", "/chatter"]) == 0
     assert out(capsys) == "Type: std_msgs/msg/String\nPublisher count: 1\nSubscription count: 0\n"
 
 
-def test_info_of_an_unknown_topic(in_graph, capsys):
+def test_topic_info_of_unknown_topic_is_an_error(in_graph, capsys):
     in_graph(talker)
     assert main(["topic", "info", "/unknown_topic"]) == 1
     assert "Unknown topic '/unknown_topic'" in capsys.readouterr().err
 
 
-def test_info_verbose(in_graph, capsys):
+def test_topic_info_verbose_prints_endpoints(in_graph, capsys):
     in_graph(talker)
     assert main(["topic", "info", "-v", "/chatter"]) == 0
     text = out(capsys)
@@ -141,7 +141,7 @@ def test_info_verbose(in_graph, capsys):
 # echo
 
 
-def test_echo_once(in_graph, capsys):
+def test_echo_once_prints_one_message(in_graph, capsys):
     in_graph(talker)
     assert main(["topic", "echo", "--once", "/chatter"]) == 0
     assert re.fullmatch(r"data: Hello \d+\n---\n", out(capsys))
@@ -152,7 +152,7 @@ def latched(graph: Graph) -> None:
     node.create_publisher(String, "robot_description", DESCRIPTION_QOS).publish(String(data="<robot/>"))
 
 
-def test_what_was_published_before_is_printed_at_once(in_graph, capsys):
+def test_echo_prints_latched_message(in_graph, capsys):
     in_graph(latched)
     assert main(["topic", "echo", "--once", "robot_description", "--timeout", "2"]) == 0
     assert out(capsys) == "data: <robot/>\n---\n"
@@ -197,38 +197,38 @@ effort: []
         (["--filter", "len(m.name) == 2 and m.position[1] > 0.7"], STATE_YAML),
     ],
 )
-def test_echo_options(in_graph, capsys, options, printed):
+def test_echo_options_change_output(in_graph, capsys, options, printed):
     in_graph(state)
     assert main(["topic", "echo", "--once", "--timeout", "5", *options, "/joint_states"]) == 0
     assert out(capsys) == printed
 
 
-def test_echo_cuts_long_texts(in_graph, capsys):
+def test_echo_truncates_long_strings(in_graph, capsys):
     in_graph(latched)
     assert main(["topic", "echo", "--once", "-l", "4", "/robot_description"]) == 0
     assert out(capsys) == "data: <rob...\n---\n"
 
 
-def test_echo_raw_prints_the_bytes(in_graph, capsys):
+def test_echo_raw_prints_bytes(in_graph, capsys):
     in_graph(latched)
     assert main(["topic", "echo", "--once", "--raw", "/robot_description"]) == 0
     assert out(capsys).startswith("b'\\x00\\x01\\x00\\x00\\t\\x00\\x00\\x00<robot/>\\x00")
 
 
-def test_echo_with_message_info(in_graph, capsys):
+def test_echo_prints_message_info(in_graph, capsys):
     in_graph(state)
     words = ["--once", "-i", "--field", "header.stamp", "/joint_states"]
     assert main(["topic", "echo", *words]) == 0
     assert re.match(r"received_timestamp: \d{19}\nsource_timestamp: \d{19}\n---\nsec: 1\n", out(capsys))
 
 
-def test_echo_waits_for_a_topic_whose_type_is_given(in_graph, capsys):
+def test_echo_waits_for_topic_of_given_type(in_graph, capsys):
     in_graph(lambda graph: None)
     assert main(["topic", "echo", "/later", "std_msgs/msg/String", "--timeout", "0.1"]) == 0
     assert out(capsys) == ""
 
 
-def test_echo_of_a_topic_that_is_not_there(in_graph, capsys):
+def test_echo_reports_unknown_topic(in_graph, capsys):
     in_graph(talker)
     assert main(["topic", "echo", "/chattr"]) == 1
     err = capsys.readouterr().err
@@ -249,13 +249,13 @@ def test_echo_of_a_topic_that_is_not_there(in_graph, capsys):
         (["/joint_states", "--filter", "m."], "the filter is not a Python expression"),
     ],
 )
-def test_mistakes_of_echo(in_graph, capsys, words, message):
+def test_echo_reports_invalid_arguments(in_graph, capsys, words, message):
     in_graph(state)
     assert main(["topic", "echo", "--timeout", "5", *words]) == 1
     assert message in capsys.readouterr().err
 
 
-def test_echo_names_quality_of_service_that_does_not_match(in_graph, capsys):
+def test_echo_warns_about_incompatible_qos(in_graph, capsys):
     in_graph(lambda graph: talker(graph, qos=QoSProfile(10, ReliabilityPolicy.BEST_EFFORT)))
     assert main(["topic", "echo", "/chatter", "--qos-reliability", "reliable", "--timeout", "0.2"]) == 0
     captured = capsys.readouterr()
@@ -270,14 +270,14 @@ def two_types(graph: Graph) -> None:
     node.create_publisher(Header, "mixed", 10)
 
 
-def test_echo_of_a_topic_with_two_types(in_graph, capsys):
+def test_echo_rejects_topic_with_two_types(in_graph, capsys):
     in_graph(two_types)
     assert main(["topic", "echo", "/mixed"]) == 1
     err = capsys.readouterr().err
     assert "contains more than one type: [std_msgs/msg/Header, std_msgs/msg/String]" in err
 
 
-def test_the_profiles_are_those_of_the_graph():
+def test_qos_profile_names_match_graph_presets():
     from linkwright.cli import qos
 
     assert set(qos._PROFILES) == set(QoSPresetProfiles.short_keys())
@@ -294,7 +294,7 @@ def listener(heard: list, kind=String, topic: str = "chatter"):
     return make
 
 
-def test_pub_once(in_graph, capsys):
+def test_pub_once_publishes_one_message(in_graph, capsys):
     heard: list = []
     in_graph(listener(heard))
     words = ["pub", "--once", "/chatter", "std_msgs/msg/String", "data: hello"]
@@ -303,7 +303,7 @@ def test_pub_once(in_graph, capsys):
     assert out(capsys) == "publisher: beginning loop\npublishing #1: std_msgs.msg.String(data='hello')\n\n"
 
 
-def test_pub_times(in_graph, capsys):
+def test_pub_times_publishes_given_number_of_messages(in_graph, capsys):
     heard: list = []
     in_graph(listener(heard))
     words = ["pub", "-t", "3", "-r", "100", "-p", "2", "/chatter", "std_msgs/String", "{data: x}"]
@@ -312,7 +312,7 @@ def test_pub_times(in_graph, capsys):
     assert out(capsys) == "publisher: beginning loop\npublishing #2: std_msgs.msg.String(data='x')\n\n"
 
 
-def test_pub_waits_for_a_subscription_and_gives_up(in_graph, capsys):
+def test_pub_times_out_without_subscription(in_graph, capsys):
     in_graph(lambda graph: None)
     words = ["pub", "-1", "/chatter", "std_msgs/msg/String", "--max-wait-time-secs", "0.1"]
     assert main(["topic", *words]) == 1
@@ -321,7 +321,7 @@ def test_pub_waits_for_a_subscription_and_gives_up(in_graph, capsys):
     assert "Timed out" in captured.err
 
 
-def test_pub_stamps_with_the_time_of_publishing(in_graph):
+def test_pub_sets_stamp_to_publishing_time(in_graph):
     heard: list = []
     in_graph(listener(heard, JointState, "joint_states"))
     words = ["pub", "-1", "/joint_states", "sensor_msgs/msg/JointState", "{header: auto, name: [a], position: [1]}"]
@@ -330,7 +330,7 @@ def test_pub_stamps_with_the_time_of_publishing(in_graph):
     assert list(heard[0].position) == [1.0]
 
 
-def test_pub_from_a_file(in_graph, tmp_path):
+def test_pub_reads_messages_from_yaml_file(in_graph, tmp_path):
     heard: list = []
     in_graph(listener(heard))
     file = tmp_path / "messages.yaml"
@@ -352,13 +352,13 @@ def test_pub_from_a_file(in_graph, tmp_path):
         ("std_msgs/msg/UInt8", "{data: 300}", "field 'data' is of type uint8"),
     ],
 )
-def test_mistakes_in_values_are_shown_where_they_are(in_graph, capsys, kind, values, message):
+def test_pub_reports_invalid_values_with_location(in_graph, capsys, kind, values, message):
     in_graph(lambda graph: None)
     assert main(["topic", "pub", "-1", "/t", kind, values]) == 1
     assert message in capsys.readouterr().err
 
 
-def test_a_wrong_field_is_pointed_at(in_graph, capsys):
+def test_pub_marks_unknown_field(in_graph, capsys):
     in_graph(lambda graph: None)
     main(["topic", "pub", "-1", "/t", "geometry_msgs/msg/Twist", "{linear: {x: 1.0, w: 2.0}}"])
     err = capsys.readouterr().err
@@ -382,7 +382,7 @@ def run_for(seconds: float, words: list[str], monkeypatch: pytest.MonkeyPatch) -
     return main(words)
 
 
-def test_hz(in_graph, capsys, monkeypatch):
+def test_hz_prints_average_rate(in_graph, capsys, monkeypatch):
     in_graph(lambda graph: talker(graph, period=0.01))
     assert run_for(1.2, ["topic", "hz", "/chatter"], monkeypatch) == 0
     text = out(capsys)
@@ -394,7 +394,7 @@ def test_hz(in_graph, capsys, monkeypatch):
     assert shortest - 0.001 <= 1 / rate <= longest + 0.001
 
 
-def test_hz_of_several_topics_is_a_table(in_graph, capsys, monkeypatch):
+def test_hz_prints_table_for_several_topics(in_graph, capsys, monkeypatch):
     def make(graph: Graph) -> None:
         talker(graph, topic="a")
         state(graph)
@@ -408,14 +408,14 @@ def test_hz_of_several_topics_is_a_table(in_graph, capsys, monkeypatch):
     assert lines[4].split()[0] == "/a"
 
 
-def test_hz_counts_what_the_filter_lets_through(in_graph, capsys, monkeypatch):
+def test_hz_counts_filtered_messages(in_graph, capsys, monkeypatch):
     in_graph(lambda graph: talker(graph, period=0.01))
     words = ["topic", "hz", "/chatter", "--filter", "m.data.endswith('0')"]
     assert run_for(1.2, words, monkeypatch) == 0
     assert 6 < float(out(capsys).split()[2]) < 14
 
 
-def test_bw(in_graph, capsys, monkeypatch):
+def test_bw_prints_bandwidth(in_graph, capsys, monkeypatch):
     in_graph(lambda graph: talker(graph, period=0.01))
     assert run_for(1.2, ["topic", "bw", "/chatter"], monkeypatch) == 0
     text = out(capsys)
@@ -423,7 +423,7 @@ def test_bw(in_graph, capsys, monkeypatch):
     assert re.fullmatch(pattern, text), text
 
 
-def test_delay(in_graph, capsys, monkeypatch):
+def test_delay_prints_average_delay(in_graph, capsys, monkeypatch):
     def make(graph: Graph) -> None:
         node = graph.create_node("camera", start_parameter_services=False)
         publisher = node.create_publisher("sensor_msgs/msg/Range", "range", 10)
@@ -443,7 +443,7 @@ def test_delay(in_graph, capsys, monkeypatch):
     assert abs(float(found[1])) < 0.5
 
 
-def test_delay_needs_a_header(in_graph, capsys):
+def test_delay_requires_header(in_graph, capsys):
     in_graph(talker)
     assert main(["topic", "delay", "/chatter"]) == 1
     assert "msg does not have header" in capsys.readouterr().err

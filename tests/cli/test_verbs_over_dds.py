@@ -85,23 +85,23 @@ def start(command: list[str]) -> subprocess.Popen[str]:
 
 @pytest.mark.usefixtures("talker")
 class TestAgainstATalker:
-    def test_list(self):
+    def test_node_and_topic_list_show_talker(self):
         assert linkwright("node", "list") == "/talker\n"
         assert "/chatter [std_msgs/msg/String]\n" in linkwright("topic", "list", "-t")
 
-    def test_echo_once(self):
+    def test_echo_once_prints_one_message(self):
         assert re.fullmatch(r"data: Hello \d+\n---\n", linkwright("topic", "echo", "--once", "/chatter"))
 
-    def test_parameters(self):
+    def test_param_get_and_set_reach_node(self):
         assert linkwright("param", "get", "/talker", "speed") == "Double value is: 1.5\n"
         assert linkwright("param", "set", "/talker", "speed", "2.5") == "Set parameter successful\n"
         assert linkwright("param", "get", "/talker", "speed") == "Double value is: 2.5\n"
 
-    def test_service(self):
+    def test_service_call_reaches_server(self):
         output = linkwright("service", "call", "/power", "std_srvs/srv/SetBool", "{data: true}")
         assert "std_srvs.srv.SetBool_Response(success=False, message='')" in output
 
-    def test_ctrl_c_ends_echo_at_once_with_130(self):
+    def test_interrupted_echo_exits_immediately_with_130(self):
         process = begin("topic", "echo", "/chatter")
         assert process.stdout is not None
         assert process.stdout.readline().startswith("data: Hello")
@@ -110,7 +110,7 @@ class TestAgainstATalker:
         assert process.returncode == 130
         assert err == ""
 
-    def test_ctrl_c_while_it_starts(self):
+    def test_interrupt_during_startup_exits_with_130(self):
         for delay in (0.0, 0.05, 0.15, 0.3, 0.5):
             process = start(telling("linkwright", "topic", "hz", "/chatter"))
             assert process.stdout is not None
@@ -121,7 +121,7 @@ class TestAgainstATalker:
             assert process.returncode == 130, (delay, out, err)
             assert "Traceback" not in err, (delay, err)
 
-    def test_termination_leaves_the_graph_too(self):
+    def test_sigterm_removes_node_from_graph(self):
         process = begin("topic", "echo", "/chatter")
         assert process.stdout is not None
         process.stdout.readline()
@@ -130,7 +130,7 @@ class TestAgainstATalker:
         assert process.returncode == 143
         assert err == ""
 
-    def test_a_reader_that_goes_away_is_no_error(self):
+    def test_closed_pipe_is_not_an_error(self):
         command = f"{sys.executable} -m linkwright topic echo /chatter | head -n 3"
         done = subprocess.run(
             ["bash", "-o", "pipefail", "-c", command],
@@ -144,7 +144,7 @@ class TestAgainstATalker:
         assert done.stderr == ""
 
 
-def test_pub_reaches_an_echo_that_was_there_before():
+def test_pub_reaches_earlier_echo():
     echo = begin("topic", "echo", "/orders", "std_msgs/msg/String", "--once", "--timeout", "15")
     output = linkwright("topic", "pub", "--once", "/orders", "std_msgs/msg/String", "data: go")
     assert "publishing #1: std_msgs.msg.String(data='go')" in output
@@ -152,7 +152,7 @@ def test_pub_reaches_an_echo_that_was_there_before():
     assert out == "data: go\n---\n"
 
 
-def test_a_description_published_before_is_echoed_by_a_late_comer():
+def test_latched_description_reaches_late_echo():
     words = ["topic", "pub", "/robot_description", "std_msgs/msg/String", "data: <robot/>"]
     publisher = begin(*words, "--qos-durability", "transient_local", "-r", "0.01")
     assert publisher.stdout is not None
@@ -164,7 +164,7 @@ def test_a_description_published_before_is_echoed_by_a_late_comer():
         publisher.communicate(timeout=SECONDS)
 
 
-def test_a_recording_of_a_type_that_no_package_has_is_played_and_its_bytes_are_echoed(tmp_path: Path):
+def test_recording_of_unknown_type_is_played_and_echoed_raw(tmp_path: Path):
     from rosbags.rosbag2 import StoragePlugin, Writer  # there is no wheel for Python 3.15, nor DDS
     from rosbags.typesys import Stores, get_types_from_msg, get_typestore
 
@@ -196,7 +196,7 @@ def test_a_recording_of_a_type_that_no_package_has_is_played_and_its_bytes_are_e
     assert player.returncode == 143
 
 
-def test_the_doctor_sees_what_runs_outside():
+def test_doctor_finds_problems_of_other_processes():
     publisher = begin("topic", "pub", "/way", "geometry_msgs/msg/Twist", "-n", "teleop")
     other = begin("topic", "echo", "/way", "geometry_msgs/msg/TwistStamped")
     try:

@@ -37,14 +37,14 @@ def folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
     ],
 )
 @pytest.mark.usefixtures("folder")
-def test_what_cannot_be_shown_together_is_said(
+def test_contradictory_arguments_are_rejected(
     words: list[str], message: str, capsys: pytest.CaptureFixture[str]
 ) -> None:
     assert main(["view", *words]) == 2
     assert message in capsys.readouterr().err
 
 
-def test_several_files_are_shown_as_one_recording(folder: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_several_files_are_viewed_as_one_recording(folder: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     (file,) = (folder / "drive").glob("*.mcap")
     shown: list[Path] = []
     monkeypatch.setattr(bag_view, "run_bag_view", lambda files, *_, **__: shown.extend(files) or 0)
@@ -52,7 +52,7 @@ def test_several_files_are_shown_as_one_recording(folder: Path, monkeypatch: pyt
     assert [each.absolute() for each in shown] == [file, file]
 
 
-def test_a_recording_of_ros_1_is_told_as_one(folder: Path, capsys: pytest.CaptureFixture[str]) -> None:
+def test_ros1_recording_error_suggests_conversion(folder: Path, capsys: pytest.CaptureFixture[str]) -> None:
     (folder / "old.bag").write_bytes(b"#ROSBAG V2.0\n\0\1")
     assert main(["view", "old.bag"]) == 1
     output = capsys.readouterr().err
@@ -61,7 +61,7 @@ def test_a_recording_of_ros_1_is_told_as_one(folder: Path, capsys: pytest.Captur
 
 
 @pytest.mark.parametrize("words", [["missing.urdf"], ["r.urdf", "missing.urdf"], ["r.urdf", "--port", "{taken}"]])
-def test_an_error_that_keeps_a_view_from_starting_comes_alone(
+def test_startup_error_is_printed_alone(
     folder: Path, words: list[str], monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
     monkeypatch.setenv("ROS_LOG_DIR", str(folder / "log"))
@@ -76,7 +76,7 @@ def test_an_error_that_keeps_a_view_from_starting_comes_alone(
 
 
 @pytest.mark.parametrize("text", [None, "nothing: [of the kind"])
-def test_an_rviz_file_that_cannot_be_read_is_said_before_anything_starts(
+def test_unreadable_rviz_file_is_reported_before_start(
     folder: Path, text: str | None, capsys: pytest.CaptureFixture[str]
 ) -> None:
     if text is not None:
@@ -86,7 +86,7 @@ def test_an_rviz_file_that_cannot_be_read_is_said_before_anything_starts(
 
 
 @pytest.mark.parametrize("file", ["r.urdf", "drive"])
-def test_the_displays_of_an_rviz_file_are_shown(folder: Path, file: str, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_displays_of_rviz_file_are_used(folder: Path, file: str, monkeypatch: pytest.MonkeyPatch) -> None:
     asked: list[HostOptions] = []
 
     def show(path: object, *arguments: object, **_: object) -> int:

@@ -21,13 +21,13 @@ def image(tmp_path):
     return path
 
 
-def test_what_is_found_is_printed(image, capsys):
-    assert main(["vision", "detect", str(image), "--model", "colours"]) == 0
+def test_detect_prints_detections(image, capsys):
+    assert main(["vision", "detect", str(image), "--model", "colors"]) == 0
     assert capsys.readouterr().out == f"{image}: blue 1.00 [100.0 40.0 130.0 80.0]\n"
 
 
-def test_as_json(image, capsys):
-    assert main(["vision", "detect", str(image), "-m", "colours", "--format", "json"]) == 0
+def test_detect_prints_json(image, capsys):
+    assert main(["vision", "detect", str(image), "-m", "colors", "--format", "json"]) == 0
     (row,) = json.loads(capsys.readouterr().out)
     assert (row["image"], row["width"], row["height"]) == (str(image), 160, 120)
     assert row["detections"] == [{"class": "blue", "score": 1.0, "box": [100.0, 40.0, 130.0, 80.0]}]
@@ -42,7 +42,7 @@ def marker(folder, dictionary):
     return str(path)
 
 
-def test_markers_have_corners(tmp_path, capsys):
+def test_aruco_detections_have_corners(tmp_path, capsys):
     path = marker(tmp_path, cv2.aruco.DICT_4X4_50)
     assert main(["vision", "detect", path, "-m", "aruco", "--format", "json"]) == 0
     ((found,),) = [row["detections"] for row in json.loads(capsys.readouterr().out)]
@@ -51,7 +51,7 @@ def test_markers_have_corners(tmp_path, capsys):
 
 
 @pytest.mark.parametrize("model", ["aruco", "apriltag"])
-def test_markers_of_another_dictionary_are_asked_for(tmp_path, capsys, model):
+def test_dictionary_option_selects_markers(tmp_path, capsys, model):
     path = marker(tmp_path, cv2.aruco.DICT_6X6_250)
     assert main(["vision", "detect", path, "-m", model]) == 0
     assert capsys.readouterr().out == f"{path}: nothing found\n"
@@ -59,26 +59,26 @@ def test_markers_of_another_dictionary_are_asked_for(tmp_path, capsys, model):
     assert capsys.readouterr().out.startswith(f"{path}: 4 1.00 [")
 
 
-def test_a_dictionary_that_is_none_or_is_not_wanted_is_refused(image, capsys):
+def test_unknown_or_unsupported_dictionary_is_rejected(image, capsys):
     assert main(["vision", "detect", str(image), "-m", "aruco", "--dictionary", "6X6250"]) == 1
     assert "did you mean '6X6_250'" in capsys.readouterr().err
-    assert main(["vision", "detect", str(image), "-m", "colours", "--dictionary", "6X6_250"]) == 1
+    assert main(["vision", "detect", str(image), "-m", "colors", "--dictionary", "6X6_250"]) == 1
     assert "only 'aruco' and 'apriltag' have this option: leave it out" in capsys.readouterr().err
 
 
-def test_images_with_boxes_are_written_each_under_a_name_of_its_own(image, tmp_path, capsys):
+def test_output_images_get_unique_names(image, tmp_path, capsys):
     folder = tmp_path / "drawn"
-    assert main(["vision", "detect", str(image), str(image), "-m", "colours", "--output", str(folder)]) == 0
+    assert main(["vision", "detect", str(image), str(image), "-m", "colors", "--output", str(folder)]) == 0
     assert sorted(path.name for path in folder.iterdir()) == ["scene-2_detections.png", "scene_detections.png"]
     with Image.open(folder / "scene_detections.png") as file:
         assert file.size == (160, 120)
         assert (np.asarray(file)[80, 100:130] != 150).any()
 
 
-def test_a_image_that_cannot_be_read_does_not_keep_others_from_it(image, tmp_path, capsys):
+def test_unreadable_image_does_not_stop_others(image, tmp_path, capsys):
     (tmp_path / "text.png").write_text("no image")
     words = [str(tmp_path / "text.png"), str(tmp_path / "gone.png"), str(image)]
-    assert main(["vision", "detect", *words, "--model", "colours"]) == 1
+    assert main(["vision", "detect", *words, "--model", "colors"]) == 1
     printed = capsys.readouterr()
     assert "blue" in printed.out
     assert printed.err.count("VISION110") == 2
@@ -86,15 +86,15 @@ def test_a_image_that_cannot_be_read_does_not_keep_others_from_it(image, tmp_pat
     assert "gone.png" in printed.err
 
 
-def test_classes_are_chosen_by_name(image, capsys):
-    assert main(["vision", "detect", str(image), "-m", "colours", "--classes", "red"]) == 0
+def test_classes_are_selected_by_name(image, capsys):
+    assert main(["vision", "detect", str(image), "-m", "colors", "--classes", "red"]) == 0
     assert capsys.readouterr().out == f"{image}: nothing found\n"
-    assert main(["vision", "detect", str(image), "-m", "colours", "--classes", "blu"]) == 1
+    assert main(["vision", "detect", str(image), "-m", "colors", "--classes", "blu"]) == 1
     printed = capsys.readouterr().err
     assert "VISION111" in printed
     assert "did you mean 'blue'?" in printed
 
 
-def test_a_threshold_that_is_none_is_wrong_usage(image, capsys):
+def test_threshold_out_of_range_is_usage_error(image, capsys):
     assert main(["vision", "detect", str(image), "--threshold", "2"]) == 2
     assert "value must be from 0 to 1" in capsys.readouterr().err

@@ -20,7 +20,7 @@ TEXTS = {FORWARD: "forward", STOP: "stop", OTHER: ""}
 
 
 class ByLevel(SpeechEngine):
-    """An engine that recognises a phrase by the level of a sound, half a second after its end."""
+    """An engine that recognizes a phrase by the level of a sound, half a second after its end."""
 
     def __init__(self, options):
         assert "stop" in options.phrases or options.language == "zh"
@@ -71,7 +71,7 @@ def word(name):
     return name
 
 
-def test_what_is_heard_with_command_times_and_how_late(capsys):
+def test_voice_try_prints_command_times_and_latency(capsys):
     files = [recorded("a.wav", FORWARD), recorded("b.wav", OTHER), recorded("c.wav", STOP)]
     Path("d.wav").write_bytes(encode_wav(np.zeros(RATE, np.int16)))
     assert main(["voice", "try", *files, "d.wav", "--engine", "level"]) == 0
@@ -85,7 +85,7 @@ def test_what_is_heard_with_command_times_and_how_late(capsys):
     assert " s later" in lines[0]
 
 
-def test_partials_and_other_commands(capsys, home):
+def test_voice_try_prints_partials_and_custom_commands(capsys, home):
     (home / "mine.yaml").write_text("commands:\n  halt:\n    phrases: {en: [stop]}\n    stop: true\n", encoding="utf-8")
     words = ["voice", "try", recorded("a.wav", STOP), recorded("b.wav", FORWARD)]
     assert main([*words, "--engine", "level", "--partials", "--commands", "mine.yaml"]) == 0
@@ -106,25 +106,25 @@ def test_partials_and_other_commands(capsys, home):
         (["try", "a.wav", "--engine", "level", "--commands", "nowhere.yaml"], "VOICE301"),
         (["try", "a.wav", "--engine", "level", "--language", "zh"], "VOICE105"),
         (["forget", "stop"], "VOICE210"),
-        (["enrol", "stop", "silence.wav"], "VOICE205"),
+        (["enroll", "stop", "silence.wav"], "VOICE205"),
     ],
 )
-def test_what_is_wrong_is_one_message(words, code, capsys):
+def test_invalid_input_is_one_error(words, code, capsys):
     recorded("a.wav", STOP)
     Path("silence.wav").write_bytes(encode_wav(np.zeros(RATE, np.int16)))
     assert main(["voice", *words]) == 1
     assert f"error[{code}]" in capsys.readouterr().err
 
 
-def test_engines_say_what_they_lack(capsys):
+def test_voice_engines_lists_missing_requirements(capsys):
     assert main(["voice", "engines"]) == 0
     assert capsys.readouterr().out.splitlines() == ["level en: ready", "level zh: no Chinese; say it in English"]
 
 
-def test_words_are_enrolled_listed_and_forgotten(capsys, home):
+def test_words_are_enrolled_listed_and_removed(capsys, home):
     assert main(["voice", "words"]) == 0
     assert "no word is enrolled" in capsys.readouterr().err
-    assert main(["voice", "enrol", "前进", word("a.wav"), word("b.wav")]) == 0
+    assert main(["voice", "enroll", "前进", word("a.wav"), word("b.wav")]) == 0
     printed = capsys.readouterr()
     assert printed.out == "'前进': 2 recordings\n"
     assert "3 recordings make the recognition more reliable" in printed.err
@@ -136,19 +136,19 @@ def test_words_are_enrolled_listed_and_forgotten(capsys, home):
     assert "no word is enrolled" in capsys.readouterr().err
 
 
-def test_of_recordings_with_one_that_is_not_fit_none_is_learned(capsys, home):
+def test_unusable_recording_prevents_enrolling(capsys, home):
     Path("silence.wav").write_bytes(encode_wav(np.zeros(RATE, np.int16)))
-    assert main(["voice", "enrol", "stop", word("a.wav"), "silence.wav", "--file", "mine.json"]) == 1
+    assert main(["voice", "enroll", "stop", word("a.wav"), "silence.wav", "--file", "mine.json"]) == 1
     printed = capsys.readouterr().err
     assert "'silence.wav'" in printed
     assert not (home / "mine.json").exists()
 
 
 @needs_limits
-def test_a_full_disk_leaves_the_words_that_were_there(capsys, home):
-    assert main(["voice", "enrol", "stop", word("a.wav"), "--file", "mine.json"]) == 0
+def test_full_disk_keeps_enrolled_words(capsys, home):
+    assert main(["voice", "enroll", "stop", word("a.wav"), "--file", "mine.json"]) == 0
     before = (home / "mine.json").read_bytes()
     with full_disk(50):
-        assert main(["voice", "enrol", "stop", "a.wav", "--file", "mine.json"]) == 1
+        assert main(["voice", "enroll", "stop", "a.wav", "--file", "mine.json"]) == 1
     assert "error[CLI201]" in capsys.readouterr().err
     assert (home / "mine.json").read_bytes() == before

@@ -27,7 +27,7 @@ def folder(tmp_path, monkeypatch):
     return tmp_path
 
 
-def test_worlds_and_models_of_the_search_path_are_listed(folder, capsys):
+def test_world_list_shows_worlds_and_models_of_search_path(folder, capsys):
     assert main(["world", "list"]) == 0
     worlds, models = capsys.readouterr().out.split("Models")
     assert f" {folder / 'found/hall.sdf'}\n" in worlds
@@ -37,7 +37,7 @@ def test_worlds_and_models_of_the_search_path_are_listed(folder, capsys):
     assert "  ground_plane " in models
 
 
-def test_the_list_for_programs(folder, capsys):
+def test_world_list_prints_json(folder, capsys):
     assert main(["world", "list", "--json"]) == 0
     rows = json.loads(capsys.readouterr().out)
     assert {"kind": "world", "name": "yard", "path": str(folder / "found/worlds/yard.world")} in rows
@@ -47,7 +47,7 @@ def test_the_list_for_programs(folder, capsys):
 @pytest.mark.parametrize(
     ("name", "file"), [("kitchen", "kitchen.world"), ("w/hall & yard.sdf", "w/hall & yard.sdf"), ("v1.2", "v1.2.world")]
 )
-def test_a_new_world_has_nothing_wrong(folder, capsys, name, file):
+def test_new_world_has_no_findings(folder, capsys, name, file):
     assert main(["world", "new", name]) == 0
     assert f"Created file {file}" in capsys.readouterr().out
     found = examine_world(folder / file)
@@ -59,7 +59,7 @@ def test_a_new_world_has_nothing_wrong(folder, capsys, name, file):
     assert main(["world", "check", "--strict", file]) == 0
 
 
-def test_a_new_world_is_not_written_over_another(folder, capsys):
+def test_new_world_does_not_overwrite_without_force(folder, capsys):
     (folder / "a.world").write_text("mine")
     assert main(["world", "new", "a"]) == 1
     assert "CLI206" in capsys.readouterr().err
@@ -68,12 +68,12 @@ def test_a_new_world_is_not_written_over_another(folder, capsys):
     assert "<world" in (folder / "a.world").read_text()
 
 
-def test_a_world_is_checked(folder, capsys):
+def test_world_check_reports_findings(folder, capsys):
     (folder / "bad.world").write_text('<sdf version="1.6"><world name="w"><modle name="m"/></world></sdf>')
     assert main(["world", "check", "bad.world"]) == 0
     assert "SDF150" in capsys.readouterr().err
 
 
-def test_without_a_command_the_help_is_printed(capsys):
+def test_missing_subcommand_prints_help(capsys):
     assert main(["world"]) == 0
     assert "list" in capsys.readouterr().out

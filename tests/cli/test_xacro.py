@@ -26,34 +26,34 @@ def model(tmp_path):
     return path
 
 
-def test_text_goes_to_standard_output(model, capsys):
+def test_expanded_text_is_printed(model, capsys):
     assert main(["xacro", str(model)]) == 0
     captured = capsys.readouterr()
     assert '<link name="l2"/>' in captured.out
     assert captured.err == ""
 
 
-def test_the_command_loads_little(model):
+def test_xacro_command_imports_few_modules(model):
     """What takes long to import is not, where a file is only expanded: people type this often, and build tools do."""
     loaded = loaded_by(f"from linkwright.cli import main; main(['xacro', {str(model)!r}])")
     seldom_needed = {"asyncio", "linkwright.packages", "linkwright.xmltree.positions", "locale", "numpy", "pathlib"}
     assert not (seldom_needed | {"tempfile", "unicodedata", "yaml"}) & loaded
 
 
-def test_values_and_output_file(model, tmp_path, capsys):
+def test_arguments_and_output_file_are_applied(model, tmp_path, capsys):
     out = tmp_path / "new" / "r.urdf"
     assert main(["xacro", str(model), "size:=4", "-o", str(out)]) == 0
     assert '<link name="l8"/>' in out.read_text()
     assert capsys.readouterr().out == ""
 
 
-def test_standard_input(monkeypatch, capsys):
+def test_standard_input_is_expanded(monkeypatch, capsys):
     monkeypatch.setattr("sys.stdin", io.StringIO(ROBOT))
     assert main(["xacro", "-", "size:=3"]) == 0
     assert '<link name="l6"/>' in capsys.readouterr().out
 
 
-def test_an_error_leaves_no_file_and_shows_the_place(model, tmp_path, capsys):
+def test_error_shows_location_and_leaves_no_file(model, tmp_path, capsys):
     model.write_text(ROBOT.replace("2*", "2*sise*"))
     out = tmp_path / "r.urdf"
     assert main(["xacro", str(model), "-o", str(out)]) == 1
@@ -63,32 +63,32 @@ def test_an_error_leaves_no_file_and_shows_the_place(model, tmp_path, capsys):
     assert "'sise'" in err
 
 
-def test_missing_file(tmp_path, capsys):
+def test_missing_file_is_reported(tmp_path, capsys):
     assert main(["xacro", str(tmp_path / "none.xacro")]) == 1
     err = capsys.readouterr().err
     assert "none.xacro" in err
     assert "hint" in err
 
 
-def test_value_without_colon(model, capsys):
+def test_argument_without_colon_is_reported(model, capsys):
     assert main(["xacro", str(model), "size=4"]) == 1
     err = capsys.readouterr().err
     assert "'size=4'" in err
     assert "size:=4" in err
 
 
-def test_output_that_cannot_be_written(model, tmp_path, capsys):
+def test_unwritable_output_is_reported(model, tmp_path, capsys):
     assert main(["xacro", str(model), "-o", str(tmp_path)]) == 1
     assert "cannot write" in capsys.readouterr().err
 
 
-def test_a_command_line_without_options_asks_for_the_same_without_a_parser():
+def test_arguments_without_options_match_full_parser():
     words = ["robot.xacro", "a:=1", "b:="]
     assert vars(without_options(words)) == vars(parser_for("xacro").parse_args(words))
     assert without_options([]) is None
 
 
-def test_a_plain_command_imports_no_parser_of_command_lines(tmp_path):
+def test_plain_command_does_not_import_argparse(tmp_path):
     """It takes as long as the expansion of a small file."""
     (tmp_path / "small.xacro").write_text('<robot name="r"/>', encoding="utf-8")
     loaded = loaded_by(f"from linkwright.cli import main; main(['xacro', {str(tmp_path / 'small.xacro')!r}, 'a:=1'])")
@@ -97,7 +97,7 @@ def test_a_plain_command_imports_no_parser_of_command_lines(tmp_path):
     assert "linkwright.xacro.expansion" in loaded
 
 
-def test_a_mistake_is_told_without_slow_imports(model):
+def test_expansion_error_avoids_slow_imports(model):
     model.write_text(ROBOT.replace("2*", "2*sise*"))
     loaded = loaded_by(f"from linkwright.cli import main; main(['xacro', {str(model)!r}])")
     assert "linkwright.xacro.expansion" in loaded

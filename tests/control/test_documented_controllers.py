@@ -45,7 +45,7 @@ def example(page: Path) -> Any:
 
 
 @pytest.mark.parametrize("page", PAGES, ids=["en", "zh"])
-async def test_the_example_swings_a_joint(stand, page):
+async def test_documented_example_swings_joint(stand, page):
     stand.joint("elbow", commands=("position",), position=1.0)
     controller = stand.start(example(page), "swing", joint="elbow", amplitude=0.3, frequency=1.0, speed=2.0)
     heard = stand.heard("std_msgs/msg/Float64", "/swing/angle")
@@ -81,7 +81,7 @@ def installed(tmp_path, monkeypatch):
 
 
 @pytest.mark.usefixtures("installed")
-async def test_a_manager_runs_the_controller_of_a_package(graph):
+async def test_manager_runs_controller_of_package(graph):
     text = robot(joint("hip") + joint("knee"))
     made = manager(graph, text, {"swing": {"type": "my_controllers/Swing"}}, swing={"joint": "hip", "frequency": 1.0})
     assert made.load("swing")
@@ -93,7 +93,7 @@ async def test_a_manager_runs_the_controller_of_a_package(graph):
 
 
 @pytest.mark.usefixtures("installed")
-def test_a_package_that_cannot_be_imported_is_told_of_by_its_name():
+def test_package_with_import_error_is_reported_by_name():
     with pytest.raises(LinkwrightError) as raised:
         controller_class("my/Broken")
     (found,) = raised.value.diagnostics
@@ -112,7 +112,7 @@ def names(table: Any) -> set[str]:
 
 
 @pytest.mark.parametrize("page", PAGES, ids=["en", "zh"])
-def test_every_parameter_is_documented(page):
+def test_controller_parameters_are_documented(page):
     words = set(re.findall(r"[a-z_]+", page.read_text("utf-8")))
     for controller in DOCUMENTED:
         assert names(controller.PARAMETERS) - set("xyzw") <= words, controller

@@ -59,12 +59,12 @@ def launch_file(of_argument: str = "") -> str:
     return f"{HEAD}\ndef generate_launch_description():\n    {declared}\n{COMMAND}"
 
 
-def test_a_command_with_the_default_of_a_launch_argument(workspace: Path) -> None:
+def test_command_uses_default_of_launch_argument(workspace: Path) -> None:
     text = launch_file("default_value='a_'")
     assert values(sets(workspace, "arm/launch/view.launch.py", text)) == [{"name": "robot", "prefix": "a_"}]
 
 
-def test_each_choice_of_a_launch_argument_is_a_set(workspace: Path) -> None:
+def test_each_choice_of_launch_argument_is_a_set(workspace: Path) -> None:
     text = launch_file("choices=['a_', 'b_']")
     found = sets(workspace, "arm/launch/view.launch.py", text)
     assert [value["prefix"] for value in values(found)] == ["a_", "b_"]
@@ -73,19 +73,19 @@ def test_each_choice_of_a_launch_argument_is_a_set(workspace: Path) -> None:
     assert found[0].span.file.endswith("view.launch.py")
 
 
-def test_a_launch_argument_without_values_stays_open(workspace: Path) -> None:
+def test_launch_argument_without_values_stays_open(workspace: Path) -> None:
     text = launch_file()
     (found,) = sets(workspace, "arm/launch/view.launch.py", text)
     assert found.runtime_names == ("prefix",)
     assert not found.is_complete
 
 
-def test_a_package_that_depends_on_it_gives_values(workspace: Path) -> None:
+def test_dependent_package_provides_values(workspace: Path) -> None:
     text = launch_file("default_value='u_'")
     assert values(sets(workspace, "user/launch/user.launch.py", text)) == [{"name": "robot", "prefix": "u_"}]
 
 
-def test_a_launch_file_that_includes_another_gives_its_arguments(workspace: Path) -> None:
+def test_including_launch_file_provides_arguments(workspace: Path) -> None:
     inner = launch_file("default_value='a_'")
     (workspace / "arm/launch").mkdir()
     (workspace / "arm/launch/inner.launch.py").write_text(inner)
@@ -100,7 +100,7 @@ def generate_launch_description():
     assert [each["prefix"] for each in found] == ["a_", "outer_"]
 
 
-def test_process_file_with_mappings_in_a_parametrized_test(workspace: Path) -> None:
+def test_parametrized_test_with_process_file_provides_values(workspace: Path) -> None:
     text = """
 import os, pytest, xacro
 from ament_index_python.packages import get_package_share_directory
@@ -118,7 +118,7 @@ def test_expands(prefix, sim, gripper):
     ]
 
 
-def test_a_loop_over_combinations(workspace: Path) -> None:
+def test_loop_over_combinations_provides_values(workspace: Path) -> None:
     text = """
 import itertools, xacro
 from ament_index_python.packages import get_package_share_path
@@ -134,7 +134,7 @@ def test_expands():
     assert found == [{"prefix": "a_", "dof": "1"}, {"prefix": "b_", "dof": "1"}, {"prefix": "a_", "dof": "2"}]
 
 
-def test_a_shell_command_in_an_f_string(workspace: Path) -> None:
+def test_shell_command_in_f_string_provides_values(workspace: Path) -> None:
     text = """
 import os, shutil, subprocess
 from ament_index_python.packages import get_package_share_directory
@@ -147,7 +147,7 @@ def test_expands():
     assert values(sets(workspace, "arm/test/test_arm.py", text)) == [{"prefix": "a_"}]
 
 
-def test_values_that_ifs_choose_are_not_known_to_go_together(workspace: Path) -> None:
+def test_values_chosen_by_conditions_are_not_combined(workspace: Path) -> None:
     text = """
 import os, xacro
 from ament_index_python.packages import get_package_share_directory
@@ -164,7 +164,7 @@ def generate_launch_description():
     assert not any(each.is_complete for each in found)
 
 
-def test_the_builder_of_moveit(workspace: Path) -> None:
+def test_moveit_configs_builder_provides_values(workspace: Path) -> None:
     text = """
 from moveit_configs_utils import MoveItConfigsBuilder
 
@@ -219,7 +219,7 @@ launch:
         ),
     ],
 )
-def test_launch_files_in_markup(workspace: Path, name: str, text: str) -> None:
+def test_xml_and_yaml_launch_files_provide_values(workspace: Path, name: str, text: str) -> None:
     assert values(sets(workspace, f"arm/launch/{name}", text)) == [{"prefix": "x_"}]
 
 
@@ -227,7 +227,7 @@ def test_launch_files_in_markup(workspace: Path, name: str, text: str) -> None:
     ("default", "known", "is_open"),
     [("$(optenv EXTRAS)", {}, ("prefix",)), ("$(optenv EXTRAS none.urdf)", {"prefix": "none.urdf"}, ())],
 )
-def test_a_variable_of_the_environment_has_the_value_that_is_written_for_it(
+def test_environment_variable_uses_written_default(
     workspace: Path, default: str, known: dict[str, str], is_open: tuple[str, ...]
 ) -> None:
     text = f"""<launch><arg name="prefix" default="{default}"/><param name="robot_description"
@@ -236,7 +236,7 @@ def test_a_variable_of_the_environment_has_the_value_that_is_written_for_it(
     assert (found.values, found.runtime_names) == (known, is_open)
 
 
-def test_a_share_folder_in_the_middle_of_a_path_is_no_file_of_it(workspace: Path) -> None:
+def test_share_folder_inside_path_is_uncertain(workspace: Path) -> None:
     text = """<launch><let name="file" value="./$(find-pkg-share arm)/urdf/arm.urdf.xacro"/><node pkg="p" exec="e">
         <param name="d" value="$(command 'xacro $(var file) prefix:=x_')"/></node></launch>"""
     assert [each.is_certain for each in sets(workspace, "arm/launch/view.launch.xml", text)] == [False]
@@ -249,7 +249,7 @@ def test_a_share_folder_in_the_middle_of_a_path_is_no_file_of_it(workspace: Path
         "add_custom_target(a COMMAND xacro ${CMAKE_CURRENT_SOURCE_DIR}/urdf/arm.urdf.xacro prefix:=c_)",
     ],
 )
-def test_build_files(workspace: Path, text: str) -> None:
+def test_cmake_files_provide_values(workspace: Path, text: str) -> None:
     assert values(sets(workspace, "arm/CMakeLists.txt", f"project(arm)\n{text}\n")) == [{"prefix": "c_"}]
 
 
@@ -270,7 +270,7 @@ JOINED = """
         ("PathJoinSubstitution([FindPackageShare('arm'), 'config', 'a.yaml'])", "{arm}/config/a.yaml"),
     ],
 )
-def test_an_absolute_part_of_a_path_begins_it_anew(workspace: Path, default: str, expected: str) -> None:
+def test_absolute_path_component_restarts_joined_path(workspace: Path, default: str, expected: str) -> None:
     text = f"{HEAD}\ndef generate_launch_description():\n{JOINED.format(default=default)}"
     wanted = expected.format(user=workspace / "user", arm=workspace / "arm")
     assert values(sets(workspace, "user/launch/a.launch.py", text)) == [{"prefix": wanted}]
@@ -309,7 +309,7 @@ def content(urdf_arguments={{}}):
     ],
     ids=["extend", "append", "default", "stars", "or", "key", "update", "process_file"],
 )
-def test_a_helper_whose_callers_are_elsewhere_gives_nothing_that_is_known(workspace: Path, text: str) -> None:
+def test_helper_without_known_callers_is_incomplete(workspace: Path, text: str) -> None:
     (found,) = sets(workspace, "user/launch/helper.py", HEAD + text)
     assert "" in found.runtime_names
     assert not found.is_complete
@@ -325,11 +325,11 @@ def test_a_helper_whose_callers_are_elsewhere_gives_nothing_that_is_known(worksp
     ],
     ids=["extend", "append", "update", "words"],
 )
-def test_what_a_list_or_mapping_gets_later_is_given(workspace: Path, text: str) -> None:
+def test_values_added_later_to_list_or_mapping_are_used(workspace: Path, text: str) -> None:
     assert values(sets(workspace, "user/launch/later.launch.py", HEAD + text)) == [{"prefix": "a_"}]
 
 
-def test_a_call_without_arguments_is_an_empty_set(workspace: Path) -> None:
+def test_call_without_arguments_is_an_empty_set(workspace: Path) -> None:
     text = """
 import xacro
 from ament_index_python.packages import get_package_share_path
@@ -353,11 +353,11 @@ def test_expands():
         ("arm/CMakeLists.txt", "xacro_add_xacro_file()\nadd_custom_command(COMMAND xacro)"),
     ],
 )
-def test_what_is_broken_gives_nothing(workspace: Path, name: str, text: str) -> None:
+def test_malformed_files_provide_no_values(workspace: Path, name: str, text: str) -> None:
     assert sets(workspace, name, text) == []
 
 
-def test_another_file_of_the_same_name_is_not_meant(workspace: Path) -> None:
+def test_other_file_of_same_name_is_ignored(workspace: Path) -> None:
     text = """
 import xacro
 from ament_index_python.packages import get_package_share_path
@@ -368,7 +368,7 @@ def test_expands():
     assert sets(workspace, "user/test/test_user.py", text) == []
 
 
-def test_any_xml_file_in_a_folder_of_tests_may_be_a_launch_file(workspace: Path) -> None:
+def test_xml_file_in_test_folder_can_be_launch_file(workspace: Path) -> None:
     include = (
         "<launch><include file='$(find arm)/launch/load.launch'><arg name='side' value='left'/></include></launch>"
     )
@@ -379,7 +379,7 @@ def test_any_xml_file_in_a_folder_of_tests_may_be_a_launch_file(workspace: Path)
     assert values(sets(workspace, "arm/launch/load.launch", load)) == [{"prefix": "left_"}]
 
 
-def test_a_package_that_forgets_to_declare_what_it_uses_gives_values_where_no_other_does(workspace: Path) -> None:
+def test_undeclared_dependency_provides_values_only_as_fallback(workspace: Path) -> None:
     (workspace / "user/package.xml").write_text(MANIFEST.format(name="user", needs="xacro"))
     text = launch_file("default_value='far_'")
     assert values(sets(workspace, "user/launch/far.launch.py", text)) == [{"name": "robot", "prefix": "far_"}]
@@ -397,7 +397,7 @@ def test_a_package_that_forgets_to_declare_what_it_uses_gives_values_where_no_ot
         ("context.launch_configurations", [{"prefix": "right"}]),
     ],
 )
-def test_the_default_of_a_look_up_counts_where_the_key_is_known_to_be_missing(
+def test_lookup_default_applies_only_if_key_is_known_to_be_missing(
     workspace: Path, mapping: str, found: list[dict[str, str]]
 ) -> None:
     text = f"""
@@ -412,7 +412,7 @@ def setup(context):
     assert values(sets(workspace, "arm/launch/look.launch.py", text)) == found
 
 
-def test_names_that_are_made_of_each_other_again_and_again_are_worked_out_once(workspace: Path) -> None:
+def test_repeatedly_combined_names_are_evaluated_once(workspace: Path) -> None:
     again = "\n".join(f"    a{i} = a{i} or ask(a{i})\n    a{i} = str(a{i - 1}) + str(a{i - 1})" for i in range(1, 28))
     text = f"""
 import xacro
@@ -427,9 +427,7 @@ def setup(a0):
 
 
 @pytest.mark.parametrize(("function", "prefix"), [("describe", "a b"), ("xacro.process_file", '"a b"')])
-def test_a_helper_may_make_a_command_line_of_its_values_which_takes_quotes_away(
-    workspace: Path, function: str, prefix: str
-) -> None:
+def test_helper_building_command_line_removes_quotes(workspace: Path, function: str, prefix: str) -> None:
     text = f"""
 from ament_index_python.packages import get_package_share_path
 

@@ -43,7 +43,7 @@ def found(old: str, new: str) -> list[tuple[str, str, str, str, str | None, str 
     ]
 
 
-def test_a_robot_does_not_differ_from_itself():
+def test_robot_equals_itself():
     assert found(ROBOT, ROBOT) == []
 
 
@@ -58,7 +58,7 @@ def test_a_robot_does_not_differ_from_itself():
         ('<mass value="2"/>', '<mass value="2.0000001"/>'),
     ],
 )
-def test_what_says_the_same_otherwise_is_no_difference(written, instead):
+def test_equivalent_notation_is_no_difference(written, instead):
     assert found(ROBOT, ROBOT.replace(written, instead)) == []
 
 
@@ -94,12 +94,12 @@ def test_what_says_the_same_otherwise_is_no_difference(written, instead):
         ('type="fixed"', 'type="floating"', ("joint", "wrist", "changed", "type", "fixed", "floating")),
     ],
 )
-def test_a_change_is_told_with_what_was_said_and_what_is(written, instead, expected):
+def test_change_is_reported_with_old_and_new_value(written, instead, expected):
     [difference] = found(ROBOT, ROBOT.replace(written, instead))
     assert difference == expected
 
 
-def test_a_block_that_is_only_in_one_is_one_difference():
+def test_block_in_only_one_robot_is_one_difference():
     without = ROBOT.replace('<limit lower="-1" upper="1" effort="10" velocity="2"/>', "").replace(
         "revolute", "continuous"
     )
@@ -108,7 +108,7 @@ def test_a_block_that_is_only_in_one_is_one_difference():
     assert differences["limit"][4:] == ("lower -1 rad, upper 1 rad, effort 10 N m, velocity 2 rad/s", None)
 
 
-def test_a_visual_put_before_others_leaves_them_as_they_are():
+def test_inserted_visual_leaves_following_visuals_unchanged():
     new = ROBOT.replace(
         "<visual><geometry>",
         '<visual><geometry><cylinder radius="1" length="2"/></geometry></visual><visual><geometry>',
@@ -117,7 +117,7 @@ def test_a_visual_put_before_others_leaves_them_as_they_are():
     assert difference[:5] == ("link", "base", "changed", "visual 1", None)
 
 
-def test_links_and_joints_come_and_go():
+def test_added_and_removed_links_and_joints_are_reported():
     new = ROBOT.replace('"hand"', '"gripper"').replace('"wrist" type="fixed"', '"flange" type="floating"')
     assert [each[:3] for each in found(ROBOT, new)] == [
         ("link", "gripper", "added"),
@@ -127,7 +127,7 @@ def test_links_and_joints_come_and_go():
     ]
 
 
-def test_new_names_of_all_parts_are_recognised():
+def test_renamed_links_and_joints_are_recognized():
     new = ROBOT
     for name in ("base", "arm", "hand", "shoulder", "wrist"):
         new = new.replace(f'"{name}"', f'"left_{name}"')
@@ -139,13 +139,13 @@ def test_new_names_of_all_parts_are_recognised():
     assert comparison.joints == {"shoulder": "left_shoulder", "wrist": "left_wrist"}
 
 
-def test_a_new_name_is_no_rename_where_something_else_has_changed():
+def test_changed_link_with_new_name_is_not_a_rename():
     new = ROBOT.replace('"arm"', '"boom"').replace("a.stl", "b.stl")
     kinds = {(each[1], each[2]) for each in found(ROBOT, new) if each[0] == "link"}
     assert kinds == {("boom", "added"), ("arm", "removed")}
 
 
-def test_places_are_those_of_the_attributes_in_both_files():
+def test_locations_are_attributes_in_both_files():
     new = ROBOT.replace('  <link name="hand"/>\n', '\n  <link name="hand"/>\n').replace('upper="1"', 'upper="2"')
     [difference] = compared(ROBOT, new).differences
     assert difference.old_place is not None
@@ -154,7 +154,7 @@ def test_places_are_those_of_the_attributes_in_both_files():
     assert (difference.new_place.span.line, difference.new_place.span.column) == (12, 49)
 
 
-def test_places_go_through_macros():
+def test_locations_include_macro_calls():
     xacro = """\
 <robot name="r" xmlns:xacro="http://www.ros.org/wiki/xacro">
   <xacro:macro name="body" params="name mass">

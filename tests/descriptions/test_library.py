@@ -20,35 +20,35 @@ XACRO = (
 
 
 class TestLoad:
-    def test_text(self):
+    def test_load_accepts_text(self):
         assert load(GOOD).root == "a"
 
-    def test_path(self):
+    def test_load_accepts_path(self):
         assert load(PACKAGE / "urdf" / "mbot_base.urdf").name == "mbot"
         assert load(str(PACKAGE / "urdf" / "mbot_base.urdf")).name == "mbot"
 
-    def test_xacro_file(self):
+    def test_load_expands_xacro_file(self):
         assert load(PACKAGE / "urdf" / "mbot_base.xacro").name == "mbot"
 
-    def test_xacro_text_with_arguments(self):
+    def test_load_expands_xacro_text_with_arguments(self):
         assert load(XACRO).root == "a"
         assert load(XACRO, arguments={"link": "b"}).root == "b"
 
-    def test_all_findings_are_in_the_error(self):
+    def test_error_contains_all_findings(self):
         with pytest.raises(LinkwrightError) as caught:
             load(robot_text(chain("revolut", "hinge")))
         assert [found.code for found in caught.value.diagnostics] == ["URDF140", "URDF140"]
 
-    def test_a_robot_that_urdfdom_keeps_is_loaded(self):
+    def test_robot_accepted_by_urdfdom_is_loaded(self):
         text = robot_text('<link name="a"><visual/></link>')
         assert load(text).links["a"].visuals == ()
         assert [found.code for found in examine(text).diagnostics] == ["URDF130"]
 
-    def test_no_file(self, tmp_path):
+    def test_missing_file_is_an_error(self, tmp_path):
         with pytest.raises(LinkwrightError, match="no such file"):
             load(tmp_path / "missing.urdf")
 
-    def test_no_xml(self):
+    def test_malformed_xml_is_an_error(self):
         with pytest.raises(LinkwrightError):
             load("<robot>")
 
@@ -56,38 +56,38 @@ class TestLoad:
 class TestAsUrdfdom:
     """Differences between tinyxml2 and the XML standard."""
 
-    def test_blanks_before_the_declaration(self):
+    def test_whitespace_before_xml_declaration_is_accepted(self):
         assert load('\n  <?xml version="1.0"?>\n' + GOOD).name == "r"
 
-    def test_places_stay_right_after_such_blanks(self):
+    def test_locations_account_for_leading_whitespace(self):
         found = examine('\n<?xml version="1.0"?>\n<robot name="r"/>').diagnostics[0]
         assert (found.span.line, found.span.column) == (3, 1)
 
     @pytest.mark.parametrize("rest", ["<robot/>", "\n<more>\n</more>", "\nwords"])
-    def test_what_follows_the_root_is_no_matter(self, rest):
+    def test_text_after_root_is_ignored(self, rest):
         assert load(GOOD + rest).name == "r"
 
-    def test_it_must_be_well_formed(self):
+    def test_text_after_root_must_be_well_formed(self):
         with pytest.raises(LinkwrightError):
             load(GOOD + "<broken")
 
     @pytest.mark.parametrize("blank", ["\t", "\n", "\r\n"])
-    def test_blanks_in_values_are_not_spaces(self, blank):
+    def test_tabs_and_newlines_in_values_are_not_spaces(self, blank):
         text = robot_text(chain(f'fixed:<origin xyz="0{blank}0 0"/>'))
         assert examine(text).robot is None
 
-    def test_blanks_before_a_number_are_no_matter(self):
+    def test_leading_whitespace_in_numbers_is_accepted(self):
         assert load(robot_text(chain('fixed:<origin xyz="\n1 \t2 3"/>'))).joints["j0"].origin.xyz == (1, 2, 3)
 
-    def test_a_multi_line_tag_is_nothing_special(self):
+    def test_multi_line_tag_is_accepted(self):
         assert load(robot_text(chain('fixed:<origin\n\txyz="0 0 0"\n\trpy="0 0 0"\n/>'))).root == "a"
 
-    def test_in_a_document_of_xacro_they_are_spaces(self):
+    def test_tabs_and_newlines_are_spaces_in_xacro(self):
         text = XACRO.replace("<link", '<material name="m"><color rgba="0\n0\t0 1"/></material><link')
         assert load(text).materials["m"].rgba == (0, 0, 0, 1)
 
 
-def test_findings_tell_the_macro_calls_on_the_way():
+def test_finding_in_macro_notes_macro_calls():
     text = (
         '<robot name="r" xmlns:xacro="http://www.ros.org/wiki/xacro">\n'
         '  <xacro:macro name="ball" params="size">\n'
@@ -103,18 +103,18 @@ def test_findings_tell_the_macro_calls_on_the_way():
 
 
 class TestLibrary:
-    def test_a_text_is_read_once(self):
+    def test_library_reads_same_text_once(self):
         library = DescriptionLibrary()
         assert library.read(GOOD) is library.read(GOOD)
 
-    def test_a_remembered_document_gives_the_places(self):
+    def test_stored_document_provides_locations(self):
         library = DescriptionLibrary()
         document = parse("\n\n" + GOOD.replace("fixed", "fixt"), "robot.xacro")
         library.store(Description("robot.xacro", document, read(document)), GOOD)
         found = library.read(GOOD).diagnostics[0]
         assert (found.span.file, found.span.line) == ("robot.xacro", 3)
 
-    def test_the_files_of_a_remembered_description_are_known(self, tmp_path):
+    def test_stored_description_knows_its_files(self, tmp_path):
         library = DescriptionLibrary()
         assert library.files(GOOD) == ()
         (tmp_path / "wheel.xacro").write_text('<robot><link name="a"/></robot>')
@@ -124,12 +124,12 @@ class TestLibrary:
         text = library.store(examine(tmp_path / "robot.xacro"))
         assert library.files(text) == (tmp_path / "robot.xacro", tmp_path / "wheel.xacro")
 
-    def test_no_xml_is_a_reading_without_a_robot(self):
+    def test_malformed_text_gives_reading_without_robot(self):
         reading = DescriptionLibrary().read("not XML at all")
         assert reading.robot is None
         assert reading.diagnostics[0].code.startswith("XML")
 
-    def test_only_so_many_texts_are_kept(self):
+    def test_library_keeps_limited_number_of_texts(self):
         library = DescriptionLibrary()
         first = library.read(GOOD)
         for number in range(40):

@@ -26,7 +26,7 @@ def texts_of(unsaved: UnsavedTexts) -> dict[str, str]:
     return {path: each.text for path, each in unsaved.texts.items()}
 
 
-async def test_of_two_editors_the_newer_text_counts_and_without_it_the_other_one(tmp_path: Path) -> None:
+async def test_newest_unsaved_text_of_two_editors_applies(tmp_path: Path) -> None:
     unsaved, path = UnsavedTexts([]), str(tmp_path / "a.urdf")
     real = real_path(path)
     await unsaved.store(UnsavedText(ONE, path, 1, "first"))
@@ -40,7 +40,7 @@ async def test_of_two_editors_the_newer_text_counts_and_without_it_the_other_one
     assert texts_of(unsaved) == {}
 
 
-async def test_listeners_tell_what_descriptions_make_of_a_text(tmp_path: Path) -> None:
+async def test_store_returns_outcome_of_listeners(tmp_path: Path) -> None:
     listeners: list[Listener] = []
     unsaved, path = UnsavedTexts(listeners), str(tmp_path / "a.urdf")
     assert await unsaved.store(UnsavedText(ONE, path, 1, "")) == "elsewhere"

@@ -12,7 +12,7 @@ from linkwright.diagnostics import Diagnostic, LinkwrightError, Note, Severity, 
 SPAN = Span("robot.urdf", 3, 5, 3, 9)
 
 
-def test_data():
+def test_to_data_contains_all_fields():
     diagnostic = Diagnostic("URDF121", "message", SPAN, Severity.WARNING, (Note("n", SPAN), Note("m")), "hint")
     data = to_data(diagnostic)
     assert data == {
@@ -35,24 +35,24 @@ def test_data():
     assert json.loads(json.dumps(data)) == data
 
 
-def test_data_without_a_place():
+def test_to_data_without_span_has_null_location():
     data = to_data(Diagnostic("XML101", "no such file"))
     assert data["file"] is data["line"] is data["column"] is data["end_line"] is data["end_column"] is None
     assert data["notes"] == data["hints"] == []
 
 
-def test_an_error_says_all_that_it_carries():
+def test_error_text_lists_all_diagnostics():
     error = LinkwrightError(Diagnostic("A1", "first", SPAN), Diagnostic("A2", "second"))
     assert str(error) == "robot.urdf:3:5: first\nsecond"
     assert [diagnostic.code for diagnostic in error.diagnostics] == ["A1", "A2"]
 
 
-def test_an_error_without_a_diagnostic_is_a_bug():
+def test_error_requires_at_least_one_diagnostic():
     with pytest.raises(ValueError, match="needs a diagnostic"):
         LinkwrightError()
 
 
-def test_only_errors_are_errors():
+def test_has_errors_ignores_warnings_and_infos():
     warning, info = (Diagnostic("A1", "m", severity=severity) for severity in (Severity.WARNING, Severity.INFO))
     assert not has_errors([])
     assert not has_errors([warning, info])
@@ -65,7 +65,7 @@ class OtherArgumentsError(LinkwrightError):
         self.name = name
 
 
-def test_an_error_of_another_process_is_the_same():
+def test_pickled_error_keeps_type_and_diagnostics():
     error = OtherArgumentsError("robot.urdf")
     received = pickle.loads(pickle.dumps(error))
     assert type(received) is OtherArgumentsError

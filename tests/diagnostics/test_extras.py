@@ -32,7 +32,7 @@ def without(monkeypatch):
     return hide
 
 
-def test_the_table_is_what_the_distribution_declares():
+def test_extras_table_matches_pyproject():
     assert EXTRAS.keys() == toml_files.EXTRAS.keys()
     assert EXTRAS.keys() > toml_files.TOGETHER
 
@@ -47,7 +47,7 @@ def test_the_table_is_what_the_distribution_declares():
         ("mesh", lambda folder: read_parts(small_mesh(folder), resolver=None)),
     ],
 )
-def test_what_is_missing_is_asked_for_by_name(extra, use, without, tmp_path):
+def test_missing_library_is_named_with_install_hint(extra, use, without, tmp_path):
     without(EXTRAS[extra])
     with pytest.raises(LinkwrightError, match=f"'{EXTRAS[extra]}' is not installed") as caught:
         use(tmp_path)
@@ -71,7 +71,7 @@ ROBOT = """<robot name="r"><link name="base"><inertial><mass value="1"/>
 
 
 @pytest.mark.extra("mesh")
-def test_a_check_says_once_that_it_did_not_look_into_meshes(without, tmp_path):
+def test_unread_meshes_are_reported_once_per_check(without, tmp_path):
     def unread_in(folder):
         folder.mkdir()
         small_mesh(folder)
@@ -84,7 +84,7 @@ def test_a_check_says_once_that_it_did_not_look_into_meshes(without, tmp_path):
     assert [(each.severity, each.hint) for each in unread] == [(Severity.INFO, install_hint("mesh"))]
 
 
-def test_an_image_display_asks_for_what_unpacks_files(without):
+def test_image_decoder_names_missing_image_extra(without):
     without("PIL")
     with pytest.raises(BadImageError, match=r"\[image\]"):
         decode_file(np.frombuffer(b"\x89PNG\r\n\x1a\n", np.uint8))
@@ -99,18 +99,18 @@ def test_an_image_display_asks_for_what_unpacks_files(without):
         ((3, 15), "trimesh", "[mesh]'"),
     ],
 )
-def test_what_an_extra_leaves_out_for_new_pythons_is_told(monkeypatch, version, module, hint):
+def test_missing_wheel_for_new_python_is_reported(monkeypatch, version, module, hint):
     monkeypatch.setattr("linkwright.diagnostics.extras._VERSION", version)
     error = missing_extra("BAG107", ModuleNotFoundError(module, name=module))
     assert str(error.diagnostics[0].hint).count(hint) == 1
 
 
-def test_modules_of_no_extra_are_not_asked_for():
+def test_missing_module_of_no_extra_is_raised_unchanged():
     with pytest.raises(ModuleNotFoundError, match="another"):
         missing_extra("BAG107", ModuleNotFoundError("another", name="another.module"))
 
 
-def test_colcon_is_asked_for_by_name(without, capsys):
+def test_missing_colcon_is_reported_with_install_hint(without, capsys):
     without("colcon_core")
     assert main("colcon", ["build"]) == 1
     assert str(install_hint("colcon")) in capsys.readouterr().err

@@ -55,7 +55,7 @@ def chinese(text: str) -> str:
 
 @pytest.mark.parametrize("loader", [yaml.SafeLoader, getattr(yaml, "CSafeLoader", yaml.SafeLoader)])
 @pytest.mark.parametrize("text", YAML_MISTAKES.values(), ids=YAML_MISTAKES)
-def test_mistakes_in_yaml(text: str, loader: type) -> None:
+def test_yaml_errors_are_translated(text: str, loader: type) -> None:
     with pytest.raises(yaml.YAMLError) as raised:
         yaml.load(text, Loader=loader)
     error = raised.value
@@ -64,7 +64,7 @@ def test_mistakes_in_yaml(text: str, loader: type) -> None:
 
 
 @pytest.mark.parametrize("text", XML_MISTAKES.values(), ids=XML_MISTAKES)
-def test_mistakes_in_xml(text: str) -> None:
+def test_xml_errors_are_translated(text: str) -> None:
     parser = expat.ParserCreate(namespace_separator=" ")
     with pytest.raises(expat.ExpatError) as raised:
         parser.Parse(text, True)
@@ -72,7 +72,7 @@ def test_mistakes_in_xml(text: str) -> None:
     assert not re.search("[a-z]", chinese(said).replace("xml", "")), (said, chinese(said))
 
 
-def test_quoted_parts_are_kept_and_other_texts_are_as_they_are() -> None:
+def test_quoted_parts_are_kept_and_unknown_texts_are_unchanged() -> None:
     assert (
         translate_phrase(foreign("found undefined alias 'speed'"), "zh")
         == "别名“speed”没有定义；以“*”开头的值请加上引号"
@@ -83,7 +83,7 @@ def test_quoted_parts_are_kept_and_other_texts_are_as_they_are() -> None:
         assert translate_phrase(foreign(text), "en") == text
 
 
-def test_a_launch_file_says_problem_and_context_in_chinese() -> None:
+def test_launch_file_yaml_error_is_translated() -> None:
     with pytest.raises(LinkwrightError) as raised:
         load("launch:\n- node:\n    pkg: a\n   exec: b\n", "a.launch.yaml")
     (finding,) = raised.value.diagnostics

@@ -23,7 +23,7 @@ def found(tmp_path, monkeypatch):
     ]
 
 
-def test_concise_is_a_line_each(found):
+def test_concise_prints_one_line_per_diagnostic(found):
     assert format_diagnostics(found, "concise").splitlines() == [
         "my robots/r,1.urdf:2:1: error[LW201] 50% is wrong: a,b (do: this)",
         "warning[XML101] no file",
@@ -31,7 +31,7 @@ def test_concise_is_a_line_each(found):
     ]
 
 
-def test_json_is_an_object_with_a_list(found, tmp_path):
+def test_json_is_object_with_diagnostics_list(found, tmp_path):
     data = json.loads(format_diagnostics(found, "json"))
     assert list(data) == ["diagnostics"]
     file = str(tmp_path / "my robots" / "r,1.urdf")
@@ -63,7 +63,7 @@ def test_github_commands_are_escaped(found):
     assert third == "::notice title=XAC704::hello"
 
 
-def test_sarif_has_what_the_standard_requires(found):
+def test_sarif_contains_required_fields(found):
     log = json.loads(format_diagnostics(found, "sarif"))
     assert log["version"] == "2.1.0"
     (run,) = log["runs"]
@@ -100,7 +100,7 @@ def lang(request):
 
 
 @pytest.mark.usefixtures("lang")
-def test_json_tells_what_a_message_is_made_of():
+def test_json_contains_template_and_arguments():
     data = json.loads(format_diagnostics(_made_of_templates(), "json"))["diagnostics"]
     assert [(each["template"], each["arguments"]) for each in data] == [
         ("{kind} '{name}' is {share:.0%} off", {"kind": "link", "name": "a{b}", "share": 0.5}),
@@ -110,7 +110,7 @@ def test_json_tells_what_a_message_is_made_of():
 
 
 @pytest.mark.usefixtures("lang")
-def test_sarif_results_name_a_message_string_of_their_rule_and_fill_it():
+def test_sarif_results_reference_rule_message_strings():
     found = _made_of_templates()
     (run,) = json.loads(format_diagnostics(found, "sarif"))["runs"]
     rules = run["tool"]["driver"]["rules"]
@@ -121,13 +121,13 @@ def test_sarif_results_name_a_message_string_of_their_rule_and_fill_it():
     assert [len(rule["messageStrings"]) for rule in rules] == [2, 1]
 
 
-def test_no_diagnostics_are_a_whole_document_too():
+def test_empty_list_is_complete_document_in_all_formats():
     assert format_diagnostics([], "concise") == format_diagnostics([], "github") == ""
     assert json.loads(format_diagnostics([], "json")) == {"diagnostics": []}
     assert json.loads(format_diagnostics([], "sarif"))["runs"][0]["results"] == []
 
 
-def test_text_is_not_written_here():
+def test_unsupported_formats_are_rejected():
     assert FORMATS[0] == "text"
     with pytest.raises(ValueError, match="no format"):
         format_diagnostics([], "text")

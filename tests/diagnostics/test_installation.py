@@ -26,27 +26,27 @@ def direct_url(path: Path, **more: object) -> dict[str, object]:
     return {"url": path.as_uri(), "dir_info": {}, **more}
 
 
-def test_of_an_index_it_is_installed_by_its_name() -> None:
+def test_index_installation_is_extended_by_name() -> None:
     assert Installation(Origin(), PIP).command_for_extras("sim") == "pip install 'linkwright[sim]'"
 
 
-def test_of_a_checkout_it_is_installed_by_its_path(checkout: Path) -> None:
+def test_checkout_installation_is_extended_by_path(checkout: Path) -> None:
     installation = Installation(origin_of(direct_url(checkout)), PIP)
     assert installation.command_for_extras("sim", "dds") == f"pip install '{checkout}[dds,sim]'"
 
 
-def test_a_checkout_in_which_the_user_stands_is_a_dot(checkout: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_checkout_in_current_folder_is_a_dot(checkout: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.chdir(checkout)
     installation = Installation(origin_of(direct_url(checkout)), PIP)
     assert installation.command_for_extras("sim") == "pip install '.[sim]'"
 
 
-def test_an_editable_checkout_stays_editable(checkout: Path) -> None:
+def test_editable_checkout_stays_editable(checkout: Path) -> None:
     installation = Installation(origin_of(direct_url(checkout, dir_info={"editable": True})), PIP)
     assert installation.command_for_extras("sim") == f"pip install -e '{checkout}[sim]'"
 
 
-def test_a_wheel_is_named_by_its_path(tmp_path: Path) -> None:
+def test_wheel_is_referenced_by_path(tmp_path: Path) -> None:
     wheel = tmp_path / "linkwright-0.1.0-py3-none-any.whl"
     wheel.touch()
     origin = origin_of({"url": wheel.as_uri(), "archive_info": {"hash": "sha256=0"}})
@@ -74,11 +74,11 @@ def test_a_wheel_is_named_by_its_path(tmp_path: Path) -> None:
         ),
     ],
 )
-def test_what_came_from_an_address_is_taken_from_there(recorded: dict[str, object], requirement: str) -> None:
+def test_url_installation_is_extended_from_its_url(recorded: dict[str, object], requirement: str) -> None:
     assert Installation(origin_of(recorded), PIP).command_for_extras("mesh") == f"pip install '{requirement}'"
 
 
-def test_a_source_that_is_gone_is_told_of(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_missing_install_source_is_reported(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     gone = Installation(Origin(str(tmp_path / "gone")), PIP)
     monkeypatch.setattr("linkwright.diagnostics.installation.find_installation", lambda: gone)
     assert str(install_hint("image")) == (
@@ -87,7 +87,7 @@ def test_a_source_that_is_gone_is_told_of(tmp_path: Path, monkeypatch: pytest.Mo
     )
 
 
-def test_pipx_makes_its_environment_anew_with_the_extras_that_it_had(tmp_path: Path) -> None:
+def test_pipx_reinstalls_with_previous_extras(tmp_path: Path) -> None:
     main = {"package": "linkwright", "package_or_url": "/home/me/linkwright[image, dds]"}
     (tmp_path / "pipx_metadata.json").write_text(json.dumps({"main_package": main}))
     installation = installation_in(tmp_path, Origin())
@@ -95,7 +95,7 @@ def test_pipx_makes_its_environment_anew_with_the_extras_that_it_had(tmp_path: P
     assert installation.command_for_packages("pyserial") == "pipx inject linkwright pyserial"
 
 
-def test_uv_makes_a_tool_anew_with_what_it_had(tmp_path: Path) -> None:
+def test_uv_tool_reinstalls_with_previous_requirements(tmp_path: Path) -> None:
     (tmp_path / "uv-receipt.toml").write_text(
         '[tool]\nrequirements = [{ name = "linkwright", extras = ["image"], directory = "/x" }, { name = "jinja2" }]\n'
     )
@@ -106,7 +106,7 @@ def test_uv_makes_a_tool_anew_with_what_it_had(tmp_path: Path) -> None:
     )
 
 
-def test_what_uvx_runs_becomes_a_tool(tmp_path: Path) -> None:
+def test_uvx_environment_is_installed_as_tool(tmp_path: Path) -> None:
     installation = installation_in(tmp_path / "archive-v0" / "x", Origin())
     assert installation.command_for_extras("sim") == "uv tool install 'linkwright[sim]'"
 
@@ -121,20 +121,18 @@ def pip_there(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> Path:
     return tmp_path
 
 
-def test_the_pip_that_is_typed_is_that_of_the_environment(pip_there: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_pip_on_path_is_used_if_it_belongs_to_environment(pip_there: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr("shutil.which", lambda _name: str(pip_there / "pip"))
     assert installation_in(pip_there, Origin()).command_for_packages("jinja2") == "pip install jinja2"
 
 
-def test_of_an_environment_that_is_not_active_the_python_is_named(
-    pip_there: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_inactive_environment_is_addressed_by_its_python(pip_there: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr("shutil.which", lambda _name: "/usr/bin/pip")
     command = installation_in(pip_there, Origin()).command_for_packages("jinja2")
     assert command == f"{pip_there / 'python'} -m pip install jinja2"
 
 
-def test_where_there_is_no_pip_uv_installs(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_uv_is_used_without_pip(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr("linkwright.diagnostics.installation.find_spec", lambda _name: None)
     monkeypatch.setattr("shutil.which", lambda _name: "/usr/bin/uv")
     monkeypatch.delenv("VIRTUAL_ENV", raising=False)
@@ -144,7 +142,7 @@ def test_where_there_is_no_pip_uv_installs(tmp_path: Path, monkeypatch: pytest.M
     assert installation_in(tmp_path, Origin()).command_for_packages("jinja2") == "uv pip install jinja2"
 
 
-def test_where_only_the_checkout_has_uv_its_own_is_named(checkout: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_uv_of_checkout_is_used_without_other_uv(checkout: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     own = checkout / ".build" / "uv" / "bin" / "uv"
     own.parent.mkdir(parents=True)
     own.touch()
@@ -154,10 +152,10 @@ def test_where_only_the_checkout_has_uv_its_own_is_named(checkout: Path, monkeyp
     assert command.startswith(f"'{own}' pip install --python ")
 
 
-def test_windows_has_double_quotes(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_windows_commands_use_double_quotes(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(sys, "platform", "win32")
     assert Installation(Origin(), PIP).command_for_extras("sim") == 'pip install "linkwright[sim]"'
 
 
-def test_that_which_runs_is_found() -> None:
+def test_running_installation_is_found() -> None:
     assert find_installation().command_for_extras("sim").endswith("[sim]'")

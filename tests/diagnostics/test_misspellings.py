@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import pytest
 
-from linkwright.diagnostics.misspellings import find_misspelt
+from linkwright.diagnostics.misspellings import find_misspelled
 from linkwright.lint.extension_names import CHILDREN
 
 
@@ -19,8 +19,8 @@ from linkwright.lint.extension_names import CHILDREN
         ("positon", "position"),
     ],
 )
-def test_a_slip_in_one_word_is_a_misspelling(written, meant):
-    assert find_misspelt(written, [meant, "something_else"]) == meant
+def test_single_typo_is_a_misspelling(written, meant):
+    assert find_misspelled(written, [meant, "something_else"]) == meant
 
 
 @pytest.mark.parametrize(
@@ -38,22 +38,22 @@ def test_a_slip_in_one_word_is_a_misspelling(written, meant):
         ("left_front", "left_rear"),
     ],
 )
-def test_a_siblings_name_is_not_a_misspelling(written, other):
-    assert find_misspelt(written, [other]) is None
+def test_sibling_name_is_not_a_misspelling(written, other):
+    assert find_misspelled(written, [other]) is None
 
 
-def test_between_two_names_nothing_is_chosen():
-    assert find_misspelt("weel_link", ["wheel_link", "welel_link"]) is None
+def test_ambiguous_misspelling_matches_nothing():
+    assert find_misspelled("weel_link", ["wheel_link", "welel_link"]) is None
 
 
-def test_two_spellings_of_one_name_are_one_name():
-    assert find_misspelt("slefCollide", ["selfCollide", "self_collide"]) == "selfCollide"
+def test_spellings_of_same_name_are_not_ambiguous():
+    assert find_misspelled("slefCollide", ["selfCollide", "self_collide"]) == "selfCollide"
 
 
 @pytest.mark.parametrize("path", CHILDREN)
-def test_no_known_element_is_taken_for_another(path):
+def test_known_elements_are_not_misspellings_of_each_other(path):
     names = CHILDREN[path]
     spellings = {name: "".join(filter(str.isalpha, name)).casefold() for name in names}
     for name in names:
         others = [each for each in names if spellings[each] != spellings[name]]
-        assert find_misspelt(name, others) is None
+        assert find_misspelled(name, others) is None

@@ -52,37 +52,37 @@ def in_chinese(text: Phrase) -> str:
     return text.translated_text(Chinese())
 
 
-def test_a_phrase_is_its_english_text() -> None:
+def test_phrase_equals_its_english_text() -> None:
     text = phrase("there is no macro '{name}'", name="whell")
     assert text == "there is no macro 'whell'"
     assert (text.template, text.arguments) == ("there is no macro '{name}'", {"name": "whell"})
 
 
-def test_what_is_filled_in_stays_and_the_template_is_translated() -> None:
+def test_template_is_translated_and_arguments_are_kept() -> None:
     assert in_chinese(phrase("there is no macro '{name}'", name="{whell}")) == "没有名为“{whell}”的宏"
 
 
-def test_phrases_in_phrases_are_translated_with_a_blank_where_scripts_meet() -> None:
+def test_nested_phrases_are_translated_with_spaces_between_scripts() -> None:
     text = phrase("<{tag}> of {owner} is empty", tag="geometry", owner=phrase("link '{name}'", name="a"))
     assert text == "<geometry> of link 'a' is empty"
     assert in_chinese(text) == "连杆“a”的 <geometry> 是空的"
     assert in_chinese(phrase("it holds {things}", things=joined(["a", "b"]))) == "其中有 a、b"
 
 
-def test_numbers_take_their_format_along() -> None:
+def test_number_format_is_kept_in_translation() -> None:
     text = phrase("it is {length:.1f} m long", length=1.25)
     assert text == "it is 1.2 m long"
     assert in_chinese(text) == "它长 1.2 米"
 
 
-def test_without_arguments_braces_are_braces() -> None:
+def test_braces_are_literal_without_arguments() -> None:
     assert phrase("write {a: 1}") == "write {a: 1}"
     text = phrase("write {{{name}}}", name="a")
     assert (text, in_chinese(text)) == ("write {a}", "请写 {a}")
 
 
 @pytest.mark.parametrize(("count", "english"), [(0, "0 errors"), (1, "1 error"), (2, "2 errors")])
-def test_one_and_several(count: int, english: str) -> None:
+def test_counted_chooses_singular_or_plural(count: int, english: str) -> None:
     text = counted("{count} error", "{count} errors", count)
     assert text == english
     assert in_chinese(text) == f"{count} 个错误"
@@ -97,17 +97,17 @@ def test_one_and_several(count: int, english: str) -> None:
         (["a", "b", "c"], "'a', 'b' or 'c'", "“a”、“b”或“c”"),
     ],
 )
-def test_names_in_a_row(names: list[str], english: str, chinese: str) -> None:
+def test_quoted_names_are_joined(names: list[str], english: str, chinese: str) -> None:
     text = quoted_names(names, " or ")
     assert (text, in_chinese(text)) == (english, chinese)
 
 
-def test_sentences_in_a_row() -> None:
+def test_texts_are_joined_with_separator() -> None:
     text = joined([quoted("a"), quoted("b"), "c"], "; ")
     assert (text, in_chinese(text)) == ("'a'; 'b'; c", "“a”；“b”；c")
 
 
-def test_words_of_tables_and_of_other_programs_are_looked_up_as_a_whole() -> None:
+def test_terms_and_foreign_texts_are_translated_as_a_whole() -> None:
     assert in_chinese(term("joint")) == "关节"
     assert in_chinese(term("transmission")) == "transmission"
     error = OSError(13, "Permission denied")
@@ -115,7 +115,7 @@ def test_words_of_tables_and_of_other_programs_are_looked_up_as_a_whole() -> Non
     assert in_chinese(foreign("{odd}")) == "{odd}"
 
 
-def test_an_exception_hands_its_phrase_on() -> None:
+def test_exception_keeps_its_phrase() -> None:
     text = phrase("there is no macro '{name}'", name="a")
     for given in (ValueError(text), foreign(ValueError(text))):
         assert in_chinese(phrase("cannot read it: {reason}", reason=given)) == "无法读取：没有名为“a”的宏"
@@ -130,6 +130,6 @@ def test_an_exception_hands_its_phrase_on() -> None:
         term("joint"),
     ],
 )
-def test_copies_stay_translatable(text: Phrase) -> None:
+def test_copied_and_pickled_phrases_stay_translatable(text: Phrase) -> None:
     for each in (copy.deepcopy(text), pickle.loads(pickle.dumps(text))):
         assert (each, type(each), in_chinese(each)) == (text, type(text), in_chinese(text))

@@ -14,7 +14,7 @@ from linkwright.diagnostics import (
     display_path,
     print_diagnostics,
     render,
-    wants_colour,
+    wants_color,
 )
 
 
@@ -25,7 +25,7 @@ def shown(text: str, marked: str, **more) -> list[str]:
     return render(diagnostic).splitlines()
 
 
-def test_the_whole_form():
+def test_full_diagnostic_is_rendered():
     assert shown('<a>\n  <mass value="1,5"/>\n</a>', "1,5", notes=(Note("a note"),), hint="a hint") == [
         "error[URDF121]: message",
         "  --> <test>:2:16",
@@ -47,29 +47,29 @@ def test_the_whole_form():
         ("x 底盘 y", "底盘", "  ^^^^"),
     ],
 )
-def test_carets_stand_under_what_they_mark(line, marked, carets):
+def test_carets_mark_the_span(line, marked, carets):
     assert shown(line, marked)[-1] == f"  | {carets}"
 
 
-def test_tabs_are_shown_as_wide_as_they_are_counted():
+def test_tabs_are_expanded():
     assert shown("\t<a/>", "<a/>")[3] == "1 |     <a/>"
 
 
-def test_a_span_over_several_lines_is_marked_to_the_end_of_the_first():
+def test_multiline_span_is_marked_to_end_of_first_line():
     assert shown("<a\n  b='c'\n/>", "<a\n  b")[-2:] == ["1 | <a", "  | ^^"]
 
 
-def test_an_empty_span_still_has_a_caret():
+def test_empty_span_has_one_caret():
     source = SourceText("<test>", 'value=""')
     assert render(Diagnostic("X1", "m", source.span(7, 7), source=source)).splitlines()[-1] == "  |        ^"
 
 
-def test_the_gutter_is_as_wide_as_the_line_number():
+def test_gutter_width_follows_line_number():
     lines = shown("\n" * 99 + "x", "x")
     assert lines[2:] == ["    |", "100 | x", "    | ^"]
 
 
-def test_no_excerpt_without_the_text_or_of_another_file_or_of_a_blank_line():
+def test_excerpt_is_omitted_without_matching_source_or_for_blank_line():
     source = SourceText("<a>", "   \nx")
     for diagnostic in (
         Diagnostic("X1", "m", source.span(4, 5)),
@@ -79,18 +79,18 @@ def test_no_excerpt_without_the_text_or_of_another_file_or_of_a_blank_line():
         assert len(render(diagnostic).splitlines()) == 2
 
 
-def test_no_place():
+def test_diagnostic_without_span_has_no_excerpt():
     assert render(Diagnostic("X1", "no such file", hint="look elsewhere")) == (
         "error[X1]: no such file\n   = hint: look elsewhere"
     )
 
 
 @pytest.mark.parametrize("severity", list(Severity))
-def test_the_severity_is_named(severity):
+def test_severity_is_rendered(severity):
     assert render(Diagnostic("X1", "m", severity=severity)) == f"{severity.value}[X1]: m"
 
 
-def test_a_note_has_its_place_and_keeps_its_lines_together():
+def test_multiline_note_is_indented_and_followed_by_location():
     source = SourceText("<test>", "a\nb")
     note = Note("called here\nand so on", source.span(2, 3))
     assert render(Diagnostic("X1", "m", notes=(note,))) == (
@@ -98,14 +98,14 @@ def test_a_note_has_its_place_and_keeps_its_lines_together():
     )
 
 
-def test_colour_changes_nothing_else():
+def test_color_adds_only_escape_sequences():
     source = SourceText("<test>", "<a/>")
     diagnostic = Diagnostic("X1", "m", source.span(1, 2), notes=(Note("n"),), hint="h", source=source)
-    coloured = render(diagnostic, colour=True)
-    assert coloured != render(diagnostic)
+    colored = render(diagnostic, color=True)
+    assert colored != render(diagnostic)
     for code in ("31;1", "31", "34", "32", "1", "0"):
-        coloured = coloured.replace(f"\x1b[{code}m", "")
-    assert coloured == render(diagnostic)
+        colored = colored.replace(f"\x1b[{code}m", "")
+    assert colored == render(diagnostic)
 
 
 class Terminal(io.StringIO):
@@ -113,18 +113,18 @@ class Terminal(io.StringIO):
         return True
 
 
-def test_colour_is_for_terminals_that_want_it(monkeypatch):
+def test_color_is_used_for_terminals_unless_disabled(monkeypatch):
     monkeypatch.setenv("TERM", "xterm")
-    assert wants_colour(Terminal())
-    assert not wants_colour(io.StringIO())
+    assert wants_color(Terminal())
+    assert not wants_color(io.StringIO())
     monkeypatch.setenv("NO_COLOR", "1")
-    assert not wants_colour(Terminal())
+    assert not wants_color(Terminal())
     monkeypatch.delenv("NO_COLOR")
     monkeypatch.setenv("TERM", "dumb")
-    assert not wants_colour(Terminal())
+    assert not wants_color(Terminal())
 
 
-def test_printing_several(monkeypatch):
+def test_diagnostics_are_printed_with_color_only_on_terminal(monkeypatch):
     monkeypatch.setenv("TERM", "xterm")
     stream = io.StringIO()
     print_diagnostics([Diagnostic("X1", "first"), Diagnostic("X2", "second")], stream)
@@ -134,7 +134,7 @@ def test_printing_several(monkeypatch):
     assert "\x1b[" in terminal.getvalue()
 
 
-def test_paths_below_the_current_folder_are_shown_short(tmp_path, monkeypatch):
+def test_paths_below_current_folder_are_relative(tmp_path, monkeypatch):
     (tmp_path / "here").mkdir()
     monkeypatch.chdir(tmp_path / "here")
     assert display_path(tmp_path / "here" / "urdf" / "a.urdf") == "urdf/a.urdf"
@@ -143,20 +143,20 @@ def test_paths_below_the_current_folder_are_shown_short(tmp_path, monkeypatch):
     assert "--> a.urdf:1:1" in render(Diagnostic("X1", "m", source.span(0), source=source))
 
 
-def test_of_a_very_long_line_only_what_is_around_the_place_is_shown() -> None:
+def test_long_line_is_shortened_around_span() -> None:
     source = SourceText("robot.urdf", f"{'a' * 1000}HERE{'b' * 1000}")
     shown = render(Diagnostic("XML206", "it is wrong", source.span(1000, 1004), source=source)).splitlines()
     assert shown[3] == f"1 | ...{'a' * 80}HERE{'b' * 76}..."
     assert shown[4] == f"  | {' ' * 83}^^^^"
 
 
-def test_a_place_at_the_end_of_a_very_long_line() -> None:
+def test_long_line_is_shortened_if_span_is_at_end() -> None:
     source = SourceText("robot.urdf", f"{'a' * 1000}HERE")
     shown = render(Diagnostic("XML206", "it is wrong", source.span(1000, 1004), source=source)).splitlines()
     assert shown[3] == f"1 | ...{'a' * 80}HERE"
 
 
-def test_what_would_steer_the_terminal_is_shown_instead():
+def test_control_characters_are_replaced():
     head, place, _, excerpt, carets, note, hint, rest = shown(
         'a\x1b[2J\x07\x9b1m\u202e="x"', "x", notes=(Note("\x1b]0;title\x07"),), hint="two\nlines\x08"
     )

@@ -6,27 +6,27 @@ from pathlib import Path
 
 import pytest
 
-from linkwright.diagnostics import as_typed, did_you_mean, is_misspelt, missing_file_hint, nearest
+from linkwright.diagnostics import as_typed, did_you_mean, is_misspelled, missing_file_hint, nearest
 
 LINKS = ["base_link", "base_footprint", "left_wheel", "right_wheel"]
 
 
-def test_the_nearest_comes_first():
+def test_nearest_name_comes_first():
     assert nearest("left_whel", LINKS)[0] == "left_wheel"
     assert nearest("base_lnk", LINKS) == ["base_link"]
 
 
-def test_upper_and_lower_case_count_as_alike():
+def test_nearest_ignores_case():
     assert nearest("BASE_LINK", LINKS)[0] == "base_link"
     assert nearest("revolute", ["Revolute"]) == ["Revolute"]
 
 
-def test_no_more_than_asked_for():
+def test_nearest_respects_limit():
     assert len(nearest("wheel", [f"wheel{n}" for n in range(9)])) == 3
     assert nearest("wheel1", ["wheel2", "wheel11", "wheel1"], limit=1) == ["wheel1"]
 
 
-def test_nothing_near():
+def test_nearest_returns_nothing_for_distant_names():
     assert nearest("camera", LINKS) == []
     assert nearest("camera", []) == []
 
@@ -40,11 +40,11 @@ def test_nothing_near():
         (["velocity"], None),
     ],
 )
-def test_hints(candidates, hint):
+def test_did_you_mean_formats_candidates(candidates, hint):
     assert did_you_mean("efort", candidates) == hint
 
 
-def test_a_missing_file_has_a_hint_whatever_is_beside_it(tmp_path, monkeypatch):
+def test_missing_file_hint_depends_on_folder_contents(tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)
     assert missing_file_hint(tmp_path / "no" / "a.urdf") == (
         f"the folder 'no' does not exist; the current folder is '{tmp_path}'"
@@ -60,14 +60,14 @@ def test_a_missing_file_has_a_hint_whatever_is_beside_it(tmp_path, monkeypatch):
     assert missing_file_hint(tmp_path / "x", lambda name: name.endswith(".txt")) == "choose from notes.txt"
 
 
-def test_a_longer_ending_may_be_meant(tmp_path):
+def test_missing_file_hint_suggests_longer_suffix(tmp_path):
     (tmp_path / "robot.urdf.xacro").touch()
     assert missing_file_hint(tmp_path / "robot.xacro") == "did you mean 'robot.urdf.xacro'?"
     assert missing_file_hint(tmp_path / "robot.v2.xacro").startswith("choose from ")
 
 
 @pytest.mark.parametrize("address", ["https://example.org/r.urdf", "http://localhost/r.urdf"])
-def test_an_address_is_told_that_nothing_is_fetched(tmp_path, address):
+def test_missing_file_hint_for_url_says_files_are_not_downloaded(tmp_path, address):
     hint = "files are not fetched from the network: download the file, and give its path"
     assert missing_file_hint(Path(address)) == hint
     assert missing_file_hint(tmp_path / address) == hint
@@ -75,7 +75,7 @@ def test_an_address_is_told_that_nothing_is_fetched(tmp_path, address):
 
 
 @pytest.mark.parametrize("path", ["a/b.urdf", "/a/b.urdf", "//server/b.urdf", "a:/b", "http/b.urdf", "C:\\a\\b.urdf"])
-def test_a_path_is_shown_as_it_is(path):
+def test_as_typed_keeps_path(path):
     assert as_typed(path) == path
 
 
@@ -101,12 +101,12 @@ def test_a_path_is_shown_as_it_is(path):
         ("diff_drive_controller", "tricycle_controller", False),
     ],
 )
-def test_names_that_share_a_common_word_are_of_other_things(name: str, other: str, meant: bool) -> None:
+def test_nearest_rejects_names_that_share_only_a_common_word(name: str, other: str, meant: bool) -> None:
     assert nearest(name, [other]) == ([other] if meant else [])
 
 
 @pytest.mark.parametrize(
-    ("name", "other", "misspelt"),
+    ("name", "other", "misspelled"),
     [
         ("amr", "arm", True),
         ("taker", "talker", True),
@@ -119,5 +119,5 @@ def test_names_that_share_a_common_word_are_of_other_things(name: str, other: st
         ("move_group", "robot", False),
     ],
 )
-def test_a_misspelt_name_is_not_one_that_is_merely_alike(name: str, other: str, misspelt: bool) -> None:
-    assert is_misspelt(name, ["zzz", other]) is misspelt
+def test_is_misspelled_distinguishes_typos_from_similar_names(name: str, other: str, misspelled: bool) -> None:
+    assert is_misspelled(name, ["zzz", other]) is misspelled

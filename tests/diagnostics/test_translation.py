@@ -1,4 +1,4 @@
-"""Diagnostics in Chinese: the choice of the language, the catalogue, and inserted values."""
+"""Diagnostics in Chinese: the choice of the language, the catalog, and inserted values."""
 
 from __future__ import annotations
 
@@ -45,31 +45,31 @@ def no_language(monkeypatch: pytest.MonkeyPatch) -> Iterator[None]:
 # which language
 
 
-def test_english_where_nothing_says_otherwise() -> None:
+def test_language_defaults_to_english() -> None:
     assert language() == "en"
 
 
 @pytest.mark.parametrize("name", VARIABLES)
-def test_each_variable_can_choose_chinese(name: str, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_environment_variables_choose_chinese(name: str, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setenv(name, "zh_CN.UTF-8")
     assert language() == "zh"
 
 
 @pytest.mark.parametrize("stronger", range(3))
-def test_a_stronger_variable_wins(stronger: int, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_environment_variable_of_higher_priority_wins(stronger: int, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setenv(VARIABLES[stronger], "en_US.UTF-8")
     for name in VARIABLES[stronger + 1 :]:
         monkeypatch.setenv(name, "zh_CN.UTF-8")
     assert language() == "en"
 
 
-def test_an_empty_variable_says_nothing(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_empty_environment_variable_is_ignored(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setenv("LC_ALL", "")
     monkeypatch.setenv("LANG", "zh_CN")
     assert language() == "zh"
 
 
-def test_what_is_asked_for_wins(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_set_language_overrides_environment(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setenv("LINKWRIGHT_LANG", "zh")
     set_language("en")
     assert language() == "en"
@@ -87,11 +87,11 @@ def test_what_is_asked_for_wins(monkeypatch: pytest.MonkeyPatch) -> None:
         ("de", None),
     ],
 )
-def test_language_of_a_locale(locale: str, found: str | None) -> None:
+def test_language_of_locale(locale: str, found: str | None) -> None:
     assert language_of(locale) == found
 
 
-def test_an_unknown_language_cannot_be_set() -> None:
+def test_unknown_language_is_rejected() -> None:
     with pytest.raises(ValueError, match="the languages are en, zh"):
         set_language("fr")
 
@@ -103,7 +103,7 @@ def in_chinese(message: Phrase, **more: object) -> Diagnostic:
     return translate(Diagnostic("XAC401", message, **more), "zh")  # type: ignore[arg-type]
 
 
-def test_message_notes_and_hint_are_translated_and_nothing_else() -> None:
+def test_message_notes_and_hint_are_translated() -> None:
     source = SourceText("a.xacro", "<xacro:whell/>")
     span = source.span(0, 12)
     english = Diagnostic(
@@ -122,13 +122,13 @@ def test_message_notes_and_hint_are_translated_and_nothing_else() -> None:
     assert (chinese.code, chinese.span, chinese.severity, chinese.source) == ("XAC401", span, Severity.WARNING, source)
 
 
-def test_a_list_of_many_names_ends_with_how_many_more_there_are() -> None:
+def test_long_name_list_ends_with_remaining_count() -> None:
     text = phrase("published by {senders}", senders=listed([f"/n{number}" for number in range(9)], 2))
     assert text == "published by '/n0', '/n1' and 7 more"
     assert in_chinese(text).message == "它由“/n0”、“/n1”和另外 7 个发布"
 
 
-def test_a_line_about_what_a_command_does(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_localized_translates_command_summary(monkeypatch: pytest.MonkeyPatch) -> None:
     findings = counted("{count} finding", "{count} findings", 3)
     line = phrase("fixed {findings} in {files}", findings=findings, files=counted("{count} file", "{count} files", 1))
     assert localized(line) == "fixed 3 findings in 1 file"
@@ -137,36 +137,36 @@ def test_a_line_about_what_a_command_does(monkeypatch: pytest.MonkeyPatch) -> No
     assert localized("something else") == "something else"
 
 
-def test_parts_are_translated_too() -> None:
+def test_nested_reason_is_translated() -> None:
     reason = foreign(PermissionError(13, "Permission denied").strerror)
     text = phrase("cannot read '{path}': {reason}", path="a", reason=reason)
     assert in_chinese(text).message == "无法读取“a”：没有权限"
 
 
-def test_the_words_of_other_programs_may_stay_english() -> None:
+def test_unknown_foreign_text_stays_english() -> None:
     reason = foreign(ValueError("something python says only once"))
     text = phrase("cannot read '{path}': {reason}", path="a", reason=reason)
     assert in_chinese(text).message == "无法读取“a”：something python says only once"
 
 
-def test_unknown_texts_stay() -> None:
+def test_untranslatable_diagnostic_is_unchanged() -> None:
     diagnostic = Diagnostic("XAC703", foreign("the user's own warning"), notes=(Note(foreign("a note")),))
     assert translate(diagnostic, "zh") == diagnostic
 
 
 @pytest.mark.parametrize("name", ["it's", "a' of 'b", "a\nb", "“引号”", "{}", "{0}", "\\1", "车轮"])
-def test_names_come_through_as_they_are(name: str) -> None:
+def test_special_characters_in_names_are_kept(name: str) -> None:
     assert in_chinese(phrase("there is no macro '{name}'", name=name)).message == f"没有名为“{name}”的宏"
 
 
 @given(st.text())
-def test_any_text_can_be_filled_in(text: str) -> None:
+def test_arbitrary_text_can_be_inserted(text: str) -> None:
     for each in (phrase("there is no macro '{name}'", name=text), foreign(text), quoted_names([text, text], " or ")):
         in_chinese(each)
 
 
-def test_signs_of_the_chinese_catalogue_are_chinese() -> None:
-    tool = load_tool("catalogues")
+def test_chinese_catalog_uses_chinese_punctuation() -> None:
+    tool = load_tool("catalogs")
     for message in tool.read(tool.FOLDER / "zh.po"):
         english = "".join(message.id)
         for chinese in [message.string] if isinstance(message.string, str) else message.string:
@@ -192,7 +192,7 @@ def finding() -> Diagnostic:
     )
 
 
-def test_printing_in_chinese(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_diagnostics_are_printed_in_chinese(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setenv("LANG", "zh_CN.UTF-8")
     stream = io.StringIO()
     print_diagnostics([finding()], stream)
@@ -207,7 +207,7 @@ def test_printing_in_chinese(monkeypatch: pytest.MonkeyPatch) -> None:
     )
 
 
-def test_carets_stand_below_their_text_in_a_terminal() -> None:
+def test_carets_align_below_double_width_characters() -> None:
     lines = render(finding()).splitlines()
     cells = "".join(each * (2 if east_asian_width(each) == "W" else 1) for each in lines[3])
     assert cells[lines[4].index("^") : lines[4].rindex("^") + 1] == "prefx"
@@ -216,11 +216,11 @@ def test_carets_stand_below_their_text_in_a_terminal() -> None:
 @pytest.mark.parametrize(
     ("severity", "word"), [(Severity.ERROR, "错误"), (Severity.WARNING, "警告"), (Severity.INFO, "信息")]
 )
-def test_severities_in_chinese(severity: Severity, word: str) -> None:
+def test_severities_are_translated(severity: Severity, word: str) -> None:
     assert render(Diagnostic("XAC702", "a", severity=severity), lang="zh") == f"{word}[XAC702]：a"
 
 
-def test_programs_get_english_unless_asked(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_machine_formats_stay_english_unless_language_is_set(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setenv("LANG", "zh_CN.UTF-8")
     english = format_diagnostics([finding()], "json")
     assert "the property 'prefx' is not defined" in english
@@ -230,7 +230,7 @@ def test_programs_get_english_unless_asked(monkeypatch: pytest.MonkeyPatch) -> N
     assert json.loads(english) != chinese
 
 
-def test_english_costs_nothing() -> None:
+def test_translated_returns_same_list_in_english() -> None:
     found = [finding()]
     assert translated(found) is found
 
@@ -248,7 +248,7 @@ def test_english_costs_nothing() -> None:
         ["pkg", "--lang", "zh", "create", "9"],
     ],
 )
-def test_every_command_takes_a_language(words: list[str], capsys: pytest.CaptureFixture[str]) -> None:
+def test_commands_accept_lang_option(words: list[str], capsys: pytest.CaptureFixture[str]) -> None:
     assert main(words) == 1
     assert capsys.readouterr().err.startswith("错误[")
     assert language() == "en", "one run does not choose for the next"
@@ -257,22 +257,24 @@ def test_every_command_takes_a_language(words: list[str], capsys: pytest.Capture
 @pytest.mark.parametrize(
     ("words", "message"), [(["--lang", "fr"], "there is no language 'fr'"), (["--lang"], "needs a language")]
 )
-def test_a_wrong_language_is_wrong_usage(words: list[str], message: str, capsys: pytest.CaptureFixture[str]) -> None:
+def test_invalid_lang_option_is_a_usage_error(
+    words: list[str], message: str, capsys: pytest.CaptureFixture[str]
+) -> None:
     assert main(["check", "a.urdf", *words]) == 2
     assert message in capsys.readouterr().err
 
 
-def test_words_after_two_dashes_are_left_alone(capsys: pytest.CaptureFixture[str]) -> None:
+def test_lang_option_after_double_dash_is_ignored(capsys: pytest.CaptureFixture[str]) -> None:
     main(["check", "--", "--lang", "zh"])
     assert "错误" not in capsys.readouterr().err
 
 
-def test_the_overview_names_the_option(capsys: pytest.CaptureFixture[str]) -> None:
+def test_main_help_lists_lang_option(capsys: pytest.CaptureFixture[str]) -> None:
     assert main(["--help"]) == 0
     assert "--lang LANGUAGE" in capsys.readouterr().out
 
 
-def test_help_is_in_the_readers_language(capsys: pytest.CaptureFixture[str]) -> None:
+def test_help_and_usage_errors_are_translated(capsys: pytest.CaptureFixture[str]) -> None:
     assert main(["topic", "--lang", "zh", "--help"]) == 0
     output = capsys.readouterr().out
     assert "列出、打印、发布和测量话题" in output

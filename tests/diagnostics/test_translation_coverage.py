@@ -36,7 +36,7 @@ def words(request: pytest.FixtureRequest) -> Recording:
 
 
 class Recording:
-    """A catalogue that records the templates without a translation."""
+    """A catalog that records the templates without a translation."""
 
     def __init__(self, translations: NullTranslations) -> None:
         self._translations = translations
@@ -61,20 +61,20 @@ class Recording:
 @pytest.fixture(scope="module")
 def source() -> Any:
     """Return the messages of all modules of the program."""
-    return load_tool("catalogues").Source()
+    return load_tool("catalogs").Source()
 
 
 @pytest.mark.slow  # reads all of the source, which is the same with each Python
-def test_the_catalogues_say_what_the_source_says(source: Any) -> None:
-    tool = load_tool("catalogues")
+def test_catalogs_match_source(source: Any) -> None:
+    tool = load_tool("catalogs")
     assert len(source.templates) > 1000
     for path in sorted(tool.FOLDER.glob("*.po")):
-        catalogue = tool.read(path)
-        assert list(tool.problems_of(catalogue, source)) == []
-        assert tool.as_text(tool.updated(catalogue, source)) == path.read_text(encoding="utf-8")
+        catalog = tool.read(path)
+        assert list(tool.problems_of(catalog, source)) == []
+        assert tool.as_text(tool.updated(catalog, source)) == path.read_text(encoding="utf-8")
 
 
-def test_what_is_wrong_with_a_catalogue_is_told(tmp_path: Path) -> None:
+def test_catalog_problems_are_reported(tmp_path: Path) -> None:
     room = tmp_path / "package" / "urdf"
     room.mkdir(parents=True)
     (room / "reader.py").write_text(
@@ -91,15 +91,15 @@ def test_what_is_wrong_with_a_catalogue_is_told(tmp_path: Path) -> None:
         'msgid "an old one"\nmsgstr "旧的"\n',
         encoding="utf-8",
     )
-    tool = load_tool("catalogues")
+    tool = load_tool("catalogs")
     source = tool.Source(tmp_path / "package")
     assert list(tool.problems_of(tool.read(tmp_path / "zh.po"), source)) == [
         "urdf/reader.py:3: the placeholders of '{a} is {b}' are not its arguments",
         "urdf/reader.py:4: the template is no literal",
         "the translation of ''{tag}' is odd' has other placeholders",
         "nothing says 'an old one'",
-        "urdf/reader.py:2: 'a new one' is not in the catalogue",
-        "urdf/reader.py:3: '{a} is {b}' is not in the catalogue",
+        "urdf/reader.py:2: 'a new one' is not in the catalog",
+        "urdf/reader.py:3: '{a} is {b}' is not in the catalog",
     ]
     new = tool.updated(tool.read(tmp_path / "zh.po"), source)
     assert [message.id for message in new if message.id] == [
@@ -110,7 +110,7 @@ def test_what_is_wrong_with_a_catalogue_is_told(tmp_path: Path) -> None:
     assert tool.as_text(tool.updated(tool.read(tmp_path / "zh.po"), source)) == once
 
 
-def test_a_page_without_a_title_in_another_language_is_told(tmp_path: Path) -> None:
+def test_untranslated_page_title_is_reported(tmp_path: Path) -> None:
     rules, pages = tmp_path / "package" / "lint" / "rules", tmp_path / "package" / "lint" / "pages"
     rules.mkdir(parents=True)
     pages.mkdir()
@@ -126,12 +126,12 @@ def test_a_page_without_a_title_in_another_language_is_told(tmp_path: Path) -> N
         'msgctxt "rule"\nmsgid "A robot that is gone"\nmsgstr "没有了的机器人"\n',
         encoding="utf-8",
     )
-    tool = load_tool("catalogues")
+    tool = load_tool("catalogs")
     source = tool.Source(tmp_path / "package")
     assert list(tool.problems_of(tool.read(tmp_path / "zh.po"), source)) == [
         "no page has the title 'A robot that is gone'",
-        "lint/rules/own.py:1: the title 'A robot that is odd' is not in the catalogue",
-        "lint/pages/own.md: the title 'a thing is odd' is not in the catalogue",
+        "lint/rules/own.py:1: the title 'A robot that is odd' is not in the catalog",
+        "lint/pages/own.md: the title 'a thing is odd' is not in the catalog",
     ]
     new = tool.updated(tool.read(tmp_path / "zh.po"), source)
     assert [(message.context, message.id, message.string) for message in new if message.id] == [
@@ -142,13 +142,15 @@ def test_a_page_without_a_title_in_another_language_is_told(tmp_path: Path) -> N
     assert "'A robot that is odd' is not translated" in list(tool.problems_of(new, source))
 
 
-def test_the_titles_of_all_pages_are_those_that_the_check_looks_for(source: Any) -> None:
+def test_checked_titles_match_rule_pages(source: Any) -> None:
     pages = [find_page(code) for code in known_codes()]
     assert {str(page.title) for page in pages if page} == set(source.titles)
 
 
 @pytest.mark.parametrize("page", sorted((TESTS / "xacro" / "errors").glob("*.md")), ids=lambda page: page.stem)
-def test_mistakes_in_xacro(page: Path, words: Recording, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_xacro_errors_are_translated(
+    page: Path, words: Recording, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
     monkeypatch.delenv("LINKWRIGHT_UNSET", raising=False)
     for number, case in enumerate(read_cases(page)):
         folder = tmp_path / str(number)
@@ -162,7 +164,7 @@ def test_mistakes_in_xacro(page: Path, words: Recording, tmp_path: Path, monkeyp
         assert_translated(found, words)
 
 
-def test_mistakes_in_urdf(words: Recording) -> None:
+def test_urdf_errors_are_translated(words: Recording) -> None:
     mistakes = _MISTAKE.findall((TESTS / "urdf" / "mistakes.md").read_text(encoding="utf-8"))
     assert len(mistakes) > 80
     for text in mistakes:
@@ -170,7 +172,7 @@ def test_mistakes_in_urdf(words: Recording) -> None:
         assert_translated((*forbidden, *read(document).diagnostics), words)
 
 
-def test_findings_of_the_rules(words: Recording, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_rule_findings_are_translated(words: Recording, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     for number, case in enumerate(load_cases()):
         folder = tmp_path / str(number)
         for name, text in case.files.items():
@@ -181,7 +183,7 @@ def test_findings_of_the_rules(words: Recording, tmp_path: Path, monkeypatch: py
         assert_translated(examine(folder / next(iter(case.files)), settings=settings).diagnostics, words)
 
 
-def test_the_meaning_of_every_element_and_attribute(words: Recording) -> None:
+def test_schema_meanings_and_units_are_translated(words: Recording) -> None:
     def visit(rule: schema.ElementRule) -> None:
         term(rule.meaning).translated_text(words)
         for attribute in rule.attributes:

@@ -15,7 +15,7 @@ from tests.places import REPOSITORY
 PAGE = REPOSITORY / "docs" / "api.md"
 
 
-def test_the_examples_run_in_order(tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys) -> None:
+def test_api_examples_run_in_order(tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys) -> None:
     monkeypatch.chdir(tmp_path)
     with BagWriter(tmp_path / "drive.mcap", single_file=True) as writer:
         writer.add_topic("/chatter", "std_msgs/msg/String")

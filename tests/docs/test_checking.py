@@ -20,7 +20,7 @@ def block(page, title):
 
 
 @pytest.mark.parametrize("page", PAGES, ids=lambda page: page.parent.name)
-def test_the_settings_shown_are_good(page, tmp_path):
+def test_shown_settings_are_valid(page, tmp_path):
     file = tmp_path / "linkwright.toml"
     file.write_text(block(page, "linkwright.toml"), encoding="utf-8")
     settings, found = read_settings(file)
@@ -30,7 +30,7 @@ def test_the_settings_shown_are_good(page, tmp_path):
 
 
 @pytest.mark.parametrize("page", PAGES, ids=lambda page: page.parent.name)
-def test_the_suppressions_shown_suppress_and_each_is_needed(page, tmp_path, capsys):
+def test_shown_suppressions_work_and_are_needed(page, tmp_path, capsys):
     file = tmp_path / "robot.urdf"
     text = block(page, "robot.urdf")
     file.write_text(text, encoding="utf-8")
@@ -45,7 +45,7 @@ def test_the_suppressions_shown_suppress_and_each_is_needed(page, tmp_path, caps
     assert capsys.readouterr().out.count("LW221") == 2
 
 
-def test_the_json_shown_has_the_form_that_is_written():
+def test_shown_json_has_current_fields():
     shown = json.loads(next(block.text for block in blocks(PAGES[0]) if block.language == "json"))
     written = to_data(Diagnostic("LW221", "m", SourceText("f", "x").span(0, 1), hint="h"))
     assert list(shown["diagnostics"][0]) == list(written)

@@ -8,12 +8,12 @@ import sys
 from tests.docs.pages import DOCS
 
 
-def test_the_pages_are_current():
+def test_compatibility_pages_are_current():
     tool = DOCS.parent / "tools" / "compatibility.py"
     subprocess.run([sys.executable, tool, "--check"], check=True, timeout=60)
 
 
-def test_names_that_came_later_are_told_from_humbles():
+def test_names_added_after_humble_are_listed_separately():
     page = (DOCS / "compatibility.md").read_text()
     section = page.partition("### launch.actions\n")[2].partition("###")[0]
     assert "`ExecuteProcess`" in section.partition("- Since")[0]

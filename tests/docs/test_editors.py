@@ -31,7 +31,7 @@ def globs(text: str) -> set[str]:
 
 
 @pytest.mark.parametrize("title", ["init.lua", ".vimrc", "init.el", "settings.json", "linkwright.json"])
-def test_the_lines_start_the_server(title):
+def test_editor_settings_start_language_server(title):
     text = SHOWN[title]
     assert re.search(r'"linkwright", "lsp"|"linkwright" "lsp"|\'command\': \'%e lsp\'', text)
 
@@ -41,7 +41,7 @@ def test_neovim_attaches_to_all_files():
     assert globs(patterns) == ALL
 
 
-def test_vim_gives_each_kind_of_file_to_the_server():
+def test_vim_assigns_file_types_to_server():
     lines = re.findall(r"BufNewFile (\S+) set filetype=(\S+)", SHOWN[".vimrc"])
     assert {kind: tuple(patterns.split(",")) for patterns, kind in lines} == {
         {"interface": "ros"}.get(kind, f"{kind}.ros"): patterns for kind, patterns in PATTERNS.items()
@@ -49,7 +49,7 @@ def test_vim_gives_each_kind_of_file_to_the_server():
     assert "Define('ros'" in SHOWN[".vimrc"]
 
 
-def test_emacs_opens_what_is_neither_python_nor_cmake():
+def test_emacs_assigns_modes_to_xml_yaml_and_interface_files():
     text = SHOWN["init.el"]
     expressions = [
         re.compile(
@@ -66,7 +66,7 @@ def test_emacs_opens_what_is_neither_python_nor_cmake():
             assert any(each.search(example(pattern)) for each in expressions), pattern
 
 
-def test_helix_names_the_files_of_its_own_languages():
+def test_helix_lists_files_of_its_own_languages():
     assert globs(SHOWN["languages.toml"]) == {*PATTERNS["xml"], *PATTERNS["interface"], "*.rviz"}
     if sys.version_info >= (3, 11):
         import tomllib
@@ -75,11 +75,11 @@ def test_helix_names_the_files_of_its_own_languages():
 
 
 @pytest.mark.parametrize("title", ["settings.json", "linkwright.json"])
-def test_settings_in_json_can_be_read(title):
+def test_json_settings_are_valid(title):
     assert json.loads(SHOWN[title])
 
 
-def test_the_extension_sends_all_files():
+def test_vscode_extension_sends_all_files():
     source = (EXTENSION / "src" / "server" / "documents.ts").read_text(encoding="utf-8")
     lists = re.search(r"DESCRIPTIONS =([^;]*);.*?OF_PACKAGES =([^;]*);", source, re.DOTALL)
     assert lists is not None
@@ -87,7 +87,7 @@ def test_the_extension_sends_all_files():
     assert named == {pattern.removeprefix("*/") for pattern in ALL}
 
 
-def test_the_patterns_are_those_of_the_formats():
+def test_patterns_match_supported_formats():
     for ending in XML_FILES:
         assert any(fnmatch.fnmatch(f"a{ending}", pattern) or ending == pattern for pattern in PATTERNS["xml"]), ending
     for pattern in (*PATTERNS["yaml"], *PATTERNS["interface"], "package.xml", "*.srdf", "*launch.py", "*/launch/*.py"):

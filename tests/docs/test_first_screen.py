@@ -26,7 +26,7 @@ def first_screen(readme: Path) -> list[str]:
     return [re.sub(r"\s+#.*", "", line) for line in blocks(readme)[0].text.splitlines()]
 
 
-def test_both_readmes_begin_with_the_same_commands() -> None:
+def test_both_readmes_begin_with_same_commands() -> None:
     english, chinese = map(first_screen, READMES)
     assert english == chinese
 
@@ -83,7 +83,7 @@ def newcomer(tmp_path: Path) -> dict[str, str]:
 
 @pytest.mark.slow
 @pytest.mark.skipif(os.name == "nt" or shutil.which("bash") is None, reason="the block is for a shell of Unix")
-def test_the_first_screen_of_the_readme_can_be_typed(checkout: Path, newcomer: dict[str, str]) -> None:
+def test_first_readme_commands_run_in_fresh_checkout(checkout: Path, newcomer: dict[str, str]) -> None:
     typed = "\n".join(first_screen(READMES[0]))
     with subprocess.Popen(
         ["bash", "-e", "-c", typed],

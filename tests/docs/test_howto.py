@@ -16,7 +16,7 @@ PUBLISH = 'linkwright topic pub -r 10 /cmd_vel geometry_msgs/msg/Twist "{linear:
 
 
 @pytest.mark.parametrize("page", sorted(DOCS.glob("howto-*.md")), ids=lambda page: page.stem)
-def test_the_languages_show_the_same_files(page: Path) -> None:
+def test_both_languages_show_same_files(page: Path) -> None:
     english, chinese = (
         [(each.title, each.text) for each in blocks(p) if each.title] for p in (page, DOCS / "zh" / page.name)
     )
@@ -24,7 +24,7 @@ def test_the_languages_show_the_same_files(page: Path) -> None:
 
 
 @pytest.mark.slow
-def test_a_urdf_without_masses_is_driven_and_put_into_a_world(follow: Callable[..., Path]) -> None:
+def test_drive_and_world_guides_complete_urdf_without_masses(follow: Callable[..., Path]) -> None:
     follow(DOCS / "howto-drive.md", {PUBLISH: Known(shows="publishing #1")})
     home = follow(DOCS / "howto-world.md", {})
     cart = (home / "cart.urdf").read_text(encoding="utf-8")
@@ -34,7 +34,7 @@ def test_a_urdf_without_masses_is_driven_and_put_into_a_world(follow: Callable[.
 
 
 @pytest.mark.slow
-def test_a_finding_fails_the_check_and_is_mended(follow: Callable[..., Path]) -> None:
+def test_ci_guide_fails_on_finding_and_fixes_it(follow: Callable[..., Path]) -> None:
     home = follow(
         DOCS / "howto-ci.md",
         {
@@ -49,7 +49,7 @@ def test_a_finding_fails_the_check_and_is_mended(follow: Callable[..., Path]) ->
 
 
 @pytest.mark.slow
-def test_a_change_is_reviewed_before_it_is_merged(follow: Callable[..., Path]) -> None:
+def test_review_guide_shows_changes_before_merge(follow: Callable[..., Path]) -> None:
     home = follow(
         DOCS / "howto-review.md",
         {
@@ -62,7 +62,7 @@ def test_a_change_is_reviewed_before_it_is_merged(follow: Callable[..., Path]) -
     assert "URDF190" in (home / "robots" / "known-findings.json").read_text(encoding="utf-8")
 
 
-def test_the_workflow_and_the_hook_run_what_the_page_shows() -> None:
+def test_ci_workflow_and_hook_run_shown_commands() -> None:
     files = {
         block.title: yaml.safe_load(block.text)
         for block in blocks(DOCS / "howto-ci.md")

@@ -43,15 +43,15 @@ def install_commands() -> list[tuple[Path, str]]:
     ]
 
 
-def test_pages_tell_how_to_install() -> None:
+def test_readmes_show_install_commands() -> None:
     assert {"README.md", "README.zh-CN.md"} <= {path.name for path, _ in install_commands()}
 
 
-def test_messages_leave_the_command_to_what_knows_how_linkwright_was_installed() -> None:
+def test_source_and_frontend_contain_no_install_commands() -> None:
     assert [each for each in install_commands() if each[0].parts[0] in ("frontend", "robots", "src")] == []
 
 
-def test_each_command_is_that_of_a_checkout(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
+def test_install_commands_match_a_checkout(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
     monkeypatch.chdir(tmp_path)
     for path, what in install_commands():
         if what not in OTHERS:
@@ -70,7 +70,7 @@ def test_each_command_is_that_of_a_checkout(monkeypatch: pytest.MonkeyPatch, tmp
         ("docs/decisions/0022-a-small-base.md", r"has them all, but for ((?:`\w+`(?:, | and )?)+)"),
     ],
 )
-def test_what_all_leaves_out_is_named(page: str, sentence: str) -> None:
+def test_extras_not_in_all_are_named(page: str, sentence: str) -> None:
     (names,) = re.findall(sentence, " ".join((REPOSITORY / page).read_text(encoding="utf-8").split()))
     assert set(re.findall(r"`(\w+)`", names)) == EXTRAS.keys() - TOGETHER
 

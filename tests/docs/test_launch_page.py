@@ -27,7 +27,7 @@ def written(page: Path, folder: Path) -> None:
 
 
 @pytest.mark.parametrize("language", PAGES)
-def test_the_three_launch_files_say_the_same(language: str, tmp_path: Path, capsys) -> None:
+def test_python_xml_and_yaml_launch_files_are_equivalent(language: str, tmp_path: Path, capsys) -> None:
     written(PAGES[language], tmp_path)
     messages = []
     for ending in ("py", "xml", "yaml"):
@@ -40,14 +40,14 @@ def test_the_three_launch_files_say_the_same(language: str, tmp_path: Path, caps
     assert "ExecInPkg(pkg='my_nodes', exec='robot')" in messages[0]
 
 
-def test_the_composed_launch_file_loads(tmp_path: Path, capsys) -> None:
+def test_composed_launch_file_loads(tmp_path: Path, capsys) -> None:
     written(PAGES["en"], tmp_path)
     assert main(["launch", str(tmp_path / "composed.launch.py"), "--print"]) == 0
     assert "ComposableNodeContainer" in capsys.readouterr().out
 
 
 @pytest.mark.parametrize("language", PAGES)
-def test_the_error_shown_is_the_one_printed(language: str) -> None:
+def test_shown_error_matches_output(language: str) -> None:
     page = PAGES[language]
     words = next(shlex.split(line) for line in commands(page) if "bringup" in line)
     printed = TOOL.output_of(words[1:], [(file.title, file.text) for file in files(page)], language)

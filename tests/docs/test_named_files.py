@@ -74,13 +74,13 @@ def exists(word: str) -> bool:
 
 
 @pytest.mark.parametrize("page", PAGES, ids=lambda page: str(page.relative_to(REPOSITORY)))
-def test_what_is_named_exists(page: Path) -> None:
+def test_named_files_and_modules_exist(page: Path) -> None:
     words = list(named(page))
     assert words
     assert [word for word in words if not exists(word)] == []
 
 
 @pytest.mark.parametrize("page", [DOCS / "architecture.md"], ids=lambda page: page.name)
-def test_each_room_is_described(page: Path) -> None:
+def test_top_level_packages_are_described(page: Path) -> None:
     rooms = {path.parent.name for path in (REPOSITORY / "src" / "linkwright").glob("*/__init__.py")}
     assert rooms - set(re.findall(r"^\| `(\w+)` \|", page.read_text(encoding="utf-8"), re.MULTILINE)) == set()

@@ -34,7 +34,7 @@ def sources(tmp_path_factory: pytest.TempPathFactory) -> Path:
     return folder
 
 
-def test_the_tests_of_the_page_pass(sources: Path) -> None:
+def test_tests_of_page_pass(sources: Path) -> None:
     environment = process.environment({**os.environ, "LINKWRIGHT_DDS": "0"})
     result = subprocess.run(
         [sys.executable, "-m", "pytest", "-q", "-p", "no:cacheprovider", "-p", "no:asyncio", "test/test_robot.py"],
@@ -49,7 +49,7 @@ def test_the_tests_of_the_page_pass(sources: Path) -> None:
     assert "3 passed" in result.stdout
 
 
-def test_the_interfaces_need_no_build(sources: Path, monkeypatch: pytest.MonkeyPatch, capsys) -> None:
+def test_interfaces_work_without_build(sources: Path, monkeypatch: pytest.MonkeyPatch, capsys) -> None:
     monkeypatch.chdir(sources)
     assert main(["interface", "package", "my_interfaces"]) == 0
     listed = "my_interfaces/action/Drive\nmy_interfaces/msg/Battery\nmy_interfaces/srv/SetSpeed\n"
@@ -59,7 +59,7 @@ def test_the_interfaces_need_no_build(sources: Path, monkeypatch: pytest.MonkeyP
 
 
 @pytest.mark.parametrize("page", [DOCS / "graph.md", DOCS / "zh" / "graph.md"], ids=["en", "zh"])
-def test_the_page_about_the_graph_shows_the_same_interface(sources: Path, page: Path, monkeypatch, capsys) -> None:
+def test_graph_page_shows_same_interface(sources: Path, page: Path, monkeypatch, capsys) -> None:
     monkeypatch.chdir(sources)
     assert main(["interface", "show", "my_interfaces/msg/Battery"]) == 0
     assert capsys.readouterr().out in page.read_text(encoding="utf-8")

@@ -12,7 +12,7 @@ import pytest
 from linkwright.loading import extensions
 from linkwright.messages import get_message
 from linkwright.rviz import RvizConfig
-from linkwright.rviz.displays import catalogue
+from linkwright.rviz.displays import catalog
 from tests.docs.pages import DOCS, blocks
 from tests.toml_files import read_toml
 from tests.viewer.contents import shown_markers
@@ -51,12 +51,12 @@ def street(request, tmp_path, monkeypatch):
     monkeypatch.syspath_prepend(str(tmp_path / "street_displays"))
     monkeypatch.chdir(tmp_path)
     extensions._all_groups.cache_clear()
-    catalogue._display_class.cache_clear()
+    catalog._display_class.cache_clear()
     yield
     monkeypatch.undo()
     sys.modules.pop("street_displays", None)
     extensions._all_groups.cache_clear()
-    catalogue._display_class.cache_clear()
+    catalog._display_class.cache_clear()
 
 
 def car(number: int, x: float, *, label: str = "car", speed: float = 3.0, path: int = 0) -> Any:
@@ -73,17 +73,17 @@ def seen(*objects: Any) -> Any:
     return made
 
 
-def test_the_pages_have_the_same_example():
+def test_both_languages_have_same_example():
     first, second = map(files, PAGES)
     assert first == second
 
 
-def test_the_display_is_as_short_as_is_said_of_it():
+def test_example_display_has_at_most_60_lines():
     lines = files(PAGES[0])["street_displays/street_displays.py"].splitlines()
     assert len([line for line in lines if line.strip()]) <= 60
 
 
-async def test_what_is_seen_is_drawn_and_what_is_gone_goes(street):
+async def test_example_display_draws_and_removes_tracked_objects(street):
     async with world(RvizConfig.parse(CONFIG)) as w, page(w.viewer) as client:
         await client.opened()
         await client.send("ask_display_choices")
@@ -127,7 +127,7 @@ async def test_what_is_seen_is_drawn_and_what_is_gone_goes(street):
         display.set_property(("Show Names",), True)
 
 
-async def test_a_file_with_it_is_saved_as_it_was(street):
+async def test_configuration_with_example_display_is_saved_unchanged(street):
     async with world(RvizConfig.parse(CONFIG)) as w:
         assert w.viewer.displays[0].SUPPORTED
         assert w.viewer.config.text() == CONFIG

@@ -46,16 +46,16 @@ def _forget() -> None:
     registry._load.cache_clear()
 
 
-def test_the_pages_have_the_same_example():
+def test_both_languages_have_same_example():
     first, second = ({block.title: block.text for block in blocks(page) if block.title} for page in PAGES)
     assert first == second
 
 
-def test_the_test_shown_passes(wind):
+def test_shown_test_passes(wind):
     runpy.run_path(str(wind / "test_my_wind.py"))["test_the_wind_moves_the_buoy"]()
 
 
-def test_the_wind_is_changed_by_its_topic_and_returns_with_the_time(wind):
+def test_wind_follows_topic_and_is_restored_on_reset(wind):
     from linkwright.testing import SteppedSimulation
 
     with SteppedSimulation("empty", "buoy.sdf") as test:

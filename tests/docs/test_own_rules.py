@@ -43,7 +43,7 @@ def _forget() -> None:
         cached.cache_clear()
 
 
-def test_the_tests_shown_pass(team, tmp_path):
+def test_shown_tests_pass(team, tmp_path):
     shown = runpy.run_path(str(team / "test_team_rules.py"))
     tests = [value for name, value in shown.items() if name.startswith("test_")]
     assert len(tests) == 2
@@ -52,7 +52,7 @@ def test_the_tests_shown_pass(team, tmp_path):
         test(tmp_path / str(number))
 
 
-def test_the_finding_is_the_one_shown_and_outside_a_package_there_is_none(team, tmp_path):
+def test_shown_finding_is_reported_only_in_package(team, tmp_path):
     assert [each for each in check('<robot name="crane"><link name="hook"/></robot>') if each.code == "TEAM001"] == []
     package = tmp_path / "crane_description"
     package.mkdir()
@@ -64,5 +64,5 @@ def test_the_finding_is_the_one_shown_and_outside_a_package_there_is_none(team, 
     assert found.hint in text
 
 
-def test_its_page_is_its_docstring(team):
+def test_docstring_is_rule_page(team):
     assert "Two descriptions with the same link names" in str(find_page("link-without-prefix"))

@@ -11,10 +11,10 @@ README = REPOSITORY / "frontend" / "README.md"
 SHOWN = [block for block in blocks(README) if block.title]
 
 
-def test_there_is_a_display_to_learn_from() -> None:
+def test_readme_shows_four_code_blocks() -> None:
     assert len(SHOWN) == 4
 
 
 @pytest.mark.parametrize("block", SHOWN, ids=lambda block: block.title)
-def test_the_code_shown_is_the_code_there_is(block: Block) -> None:
+def test_shown_code_is_in_source(block: Block) -> None:
     assert block.text.strip() in (REPOSITORY / block.title).read_text(encoding="utf-8")

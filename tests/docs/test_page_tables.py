@@ -18,11 +18,11 @@ def tool():
     return load_tool("page_tables")
 
 
-def test_the_pages_are_current(tool) -> None:
+def test_tables_are_current(tool) -> None:
     assert tool.main(["--check"]) == 0, "run tools/page_tables.py"
 
 
-def test_a_stale_table_is_found_and_mended(tool, tmp_path, monkeypatch) -> None:
+def test_stale_table_is_found_and_fixed(tool, tmp_path, monkeypatch) -> None:
     page = tmp_path / "index.md"
     page.write_text("before\n<!-- table: extras -->\nold\n<!-- end of table -->\nafter\n", encoding="utf-8")
     monkeypatch.setattr(tool, "PAGES", (page,))
@@ -36,12 +36,12 @@ def test_a_stale_table_is_found_and_mended(tool, tmp_path, monkeypatch) -> None:
 
 
 @pytest.mark.parametrize("folder", ["", "zh"])
-def test_the_index_lists_each_command(folder) -> None:
+def test_index_lists_all_commands(folder) -> None:
     page = (DOCS / folder / "index.md").read_text(encoding="utf-8")
     assert re.findall(r"^\| \[`linkwright (\w+)`\]", page, re.MULTILINE) == list(help_texts())
 
 
-def test_each_extra_has_a_purpose_and_packages(tool) -> None:
+def test_extras_have_purpose_and_packages(tool) -> None:
     assert set(tool.EXTRAS) == set(EXTRAS)
     table = tool.extras(chinese=False)
     assert {
@@ -51,18 +51,18 @@ def test_each_extra_has_a_purpose_and_packages(tool) -> None:
         assert any(required.name == extra.main for required in tool._required(name)), name
 
 
-def test_where_there_is_no_wheel_of_dds_the_table_has_a_dash(tool) -> None:
+def test_systems_table_marks_missing_dds_wheels(tool) -> None:
     rows = dict(line.strip("| ").split(" | ", 1) for line in tool.systems(chinese=False).splitlines())
     assert rows["`dds`"] == "3.10–3.13 | – | 3.10–3.13 | – | 3.10–3.13"
     assert "`zenoh`" not in rows
 
 
-def test_each_robot_of_the_gallery_has_a_title_and_an_image(tool) -> None:
+def test_gallery_robots_have_title_and_image(tool) -> None:
     folder = DOCS / "gallery"
     assert {path.stem for path in folder.glob("*.xacro")} == {*tool.ROBOTS, "parts"}
     assert {path.stem for path in folder.glob("*.webp")} == set(tool.ROBOTS)
 
 
-def test_nothing_is_found_in_the_robots_of_the_gallery(capsys) -> None:
+def test_gallery_robots_have_no_findings(capsys) -> None:
     assert main(["check", "--strict", str(DOCS / "gallery")]) == 0
     assert "0 errors, 0 warnings" in "".join(capsys.readouterr())

@@ -32,13 +32,13 @@ def leaves(parser: argparse.ArgumentParser) -> Iterator[argparse.ArgumentParser]
             yield from leaves(subparser)
 
 
-def test_the_command_reference_is_current() -> None:
+def test_command_reference_is_current() -> None:
     tool = load_tool("command_reference")
     assert (DOCS / "commands.md").read_text(encoding="utf-8") == tool.generate(), "run tools/command_reference.py"
     assert tool.TABLE.read_text(encoding="utf-8") == tool.completion_table(), "run tools/command_reference.py"
 
 
-def test_the_check_finds_a_stale_reference(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_stale_command_reference_is_found_and_fixed(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     tool = load_tool("command_reference")
     monkeypatch.setattr(tool, "TARGET", tmp_path / "commands.md")
     assert tool.main(["--check"]) == 1
@@ -48,7 +48,7 @@ def test_the_check_finds_a_stale_reference(tmp_path: Path, monkeypatch: pytest.M
 
 @pytest.mark.parametrize("page", [DOCS / "commands.md", DOCS / "zh" / "commands.md"], ids=identifier)
 @pytest.mark.parametrize("verb", help_texts())
-def test_every_option_is_documented(page: Path, verb: str) -> None:
+def test_all_options_are_documented(page: Path, verb: str) -> None:
     sections = dict(re.findall(r"^## (.+?)\n(.*?)(?=^## |\Z)", page.read_text("utf-8"), re.MULTILINE | re.DOTALL))
     for parser in leaves(parser_for(verb)):
         section = sections[parser.prog]
@@ -59,7 +59,7 @@ def test_every_option_is_documented(page: Path, verb: str) -> None:
 
 
 @pytest.mark.parametrize("page", pages(), ids=identifier)
-def test_commands_in_the_pages_are_accepted(page: Path) -> None:
+def test_documented_commands_are_accepted(page: Path) -> None:
     for line in commands(page):
         words = shlex.split(line)
         assert words[1] in help_texts(), line
@@ -67,25 +67,25 @@ def test_commands_in_the_pages_are_accepted(page: Path) -> None:
 
 
 @pytest.mark.parametrize("page", pages(), ids=identifier)
-def test_links_lead_somewhere(page: Path) -> None:
+def test_links_have_existing_targets(page: Path) -> None:
     for target in re.findall(r"\]\(([^)#\s]+)", page.read_text(encoding="utf-8")):
         if not target.startswith("https://"):
             assert (page.parent / target).exists(), target
 
 
 @pytest.mark.parametrize("name", ENGLISH)
-def test_every_page_has_a_chinese_sister_with_the_same_blocks(name: str) -> None:
+def test_pages_have_chinese_translation_with_same_blocks(name: str) -> None:
     ours, theirs = blocks(DOCS / name), blocks(DOCS / "zh" / name)
     if name != "commands.md":
         assert list(map(_written, theirs)) == list(map(_written, ours))
 
 
-def test_the_readmes_show_the_same_commands() -> None:
+def test_readmes_show_same_commands() -> None:
     assert commands(READMES[0]) == commands(READMES[1])
 
 
 @pytest.mark.parametrize("page", pages(), ids=identifier)
-def test_programs_of_a_page_are_run_where_rclpy_is_found(page: Path) -> None:
+def test_ros_programs_are_not_run_with_plain_python(page: Path) -> None:
     shown = blocks(page)
     nodes = {block.title for block in shown if "import rclpy" in block.text or "nav2_simple_commander" in block.text}
     lines = {line.strip() for block in shown if block.language == "bash" for line in block.text.splitlines()}

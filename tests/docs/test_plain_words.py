@@ -21,7 +21,7 @@ def rows(text: str) -> list[list[str]]:
     return [row for row in found if len(row) == 4 and not set(row[0]) <= set("- ")]
 
 
-def test_each_word_that_the_glossary_rules_out_is_refused():
+def test_words_ruled_out_by_glossary_are_refused():
     ruled_out = [
         word
         for *_, words in rows(GLOSSARY.read_text(encoding="utf-8"))
@@ -35,7 +35,7 @@ def test_each_word_that_the_glossary_rules_out_is_refused():
     ] == []
 
 
-def test_both_glossaries_have_the_same_words():
+def test_both_glossaries_list_same_words():
     chinese = rows((DOCS / "zh" / "glossary.md").read_text(encoding="utf-8"))
     english = [row[0] for row in rows(GLOSSARY.read_text(encoding="utf-8")) if row[0] != "word"]
     assert [row[1] for row in chinese if row[1] != "英文"] == [
@@ -54,7 +54,7 @@ def test_both_glossaries_have_the_same_words():
         ("a.ts", "const title = `${name} is no robot`;\n", 1, ["is no "]),
     ],
 )
-def test_refused_words_are_found_with_their_line(tmp_path, capsys, monkeypatch, name, text, line, words):
+def test_refused_words_are_reported_with_line(tmp_path, capsys, monkeypatch, name, text, line, words):
     monkeypatch.setattr(TOOL, "ROOT", tmp_path)
     (tmp_path / name).write_text(text, encoding="utf-8")
     assert TOOL.main([str(tmp_path)]) == 1
@@ -70,7 +70,7 @@ def test_plain_sentences_pass(tmp_path, capsys, monkeypatch):
     assert capsys.readouterr().out == ""
 
 
-def test_an_exception_covers_its_own_words_and_is_refused_when_nothing_needs_it(tmp_path, capsys, monkeypatch):
+def test_accepted_words_pass_and_unused_exception_is_reported(tmp_path, capsys, monkeypatch):
     source = tmp_path / "src"
     source.mkdir()
     (source / "a.py").write_text('raise ValueError("this is no node")\n', encoding="utf-8")

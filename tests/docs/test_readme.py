@@ -23,7 +23,7 @@ PICTURE = REPOSITORY / "docs" / "images" / "mbot.webp"
 
 
 @pytest.mark.parametrize("page", READMES, ids=lambda page: page.name)
-def test_badges_say_what_the_project_says(page):
+def test_badges_match_project_metadata(page):
     labels = re.findall(r"^\[!\[([^\]]+)\]", page.read_text(encoding="utf-8"), re.MULTILINE)
     oldest = PROJECT["requires-python"].removeprefix(">=")
     status = next(line.split(" - ")[1] for line in PROJECT["classifiers"] if line.startswith("Development Status"))
@@ -38,7 +38,7 @@ def test_badges_say_what_the_project_says(page):
     ("page", "language"),
     [(READMES[0], "en"), (READMES[1], "zh"), (DOCS / "index.md", "en"), (DOCS / "zh" / "index.md", "zh")],
 )
-def test_one_sentence_says_what_linkwright_is(page, language):
+def test_summary_matches_project_description(page, language):
     set_language(language)
     try:
         assert f"\n**{translate_help(SUMMARY_HELP)}**\n" in page.read_text(encoding="utf-8")
@@ -47,7 +47,7 @@ def test_one_sentence_says_what_linkwright_is(page, language):
     assert PROJECT["description"] == SUMMARY_HELP
 
 
-def test_the_picture_moves_for_ten_seconds_and_is_small():
+def test_animation_lasts_ten_seconds_and_is_small():
     assert PICTURE.stat().st_size < 2_000_000
     with Image.open(PICTURE) as image:
         durations = []
@@ -59,14 +59,14 @@ def test_the_picture_moves_for_ten_seconds_and_is_small():
     assert 8_000 <= sum(durations) <= 12_000
 
 
-def test_the_readme_of_a_package_has_no_links_into_the_repository():
+def test_package_readme_has_no_relative_links():
     text = load_tool("package_readme").package_readme()
     prose = re.sub(r"^```.*?^```$", "", text, flags=re.MULTILINE | re.DOTALL)
     assert [target for target in re.findall(r"\]\(([^)]*)\)", prose) if not target.startswith("https://")] == []
     assert "build mbot from an empty folder: its description," in " ".join(prose.replace("*", "").split())
 
 
-def test_the_readme_of_a_package_installs_from_an_index():
+def test_package_readme_installs_from_index():
     commands = re.findall(r"\b(?:pip|pipx|uv tool) install [^\n`]+", load_tool("package_readme").package_readme())
     assert sorted(set(commands)) == [
         "pip install 'linkwright[all]'",
@@ -107,7 +107,7 @@ def installed(folder, linkwright):
     return [f"BIN={folder / 'bin'}", "VENV=.", "-o", "./.ready", f"PYTHON={sys.executable}"]
 
 
-def test_make_says_in_a_line_that_python_does_not_fit(tmp_path):
+def test_make_reports_unsupported_python_in_one_line(tmp_path):
     old = script(tmp_path / "old", 'echo "is 3.8"')
     done = make_demo(tmp_path, f"PYTHON={old}")
     assert done.returncode == 2
@@ -116,7 +116,7 @@ def test_make_says_in_a_line_that_python_does_not_fit(tmp_path):
     assert f"Linkwright needs Python 3.10 or newer, and {old} is 3.8" in line
 
 
-def test_make_demo_ends_on_interrupt_without_an_error_of_makes(tmp_path):
+def test_make_demo_interrupt_prints_no_make_error(tmp_path):
     """Ctrl-C reaches make, its shell and the program."""
     program = "trap 'echo ended; exit 130' INT\nkill -INT 0\nwhile :; do sleep 0.1; done"
     done = make_demo(tmp_path, *installed(tmp_path, program))
@@ -124,7 +124,7 @@ def test_make_demo_ends_on_interrupt_without_an_error_of_makes(tmp_path):
     assert done.stderr == ""
 
 
-def test_make_demo_drives_mbot_with_laser_and_camera_in_the_playground(tmp_path):
+def test_make_demo_runs_playground_with_laser_and_camera(tmp_path):
     done = make_demo(tmp_path, *installed(tmp_path, "echo $@"), "ARGS=--no-open")
     command, *words = done.stdout.split()
     assert command == "sim"
@@ -134,5 +134,5 @@ def test_make_demo_drives_mbot_with_laser_and_camera_in_the_playground(tmp_path)
     assert asked.no_open
 
 
-def test_make_demo_reports_a_failure(tmp_path):
+def test_make_demo_reports_failure(tmp_path):
     assert make_demo(tmp_path, *installed(tmp_path, "exit 1")).returncode == 2

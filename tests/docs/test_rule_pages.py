@@ -10,18 +10,18 @@ from linkwright.lint.registry import all_rules
 from tests.repository_tools import load_tool
 
 
-def test_the_pages_are_current() -> None:
+def test_rule_pages_are_current() -> None:
     for path, text in load_tool("rule_reference").generate().items():
         assert path.read_text(encoding="utf-8") == text, "run tools/rule_reference.py"
 
 
-def test_every_rule_has_a_chinese_title_and_nothing_else_has() -> None:
+def test_rules_have_chinese_titles() -> None:
     titles = load_tool("rule_reference").chinese_titles()
     assert set(titles) == {rule.code for rule in all_rules()}
     assert all(titles.values())
 
 
-def test_every_rule_is_on_exactly_one_page() -> None:
+def test_rules_are_on_exactly_one_page() -> None:
     tool = load_tool("rule_reference")
     whole = "".join(tool.generate().values())
     for rule in all_rules():
@@ -29,7 +29,7 @@ def test_every_rule_is_on_exactly_one_page() -> None:
         assert all(f"`{option.name}` (default" in whole for option in rule.options)
 
 
-def test_the_check_finds_a_stale_page(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_stale_rule_page_is_found(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     tool = load_tool("rule_reference")
     monkeypatch.setattr(tool, "DOCS", tmp_path)
     monkeypatch.setattr(tool, "ROOT", tmp_path)

@@ -93,7 +93,7 @@ def languages(page: Path) -> dict[str, str]:
     return {language: os.path.relpath(page.parent / link, page.parent.parent) for link, language in links}
 
 
-def test_the_site_is_divided_by_what_readers_want() -> None:
+def test_navigation_has_tutorials_guides_reference_and_explanation() -> None:
     assert [title for item in SETTINGS["nav"] for title in item] == [
         "Home",
         "Tutorials",
@@ -103,17 +103,17 @@ def test_the_site_is_divided_by_what_readers_want() -> None:
     ]
 
 
-def test_each_english_page_is_listed_once() -> None:
+def test_english_pages_are_listed_once() -> None:
     listed = Counter(page for _, page in entries(SETTINGS["nav"]) if page)
     there = {path.relative_to(DOCS).as_posix() for path in DOCS.rglob("*.md") if "zh" not in path.parts}
     assert dict(listed) == dict.fromkeys((name for name in there if not name.startswith("decisions/0")), 1)
 
 
-def test_each_title_of_the_navigation_has_a_chinese_one() -> None:
+def test_navigation_titles_have_chinese_translation() -> None:
     assert {title for title, _ in entries(SETTINGS["nav"]) if title} == set(SETTINGS["extra"]["chinese"])
 
 
-def test_a_page_leads_to_its_sister_and_back(site: Path) -> None:
+def test_page_links_to_its_translation(site: Path) -> None:
     assert tabs(site / "more.html") == ["Home", "Tutorials", "Reference"]
     assert tabs(site / "zh" / "more.html") == ["首页", "教程", "参考"]
     assert languages(site / "zh" / "more.html") == {"en": "more.html", "zh": "zh/more.html"}
@@ -125,11 +125,11 @@ def test_a_page_leads_to_its_sister_and_back(site: Path) -> None:
     assert '<html lang="en"' in (site / "more.html").read_text(encoding="utf-8")
 
 
-def test_a_page_without_a_sister_leads_to_the_page_of_its_folder(site: Path) -> None:
+def test_page_without_translation_links_to_folder_page(site: Path) -> None:
     assert languages(site / "rules" / "one.html") == {"en": "rules/one.html", "zh": "zh/rules.html"}
 
 
-def test_each_language_has_a_search_of_its_own(site: Path) -> None:
+def test_search_index_is_separate_per_language(site: Path) -> None:
     english, chinese = (
         json.loads((site / folder / "search" / "search_index.json").read_text(encoding="utf-8"))
         for folder in ("", "zh")
@@ -160,13 +160,13 @@ def test_each_language_has_a_search_of_its_own(site: Path) -> None:
     ],
     ids=["anchor", "page", "page in Chinese", "page not listed"],
 )
-def test_what_leads_nowhere_fails_the_build(tmp_path: Path, changed: dict[str, str], reason: str) -> None:
+def test_broken_links_and_unlisted_pages_fail_build(tmp_path: Path, changed: dict[str, str], reason: str) -> None:
     _, done = build_small(tmp_path, **changed)
     assert done.returncode == 1
     assert reason in done.stderr
 
 
-def test_all_pages_can_be_built(tmp_path: Path) -> None:
+def test_full_site_builds(tmp_path: Path) -> None:
     done = build(REPOSITORY / "mkdocs.yml", tmp_path / "site")
     assert done.returncode == 0, done.stderr
     assert len(list((tmp_path / "site").rglob("*.html"))) > 100

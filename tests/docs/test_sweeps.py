@@ -12,7 +12,7 @@ from tests.places import REPOSITORY
 
 
 @pytest.mark.parametrize("page", ["docs/sweeps.md", "docs/zh/sweeps.md"])
-def test_it_runs_and_friction_decides_who_arrives(page, tmp_path):
+def test_sweep_scenario_runs_and_friction_decides_arrival(page, tmp_path):
     (block,) = (block for block in blocks(REPOSITORY / page) if block.title)
     path = tmp_path / block.title
     path.write_text(block.text, encoding="utf-8")

@@ -16,12 +16,12 @@ TOOL = load_tool("documented_output")
 
 @pytest.mark.skipif(sys.version_info < (3, 11), reason="Python 3.10 knows no columns in launch files")
 @pytest.mark.parametrize("page", TOOL.PAGES, ids=["en", "zh"])
-def test_output_is_current(page: Path) -> None:
+def test_shown_output_is_current(page: Path) -> None:
     text = page.read_text(encoding="utf-8")
     assert text == TOOL.refreshed(text, TOOL.language_of(page)), "run tools/documented_output.py"
 
 
-def test_both_languages_show_the_same_cases() -> None:
+def test_both_languages_show_same_cases() -> None:
     english, chinese = map(blocks, TOOL.PAGES)
     assert [block.language for block in english].count("text") >= 6
     for ours, theirs in zip(english, chinese, strict=True):
@@ -39,7 +39,7 @@ def without_words(output: str) -> list[str]:
     return [re.sub(r"^   = .*?( \(\S+\))?$", r"=\1", line) for line in lines]
 
 
-def test_a_stale_page_is_found_and_mended(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_stale_page_is_found_and_fixed(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     page = tmp_path / "page.md"
     page.write_text(
         "# Page\n\n## Case\n\n"
@@ -57,6 +57,6 @@ def test_a_stale_page_is_found_and_mended(tmp_path: Path, monkeypatch: pytest.Mo
     assert TOOL.main(["--check"]) == 0
 
 
-def test_a_command_that_does_not_fail_is_no_trouble() -> None:
+def test_command_without_failure_is_rejected() -> None:
     with pytest.raises(RuntimeError, match="exited with 0"):
         TOOL.output_of(["--version"], [])

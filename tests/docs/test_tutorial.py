@@ -36,7 +36,7 @@ def package(request: pytest.FixtureRequest, tmp_path: Path, monkeypatch: pytest.
     return package
 
 
-def test_the_models(package: Path) -> None:
+def test_urdf_and_xacro_models_match_tutorial(package: Path) -> None:
     urdf = load(package / "urdf" / "mbot_base.urdf")
     xacro = load(package / "urdf" / "mbot_base.xacro")
     assert set(urdf.links) == BASE | {"camera_link"}
@@ -48,7 +48,7 @@ def test_the_models(package: Path) -> None:
         assert robot.joints["back_caster_joint"].origin.xyz == pytest.approx((-0.18, 0, -0.095))
 
 
-def test_check_prints_the_tree_of_the_page(package: Path, capsys: pytest.CaptureFixture[str]) -> None:
+def test_check_prints_tree_of_page(package: Path, capsys: pytest.CaptureFixture[str]) -> None:
     capsys.readouterr()
     assert main(["check", str(package / "urdf" / "mbot_base.xacro")]) == 0
     printed = capsys.readouterr().out
@@ -56,20 +56,20 @@ def test_check_prints_the_tree_of_the_page(package: Path, capsys: pytest.Capture
         assert printed in [block.text for block in blocks(page) if block.language == "text"]
 
 
-def test_check_of_the_package_finds_nothing(package: Path, capsys: pytest.CaptureFixture[str]) -> None:
+def test_check_of_package_finds_nothing(package: Path, capsys: pytest.CaptureFixture[str]) -> None:
     capsys.readouterr()
     assert main(["check", "--format", "json", str(package)]) == 0
     assert json.loads(capsys.readouterr().out)["diagnostics"] == []
 
 
-def test_the_launch_file_lists_its_arguments(package: Path, capsys: pytest.CaptureFixture[str]) -> None:
+def test_launch_file_lists_its_arguments(package: Path, capsys: pytest.CaptureFixture[str]) -> None:
     assert main(["launch", str(package / "launch" / "display.launch.py"), "--show-args"]) == 0
     printed = capsys.readouterr().out
     assert all(name in printed for name in ("'gui'", "'model'", "'rvizconfig'"))
 
 
 @pytest.mark.slow
-def test_colcon_installs_everything(package: Path) -> None:
+def test_colcon_installs_package_files(package: Path) -> None:
     workspace = package.parents[1]
     colcon_build(workspace, package.name)
     share = workspace / "install" / package.name / "share" / package.name
@@ -78,6 +78,6 @@ def test_colcon_installs_everything(package: Path) -> None:
 
 
 @pytest.mark.slow
-def test_each_line_works_for_a_reader_with_the_wheel(follow: Callable[..., Path]) -> None:
+def test_tutorial_commands_run_with_installed_wheel(follow: Callable[..., Path]) -> None:
     home = follow(LANGUAGES["en"], {})
     assert (home / "ros2_ws" / "install" / "my_robot_description").is_dir()

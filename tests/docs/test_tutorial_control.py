@@ -52,13 +52,13 @@ def load(package: Path, monkeypatch: pytest.MonkeyPatch) -> Iterator[Any]:
         del sys.modules[name]
 
 
-def test_the_first_node_has_twenty_lines() -> None:
+def test_first_node_has_at_most_twenty_lines() -> None:
     (node,) = [block for block in blocks(LANGUAGES["en"]) if block.title == "my_control/first_move.py"]
     written = [line for line in node.text.splitlines() if line]
     assert len(written) <= 20
 
 
-def test_the_first_node_moves_the_robot_in_a_circle(load: Any) -> None:
+def test_first_node_drives_in_circle(load: Any) -> None:
     with SteppedSimulation("empty", ROBOT) as test:
         test.init_rclpy()
         load("first_move").FirstMove()
@@ -68,26 +68,26 @@ def test_the_first_node_moves_the_robot_in_a_circle(load: Any) -> None:
         assert abs(x) < 0.2
 
 
-def test_one_metre_is_one_metre(load: Any) -> None:
+def test_one_meter_node_drives_one_meter(load: Any) -> None:
     with SteppedSimulation("empty", ROBOT) as test:
         test.init_rclpy()
-        load("one_metre").OneMetre()
+        load("one_meter").OneMeter()
         odometry = test.record("/odom")
         test.advance(15.0)
         assert odometry.last.pose.pose.position.x == pytest.approx(1.0, abs=0.01)
         assert abs(odometry.last.twist.twist.linear.x) < 1e-3
 
 
-def test_the_distance_is_a_parameter(load: Any) -> None:
+def test_distance_is_a_parameter(load: Any) -> None:
     with SteppedSimulation("empty", ROBOT) as test:
         test.init_rclpy(["--ros-args", "-p", "distance:=0.5"])
-        load("one_metre").OneMetre()
+        load("one_meter").OneMeter()
         odometry = test.record("/odom")
         test.advance(10.0)
         assert odometry.last.pose.pose.position.x == pytest.approx(0.5, abs=0.01)
 
 
-def test_it_stops_before_the_block(load: Any) -> None:
+def test_stop_ahead_node_stops_before_block(load: Any) -> None:
     with SteppedSimulation("obstacles", ROBOT, arguments={"laser": True}) as test:
         test.init_rclpy()
         load("stop_ahead").StopAhead()
@@ -97,28 +97,28 @@ def test_it_stops_before_the_block(load: Any) -> None:
         assert 0.4 < min(ahead) <= 0.62
 
 
-def test_nothing_is_found_in_the_package(package: Path, capsys: pytest.CaptureFixture[str]) -> None:
+def test_check_of_package_finds_nothing(package: Path, capsys: pytest.CaptureFixture[str]) -> None:
     capsys.readouterr()
     assert main(["check", "--strict", "--format", "json", str(package)]) == 0
     assert json.loads(capsys.readouterr().out)["diagnostics"] == []
 
 
-def test_the_nodes_are_found(
+def test_nodes_are_listed_as_executables(
     package: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
     monkeypatch.chdir(package)
     assert main(["pkg", "executables", "my_control"]) == 0
     assert capsys.readouterr().out.split() == [
-        *("my_control", "first_move", "my_control", "one_metre", "my_control", "stop_ahead")
+        *("my_control", "first_move", "my_control", "one_meter", "my_control", "stop_ahead")
     ]
 
 
-def test_the_launch_file_brings_the_simulation(package: Path, capsys: pytest.CaptureFixture[str]) -> None:
+def test_launch_file_includes_simulation(package: Path, capsys: pytest.CaptureFixture[str]) -> None:
     assert main(["launch", str(package / "launch" / "stop_ahead.launch.py"), "--show-args"]) == 0
     assert "'rviz'" in capsys.readouterr().out
 
 
-def test_the_tests_of_the_page_pass(package: Path) -> None:
+def test_tests_of_page_pass(package: Path) -> None:
     environment = process.environment({**os.environ, "LINKWRIGHT_DDS": "0"})
     result = subprocess.run(
         [sys.executable, "-m", "pytest", "-q", "-p", "no:cacheprovider", "-p", "no:asyncio", "test/test_nodes.py"],
@@ -133,19 +133,19 @@ def test_the_tests_of_the_page_pass(package: Path) -> None:
     assert "2 passed" in result.stdout
 
 
-def test_the_languages_show_the_same_files_and_commands() -> None:
+def test_both_languages_show_same_files_and_commands() -> None:
     english, chinese = ([(block.title, block.text) for block in blocks(page)] for page in LANGUAGES.values())
     assert english == chinese
 
 
 @pytest.mark.slow
-def test_each_line_works_for_a_reader_with_the_wheel(follow: Callable[..., Path]) -> None:
+def test_tutorial_commands_run_with_installed_wheel(follow: Callable[..., Path]) -> None:
     follow(
         LANGUAGES["en"],
         {
             "linkwright run my_control first_move": Known(node="/first_move"),
             "linkwright run teleop_twist_keyboard teleop_twist_keyboard": Known(shows="stop"),
-            "linkwright run my_control one_metre --ros-args -p distance:=2.0": Known(node="/one_metre"),
+            "linkwright run my_control one_meter --ros-args -p distance:=2.0": Known(node="/one_meter"),
             "linkwright run my_control stop_ahead": Known(node="/stop_ahead"),
             "linkwright launch my_control stop_ahead.launch.py": Known(node="/stop_ahead"),
             **{

@@ -14,7 +14,7 @@ from tests.docs.reader import Known
 LANGUAGES = {"en": DOCS / "tutorial-navigation.md", "zh": DOCS / "zh" / "tutorial-navigation.md"}
 
 
-def test_the_launch_file_has_the_arguments_that_the_page_uses(capsys):
+def test_launch_file_has_arguments_of_page(capsys):
     assert main(["launch", "my_robot_navigation", "navigation.launch.py", "--show-args"]) == 0
     output = capsys.readouterr().out
     for argument in ("slam", "map", "nav2_params_file"):
@@ -22,7 +22,7 @@ def test_the_launch_file_has_the_arguments_that_the_page_uses(capsys):
 
 
 @pytest.mark.slow
-def test_each_line_works_for_a_reader_with_the_wheel(follow: Callable[..., Path]) -> None:
+def test_tutorial_commands_run_with_installed_wheel(follow: Callable[..., Path]) -> None:
     to_the_bedroom, into_a_wall = (line for line in commands(LANGUAGES["en"]) if "send_goal" in line)
     home = follow(
         LANGUAGES["en"],

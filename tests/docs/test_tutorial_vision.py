@@ -18,7 +18,7 @@ from tests.vision.nodes.seeking_robot import SeekingRobot
 LANGUAGES = {"en": DOCS / "tutorial-vision.md", "zh": DOCS / "zh" / "tutorial-vision.md"}
 
 
-def test_the_launch_files_have_the_arguments_that_the_page_uses(capsys: pytest.CaptureFixture[str]):
+def test_launch_files_have_arguments_of_page(capsys: pytest.CaptureFixture[str]):
     assert main(["launch", "my_robot_vision", "detect.launch.py", "--show-args"]) == 0
     output = capsys.readouterr().out
     for argument in ("depth", "voice", "language", "model", "threshold"):
@@ -28,35 +28,35 @@ def test_the_launch_files_have_the_arguments_that_the_page_uses(capsys: pytest.C
 
 
 @pytest.mark.parametrize("page", LANGUAGES.values(), ids=LANGUAGES)
-def test_the_nodes_of_the_page_are_there(page: Path):
+def test_nodes_of_page_exist(page: Path):
     text = page.read_text(encoding="utf-8")
     for name in ("detector", "tracking_node", "detect_3d_node", "object_seeker"):
         assert f"| `{name}` |" in text
         assert ("my_robot_vision", name) in EXECUTABLES
 
 
-def test_the_program_of_the_page_drives_to_something_red(tmp_path: Path):
+def test_program_of_page_drives_to_red_object(tmp_path: Path):
     pytest.importorskip("mujoco")
     standins.activate()
-    (program,) = [block for block in blocks(LANGUAGES["en"]) if block.title == "follow_colour.py"]
-    names: dict[str, Any] = {"__name__": "follow_colour"}
-    exec(compile(program.text, "follow_colour.py", "exec"), names)
+    (program,) = [block for block in blocks(LANGUAGES["en"]) if block.title == "follow_color.py"]
+    names: dict[str, Any] = {"__name__": "follow_color"}
+    exec(compile(program.text, "follow_color.py", "exec"), names)
     with SeekingRobot(tmp_path, (2.0, 0.6), thing="red") as test:
         test.init_rclpy()
-        names["FollowColour"]()
+        names["FollowColor"]()
         test.advance(20.0)
         assert test.distance() < 1.2
         assert abs(test.commands.last.angular.z) < 0.2, "it is in the middle of the image"
 
 
 @pytest.mark.slow
-def test_each_line_works_for_a_reader_with_the_wheel(follow: Callable[..., Path]) -> None:
+def test_tutorial_commands_run_with_installed_wheel(follow: Callable[..., Path]) -> None:
     follow(
         LANGUAGES["en"],
         {
             "linkwright topic hz /yolo/detections": Known(shows="average rate"),
-            "linkwright shell -- python follow_colour.py": Known(node="/follow_colour"),
-            "linkwright launch my_robot_vision follow_object.launch.py model:=colours thing:=red": Known(
+            "linkwright shell -- python follow_color.py": Known(node="/follow_color"),
+            "linkwright launch my_robot_vision follow_object.launch.py model:=colors thing:=red": Known(
                 node="/follow_object"
             ),
         },

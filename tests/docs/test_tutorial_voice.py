@@ -28,13 +28,13 @@ STRING = get_message("std_msgs/msg/String")
 
 
 @pytest.mark.parametrize("language", LANGUAGES)
-def test_what_the_page_says_is_understood(language: str) -> None:
+def test_shown_utterances_are_understood(language: str) -> None:
     page = LANGUAGES[language].read_text(encoding="utf-8")
     ours = read_command_file(VOICE_PACKAGE / "config" / "commands.yaml")
     table = [cell for row in re.findall(r"^\| (`.+?) \| (.+?) \|$", page, re.MULTILINE) for cell in row]
     shown = [text for cell in table[:8] for text in re.findall(r"`([^`]+)`", cell) or cell.split("、")]
     shown += [
-        "forward half a metre",
+        "forward half a meter",
         "前进半米",
         "后退半米",
         "go to the kitchen",
@@ -58,7 +58,7 @@ def test_what_the_page_says_is_understood(language: str) -> None:
     assert [text for text in shown if ours.match_command(text) is None] == []
 
 
-def test_the_launch_file_has_the_arguments_that_the_page_uses(capsys: pytest.CaptureFixture[str]) -> None:
+def test_launch_file_has_arguments_of_page(capsys: pytest.CaptureFixture[str]) -> None:
     used = {word.partition(":=")[0] for line in commands(LANGUAGES["en"]) for word in line.split() if ":=" in word}
     assert used >= {"commands_file", "engine", "language", "navigation", "open_listening", "wav"}
     assert main(["launch", "my_robot_voice", "voice.launch.py", "--show-args"]) == 0
@@ -67,7 +67,7 @@ def test_the_launch_file_has_the_arguments_that_the_page_uses(capsys: pytest.Cap
         assert f"'{argument}':\n" in output
 
 
-async def test_the_readers_own_commands_move_mbot(tmp_path: Path) -> None:
+async def test_custom_command_file_moves_mbot(tmp_path: Path) -> None:
     pytest.importorskip("mujoco")
     (block,) = [block for block in blocks(LANGUAGES["en"]) if block.title == "my_commands.yaml"]
     file = tmp_path / block.title
@@ -90,19 +90,19 @@ async def test_the_readers_own_commands_move_mbot(tmp_path: Path) -> None:
         x, y, _, _, _, z, w = playground.robot_pose()
         assert math.hypot(x, y) < 0.1
         assert abs(2.0 * math.atan2(z, w)) < 0.1, "two whole turns"
-        assert await tell("race one metre", 1.0) == "really?"
+        assert await tell("race one meter", 1.0) == "really?"
         assert math.hypot(*playground.robot_pose()[:2]) < 0.1
-        assert await tell("yes", 8.0) == "race one metre"
+        assert await tell("yes", 8.0) == "race one meter"
         assert math.hypot(*playground.robot_pose()[:2]) == pytest.approx(1.0, abs=0.12)
         running.close()
 
 
-def test_the_file_on_the_page_about_voice_is_right() -> None:
+def test_command_file_of_voice_page_is_valid() -> None:
     (block,) = [block for block in blocks(DOCS / "voice.md") if block.title == "my_commands.yaml"]
     found = parse_commands(SourceText(block.title, block.text))
-    assert found.match_command("please go forward seven metres") is None
+    assert found.match_command("please go forward seven meters") is None
     for text in (
-        "go forward seven metres",
+        "go forward seven meters",
         "转圈",
         "go and recharge",
         "张开夹爪",
@@ -114,7 +114,7 @@ def test_the_file_on_the_page_about_voice_is_right() -> None:
 
 
 @pytest.mark.slow
-def test_each_line_works_for_a_reader_with_the_wheel(follow: Callable[..., Path], tmp_path: Path) -> None:
+def test_tutorial_commands_run_with_installed_wheel(follow: Callable[..., Path], tmp_path: Path) -> None:
     with wave.open(str(tmp_path / "my_recording.wav"), "wb") as recording:  # two seconds in which nobody speaks
         recording.setparams((1, 2, 16000, 0, "NONE", ""))
         recording.writeframes(bytes(2 * 2 * 16000))

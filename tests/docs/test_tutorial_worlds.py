@@ -34,26 +34,26 @@ def package(request: pytest.FixtureRequest, tmp_path: Path, monkeypatch: pytest.
     return package
 
 
-def test_nothing_is_found_in_the_world_and_in_the_package(package: Path, capsys: pytest.CaptureFixture[str]) -> None:
+def test_check_of_world_and_package_finds_nothing(package: Path, capsys: pytest.CaptureFixture[str]) -> None:
     capsys.readouterr()
     for path in (package / "worlds" / "yard.world", package):
         assert main(["check", "--strict", "--format", "json", str(path)]) == 0
         assert json.loads(capsys.readouterr().out)["diagnostics"] == []
 
 
-def test_the_launch_file_includes_that_of_the_simulation(package: Path, capsys: pytest.CaptureFixture[str]) -> None:
+def test_launch_file_includes_simulation(package: Path, capsys: pytest.CaptureFixture[str]) -> None:
     assert main(["launch", str(package / "launch" / "load_mbot.launch.py"), "--show-args"]) == 0
     printed = capsys.readouterr().out
     assert all(name in printed for name in ("'world'", "'gui'", "'pause'"))
 
 
-def test_the_languages_show_the_same_files() -> None:
+def test_both_languages_show_same_files() -> None:
     english, chinese = ([(block.title, block.text) for block in blocks(page)] for page in LANGUAGES.values())
     assert english == chinese
 
 
 @pytest.mark.slow
-def test_colcon_installs_everything(package: Path) -> None:
+def test_colcon_installs_package_files(package: Path) -> None:
     workspace = package.parents[1]
     colcon_build(workspace, package.name)
     share = workspace / "install" / package.name / "share" / package.name
@@ -62,5 +62,5 @@ def test_colcon_installs_everything(package: Path) -> None:
 
 
 @pytest.mark.slow
-def test_each_line_works_for_a_reader_with_the_wheel(follow: Callable[..., Path]) -> None:
+def test_tutorial_commands_run_with_installed_wheel(follow: Callable[..., Path]) -> None:
     follow(LANGUAGES["en"], {})

@@ -90,22 +90,22 @@ def more(seen: Observation, *endpoints: EndpointInfo) -> Observation:
     return replace(seen, endpoints=(*seen.endpoints, *endpoints))
 
 
-def test_a_graph_that_is_well_has_no_findings():
+def test_healthy_graph_has_no_findings():
     assert examine(WELL) == []
 
 
-def test_nobody_is_there():
+def test_empty_graph_report_names_domain_and_discovery_range():
     found = only(Observation(seconds=2.0, environment={"ROS_DOMAIN_ID": "7"}), "DOC801")
     assert "domain 7" in found.notes[0].message
     assert "ROS_AUTOMATIC_DISCOVERY_RANGE" in found.hint
 
 
-def test_over_zenoh_a_router_may_be_missing():
+def test_empty_graph_over_zenoh_hints_at_rmw_zenohd():
     found = only(Observation(seconds=2.0, environment={"ROS_DOMAIN_ID": "150"}, over_zenoh=True), "DOC801")
     assert "rmw_zenohd" in found.hint
 
 
-def test_a_domain_that_may_not_work():
+def test_domain_id_above_101_is_reported():
     assert codes(replace(WELL, environment={"ROS_DOMAIN_ID": "150"})) == ["DOC803"]
     assert codes(replace(WELL, environment={"ROS_DOMAIN_ID": "101"})) == []
 
@@ -113,7 +113,7 @@ def test_a_domain_that_may_not_work():
 # frames
 
 
-def test_no_state_publisher_at_all():
+def test_missing_transform_publisher_is_reported():
     seen = replace(WELL, transforms=(), endpoints=())
     found = only(seen, "DOC301")
     assert (
@@ -122,7 +122,7 @@ def test_no_state_publisher_at_all():
     )
 
 
-def test_nobody_publishes_joint_states():
+def test_missing_joint_state_publisher_is_reported():
     seen = replace(
         without(WELL, "wheel", "copy"),
         joints=(),
@@ -133,12 +133,12 @@ def test_nobody_publishes_joint_states():
     assert "joint_state_publisher" in found.hint
 
 
-def test_joint_states_stay_away():
+def test_silent_joint_state_publisher_is_reported():
     found = only(replace(without(WELL, "wheel", "copy"), joints=()), "DOC402")
     assert found.message.startswith("'/joint_state_publisher' did not publish joint states in 3 s")
 
 
-def test_a_joint_is_missing_from_the_joint_states_and_its_misspelling_is_named():
+def test_joint_missing_from_joint_states_suggests_misspelled_name():
     seen = replace(without(WELL, "wheel", "copy"), joints=(ObservedJoint("spinn", (JSP,)),))
     found = {each.code: each for each in examine(seen)}
     assert set(found) == {"DOC403", "DOC405"}
@@ -151,13 +151,13 @@ def test_a_joint_is_missing_from_the_joint_states_and_its_misspelling_is_named()
     assert found["DOC405"].hint == "did you mean 'spin'?"
 
 
-def test_a_static_transform_was_never_published():
+def test_missing_static_transform_is_reported():
     found = only(without(WELL, "mast"), "DOC304")
     assert found.message == "there is no transform of frame 'mast', because no static transform was published"
     assert "'stand'" in found.notes[0].message
 
 
-def test_a_joint_has_states_that_nobody_turns_into_transforms():
+def test_joint_states_on_unread_topic_hint_at_remapping():
     seen = replace(
         without(WELL, "wheel", "copy"),
         joints=(ObservedJoint("spin", (JSP,), ("/arm/joint_states",)),),
@@ -167,7 +167,7 @@ def test_a_joint_has_states_that_nobody_turns_into_transforms():
     assert "remap joint_states of robot_state_publisher" in found.hint
 
 
-def test_frames_with_a_prefix_are_the_robots():
+def test_prefixed_frames_match_robot_links():
     named = tuple(
         replace(transform, parent=f"r1/{transform.parent}", child=f"r1/{transform.child}")
         for transform in WELL.transforms
@@ -175,35 +175,35 @@ def test_frames_with_a_prefix_are_the_robots():
     assert examine(replace(WELL, transforms=named)) == []
 
 
-def test_two_nodes_publish_one_transform():
+def test_transform_from_two_publishers_is_reported():
     doubled = replace(WELL.transforms[0], senders=("/driver", RSP))
     found = only(replace(WELL, transforms=(doubled, *WELL.transforms[1:])), "DOC302")
     assert found.message == ("2 nodes publish the transform of frame 'wheel': '/driver', '/robot_state_publisher'")
 
 
-def test_a_frame_with_two_parents():
+def test_frame_with_two_parents_is_reported():
     other = ObservedTransform("odom", "base", ("/a",)), ObservedTransform("map", "base", ("/b",))
     found = [each for each in examine(replace(WELL, transforms=(*WELL.transforms, *other))) if each.code == "DOC303"]
     assert found[0].message == "frame 'base' has 2 parents, 'map', 'odom', and jumps between them"
 
 
-def test_two_trees():
+def test_disconnected_frame_tree_is_reported():
     apart = ObservedTransform("camera", "lens", ("/camera_driver",))
     found = only(replace(WELL, transforms=(*WELL.transforms, apart)), "DOC308")
     assert "--frame-id base --child-frame-id camera" in found.hint
 
 
-def test_parents_in_a_circle():
+def test_frame_loop_is_reported():
     circle = ObservedTransform("a", "b", ("/x",)), ObservedTransform("b", "a", ("/y",))
     assert "DOC307" in codes(replace(WELL, transforms=(*WELL.transforms, *circle)))
 
 
-def test_a_transform_that_is_no_transform():
+def test_invalid_transform_is_reported():
     broken = replace(WELL.transforms[0], is_valid=False)
     assert codes(replace(WELL, transforms=(broken, *WELL.transforms[1:]))) == ["DOC306"]
 
 
-def test_a_fixed_frame_that_does_not_exist():
+def test_missing_fixed_frame_is_reported():
     found = only(replace(WELL, fixed_frames=(FixedFrame("map", "mbot.rviz"),)), "DOC309")
     assert found.message == "the fixed frame 'map' of mbot.rviz does not exist, so nothing is shown"
     assert found.hint == "choose another Fixed Frame; the root of all frames is 'base'"
@@ -215,7 +215,7 @@ def test_a_fixed_frame_that_does_not_exist():
     assert near.hint == "did you mean 'base'?"
 
 
-def test_messages_in_a_frame_that_does_not_exist():
+def test_message_in_missing_frame_is_reported():
     lost = ObservedFrame("/scan", "/laser", "lazer")
     found = only(replace(WELL, frames=(lost,)), "DOC310")
     assert found.message == "'/scan' of '/laser' is in frame 'lazer', which does not exist"
@@ -227,32 +227,32 @@ def test_messages_in_a_frame_that_does_not_exist():
     assert codes(replace(WELL, frames=(ObservedFrame("/scan", "/laser", "base"),))) == []
 
 
-def test_messages_in_a_frame_are_well_where_nobody_publishes_transforms_at_all():
+def test_message_frame_is_not_reported_without_transforms():
     alone = Observation(seconds=3.0, nodes=("/laser",), frames=(ObservedFrame("/scan", "/laser", "laser"),))
     assert "DOC310" not in codes(alone)
 
 
-def test_the_world_of_a_simulation_is_a_frame_that_can_be_shown():
+def test_simulation_world_is_accepted_as_fixed_frame():
     shown = replace(WELL, fixed_frames=(FixedFrame("world", "'/viewer'"),))
     assert codes(shown) == ["DOC309"]
     simulated = replace(shown, endpoints=(*shown.endpoints, publisher("/gazebo", "/world_poses", TF)))
     assert "DOC309" not in codes(simulated)
 
 
-def test_the_root_of_a_robot_of_one_link_is_a_frame():
+def test_root_of_single_link_robot_is_accepted_as_fixed_frame():
     lonely = ObservedDescription("/robot_description", RSP, '<robot name="r"><link name="only"/></robot>')
     seen = replace(WELL, transforms=(), joints=(), descriptions=(lonely,), fixed_frames=(FixedFrame("only", "x"),))
     assert examine(seen) == []
 
 
-def test_a_fixed_frame_that_does_not_exist_beside_several_trees():
+def test_missing_fixed_frame_hint_names_all_tree_roots():
     apart = (*WELL.transforms, ObservedTransform("camera", "lens", ("/camera",)))
     found = examine(replace(WELL, transforms=apart, fixed_frames=(FixedFrame("odom", "x"),)))
     (hint,) = [each.hint for each in found if each.code == "DOC309"]
     assert hint == "choose another Fixed Frame; the roots of the trees of frames are 'base', 'camera'"
 
 
-def test_frames_are_listed_with_chinese_quotes_in_chinese():
+def test_frame_list_has_chinese_quotes_in_chinese():
     joints = "".join(
         f'<link name="l{i}"/><joint name="j{i}" type="continuous"><parent link="base"/><child link="l{i}"/></joint>'
         for i in range(8)
@@ -267,20 +267,20 @@ def test_frames_are_listed_with_chinese_quotes_in_chinese():
 # descriptions and joints
 
 
-def test_a_description_that_is_a_files_name():
+def test_file_name_as_description_is_reported():
     wrong = ObservedDescription("/robot_description", RSP, "mbot.urdf")
     found = only(replace(WELL, descriptions=(wrong,), joints=()), "DOC501")
     assert "not the name of a file" in found.hint
 
 
 @pytest.mark.parametrize(("text", "severity"), [(ROBOT, Severity.WARNING), (ROBOT + " ", Severity.ERROR)])
-def test_two_descriptions_on_one_topic(text, severity):
+def test_two_descriptions_on_one_topic_are_reported(text, severity):
     second = ObservedDescription("/robot_description", "/other", text)
     found = only(replace(WELL, descriptions=(*WELL.descriptions, second)), "DOC502")
     assert found.severity is severity
 
 
-def test_two_nodes_publish_one_joint():
+def test_joint_from_two_publishers_is_reported():
     found = only(replace(WELL, joints=(ObservedJoint("spin", ("/driver", JSP)),)), "DOC404")
     assert found.message.startswith("2 nodes publish the state of joint 'spin' on '/joint_states'")
 
@@ -288,12 +288,12 @@ def test_two_nodes_publish_one_joint():
 # topics, services, nodes
 
 
-def test_nodes_of_one_name():
+def test_duplicate_node_name_is_reported():
     found = only(replace(WELL, nodes=(RSP, RSP, JSP)), "DOC101")
     assert found.message == "2 nodes have the name '/robot_state_publisher'"
 
 
-def test_a_topic_with_two_types():
+def test_topic_with_two_types_is_reported():
     seen = more(
         WELL, publisher("/a", "/chat", "std_msgs/msg/String"), subscription("/b", "/chat", "std_msgs/msg/Int32")
     )
@@ -304,7 +304,7 @@ def test_a_topic_with_two_types():
     ]
 
 
-def test_twist_against_twist_stamped():
+def test_twist_and_twist_stamped_mismatch_is_reported():
     seen = more(
         WELL,
         publisher("/teleop", "/cmd_vel", "geometry_msgs/msg/Twist"),
@@ -318,18 +318,18 @@ EITHER = tuple(subscription("/behavior_server", "/cmd_vel_teleop", kind) for kin
 
 
 @pytest.mark.parametrize("kinds", [(), (TWIST,), (f"{TWIST}Stamped",), (TWIST, f"{TWIST}Stamped")])
-def test_a_node_that_takes_velocities_of_either_type_hears_all(kinds):
+def test_subscriber_to_both_velocity_types_matches_either_type(kinds):
     sent = [publisher(f"/teleop_{number}", "/cmd_vel_teleop", kind) for number, kind in enumerate(kinds)]
     assert not {"DOC201", "DOC202"} & set(codes(more(WELL, *EITHER, *sent)))
 
 
-def test_a_node_that_takes_either_type_does_not_hide_one_that_takes_another():
+def test_type_mismatch_is_reported_beside_subscriber_to_both_types():
     sent = publisher("/teleop", "/cmd_vel_teleop", TWIST)
     other = subscription("/base", "/cmd_vel_teleop", f"{TWIST}Stamped")
     assert "DOC202" in codes(more(WELL, *EITHER, sent, other))
 
 
-def test_velocities_that_nobody_takes():
+def test_velocity_topic_without_subscriber_is_reported():
     found = only(more(WELL, publisher("/teleop", "/cmd_vel", TWIST)), "DOC207")
     assert (
         found.message == "'/teleop' publishes velocities on '/cmd_vel', but no node subscribes to it, so nothing moves"
@@ -337,7 +337,7 @@ def test_velocities_that_nobody_takes():
     assert "controller runs in the same ROS_DOMAIN_ID" in found.hint
 
 
-def test_velocities_that_somebody_takes_elsewhere():
+def test_unsubscribed_velocity_topic_suggests_remapping():
     seen = more(
         WELL,
         publisher("/teleop", "/cmd_vel", TWIST),
@@ -353,16 +353,16 @@ def test_velocities_that_somebody_takes_elsewhere():
         [publisher("/gps", "/vehicle/twist", TWIST)],
     ],
 )
-def test_velocities_that_reach_somebody_or_command_nothing_are_well(more_endpoints):
+def test_subscribed_and_measured_velocities_have_no_findings(more_endpoints):
     assert examine(more(WELL, *more_endpoints)) == []
 
 
-def test_a_misspelt_command_is_told_once():
+def test_misspelled_velocity_topic_is_reported_once():
     seen = more(WELL, publisher("/teleop", "/cmd_vel", TWIST), subscription("/drive", "/robot/cmd_vel", TWIST))
     assert codes(seen) == ["DOC204"]
 
 
-def test_two_drivers_on_one_topic():
+def test_contradictory_velocity_publishers_are_reported():
     seen = more(WELL, publisher("/teleop", "/cmd_vel", TWIST), subscription("/drive", "/cmd_vel", TWIST))
     found = only(replace(seen, disputed=(ObservedDrivers("/cmd_vel", ("/planner", "/teleop")),)), "DOC208")
     assert (
@@ -372,7 +372,7 @@ def test_two_drivers_on_one_topic():
     assert codes(seen) == []
 
 
-def test_quality_of_service_that_does_not_match_names_policy_and_sides():
+def test_qos_mismatch_report_names_policy_and_endpoints():
     seen = more(
         WELL,
         publisher("/lidar", "/scan", "sensor_msgs/msg/LaserScan", QoSProfile(5, ReliabilityPolicy.BEST_EFFORT)),
@@ -394,24 +394,24 @@ def test_quality_of_service_that_does_not_match_names_policy_and_sides():
     ]
 
 
-def test_what_a_node_publishes_itself_is_not_meant_for_it():
+def test_topic_of_same_node_is_not_suggested():
     text = "std_msgs/msg/String"
     seen = more(WELL, subscription("/voice", "/voice/text_input", text), publisher("/voice", "/voice/text", text))
     assert codes(seen) == []
 
 
 @pytest.mark.parametrize("published", ["/robot1/scan", "/scann"])
-def test_a_topic_that_nobody_publishes_and_one_that_may_be_meant(published):
+def test_unpublished_topic_suggests_remapping_to_similar_topic(published):
     scan = "sensor_msgs/msg/LaserScan"
     found = only(more(WELL, subscription("/slam", "/scan", scan), publisher("/lidar", published, scan)), "DOC204")
     assert f"-r /scan:={published}" in found.hint
 
 
-def test_a_topic_that_nobody_publishes_is_no_trouble_by_itself():
+def test_unpublished_topic_alone_is_not_reported():
     assert examine(more(WELL, subscription("/slam", "/scan", "sensor_msgs/msg/LaserScan"))) == []
 
 
-def test_a_service_that_nobody_serves():
+def test_missing_service_is_reported():
     seen = more(
         WELL,
         endpoint("client", "/planner", "/map_server/map", "nav_msgs/srv/GetMap"),
@@ -420,7 +420,7 @@ def test_a_service_that_nobody_serves():
     assert "service '/map' has the same type" in only(seen, "DOC206").hint
 
 
-def test_a_service_of_another_type():
+def test_service_type_mismatch_is_reported():
     seen = more(
         WELL,
         endpoint("client", "/a", "/go", "std_srvs/srv/Trigger"),
@@ -432,7 +432,7 @@ def test_a_service_of_another_type():
 # time
 
 
-def test_simulated_time_for_some():
+def test_mixed_use_sim_time_is_reported():
     clock = publisher("/gazebo", "/clock", "rosgraph_msgs/msg/Clock")
     seen = replace(more(WELL, clock), sim_time={RSP: True, JSP: False, "/gazebo": False}, clock=ObservedClock(9, 1, 9))
     found = only(seen, "DOC601")
@@ -441,40 +441,40 @@ def test_simulated_time_for_some():
     )
 
 
-def test_hidden_nodes_and_who_makes_time_need_not_follow_it():
+def test_hidden_nodes_and_clock_publisher_need_no_use_sim_time():
     seen = more(WELL, publisher("/gazebo", "/clock", "rosgraph_msgs/msg/Clock"))
     clock = ObservedClock(9, 5, 6)
     times = {RSP: True, JSP: True, "/gazebo": False, "/_gzclient": False}
     assert codes(replace(seen, sim_time=times, clock=clock)) == []
 
 
-def test_simulated_time_without_a_clock():
+def test_use_sim_time_without_clock_is_reported():
     assert codes(replace(WELL, sim_time={RSP: True, JSP: True})) == ["DOC602"]
 
 
 @pytest.mark.parametrize("clock", [None, ObservedClock(9, 5, 5)])
-def test_a_clock_that_stands_still(clock):
+def test_stopped_clock_is_reported(clock):
     seen = more(WELL, publisher("/gazebo", "/clock", "rosgraph_msgs/msg/Clock"))
     assert codes(replace(seen, sim_time={RSP: True, JSP: True}, clock=clock)) == ["DOC603"]
 
 
-def test_two_clocks():
+def test_two_clock_publishers_are_reported():
     kind = "rosgraph_msgs/msg/Clock"
     seen = more(WELL, publisher("/gazebo", "/clock", kind), publisher("/bag", "/clock", kind))
     assert codes(seen) == ["DOC604"]
 
 
 @pytest.mark.parametrize(("behind_s", "message"), [(3600, "3600.0 s behind"), (-60, "60.0 s ahead of")])
-def test_stamps_far_from_now(behind_s, message):
+def test_stamp_far_from_current_time_is_reported(behind_s, message):
     stamp = ObservedStamp("/scan", "/lidar", behind_s * 10**9)
     assert f"are {message} the clock here" in only(replace(WELL, stamps=(stamp,)), "DOC605").message
 
 
-def test_stamps_that_were_never_set():
+def test_zero_stamp_is_reported():
     assert codes(replace(WELL, stamps=(ObservedStamp("/joint_states", JSP, 0, is_zero=True),))) == ["DOC606"]
 
 
-def test_managed_nodes_that_wait():
+def test_inactive_managed_node_is_reported():
     found = only(replace(WELL, lifecycle={"/camera": "inactive", "/lidar": "active"}), "DOC701")
     assert found.message == "managed node '/camera' is inactive, so it does nothing yet"
     assert found.hint == "request the next transition: ros2 lifecycle set /camera activate"

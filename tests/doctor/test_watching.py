@@ -56,30 +56,30 @@ async def joined() -> AsyncIterator[Graph]:
     await graph.close()
 
 
-async def seen_of(graph: Graph, transport: RemoteTransport, seconds: float = 0.05) -> Observation:
+async def observe_graph(graph: Graph, transport: RemoteTransport, seconds: float = 0.05) -> Observation:
     graph.attach(transport)
     return await observe(graph, graph.create_node("_ros2cli_1"), seconds, environment={})
 
 
-async def test_a_command_that_has_just_come_is_known_as_one_before_anything_is_said_of_it(joined: Graph) -> None:
+async def test_late_node_name_identifies_endpoint_of_command(joined: Graph) -> None:
     transport = RemoteTransport(TELEOP, LATE)
 
     def name() -> None:
         transport.endpoints = [TELEOP, replace(LATE, node=NodeIdentity("_ros2cli_2", "/"))]
 
     asyncio.get_running_loop().call_later(0.2, name)
-    seen = await seen_of(joined, transport)
+    seen = await observe_graph(joined, transport)
     assert seen.endpoints == (TELEOP,)
 
 
-async def test_an_endpoint_of_no_node_is_waited_for_no_longer_than_a_second(joined: Graph) -> None:
+async def test_unnamed_endpoint_is_waited_for_one_second_at_most(joined: Graph) -> None:
     begun = time.monotonic()
-    seen = await seen_of(joined, RemoteTransport(TELEOP, LATE))
+    seen = await observe_graph(joined, RemoteTransport(TELEOP, LATE))
     assert seen.endpoints == (TELEOP, LATE)
     assert time.monotonic() - begun > 0.9
 
 
-async def test_who_drives_at_the_same_time_is_written_down(joined: Graph) -> None:
+async def test_contradictory_velocity_publishers_are_recorded(joined: Graph) -> None:
     """Whoever is silent, and whoever says the same, does not contradict."""
     node, other, alike = (joined.create_node(name) for name in ("keys", "planner", "alike"))
     idle = joined.create_node("idle")
@@ -96,7 +96,7 @@ async def test_who_drives_at_the_same_time_is_written_down(joined: Graph) -> Non
             (node, TWIST, "/own/cmd_vel"),
         )
     ]
-    watched = asyncio.ensure_future(seen_of(joined, RemoteTransport(), seconds=2.0))
+    watched = asyncio.ensure_future(observe_graph(joined, RemoteTransport(), seconds=2.0))
     while not watched.done():
         for number, each in enumerate(publishers):
             message = each.msg_type()
@@ -110,11 +110,11 @@ async def test_who_drives_at_the_same_time_is_written_down(joined: Graph) -> Non
     ]
 
 
-async def test_two_commands_that_drive_are_written_down_and_not_what_else_they_send(joined: Graph) -> None:
+async def test_velocities_but_no_stamps_of_commands_are_recorded(joined: Graph) -> None:
     first, second = joined.create_node("_ros2cli_7"), joined.create_node("_ros2cli_8")
     publishers = [each.create_publisher(TWIST, "/cmd_vel", 10) for each in (first, second)]
     publishers.append(first.create_publisher("sensor_msgs/msg/JointState", "/joint_states", 10))
-    watched = asyncio.ensure_future(seen_of(joined, RemoteTransport(), seconds=2.0))
+    watched = asyncio.ensure_future(observe_graph(joined, RemoteTransport(), seconds=2.0))
     while not watched.done():
         for number, each in enumerate(publishers):
             message = each.msg_type()
@@ -127,13 +127,13 @@ async def test_two_commands_that_drive_are_written_down_and_not_what_else_they_s
     assert not watched.result().stamps
 
 
-async def test_what_a_bridge_hands_on_is_neither_a_second_publisher_nor_far_from_now(joined: Graph) -> None:
+async def test_bridged_transforms_have_one_sender_and_no_delay(joined: Graph) -> None:
     simulator, bridge = joined.create_node("gazebo"), joined.create_node("ros_gz_bridge")
     clock = simulator.create_publisher("rosgraph_msgs/msg/Clock", "/clock", 10)
     own = simulator.create_publisher(TRANSFORMS, "/model/vehicle/tf", 10)
     other = simulator.create_publisher(TRANSFORMS, "/robot1/tf", 10)
     handed_on = bridge.create_publisher(TRANSFORMS, "/tf", 10)
-    watched = asyncio.ensure_future(seen_of(joined, RemoteTransport(), seconds=0.5))
+    watched = asyncio.ensure_future(observe_graph(joined, RemoteTransport(), seconds=0.5))
     message = own.msg_type()
     message.transforms = [TransformStamped(child_frame_id="base")]
     message.transforms[0].header.frame_id = "odom"
@@ -149,12 +149,12 @@ async def test_what_a_bridge_hands_on_is_neither_a_second_publisher_nor_far_from
     assert {stamp.behind_ns for stamp in watched.result().stamps} == {0}
 
 
-async def test_a_simulators_own_stamps_and_poses_are_taken_for_what_they_are(joined: Graph) -> None:
+async def test_simulator_stamps_have_no_delay_and_world_poses_are_no_frames(joined: Graph) -> None:
     """It makes the time that it stamps by, and tells where models are on a topic of transforms that are no frames."""
     simulator = joined.create_node("gazebo")
     clock = simulator.create_publisher("rosgraph_msgs/msg/Clock", "/clock", 10)
     poses, frames = (simulator.create_publisher(TRANSFORMS, topic, 10) for topic in ("/world_poses", "/robot1/tf"))
-    watched = asyncio.ensure_future(seen_of(joined, RemoteTransport(), seconds=0.5))
+    watched = asyncio.ensure_future(observe_graph(joined, RemoteTransport(), seconds=0.5))
     message = frames.msg_type()
     message.transforms = [TransformStamped(child_frame_id="base")]
     message.transforms[0].header.frame_id = "odom"
@@ -169,14 +169,14 @@ async def test_a_simulators_own_stamps_and_poses_are_taken_for_what_they_are(joi
     assert [(stamp.topic, stamp.behind_ns) for stamp in seen.stamps] == [("/robot1/tf", 0)]
 
 
-async def test_what_was_kept_for_late_subscribers_and_what_goes_by_a_steady_clock_is_of_no_age(joined: Graph) -> None:
+async def test_latched_and_bond_messages_have_no_recorded_stamps(joined: Graph) -> None:
     server = joined.create_node("map_server")
     kept = QoSProfile(depth=1, durability=DurabilityPolicy.TRANSIENT_LOCAL)
     old_map = server.create_publisher("nav_msgs/msg/OccupancyGrid", "/map", kept)
     unset = server.create_publisher("nav_msgs/msg/OccupancyGrid", "/unset", kept)
     bond = server.create_publisher("bond/msg/Status", "/bond", 10)
     scan = server.create_publisher("sensor_msgs/msg/LaserScan", "/scan", 10)
-    watched = asyncio.ensure_future(seen_of(joined, RemoteTransport(), seconds=0.5))
+    watched = asyncio.ensure_future(observe_graph(joined, RemoteTransport(), seconds=0.5))
     while not watched.done():
         for each in (old_map, unset, bond, scan):
             message = each.msg_type()
@@ -187,14 +187,14 @@ async def test_what_was_kept_for_late_subscribers_and_what_goes_by_a_steady_cloc
 
 
 @pytest.mark.parametrize("topic", ["/tf", "/tf_static"])
-async def test_transforms_that_are_published_and_have_not_come_are_waited_for(joined: Graph, topic: str) -> None:
+async def test_late_transforms_of_known_publisher_are_waited_for(joined: Graph, topic: str) -> None:
     sender = joined.create_node("robot_state_publisher").create_publisher(TRANSFORMS, topic, 10)
     message = sender.msg_type(transforms=[TransformStamped(child_frame_id="base")])
     asyncio.get_running_loop().call_later(0.5, sender.publish, message)
-    assert [transform.child for transform in (await seen_of(joined, RemoteTransport())).transforms] == ["base"]
+    assert [transform.child for transform in (await observe_graph(joined, RemoteTransport())).transforms] == ["base"]
 
 
-async def test_transforms_that_never_come_are_waited_for_a_few_seconds_only(joined: Graph, monkeypatch) -> None:
+async def test_wait_for_missing_transforms_ends_after_timeout(joined: Graph, monkeypatch) -> None:
     monkeypatch.setattr("linkwright.doctor.watching._TRANSFORMS_WITHIN", 0.3)
     joined.create_node("robot_state_publisher").create_publisher(TRANSFORMS, "/tf", 10)
-    assert not (await seen_of(joined, RemoteTransport())).transforms
+    assert not (await observe_graph(joined, RemoteTransport())).transforms

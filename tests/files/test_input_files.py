@@ -45,7 +45,7 @@ def piped() -> Iterator[str]:
 
 
 @pytest.mark.parametrize("at_most", [0, 10, 1 << 17, len(LONG) - 1, len(LONG), len(LONG) + 1])
-def test_a_file_is_read_up_to_so_many_bytes(tmp_path: Path, at_most: int) -> None:
+def test_read_file_stops_at_maximum_size(tmp_path: Path, at_most: int) -> None:
     (tmp_path / "long").write_bytes(LONG)
     (tmp_path / "short").write_bytes(LONG[:10])
     assert read_file(tmp_path / "long", at_most) == LONG[:at_most]
@@ -53,23 +53,23 @@ def test_a_file_is_read_up_to_so_many_bytes(tmp_path: Path, at_most: int) -> Non
 
 
 @pytest.mark.skipif(sys.platform != "linux", reason="only Linux has such files")
-def test_a_file_that_says_it_is_empty_and_is_not_is_read_to_its_end() -> None:
+def test_file_with_declared_size_zero_is_read_to_end() -> None:
     assert read_file("/proc/self/stat", 100_000).endswith(b"\n")
     assert len(read_file("/proc/self/stat", 5)) == 5
 
 
-def test_a_folder_is_refused_by_its_name(tmp_path: Path) -> None:
+def test_folder_is_rejected_with_its_path(tmp_path: Path) -> None:
     with pytest.raises(IsADirectoryError) as caught:
         read_file(tmp_path, 100)
     assert caught.value.filename == str(tmp_path)
 
 
-def test_a_pipe_that_nobody_writes_to_is_refused(pipe: Path) -> None:
+def test_pipe_without_writer_is_rejected(pipe: Path) -> None:
     with pytest.raises(NoWriterError, match="it is a pipe without a writer"):
         read_file(pipe, 100)
 
 
-def test_a_pipe_is_read_until_it_is_closed_and_may_be_asked_again(pipe: Path) -> None:
+def test_pipe_is_read_until_closed_and_can_be_reread(pipe: Path) -> None:
     # A reader at the other end lets the writer begin; it is gone before the pipe is read.
     first = os.open(pipe, os.O_RDONLY | os.O_NONBLOCK)
     inner = os.open(pipe, os.O_WRONLY)
@@ -81,7 +81,7 @@ def test_a_pipe_is_read_until_it_is_closed_and_may_be_asked_again(pipe: Path) ->
     assert read_file(pipe, 10 * len(LONG)) == LONG
 
 
-def test_a_writer_who_has_not_begun_is_waited_for(pipe: Path) -> None:
+def test_pipe_waits_for_slow_writer(pipe: Path) -> None:
     first = os.open(pipe, os.O_RDONLY | os.O_NONBLOCK)
     inner = os.open(pipe, os.O_WRONLY)
     writer = threading.Timer(0.05, lambda: (os.write(inner, b"late"), os.close(inner)))
@@ -90,11 +90,11 @@ def test_a_writer_who_has_not_begun_is_waited_for(pipe: Path) -> None:
     os.close(first)
 
 
-def test_a_device_without_end_is_read_no_further_than_asked() -> None:
+def test_endless_device_is_read_up_to_maximum_size() -> None:
     assert read_file("/dev/zero", 1000) == bytes(1000)
 
 
-def test_line_ends_are_those_of_python(tmp_path: Path) -> None:
+def test_read_text_converts_line_ends_like_python(tmp_path: Path) -> None:
     path = tmp_path / "file"
     path.write_bytes(b"a\r\nb\rc\n")
     assert read_text(path) == path.read_text(encoding="utf-8") == "a\nb\nc\n"
@@ -103,13 +103,13 @@ def test_line_ends_are_those_of_python(tmp_path: Path) -> None:
 @pytest.mark.parametrize(
     "read", [read_bytes, read_launch_file, read_parameter_file, read_configuration], ids=lambda read: read.__name__
 )
-def test_whoever_reads_says_that_nobody_writes(read: object, pipe: Path) -> None:
+def test_readers_report_pipe_without_writer(read: object, pipe: Path) -> None:
     with pytest.raises(LinkwrightError, match="it is a pipe without a writer"):
         read(pipe)
 
 
 @pytest.mark.parametrize("ending", [".stl", ".dae", ".obj", ".glb"])
-def test_a_mesh_is_a_file(tmp_path: Path, ending: str) -> None:
+def test_mesh_must_be_regular_file(tmp_path: Path, ending: str) -> None:
     os.mkfifo(tmp_path / f"pipe{ending}")
     (tmp_path / f"device{ending}").symlink_to("/dev/zero")
     for name in ("pipe", "device"):
@@ -134,7 +134,7 @@ def test_a_mesh_is_a_file(tmp_path: Path, ending: str) -> None:
     ],
     ids=" ".join,
 )
-def test_each_command_refuses_a_pipe_that_nobody_writes_to(
+def test_commands_reject_pipe_without_writer(
     words: list[str], pipe: Path, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.chdir(pipe.parent)
@@ -145,7 +145,7 @@ def test_each_command_refuses_a_pipe_that_nobody_writes_to(
 
 
 @pytest.mark.parametrize("words", [["check"], ["xacro"], ["xacro", "--args"], ["inertia"], ["export", "out.html"]])
-def test_what_a_shell_substitutes_for_a_command_is_read(
+def test_process_substitution_is_read(
     words: list[str], piped: str, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch, tmp_path: Path
 ) -> None:
     monkeypatch.chdir(tmp_path)
@@ -153,7 +153,7 @@ def test_what_a_shell_substitutes_for_a_command_is_read(
 
 
 @pytest.mark.parametrize("command", ["check", "xacro"])
-def test_standard_input_by_its_path(command: str) -> None:
+def test_dev_stdin_is_read(command: str) -> None:
     done = subprocess.run(
         [sys.executable, "-m", "linkwright", command, "/dev/stdin"],
         check=False,

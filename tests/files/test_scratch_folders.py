@@ -38,7 +38,7 @@ def names(place: Path) -> list[str]:
     return sorted(path.name for path in place.iterdir())
 
 
-def test_a_folder_goes_when_it_is_closed(place: Path) -> None:
+def test_scratch_folder_is_removed_when_closed(place: Path) -> None:
     with ScratchFolder("test") as name:
         assert Path(name).name.startswith("linkwright_test_")
         Path(name, "file").touch()
@@ -46,7 +46,7 @@ def test_a_folder_goes_when_it_is_closed(place: Path) -> None:
 
 
 @needs_locks
-def test_that_of_a_killed_process_goes_when_the_next_one_is_made(place: Path) -> None:
+def test_folder_of_killed_process_is_removed_by_next_one(place: Path) -> None:
     with subprocess.Popen(
         [sys.executable, "-c", KILLED], stdin=subprocess.PIPE, stdout=subprocess.PIPE, text=True
     ) as process:
@@ -63,7 +63,7 @@ def test_that_of_a_killed_process_goes_when_the_next_one_is_made(place: Path) ->
 
 
 @needs_locks
-def test_what_may_be_in_use_or_is_of_others_stays(place: Path) -> None:
+def test_folders_in_use_or_of_others_are_kept(place: Path) -> None:
     (place / "linkwright_test_new").mkdir()  # its process has not locked it yet
     (place / "linkwright_of_nobody").write_text("a file")
     (place / "linkwright_link").symlink_to(place / "another")
@@ -75,7 +75,7 @@ def test_what_may_be_in_use_or_is_of_others_stays(place: Path) -> None:
     assert names(place) == ["another", "linkwright_link", "linkwright_of_nobody", "linkwright_test_new"]
 
 
-def test_each_temporary_folder_is_such_a_one() -> None:
+def test_temporary_folders_are_scratch_folders() -> None:
     made = re.compile(r"\bTemporaryDirectory\(|\bmkdtemp\(")
     made_to_stay, in_another = {"link_folder.py"}, {"contents.py", "run.py", "running.py"}  # of a sandbox's run
     allowed = {"scratch_folders.py"} | made_to_stay | in_another

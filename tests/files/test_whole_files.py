@@ -54,20 +54,20 @@ def no_replacing(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr("os.replace", refuse)
 
 
-def test_a_file_is_replaced_with_its_permissions(file: Path) -> None:
+def test_replaced_file_keeps_its_permissions(file: Path) -> None:
     file.chmod(0o640)
     write_whole_file(file, NEW)
     assert (file.read_bytes(), file.stat().st_mode & 0o777) == (NEW, 0o640)
     assert list(file.parent.iterdir()) == [file]
 
 
-def test_a_text_keeps_its_line_ends(tmp_path: Path) -> None:
+def test_text_keeps_its_line_ends(tmp_path: Path) -> None:
     write_whole_file(tmp_path / "new", "a\r\nü\n", mode=0o700)
     assert (tmp_path / "new").read_bytes() == "a\r\nü\n".encode()
     assert (tmp_path / "new").stat().st_mode & 0o777 == 0o700
 
 
-def test_a_link_stays_a_link(file: Path) -> None:
+def test_symlink_is_kept(file: Path) -> None:
     link = file.with_name("link")
     link.symlink_to(file)
     write_whole_file(link, NEW)
@@ -77,7 +77,7 @@ def test_a_link_stays_a_link(file: Path) -> None:
 
 @pytest.mark.parametrize("room", [0, 1, len(OLD), len(NEW) - 1])
 @pytest.mark.parametrize("mount", [False, True])
-def test_a_full_disk_leaves_the_file_as_it_was(
+def test_full_disk_leaves_file_unchanged(
     file: Path,
     room: int,
     mount: bool,
@@ -94,7 +94,7 @@ def test_a_full_disk_leaves_the_file_as_it_was(
 
 
 @pytest.mark.parametrize("room", [0, 1, 500])
-def test_a_full_disk_leaves_no_half_of_a_new_file(
+def test_full_disk_leaves_no_partial_file(
     tmp_path: Path,
     room: int,
     fill_disk: Callable[[int], None],
@@ -105,14 +105,14 @@ def test_a_full_disk_leaves_no_half_of_a_new_file(
     assert list(tmp_path.iterdir()) == []
 
 
-def test_a_file_that_cannot_be_replaced_is_written_in_place(file: Path, no_replacing: None) -> None:
+def test_irreplaceable_file_is_written_in_place(file: Path, no_replacing: None) -> None:
     number = file.stat().st_ino
     write_whole_file(file, NEW[:10])
     assert (file.read_bytes(), file.stat().st_ino) == (NEW[:10], number)
     assert list(file.parent.iterdir()) == [file]
 
 
-def test_in_place_what_was_there_is_restored_when_the_disk_fills_up_after_the_copy(
+def test_write_in_place_restores_content_after_failure(
     file: Path,
     no_replacing: None,
     monkeypatch: pytest.MonkeyPatch,
@@ -133,7 +133,7 @@ def test_in_place_what_was_there_is_restored_when_the_disk_fills_up_after_the_co
     assert list(file.parent.iterdir()) == [file]
 
 
-def test_where_nothing_can_be_restored_the_copy_stays_and_is_named(
+def test_copy_is_kept_and_named_if_restore_fails(
     file: Path, no_replacing: None, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     def refuse(*_: object) -> None:
@@ -147,7 +147,7 @@ def test_where_nothing_can_be_restored_the_copy_stays_and_is_named(
     assert str(copy) in str(caught.value)
 
 
-def test_a_name_as_long_as_the_disk_allows(tmp_path: Path) -> None:
+def test_longest_file_name_is_written(tmp_path: Path) -> None:
     path = tmp_path / ("ü" * 127)
     for content in (OLD, NEW):
         write_whole_file(path, content)
@@ -155,14 +155,14 @@ def test_a_name_as_long_as_the_disk_allows(tmp_path: Path) -> None:
 
 
 @pytest.mark.skipif(sys.platform != "linux", reason="/dev/full is Linux's")
-def test_a_device_is_written_to_and_not_replaced() -> None:
+def test_device_is_written_and_not_replaced() -> None:
     with pytest.raises(OSError, match="No space left"):
         write_whole_file("/dev/full", NEW)
     assert not Path("/dev/full").is_file()
 
 
 @pytest.mark.skipif(sys.platform == "win32", reason="Windows has no such pipes")
-def test_a_pipe_is_written_to(tmp_path: Path) -> None:
+def test_pipe_is_written(tmp_path: Path) -> None:
     pipe = tmp_path / "pipe"
     os.mkfifo(pipe)
     received: list[bytes] = []

@@ -17,7 +17,7 @@ vectors = st.tuples(*[st.floats(-10, 10)] * 3)
 UNIT = Bounds((0.0, 0.0, 0.0), (1.0, 1.0, 1.0))
 
 
-def test_the_box_around_each_shape():
+def test_bounds_of_shapes():
     assert shape_bounds(Box((1, 2, 3))).high == (0.5, 1, 1.5)
     assert shape_bounds(Cylinder(1, 4)).high == (1, 1, 2)
     assert shape_bounds(Capsule(1, 4)).high == (1, 1, 3)
@@ -25,7 +25,7 @@ def test_the_box_around_each_shape():
 
 
 @given(vectors, vectors, vectors, vectors)
-def test_a_box_that_is_moved_is_the_one_around_its_moved_corners(one, other, xyz, rpy):
+def test_moved_bounds_enclose_moved_corners(one, other, xyz, rpy):
     pose = Pose(xyz, rpy)
     box = Bounds(tuple(map(min, one, other)), tuple(map(max, one, other)))
     corners = np.array(list(product(*zip(box.low, box.high, strict=True))))
@@ -36,7 +36,7 @@ def test_a_box_that_is_moved_is_the_one_around_its_moved_corners(one, other, xyz
     assert np.allclose(found.high, moved.max(axis=0), atol=1e-9)
 
 
-def test_measures():
+def test_size_center_and_diagonal():
     assert UNIT.size == (1, 1, 1)
     assert UNIT.center == (0.5, 0.5, 0.5)
     assert UNIT.diagonal == pytest.approx(3**0.5)

@@ -14,7 +14,7 @@ BOX = np.array(
 )  # fmt: skip
 
 
-def test_a_box_is_one_piece():
+def test_box_is_one_piece():
     (piece,) = convex_pieces(CORNERS, BOX, 100)
     assert sorted(map(tuple, piece)) == sorted(map(tuple, CORNERS))
 
@@ -24,7 +24,7 @@ def test_two_boxes_are_two_pieces():
     assert len(convex_pieces(corners, np.concatenate([BOX, BOX + 8]), 100)) == 2
 
 
-def test_an_open_box_has_walls_and_room_inside():
+def test_open_box_is_split_into_walls():
     open_box = BOX[:-2]  # without its lid
     pieces = convex_pieces(CORNERS, open_box, 100)
     assert len(pieces) == 5
@@ -35,11 +35,11 @@ def test_an_open_box_has_walls_and_room_inside():
         assert ((piece.min(axis=0) > middle) | (piece.max(axis=0) < middle)).any()
 
 
-def test_too_many_plates_are_the_hull():
+def test_too_many_pieces_fall_back_to_hull():
     assert len(convex_pieces(CORNERS, BOX[:-2], 4)) == 1
 
 
-def test_a_face_that_is_not_convex_is_triangles():
+def test_concave_face_is_triangulated():
     outline = [(0.0, 0.0), (2.0, 0.0), (2.0, 1.0), (1.0, 1.0), (1.0, 2.0), (0.0, 2.0)]
     triangles = triangulate(outline)
     assert len(triangles) == 4
@@ -47,13 +47,13 @@ def test_a_face_that_is_not_convex_is_triangles():
     assert len(convex_pieces(flat, np.array(triangles), 100)) == 4
 
 
-def test_what_is_flat_gets_a_thickness():
+def test_flat_surface_is_thickened():
     square = np.array([[0.0, 0, 0], [1, 0, 0], [1, 1, 0], [0, 1, 0]])
     assert np.ptp(thicken(square), axis=0).tolist() == [1.0, 1.0, THICKNESS]
     assert thicken(CORNERS) is CORNERS
 
 
-def test_a_polygon_either_way_round_keeps_its_area():
+def test_triangulation_keeps_area_in_both_orientations():
     star = [(0.0, 0.0), (4.0, 1.0), (5.0, 5.0), (3.0, 2.0), (0.0, 4.0), (1.5, 1.5)]
     for points in (star, star[::-1], [*star, star[0]]):
         triangles = triangulate(points)

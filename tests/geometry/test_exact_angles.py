@@ -11,7 +11,7 @@ from linkwright.geometry.exact_angles import circle, exact_quaternion, sine_and_
 from linkwright.geometry.single import quaternion_from_rpy
 
 
-def test_they_are_those_of_the_library_to_12_digits() -> None:
+def test_sine_and_cosine_match_math_to_12_digits() -> None:
     for angle in np.linspace(-40.0, 40.0, 4001).tolist():
         assert sine_and_cosine(angle) == pytest.approx((math.sin(angle), math.cos(angle)), abs=1e-12)
 
@@ -22,12 +22,12 @@ def test_quarter_turns_are_exact(quarters: int) -> None:
     assert (sine, cosine) == ((0, 1, 0, -1)[quarters % 4], (1, 0, -1, 0)[quarters % 4])
 
 
-def test_rotations_are_those_of_urdfdom_to_12_digits() -> None:
+def test_exact_quaternion_matches_urdfdom_to_12_digits() -> None:
     for rpy in np.random.default_rng(1).uniform(-7, 7, (200, 3)).tolist():
         assert exact_quaternion(tuple(rpy)) == pytest.approx(quaternion_from_rpy(tuple(rpy)), abs=4e-12)
 
 
-def test_a_circle_is_closed_and_symmetrical() -> None:
+def test_circle_is_closed_and_symmetrical() -> None:
     points = circle(12)
     assert points[0] == points[-1] == (1.0, 0.0)
     assert points[3] == (0.0, 1.0)

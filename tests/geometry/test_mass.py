@@ -15,7 +15,7 @@ angles = st.tuples(*[st.floats(-3.0, 3.0)] * 3)
 
 
 @given(lengths, lengths, lengths, places, angles)
-def test_moving_a_body_keeps_its_mass_and_principal_moments(a, b, c, xyz, rpy):
+def test_moved_body_keeps_mass_and_principal_moments(a, b, c, xyz, rpy):
     body = shape_properties(Box((a, b, c)), 700.0)
     moved = body.moved(Pose(xyz, rpy))
     assert moved.mass == body.mass
@@ -24,7 +24,7 @@ def test_moving_a_body_keeps_its_mass_and_principal_moments(a, b, c, xyz, rpy):
 
 
 @given(lengths, lengths, lengths, st.floats(0.1, 0.9), places, angles)
-def test_a_box_is_the_sum_of_its_halves(a, b, c, part, xyz, rpy):
+def test_box_is_sum_of_its_parts(a, b, c, part, xyz, rpy):
     pose = Pose(xyz, rpy)
     left = shape_properties(Box((a * part, b, c))).moved(Pose((-a * (1 - part) / 2, 0, 0)))
     right = shape_properties(Box((a * (1 - part), b, c))).moved(Pose((a * part / 2, 0, 0)))
@@ -36,20 +36,20 @@ def test_a_box_is_the_sum_of_its_halves(a, b, c, part, xyz, rpy):
 
 
 @given(lengths, lengths, lengths, places, angles)
-def test_the_equivalent_box_of_a_box_is_the_box(a, b, c, xyz, rpy):
+def test_equivalent_box_of_box_is_same_box(a, b, c, xyz, rpy):
     edges = shape_properties(Box((a, b, c)), 1000.0).moved(Pose(xyz, rpy)).equivalent_box()
     assert edges is not None
     # The smallest moment belongs to the longest edge.
     assert np.allclose(edges, sorted((a, b, c), reverse=True), rtol=1e-4, atol=1e-5)
 
 
-def test_no_box_has_moments_that_break_the_triangle_inequality():
+def test_impossible_moments_have_no_equivalent_box():
     assert MassProperties(1.0, np.zeros(3), np.diag((0.1, 0.1, 1.0))).equivalent_box() is None
     assert MassProperties(0.0).equivalent_box() is None
 
 
 @given(lengths, places, places)
-def test_the_parallel_axis_theorem(radius, center, point):
+def test_parallel_axis_theorem(radius, center, point):
     body = shape_properties(Sphere(radius), 500.0).moved(Pose(center))
     arm = np.array(center) - np.array(point)
     about = body.inertia_about(point)
@@ -58,7 +58,7 @@ def test_the_parallel_axis_theorem(radius, center, point):
     assert about[0, 1] == pytest.approx(-body.mass * arm[0] * arm[1])
 
 
-def test_principal_axes_are_a_rotation_that_makes_the_tensor_diagonal():
+def test_principal_axes_diagonalize_inertia_tensor():
     body = shape_properties(Box((0.1, 0.2, 0.4)), 1000.0).moved(Pose((1, 2, 3), (0.3, -0.5, 0.7)))
     principal = body.principal()
     assert np.linalg.det(principal.axes) == pytest.approx(1.0)
@@ -66,7 +66,7 @@ def test_principal_axes_are_a_rotation_that_makes_the_tensor_diagonal():
     assert list(principal.moments) == sorted(principal.moments)
 
 
-def test_an_inertial_with_a_rotated_frame_is_turned_into_the_link_frame():
+def test_rotated_inertial_is_transformed_to_link_frame():
     quarter = np.pi / 2
     body = Inertial(2.0, 1.0, 0.0, 0.0, 2.0, 0.0, 3.0, Pose((0.1, 0, 0), (0, 0, quarter))).properties
     assert np.allclose(body.inertia, np.diag((2.0, 1.0, 3.0)))
@@ -74,7 +74,7 @@ def test_an_inertial_with_a_rotated_frame_is_turned_into_the_link_frame():
 
 
 @given(lengths, places, angles)
-def test_an_inertial_says_what_the_body_is(edge, xyz, rpy):
+def test_inertial_round_trip_keeps_mass_properties(edge, xyz, rpy):
     body = shape_properties(Box((edge, 2 * edge, 3 * edge)), 800.0).moved(Pose(xyz, rpy))
     again = Inertial.of(body).properties
     assert again.mass == body.mass
@@ -82,12 +82,12 @@ def test_an_inertial_says_what_the_body_is(edge, xyz, rpy):
     assert np.allclose(again.inertia, body.inertia)
 
 
-def test_the_sum_of_nothing_has_no_mass():
+def test_empty_sum_has_no_mass():
     assert combine([]).mass == 0
     assert combine([MassProperties(0.0)]).mass == 0
 
 
-def test_a_mass_is_spread_over_the_shape():
+def test_with_mass_scales_inertia():
     body = shape_properties(Sphere(0.1)).with_mass(3.0)
     assert body.mass == 3.0
     assert body.inertia[0, 0] == pytest.approx(2 / 5 * 3.0 * 0.01)

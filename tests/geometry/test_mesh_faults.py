@@ -157,7 +157,7 @@ CASES = {
 
 
 @pytest.mark.parametrize("name", CASES)
-def test_a_broken_file_is_refused_in_its_own_words(name: str, tmp_path: Path) -> None:
+def test_malformed_mesh_is_rejected_with_specific_error(name: str, tmp_path: Path) -> None:
     data, expected = CASES[name]
     path = tmp_path / name
     path.write_bytes(data if isinstance(data, bytes) else data.encode())
@@ -173,7 +173,7 @@ def test_a_broken_file_is_refused_in_its_own_words(name: str, tmp_path: Path) ->
     ("name", "data"),
     [("a.stl", stl([CORNERS])), ("b.stl", TEXT_STL), ("a.obj", OBJ), ("a.dae", COLLADA), ("a.glb", glb())],
 )
-def test_the_files_that_were_broken_are_whole_otherwise(name: str, data: bytes | str, tmp_path: Path) -> None:
+def test_unmodified_base_files_are_readable(name: str, data: bytes | str, tmp_path: Path) -> None:
     path = tmp_path / name
     path.write_bytes(data if isinstance(data, bytes) else data.encode())
     assert len(read_mesh(path).faces) == 1

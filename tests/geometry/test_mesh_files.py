@@ -28,7 +28,7 @@ def test_triangles_are_counted_without_parsing(tmp_path: Path, name: str, data: 
     assert declared_triangles(file) == count
 
 
-def test_a_file_that_is_not_there_says_nothing(tmp_path: Path) -> None:
+def test_missing_file_declares_no_triangles(tmp_path: Path) -> None:
     assert declared_triangles(tmp_path / "a.stl") is None
 
 
@@ -38,7 +38,7 @@ def test_a_file_that_is_not_there_says_nothing(tmp_path: Path) -> None:
     ["", '<library_materials><material id="red"><instance_effect url="#none"/></material></library_materials>'],
     ids=["no material", "a material without its effect"],
 )
-def test_collada_keeps_what_wears_a_material_that_cannot_be_read(materials: str) -> None:
+def test_collada_keeps_mesh_with_unreadable_material(materials: str) -> None:
     bound = (
         '<bind_material><technique_common><instance_material symbol="m" target="#red"/></technique_common>'
         "</bind_material></instance_geometry>"
@@ -60,7 +60,7 @@ def test_collada_keeps_what_wears_a_material_that_cannot_be_read(materials: str)
     ids=["< in a value", "hyphens in a comment", "no blank between attributes, and &"],
 )
 @pytest.mark.parametrize("is_plain", [True, False])
-def test_collada_is_read_as_loosely_as_gazebo_reads_it(proper: str, loose: str, is_plain: bool) -> None:
+def test_collada_tolerates_same_xml_errors_as_gazebo(proper: str, loose: str, is_plain: bool) -> None:
     assert proper in COLLADA
     (expected,) = placed_meshes(COLLADA.encode(), "dae", is_plain=is_plain)
     (found,) = placed_meshes(COLLADA.replace(proper, loose).encode(), "dae", is_plain=is_plain)

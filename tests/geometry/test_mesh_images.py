@@ -33,12 +33,12 @@ def image_of(folder: Path, name: str, data: bytes) -> bytes | None:
     return part.file_material.image
 
 
-def test_a_png_is_not_encoded_again(tmp_path: Path) -> None:
+def test_png_is_not_reencoded(tmp_path: Path) -> None:
     data = encoded("PNG")
     assert image_of(tmp_path, "i.png", data) == data
 
 
-def test_a_jpeg_becomes_a_png_of_the_same_colour(tmp_path: Path) -> None:
+def test_jpeg_is_converted_to_png_of_same_color(tmp_path: Path) -> None:
     image = image_of(tmp_path, "i.jpg", encoded("JPEG"))
     assert image is not None
     with Image.open(BytesIO(image)) as read:
@@ -46,6 +46,6 @@ def test_a_jpeg_becomes_a_png_of_the_same_colour(tmp_path: Path) -> None:
         assert np.abs(np.asarray(read).astype(int) - (200, 30, 60)).max() < 4
 
 
-def test_a_png_that_was_cut_off_is_refused(tmp_path: Path) -> None:
+def test_truncated_png_is_rejected(tmp_path: Path) -> None:
     with pytest.raises(BadMeshError):
         image_of(tmp_path, "i.png", encoded("PNG")[:-20])

@@ -52,19 +52,19 @@ def assert_same(data, kind, folder):
 
 
 @given(st.lists(st.tuples(points, points, points), min_size=1, max_size=6))
-def test_any_triangles(tmp_path_factory, triangles):
+def test_outlines_of_random_stl_match_read_mesh(tmp_path_factory, triangles):
     assert_same(binary_stl(triangles), "stl", tmp_path_factory.getbasetemp())
     assert_same(text_stl(triangles), "stl", tmp_path_factory.getbasetemp())
 
 
 @given(st.lists(st.sampled_from(TRIANGLES), min_size=1), st.lists(st.sampled_from(SQUARES)))
-def test_any_part_of_a_cube(tmp_path_factory, triangles, squares):
+def test_outlines_of_partial_cube_match_read_mesh(tmp_path_factory, triangles, squares):
     assert_same(obj(CUBE, [*triangles, *squares]), "obj", tmp_path_factory.getbasetemp())
     flat = [tuple(CUBE[place] for place in triangle) for triangle in triangles]
     assert_same(binary_stl(flat), "stl", tmp_path_factory.getbasetemp())
 
 
-def test_a_closed_cube_is_watertight_until_a_face_is_missing(tmp_path):
+def test_cube_is_watertight_only_with_all_faces(tmp_path):
     assert read_small(obj(CUBE, SQUARES), "obj").is_watertight
     assert not read_small(obj(CUBE, SQUARES[1:]), "obj").is_watertight
     assert_same(obj([*CUBE, (9.0, 9.0, 9.0)], SQUARES), "obj", tmp_path)
@@ -92,5 +92,5 @@ def test_a_closed_cube_is_watertight_until_a_face_is_missing(tmp_path):
         (b"<COLLADA/>", "dae"),
     ],
 )
-def test_what_is_out_of_the_ordinary_is_left_to_others(data, kind):
+def test_unusual_files_are_not_read_as_small_mesh(data, kind):
     assert read_small(data, kind) is None

@@ -39,7 +39,7 @@ def kept(parts: str) -> str:
 
 
 def corners(data: bytes, kind: str, *, is_plain: bool) -> np.ndarray:
-    """Return the sorted corners of all triangles in metres, each from its lowest corner; shape (n, 9)."""
+    """Return the sorted corners of all triangles in meters, each from its lowest corner; shape (n, 9)."""
     found = []
     for mesh, matrix, unit, _ in (placed := placed_meshes(data, kind, is_plain=is_plain)):
         assert isinstance(mesh, PlainMesh) is is_plain
@@ -84,7 +84,7 @@ def corners(data: bytes, kind: str, *, is_plain: bool) -> np.ndarray:
         "numbers that 32 bits round",
     ],
 )
-def test_collada_has_the_triangles_that_trimesh_reads(text: str, tmp_path: Path) -> None:
+def test_collada_triangles_match_trimesh(text: str, tmp_path: Path) -> None:
     data = text.encode()
     assert np.allclose(corners(data, "dae", is_plain=True), corners(data, "dae", is_plain=False), atol=2e-5)
     (tmp_path / "mesh.dae").write_bytes(data)
@@ -138,12 +138,12 @@ def test_collada_has_the_triangles_that_trimesh_reads(text: str, tmp_path: Path)
         "nothing",
     ],
 )
-def test_what_is_unusual_in_collada_is_left_to_trimesh(text: str) -> None:
+def test_unusual_collada_is_left_to_trimesh(text: str) -> None:
     assert read_collada(text.encode()) is None
     assert read_small(text.encode(), "dae") is None
 
 
-def test_a_closed_solid_that_a_scale_mirrors_is_watertight_without_arrays() -> None:
+def test_mirrored_solid_is_watertight_without_arrays() -> None:
     solid = COLLADA.replace('count="9"', 'count="12"').replace("0 0 0 1 0 0 0 1 0", "0 0 0 1 0 0 0 1 0 0 0 1")
     solid = solid.replace('count="3" stride', 'count="4" stride').replace("<p>0 1 2", "<p>0 2 1 0 1 3 0 3 2 1 2 3")
     for text in (solid, solid.replace(NODE, f"<node><scale>1 -1 1</scale>{NODE}</node>")):
@@ -155,7 +155,7 @@ def test_a_closed_solid_that_a_scale_mirrors_is_watertight_without_arrays() -> N
     assert not cut.is_watertight
 
 
-def test_a_small_file_that_places_a_mesh_very_often_is_left_to_arrays() -> None:
+def test_collada_with_many_instances_is_not_read_as_small_mesh() -> None:
     assert read_small(COLLADA.replace(NODE, NODE * 19_000).encode(), "dae") is not None
     often = kept(NODE * 200).replace(KEPT, KEPT * 70)
     assert read_small(often.encode(), "dae") is None
@@ -174,9 +174,9 @@ OBJ = "mtllib a.mtl\no a\nv 0 0 0\nv 1 0 0\nv 1 1 0.1\nv 0 1 0\nvn 0 0 1\nvt 0 0
         OBJ.replace(" 0\nv ", " 0 0.5 0.5 0.5\nv ").replace("0.1\n", "0.1 1 1 1\n").replace("1 0\nvn", "1 0 1 1 1\nvn")
         + "l 1 2\nf 1 2 4\n",
     ],
-    ids=["triangles", "polygons in groups", "lines as Windows ends them", "corners with colours"],
+    ids=["triangles", "polygons in groups", "lines as Windows ends them", "corners with colors"],
 )
-def test_an_obj_file_has_the_triangles_that_trimesh_reads(text: str) -> None:
+def test_obj_triangles_match_trimesh(text: str) -> None:
     data = text.encode()
     assert np.allclose(corners(data, "obj", is_plain=True), corners(data, "obj", is_plain=False))
 
@@ -206,13 +206,13 @@ def test_an_obj_file_has_the_triangles_that_trimesh_reads(text: str) -> None:
         "no vertices",
     ],
 )
-def test_what_is_unusual_in_an_obj_file_is_left_to_trimesh(text: str) -> None:
+def test_unusual_obj_is_left_to_trimesh(text: str) -> None:
     assert read_obj(text.encode()) is None
 
 
 @pytest.mark.extra("mesh")
 @pytest.mark.parametrize("header", [b"", b"COLOR=\x7f\x7f\x7f\xff"])
-def test_the_colours_of_stl_do_not_matter_to_who_wants_triangles(header: bytes) -> None:
+def test_stl_colors_do_not_change_triangles(header: bytes) -> None:
     facet = np.array([0, 0, 1, 0, 0, 0, 1, 0, 0, 0, 1, 0], dtype="<f4").tobytes() + b"\xff\x83"
     data = header.ljust(80) + (1).to_bytes(4, "little") + facet
     assert np.array_equal(corners(data, "stl", is_plain=True), corners(data, "stl", is_plain=False))

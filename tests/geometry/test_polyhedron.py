@@ -26,7 +26,7 @@ clouds = st.lists(st.tuples(coordinates, coordinates, coordinates), min_size=4, 
     ids=["torus", "ball", "ring", "cone"],
 )
 @pytest.mark.parametrize("shift", [(0, 0, 0), (100, -50, 30)], ids=["near", "far"])
-def test_trimesh_finds_the_same(mesh, shift):
+def test_polyhedron_properties_match_trimesh(mesh, shift):
     mesh = mesh.copy()
     mesh.apply_translation(shift)
     body = polyhedron_properties(mesh.vertices, mesh.faces)
@@ -35,7 +35,7 @@ def test_trimesh_finds_the_same(mesh, shift):
     assert np.allclose(body.inertia, mesh.moment_inertia, rtol=1e-4, atol=1e-6)
 
 
-def test_it_does_not_matter_which_way_the_triangles_turn():
+def test_triangle_orientation_does_not_change_mass_properties():
     mesh = trimesh.creation.cone(0.3, 1.0)
     outward = polyhedron_properties(mesh.vertices, mesh.faces)
     inward = polyhedron_properties(mesh.vertices, mesh.faces[:, ::-1])
@@ -43,13 +43,13 @@ def test_it_does_not_matter_which_way_the_triangles_turn():
     assert np.allclose(inward.inertia, outward.inertia)
 
 
-def test_a_flat_surface_has_no_mass():
+def test_flat_surface_has_no_mass():
     square = np.array(((0, 0, 0), (1, 0, 0), (1, 1, 0), (0, 1, 0)), dtype=float)
     assert polyhedron_properties(square, np.array(((0, 1, 2), (0, 2, 3)))).mass == 0
     assert polyhedron_properties(square, np.zeros((0, 3), dtype=np.int64)).mass == 0
 
 
-def test_corners_at_one_place_become_one():
+def test_coincident_corners_are_merged():
     mesh = trimesh.creation.icosphere(1)
     loose = mesh.vertices[mesh.faces].reshape(-1, 3)
     vertices, faces = merge_corners(loose, np.arange(len(loose)).reshape(-1, 3))
@@ -63,7 +63,7 @@ def test_triangles_without_area_are_dropped():
     assert len(merge_corners(np.zeros((3, 3)), np.array(((0, 1, 2),)))[1]) == 0
 
 
-def test_a_hole_or_a_turned_triangle_opens_a_surface():
+def test_surface_with_hole_or_flipped_triangle_is_not_closed():
     faces = trimesh.creation.box().faces.astype(np.int64)
     assert is_closed(faces)
     assert not is_closed(faces[1:])
@@ -75,7 +75,7 @@ def test_a_hole_or_a_turned_triangle_opens_a_surface():
 
 @given(clouds)
 @settings(max_examples=150)
-def test_the_hull_is_closed_convex_and_holds_every_point(cloud):
+def test_hull_is_closed_convex_and_contains_all_points(cloud):
     points = np.array(cloud, dtype=np.float64)
     faces = convex_hull(points)
     size = np.ptp(points, axis=0).max()
@@ -92,14 +92,14 @@ def test_the_hull_is_closed_convex_and_holds_every_point(cloud):
     assert polyhedron_properties(points, faces).mass >= 0
 
 
-def test_the_hull_of_a_grid_is_its_box():
+def test_hull_of_grid_is_its_box():
     grid = np.stack(np.meshgrid(*[np.arange(6.0)] * 3), -1).reshape(-1, 3)
     faces = convex_hull(grid)
     assert faces is not None
     assert polyhedron_properties(grid, faces).mass == pytest.approx(125.0)
 
 
-def test_the_hull_of_points_on_a_sphere_has_all_of_them():
+def test_hull_of_sphere_points_uses_all_points():
     ball = trimesh.creation.icosphere(3)
     faces = convex_hull(np.asarray(ball.vertices))
     assert faces is not None
@@ -112,5 +112,5 @@ def test_the_hull_of_points_on_a_sphere_has_all_of_them():
     [np.zeros((3, 3)), np.zeros((9, 3)), np.outer(np.arange(9.0), (1, 2, 3)), np.eye(3)[[0, 1, 2, 0, 1]]],
     ids=["few", "one", "line", "plane"],
 )
-def test_what_lies_in_a_plane_has_no_hull(points):
+def test_coplanar_points_have_no_hull(points):
     assert convex_hull(points) is None

@@ -18,23 +18,23 @@ poses = st.builds(lambda xyz, rpy: np.concatenate((xyz, quaternion_from_rpy(rpy)
 
 
 @given(poses, poses)
-def test_composing_is_multiplying_matrices(a, b):
+def test_compose_matches_matrix_product(a, b):
     np.testing.assert_allclose(matrix_from_pose(compose(a, b)), matrix_from_pose(a) @ matrix_from_pose(b), atol=1e-9)
 
 
 @given(poses)
-def test_a_pose_and_its_inverse_cancel(pose):
+def test_pose_and_inverse_cancel(pose):
     for product in (compose(pose, invert(pose)), compose(invert(pose), pose)):
         np.testing.assert_allclose(matrix_from_pose(product), np.eye(4), atol=1e-9)
 
 
 @given(poses)
-def test_the_identity_changes_nothing(pose):
+def test_composing_with_identity_keeps_pose(pose):
     np.testing.assert_array_equal(compose(pose, IDENTITY), pose)
     np.testing.assert_allclose(compose(IDENTITY, pose), pose, atol=1e-12)
 
 
-def test_a_place_in_a_turned_frame():
+def test_compose_transforms_position_in_rotated_frame():
     turned = np.concatenate(([1, 2, 3], quaternion_from_rpy([0, 0, pi / 2])))
     np.testing.assert_allclose(compose(turned, [1, 0, 0, 0, 0, 0, 1])[:3], [1, 3, 3], atol=1e-12)
 
@@ -46,12 +46,12 @@ def test_leading_axes_broadcast():
     assert matrix_from_pose(many).shape == (5, 4, 4, 4)
 
 
-def test_the_identity_cannot_be_written():
+def test_identity_is_read_only():
     with pytest.raises(ValueError, match="read-only"):
         IDENTITY[0] = 1
 
 
 @pytest.mark.parametrize("shape", [(6,), (2, 8), ()])
-def test_wrong_shapes_are_printed(shape):
+def test_wrong_array_shape_is_reported(shape):
     with pytest.raises(ValueError, match=r"a pose must have the shape \(\.\.\., 7\), not \("):
         compose(np.zeros(shape), IDENTITY)

@@ -38,19 +38,19 @@ def about(axis, angle):
 
 
 @given(triples)
-def test_rpy_is_about_the_fixed_axes_x_then_y_then_z(rpy):
+def test_rpy_rotates_about_fixed_axes_x_y_z(rpy):
     roll, pitch, yaw = rpy
     expected = about("z", yaw) @ about("y", pitch) @ about("x", roll)
     np.testing.assert_allclose(rotation_matrix(quaternion_from_rpy(rpy)), expected, atol=1e-12)
 
 
 @given(triples)
-def test_it_agrees_with_the_reader(rpy):
+def test_quaternion_from_rpy_matches_urdf_reader(rpy):
     np.testing.assert_allclose(quaternion_from_rpy(rpy), plain.quaternion_from_rpy(tuple(rpy)), atol=1e-15)
 
 
 @given(triples)
-def test_matrix_and_back(rpy):
+def test_matrix_round_trip_keeps_rotation(rpy):
     quaternion = quaternion_from_rpy(rpy)
     found = quaternion_from_matrix(rotation_matrix(quaternion))
     assert found[3] >= 0
@@ -58,13 +58,13 @@ def test_matrix_and_back(rpy):
 
 
 @pytest.mark.parametrize("axis", [X, Y, Z, -X, [1, 1, 0] / np.sqrt(2)])
-def test_half_turns_from_matrices(axis):
+def test_half_turn_matrix_gives_its_axis(axis):
     found = quaternion_from_matrix(rotation_matrix(quaternion_about(axis, pi)))
     assert abs(np.dot(found[:3], axis)) == pytest.approx(1)
 
 
 @given(triples, triples, vectors)
-def test_a_product_does_the_second_first(first, second, vector):
+def test_quaternion_product_applies_second_rotation_first(first, second, vector):
     a, b = quaternion_from_rpy(first), quaternion_from_rpy(second)
     product = quaternion_multiply(a, b)
     np.testing.assert_allclose(rotation_matrix(product), rotation_matrix(a) @ rotation_matrix(b), atol=1e-12)
@@ -72,7 +72,7 @@ def test_a_product_does_the_second_first(first, second, vector):
 
 
 @given(triples, vectors)
-def test_rotate_is_the_matrix_times_the_vector(rpy, vector):
+def test_rotate_matches_matrix_times_vector(rpy, vector):
     quaternion = quaternion_from_rpy(rpy)
     np.testing.assert_allclose(rotate(quaternion, vector), rotation_matrix(quaternion) @ vector, atol=1e-9)
     np.testing.assert_allclose(rotate(quaternion_inverse(quaternion), rotate(quaternion, vector)), vector, atol=1e-9)
@@ -96,6 +96,6 @@ def test_leading_axes_broadcast():
         (quaternion_inverse, (), r"shape \(\.\.\., 4\), not \(\)"),
     ],
 )
-def test_wrong_shapes_are_printed(function, shape, expected):
+def test_wrong_array_shapes_are_reported(function, shape, expected):
     with pytest.raises(ValueError, match=expected):
         function(np.zeros(shape))

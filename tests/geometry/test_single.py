@@ -28,7 +28,7 @@ angles = st.floats(-pi, pi)
 
 
 @given(angles, angles, angles)
-def test_back_and_forth_is_the_same_rotation(roll, pitch, yaw):
+def test_rpy_round_trip_keeps_rotation(roll, pitch, yaw):
     quaternion = quaternion_from_rpy((roll, pitch, yaw))
     again = quaternion_from_rpy(rpy_from_quaternion(quaternion))
     cosine = abs(sum(a * b for a, b in zip(quaternion, again, strict=True)))
@@ -44,22 +44,22 @@ def test_back_and_forth_is_the_same_rotation(roll, pitch, yaw):
         ((0.2, pi / 2, 0.3), (0, pi / 2, 0.1)),
     ],
 )
-def test_gimbal_lock_takes_the_roll_into_the_yaw(rpy, expected):
+def test_gimbal_lock_adds_roll_to_yaw(rpy, expected):
     assert rpy_from_quaternion(quaternion_from_rpy(rpy)) == pytest.approx(expected, abs=1e-9)
 
 
-def test_the_pitch_of_no_rotation_has_the_sign_urdfdom_prints():
+def test_pitch_of_identity_is_negative_zero_as_in_urdfdom():
     _, pitch, _ = rpy_from_quaternion(quaternion_from_rpy((0, 0, 0)))
     assert copysign(1, pitch) == -1
 
 
-def test_a_poses_own_quaternion_counts():
+def test_quaternion_of_pose_overrides_rpy():
     assert pose_quaternion(Pose(quaternion=(1, 0, 0, 0))) == (1, 0, 0, 0)
     assert pose_quaternion(Pose(rpy=(pi, 0, 0))) == pytest.approx((1, 0, 0, 0))
 
 
 @given(angles, angles, angles)
-def test_a_rotation_turns_about_its_axis_by_its_angle(roll, pitch, yaw):
+def test_axis_and_angle_describe_rotation(roll, pitch, yaw):
     quaternion = quaternion_from_rpy((roll, pitch, yaw))
     axis, angle = axis_and_angle(quaternion)
     assume(length(quaternion[:3]) > 1.1e-6)  # below a millionth, half the angle, the axis is said to be x
@@ -70,32 +70,32 @@ def test_a_rotation_turns_about_its_axis_by_its_angle(roll, pitch, yaw):
 
 
 @given(*[st.floats(-5e-7, 5e-7)] * 3)
-def test_of_next_to_no_rotation_the_axis_is_x(roll, pitch, yaw):
+def test_axis_of_tiny_rotation_is_x(roll, pitch, yaw):
     axis, angle = axis_and_angle(quaternion_from_rpy((roll, pitch, yaw)))
     assert axis == (1.0, 0.0, 0.0)
     assert angle == pytest.approx(0.0, abs=2e-6)
 
 
 @given(angles, angles, angles)
-def test_a_rotation_and_its_inverse_cancel(roll, pitch, yaw):
+def test_rotation_and_inverse_cancel(roll, pitch, yaw):
     quaternion = quaternion_from_rpy((roll, pitch, yaw))
     assert quaternion_multiply(quaternion, quaternion_inverse(quaternion)) == pytest.approx((0, 0, 0, 1))
 
 
 @pytest.mark.parametrize("axis", [(0, 0, 1), (0, 0, -2), (1, 0, 0), (0.3, -4, 0.2), (1e-7, 0, -1)])
-def test_the_shortest_rotation_takes_z_to_the_axis(axis):
+def test_rotation_from_z_maps_z_to_axis(axis):
     turned = rotate(rotation_from_z(axis), (0, 0, 1))
     assert turned == pytest.approx(scaled(axis, 1 / length(axis)), abs=1e-6)
 
 
-def test_a_quaternion_without_length_does_not_turn():
+def test_zero_quaternion_normalizes_to_identity():
     assert normalized(0, 0, 0, 0) == (0, 0, 0, 1)
     assert normalized(0, 1e-9, 0, 0, least=1e-16) == (0, 0, 0, 1)
     assert normalized(0, 3, 0, 4) == (0, 0.6, 0, 0.8)
 
 
 @given(angles, angles, st.floats(0, 1))
-def test_rotations_between_two_lie_on_the_way(first, last, ratio):
+def test_slerp_interpolates_along_shorter_arc(first, last, ratio):
     begin, end = quaternion_from_rpy((0, 0, first)), quaternion_from_rpy((0, 0, last))
     (between,) = arrays.slerp(begin, end, [ratio])
     difference = (last - first + pi) % (2 * pi) - pi

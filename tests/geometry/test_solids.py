@@ -31,7 +31,7 @@ def integrate_discs(radius_at, half_height, steps=20_000):
 
 @given(sizes, sizes)
 @settings(max_examples=30)
-def test_capsule_against_integration(radius, length):
+def test_capsule_matches_numeric_integration(radius, length):
     def radius_at(z):
         beyond = np.maximum(np.abs(z) - length / 2, 0.0)
         return np.sqrt(np.maximum(radius**2 - beyond**2, 0.0))
@@ -44,7 +44,7 @@ def test_capsule_against_integration(radius, length):
 
 @given(sizes)
 @settings(max_examples=30)
-def test_sphere_against_integration(radius):
+def test_sphere_matches_numeric_integration(radius):
     volume, across, along = integrate_discs(lambda z: np.sqrt(np.maximum(radius**2 - z**2, 0.0)), radius)
     body = shape_properties(Sphere(radius))
     assert body.mass == pytest.approx(volume, rel=1e-4)
@@ -53,7 +53,7 @@ def test_sphere_against_integration(radius):
 
 @given(sizes, sizes)
 @settings(max_examples=30)
-def test_cylinder_against_integration(radius, length):
+def test_cylinder_matches_numeric_integration(radius, length):
     volume, across, along = integrate_discs(lambda z: np.full_like(z, radius), length / 2)
     body = shape_properties(Cylinder(radius, length))
     assert body.mass == pytest.approx(volume, rel=1e-6)
@@ -61,7 +61,7 @@ def test_cylinder_against_integration(radius, length):
 
 
 @given(sizes, sizes, sizes)
-def test_a_box_is_its_mesh(a, b, c):
+def test_box_matches_its_mesh(a, b, c):
     mesh = trimesh.creation.box((a, b, c))
     body, solid = shape_properties(Box((a, b, c))), polyhedron_properties(mesh.vertices, mesh.faces)
     assert solid.mass == pytest.approx(body.mass)
@@ -69,24 +69,24 @@ def test_a_box_is_its_mesh(a, b, c):
     assert np.allclose(solid.inertia, body.inertia, rtol=1e-9, atol=1e-15)
 
 
-def test_a_capsule_without_cylinder_is_a_sphere():
+def test_capsule_of_length_zero_is_sphere():
     capsule, sphere = shape_properties(Capsule(0.3, 0.0)), shape_properties(Sphere(0.3))
     assert capsule.mass == pytest.approx(sphere.mass)
     assert np.allclose(capsule.inertia, sphere.inertia)
 
 
 @pytest.mark.parametrize("shape", [Box((1, 0, 1)), Box((1, -1, 1)), Sphere(0), Cylinder(-1, 1), Capsule(1, -1)])
-def test_a_size_that_is_not_positive_has_no_mass(shape):
+def test_shape_without_positive_size_has_no_mass(shape):
     assert shape_properties(shape, 1000.0).mass == 0
     assert shape_volume(shape) == 0
 
 
 @given(sizes, sizes, sizes)
-def test_the_volume_is_the_mass_at_a_density_of_one(a, b, c):
+def test_volume_is_mass_at_unit_density(a, b, c):
     for shape in (Box((a, b, c)), Cylinder(a, b), Capsule(a, b), Sphere(a)):
         assert shape_volume(shape) == pytest.approx(shape_properties(shape).mass)
 
 
 @pytest.mark.parametrize("shape", [Sphere(1e308), Cylinder(1e308, 1.0), Capsule(1e308, 1.0), Box((1e308,) * 3)])
-def test_a_volume_beyond_all_numbers_is_infinite(shape):
+def test_overflowing_volume_is_infinite(shape):
     assert shape_volume(shape) == float("inf")

@@ -24,7 +24,7 @@ TEXT = _bytes("stl_ascii")
     [_bytes(), TEXT, TEXT.replace(b"\n", b"\r\n"), b"solid a ball\n" + TEXT.partition(b"\n")[2]],
     ids=["binary", "text", "text of Windows", "text with a name"],
 )
-def test_a_file_has_the_triangles_that_trimesh_reads(data):
+def test_stl_triangles_match_trimesh(data):
     (ours,) = placed_meshes(data, "stl")
     assert isinstance(ours.mesh, PlainMesh)
     scene = trimesh.load_scene(trimesh.util.wrap_as_stream(data), file_type="stl", process=False)
@@ -51,8 +51,8 @@ def test_a_file_has_the_triangles_that_trimesh_reads(data):
     ids=[
         "short",
         "long",
-        "coloured",
-        "coloured triangles",
+        "colored",
+        "colored triangles",
         "empty",
         "two solids",
         "a wrong word",
@@ -62,5 +62,5 @@ def test_a_file_has_the_triangles_that_trimesh_reads(data):
         "nothing",
     ],
 )
-def test_all_else_is_left_to_trimesh(data):
+def test_unusual_stl_is_left_to_trimesh(data):
     assert read_stl(data) is None

@@ -19,7 +19,7 @@ SHAPES = {
 
 
 @pytest.mark.parametrize(("triangles", "extent"), SHAPES.values(), ids=SHAPES)
-def test_a_shape_is_closed_and_has_its_extent(triangles: Triangles, extent: tuple[float, ...]) -> None:
+def test_shape_surface_is_closed_and_has_extent_of_shape(triangles: Triangles, extent: tuple[float, ...]) -> None:
     np.testing.assert_allclose(triangles.positions.max(axis=0), extent, atol=1e-12)
     np.testing.assert_allclose(triangles.positions.min(axis=0), np.negative(extent), atol=1e-12)
     assert is_closed(merge_corners(triangles.positions, triangles.indices.reshape(-1, 3))[1])

@@ -22,20 +22,20 @@ bodies = st.lists(st.tuples(shapes, st.builds(Pose, places, angles), st.floats(1
 
 
 @given(bodies)
-def test_every_real_body_is_valid(parts):
+def test_bodies_of_combined_shapes_are_valid(parts):
     body = combine(shape_properties(shape, density).moved(pose) for shape, pose, density in parts)
     assert validity.excessive_products(body.inertia) == []
     assert validity.problems(body) == []
 
 
-def test_a_disc_is_just_possible_and_beyond_it_nothing_is():
+def test_triangle_excess_is_zero_for_disc_and_positive_beyond():
     assert validity.triangle_excess(np.diag((1.0, 1.0, 2.0))) == pytest.approx(0.0)
     assert validity.triangle_excess(np.diag((1.0, 1.0, 2.1))) > validity.TOLERANCE
     assert validity.triangle_excess(np.diag((1.0, 1.0, 4.0))) == pytest.approx(0.5)
     assert validity.triangle_excess(np.diag((1.0, 1.0, 1.0))) < 0
 
 
-def test_a_product_is_bounded_by_the_moments():
+def test_products_of_inertia_are_bounded_by_moments():
     tensor = np.array(((1.0, 0.6, 0.0), (0.6, 1.0, 0.0), (0.0, 0.0, 1.0)))
     assert validity.excessive_products(tensor) == [("ixy", 0.5)]
     tensor[0, 1] = tensor[1, 0] = 0.5
@@ -45,7 +45,7 @@ def test_a_product_is_bounded_by_the_moments():
 
 
 @given(bodies)
-def test_no_body_has_more_than_the_largest_moment_within_its_box(parts):
+def test_largest_moment_bounds_bodies_in_box(parts):
     moved = [shape_properties(shape, density).moved(pose) for shape, pose, density in parts]
     corners = np.array([pose.xyz for _, pose, _ in parts])
     # Every shape here is within 3 m of its place.
@@ -56,7 +56,7 @@ def test_no_body_has_more_than_the_largest_moment_within_its_box(parts):
     assert np.diag(body.inertia).max() <= limit
 
 
-def test_problems_in_words():
+def test_problems_are_described_in_words():
     assert validity.problems(MassProperties(0.0)) == [
         "the mass is not positive",
         "the inertia tensor is not positive definite",
@@ -66,7 +66,7 @@ def test_problems_in_words():
 
 
 @given(st.tuples(*[st.floats(-5.0, 5.0)] * 6), st.floats(-20, 20))
-def test_relative_moments_are_the_eigenvalues(entries, exponent):
+def test_relative_moments_match_eigenvalues(entries, exponent):
     xx, xy, xz, yy, yz, zz = entries
     tensor = np.array(((xx, xy, xz), (xy, yy, yz), (xz, yz, zz))) * 10.0**exponent
     largest = np.abs(tensor).max()

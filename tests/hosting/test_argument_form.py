@@ -48,7 +48,7 @@ def form_of(path: Path, **arguments: str):
     return argument_form(call, finder, caught.value.diagnostics)
 
 
-def test_the_values_of_launch_files_that_make_a_robot_are_offered(box: Path) -> None:
+def test_argument_form_offers_values_of_launch_files(box: Path) -> None:
     form = form_of(box)
     assert form is not None
     assert (form.file, form.names) == ("box.xacro", ["model"])
@@ -59,13 +59,13 @@ def test_the_values_of_launch_files_that_make_a_robot_are_offered(box: Path) -> 
     assert form.values == form.choices[0].values
 
 
-def test_a_value_that_makes_no_robot_is_asked_for_again(box: Path) -> None:
+def test_argument_form_is_shown_again_after_invalid_value(box: Path) -> None:
     form = form_of(box, model="huge")
     assert form is not None
     assert {choice.values["model"] for choice in form.choices} == {"small", "large"}
 
 
-def test_an_argument_that_nobody_gives_is_asked_for_without_a_value(tmp_path: Path) -> None:
+def test_argument_without_known_value_is_requested_empty(tmp_path: Path) -> None:
     path = tmp_path / "a.xacro"
     path.write_text(_ROBOT)
     form = form_of(path)
@@ -73,6 +73,6 @@ def test_an_argument_that_nobody_gives_is_asked_for_without_a_value(tmp_path: Pa
     assert (form.names, form.values, form.choices) == (["model"], {}, [])
 
 
-def test_what_is_wrong_whatever_the_arguments_are_asks_for_none(box: Path) -> None:
+def test_malformed_file_shows_no_argument_form(box: Path) -> None:
     box.write_text(_ROBOT.replace("</robot>", ""))
     assert form_of(box) is None

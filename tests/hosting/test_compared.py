@@ -40,12 +40,12 @@ def _here(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
         (["good.urdf", "--against", "HEAD"], 1, "error[CLI342]: 'good.urdf' is not in a git repository"),
     ],
 )
-def test_what_cannot_be_compared_is_said(words, status, message, capsys):
+def test_invalid_comparison_arguments_are_rejected(words, status, message, capsys):
     assert main(["view", *words, "--no-open", "--port", "9"]) == status
     assert message in capsys.readouterr().err
 
 
-async def test_an_old_file_that_is_broken_is_waited_for_as_a_new_one_is(tmp_path):
+async def test_broken_old_file_is_waited_for_until_fixed(tmp_path):
     out, err = io.StringIO(), io.StringIO()
     pair = file_pair(tmp_path / "broken.urdf", tmp_path / "good.urdf", {})
     view = ComparedView(pair, HostOptions(port=0, open_browser=False, network=False), LaunchLog(out, err))

@@ -116,12 +116,12 @@ def files(folder: Path) -> list[Path]:
     return [path, *([SHARED] if SHARED.exists() else [])]
 
 
-async def test_it_drives_one_metre_straight_and_then_turns(tmp_path):
+async def test_robot_drives_one_meter_straight_and_then_turns(tmp_path):
     for path in files(tmp_path):
-        await _drives_one_metre_straight_and_then_turns(path)
+        await _assert_drives_one_meter_and_turns(path)
 
 
-async def _drives_one_metre_straight_and_then_turns(path: Path) -> None:
+async def _assert_drives_one_meter_and_turns(path: Path) -> None:
     async with driven(path) as mbot:
         await mbot.drive(0.5, 0.0, 1.5)
         start = mbot.pose
@@ -137,7 +137,7 @@ async def _drives_one_metre_straight_and_then_turns(path: Path) -> None:
         assert mbot.odometry[-1].child_frame_id == "base_link"
 
 
-async def test_it_ends_when_its_simulated_seconds_are_over(tmp_path, monkeypatch):
+async def test_drive_ends_after_simulated_seconds(tmp_path, monkeypatch):
     monkeypatch.setenv("ROS_LOG_DIR", str(tmp_path / "ros_log"))
     path = files(tmp_path)[0]
     drive = replace(drive_of(path), seconds=0.5, rate=-1.0)
@@ -150,7 +150,7 @@ async def test_it_ends_when_its_simulated_seconds_are_over(tmp_path, monkeypatch
     assert "[gzserver-2]: has finished cleanly" in err.getvalue()
 
 
-async def test_a_world_that_is_not_there_is_an_error(tmp_path, monkeypatch):
+async def test_missing_world_is_an_error(tmp_path, monkeypatch):
     monkeypatch.setenv("ROS_LOG_DIR", str(tmp_path / "ros_log"))
     path = files(tmp_path)[0]
     out, err = io.StringIO(), io.StringIO()

@@ -59,7 +59,7 @@ class Watched(BagWriter):
         self.written.add(topic)
 
 
-async def test_all_topics_are_recorded_with_simulated_times(tmp_path: Path) -> None:
+async def test_all_topics_are_recorded_with_simulated_time(tmp_path: Path) -> None:
     view, err = view_of(mbot(2.0))
     with BagWriter(tmp_path / "run") as writer:
         assert await view.run(None, writer), err.getvalue()
@@ -72,7 +72,7 @@ async def test_all_topics_are_recorded_with_simulated_times(tmp_path: Path) -> N
     assert 0 < stamps[0] <= stamps[-1] <= 2 * SECOND
 
 
-async def test_a_recording_is_whole_when_the_user_ends_the_simulation(tmp_path: Path) -> None:
+async def test_recording_is_complete_when_user_ends_simulation(tmp_path: Path) -> None:
     view, err = view_of(mbot(0.0))
     with Watched(tmp_path / "run") as writer:
         running = asyncio.create_task(view.run(None, writer))
@@ -85,7 +85,7 @@ async def test_a_recording_is_whole_when_the_user_ends_the_simulation(tmp_path: 
 
 
 @pytest.mark.parametrize("refusing", ["write", "close"])
-async def test_a_full_disk_ends_the_recording_and_the_simulation_goes_on(
+async def test_full_disk_ends_recording_but_not_simulation(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch, refusing: str
 ) -> None:
     def refuse(*_: object) -> None:
@@ -102,7 +102,7 @@ async def test_a_full_disk_ends_the_recording_and_the_simulation_goes_on(
 
 
 @pytest.mark.parametrize("words", [("sim", "empty"), ("drive", str(MBOT))], ids=["sim", "drive"])
-def test_a_folder_that_is_there_is_not_written_to(tmp_path: Path, capsys, words: tuple[str, ...]) -> None:
+def test_existing_folder_is_not_overwritten(tmp_path: Path, capsys, words: tuple[str, ...]) -> None:
     assert main([*words, "--headless", "--record", str(tmp_path)]) == 1
     output = capsys.readouterr().err
     assert output.count("error[") == 1

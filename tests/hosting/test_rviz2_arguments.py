@@ -15,7 +15,7 @@ Visualization Manager:
 """
 
 
-def test_the_configuration_file(tmp_path: Path) -> None:
+def test_display_config_option_loads_file(tmp_path: Path) -> None:
     path = tmp_path / "a.rviz"
     path.write_text(CONFIG)
     for option in ("-d", "--display-config"):
@@ -24,32 +24,32 @@ def test_the_configuration_file(tmp_path: Path) -> None:
         assert findings == []
 
 
-def test_the_fixed_frame() -> None:
+def test_fixed_frame_option_sets_frame() -> None:
     config, findings = read_viewer_config(["-f", "odom"])
     assert config.options.text("Fixed Frame") == "odom"
     assert findings == []
 
 
-def test_a_file_that_cannot_be_read_gives_way_to_the_default(tmp_path: Path) -> None:
+def test_unreadable_file_falls_back_to_default(tmp_path: Path) -> None:
     config, (finding,) = read_viewer_config(["-d", str(tmp_path / "none.rviz")])
     assert finding.code == "RVIZ101"
     assert config.options.text("Fixed Frame") == "map"
 
 
-def test_no_file() -> None:
+def test_empty_file_name_is_accepted() -> None:
     assert read_viewer_config(["-d", ""])[1] == []
 
 
-def test_remarks() -> None:
+def test_unknown_and_incomplete_arguments_are_reported() -> None:
     messages = [finding.message for finding in read_viewer_config(["--display-confg", "-l", "-d"])[1]]
     assert messages == ["rviz2 has no argument '--display-confg'", "argument '-d' of rviz2 needs a value"]
 
 
 @pytest.mark.parametrize("arguments", [["--help"], ["-d", "x.rviz", "-h"]])
-def test_help_is_printed_and_nothing_is_started(arguments, capsys):
+def test_help_option_prints_usage_and_starts_nothing(arguments, capsys):
     assert run_viewer(arguments) == 0
     assert capsys.readouterr().out.startswith("usage: rviz2 ")
 
 
-def test_what_the_node_is_given_asks_for_no_help():
+def test_help_option_in_ros_arguments_is_ignored():
     assert not asks_for_help(["-d", "x.rviz", "--ros-args", "-p", "a:=-h", "--help"])

@@ -27,7 +27,7 @@ class Dropping:
 
 
 @pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM])
-def test_a_signal_that_comes_in_a_destructor_is_not_lost(
+def test_signal_during_destructor_is_not_lost(
     number: int, capfd: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.setattr(signals, "_DEADLINE_SECONDS", SECONDS)  # beyond it, the watch ends the process: that of pytest

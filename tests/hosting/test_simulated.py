@@ -39,7 +39,7 @@ def in_an_empty_world() -> SimulatedWorld:
     )
 
 
-async def test_a_robot_tells_where_it_and_its_joints_are_until_its_seconds_are_over():
+async def test_headless_robot_publishes_odometry_joint_states_and_tf():
     err = io.StringIO()
     view = SimulatedView(in_an_empty_world(), PackageFinder(start=MBOT.parent), OPTIONS, LaunchLog(io.StringIO(), err))
     listener = view.host.graph.create_node("listener")
@@ -49,7 +49,7 @@ async def test_a_robot_tells_where_it_and_its_joints_are_until_its_seconds_are_o
     assert heard["/joint_states"].last.header.stamp.sec >= 1
 
 
-async def test_the_page_shows_the_world_standing_still():
+async def test_viewer_uses_world_frame_and_simulated_time():
     world = replace(in_an_empty_world(), headless=False, seconds=0.0)
     err = io.StringIO()
     view = SimulatedView(world, PackageFinder(start=MBOT.parent), OPTIONS, LaunchLog(io.StringIO(), err))
@@ -67,7 +67,7 @@ async def test_the_page_shows_the_world_standing_still():
     assert await running
 
 
-async def test_a_robot_that_falls_for_want_of_collisions_is_told_in_the_viewers(tmp_path: Path):
+async def test_robot_without_collisions_is_reported_in_viewers(tmp_path: Path):
     file = tmp_path / "seen.urdf"
     visual = '<visual><geometry><sphere radius="1"/></geometry></visual>'
     file.write_text(f'<robot name="seen">\n<link name="base">{visual}</link></robot>')
@@ -82,7 +82,7 @@ async def test_a_robot_that_falls_for_want_of_collisions_is_told_in_the_viewers(
     assert await running
 
 
-async def test_a_robot_with_the_name_of_a_model_of_the_world_ends_it(tmp_path: Path):
+async def test_robot_named_like_world_model_ends_simulation(tmp_path: Path):
     named = '<model name="mbot"><static>true</static><link name="link"/></model>'
     (tmp_path / "a.world").write_text(f'<sdf version="1.7"><world name="w">{named}</world></sdf>')
     world = replace(in_an_empty_world(), world=str(tmp_path / "a.world"), seconds=0.0)
@@ -92,26 +92,26 @@ async def test_a_robot_with_the_name_of_a_model_of_the_world_ends_it(tmp_path: P
     assert "error[SIM102]: a model 'mbot' already exists" in err.getvalue()
 
 
-def test_a_world_that_is_not_there_is_one_error(capsys):
+def test_missing_world_is_one_error(capsys):
     assert main(["sim", "emty"]) == 1
     printed = capsys.readouterr()
     assert "there is no world 'emty'" in printed.err
     assert "empty" in printed.err
 
 
-def test_a_model_is_no_world(tmp_path, capsys):
+def test_model_file_is_rejected_as_world(tmp_path, capsys):
     (tmp_path / "box.sdf").write_text('<sdf version="1.7"><model name="box"><link name="a"/></model></sdf>')
     assert main(["sim", str(tmp_path / "box.sdf")]) == 1
     assert "linkwright sim empty" in capsys.readouterr().err
 
 
-def test_a_robot_that_is_no_xml_is_one_error(tmp_path, capsys):
+def test_malformed_robot_is_one_error(tmp_path, capsys):
     (tmp_path / "robot.urdf").write_text("<robot")
     assert main(["sim", "empty", str(tmp_path / "robot.urdf"), "--headless"]) == 1
     assert capsys.readouterr().err.count("error[") == 1
 
 
-def test_scans_are_shown_where_the_description_says_that_they_go():
+def test_scan_topics_are_read_from_description():
     classic = "<sensor name='a' type='ray'><plugin><ros><remapping>~/out:=scan</remapping></ros></plugin></sensor>"
     newer = '<sensor name="b" type="gpu_lidar"><topic>/front/scan</topic></sensor>'
     camera = '<sensor name="c" type="camera"><topic>image</topic></sensor>'
@@ -119,7 +119,7 @@ def test_scans_are_shown_where_the_description_says_that_they_go():
     assert scan_topics("") == []
 
 
-async def test_scans_and_images_are_shown_and_those_of_a_second_camera_are_off():
+async def test_scans_and_first_camera_are_shown():
     camera = "<sensor name='{}' type='camera'><topic>{}</topic></sensor>"
     scan = "<sensor name='a' type='ray'><plugin><ros><remapping>~/out:=scan</remapping></ros></plugin></sensor>"
     text = f"{scan}{camera.format('b', 'left')}{camera.format('c', 'right')}"
@@ -133,7 +133,7 @@ async def test_scans_and_images_are_shown_and_those_of_a_second_camera_are_off()
     await view.host.close()
 
 
-def test_images_are_shown_where_the_description_says_that_they_go():
+def test_image_topics_are_read_from_description():
     classic = "<sensor name='eye' type='camera'><plugin filename='libgazebo_ros_camera.so'>{}</plugin></sensor>"
     assert image_topics(classic.format("")) == ["/eye/image_raw"]
     assert image_topics(classic.format("<cameraName>left</cameraName><imageTopicName>rgb</imageTopicName>")) == [

@@ -127,7 +127,7 @@ def has(*names: str) -> Callable[[Simulation], bool]:
     return lambda simulation: set(simulation.scene.models) == set(names)
 
 
-async def test_a_world_that_is_saved_comes_and_what_is_the_same_stays(tmp_path):
+async def test_saved_world_is_reloaded_and_unchanged_models_keep_pose(tmp_path):
     (tmp_path / "a.world").write_text(world(FALLING))
     async with shown(SimulatedWorld(str(tmp_path / "a.world"), tmp_path / "a.world")) as it:
         await it.look(lambda simulation: simulation.set_model_pose("falling", (1.0, 2.0, 3.0, 0.0, 0.0, 0.0, 1.0)))
@@ -137,7 +137,7 @@ async def test_a_world_that_is_saved_comes_and_what_is_the_same_stays(tmp_path):
         assert f"reloaded {tmp_path / 'a.world'}" in it.err.getvalue()
 
 
-async def test_a_world_that_is_edited_is_not_replaced_by_its_file(tmp_path):
+async def test_edited_world_is_not_replaced_by_changed_file(tmp_path):
     file = tmp_path / "a.world"
     file.write_text(world(FALLING))
     async with shown(SimulatedWorld(str(file), file)) as it:
@@ -153,7 +153,7 @@ async def test_a_world_that_is_edited_is_not_replaced_by_its_file(tmp_path):
         await it.when(has("ground", "other"))
 
 
-async def test_a_broken_world_is_told_and_what_runs_goes_on(tmp_path):
+async def test_broken_world_is_reported_and_simulation_continues(tmp_path):
     (tmp_path / "a.world").write_text(world(FALLING))
     async with shown(SimulatedWorld(str(tmp_path / "a.world"), tmp_path / "a.world")) as it:
         (tmp_path / "a.world").write_text("<sdf version='1.7'><world></sdf>")
@@ -166,7 +166,7 @@ async def test_a_broken_world_is_told_and_what_runs_goes_on(tmp_path):
         assert it.view.reload.findings() == []
 
 
-async def test_a_world_that_cannot_be_simulated_is_told(tmp_path):
+async def test_world_that_cannot_be_simulated_is_reported(tmp_path):
     (tmp_path / "a.world").write_text(world(FALLING))
     async with shown(SimulatedWorld(str(tmp_path / "a.world"), tmp_path / "a.world")) as it:
         never = '<physics type="ode"><max_step_size>-1</max_step_size></physics>'
@@ -176,7 +176,7 @@ async def test_a_world_that_cannot_be_simulated_is_told(tmp_path):
         assert "a time step of -1.0 s" in it.err.getvalue()
 
 
-async def test_a_model_that_the_world_includes_is_watched_too(tmp_path):
+async def test_included_model_is_watched(tmp_path):
     (tmp_path / "crate").mkdir()
     (tmp_path / "crate/model.sdf").write_text(f'<sdf version="1.7">{FALLING}</sdf>')
     (tmp_path / "a.world").write_text(world("<include><uri>model://crate</uri></include>"))
@@ -185,7 +185,7 @@ async def test_a_model_that_the_world_includes_is_watched_too(tmp_path):
         await it.when(has("ground", "crate"))
 
 
-async def test_a_robot_that_is_saved_comes_anew_where_it_is_with_its_joints(tmp_path):
+async def test_saved_robot_is_reloaded_with_pose_and_joint_positions(tmp_path):
     def elsewhere(simulation: Simulation) -> None:
         simulation.set_model_pose("arm", (1.0, 2.0, 3.0, 0.0, 0.0, 0.0, 1.0))
         simulation.set_joint_position("arm::turn", 0.5)
@@ -202,7 +202,7 @@ async def test_a_robot_that_is_saved_comes_anew_where_it_is_with_its_joints(tmp_
         assert await it.look(lambda simulation: "arm::more" in simulation.scene.bodies)
 
 
-async def test_a_robot_that_drives_is_completed_again(tmp_path):
+async def test_driven_robot_is_completed_again_after_change(tmp_path):
     (tmp_path / "mbot.urdf").write_text(MBOT)
     async with shown(drive_of(tmp_path / "mbot.urdf")) as it:
         mast = '<link name="mast"/><joint name="m" type="fixed"><parent link="base_link"/><child link="mast"/></joint>'
@@ -223,7 +223,7 @@ CUBE = "".join(
 )
 
 
-async def test_a_mesh_of_the_robot_that_is_saved_is_read_again(tmp_path):
+async def test_changed_robot_mesh_is_reloaded(tmp_path):
     (tmp_path / "part.stl").write_text(f"solid part\n{CUBE}endsolid part\n")
     mesh = '<visual><geometry><mesh filename="part.stl"/></geometry></visual>'
     async with shown(
@@ -234,7 +234,7 @@ async def test_a_mesh_of_the_robot_that_is_saved_is_read_again(tmp_path):
         await it.when(lambda simulation: _extent(simulation) > 2.0)
 
 
-async def test_a_mesh_of_the_world_that_is_saved_is_read_again(tmp_path):
+async def test_changed_world_mesh_is_reloaded(tmp_path):
     (tmp_path / "part.stl").write_text(f"solid part\n{CUBE}endsolid part\n")
     mesh = '<visual name="v"><geometry><mesh><uri>part.stl</uri></mesh></geometry></visual>'
     part = f'<model name="part"><static>true</static><link name="l">{mesh}</link></model>'

@@ -59,7 +59,7 @@ def names_started(printed: str) -> list[str]:
     return re.findall(r"^\[INFO\] \[(\S+)\]: started in the launcher's process", printed, re.MULTILINE)
 
 
-async def test_the_viewer_comes_first(tmp_path: Path) -> None:
+async def test_viewer_starts_before_nodes(tmp_path: Path) -> None:
     (tmp_path / "m.urdf").write_text(GOOD)
     async with shown(tmp_path / "m.urdf") as (_, until):
         await until("Robot initialized")
@@ -67,9 +67,7 @@ async def test_the_viewer_comes_first(tmp_path: Path) -> None:
         assert names_started(printed) == ["viewer-3", "robot_state_publisher-1", "joint_state_publisher_gui-2"]
 
 
-async def test_a_page_whose_viewer_cannot_be_made_is_given_out_no_longer(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
+async def test_server_is_closed_when_viewer_cannot_be_created(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     (tmp_path / "m.urdf").write_text(GOOD)
     printed = io.StringIO()
     options = HostOptions(port=0, open_browser=False, network=False)
@@ -88,7 +86,7 @@ async def test_a_page_whose_viewer_cannot_be_made_is_given_out_no_longer(
         assert asking.connect_ex(("127.0.0.1", int(port[1]))) != 0
 
 
-async def test_the_address_is_told_before_the_viewer_is_made(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+async def test_address_is_printed_before_viewer_is_loaded(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     (tmp_path / "m.urdf").write_text(GOOD)
     out, received = io.StringIO(), []
     monkeypatch.setattr("linkwright.hosting.node_host.load_viewer", lambda: received.append(out.getvalue()))
@@ -103,9 +101,7 @@ async def test_the_address_is_told_before_the_viewer_is_made(tmp_path: Path, mon
     assert received[0].count("Viewer: http://127.0.0.1:") == 1
 
 
-async def test_a_view_that_ends_while_its_viewer_is_loaded_starts_nothing(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
+async def test_interrupt_while_viewer_loads_starts_nothing(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     (tmp_path / "m.urdf").write_text(GOOD)
     loop = asyncio.get_running_loop()
     ended = threading.Event()
@@ -129,13 +125,13 @@ async def test_a_view_that_ends_while_its_viewer_is_loaded_starts_nothing(
         free.bind(("127.0.0.1", port))
 
 
-async def test_with_foxglove_a_bridge_is_started_too(tmp_path: Path) -> None:
+async def test_foxglove_option_starts_bridge(tmp_path: Path) -> None:
     (tmp_path / "m.urdf").write_text(GOOD)
     async with shown(tmp_path / "m.urdf", foxglove=0) as (_, until):
         assert names_started(await until("foxglove_bridge-4]: started"))[-1] == "foxglove_bridge-4"
 
 
-async def test_a_broken_model_is_published_as_soon_as_it_is_right(tmp_path: Path) -> None:
+async def test_broken_model_is_published_once_fixed(tmp_path: Path) -> None:
     path = tmp_path / "m.urdf"
     path.write_text(BROKEN)
     async with shown(path) as (view, until):
@@ -149,7 +145,7 @@ async def test_a_broken_model_is_published_as_soon_as_it_is_right(tmp_path: Path
         assert view.reload.findings() == []
 
 
-async def test_what_is_wrong_is_not_told_again_when_other_files_change(tmp_path: Path) -> None:
+async def test_errors_are_not_repeated_when_other_files_change(tmp_path: Path) -> None:
     path = tmp_path / "m.urdf"
     path.write_text(BROKEN)
     async with shown(path) as (view, until):
@@ -162,7 +158,7 @@ async def test_what_is_wrong_is_not_told_again_when_other_files_change(tmp_path:
         await until("Robot initialized")
 
 
-def test_a_model_that_does_not_exist(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+def test_missing_model_is_one_error(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     assert run_view(tmp_path / "none.urdf", {}, HostOptions(open_browser=False)) == 1
     captured = capsys.readouterr()
     assert captured.err.count("error[") == 1
@@ -170,7 +166,7 @@ def test_a_model_that_does_not_exist(tmp_path: Path, capsys: pytest.CaptureFixtu
     assert captured.out == ""
 
 
-def test_a_port_in_use(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+def test_used_port_is_reported(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     (tmp_path / "m.urdf").write_text(GOOD)
     with socket.socket() as taken:
         taken.bind(("127.0.0.1", 0))
@@ -182,7 +178,7 @@ def test_a_port_in_use(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> No
     assert err.count("error[VIEW") == 1
 
 
-async def test_a_model_in_sdf_is_shown(tmp_path: Path) -> None:
+async def test_sdf_model_is_shown(tmp_path: Path) -> None:
     box = "<geometry><box><size>1 1 1</size></box></geometry>"
     link = f'<link name="base"><visual name="v">{box}</visual></link>'
     (tmp_path / "crate.sdf").write_text(f'<sdf version="1.9"><model name="crate">{link}</model></sdf>')
@@ -194,7 +190,7 @@ async def test_a_model_in_sdf_is_shown(tmp_path: Path) -> None:
         assert list(robot.links) == ["base"]
 
 
-async def test_arguments_that_pages_give_make_the_robot(tmp_path: Path) -> None:
+async def test_arguments_from_page_complete_the_robot(tmp_path: Path) -> None:
     path = tmp_path / "m.xacro"
     path.write_text(
         '<robot xmlns:xacro="http://www.ros.org/wiki/xacro" name="a"><link name="$(arg side)_link"/></robot>'

@@ -18,14 +18,14 @@ Visualization Manager:
 
 
 @pytest.mark.parametrize(("enabled", "checked"), [("true", False), ("false", True)])
-def test_a_world_does_not_cover_the_map_that_a_file_shows(enabled: str, checked: bool) -> None:
+def test_world_display_is_off_if_map_display_is_enabled(enabled: str, checked: bool) -> None:
     config = RvizConfig.parse(CONFIG.format(enabled=enabled), "test.rviz")
     show_world(config)
     (world,) = [display for display in config.walk() if display.cls == "linkwright/World"]
     assert world.checked is checked
 
 
-def test_a_world_is_added_once_and_stays_as_the_file_has_it() -> None:
+def test_world_display_is_added_once_and_keeps_its_state() -> None:
     config = RvizConfig.parse(CONFIG.format(enabled="true"), "test.rviz")
     show_world(config)
     (world,) = [display for display in config.walk() if display.cls == "linkwright/World"]

@@ -35,15 +35,15 @@ def pixels(message, ranges: RangeFinder | None = None) -> list:
         ("8UC1", [7], 7),
     ],
 )
-def test_eight_bit_images_are_taken_as_they_are(encoding, data, expected):
+def test_eight_bit_images_keep_their_values(encoding, data, expected):
     assert pixels(image(encoding, 1, 1, bytes(data))) == [[expected]]
 
 
-def test_rows_may_be_padded():
+def test_row_padding_is_skipped():
     assert pixels(image("mono8", 2, 2, bytes([1, 2, 0, 0, 3, 4]), step=4)) == [[1, 2], [3, 4]]
 
 
-def test_wide_values_are_spread_from_black_to_white():
+def test_sixteen_bit_values_are_scaled_from_black_to_white():
     data = np.array([[100, 200, 300]], "<u2")
     for encoding in ("16UC1", "mono16"):
         assert pixels(image(encoding, 3, 1, data.tobytes())) == [[0, 127, 255]]
@@ -52,24 +52,24 @@ def test_wide_values_are_spread_from_black_to_white():
     assert pixels(image("32FC1", 3, 1, np.array([-1.0, 0.0, 1.0], "<f4").tobytes())) == [[0, 127, 255]]
 
 
-def test_depths_that_are_none_are_black_and_do_not_count():
+def test_non_finite_depths_do_not_affect_range():
     data = np.array([math.nan, 1.0, 2.0, math.inf], "<f4")
     assert pixels(image("32FC1", 4, 1, data.tobytes())) == [[0, 0, 255, 255]]
     assert pixels(image("32FC1", 1, 1, np.array([math.nan], "<f4").tobytes())) == [[0]]
 
 
-def test_an_image_of_one_value_is_black():
+def test_uniform_image_is_black():
     assert pixels(image("16UC1", 2, 1, np.array([9, 9], "<u2").tobytes())) == [[0, 0]]
 
 
-def test_a_range_can_be_fixed():
+def test_fixed_range_scales_values():
     ranges = RangeFinder()
     ranges.fixed = Range(0.0, 1000.0)
     data = np.array([0, 500, 2000], "<u2")
     assert pixels(image("16UC1", 3, 1, data.tobytes()), ranges) == [[0, 127, 255]]
 
 
-def test_the_median_of_the_last_images_counts():
+def test_range_is_median_of_last_images():
     ranges = RangeFinder()
     ranges.window = 3
     largest = [ranges.range_of(np.array([0.0, value])).white for value in (10.0, 20.0, 1000.0, 20.0)]
@@ -78,7 +78,7 @@ def test_the_median_of_the_last_images_counts():
     assert ranges.range_of(np.array([0.0, 5.0])).white == 5.0
 
 
-def test_only_images_of_more_than_eight_bits_have_a_range():
+def test_only_images_above_eight_bits_have_range():
     assert [has_range(encoding) for encoding in ("mono16", "16UC1", "32FC1", "mono8", "rgb8", "")] == [
         True,
         True,
@@ -90,7 +90,7 @@ def test_only_images_of_more_than_eight_bits_have_a_range():
 
 
 @pytest.mark.parametrize("pattern", ["rggb", "bggr", "gbrg", "grbg"])
-def test_mosaics_give_their_colours(pattern):
+def test_bayer_mosaics_decode_to_colors(pattern):
     value = {"r": 200, "g": 100, "b": 50}
     tile = np.array([value[color] for color in pattern], np.uint8).reshape(2, 2)
     mosaic = np.tile(tile, (3, 3))
@@ -100,7 +100,7 @@ def test_mosaics_give_their_colours(pattern):
     assert pixels(image(f"bayer_{pattern}16", 6, 6, deep)) == expected
 
 
-def test_chroma_becomes_colour():
+def test_yuv_images_decode_to_rgb():
     # BT.601: black, white, and the red of 8-bit video
     gray = [[[0, 0, 0], [255, 255, 255]]]
     for encoding in ("yuv422", "uyvy"):
@@ -113,23 +113,23 @@ def test_chroma_becomes_colour():
 
 
 @pytest.mark.parametrize(("encoding", "width"), [("yuyv", 1), ("yuyv", 3), ("nv21", 3), ("nv24", 3)])
-def test_odd_sizes_do_no_harm(encoding, width):
+def test_odd_image_sizes_are_decoded(encoding, width):
     decode_rvl = decode_image(image(encoding, width, 3, bytes([128] * 60)), RangeFinder())
     assert (decode_rvl.width, decode_rvl.height) == (width, 3)
 
 
 @pytest.mark.parametrize("encoding", ["rgb8", "16UC1", "32FC1", "bayer_rggb8", "yuyv", "nv21", "nv24"])
-def test_too_few_bytes_are_refused(encoding):
+def test_too_few_bytes_are_rejected(encoding):
     with pytest.raises(BadImageError, match="too few for 4 x 4"):
         decode_image(image(encoding, 4, 4, b"123"), RangeFinder())
 
 
-def test_unknown_encodings_are_refused():
+def test_unknown_encodings_are_rejected():
     with pytest.raises(BadImageError, match=r"Unsupported image encoding \[64FC1\]"):
         decode_image(image("64FC1", 1, 1, bytes(8)), RangeFinder())
 
 
-def test_a_large_image_is_thinned():
+def test_large_image_is_subsampled():
     decode_rvl = DecodedImage(np.arange(100, dtype=np.uint8).reshape(10, 10))
     assert decode_rvl.subsample(100) is decode_rvl
     thinned = decode_rvl.subsample(30)
@@ -140,7 +140,7 @@ def test_a_large_image_is_thinned():
 
 
 @pytest.mark.parametrize("step", [2, 3, 16, 99])
-def test_a_reduced_image_has_the_mean_of_squares(step):
+def test_reduced_image_has_mean_of_each_block(step):
     pixels = np.full((40, 65, 3), 255, np.uint8)
     pixels[:2, :2, 1] = [[0, 10], [20, 30]]
     reduced = DecodedImage(pixels).reduce_by(step)
@@ -150,18 +150,18 @@ def test_a_reduced_image_has_the_mean_of_squares(step):
     assert (reduced.pixels[1:] == 255).all()
 
 
-def test_an_image_is_not_reduced_to_nothing():
+def test_reduction_larger_than_image_keeps_image():
     decode_rvl = DecodedImage(np.zeros((2, 9), np.uint8))
     assert decode_rvl.reduce_by(1) is decode_rvl
     assert decode_rvl.reduce_by(3) is decode_rvl
 
 
-def test_grey_and_translucent_images_have_rgb():
+def test_gray_and_translucent_images_convert_to_rgb():
     assert DecodedImage(np.array([[7]], np.uint8)).rgb().tolist() == [[[7, 7, 7]]]
     assert DecodedImage(np.array([[[1, 2, 3, 4]]], np.uint8)).rgb().tolist() == [[[1, 2, 3]]]
 
 
-def test_usual_images_are_left_to_numpy():
+def test_decoding_effort_is_independent_of_image_size():
     def work(width, height):
         message = image("bgr8", width, height, bytes(width * height * 3))
         return lines_run(lambda: decode_image(message, RangeFinder()))

@@ -30,7 +30,7 @@ def unpacked(content: bytes, shape: tuple[int, ...]) -> np.ndarray:
 
 
 @pytest.mark.parametrize("channels", [1, 3, 4])
-def test_pixels_are_as_they_were(channels: int) -> None:
+def test_png_keeps_all_pixels(channels: int) -> None:
     pixels = np.random.default_rng(1).integers(0, 256, (7, 5, channels), np.uint8)
     header, content, end = chunks(png(pixels))
     assert struct.unpack(">IIBB", header[1][:10]) == (5, 7, 8, {1: 0, 3: 2, 4: 6}[channels])
@@ -38,7 +38,7 @@ def test_pixels_are_as_they_were(channels: int) -> None:
     assert end == (b"IEND", b"")
 
 
-def test_an_animation_has_its_frames_in_order() -> None:
+def test_apng_keeps_order_of_frames() -> None:
     frames = list(np.random.default_rng(2).integers(0, 256, (3, 4, 6, 4), np.uint8))
     found = chunks(apng(frames, 0.25))
     assert [kind for kind, _ in found] == [
@@ -63,7 +63,7 @@ def test_an_animation_has_its_frames_in_order() -> None:
 
 
 @pytest.mark.extra("image")
-def test_other_programs_read_it() -> None:
+def test_pillow_reads_written_png_and_apng() -> None:
     from io import BytesIO
 
     from PIL import Image

@@ -25,14 +25,14 @@ def of(tmp_path):
     return estimate_link
 
 
-def test_water_when_nothing_is_said(of):
+def test_default_density_is_that_of_water(of):
     found = of(f"<visual>{BOX}</visual>")
     assert (found.kind, found.shapes, found.basis) == ("visual", 1, "density")
     assert found.properties.mass == pytest.approx(8.0)
     assert found.density == pytest.approx(1000.0)
 
 
-def test_the_mass_in_the_file_is_kept(of):
+def test_mass_of_file_is_kept(of):
     found = of(f"{INERTIAL.format(2)}<visual>{BOX}</visual>")
     assert found.basis == "present"
     assert found.properties.mass == pytest.approx(2.0)
@@ -40,24 +40,24 @@ def test_the_mass_in_the_file_is_kept(of):
     assert found.properties.inertia[0, 0] == pytest.approx(2.0 * 0.04 * 2 / 12)
 
 
-def test_a_mass_that_is_none_is_not_kept(of):
+def test_negative_mass_of_file_is_replaced(of):
     assert of(f"{INERTIAL.format(-2)}<visual>{BOX}</visual>").basis == "density"
 
 
-def test_a_density_wins_over_the_file_and_a_mass_over_both(of):
+def test_given_mass_overrides_density_and_density_overrides_file(of):
     content = f"{INERTIAL.format(2)}<visual>{BOX}</visual>"
     assert of(content, density=500.0).properties.mass == pytest.approx(4.0)
     assert of(content, density=500.0, mass=7.0).properties.mass == pytest.approx(7.0)
 
 
-def test_collisions_come_first_unless_visuals_are_asked_for(of):
+def test_collision_shapes_are_preferred_unless_visuals_are_requested(of):
     content = f"<visual>{BOX}</visual><collision>{BALL}</collision>"
     assert of(content).kind == "collision"
     assert of(content, prefer="visual").kind == "visual"
     assert of(f"<collision>{BALL}</collision>", prefer="visual").kind == "collision"
 
 
-def test_several_shapes_are_one_body(of):
+def test_several_shapes_combine_to_one_body(of):
     found = of(
         f'<visual><origin xyz="0 0 0.1"/>{BOX}</visual><visual><origin xyz="0 0 -0.1"/>{BOX}</visual>', density=100.0
     )
@@ -67,18 +67,18 @@ def test_several_shapes_are_one_body(of):
     assert found.properties.inertia[0, 0] == pytest.approx(1.6 * (0.04 + 0.16) / 12)
 
 
-def test_a_link_without_shapes_has_nothing(of):
+def test_link_without_shapes_has_no_properties(of):
     found = of("")
     assert found.properties is None
     assert found.kind is None
 
 
-def test_a_capsule(of):
+def test_capsule_has_mass_of_cylinder_and_sphere(of):
     found = of('<collision><geometry><capsule radius="0.1" length="0.2"/></geometry></collision>', density=1.0)
     assert found.properties.mass == pytest.approx(np.pi * 0.01 * 0.2 + 4 / 3 * np.pi * 0.001)
 
 
-def test_an_open_mesh_is_its_hull_and_says_so(of, tmp_path):
+def test_open_mesh_is_replaced_by_convex_hull_with_note(of, tmp_path):
     (tmp_path / "open.obj").write_text(TETRAHEDRON)
     found = of('<collision><geometry><mesh filename="open.obj" scale="1 -2 3"/></geometry></collision>', density=1.0)
     assert found.properties.mass == pytest.approx(1.0)
@@ -86,7 +86,7 @@ def test_an_open_mesh_is_its_hull_and_says_so(of, tmp_path):
     assert found.notes == ("the collision mesh 'open.obj' is not watertight: its convex hull is used",)
 
 
-def test_a_mesh_that_is_missing_leaves_the_visuals(of):
+def test_missing_collision_mesh_falls_back_to_visuals(of):
     found = of(f'<visual>{BOX}</visual><collision><geometry><mesh filename="none.stl"/></geometry></collision>')
     assert found.kind == "visual"
     assert found.notes[0].startswith("a collision mesh is left out: there is no mesh file")

@@ -39,7 +39,7 @@ def write(folder, kind):
 
 
 @pytest.mark.parametrize("kind", ["stl", "obj", "glb"])
-def test_nothing_large_stays_of_a_file_that_was_read(kind, tmp_path):
+def test_reading_mesh_releases_memory_of_file(kind, tmp_path):
     """Counted without the garbage collector, which comes seldom for so few objects, however large they are."""
     path = write(tmp_path, kind)
     read_mesh(path)
@@ -61,7 +61,7 @@ def _bytes_of_meshes():
 
 
 @pytest.mark.parametrize("kind", ["stl", "stl_ascii", "obj", "dae", "glb", "gltf"])
-def test_every_format_gives_the_same_body(kind, tmp_path):
+def test_all_mesh_formats_give_same_solid(kind, tmp_path):
     mesh = read_mesh(write(tmp_path, kind))
     assert mesh.is_watertight
     assert mesh.solid.mass == pytest.approx(CONE.volume, rel=1e-5)
@@ -70,12 +70,12 @@ def test_every_format_gives_the_same_body(kind, tmp_path):
     assert np.allclose(mesh.bounds, CONE.bounds, atol=1e-6)
 
 
-def test_endings_in_capitals_are_endings(tmp_path):
+def test_uppercase_file_extension_is_recognized(tmp_path):
     write(tmp_path, "stl").rename(tmp_path / "CONE.STL")
     assert len(read_mesh(tmp_path / "CONE.STL").faces) == len(CONE.faces)
 
 
-def test_the_unit_of_collada_is_applied_and_its_up_axis_is_not(tmp_path):
+def test_collada_unit_is_applied_and_up_axis_is_ignored(tmp_path):
     path = write(tmp_path, "dae")
     text = path.read_text(encoding="utf-8")
     assert "<up_axis>Y_UP</up_axis>" in text
@@ -84,13 +84,13 @@ def test_the_unit_of_collada_is_applied_and_its_up_axis_is_not(tmp_path):
     assert np.allclose(read_mesh(path).bounds, CONE.bounds * 0.001, atol=1e-9)
 
 
-def test_the_kinect_of_mbot_is_as_large_as_a_kinect():
+def test_kinect_mesh_of_mbot_has_size_of_kinect():
     mesh = read_mesh(REPOSITORY / "robots" / "my_robot_description" / "meshes" / "kinect.dae")
     assert mesh.is_watertight
     assert np.allclose(mesh.bounds.size, (0.28, 0.07, 0.046), atol=1e-3)
 
 
-def test_parts_of_a_scene_stand_where_its_nodes_put_them(tmp_path):
+def test_scene_nodes_transform_their_meshes(tmp_path):
     scene = trimesh.Scene()
     box = trimesh.creation.box((1, 1, 1))
     scene.add_geometry(box, transform=trimesh.transformations.translation_matrix((5, 0, 0)))
@@ -104,14 +104,14 @@ def test_parts_of_a_scene_stand_where_its_nodes_put_them(tmp_path):
 
 
 @pytest.mark.parametrize("scale", [(2, 2, 2), (0.001, 0.001, 0.001), (1, -1, 1), (-1, -2, -3)])
-def test_scaling_scales_the_solid(scale, tmp_path):
+def test_mesh_scale_scales_solid(scale, tmp_path):
     mesh = read_mesh(write(tmp_path, "stl")).scaled(scale)
     assert mesh.is_watertight
     assert mesh.solid.mass == pytest.approx(CONE.volume * abs(np.prod(scale)), rel=1e-5)
     assert np.allclose(mesh.solid.center, CONE.center_mass * scale, atol=1e-5)
 
 
-def test_an_open_mesh_is_taken_as_its_hull(tmp_path):
+def test_open_mesh_is_replaced_by_convex_hull(tmp_path):
     ball = trimesh.creation.icosphere(2)
     ball.update_faces(np.arange(len(ball.faces)) > 3)
     (tmp_path / "open.stl").write_bytes(ball.export(file_type="stl"))
@@ -120,7 +120,7 @@ def test_an_open_mesh_is_taken_as_its_hull(tmp_path):
     assert mesh.solid.mass == pytest.approx(trimesh.creation.icosphere(2).volume, rel=1e-2)
 
 
-def test_a_flat_mesh_has_no_mass(tmp_path):
+def test_flat_mesh_has_no_mass(tmp_path):
     (tmp_path / "flat.obj").write_text("v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n")
     assert read_mesh(tmp_path / "flat.obj").solid.mass == 0
 
@@ -142,7 +142,7 @@ def test_a_flat_mesh_has_no_mass(tmp_path):
         ("folder.stl", b"/", "INR103"),
     ],
 )
-def test_what_cannot_be_read_says_why(name, data, code, tmp_path):
+def test_unreadable_mesh_error_names_cause(name, data, code, tmp_path):
     path = tmp_path / name
     if data == b"/":
         path.mkdir()
@@ -154,7 +154,7 @@ def test_what_cannot_be_read_says_why(name, data, code, tmp_path):
     assert caught.value.diagnostics[0].hint
 
 
-def test_a_gltf_reads_nothing_outside_its_folder(tmp_path):
+def test_gltf_reads_no_file_outside_its_folder(tmp_path):
     inner = tmp_path / "inner"
     inner.mkdir()
     path = write(inner, "gltf")
@@ -165,7 +165,7 @@ def test_a_gltf_reads_nothing_outside_its_folder(tmp_path):
         read_mesh(path)
 
 
-def test_a_library_reads_each_file_once_and_finds_it_from_the_file_it_is_named_in(tmp_path):
+def test_mesh_library_reads_file_once_and_resolves_relative_path(tmp_path):
     (tmp_path / "meshes").mkdir()
     (tmp_path / "urdf").mkdir()
     write(tmp_path / "meshes", "stl")
@@ -183,7 +183,7 @@ def test_a_library_reads_each_file_once_and_finds_it_from_the_file_it_is_named_i
         assert caught.value.diagnostics[0].code == "INR101"
 
 
-def test_a_mesh_that_has_changed_is_read_again_and_one_that_has_not_is_kept_for_the_next_description(tmp_path):
+def test_mesh_library_rereads_changed_mesh_only(tmp_path):
     path = write(tmp_path, "stl")
     finder = PackageFinder(start=tmp_path)
     first = MeshLibrary(finder, tmp_path).read(path)

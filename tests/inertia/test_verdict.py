@@ -52,17 +52,17 @@ def inertial(mass=4.0, moment=0.016, origin="0 0 0"):
             "its moments are 1/100 of the moments of a solid with its shapes",
         ),
         (inertial(moment=0.064), Grade.ROUGH, "its moments are 4 times the moments of a solid with its shapes"),
-        (inertial(origin="0 0.5 0"), Grade.DOUBTFUL, "its centre of mass is 500 mm from the centre of its shapes"),
-        (inertial(origin="0 0.05 0"), Grade.ROUGH, "its centre of mass is 50 mm from the centre of its shapes"),
+        (inertial(origin="0 0.5 0"), Grade.DOUBTFUL, "its center of mass is 500 mm from the center of its shapes"),
+        (inertial(origin="0 0.05 0"), Grade.ROUGH, "its center of mass is 50 mm from the center of its shapes"),
         ("", Grade.MISSING, "it has no <inertial>"),
     ],
 )
-def test_a_ball(tmp_path, block, grade, words):
+def test_inertial_of_ball_is_graded(tmp_path, block, grade, words):
     verdict = verdict_on(tmp_path, block)
     assert (verdict.grade, verdict.reason) == (grade, words)
 
 
-def test_the_worst_is_said_and_sorts_first(tmp_path):
+def test_worst_grade_is_reported_and_sorts_first(tmp_path):
     verdict = verdict_on(tmp_path, inertial(mass=-1, moment=16))
     assert verdict.grade is Grade.IMPOSSIBLE
     worse = verdict_on(tmp_path, inertial(moment=16))
@@ -71,20 +71,20 @@ def test_the_worst_is_said_and_sorts_first(tmp_path):
     assert sorted([fine, bad, worse, verdict], key=lambda each: each.sort_key) == [verdict, worse, bad, fine]
 
 
-def test_a_mass_of_next_to_nothing_in_a_large_shape_has_a_density_of_zero(tmp_path):
+def test_tiny_mass_in_large_shape_has_zero_density(tmp_path):
     large = BALL.replace("0.1", "1e5")
     verdict = verdict_on(tmp_path, inertial(mass=1e-320, moment=1.0), large)
     assert (verdict.grade, verdict.density) == (Grade.DOUBTFUL, 0.0)
     assert verdict.reason.startswith("it is lighter than air")
 
 
-def test_a_part_of_the_shapes_tells_nothing(tmp_path):
+def test_mass_is_unjudged_if_mesh_is_missing(tmp_path):
     shapes = BALL + '<visual><geometry><mesh filename="package://nowhere/a.stl"/></geometry></visual>'
     verdict = verdict_on(tmp_path, inertial(mass=400), shapes)
     assert (verdict.grade, verdict.density) == (Grade.UNJUDGED, None)
 
 
-def test_a_mass_may_be_that_of_a_neighbour_without_one(tmp_path):
+def test_mass_is_unjudged_if_fixed_neighbor_has_no_mass(tmp_path):
     joint = '<joint name="f" type="fixed"><parent link="{}"/><child link="{}"/></joint><link name="{}">{}</link>'
     through_a_frame = joint.format("a", "frame", "frame", "") + joint.format("frame", "cover", "cover", BALL).replace(
         '"f"', '"g"'
@@ -94,7 +94,7 @@ def test_a_mass_may_be_that_of_a_neighbour_without_one(tmp_path):
     assert verdict_on(tmp_path, inertial(mass=400), more=heavy).grade is Grade.IMPOSSIBLE
 
 
-def test_a_link_without_an_inertial_that_needs_none(tmp_path):
+def test_link_fixed_to_link_with_mass_needs_no_inertial(tmp_path):
     joint = '<joint name="f" type="fixed"><parent link="a"/><child link="b"/></joint><link name="b">{}</link>'
     verdict = verdict_on(tmp_path, "", more=joint.format(inertial()))
     assert verdict.reason == "it is fixed to 'b', which has a mass"

@@ -41,18 +41,18 @@ def write(tmp_path):
     return run
 
 
-def test_the_block():
+def test_inertial_block_is_formatted():
     assert inertial_block(CUBE) == BLOCK
 
 
-def test_numbers_that_are_rounding_are_zero():
+def test_rounding_errors_are_written_as_zero():
     body = shape_properties(Box((0.1, 0.2, 0.3)), 1000.0).moved(Pose((1e-12, -1e-17, 0.5), (1e-13, 0, 0)))
     assert 'xyz="0 0 0.5"' in inertial_block(body)
     assert 'ixy="0" ixz="0"' in inertial_block(body)
     assert "-0" not in inertial_block(MassProperties(1.0))
 
 
-def test_a_new_block_takes_the_indentation_of_the_link(write):
+def test_new_inertial_has_indentation_of_link(write):
     _, text = write(
         '<robot name="r">\n    <link name="a"> <!-- the body -->\n        <visual/>\n    </link>\n</robot>\n'
     )
@@ -67,19 +67,19 @@ def test_a_new_block_takes_the_indentation_of_the_link(write):
     )
 
 
-def test_a_link_in_one_line_is_opened_up(write):
+def test_single_line_link_is_expanded(write):
     _, text = write('<robot name="r">\n  <link name="a"><visual/></link>\n</robot>\n')
     assert '<link name="a">\n    <inertial>\n      <origin' in text
     assert "    </inertial>\n    <visual/></link>" in text
 
 
-def test_windows_line_ends_and_byte_order_marks_stay(write):
+def test_windows_line_endings_and_byte_order_mark_are_kept(write):
     _, text = write(b'\xef\xbb\xbf<robot name="r">\r\n  <link name="a">\r\n    <visual/>\r\n  </link>\r\n</robot>\r\n')
     assert text.startswith("\ufeff<robot")
     assert text.count("\n") == text.count("\r\n") == 10
 
 
-def test_an_inertial_that_is_there_keeps_its_form_and_comments(write):
+def test_existing_inertial_keeps_format_and_comments(write):
     _, text = write(
         '<robot name="r">\n<link name="a">\n'
         "  <inertial> <!-- from CAD -->\n"
@@ -98,7 +98,7 @@ def test_an_inertial_that_is_there_keeps_its_form_and_comments(write):
     )
 
 
-def test_what_an_inertial_lacks_is_added(write):
+def test_missing_elements_of_inertial_are_added(write):
     _, text = write(
         '<robot name="r">\n<link name="a">\n  <inertial>\n    <mass value="3"/>\n    <inertia/>\n  </inertial>\n'
         "</link>\n</robot>\n"
@@ -108,7 +108,7 @@ def test_what_an_inertial_lacks_is_added(write):
     assert '  <inertial>\n    <origin xyz="0 0 0" rpy="0 0 0"/>\n' in text
 
 
-def test_numbers_that_say_the_same_stay_as_they_are_written(write):
+def test_equal_numbers_keep_their_notation(write):
     _, text = write(
         '<robot name="r"><link name="a"><inertial><origin xyz="0.0 0.0 0.0"/><mass value="1.000e+00"/>'
         '<inertia ixx="6.666667e-3" ixy="-0.0" ixz="0" iyy="0.5" iyz="0" izz="1"/></inertial></link></robot>'
@@ -117,7 +117,7 @@ def test_numbers_that_say_the_same_stay_as_they_are_written(write):
     assert '<inertia ixx="6.666667e-3" ixy="-0.0" ixz="0" iyy="0.00666667" iyz="0" izz="0.00666667"/>' in text
 
 
-def test_a_quaternion_gives_way(write):
+def test_quaternion_of_inertial_origin_is_removed(write):
     _, text = write(
         '<robot name="r" version="1.1"><link name="a"><inertial><origin xyz="1 0 0" quat_xyzw="1 0 0 0"/>'
         '<mass value="3"/><inertia ixx="1" ixy="0" ixz="0" iyy="1" iyz="0" izz="1"/></inertial></link></robot>'
@@ -125,7 +125,7 @@ def test_a_quaternion_gives_way(write):
     assert '<origin xyz="0 0 0" />' in text
 
 
-def test_several_links_of_one_file(write):
+def test_several_links_of_one_file_are_written(write):
     joint = '<joint name="j" type="fixed"><parent link="a"/><child link="b"/></joint>'
     links = [f'<link name="{name}">\n  <visual/>\n</link>\n' for name in "ab"]
     text = f'<robot name="r">\n{joint.join(links)}</robot>'
@@ -134,7 +134,7 @@ def test_several_links_of_one_file(write):
     assert sorted(written.links) == ["a", "b"]
 
 
-def test_a_plain_link_of_a_xacro_file_is_written(write):
+def test_plain_link_of_xacro_file_is_written(write):
     written, text = write(
         f'{XACRO}\n  <xacro:arg name="p" default="/"/>\n  <link name="a">\n'
         '    <visual><geometry><box size="1 1 1"/></geometry></visual>\n  </link>\n</robot>',
@@ -161,7 +161,7 @@ REFUSED = {
 
 
 @pytest.mark.parametrize("why", REFUSED, ids=["macro", "shape", "inertial", "part"])
-def test_what_xacro_writes_is_refused(write, why):
+def test_link_generated_by_xacro_is_refused(write, why):
     before = f"{XACRO}{REFUSED[why]}</robot>"
     written, text = write(before, name="r.xacro")
     assert written.refusals == {"a": why}
@@ -169,7 +169,7 @@ def test_what_xacro_writes_is_refused(write, why):
     assert text == before
 
 
-def test_a_file_that_was_included_is_written(write, tmp_path):
+def test_included_file_is_written(write, tmp_path):
     part = tmp_path / "part.xacro"
     part.write_text(f'{XACRO}\n  <link name="a">\n    <visual/>\n  </link>\n</robot>\n')
     written, text = write(f'{XACRO}<xacro:include filename="part.xacro"/></robot>', name="r.xacro")
@@ -178,7 +178,7 @@ def test_a_file_that_was_included_is_written(write, tmp_path):
     assert "<inertial>" not in text
 
 
-def test_a_place_that_makes_two_links_is_refused(write, tmp_path):
+def test_element_that_expands_to_two_links_is_refused(write, tmp_path):
     part = tmp_path / "part.xacro"
     part.write_text(f'{XACRO}<link name="$(eval n)"/></robot>'.replace("$(eval n)", "${n}"))
     joint = '<joint name="j" type="fixed"><parent link="a"/><child link="b"/></joint>'
@@ -187,7 +187,7 @@ def test_a_place_that_makes_two_links_is_refused(write, tmp_path):
     assert written.refusals == {"a": "its text in the file defines several links"}
 
 
-def test_a_file_that_changed_meanwhile_is_left_alone(tmp_path):
+def test_file_changed_since_reading_is_refused(tmp_path):
     path = tmp_path / "r.urdf"
     path.write_text('<robot name="r"><link name="a"/></robot>')
     robot = load(path)
@@ -199,12 +199,12 @@ def test_a_file_that_changed_meanwhile_is_left_alone(tmp_path):
     assert write_inertials(robot, {"a": CUBE}).refusals == {"a": "it is not written in a file"}
 
 
-def test_a_text_has_no_file():
+def test_description_without_file_is_refused():
     robot = load('<robot name="r"><link name="a"/></robot>')
     assert write_inertials(robot, {"a": CUBE}).refusals == {"a": "it is not written in a file"}
 
 
-def test_other_encodings_are_left_alone(tmp_path):
+def test_file_that_is_not_utf_8_is_refused(tmp_path):
     path = tmp_path / "r.urdf"
     path.write_bytes(
         '<?xml version="1.0" encoding="latin-1"?><robot name="é"><link name="a"/></robot>'.encode("latin-1")
@@ -212,7 +212,7 @@ def test_other_encodings_are_left_alone(tmp_path):
     assert write_inertials(load(path), {"a": CUBE}).refusals == {"a": "its file is not UTF-8"}
 
 
-def test_a_file_that_cannot_be_written_is_an_error(tmp_path, monkeypatch):
+def test_unwritable_file_is_an_error(tmp_path, monkeypatch):
     path = tmp_path / "r.urdf"
     path.write_text('<robot name="r">\n<link name="a">\n</link></robot>')
     robot = load(path)

@@ -64,7 +64,7 @@ def yaw(pose: Transform) -> float:
 TWO_WHEELS = "Visuals only, two wheels and two balls"
 
 
-def test_a_robot_of_visuals_only_drives_one_metre_straight():
+def test_robot_with_visuals_only_drives_one_meter_straight():
     simulation, drive = standing(TWO_WHEELS)
     sides = motors(simulation, drive)
     driven(simulation, sides, 0.5 / drive.radius, 0.5 / drive.radius)
@@ -76,7 +76,7 @@ def test_a_robot_of_visuals_only_drives_one_metre_straight():
     assert end[2] == pytest.approx(0.11, abs=1e-3)
 
 
-def test_it_turns_on_the_spot_by_the_distance_of_its_wheels():
+def test_turn_in_place_follows_wheel_separation():
     simulation, drive = standing(TWO_WHEELS)
     sides = motors(simulation, drive)
     rate = 1.0 * drive.separation / 2 / drive.radius
@@ -87,7 +87,7 @@ def test_it_turns_on_the_spot_by_the_distance_of_its_wheels():
 
 
 @pytest.mark.parametrize("title", ["Four wheels", "Axes that point to the right, on one side and as a default"])
-def test_equal_velocities_drive_forward(title):
+def test_equal_wheel_velocities_drive_forward(title):
     simulation, drive = standing(title)
     sides = motors(simulation, drive)
     driven(simulation, sides, 0.3 / drive.radius, 0.3 / drive.radius)
@@ -96,7 +96,7 @@ def test_equal_velocities_drive_forward(title):
     assert y == pytest.approx(0.0, abs=1e-3)
 
 
-def test_a_robot_stands_still_on_what_was_inferred():
+def test_robot_stands_still_on_inferred_wheels():
     simulation, _ = standing(TWO_WHEELS)
     simulation.advance(2 * SECOND)
     x, y, z = simulation.model_pose("r")[:3]

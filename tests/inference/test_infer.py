@@ -42,7 +42,7 @@ def inferred(description, folder: Path = Path(), **options):
 FOUR = (wheel("a", 0.2, 0.2), wheel("b", 0.2, -0.2), wheel("c", -0.2, 0.2), wheel("d", -0.2, -0.2))
 
 
-def test_named_wheels_drive_and_the_others_roll_along():
+def test_named_wheels_drive_and_other_wheels_roll_freely():
     found = inferred(robot(*FOUR), wheels=["c_joint", "d"])
     assert found.drive is not None
     assert found.drive.kind == "differential"
@@ -50,13 +50,13 @@ def test_named_wheels_drive_and_the_others_roll_along():
     assert found.held_joints == ()
 
 
-def test_the_kind_that_the_user_asks_for_is_taken():
+def test_requested_drive_kind_is_inferred():
     found = inferred(robot(*FOUR), kind="mecanum")
     assert found.drive is not None
     assert found.drive.kind == "mecanum"
 
 
-def test_what_the_user_asks_for_goes_before_the_plugin_of_the_file():
+def test_requested_drive_kind_overrides_plugin_of_file():
     plugin = '<gazebo><plugin name="d" filename="libgazebo_ros_planar_move.so"/></gazebo>'
     own = inferred(robot(*FOUR, plugin))
     assert own.drive is None
@@ -65,7 +65,7 @@ def test_what_the_user_asks_for_goes_before_the_plugin_of_the_file():
     assert asked.drive.kind == "skid"
 
 
-def test_joints_are_held_where_the_user_says_that_nothing_rolls():
+def test_kind_joints_gives_joint_drive_without_fixed_base():
     found = inferred(robot(*FOUR), kind="joints")
     assert found.drive is not None
     assert found.drive.kind == "joints"
@@ -82,13 +82,13 @@ def test_joints_are_held_where_the_user_says_that_nothing_rolls():
         ({"wheels": ["a", "b"], "kind": "skid"}, "DRIVE211", "needs 2 pairs of wheels"),
     ],
 )
-def test_what_cannot_be_done_is_an_error(options, code, words):
+def test_impossible_drive_options_are_rejected(options, code, words):
     with pytest.raises(LinkwrightError, match=words) as error:
         inferred(robot(*FOUR), **options)
     assert error.value.diagnostics[0].code == code
 
 
-def test_a_joint_that_turns_no_wheel_is_told_with_its_place():
+def test_joint_without_wheel_is_reported_with_location():
     square = '<collision><geometry><box size="0.1 0.03 0.1"/></geometry></collision>'
     with pytest.raises(LinkwrightError, match="'b_joint' does not turn a wheel") as error:
         inferred(robot(FOUR[0], wheel("b", 0.2, -0.2, shapes=square)), wheels=["a", "b"])
@@ -114,7 +114,7 @@ def _saved(folder: Path, *parts: str):
     return load(path)
 
 
-def test_a_round_mesh_is_a_wheel_and_touches_as_a_cylinder(tyre):
+def test_round_mesh_becomes_wheel_with_cylinder_collision(tyre):
     description = _saved(tyre, wheel("a", 0, 0.2, shapes=MESH), wheel("b", 0, -0.2, shapes=MESH))
     found = inferred(description, tyre)
     assert found.drive is not None
@@ -127,20 +127,20 @@ def test_a_round_mesh_is_a_wheel_and_touches_as_a_cylinder(tyre):
     assert [float(part) for part in collision.first("origin").attributes["xyz"].split()] == pytest.approx([0, 0.01, 0])
 
 
-def test_a_square_mesh_is_no_wheel(tmp_path):
+def test_square_mesh_is_not_a_wheel(tmp_path):
     trimesh.creation.box((0.16, 0.04, 0.16)).export(tmp_path / "tyre.stl")
     description = _saved(tmp_path, wheel("a", 0, 0.2, shapes=MESH), wheel("b", 0, -0.2, shapes=MESH))
     assert inferred(description, tmp_path).drive is None
 
 
-def test_a_mesh_that_is_missing_is_why_nothing_is_told(tmp_path):
+def test_missing_wheel_mesh_is_reported(tmp_path):
     description = _saved(tmp_path, wheel("a", 0, 0.2, shapes=MESH), wheel("b", 0, -0.2, shapes=MESH))
     found = inferred(description, tmp_path)
     assert found.drive is None
     assert "mesh 'tyre.stl' of link 'a', which may be a wheel, cannot be read" in found.diagnostics[-1].message
 
 
-def test_a_mesh_of_very_many_corners_becomes_a_box(tmp_path):
+def test_mesh_with_many_vertices_becomes_box(tmp_path):
     trimesh.creation.icosphere(subdivisions=6, radius=0.1).export(tmp_path / "ball.stl")
     path = tmp_path / "r.urdf"
     path.write_text(
@@ -153,7 +153,7 @@ def test_a_mesh_of_very_many_corners_becomes_a_box(tmp_path):
     assert [float(part) for part in box.attributes["size"].split()] == pytest.approx([0.4, 0.2, 0.2], rel=1e-3)
 
 
-def test_an_inferred_mass_stays_within_bounds():
+def test_inferred_mass_is_limited():
     box = (
         '<robot name="r"><link name="a"><visual><geometry><box size="{0} {0} {0}"/></geometry></visual></link></robot>'
     )

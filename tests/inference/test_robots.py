@@ -48,12 +48,12 @@ def shown(found: Inference) -> str:
 
 
 @pytest.mark.parametrize(("title", "robot", "expected"), CASES, ids=[case[0] for case in CASES])
-def test_what_is_inferred_is_what_the_page_says(title, robot, expected):
+def test_inference_matches_markdown_case(title, robot, expected):
     assert shown(inferred(robot)) == expected
 
 
 @pytest.mark.parametrize("robot", [case[1] for case in CASES], ids=[case[0] for case in CASES])
-def test_a_completed_robot_lacks_nothing(robot):
+def test_completed_robot_needs_no_inference(robot):
     document, found = read_and_inferred(robot)
     before = write(document)
     text = write(complete_description(document, found))
@@ -69,7 +69,7 @@ def test_a_completed_robot_lacks_nothing(robot):
 
 
 @pytest.mark.parametrize("robot", [case[1] for case in CASES], ids=[case[0] for case in CASES])
-def test_what_is_added_has_a_place_in_the_users_file(robot):
+def test_inferred_elements_have_source_locations(robot):
     document, found = read_and_inferred(robot)
     assert all(diagnostic.span is not None and diagnostic.source is not None for diagnostic in found.diagnostics)
     assert all(each.source is not None for each in complete_description(document, found).root.walk())

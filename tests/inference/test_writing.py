@@ -32,7 +32,7 @@ def write(tmp_path):
 
 
 @pytest.mark.parametrize("robot", [case[1] for case in CASES], ids=[case[0] for case in CASES])
-def test_the_file_says_what_the_completed_robot_has(write, tmp_path, robot):
+def test_written_file_describes_completed_robot(write, tmp_path, robot):
     written, expected, text = write(robot)
     assert not written.refused
     again = load(tmp_path / "r.urdf")
@@ -45,7 +45,7 @@ def test_the_file_says_what_the_completed_robot_has(write, tmp_path, robot):
             assert line in kept, "lines stay, in their order"
 
 
-def test_new_elements_take_the_indentation_and_line_ends_of_the_file(write):
+def test_new_elements_have_indentation_and_line_endings_of_file(write):
     _, _, text = write(
         '<robot name="r">\r\n   <link name="base_link">\r\n'
         '      <visual><geometry><sphere radius="0.1"/></geometry></visual>\r\n'
@@ -56,13 +56,13 @@ def test_new_elements_take_the_indentation_and_line_ends_of_the_file(write):
     assert text.endswith("      </collision>\r\n   </link>\r\n</robot>\r\n")
 
 
-def test_a_link_without_content_is_opened(write):
+def test_empty_link_element_is_expanded(write):
     _, _, text = write('<robot name="r">\n  <link name="a" />\n</robot>\n')
     assert '  <link name="a">\n    <inertial>\n' in text
     assert "    </inertial>\n  </link>\n</robot>\n" in text
 
 
-def test_what_a_macro_writes_is_refused_and_the_rest_is_written(write):
+def test_link_of_macro_is_refused_and_other_links_are_written(write):
     visual = '<visual><geometry><box size="0.1 0.1 0.1"/></geometry></visual>'
     written, _, text = write(
         f'{XACRO}\n<xacro:macro name="part" params="name"><link name="${{name}}">{visual}</link></xacro:macro>\n'
@@ -77,7 +77,7 @@ def test_what_a_macro_writes_is_refused_and_the_rest_is_written(write):
     assert written.refused[0].span is not None
 
 
-def test_a_drive_of_joints_whose_names_are_expressions_is_refused(write):
+def test_drive_with_joint_names_from_expressions_is_refused(write):
     wheel = (
         '<link name="{side}"><collision><origin rpy="1.5708 0 0"/>'
         '<geometry><cylinder radius="0.1" length="0.05"/></geometry></collision></link>'
@@ -96,7 +96,7 @@ def test_a_drive_of_joints_whose_names_are_expressions_is_refused(write):
     assert text.count("<inertial>") == 3
 
 
-def test_a_file_that_has_changed_meanwhile_is_left_alone(tmp_path):
+def test_file_changed_since_reading_is_refused(tmp_path):
     path = tmp_path / "r.urdf"
     path.write_text('<robot name="r"><link name="a"/></robot>')
     description = examine(path)

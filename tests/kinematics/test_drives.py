@@ -15,25 +15,25 @@ ANGLES = some.floats(-1.0, 1.0)
 
 
 @given(SPEEDS, SPEEDS)
-def test_a_differential_drive_measures_what_it_was_told(forward, turning):
+def test_differential_drive_round_trip_keeps_motion(forward, turning):
     drive = DifferentialDrive(0.38, 0.06, 0.061)
     assert drive.motion(*drive.wheel_speeds(forward, turning)) == pytest.approx((forward, turning), abs=1e-12)
 
 
-def test_each_wheel_of_a_differential_drive_rolls_as_fast_as_it_moves():
+def test_differential_drive_wheel_speeds_match_ground_speed():
     left, right = DifferentialDrive(0.4, 0.1, 0.2).wheel_speeds(1.0, 2.0)
     assert (left, right) == pytest.approx(((1.0 - 2.0 * 0.2) / 0.1, (1.0 + 2.0 * 0.2) / 0.2))
 
 
 @given(SPEEDS, SPEEDS, SPEEDS)
-def test_mecanum_wheels_measure_what_they_were_told(forward, sideways, turning):
+def test_mecanum_drive_round_trip_keeps_motion(forward, sideways, turning):
     drive = MecanumDrive(0.5, 0.1)
     result = drive.wheel_speeds(forward, sideways, turning)
     assert drive.motion(*result) == pytest.approx((forward, sideways, turning), abs=1e-12)
 
 
 @given(SPEEDS, SPEEDS, SPEEDS)
-def test_a_mecanum_wheel_turns_as_its_roller_lets_the_ground_pass(forward, sideways, turning):
+def test_mecanum_wheel_speeds_match_roller_geometry(forward, sideways, turning):
     """A wheel at (x, y) moves with (forward - turning y, sideways + turning x); its roller takes up what is across."""
     speeds = MecanumDrive(0.3 + 0.2, 0.1).wheel_speeds(forward, sideways, turning)
     for (x, y), speed in zip(((0.3, 0.2), (0.3, -0.2), (-0.3, 0.2), (-0.3, -0.2)), speeds, strict=True):
@@ -45,7 +45,7 @@ CAR = CarDrive(wheelbase=1.2, traction_track=0.8, steering_track=0.7, radius=0.1
 
 
 @given(some.floats(0.1, 3.0), some.floats(-1.0, 1.0))
-def test_a_car_measures_what_it_was_told(forward, turning):
+def test_ackermann_drive_round_trip_keeps_motion(forward, turning):
     angle = CAR.steering_angle(forward, turning)
     measured = CAR.middle_angle(*CAR.steering_angles(angle))
     assert measured == pytest.approx(angle, abs=1e-12)
@@ -55,7 +55,7 @@ def test_a_car_measures_what_it_was_told(forward, turning):
 
 
 @given(ANGLES)
-def test_the_axes_of_all_wheels_of_a_car_meet_in_one_point(angle):
+def test_ackermann_wheel_axes_meet_in_one_point(angle):
     left, right = CAR.steering_angles(angle)
     curvature = tan(angle) / CAR.wheelbase
     for wheel, y in ((left, 0.35), (right, -0.35)):
@@ -63,24 +63,24 @@ def test_the_axes_of_all_wheels_of_a_car_meet_in_one_point(angle):
 
 
 @given(SPEEDS, ANGLES)
-def test_the_wheels_of_a_car_roll_on_circles_about_that_point(forward, angle):
+def test_ackermann_wheels_roll_on_concentric_circles(forward, angle):
     left, right = CAR.wheel_speeds(forward, angle)
     turning = forward * tan(angle) / CAR.wheelbase
     assert (left * 0.15, right * 0.15) == pytest.approx((forward - turning * 0.4, forward + turning * 0.4), abs=1e-9)
 
 
-def test_a_car_that_stands_steers_straight():
+def test_stationary_ackermann_drive_steers_straight():
     assert CAR.steering_angle(0.0, 1.0) == 0.0
 
 
 @given(SPEEDS, SPEEDS)
-def test_a_tricycle_measures_what_it_was_told(forward, turning):
+def test_tricycle_drive_round_trip_keeps_motion(forward, turning):
     drive = TricycleDrive(1.3, 0.2)
     speed, angle = drive.wheel(forward, turning)
     assert drive.motion(speed, angle) == pytest.approx((forward, turning), abs=1e-9)
     assert abs(speed) * 0.2 == pytest.approx(hypot(forward, turning * 1.3), abs=1e-9)
 
 
-def test_a_tricycle_turns_on_the_spot_with_its_wheel_across():
+def test_tricycle_turns_in_place_with_wheel_sideways():
     assert TricycleDrive(1.3, 0.2).wheel(0.0, -1.0) == pytest.approx((1.3 / 0.2, -pi / 2.0))
     assert TricycleDrive(1.3, 0.2).wheel(1.0, 1.0)[1] == pytest.approx(atan(1.3))

@@ -14,27 +14,27 @@ STEP = 0.01
 WANTED = some.lists(some.floats(-5.0, 5.0), min_size=1, max_size=60)
 
 
-def followed(limiter: SpeedLimiter, wanted: list[float]) -> list[float]:
+def limited_speeds(limiter: SpeedLimiter, wanted: list[float]) -> list[float]:
     return [limiter.approach(each, STEP) for each in wanted]
 
 
 @given(WANTED)
-def test_no_bound_is_passed(wanted):
-    speeds = [0.0, *followed(SpeedLimiter((-1.0, 2.0), (-4.0, 3.0)), wanted)]
+def test_speed_and_acceleration_stay_within_limits(wanted):
+    speeds = [0.0, *limited_speeds(SpeedLimiter((-1.0, 2.0), (-4.0, 3.0)), wanted)]
     assert all(-1.0 <= speed <= 2.0 for speed in speeds)
     changes = [(after - before) / STEP for before, after in pairwise(speeds)]
     assert all(-4.0 - 1e-9 <= change <= 3.0 + 1e-9 for change in changes)
 
 
 @given(WANTED)
-def test_the_jerk_is_bounded(wanted):
-    speeds = [0.0, 0.0, *followed(SpeedLimiter(jerk=(-50.0, 40.0)), wanted)]
+def test_jerk_stays_within_limits(wanted):
+    speeds = [0.0, 0.0, *limited_speeds(SpeedLimiter(jerk=(-50.0, 40.0)), wanted)]
     changes = [(after - before) / STEP for before, after in pairwise(speeds)]
     jerks = [(after - before) / STEP for before, after in pairwise(changes)]
     assert all(-50.0 - 1e-6 <= jerk <= 40.0 + 1e-6 for jerk in jerks)
 
 
-def test_each_direction_has_its_own_bounds_for_speeding_up_and_braking():
+def test_reverse_motion_has_its_own_acceleration_limits():
     limiter = SpeedLimiter(acceleration=(-4.0, 2.0), reverse_acceleration=(-8.0, 10.0))
     assert limiter.approach(1.0, 0.1) == pytest.approx(0.2)
     assert limiter.approach(1.0, 0.1) == pytest.approx(0.4)
@@ -44,7 +44,7 @@ def test_each_direction_has_its_own_bounds_for_speeding_up_and_braking():
     assert limiter.approach(9.0, 0.1) == pytest.approx(-0.6)
 
 
-def test_braking_may_be_free_of_the_bound_of_the_jerk():
+def test_braking_can_ignore_jerk_limit():
     bound = SpeedLimiter(jerk=(-1.0, 1.0))
     free = SpeedLimiter(jerk=(-1.0, 1.0), brakes_freely=True)
     for limiter in (bound, free):
@@ -56,8 +56,8 @@ def test_braking_may_be_free_of_the_bound_of_the_jerk():
     assert bound.approach(speed, STEP) > speed
 
 
-def test_without_bounds_every_velocity_is_reached_at_once():
+def test_velocity_is_reached_at_once_without_limits():
     limiter = SpeedLimiter()
-    assert followed(limiter, [3.0, -7.0]) == [3.0, -7.0]
+    assert limited_speeds(limiter, [3.0, -7.0]) == [3.0, -7.0]
     limiter.restart()
     assert limiter.speed == 0.0

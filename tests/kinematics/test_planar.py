@@ -16,7 +16,7 @@ def placed(pose: PlanarPose) -> tuple[float, float, float]:
     return pose.x, pose.y, pose.yaw
 
 
-def test_wheels_that_roll_differently_go_round():
+def test_different_wheel_speeds_drive_in_circle():
     place, drive = PlanarPose(), DifferentialDrive(0.2, 0.05, 0.05)
     for _ in range(1000):
         way, turn = drive.motion(0.018, 0.022)
@@ -25,7 +25,7 @@ def test_wheels_that_roll_differently_go_round():
 
 
 @pytest.mark.parametrize("steps", [1, 7, 1000])
-def test_an_arc_has_no_error_of_integration(steps):
+def test_follow_arc_has_no_integration_error(steps):
     place = PlanarPose(yaw=0.3)
     for _ in range(steps):
         place.follow_arc(2.0 * 1.5 / steps, 0.0, 1.5 / steps)
@@ -33,7 +33,7 @@ def test_an_arc_has_no_error_of_integration(steps):
     assert placed(place) == pytest.approx(expected, abs=1e-12)
 
 
-def test_a_full_circle_ends_where_it_began_forward_or_sideways():
+def test_full_circle_returns_to_start_forward_and_sideways():
     for forward, sideways in ((1.0, 0.0), (0.0, 1.0), (0.6, -0.8)):
         place = PlanarPose(1.0, 2.0, 0.5)
         for _ in range(12):
@@ -42,7 +42,7 @@ def test_a_full_circle_ends_where_it_began_forward_or_sideways():
 
 
 @given(*[some.floats(-1.0, 1.0)] * 3)
-def test_an_arc_is_what_many_small_steps_come_to(forward, sideways, turn):
+def test_arc_matches_many_small_steps(forward, sideways, turn):
     arc, steps = PlanarPose(), PlanarPose()
     arc.follow_arc(forward, sideways, turn)
     for _ in range(200):
@@ -51,7 +51,7 @@ def test_an_arc_is_what_many_small_steps_come_to(forward, sideways, turn):
 
 
 @given(some.floats(-2e-6, 2e-6))
-def test_an_arc_that_is_almost_straight_is_exact_too(turn):
+def test_almost_straight_arc_is_exact(turn):
     place = PlanarPose()
     place.follow_arc(1.0, 0.0, turn)
     assert placed(place) == pytest.approx((1.0, turn / 2.0, turn), abs=1e-9)

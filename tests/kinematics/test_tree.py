@@ -55,7 +55,7 @@ def small(robot: Robot) -> bool:
 
 @settings(max_examples=60)
 @given(robots().filter(small), st.integers(0, 2**31))
-def test_frames_are_the_product_of_the_joints_above(robot, seed):
+def test_frames_are_product_of_parent_joint_transforms(robot, seed):
     tree = KinematicTree(robot)
     assert set(tree.link_names) == set(robot.links)
     positions = np.random.default_rng(seed).uniform(-2, 2, (3, len(tree.joint_names)))
@@ -82,42 +82,42 @@ ARM = load(
 class TestArm:
     tree = KinematicTree(ARM)
 
-    def test_names(self):
+    def test_joint_and_link_names(self):
         assert self.tree.joint_names == ("j0", "j1", "j3")
         assert self.tree.link_names == ("a", "b", "c", "d", "e")
 
-    def test_a_turned_and_slid_link(self):
+    def test_prismatic_joint_moves_along_rotated_axis(self):
         frames = self.tree.forward([pi / 2, 0.25, 0])
         # The slide goes along y of a frame that is turned by 90 degrees, so along -x; its axis counts as unit length.
         np.testing.assert_allclose(frames[self.tree.link_index("c")][:3, 3], [-0.25, 1, 1], atol=1e-12)
 
-    def test_a_diagonal_axis_turns_the_coordinate_axes_into_each_other(self):
+    def test_rotation_about_diagonal_axis_permutes_coordinate_axes(self):
         frames = self.tree.forward([0, 0, 2 * pi / 3])
         turn = frames[self.tree.link_index("d")][:3, :3].T @ frames[self.tree.link_index("e")][:3, :3]
         np.testing.assert_allclose(turn, [[0, 0, 1], [1, 0, 0], [0, 1, 0]], atol=1e-12)
 
-    def test_positions_by_name(self):
+    def test_positions_can_be_given_by_joint_name(self):
         by_name = self.tree.forward({"j1": 0.5})
         np.testing.assert_array_equal(by_name, self.tree.forward([0, 0.5, 0]))
         np.testing.assert_array_equal(self.tree.positions({"j3": 1}, default=0.5), [0.5, 0.5, 1])
 
-    def test_any_leading_axes(self):
+    def test_forward_broadcasts_leading_axes(self):
         assert self.tree.forward(np.zeros((2, 5, 3))).shape == (2, 5, 5, 4, 4)
         assert self.tree.forward(np.zeros((0, 3))).shape == (0, 5, 4, 4)
 
-    def test_more_configurations_than_a_block_holds(self):
+    def test_configurations_beyond_block_size(self):
         positions = np.random.default_rng(0).uniform(-1, 1, (1000, 3))
         many = self.tree.forward(positions)
         for place in (0, 383, 384, 999):
             np.testing.assert_allclose(many[place], self.tree.forward(positions[place]), atol=1e-12)
 
     @pytest.mark.parametrize("shape", [(2,), (4,), (5, 2), (), (3, 0)])
-    def test_wrong_shapes_are_printed(self, shape):
+    def test_wrong_array_shape_is_reported(self, shape):
         with pytest.raises(ValueError) as caught:
             self.tree.forward(np.zeros(shape))
         assert str(caught.value) == f"positions must have the shape (3,) or (configurations, 3), not {shape}"
 
-    def test_unknown_joint(self):
+    def test_unknown_joint_is_rejected(self):
         with pytest.raises(UnknownNameError) as caught:
             self.tree.forward({"j_3": 1})
         assert caught.value.name == "j_3"
@@ -126,12 +126,12 @@ class TestArm:
         assert (found.code, found.message) == ("KIN101", "the robot has no joint 'j_3'")
         assert "'j3'" in found.hint
 
-    def test_a_joint_that_does_not_move(self):
+    def test_position_of_fixed_joint_is_rejected(self):
         with pytest.raises(UnknownNameError) as caught:
             self.tree.positions({"j2": 1})
         assert caught.value.diagnostics[0].hint == "it is fixed and does not move"
 
-    def test_unknown_link(self):
+    def test_unknown_link_is_rejected(self):
         with pytest.raises(UnknownNameError, match="the robot has no link 'z'"):
             self.tree.link_index("z")
 
@@ -145,30 +145,30 @@ class TestMimic:
         )
     )
 
-    def test_chains_are_followed_to_their_end(self):
+    def test_mimic_chain_is_followed_to_source_joint(self):
         robot = load(self.CHAIN)
         tree = KinematicTree(robot)
         assert tree.joint_names == ("j0",)
         assert_frames(tree.forward([0.3]), robot, tree, {"j0": 0.3})
         assert_frames(tree.forward([[0.3]])[0], robot, tree, {"j0": 0.3})
 
-    def test_a_follower_has_no_position(self):
+    def test_position_of_mimic_joint_is_rejected(self):
         with pytest.raises(UnknownNameError) as caught:
             KinematicTree(load(self.CHAIN)).forward({"j2": 1})
         assert caught.value.diagnostics[0].code == "KIN102"
         assert caught.value.diagnostics[0].hint == "it mimics 'j0': give the position of that joint"
 
     @pytest.mark.parametrize("joint", ["j0", "nowhere"])
-    def test_a_joint_that_follows_nothing_moves_by_itself(self, joint):
+    def test_mimic_joint_without_valid_source_moves_independently(self, joint):
         robot = load(robot_text(chain(f'continuous:<mimic joint="{joint}"/>')))
         assert KinematicTree(robot).joint_names == ("j0",)
 
-    def test_a_circle(self):
+    def test_circular_mimic_joints_move_independently(self):
         robot = load(robot_text(chain('continuous:<mimic joint="j1"/>', 'continuous:<mimic joint="j0"/>')))
         assert KinematicTree(robot).joint_names == ("j0", "j1")
 
     @pytest.mark.parametrize("others", [(), ("continuous",)])
-    def test_a_follower_of_a_joint_that_stands_still(self, others):
+    def test_mimic_of_fixed_joint_stays_at_offset(self, others):
         follower = 'continuous:<axis xyz="0 0 1"/><mimic joint="j0" multiplier="3" offset="0.5"/>'
         robot = load(robot_text(chain("fixed", follower, *others)))
         tree = KinematicTree(robot)
@@ -181,29 +181,29 @@ class TestStill:
     """Joints that do not move."""
 
     @pytest.mark.parametrize("kind", ["fixed", "floating", "planar"])
-    def test_kinds(self, kind):
+    def test_fixed_floating_and_planar_joints_have_no_position(self, kind):
         tree = KinematicTree(load(robot_text(chain(f'{kind}:<origin xyz="1 2 3"/>'))))
         assert tree.joint_names == ()
         np.testing.assert_array_equal(tree.forward([])[1][:3, 3], [1, 2, 3])
         assert tree.forward(np.empty((4, 0))).shape == (4, 2, 4, 4)
 
-    def test_a_zero_axis(self):
+    def test_joint_without_axis_direction_has_no_position(self):
         tree = KinematicTree(load(robot_text(chain("continuous:<axis/>"))))
         assert tree.joint_names == ()
 
-    def test_one_link(self):
+    def test_forward_of_single_link_robot(self):
         tree = KinematicTree(load(robot_text('<link name="only"/>')))
         np.testing.assert_array_equal(tree.forward([]), [np.eye(4)])
         np.testing.assert_array_equal(tree.forward(np.empty((2, 0))), [[np.eye(4)]] * 2)
 
 
-def test_links_that_do_not_hang_from_the_root_are_left_out():
+def test_links_not_connected_to_root_are_omitted():
     joint = '<joint name="{0}{1}" type="fixed"><parent link="{0}"/><child link="{1}"/></joint>'
     links = '<link name="r"/><link name="a"/><link name="b"/>'
     assert KinematicTree(load(robot_text(links, joint.format("a", "b"), joint.format("b", "a")))).link_names == ("r",)
 
 
-def test_a_deep_chain():
+def test_deep_chain_is_supported():
     count = 400
     links = "".join(f'<link name="l{n}"/>' for n in range(count + 1))
     joints = "".join(

@@ -31,7 +31,7 @@ PARTS_XML = """<launch>
 """
 PARTS_PY = """def generate_launch_description():
     return LaunchDescription([
-        DeclareLaunchArgument("colour", default_value="red", description="Its colour", choices=["red", "blue"]),
+        DeclareLaunchArgument("color", default_value="red", description="Its color", choices=["red", "blue"]),
         *[DeclareLaunchArgument(axis, default_value="0.0") for axis in ["x", "y"]],
     ])
 """

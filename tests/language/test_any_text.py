@@ -33,7 +33,7 @@ CUT = st.tuples(st.integers(0, len(ROBOT)), st.integers(0, 40), st.text("<>/=\"'
 
 
 @given(CUT, st.sampled_from(["robot.xacro", "robot.urdf", "robot.world"]))
-def test_no_state_of_a_text_is_too_much(cut, name):
+def test_requests_survive_any_incomplete_description(cut, name):
     start, length, typed = cut
     text = ROBOT[:start] + typed + ROBOT[start + length :]
     offset = start + len(typed)
@@ -151,7 +151,7 @@ MARKS = st.text("<>/=\"' ${}()[],.:#\\n\n机a-@", max_size=8)
 
 
 @given(st.data())
-def test_no_state_of_a_text_with_its_own_format_is_too_much(data):
+def test_requests_survive_any_incomplete_text_of_own_formats(data):
     name, whole = data.draw(st.sampled_from(OWN))
     start, length = data.draw(st.integers(0, len(whole))), data.draw(st.integers(0, 60))
     typed = data.draw(MARKS)
@@ -175,7 +175,7 @@ LINES = st.lists(st.sampled_from(["a", "机", "🤖", "<", "\n", "\r\n"]), max_s
 
 
 @given(LINES, st.sampled_from(["utf-8", "utf-16", "utf-32"]), st.data())
-def test_positions_and_offsets_agree_in_each_encoding(text, encoding, data):
+def test_positions_and_offsets_round_trip_in_each_encoding(text, encoding, data):
     offset = data.draw(st.integers(0, len(text)).filter(lambda at: text[at - 1 : at + 1] != "\r\n"))
     positions = TextPositions(text, encoding)
     assert positions.offset(positions.position(offset)) == offset

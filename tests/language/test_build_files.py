@@ -31,13 +31,13 @@ def setup(tmp_path: Path):
     return lambda text: Place(folder / "setup.py", f"setup({text})", folder.parent)
 
 
-def test_commands_are_offered_at_the_start_of_a_line(cmake):
+def test_cmake_commands_are_completed_at_line_start(cmake):
     assert cmake("find_p|").labels() == ["find_package"]
     assert cmake("set(a b)\n  ament_p|").labels() == ["ament_python_install_package", "ament_package"]
     assert "finds a package" in cmake("find_pa|ckage(a)").hover()
 
 
-def test_packages_of_the_manifest_come_first_and_found_ones_are_left_out(cmake):
+def test_manifest_packages_come_first_and_found_ones_are_omitted(cmake):
     assert cmake("find_package(|)").labels()[0] == "rclcpp"
     assert "rclcpp" not in cmake("find_package(rclcpp REQUIRED)\nfind_package(r|)").labels()
     assert cmake("find_package(rclcpp REQUIRED)\nament_target_dependencies(glow |)").labels()[0] == "rclcpp"
@@ -45,7 +45,7 @@ def test_packages_of_the_manifest_come_first_and_found_ones_are_left_out(cmake):
     assert cmake("find_package(lamp_br|ingup)").targets() == ["package.xml:"]
 
 
-def test_paths_and_destinations_of_install(cmake):
+def test_install_paths_and_destinations_are_completed(cmake):
     assert cmake("install(DIRECTORY la|)").labels() == ["launch"]
     assert cmake("install(\n  DIRECTORY launch # the files\n  DESTINATION sh|)").labels() == ["share/${PROJECT_NAME}"]
     assert "parts.launch.py" in cmake("install(FILES launch/|)").labels()
@@ -53,13 +53,13 @@ def test_paths_and_destinations_of_install(cmake):
     assert cmake("install(FILES launch/parts.launch.py|)").links() == ["parts.launch.py"]
 
 
-def test_targets_and_interfaces(cmake):
+def test_cmake_targets_and_interfaces_are_completed(cmake):
     assert cmake("add_executable(glow a.cpp)\ninstall(TARGETS gl|)").labels() == ["glow"]
     assert cmake("add_executable(glow a.cpp)\ntarget_link_libraries(gl|ow)").targets() == ["CMakeLists.txt:glow"]
     assert cmake('rosidl_generate_interfaces(${PROJECT_NAME} "m|")').labels() == ["msg/Glow.msg"]
 
 
-def test_programs_of_a_setup_file(setup):
+def test_setup_entry_points_are_completed(setup):
     script = 'entry_points={{"console_scripts": ["{}"]}}'
     assert setup(script.format("bl|")).labels() == ["blink = lamp_nodes.blink:main"]
     assert setup(script.format("blink = lamp_nodes.b|")).labels() == ["lamp_nodes.blink"]
@@ -68,14 +68,14 @@ def test_programs_of_a_setup_file(setup):
     assert "`lamp_nodes.blink:main`" in setup(script.format("blink = lamp_nodes.bl|ink:main")).hover()
 
 
-def test_files_and_arguments_of_a_setup_file(setup):
+def test_setup_data_files_and_arguments_are_completed(setup):
     assert setup('data_files=[("share/lamp_nodes", ["launch/|"])]').labels() == ["lamp.launch.py"]
     assert setup('data_files=[("share/lamp_nodes", ["launch/lamp.la|unch.py"])]').targets() == ["lamp.launch.py:"]
     assert setup('name="a", entry|').labels() == ["entry_points="]
 
 
 @pytest.mark.parametrize("text", ["(|", "install(|", ')")|(', "find_package(\0|", "#(|", "add_library(\n\n|"])
-def test_any_text_of_a_build_file_is_answered(cmake, setup, text):
+def test_requests_survive_any_build_file_text(cmake, setup, text):
     for place in (cmake(text), setup(text)):
         place.items()
         place.hover()

@@ -86,23 +86,23 @@ def offered(package: Path):
     return labels
 
 
-def test_links_and_joints_of_macros_are_offered_by_their_expanded_names(offered):
+def test_completion_offers_expanded_link_and_joint_names(offered):
     assert offered("<!-- here -->", '<joint name="a" type="fixed"><parent link="|"/></joint>') == ["base", "left_wheel"]
     assert offered("<!-- here -->", '<gazebo reference="left|"/>') == ["left_wheel", "left_wheel_joint"]
     motors = '<ros2_control name="a" type="system"><joint name="|"/></ros2_control>'
     assert offered("<!-- here -->", motors) == ["left_wheel_joint"]
 
 
-def test_a_text_that_cannot_be_expanded_has_the_names_of_the_saved_file(offered):
+def test_completion_uses_saved_file_if_text_cannot_be_expanded(offered):
     assert "left_wheel" in offered("<!-- here -->", '<joint name="a" type="fixed"><child link="|')
 
 
-def test_in_a_macro_names_are_offered_as_they_are_written(offered):
+def test_completion_in_macro_offers_unexpanded_names(offered):
     joint = '<joint name="a" type="fixed"><parent link="|"/></joint>'
     assert offered("<!-- in macro -->", joint)[0] == "${side}_wheel"
 
 
-def test_an_expression_offers_parameters_first_then_properties_in_scope(offered):
+def test_expression_completion_offers_parameters_then_properties(offered):
     place = '<origin xyz="${|}"/>'
     assert offered("<!-- in macro -->", place)[:4] == ["side", "width", "inner", "radius"]
     outside = offered("<!-- here -->", place)
@@ -111,28 +111,28 @@ def test_an_expression_offers_parameters_first_then_properties_in_scope(offered)
     assert outside[0] == "radius"
 
 
-def test_an_expression_offers_the_functions_that_xacro_has(offered):
+def test_expression_completion_offers_xacro_functions(offered):
     assert offered("<!-- here -->", '<origin xyz="${xacro.lo|}"/>') == ["xacro.load_yaml"]
     names = global_names(Inputs("a.xacro", {}).session())
     assert {*FUNCTIONS} <= {*names}
     assert {name.removeprefix("xacro.") for name in XACRO_FUNCTIONS} == {*names["xacro"].values}
 
 
-def test_the_keys_of_a_yaml_file_follow_its_property(offered):
+def test_expression_completion_offers_yaml_keys(offered):
     assert offered("<!-- here -->", "<origin xyz=\"${sizes['|']}\"/>") == ["base", "wheel"]
     assert offered("<!-- here -->", "<origin xyz=\"${sizes['base']['m|']}\"/>") == ["mass", "mesh"]
     assert offered("<!-- here -->", '<origin xyz="${sizes.base.|}"/>') == ["mass", "mesh"]
 
 
-def test_a_block_is_inserted_by_the_name_of_its_parameter(offered):
+def test_insert_block_completion_offers_block_parameters(offered):
     assert offered('<xacro:insert_block name="place"/>', '<xacro:insert_block name="|"/>') == ["place", "more"]
 
 
-def test_parameters_without_a_default_come_first(offered):
+def test_required_macro_parameters_come_first(offered):
     assert offered('<xacro:wheel side="left">', "<xacro:wheel |>") == ["side", "width"]
 
 
-def test_an_element_that_may_occur_once_is_offered_once(offered):
+def test_single_occurrence_elements_are_offered_once(offered):
     joint = '<joint name="a" type="fixed"><parent link="base"/><|</joint>'
     assert offered("<!-- here -->", joint)[0] == "child"
     assert "parent" not in offered("<!-- here -->", joint)
@@ -143,12 +143,12 @@ def test_required_attributes_come_first(offered):
     assert offered("<!-- here -->", place)[:2] == ["effort", "velocity"]
 
 
-def test_files_that_fit_the_element_come_first(offered):
+def test_mesh_files_come_first(offered):
     place = '<link name="b"><visual><geometry><mesh filename="package://arm/meshes/|"/>'
     assert offered("<!-- here -->", place) == ["base.stl", "about.txt"]
 
 
-def test_hardware_offers_the_plugins_of_the_workspace_and_the_parameters_that_their_sources_read(offered):
+def test_hardware_completion_offers_workspace_plugins_and_parameters(offered):
     place = '<ros2_control name="a" type="system"><hardware><plugin>{}</plugin>{}</hardware></ros2_control>'
     assert offered("<!-- here -->", place.format("|", ""))[:2] == ["arm/Motors", "mock_components/GenericSystem"]
     assert offered("<!-- here -->", place.format("arm/Motors", '<param name="|">1</param>')) == ["serial_port", "baud"]
@@ -156,7 +156,7 @@ def test_hardware_offers_the_plugins_of_the_workspace_and_the_parameters_that_th
     assert offered("<!-- here -->", mock) == ["calculate_dynamics"]
 
 
-def test_interfaces_that_a_joint_has_are_left_out(offered):
+def test_existing_joint_interfaces_are_not_offered(offered):
     place = (
         '<ros2_control name="a" type="|"><joint name="b"><state_interface name="position"/>'
         '<state_interface name=""/></joint></ros2_control>'
@@ -166,14 +166,14 @@ def test_interfaces_that_a_joint_has_are_left_out(offered):
     assert offered("<!-- here -->", place)[:2] == ["velocity", "effort"]
 
 
-def test_plugins_of_simulators_have_their_parameters(offered):
+def test_simulator_plugin_parameters_are_completed(offered):
     place = "<gazebo><plugin filename='libgazebo_ros_diff_drive.so' name='drive'>{}</plugin></gazebo>"
     assert offered("<!-- here -->", place.format("<wheel_|")) == ["wheel_separation", "wheel_diameter"]
     assert offered("<!-- here -->", place.format("<left_joint>|</left_joint>")) == ["left_wheel_joint"]
     assert offered("<!-- here -->", place.format("<publish_odom>|</publish_odom>")) == ["true", "false"]
 
 
-def test_a_plugin_of_gz_has_a_library_and_a_class(offered):
+def test_gz_plugin_library_and_class_are_completed(offered):
     world = '<sdf version="1.9"><world name="w"><plugin {}></plugin></world></sdf>'
 
     def in_world(attributes: str) -> list[str]:
@@ -185,7 +185,7 @@ def test_a_plugin_of_gz_has_a_library_and_a_class(offered):
     assert in_world('filename="ignition-gazebo-im|"') == ["ignition-gazebo-imu-system"]
 
 
-def test_types_of_sensors_and_choices_are_offered_in_worlds(offered):
+def test_world_sensor_types_and_choices_are_completed(offered):
     world = '<sdf version="1.9"><world name="w"><model name="m"><link name="l">{}</link></model></world></sdf>'
     assert offered("", "", "a.sdf", world.format('<sensor name="s" type="gpu_l|">')) == ["gpu_lidar"]
     assert "directional" in offered("", "", "a.sdf", world.format('<light name="s" type="|">'))
@@ -207,14 +207,14 @@ def explained(package: Path):
     return hover
 
 
-def test_a_plugin_of_a_simulator_and_its_parameters_are_explained(explained):
+def test_hover_explains_simulator_plugin_and_parameters(explained):
     place = "<gazebo><plugin filename='libgazebo_ros_diff_drive.so' name='drive'>{}</plugin></gazebo>"
     assert "drives a robot" in explained("<!-- here -->", place.format("").replace("_drive.so", "_dr|ive.so"))
     assert "number in m" in explained("<!-- here -->", place.format("<wheel_sep|aration>0.3</wheel_separation>"))
     assert "number in m" in explained("<!-- here -->", place.format("<wheel_separation>0.|3</wheel_separation>"))
 
 
-def test_hardware_and_its_parameters_are_explained(explained):
+def test_hover_explains_hardware_and_parameters(explained):
     place = '<ros2_control name="a" type="system"><hardware><plugin>{}</plugin>{}</hardware></ros2_control>'
     motors = explained("<!-- here -->", place.format("arm/Mo|tors", ""))
     assert "The motors." in motors
@@ -225,18 +225,18 @@ def test_hardware_and_its_parameters_are_explained(explained):
     )
 
 
-def test_parameters_of_macros_and_functions_are_explained(explained):
+def test_hover_explains_macro_parameters_and_functions(explained):
     assert "**side** (required)" in explained('<xacro:wheel side="left">', '<xacro:wheel si|de="left">')
     assert "= `0.02`" in explained('<xacro:wheel side="left">', '<xacro:wheel side="left" wid|th="1">')
     assert "**parameter side**" in explained('name="${side}_wheel"', 'name="${si|de}_wheel"')
     assert "square root" in explained("${radius / 2}", "${sq|rt(radius)}")
 
 
-def test_an_element_in_a_macro_call_is_explained(explained):
+def test_hover_explains_element_in_macro_call(explained):
     assert "rad" in explained("<origin/><a/>", '<origin rp|y="0 0 0"/><a/>')
 
 
-def test_an_angle_is_shown_in_degrees(explained):
+def test_hover_shows_angle_in_degrees(explained):
     joint = '<joint name="j" type="{}"><limit lower="{}"/><origin rpy="0 {} 1.5708"/></joint>'
     assert "-1.5708 rad = -90°" in explained("<!-- here -->", joint.format("revolute", "-1.57|08", "0"))
     assert "°" not in explained("<!-- here -->", joint.format("prismatic", "-1.57|08", "0"))
@@ -244,7 +244,7 @@ def test_an_angle_is_shown_in_degrees(explained):
     assert "°" not in explained("<!-- here -->", joint.format("fixed", "0", "${p|i}"))
 
 
-def test_the_tables_have_what_the_rules_know():
+def test_completion_tables_cover_rules():
     for path, tags in CHILDREN.items():
         rule = DESCRIPTION
         for tag in path.split("/"):
@@ -259,7 +259,7 @@ def test_the_tables_have_what_the_rules_know():
     )
 
 
-def test_an_editor_does_not_wait_for_an_expansion(package: Path):
+def test_completion_does_not_wait_for_expansion(package: Path):
     file = package / "urdf/arm.urdf.xacro"
     text = ROBOT.replace("<!-- here -->", '<gazebo reference="left_wheel"/>')
     offset = text.index("left_wheel") + 2

@@ -38,7 +38,7 @@ def tree(text: str) -> str:
 
 
 @given(USES, VALUES)
-def test_an_inserted_expression_is_one_operand(use, value):
+def test_substituted_expression_is_one_operand(use, value):
     start = use.index("name")
     new = substitute_name(use, start, start + len("name"), value)
     assert new is not None
@@ -46,7 +46,7 @@ def test_an_inserted_expression_is_one_operand(use, value):
 
 
 @given(USES, VALUES)
-def test_what_was_inserted_is_a_part(use, value):
+def test_substituted_expression_is_a_subexpression(use, value):
     start = use.index("name")
     new = substitute_name(use, start, start + len("name"), value)
     assert new is not None
@@ -55,7 +55,7 @@ def test_what_was_inserted_is_a_part(use, value):
 
 
 @given(st.text("${}()ab+'1 ", max_size=20))
-def test_no_text_is_too_much(text):
+def test_expression_functions_survive_any_text(text):
     for expression in expressions_in(text):
         assert text[expression.start : expression.start + 2] == "${"
         assert text[slice(*expression.inner_range)] == expression.source

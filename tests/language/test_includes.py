@@ -44,13 +44,13 @@ def names(folder: Path, files: list[Path]) -> list[str]:
 
 
 @pytest.mark.parametrize("package", ["rover", "cart"])
-def test_a_file_is_included_by_its_own_robot_alone(folder, index, package):
+def test_include_is_resolved_within_its_own_package(folder, index, package):
     file = folder / package / "urdf" / "wheel.xacro"
     assert names(folder, index.entries(file, {})) == [f"{package}/urdf/robot.xacro"]
     assert names(folder, index.related(file, {})) == [f"{package}/urdf/robot.xacro", f"{package}/urdf/wheel.xacro"]
 
 
-def test_related_files_begin_with_the_file_itself_and_what_it_includes(tmp_path):
+def test_related_files_start_with_the_file_and_its_includes(tmp_path):
     arms = "".join(f'<xacro:include filename="{name}.xacro"/>' for name in ("left", "right", "middle"))
     write(
         tmp_path / "arms",
@@ -68,21 +68,21 @@ def test_related_files_begin_with_the_file_itself_and_what_it_includes(tmp_path)
     assert found.related(folder / "left.xacro", {})[0] == folder / "left.xacro"
 
 
-def test_a_package_that_is_not_known_is_none_of_the_known(folder, index):
+def test_unknown_package_does_not_match_known_files(folder, index):
     file = folder / "tool" / "urdf" / "robot.xacro"
     assert index.related(file, {}) == [file]
     installed = Path("/opt/other/urdf/wheel.xacro")
     assert index.entries(installed, {installed: WHEEL}) == [file]
 
 
-def test_a_file_that_is_installed_elsewhere_is_found_by_its_name(folder, index):
+def test_include_installed_elsewhere_is_matched_by_name(folder, index):
     text = including("$(find rover)/description/wheel.xacro")  # CMakeLists.txt may install urdf/ there
     main = folder / "rover" / "urdf" / "robot.xacro"
     wheel = folder / "rover" / "urdf" / "wheel.xacro"
     assert index.entries(wheel, {main: text}) == [main]
 
 
-def test_only_what_no_file_includes_is_a_root(folder, index):
+def test_roots_are_files_that_no_file_includes(folder, index):
     assert [file.name for file in index.roots({})] == ["robot.xacro"] * 3
 
 
@@ -96,7 +96,7 @@ def test_only_what_no_file_includes_is_a_root(folder, index):
         ("${folder}/c.xacro", Inclusion("", "${folder}/c.xacro", r"[^/]*/c\.xacro")),
     ],
 )
-def test_an_include_is_read_without_an_expansion(filename, inclusion):
+def test_include_is_read_without_expansion(filename, inclusion):
     text = f'<robot><xacro:arg name="kind" default="big"/><xacro:include filename="{filename}"/></robot>'
     assert [*inclusions_in(text)] == [inclusion]
     assert inclusion.name == "c.xacro"

@@ -20,7 +20,7 @@ def at(tmp_path: Path):
     return lambda text, name="msg/Lamp.msg": Place(folder / name, text)
 
 
-def test_types_are_built_in_of_the_package_or_of_other_packages(at):
+def test_type_completion_offers_builtin_own_and_foreign_types(at):
     assert at("|").labels()[0] == "float64"
     assert at("uint8 a\nint|").labels()[:2] == ["int32", "int64"]
     assert at("G|").labels() == ["Glow"]
@@ -30,31 +30,31 @@ def test_types_are_built_in_of_the_package_or_of_other_packages(at):
     assert at("# int|").labels() == []
 
 
-def test_the_name_of_a_field_follows_from_its_type(at):
+def test_field_name_completion_follows_type(at):
     assert at("std_msgs/Header |").labels() == ["header"]
     assert at("geometry_msgs/PoseStamped[] p|").labels() == ["pose_stamped"]
 
 
-def test_a_type_is_explained_by_its_definition(at):
+def test_hover_shows_type_definition(at):
     assert "# How bright\nfloat64 level" in at("Gl|ow glow").hover()
     assert "builtin_interfaces/Time stamp" in at("std_msgs/Hea|der header").hover()
     assert at("uin|t8 a").hover() == "`uint8`: an integer from 0 to 255"
     assert at("---\nGlow gl|ow", "srv/Set.srv").hover().startswith("**Glow**")
 
 
-def test_a_type_leads_to_its_file(at):
+def test_definition_of_type_is_its_file(at):
     assert at("Gl|ow glow").targets() == ["Glow.msg:"]
     assert at("lamp_nodes/Bl|ink[<=2] b").targets() == ["Blink.msg:"]
     assert at("geometry_msgs/Po|se p").targets() == ["geometry_msgs.txt:msg/Pose"]
 
 
-def test_symbols_are_the_fields_of_each_part(at):
+def test_symbols_are_fields_of_request_and_response(at):
     place = at("|int32 a\n---\nint32 B=3\nstring<=5 c", "srv/Set.srv")
     found = [(part.name, [child.name for child in part.children]) for part in place.format.symbols(place.document)]
     assert found == [("Request", ["a"]), ("Response", ["B", "c"])]
 
 
-def test_types_that_the_package_uses_come_first(at):
+def test_types_used_in_package_come_first(at):
     place = at("geometry_msgs/|")
     (place.document.file.parent / "Arm.msg").write_text("geometry_msgs/Wrench force\n")
     assert place.labels()[0] == "geometry_msgs/Wrench"

@@ -23,7 +23,7 @@ def at(tmp_path: Path):
     return lambda text: Place(folder / "launch" / "lamp.launch.py", HEAD + text)
 
 
-def test_packages_and_executables(at):
+def test_packages_and_executables_are_completed(at):
     assert at("Node(package='|')").labels()[:2] == ["lamp_bringup", "lamp_nodes"]
     assert at('FindPackageShare("lamp_n|').labels() == ["lamp_nodes"]
     assert at("Node(package='lamp_nodes', executable='|').").labels() == ["blink"]
@@ -48,11 +48,11 @@ def test_packages_and_executables(at):
         "folder = os.path.join(share, 'config')\nopen(os.path.join(folder, '|'))",
     ],
 )
-def test_pieces_of_a_path_continue_with_files_that_exist(at, written):
+def test_joined_path_is_completed_with_existing_files(at, written):
     assert at(written).labels() == ["lamp.yaml"]
 
 
-def test_a_path_is_followed_and_explained(at):
+def test_path_has_definition_hover_and_link(at):
     place = at("os.path.join(share, 'config', 'lamp|.yaml')")
     assert place.targets() == ["lamp.yaml:"]
     assert "config/lamp.yaml" in place.hover()
@@ -60,7 +60,7 @@ def test_a_path_is_followed_and_explained(at):
     assert at("os.path.join(share, 'config', 'la|mps.yaml')").hover().endswith("lamps.yaml` does not exist")
 
 
-def test_configurations_are_the_declared_arguments(at):
+def test_launch_configurations_are_completed_from_declared_arguments(at):
     declared = "DeclareLaunchArgument('gui', default_value='true', description='Show ' 'it')\n"
     assert at(f"{declared}LaunchConfiguration('|").labels() == ["gui"]
     place = at(f"{declared}LaunchConfiguration('g|ui')")
@@ -69,24 +69,24 @@ def test_configurations_are_the_declared_arguments(at):
 
 
 @pytest.mark.parametrize("pairs", ["{'|'}.items()", "{'x': '1', '|': '2'}.items()", "[('|', 'red')]", "[('x', y), ('|"])
-def test_arguments_of_an_included_file_are_known(at, pairs):
-    assert at(INCLUDE.format(pairs)).labels() == ["colour", "x", "y"]
+def test_arguments_of_included_file_are_completed(at, pairs):
+    assert at(INCLUDE.format(pairs)).labels() == ["color", "x", "y"]
 
 
-def test_values_of_an_included_argument_are_its_choices(at):
-    assert at(INCLUDE.format("{'colour': '|'}.items()")).labels() == ["red", "blue"]
-    assert at(INCLUDE.format("[('colour', '|')]")).labels() == ["red", "blue"]
-    assert at(INCLUDE.format("{'col|our': 'red'}.items()")).targets() == ["parts.launch.py:colour"]
+def test_values_of_included_argument_are_its_choices(at):
+    assert at(INCLUDE.format("{'color': '|'}.items()")).labels() == ["red", "blue"]
+    assert at(INCLUDE.format("[('color', '|')]")).labels() == ["red", "blue"]
+    assert at(INCLUDE.format("{'col|our': 'red'}.items()")).targets() == ["parts.launch.py:color"]
 
 
-def test_a_statement_ends_unfinished_brackets():
+def test_next_statement_ends_unclosed_brackets():
     python = PythonText("a = join(x, 'b'\ndef f():\n    c = LaunchConfiguration('d')\n")
     (call,) = python.calls_of("LaunchConfiguration")
     assert call.parent is not None
     assert call.parent.group is python.root
 
 
-def test_arguments_that_a_loop_declares_are_known():
+def test_arguments_declared_in_loop_are_found():
     text = (
         "KNOWN = {'a': ('1', 'first'), 'b': ('2', 'second')}\n"
         "[DeclareLaunchArgument(n, default_value=d, description=t) for n, (d, t) in KNOWN.items()]\n"
@@ -96,30 +96,30 @@ def test_arguments_that_a_loop_declares_are_known():
     assert found == {"a": ("1", "first"), "b": ("2", "second"), "x": ("0", ""), "y": ("0", "")}
 
 
-def test_symbols_are_arguments_nodes_and_included_files(at):
+def test_symbols_are_arguments_nodes_and_includes(at):
     place = at(f"|DeclareLaunchArgument('gui')\nNode(package='p', executable='e')\n{INCLUDE.format('[]')}")
     names = [symbol.name for symbol in place.format.symbols(place.document)]
     assert names == ["arg gui", "Node e", "include parts.launch.py"]
 
 
-def test_true_and_false_are_written_as_elsewhere_in_the_file(at):
+def test_boolean_spelling_follows_file(at):
     assert at("DeclareLaunchArgument('use_x', default_value='|')").labels()[:2] == ["true", "false"]
     text = "DeclareLaunchArgument('a', default_value='True')\nDeclareLaunchArgument('use_x', default_value='|')"
     assert at(text).labels()[:2] == ["True", "False"]
 
 
-def test_names_that_the_caller_declares_are_offered_after_those_of_the_file(at):
+def test_configurations_used_in_file_are_offered_after_declared_ones(at):
     text = "DeclareLaunchArgument('a')\nb = LaunchConfiguration('outer')\nc = LaunchConfiguration('|')"
     assert at(text).labels() == ["a", "outer"]
 
 
-def test_a_dependency_that_is_not_found_is_offered(at):
+def test_missing_dependency_is_offered_as_package(at):
     manifest = at("|").document.file.parents[1] / "package.xml"
     manifest.write_text(manifest.read_text().replace("</package>", "<exec_depend>far_away</exec_depend></package>"))
     assert "far_away" in at("Node(package='|')").labels()[:3]
 
 
-def test_classes_of_launch_and_their_arguments_are_explained(at):
+def test_hover_explains_launch_classes_and_arguments(at):
     assert at("No|de(package='a')").hover().startswith("**Node**: Starts a node.")
     assert (
         at("Node(pack|age='a')").hover() == "`package`: the name of the package of the executable; None for a program."
@@ -131,24 +131,24 @@ def test_classes_of_launch_and_their_arguments_are_explained(at):
     assert at("f(|)").labels() == []
 
 
-def test_a_configuration_in_a_path_has_its_default(at):
+def test_configuration_in_path_uses_its_default(at):
     declared = "DeclareLaunchArgument('package', default_value='lamp_bringup')\np = LaunchConfiguration('package')\n"
     assert at(f"{declared}PathJoinSubstitution([FindPackageShare(p), 'config', '|'])").labels() == ["lamp.yaml"]
 
 
-def test_a_value_is_explained_by_its_argument(at):
-    assert "Its colour" in at(INCLUDE.format("{'colour': 're|d'}.items()")).hover()
+def test_hover_of_value_shows_its_argument(at):
+    assert "Its color" in at(INCLUDE.format("{'color': 're|d'}.items()")).hover()
     assert at("Node(name='ab|c')").hover() == "`name`: the name of the node; None for the name that the program sets."
     assert at("Node(package='nowh|ere')").hover() == "package 'nowhere' not found"
 
 
-def test_a_default_in_a_variable_is_resolved():
+def test_default_in_variable_is_resolved():
     text = "x = LaunchConfiguration('a', default='false')\ny = 'b.yaml'\n"
     text += "DeclareLaunchArgument('a', default_value=x)\nDeclareLaunchArgument('b', default_value=y)\n"
     assert [argument.default for argument in arguments_in(text, Path("a.py"))] == ["false", "b.yaml"]
 
 
-def test_remappings_begin_with_the_topics_of_the_nodes_that_have_them(at):
+def test_remapping_completion_offers_topics_of_the_node(at):
     node = 'Node(package="robot_state_publisher", executable="robot_state_publisher", remappings=[{}])'
     assert at(node.format('("jo|", "a")')).labels() == ["joint_states"]
     assert at(node.format('("/tf", "tf"), ("/tf|", "a")')).labels() == ["/tf_static"]
@@ -158,7 +158,7 @@ def test_remappings_begin_with_the_topics_of_the_nodes_that_have_them(at):
     assert at(f'remappings = [("jo|", "a")]\n{users}').labels() == ["joint_states"]
 
 
-def test_parameters_of_a_node_are_offered_and_explained(at):
+def test_node_parameters_are_completed_and_explained(at):
     node = 'Node(package="nav2_amcl", executable="amcl", parameters=[config, {{{}}}])'
     assert at(node.format('"max_p|": 1')).labels() == ["max_particles"]
     assert "max_particles" not in at(node.format('"max_particles": 1, "max_p|"')).labels()

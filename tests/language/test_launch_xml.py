@@ -22,7 +22,7 @@ def at(tmp_path: Path):
     return lambda text: Place(folder / "launch" / "lamp.launch.xml", f"<launch>{text}</launch>")
 
 
-def test_the_table_has_the_tags_of_the_actions():
+def test_table_contains_all_action_tags():
     assert list(load(ACTIONS))
     assert "ready_to_test" in action_parse_methods
     assert {*action_parse_methods} - {"push-ros-namespace"} <= {*LAUNCH.child_rules}
@@ -39,7 +39,7 @@ def written(rule: ElementRule) -> str:
 
 
 @pytest.mark.parametrize("tag", sorted(LAUNCH.child_rules))
-def test_the_table_has_the_attributes_that_an_action_reads(tag, monkeypatch):
+def test_table_contains_attributes_read_by_actions(tag, monkeypatch):
     asked: set[str] = set()
     read = Entity.get_attr
 
@@ -59,7 +59,7 @@ def test_the_table_has_the_attributes_that_an_action_reads(tag, monkeypatch):
     assert {*rule.attribute_rules} <= asked
 
 
-def test_elements_and_attributes_come_from_the_table(at):
+def test_elements_and_attributes_are_completed(at):
     assert at("<no|").labels() == ["node", "node_container"]
     assert at("<group><timer period='1'><inc|").labels() == ["include"]
     assert at("<node |/>").labels()[:2] == ["pkg", "exec"]
@@ -67,12 +67,12 @@ def test_elements_and_attributes_come_from_the_table(at):
     assert at("<node pkg='a' exec='b'><re|").labels() == ["remap"]
 
 
-def test_packages_start_with_the_own_one_and_its_dependencies(at):
+def test_own_package_and_dependencies_come_first(at):
     assert at('<node pkg="|"/>').labels()[:2] == ["lamp_bringup", "lamp_nodes"]
     assert at('<let name="a" value="$(find-pkg-share lamp_n|"/>').labels() == ["lamp_nodes"]
 
 
-def test_executables_are_those_of_the_package(at):
+def test_executables_of_package_are_completed(at):
     assert at('<node pkg="lamp_nodes" exec="|"/>').labels() == ["blink"]
     assert at('<node exec="g|" pkg="lamp_bringup"/>').labels() == ["glow"]
     assert at('<node pkg="lamp_nodes" exec="bl|ink"/>').targets() == ["blink.py:main"]
@@ -80,7 +80,7 @@ def test_executables_are_those_of_the_package(at):
     assert at('<composable_node pkg="lamp_bringup" plugin="|"/>').labels() == ["lamp_bringup::Fader"]
 
 
-def test_variables_are_the_arguments_of_the_file(at):
+def test_variables_are_completed_from_arguments(at):
     declared = '<arg name="gui" default="true" description="Show it"/><let name="b" value="2"/>'
     assert at(f'{declared}<log message="$(var |"/>').labels() == ["gui", "b"]
     assert at(f'{declared}<node if="|"/>').labels()[0] == "$(var gui)"
@@ -91,9 +91,9 @@ def test_variables_are_the_arguments_of_the_file(at):
 
 @pytest.mark.parametrize(
     ("file", "names"),
-    [("parts.launch.xml", ["rate", "mode"]), ("parts.launch.py", ["colour", "x", "y"])],
+    [("parts.launch.xml", ["rate", "mode"]), ("parts.launch.py", ["color", "x", "y"])],
 )
-def test_arguments_of_an_included_file_are_known(at, file, names):
+def test_arguments_of_included_file_are_completed(at, file, names):
     include = f'<include file="$(find-pkg-share lamp_bringup)/launch/{file}"><arg '
     assert at(f'{include} name="|"/></include>').labels() == names
     assert at(f'{include} name="{names[0]}"/><arg name="|"/></include>').labels() == names[1:]
@@ -101,13 +101,13 @@ def test_arguments_of_an_included_file_are_known(at, file, names):
     assert place.targets() == [f"{file}:{names[0]}"]
 
 
-def test_values_of_an_included_argument_are_its_choices(at):
+def test_values_of_included_argument_are_its_choices(at):
     include = '<include file="$(dirname)/parts.launch.xml"><arg name="mode" value="|"/></include>'
     assert at(include).labels()[:2] == ["slow", "fast"]
     assert at(f'<arg name="mode"/>{include}').labels()[0] == "$(var mode)"
 
 
-def test_paths_continue_with_files_that_exist(at):
+def test_paths_are_completed_with_existing_files(at):
     assert at('<include file="$(find-pkg-share lamp_bringup)/|"/>').labels()[:2] == ["config", "launch"]
     assert at('<param from="$(find-pkg-share lamp_bringup)/config/l|"/>').labels() == ["lamp.yaml"]
     assert at('<include file="|"/>').labels()[0] == "$(find-pkg-share "
@@ -117,13 +117,13 @@ def test_paths_continue_with_files_that_exist(at):
     assert at(chained).links() == ["lamp.yaml"]
 
 
-def test_substitutions_are_explained(at):
+def test_hover_explains_substitutions(at):
     assert at('<let name="a" value="$(|"/>').labels()[:2] == ["var", "find-pkg-share"]
     assert "share folder" in at('<let name="a" value="$(find-p|kg-share lamp_nodes)"/>').hover()
     assert "Nodes of a lamp." in at('<let name="a" value="$(find-pkg-share lamp_n|odes)"/>').hover()
 
 
-def test_symbols_are_the_elements_with_what_names_them(at):
+def test_symbols_are_named_elements(at):
     (launch,) = at('|<arg name="a"/><group><node pkg="p" exec="e"/></group>').format.symbols(
         at('|<arg name="a"/><group><node pkg="p" exec="e"/></group>').document
     )
@@ -131,7 +131,7 @@ def test_symbols_are_the_elements_with_what_names_them(at):
     assert [child.name for child in launch.children[1].children] == ["node e"]
 
 
-def test_remappings_begin_with_the_topics_of_the_node(at):
+def test_remapping_completion_offers_topics_of_the_node(at):
     node = '<node pkg="robot_state_publisher" exec="robot_state_publisher"><remap {}/></node>'
     assert at(node.format('from="jo|"')).labels() == ["joint_states"]
     assert at(node.format('from="/jo|"')).labels() == ["/joint_states"]
@@ -141,12 +141,12 @@ def test_remappings_begin_with_the_topics_of_the_node(at):
     assert at(two).labels() == []
 
 
-def test_an_executable_shows_its_topics(at):
+def test_hover_of_executable_shows_topics(at):
     found = at('<node pkg="teleop_twist_keyboard" exec="teleop_twist_key|board"/>').hover()
     assert "**cmd_vel** `geometry_msgs/msg/Twist`, publisher" in found
 
 
-def test_remappings_of_an_own_node_are_in_its_sources(at):
+def test_remapping_completion_reads_sources_of_own_node(at):
     node = '<node pkg="lamp_nodes" exec="blink"><remap from="{}"/></node>'
     place = at(node.format("|"))
     source = place.document.file.parents[2] / "lamp_nodes/lamp_nodes/blink.py"
@@ -161,13 +161,13 @@ def test_remappings_of_an_own_node_are_in_its_sources(at):
     assert found.targets() == ["blink.py:glow"]
 
 
-def test_parameters_are_found_by_the_executable(at):
+def test_parameters_are_completed_by_executable(at):
     assert at('<node pkg="controller_manager" exec="ros2_control_node"><param name="upd|"/></node>').labels() == [
         "update_rate"
     ]
 
 
-def test_a_command_has_paths_and_the_arguments_of_the_description(at):
+def test_xacro_command_is_completed_with_paths_and_arguments(at):
     place = at('<let name="a" value="$(command \'xacro $(find-pkg-share lamp_nodes)/urdf/|"/>')
     urdf = place.document.file.parents[2] / "lamp_nodes/urdf/lamp.urdf.xacro"
     urdf.parent.mkdir()

@@ -21,7 +21,7 @@ INCLUDE = (
 )
 
 
-def test_keys_come_from_the_table(at):
+def test_keys_are_completed(at):
     assert at("|").labels() == ["launch"]
     assert at("launch:\n- no|").labels() == ["node", "node_container"]
     assert at(f"{NODE}    na|").labels() == ["name", "namespace"]
@@ -31,14 +31,14 @@ def test_keys_come_from_the_table(at):
     assert at("launch:\n- timer:\n    period: 1.0\n    children:\n    - inc|").labels() == ["include"]
 
 
-def test_values_are_those_of_the_element(at):
+def test_values_are_completed_by_element(at):
     assert at("launch:\n- node:\n    pkg: |").labels()[:2] == ["lamp_bringup", "lamp_nodes"]
     assert at('launch:\n- node:\n    pkg: "lamp_nodes"\n    exec: "|"').labels() == ["blink"]
     assert at(f"{NODE}    output: |").labels()[:2] == ["screen", "log"]
     assert at(NODE.replace("blink", "bl|ink")).targets() == ["blink.py:main"]
 
 
-def test_arguments_of_the_file_and_of_included_files(at):
+def test_arguments_of_file_and_includes_are_completed(at):
     assert at(f"{INCLUDE}|").labels() == ["rate", "mode"]
     assert at(f"{INCLUDE}rate\n      value: '3'\n    - name: |").labels() == ["mode"]
     assert at(f'{INCLUDE}mode\n      value: "|"').labels()[:2] == ["slow", "fast"]
@@ -49,7 +49,7 @@ def test_arguments_of_the_file_and_of_included_files(at):
     assert place.hover() == "**gui** = `true`, lamp.launch.yaml\n\nShow it"
 
 
-def test_paths_and_links(at):
+def test_paths_have_completion_links_and_hover(at):
     place = at("launch:\n- node:\n    param:\n    - from: $(find-pkg-share lamp_bringup)/config/la|mp.yaml")
     assert place.labels() == ["lamp.yaml"]
     assert place.links() == ["lamp.yaml"]
@@ -57,13 +57,13 @@ def test_paths_and_links(at):
     assert "package of the executable" in at("launch:\n- node:\n    p|kg: a\n").hover()
 
 
-def test_symbols_are_the_actions(at):
+def test_symbols_are_actions(at):
     place = at(f"|{NODE}- group:\n  - executable:\n      cmd: ls\n")
     (launch,) = place.format.symbols(place.document)
     assert [child.name for child in launch.children] == ["node blink", "group"]
 
 
-def test_remappings_begin_with_the_topics_of_the_node(at):
+def test_remapping_completion_offers_topics_of_the_node(at):
     node = "launch:\n- node:\n    pkg: joy\n    exec: joy_node\n    remap:\n    - from: {}\n      to: {}"
     assert at(node.format("j|", "a")).labels() == ["joy"]
     assert "sensor_msgs/msg/Joy" in at(node.format("jo|y", "a")).hover()

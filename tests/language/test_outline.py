@@ -27,18 +27,18 @@ def tree(text: str) -> list[object]:
         ('<x:i filename="f"/>', [("x:i f", '<x:i filename="f"/>')]),
     ],
 )
-def test_elements_end_where_their_tags_do_or_where_they_must(text, expected):
+def test_unclosed_elements_end_at_parent_or_next_tag(text, expected):
     assert tree(text) == expected
 
 
 @given(st.text(alphabet='<>/ab="c -!', max_size=40))
-def test_elements_of_any_text_lie_in_those_around_them(text: str):
+def test_child_elements_are_inside_their_parents(text: str):
     for element in Outline.of(text).all():
         assert element.tag.end <= element.end <= len(text)
         for child in element.children:
             assert element.tag.end <= child.tag.start <= child.end <= element.end
 
 
-def test_elements_around_an_offset():
+def test_elements_around_offset():
     text = "<a><b><c/></b></a>"
     assert [element.tag.name for element in Outline.of(text).elements_around(text.index("<c") + 1)] == ["a", "b", "c"]

@@ -57,68 +57,68 @@ MACRO = """  <xacro:macro name="wheel" params="side radius:=0.3">
 """
 
 
-def test_a_number_becomes_a_property_before_the_top_level_element(tmp_path):
+def test_extract_property_inserts_number_before_top_level_element(tmp_path):
     changed = Description(tmp_path, MACRO).refactored(Action.EXTRACT_PROPERTY, "0.5")
     assert changed.startswith('  <xacro:property name="sphere_radius" value="0.5"/>\n  <xacro:macro')
     assert "${radius * sphere_radius + 0.1}" in changed
 
 
-def test_an_expression_with_parameters_becomes_a_property_in_the_macro(tmp_path):
+def test_extract_property_with_parameters_stays_in_macro(tmp_path):
     changed = Description(tmp_path, MACRO).refactored(Action.EXTRACT_PROPERTY, "radius * 0.5", "${")
     assert '\n    <xacro:property name="sphere_radius" value="${radius * 0.5}"/>\n    <link' in changed
     assert "${sphere_radius + 0.1}" in changed
 
 
-def test_a_part_that_precedence_takes_apart_is_no_value(tmp_path):
+def test_extract_property_is_not_offered_across_operator_precedence(tmp_path):
     description = Description(tmp_path, MACRO)
     start = description.text.index("0.5 + 0.1")
     assert not [*offers_at(description.text, description.file, start, start + len("0.5 + 0.1"))]
 
 
-def test_a_number_of_several_has_the_name_of_its_axis(tmp_path):
+def test_extracted_number_is_named_after_its_axis(tmp_path):
     body = '  <link name="a"><visual><origin xyz="0 0.2 0"/></visual></link>\n'
     changed = Description(tmp_path, body).refactored(Action.EXTRACT_PROPERTY, "0.2")
     assert '<xacro:property name="origin_y" value="0.2"/>' in changed
     assert 'xyz="0 ${origin_y} 0"' in changed
 
 
-def test_a_name_that_is_taken_gets_a_number(tmp_path):
+def test_duplicate_property_name_gets_a_number(tmp_path):
     body = '  <xacro:property name="mass_value" value="2"/>\n  <a><mass value="3"/></a>\n'
     changed = Description(tmp_path, body).refactored(Action.EXTRACT_PROPERTY, "3")
     assert '<mass value="${mass_value_2}"/>' in changed
 
 
-def test_a_comment_stays_above_its_element(tmp_path):
+def test_comment_stays_above_its_element(tmp_path):
     body = '  <!-- the arm\n       of the robot -->\n  <!-- b -->\n  <a v="3"/>\n'
     changed = Description(tmp_path, body).refactored(Action.EXTRACT_PROPERTY, "3")
     assert changed.startswith('  <xacro:property name="a_v" value="3"/>\n  <!-- the arm')
 
 
-def test_a_property_below_a_comment_that_xacro_then_shows_is_not_inlined(tmp_path):
+def test_inline_property_is_rejected_if_xacro_would_keep_its_comment(tmp_path):
     body = '  <!-- sizes -->\n  <xacro:property name="r" value="1"/>\n  <b v="${r}"/>\n'
     assert "comments" in Description(tmp_path, body).refused(Action.INLINE_PROPERTY, "r}")
 
 
-def test_a_number_that_xacro_would_write_in_another_way_is_refused(tmp_path):
+def test_extract_property_is_rejected_if_number_format_would_change(tmp_path):
     description = Description(tmp_path, '  <a v="0.10"/>\n')
     assert "would change" in description.refused(Action.EXTRACT_PROPERTY, "0.10")
 
 
-def test_elements_become_a_macro_with_the_names_that_they_use(tmp_path):
+def test_extract_macro_passes_used_names_as_parameters(tmp_path):
     visual = '<visual><geometry><sphere radius="${radius * 0.5 + 0.1}"/></geometry></visual>'
     changed = Description(tmp_path, MACRO).refactored(Action.EXTRACT_MACRO, visual)
     assert changed.startswith(f'  <xacro:macro name="wheel_visual" params="radius">\n    {visual}\n  </xacro:macro>\n')
     assert '\n      <xacro:wheel_visual radius="${radius}"/>\n' in changed
 
 
-def test_a_comment_moves_to_the_macro_with_its_element(tmp_path):
+def test_extract_macro_moves_comment_with_element(tmp_path):
     body = '  <!-- the arm -->\n  <a v="3"/>\n'
     changed = Description(tmp_path, body).refactored(Action.EXTRACT_MACRO, '<a v="3"/>')
     macro = '  <xacro:macro name="a_macro" params="">\n    <!-- the arm -->\n    <a v="3"/>\n  </xacro:macro>\n'
     assert changed == f"{macro}  <xacro:a_macro/>\n"
 
 
-def test_lines_of_elements_keep_their_relative_indentation(tmp_path):
+def test_extract_macro_keeps_relative_indentation(tmp_path):
     link = MACRO[MACRO.index("<link") : MACRO.index("</link>") + len("</link>")]
     changed = Description(tmp_path, f"  <gazebo>\n{MACRO}  </gazebo>\n").refactored(Action.EXTRACT_MACRO, link)
     assert '\n    <link name="${side}_wheel">\n      <visual>' in changed
@@ -143,7 +143,7 @@ START = '  <xacro:arg name="x" default="1"/>\n  <xacro:property name="a" value="
         ("${a + $(arg x)}", "${2 * r}", "${2 * (a + $(arg x))}"),
     ],
 )
-def test_a_property_is_inlined_with_parentheses_where_they_are_needed(tmp_path, value, use, expected):
+def test_inline_property_adds_parentheses_where_needed(tmp_path, value, use, expected):
     body = f'{START}  <xacro:property name="r" value="{value}"/>\n  <b v="{use}"/>\n'
     changed = Description(tmp_path, body).refactored(
         Action.INLINE_PROPERTY, "r", 'name="a" value="1"/>\n  <xacro:property name="'
@@ -151,31 +151,31 @@ def test_a_property_is_inlined_with_parentheses_where_they_are_needed(tmp_path, 
     assert changed == f'{START}  <b v="{expected}"/>\n'
 
 
-def test_a_property_with_two_definitions_is_not_inlined(tmp_path):
+def test_inline_property_with_two_definitions_is_rejected(tmp_path):
     property_ = '  <xacro:property name="r" value="1"/>\n'
     description = Description(tmp_path, f'{property_}{property_}  <b v="${{r}}"/>\n')
     assert "2 definitions" in description.refused(Action.INLINE_PROPERTY, "r}")
 
 
-def test_a_text_in_an_expression_that_is_computed_is_not_inlined(tmp_path):
+def test_inline_property_of_computed_text_in_expression_is_rejected(tmp_path):
     body = '  <xacro:property name="r" value="${1}_b"/>\n  <b v="${r + \'c\'}"/>\n'
     description = Description(tmp_path, body)
     assert "cannot contain the value" in description.refused(Action.INLINE_PROPERTY, "r +")
 
 
-def test_the_inertia_of_a_link_comes_from_its_shapes(tmp_path):
+def test_fill_in_inertia_computes_from_shapes(tmp_path):
     body = '  <link name="a">\n    <visual><geometry><box size="1 1 1"/></geometry></visual>\n  </link>\n'
     description = Description(tmp_path, body)
     changed = description.refactored(Action.FILL_IN_INERTIA, "link")
     assert '    <inertial>\n      <origin xyz="0 0 0" rpy="0 0 0"/>\n      <mass value="1000"/>\n' in changed
 
 
-def test_the_inertia_of_a_link_with_expressions_is_refused(tmp_path):
+def test_fill_in_inertia_with_expressions_is_rejected(tmp_path):
     body = '  <link name="a"><visual><geometry><box size="${1} 1 1"/></geometry></visual></link>\n'
     assert "does not fit" in Description(tmp_path, body).refused(Action.FILL_IN_INERTIA, "link")
 
 
-def test_dollars_of_a_urdf_keep_their_meaning_in_xacro(tmp_path):
+def test_convert_to_xacro_escapes_dollar_signs(tmp_path):
     file = tmp_path.resolve() / "r.urdf"
     file.write_text('<robot name="r"><!-- ${x} --><link name="a"/><gazebo><v>$(find x) ${y} $z</v></gazebo></robot>')
     workspace = Workspace([tmp_path])

@@ -129,7 +129,7 @@ def make(tmp_path: Path) -> Make:
     return lambda files: Files(tmp_path, files)
 
 
-def test_a_computed_joint_of_a_yaml_file_is_renamed_by_the_literal_part_of_its_name(make: Make):
+def test_computed_joint_is_renamed_from_yaml_by_its_literal_part(make: Make):
     files = make(ROBOT_FILES)
     renaming, texts = files.rename("bringup/config/rover.yaml", '["left', "left_tire_joint")
     assert renaming.names == {"left_wheel_joint": "left_tire_joint", "right_wheel_joint": "right_tire_joint"}
@@ -140,7 +140,7 @@ def test_a_computed_joint_of_a_yaml_file_is_renamed_by_the_literal_part_of_its_n
     assert "'right_wheel_joint'" in str(renaming.notes[0])
 
 
-def test_a_computed_link_is_renamed_in_the_call_that_passes_its_name(make: Make):
+def test_computed_link_is_renamed_in_the_call_that_passes_its_name(make: Make):
     renaming, texts = make(ROBOT_FILES).rename("bringup/config/rover.rviz", "        camera", "lidar_link")
     assert renaming.names == {"camera_link": "lidar_link", "camera_joint": "lidar_joint"}
     assert texts["description/urdf/rover.urdf.xacro"] == ROBOT.replace('name="camera"', 'name="lidar"')
@@ -150,7 +150,7 @@ def test_a_computed_link_is_renamed_in_the_call_that_passes_its_name(make: Make)
     assert "description/urdf/wheel.xacro" not in texts
 
 
-def test_a_link_is_followed_into_each_file_of_a_package_that_depends_on_its_own(make: Make):
+def test_link_rename_updates_dependent_packages(make: Make):
     renaming, texts = make(ROBOT_FILES).rename("bringup/config/rover.yaml", "base_frame_id: ", "trunk")
     assert renaming.names == {"base": "trunk"}
     assert texts["description/urdf/rover.urdf.xacro"] == ROBOT.replace("prefix)base", "prefix)trunk")
@@ -160,14 +160,14 @@ def test_a_link_is_followed_into_each_file_of_a_package_that_depends_on_its_own(
     assert [mention.file.name for mention in renaming.unchanged] == ["wheel.xacro"]  # the default that no call uses
 
 
-def test_a_use_in_a_macro_renames_the_definition(make: Make):
+def test_rename_at_use_in_macro_changes_definition(make: Make):
     _, texts = make(ROBOT_FILES).rename(
         "description/urdf/wheel.xacro", '<child link="${prefix}${side}_wh', "${prefix}${side}_tire"
     )
     assert texts["description/urdf/wheel.xacro"] == WHEEL.replace('_wheel"', '_tire"')
 
 
-def test_a_macro_that_nothing_calls_is_checked_with_a_call_of_its_own(make: Make):
+def test_uncalled_macro_is_checked_with_generated_call(make: Make):
     renaming, texts = make(ROBOT_FILES).rename(
         "description/urdf/wheel.xacro", '<link name="${name}_sp', "${name}_extra"
     )
@@ -175,14 +175,14 @@ def test_a_macro_that_nothing_calls_is_checked_with_a_call_of_its_own(make: Make
     assert any("generated calls" in str(note) for note in renaming.notes)
 
 
-def test_a_robot_of_other_macro_calls_is_not_changed_by_a_name_that_it_does_not_have(make: Make):
+def test_rename_is_rejected_if_another_robot_would_lose_the_name(make: Make):
     other = ROBOT.replace('name="prefix" default=""', 'name="prefix" default="other_"')
     files = make({**ROBOT_FILES, "description/urdf/other.urdf.xacro": other})
     with pytest.raises(LinkwrightError, match=r"'other_left_wheel_joint' of 'other\.urdf\.xacro'"):
         files.rename("bringup/config/rover.yaml", '["left', "left_tire_joint")
 
 
-def test_a_file_is_about_the_robot_that_a_launch_file_names_with_it(make: Make):
+def test_file_belongs_to_robot_named_in_same_launch_file(make: Make):
     launch = "ROBOT = 'rover.urdf.xacro'\nPARAMETERS = 'rover.yaml'\n"
     files = make(
         {
@@ -198,7 +198,7 @@ def test_a_file_is_about_the_robot_that_a_launch_file_names_with_it(make: Make):
     assert "rover.rviz" in {mention.file.name for mention in renaming.unchanged}
 
 
-def test_a_robot_that_lacks_a_package_is_compared_without_its_elements(make: Make):
+def test_robot_with_missing_package_is_compared_without_its_elements(make: Make):
     robot = ROBOT.replace(
         "  <link", '  <xacro:include filename="$(find missing)/x.xacro"/>\n  <xacro:missing_part/>\n  <link', 1
     )
@@ -208,7 +208,7 @@ def test_a_robot_that_lacks_a_package_is_compared_without_its_elements(make: Mak
     assert any("package 'missing' not found" in str(note) for note in renaming.notes)
 
 
-def test_a_parameter_that_inner_macros_forward_is_renamed_in_them(make: Make):
+def test_forwarded_macro_parameter_is_renamed_in_inner_macros(make: Make):
     text = """<robot name="r" xmlns:xacro="http://www.ros.org/wiki/xacro">
   <xacro:macro name="inner" params="size:=^"><link name="l_${size}"/></xacro:macro>
   <xacro:macro name="outer" params="size"><xacro:inner/></xacro:macro>
@@ -262,7 +262,7 @@ LAUNCH_FILES = {
 }
 
 
-def test_a_passed_launch_argument_is_renamed_with_the_keys_of_its_callers(make: Make):
+def test_launch_argument_rename_updates_callers(make: Make):
     _, texts = make(LAUNCH_FILES).rename("p/launch/part.launch.xml", '<arg name="sp', "pace")
     assert texts == {
         "p/launch/main.launch.py": MAIN_PY.replace("{'speed'", "{'pace'"),
@@ -272,7 +272,7 @@ def test_a_passed_launch_argument_is_renamed_with_the_keys_of_its_callers(make: 
     }
 
 
-def test_a_launch_argument_that_is_not_passed_is_the_same_in_included_files(make: Make):
+def test_inherited_launch_argument_is_renamed_in_included_files(make: Make):
     renaming, texts = make(LAUNCH_FILES).rename("p/launch/main.launch.py", "DeclareLaunchArgument('mo", "style")
     assert texts == {
         "p/launch/main.launch.py": MAIN_PY.replace("'mode'", "'style'"),
@@ -282,13 +282,13 @@ def test_a_launch_argument_that_is_not_passed_is_the_same_in_included_files(make
     assert renaming.unchanged == ()
 
 
-def test_the_value_of_a_passed_launch_argument_is_renamed_in_its_own_file_alone(make: Make):
+def test_launch_configuration_passed_as_value_is_renamed_only_in_its_file(make: Make):
     _, texts = make(LAUNCH_FILES).rename("p/launch/main.launch.py", "LaunchConfiguration('sp", "pace")
     changed = MAIN_PY.replace("'speed'", "'pace'").replace("{'pace'", "{'speed'")
     assert texts == {"p/launch/main.launch.py": changed}
 
 
-def test_a_launch_argument_whose_new_name_exists_is_refused(make: Make):
+def test_launch_argument_rename_to_existing_name_is_rejected(make: Make):
     with pytest.raises(LinkwrightError, match="already uses 'mode'"):
         make(LAUNCH_FILES).rename("p/launch/part.launch.xml", '<arg name="sp', "mode")
 
@@ -320,7 +320,7 @@ SDF_FILES = {
 }
 
 
-def test_a_link_of_a_model_is_renamed_in_its_scope_and_in_worlds_that_include_the_model(make: Make):
+def test_sdf_link_is_renamed_in_its_scope_and_in_including_worlds(make: Make):
     _, texts = make(SDF_FILES).rename("p/models/cart/model.sdf", '  <link name="bo', "base")
     nested = MODEL.index('  <model name="arm">'), MODEL.index('  <joint name="hold"')
     inner = MODEL[slice(*nested)]
@@ -332,7 +332,7 @@ def test_a_link_of_a_model_is_renamed_in_its_scope_and_in_worlds_that_include_th
     }
 
 
-def test_a_nested_model_and_one_in_the_state_of_a_world_follow(make: Make):
+def test_nested_sdf_model_and_world_state_are_renamed(make: Make):
     files = make(SDF_FILES)
     _, texts = files.rename("p/models/cart/model.sdf", '<model name="ar', "limb")
     assert texts == {"p/models/cart/model.sdf": MODEL.replace('"arm"', '"limb"').replace("arm::", "limb::")}
@@ -340,7 +340,7 @@ def test_a_nested_model_and_one_in_the_state_of_a_world_follow(make: Make):
     assert texts == {"p/worlds/w.world": WORLD.replace('"box"', '"crate"')}
 
 
-def test_a_name_that_exists_in_the_model_is_refused(make: Make):
+def test_sdf_rename_to_existing_name_is_rejected(make: Make):
     with pytest.raises(LinkwrightError, match="exists already"):
         make(SDF_FILES).rename("p/models/cart/model.sdf", '  <link name="bo', "wheel")
 
@@ -348,7 +348,7 @@ def test_a_name_that_exists_in_the_model_is_refused(make: Make):
 # --- files ------------------------------------------------------------------------------------------------------------
 
 
-def test_a_renamed_file_is_followed_into_python_launch_files_yaml_and_build_files(make: Make):
+def test_renamed_file_is_updated_in_launch_yaml_and_build_files(make: Make):
     launch = (
         "import os\n"
         "from ament_index_python.packages import get_package_share_directory\n"
@@ -373,7 +373,7 @@ def test_a_renamed_file_is_followed_into_python_launch_files_yaml_and_build_file
     ]
 
 
-def test_a_model_is_renamed_in_a_world_that_gives_it_no_name_and_listed_where_it_is_started(make: Make):
+def test_unnamed_included_model_is_renamed_and_launch_use_is_listed(make: Make):
     world = WORLD.replace("<name>one</name>", "").replace("one::", "cart::")
     launch = "arguments = ['-name', 'cart']\n"
     files = make({**SDF_FILES, "p/worlds/w.world": world, "p/launch/a.launch.py": launch})
@@ -385,7 +385,7 @@ def test_a_model_is_renamed_in_a_world_that_gives_it_no_name_and_listed_where_it
     assert [mention.file.name for mention in renaming.unchanged] == ["a.launch.py"]
 
 
-def test_a_computed_reference_in_a_model_in_xacro_is_refused_and_its_argument_is_renamed(make: Make):
+def test_computed_sdf_reference_is_rejected_and_its_argument_is_renamed(make: Make):
     text = """<sdf version="1.9" xmlns:xacro="http://www.ros.org/wiki/xacro"><xacro:arg name="part" default="whe"/>
 <model name="m"><link name="body"/><link name="wheel"/>
 <joint name="j" type="fixed"><parent>body</parent><child>$(arg part)el</child></joint></model></sdf>
@@ -397,7 +397,7 @@ def test_a_computed_reference_in_a_model_in_xacro_is_refused_and_its_argument_is
     assert files.rename("p/m.sdf.xacro", "$(arg pa", "side")[1] == {"p/m.sdf.xacro": text.replace("part", "side")}
 
 
-def test_an_interface_of_a_joint_follows_and_the_end_of_another_path_is_listed(make: Make):
+def test_joint_interface_is_renamed_and_other_path_is_listed(make: Make):
     lists = "    inputs: [left_wheel_joint/velocity, pid/left_wheel_joint]\n    dof_names: [left_wheel_joint]\n"
     yaml = f"filter:\n  ros__parameters:\n{lists}"
     files = make({**ROBOT_FILES, "bringup/config/filter.yaml": yaml})

@@ -113,7 +113,7 @@ def package(folder: Path) -> Package:
         ("urdf/arm.urdf.xacro", "${2 * ", "extent", {"arm.urdf.xacro": "${2 * extent}"}),
     ],
 )
-def test_what_only_xacro_knows_leaves_the_robot_equal(package: Package, file, before, new, changed):
+def test_xacro_only_names_are_renamed_without_changing_robot(package: Package, file, before, new, changed):
     main = package.folder / "urdf" / "arm.urdf.xacro"
     robot = str(expand(main))
     renaming = package.rename(file, before, new)
@@ -123,7 +123,7 @@ def test_what_only_xacro_knows_leaves_the_robot_equal(package: Package, file, be
     assert str(expand(main)) == robot
 
 
-def test_a_link_is_renamed_wherever_it_is_certain(package: Package):
+def test_link_is_renamed_in_all_files_of_robot(package: Package):
     renaming = package.rename("urdf/arm.urdf.xacro", '<link name="', "trunk")
     texts = package.apply(renaming)
     assert renaming.names == {"base": "trunk"}
@@ -138,7 +138,7 @@ def test_a_link_is_renamed_wherever_it_is_certain(package: Package):
     assert sorted(mention.file.name for mention in renaming.unchanged) == ["arm.launch.py", "arm.yaml"]
 
 
-def test_a_composed_name_changes_every_name_that_it_makes(package: Package):
+def test_composed_name_is_renamed_in_all_expansions(package: Package):
     renaming = package.rename("urdf/parts.xacro", '<joint name="${name}', "${name}_axle")
     texts = package.apply(renaming)
     assert renaming.names == {"upper_joint": "upper_axle"}
@@ -147,7 +147,7 @@ def test_a_composed_name_changes_every_name_that_it_makes(package: Package):
     assert "upper_axle" in texts["arm.srdf"]
 
 
-def test_a_file_of_another_robot_with_the_same_name_is_left(package: Package):
+def test_files_of_another_robot_with_same_name_are_unchanged(package: Package):
     (package.folder / "urdf" / "other.urdf").write_text('<robot name="other"><link name="base"/></robot>')
     renaming = Package(package.folder).rename("urdf/arm.urdf.xacro", '<link name="', "trunk")
     # The SRDF has the name of the robot; the other files may mean both robots.
@@ -155,7 +155,7 @@ def test_a_file_of_another_robot_with_the_same_name_is_left(package: Package):
     assert {mention.file.name for mention in renaming.unchanged} == {"arm.yaml", "arm.rviz", "arm.launch.py"}
 
 
-def test_an_argument_is_renamed_in_the_launch_file_that_passes_it(package: Package):
+def test_xacro_argument_is_renamed_in_launch_file(package: Package):
     main = package.folder / "urdf" / "arm.urdf.xacro"
     declared = '  <xacro:arg name="size" default="1"/>\n  <link'
     main.write_text(MAIN.replace('value="0.4"', 'value="$(arg size)"').replace("  <link", declared, 1))
@@ -172,7 +172,7 @@ def test_an_argument_is_renamed_in_the_launch_file_that_passes_it(package: Packa
     assert 'value="$(arg reach_scale)"' in texts["arm.urdf.xacro"]
 
 
-def test_a_name_that_a_call_passes_on_is_renamed_in_the_call(package: Package):
+def test_name_passed_to_macro_is_renamed_in_call(package: Package):
     main = package.folder / "urdf" / "arm.urdf.xacro"
     main.write_text(MAIN.replace('length="${2 * reach}"', 'length="1" parent="base"'))
     parts = package.folder / "urdf" / "parts.xacro"
@@ -182,7 +182,7 @@ def test_a_name_that_a_call_passes_on_is_renamed_in_the_call(package: Package):
     assert "parts.xacro" not in texts
 
 
-def test_a_computed_reference_is_refused_with_its_place(package: Package):
+def test_computed_reference_is_rejected_with_location(package: Package):
     main = package.folder / "urdf" / "arm.urdf.xacro"
     main.write_text(MAIN.replace("  <link", '  <xacro:property name="b" value="ba"/>\n  <link', 1))
     parts = package.folder / "urdf" / "parts.xacro"
@@ -203,7 +203,7 @@ def test_a_computed_reference_is_refused_with_its_place(package: Package):
         ("urdf/parts.xacro", '<joint name="$', "fixed_name", "LANG104"),
     ],
 )
-def test_what_cannot_be_done_or_proved_is_refused(package: Package, file, before, new, code):
+def test_invalid_and_conflicting_names_are_rejected(package: Package, file, before, new, code):
     if new == "fixed_name":  # two calls would have one name
         main = package.folder / "urdf" / "arm.urdf.xacro"
         main.write_text(MAIN.replace("  <xacro:if", '  <xacro:bar name="lower" length="1"/>\n  <xacro:if'))
@@ -213,7 +213,7 @@ def test_what_cannot_be_done_or_proved_is_refused(package: Package, file, before
     assert raised.value.diagnostics[0].code == code
 
 
-def test_a_file_outside_of_the_workspace_is_not_edited(package: Package, tmp_path_factory: pytest.TempPathFactory):
+def test_file_outside_workspace_is_not_edited(package: Package, tmp_path_factory: pytest.TempPathFactory):
     outside = tmp_path_factory.mktemp("outside") / "parts.xacro"
     outside.write_text(PARTS, encoding="utf-8")
     (package.folder / "urdf" / "parts.xacro").unlink()
@@ -224,7 +224,7 @@ def test_a_file_outside_of_the_workspace_is_not_edited(package: Package, tmp_pat
     assert outside.read_text(encoding="utf-8") == PARTS
 
 
-def test_a_material_is_renamed_where_it_is_defined_and_used(package: Package):
+def test_material_is_renamed_at_definition_and_uses(package: Package):
     main = package.folder / "urdf" / "arm.urdf.xacro"
     material = '  <material name="grey"><color rgba="0.5 0.5 0.5 1"/></material>\n  <link'
     main.write_text(MAIN.replace("  <link", material, 1))
@@ -235,7 +235,7 @@ def test_a_material_is_renamed_where_it_is_defined_and_used(package: Package):
     assert '<material name="steel"><color' in texts["arm.urdf.xacro"]
 
 
-def test_a_file_with_chinese_text_and_windows_line_ends_is_edited_at_the_right_places(package: Package):
+def test_chinese_text_and_crlf_files_are_edited_at_correct_offsets(package: Package):
     (package.folder / "config" / "arm.yaml").write_bytes(("# 机械臂🤖\n" + YAML).replace("\n", "\r\n").encode())
     main = package.folder / "urdf" / "arm.urdf.xacro"
     main.write_bytes(MAIN.replace("  <link", "  <!-- 底座🤖 -->\n  <link", 1).replace("\n", "\r\n").encode())
@@ -245,7 +245,7 @@ def test_a_file_with_chinese_text_and_windows_line_ends_is_edited_at_the_right_p
     assert {"arm.yaml", "arm.urdf.xacro"} <= {file.name for file in texts}
 
 
-def test_references_are_those_of_the_macro_s_own_parameter(package: Package):
+def test_references_of_macro_parameter_are_in_its_scope(package: Package):
     name = package.name("urdf/parts.xacro", 'params="name ')
     found = [(use.file.name, use.is_definition) for use in references(package.workspace, {}, name)]
     assert sorted(found) == [("arm.urdf.xacro", False), ("parts.xacro", False), ("parts.xacro", True)]

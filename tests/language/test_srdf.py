@@ -35,32 +35,32 @@ def at(tmp_path: Path):
     return place
 
 
-def test_links_and_joints_are_those_of_the_expanded_description(at):
+def test_links_and_joints_are_completed_from_expanded_description(at):
     assert at('<group name="g"><chain base_link="|"/>').labels() == ["foot", "left_arm", "right_arm"]
     assert at('<group_state name="s" group="g"><joint name="|"/>').labels() == ["left_joint", "right_joint"]
     assert at('<group name="g"><joint name="left_joint"/><joint name="|"/></group>').labels() == ["right_joint"]
 
 
-def test_groups_are_those_of_the_file(at):
+def test_groups_of_file_are_completed(at):
     text = '<group name="a"/><group name="b"><group name="|"/></group>'
     assert at(text).labels() == ["a", "b"]
     assert at('<group name="a"/><group_state group="|"/>').labels() == ["a"]
     assert at('<group name="a"/><group_state group="a|"/>').targets() == ["lamp.srdf:a"]
 
 
-def test_elements_and_fixed_values_come_from_the_table(at):
+def test_elements_and_fixed_values_are_completed(at):
     assert at("<dis|").labels() == ["disable_collisions", "disable_default_collisions"]
     assert at('<disable_collisions link1="a" link2="b" reason="|"/>').labels()[:2] == ["Adjacent", "Never"]
 
 
-def test_a_link_is_explained_and_leads_to_the_macro_that_makes_it(at):
+def test_link_has_hover_and_definition_in_macro(at):
     place = at('<passive_joint name="left_jo|int"/>')
     assert "fixed joint from `foot` to `left_arm`" in place.hover()
     assert place.targets() == ["lamp.urdf.xacro:${side}_joint"]
     assert at('<group name="g"><link name="fo|ot"/></group>').targets() == ["lamp.urdf.xacro:foot"]
 
 
-def test_a_robot_with_another_name_is_found_by_its_links(at):
+def test_renamed_robot_is_matched_by_its_links(at):
     text = '<group name="g"><chain base_link="foot" tip_link="|"/></group>'
     place = at(text)
     text = place.document.text.replace('name="lamp"', 'name="other"')
@@ -69,6 +69,6 @@ def test_a_robot_with_another_name_is_found_by_its_links(at):
     assert labels == ["foot", "left_arm", "right_arm"]
 
 
-def test_a_group_is_explained_by_its_parts(at):
+def test_hover_of_group_lists_its_parts(at):
     text = '<group name="a"><chain base_link="foot" tip_link="left_arm"/></group><group_state name="s" group="|a"/>'
     assert "- chain `foot`, `left_arm`" in at(text).hover()

@@ -37,12 +37,12 @@ XML, TEXT = "<!-- linkwright: ignore LW104 (reason) -->", "# linkwright: ignore 
         ("a.urdf", "no xml", "no", None),
     ],
 )
-def test_a_comment_suppresses_the_finding_and_changes_nothing_else(name, text, place, expected):
+def test_suppression_comment_is_inserted_at_valid_place(name, text, place, expected):
     edit = suppression(text, Path(name), "LW104", text.rindex(place))
     assert (None if edit is None else apply_edits(text, [edit])) == expected
 
 
-def test_the_code_in_a_comment_is_known_at_its_place():
+def test_code_at_finds_code_in_comment():
     text = "<r>\n  <!-- linkwright: ignore LW104 LW105 (b) -->\n  <a/>\n</r>"
     assert code_at(text, text.index("LW105") + 5) == ("LW105", text.index("LW105"))
     assert code_at(text, text.index("ignore")) is None

@@ -21,7 +21,7 @@ def uses(place: Place, **options) -> list[str]:
     return [f"{use.file.name}:{use.start}:{place.document.other(use.file)[use.start : use.end]}" for use in found]
 
 
-def test_an_argument_is_used_in_its_file(folder):
+def test_argument_uses_are_found_in_its_file(folder):
     text = '<launch><arg name="gu|i"/><log message="gui $(var gui)"/><node name="gui"/></launch>'
     place = Place(folder / "launch" / "lamp.launch.xml", text)
     assert uses(place) == ["lamp.launch.xml:19:gui", "lamp.launch.xml:49:gui"]
@@ -30,7 +30,7 @@ def test_an_argument_is_used_in_its_file(folder):
     assert uses(place) == ["a.launch.py:23:a", "a.launch.py:52:a"]
 
 
-def test_files_that_include_it_use_it(folder):
+def test_argument_uses_are_found_in_including_files(folder):
     include = "$(find-pkg-share lamp_bringup)/launch/parts.launch.xml"
     text = f'<launch><include file="{include}"><arg name="rate" value="1"/></include></launch>'
     (folder / "launch" / "whole.launch.xml").write_text(text)
@@ -45,6 +45,6 @@ def test_files_that_include_it_use_it(folder):
     ]
 
 
-def test_a_group_of_an_srdf_is_used_in_it(folder):
+def test_srdf_group_uses_are_found(folder):
     text = '<robot name="lamp"><group name="a"/><group_state name="a" group="a|"/></robot>'
     assert len(uses(Place(folder / "config" / "lamp.srdf", text))) == 2

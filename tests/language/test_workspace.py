@@ -45,7 +45,7 @@ def codes(workspace: Workspace, file: Path, texts=None) -> dict[str, list[str]]:
     return {path.name: [finding.code for finding in findings] for path, findings in found.items()}
 
 
-def test_a_fix_is_offered_only_for_the_text_that_was_checked(workspace, folder):
+def test_fix_is_offered_only_for_checked_text(workspace, folder):
     file = folder / "r.urdf"
     texts = {file: LONG_AXIS}
     assert codes(workspace, file, texts) == {"r.urdf": ["LW221"]}
@@ -56,7 +56,7 @@ def test_a_fix_is_offered_only_for_the_text_that_was_checked(workspace, folder):
     assert workspace.fixable(file, {}) == []
 
 
-def test_an_empty_manifest_has_no_findings_once_it_is_filled(workspace, folder):
+def test_empty_manifest_findings_are_cleared_once_filled(workspace, folder):
     file = folder / "arm" / "package.xml"
     file.parent.mkdir()
     file.write_text("")
@@ -67,7 +67,7 @@ def test_an_empty_manifest_has_no_findings_once_it_is_filled(workspace, folder):
     assert codes(workspace, file, {file: file.read_text()}) == {"package.xml": []}
 
 
-def test_findings_go_with_the_file(workspace, folder):
+def test_findings_are_cleared_when_file_is_deleted(workspace, folder):
     file = folder / "r.urdf"
     file.write_text(LONG_AXIS)
     assert codes(workspace, file) == {"r.urdf": ["LW221"]}
@@ -76,7 +76,7 @@ def test_findings_go_with_the_file(workspace, folder):
     assert codes(workspace, file) == {"r.urdf": []}
 
 
-def test_a_file_that_is_made_later_is_checked_with_what_includes_it(workspace, folder):
+def test_file_created_later_is_checked_with_its_includer(workspace, folder):
     main, parts = folder / "r.urdf.xacro", folder / "parts.xacro"
     main.write_text(MAIN)
     assert "XAC506" in codes(workspace, main)["r.urdf.xacro"] or "XML101" in codes(workspace, main)["r.urdf.xacro"]
@@ -85,7 +85,7 @@ def test_a_file_that_is_made_later_is_checked_with_what_includes_it(workspace, f
     assert codes(workspace, parts) == {"r.urdf.xacro": [], "parts.xacro": []}
 
 
-def test_a_material_has_its_own_color_alone():
+def test_material_has_only_its_own_color():
     text = (
         '<material name="plain"><texture filename="a.png"/></material><material name="open">'
         '<material name="orange"><color rgba="1 0.5 0 1"/></material>'

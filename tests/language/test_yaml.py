@@ -8,7 +8,7 @@ import pytest
 
 from linkwright.language.format import Document
 from linkwright.language.formats import format_of
-from linkwright.language.parameter_catalogue import node_names, node_parameters, plugins
+from linkwright.language.parameter_catalog import node_names, node_parameters, plugins
 from linkwright.language.parameter_files import PARAMETER_FILES
 from linkwright.language.rviz_files import RVIZ_FILES
 from linkwright.language.workspace import Workspace
@@ -104,7 +104,7 @@ def typing(tmp_path: Path) -> Typing:
         ("a: |\n  b", YamlPosition.VALUE, ("a",), ""),
     ],
 )
-def test_the_place_of_a_cursor_is_found_by_indentation(marked, place, path, typed):
+def test_cursor_position_is_found_by_indentation(marked, place, path, typed):
     cursor = YamlOutline(marked.replace("|", "", 1)).cursor(marked.index("|"))
     assert (cursor.position, cursor.parent_entry.path, cursor.typed) == (place, path, typed)
 
@@ -139,20 +139,20 @@ def test_the_place_of_a_cursor_is_found_by_indentation(marked, place, path, type
         ("/**:\n  ros__parameters:\n    |", "use_sim_time"),
     ],
 )
-def test_the_first_completion_in_a_parameter_file(typing, marked, expected):
+def test_first_completion_in_parameter_file(typing, marked, expected):
     assert typing.labels(marked)[0] == expected
 
 
-def test_what_is_there_already_is_not_offered_again(typing):
+def test_existing_keys_and_values_are_not_offered(typing):
     assert "update_rate" not in typing.labels(MANAGER + "    |")
     assert typing.labels(DRIVE + "left_wheel_names: [left_wheel_joint, |]")[0] == "right_wheel_joint"
 
 
-def test_other_yaml_files_get_no_nodes(typing):
+def test_unrelated_yaml_file_has_no_node_completion(typing):
     assert not typing.labels("joint_limits:\n  a: 1\n|")
 
 
-def test_a_launch_file_in_yaml_is_no_parameter_file():
+def test_yaml_launch_file_is_not_a_parameter_file():
     assert not PARAMETER_FILES.covers(Path("a.launch.yaml"))
     assert format_of(Path("a.rviz")) is RVIZ_FILES
 
@@ -171,7 +171,7 @@ def test_a_launch_file_in_yaml_is_no_parameter_file():
         (MPPI, ("plugin of controller_server: follows a path by model predictive path integral control",)),
     ],
 )
-def test_explanations_in_a_parameter_file(typing, marked, words):
+def test_hover_in_parameter_file(typing, marked, words):
     text = typing.explained(marked)
     assert all(word in text for word in words), text
 
@@ -185,11 +185,11 @@ def test_explanations_in_a_parameter_file(typing, marked, words):
         (COSTMAP.replace("inflation_layer]", "infl|ation_layer]"), ("a.yaml", "inflation_layer")),
     ],
 )
-def test_definitions_from_a_parameter_file(typing, marked, target):
+def test_definitions_in_parameter_file(typing, marked, target):
     assert typing.targets(marked) == [target]
 
 
-def test_a_library_in_a_list_has_no_definition(typing):
+def test_plugin_library_in_list_has_no_definition(typing):
     assert not typing.targets("bt_navigator:\n  ros__parameters:\n    plugin_lib_names:\n    - a|_node\n    - b_node\n")
 
 
@@ -209,25 +209,25 @@ def test_a_library_in_a_list_has_no_definition(typing):
         (RVIZ + "  Tools:\n    - Class: rviz_default_plugins/SetI|", "rviz_default_plugins/SetInitialPose"),
     ],
 )
-def test_the_first_completion_in_a_configuration(typing, marked, expected):
+def test_first_completion_in_rviz_file(typing, marked, expected):
     assert typing.labels(marked, "a.rviz")[0] == expected
 
 
-def test_explanations_and_definitions_in_a_configuration(typing):
+def test_hover_and_definitions_in_rviz_file(typing):
     assert "Opacity" in typing.explained(RVIZ.replace("Alpha", "Al|pha"), "a.rviz")
     assert "Cell Size" in typing.explained(RVIZ.replace("/Grid", "/Gr|id"), "a.rviz")
     assert "link base_link" in typing.explained(RVIZ + OPTIONS + "base|_link", "a.rviz")
     assert typing.targets(RVIZ + OPTIONS + "base|_link", "a.rviz") == [("r.urdf.xacro", "base_link")]
 
 
-def test_symbols_are_the_keys(typing):
+def test_symbols_are_keys(typing):
     document, _ = typing.document(MANAGER + "|", "a.yaml")
     (manager,) = PARAMETER_FILES.symbols(document)
     assert manager.name == "controller_manager"
     assert [child.name for child in manager.children[0].children] == ["update_rate", "drive", "arm"]
 
 
-def test_parameters_of_own_nodes_come_from_their_sources(typing):
+def test_parameters_of_own_nodes_are_read_from_sources(typing):
     source = "class A(Node):\n    def __init__(self):\n        super().__init__('finder')\n"
     declared = "        self.declare_parameter('size', 0.5)\n        self.declare_parameter('is_on', True)\n"
     (typing.folder / "finder.py").write_text(source + declared)
@@ -240,7 +240,7 @@ def test_parameters_of_own_nodes_come_from_their_sources(typing):
     assert typing.targets(text + "si|ze: 1.0") == [("finder.py", "size")]
 
 
-def test_names_follow_an_open_description(typing):
+def test_completion_follows_open_description(typing):
     file = typing.folder / "r.urdf.xacro"
     text = "base_frame_id: |"
     document, offset = typing.document(DRIVE + text, "a.yaml")
@@ -249,7 +249,7 @@ def test_names_follow_an_open_description(typing):
     assert "trunk" in [item.label for item in PARAMETER_FILES.complete(changed, offset)]
 
 
-def test_the_catalogue_has_nodes_and_plugins_with_types():
+def test_catalog_contains_nodes_and_plugins_with_types():
     assert {"amcl", "slam_toolbox", "ekf_filter_node", "robot_state_publisher", "map_server"} <= set(node_names())
     assert all(parameter.name for node in node_names() for parameter in node_parameters(node))
     assert plugins()["nav2_costmap_2d/VoxelLayer"].listed == "plugins"

@@ -24,17 +24,17 @@ def launched(monkeypatch, options: LaunchOptions) -> list[Node]:
     return [entity for entity in seen[0].entities if isinstance(entity, Node)]
 
 
-def test_it_adds_the_bridge(monkeypatch):
+def test_foxglove_option_adds_bridge(monkeypatch):
     (node,) = launched(monkeypatch, LaunchOptions(foxglove=8765))
     assert (node.node_package, node.node_executable) == ("foxglove_bridge", "foxglove_bridge")
 
 
-def test_without_it_there_is_none(monkeypatch):
+def test_bridge_is_not_added_without_option(monkeypatch):
     assert launched(monkeypatch, LaunchOptions()) == []
 
 
 @pytest.mark.parametrize("words", [["view", "robot.urdf"], ["launch", "a.launch.py"], ["run", "package", "talker"]])
-def test_every_command_that_launches_has_it(words):
+def test_launching_commands_accept_foxglove_option(words):
     from linkwright.cli.command import parser_for
 
     arguments = parser_for(words[0]).parse_args(["--foxglove", "9000", *words[1:]])

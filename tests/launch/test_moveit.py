@@ -55,7 +55,7 @@ def arm(write: Any, tmp_path: Path) -> Any:
 
 @pytest.mark.usefixtures("arm")
 class TestBuilder:
-    def test_all_that_is_in_its_usual_place(self, tmp_path: Path) -> None:
+    def test_default_files_are_loaded(self, tmp_path: Path) -> None:
         configs = MoveItConfigsBuilder("arm").to_moveit_configs()
         assert configs.package_path == tmp_path / "src" / "arm_moveit_config"
         assert '<link name="tool_none"/>' in configs.robot_description["robot_description"]
@@ -72,7 +72,7 @@ class TestBuilder:
         assert everything["moveit_manage_controllers"] is True
         assert everything["publish_robot_description"] is False
 
-    def test_arguments_that_the_setup_assistant_noted(self, write: Any) -> None:
+    def test_xacro_arguments_of_setup_assistant_are_used(self, write: Any) -> None:
         urdf = "{package: arm_description, relative_path: urdf/arm.urdf.xacro, xacro_args: 'tool:=noted  odd'}"
         write("src/arm_moveit_config/.setup_assistant", f"moveit_setup_assistant_config:\n  urdf: {urdf}\n")
         noted = MoveItConfigsBuilder("arm").to_moveit_configs().robot_description["robot_description"]
@@ -80,14 +80,16 @@ class TestBuilder:
         given = MoveItConfigsBuilder("arm").robot_description(mappings={"tool": "given"}).to_moveit_configs()
         assert '<link name="tool_given"/>' in given.robot_description["robot_description"]
 
-    def test_noted_arguments_are_for_the_model_of_the_configuration_too(self, write: Any) -> None:
+    def test_setup_assistant_arguments_apply_to_configuration_model(self, write: Any) -> None:
         write("src/arm_moveit_config/config/arm.urdf.xacro", URDF)
         urdf = "{package: arm_description, relative_path: urdf/arm.urdf.xacro, xacro_args: 'tool:=noted'}"
         write("src/arm_moveit_config/.setup_assistant", f"moveit_setup_assistant_config:\n  urdf: {urdf}\n")
         noted = MoveItConfigsBuilder("arm").to_moveit_configs().robot_description["robot_description"]
         assert '<link name="tool_noted"/>' in noted
 
-    def test_without_a_model_it_warns_and_goes_on(self, tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    def test_missing_model_is_reported_and_rest_is_loaded(
+        self, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+    ) -> None:
         (tmp_path / "src/arm_description/urdf/arm.urdf.xacro").unlink()
         configs = MoveItConfigsBuilder("arm").to_moveit_configs()
         assert configs.robot_description == {}
@@ -96,7 +98,7 @@ class TestBuilder:
         assert "warning[LAUNCH153]: parameter file " in warning
         assert "read it from the topic /robot_description" in warning
 
-    def test_what_it_is_told(self) -> None:
+    def test_builder_options_override_defaults(self) -> None:
         configs = (
             MoveItConfigsBuilder("arm", robot_description="model", package_name="arm_moveit_config")
             .robot_description(mappings={"tool": "hook"})
@@ -112,34 +114,34 @@ class TestBuilder:
         assert configs.planning_pipelines["chomp"] == {}
         assert configs.planning_scene_monitor["publish_robot_description"]
 
-    def test_builders_do_not_share_what_they_found(self) -> None:
+    def test_builders_do_not_share_state(self) -> None:
         MoveItConfigsBuilder("arm").robot_description(mappings={"tool": "hook"})
         second = MoveItConfigsBuilder("arm").to_moveit_configs()
         assert "tool_none" in second.robot_description["robot_description"]
 
-    def test_arguments_that_are_known_when_the_launch_runs(self) -> None:
+    def test_xacro_mappings_can_be_substitutions(self) -> None:
         builder = MoveItConfigsBuilder("arm").robot_description(mappings={"tool": LaunchConfiguration("tool")})
         value = builder.to_moveit_configs().robot_description["robot_description"]
         context = LaunchContext()
         context.launch_configurations["tool"] = "saw"
         assert "tool_saw" in value.evaluate(context)
 
-    def test_which_controllers_is_not_guessed(self, write: Any) -> None:
+    def test_ambiguous_controllers_file_is_rejected(self, write: Any) -> None:
         folder = "src/arm_moveit_config/config"
         (Path(write(f"{folder}/left_controllers.yaml", "a: 1\n")).parent / "moveit_controllers.yaml").unlink()
         with pytest.raises(RuntimeError, match="Unable to guess") as caught:
             MoveItConfigsBuilder("arm").trajectory_execution()
         assert caught.value.diagnostics[0].code == "LAUNCH154"  # type: ignore[attr-defined]
 
-    def test_a_default_that_is_no_pipeline(self) -> None:
+    def test_unknown_default_pipeline_is_rejected(self) -> None:
         with pytest.raises(RuntimeError, match="doesn't name any of the input pipelines"):
             MoveItConfigsBuilder("arm").planning_pipelines("stomp", ["ompl"])
 
-    def test_no_such_package(self) -> None:
+    def test_missing_package_is_rejected(self) -> None:
         with pytest.raises(LinkwrightError, match="leg_moveit_config"):
             MoveItConfigsBuilder("leg")
 
-    def test_a_file_that_is_not_there(self) -> None:
+    def test_missing_file_is_rejected_with_hint(self) -> None:
         with pytest.raises(KeyError) as caught:
             MoveItConfigsBuilder("arm").joint_limits("config/limits.yaml")
         (diagnostic,) = caught.value.diagnostics  # type: ignore[attr-defined]
@@ -149,7 +151,7 @@ class TestBuilder:
 
 @pytest.mark.usefixtures("arm")
 class TestParameters:
-    def test_one_by_one(self, write: Any) -> None:
+    def test_parameter_builder_merges_parameters(self, write: Any) -> None:
         write("src/arm_moveit_config/config/notes.txt", "some text")
         made = (
             ParameterBuilder("arm_moveit_config")
@@ -165,7 +167,7 @@ class TestParameters:
         assert set(made["limits"]) == {"joint_limits", "arm"}
         assert made["notes"] == "some text"
 
-    def test_files(self, write: Any, tmp_path: Path) -> None:
+    def test_load_functions_read_files(self, write: Any, tmp_path: Path) -> None:
         assert load_yaml(get_path("arm_moveit_config", "config/kinematics.yaml")) == {
             "arm": {"kinematics_solver": "kdl"}
         }
@@ -178,18 +180,18 @@ class TestParameters:
         with pytest.raises(LinkwrightError, match="cannot be read"):
             load_file(tmp_path)
 
-    def test_templates(self, write: Any) -> None:
+    def test_yaml_templates_are_rendered(self, write: Any) -> None:
         pytest.importorskip("jinja2")
         path = write("limits.yaml", "angle: {{ radians(180) | round(2) }}\nname: {{ who }}\n")
         assert load_yaml(path, mappings={"who": "arm"}) == {"angle": 3.14, "name": "arm"}
 
-    def test_templates_without_jinja2(self, write: Any, monkeypatch: pytest.MonkeyPatch) -> None:
+    def test_yaml_templates_without_jinja2_have_install_hint(self, write: Any, monkeypatch: pytest.MonkeyPatch) -> None:
         monkeypatch.setitem(sys.modules, "jinja2", None)
         with pytest.raises(LinkwrightError) as caught:
             load_yaml(write("limits.yaml", "angle: {{ radians(180) }}\n"))
         assert caught.value.diagnostics[0].hint == package_hint("jinja2")
 
-    def test_the_substitution(self, tmp_path: Path) -> None:
+    def test_xacro_substitution_expands_model(self, tmp_path: Path) -> None:
         path = str(tmp_path / "src/arm_description/urdf/arm.urdf.xacro")
         made = Xacro([path], mappings={"tool": [LaunchConfiguration("tool"), "s"]})
         context = LaunchContext()
@@ -225,18 +227,18 @@ class TestLaunches:
         folder = "src/arm_moveit_config/launch"
         return {name: write(f"{folder}/{name}.launch.py", dedent(text).format(name)) for name in self.NAMES}
 
-    def test_all_load(self, write: Any) -> None:
+    def test_launch_files_load(self, write: Any) -> None:
         for path in self.files(write).values():
             load_launch_file(path)
 
-    def test_their_arguments(self, write: Any) -> None:
+    def test_demo_launch_file_declares_arguments(self, write: Any) -> None:
         files = self.files(write)
         names = {
             get_launch_argument.name for get_launch_argument in load_launch_file(files["demo"]).get_launch_arguments()
         }
         assert {"db", "debug", "use_rviz", "publish_frequency", "rviz_config", "capabilities"} <= names
 
-    def test_what_they_start(self, write: Any) -> None:
+    def test_spawner_and_virtual_joint_launches_start_nodes(self, write: Any) -> None:
         configs = MoveItConfigsBuilder("arm").to_moveit_configs()
         spawned = launches.generate_spawn_controllers_launch(configs).entities
         context = LaunchContext()
@@ -252,7 +254,7 @@ class TestLaunches:
             "base",
         ]
 
-    async def test_the_state_publisher_runs(self, write: Any, launch: Any, arm: PackageFinder) -> None:
+    async def test_rsp_launch_file_publishes_robot(self, write: Any, launch: Any, arm: PackageFinder) -> None:
         from launch.actions import EmitEvent, TimerAction
         from launch.events import Shutdown
 

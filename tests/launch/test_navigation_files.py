@@ -83,14 +83,14 @@ def started(monkeypatch: pytest.MonkeyPatch) -> Started:
 
 
 @pytest.mark.parametrize("package", ["nav2_bringup", "slam_toolbox", "nav2_map_server"])
-def test_a_package_that_is_there_comes_before_ours(package: str, tmp_path: Path) -> None:
+def test_package_in_workspace_takes_precedence_over_substitute(package: str, tmp_path: Path) -> None:
     assert is_substitute(share(package))
     (tmp_path / "src" / package).mkdir(parents=True)
     (tmp_path / "src" / package / "package.xml").write_text(f"<package><name>{package}</name></package>")
     assert PackageFinder(start=tmp_path, environment={}).share(package) == tmp_path / "src" / package
 
 
-async def test_localization(launch: Launch, started: Started, tmp_path: Path) -> None:
+async def test_localization_launch_starts_map_server_and_amcl(launch: Launch, started: Started, tmp_path: Path) -> None:
     place = tmp_path / "house.yaml"
     launched = await launch(include("nav2_bringup", "localization_launch.py", map=str(place), use_sim_time="True"))
     assert launched.succeeded, launched.err
@@ -107,7 +107,7 @@ async def test_localization(launch: Launch, started: Started, tmp_path: Path) ->
     }
 
 
-async def test_navigation(launch: Launch, started: Started) -> None:
+async def test_navigation_launch_starts_all_servers(launch: Launch, started: Started) -> None:
     launched = await launch(include("nav2_bringup", "navigation_launch.py", autostart="false"))
     assert launched.succeeded, launched.err
     assert started.names == {*(f"/{name}" for _, name in NAVIGATION), "/lifecycle_manager_navigation"}
@@ -122,7 +122,7 @@ async def test_navigation(launch: Launch, started: Started) -> None:
     ]
 
 
-async def test_what_is_not_here_is_left_out_and_not_waited_for(
+async def test_missing_server_is_skipped_and_not_managed(
     launch: Launch, started: Started, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.delitem(EXECUTABLES.entry_points, ("nav2_smoother", "smoother_server"))
@@ -133,7 +133,7 @@ async def test_what_is_not_here_is_left_out_and_not_waited_for(
     assert "smoother_server" not in started.one("lifecycle_manager")[1]["node_names"]
 
 
-async def test_bringup_in_a_namespace(launch: Launch, started: Started) -> None:
+async def test_bringup_launch_applies_namespace(launch: Launch, started: Started) -> None:
     launched = await launch(
         include("nav2_bringup", "bringup_launch.py", namespace="red", use_namespace="true", use_composition="False")
     )
@@ -143,7 +143,7 @@ async def test_bringup_in_a_namespace(launch: Launch, started: Started) -> None:
     assert started.one("planner_server")[1]["planner_plugins"] == ["GridBased"]
 
 
-async def test_bringup_makes_a_map(launch: Launch, started: Started, tmp_path: Path) -> None:
+async def test_bringup_launch_with_slam_builds_map(launch: Launch, started: Started, tmp_path: Path) -> None:
     file = tmp_path / "params.yaml"
     file.write_text("slam_toolbox:\n  ros__parameters:\n    resolution: 0.02\n")
     launched = await launch(
@@ -156,7 +156,7 @@ async def test_bringup_makes_a_map(launch: Launch, started: Started, tmp_path: P
     assert started.one("sync_slam_toolbox_node")[1]["resolution"] == 0.02
 
 
-async def test_a_parameter_file_without_slam_toolbox_leaves_it_its_own(
+async def test_slam_toolbox_uses_own_defaults_without_section_in_file(
     launch: Launch, started: Started, tmp_path: Path
 ) -> None:
     file = tmp_path / "params.yaml"
@@ -176,7 +176,9 @@ async def test_a_parameter_file_without_slam_toolbox_leaves_it_its_own(
         ("localization_launch.py", "localization_slam_toolbox_node"),
     ],
 )
-async def test_slam_toolbox(launch: Launch, started: Started, file: str, executable: str) -> None:
+async def test_slam_toolbox_launch_files_start_node(
+    launch: Launch, started: Started, file: str, executable: str
+) -> None:
     launched = await launch(include("slam_toolbox", file, use_sim_time="false"))
     assert launched.succeeded, launched.err
     name, parameters, _ = started.one(executable)
@@ -185,13 +187,13 @@ async def test_slam_toolbox(launch: Launch, started: Started, file: str, executa
     assert parameters["base_frame"] == "base_footprint"
 
 
-async def test_map_saver(launch: Launch, started: Started) -> None:
+async def test_map_saver_launch_starts_managed_node(launch: Launch, started: Started) -> None:
     launched = await launch(include("nav2_map_server", "map_saver_server.launch.py"))
     assert launched.succeeded, launched.err
     assert started.one("lifecycle_manager")[1]["node_names"] == ["map_saver"]
 
 
-async def test_composed_servers_get_their_parameters(launch: Launch, monkeypatch: pytest.MonkeyPatch) -> None:
+async def test_composed_servers_receive_parameters(launch: Launch, monkeypatch: pytest.MonkeyPatch) -> None:
     from linkwright.navigation.substitutes import servers
 
     composed: list[Any] = []
@@ -209,26 +211,24 @@ async def test_composed_servers_get_their_parameters(launch: Launch, monkeypatch
     assert plugins == ["nav2_map_server::MapServer", "nav2_amcl::AmclNode", "nav2_lifecycle_manager::LifecycleManager"]
 
 
-def test_a_server_is_known_by_its_executable() -> None:
+def test_server_node_name_follows_executable() -> None:
     assert Server("nav2_amcl", "amcl", "nav2_amcl::AmclNode").node_name == "amcl"
     assert not Server("nav2_docking", "docking_server", "").is_available
 
 
-def test_the_view_is_read_whole() -> None:
+def test_default_view_loads_without_warnings() -> None:
     config = RvizConfig.load(share("nav2_bringup") / "rviz" / "nav2_default_view.rviz")
     assert not config.warnings
 
 
-def test_parameters_are_for_the_nodes_that_are_started() -> None:
+def test_default_parameters_cover_started_nodes() -> None:
     content = yaml.safe_load((share("nav2_bringup") / "params" / "nav2_params.yaml").read_text())
     nodes = {name for _, name in (*LOCALIZATION, *NAVIGATION)}
     assert nodes <= {*content}
     assert {*content} - nodes == {"map_saver", "local_costmap", "global_costmap"}
 
 
-async def test_no_manager_waits_for_what_a_launch_file_of_a_user_starts_and_is_not_here(
-    launch: Launch, started: Started
-) -> None:
+async def test_lifecycle_manager_skips_missing_nodes_of_user_launch_file(launch: Launch, started: Started) -> None:
     names = ["planner_server", "docking_server", "red/route_server"]
     launched = await launch(
         Node(package="opennav_docking", executable="opennav_docking", name="docking_server"),
@@ -241,7 +241,7 @@ async def test_no_manager_waits_for_what_a_launch_file_of_a_user_starts_and_is_n
     assert "'docking_server' is skipped, so no lifecycle manager waits for it" in launched.err
 
 
-def test_no_composed_manager_waits_for_it_either() -> None:
+def test_composed_lifecycle_manager_skips_missing_nodes() -> None:
     messages: list[str] = []
     log = SimpleNamespace(write_warning=lambda _name, text: messages.append(text))
     context = SimpleNamespace(session=SimpleNamespace(skipped_nodes={"docking_server"}, log=log))

@@ -36,7 +36,7 @@ class Boat(SingleNode):
         self.finished.set_result(0)
 
 
-async def test_a_node_of_another_package_has_its_files_followed_and_its_description_checked(
+async def test_foreign_node_has_its_files_watched_and_description_checked(
     launch: Callable[..., Any], monkeypatch: pytest.MonkeyPatch
 ) -> None:
     hosts: list[FileWatcher] = []

@@ -76,25 +76,25 @@ class TestModulesOfTheWorkspace:
     """
     GREET = "def greet(who):\n    return ['hello ', who]\n"
 
-    async def test_of_a_python_package(self, write: Any, file: Any, messages: Any) -> None:
+    async def test_module_of_source_package_is_imported(self, write: Any, file: Any, messages: Any) -> None:
         write("src/bot_tools/package.xml", MANIFEST.format("bot_tools"))
         write("src/bot_tools/setup.py", "")
         write("src/bot_tools/bot_tools/__init__.py", "")
         write("src/bot_tools/bot_tools/words.py", self.GREET)
         assert await messages(file(self.USES.format(module="bot_tools.words")), who="you") == ["hello you"]
 
-    async def test_of_the_package_itself_without_init_file(self, write: Any, file: Any, messages: Any) -> None:
+    async def test_module_of_own_package_without_init_is_imported(self, write: Any, file: Any, messages: Any) -> None:
         write("src/bot/bot/words.py", self.GREET)
         assert await messages(file(self.USES.format(module="bot.words")), who="me") == ["hello me"]
 
-    async def test_by_another_name_than_its_package_has(self, write: Any, file: Any, messages: Any) -> None:
+    async def test_module_named_unlike_its_package_is_imported(self, write: Any, file: Any, messages: Any) -> None:
         write("src/bot_tools/package.xml", MANIFEST.format("bot_tools"))
         write("src/bot_tools/CMakeLists.txt", "ament_python_install_package(bot_parts)")
         write("src/bot_tools/bot_parts/__init__.py", self.GREET)
         assert await messages(file(self.USES.format(module="bot_parts")), who="all") == ["hello all"]
 
     @pytest.mark.parametrize("folder", ["lib/python3.10/site-packages", "local/lib/python3.10/dist-packages"])
-    async def test_of_an_install_folder_that_nobody_sourced(
+    async def test_module_of_unsourced_install_folder_is_imported(
         self, write: Any, file: Any, messages: Any, folder: str
     ) -> None:
         write("install/.colcon_install_layout", "isolated")
@@ -102,13 +102,13 @@ class TestModulesOfTheWorkspace:
         write(f"install/bot_tools/{folder}/bot_tools/__init__.py", self.GREET)
         assert await messages(file(self.USES.format(module="bot_tools")), who="it") == ["hello it"]
 
-    def test_not_for_libraries(self, write: Any, file: Any, tmp_path: Path) -> None:
+    def test_workspace_modules_are_hidden_from_libraries(self, write: Any, file: Any, tmp_path: Path) -> None:
         write("src/bot_tools/package.xml", MANIFEST.format("bot_tools"))
         write("src/bot_tools/bot_tools/__init__.py", self.GREET)
         with use_finder(PackageFinder(start=tmp_path, environment={})), pytest.raises(ModuleNotFoundError):
             exec(compile("import bot_tools", os.__file__, "exec"), {})
 
-    def test_a_missing_one_is_told_with_what_provides_it(self, file: Any) -> None:
+    def test_missing_module_has_hint_about_provider(self, file: Any) -> None:
         for module, hint in (
             ("webots_ros2_driver.webots_launcher", "it is part of webots_ros2"),
             ("serial.nothing", package_hint("pyserial")),
@@ -124,7 +124,7 @@ class TestModulesOfTheWorkspace:
 
 
 class TestNamesThatRosHasByTheWay:
-    async def test_submodules_after_importing_the_package_alone(self, file: Any, messages: Any) -> None:
+    async def test_submodules_are_available_after_importing_launch(self, file: Any, messages: Any) -> None:
         text = """
         def said(context):
             words = launch.utilities.normalize_to_list_of_substitutions(['a', LaunchConfiguration('x')])
@@ -137,7 +137,7 @@ class TestNamesThatRosHasByTheWay:
         """
         assert await messages(file(text), x="b") == ["ab"]
 
-    def test_what_modules_import_themselves(self) -> None:
+    def test_names_imported_by_ros_modules_are_available(self) -> None:
         from launch.actions import ExecuteProcess
         from launch.launch_introspector import ExecuteProcess as Introspected
         from launch_ros.actions.node import SomeSubstitutionsType
@@ -147,13 +147,13 @@ class TestNamesThatRosHasByTheWay:
         assert Introspected is ExecuteProcess
         assert SomeSubstitutionsType is Listed
 
-    def test_but_a_wrong_package_is_an_error(self) -> None:
+    def test_name_from_wrong_module_is_an_import_error(self) -> None:
         with pytest.raises(ImportError, match="cannot import name 'LaunchConfiguration'"):
             exec("from launch.actions import LaunchConfiguration", {})
         with pytest.raises(ImportError, match="cannot import name 'Nothing'"):
             exec("from launch.actions.execute_process import Nothing", {})
 
-    def test_handlers_of_logging(self, tmp_path: Path) -> None:
+    def test_logging_handlers_are_available(self, tmp_path: Path) -> None:
         import logging
 
         import launch.logging
@@ -167,7 +167,7 @@ class TestNamesThatRosHasByTheWay:
         with pytest.raises(AttributeError):
             launch.logging.handlers.Nothing  # noqa: B018
 
-    async def test_the_predicate_of_a_condition(self, file: Any, messages: Any) -> None:
+    async def test_condition_predicate_can_be_evaluated_by_user_class(self, file: Any, messages: Any) -> None:
         text = """
         from launch.conditions import IfCondition, LaunchConfigurationEquals, UnlessCondition
         class Text(launch.Substitution):
@@ -186,7 +186,7 @@ class TestNamesThatRosHasByTheWay:
         """
         assert await messages(file(text), x="true") == ["[True, False, True]", "yes"]
 
-    async def test_a_group_that_sets_its_actions_when_it_runs(self, file: Any, messages: Any) -> None:
+    async def test_group_action_can_replace_its_actions_at_runtime(self, file: Any, messages: Any) -> None:
         text = """
         class Chosen(launch.actions.GroupAction):
             def __init__(self, name, **kwargs):
@@ -207,7 +207,7 @@ class TestNamesThatRosHasByTheWay:
         assert "'q'" in format_arguments(load_launch_file(path))
         assert await messages(path, q="two") == ["chosen two"]
 
-    async def test_a_description_that_grows_while_it_is_visited(self, file: Any, messages: Any) -> None:
+    async def test_description_can_grow_while_visited(self, file: Any, messages: Any) -> None:
         text = """
         def grow(context, description):
             description.add_action(LogInfo(msg=['grown by ', LaunchConfiguration('x')]))
@@ -218,7 +218,7 @@ class TestNamesThatRosHasByTheWay:
         """
         assert await messages(file(text)) == ["grown by one"]
 
-    async def test_a_module_beside_the_launch_file(self, write: Any, file: Any, messages: Any) -> None:
+    async def test_module_beside_launch_file_is_imported(self, write: Any, file: Any, messages: Any) -> None:
         write("src/bot/launch/shared_parts.py", "PARAMETERS = [{'name': 'a', 'default': '1'}]\n")
         text = """
         import pathlib, sys
@@ -237,7 +237,7 @@ class TestNamesThatRosHasByTheWay:
 
 
 class TestNamesUpToFoxy:
-    def test_of_nodes(self) -> None:
+    def test_node_prefixed_arguments_are_accepted_as_deprecated(self) -> None:
         from launch.utilities import perform_substitutions
         from launch_ros.actions import ComposableNodeContainer, LifecycleNode, Node
         from launch_ros.descriptions import ComposableNode
@@ -260,7 +260,7 @@ class TestNamesUpToFoxy:
         assert len(texts) == 10
         assert {each.filename for each in logged} == {__file__}
 
-    def test_not_both(self) -> None:
+    def test_old_and_new_argument_together_are_rejected(self) -> None:
         from launch_ros.actions import Node
 
         with pytest.raises(TypeError, match="received 'node_name' and 'name'"):
@@ -268,7 +268,7 @@ class TestNamesUpToFoxy:
 
 
 class TestMarkup:
-    async def test_a_text_in_quotes_is_a_value_all_the_same(self, file: Any, launch: Any) -> None:
+    async def test_quoted_parameter_value_is_parsed(self, file: Any, launch: Any) -> None:
         text = """
         launch:
         - set_parameter: {name: use_sim_time, value: "true"}
@@ -277,11 +277,11 @@ class TestMarkup:
         done = await launch(load_launch_file(file(text, "a.launch.yaml")))
         assert done.session.context.launch_configurations["global_params"] == [("use_sim_time", True), ("rate", 2.5)]
 
-    async def test_the_version_of_the_format(self, file: Any, messages: Any) -> None:
+    async def test_launch_version_attribute_is_accepted(self, file: Any, messages: Any) -> None:
         text = '<launch version="0.1.1"><log_info message="$(var x)"/></launch>'
         assert await messages(file(text, "a.launch.xml"), x="fine") == ["fine"]
 
-    async def test_settings_from_an_included_file(self, write: Any, file: Any, messages: Any) -> None:
+    async def test_included_file_sets_launch_configurations(self, write: Any, file: Any, messages: Any) -> None:
         write("src/bot/config/default_preset.yaml", "launch:\n- arg: {name: mode, default: mpc}\n")
         text = """
         <launch>
@@ -297,7 +297,7 @@ class TestMarkup:
 
 
 class TestResources:
-    def test_of_the_index(self, write: Any, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    def test_ament_index_resources_are_found(self, write: Any, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
         import ament_index_python as ament
 
         write("src/bot/package.xml", MANIFEST.format("bot"))
@@ -320,7 +320,7 @@ class TestResources:
 
 
 class TestPrograms:
-    async def test_ros2_and_its_kin_exist(self, file: Any, launch: Any) -> None:
+    async def test_ros2_and_related_programs_are_on_path(self, file: Any, launch: Any) -> None:
         text = """
         def generate_launch_description():
             return LaunchDescription([
@@ -340,7 +340,7 @@ class TestPrograms:
         assert done.succeeded, done.err
         assert done.messages[0].endswith("/ros2")
 
-    def test_variables_of_a_sourced_ros(self) -> None:
+    def test_ros_variables_are_set_unless_sourced(self) -> None:
         bare, sourced = {"A": "b"}, {"ROS_DISTRO": "jazzy"}
         set_ros_variables(bare)
         set_ros_variables(sourced)
@@ -351,7 +351,7 @@ class TestPrograms:
         set_ros_variables(models)
         assert models["GZ_SIM_RESOURCE_PATH"] == "/models"
 
-    def test_a_folder_that_cannot_be_written_offers_nothing(self, tmp_path: Path) -> None:
+    def test_unwritable_cache_folder_adds_no_programs(self, tmp_path: Path) -> None:
         blocked = tmp_path / "file"
         blocked.write_text("")
         os.environ["XDG_CACHE_HOME"] = str(blocked)
@@ -360,7 +360,7 @@ class TestPrograms:
         assert environment == {"PATH": "/bin"}
 
 
-def test_rewriting_leaves_groups_of_the_name_alone(write: Any) -> None:
+def test_rewritten_yaml_keeps_group_with_parameter_name(write: Any) -> None:
     import yaml
     from nav2_common.launch import RewrittenYaml
 
@@ -372,7 +372,7 @@ def test_rewriting_leaves_groups_of_the_name_alone(write: Any) -> None:
     assert content == {"map": {"ros__parameters": {"map": 7, "other": 2}}}
 
 
-def test_spawners_of_controllers() -> None:
+def test_launch_utils_create_controller_spawners() -> None:
     from controller_manager import launch_utils
     from launch.utilities import perform_substitutions
 
@@ -400,7 +400,7 @@ def test_spawners_of_controllers() -> None:
 
 
 class TestApiOfTheVerb:
-    def test_files_of_packages(self, write: Any, file: Any, tmp_path: Path) -> None:
+    def test_launch_file_paths_of_package_are_found(self, write: Any, file: Any, tmp_path: Path) -> None:
         from ros2launch.api import MultipleLaunchFilesError, get_launch_file_paths, get_share_file_path_from_package
 
         path = file("def generate_launch_description():\n    return LaunchDescription()")
@@ -414,14 +414,14 @@ class TestApiOfTheVerb:
         assert len(caught.value.paths) == 2
         assert sorted(get_launch_file_paths(path=str(tmp_path / "src"))) == sorted(caught.value.paths)
 
-    def test_arguments(self) -> None:
+    def test_launch_arguments_are_parsed(self) -> None:
         from ros2launch.api.api import parse_launch_arguments
 
         assert parse_launch_arguments(["a:=1", "b:=x:=y", "a:=2"]) == [("a", "2"), ("b", "x:=y")]
         with pytest.raises(RuntimeError, match="malformed launch argument 'a='"):
             parse_launch_arguments(["a="])
 
-    def test_printing(self, file: Any, capsys: pytest.CaptureFixture[str]) -> None:
+    def test_arguments_and_launch_file_are_printed(self, file: Any, capsys: pytest.CaptureFixture[str]) -> None:
         from ros2launch import api
 
         path = str(file("<launch><arg name='x' default='1'/></launch>", "a.launch.xml"))
@@ -431,7 +431,7 @@ class TestApiOfTheVerb:
         assert "(default: '1')" in printed
         assert "DeclareLaunchArgument('x'" in printed
 
-    def test_launching(self, file: Any, capfd: pytest.CaptureFixture[str]) -> None:
+    def test_launch_a_launch_file_runs_it(self, file: Any, capfd: pytest.CaptureFixture[str]) -> None:
         from ros2launch.api import launch_a_launch_file
 
         path = str(file("<launch><arg name='x'/><log_info message='x is $(var x)'/></launch>", "a.launch.xml"))

@@ -166,7 +166,7 @@ SYSTEM_YAML = """
 """
 
 
-async def test_navigation(launch: Any, write: Any, robot: Path) -> None:
+async def test_navigation_launch_file_runs(launch: Any, write: Any, robot: Path) -> None:
     path = write("src/bot/launch/nav.launch.py", NAVIGATION)
     finder = check(robot)
     with use_finder(finder):
@@ -175,7 +175,7 @@ async def test_navigation(launch: Any, write: Any, robot: Path) -> None:
     assert done.messages[0].startswith("params ")
 
 
-async def test_manipulation(launch: Any, write: Any, robot: Path) -> None:
+async def test_manipulation_launch_file_runs(launch: Any, write: Any, robot: Path) -> None:
     path = write("src/bot/launch/move_group.launch.py", MOVEIT)
     finder = check(robot)
     with use_finder(finder):
@@ -184,7 +184,7 @@ async def test_manipulation(launch: Any, write: Any, robot: Path) -> None:
     assert '<link name="base"/>' in done.err
 
 
-async def test_chains_of_events(launch: Any, write: Any, robot: Path) -> None:
+async def test_chained_event_handlers_run(launch: Any, write: Any, robot: Path) -> None:
     done = await launch(load_launch_file(write("src/bot/launch/events.launch.py", EVENTS)))
     assert done.succeeded, done.err
     assert "[first-1] one" in done.out
@@ -192,14 +192,14 @@ async def test_chains_of_events(launch: Any, write: Any, robot: Path) -> None:
     assert done.messages == ["first started", "ended: all done", "third ended"]
 
 
-async def test_several_robots(launch: Any, write: Any, robot: Path) -> None:
+async def test_multi_robot_launch_file_runs(launch: Any, write: Any, robot: Path) -> None:
     write("src/bot/launch/one.launch.xml", dedent(ONE_XML))
     path = write("src/bot/launch/robots.launch.py", ROBOTS)
     done = await launch(load_launch_file(path))
     assert done.messages == ["r1 is at home", "r2 r2 at 1.0", "none left"], done.err
 
 
-async def test_yaml_includes_xml(launch: Any, write: Any, robot: Path) -> None:
+async def test_yaml_file_includes_xml_file(launch: Any, write: Any, robot: Path) -> None:
     write("src/bot/launch/one.launch.xml", dedent(ONE_XML))
     path = write("src/bot/launch/system.launch.yaml", dedent(SYSTEM_YAML))
     description = load_launch_file(path)
@@ -235,11 +235,11 @@ Arguments (pass arguments as '<name>:=<value>'):
         ),
     ],
 )
-def test_show_args_is_alike_for_all_kinds(write: Any, name: str, text: str) -> None:
+def test_show_args_is_the_same_for_all_formats(write: Any, name: str, text: str) -> None:
     assert format_arguments(load_launch_file(write(name, text))) == LISTING
 
 
-async def test_an_error_three_includes_down_names_them_all(launch: Any, write: Any) -> None:
+async def test_error_in_nested_include_names_all_files(launch: Any, write: Any) -> None:
     write("c.launch.xml", "<launch>\n  <arg name='x'/>\n  <log_info message='$(var y)'/>\n</launch>")
     write("b.launch.yaml", "launch:\n- include:\n    file: $(dirname)/c.launch.xml\n    arg: [{name: x, value: '1'}]\n")
     path = write(
@@ -258,7 +258,7 @@ async def test_an_error_three_includes_down_names_them_all(launch: Any, write: A
     assert "a.launch.py:12:" in done.err
 
 
-async def test_what_an_include_does_not_get(launch: Any, write: Any) -> None:
+async def test_missing_include_argument_has_hint(launch: Any, write: Any) -> None:
     write("b.launch.xml", "<launch><arg name='model'/></launch>")
     path = write(
         "a.launch.xml",
@@ -269,7 +269,7 @@ async def test_what_an_include_does_not_get(launch: Any, write: Any) -> None:
     assert "did you mean 'model' instead of 'modle'?" in done.err
 
 
-async def test_a_package_that_is_not_installed(launch: Any, write: Any) -> None:
+async def test_missing_package_is_reported(launch: Any, write: Any) -> None:
     text = (
         '<launch><arg name="a" default="1"/><include file="$(find-pkg-share no_such_bot)/launch/a.launch.py"/></launch>'
     )
@@ -291,7 +291,7 @@ class TestNavigationSubstitutions:
             )
         )
 
-    def test_rewritten_yaml(self, source: str) -> None:
+    def test_rewritten_yaml_replaces_parameters(self, source: str) -> None:
         context = LaunchContext()
         context.launch_configurations["sim"] = "True"
         rewritten = RewrittenYaml(
@@ -319,12 +319,12 @@ class TestNavigationSubstitutions:
         plain = RewrittenYaml(source, {"v": "7"}).perform(context)
         assert yaml.safe_load(Path(plain).read_text())["ctl"]["ros__parameters"]["list"] == [{"v": "7"}]
 
-    def test_a_missing_file(self) -> None:
+    def test_rewritten_yaml_of_missing_file_is_rejected(self) -> None:
         with pytest.raises(LinkwrightError) as raised:
             RewrittenYaml("/no/such.yaml", {}).perform(LaunchContext())
         assert raised.value.diagnostics[0].code == "LAUNCH152"
 
-    def test_the_others(self, source: str) -> None:
+    def test_nav2_substitutions_replace_check_and_convert(self, source: str) -> None:
         context = LaunchContext()
         context.launch_configurations["on"] = "Yes"
         replaced = ReplaceString(source_file=source, replacements={"<ns>": "bot"}).perform(context)
@@ -335,7 +335,7 @@ class TestNavigationSubstitutions:
         assert HasNodeParams(source, "acml").perform(context) == "False"
         assert LaunchConfigAsBool("on").perform(context) == "True"
 
-    def test_robots_and_poses(self, monkeypatch: pytest.MonkeyPatch) -> None:
+    def test_multi_robot_poses_are_parsed(self, monkeypatch: pytest.MonkeyPatch) -> None:
         context = LaunchContext()
         context.launch_configurations["robots"] = "r1={x: 1.0, yaw: 0.5}; r2={y: 2}"
         parsed = ParseMultiRobotPose(LaunchConfiguration("robots")).perform(context)
@@ -345,13 +345,13 @@ class TestNavigationSubstitutions:
         assert list(ParseMultiRobotPose("robots").value()) == ["r3"]
 
 
-def test_a_description_can_be_deprecated() -> None:
+def test_description_can_be_deprecated() -> None:
     description = LaunchDescription(deprecated_reason="use b.launch.py")
     assert description.deprecated
     assert description.deprecated_reason == "use b.launch.py"
 
 
-async def test_a_launch_file_of_a_test_can_be_launched(launch: Any, write: Any) -> None:
+async def test_launch_file_with_launch_testing_actions_runs(launch: Any, write: Any) -> None:
     text = (
         HEAD
         + """

@@ -40,7 +40,7 @@ AGAIN_AND_AGAIN = {
 
 
 @pytest.mark.parametrize("name", AGAIN_AND_AGAIN)
-async def test_actions_that_lead_to_themselves_are_one_error(launch, write: Write, name: str) -> None:
+async def test_recursive_includes_and_actions_are_one_error(launch, write: Write, name: str) -> None:
     for each, text in AGAIN_AND_AGAIN.items():
         write(each, text)
     path = write(name, AGAIN_AND_AGAIN[name])
@@ -53,7 +53,7 @@ async def test_actions_that_lead_to_themselves_are_one_error(launch, write: Writ
     assert done.err.count("included from here") <= 3  # each place once, however often it was passed
 
 
-def test_arguments_of_a_file_that_includes_itself_are_known(write: Write) -> None:
+def test_arguments_of_recursive_include_are_listed(write: Write) -> None:
     path = write(
         "countdown.launch.py",
         HEAD
@@ -77,7 +77,7 @@ DEEP = {
 
 
 @pytest.mark.parametrize("name", DEEP)
-def test_a_file_that_is_nested_too_deeply_is_refused(write: Write, name: str) -> None:
+def test_too_deeply_nested_file_is_rejected(write: Write, name: str) -> None:
     with pytest.raises(LinkwrightError) as caught:
         load_launch_file(write(name, DEEP[name]))
     (diagnostic,) = caught.value.diagnostics
@@ -86,7 +86,7 @@ def test_a_file_that_is_nested_too_deeply_is_refused(write: Write, name: str) ->
 
 
 @pytest.mark.parametrize("text", ["launch: &a\n- group: *a\n", "launch:\n- node: &n\n    pkg: a\n    more: {x: *n}\n"])
-def test_an_alias_inside_of_itself_is_no_yaml(write: Write, text: str) -> None:
+def test_recursive_yaml_alias_is_rejected(write: Write, text: str) -> None:
     with pytest.raises(LinkwrightError) as caught:
         load_launch_file(write("a.launch.yaml", text))
     (diagnostic,) = caught.value.diagnostics
@@ -96,7 +96,7 @@ def test_an_alias_inside_of_itself_is_no_yaml(write: Write, text: str) -> None:
     assert diagnostic.span.line == len(text.splitlines())
 
 
-def test_an_anchor_may_be_used_again_where_it_is_whole(write: Write) -> None:
+def test_yaml_anchor_can_be_reused(write: Write) -> None:
     text = "launch:\n- group: &g\n  - log_info: {message: a}\n- group: *g\n"
     assert len(load_launch_file(write("a.launch.yaml", text)).entities) == 2
 
@@ -108,7 +108,7 @@ TAIL = (
 
 
 @pytest.mark.parametrize(("given", "message"), [("'I give up'", "I give up"), ("3", "3"), ("", ""), ("0", "0")])
-async def test_sys_exit_in_a_running_launch_is_an_error(launch, write: Write, given: str, message: str) -> None:
+async def test_sys_exit_in_running_launch_is_an_error(launch, write: Write, given: str, message: str) -> None:
     path = write("a.launch.py", (ENDED + TAIL).format(given=given, first="pass"))
     done = await launch(IncludeLaunchDescription(str(path)))
     assert not done.succeeded
@@ -117,7 +117,7 @@ async def test_sys_exit_in_a_running_launch_is_an_error(launch, write: Write, gi
 
 
 @pytest.mark.parametrize("text", [HEAD + "sys.exit('no')\n", (ENDED + TAIL).format(given="'no'", first="stop(1)")])
-def test_sys_exit_while_a_launch_file_is_read_is_an_error(write: Write, text: str) -> None:
+def test_sys_exit_while_loading_launch_file_is_an_error(write: Write, text: str) -> None:
     with pytest.raises(LinkwrightError) as caught:
         load_launch_file(write("a.launch.py", text))
     (diagnostic,) = caught.value.diagnostics
@@ -126,20 +126,20 @@ def test_sys_exit_while_a_launch_file_is_read_is_an_error(write: Write, text: st
 
 
 @pytest.mark.parametrize("text", [HEAD + "sys.exit()\n", (ENDED + TAIL).format(given="0", first="stop(1)")])
-def test_a_launch_file_that_says_it_is_done_is_done(write: Write, text: str) -> None:
+def test_sys_exit_with_status_0_while_loading_is_passed_on(write: Write, text: str) -> None:
     with pytest.raises(SystemExit) as caught:
         load_launch_file(write("a.launch.py", text))
     assert not caught.value.code
 
 
-async def test_a_function_that_calls_itself_is_told_of_once(launch, write: Write) -> None:
+async def test_recursive_function_is_reported_once(launch, write: Write) -> None:
     text = HEAD + "def stop(context):\n    return stop(context)\n" + TAIL.format(first="pass")
     done = await launch(IncludeLaunchDescription(str(write("a.launch.py", text))))
     assert "raised RecursionError" in done.err
     assert done.err.count("called from here") == 1
 
 
-def test_a_function_that_wants_arguments_is_shown(write: Write) -> None:
+def test_generate_function_with_parameters_is_reported(write: Write) -> None:
     with pytest.raises(LinkwrightError) as caught:
         load_launch_file(write("a.launch.py", HEAD + "def generate_launch_description(x):\n    pass\n"))
     (diagnostic,) = caught.value.diagnostics
@@ -148,20 +148,20 @@ def test_a_function_that_wants_arguments_is_shown(write: Write) -> None:
 
 
 @pytest.mark.parametrize("name", ["机器人", "my node", "a-b", "1st", "x" * 300])
-async def test_a_name_that_no_node_can_have(launch, name: str) -> None:
+async def test_malformed_node_name_is_rejected(launch, name: str) -> None:
     done = await launch(Node(package="robot_state_publisher", executable="robot_state_publisher", name=name))
     assert not done.succeeded
     assert f"error[LAUNCH134]: node name '{name}' is malformed: node name " in done.err
 
 
 @pytest.mark.parametrize("namespace", ["机器人", "a b", "a//b", "a/1"])
-async def test_a_namespace_that_no_node_can_be_in(launch, namespace: str) -> None:
+async def test_malformed_namespace_is_rejected(launch, namespace: str) -> None:
     done = await launch(PushRosNamespace(namespace))
     assert not done.succeeded
     assert f"error[LAUNCH134]: namespace '/{namespace}' is malformed: namespace " in done.err
 
 
-def test_what_a_process_writes_is_divided_into_lines() -> None:
+def test_line_splitter_decodes_and_splits_output() -> None:
     lines = _LineSplitter()
     assert lines.feed(b"one\r\ntw") == ["one"]
     assert lines.feed("o\n\n机".encode()[:-1]) == ["two", ""]
@@ -171,7 +171,7 @@ def test_what_a_process_writes_is_divided_into_lines() -> None:
     assert lines.finish() == ["end\N{REPLACEMENT CHARACTER}"]
 
 
-def test_a_line_without_an_end_is_shown_in_pieces() -> None:
+def test_long_line_is_split_into_pieces() -> None:
     lines = _LineSplitter()
     shown = [piece for _ in range(300) for piece in lines.feed(b"x" * 1000)]
     assert [len(piece) for piece in shown] == [_MAX_LINE_LENGTH] * 3
@@ -189,7 +189,7 @@ WRONG_VALUES = {
 
 
 @pytest.mark.parametrize("tag", WRONG_VALUES)
-async def test_a_parameter_of_another_type_is_shown_with_its_name(launch, write: Write, tag: str) -> None:
+async def test_parameter_of_wrong_type_is_reported_with_name(launch, write: Write, tag: str) -> None:
     path = write("a.launch.xml", PARAM.format(tag) + "\n </node>\n</launch>\n")
     done = await launch(IncludeLaunchDescription(str(path)))
     assert "error[LAUNCH132]: parameter 'p' " in done.err

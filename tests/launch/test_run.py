@@ -31,7 +31,7 @@ STUBBORN = (
 
 @pytest.mark.parametrize("file", ["display.launch.py", "display_xacro.launch.py"])
 @pytest.mark.parametrize("folder", [package.parent for package in TUTORIAL_PACKAGES], ids=lambda folder: folder.name)
-def test_the_tutorial(start: Callable[..., Running], folder: Path, file: str) -> None:
+def test_tutorial_launch_file_runs(start: Callable[..., Running], folder: Path, file: str) -> None:
     running = start("my_robot_description", file, cwd=folder)
     with urllib.request.urlopen(running.url) as response:
         assert response.status == 200
@@ -44,7 +44,7 @@ def test_the_tutorial(start: Callable[..., Running], folder: Path, file: str) ->
     assert running.err.count("has finished cleanly") == 3
 
 
-def test_a_source_package_is_launched_by_path_with_its_own_files(start: Callable[..., Running], write: Write) -> None:
+def test_source_package_is_launched_by_path(start: Callable[..., Running], write: Write) -> None:
     write("ws/src/arm/package.xml", "<package><name>arm</name></package>")
     write("ws/src/arm/urdf/arm.urdf", '<robot name="arm"><link name="base"/></robot>')
     path = write(
@@ -60,7 +60,7 @@ def test_a_source_package_is_launched_by_path_with_its_own_files(start: Callable
     assert running.end()[0] == 130
 
 
-def test_two_launches_take_two_ports(start: Callable[..., Running]) -> None:
+def test_two_launches_use_different_ports(start: Callable[..., Running]) -> None:
     both = [start("my_robot_description", "display.launch.py") for _ in range(2)]
     urls = [running.url for running in both]
     assert urls[0].split("/?")[0] != urls[1].split("/?")[0]
@@ -71,14 +71,14 @@ def test_two_launches_take_two_ports(start: Callable[..., Running]) -> None:
 
 
 class TestSignals:
-    def test_sigterm(self, start: Callable[..., Running]) -> None:
+    def test_sigterm_ends_launch(self, start: Callable[..., Running]) -> None:
         running = start("my_robot_description", "display.launch.py")
         running.until("Robot initialized")
         assert running.end(signal.SIGTERM)[0] == 143
         assert "received signal SIGTERM" in running.err
 
     @pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM, signal.SIGHUP])
-    def test_nothing_outlives_it(self, start: Callable[..., Running], write: Write, number: int) -> None:
+    def test_no_process_outlives_launch(self, start: Callable[..., Running], write: Write, number: int) -> None:
         options = "output='screen', name='bad', sigterm_timeout='0.3', sigkill_timeout='0.3'"
         action = f"ExecuteProcess(cmd=[sys.executable, '-c', {STUBBORN!r}], {options})"
         running = start(write("a.launch.py", launch_file(action, action)))
@@ -94,7 +94,7 @@ class TestSignals:
             )
         wait_until(lambda: all(map(is_gone, pids)))
 
-    def test_a_second_one_hurries(self, start: Callable[..., Running], write: Write) -> None:
+    def test_second_sigint_kills_processes(self, start: Callable[..., Running], write: Write) -> None:
         action = f"ExecuteProcess(cmd=[sys.executable, '-c', {STUBBORN!r}], output='screen', name='bad')"
         running = start(write("a.launch.py", launch_file(action)))
         running.until("[bad-1] pid")
@@ -106,9 +106,7 @@ class TestSignals:
         assert "escalating to 'SIGTERM'" in running.err
         assert "escalating to 'SIGKILL'" in running.err
 
-    def test_one_that_hurries_lets_processes_react_to_sigterm(
-        self, start: Callable[..., Running], write: Write
-    ) -> None:
+    def test_second_sigint_lets_processes_handle_sigterm(self, start: Callable[..., Running], write: Write) -> None:
         program = (
             "import signal, sys, time\nsignal.signal(signal.SIGINT, signal.SIG_IGN)\n"
             "signal.signal(signal.SIGTERM, lambda *_: (print('saved', flush=True), sys.exit(0)))\n"
@@ -122,7 +120,7 @@ class TestSignals:
         assert running.end()[0] == 130
         assert "[slow-1] saved" in running.out
 
-    def test_one_while_the_event_loop_hangs(self, start: Callable[..., Running], write: Write) -> None:
+    def test_sigint_ends_launch_while_event_loop_hangs(self, start: Callable[..., Running], write: Write) -> None:
         handler = "def wait(event, context):\n    print('hangs', flush=True)\n    time.sleep(60)"
         head = f"from launch.event_handlers import OnShutdown\n{handler}"
         actions = ["RegisterEventHandler(OnShutdown(on_shutdown=wait))", "TimerAction(period=60.0, actions=[])"]
@@ -132,7 +130,7 @@ class TestSignals:
         running.until("hangs")
         assert running.process.wait(SECONDS) == 130
 
-    def test_a_well_behaved_process_is_asked_with_sigint(self, start: Callable[..., Running], write: Write) -> None:
+    def test_process_receives_sigint_first(self, start: Callable[..., Running], write: Write) -> None:
         program = (
             "import time\ntry:\n    print('ready', flush=True); time.sleep(60)\n"
             "except KeyboardInterrupt: print('asked')"
@@ -156,7 +154,7 @@ class TestSignals:
             ("", "print('waiting', flush=True)\ntime.sleep(60)"),
         ],
     )
-    def test_while_the_launch_file_itself_runs(
+    def test_sigint_ends_launch_while_launch_file_runs(
         self, start: Callable[..., Running], write: Write, action: str, head: str
     ) -> None:
         running = start(write("a.launch.py", launch_file(action, head=head)))
@@ -166,21 +164,19 @@ class TestSignals:
 
 
 class TestBadInput:
-    def test_what_is_wrong_before_the_start_is_raised(self, write: Write) -> None:
+    def test_invalid_argument_is_raised_before_start(self, write: Write) -> None:
         path = write("a.launch.py", launch_file("DeclareLaunchArgument('gui', default_value='a', choices=['a'])"))
         with pytest.raises(LinkwrightError, match="'gui' has the value 'x'"):
             run_launch(LaunchTarget(str(path)), {"gui": "x"}, LaunchOptions(open_browser=False))
 
-    def test_a_failing_action_ends_the_launch_with_status_1(
-        self, write: Write, capsys: pytest.CaptureFixture[str]
-    ) -> None:
+    def test_failing_action_returns_1(self, write: Write, capsys: pytest.CaptureFixture[str]) -> None:
         path = write("a.launch.py", launch_file("LogInfo(msg=LaunchConfiguration('none'))"))
         assert run_launch(LaunchTarget(str(path))) == 1
         err = capsys.readouterr().err
         assert "error[LAUNCH121]: launch configuration 'none' is not set" in err
         assert re.search(r"a\.launch\.py:\d+:\d+", err)
 
-    def test_success(self, write: Write, capsys: pytest.CaptureFixture[str]) -> None:
+    def test_successful_launch_returns_0(self, write: Write, capsys: pytest.CaptureFixture[str]) -> None:
         path = write("a.launch.py", launch_file("LogInfo(msg=ThisLaunchFile())", "SetEnvironmentVariable('LW_X', '1')"))
         assert run_launch(LaunchTarget(str(path)), {"extra": "1"}) == 0
         err = capsys.readouterr().err
@@ -191,7 +187,7 @@ class TestBadInput:
     @pytest.mark.parametrize(
         "inner", ["DeclareLaunchArgument('model')", "IncludeLaunchDescription(LaunchConfiguration('x'))"]
     )
-    def test_an_argument_that_something_included_may_declare_is_no_mistake(
+    def test_argument_of_included_file_is_not_reported_as_undeclared(
         self, write: Write, capsys: pytest.CaptureFixture[str], inner: str
     ) -> None:
         included = write("inner.launch.py", launch_file(inner))
@@ -205,7 +201,7 @@ class TestBadInput:
         assert run_launch(LaunchTarget(str(path)), {"model": "mine"}) == 0
         assert "LAUNCH113" not in capsys.readouterr().err
 
-    def test_the_condition_of_an_include_is_asked_before_its_arguments(
+    def test_include_condition_is_evaluated_before_its_arguments(
         self, write: Write, capsys: pytest.CaptureFixture[str]
     ) -> None:
         included = write("inner.launch.py", launch_file("DeclareLaunchArgument('needed', choices=['a'])"))
@@ -221,7 +217,7 @@ class TestBadInput:
         assert run_launch(LaunchTarget(str(path)), {"needed": "b"}) == 0
         assert "error" not in capsys.readouterr().err
 
-    def test_what_is_no_action_is_refused_where_it_is_given(self, write: Write) -> None:
+    def test_non_action_is_rejected_at_its_line(self, write: Write) -> None:
         path = write(
             "a.launch.py",
             "from launch import LaunchDescription\nfrom launch.actions import LogInfo\n"
@@ -236,7 +232,7 @@ class TestBadInput:
         assert diagnostic.span.line == 5
 
     @pytest.mark.parametrize("built", [True, False])
-    def test_while_a_launch_file_loads_the_prefix_path_is_set(
+    def test_ament_prefix_path_is_set_while_launch_file_loads(
         self,
         write: Write,
         monkeypatch: pytest.MonkeyPatch,
@@ -259,7 +255,7 @@ class TestBadInput:
         assert f"[launch.user]: {expected}\n" in capsys.readouterr().err
         assert "AMENT_PREFIX_PATH" not in os.environ
 
-    def test_the_real_modules_may_not_be_needed(self) -> None:
+    def test_launch_is_imported_from_standins(self) -> None:
         script = (
             "from linkwright.standins import activate\nactivate(); activate()\nimport launch\nprint(launch.__file__)"
         )
@@ -268,16 +264,14 @@ class TestBadInput:
 
 
 class TestView:
-    def test_a_model(self, start: Callable[..., Running], write: Write) -> None:
+    def test_urdf_model_is_shown(self, start: Callable[..., Running], write: Write) -> None:
         running = start("view", write("m.urdf", '<robot name="a"><link name="b"/></robot>'))
         with urllib.request.urlopen(running.url) as response:
             assert response.status == 200
         running.until("Robot initialized")
         assert running.end()[0] == 130
 
-    def test_a_broken_model_is_shown_as_such_until_it_is_repaired(
-        self, start: Callable[..., Running], write: Write
-    ) -> None:
+    def test_broken_model_is_reported_until_fixed(self, start: Callable[..., Running], write: Write) -> None:
         path = write("m.urdf", '<robot name="a">\n  <link name="b">\n</robot>')
         running = start("view", path)
         running.until("Viewer: ")
@@ -298,7 +292,7 @@ def generate_launch_description():
 
 
 @pytest.mark.parametrize("text", ["import no_such_module\n", LACKS_A_PACKAGE])
-def test_what_the_launch_file_itself_lacks_cannot_be_left_out(write: Write, text: str) -> None:
+def test_missing_parts_of_launch_file_itself_cannot_be_skipped(write: Write, text: str) -> None:
     target = LaunchTarget(str(write("whole.launch.py", text)))
     for skip, notes in ((True, 1), (False, 0)):
         with pytest.raises(LinkwrightError) as caught:

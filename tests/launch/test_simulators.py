@@ -96,7 +96,7 @@ def include(package: str, name: str, **arguments: str) -> IncludeLaunchDescripti
 
 
 @pytest.mark.parametrize("package", ["gazebo_ros", "ros_gz_sim", "ros_ign_gazebo", "ros_gz_bridge"])
-def test_a_package_that_is_there_comes_before_ours(package: str, write: Write, tmp_path: Path) -> None:
+def test_package_in_workspace_takes_precedence_over_substitute(package: str, write: Write, tmp_path: Path) -> None:
     assert is_substitute(share(package))
     write(f"ws/src/{package}/package.xml", f"<package><name>{package}</name></package>")
     finder = PackageFinder(start=tmp_path / "ws", environment={})
@@ -116,7 +116,7 @@ ament_package()
 """
 
 
-async def test_launch_files_that_unbuilt_sources_lack_are_ours(
+async def test_launch_files_missing_in_unbuilt_sources_are_substituted(
     launch: Callable[..., Any],
     simulators: Simulators,
     write: Write,
@@ -141,14 +141,14 @@ async def test_launch_files_that_unbuilt_sources_lack_are_ours(
     assert PackageFinder(start=tmp_path / "ws", environment={}).share("ros_gz_sim") == folder
 
 
-async def test_gazebo_launch_py(launch: Callable[..., Any], simulators: Simulators) -> None:
+async def test_gazebo_launch_starts_server(launch: Callable[..., Any], simulators: Simulators) -> None:
     arguments = {"world": str(WORLD), "pause": "true", "verbose": "true", "gui": "false", "seed": "3"}
     launched = await launch(include("gazebo_ros", "gazebo.launch.py", **arguments))
     assert launched.succeeded, launched.err
     assert simulators.started == [("gazebo_ros", {"world": str(WORLD), "pause": True, "seed": 3}, [])]
 
 
-async def test_a_world_is_inherited_and_there_is_one_without(
+async def test_world_argument_is_inherited_or_defaults_to_empty_world(
     launch: Callable[..., Any], simulators: Simulators
 ) -> None:
     await launch(include("gazebo_ros", "gzserver.launch.py"), world=str(WORLD))
@@ -157,13 +157,13 @@ async def test_a_world_is_inherited_and_there_is_one_without(
     assert worlds == [str(WORLD), str(share("gazebo_ros") / "worlds" / "empty.world")]
 
 
-async def test_without_a_server_there_is_none(launch: Callable[..., Any], simulators: Simulators) -> None:
+async def test_server_false_starts_no_server(launch: Callable[..., Any], simulators: Simulators) -> None:
     launched = await launch(include("gazebo_ros", "gazebo.launch.py", server="false", gui="false"))
     assert launched.succeeded
     assert simulators.started == []
 
 
-async def test_further_words_and_parameter_files(
+async def test_extra_arguments_and_parameter_files_are_passed(
     launch: Callable[..., Any], simulators: Simulators, write: Write
 ) -> None:
     path = write("gazebo.yaml", "gazebo:\n  ros__parameters:\n    publish_rate: 50.0\n")
@@ -175,7 +175,7 @@ async def test_further_words_and_parameter_files(
     assert parameters["publish_rate"] == 50.0
 
 
-async def test_all_ends_with_a_server_that_is_required(launch: Callable[..., Any], simulators: Simulators) -> None:
+async def test_required_server_ends_launch(launch: Callable[..., Any], simulators: Simulators) -> None:
     window = include("gazebo_ros", "gzclient.launch.py")
     launched = await launch(include("gazebo_ros", "gzserver.launch.py", server_required="true"), window)
     assert launched.succeeded
@@ -191,7 +191,7 @@ async def test_all_ends_with_a_server_that_is_required(launch: Callable[..., Any
         ("ros_ign_gazebo", "ign_gazebo.launch.py", {"ign_args": f"{WORLD} -r"}),
     ],
 )
-async def test_gz_sim_launch_py(
+async def test_gz_sim_launch_starts_server(
     launch: Callable[..., Any], simulators: Simulators, package: str, name: str, arguments: dict[str, str]
 ) -> None:
     launched = await launch(include(package, name, **arguments))
@@ -199,7 +199,7 @@ async def test_gz_sim_launch_py(
     assert simulators.started == [("ros_gz_sim", {"world": str(WORLD), "pause": False, "gui": True}, [])]
 
 
-async def test_a_second_include_for_the_window_starts_no_second_server(
+async def test_second_include_for_gui_starts_no_second_server(
     launch: Callable[..., Any], simulators: Simulators
 ) -> None:
     server = include("ros_gz_sim", "gz_sim.launch.py", gz_args=f"-r -s {WORLD}", on_exit_shutdown="true")
@@ -216,7 +216,7 @@ async def test_a_second_include_for_the_window_starts_no_second_server(
         ([f"gzserver {WORLD}"], {"shell": True}),
     ],
 )
-async def test_commands_of_gazebo(
+async def test_gazebo_commands_start_server(
     launch: Callable[..., Any], simulators: Simulators, command: list[str], options: dict[str, bool]
 ) -> None:
     action = ExecuteProcess(cmd=command, output="screen", **options)
@@ -230,7 +230,9 @@ async def test_commands_of_gazebo(
 @pytest.mark.parametrize(
     "command", [["gz", "sim"], ["ruby", "/usr/bin/ign", "gazebo"], ["ruby", FindExecutable(name="ign"), "gazebo"]]
 )
-async def test_gz_sim_as_a_command(launch: Callable[..., Any], simulators: Simulators, command: list[Any]) -> None:
+async def test_gz_sim_command_starts_server(
+    launch: Callable[..., Any], simulators: Simulators, command: list[Any]
+) -> None:
     await launch(ExecuteProcess(cmd=[*command, "-r", "-s", str(WORLD)]))
     assert simulators.started == [("ros_gz_sim", {"world": str(WORLD), "pause": False, "gui": False}, [])]
 
@@ -247,7 +249,7 @@ async def test_gz_sim_as_a_command(launch: Callable[..., Any], simulators: Simul
         ([include("gazebo_ros", "gzclient.launch.py"), Node(package="rviz2", executable="rviz2")], 1),
     ],
 )
-async def test_a_window_of_gazebo_is_a_page_with_the_world(
+async def test_gazebo_gui_opens_one_viewer(
     launch: Callable[..., Any], simulators: Simulators, entities: list[LaunchDescriptionEntity], pages: int
 ) -> None:
     """That of RViz where there is one; else one that is there as long as the program which opens the window."""
@@ -266,9 +268,7 @@ async def test_a_window_of_gazebo_is_a_page_with_the_world(
     assert launched.out.count("Viewer: ") == pages
 
 
-async def test_a_page_whose_port_is_taken_ends_a_launch_of_gazebo_with_one_error(
-    launch: Callable[..., Any], simulators: Simulators
-) -> None:
+async def test_used_port_ends_gazebo_launch_with_one_error(launch: Callable[..., Any], simulators: Simulators) -> None:
     simulators.spawned = []
     with socket.socket() as other:
         other.bind(("127.0.0.1", 0))
@@ -281,19 +281,19 @@ async def test_a_page_whose_port_is_taken_ends_a_launch_of_gazebo_with_one_error
     ]
 
 
-async def test_a_simulation_has_the_variables_of_its_group(launch: Callable[..., Any], simulators: Simulators) -> None:
+async def test_simulation_inherits_environment_of_group(launch: Callable[..., Any], simulators: Simulators) -> None:
     server = include("ros_gz_sim", "gz_sim.launch.py", gz_args="-r -s a.sdf")
     await launch(GroupAction([SetEnvironmentVariable("GZ_SIM_RESOURCE_PATH", "/worlds"), server]))
     assert [environment["GZ_SIM_RESOURCE_PATH"] for environment in simulators.environments] == ["/worlds"]
 
 
-async def test_other_commands_of_gz_are_processes(launch: Callable[..., Any], simulators: Simulators) -> None:
+async def test_other_gz_commands_run_as_processes(launch: Callable[..., Any], simulators: Simulators) -> None:
     launched = await launch(ExecuteProcess(cmd=["gz", "topic", "-l"]))
     assert not launched.succeeded
     assert simulators.started == []
 
 
-async def test_a_gazebo_that_is_installed_is_started(
+async def test_installed_gazebo_is_started(
     launch: Callable[..., Any], simulators: Simulators, write: Write, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     program = write("bin/gzserver", "#!/bin/sh\necho the real one\n")
@@ -317,7 +317,7 @@ async def test_a_gazebo_that_is_installed_is_started(
         ("load_mbot_laser_into_gz", ("laser_link",)),
     ],
 )
-async def test_the_launch_files_of_the_tutorial_load_the_robot(
+async def test_tutorial_launch_files_spawn_robot(
     launch: Callable[..., Any], simulators: Simulators, name: str, parts: tuple[str, ...]
 ) -> None:
     simulators.spawned = []
@@ -334,7 +334,7 @@ async def test_the_launch_files_of_the_tutorial_load_the_robot(
     assert parameters["world"] == str(WORLD)
 
 
-async def test_what_ends_the_launch_is_decided_where_its_argument_is_known(
+async def test_shutdown_on_server_exit_is_decided_within_include_scope(
     launch: Callable[..., Any], simulators: Simulators
 ) -> None:
     """At the end of the server the scope of the include is over."""

@@ -10,14 +10,14 @@ from linkwright import standins
 from linkwright.standins.activation import LAUNCH_MODULES
 
 
-def test_all_of_a_module_is_also_where_ros_has_it() -> None:
+def test_names_are_importable_from_ros_submodules() -> None:
     from launch.actions import DeclareLaunchArgument
     from launch.actions.declare_launch_argument import DeclareLaunchArgument as Deep
 
     assert Deep is DeclareLaunchArgument
 
 
-def test_a_module_that_is_there_already_gives_way_for_a_launch(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
+def test_imported_real_launch_is_replaced(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
     saved = {name: module for name, module in sys.modules.items() if name.partition(".")[0] in LAUNCH_MODULES}
     real = tmp_path / "launch"
     real.mkdir()
@@ -44,6 +44,6 @@ def test_a_module_that_is_there_already_gives_way_for_a_launch(monkeypatch: pyte
         ("rosidl_runtime_py", "get_interfaces"),
     ],
 )
-def test_a_function_with_the_name_of_its_module_stays_the_function(module: str, name: str) -> None:
+def test_function_named_like_its_module_stays_callable(module: str, name: str) -> None:
     importlib.import_module(f"{module}.{name}")
     assert callable(getattr(importlib.import_module(module), name))

@@ -38,11 +38,11 @@ def package(write: Write, monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> Pa
         ("other_launch.py", "other_launch.py"),
     ],
 )
-def test_files_of_a_package(package: Path, name: str, path: str) -> None:
+def test_launch_file_of_package_is_found(package: Path, name: str, path: str) -> None:
     assert LaunchTarget(name, "arm").resolve(PackageFinder()) == package / path
 
 
-def test_a_file_that_the_package_has_not(package: Path) -> None:
+def test_missing_launch_file_of_package_has_hint(package: Path) -> None:
     with pytest.raises(LinkwrightError, match=r"package 'arm' has no launch file 'dsplay\.launch\.py'") as caught:
         LaunchTarget("dsplay.launch.py", "arm").resolve(PackageFinder())
     assert "did you mean 'display.launch.py'" in (caught.value.diagnostics[0].hint or "")
@@ -51,14 +51,14 @@ def test_a_file_that_the_package_has_not(package: Path) -> None:
     assert "the package has display.launch.py" in (caught.value.diagnostics[0].hint or "")
 
 
-def test_several_of_a_name(package: Path) -> None:
+def test_ambiguous_launch_file_name_is_rejected(package: Path) -> None:
     package.joinpath("launch", "twice.launch.py").rename(package / "launch" / "sub" / "twice.launch.py")
     with pytest.raises(LinkwrightError, match=r"has several launch files 'twice\.launch\.py'") as caught:
         LaunchTarget("twice.launch.py", "arm").resolve(PackageFinder())
     assert "launch/sub/twice.launch.py, old/twice.launch.py" in (caught.value.diagnostics[0].hint or "")
 
 
-def test_a_path_finds_the_package_it_lies_in(package: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_path_determines_package(package: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     elsewhere = tmp_path / "elsewhere"
     elsewhere.mkdir()
     monkeypatch.chdir(elsewhere)
@@ -67,31 +67,31 @@ def test_a_path_finds_the_package_it_lies_in(package: Path, tmp_path: Path, monk
 
 
 class TestWords:
-    def test_package_and_file(self) -> None:
+    def test_package_and_file_are_parsed(self) -> None:
         target, arguments = parse_launch_words(["arm", "display.launch.py", "a:=1", "b:=x:=y", "a:="])
         assert target == LaunchTarget("display.launch.py", "arm")
         assert arguments == {"a": "", "b": "x:=y"}
 
-    def test_path(self, package: Path) -> None:
+    def test_path_is_parsed(self, package: Path) -> None:
         path = str(package / "launch" / "display.launch.py")
         assert parse_launch_words([path, "a:=1"]) == (LaunchTarget(path), {"a": "1"})
 
-    def test_a_path_and_an_argument_with_a_slip(self, package: Path) -> None:
+    def test_malformed_argument_after_path_has_hint(self, package: Path) -> None:
         path = str(package / "launch" / "display.launch.py")
         with pytest.raises(LinkwrightError, match="launch argument 'gui=true' is malformed") as caught:
             parse_launch_words([path, "gui=true"])
         assert caught.value.diagnostics[0].hint == "write gui:=true"
 
-    def test_nothing(self) -> None:
+    def test_missing_launch_file_is_reported(self) -> None:
         with pytest.raises(LinkwrightError, match="no launch file is given"):
             parse_launch_words([])
 
-    def test_a_package_alone(self, package: Path) -> None:
+    def test_package_without_launch_file_has_hint(self, package: Path) -> None:
         with pytest.raises(LinkwrightError, match="'arm' is a package: add the name of a launch file in it") as caught:
             parse_launch_words(["arm"])
         assert "display.launch.py" in (caught.value.diagnostics[0].hint or "")
 
-    def test_all_malformed_arguments_at_once(self) -> None:
+    def test_malformed_arguments_are_all_reported(self) -> None:
         with pytest.raises(LinkwrightError) as caught:
             parse_arguments(["a=1", "good:=1", "--gui", "b: 2", ":=x"])
         messages = [diagnostic.message for diagnostic in caught.value.diagnostics]
@@ -110,21 +110,21 @@ class TestChecks:
             ]
         )
 
-    def test_all_errors_at_once(self) -> None:
+    def test_argument_errors_are_all_reported(self) -> None:
         with pytest.raises(LinkwrightError) as caught:
             check_arguments(self.description(), {"gui": "yes"})
         codes = [diagnostic.code for diagnostic in caught.value.diagnostics]
         assert codes == ["LAUNCH112", "LAUNCH114"]
         assert all(diagnostic.span and diagnostic.span.file == __file__ for diagnostic in caught.value.diagnostics)
 
-    def test_undeclared_arguments_are_warned_about(self) -> None:
+    def test_undeclared_arguments_are_reported(self) -> None:
         warnings = check_arguments(self.description(), {"model": "m", "modl": "n", "launch-prefix": "gdb"})
         (warning,) = warnings
         assert warning.severity is Severity.WARNING
         assert warning.message == "argument 'modl' is not declared by the launch file"
         assert warning.hint == "did you mean 'model'?"
 
-    def test_a_required_argument_that_was_given_by_nearly_its_name(self) -> None:
+    def test_misspelled_required_argument_has_hint(self) -> None:
         with pytest.raises(LinkwrightError) as caught:
             check_arguments(self.description(), {"modl": "m", "launch-prefix": "gdb"})
         (error,) = caught.value.diagnostics
@@ -134,7 +134,7 @@ class TestChecks:
             check_arguments(self.description(), {"unlike": "m"})
         assert caught.value.diagnostics[0].hint == "add model:=VALUE"
 
-    def test_listing(self) -> None:
+    def test_arguments_are_listed(self) -> None:
         assert format_arguments(self.description()) == (
             "Arguments (pass arguments as '<name>:=<value>'):\n"
             "\n"
@@ -155,11 +155,11 @@ class TestChecks:
             "* argument(s) which are only used if specific conditions occur"
         )
 
-    def test_listing_of_nothing(self) -> None:
+    def test_description_without_arguments_is_listed(self) -> None:
         assert format_arguments(LaunchDescription()).endswith("\n\n  No arguments.")
 
 
-def test_show_arguments_of_the_shipped_package() -> None:
+def test_show_arguments_lists_shipped_launch_file() -> None:
     listing = show_arguments(LaunchTarget("display.launch.py", "my_robot_description"))
     assert "    'gui':\n        " in listing
     assert "'rvizconfig'" in listing

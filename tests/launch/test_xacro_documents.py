@@ -17,14 +17,14 @@ MODEL = (
 )
 
 
-def test_process_file(write: Write) -> None:
+def test_process_file_expands_model(write: Write) -> None:
     path = write("a.xacro", MODEL)
     assert '<link name="x"/>' in xacro.process_file(str(path)).toxml()
     assert '<link name="y"/>' in xacro.process_file(path, mappings={"link": "y"}).toprettyxml(indent="  ")
     assert '<link name="1"/>' in xacro.process(path, mappings={"link": 1})
 
 
-def test_parse_and_process_doc(write: Write) -> None:
+def test_parse_and_process_doc_expand_model(write: Write) -> None:
     with write("a.xacro", MODEL).open() as file:
         document = xacro.parse(file)
     assert "$(arg link)" in document.toxml()
@@ -34,13 +34,13 @@ def test_parse_and_process_doc(write: Write) -> None:
         xacro.parse(3)
 
 
-def test_what_is_wrong(write: Write) -> None:
+def test_xacro_error_has_location(write: Write) -> None:
     with pytest.raises(LinkwrightError) as caught:
         xacro.process_file(write("a.xacro", MODEL.replace("$(arg link)", "${nothing}")))
     assert caught.value.diagnostics[0].span is not None
 
 
-async def test_a_function_that_builds_the_node(launch, write: Write) -> None:
+async def test_opaque_function_builds_node_from_expanded_xacro(launch, write: Write) -> None:
     path = write("a.xacro", MODEL)
 
     def build(context: object) -> list[object]:
@@ -67,7 +67,7 @@ async def test_a_function_that_builds_the_node(launch, write: Write) -> None:
     assert done.succeeded, done.err
 
 
-def test_a_document_that_was_read_from_a_file_depends_on_files_only(write: Write) -> None:
+def test_parsed_document_depends_only_on_files(write: Write) -> None:
     with write("a.xacro", MODEL).open() as file:
         document = xacro.parse(file)
     xacro.process_doc(document)

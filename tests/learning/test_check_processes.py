@@ -14,7 +14,7 @@ from linkwright.learning.course import load_course
 from linkwright.learning.new_course import create_course
 
 
-def test_on_windows_a_process_is_ended_with_its_children(monkeypatch):
+def test_windows_process_is_ended_with_children(monkeypatch):
     commands = []
     monkeypatch.setattr(running, "sys", SimpleNamespace(platform="win32"))
     monkeypatch.setattr(running.subprocess, "run", lambda command, **_: commands.append(command))
@@ -27,7 +27,7 @@ def test_on_windows_a_process_is_ended_with_its_children(monkeypatch):
 
 
 @pytest.mark.skipif(sys.platform == "win32", reason="Windows has no niceness")
-def test_checks_of_the_page_leave_the_processor_to_other_programs(tmp_path):
+def test_checks_of_page_run_at_low_priority(tmp_path):
     course = tmp_path / "course"
     create_course(course)
     (course / "01-one-link" / "checks.py").write_text(
@@ -42,7 +42,7 @@ def test_checks_of_the_page_leave_the_processor_to_other_programs(tmp_path):
     assert int((tmp_path / "niceness").read_text()) == min(os.nice(0) + 5, 19)
 
 
-def test_a_setup_file_may_print_what_the_encoding_of_the_system_lacks(tmp_path, monkeypatch):
+def test_setup_file_may_print_non_ascii_text_in_c_locale(tmp_path, monkeypatch):
     monkeypatch.setitem(os.environ, "PYTHONUTF8", "0")
     monkeypatch.setitem(os.environ, "PYTHONCOERCECLOCALE", "0")
     monkeypatch.setitem(os.environ, "LC_ALL", "C")

@@ -39,7 +39,7 @@ def learn(capsys, *words):
     return status, output.out, output.err
 
 
-def test_a_step_turns_green_when_the_work_is_done(workspace, capsys):
+def test_step_passes_when_work_is_done(workspace, capsys):
     status, out, _ = learn(capsys, "check", "--course", "example")
     assert status == 1
     assert "✗ The robot has the link box.\n      'ws' has no file 'robot.urdf'\n  ✗ It looks like" in out
@@ -54,7 +54,7 @@ def test_a_step_turns_green_when_the_work_is_done(workspace, capsys):
     assert out.count("✓") == 2
 
 
-def test_hints_come_one_by_one_and_the_solution_keeps_what_it_replaces(workspace, capsys):
+def test_hints_are_shown_in_order_and_solution_keeps_replaced_file(workspace, capsys):
     (workspace / "robot.urdf").write_text("mine")
     learn(capsys, "show", "--course", "example")
     assert "### How" not in learn(capsys, "hint")[1]
@@ -69,7 +69,7 @@ def test_hints_come_one_by_one_and_the_solution_keeps_what_it_replaces(workspace
     assert "solution: true" in text
 
 
-def test_the_solution_of_a_step_that_asks_for_a_number_is_the_number(workspace, capsys, tmp_path):
+def test_solution_of_number_step_is_the_number(workspace, capsys, tmp_path):
     status, out, _ = learn(capsys, "solution", "mass", "--course", "example")
     assert (status, out) == (0, "the answer is 12.5 kg\n")
     assert "solution: true" in (workspace / "learn.yaml").read_text()
@@ -93,7 +93,7 @@ def grown_course(tmp_path, long_course):
     return long_course
 
 
-def test_a_learner_takes_over_the_steps_before_a_step(workspace, capsys, grown_course):
+def test_catch_up_takes_over_earlier_steps(workspace, capsys, grown_course):
     (workspace / "all.txt").write_text("mine")
     learn(capsys, "check", "a/one", "--course", grown_course)
     before = (workspace / "learn.yaml").read_text()
@@ -114,7 +114,7 @@ def test_a_learner_takes_over_the_steps_before_a_step(workspace, capsys, grown_c
     assert (status, out, "nothing to write" in err) == (1, "", True)
 
 
-def test_what_was_replaced_twice_in_a_second_is_kept_twice(workspace, capsys, grown_course):
+def test_files_replaced_twice_in_one_second_are_both_kept(workspace, capsys, grown_course):
     for text in ("first", "second"):
         (workspace / "all.txt").write_text(text)
         assert learn(capsys, "catch-up", "b/two", "--course", grown_course, "--yes")[0] == 0
@@ -122,7 +122,7 @@ def test_what_was_replaced_twice_in_a_second_is_kept_twice(workspace, capsys, gr
     assert kept == {"first", "second"}
 
 
-def test_a_failed_check_says_that_earlier_steps_are_not_done(workspace, capsys, grown_course, tmp_path):
+def test_failed_check_names_unfinished_earlier_steps(workspace, capsys, grown_course, tmp_path):
     checks = tmp_path / "long" / "b" / "checks.py"
     checks.write_text(checks.read_text().replace("pass", "work.package('x')"))
     status, out, _ = learn(capsys, "check", "b/one", "--course", grown_course)
@@ -134,7 +134,7 @@ def test_a_failed_check_says_that_earlier_steps_are_not_done(workspace, capsys, 
     assert "catch-up" not in learn(capsys, "check", "b/one")[1]
 
 
-def test_the_result_is_data_in_all_languages(workspace, capsys):
+def test_json_result_has_all_languages(workspace, capsys):
     _, out, _ = learn(capsys, "check", "one-link", "--course", "example", "--json")
     result = json.loads(out)
     assert result["passed"] is False
@@ -142,7 +142,7 @@ def test_the_result_is_data_in_all_languages(workspace, capsys):
     assert "没有文件" in result["checks"][0]["message"]["zh"]
 
 
-def test_a_broken_progress_file_is_refused_and_kept(workspace, capsys):
+def test_malformed_progress_file_is_rejected_and_kept(workspace, capsys):
     for text in ("a: [", "course: example\nsteps: {a: {nonsense: 1}}", "3", "course: example\nsteps: {a: {passed: 3}}"):
         (workspace / "learn.yaml").write_text(text)
         status, _, err = learn(capsys, "check", "one-link")
@@ -165,7 +165,7 @@ def long_course(tmp_path):
     return str(folder)
 
 
-def test_a_course_continues_after_the_step_that_was_begun_or_passed_last(workspace, capsys, long_course):
+def test_course_continues_after_last_started_or_passed_step(workspace, capsys, long_course):
     learn(capsys, "show", "b/one", "--course", long_course)
     status, out, _ = learn(capsys, "check")
     assert (status, out.splitlines()[0], out.splitlines()[-1]) == (0, "b/one: One", "passed; the next step is b/two")
@@ -173,7 +173,7 @@ def test_a_course_continues_after_the_step_that_was_begun_or_passed_last(workspa
     assert (out.splitlines()[0], out.splitlines()[-1]) == ("b/two: Two", "passed; the next step is a/one")
 
 
-def test_a_learner_who_returns_to_an_earlier_lesson_continues_there(workspace, capsys, long_course):
+def test_course_continues_in_earlier_lesson_that_was_opened_last(workspace, capsys, long_course):
     (workspace / "learn.yaml").write_text(
         f"course: {long_course}\nsteps:\n"
         "  b/one: {started: 2026-11-01 10:00:00+00:00, passed: 2026-11-01 10:10:00+00:00}\n"
@@ -183,7 +183,7 @@ def test_a_learner_who_returns_to_an_earlier_lesson_continues_there(workspace, c
     assert "a/two" in (workspace / "learn.yaml").read_text()
 
 
-def test_a_workspace_belongs_to_one_course(workspace, capsys):
+def test_workspace_belongs_to_one_course(workspace, capsys):
     learn(capsys, "show", "--course", "example")
     status, _, err = learn(capsys, "list", "--course", "robot")
     assert status == 1
@@ -191,7 +191,7 @@ def test_a_workspace_belongs_to_one_course(workspace, capsys):
     assert learn(capsys, "list", "--course", "example")[0] == 0
 
 
-def test_a_new_course_passes_its_tests_and_is_never_written_over_files(tmp_path, capsys):
+def test_new_course_passes_its_tests_and_never_overwrites_files(tmp_path, capsys):
     folder = tmp_path / "mine"
     assert learn(capsys, "new", str(folder))[0] == 0
     status, out, err = learn(capsys, "test", str(folder))
@@ -219,7 +219,7 @@ def edit(path: Path, old: str, new: str) -> None:
         ("lesson.zh.md", "# 一个连杆\n", "# 一个连杆\n\n![x](images/x.png)\n", "'images/x.png' is missing"),
     ],
 )
-def test_the_tests_of_a_lesson_find_its_mistakes(tmp_path, capsys, file, old, new, problem):
+def test_lesson_tests_report_mistakes(tmp_path, capsys, file, old, new, problem):
     folder = tmp_path / "mine"
     learn(capsys, "new", str(folder))
     edit(folder / "01-one-link" / file, old, new)
@@ -241,7 +241,7 @@ def check_server(request):
         yield server
 
 
-def test_a_check_that_hangs_or_dies_fails_and_leaves_no_process(tmp_path, capsys, check_server):
+def test_hanging_or_crashing_check_fails_and_leaves_no_process(tmp_path, capsys, check_server):
     folder = tmp_path / "mine"
     learn(capsys, "new", str(folder))
     checks = folder / "01-one-link" / "checks.py"
@@ -269,9 +269,7 @@ def test_a_check_that_hangs_or_dies_fails_and_leaves_no_process(tmp_path, capsys
     assert "ZeroDivisionError" in str(result.checks[0].message)
 
 
-def test_each_check_has_a_domain_folder_environment_and_random_numbers_of_its_own(
-    tmp_path, capsys, check_server, monkeypatch
-):
+def test_checks_have_separate_domain_folder_environment_and_seed(tmp_path, capsys, check_server, monkeypatch):
     folder = tmp_path / "mine"
     learn(capsys, "new", str(folder))
     (folder / "01-one-link" / "checks.py").write_text(
@@ -307,7 +305,7 @@ def test_each_check_has_a_domain_folder_environment_and_random_numbers_of_its_ow
         ("a:\n\tx: 1\n", "robot.yaml, line 2, column 1: "),
     ],
 )
-def test_a_finding_in_a_file_has_its_place_its_code_and_its_hint(tmp_path, capsys, text, said):
+def test_finding_in_file_has_location_code_and_hint(tmp_path, capsys, text, said):
     folder = tmp_path / "mine"
     learn(capsys, "new", str(folder))
     (folder / "01-one-link" / "checks.py").write_text(
@@ -327,7 +325,7 @@ def test_a_finding_in_a_file_has_its_place_its_code_and_its_hint(tmp_path, capsy
     assert re.match(r"robot\.yaml 第 \d+ 行第 \d+ 列：", result.message.get("zh"))
 
 
-def test_a_finding_without_place_names_only_what_is_known():
+def test_finding_text_omits_missing_location():
     finding = Diagnostic("LEARN102", phrase("there is no '{name}'", name="x"))
     assert describe_finding(finding) == "there is no 'x' [LEARN102]"
     assert describe_finding(finding, "a.launch.py") == "a.launch.py: there is no 'x' [LEARN102]"
@@ -340,7 +338,7 @@ def is_running(pid: int) -> bool:
     return bool(state.strip()) and not state.startswith("Z")
 
 
-def test_a_read_only_workspace_is_one_error(tmp_path, monkeypatch):
+def test_unwritable_workspace_is_one_error(tmp_path, monkeypatch):
     classroom = open_classroom(tmp_path / "file" / "ws", "example")
     (tmp_path / "file").write_text("")
     with pytest.raises(LinkwrightError) as raised:
@@ -348,6 +346,6 @@ def test_a_read_only_workspace_is_one_error(tmp_path, monkeypatch):
     assert raised.value.diagnostics[0].code == "LEARN111"
 
 
-def test_what_the_server_imports_is_there():
+def test_modules_imported_by_check_server_exist():
     names = [name.removesuffix(".*") for name in running._IMPORTED]
     assert [name for name in names if importlib.util.find_spec(name) is None] == []

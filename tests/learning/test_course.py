@@ -47,7 +47,7 @@ def write_course(folder: Path, *, en: str = TEXT, zh: str = TEXT, course: str = 
     return folder
 
 
-def test_headings_divide_a_text_into_steps_and_hints(tmp_path):
+def test_headings_divide_lesson_into_steps_and_hints(tmp_path):
     (tmp_path / "lesson.md").write_text(TEXT, encoding="utf-8")
     text = read_lesson_text(tmp_path / "lesson.md")
     assert (text.title, text.introduction) == ("First", "Intro with `code`.")
@@ -59,7 +59,7 @@ def test_headings_divide_a_text_into_steps_and_hints(tmp_path):
     assert (two.id, two.unit, two.hints) == ("two", "m/s", ())
 
 
-def test_a_course_has_its_steps_in_all_languages(tmp_path):
+def test_course_has_steps_in_all_languages(tmp_path):
     course = load_course(write_course(tmp_path / "c", zh=TEXT.replace("One", "一")))
     assert [step.address for step in course.steps] == ["a/one", "a/two"]
     assert course.steps[0].title.texts == {"en": "One", "zh": "一"}
@@ -86,7 +86,7 @@ def test_a_course_has_its_steps_in_all_languages(tmp_path):
         ({"zh": TEXT.partition("## Two")[0]}, "LEARN105", "step 2 differs"),
     ],
 )
-def test_a_mistake_is_one_error(tmp_path, changes, code, part):
+def test_mistake_in_course_file_is_one_error(tmp_path, changes, code, part):
     folder = write_course(tmp_path / "c", **changes)
     with pytest.raises(LinkwrightError) as raised:
         load_course(folder)
@@ -95,7 +95,7 @@ def test_a_mistake_is_one_error(tmp_path, changes, code, part):
     assert part in finding.message
 
 
-def test_an_error_in_a_text_has_its_line(tmp_path):
+def test_error_in_lesson_text_has_line(tmp_path):
     folder = write_course(tmp_path / "c", en="# Title\n\nText.\n\n## Step\n")
     with pytest.raises(LinkwrightError) as raised:
         load_course(folder)
@@ -104,7 +104,7 @@ def test_an_error_in_a_text_has_its_line(tmp_path):
     assert (Path(span.file).name, span.line) == ("lesson.en.md", 5)
 
 
-def test_unknown_names_are_refused_with_a_similar_one(tmp_path):
+def test_unknown_course_or_step_suggests_similar_name(tmp_path):
     course = load_course(write_course(tmp_path / "c"))
     with pytest.raises(LinkwrightError) as raised:
         course.find_step("tow")

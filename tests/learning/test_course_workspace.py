@@ -40,7 +40,7 @@ def colcon(workspace: Path, *words: str) -> str:
     return result.stdout
 
 
-def test_colcon_builds_all_packages_of_the_course_and_runs_their_tests(tmp_path: Path) -> None:
+def test_colcon_builds_and_tests_all_packages_of_course(tmp_path: Path) -> None:
     finish(load_course(find_course("robot")).lessons, tmp_path)
     colcon(tmp_path, "build")
     missing = [name for name in INSTALLED if not (tmp_path / "install" / name).is_file()]

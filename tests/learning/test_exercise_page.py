@@ -37,7 +37,7 @@ async def exercise_page(program: Path, name: str = "follow_line") -> AsyncIterat
             yield scene, client
 
 
-async def test_the_text_and_the_state_of_the_judge_are_shown(tmp_path):
+async def test_exercise_page_shows_text_and_judge_status(tmp_path):
     async with exercise_page(tmp_path / "mine.py") as (scene, client):
         opened = await client.opened()
         assert opened["course"]["folder"] == str(tmp_path)
@@ -53,7 +53,7 @@ async def test_the_text_and_the_state_of_the_judge_are_shown(tmp_path):
         assert (check["is_passed"], check["message"]["en"]) == (False, "It left the line.")
 
 
-async def test_a_program_that_does_not_exist_is_not_judged(tmp_path):
+async def test_missing_program_is_not_judged(tmp_path):
     async with exercise_page(tmp_path / "mine.py") as (_, client):
         await client.send("check_step")
         assert "there is no program" in (await client.until("course_problem"))["message"]
@@ -63,7 +63,7 @@ async def test_a_program_that_does_not_exist_is_not_judged(tmp_path):
 
 @pytest.mark.slow
 @pytest.mark.extra("sim")
-async def test_the_program_is_judged_with_several_seeds(tmp_path):
+async def test_program_is_judged_with_several_seeds(tmp_path):
     program = tmp_path / "balance.py"
     shutil.copy(find_exercise("balance").solution("reference"), program)
     async with exercise_page(program, "balance") as (_, client):
@@ -76,7 +76,7 @@ async def test_the_program_is_judged_with_several_seeds(tmp_path):
     assert checks[1]["title"]["en"].startswith("0: ")
 
 
-async def test_a_judge_that_fails_is_explained_and_the_world_pauses_meanwhile(tmp_path, monkeypatch):
+async def test_judge_failure_is_reported_and_world_pauses_while_judging(tmp_path, monkeypatch):
     program = tmp_path / "mine.py"
     program.touch()
     monkeypatch.setattr("linkwright.learning.page.exercise_guide.sys.executable", "/bin/false")

@@ -30,7 +30,7 @@ FAST = "avoid_obstacles"
 
 
 @pytest.mark.parametrize("name", NAMES)
-def test_the_texts_exist_in_both_languages(name):
+def test_exercise_texts_exist_in_both_languages(name):
     exercise = find_exercise(name)
     assert set(exercise.title.texts) == set(exercise.figure.name.texts) == {"en", "zh"}
     assert exercise.text("en") != exercise.text("zh")
@@ -48,7 +48,7 @@ def reference_result(name: str, seed: int) -> RunResult:
 
 @pytest.mark.parametrize("name", NAMES)
 @pytest.mark.slow
-def test_the_reference_scores_over_90_with_every_seed(name):
+def test_reference_solution_scores_over_90_with_every_seed(name):
     results = [reference_result(name, seed) for seed in SEEDS]
     assert [result.error for result in results] == [None] * len(SEEDS)
     assert min(result.score for result in results) > 90.0, [result.data for result in results]
@@ -56,7 +56,7 @@ def test_the_reference_scores_over_90_with_every_seed(name):
 
 @pytest.mark.parametrize("name", NAMES)
 @pytest.mark.slow
-def test_the_simple_solution_scores_about_half(name):
+def test_simple_solution_scores_about_half(name):
     exercise = find_exercise(name)
     results = list(judge_program(exercise, exercise.solution("simple"), SEEDS))
     assert [result.error for result in results] == [None] * len(SEEDS)
@@ -65,7 +65,7 @@ def test_the_simple_solution_scores_about_half(name):
 
 @pytest.mark.parametrize("name", NAMES)
 @pytest.mark.slow
-def test_the_template_runs_and_scores_nearly_nothing(name):
+def test_template_runs_and_scores_below_10(name):
     exercise = find_exercise(name)
     (result,) = judge_program(exercise, exercise.template, [0])
     assert result.error is None
@@ -81,7 +81,7 @@ def test_two_runs_are_bit_identical(name):
     assert first == second
 
 
-def test_a_program_that_fails_gets_its_traceback(tmp_path):
+def test_failing_program_gets_traceback(tmp_path):
     program = tmp_path / "program.py"
     program.write_text("import rclpy\nrclpy.init()\nunknown\n", encoding="utf-8")
     (result,) = judge_program(find_exercise(FAST), program, [0])
@@ -92,7 +92,7 @@ def test_a_program_that_fails_gets_its_traceback(tmp_path):
     assert result.data["time"] < 5.0
 
 
-def test_a_program_cannot_ask_the_simulator(tmp_path):
+def test_program_has_no_access_to_simulator(tmp_path):
     program = tmp_path / "program.py"
     program.write_text(
         "import rclpy, time\nfrom rclpy.node import Node\nrclpy.init()\nnode = Node('n')\ntime.sleep(1.0)\n"
@@ -209,7 +209,7 @@ def test_the_rival_drives_in_real_time(tmp_path):
     assert process.returncode == 130
 
 
-def test_the_command_prints_a_table_or_json(tmp_path, monkeypatch, capsys):
+def test_judge_command_prints_table_or_json(tmp_path, monkeypatch, capsys):
     monkeypatch.chdir(tmp_path)
     assert main(["learn", "judge", FAST, "--start"]) == 0
     assert (tmp_path / f"{FAST}.py").read_text(encoding="utf-8") == find_exercise(FAST).template.read_text(
@@ -229,7 +229,7 @@ def test_the_command_prints_a_table_or_json(tmp_path, monkeypatch, capsys):
     assert FAST in capsys.readouterr().out
 
 
-def test_mistakes_in_an_exercise_are_reported(tmp_path):
+def test_mistakes_in_exercise_are_reported(tmp_path):
     with pytest.raises(LinkwrightError, match="there is no exercise"):
         find_exercise("avoid_obstacle")
     (tmp_path / "exercise.toml").write_text("difficulty = 1\n", encoding="utf-8")
@@ -240,7 +240,7 @@ def test_mistakes_in_an_exercise_are_reported(tmp_path):
         load_exercise(tmp_path)
 
 
-def test_a_world_in_real_time_has_the_judge(tmp_path):
+def test_real_time_world_publishes_judge_status(tmp_path):
     arrangement = write_world(find_exercise(FAST), 1, tmp_path, publishes=True)
     with SteppedSimulation(arrangement.world, find_exercise(FAST).robot, pose=arrangement.pose) as test:
         status = test.record("/judge/status")
@@ -253,14 +253,14 @@ def test_a_world_in_real_time_has_the_judge(tmp_path):
         assert json.loads(status.last.data)["time"] < 0.5
 
 
-def test_the_points_between_figures_are_linear():
+def test_points_between_figures_are_linear():
     figure = Figure(LocalText({"en": "time"}), "s", 100.0, 60.0, 30.0)
     assert [figure.points(seconds) for seconds in (120.0, 100.0, 80.0, 60.0, 45.0, 30.0, 10.0)] == [
         *(0.0, 0.0, 25.0, 50.0, 75.0, 100.0, 100.0)
     ]
 
 
-def test_the_progress_of_a_localization_grows_with_the_estimate(monkeypatch):
+def test_localization_progress_grows_with_better_estimate(monkeypatch):
     judge = create_judge(find_exercise("localize"), 0)
     monkeypatch.setattr(judge, "pose", lambda: (1.0, 1.0, 0.0))
     judge.start()

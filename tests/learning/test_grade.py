@@ -83,7 +83,7 @@ def grade(folder, *words):
     return status, {student["student"]: student for student in data["students"]}, data
 
 
-def test_malicious_students_hurt_only_themselves(folder):
+def test_malicious_students_affect_only_themselves(folder):
     for number in range(8):
         write_student(folder, f"good{number}", "print(42)")
     attacks = [ENDLESS, FORK_BOMB, LARGE_FILE, KILL, SPY.format(folder=str(folder / "students"))]
@@ -101,7 +101,7 @@ def test_malicious_students_hurt_only_themselves(folder):
 
 
 @pytest.mark.parametrize("number", [signal.SIGTERM, signal.SIGKILL, signal.SIGHUP])
-def test_the_runs_end_with_the_grader(folder, number):
+def test_runs_end_with_grader(folder, number):
     write_student(folder, "endless", ENDLESS)
     words = ["learn", "grade", "--course", "course", "--cpu-seconds", "300", "students/endless"]
     grader = subprocess.Popen([sys.executable, "-m", "linkwright", *words], cwd=folder, start_new_session=True)
@@ -111,7 +111,7 @@ def test_the_runs_end_with_the_grader(folder, number):
     wait_until(lambda: not processes_with("program.py") and not processes_with("linkwright_grade_"), SECONDS)
 
 
-def test_points_claims_and_formats(folder):
+def test_grade_report_has_points_claims_and_all_formats(folder):
     write_student(folder, "=odd, name", "print(41)")
     words = ["--csv", "out.csv", "--nbgrader", "nb.csv", "--html", "out.html"]
     status, students, _ = grade(folder, *words)
@@ -148,7 +148,7 @@ class FakeCluster:
             yield index, LostTask("lost") if self.calls == 1 else function(*self.share(arguments))
 
 
-def test_a_cluster_gets_the_folders_and_a_lost_check_is_repeated(folder, monkeypatch):
+def test_cluster_receives_folders_and_lost_check_is_repeated(folder, monkeypatch):
     write_student(folder, "good", "print(42)")
     tool = write_student(folder, "bad", "print(41)") / "empty/tool.sh"
     tool.parent.mkdir()
@@ -166,7 +166,7 @@ def test_a_cluster_gets_the_folders_and_a_lost_check_is_repeated(folder, monkeyp
     assert os.access(folder / "received/empty/tool.sh", os.X_OK)
 
 
-def test_an_error_of_a_process_of_the_cluster_is_that_of_the_command(folder, monkeypatch, capsys):
+def test_error_of_cluster_process_is_error_of_command(folder, monkeypatch, capsys):
     write_student(folder, "good", "print(42)")
 
     def refuse(*_, **__):
@@ -178,7 +178,7 @@ def test_an_error_of_a_process_of_the_cluster_is_that_of_the_command(folder, mon
     assert "LEARN901" in capsys.readouterr().err
 
 
-def test_an_error_of_one_run_is_not_the_students_and_costs_nobody_else(folder, monkeypatch):
+def test_error_of_one_run_leaves_other_students_graded(folder, monkeypatch):
     write_student(folder, "good", "print(42)")
     write_student(folder, "unlucky", "print(42)  # unlucky")
     run_in_sandbox = grading_running.run_in_sandbox
@@ -219,7 +219,7 @@ LACKS = {
 
 
 @pytest.mark.parametrize("mistake", LACKS)
-def test_checks_that_cannot_be_loaded_are_no_students_fault(folder, mistake):
+def test_unloadable_checks_leave_students_ungraded(folder, mistake):
     write_student(folder, "good", "print(42)")
     (folder / "course/01-program/checks.py").write_text(mistake)
     status, students, _ = grade(folder, "--html", "out.html")
@@ -231,7 +231,7 @@ def test_checks_that_cannot_be_loaded_are_no_students_fault(folder, mistake):
     assert "not complete" in Path("out.html").read_text(encoding="utf-8")
 
 
-def test_a_check_that_lacks_memory_or_a_library_is_no_students_fault(folder):
+def test_check_without_memory_or_library_is_not_graded(folder):
     write_student(folder, "good", "print(42)")
     checks = folder / "course/01-program/checks.py"
     missing = "raise ModuleNotFoundError('No module named mujoco', name='mujoco')"
@@ -243,7 +243,7 @@ def test_a_check_that_lacks_memory_or_a_library_is_no_students_fault(folder):
     assert [step["graded"] for step in students["good"]["steps"]] == [False, False]
 
 
-def test_the_extras_of_the_lessons_are_needed(folder, monkeypatch, capsys):
+def test_extras_of_lessons_are_required(folder, monkeypatch, capsys):
     write_student(folder, "good", "print(42)")
     lesson = folder / "course/01-program/lesson.toml"
     lesson.write_text('needs = ["sim"]\n' + lesson.read_text())
@@ -266,7 +266,7 @@ def test_marks_do_not_depend_on_the_umask(folder):
 
 @pytest.mark.slow
 @pytest.mark.extra("ray")
-def test_malicious_students_on_a_cluster_hurt_only_themselves(folder):
+def test_malicious_students_on_cluster_affect_only_themselves(folder):
     for number in range(2):
         write_student(folder, f"good{number}", "print(42)")
     for number, attack in enumerate([KILL, SPY.format(folder=str(folder / "students"))]):
@@ -283,7 +283,7 @@ def test_malicious_students_on_a_cluster_hurt_only_themselves(folder):
     assert "limits" in data["protections"]
 
 
-def test_odd_folders_have_a_line_each(folder, capsys):
+def test_unusual_folders_have_notes(folder, capsys):
     students = folder / "students"
     nested = write_student(folder, "nested", "print(42)")
     (nested / "inner").mkdir()
@@ -319,7 +319,7 @@ def test_odd_folders_have_a_line_each(folder, capsys):
     assert "unpack it first" in capsys.readouterr().out
 
 
-def test_an_interrupted_run_continues(folder, monkeypatch):
+def test_interrupted_grading_continues(folder, monkeypatch):
     for number in range(3):
         write_student(folder, f"good{number}", f"print(42)  # {number}")
     run_all = grading._run_all
@@ -342,7 +342,7 @@ def test_an_interrupted_run_continues(folder, monkeypatch):
     assert not (folder / "out.json.unfinished").exists()
 
 
-def test_outputs_are_checked_before_the_first_run(folder, capsys):
+def test_output_files_are_checked_before_first_run(folder, capsys):
     write_student(folder, "good", "print(42)")
     assert main(["learn", "grade", "--course", "course", "--csv", "none/a.csv", "students/good"]) == 1
     assert "LEARN121" in capsys.readouterr().err
@@ -350,7 +350,7 @@ def test_outputs_are_checked_before_the_first_run(folder, capsys):
     assert "LEARN120" in capsys.readouterr().err
 
 
-def test_the_answers_are_the_students(folder):
+def test_answers_are_read_from_progress_of_student(folder):
     place = folder / "students" / "anna"
     place.mkdir()
     (place / "robot.urdf").write_text((find_course("example") / "01-one-link/solution/one-link/robot.urdf").read_text())

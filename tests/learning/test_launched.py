@@ -37,7 +37,7 @@ def package(tmp_path, monkeypatch):
     return Work(tmp_path, lesson=tmp_path).package(PACKAGE.name)
 
 
-def test_nodes_messages_and_transforms_are_waited_for(package):
+def test_launch_check_waits_for_nodes_messages_and_transforms(package):
     with package.launch("display.launch.py") as running:
         running.expect_node("/robot_state_publisher")
         assert "left_wheel_joint" in running.wait_for_message("/joint_states").name
@@ -47,8 +47,8 @@ def test_nodes_messages_and_transforms_are_waited_for(package):
         assert running.subscribers("/joint_states") == ["/robot_state_publisher"]
         assert running.wait_for_parameter("/robot_state_publisher", "publish_frequency") > 0
         begin = time.monotonic()
-        with pytest.raises(NotYet, match="'/robot_state_publisher' has no parameter 'colour'"):
-            running.wait_for_parameter("/robot_state_publisher", "colour")
+        with pytest.raises(NotYet, match="'/robot_state_publisher' has no parameter 'color'"):
+            running.wait_for_parameter("/robot_state_publisher", "color")
         with pytest.raises(NotYet, match="no node '/robot_state_publishr'; there is '/robot_state_publisher'"):
             running.expect_node("/robot_state_publishr")
         with pytest.raises(NotYet, match="no topic '/jont_states'; there is '/joint_states'"):
@@ -62,7 +62,7 @@ def test_nodes_messages_and_transforms_are_waited_for(package):
         assert time.monotonic() - begin < 60
 
 
-def test_a_launch_file_that_fails_is_said(package):
+def test_failing_and_missing_launch_files_are_reported(package):
     (package.folder / "launch" / "bad.launch.py").write_text("import nonsense_module\n")
     with pytest.raises(NotYet, match=r"bad\.launch\.py"), package.launch("bad.launch.py"):
         pass
@@ -82,7 +82,7 @@ rclpy.spin(node)
 """
 
 
-def test_messages_that_are_sent_without_a_guarantee_are_received(package):
+def test_best_effort_messages_are_received(package):
     program = package.folder / "sensor.py"
     program.write_text(BEST_EFFORT)
     (package.folder / "launch" / "sensor.launch.py").write_text(LAUNCH.format(program=str(program)))
@@ -102,7 +102,7 @@ def generate_launch_description():
 """
 
 
-def test_a_topic_without_a_publisher_is_missing_and_the_error_of_the_launch_is_said(package):
+def test_unpublished_topic_and_launch_error_are_reported(package):
     launch = package.folder / "launch" / "voice.launch.py"
     launch.write_text(VOICE.format(commands=""))
     with (
@@ -119,7 +119,7 @@ def test_a_topic_without_a_publisher_is_missing_and_the_error_of_the_launch_is_s
 
 
 @pytest.mark.slow
-def test_a_program_of_the_learner_is_seen_over_the_network(package, tmp_path):
+def test_node_of_learner_is_discovered_over_network(package, tmp_path):
     program = tmp_path / "talker.py"
     program.write_text(PROGRAM)
     (package.folder / "launch" / "talk.launch.py").write_text(LAUNCH.format(program=str(program)))

@@ -43,7 +43,7 @@ def write_program(package, body, entries="'move = p.move:main'"):
     (package.folder / "p" / "move.py").write_text(NODE.format(body=body))
 
 
-def test_a_file_with_another_name_or_place_is_found(package):
+def test_missing_file_message_names_similar_file(package):
     (package.folder / "robot.urdf.txt").write_text("x")
     (package.workspace / "world.sdf").write_text("x")
     with pytest.raises(NotYet, match=r"has no file 'urdf/robot\.urdf'; it has 'robot\.urdf\.txt'"):
@@ -65,13 +65,13 @@ def test_a_package_that_cannot_be_built_is_refused(package, file, text, message)
         Work(package.workspace, lesson=package.workspace).package("p")
 
 
-def test_a_misplaced_link_is_found(package):
+def test_misplaced_link_is_reported(package):
     (package.folder / "r.urdf").write_text('<robot name="r"><link name="a"><link name="b"/></link></robot>')
     with pytest.raises(NotYet, match=r"no link is called 'b'; r\.urdf, line 1: it is inside <link>"):
         package.robot("r.urdf").link("b")
 
 
-def test_a_dependency_for_the_build_alone_is_not_enough(package):
+def test_build_depend_alone_is_not_enough(package):
     with pytest.raises(NotYet, match=r"line 1 has <build_depend>, but <exec_depend> is needed"):
         package.expect_dependencies("rviz2")
 
@@ -87,7 +87,7 @@ def test_a_dependency_for_the_build_alone_is_not_enough(package):
         ("‘move = p.move:main’", "English keyboard"),
     ],
 )
-def test_an_entry_of_setup_py_is_explained(package, entries, message):
+def test_entry_point_error_of_setup_py_is_explained(package, entries, message):
     write_program(package, "pass", entries)
     with pytest.raises(NotYet, match=message):
         package.program("move")
@@ -106,7 +106,7 @@ def test_an_entry_of_setup_py_is_explained(package, entries, message):
         ),
     ],
 )
-def test_a_silent_topic_is_explained(package, body, message):
+def test_topic_without_messages_is_explained(package, body, message):
     from linkwright.messages import get_message
 
     write_program(package, body)
@@ -120,7 +120,7 @@ def test_a_silent_topic_is_explained(package, body, message):
             expect_published(test, "/cmd_vel", TWIST, commands)
 
 
-def test_full_width_characters_have_plain_ones():
+def test_full_width_characters_are_replaced_or_reported():
     assert plain_text("０.２０ –１") == "0.20 -1"
     assert "'('" in lookalike_hint("init（）")
     assert lookalike_hint("init()") is None

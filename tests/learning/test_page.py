@@ -63,7 +63,7 @@ async def until_passed(client: Any) -> dict[str, Any]:
             return message
 
 
-async def test_a_saved_file_is_checked_and_the_progress_is_shown(tmp_path):
+async def test_saved_file_is_checked_and_progress_is_shown(tmp_path):
     shown = Shown()
     async with classroom(tmp_path / "ws", shown) as client:
         first = await results(client)
@@ -79,7 +79,7 @@ async def test_a_saved_file_is_checked_and_the_progress_is_shown(tmp_path):
     assert set(shown.paths) == {tmp_path / "ws" / "robot.urdf"}
 
 
-async def test_a_page_that_opens_receives_the_course_the_step_and_the_last_results(tmp_path):
+async def test_opened_page_receives_course_step_and_last_results(tmp_path):
     async with world() as scene:
         workspace = tmp_path / "ws"
         workspace.mkdir()
@@ -95,7 +95,7 @@ async def test_a_page_that_opens_receives_the_course_the_step_and_the_last_resul
     assert opened["step_checks"]["checks"]
 
 
-async def test_the_newest_check_wins(tmp_path):
+async def test_newest_check_result_is_shown(tmp_path):
     async with classroom(tmp_path / "ws") as client:
         await client.send("check_step")
         (tmp_path / "ws" / "robot.urdf").write_text(WRONG)
@@ -134,7 +134,7 @@ async def test_slow_checks_pause_worlds_and_quick_checks_do_not(tmp_path, monkey
     assert [value for value in while_open if value or expected] == expected
 
 
-async def test_hints_come_one_by_one_and_the_solution_keeps_what_it_replaces(tmp_path):
+async def test_hints_are_shown_in_order_and_solution_keeps_replaced_file(tmp_path):
     workspace = tmp_path / "ws"
     async with classroom(workspace) as client:
         (workspace / "robot.urdf").write_text(WRONG)
@@ -151,7 +151,7 @@ async def test_hints_come_one_by_one_and_the_solution_keeps_what_it_replaces(tmp
     assert "solution: true" in (workspace / "learn.yaml").read_text()
 
 
-async def test_an_answer_is_checked(tmp_path):
+async def test_answer_is_checked(tmp_path):
     async with classroom(tmp_path / "ws") as client:
         await client.send("open_step", address="01-one-link/mass")
         assert (await client.until("course_step", address="01-one-link/mass"))["unit"] == "kg"
@@ -160,7 +160,7 @@ async def test_an_answer_is_checked(tmp_path):
             pass
 
 
-async def test_the_solution_of_a_step_that_asks_for_a_number_is_the_number(tmp_path):
+async def test_solution_of_number_step_is_the_number(tmp_path):
     async with classroom(tmp_path / "ws") as client:
         await client.send("open_step", address="01-one-link/mass")
         shown = await client.until("course_step", address="01-one-link/mass")
@@ -170,7 +170,7 @@ async def test_the_solution_of_a_step_that_asks_for_a_number_is_the_number(tmp_p
     assert "solution: true" in (tmp_path / "ws" / "learn.yaml").read_text()
 
 
-async def test_progress_that_another_program_writes_is_shown(tmp_path):
+async def test_progress_from_another_process_is_shown(tmp_path):
     async with classroom(tmp_path / "ws") as client:
         await results(client)
         other = open_classroom(tmp_path / "ws")
@@ -184,7 +184,7 @@ async def test_progress_that_another_program_writes_is_shown(tmp_path):
     assert "answer: '3'" in (tmp_path / "ws" / "learn.yaml").read_text()
 
 
-async def test_wrong_requests_are_answered_with_the_reason(tmp_path):
+async def test_invalid_requests_are_answered_with_reason(tmp_path):
     async with classroom(tmp_path / "ws") as client:
         await client.send("open_step", address="01-one-link/bax")
         problem = await client.until("course_problem")
@@ -193,7 +193,7 @@ async def test_wrong_requests_are_answered_with_the_reason(tmp_path):
         assert "does not ask for a number" in (await client.until("course_problem"))["message"]
 
 
-async def test_pages_elsewhere_are_refused(tmp_path, monkeypatch):
+async def test_remote_pages_are_refused(tmp_path, monkeypatch):
     refusal = "a course works only in pages on the machine where Linkwright runs"
     monkeypatch.setattr("linkwright.page.server.is_local_connection", lambda _: False)
     async with classroom(tmp_path / "ws") as client:
@@ -202,7 +202,7 @@ async def test_pages_elsewhere_are_refused(tmp_path, monkeypatch):
     assert not (tmp_path / "ws" / "robot.urdf").exists()
 
 
-def test_the_text_of_a_lesson_becomes_safe_html_with_its_own_images_only(tmp_path):
+def test_lesson_text_becomes_safe_html_with_own_images_only(tmp_path):
     lesson = tmp_path / "lesson"
     (lesson / "images").mkdir(parents=True)
     (lesson / "images" / "a.png").write_bytes(b"PNG")
@@ -218,7 +218,7 @@ def test_the_text_of_a_lesson_becomes_safe_html_with_its_own_images_only(tmp_pat
     assert step_html("[a](javascript:alert)", lesson) == "<p>[a](javascript:alert)</p>\n"
 
 
-def test_the_workspace_is_the_one_at_hand_or_an_empty_folder_or_a_new_one(tmp_path):
+def test_workspace_is_current_folder_or_new_folder(tmp_path):
     assert workspace_at(tmp_path) == tmp_path
     (tmp_path / "file").touch()
     assert workspace_at(tmp_path) == tmp_path / "robot_ws"
@@ -228,7 +228,7 @@ def test_the_workspace_is_the_one_at_hand_or_an_empty_folder_or_a_new_one(tmp_pa
     assert workspace_at(tmp_path / "src" / "deep") == tmp_path
 
 
-def test_a_file_is_shown_from_the_step_that_names_it_on(tmp_path):
+def test_file_is_shown_from_first_step_that_names_it(tmp_path):
     room: Classroom = open_classroom(tmp_path, "robot")
     steps = room.course.steps
     assert room.shown_file(steps[0]) is None
@@ -248,22 +248,22 @@ def test_a_file_is_shown_from_the_step_that_names_it_on(tmp_path):
         (["./list"], True),
     ],
 )
-def test_the_classroom_opens_without_a_verb(words, is_default):
+def test_learn_without_verb_opens_classroom(words, is_default):
     assert _begins_without_verb(words, VERBS) == is_default
 
 
-def test_a_misspelt_verb_is_no_folder(capsys):
+def test_misspelled_verb_is_rejected_with_suggestion(capsys):
     assert main(["learn", "lst"]) == 2
     assert "there is no command 'lst'; did you mean 'list'" in capsys.readouterr().err
 
 
-def test_a_folder_that_cannot_be_created_is_an_error(tmp_path, capsys):
+def test_folder_that_cannot_be_created_is_an_error(tmp_path, capsys):
     (tmp_path / "file").touch()
     assert main(["learn", str(tmp_path / "file" / "ws"), "--no-open"]) == 1
     assert "LEARN111" in capsys.readouterr().err
 
 
-def test_a_course_that_other_machines_could_reach_is_refused_with_advice_that_fits(tmp_path, capsys):
+def test_course_on_public_host_is_refused_with_advice(tmp_path, capsys):
     (tmp_path / "ws").mkdir()
     words = ["learn", str(tmp_path / "ws"), "--course", "example", "--host", "0.0.0.0", "--no-open"]
     assert main(words) == 1
@@ -273,7 +273,7 @@ def test_a_course_that_other_machines_could_reach_is_refused_with_advice_that_fi
     assert "--terminal" not in error
 
 
-async def test_the_steps_before_a_step_are_taken_over_after_a_question(tmp_path: Path) -> None:
+async def test_earlier_steps_are_taken_over_after_confirmation(tmp_path: Path) -> None:
     workspace = tmp_path / "ws"
     async with classroom(workspace) as client:
         await client.until("course_step")

@@ -28,7 +28,7 @@ def robot(tmp_path):
     return Work(tmp_path, lesson=tmp_path).robot("r.urdf")
 
 
-def test_what_is_there_passes(robot):
+def test_fulfilled_expectations_pass(robot):
     base, wheel = robot.link("base_link"), robot.link("left_wheel_link")
     base.expect_shape(ShapeSpec(Cylinder(0.2, 0.16), along=(0, 0, 1), at=(0, 0, 0)))
     base.expect_shape(ShapeSpec(Box((0.4, 0.4, 0.2)), at=(0, 0, 0.1)), "collision")
@@ -88,7 +88,7 @@ def test_what_is_there_passes(robot):
         ),
     ],
 )
-def test_what_is_missing_is_said(robot, expectation, message):
+def test_failed_expectation_message_is_specific_and_bilingual(robot, expectation, message):
     with pytest.raises(NotYet) as raised:
         expectation(robot)
     assert message in str(raised.value)
@@ -96,7 +96,7 @@ def test_what_is_missing_is_said(robot, expectation, message):
 
 
 @pytest.mark.extra("sim")
-def test_a_robot_of_visuals_only_is_simulated_with_what_it_lacks(tmp_path):
+def test_robot_with_visuals_only_is_completed_and_simulated(tmp_path):
     wheel = URDF[URDF.index('  <link name="left') : URDF.index("</robot>")]
     right = wheel.replace("left", "right").replace("0.19", "-0.19")
     ball = """<link name="ball"><visual><geometry><sphere radius="0.02"/></geometry></visual></link>
@@ -112,12 +112,12 @@ def test_a_robot_of_visuals_only_is_simulated_with_what_it_lacks(tmp_path):
 
 
 @pytest.mark.extra("sim")
-def test_why_a_robot_cannot_be_driven_is_said(robot, tmp_path):
+def test_robot_without_drive_is_reported(robot, tmp_path):
     with pytest.raises(NotYet, match="DRIVE20"), Work(tmp_path, lesson=tmp_path).simulate("r.urdf"):
         pass
 
 
-def test_an_invalid_description_is_said_with_its_line(tmp_path):
+def test_invalid_description_is_reported_with_line(tmp_path):
     (tmp_path / "r.urdf").write_text(URDF.replace(' length="0.16"', ""))
     with pytest.raises(NotYet, match=r"r\.urdf, line 3, column \d+: .*'length'"):
         Work(tmp_path, lesson=tmp_path).robot("r.urdf")
@@ -126,7 +126,7 @@ def test_an_invalid_description_is_said_with_its_line(tmp_path):
         Work(tmp_path, lesson=tmp_path).robot("r.urdf")
 
 
-def test_missing_and_empty_files_are_said(tmp_path):
+def test_missing_and_empty_files_are_reported(tmp_path):
     work = Work(tmp_path, lesson=tmp_path)
     (tmp_path / "robot.urdf").write_text("")
     with pytest.raises(NotYet, match=r"'robot\.urdf' is empty"):
@@ -135,7 +135,7 @@ def test_missing_and_empty_files_are_said(tmp_path):
         work.robot("robto.urdf")
 
 
-def test_a_package_is_found_by_its_manifest(tmp_path):
+def test_package_is_found_by_manifest(tmp_path):
     work = Work(tmp_path, lesson=tmp_path)
     with pytest.raises(NotYet, match="no package 'mbot' below 'src'"):
         work.package("mbot")
@@ -169,7 +169,7 @@ ament_package()
 """
 
 
-def test_a_dependency_that_the_manifest_lacks_is_a_finding_and_advice_is_not(tmp_path):
+def test_missing_dependency_fails_check_and_advice_does_not(tmp_path):
     folder = tmp_path / "src" / "p"
     (folder / "launch").mkdir(parents=True)
     (folder / "urdf").mkdir()
@@ -189,7 +189,7 @@ def test_a_dependency_that_the_manifest_lacks_is_a_finding_and_advice_is_not(tmp
         package.expect_no_findings()
 
 
-def test_a_number_is_compared_and_typical_slips_have_their_message(tmp_path):
+def test_number_is_compared_and_known_slips_have_messages(tmp_path):
     slip = NotYet(en="That is the diameter.")
     work = Work(tmp_path, lesson=tmp_path, answer=" 0,06 ")
     work.expect_number(0.06, tolerance=0.001)

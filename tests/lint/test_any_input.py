@@ -42,7 +42,7 @@ DESCRIPTIONS = [
 
 
 @pytest.mark.parametrize("seed", range(60))
-def test_odd_values_in_any_attribute(tmp_path, monkeypatch, seed):
+def test_lint_survives_odd_attribute_values(tmp_path, monkeypatch, seed):
     monkeypatch.chdir(tmp_path)
     chance = random.Random(seed)
     for number, case in enumerate(chance.sample(DESCRIPTIONS, 6)):
@@ -61,7 +61,7 @@ def test_odd_values_in_any_attribute(tmp_path, monkeypatch, seed):
 
 
 @pytest.mark.parametrize("seed", range(40))
-def test_parts_left_out_or_doubled(tmp_path, monkeypatch, seed):
+def test_lint_survives_missing_and_duplicate_lines(tmp_path, monkeypatch, seed):
     monkeypatch.chdir(tmp_path)
     chance = random.Random(seed)
     for number, case in enumerate(chance.sample(DESCRIPTIONS, 6)):
@@ -77,7 +77,7 @@ def test_parts_left_out_or_doubled(tmp_path, monkeypatch, seed):
 
 
 @given(st.text(st.sampled_from("<>!-/ab \n#,()\"'=?[]"), max_size=60), st.text(max_size=40))
-def test_any_text_around_a_comment(before, after):
+def test_suppression_ranges_stay_within_arbitrary_text(before, after):
     text = f"<r>{before}<!-- linkwright: ignore {after}-->{before}<a>{after}"
     for directive in directives(SourceText("f", text)):
         assert 0 <= directive.start < directive.end <= len(text)
@@ -103,7 +103,7 @@ def chain(count: int, mimic: str = "", loose: str = "") -> str:
         ('<mimic joint="j{before}"/>', '<joint name="j0" type="continuous"><mimic joint="j1"/></joint>'),
     ],
 )
-def test_the_effort_grows_in_proportion_to_the_robot(tmp_path, mimic, loose):
+def test_lint_effort_is_linear_in_robot_size(tmp_path, mimic, loose):
     settings = Settings(select=("ALL",))
 
     def work(count: int) -> int:

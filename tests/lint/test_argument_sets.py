@@ -52,7 +52,7 @@ def codes(found):
     return [(each["severity"], each["code"]) for each in found]
 
 
-def test_what_fails_only_without_arguments_is_one_remark(check):
+def test_failure_without_arguments_is_one_info(check):
     found = check(
         {
             "arm/urdf/arm.urdf.xacro": ARM,
@@ -87,12 +87,12 @@ def generate_launch_description():
     ("launch", "expected"),
     [(EXPANDS, []), (EXPANDS.replace("xacro", "document"), [("error", "LW114")])],
 )
-def test_a_plain_name_is_xacro_where_a_launch_file_expands_it(check, launch, expected):
+def test_urdf_file_expanded_by_launch_file_may_contain_xacro(check, launch, expected):
     found = check({"arm/urdf/arm.urdf": PLAIN, "arm/urdf/can.stl": "", "arm/launch/view.launch.py": launch})
     assert [code for code in codes(found) if code[1] == "LW114"] == expected
 
 
-def test_a_value_that_is_given_and_fails_is_an_error_that_names_it(check):
+def test_failing_launch_value_is_an_error_with_argument_set(check):
     found = check(
         {
             "arm/urdf/arm.urdf.xacro": ARM,
@@ -104,7 +104,7 @@ def test_a_value_that_is_given_and_fails_is_an_error_that_names_it(check):
     assert "this happens with type:=lost" in [note["message"] for note in found[1]["notes"]]
 
 
-def test_a_finding_of_all_sets_is_told_once_and_one_of_some_says_which(check):
+def test_finding_of_some_argument_sets_names_them(check):
     flaw = '<link name="{name}"><collision><geometry><box size="0 1 1"/></geometry></collision></link>'
     part = f'<robot><link name="base_link"/>{flaw}</robot>'
     joint = '<joint name="j" type="fixed"><parent link="base_link"/><child link="{name}"/></joint>'
@@ -128,7 +128,7 @@ def test_a_finding_of_all_sets_is_told_once_and_one_of_some_says_which(check):
     assert "this happens with type:=small" in [note["message"] for note in boxes["small.xacro"]["notes"]]
 
 
-def test_the_configuration_has_the_last_word(check):
+def test_configured_arguments_override_launch_files(check):
     found = check(
         {
             "arm/urdf/arm.urdf.xacro": ARM,
@@ -140,7 +140,7 @@ def test_the_configuration_has_the_last_word(check):
     assert found == []
 
 
-def test_an_argument_that_nobody_declares_or_gives_is_a_remark_in_a_folder_and_an_error_for_the_file(check):
+def test_undeclared_argument_is_info_for_folder_and_error_for_file(check):
     files = {"arm/urdf/arm.urdf.xacro": f'<robot {XACRO} name="r"><link name="$(arg prefix)base_link"/></robot>'}
     found = check(files)
     assert codes(found) == [("info", "LINT303")]
@@ -148,7 +148,7 @@ def test_an_argument_that_nobody_declares_or_gives_is_a_remark_in_a_folder_and_a
     assert codes(check(files, "arm/urdf/arm.urdf.xacro")) == [("error", "XAC211")]
 
 
-def test_what_hangs_on_an_argument_that_the_root_names_too_early_is_no_error_of_its_own(check):
+def test_include_named_by_argument_used_too_early_is_not_an_error(check):
     text = f"""<robot {XACRO} name="$(arg model)"><xacro:arg name="model" default="r"/>
 <xacro:include filename="$(arg model)/arm.xacro"/><xacro:include filename="{{}}.xacro"/></robot>"""
     found = check({"arm/urdf/arm.urdf.xacro": text.format("hand"), "arm/urdf/hand.xacro": PART})
@@ -157,13 +157,13 @@ def test_what_hangs_on_an_argument_that_the_root_names_too_early_is_no_error_of_
     assert codes(found) == [("info", "LINT303"), ("error", "XML101")]
 
 
-def test_a_misspelt_argument_stays_an_error(check):
+def test_misspelled_argument_stays_an_error(check):
     robot = f"""<robot {XACRO} name="r"><xacro:arg name="prefix" default=""/>
     <link name="$(arg prefix)base_link"/><link name="$(arg prefx)tool"/></robot>"""
     assert ("error", "XAC211") in codes(check({"arm/urdf/arm.urdf.xacro": robot}))
 
 
-def test_a_caller_that_gives_nothing_makes_the_defaults_count(check):
+def test_caller_without_arguments_uses_defaults(check):
     test = """
 import xacro
 from ament_index_python.packages import get_package_share_path
@@ -175,14 +175,14 @@ def test_expands():
     assert {code for severity, code in codes(found) if severity == "error"} == {"XAC211", "XML101"}
 
 
-def test_values_that_are_only_known_at_run_time_are_named(check):
+def test_runtime_values_are_named(check):
     launch = LAUNCH.format(kinds="'small'").replace("'type': kind", "'type': ask()")
     found = check({"arm/urdf/arm.urdf.xacro": ARM, "arm/launch/view.launch.py": launch})
     assert codes(found) == [("info", "LINT303")]
     assert found[0]["arguments"]["names"] == "'type'"
 
 
-def test_values_of_the_command_line_are_the_only_ones(check):
+def test_command_line_arguments_replace_all_other_sets(check):
     files = {"arm/urdf/arm.urdf.xacro": ARM, "arm/urdf/small.xacro": PART}
     assert check(files, "arm/urdf/arm.urdf.xacro", "name:=a", "type:=small") == []
     assert ("error", "XML101") in codes(check(files, "arm/urdf/arm.urdf.xacro", "name:=a", "type:=lost"))
@@ -192,7 +192,7 @@ DERIVED = ", ' config:=', PathJoinSubstitution(['config', LaunchConfiguration('t
 
 
 @pytest.mark.parametrize("derived", ["", DERIVED], ids=["", "with a path made of both"])
-def test_a_value_that_works_beside_another_is_no_error(check, derived):
+def test_value_that_works_with_another_choice_is_not_an_error(check, derived):
     launch = """
 from launch import LaunchDescription
 from launch.actions import DeclareLaunchArgument
@@ -218,9 +218,7 @@ def generate_launch_description():
 
 
 @pytest.mark.parametrize(("chosen", "codes_found"), [("large", ["XML101"]), ("small", [])])
-def test_a_value_that_fails_with_a_file_that_a_launch_argument_chooses_is_an_error_by_default_only(
-    check, chosen, codes_found
-):
+def test_failing_value_is_an_error_only_with_default_file(check, chosen, codes_found):
     launch = """
 from launch.actions import DeclareLaunchArgument
 from launch.substitutions import Command, LaunchConfiguration, PathJoinSubstitution
@@ -244,7 +242,7 @@ Command(['xacro ', path, ' name:=a', ' type:=', LaunchConfiguration('type')])
     ("declared", "severity"),
     [("default_value='small', choices=['small', 'lost']", "warning"), ("default_value='lost'", "error")],
 )
-def test_a_value_that_is_merely_offered_and_fails_is_a_warning(check, declared, severity):
+def test_failing_choice_of_launch_argument_is_a_warning(check, declared, severity):
     launch = f"""
 from launch.actions import DeclareLaunchArgument
 from launch.substitutions import Command, LaunchConfiguration, PathJoinSubstitution
@@ -267,7 +265,7 @@ def generate_launch_description():
         ("", "", "error"),
     ],
 )
-def test_a_missing_package_is_a_warning_where_it_or_a_neighbour_declares_it(check, needs, beside, severity):
+def test_missing_package_is_a_warning_if_declared_nearby(check, needs, beside, severity):
     robot = (
         f"""<robot {XACRO} name="r"><xacro:include filename="$(find far)/far.xacro"/><link name="base_link"/></robot>"""
     )
@@ -286,7 +284,7 @@ SIDED = f"""<robot {XACRO} name="r">
 </robot>"""
 
 
-def test_the_values_that_a_description_compares_an_argument_with_are_tried_where_nobody_gives_one(check):
+def test_compared_values_are_tried_for_missing_argument(check):
     found = check({"arm/urdf/arm.urdf.xacro": SIDED}, ".", "--ignore", "LW102")
     assert codes(found) == [("info", "LINT303")]
     assert found[0]["message"] == "'arm.urdf.xacro' needs the argument 'side'"
@@ -294,7 +292,7 @@ def test_the_values_that_a_description_compares_an_argument_with_are_tried_where
     assert codes(check({"arm/urdf/arm.urdf.xacro": SIDED}, "arm/urdf/arm.urdf.xacro")) == [("error", "XAC201")]
 
 
-def test_an_error_that_none_of_these_values_mends_stays_one(check):
+def test_error_that_no_compared_value_fixes_remains(check):
     found = check({"arm/urdf/arm.urdf.xacro": SIDED.replace("0 ${mount} 0", "0 ${lost} 0")})
     assert codes(found) == [("error", "XAC201")]
 
@@ -307,7 +305,7 @@ FILED = f"""<robot {XACRO} name="r">
 </robot>"""
 
 
-def test_what_fails_for_an_empty_default_needs_the_argument(check):
+def test_failure_with_empty_default_requires_argument(check):
     found = check({"arm/urdf/arm.urdf.xacro": FILED.format(default="", more="")})
     assert codes(found) == [("info", "LINT303")]
     assert found[0]["arguments"]["names"] == "'limits'"
@@ -316,7 +314,7 @@ def test_what_fails_for_an_empty_default_needs_the_argument(check):
     assert ("error", "XAC506") in codes(check({"arm/urdf/arm.urdf.xacro": FILED.format(default="a.yaml", more="")}))
 
 
-def test_what_a_file_lacks_that_is_only_known_at_run_time_is_no_error(check):
+def test_missing_key_in_file_of_runtime_value_is_not_an_error(check):
     launch = LAUNCH.format(kinds="'a'").replace("'name': 'a', 'type': kind", "'limits': kind + ask()")
     files = {
         "arm/urdf/arm.urdf.xacro": FILED.format(default="$(find arm)/urdf/a.yaml", more=""),
@@ -327,7 +325,7 @@ def test_what_a_file_lacks_that_is_only_known_at_run_time_is_no_error(check):
     assert ("error", "XAC205") in codes(check({**files, "arm/launch/view.launch.py": ""}))
 
 
-def test_a_copied_inertia_that_one_set_shows_is_not_called_too_large_by_another(check):
+def test_copied_inertia_hides_too_large_inertia_of_other_set(check):
     mass = '<inertial><mass value="1"/><inertia ixx="1" iyy="1" izz="1" ixy="0" ixz="0" iyz="0"/></inertial>'
     own = mass.replace('ixx="1"', 'ixx="0.0010${index}"').replace('iyy="1" izz="1"', 'iyy="0.001" izz="0.001"')
     robot = f"""<robot {XACRO} name="r">
@@ -372,7 +370,7 @@ def given_kinds(inside, *kinds):
     [("0", 1), ("${0 if float(rate) == 3 else 1}", 2)],
     ids=["the same robot", "robots with the same parts"],
 )
-def test_rules_run_once_for_sets_that_give_the_same_robot(check, monkeypatch, velocity, of_robot):
+def test_rules_run_once_for_sets_with_same_robot(check, monkeypatch, velocity, of_robot):
     ran = []
     for code in ("LW206", "LW701"):
         rule = find_rule(code)
@@ -387,7 +385,7 @@ def test_rules_run_once_for_sets_that_give_the_same_robot(check, monkeypatch, ve
     assert (ran.count("LW206"), ran.count("LW701")) == (of_robot, 1)
 
 
-def test_a_property_whose_name_is_pasted_by_one_set_is_used(check):
+def test_property_named_by_argument_value_of_one_set_is_used(check):
     """What is used may hang on the values of arguments, although the files are the same."""
     properties = "".join(f'<xacro:property name="{name}" value="1"/>' for name in ("size", "width", "other"))
     files = given_kinds(f'{properties}<link name="l${{$(arg kind)}}"/>', "size", "width")

@@ -20,7 +20,7 @@ def findings_of(tmp_path: Path, text: str, name: str = "linkwright.toml") -> lis
     return [f"{each.span.line}:{each.span.column} {each.code} {each.message} | {each.hint}" for each in found]
 
 
-def test_everything_that_can_be_set(tmp_path):
+def test_all_settings_are_read_from_toml(tmp_path):
     (tmp_path / "linkwright.toml").write_text(
         """
         select = ["LW1", "limit-inverted"]
@@ -53,7 +53,7 @@ def test_everything_that_can_be_set(tmp_path):
     assert settings.options == {"origin-far": {"farthest": 100}}
 
 
-def test_the_closer_selector_wins_and_ignore_wins_a_tie():
+def test_longer_selector_wins_and_ignore_wins_tie():
     settings = Settings(ignore=("LW2",), extend_select=("LW201",))
     assert settings.selects("LW201")
     assert not settings.selects("LW202")
@@ -61,14 +61,14 @@ def test_the_closer_selector_wins_and_ignore_wins_a_tie():
     assert Settings(select=("ALL",)).selects("LW228", default=False)
 
 
-def test_a_rule_that_is_off_runs_when_it_is_selected():
+def test_disabled_rule_runs_if_selected():
     rule = find_rule("angle-rounded")
     assert not Settings().runs(rule)
     assert Settings(extend_select=("LW228",)).runs(rule)
     assert Settings(select=("LW2",)).runs(rule)
 
 
-def test_the_nearest_configuration_counts(tmp_path):
+def test_nearest_configuration_file_is_used(tmp_path):
     inner = tmp_path / "package" / "urdf"
     inner.mkdir(parents=True)
     (tmp_path / "linkwright.toml").write_text("ignore = ['LW1']")
@@ -80,7 +80,7 @@ def test_the_nearest_configuration_counts(tmp_path):
     assert settings_for(inner / "robot.urdf")[0].ignore == ("LW2",)
 
 
-def test_no_configuration_is_no_mistake(tmp_path):
+def test_missing_configuration_gives_default_settings(tmp_path):
     assert settings_for(tmp_path / "robot.urdf") == (Settings(), ())
 
 
@@ -124,21 +124,21 @@ def test_no_configuration_is_no_mistake(tmp_path):
         ("severity = 3\n", "1:1 LINT103 'severity' is not a table | write [severity]"),
     ],
 )
-def test_mistakes_are_told_with_their_place(tmp_path, text, expected):
+def test_mistakes_are_reported_with_location(tmp_path, text, expected):
     assert findings_of(tmp_path, text) == [expected]
 
 
-def test_what_is_not_toml_is_told_with_its_place(tmp_path):
+def test_malformed_toml_is_reported_with_location(tmp_path):
     (found,) = findings_of(tmp_path, "ignore = []\nselect = LW201\n")
     assert found.startswith("2:10 LINT101 this is not TOML: ")
 
 
-def test_mistakes_in_pyproject_are_found_below_the_table(tmp_path):
+def test_mistakes_in_pyproject_are_located_in_its_table(tmp_path):
     text = "[project]\nignore = 3\n\n[tool.linkwright]\nignore = 3\n"
     assert findings_of(tmp_path, text, "pyproject.toml")[0].startswith("5:1 LINT103")
 
 
-def test_the_rest_of_a_configuration_holds_beside_a_mistake(tmp_path):
+def test_valid_settings_apply_beside_mistake(tmp_path):
     file = tmp_path / "linkwright.toml"
     file.write_text('ignore = ["LW1", "nonsense"]\n')
     settings, found = read_settings(file)
@@ -149,13 +149,13 @@ def test_the_rest_of_a_configuration_holds_beside_a_mistake(tmp_path):
 @pytest.mark.parametrize(
     "text", ["", "x = [", "[a]\n[a]\n", "options.a.b.c = 1", "per-file-ignores.x = 3", "\x00", "select=[1]"]
 )
-def test_no_text_makes_the_reader_raise(tmp_path, text):
+def test_settings_reader_never_raises(tmp_path, text):
     file = tmp_path / "linkwright.toml"
     file.write_text(text)
     read_settings(file)
 
 
-def test_arguments_are_one_set_or_several_for_files_that_match(tmp_path):
+def test_arguments_are_read_as_sets_for_matching_files(tmp_path):
     (tmp_path / "linkwright.toml").write_text(
         """
         [arguments]
@@ -173,7 +173,7 @@ def test_arguments_are_one_set_or_several_for_files_that_match(tmp_path):
     assert settings.arguments_of(tmp_path / "other.urdf.xacro") == ()
 
 
-def test_arguments_of_another_form_are_told(tmp_path):
+def test_malformed_arguments_are_reported(tmp_path):
     (logged,) = findings_of(tmp_path, '[arguments]\n"a.xacro" = ["prefix"]\n')
     what, hint = logged.split(" | ")
     assert what == "2:2 LINT103 'a.xacro' is neither a set of values nor a list of sets"

@@ -14,7 +14,7 @@ def look(model: Model, settings: Settings) -> Checked:
 
 
 @pytest.mark.parametrize("model", MODELS, ids=str)
-def test_robots(model: Model) -> None:
+def test_corpus_robots_have_no_joint_or_structure_errors(model: Model) -> None:
     checked = look(model, Settings(select=("ALL",)))
     findings = [diagnostic for diagnostic in checked.diagnostics if isinstance(diagnostic, Finding)]
     assert all(finding.span is not None for finding in findings if finding.element is not None)
@@ -23,7 +23,7 @@ def test_robots(model: Model) -> None:
 
 
 @pytest.mark.parametrize("corpus", CORPORA, ids=lambda corpus: corpus.folder.name)
-def test_default_rules_about_structure_and_joints_find_little_in_them(corpus: Corpus) -> None:
+def test_corpus_robots_have_few_joint_and_structure_findings(corpus: Corpus) -> None:
     found = {
         (diagnostic.code, diagnostic.span)
         for model in corpus.models

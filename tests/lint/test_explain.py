@@ -26,22 +26,22 @@ def codes_of_the_program() -> set[str]:
     }
 
 
-def test_every_code_that_the_program_reports_has_a_page():
+def test_every_reported_code_has_page():
     assert codes_of_the_program() - set(known_codes()) == set()
 
 
-def test_no_page_is_of_a_code_that_nothing_reports():
+def test_every_page_belongs_to_reported_code():
     assert set(room_pages()) - codes_of_the_program() == set()
 
 
-def test_every_file_of_pages_begins_with_its_own_title():
+def test_every_file_of_pages_begins_with_title():
     """Else its first code is missing from the list in the documentation."""
     for file in (ROOMS / "lint" / "pages").glob("*.md"):
         assert file.read_text(encoding="utf-8").startswith("# "), file.name
 
 
 @pytest.mark.parametrize("rule", all_rules(), ids=lambda rule: rule.code)
-def test_the_page_of_a_rule_says_what_why_and_what_instead(rule):
+def test_rule_page_has_title_why_example_and_use_instead(rule):
     page = rule_page(rule)
     assert page.title
     assert "\n" not in page.title
@@ -50,12 +50,12 @@ def test_the_page_of_a_rule_says_what_why_and_what_instead(rule):
     assert all(f"`{option.name}`" in page.text for option in rule.options)
 
 
-def test_a_page_is_found_by_code_and_name_in_any_case():
+def test_page_is_found_by_code_and_name_in_any_case():
     assert find_page("lw201") == find_page("limit-inverted") == find_page("LW201")
     assert find_page("urdf110").title == "two elements of one kind have the same name"
     assert find_page("LW999") is None
 
 
-def test_near_codes_are_offered():
+def test_similar_codes_are_suggested():
     assert "limit-inverted" in nearest_codes("limit-invertd")
     assert "URDF110" in nearest_codes("URDF111")

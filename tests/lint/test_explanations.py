@@ -36,7 +36,7 @@ def severities(tmp_path, links):
         '<!-- heavier than it is --> <mass value="300"/>',
     ],
 )
-def test_a_comment_at_a_mass_makes_it_an_information(tmp_path, mass):
+def test_comment_at_mass_lowers_severity_to_info(tmp_path, mass):
     assert severities(tmp_path, _LINK.format("a", mass, _BOX)) == [("LW320", "info")]
 
 
@@ -50,11 +50,11 @@ def test_a_comment_at_a_mass_makes_it_an_information(tmp_path, mass):
         '<mass value="300"/>\n<!-- to stabilise -->',
     ],
 )
-def test_other_comments_leave_the_warning(tmp_path, mass):
+def test_unrelated_comments_keep_warning(tmp_path, mass):
     assert severities(tmp_path, _LINK.format("a", mass, _BOX)) == [("LW320", "warning")]
 
 
-def test_an_inertia_that_is_the_same_everywhere_on_purpose_is_an_information(tmp_path):
+def test_comment_at_repeated_inertia_lowers_severity_to_info(tmp_path):
     shapes = (_BOX, '<sphere radius="0.1"/>', '<cylinder radius="0.1" length="0.1"/>')
     links = "".join(_LINK.format(f"l{at}", '<mass value="1"/>', shape) for at, shape in enumerate(shapes))
     assert severities(tmp_path, links) == [("LW315", "warning")]
@@ -62,6 +62,6 @@ def test_an_inertia_that_is_the_same_everywhere_on_purpose_is_an_information(tmp
     assert severities(tmp_path, explained) == [("LW315", "info")]
 
 
-def test_a_comment_above_the_whole_inertial_explains_its_mass(tmp_path):
+def test_comment_above_inertial_applies_to_mass(tmp_path):
     link = _LINK.format("a", '<mass value="300"/>', _BOX).replace("<inertial>", "<!-- ballast -->\n  <inertial>")
     assert severities(tmp_path, link) == [("LW320", "info")]

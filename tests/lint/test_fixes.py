@@ -60,13 +60,13 @@ def applied(text: str, fix: Fix | None) -> str:
         ("<r><a x='/>'  y=\"/a>\" ></a></r>", "<a x='/>'  y=\"/a>\" ></a>"),
     ],
 )
-def test_the_range_of_an_element(text, expected):
+def test_element_range_covers_whole_element(text, expected):
     found = element_range(element(text, "a"))
     assert found is not None
     assert text[slice(*found)] == expected
 
 
-def test_a_value_is_replaced_between_its_quotes():
+def test_attribute_value_is_replaced_between_quotes():
     text = "<r><a  x = '1'  y=\"2\"/></r>"
     assert applied(text, replace_value(element(text, "a"), "x", '"<&')) == "<r><a  x = '&quot;&lt;&amp;'  y=\"2\"/></r>"
 
@@ -79,26 +79,26 @@ def test_attributes_are_added_and_renamed():
     assert add_attribute(element("<r><a></a></r>", "a"), "z", "3") is not None
 
 
-def test_elements_are_renamed_at_both_ends():
+def test_elements_are_renamed_in_start_and_end_tag():
     text = "<r><a><a/></a\n></r>"
     assert applied(text, rename_element(element(text, "a"), "bc")) == "<r><bc><a/></bc\n></r>"
     assert applied("<r><a/></r>", rename_element(element("<r><a/></r>", "a"), "bc")) == "<r><bc/></r>"
 
 
-def test_an_element_is_removed_with_its_line_where_it_is_alone_on_it():
+def test_element_alone_on_line_is_removed_with_line():
     text = "<r>\n  <a>\n  </a>\n  <b/>\n</r>"
     assert applied(text, remove_element(element(text, "a"))) == "<r>\n  <b/>\n</r>"
     assert applied("<r><a/><b/></r>", remove_element(element("<r><a/><b/></r>", "a"))) == "<r><b/></r>"
 
 
-def test_an_expression_is_no_literal():
+def test_expression_is_not_a_literal():
     text = '<r><a x="${1 + 1}" y="2" z="&lt;"/></r>'
     found = element(text, "a")
     assert [is_literal(found, name) for name in "xyz"] == [False, True, False]
     assert replace_value(found, "x", "3") is None
 
 
-def test_an_element_made_by_a_program_has_no_fix():
+def test_element_without_source_has_no_fix():
     made = Element("a", {"x": "1"})
     assert replace_value(made, "x", "2") is None
     assert remove_element(made) is None
@@ -113,7 +113,7 @@ def fix(path: Path, *, unsafe: bool = False, write: bool = True, select: tuple[s
     return fix_file(path, check, unsafe=unsafe, write=write)
 
 
-def test_everything_else_stays_as_it_is(tmp_path):
+def test_fix_keeps_rest_of_file(tmp_path):
     path = tmp_path / "robot.urdf"
     path.write_text(ROBOT)
     result = fix(path)
@@ -121,7 +121,7 @@ def test_everything_else_stays_as_it_is(tmp_path):
     assert result.counts == {"LW221": 1}
 
 
-def test_a_diff_changes_nothing(tmp_path, monkeypatch):
+def test_diff_does_not_write_file(tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)
     path = Path("robot.urdf")
     path.write_text(ROBOT)
@@ -141,7 +141,7 @@ def test_a_diff_changes_nothing(tmp_path, monkeypatch):
     assert path.read_text() == ROBOT
 
 
-def test_windows_line_ends_a_byte_order_mark_and_permissions_stay(tmp_path):
+def test_fix_keeps_line_endings_byte_order_mark_and_permissions(tmp_path):
     path = tmp_path / "robot.urdf"
     path.write_bytes(b"\xef\xbb\xbf" + ROBOT.replace("\n", "\r\n").encode())
     path.chmod(0o640)
@@ -151,7 +151,7 @@ def test_windows_line_ends_a_byte_order_mark_and_permissions_stay(tmp_path):
     assert path.stat().st_mode & 0o777 == 0o640
 
 
-def test_a_link_stays_a_link(tmp_path):
+def test_fix_keeps_symlink(tmp_path):
     (tmp_path / "real").mkdir()
     real = tmp_path / "real" / "robot.urdf"
     real.write_text(ROBOT)
@@ -163,7 +163,7 @@ def test_a_link_stays_a_link(tmp_path):
     assert list((tmp_path / "real").iterdir()) == [real]
 
 
-def test_an_included_file_is_mended_once_for_all_its_calls(tmp_path):
+def test_included_file_is_fixed_once_for_all_macro_calls(tmp_path):
     (tmp_path / "wheel.xacro").write_text(
         '<robot xmlns:xacro="http://www.ros.org/wiki/xacro">\n'
         '  <xacro:macro name="wheel" params="side tilt:=0">\n'
@@ -187,7 +187,7 @@ def test_an_included_file_is_mended_once_for_all_its_calls(tmp_path):
     assert 'xyz="0 ${2} 0"' in text
 
 
-def test_files_of_other_packages_are_left_alone(tmp_path):
+def test_files_outside_package_are_not_fixed(tmp_path):
     (tmp_path / "mine").mkdir()
     other = tmp_path / "other.xacro"
     other.write_text(ROBOT)
@@ -199,7 +199,7 @@ def test_files_of_other_packages_are_left_alone(tmp_path):
     assert other.read_text() == ROBOT
 
 
-def test_of_fixes_that_overlap_one_is_applied_and_the_next_pass_looks_again(tmp_path):
+def test_only_one_of_overlapping_fixes_is_applied(tmp_path):
     path = tmp_path / "robot.urdf"
     path.write_text("<robot>aaa</robot>")
 
@@ -214,7 +214,7 @@ def test_of_fixes_that_overlap_one_is_applied_and_the_next_pass_looks_again(tmp_
     assert path.read_text() == "<robot>ab</robot>"
 
 
-def test_a_fix_that_would_break_the_file_is_not_applied(tmp_path):
+def test_fix_that_breaks_file_is_not_applied(tmp_path):
     path = tmp_path / "robot.urdf"
     path.write_text("<robot>a</robot>")
     finding = Finding("LW999", "m", fix=Fix((Edit(str(path), 0, 1, ""),)))
@@ -222,13 +222,13 @@ def test_a_fix_that_would_break_the_file_is_not_applied(tmp_path):
     assert path.read_text() == "<robot>a</robot>"
 
 
-def test_a_file_that_cannot_be_written_is_told(tmp_path):
+def test_unwritable_file_is_reported(tmp_path):
     with pytest.raises(LinkwrightError) as caught:
         write_text(tmp_path / "none" / "robot.urdf", "x")
     assert caught.value.diagnostics[0].code == "LINT201"
 
 
-def test_unsafe_fixes_are_applied_only_when_asked_for(tmp_path):
+def test_unsafe_fixes_are_applied_only_on_request(tmp_path):
     path = tmp_path / "robot.urdf"
     text = (
         ROBOT.replace("1 1 0", "1 0 0")
@@ -242,6 +242,6 @@ def test_unsafe_fixes_are_applied_only_when_asked_for(tmp_path):
     assert 'lower="1" upper="2"' in path.read_text()
 
 
-def test_places_are_offsets_of_the_text():
+def test_source_span_counts_columns_from_one():
     source = SourceText("f", "ab")
     assert source.span(1).column == 2

@@ -20,7 +20,7 @@ _POSES = st.builds(Pose, st.tuples(_COORDINATES, _COORDINATES, _COORDINATES), st
 
 
 @given(_POSES, _POSES)
-def test_links_are_where_the_kinematics_room_says(first, second):
+def test_link_placements_match_kinematics(first, second):
     links = {name: Link(name) for name in "abc"}
     joints = {
         "j": Joint("j", "revolute", "a", "b", first),
@@ -36,14 +36,14 @@ def test_links_are_where_the_kinematics_room_says(first, second):
 
 
 @given(_POSES, _POSES)
-def test_a_frame_seen_from_another_and_put_back_is_itself(first, second):
+def test_seen_from_and_inside_are_inverse(first, second):
     one, other = placement(first), placement(second)
     back = one.seen_from(other).inside(other)
     np.testing.assert_allclose(back.position, one.position, atol=1e-9)
     assert angle_between(back.rotation, one.rotation) == pytest.approx(0.0, abs=1e-6)
 
 
-def test_the_angle_between_rotations():
+def test_angle_between_rotations_is_computed():
     one, other = rotation(Pose(rpy=(0.3, 0.0, 0.0))), rotation(Pose(rpy=(0.5, 0.0, 0.0)))
     assert angle_between(one, other) == pytest.approx(0.2)
     assert angle_between(product(one, transposed(one)), rotation(Pose())) == pytest.approx(0.0)

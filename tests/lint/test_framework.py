@@ -18,14 +18,14 @@ ROBOTS = sorted((Path(__file__).parents[2] / "robots" / "my_robot_description" /
 ALL = Settings(select=("ALL",))
 
 
-def test_codes_and_names_are_unique_and_in_order():
+def test_rule_codes_and_names_are_unique_and_sorted():
     rules = all_rules()
     assert len(rules) >= 90
     assert [rule.code for rule in rules] == sorted({rule.code for rule in rules})
     assert len({rule.name for rule in rules}) == len(rules)
 
 
-def test_rules_about_packages_are_in_modules_of_their_own():
+def test_package_rules_are_in_separate_modules():
     """A check of a file imports the modules of other rules alone, by their names."""
     modules = {type(rule).__module__.rpartition(".")[2]: rule.scope is Scope.PACKAGE for rule in all_rules()}
     assert {name for name, is_of_packages in modules.items() if is_of_packages} == {
@@ -35,7 +35,7 @@ def test_rules_about_packages_are_in_modules_of_their_own():
     assert of_files == tuple(rule for rule in all_rules() if rule.scope is Scope.DESCRIPTION)
 
 
-def test_the_room_imports_what_the_check_of_a_robot_uses_alone():
+def test_import_of_check_loads_no_unneeded_modules():
     loaded = loaded_by("from linkwright.lint import check")
     assert not {"argparse", "ast", "asyncio", "dataclasses", "inspect", "numpy", "tomllib", "typing", "yaml"} & loaded
     below = {"descriptions", "diagnostics", "files", "geometry", "loading", "packages", "schema", "urdf", "xmltree"}
@@ -43,7 +43,7 @@ def test_the_room_imports_what_the_check_of_a_robot_uses_alone():
     assert not any(name.startswith("linkwright.lint.rules") for name in loaded)
 
 
-def test_a_rule_is_found_by_code_and_name():
+def test_rule_is_found_by_code_and_name():
     assert find_rule("LW801") is find_rule(find_rule("LW801").name)
     assert find_rule("URDF102") is None
     assert find_rule("LW201") is find_rule("lw201") is find_rule("limit-inverted")
@@ -51,7 +51,7 @@ def test_a_rule_is_found_by_code_and_name():
 
 
 @pytest.mark.parametrize("rule", all_rules(), ids=lambda rule: rule.code)
-def test_every_rule_has_a_case_that_fires_and_one_that_does_not(rule):
+def test_every_rule_has_positive_and_negative_case(rule):
     group = re.compile(rf"^(?:\S+:)?(?:\d+:\d+|-) {rule.code} ", re.MULTILINE)
     cases = [case for case in load_cases() if rule.code.startswith(case.selectors)]
     assert any(group.search(case.said) for case in cases), f"no page beside {FOLDER.name}/cases.py shows {rule.code}"
@@ -59,7 +59,7 @@ def test_every_rule_has_a_case_that_fires_and_one_that_does_not(rule):
 
 
 @pytest.mark.parametrize("case", [pytest.param(case, id=case.name) for case in load_cases()])
-def test_no_rule_raises_on_any_page(case, tmp_path, monkeypatch):
+def test_no_rule_raises_on_any_case(case, tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)
     for name, text in case.files.items():
         (tmp_path / name).parent.mkdir(parents=True, exist_ok=True)
@@ -68,7 +68,7 @@ def test_no_rule_raises_on_any_page(case, tmp_path, monkeypatch):
 
 
 @pytest.mark.parametrize("path", ROBOTS, ids=lambda path: path.name)
-def test_the_robots_of_the_tutorial_are_fine(path):
+def test_tutorial_robots_have_no_findings(path):
     assert check(path, settings=Settings()) == []
 
 
@@ -91,7 +91,7 @@ def test_no_rule_raises_on_odd_descriptions(tmp_path, text):
     examine(path, settings=ALL)
 
 
-def test_findings_come_in_the_order_of_the_text(tmp_path):
+def test_findings_are_in_order_of_text(tmp_path):
     path = tmp_path / "robot.urdf"
     path.write_text(
         '<robot name="r">\n  <link name="a"/>\n  <link name="b"/>\n  <joint name="j" type="revolute">\n'
@@ -102,7 +102,7 @@ def test_findings_come_in_the_order_of_the_text(tmp_path):
     assert [each.code for each in found] == ["LW221", "URDF150", "LW201"]
 
 
-def test_what_cannot_be_read_is_told_and_not_raised(tmp_path):
+def test_unreadable_description_is_reported_and_not_raised(tmp_path):
     (only,) = check(tmp_path / "none.urdf")
     assert only.code == "XML101"
     path = tmp_path / "robot.urdf.xacro"
@@ -110,11 +110,11 @@ def test_what_cannot_be_read_is_told_and_not_raised(tmp_path):
     assert [each.code for each in check(path)] == ["XAC201"]
 
 
-def test_package_rules_say_so():
+def test_structure_rules_have_description_scope():
     assert {rule.scope for rule in all_rules() if rule.code.startswith("LW1")} == {Scope.DESCRIPTION}
 
 
-def test_an_error_of_the_reader_is_told_unless_it_is_ignored(tmp_path):
+def test_reader_error_is_reported_unless_ignored(tmp_path):
     path = tmp_path / "robot.urdf"
     path.write_text('<robot name="r"/>\n')
     for settings in (Settings(), Settings(select=()), Settings(select=("LW2",))):
@@ -141,7 +141,7 @@ def test_an_error_of_the_reader_is_told_unless_it_is_ignored(tmp_path):
         ("robot.sdf", "<sdf version='1.9'><model name='m'/></sdf>", "SDF"),
     ],
 )
-def test_errors_of_every_room_can_be_ignored_and_have_a_severity(tmp_path, name, text, code):
+def test_errors_of_all_rooms_can_be_ignored_and_change_severity(tmp_path, name, text, code):
     path = tmp_path / name
     path.write_text(text)
     found = [each for each in check(path) if each.code.startswith(code)]
@@ -152,7 +152,7 @@ def test_errors_of_every_room_can_be_ignored_and_have_a_severity(tmp_path, name,
     assert {each.severity for each in changed if each.code.startswith(code)} == {Severity.WARNING}
 
 
-def test_a_text_is_checked_as_a_file_is(tmp_path, monkeypatch):
+def test_text_is_checked_like_file(tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)
     (tmp_path / "linkwright.toml").write_text('ignore = ["URDF110"]\n')
     assert [finding.code for finding in check('<sdf version="1.6"><world name="w"/><world name="w"/></sdf>')]

@@ -54,7 +54,7 @@ _CASES = [
 
 
 @pytest.mark.parametrize("text", _CASES)
-def test_catkin_pkg_is_the_judge(tmp_path, text):
+def test_manifest_errors_match_catkin_pkg(tmp_path, text):
     (tmp_path / "package.xml").write_text(text, encoding="utf-8")
     try:
         with warnings.catch_warnings():

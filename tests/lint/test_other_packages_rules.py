@@ -63,12 +63,12 @@ def robot(tmp_path):
     return path
 
 
-def test_they_run_beside_ours(installed, robot):
+def test_plugin_rules_run_beside_built_in_rules(installed, robot):
     installed(RULES)
     assert [each.code for each in check(robot)] == ["TEAM001"]
 
 
-def test_they_are_selected_suppressed_and_explained_like_ours(installed, robot):
+def test_plugin_rules_are_selected_suppressed_and_explained(installed, robot):
     installed(RULES)
     (robot.parent / "linkwright.toml").write_text('ignore = ["robot-of-no-team"]')
     assert settings_for(robot)[1] == ()
@@ -87,7 +87,7 @@ def test_they_are_selected_suppressed_and_explained_like_ours(installed, robot):
         (RULES.replace("robot-of-no-team", "limit-inverted"), "'TEAM001' or 'limit-inverted' is taken"),
     ],
 )
-def test_of_rules_that_cannot_be_used_one_warning_tells(installed, robot, text, reason):
+def test_unusable_plugin_rules_are_one_warning(installed, robot, text, reason):
     installed(text)
     (found,) = check(robot)
     assert (found.code, found.severity.value) == ("LINT301", "warning")
@@ -110,7 +110,7 @@ class Broken(Rule):
 
 
 @pytest.mark.parametrize("fault", ["subject.nothing", "raise KeyError(1)", "yield None"])
-def test_a_rule_that_fails_is_reported_with_its_place_and_the_others_run(installed, robot, fault):
+def test_failing_plugin_rule_is_reported_and_other_rules_run(installed, robot, fault):
     installed(RULES + BROKEN.format(fault=fault))
     ours, failed = sorted(check(robot), key=lambda finding: finding.code, reverse=True)
     assert (ours.code, failed.code, failed.severity.value) == ("TEAM001", "LINT304", "error")

@@ -52,7 +52,7 @@ def fixed(folder: Path, build_file: str, text: str, *, selected: tuple[str, ...]
     return (folder / build_file).read_bytes().decode()
 
 
-def test_entries_are_added_to_data_files_in_the_form_of_the_others(tmp_path):
+def test_new_data_files_entries_have_format_of_existing_ones(tmp_path):
     text = """from glob import glob
 from setuptools import setup
 
@@ -75,7 +75,7 @@ setup(
     assert sorted(fixed(tmp_path, "setup.py", text).splitlines()) == sorted(expected.splitlines())
 
 
-def test_an_empty_list_and_a_missing_import_are_filled(tmp_path):
+def test_empty_data_files_and_missing_import_are_filled(tmp_path):
     text = 'from setuptools import setup\n\nsetup(name="arm", data_files=[])\n'
     changed = fixed(tmp_path, "setup.py", text)
     assert changed.startswith("from glob import glob\nfrom setuptools import setup\n\n")
@@ -83,7 +83,7 @@ def test_an_empty_list_and_a_missing_import_are_filled(tmp_path):
         assert part in changed
 
 
-def test_a_folder_with_folders_is_installed_by_endings(tmp_path):
+def test_folder_with_subfolders_is_installed_by_extension(tmp_path):
     (tmp_path / "meshes" / "more").mkdir(parents=True)
     (tmp_path / "meshes" / "more" / "b.dae").write_text("<COLLADA/>")
     text = "from glob import glob\nfrom setuptools import setup\nsetup(name='arm', data_files=[])\n"
@@ -93,7 +93,7 @@ def test_a_folder_with_folders_is_installed_by_endings(tmp_path):
 
 
 @pytest.mark.parametrize("newline", ["\n", "\r\n"])
-def test_folders_join_the_command_that_installs_folders(tmp_path, newline):
+def test_folder_is_added_to_existing_install_command(tmp_path, newline):
     text = newline.join(
         (
             "project(arm)",
@@ -111,13 +111,13 @@ def test_folders_join_the_command_that_installs_folders(tmp_path, newline):
     assert fixed(tmp_path, "CMakeLists.txt", text) == expected
 
 
-def test_a_command_is_added_before_the_last_one(tmp_path):
+def test_install_command_is_added_before_ament_package(tmp_path):
     text = "project(arm)\nfind_package(ament_cmake REQUIRED)\ninstall(FILES launch/arm.launch.py DESTINATION share)\n"
     changed = fixed(tmp_path, "CMakeLists.txt", text + "\nament_package()\n")
     assert changed == text + "\ninstall(DIRECTORY meshes DESTINATION share/${PROJECT_NAME})\n\nament_package()\n"
 
 
-def test_a_dependency_is_added_after_the_licence_where_there_is_none(tmp_path):
+def test_first_dependency_is_added_after_license(tmp_path):
     for name in ("arm", "wheels"):
         (tmp_path / name).mkdir()
         manifest = MANIFEST.format(build_type="ament_cmake").replace("<name>arm", f"<name>{name}")

@@ -49,7 +49,7 @@ setup(
 """
 
 
-def test_fixes_of_launch_file_and_manifest(tmp_path):
+def test_launch_file_and_manifest_are_fixed(tmp_path):
     (tmp_path / "robot.urdf").write_text("<robot name='r'><!-- links: one --><link name='base_link'/></robot>")
     (tmp_path / "package.xml").write_text(_MANIFEST)
     (tmp_path / "launch").mkdir()
@@ -70,7 +70,7 @@ def test_fixes_of_launch_file_and_manifest(tmp_path):
     assert not examine_package(tmp_path, settings).diagnostics
 
 
-def test_the_shipped_package_is_silent():
+def test_shipped_package_has_no_findings():
     assert not examine_package(PACKAGE, Settings()).diagnostics
 
 
@@ -86,7 +86,7 @@ def with_slips(folder: Path) -> Path:
 
 
 @pytest.mark.parametrize("which", ["ours", *(["published"] if PUBLISHED.is_dir() else [])])
-def test_the_tutorial_package_has_its_known_slips(which, tmp_path):
+def test_tutorial_package_has_known_findings(which, tmp_path):
     package = PUBLISHED if which == "published" else with_slips(tmp_path)
     found = {(diagnostic.code, diagnostic.message) for diagnostic in examine_package(package, _ALL).diagnostics}
     assert ("LW821", "the pattern 'urdf/sensors/*.*' in setup.py matches no file") in found
@@ -94,7 +94,7 @@ def test_the_tutorial_package_has_its_known_slips(which, tmp_path):
     assert any(code == "LW848" for code, _ in found)
 
 
-def test_the_nearest_manifest_upwards_is_that_of_the_package(tmp_path):
+def test_package_is_found_by_nearest_manifest_upward(tmp_path):
     (tmp_path / "package.xml").write_text("<package>")
     (tmp_path / "urdf").mkdir()
     found = find_package(tmp_path / "urdf" / "robot.urdf")
@@ -104,7 +104,7 @@ def test_the_nearest_manifest_upwards_is_that_of_the_package(tmp_path):
     assert found.name == tmp_path.name
 
 
-def test_hidden_files_build_products_and_inner_packages_are_no_files_of_a_package(tmp_path):
+def test_package_files_exclude_hidden_build_and_nested_package_files(tmp_path):
     for name in ("package.xml", ".git/x", "build/x", "inner/package.xml", "inner/x", "urdf/a/b.urdf", "urdf/.hidden"):
         (tmp_path / name).parent.mkdir(parents=True, exist_ok=True)
         (tmp_path / name).write_text("")
@@ -117,7 +117,7 @@ def test_hidden_files_build_products_and_inner_packages_are_no_files_of_a_packag
     "text", ["", "<package/>", "<package><name/></package>", "<a><depend/></a>", "\xff", "<package>"]
 )
 @pytest.mark.parametrize("other", ["", "setup()", "\0", "setup(name=3, data_files=[(1, 2), 3, ('a',)], packages=[1])"])
-def test_rules_stand_any_package(tmp_path: Path, text: str, other: str):
+def test_package_rules_never_raise(tmp_path: Path, text: str, other: str):
     (tmp_path / "package.xml").write_text(text, encoding="latin-1")
     for name in ("setup.py", "CMakeLists.txt", "a.launch.py", "a.rviz", "a.xacro", "setup.cfg"):
         (tmp_path / name).write_text(other)

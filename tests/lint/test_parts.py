@@ -25,26 +25,26 @@ def codes(tmp_path):
     return found
 
 
-def test_findings_of_rules_come_beside_the_mistake(codes):
+def test_rule_findings_are_reported_beside_xacro_error(codes):
     assert codes(f'{joint("a")}\n<xacro:whel/>\n<link name="${{x}}"/>') == ["LW201", "XAC401", "XAC201"]
 
 
-def test_the_reader_too_tells_what_is_wrong_with_single_parts(codes):
+def test_urdf_errors_are_reported_beside_xacro_error(codes):
     assert codes('<link name="a"><visual/></link>\n<xacro:whel/>') == ["URDF130", "XAC401"]
 
 
-def test_what_may_be_due_to_the_missing_part_is_not_told(codes):
+def test_consequences_of_missing_part_are_not_reported(codes):
     # Several links without a parent, a joint of links that are not there, a property and macro that nothing uses.
     unused = '<xacro:property name="p" value="1"/><xacro:macro name="m"/>'
     assert codes(f'{unused}<link name="a"/><link name="b"/>{joint("c", FINE)}<xacro:whel/>') == ["XAC401"]
 
 
-def test_an_element_with_a_gap_is_left_alone(codes):
+def test_element_with_failed_attribute_is_not_checked(codes):
     limit = '<axis xyz="0 0 1"/><limit lower="1" upper="-1" effort="${x}" velocity="1"/>'
     assert codes(joint("a", limit)) == ["XAC201"]
 
 
-def test_a_comment_is_not_called_useless(tmp_path):
+def test_suppression_is_not_reported_as_unused_beside_xacro_error(tmp_path):
     path = tmp_path / "robot.xacro"
     (tmp_path / "linkwright.toml").write_text('extend-select = ["LW001"]')
     path.write_text(
@@ -54,10 +54,10 @@ def test_a_comment_is_not_called_useless(tmp_path):
     assert [each.code for each in check(path)] == ["XAC401"]
 
 
-def test_many_rules_hold_for_parts():
+def test_element_rules_hold_for_partial_descriptions():
     assert {"LW201", "LW303", "LW424", "LW723"} <= {rule.code for rule in all_rules() if rule.holds_for_parts}
 
 
-def test_rules_about_the_whole_do_not():
+def test_whole_robot_rules_skip_partial_descriptions():
     whole = {"LW102", "LW103", "LW121", "LW302", "LW507", "LW701", "LW849"}
     assert not whole & {rule.code for rule in all_rules() if rule.holds_for_parts}

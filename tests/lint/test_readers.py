@@ -49,26 +49,26 @@ def function(given): pass
         ("f(*a)", UNKNOWN),
     ],
 )
-def test_values_of_python_expressions(expression, value):
+def test_python_expressions_are_evaluated(expression, value):
     python = PythonFile(SourceText("x.py", f"{_PREFACE}result = {expression}\n"))
     result = python.assigned_expression("result")
     assert result is not None
     assert python.value(result) == value
 
 
-def test_a_name_that_is_assigned_by_itself_has_no_value():
+def test_circular_assignment_has_unknown_value():
     python = PythonFile(SourceText("x.py", "a = b\nb = a\n"))
     assert python.value(ast.Name("a")) is UNKNOWN
 
 
-def test_columns_count_characters():
+def test_span_columns_count_characters():
     source = SourceText("x.py", "x = ['ä', 'ö', Node('é')]\n")
     python = PythonFile(source)
     span = python.span(next(python.calls("Node")))
     assert (span.column, span.end_column) == (16, 25)
 
 
-def test_cmake_comments_strings_and_variables():
+def test_cmake_comments_strings_and_variables_are_parsed():
     text = """
     project(robot)  # project(other)
     #[[ install(DIRECTORY no DESTINATION x) ]]
@@ -100,12 +100,12 @@ def test_cmake_comments_strings_and_variables():
         'install(CODE "x")',
     ],
 )
-def test_cmake_that_cannot_be_read_in_full(text):
+def test_unsupported_cmake_code_is_incomplete(text):
     assert not read_cmake(SourceText("CMakeLists.txt", text)).is_complete
 
 
 @pytest.mark.parametrize("text", ["", "(((", "install(", '"', "#[[", "install()", "project()", "set(A)", "\\"])
-def test_cmake_reads_anything(text):
+def test_cmake_reader_never_raises(text):
     read_cmake(SourceText("CMakeLists.txt", text))
 
 
@@ -122,7 +122,7 @@ def test_cmake_reads_anything(text):
         ("unknown", False),
     ],
 )
-def test_whether_all_installed_files_are_known(data_files, is_complete):
+def test_setup_is_complete_only_if_data_files_are_known(data_files, is_complete):
     setup = read_setup(SourceText("setup.py", f"setup(name='a', data_files={data_files})"))
     assert setup.has_call
     assert setup.is_complete is is_complete
@@ -131,11 +131,11 @@ def test_whether_all_installed_files_are_known(data_files, is_complete):
 @pytest.mark.parametrize(
     "text", ["", "setup()", "setup(**a)", "setup(data_files=3)", "x = 1", "setup(entry_points=a)", "\0", "("]
 )
-def test_setup_reads_anything(text):
+def test_setup_reader_never_raises(text):
     read_setup(SourceText("setup.py", text))
 
 
-def test_paths_inside_longer_paths_are_no_files_of_their_own():
+def test_parts_of_longer_paths_are_not_files():
     text = """
 share = os.path.join(get_package_share_directory('a'), 'urdf.d')
 model = os.path.join(share, 'robot.urdf')
@@ -145,11 +145,11 @@ model = os.path.join(share, 'robot.urdf')
 
 
 @pytest.mark.parametrize("text", ["", "Node()", "Node(package=1)", "Command()", "FindPackageShare()", "\0", "def"])
-def test_launch_reads_anything(text):
+def test_launch_reader_never_raises(text):
     read_launch_file(SourceText("x.launch.py", text), "x.launch.py")
 
 
-def test_what_texts_mention():
+def test_mentions_of_text_are_found():
     found = mentions("${a + xacro.arg('b')}/$(find c)/$(arg d)${[x for x in e.f]}$${g}")
     assert {"a", "e", "f"} <= found.names
     assert "g" not in found.names
@@ -160,26 +160,26 @@ def test_what_texts_mention():
 
 
 @pytest.mark.parametrize("text", ["${$(arg a)_radius}", "${a$(arg b)}", "${$(env X)}"])
-def test_names_made_of_values_are_open(text):
+def test_computed_names_are_open(text):
     assert mentions(text).is_open
 
 
 @pytest.mark.parametrize("text", ["${'$(arg a)' == 'b'}", "${$(arg a) + 1}", "${a} $(arg b)"])
-def test_values_in_strings_and_whole_expressions_are_not_open(text):
+def test_strings_and_whole_expressions_are_not_open(text):
     assert not mentions(text).is_open
 
 
 @pytest.mark.parametrize("text", ["$(arg ${a})", "${xacro.arg(a)}"])
-def test_arguments_made_of_values_are_open(text):
+def test_computed_arguments_are_open(text):
     assert mentions(text).arguments_open
 
 
 @pytest.mark.parametrize("text", ["${", "$$", "${}", "${(}", "$(", "$()", "$(arg)", "$(find)", "${'\\u'}", "${1 if}"])
-def test_mentions_of_malformed_texts(text):
+def test_mentions_accepts_malformed_text(text):
     mentions(text)
 
 
-def test_constants():
+def test_constant_expressions_are_recognized():
     assert is_constant("true")
     assert is_constant("${1 == 1}")
     assert not is_constant("${a}")
@@ -187,12 +187,12 @@ def test_constants():
     assert not is_constant("$(optenv A 1)")
 
 
-def test_bare_calls_are_placed():
+def test_bare_calls_have_offsets():
     (call,) = mentions("x ${ sorted([2, 1])} ${[range(3) for range in a]}").bare_calls
     assert (call.name, call.offset) == ("sorted", 5)
 
 
-def test_warnings_about_the_users_text_are_not_passed_on():
+def test_python_syntax_warnings_are_suppressed():
     assert read_launch_file(SourceText("x.launch.py", "a = '\\d'"), "x.launch.py").error is None
 
 
@@ -205,12 +205,12 @@ def test_warnings_about_the_users_text_are_not_passed_on():
         f"setup(name={'-' * 50_000}1)",
     ],
 )
-def test_lists_made_of_each_other_and_deep_ones(text):
+def test_readers_survive_circular_and_deep_lists(text):
     read_setup(SourceText("setup.py", text))
     read_launch_file(SourceText("x.launch.py", text), "x.launch.py")
 
 
-def test_a_launch_file_is_read_once_however_long_its_sums_are():
+def test_launch_reader_effort_is_linear_in_sum_length():
     def work(terms):
         text = f"a = {' + '.join(['b'] * terms)}"
         return lines_run(lambda: read_launch_file(SourceText("x.launch.py", text), "x.launch.py"))

@@ -12,7 +12,7 @@ _XACRO = """\
 """
 
 
-def test_a_rule_stands_for_the_warning_of_xacro(tmp_path):
+def test_rule_replaces_xacro_warning(tmp_path):
     path = tmp_path / "robot.xacro"
     path.write_text(_XACRO)
     codes = {each.code for each in check(path, settings=Settings())}
@@ -20,7 +20,7 @@ def test_a_rule_stands_for_the_warning_of_xacro(tmp_path):
     assert "XAC507" not in codes
 
 
-def test_the_warning_of_xacro_stays_where_the_rule_is_off(tmp_path):
+def test_xacro_warning_remains_if_rule_is_disabled(tmp_path):
     path = tmp_path / "robot.xacro"
     path.write_text(_XACRO)
     codes = {each.code for each in check(path, settings=Settings(ignore=("LW714",)))}
@@ -28,7 +28,7 @@ def test_the_warning_of_xacro_stays_where_the_rule_is_off(tmp_path):
     assert "LW714" not in codes
 
 
-def test_a_rule_stands_for_another_rule(tmp_path):
+def test_rule_replaces_another_rule(tmp_path):
     path = tmp_path / "robot.urdf"
     path.write_text('<robot name="r"><link name="a"><if value="1"/></link></robot>')
     codes = [each.code for each in check(path, settings=Settings(select=("LW1", "LW7")))]
@@ -36,7 +36,7 @@ def test_a_rule_stands_for_another_rule(tmp_path):
     assert "LW107" not in codes
 
 
-def test_two_findings_at_one_place_of_a_package_file_are_both_told(tmp_path):
+def test_two_findings_at_one_location_are_both_reported(tmp_path):
     (tmp_path / "package.xml").write_text(
         "<package><name>p</name><export><build_type>ament_python</build_type></export></package>"
     )

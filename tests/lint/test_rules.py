@@ -18,7 +18,7 @@ def _marks(case: Case) -> list[pytest.MarkDecorator]:
 
 
 @pytest.mark.parametrize("case", [pytest.param(case, id=case.name, marks=_marks(case)) for case in CASES])
-def test_case(case: Case, tmp_path, monkeypatch):
+def test_case_has_expected_findings(case: Case, tmp_path, monkeypatch):
     monkeypatch.delenv("AMENT_PREFIX_PATH", raising=False)
     folder = tmp_path / "case"  # packages of other tests lie beside tmp_path, and those beside a package are found
     folder.mkdir()

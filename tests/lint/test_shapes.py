@@ -17,7 +17,7 @@ from tests.work import lines_run
 
 RULES = ("LW3", "LW4", "LW5")
 FOUND = {
-    # Steering links with a mass and a tensor of zero; a box of 1 kg in a cubic metre.
+    # Steering links with a mass and a tensor of zero; a box of 1 kg in a cubic meter.
     "gz_ros2_control/gz_ros2_control_demos/urdf/test_ackermann_drive.xacro.urdf": {"LW310", "LW321"},
     "gz_ros2_control/gz_ros2_control_demos/urdf/test_diff_drive.xacro.urdf": {"LW321"},
     "gz_ros2_control/gz_ros2_control_demos/urdf/test_tricycle_drive.xacro.urdf": {"LW321", "LW324"},
@@ -36,7 +36,7 @@ FOUND = {
 
 
 @pytest.mark.parametrize("model", MODELS, ids=str)
-def test_robots_are_warned_of_mistakes_only(model):
+def test_corpus_robots_have_only_expected_warnings(model):
     settings = Settings(select=RULES, ignore=("LW411", "LW424", "LW507", "LW508"))
     found = examine(model.path, arguments=model.arguments, packages=model.packages, settings=settings).diagnostics
     warned = {each.code for each in found if each.severity.value != "info" and each.code.startswith(RULES)}
@@ -44,7 +44,7 @@ def test_robots_are_warned_of_mistakes_only(model):
 
 
 @pytest.mark.parametrize("path", sorted(PACKAGE.glob("urdf/mbot_*")), ids=lambda path: path.name)
-def test_mbot_is_fine_by_all_of_them(path):
+def test_mbot_has_no_shape_findings(path):
     found = examine(path, settings=Settings(select=RULES)).diagnostics
     assert [each.message for each in found if each.code.startswith(RULES)] == []
 
@@ -55,7 +55,7 @@ PAGES = ("inertia", "geometry", "meshes", "materials")
 
 
 @pytest.mark.parametrize("seed", range(60))
-def test_no_number_is_too_odd(seed, tmp_path, capsys):
+def test_shape_rules_survive_extreme_numbers(seed, tmp_path, capsys):
     chance = random.Random(seed)
     case = chance.choice([case for case in load_cases() if case.page in PAGES])
     for name, text in case.files.items():
@@ -70,7 +70,7 @@ def test_no_number_is_too_odd(seed, tmp_path, capsys):
     capsys.readouterr()
 
 
-def test_a_body_of_many_links_is_not_measured_for_each_of_them(tmp_path):
+def test_effort_is_linear_in_links_of_fixed_body(tmp_path):
     def work(count):
         link = (
             '<link name="l{0}"><inertial><mass value="1"/><inertia ixx="1" ixy="0" ixz="0" iyy="1" iyz="0" izz="1"/>'

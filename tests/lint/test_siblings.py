@@ -33,13 +33,13 @@ def finding(tmp_path, rule, written, there):
 
 @pytest.mark.parametrize("rule", REFERENCES)
 @pytest.mark.parametrize(("written", "there"), SIBLINGS)
-def test_no_fix_takes_a_siblings_name(tmp_path, rule, written, there):
+def test_fix_never_uses_name_of_sibling(tmp_path, rule, written, there):
     assert finding(tmp_path, rule, written, there).fix is None
 
 
 @pytest.mark.parametrize("rule", REFERENCES)
 @pytest.mark.parametrize(("written", "there"), NUMBERED)
-def test_no_hint_gives_a_siblings_number(tmp_path, rule, written, there):
+def test_hint_never_suggests_number_of_sibling(tmp_path, rule, written, there):
     assert f"'{there}_" not in str(finding(tmp_path, rule, written, there).hint)
 
 
@@ -51,6 +51,6 @@ def test_no_hint_gives_a_siblings_number(tmp_path, rule, written, there):
         ("LW122", "elbw", "elbow_joint"),
     ],
 )
-def test_a_slip_gets_the_name_of_its_own_kind(tmp_path, rule, written, meant):
+def test_misspelled_name_is_fixed_with_name_of_same_kind(tmp_path, rule, written, meant):
     found = finding(tmp_path, rule, written, "elbow")
     assert [edit.replacement for edit in found.fix.edits] == [meant]

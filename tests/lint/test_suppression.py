@@ -32,16 +32,16 @@ def words(text: str) -> list[list[str]]:
         ("<!-- linkwright: ignore\n  LW201\n  LW202\n-->", ["LW201", "LW202"]),
     ],
 )
-def test_what_a_comment_names(comment, expected):
+def test_suppression_comment_names_codes(comment, expected):
     assert words(f"<robot>{comment}</robot>") == [expected]
 
 
 @pytest.mark.parametrize("comment", ["<!-- ignore LW201 -->", "<!-- linkwright: ignored -->", "<!-- linkwright -->"])
-def test_other_comments_are_none(comment):
+def test_other_comments_are_not_suppressions(comment):
     assert words(f"<robot>{comment}</robot>") == []
 
 
-def test_where_comments_hold():
+def test_suppression_covers_line_and_next_element():
     assert ranges("<r>\n<!-- linkwright: ignore -->\n<a>\n<b/></a>\n</r>") == [["<a>\n<b/></a>"]]
     assert ranges("<r>\n<a/> <!-- linkwright: ignore -->\n<b/></r>") == [["<a/> <!-- linkwright: ignore -->\n"]]
     assert ranges("<r>\n<!-- linkwright: ignore --> <a>\n</a>\n</r>") == [
@@ -52,14 +52,14 @@ def test_where_comments_hold():
     assert ranges("<!-- linkwright: ignore-file -->\n<r/>") == [None]
 
 
-def test_in_files_that_are_not_xml():
+def test_suppression_in_files_other_than_xml():
     text = "import os\nx = 1  # linkwright: ignore LW842\n# linkwright: ignore LW843 (reason)\ny = 2\nz = 3\n"
     assert words(text) == [["LW842"], ["LW843"]]
     assert ranges(text) == [["x = 1  # linkwright: ignore LW842\n"], ["y = 2\n"]]
     assert ranges("# linkwright: ignore-file\nx = 1\n") == [None]
 
 
-def test_unused_comments_are_found_whatever_else_is_selected(tmp_path):
+def test_unused_suppression_is_reported_with_any_selection(tmp_path):
     path = tmp_path / "robot.urdf"
     path.write_text(
         '<robot name="r">\n  <link name="a"/>\n  <link name="b"/>\n  <joint name="j" type="continuous">\n'

@@ -49,16 +49,16 @@ def tensor(ixx, iyy, izz, more=""):
         (tensor(1, "nan", 1), "SDF122", "the mass or inertia of link 'l' is not a finite number"),
     ],
 )
-def test_masses_that_no_body_has(findings_of, inertial, code, message):
+def test_impossible_inertials_are_reported_unless_static(findings_of, inertial, code, message):
     assert findings_of(link(inertial)) == [(code, 2, message)]
     assert findings_of(link(inertial, "<static>true</static>")) == []
 
 
-def test_an_inertia_that_is_worked_out_is_not_judged(findings_of):
+def test_automatic_inertial_is_not_checked(findings_of):
     assert findings_of(link('<inertial auto="true"><mass>0</mass></inertial>')) == []
 
 
-def test_models_in_static_models_are_static(findings_of):
+def test_models_in_static_models_are_not_checked(findings_of):
     inner = link("<inertial><mass>-2</mass></inertial>")
     assert findings_of(f'<model name="o"><static>1</static>{inner}</model>') == []
     assert len(findings_of(f'<model name="o"><link name="a"/>{inner}</model>')) == 1
@@ -73,12 +73,12 @@ def test_models_in_static_models_are_static(findings_of):
         "<ellipsoid><radii>1 1 0</radii></ellipsoid>",
     ],
 )
-def test_sizes_that_are_not_positive(findings_of, shape):
+def test_nonpositive_shape_sizes_are_reported(findings_of, shape):
     collision = f'<collision name="c"><geometry>{shape}</geometry></collision>'
     assert findings_of(link(GOOD + collision)) == [("SDF122", 2, "collision 'c' has a size that is not positive")]
 
 
-def test_an_axis_and_a_step_of_zero(findings_of):
+def test_zero_axis_and_zero_step_are_reported(findings_of):
     joint = '<joint name="j" type="revolute"><parent>l</parent><child>k</child><axis><xyz>0 0 0</xyz></axis></joint>'
     model = f'<model name="m"><link name="l"/><link name="k"/>{joint}</model>'
     assert findings_of(model) == [("SDF122", 2, "the axis of joint 'j' has no direction")]
@@ -92,7 +92,7 @@ def test_an_axis_and_a_step_of_zero(findings_of):
     assert findings_of(step + link(GOOD)) == [("SDF122", 2, "the time step is not positive: 0 s")]
 
 
-def test_walls_without_a_length_are_one_finding_for_each_model(findings_of):
+def test_shapes_without_size_are_one_finding_per_model(findings_of):
     box = '<{0} name="{1}"><geometry>\n<box><size>0 1 2</size></box></geometry></{0}>'
     walls = "".join(box.format(kind, f"{kind}{number}") for number in range(2) for kind in ("visual", "collision"))
     assert findings_of(link(GOOD + walls)) == [
@@ -100,7 +100,7 @@ def test_walls_without_a_length_are_one_finding_for_each_model(findings_of):
     ]
 
 
-def test_a_mesh_that_is_not_there_is_told_of_once(findings_of, tmp_path):
+def test_missing_mesh_is_reported_once(findings_of, tmp_path):
     visual = '<visual name="v{}"><geometry><mesh>\n<uri>meshes/a.stl</uri></mesh></geometry></visual>'
     model = link(GOOD + visual.format(1) + visual.format(2))
     found = findings_of(model)
@@ -111,7 +111,7 @@ def test_a_mesh_that_is_not_there_is_told_of_once(findings_of, tmp_path):
     assert findings_of(model) == []
 
 
-def test_models_and_meshes_that_are_not_there_are_one_finding_each(tmp_path, monkeypatch):
+def test_missing_models_and_meshes_are_one_finding_each(tmp_path, monkeypatch):
     monkeypatch.setenv("HOME", str(tmp_path))
     includes = "".join(f"<include>\n<uri>model://tree_{number}</uri></include>" for number in range(12))
     mesh = '<visual name="v{0}"><geometry><mesh>\n<uri>meshes/{0}.stl</uri></mesh></geometry></visual>'
@@ -130,7 +130,7 @@ def test_models_and_meshes_that_are_not_there_are_one_finding_each(tmp_path, mon
     assert [str(note.message).partition(" of ")[0] for note in meshes.notes] == ["'meshes/2.stl'"]
 
 
-def test_findings_go_by_the_settings(tmp_path):
+def test_world_findings_follow_settings(tmp_path):
     (tmp_path / "linkwright.toml").write_text('ignore = ["mass-negative", "SDF122"]\n')
     path = tmp_path / "w.world"
     model = link(
@@ -149,7 +149,7 @@ def _items():
 
 
 @pytest.mark.parametrize("item", _items())
-def test_real_worlds_are_silent_but_for_files_that_are_not_there(item, monkeypatch):
+def test_real_worlds_have_no_lint_findings(item, monkeypatch):
     path = WORLDS / item["entry"]
     folders = dict.fromkeys(str(WORLDS / each) for each in item.get("model_paths", ()))
     monkeypatch.setenv("GAZEBO_MODEL_PATH", os.pathsep.join(folders))

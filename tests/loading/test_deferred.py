@@ -12,7 +12,7 @@ from linkwright.loading.deferred import lazy_pattern
 from tests.imports import loaded_by
 
 
-def test_a_pattern_has_what_a_compiled_one_has() -> None:
+def test_lazy_pattern_behaves_like_compiled_pattern() -> None:
     lazy, compiled = lazy_pattern(r"(\w+)=(\d+)", re.IGNORECASE), re.compile(r"(\w+)=(\d+)", re.IGNORECASE)
     text = "a=1, b=22"
     for _ in range(2):
@@ -24,13 +24,13 @@ def test_a_pattern_has_what_a_compiled_one_has() -> None:
     assert not hasattr(lazy, "nothing")
 
 
-def test_a_pattern_can_be_copied_and_pickled() -> None:
+def test_lazy_pattern_can_be_copied_and_pickled() -> None:
     lazy = lazy_pattern("a+")
     assert copy.copy(lazy).fullmatch("aa")
     assert pickle.loads(pickle.dumps(lazy)).fullmatch("aa")
 
 
 @pytest.mark.parametrize("name", ["lint.targets", "xmltree.tinyxml", "lint.suppression"])
-def test_a_module_compiles_none_when_it_is_loaded(name: str) -> None:
+def test_modules_compile_no_patterns_on_import(name: str) -> None:
     refuse = "import pathlib, shlex, linkwright.urdf, re; re.compile = None"
     assert f"linkwright.{name}" in loaded_by(f"{refuse}; import linkwright.{name}")

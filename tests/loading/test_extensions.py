@@ -31,7 +31,7 @@ def names() -> list[str]:
     return list(extensions.extensions("linkwright.things"))
 
 
-def test_ours_come_first_and_then_names_decide(installed) -> None:
+def test_linkwright_extensions_come_first_then_sorted_by_name(installed) -> None:
     installed(
         brought=["b = brought:b", "a = brought:a"],
         linkwright=["z = linkwright.z:z", "y = linkwright.y:y"],
@@ -40,7 +40,7 @@ def test_ours_come_first_and_then_names_decide(installed) -> None:
     assert names() == ["y", "z", "a", "ab", "b"]
 
 
-def test_ours_cannot_be_replaced_and_others_not_by_those_found_later(installed) -> None:
+def test_duplicate_extension_names_keep_first(installed) -> None:
     installed(
         brought=["y = brought:y", "a = brought:a"],
         linkwright=["y = linkwright.y:y"],

@@ -96,7 +96,7 @@ def outcome(call: Any) -> Any:
 
 
 @pytest.mark.parametrize("options", KINDS)
-def test_classes_behave_as_those_of_the_standard_library(options):
+def test_lean_dataclass_behaves_like_dataclass(options):
     assert answers(lean_dataclasses, options) == answers(dataclasses, options)
 
 
@@ -108,11 +108,11 @@ class Kept:
     others: tuple[int, ...] = ()
 
 
-def test_frozen_objects_with_slots_are_pickled():
+def test_frozen_slots_dataclass_can_be_pickled():
     assert pickle.loads(pickle.dumps(Kept(1, (2,)))) == Kept(1, (2,))
 
 
-def test_an_object_is_of_its_class_after_an_exception_in_a_factory():
+def test_class_is_restored_after_exception_in_default_factory():
     @lean_dataclasses.dataclass(frozen=True, slots=True)
     class Fragile:
         x: int = 0
@@ -123,7 +123,7 @@ def test_an_object_is_of_its_class_after_an_exception_in_a_factory():
     assert Fragile(1, [2]).parts == [2]
 
 
-def test_a_dataclass_may_derive_from_a_lean_one():
+def test_dataclass_can_derive_from_lean_dataclass():
     @dataclasses.dataclass(frozen=True)
     class More(Kept):
         y: int = 3
@@ -160,7 +160,7 @@ class Below(Leaned):
     more = 1
 
 
-def test_named_tuples_are_those_of_typing():
+def test_lean_named_tuple_matches_typing():
     for name in ("_fields", "_field_defaults", "__doc__", "__module__", "__bases__"):
         assert getattr(Leaned, name) == getattr(Usual, name), name
     assert get_type_hints(Leaned) == get_type_hints(Usual)
@@ -175,7 +175,7 @@ def test_named_tuples_are_those_of_typing():
         Leaned()
 
 
-def test_defining_and_making_objects_does_not_import_dataclasses():
+def test_lean_dataclass_does_not_import_dataclasses():
     code = (
         "from __future__ import annotations\nimport sys\nfrom linkwright.loading.lean_dataclasses import dataclass\n"
         "@dataclass(frozen=True, slots=True)\nclass Point:\n    x: int\n"

@@ -12,7 +12,7 @@ from linkwright.loading import lean_typing
 
 
 @pytest.mark.parametrize("library", [typing, lean_typing])
-def test_a_module_may_derive_from_subscript_and_join_the_names(library: Any) -> None:
+def test_lean_typing_names_support_subclassing_subscripts_and_unions(library: Any) -> None:
     kind = library.TypeVar("kind", bound=str)
     other = library.TypeVar("other", int, str)
 
@@ -37,5 +37,5 @@ def test_a_module_may_derive_from_subscript_and_join_the_names(library: Any) -> 
     assert not library.TYPE_CHECKING
 
 
-def test_every_name_is_one_of_typing() -> None:
+def test_lean_typing_exports_only_typing_names() -> None:
     assert all(hasattr(typing, name) and hasattr(lean_typing, name) for name in lean_typing.__all__)

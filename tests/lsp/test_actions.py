@@ -53,7 +53,7 @@ def applied(text: str, edit: types.WorkspaceEdit) -> str:
     return text
 
 
-async def test_a_finding_disappears_when_it_is_suppressed(editor):
+async def test_suppressed_finding_disappears(editor):
     text = MAIN.replace('  <link name="base"/>', '  <link name="base"/>\n  <xacro:nothing/>')
     editor.open(FILE, text)
     await editor.until(FILE, "XAC401")
@@ -65,14 +65,14 @@ async def test_a_finding_disappears_when_it_is_suppressed(editor):
     await editor.until(FILE)
 
 
-async def test_one_selected_character_is_a_block_cursor(editor):
+async def test_single_selected_character_is_treated_as_block_cursor(editor):
     editor.open(FILE, MAIN)
     (action,) = await actions(editor, FILE, MAIN, "4", ["refactor.extract"])
     assert action.title == "extract '0.4' to a property"
     assert 'length="${bar_length}"' in applied(MAIN, action.edit)
 
 
-async def test_a_finding_of_a_build_file_disappears_when_it_is_suppressed(editor):
+async def test_suppressed_finding_of_cmake_file_disappears(editor):
     (editor.folder / "linkwright.toml").write_text('select = ["LW824"]\n')
     text = (editor.folder / "CMakeLists.txt").read_text().replace("DIRECTORY urdf", "DIRECTORY urdf meshs")
     editor.open("CMakeLists.txt", text)
@@ -84,7 +84,7 @@ async def test_a_finding_of_a_build_file_disappears_when_it_is_suppressed(editor
     await editor.until("CMakeLists.txt")
 
 
-async def test_refactorings_are_proved_at_once_for_an_editor_that_cannot_wait(editor):
+async def test_refactoring_is_verified_immediately_without_resolve_support(editor):
     editor.open(FILE)
     (action,) = await actions(editor, FILE, MAIN, "0.4", ["refactor"])
     assert action.kind == "refactor.extract.property"
@@ -94,13 +94,13 @@ async def test_refactorings_are_proved_at_once_for_an_editor_that_cannot_wait(ed
     assert action.edit.document_changes[0].text_document.version == 1
 
 
-async def test_what_is_not_proved_is_not_offered(editor):
+async def test_unverified_refactoring_is_not_offered(editor):
     text = MAIN.replace('<link name="base"/>', '<link name="base"/><gazebo><gravity v="0.10"/></gazebo>')
     editor.open(FILE, text)
     assert not await actions(editor, FILE, text, "0.10", ["refactor"])
 
 
-async def test_an_edit_is_computed_when_it_is_chosen(resolving_editor):
+async def test_edit_is_computed_on_resolve(resolving_editor):
     editor = resolving_editor
     editor.open(PARTS_FILE)
     (action,) = await actions(editor, PARTS_FILE, PARTS, '<axis xyz="0 0 1"/>', ["refactor.extract"])
@@ -110,7 +110,7 @@ async def test_an_edit_is_computed_when_it_is_chosen(resolving_editor):
     assert '<xacro:macro name="joint_axis" params="">\n    <axis xyz="0 0 1"/>\n  </xacro:macro>' in changed
 
 
-async def test_an_edit_that_cannot_be_proved_is_refused_with_the_reason(resolving_editor):
+async def test_unverified_edit_is_rejected_with_reason(resolving_editor):
     text = MAIN.replace('<link name="base"/>', '<link name="base"/><gazebo><gravity v="0.10"/></gazebo>')
     editor = resolving_editor
     editor.open(FILE, text)
@@ -119,7 +119,7 @@ async def test_an_edit_that_cannot_be_proved_is_refused_with_the_reason(resolvin
         await editor.client.code_action_resolve_async(action)
 
 
-async def test_an_edit_is_refused_when_its_text_has_changed(resolving_editor):
+async def test_edit_is_rejected_after_text_change(resolving_editor):
     editor = resolving_editor
     editor.open(FILE)
     (action,) = await actions(editor, FILE, MAIN, "0.4", ["refactor"])
@@ -129,7 +129,7 @@ async def test_an_edit_is_refused_when_its_text_has_changed(resolving_editor):
         await editor.client.code_action_resolve_async(action)
 
 
-async def test_a_urdf_becomes_xacro_in_a_new_file(resolving_editor):
+async def test_urdf_is_converted_to_xacro_in_new_file(resolving_editor):
     editor, text = resolving_editor, '<robot name="r"><link name="a"/></robot>\n'
     (editor.folder / "urdf" / "r.urdf").write_text(text)
     editor.open("urdf/r.urdf", text)
@@ -139,14 +139,14 @@ async def test_a_urdf_becomes_xacro_in_a_new_file(resolving_editor):
     assert written.edits[0].new_text.startswith('<robot name="r" xmlns:xacro="http://www.ros.org/wiki/xacro">')
 
 
-async def test_only_the_kinds_that_are_asked_for_come(editor):
+async def test_only_requested_action_kinds_are_returned(editor):
     editor.open(FILE)
     assert not await actions(editor, FILE, MAIN, "0.4", ["source"])
     assert await actions(editor, FILE, MAIN, "0.4", ["refactor.extract.property"])
     assert not await actions(editor, FILE, MAIN, "0.4", ["refactor.inline"])
 
 
-async def test_a_missing_install_line_is_added_to_a_build_file(editor):
+async def test_missing_install_line_is_added_to_cmake_file(editor):
     (editor.folder / "linkwright.toml").write_text('select = ["LW822"]\n')
     (editor.folder / "launch").mkdir()
     (editor.folder / "launch" / "arm.launch.py").write_text("from launch import LaunchDescription\n")

@@ -18,7 +18,7 @@ async def content(editor, uri: str) -> str:
     return found.text
 
 
-def test_the_uri_has_the_description_and_its_arguments(tmp_path: Path):
+def test_expansion_uri_contains_description_and_arguments(tmp_path: Path):
     file = tmp_path / "机 器.urdf.xacro"
     file.touch()
     arguments = {"side": "left & right", "path": "/a/b"}
@@ -26,20 +26,20 @@ def test_the_uri_has_the_description_and_its_arguments(tmp_path: Path):
     assert description_of(file.as_uri()) is None
 
 
-async def test_an_editor_without_virtual_documents_gets_no_address_of_one(editor):
+async def test_editor_without_virtual_documents_gets_no_expansion(editor):
     editor.open(FILE)
     asked = types.ImplementationParams(editor.document(FILE), at(MAIN, '<link name="base"'))
     assert not await editor.client.text_document_implementation_async(asked)
 
 
-async def test_a_manifest_has_no_expansion(editor_with_pages):
+async def test_manifest_has_no_expansion(editor_with_pages):
     editor = editor_with_pages
     editor.open("package.xml")
     asked = types.ImplementationParams(editor.document("package.xml"), at(MANIFEST, "<export>"))
     assert not await editor.client.text_document_implementation_async(asked)
 
 
-async def test_an_element_leads_to_its_expansions_and_back(editor_with_pages):
+async def test_implementation_request_links_element_and_expansions(editor_with_pages):
     editor = editor_with_pages
     text = MAIN.replace("</robot>", '  <xacro:bar name="lower" length="0.3"/>\n</robot>')
     editor.open(FILE, text)
@@ -61,7 +61,7 @@ async def test_an_element_leads_to_its_expansions_and_back(editor_with_pages):
     assert source.range.start.line == place.line
 
 
-async def test_the_expansion_of_a_broken_description_is_its_error(editor):
+async def test_expansion_of_invalid_description_is_its_error(editor):
     editor.open(FILE, MAIN.replace("xacro:bar", "xacro:baz"))
     uri = editor.uri(FILE).replace("file:", "linkwright-expansion:")
     with pytest.raises(JsonRpcException, match="there is no macro 'baz'"):

@@ -14,7 +14,7 @@ from tests.waiting import eventually
 MAIN_FILE, PARTS_FILE = "urdf/arm.urdf.xacro", "urdf/parts.xacro"
 
 
-async def test_a_mistake_is_found_when_it_is_typed_and_goes_when_it_is_mended(editor):
+async def test_finding_appears_while_typing_and_disappears_when_fixed(editor):
     editor.open(MAIN_FILE)
     await editor.until(MAIN_FILE)
     editor.change(MAIN_FILE, MAIN.replace("xacro:bar", "xacro:barr"))
@@ -26,7 +26,7 @@ async def test_a_mistake_is_found_when_it_is_typed_and_goes_when_it_is_mended(ed
     await editor.until(MAIN_FILE)
 
 
-async def test_what_is_wrong_in_an_included_file_is_found_there_with_the_call(editor):
+async def test_finding_in_included_file_names_include(editor):
     editor.open(PARTS_FILE)
     await editor.until(PARTS_FILE)
     editor.change(PARTS_FILE, PARTS.replace('link="base"', 'link="bsae"'))
@@ -36,13 +36,13 @@ async def test_what_is_wrong_in_an_included_file_is_found_there_with_the_call(ed
     assert (editor.uri(MAIN_FILE), 3) in [(call.uri, call.range.start.line) for call in calls]
 
 
-async def test_a_text_that_is_no_xml_is_reported_where_it_ends(editor):
+async def test_malformed_xml_is_reported_at_unclosed_tag(editor):
     editor.open(MAIN_FILE, MAIN.replace("</robot>", ""))
     (found,) = await editor.until(MAIN_FILE, "XML202")
     assert found.range.start.line == 0
 
 
-async def test_a_program_outside_of_packages_is_not_read_as_xml(editor, tmp_path_factory):
+async def test_python_file_outside_packages_is_not_parsed_as_xml(editor, tmp_path_factory):
     folder = tmp_path_factory.mktemp("alone")
     program, robot = str(folder / "drive.py"), str(folder / "robot.txt")
     editor.open(program, "import time\n")
@@ -51,21 +51,21 @@ async def test_a_program_outside_of_packages_is_not_read_as_xml(editor, tmp_path
     await editor.until(program)
 
 
-async def test_positions_count_utf_16(editor):
+async def test_positions_count_utf_16_code_units(editor):
     before = "  <!-- 🤖机器人 --> "
     editor.open(MAIN_FILE, MAIN.replace('  <link name="base"/>', before + '<xacro:nothing/><link name="base"/>'))
     (found,) = await editor.until(MAIN_FILE, "XAC401")
     assert found.range.start.character == len(before.encode("utf-16-le")) // 2 == len(before) + 1
 
 
-async def test_the_manifest_is_checked(editor):
+async def test_manifest_is_checked(editor):
     text = (editor.folder / "package.xml").read_text()
     editor.open("package.xml", text.replace("<license>Apache-2.0</license>", ""))
     (found,) = await editor.until("package.xml", "LW802")
     assert "license" in found.message
 
 
-async def test_a_large_file_gets_findings_alone(editor):
+async def test_large_file_gets_only_findings(editor):
     text = MAIN.replace("</robot>", f"<!-- {'a' * MAX_CHARACTERS} -->\n</robot>")
     at = types.Position(2, 4)
     editor.open(MAIN_FILE, text.replace("xacro:bar", "xacro:barr"))
@@ -78,7 +78,7 @@ async def test_a_large_file_gets_findings_alone(editor):
     assert await editor.client.text_document_hover_async(types.HoverParams(editor.document(MAIN_FILE), at)) is not None
 
 
-async def test_the_newest_text_of_a_large_file_is_checked(editor):
+async def test_newest_text_of_large_file_is_checked(editor):
     text = MAIN.replace("</robot>", f"<!-- {'a' * MAX_CHARACTERS} -->\n</robot>")
     editor.open(MAIN_FILE, text.replace("xacro:bar", "xacro:barr"))
     for number in range(5):
@@ -89,7 +89,7 @@ async def test_the_newest_text_of_a_large_file_is_checked(editor):
         (found,) = await editor.until(MAIN_FILE, "XAC401")
 
 
-async def test_a_burst_of_edits_of_a_large_file_leaves_no_process(editor):
+async def test_burst_of_edits_of_large_file_leaves_no_processes(editor):
     text = MAIN.replace("</robot>", f"<!-- {'a' * MAX_CHARACTERS} -->\n</robot>")
     editor.open(MAIN_FILE, text.replace("xacro:bar", "xacro:barr"))
     server = psutil.Process(editor.client._server.pid)  # type: ignore[union-attr]

@@ -26,7 +26,7 @@ def changed_folders(added=(), removed=()):
     return types.DidChangeWorkspaceFoldersParams(event)
 
 
-async def test_a_folder_that_is_added_is_searched(editor):
+async def test_added_folder_is_searched(editor):
     other = editor.folder.parent / "other"
     other.mkdir()
     (other / "package.xml").write_text(MANIFEST.replace("arm_description", "other"))
@@ -38,14 +38,14 @@ async def test_a_folder_that_is_added_is_searched(editor):
     assert {symbol.location.uri for symbol in symbols} >= {(other / "main.urdf.xacro").as_uri()}
 
 
-async def test_findings_of_a_folder_that_is_removed_disappear(editor):
+async def test_findings_of_removed_folder_disappear(editor):
     editor.open(PARTS_FILE, PARTS.replace('name="bar"', 'name="rod"'))
     await editor.until(MAIN_FILE, "XAC401")
     editor.client.workspace_did_change_workspace_folders(changed_folders(removed=[editor.folder]))
     await editor.until(MAIN_FILE)
 
 
-async def test_findings_of_a_deleted_folder_disappear(editor):
+async def test_findings_of_deleted_folder_disappear(editor):
     editor.open(PARTS_FILE, PARTS.replace('name="bar"', 'name="rod"'))
     await editor.until(MAIN_FILE, "XAC401")
     shutil.rmtree(editor.folder / "urdf")
@@ -54,7 +54,7 @@ async def test_findings_of_a_deleted_folder_disappear(editor):
     await editor.until(MAIN_FILE)
 
 
-async def test_a_renamed_folder_is_searched_again(editor):
+async def test_renamed_folder_is_searched_again(editor):
     editor.open("package.xml")
     (editor.folder / "urdf").rename(editor.folder / "description")
     renamed = types.FileRename(editor.uri("urdf"), editor.uri("description"))
@@ -67,7 +67,7 @@ async def test_a_renamed_folder_is_searched_again(editor):
     raise AssertionError(symbols)
 
 
-async def test_an_editor_is_asked_to_watch_files(package):
+async def test_editor_is_asked_to_watch_files(package):
     watched = types.DidChangeWatchedFilesClientCapabilities(dynamic_registration=True)
     workspace = types.WorkspaceClientCapabilities(did_change_watched_files=watched)
     registrations: asyncio.Queue[types.Registration] = asyncio.Queue()
@@ -103,14 +103,14 @@ class Recorder:
 @pytest.mark.parametrize(
     ("seconds", "can_show", "shown"), [(0.0, True, []), (1.0, False, []), (1.0, True, ["searching", "end"])]
 )
-async def test_long_work_shows_its_progress(seconds, can_show, shown):
+async def test_progress_is_shown_for_long_work(seconds, can_show, shown):
     server, work = Recorder(can_show=can_show), asyncio.ensure_future(asyncio.sleep(seconds))
     await show_progress(server, phrase("searching"), work)
     assert server.shown == shown
     assert not server.tokens
 
 
-async def test_an_editor_may_refuse_the_progress():
+async def test_editor_can_reject_progress():
     async def refuse(_: str) -> None:
         raise JsonRpcException("no")
 

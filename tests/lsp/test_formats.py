@@ -37,7 +37,7 @@ def opened(editor, name: str, text: str) -> types.TextDocumentPositionParams:
         ("config/arm.srdf", '<robot name="arm"><group name="g"><chain base_link="█"/>', "base"),
     ],
 )
-async def test_the_right_completion_comes_first(editor, name, text, first):
+async def test_best_completion_comes_first(editor, name, text, first):
     asked = opened(editor, name, text)
     found = await editor.client.text_document_completion_async(
         types.CompletionParams(asked.text_document, asked.position)
@@ -47,7 +47,7 @@ async def test_the_right_completion_comes_first(editor, name, text, first):
     assert shown[0].label == first
 
 
-async def test_a_hover_and_the_definition_of_an_argument(editor):
+async def test_hover_and_definition_of_launch_argument_are_found(editor):
     asked = opened(editor, "launch/a.launch.xml", XML)
     hover = await editor.client.text_document_hover_async(types.HoverParams(asked.text_document, asked.position))
     assert "Show it" in hover.contents.value
@@ -57,7 +57,7 @@ async def test_a_hover_and_the_definition_of_an_argument(editor):
     assert found.range == types.Range(types.Position(1, 13), types.Position(1, 14))
 
 
-async def test_links_and_symbols_of_launch_files(editor):
+async def test_links_and_symbols_of_launch_files_are_found(editor):
     launch = editor.folder / "launch"
     launch.mkdir()
     (launch / "other.launch.py").write_text("")
@@ -69,7 +69,7 @@ async def test_links_and_symbols_of_launch_files(editor):
     assert [symbol.name for symbol in found] == ["arg speed", "Node arm"]
 
 
-async def test_references_and_highlights_of_an_argument(editor):
+async def test_references_and_highlights_of_launch_argument_are_found(editor):
     asked = opened(editor, "launch/a.launch.xml", XML)
     found = await editor.client.text_document_references_async(
         types.ReferenceParams(types.ReferenceContext(include_declaration=True), asked.text_document, asked.position)

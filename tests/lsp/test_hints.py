@@ -1,4 +1,4 @@
-"""Inlay hints, lenses, colours, semantic tokens, links, workspace symbols and macro calls, through the protocol."""
+"""Inlay hints, lenses, colors, semantic tokens, links, workspace symbols and macro calls, through the protocol."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ def at(text: str, place: str) -> types.Position:
     return types.Position(before.count("\n"), len(before) - before.rfind("\n") - 1)
 
 
-async def test_values_stand_beside_expressions(editor):
+async def test_inlay_hints_show_expression_values(editor):
     text = MAIN.replace("</robot>", '  <xacro:bar name="lower" length="${0.2 + 0.1}"/>\n</robot>')
     editor.open(FILE, text)
     editor.open(PARTS_FILE)
@@ -32,7 +32,7 @@ async def test_values_stand_beside_expressions(editor):
     assert [(hint.position.line, hint.label) for hint in found] == expected
 
 
-async def test_hints_are_those_of_the_visible_lines(editor):
+async def test_inlay_hints_are_limited_to_requested_lines(editor):
     editor.open(PARTS_FILE)
     lines = types.Range(types.Position(3, 0), types.Position(4, 0))
     found = await editor.client.text_document_inlay_hint_async(
@@ -41,7 +41,7 @@ async def test_hints_are_those_of_the_visible_lines(editor):
     assert [hint.position.line for hint in found] == [3]
 
 
-async def test_blocks_of_a_call_have_the_names_of_their_parameters(editor):
+async def test_inlay_hints_name_block_parameters_of_macro_call(editor):
     text = MAIN.replace(
         "<link",
         '<xacro:macro name="placed" params="n *pose **rest"><link name="${n}"/></xacro:macro>\n'
@@ -53,7 +53,7 @@ async def test_blocks_of_a_call_have_the_names_of_their_parameters(editor):
     assert [hint.label for hint in found if hint.kind is types.InlayHintKind.Parameter] == ["*pose:", "**rest:"]
 
 
-async def test_a_hover_lists_the_value_of_each_call(editor):
+async def test_hover_lists_value_for_each_macro_call(editor):
     text = MAIN.replace("</robot>", '  <xacro:bar name="lower" length="${2 * 0.1}"/>\n</robot>')
     editor.open(FILE, text)
     editor.open(PARTS_FILE)
@@ -68,7 +68,7 @@ async def test_a_hover_lists_the_value_of_each_call(editor):
     assert "- `'lower'` `bar name=\"lower\"" in values
 
 
-async def test_a_lens_counts_the_uses_of_a_macro(editor):
+async def test_code_lens_counts_macro_uses(editor):
     editor.open(PARTS_FILE)
     lens, page = await editor.client.text_document_code_lens_async(types.CodeLensParams(editor.document(PARTS_FILE)))
     assert page.command.command == "linkwright.showRobot"
@@ -77,7 +77,7 @@ async def test_a_lens_counts_the_uses_of_a_macro(editor):
     assert (resolved.command.title, resolved.command.command) == ("1 use", "")
 
 
-async def test_a_lens_has_the_commands_of_the_client(editor_with_commands):
+async def test_code_lens_uses_client_commands(editor_with_commands):
     editor = editor_with_commands
     editor.open(FILE)
     (page,) = await editor.client.text_document_code_lens_async(types.CodeLensParams(editor.document(FILE)))
@@ -91,7 +91,7 @@ async def test_a_lens_has_the_commands_of_the_client(editor_with_commands):
     assert location["uri"] == editor.uri(FILE)
 
 
-async def test_colours_are_found_and_written_in_the_form_of_the_file(editor):
+async def test_colors_are_found_and_written_in_file_notation(editor):
     text = MAIN.replace("<link", '<material name="m"><color rgba="1 0.5 0 1"/></material>\n  <link', 1)
     editor.open(FILE, text)
     (found,) = await editor.client.text_document_document_color_async(types.DocumentColorParams(editor.document(FILE)))
@@ -101,7 +101,7 @@ async def test_colours_are_found_and_written_in_the_form_of_the_file(editor):
     assert presented.text_edit == types.TextEdit(found.range, "0.1235 0 1 1")
 
 
-async def test_semantic_tokens_tell_what_names_mean(editor):
+async def test_semantic_tokens_classify_names(editor):
     editor.open(PARTS_FILE)
     found = await editor.client.text_document_semantic_tokens_full_async(
         types.SemanticTokensParams(editor.document(PARTS_FILE))
@@ -138,7 +138,7 @@ async def test_includes_and_meshes_are_links_and_definitions(editor, package):
     assert place.uri == editor.uri(PARTS_FILE)
 
 
-async def test_names_of_the_workspace_are_found_by_some_of_their_letters(editor):
+async def test_workspace_symbols_match_subset_of_letters(editor):
     editor.open(FILE)
 
     async def find(query: str) -> list[str]:
@@ -150,7 +150,7 @@ async def test_names_of_the_workspace_are_found_by_some_of_their_letters(editor)
     assert await find("zzz") == []
 
 
-async def test_the_uses_of_a_name_are_highlighted(editor):
+async def test_uses_of_name_are_highlighted(editor):
     editor.open(PARTS_FILE)
     found = await editor.client.text_document_document_highlight_async(
         types.DocumentHighlightParams(editor.document(PARTS_FILE), at(PARTS, "${na"))
@@ -161,7 +161,7 @@ async def test_the_uses_of_a_name_are_highlighted(editor):
     ]
 
 
-async def test_calls_of_macros_have_a_hierarchy(editor):
+async def test_macro_calls_have_hierarchy(editor):
     text = PARTS.replace(
         "</robot>", '  <xacro:macro name="pair" params=""><xacro:bar name="x" length="1"/></xacro:macro>\n</robot>'
     )
@@ -179,7 +179,7 @@ async def test_calls_of_macros_have_a_hierarchy(editor):
     assert outgoing.from_ranges[0].start.line == text[: text.index('name="x"')].count("\n")
 
 
-async def test_a_request_for_a_text_that_changes_meanwhile_is_refused(editor):
+async def test_request_for_changing_text_is_rejected(editor):
     calls = "".join(f'<xacro:bar name="b{number}" length="${{{number} + 1}}"/>\n' for number in range(3000))
     editor.open(FILE, MAIN.replace("</robot>", calls + "</robot>"))
     asked = editor.client.text_document_inlay_hint_async(types.InlayHintParams(editor.document(FILE), ALL))

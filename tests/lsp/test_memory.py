@@ -21,7 +21,7 @@ async def typed(editor, first: int, last: int) -> None:
 
 
 @pytest.mark.slow
-async def test_the_memory_does_not_grow_with_the_number_of_edits(editor):
+async def test_memory_does_not_grow_with_number_of_edits(editor):
     editor.open(FILE)
     await editor.until(FILE)
     (server,) = (child for child in psutil.Process().children() if child.cmdline()[-1] == "lsp")

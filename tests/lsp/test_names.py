@@ -49,17 +49,17 @@ async def look(editor, request, kind):
         ("<link></█", {"link"}, {"joint"}),
     ],
 )
-async def test_what_a_place_may_have_is_offered(editor, typed, offered, not_offered):
+async def test_completions_depend_on_context(editor, typed, offered, not_offered):
     found = set(await complete(editor, MAIN.replace("<xacro:bar", typed + "\n  <xacro:bar", 1)))
     assert offered <= found
     assert not not_offered & found
 
 
-async def test_words_of_a_world_are_offered_in_a_world(editor):
+async def test_world_elements_are_completed_in_world(editor):
     assert "light" in await complete(editor, '<sdf version="1.9"><world name="w"><█', "a.world")
 
 
-async def test_a_hover_explains_elements_attributes_and_names(editor):
+async def test_hover_explains_elements_attributes_and_names(editor):
     async def hover(at: types.Position) -> str:
         found = await editor.client.text_document_hover_async(types.HoverParams(editor.document(FILE), at))
         return "" if found is None else found.contents.value
@@ -73,7 +73,7 @@ async def test_a_hover_explains_elements_attributes_and_names(editor):
     assert await look(editor, "\n", hover) == ""
 
 
-async def test_a_definition_is_found_in_an_included_file(editor):
+async def test_definition_is_found_in_included_file(editor):
     async def define(at: types.Position):
         asked = types.DefinitionParams(editor.document(FILE), at)
         return [
@@ -86,7 +86,7 @@ async def test_a_definition_is_found_in_an_included_file(editor):
     assert await look(editor, "<xacro:bar na", define) == [("parts.xacro", 1)]
 
 
-async def test_a_hover_tells_about_links_joints_meshes_and_packages(editor, package):
+async def test_hover_describes_links_joints_meshes_and_packages(editor, package):
     (package / "meshes").mkdir()
     triangle = "facet normal 0 0 1\nouter loop\nvertex 0 0 0\nvertex 0.5 0 0\nvertex 0 2 1\nendloop\nendfacet\n"
     (package / "meshes" / "a.stl").write_text(f"solid a\n{triangle}endsolid a\n")
@@ -116,7 +116,7 @@ async def test_a_hover_tells_about_links_joints_meshes_and_packages(editor, pack
     assert "- continuous joint from `base` to `upper`" in joint
 
 
-async def test_the_facts_about_a_link_are_those_of_its_own_file(package):
+async def test_hover_of_link_uses_facts_of_its_own_file(package):
     """Macros of several arms in one package give the same names to their links, as in xarm_description."""
     arm = (
         '<robot xmlns:xacro="http://www.ros.org/wiki/xacro"><xacro:macro name="{0}"><link name="elbow"><inertial>'
@@ -145,7 +145,7 @@ async def test_the_facts_about_a_link_are_those_of_its_own_file(package):
     assert "**link elbow**" not in shown["third"]
 
 
-async def test_a_hover_of_a_material_shows_its_color(editor):
+async def test_hover_of_material_shows_color(editor):
     material = '<material name="orange">\n    <color rgba="1 0.5 0 1"/></material>'
     use = '<link name="tip"><visual><geometry/><material name="orange"/></visual></link>'
     text = MAIN.replace("</robot>", f"{material}{use}</robot>")
@@ -156,7 +156,7 @@ async def test_a_hover_of_a_material_shows_its_color(editor):
     assert "**material orange** = `1 0.5 0 1`" in found.contents.value
 
 
-async def test_an_editor_can_filter_each_completion(editor):
+async def test_completion_items_have_filter_text(editor):
     """Neovim offers an item with an edit and without a filter text whatever is typed."""
     editor.open(FILE, MAIN.replace("<link", "<li"))
     asked = types.CompletionParams(editor.document(FILE), types.Position(2, 5))
@@ -164,7 +164,7 @@ async def test_an_editor_can_filter_each_completion(editor):
     assert {item.filter_text for item in found} >= {"link", "xacro:bar"}
 
 
-async def test_an_editor_without_snippets_gets_plain_texts_in_the_order_of_the_server(editor):
+async def test_editor_without_snippets_gets_sorted_plain_text(editor):
     text = MAIN.replace("<xacro:bar", '<joint name="a" type="revolute">\n    █\n  </joint>\n  <xacro:bar', 1)
     before = text[: text.index(CURSOR)]
     editor.open(FILE, text.replace(CURSOR, ""))
@@ -177,5 +177,5 @@ async def test_an_editor_without_snippets_gets_plain_texts_in_the_order_of_the_s
     assert len({item.label for item in found}) == len(found)
 
 
-async def test_a_link_that_a_macro_makes_is_offered_while_the_text_cannot_be_expanded(editor):
+async def test_macro_link_is_completed_while_text_is_invalid(editor):
     assert "upper" in await complete(editor, MAIN.replace("</robot>", '<joint name="b"><parent link="up█'))

@@ -26,7 +26,7 @@ async def test_references_are_found_in_all_files(editor):
     assert sorted(place.uri.rpartition("/")[2] for place in found) == ["arm.urdf.xacro", "parts.xacro"]
 
 
-async def test_a_rename_edits_open_files_with_their_versions(editor):
+async def test_rename_edits_open_files_with_versions(editor):
     editor.open(FILE)
     document, position = editor.document(FILE), at('<link name="b')
     prepared = await editor.client.text_document_prepare_rename_async(types.PrepareRenameParams(document, position))
@@ -39,7 +39,7 @@ async def test_a_rename_edits_open_files_with_their_versions(editor):
     assert {text.new_text for change in changes.values() for text in change.edits} == {"trunk"}
 
 
-async def test_a_rename_that_would_join_two_links_is_refused_with_the_reason(editor):
+async def test_rename_to_existing_link_is_rejected_with_reason(editor):
     editor.open(FILE)
     with pytest.raises(JsonRpcException, match="two links would have the same name"):
         await editor.client.text_document_rename_async(
@@ -47,7 +47,7 @@ async def test_a_rename_that_would_join_two_links_is_refused_with_the_reason(edi
         )
 
 
-async def test_a_rename_is_refused_or_for_the_text_that_it_was_made_for(editor):
+async def test_rename_during_change_is_rejected_or_uses_old_version(editor):
     editor.open(FILE)
     asked = types.RenameParams(editor.document(FILE), at('<link name="b'), "trunk")
     renaming = asyncio.ensure_future(editor.client.text_document_rename_async(asked))
@@ -61,7 +61,7 @@ async def test_a_rename_is_refused_or_for_the_text_that_it_was_made_for(editor):
         assert versions[editor.uri(FILE)] == 1
 
 
-async def test_references_to_a_renamed_file_follow(editor, package):
+async def test_references_to_renamed_file_are_updated(editor, package):
     (package / "launch").mkdir()
     launch = package / "launch" / "view.launch.py"
     launch.write_text("PATH = ('urdf', 'parts.xacro')\n")
@@ -75,6 +75,6 @@ async def test_references_to_a_renamed_file_follow(editor, package):
     assert any("view.launch.py:1 (parts.xacro)" in message for message in editor.messages)
 
 
-async def test_a_file_without_references_is_renamed_without_edits(editor):
+async def test_file_without_references_is_renamed_without_edits(editor):
     renamed = types.FileRename(editor.uri("urdf/arm.urdf.xacro"), editor.uri("urdf/other.urdf.xacro"))
     assert await editor.client.workspace_will_rename_files_async(types.RenameFilesParams([renamed])) is None

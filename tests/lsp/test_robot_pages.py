@@ -51,7 +51,7 @@ async def test_only_robots_are_shown(showing_editor):
 
 
 @pytest.mark.slow
-async def test_the_page_follows_the_editor_and_leads_to_its_lines(showing_editor):
+async def test_page_follows_editor_and_opens_source_lines(showing_editor):
     import aiohttp
 
     editor = showing_editor
@@ -86,7 +86,7 @@ async def test_the_page_follows_the_editor_and_leads_to_its_lines(showing_editor
 
 
 @pytest.mark.slow
-async def test_an_edit_of_the_robot_goes_into_the_unsaved_text_of_the_editor(showing_editor):
+async def test_robot_edit_changes_unsaved_editor_text(showing_editor):
     import aiohttp
 
     editor = showing_editor

@@ -11,7 +11,7 @@ FILE = "urdf/arm.urdf.xacro"
 BROKEN = MAIN.replace('  <link name="base"/>', '  <link name="base"/>\n  <xacro:nothing/>')
 
 
-async def test_the_code_of_a_finding_leads_to_its_page(package):
+async def test_finding_code_links_to_rule_page(package):
     async with connected(package, OPENS_PAGES) as editor:
         editor.open(FILE, BROKEN)
         (found,) = await editor.until(FILE, "XAC401")
@@ -20,7 +20,7 @@ async def test_the_code_of_a_finding_leads_to_its_page(package):
         assert page.text.startswith("# XAC401: ")
 
 
-async def test_an_editor_without_virtual_documents_gets_no_address(editor):
+async def test_editor_without_virtual_documents_gets_no_link(editor):
     editor.open(FILE, BROKEN)
     (found,) = await editor.until(FILE, "XAC401")
     assert found.code_description is None
@@ -33,7 +33,7 @@ async def test_an_editor_without_virtual_documents_gets_no_address(editor):
         ("CMakeLists.txt", "project(arm)\n# linkwright: ignore LW104\nament_package()\n"),
     ],
 )
-async def test_a_hover_over_a_suppressed_code_has_the_reason_of_the_rule(editor, name, text):
+async def test_hover_of_suppressed_code_shows_rule(editor, name, text):
     editor.open(name, text)
     offset = text.index("LW104") + 2
     place = types.Position(text.count("\n", 0, offset), offset - text.rfind("\n", 0, offset) - 1)

@@ -29,7 +29,7 @@ def applied(text: str, edits) -> str:
     return "".join(lines)
 
 
-async def test_a_text_is_formatted_as_the_command_formats_it(editor):
+async def test_formatting_matches_format_command(editor):
     editor.open(FILE, MESSY)
     edits = await editor.client.text_document_formatting_async(
         types.DocumentFormattingParams(editor.document(FILE), OPTIONS)
@@ -42,13 +42,13 @@ async def test_a_text_is_formatted_as_the_command_formats_it(editor):
     assert '  <link name="base"/>\n' in applied(MESSY, edits)
 
 
-async def test_a_text_that_is_no_xml_is_not_formatted(editor):
+async def test_malformed_xml_is_not_formatted(editor):
     editor.open(FILE, "<robot>")
     asked = types.DocumentFormattingParams(editor.document(FILE), OPTIONS)
     assert await editor.client.text_document_formatting_async(asked) is None
 
 
-async def test_symbols_are_the_elements_with_names(editor):
+async def test_symbols_are_named_elements(editor):
     editor.open("urdf/parts.xacro")
     (robot,) = await editor.client.text_document_document_symbol_async(
         types.DocumentSymbolParams(editor.document("urdf/parts.xacro"))
@@ -58,7 +58,7 @@ async def test_symbols_are_the_elements_with_names(editor):
     assert [child.name for child in macro.children] == ["link ${name}", "joint ${name}_joint"]
 
 
-async def test_folds_selections_and_pairs_of_tags(editor):
+async def test_folds_selections_and_linked_tags_are_returned(editor):
     text = (editor.folder / "urdf/parts.xacro").read_text()
     editor.open("urdf/parts.xacro")
     document = editor.document("urdf/parts.xacro")
@@ -80,7 +80,7 @@ async def test_folds_selections_and_pairs_of_tags(editor):
     assert [each.start.line for each in linked.ranges] == [3, 7]
 
 
-async def test_a_finding_is_fixed_by_its_action(editor):
+async def test_code_action_fixes_finding(editor):
     (editor.folder / "linkwright.toml").write_text('select = ["LW221"]\n')
     text = (editor.folder / "urdf/parts.xacro").read_text().replace('xyz="0 0 1"', 'xyz="0 0 2"')
     editor.open("urdf/parts.xacro", text)
@@ -106,18 +106,18 @@ async def test_build_files_have_no_symbols(editor):
     assert await editor.client.text_document_document_symbol_async(asked) is None
 
 
-async def test_a_file_of_another_kind_has_an_empty_list_of_colours_as_the_protocol_asks(editor):
+async def test_unsupported_file_has_empty_list_of_colors(editor):
     (editor.folder / "notes.txt").write_text("red")
     editor.open("notes.txt")
     document = editor.document("notes.txt")
-    colours = editor.client.text_document_document_color_async(types.DocumentColorParams(document))
-    assert [*await asyncio.wait_for(colours, SECONDS)] == []
+    colors = editor.client.text_document_document_color_async(types.DocumentColorParams(document))
+    assert [*await asyncio.wait_for(colors, SECONDS)] == []
     place = types.Range(types.Position(0, 0), types.Position(0, 3))
     asked = types.ColorPresentationParams(document, types.Color(1.0, 0.0, 0.0, 1.0), place)
     assert [*await asyncio.wait_for(editor.client.text_document_color_presentation_async(asked), SECONDS)] == []
 
 
-async def test_a_file_of_one_line_has_no_folds(editor):
+async def test_single_line_file_has_no_folds(editor):
     editor.open("urdf/line.urdf", '<robot name="r"><!-- a --><link name="a"></link></robot>')
     asked = types.FoldingRangeParams(editor.document("urdf/line.urdf"))
     assert not await editor.client.text_document_folding_range_async(asked)

@@ -19,7 +19,7 @@ drive:
 """
 
 
-async def test_a_parameter_file_is_completed_with_snippets(editor):
+async def test_parameter_file_is_completed_with_snippets(editor):
     editor.open(FILE, TEXT)
     where = place(TEXT, "    wheel_\n", len("    wheel_"))
     asked = types.CompletionParams(editor.document(FILE), where)
@@ -29,7 +29,7 @@ async def test_a_parameter_file_is_completed_with_snippets(editor):
     assert items[0].text_edit.range == types.Range(types.Position(8, 4), types.Position(8, 10))
 
 
-async def test_a_joint_in_a_parameter_file_leads_to_the_macro_that_writes_it(editor):
+async def test_joint_in_parameter_file_has_hover_and_definition(editor):
     editor.open(FILE, TEXT)
     where = place(TEXT, "upper_joint", 3)
     hover = await editor.client.text_document_hover_async(types.HoverParams(editor.document(FILE), where))
@@ -39,7 +39,7 @@ async def test_a_joint_in_a_parameter_file_leads_to_the_macro_that_writes_it(edi
     assert (target.range.start.line, target.range.end.character - target.range.start.character) == (3, 13)
 
 
-async def test_an_rviz_configuration_has_frames_and_symbols(editor):
+async def test_rviz_configuration_has_frame_completions_and_symbols(editor):
     text = "Visualization Manager:\n  Global Options:\n    Fixed Frame: \n"
     editor.open("a.rviz", text)
     document = editor.document("a.rviz")

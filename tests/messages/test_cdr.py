@@ -31,7 +31,7 @@ ALL = sorted(interface_names("msg"))
 
 
 @pytest.mark.parametrize("name", OF_ROSBAGS)
-def test_the_bytes_are_those_of_rosbags(name):
+def test_serialized_bytes_match_rosbags(name):
     for seed in range(6):
         message = random_message(get_message(name), seed)
         ours = serialize(message)
@@ -42,7 +42,7 @@ def test_the_bytes_are_those_of_rosbags(name):
 
 @given(name=st.sampled_from(ALL), seed=st.integers(0, 2**32))
 @settings(max_examples=400, deadline=None)
-def test_a_message_comes_back_as_it_was(name, seed):
+def test_message_round_trip_is_lossless(name, seed):
     message = random_message(get_message(name), seed)
     data = serialize(message)
     for form in (data, bytearray(data), memoryview(data), data + b"\0\0\0"):
@@ -58,7 +58,7 @@ def parts(name):
 
 
 @pytest.mark.parametrize("name", interface_names("srv") + interface_names("action"))
-def test_the_parts_of_services_and_actions_come_back(name):
+def test_service_and_action_parts_round_trip(name):
     for cls in parts(name):
         message = random_message(cls, 3)
         assert deserialize(serialize(message), cls) == message
@@ -66,7 +66,7 @@ def test_the_parts_of_services_and_actions_come_back(name):
 
 @given(name=st.sampled_from(ALL), seed=st.integers(0, 2**32), data=st.data())
 @settings(max_examples=600, deadline=None)
-def test_damaged_bytes_are_refused_or_read_and_nothing_else(name, seed, data):
+def test_corrupted_bytes_are_rejected_or_deserialized(name, seed, data):
     cls = get_message(name)
     raw = bytearray(serialize(random_message(cls, seed)))
     raw[1] = data.draw(st.sampled_from([1, 1, 1, 0]))
@@ -86,7 +86,7 @@ def test_damaged_bytes_are_refused_or_read_and_nothing_else(name, seed, data):
 @pytest.mark.parametrize("name", ["sensor_msgs/msg/JointState", "tf2_msgs/msg/TFMessage", "nav_msgs/msg/Odometry",
                                   "rcl_interfaces/msg/ParameterEvent", "visualization_msgs/msg/MarkerArray",
                                   "sensor_msgs/msg/PointCloud2", "test_msgs/msg/MultiNested"])  # fmt: skip
-def test_every_beginning_of_a_message_is_refused(name):
+def test_truncated_message_is_rejected(name):
     cls = get_message(name)
     data = serialize(random_message(cls, 5))
     for length in range(0, len(data) - 1, max(1, len(data) // 400)):
@@ -104,7 +104,7 @@ def test_every_beginning_of_a_message_is_refused(name):
         "rcl_interfaces/msg/ParameterValue",
     ],
 )
-def test_a_length_beyond_the_data_reserves_nothing(name):
+def test_length_beyond_data_allocates_no_memory(name):
     cls = get_message(name)
     data = serialize(cls())
     tracemalloc.start()
@@ -125,24 +125,24 @@ class TestRefused:
         assert caught.value.diagnostics[0].code == "MSG201"
         return caught.value.diagnostics[0].message
 
-    def test_headers(self):
+    def test_malformed_encapsulation_header_is_rejected(self):
         assert "0 bytes are too few for the header" in self.refused(b"", String)
         assert "its header declares the encoding CDR2_LE" in self.refused(b"\0\7\0\0\1\0\0\0\0", String)
         assert "it begins with 48 69 21 21" in self.refused(b"Hi!!", String)
 
-    def test_a_text_that_is_not_utf_8(self):
+    def test_string_that_is_not_utf_8_is_rejected(self):
         assert "a string is not UTF-8" in self.refused(b"\0\1\0\0\3\0\0\0\xff\xfe\0", String)
 
-    def test_a_text_without_its_end(self):
+    def test_string_without_terminator_is_rejected(self):
         assert "the end of a string does not match its length" in self.refused(b"\0\1\0\0\2\0\0\0ab", String)
 
-    def test_a_bool_that_is_none(self):
+    def test_invalid_bool_is_rejected(self):
         assert "a bool has the invalid value 2" in self.refused(b"\0\1\0\0\2", get_message("std_msgs/msg/Bool"))
         raw = serialize(get_message("test_msgs/msg/UnboundedSequences")(bool_values=[True, False]))
         assert "a bool has the invalid value 7" in self.refused(raw[:8] + b"\7" + raw[9:],
                                                    get_message("test_msgs/msg/UnboundedSequences"))  # fmt: skip
 
-    def test_more_than_a_bound_allows(self):
+    def test_sequence_beyond_its_bound_is_rejected(self):
         cls = get_message("rcl_interfaces/msg/ParameterDescriptor")
         data = bytearray(serialize(cls()))
         data[-4:] = b"\2\0\0\0"
@@ -152,12 +152,12 @@ class TestRefused:
         assert "'nested_type_name' is longer than its maximum length of 255" in self.refused(text, cls)
 
 
-def test_a_text_of_length_zero_is_empty():
+def test_string_of_length_zero_is_empty():
     # Some writers leave the NUL of an empty text away.
     assert deserialize(b"\0\1\0\0\0\0\0\0", String) == String()
 
 
-def test_what_was_put_past_the_checks_is_named_when_it_is_written():
+def test_invalid_field_value_is_named_by_serialize():
     message = JointState(name=["a"])
     message.name.append(3)
     with pytest.raises(MessageDataError, match="cannot be serialized: The 'name' field must be a set or sequence"):
@@ -175,14 +175,14 @@ def test_what_was_put_past_the_checks_is_named_when_it_is_written():
         serialize(5)
 
 
-def test_values_out_of_range_are_not_wrapped():
+def test_out_of_range_value_is_not_wrapped():
     stamp = Time()
     stamp._nanosec = -1
     with pytest.raises(MessageDataError, match="must be an unsigned integer"):
         serialize(stamp)
 
 
-def test_wide_texts_are_units_of_utf_16_in_four_bytes_each_after_their_number():
+def test_wide_strings_use_four_bytes_per_utf_16_unit():
     cls = get_message("example_interfaces/msg/WString")
     written = b"\0\1\0\0\3\0\0\0a\0\0\0\x3d\xd8\0\0\x00\xde\0\0"  # as Jazzy's rclpy with Fast DDS writes it
     assert serialize(cls(data="a😀")) == written
@@ -197,13 +197,13 @@ def test_wide_texts_are_units_of_utf_16_in_four_bytes_each_after_their_number():
         deserialize(b"\0\1\0\0\2\0\0\0a\0\0\0", cls)
 
 
-def test_an_empty_message_is_one_byte():
+def test_empty_message_is_one_byte():
     cls = get_message("std_msgs/msg/Empty")
     assert serialize(cls()) == b"\0\1\0\0\0"
     assert deserialize(b"\0\1\0\0\0", cls) == cls()
 
 
-def test_arrays_that_are_no_rows_in_memory_are_written_by_value():
+def test_non_contiguous_arrays_are_serialized_by_value():
     cls = get_message("geometry_msgs/msg/PoseWithCovariance")
     numbers = np.arange(72, dtype=np.float64)
     assert serialize(cls(covariance=numbers[::2])) == serialize(cls(covariance=numbers[::2].copy()))
@@ -212,7 +212,7 @@ def test_arrays_that_are_no_rows_in_memory_are_written_by_value():
     assert deserialize(serialize(square), cls).covariance.tolist() == np.arange(36.0).reshape(6, 6).T.ravel().tolist()
 
 
-def test_what_was_read_can_be_changed_and_is_nobody_elses():
+def test_deserialized_messages_are_mutable_and_independent():
     data = serialize(
         JointState(header=Header(stamp=Time(sec=1, nanosec=2), frame_id="a"), name=["x", "y"], position=[1.0, 2.0])
     )
@@ -224,7 +224,7 @@ def test_what_was_read_can_be_changed_and_is_nobody_elses():
     assert deserialize(data, JointState).name == ["x", "y"]
 
 
-def test_names_that_come_again_with_other_names_between_them():
+def test_cached_names_survive_other_names_in_between():
     one = serialize(JointState(name=["a", "b"]))
     other = serialize(JointState(name=["a", "c"]))
     longer = serialize(JointState(name=["a", "b", "d" * 100]))
@@ -234,7 +234,7 @@ def test_names_that_come_again_with_other_names_between_them():
         assert deserialize(longer, JointState).name == ["a", "b", "d" * 100]
 
 
-def test_types_within_types_within_types(tmp_path, interface_package):
+def test_deeply_nested_types_round_trip(tmp_path, interface_package):
     for depth in range(12):
         inner = f"Level{depth + 1}[] below\nLevel{depth + 1} one" if depth < 11 else "int8 n"
         interface_package.write("msg", f"Level{depth}", f"bool b\n{inner}\n")

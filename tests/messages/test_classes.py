@@ -27,7 +27,7 @@ from linkwright.messages import (
     serialize,
     shipped_packages,
 )
-from linkwright.messages.catalogue import texts
+from linkwright.messages.catalog import texts
 from linkwright.messages.definitions.library import LIBRARY
 from linkwright.messages.definitions.slot_types import (
     Array,
@@ -54,7 +54,7 @@ def refusal(cls, name, value):
 
 
 class TestChecks:
-    def test_numbers(self):
+    def test_number_fields_reject_wrong_types_and_ranges(self):
         time = get_message("builtin_interfaces/msg/Time")
         assert refusal(time, "sec", 1.0) == "The 'sec' field must be of type 'int'"
         assert refusal(time, "sec", 1 << 31) == "The 'sec' field must be an integer in [-2147483648, 2147483647]"
@@ -68,7 +68,7 @@ class TestChecks:
         assert color(r=float("inf")).r == float("inf")
         assert vector(x=np.float64(2.5)).x == 2.5
 
-    def test_bools_texts_and_bytes(self):
+    def test_bool_string_and_byte_fields_reject_wrong_types(self):
         assert refusal(get_message("std_msgs/msg/Bool"), "data", 1) == "The 'data' field must be of type 'bool'"
         assert refusal(get_message("std_msgs/msg/String"), "data", b"a") == "The 'data' field must be of type 'str'"
         assert refusal(get_message("std_msgs/msg/String"), "data", UserString("a"))
@@ -81,12 +81,12 @@ class TestChecks:
         assert refusal(bounded, "bounded_string_value", "x" * 23) == wanted
         assert bounded(bounded_string_value=UserString("abc")).bounded_string_value == "abc"
 
-    def test_messages_within_messages(self):
+    def test_nested_message_field_rejects_other_types(self):
         twist = get_message("geometry_msgs/msg/Twist")
         wanted = "The 'linear' field must be a sub message of type 'Vector3'"
         assert refusal(twist, "linear", get_message("geometry_msgs/msg/Point")()) == wanted
 
-    def test_sequences_of_numbers(self):
+    def test_number_sequences_reject_wrong_values(self):
         laser = get_message("sensor_msgs/msg/LaserScan")
         floats = (
             "The 'ranges' field must be a set or sequence and each value of type 'float' and each float in "
@@ -106,7 +106,7 @@ class TestChecks:
         assert refusal(image, "data", [256]) == refusal(image, "data", np.array([300])) == wanted
         assert refusal(image, "data", np.array([1.5])) == wanted
 
-    def test_bounded_sequences_and_arrays(self):
+    def test_bounded_sequences_and_arrays_reject_wrong_length(self):
         cls = get_message("test_msgs/msg/BoundedSequences")
         begin = "The 'int32_values' field must be a set or sequence with length <= 3 and each value of type 'int'"
         assert refusal(cls, "int32_values", [1, 2, 3, 4]).startswith(begin)
@@ -128,18 +128,18 @@ class TestChecks:
             "and each integer in [-128, 127]"
         )
 
-    def test_sequences_of_messages(self):
+    def test_message_sequences_reject_other_types(self):
         path = get_message("nav_msgs/msg/Path")
         wanted = "The 'poses' field must be a set or sequence and each value of type 'PoseStamped'"
         assert refusal(path, "poses", [1]) == wanted
 
-    def test_arguments_of_no_field(self):
+    def test_constructor_rejects_unknown_arguments(self):
         with pytest.raises(AssertionError, match=r"^Invalid arguments passed to constructor: datum, foo$"):
             get_message("std_msgs/msg/String")(foo=1, data="a", datum=2)
 
 
 class TestArrays:
-    def test_fixed_arrays_are_numpys(self):
+    def test_fixed_size_arrays_are_numpy_arrays(self):
         info = get_message("sensor_msgs/msg/CameraInfo")(k=list(map(float, range(9))))
         assert info.k.dtype == np.float64
         assert info.k[4] == 4.0
@@ -148,7 +148,7 @@ class TestArrays:
         assert info.r is identity
         assert get_message("test_msgs/msg/Arrays")().bool_values == [False] * 3
 
-    def test_sequences_are_arrays_that_share_their_memory_with_numpy(self):
+    def test_sequences_share_memory_with_numpy(self):
         state = get_message("sensor_msgs/msg/JointState")()
         values = array("d", [1.0, 2.0])
         state.position = values
@@ -159,18 +159,18 @@ class TestArrays:
             state.velocity = given
             assert state.velocity == array("d", [1.0, 2.0])
 
-    def test_bytes_and_images_are_taken_as_they_are(self):
+    def test_byte_sequences_accept_buffers_and_arrays(self):
         image = get_message("sensor_msgs/msg/Image")
         pixels = np.arange(24, dtype=np.uint8).reshape(2, 4, 3)
         for given in (pixels, pixels.tobytes(), bytearray(pixels.tobytes()), memoryview(pixels.tobytes())):
             assert image(data=given).data == array("B", range(24))
         assert image(data=pixels[:, ::2]).data.tolist() == pixels[:, ::2].ravel().tolist()
 
-    def test_a_constructor_takes_whole_numbers_for_floats_as_rclpys(self):
+    def test_constructor_accepts_integers_for_floats_as_rclpy(self):
         assert get_message("sensor_msgs/msg/JointState")(position=[1, 2]).position == array("d", [1.0, 2.0])
 
 
-def test_defaults():
+def test_fields_have_declared_defaults():
     strings = get_message("test_msgs/msg/Strings")()
     assert strings.string_value_default4 == strings.string_value_default2 == "Hello'world!"
     assert strings.string_value_default5 == 'Hello"world!'
@@ -188,7 +188,7 @@ def test_defaults():
     assert arrays.basic_types_values[0] is not arrays.basic_types_values[1]
 
 
-def test_constants_are_the_classs():
+def test_constants_are_class_attributes():
     constants = get_message("test_msgs/msg/Constants")
     assert (constants.BOOL_CONST, constants.BYTE_CONST, constants.FLOAT32_CONST) == (True, b"2", 1.125)
     assert get_message("test_msgs/msg/Strings").STRING_CONST == "Hello world!"
@@ -196,7 +196,7 @@ def test_constants_are_the_classs():
     assert "MAP" not in get_service("nav_msgs/srv/LoadMap").Request.__dict__
 
 
-def test_what_rclpys_classes_tell_of_themselves():
+def test_class_metadata_matches_rclpy():
     cls = get_message("test_msgs/msg/BoundedSequences")
     types = cls.get_fields_and_field_types()
     assert types["float64_values"] == "sequence<double, 3>"
@@ -223,7 +223,7 @@ def test_what_rclpys_classes_tell_of_themselves():
     assert get_message("test_msgs/msg/WStrings").SLOT_TYPES[5] == BoundedSequence(UnboundedWString(), 3)
 
 
-def test_repr():
+def test_repr_matches_rclpy():
     assert repr(get_message("std_msgs/msg/String")(data="hi")) == "std_msgs.msg.String(data='hi')"
     message = get_message("trajectory_msgs/msg/JointTrajectoryPoint")(positions=[1.0, 2.5])
     assert repr(message) == (
@@ -236,7 +236,7 @@ def test_repr():
 
 
 @pytest.mark.parametrize("name", interface_names("msg"))
-def test_copies_and_pickles_are_equal_and_their_own(name):
+def test_copies_and_pickles_are_equal_and_independent(name):
     message = random_message(get_message(name), 11)
     for other in (copy.copy(message), copy.deepcopy(message), pickle.loads(pickle.dumps(message))):
         assert type(other) is type(message)
@@ -245,12 +245,12 @@ def test_copies_and_pickles_are_equal_and_their_own(name):
     assert message != "a"
 
 
-def test_messages_have_no_hash():
+def test_messages_are_not_hashable():
     with pytest.raises(TypeError):
         hash(get_message("std_msgs/msg/String")())
 
 
-def test_every_interface_that_comes_with_us_can_be_made():
+def test_shipped_interfaces_can_be_instantiated():
     assert len(shipped_packages()) >= 28
     for package in shipped_packages():
         for name in texts(package):
@@ -261,7 +261,7 @@ def test_every_interface_that_comes_with_us_can_be_made():
             assert cls is get_interface(f"{package}/{name}")
 
 
-def test_the_messages_of_humble_are_those_of_rosbags():
+def test_humble_messages_match_rosbags():
     store = rosbags_store()
     assert set(store.fielddefs) <= set(interface_names("msg"))
     for name, (constants, fields) in store.fielddefs.items():
@@ -271,7 +271,7 @@ def test_the_messages_of_humble_are_those_of_rosbags():
         assert [constant.name for constant in structure.constants] == [constant[0] for constant in constants]
 
 
-def test_services():
+def test_service_class_has_request_response_and_event():
     cls = get_service("std_srvs/srv/SetBool")
     assert cls is get_service("std_srvs/SetBool")
     assert cls.Request(data=True).data is True
@@ -283,7 +283,7 @@ def test_services():
         cls()
 
 
-def test_actions():
+def test_action_class_has_goal_result_and_feedback():
     cls = get_action("example_interfaces/action/Fibonacci")
     assert cls.Goal(order=3).order == 3
     assert cls.Feedback().sequence == array("i")
@@ -312,7 +312,7 @@ def test_actions():
         (get_message, "std_msgs/msg/String_Request", "no message 'std_msgs/msg/String_Request'", "String"),
     ],
 )
-def test_wrong_names(getter, name, message, hint):
+def test_unknown_or_malformed_interface_name_is_rejected(getter, name, message, hint):
     get_service("std_srvs/srv/SetBool")  # what is known already is no other kind either
     with pytest.raises(InterfaceNotFoundError) as caught:
         getter(name)
@@ -322,7 +322,7 @@ def test_wrong_names(getter, name, message, hint):
     assert hint in (found.hint or "")
 
 
-def test_two_threads_get_one_class(interface_package):
+def test_threads_get_same_class(interface_package):
     for number in range(20):
         interface_package.write("msg", f"Shared{number}", "std_msgs/Header header\nfloat64[] values\n")
     names = [f"{interface_package.name}/msg/Shared{number}" for number in range(20)] * 4
@@ -350,7 +350,7 @@ int8 rest
 """
 
 
-def test_fields_named_like_words_of_python(interface_package):
+def test_fields_can_be_named_like_python_keywords(interface_package):
     interface_package.write("msg", "Words", NAMES)
     cls = get_message(f"{interface_package.name}/msg/Words")
     message = cls(**{"from": "a", "lambda": [1.0], "other": 4})
@@ -362,7 +362,7 @@ def test_fields_named_like_words_of_python(interface_package):
     assert copy.deepcopy(message) == message
 
 
-def test_a_definition_with_mistakes_makes_no_class(interface_package):
+def test_invalid_definition_creates_no_class(interface_package):
     interface_package.write("msg", "Wrong", "int3 x\n")
     for _ in range(2):
         with pytest.raises(DefinitionError):

@@ -23,7 +23,7 @@ from linkwright.messages import (
 from tests.messages.random_messages import random_message
 
 
-def made(message_class, values):
+def message_of(message_class, values):
     message = message_class()
     set_fields(message, values)
     return message
@@ -31,35 +31,35 @@ def made(message_class, values):
 
 @given(name=st.sampled_from(interface_names("msg")), seed=st.integers(0, 1000))
 @settings(max_examples=150, deadline=None)
-def test_what_was_written_is_read(name, seed):
+def test_field_values_round_trip_through_yaml(name, seed):
     message = random_message(get_message(name), seed)
-    assert made(type(message), to_dict(message)) == message
-    assert made(type(message), yaml.safe_load(to_yaml(message))) == message
+    assert message_of(type(message), to_dict(message)) == message
+    assert message_of(type(message), yaml.safe_load(to_yaml(message))) == message
 
 
-def test_values_are_brought_to_their_types():
-    message = made(JointState, {"header": {"frame_id": 3, "stamp": {"sec": "5"}}, "position": [1, "2.5", True]})
+def test_values_are_converted_to_field_types():
+    message = message_of(JointState, {"header": {"frame_id": 3, "stamp": {"sec": "5"}}, "position": [1, "2.5", True]})
     assert message.header.frame_id == "3"
     assert message.header.stamp.sec == 5
     assert message.position == array("d", [1.0, 2.5, 1.0])
-    assert made(get_message("std_msgs/msg/Byte"), {"data": 7}).data == b"\7"
-    assert made(get_message("std_msgs/msg/UInt8MultiArray"), {"data": b"ab"}).data == array("B", b"ab")
-    assert made(get_message("std_msgs/msg/String"), {"data": True}).data == "true"
+    assert message_of(get_message("std_msgs/msg/Byte"), {"data": 7}).data == b"\7"
+    assert message_of(get_message("std_msgs/msg/UInt8MultiArray"), {"data": b"ab"}).data == array("B", b"ab")
+    assert message_of(get_message("std_msgs/msg/String"), {"data": True}).data == "true"
     covariance = {"covariance": np.zeros(36)}
-    assert made(get_message("geometry_msgs/msg/PoseWithCovariance"), covariance).covariance.shape == (36,)
+    assert message_of(get_message("geometry_msgs/msg/PoseWithCovariance"), covariance).covariance.shape == (36,)
 
 
-def test_fields_that_are_not_given_keep_their_values_nested_ones_their_defaults():
+def test_omitted_fields_keep_values_and_nested_ones_get_defaults():
     message = JointState(name=["a"])
     message.header.stamp.sec = 4
     message.header.frame_id = "base"
     assert set_fields(message, {"header": {"frame_id": "map"}}) == []
     assert message.name == ["a"]
     assert (message.header.frame_id, message.header.stamp.sec) == ("map", 0)
-    assert made(JointState, {"header": message.header}).header is message.header
+    assert message_of(JointState, {"header": message.header}).header is message.header
 
 
-def test_stamps_of_the_time_of_sending():
+def test_header_auto_sets_stamp_when_sent():
     message = get_message("geometry_msgs/msg/PoseStamped")()
     (set_stamp,) = set_fields(message, {"header": "auto"}, expand_header_auto=True)
     set_stamp(Time(sec=7, nanosec=8))
@@ -115,9 +115,9 @@ def test_stamps_of_the_time_of_sending():
         ),
     ],
 )
-def test_what_is_wrong_is_told(name, values, code, message, hint):
+def test_wrong_value_is_reported(name, values, code, message, hint):
     with pytest.raises(FieldValueError) as caught:
-        made(get_message(f"sensor_msgs/msg/{name}"), values)
+        message_of(get_message(f"sensor_msgs/msg/{name}"), values)
     (found,) = caught.value.diagnostics
     assert found.code == code
     assert message in found.message
@@ -125,16 +125,16 @@ def test_what_is_wrong_is_told(name, values, code, message, hint):
     assert isinstance(caught.value, AttributeError if code == "MSG301" else TypeError)
 
 
-def test_all_mistakes_are_told_together():
+def test_all_wrong_values_are_reported_together():
     with pytest.raises(FieldValueError) as caught:
-        made(JointState, {"nam": 1, "position": "a", "header": {"stamp": {"sec": "x", "nsec": 1}}})
+        message_of(JointState, {"nam": 1, "position": "a", "header": {"stamp": {"sec": "x", "nsec": 1}}})
     assert [diagnostic.code for diagnostic in caught.value.diagnostics] == ["MSG301", "MSG302", "MSG302", "MSG301"]
 
 
-def test_a_byte_and_its_like():
+def test_byte_and_bounded_sequence_values_are_checked():
     with pytest.raises(FieldValueError):
-        made(get_message("std_msgs/msg/Byte"), {"data": 256})
+        message_of(get_message("std_msgs/msg/Byte"), {"data": 256})
     with pytest.raises(FieldValueError):
-        made(get_message("test_msgs/msg/BoundedSequences"), {"bool_values": [True] * 4})
+        message_of(get_message("test_msgs/msg/BoundedSequences"), {"bool_values": [True] * 4})
     with pytest.raises(FieldValueError):
-        made(get_message("test_msgs/msg/Strings"), {"bounded_string_value": "x" * 23})
+        message_of(get_message("test_msgs/msg/Strings"), {"bounded_string_value": "x" * 23})

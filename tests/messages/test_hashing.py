@@ -52,11 +52,11 @@ PUBLISHED = {
 
 
 @pytest.mark.parametrize("name", PUBLISHED)
-def test_a_hash_is_the_published_one(name):
+def test_type_hash_matches_published_hash(name):
     assert type_hash(name) == "RIHS01_" + PUBLISHED[name]
 
 
-def test_classes_have_hashes():
+def test_type_hash_accepts_classes():
     assert type_hash(JointState) == type_hash("sensor_msgs/JointState")
     action = get_action("example_interfaces/action/Fibonacci")
     assert type_hash(action.Impl.SendGoalService) == type_hash("example_interfaces/action/Fibonacci_SendGoal")
@@ -64,7 +64,7 @@ def test_classes_have_hashes():
     assert type_hash(get_service("std_srvs/srv/SetBool")) != type_hash("example_interfaces/srv/SetBool")
 
 
-def test_the_discovery_message_of_iron_and_newer(monkeypatch):
+def test_hash_of_iron_discovery_message_matches(monkeypatch):
     # Its gid is shorter than Humble's. The package's name counts, so its hash is taken with that one's.
     from linkwright.diagnostics import SourceText
     from linkwright.messages.definitions import hashing
@@ -96,6 +96,6 @@ def test_the_discovery_message_of_iron_and_newer(monkeypatch):
     assert hashing.hash_of(described) == "RIHS01_91a0593bacdcc50ea9bdcf849a938b128412cc1ea821245c663bcd26f83c295e"
 
 
-def test_an_unknown_name():
+def test_type_hash_rejects_unknown_name():
     with pytest.raises(LinkwrightError, match="there is no message 'std_msgs/msg/Strng'"):
         type_hash("std_msgs/msg/Strng")

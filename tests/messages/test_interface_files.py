@@ -52,7 +52,7 @@ def faults(text, kind="msg"):
 
 
 class TestFields:
-    def test_types(self):
+    def test_field_types_are_parsed(self):
         text = """
         # comment
         bool a  # the robot's
@@ -106,15 +106,15 @@ class TestFields:
             ("bool[2] x [true, false]", (True, False)),
         ],
     )
-    def test_default_values(self, line, value):
+    def test_default_values_are_parsed(self, line, value):
         assert fields(line)["x"][1] == value
 
-    def test_constants(self):
+    def test_constants_are_parsed(self):
         text = 'int32 A=1\nint32 B = -2 # b\nstring NAME="a=b"\nstring PLAIN= x y \nfloat64 PI2=6.28\nbool ON=true\n'
         constants = {constant.name: constant.value for constant in parsed(text).constants}
         assert constants == {"A": 1, "B": -2, "NAME": "a=b", "PLAIN": "x y", "PI2": 6.28, "ON": True}
 
-    def test_parts(self):
+    def test_service_and_action_parts_are_parsed(self):
         service = parsed("int64 a\n---\nint64 sum\n", "srv")
         assert service.request.type_name == "my_msgs/srv/F_Request"
         assert service.response.type_name == "my_msgs/srv/F_Response"
@@ -164,12 +164,12 @@ class TestFaults:
             ("int8 x\n---\n", "MSG118", "F.msg:2:1", "a .msg file has 1 part, but this '---' begins another"),
         ],
     )
-    def test_each_says_what_and_where(self, text, code, place, message):
+    def test_syntax_error_is_reported_with_position(self, text, code, place, message):
         ((found_code, found_place, found_message),) = faults(text)
         assert (found_code, found_place) == (code, place)
         assert message in found_message
 
-    def test_all_are_told_together(self):
+    def test_all_syntax_errors_are_reported_together(self):
         assert [code for code, _, _ in faults("int3 x\nint32 Y\nint8 z 300\n\nint32\n")] == [
             "MSG111",
             "MSG112",
@@ -177,14 +177,14 @@ class TestFaults:
             "MSG110",
         ]
 
-    def test_parts_of_services_and_actions(self):
+    def test_wrong_number_of_parts_is_reported(self):
         assert faults("int8 x\n", "srv")[0][2] == "a .srv file has 2 parts with '---' between them, but this file has 1"
         assert faults("---\n---\n", "srv")[0][1] == "F.msg:2:1"
         assert faults("---\n", "action")[0][0] == "MSG118"
 
     @given(st.text(st.sampled_from("int32 float64[]<=3/x'\"#\n-=AStrinHeader,0.é"), max_size=60))
     @settings(max_examples=500)
-    def test_any_text_is_understood_or_refused(self, text):
+    def test_any_text_is_parsed_or_rejected(self, text):
         with contextlib.suppress(DefinitionError):
             assert parsed(text).type_name == "my_msgs/msg/F"
 
@@ -195,7 +195,7 @@ class TestWorkspace:
             get_message(name)
         return caught.value.diagnostics
 
-    def test_messages_services_and_actions_of_a_package(self, interface_package):
+    def test_messages_services_and_actions_of_package_are_found(self, interface_package):
         package = interface_package
         text = "# how many\nint32 MOST=10\nint32 n 5\nInner[2] inner\nstd_msgs/Header header\n"
         package.write("msg", "Count", text)
@@ -214,7 +214,7 @@ class TestWorkspace:
             f"{package.name}/msg/Inner",
         ]
 
-    def test_names_that_are_not_there(self, interface_package):
+    def test_unknown_type_names_are_reported_with_suggestion(self, interface_package):
         interface_package.write("msg", "Count", "int32 n\n")
         interface_package.write("msg", "Bad", "Cuont a\nTwist b\nstd_msgs/Headr c\nother/Thing d\n")
         name = interface_package.name
@@ -226,18 +226,18 @@ class TestWorkspace:
         assert str(fourth.span).endswith("Bad.msg:4:1")
         assert self.found(f"{name}/msg/Cnt")[0].hint == "did you mean 'Count'?"
 
-    def test_types_of_ros_1(self, interface_package):
+    def test_ros_1_types_are_reported(self, interface_package):
         interface_package.write("msg", "Old", "Header header\ntime stamp\nduration length\n")
         found = self.found(f"{interface_package.name}/msg/Old")
         assert [each.code for each in found] == ["MSG117"] * 3
         assert found[0].hint == "use 'std_msgs/Header' in ROS 2"
 
-    def test_a_package_may_have_a_header_of_its_own(self, interface_package):
+    def test_package_can_define_its_own_header(self, interface_package):
         interface_package.write("msg", "Header", "int8 x\n")
         interface_package.write("msg", "New", "Header header\n")
         assert get_message(f"{interface_package.name}/msg/New")().header.x == 0
 
-    def test_messages_that_contain_themselves(self, interface_package):
+    def test_recursive_messages_are_reported(self, interface_package):
         interface_package.write("msg", "One", "Two[] two\n")
         interface_package.write("msg", "Two", "int8 x\nThree a\n")
         interface_package.write("msg", "Three", "One[] one\n")
@@ -250,28 +250,28 @@ class TestWorkspace:
         (found,) = self.found(f"{name}/msg/Self")
         assert found.message == f"'{name}/msg/Self' would contain itself: it is part of {name}/msg/Self"
 
-    def test_a_mistake_in_a_file_below_is_told_with_its_place(self, interface_package):
+    def test_error_in_nested_type_is_reported_at_its_file(self, interface_package):
         interface_package.write("msg", "Outer", "Inner inner\n")
         interface_package.write("msg", "Inner", "int32 X\n")
         (found,) = self.found(f"{interface_package.name}/msg/Outer")
         assert found.code == "MSG112"
         assert str(found.span).endswith("Inner.msg:1:7")
 
-    def test_files_that_cannot_be_read(self, interface_package):
+    def test_unreadable_interface_files_are_reported(self, interface_package):
         path = interface_package.write("msg", "Latin", "")
         path.write_bytes(b"# caf\xe9\nint8 x\n")
         assert self.found(f"{interface_package.name}/msg/Latin")[0].code == "MSG121"
         path.write_bytes(b"\xef\xbb\xbf# caf\xc3\xa9\r\nint8 x\r\n")
         assert get_message(f"{interface_package.name}/msg/Latin")().x == 0
 
-    def test_what_comes_with_linkwright_is_not_changed_by_a_workspace(self, tmp_path, interface_package):
+    def test_workspace_does_not_override_shipped_interfaces(self, tmp_path, interface_package):
         other = type(interface_package)(tmp_path, "std_msgs")
         other.write("msg", "Int8", "int8 wrong\n")
         other.write("msg", "Unheard", "int8 x\n")
         assert not hasattr(get_message("std_msgs/msg/Int8"), "wrong")
         assert get_message("std_msgs/msg/Unheard")().x == 0
 
-    def test_the_finder_in_force_is_asked(self, tmp_path, interface_package):
+    def test_current_finder_is_used(self, tmp_path, interface_package):
         other = type(interface_package)(tmp_path / "elsewhere", "elsewhere_msgs")
         other.write("msg", "Here", "int8 x\n")
         with use_finder(PackageFinder(start=tmp_path / "elsewhere", environment={})):
@@ -315,7 +315,7 @@ class TestIdl:
     def parsed(self, text, type_name="my_msgs/msg/F"):
         return parse_idl(SourceText("F.idl", text), type_name, Everything())
 
-    def test_what_rosidl_writes(self):
+    def test_idl_written_by_rosidl_is_parsed(self):
         definition = self.parsed(IDL)
         assert {field.name: field.type.to_idl_text() for field in definition.fields} == {
             "header": "std_msgs/Header",
@@ -337,7 +337,7 @@ class TestIdl:
         constants = {constant.name: constant.value for constant in definition.constants}
         assert constants == {"MOST": 5, "NAME": "hi; there", "LENGTH": 1.5}
 
-    def test_services_and_empty_structures(self):
+    def test_idl_services_and_empty_structures_are_parsed(self):
         text = """module a_msgs { module srv {
             struct Do_Request { uint8 structure_needs_at_least_one_member; };
             struct Do_Response { boolean done; }; }; };"""
@@ -345,7 +345,7 @@ class TestIdl:
         assert service.request.fields == ()
         assert service.response.fields[0].name == "done"
 
-    def test_a_package_with_idl(self, interface_package):
+    def test_package_with_idl_file_is_supported(self, interface_package):
         name = interface_package.name
         interface_package.write("msg", "F", f"module {name} {{ module msg {{ struct F {{ long x; }}; }}; }};", "idl")
         interface_package.write("msg", "G", "F f\n")
@@ -369,7 +369,7 @@ class TestIdl:
             ("module a ? {}", "MSG120", "unexpected '?'"),
         ],
     )
-    def test_what_is_refused(self, text, code, message):
+    def test_unsupported_idl_is_rejected(self, text, code, message):
         with pytest.raises(DefinitionError) as caught:
             self.parsed(text)
         (found,) = caught.value.diagnostics
@@ -378,13 +378,13 @@ class TestIdl:
         assert found.span is not None
 
     @given(st.lists(st.sampled_from(IDL.split()), max_size=40))
-    def test_any_words_are_understood_or_refused(self, words):
+    def test_any_idl_is_parsed_or_rejected(self, words):
         with contextlib.suppress(DefinitionError):
             self.parsed(" ".join(words))
 
 
 class TestDefinitionsThatDataBringAlong:
-    def test_a_message_and_those_in_it(self):
+    def test_embedded_definition_includes_nested_messages(self):
         text = (
             "Inner[] inner\nstd_msgs/Header header\n"
             f"{'=' * 80}\nMSG: carried_msgs/Inner\nint32 n 5\n"
@@ -399,12 +399,12 @@ class TestDefinitionsThatDataBringAlong:
         assert {"carried_msgs/msg/Inner", "carried_msgs/msg/Outer"} <= set(interface_names("msg"))
         assert deserialize(serialize(outer()), outer) == outer()
 
-    def test_of_two_texts_the_first_counts(self):
+    def test_first_of_two_embedded_definitions_is_used(self):
         add_definitions("carried_msgs/msg/Twice", "int32 first\n", "a.mcap")
         add_definitions("carried_msgs/msg/Twice", "int32 second\n", "b.mcap")
         assert list(get_message("carried_msgs/msg/Twice").get_fields_and_field_types()) == ["first"]
 
-    def test_idl(self):
+    def test_embedded_idl_is_supported(self):
         separator = "=" * 80
         text = (
             f"{separator}\nIDL: carried_msgs/msg/Written\n"
@@ -415,7 +415,7 @@ class TestDefinitionsThatDataBringAlong:
         add_definitions("carried_msgs/msg/Written", text, "some.mcap", idl=True)
         assert get_message("carried_msgs/msg/Written")().part.x == 0.0
 
-    def test_mistakes_are_told_when_the_message_is_asked_for(self):
+    def test_error_in_embedded_definition_is_reported_on_lookup(self):
         add_definitions("carried_msgs/msg/Wrong", "int32 n\nint33 m\n", "some.mcap")
         with pytest.raises(
             DefinitionError, match=r"some\.mcap/carried_msgs/msg/Wrong\.msg:2:1: there is no type 'int33'"
@@ -423,11 +423,11 @@ class TestDefinitionsThatDataBringAlong:
             get_message("carried_msgs/msg/Wrong")
 
     @given(name=st.text(), text=st.text(), idl=st.booleans())
-    def test_anything_may_come_along(self, name, text, idl):
+    def test_malformed_embedded_definitions_are_accepted(self, name, text, idl):
         add_definitions(name, text, "some.mcap", idl=idl)
 
     @pytest.mark.parametrize("field", ["first", "second"])
-    def test_a_test_sees_nothing_of_what_others_brought(self, field):
+    def test_embedded_definitions_do_not_leak_between_tests(self, field):
         assert not any(name.startswith("carried_msgs/") for name in interface_names("msg"))
         add_definitions("carried_msgs/msg/Again", f"int32 {field}\n", "some.mcap")
         assert list(get_message("carried_msgs/msg/Again").get_fields_and_field_types()) == [field]

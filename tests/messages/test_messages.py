@@ -23,7 +23,7 @@ from linkwright.messages import (
 TYPES = [each for name in messages.__all__ if hasattr(each := getattr(messages, name), "TYPE_NAME")]
 
 
-def test_a_constructor_takes_keyword_arguments_only():
+def test_constructor_takes_keyword_arguments_only():
     """As in rclpy, where generated constructors have the signature ``(self, **kwargs)``."""
     with pytest.raises(TypeError, match="takes 1 positional argument but 2 were given"):
         String("hello")
@@ -32,7 +32,7 @@ def test_a_constructor_takes_keyword_arguments_only():
 
 
 @pytest.mark.parametrize("message_type", TYPES, ids=lambda each: each.__name__)
-def test_type_names_end_with_the_name_of_the_class(message_type):
+def test_type_name_ends_with_class_name(message_type):
     package, kind, name = message_type.TYPE_NAME.split("/")
     assert package
     assert kind == "msg"
@@ -40,12 +40,12 @@ def test_type_names_end_with_the_name_of_the_class(message_type):
 
 
 @pytest.mark.parametrize("message_type", TYPES, ids=lambda each: each.__name__)
-def test_messages_have_no_other_fields(message_type):
+def test_messages_reject_unknown_attributes(message_type):
     with pytest.raises(AttributeError):
         message_type().no_such_field = 1
 
 
-def test_defaults_are_those_of_the_msg_files():
+def test_defaults_match_msg_files():
     assert Quaternion() == Quaternion(x=0.0, y=0.0, z=0.0, w=1.0)
     assert String().data == ""
     assert JointState().name == []
@@ -62,7 +62,7 @@ def test_defaults_are_those_of_the_msg_files():
 
 @given(st.integers(-(2**31) * 10**9, 2**31 * 10**9 - 1))
 @pytest.mark.parametrize("kind", [Time, Duration])
-def test_times_keep_their_nanoseconds(kind, nanoseconds):
+def test_time_and_duration_keep_nanoseconds(kind, nanoseconds):
     message = kind.from_nanoseconds(nanoseconds)
     assert message.nanoseconds == nanoseconds
     assert 0 <= message.nanosec < 10**9
@@ -84,7 +84,7 @@ def stamped(parent: str, child: str, x: float, stamp: Time) -> TransformStamped:
     )
 
 
-def test_a_message_made_of_a_batch_gives_objects():
+def test_tf_message_of_batch_returns_transforms():
     batch = TransformBatch(("world",), ("base",), 1_500_000_000, np.array([[1.0, 0, 0, 0, 0, 0, 1.0]]))
     message = TFMessage(batch=batch)
     assert message.transforms == [stamped("world", "base", 1.0, Time(sec=1, nanosec=500_000_000))]
@@ -92,7 +92,7 @@ def test_a_message_made_of_a_batch_gives_objects():
     assert message.transforms is message.transforms
 
 
-def test_a_message_made_of_objects_gives_a_batch_of_what_it_holds_now():
+def test_tf_message_of_transforms_returns_current_batch():
     message = TFMessage()
     assert len(message.batch) == 0
     assert message.batch.poses.shape == (0, 7)
@@ -104,18 +104,18 @@ def test_a_message_made_of_objects_gives_a_batch_of_what_it_holds_now():
     np.testing.assert_array_equal(message.batch.poses[:, [0, 6]], [[1.0, 1.0], [2.0, 1.0]])
 
 
-def test_new_transforms_take_the_place_of_a_batch():
+def test_new_transforms_replace_batch():
     message = TFMessage(batch=TransformBatch(("a",), ("b",), 0, np.zeros((1, 7))))
     message.transforms = [stamped("world", "base", 1.0, Time())]
     assert message.batch.children == ("base",)
     assert message == TFMessage(transforms=[stamped("world", "base", 1.0, Time())])
 
 
-def test_a_batch_whose_parts_do_not_agree_is_refused():
+def test_batch_of_mismatched_lengths_is_rejected():
     with pytest.raises(ValueError, match=r"1 parents, 1 children and poses of shape \(2, 7\) do not agree"):
         TransformBatch(("a",), ("b",), 0, np.zeros((2, 7)))
 
 
-def test_a_message_takes_one_form_only():
+def test_tf_message_rejects_transforms_together_with_batch():
     with pytest.raises(ValueError, match="not both"):
         TFMessage(transforms=[], batch=TransformBatch((), (), 0, np.zeros((0, 7))))

@@ -12,7 +12,7 @@ MANIFEST = """<package format="3"><name>new_msgs</name><version>1.0.0</version><
 <maintainer email="a@example.org">a</maintainer><license>l</license></package>"""
 
 
-def test_a_new_interface_is_found_within_a_second_however_often_types_are_asked_for(tmp_path, monkeypatch):
+def test_new_interface_is_found_within_a_second(tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)
     now = [0.0]
     monkeypatch.setattr(library.time, "monotonic", lambda: now[0])

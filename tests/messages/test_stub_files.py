@@ -28,7 +28,7 @@ def workspace(tmp_path: Path) -> Path:
     return tmp_path
 
 
-def test_the_classes_of_a_workspace_have_their_fields_and_wrong_files_are_left_out(workspace: Path) -> None:
+def test_stubs_have_fields_and_omit_invalid_files(workspace: Path) -> None:
     library = Library()
     with use_finder(PackageFinder(start=workspace)):
         names = [name for kind in ("msg", "srv", "action") for name in library.names(kind, "my_msgs")]

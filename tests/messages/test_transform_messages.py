@@ -49,7 +49,7 @@ def chain(count, seed=0, prefix="link"):
 
 @given(st.lists(TRANSFORMS, max_size=12), st.integers(0, 10))
 @settings(max_examples=150, deadline=None)
-def test_all_forms_are_the_same_message(transforms, changed):
+def test_objects_arrays_and_bytes_are_same_message(transforms, changed):
     message = TFMessage(transforms=transforms)
     data = serialize(message)
     assert data == bytes(rosbags_store().serialize_cdr(rosbags_object(message), TFMessage.TYPE_NAME))
@@ -71,7 +71,7 @@ def test_all_forms_are_the_same_message(transforms, changed):
 
 
 @pytest.mark.parametrize("count", [0, 1, 5, 6, 7, 20, 100])
-def test_a_batch_is_written_as_its_objects_are(count):
+def test_batch_serializes_like_its_transforms(count):
     batch = chain(count) if count else TransformBatch((), (), 0, np.zeros((0, 7)))
     data = serialize(TFMessage(batch=batch))
     assert data == serialize(TFMessage(transforms=batch.to_messages()))
@@ -82,7 +82,7 @@ def test_a_batch_is_written_as_its_objects_are(count):
     np.testing.assert_array_equal(again.poses, batch.poses)
 
 
-def test_frames_of_one_length_are_not_mistaken_for_each_other():
+def test_frame_names_of_equal_length_are_distinguished():
     first, second = chain(20, prefix="left"), chain(20, prefix="rite")
     data = [serialize(TFMessage(batch=each)) for each in (first, second)]
     assert len(data[0]) == len(data[1])
@@ -91,14 +91,14 @@ def test_frames_of_one_length_are_not_mistaken_for_each_other():
         assert deserialize(data[1], TFMessage).batch.children == second.children
 
 
-def test_frames_are_the_same_tuples_each_time():
+def test_repeated_frames_return_same_tuples():
     # Receivers keep what they worked out for them.
     data = serialize(TFMessage(batch=chain(20)))
     deserialize(data, TFMessage)
     assert deserialize(data, TFMessage).batch.children is deserialize(data, TFMessage).batch.children
 
 
-def test_bytes_that_fill_up_may_be_anything():
+def test_padding_bytes_are_ignored():
     data = bytearray(serialize(TFMessage(batch=chain(20))))
     wanted = deserialize(bytes(data), TFMessage)
     deserialize(bytes(data), TFMessage)
@@ -108,7 +108,7 @@ def test_bytes_that_fill_up_may_be_anything():
     assert deserialize(bytes(data), TFMessage) == wanted
 
 
-def test_a_received_message_may_be_changed():
+def test_received_message_can_be_modified():
     data = serialize(TFMessage(batch=chain(20)))
     message = deserialize(data, TFMessage)
     message = deserialize(data, TFMessage)
@@ -119,7 +119,7 @@ def test_a_received_message_may_be_changed():
     assert len(deserialize(serialize(message), TFMessage).transforms) == 1
 
 
-def test_damaged_messages_of_known_frames_are_refused():
+def test_damaged_message_with_cached_frames_is_rejected():
     data = serialize(TFMessage(batch=chain(20)))
     deserialize(data, TFMessage)
     with pytest.raises(MessageDataError):
@@ -128,7 +128,7 @@ def test_damaged_messages_of_known_frames_are_refused():
         deserialize(data[:4] + b"\xff\xff\xff\x7f" + data[8:], TFMessage)
 
 
-def test_what_rclpys_class_has():
+def test_tf_message_has_interface_of_rclpy_class():
     message = TFMessage(transforms=[TransformStamped()])
     assert list(TFMessage.__slots__) == ["_transforms"]
     assert message._transforms is message.transforms
@@ -143,13 +143,13 @@ def test_what_rclpys_class_has():
             assert other == form
 
 
-def test_a_stamp_beyond_32_bits_is_refused():
+def test_stamp_beyond_32_bits_is_rejected():
     batch = TransformBatch(("a",), ("b",), 2**63, np.zeros((1, 7)))
     with pytest.raises(MessageDataError, match="The 'sec' field must be an integer in"):
         serialize(TFMessage(batch=batch))
 
 
-def test_a_tfmessage_within_another_message(interface_package):
+def test_tf_message_can_be_nested(interface_package):
     from linkwright.messages import get_message
 
     interface_package.write("msg", "Tree", "tf2_msgs/TFMessage tf\ntf2_msgs/TFMessage[] more\nint8 n\n")

@@ -44,7 +44,7 @@ def dumped(data, flow_style=False):
 
 
 @pytest.mark.parametrize("name", ALL)
-def test_the_text_is_pyyamls(name):
+def test_to_yaml_matches_pyyaml(name):
     for seed, options in enumerate(OPTIONS):
         message = random_message(get_message(name), seed)
         assert to_yaml(message, **options) == dumped(to_dict(message, **options))
@@ -53,19 +53,19 @@ def test_the_text_is_pyyamls(name):
 
 @given(text=st.text(max_size=40))
 @settings(max_examples=300)
-def test_any_text_is_as_pyyaml_writes_it(text):
+def test_strings_match_pyyaml(text):
     message = get_message("diagnostic_msgs/msg/DiagnosticStatus")(name=text)
     message.values = [get_message("diagnostic_msgs/msg/KeyValue")(key="k", value=text)]
     assert to_yaml(message) == dumped(to_dict(message))
 
 
 @given(st.floats())
-def test_any_number_is_as_pyyaml_writes_it(number):
+def test_numbers_match_pyyaml(number):
     message = get_message("std_msgs/msg/Float64")(data=number)
     assert to_yaml(message) == dumped(to_dict(message))
 
 
-def test_a_joint_state():
+def test_joint_state_as_yaml():
     message = JointState(name=["a", "b"], position=[1.0, 2.5e-7])
     assert to_yaml(message) == (
         "header:\n  stamp:\n    sec: 0\n    nanosec: 0\n  frame_id: ''\n"
@@ -76,7 +76,7 @@ def test_a_joint_state():
     assert to_dict(message)["position"] == [1.0, 2.5e-07]
 
 
-def test_what_is_left_out():
+def test_long_and_excluded_values_are_abbreviated():
     message = JointState(name=["left_wheel", "b", "c"], position=[1.0, 2.0, 3.0])
     message.header.frame_id = "base_link"
     short = to_dict(message, truncate_length=2)
@@ -93,18 +93,18 @@ def test_what_is_left_out():
     assert abbreviated == "<sequence type: rcl_interfaces/msg/IntegerRange[1], length: 0>"
 
 
-def test_nothing_to_write():
+def test_empty_message_is_empty_mapping():
     assert to_yaml(get_message("std_msgs/msg/Empty")()) == "{}\n"
     trigger = get_service("std_srvs/srv/Trigger")
     assert to_yaml(trigger.Event(request=[trigger.Request()])).endswith("request:\n- {}\nresponse: []\n")
 
 
-def test_bytes_are_characters():
+def test_bytes_are_written_as_characters():
     assert to_dict(get_message("std_msgs/msg/Byte")(data=b"\xe9")) == {"data": "é"}
     assert to_csv(get_message("std_msgs/msg/Byte")(data=b"a")) == "b'a'"
 
 
-def test_prototypes():
+def test_prototype_has_default_values():
     assert prototype("geometry_msgs/msg/Vector3") == "x: 0.0\ny: 0.0\nz: 0.0\n"
     assert prototype("std_srvs/srv/SetBool") == "data: false\n"
     assert prototype("turtlesim/action/RotateAbsolute") == "theta: 0.0\n"

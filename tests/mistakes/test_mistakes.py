@@ -15,17 +15,17 @@ CASES = {
 }
 
 
-def test_there_are_at_least_fifty() -> None:
+def test_corpus_has_at_least_fifty_mistakes() -> None:
     assert len(CASES) >= 50
 
 
 @pytest.mark.parametrize("case", CASES.values(), ids=CASES.keys())
-def test_mistake(case: Case, tmp_path: Path) -> None:
+def test_mistake_gives_expected_findings(case: Case, tmp_path: Path) -> None:
     assert case.check(tmp_path) == case.expected
 
 
 @pytest.mark.parametrize("case", CASES.values(), ids=CASES.keys())
-def test_every_mistake_has_a_place_and_a_hint(case: Case) -> None:
+def test_expected_findings_have_location_and_hint(case: Case) -> None:
     first, *rest = case.expected.splitlines()
     if not case.arguments:  # a mistake on the command line is in no file
         assert ":" in first.split()[0], "it has no place"

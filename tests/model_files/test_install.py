@@ -34,7 +34,7 @@ def below(folder):
     return {path.relative_to(folder).as_posix() for path in folder.rglob("*") if path.is_file()}
 
 
-def test_an_archive_is_fetched_unpacked_and_checked(shop, home):
+def test_archive_is_downloaded_unpacked_and_verified(shop, home):
     entry = shop.of(PACKED, "toy.zip", ARCHIVE)
     seen = []
     place = install(entry, None, None, lambda done, total: seen.append((done, total)))
@@ -45,7 +45,7 @@ def test_an_archive_is_fetched_unpacked_and_checked(shop, home):
     assert [done for done, _ in seen] == sorted(done for done, _ in seen)
 
 
-def test_a_model_that_is_one_file(shop, home):
+def test_single_file_model_is_installed_and_removed(shop, home):
     entry = shop.of(SINGLE, "net.tflite", b"network" * 1_000)
     assert get(entry).read_bytes() == b"network" * 1_000
     assert below(home) == {"net.tflite"}
@@ -53,7 +53,7 @@ def test_a_model_that_is_one_file(shop, home):
     assert not is_installed(entry)
 
 
-def test_a_connection_that_breaks_goes_on_where_it_was(shop, home):
+def test_interrupted_download_is_resumed(shop, home):
     entry = shop.of(PACKED, "toy.zip", ARCHIVE)
     shop.breaks = [200, 100, 0]
     get(entry)
@@ -61,7 +61,7 @@ def test_a_connection_that_breaks_goes_on_where_it_was(shop, home):
     assert below(home) == {f"toy-1.0/{name}" for name in FILES}
 
 
-def test_a_connection_that_always_breaks_is_given_up_and_the_next_call_goes_on(shop, home):
+def test_repeatedly_interrupted_download_fails_and_is_resumed_later(shop, home):
     entry = shop.of(PACKED, "toy.zip", ARCHIVE)
     shop.breaks = [150, 0, 0, 0]
     diagnostic = refused(entry)
@@ -74,13 +74,13 @@ def test_a_connection_that_always_breaks_is_given_up_and_the_next_call_goes_on(s
     assert shop.asked == ["bytes=150-"]
 
 
-def test_a_server_that_cannot_begin_in_the_middle_sends_all_again(shop):
+def test_server_without_range_support_restarts_download(shop):
     entry = shop.of(PACKED, "toy.zip", ARCHIVE)
     shop.ranges, shop.breaks = False, [200]
     assert (get(entry) / "conf" / "model.conf").read_bytes() == FILES["conf/model.conf"]
 
 
-def test_what_another_file_left_is_fetched_anew(shop, home):
+def test_partial_file_of_another_version_is_downloaded_again(shop, home):
     entry = shop.of(PACKED, "toy.zip", ARCHIVE)
     home.mkdir(parents=True)
     (home / ".toy.zip.part").write_bytes(b"of another version")
@@ -88,7 +88,7 @@ def test_what_another_file_left_is_fetched_anew(shop, home):
     assert shop.asked == ["bytes=18-", None]
 
 
-def test_a_part_that_is_longer_than_the_file_is_fetched_anew(shop, home):
+def test_oversized_partial_file_is_downloaded_again(shop, home):
     entry = shop.of(PACKED, "toy.zip", ARCHIVE)
     home.mkdir(parents=True)
     (home / ".toy.zip.part").write_bytes(bytes(len(ARCHIVE) + 1))
@@ -96,7 +96,7 @@ def test_a_part_that_is_longer_than_the_file_is_fetched_anew(shop, home):
     assert shop.asked == [f"bytes={len(ARCHIVE) + 1}-", None]
 
 
-def test_a_part_that_is_whole_is_not_fetched_again(shop, home):
+def test_complete_partial_file_is_not_downloaded_again(shop, home):
     entry = shop.of(PACKED, "toy.zip", ARCHIVE)
     home.mkdir(parents=True)
     (home / ".toy.zip.part").write_bytes(ARCHIVE)
@@ -104,7 +104,7 @@ def test_a_part_that_is_whole_is_not_fetched_again(shop, home):
     assert shop.asked == [f"bytes={len(ARCHIVE)}-"]
 
 
-def test_a_file_with_another_sum_does_not_count_and_leaves_nothing(shop, home):
+def test_wrong_checksum_is_rejected_and_leaves_no_files(shop, home):
     entry = shop.of(PACKED, "toy.zip", archive({**FILES, "am/final.mdl": b"another"}))
     diagnostic = refused(entry)
     assert diagnostic.code == "MODEL104"
@@ -113,7 +113,7 @@ def test_a_file_with_another_sum_does_not_count_and_leaves_nothing(shop, home):
     assert below(home) == set()
 
 
-def test_without_the_archives_sum_those_of_its_files_hold(shop, home):
+def test_file_checksums_are_verified_without_archive_checksum(shop, home):
     entry = replace(shop.of(PACKED, "toy.zip", archive({**FILES, "am/final.mdl": b"another"})), sha256=None)
     diagnostic = refused(entry)
     assert diagnostic.code == "MODEL104"
@@ -121,7 +121,7 @@ def test_without_the_archives_sum_those_of_its_files_hold(shop, home):
     assert below(home) == set()
 
 
-def test_no_such_file_on_the_server(shop, home):
+def test_http_404_is_reported(shop, home):
     entry = replace(PACKED, address=f"{shop.address}/toy.zip")
     diagnostic = refused(entry)
     assert diagnostic.code == "MODEL103"
@@ -129,20 +129,20 @@ def test_no_such_file_on_the_server(shop, home):
     assert below(home) == set()
 
 
-def test_nobody_listens(shop, home):
+def test_unreachable_server_is_reported(shop, home):
     diagnostic = refused(replace(PACKED, address="http://127.0.0.1:9/toy.zip"))
     assert diagnostic.code == "MODEL103"
     assert "toy.zip" in str(diagnostic.hint)
     assert below(home) == set()
 
 
-def test_more_than_the_model_is_not_fetched(shop, home):
+def test_oversized_download_is_rejected(shop, home):
     entry = shop.of(PACKED, "toy.zip", bytes(2_000_001))
     assert refused(entry).code == "MODEL103"
     assert below(home) == set()
 
 
-def test_a_mirror_is_an_address_of_a_file_or_a_folder(shop, tmp_path):
+def test_mirror_can_be_file_or_folder_url(shop, tmp_path):
     entry = replace(PACKED, address="http://127.0.0.1:9/models/toy.zip")
     shop.files["toy.zip"] = ARCHIVE
     assert get(entry, f"{shop.address}/toy.zip", tmp_path / "a").is_dir()
@@ -150,7 +150,7 @@ def test_a_mirror_is_an_address_of_a_file_or_a_folder(shop, tmp_path):
 
 
 @pytest.mark.parametrize("form", ["file", "folder with it", "unpacked", "above unpacked"])
-def test_models_come_from_files_and_folders(form, tmp_path, home):
+def test_model_is_installed_from_file_or_folder(form, tmp_path, home):
     entry = replace(PACKED, address="http://127.0.0.1:9/toy.zip")
     given = tmp_path / "given"
     given.mkdir()
@@ -165,13 +165,13 @@ def test_models_come_from_files_and_folders(form, tmp_path, home):
 
 
 @pytest.mark.parametrize("source", ["nowhere", "."])
-def test_a_source_without_the_model(source, tmp_path, monkeypatch):
+def test_source_without_model_is_rejected(source, tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)
     diagnostic = refused(PACKED, source)
     assert diagnostic.code == "MODEL107"
 
 
-def test_nothing_but_the_models_files_leaves_an_archive(tmp_path, home):
+def test_only_listed_files_are_extracted(tmp_path, home):
     packed = tmp_path / "toy.zip"
     packed.write_bytes(
         archive(**{"../outside": b"x", "/absolute": b"x", "toy-1.0/../../up": b"x", "toy-1.0/more": b"x"})
@@ -180,7 +180,7 @@ def test_nothing_but_the_models_files_leaves_an_archive(tmp_path, home):
     assert below(tmp_path) == {"toy.zip", *(f"data/linkwright/models/toy-1.0/{name}" for name in FILES)}
 
 
-def test_a_bomb_is_stopped(tmp_path, home, monkeypatch):
+def test_decompression_bomb_is_rejected(tmp_path, home, monkeypatch):
     monkeypatch.setattr("linkwright.model_files.archives._MAX_BYTES", 10_000)
     packed = tmp_path / "toy.zip"
     packed.write_bytes(ARCHIVE)
@@ -195,14 +195,14 @@ def test_a_bomb_is_stopped(tmp_path, home, monkeypatch):
     [b"no archive", ARCHIVE[:-30], archive({"am/final.mdl": FILES["am/final.mdl"]}), b""],
     ids=["text", "cut", "lacks", "empty"],
 )
-def test_what_is_no_archive_of_the_model(data, tmp_path, home):
+def test_invalid_archive_is_rejected(data, tmp_path, home):
     packed = tmp_path / "toy.zip"
     packed.write_bytes(data)
     assert refused(replace(PACKED, sha256=None), packed).code == "MODEL105"
     assert below(home) == set()
 
 
-def test_a_damaged_archive(tmp_path, home):
+def test_damaged_archive_is_rejected(tmp_path, home):
     packed = tmp_path / "toy.zip"
     at = ARCHIVE.index(b"acoustic" * 3)
     packed.write_bytes(ARCHIVE[:at] + b"X" + ARCHIVE[at + 1 :])
@@ -212,7 +212,7 @@ def test_a_damaged_archive(tmp_path, home):
 
 @needs_limits
 @pytest.mark.parametrize("room", [100, len(ARCHIVE) - 5_000])
-def test_a_full_disk_leaves_the_model_that_was_there(room, shop, home):
+def test_full_disk_keeps_installed_model(room, shop, home):
     entry = shop.of(PACKED, "toy.zip", ARCHIVE)
     old = home / "toy-1.0" / "am"
     old.mkdir(parents=True)
@@ -227,12 +227,12 @@ def test_a_full_disk_leaves_the_model_that_was_there(room, shop, home):
 
 
 @pytest.mark.skipif(sys.platform == "win32", reason="a file where a folder is wanted is another error there")
-def test_a_folder_that_cannot_be_made(tmp_path):
+def test_uncreatable_folder_is_reported(tmp_path):
     (tmp_path / "file").write_text("")
     assert refused(PACKED, None, tmp_path / "file" / "models").code == "MODEL106"
 
 
-def test_a_break_by_the_user_keeps_what_came_and_leaves_no_draft(shop, home):
+def test_keyboard_interrupt_keeps_partial_download(shop, home):
     entry = shop.of(PACKED, "toy.zip", ARCHIVE)
 
     def interrupt(done, total):
@@ -245,7 +245,7 @@ def test_a_break_by_the_user_keeps_what_came_and_leaves_no_draft(shop, home):
     assert below(home) == {f"toy-1.0/{name}" for name in FILES}
 
 
-def test_an_installed_model_that_changed_is_found_out(home, tmp_path):
+def test_modified_model_fails_verification(home, tmp_path):
     packed = tmp_path / "toy.zip"
     packed.write_bytes(ARCHIVE)
     place = get(PACKED, packed)
@@ -261,7 +261,7 @@ def test_an_installed_model_that_changed_is_found_out(home, tmp_path):
     verify(PACKED, place)
 
 
-def test_a_model_that_was_not_fetched_says_how():
+def test_missing_model_has_install_hint():
     with pytest.raises(LinkwrightError) as caught:
         find_model(PACKED)
     (diagnostic,) = caught.value.diagnostics

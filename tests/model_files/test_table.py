@@ -11,7 +11,7 @@ from linkwright.model_files import model_entry, model_table
 
 
 @pytest.mark.parametrize("entry", model_table().values(), ids=list(model_table()))
-def test_every_model_can_be_fetched_and_checked(entry):
+def test_table_entries_have_address_license_and_checksums(entry):
     assert entry.kind in ("speech", "vision")
     assert entry.address.startswith("https://")
     assert entry.license == "Apache-2.0"
@@ -24,7 +24,7 @@ def test_every_model_can_be_fetched_and_checked(entry):
         assert not name.startswith("/")
 
 
-def test_a_name_that_is_not_there_is_told_with_one_that_is_near():
+def test_unknown_model_suggests_similar_names():
     with pytest.raises(LinkwrightError) as caught:
         model_entry("vosk-cn")
     (diagnostic,) = caught.value.diagnostics

@@ -9,7 +9,7 @@ from linkwright.nodes.answers import wait_for_service
 TRIGGER = "std_srvs/srv/Trigger"
 
 
-async def test_who_waits_for_a_service_may_be_ended_while_others_come_and_go() -> None:
+async def test_canceled_wait_for_service_survives_graph_changes() -> None:
     faults: list[str] = []
     loop = asyncio.get_running_loop()
     loop.set_exception_handler(lambda _, context: faults.append(str(context.get("exception"))))

@@ -10,7 +10,7 @@ from linkwright.nodes.add_two_ints import AddTwoIntsClient, AddTwoIntsServer
 from linkwright.nodes.demo_camera import DemoCamera
 
 
-async def test_the_client_waits_for_the_server_and_ends(stage, logged):
+async def test_add_two_ints_client_waits_for_server_and_ends(stage, logged):
     client = AddTwoIntsClient(stage.graph, NodeOptions())
     await stage.clock.advance(2.5)
     assert logged("INFO") == ["service not available, waiting again..."] * 2
@@ -21,7 +21,7 @@ async def test_the_client_waits_for_the_server_and_ends(stage, logged):
     client.close()
 
 
-async def test_the_test_image_moves(stage):
+async def test_demo_camera_image_changes(stage):
     images = []
     stage.node.create_subscription(get_message("sensor_msgs/msg/Image"), "/image", images.append, 10)
     DemoCamera(stage.graph, stage.options({"width": 64, "height": 48, "frequency": 10.0}))
@@ -37,6 +37,6 @@ async def test_the_test_image_moves(stage):
     ("parameters", "message"),
     [({"width": 0}, "parameter 'width' must be more than 0"), ({"reliability": "maybe"}, "parameter 'reliability'")],
 )
-async def test_bad_parameters_of_the_test_image(stage, parameters, message):
+async def test_invalid_demo_camera_parameters_are_rejected(stage, parameters, message):
     with pytest.raises(LinkwrightError, match=message):
         DemoCamera(stage.graph, stage.options(parameters))

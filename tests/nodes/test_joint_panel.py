@@ -32,7 +32,7 @@ def messages(gui):
     return messages
 
 
-def test_rows(gui):
+def test_sliders_match_joints_of_description(gui):
     assert gui.panel.sliders() == [
         JointSlider("lift", "prismatic", 0.5, 1.5, 1.0),
         JointSlider("claw", "revolute", -1.0, 2.0, 0.1, "grip", -1.0, 0.1),
@@ -43,7 +43,7 @@ def test_rows(gui):
     assert gui.node.get_fully_qualified_name() == "/joint_state_publisher"
 
 
-async def test_there_are_no_rows_before_a_description(stage):
+async def test_panel_has_no_sliders_without_description(stage):
     panel = stage.gui().panel
     assert panel.sliders() == []
     assert panel.positions() == {}
@@ -52,7 +52,7 @@ async def test_there_are_no_rows_before_a_description(stage):
     assert not panel.set_position("a", 1.0)
 
 
-async def test_a_move_is_published_at_once_and_many_as_one(stage, gui, messages):
+async def test_moves_are_published_at_once_and_combined(stage, gui, messages):
     before = len(stage.joint_states)
     for position in (0.1, 0.2, 0.3):
         assert gui.panel.set_position("grip", position)
@@ -64,7 +64,7 @@ async def test_a_move_is_published_at_once_and_many_as_one(stage, gui, messages)
     assert messages == ["positions"]
 
 
-async def test_a_move_reaches_the_transforms_without_a_tick(stage, gui, clock):
+async def test_move_updates_transforms_immediately(stage, gui, clock):
     stage.robot_state_publisher(ROBOT)
     await clock.advance(0.512)
     gui.panel.set_position("lift", 1.25)
@@ -74,7 +74,7 @@ async def test_a_move_reaches_the_transforms_without_a_tick(stage, gui, clock):
     assert turned[2] == 1.25
 
 
-async def test_the_last_move_of_a_drag_is_never_lost(stage, gui, clock):
+async def test_last_move_of_drag_is_published(stage, gui, clock):
     stage.robot_state_publisher(ROBOT)
     await clock.advance(0.512)
     for step in range(1, 11):
@@ -84,7 +84,7 @@ async def test_the_last_move_of_a_drag_is_never_lost(stage, gui, clock):
     assert stage.buffer.lookup("base", "lift_link")[2] == pytest.approx(1.0)
 
 
-async def test_the_beat_starts_anew_after_a_move(stage, gui, clock):
+async def test_publish_timer_restarts_after_move(stage, gui, clock):
     await clock.advance(0.06)
     gui.panel.set_position("grip", 1.0)
     await stage.graph.settle()
@@ -96,7 +96,7 @@ async def test_the_beat_starts_anew_after_a_move(stage, gui, clock):
 
 
 @pytest.mark.parametrize(("value", "position"), [(9.0, 2.0), (-9.0, -1.0), (0.5, 0.5)])
-async def test_moves_stay_within_limits(gui, value, position):
+async def test_moves_are_clamped_to_limits(gui, value, position):
     assert gui.panel.set_position("grip", value)
     assert gui.panel.positions()["grip"] == position
 
@@ -104,7 +104,7 @@ async def test_moves_stay_within_limits(gui, value, position):
 @pytest.mark.parametrize(
     ("name", "value"), [("gone", 1.0), ("claw", 1.0), ("stuck", 1.0), ("grip", nan), ("grip", inf)]
 )
-async def test_what_cannot_be_moved_is_left_alone(stage, gui, messages, name, value):
+async def test_invalid_moves_are_ignored(stage, gui, messages, name, value):
     before = gui.panel.positions()
     assert not gui.panel.set_position(name, value)
     await stage.graph.settle()
@@ -112,7 +112,7 @@ async def test_what_cannot_be_moved_is_left_alone(stage, gui, messages, name, va
     assert messages == []
 
 
-async def test_randomize_goes_anywhere_within_limits(stage, gui, messages, logged):
+async def test_randomize_covers_range_within_limits(stage, gui, messages, logged):
     panel = JointPanel(gui.node, gui.joints, gui.publish_soon, Random(1))
     panel.rebuild()
     seen = {name: [] for name in panel.positions()}
@@ -129,7 +129,7 @@ async def test_randomize_goes_anywhere_within_limits(stage, gui, messages, logge
     assert logged("INFO")[-1] == "Randomizing"
 
 
-async def test_center_goes_to_the_zeros(stage):
+async def test_center_moves_to_zeros(stage):
     gui = stage.gui(zeros={"grip": 0.75, "spin": 99.0})
     await stage.describe(ROBOT)
     gui.panel.randomize()
@@ -137,7 +137,7 @@ async def test_center_goes_to_the_zeros(stage):
     assert gui.panel.positions() == {"lift": 1.0, "claw": pytest.approx(-0.65), "grip": 0.75, "spin": pi}
 
 
-async def test_a_new_description_tells_and_keeps_positions(stage, gui, messages):
+async def test_new_description_notifies_and_keeps_positions(stage, gui, messages):
     gui.panel.set_position("grip", 1.25)
     await stage.describe(robot(joint("grip"), joint("added")))
     assert set(messages) == {"positions", "sliders"}
@@ -145,7 +145,7 @@ async def test_a_new_description_tells_and_keeps_positions(stage, gui, messages)
     assert gui.panel.positions() == {"grip": 1.25, "added": 0.0}
 
 
-async def test_sources_and_the_sweep_move_the_sliders(stage, clock):
+async def test_source_topics_and_sweep_move_sliders(stage, clock):
     gui = stage.gui(source_list=["source"], delta=0.125)
     await stage.describe(robot(joint("a")))
     messages = []
@@ -159,7 +159,7 @@ async def test_sources_and_the_sweep_move_the_sliders(stage, clock):
     assert messages == ["positions", "positions"]
 
 
-async def test_subscribers_come_and_go_and_may_fail(stage, gui, messages, logged):
+async def test_subscribers_can_unsubscribe_and_fail(stage, gui, messages, logged):
     def fail(_change):
         raise RuntimeError("page is gone")
 
@@ -177,7 +177,7 @@ async def test_subscribers_come_and_go_and_may_fail(stage, gui, messages, logged
     assert logged("ERROR")[0].startswith("joint panel callback failed:\nTraceback")
 
 
-async def test_a_file_given_at_the_start_has_its_rows(stage, tmp_path):
+async def test_description_file_argument_creates_sliders(stage, tmp_path):
     path = tmp_path / "robot.urdf"
     path.write_text(ROBOT, encoding="utf-8")
     gui = JointStatePublisherGui(stage.graph, NodeOptions(arguments=[str(path)]))

@@ -19,7 +19,7 @@ CHAIN = robot(
 )
 
 
-async def test_it_waits_for_a_description_and_publishes_at_once_and_then_at_its_rate(stage, clock, logged):
+async def test_node_waits_for_description_and_publishes_at_rate(stage, clock, logged):
     stage.joint_state_publisher()
     await clock.advance(1.0)
     assert stage.joint_states == []
@@ -34,7 +34,7 @@ async def test_it_waits_for_a_description_and_publishes_at_once_and_then_at_its_
     assert list(stage.joint_states[-1].velocity) == list(stage.joint_states[-1].effort) == []
 
 
-async def test_the_rate_and_the_other_quantities(stage, clock):
+async def test_rate_and_default_quantities_are_configurable(stage, clock):
     stage.joint_state_publisher(
         rate=2.5,
         publish_default_positions=False,
@@ -48,7 +48,7 @@ async def test_the_rate_and_the_other_quantities(stage, clock):
     assert (list(message.position), list(message.velocity), list(message.effort)) == ([], [0.0], [0.0])
 
 
-async def test_order_of_the_file_and_joints_that_do_not_count(stage):
+async def test_joints_keep_file_order_and_fixed_ones_are_omitted(stage):
     stage.joint_state_publisher()
     await stage.describe(
         robot(
@@ -63,7 +63,7 @@ async def test_order_of_the_file_and_joints_that_do_not_count(stage):
     assert stage.joint_states[-1].name == ["z", "m", "a"]
 
 
-async def test_nothing_is_published_for_a_robot_without_joints(stage, clock):
+async def test_robot_without_joints_publishes_nothing(stage, clock):
     stage.joint_state_publisher()
     await stage.describe(robot(joint("f", "fixed")))
     await clock.advance(1.0)
@@ -89,7 +89,7 @@ async def test_nothing_is_published_for_a_robot_without_joints(stage, clock):
         ),
     ],
 )
-async def test_where_joints_start(stage, text, parameters, expected):
+async def test_initial_positions_respect_limits_and_zeros(stage, text, parameters, expected):
     stage.joint_state_publisher(**parameters)
     await stage.describe(robot(text))
     assert stage.positions() == {"j": pytest.approx(expected)}
@@ -99,7 +99,7 @@ class TestLimits:
     def ranges(self, publisher):
         return {name: (each.lower, each.upper) for name, each in publisher.joints.layout.ranges.items()}
 
-    async def test_of_each_kind(self, stage):
+    async def test_limits_by_joint_type(self, stage):
         publisher = stage.joint_state_publisher()
         await stage.describe(
             robot(
@@ -116,7 +116,7 @@ class TestLimits:
             "half": (-1.0, 0.5),
         }
 
-    def test_that_are_infinite(self):
+    def test_infinite_limits_have_finite_range(self):
         limits = {"wide": (-inf, inf), "up": (1.0, inf), "down": (-inf, 1.0)}
         joints = {
             name: Joint(name, "revolute" if name == "wide" else "prismatic", "base", name, limit=Limit(*pair))
@@ -128,7 +128,7 @@ class TestLimits:
         assert found == {"wide": (-pi, pi), "up": (1.0, 3.0), "down": (-1.0, 1.0)}
         assert [joint.zero for joint in layout.free] == [0.0, 2.0, 0.0]
 
-    async def test_that_are_missing(self, stage, logged):
+    async def test_joints_with_missing_limits_are_skipped(self, stage, logged):
         stage.joint_state_publisher()
         await stage.describe(robot(joint("j", limit="upper='1'"), joint("k", limit="lower='1'"), joint("a")))
         assert stage.joint_states[-1].name == ["a"]
@@ -139,7 +139,7 @@ class TestLimits:
 
 
 class TestDependentJoints:
-    async def test_chains_of_mimic_joints_are_followed(self, stage):
+    async def test_mimic_chains_are_followed(self, stage):
         stage.joint_state_publisher(zeros={"a": 1.0})
         await stage.describe(CHAIN)
         positions = stage.positions()
@@ -148,7 +148,7 @@ class TestDependentJoints:
         assert positions["b"] == pytest.approx(2 * 1.0 + 0.5)
         assert positions["c"] == pytest.approx(3 * positions["b"] + 0.1)
 
-    async def test_velocity_is_scaled_and_effort_copied(self, stage, clock):
+    async def test_mimic_velocity_is_scaled_and_effort_copied(self, stage, clock):
         stage.joint_state_publisher(source_list=["measured"])
         await stage.describe(CHAIN)
         source = stage.node.create_publisher(JointState, "measured", 10)
@@ -159,12 +159,12 @@ class TestDependentJoints:
         assert list(message.effort) == [4.0, 4.0, 4.0]
         assert stage.positions()["b"] == pytest.approx(2.5)
 
-    async def test_mimic_tags_can_be_left_aside(self, stage):
+    async def test_mimic_tags_can_be_disabled(self, stage):
         stage.joint_state_publisher(use_mimic_tags=False)
         await stage.describe(CHAIN)
         assert stage.positions() == {"c": 0.0, "b": 0.0, "a": 0.0}
 
-    async def test_parameters_come_before_mimic_tags_and_stay(self, stage):
+    async def test_dependent_joints_override_mimic_tags(self, stage):
         """In joint_state_publisher 2.4 the tag of the description overwrites the parameter."""
         dependent = {"b": {"parent": "a", "factor": 5.0}, "dotted.name": {"parent": "a", "offset": 1}}
         stage.joint_state_publisher(zeros={"a": 1.0}, dependent_joints=dependent)
@@ -175,14 +175,14 @@ class TestDependentJoints:
             assert positions["c"] == pytest.approx(15.1)
             assert positions["dotted.name"] == pytest.approx(2.0)
 
-    async def test_a_circle_is_told_and_the_last_robot_stays(self, stage, logged):
+    async def test_mimic_cycle_is_rejected_and_last_robot_stays(self, stage, logged):
         publisher = stage.joint_state_publisher()
         await stage.describe(robot(joint("a")))
         await stage.describe(robot(joint("a", more=mimic("b")), joint("b", more=mimic("a"))))
         assert logged("ERROR") == ["Found an infinite recursive mimic chain: ['a', 'b', 'a']"]
         assert list(publisher.joints.layout.ranges) == ["a"]
 
-    async def test_a_master_that_does_not_move(self, stage, logged):
+    async def test_mimic_of_fixed_joint_is_reported(self, stage, logged):
         stage.joint_state_publisher()
         await stage.describe(robot(joint("f", "fixed"), joint("a", more=mimic("f", "offset='0.25'")), joint("b")))
         assert logged("WARN") == ["joint 'a' follows joint 'f', which does not move"]
@@ -190,7 +190,7 @@ class TestDependentJoints:
 
 
 class TestSources:
-    async def test_positions_are_taken_unclamped_and_published_with_the_next_message(self, stage, clock):
+    async def test_source_positions_are_not_clamped(self, stage, clock):
         stage.joint_state_publisher(source_list=["left", "right"])
         await stage.describe(robot(joint("a"), joint("b")))
         for topic, name, position in (("left", "a", 99.0), ("right", "b", 1.0), ("right", "unknown", 1.0)):
@@ -201,7 +201,7 @@ class TestSources:
         await clock.advance(0.1)
         assert stage.positions() == {"a": 99.0, "b": 1.0}
 
-    async def test_a_joint_nothing_was_heard_of_has_zero_among_others(self, stage, clock):
+    async def test_joint_without_source_data_is_zero(self, stage, clock):
         stage.joint_state_publisher(source_list=["source"], publish_default_positions=False)
         await stage.describe(robot(joint("a"), joint("b")))
         assert list(stage.joint_states[-1].position) == []
@@ -211,7 +211,7 @@ class TestSources:
         assert stage.positions() == {"a": 0.0, "b": 1.0}
 
 
-async def test_the_sweep_turns_round_at_limits_and_continuous_joints_start_over(stage, clock):
+async def test_sweep_reverses_at_limits_and_wraps_continuous_joints(stage, clock):
     stage.joint_state_publisher(delta=1.0, rate=1)
     await stage.describe(robot(joint("r", limit="lower='-0.5' upper='1.5'"), joint("c", "continuous")))
     seen = []
@@ -224,7 +224,7 @@ async def test_the_sweep_turns_round_at_limits_and_continuous_joints_start_over(
 
 
 class TestNewDescription:
-    async def test_joints_that_are_still_there_keep_their_places(self, stage, clock):
+    async def test_remaining_joints_keep_positions(self, stage, clock):
         publisher = stage.joint_state_publisher(source_list=["source"])
         await stage.describe(robot(joint("a"), joint("b"), joint("gone")))
         publisher.joints.set_position("a", 1.5)
@@ -232,13 +232,13 @@ class TestNewDescription:
         await stage.describe(robot(joint("new"), joint("b"), joint("a", limit="lower='-1' upper='1'")))
         assert stage.positions() == {"new": 0.0, "b": 0.5, "a": 1.0}
 
-    async def test_a_joint_that_never_moved_goes_to_its_new_zero(self, stage):
+    async def test_unmoved_joint_takes_its_new_zero(self, stage):
         stage.joint_state_publisher()
         await stage.describe(robot(joint("a")))
         await stage.describe(robot(joint("a", limit="lower='1' upper='3'")))
         assert stage.positions() == {"a": 2.0}
 
-    async def test_one_that_cannot_be_read_is_ignored(self, stage, clock, logged):
+    async def test_malformed_description_is_ignored(self, stage, clock, logged):
         stage.joint_state_publisher()
         await stage.describe(robot(joint("a")))
         await stage.describe("<robot")
@@ -246,7 +246,7 @@ class TestNewDescription:
         await clock.advance(0.1)
         assert list(stage.positions()) == ["a"]
 
-    async def test_it_is_shown_without_delay(self, stage, clock):
+    async def test_new_description_is_published_without_delay(self, stage, clock):
         """Description, joint states and transforms of a saved file arrive without a tick of the clock."""
         publisher = stage.robot_state_publisher(robot(joint("a")))
         stage.joint_state_publisher()
@@ -257,14 +257,14 @@ class TestNewDescription:
 
 
 class TestFile:
-    async def test_a_file_is_read_instead_of_the_topic(self, stage, tmp_path):
+    async def test_file_is_read_instead_of_topic(self, stage, tmp_path):
         path = tmp_path / "robot.urdf"
         path.write_text(robot(joint("from_file")), encoding="utf-8")
         JointStatePublisher(stage.graph, NodeOptions(arguments=[str(path)]))
         await stage.describe(robot(joint("from_topic")))
         assert list(stage.positions()) == ["from_file"]
 
-    async def test_bad_files_and_arguments(self, stage, tmp_path, logged):
+    async def test_invalid_files_and_arguments_are_rejected(self, stage, tmp_path, logged):
         bad = tmp_path / "bad.urdf"
         bad.write_text("<robot", encoding="utf-8")
         for arguments, message in (
@@ -304,13 +304,13 @@ class TestParameters:
             ),
         ],
     )
-    async def test_that_mean_nothing_are_all_told(self, stage, parameters, messages):
+    async def test_invalid_parameters_are_all_reported(self, stage, parameters, messages):
         with pytest.raises(LinkwrightError) as caught:
             stage.joint_state_publisher(**parameters)
         assert [diagnostic.message for diagnostic in caught.value.diagnostics] == messages
         assert {diagnostic.code for diagnostic in caught.value.diagnostics} == {"NODE201"}
 
-    async def test_changes_take_effect(self, stage, clock):
+    async def test_parameter_changes_take_effect(self, stage, clock):
         publisher = stage.joint_state_publisher(zeros={"b": 0.5})
         await stage.describe(CHAIN)
         assert await stage.set(publisher, rate=100) == [(True, "")]
@@ -324,7 +324,7 @@ class TestParameters:
         await stage.set(publisher, source_list=["other"])
         assert stage.graph.count_subscribers("/source") == 0
 
-    async def test_changes_may_be_refused(self, stage):
+    async def test_invalid_parameter_changes_are_rejected(self, stage):
         publisher = stage.joint_state_publisher(dependent_joints={"b": {"parent": "c"}}, use_mimic_tags=False)
         await stage.describe(CHAIN)
         ((successful, reason),) = await stage.set(publisher, use_mimic_tags=True)
@@ -335,7 +335,7 @@ class TestParameters:
         ]
 
 
-async def test_other_formats_are_named(stage, logged, tmp_path):
+async def test_other_formats_are_named_in_warning(stage, logged, tmp_path):
     stage.joint_state_publisher()
     await stage.describe("<?xml version='1.0'?><sdf version='1.7'><model name='a'/></sdf>")
     await stage.describe("<COLLADA/>")

@@ -61,7 +61,7 @@ def microphone(monkeypatch):
 
 
 @pytest.mark.parametrize("executable", EXECUTABLES, ids="/".join)
-async def test_every_executable_starts_and_ends(stage, executable, terminal):
+async def test_executables_start_and_close(stage, executable, terminal):
     options = NodeOptions(
         name="mine",
         namespace="/robot",
@@ -86,7 +86,7 @@ async def test_every_executable_starts_and_ends(stage, executable, terminal):
 
 
 @pytest.mark.parametrize("executable", EXECUTABLES, ids="/".join)
-async def test_the_name_of_a_node_that_is_given_none_is_known(stage, executable, terminal):
+async def test_default_name_matches_started_node(stage, executable, terminal):
     options = NodeOptions(
         parameters={
             "robot_description": robot(joint("a")),
@@ -106,13 +106,13 @@ async def test_the_name_of_a_node_that_is_given_none_is_known(stage, executable,
     running.close()
 
 
-async def test_the_log_level_reaches_the_node(graph):
+async def test_log_level_argument_is_applied(graph):
     node, others = create_node(graph, NodeOptions(arguments=["--ros-args", "--log-level", "warn"]), "node")
     assert node.get_logger().level is LogLevel.WARN
     assert others == []
 
 
-async def test_ros_arguments_reach_the_node(graph, tmp_path):
+async def test_ros_arguments_are_applied(graph, tmp_path):
     file = tmp_path / "p.yaml"
     file.write_text("/robot/renamed: {ros__parameters: {a: 1, b: 1}}\nnode: {ros__parameters: {b: 2}}\n")
     words = ["x", "--ros-args", "-r", "node:__node:=renamed", "-r", "__ns:=/robot", "--params-file", str(file)]

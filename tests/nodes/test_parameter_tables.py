@@ -25,26 +25,26 @@ class Settings:
     start: Place = Place()
 
 
-async def test_a_table_is_declared_under_a_prefix_and_read(graph: Graph) -> None:
+async def test_table_is_declared_under_prefix_and_read(graph: Graph) -> None:
     node = graph.create_node("planner", parameters={"plan.start.x": 2.0})
     assert declare_table(node, Settings, "plan") == Settings(start=Place(x=2.0))
     assert node.get_parameter("plan.places").type_ is ParameterType.STRING_ARRAY
     assert node.describe_parameters(["plan.frame"])[0].description == "of the plan"
 
 
-async def test_a_second_reading_sees_what_was_set(graph: Graph) -> None:
+async def test_declared_table_is_read_again_with_changes(graph: Graph) -> None:
     node = graph.create_node("planner")
     declare_table(node, Settings)
     node.set_parameters([Parameter("frame", value="odom"), Parameter("limit", value=1.5)])
     assert declare_table(node, Settings) == Settings(frame="odom", limit=1.5)
 
 
-async def test_defaults_other_than_those_of_the_table(graph: Graph) -> None:
+async def test_custom_defaults_replace_table_defaults(graph: Graph) -> None:
     usual = Settings(frame="odom", places=("a", "b"))
     assert declare_table(graph.create_node("planner"), Settings, usual=usual) == usual
 
 
-async def test_a_value_of_another_type_is_refused(graph: Graph) -> None:
+async def test_value_of_wrong_type_is_rejected(graph: Graph) -> None:
     node = graph.create_node("planner", parameters={"frame": 1.0})
     with pytest.raises(LinkwrightError) as caught:
         declare_table(node, Settings)
@@ -56,7 +56,7 @@ class Wheel:
     """A wheel.
 
     Attributes:
-        radius: in metres,
+        radius: in meters,
             with the tyre.
     """
 
@@ -70,12 +70,12 @@ class Drive:
     sizes: Mapping[str, Wheel] = for_each("wheels", Wheel)
 
 
-def test_a_table_describes_its_parameters_without_a_node():
+def test_entries_describe_parameters_without_node():
     wheels, kind, radius = entries(Drive)
     assert (wheels.name, wheels.kind, wheels.description) == ("wheels", ParameterType.STRING_ARRAY, "the joints")
     assert (kind.default, kind.choices) == ("front", ("front", "rear"))
     assert (radius.name, radius.keys, radius.description) == (
         "sizes.*.radius",
         ("wheels",),
-        "in metres, with the tyre.",
+        "in meters, with the tyre.",
     )

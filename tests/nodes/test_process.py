@@ -84,7 +84,7 @@ def start(tmp_path: Path) -> Iterator[Callable[..., Program]]:
 
 
 @pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM])
-def test_a_node_ends_at_once_and_cleanly(start, tmp_path, number):
+def test_node_process_ends_cleanly_on_signal(start, tmp_path, number):
     program = start(
         *("tf2_ros", "static_transform_publisher", "--frame-id", "a", "--child-frame-id", "b"),
         *("--ros-args", "-r", "__node:=mine", "-r", "__ns:=/robot"),
@@ -100,7 +100,7 @@ def test_a_node_ends_at_once_and_cleanly(start, tmp_path, number):
     assert file.read_text().splitlines()[0] == line
 
 
-def test_a_node_that_cannot_start_says_why(start):
+def test_startup_error_is_reported(start):
     program = start("robot_state_publisher", "robot_state_publisher", LINKWRIGHT_DDS="0")
     assert program.process.wait(60) == 1
     program.end()
@@ -117,20 +117,20 @@ def test_a_node_that_cannot_start_says_why(start):
         ("tf2_ros", "tf2_eco", "package 'tf2_ros' has no executable 'tf2_eco'", "did you mean 'tf2_echo'?"),
     ],
 )
-def test_wrong_names(capsys, package, executable, message, hint):
+def test_unknown_package_and_executable_are_reported(capsys, package, executable, message, hint):
     assert main(package, executable, []) == 1
     error = capsys.readouterr().err
     assert message in error
     assert hint in error
 
 
-def test_wrong_ros_arguments_are_told_before_anything_starts(capsys):
+def test_invalid_ros_arguments_are_rejected_before_start(capsys):
     assert main("demo_nodes_py", "talker", ["--ros-args", "--remapp", "a:=b"]) == 1
     assert "did you mean '--remap'?" in capsys.readouterr().err
 
 
 @needs_network
-def test_two_processes_speak_to_each_other(start):
+def test_two_processes_communicate_over_dds(start):
     server = start("demo_nodes_py", "add_two_ints_server", "--ros-args", "-r", "add_two_ints:=/sum")
     client = start("demo_nodes_cpp", "add_two_ints_client", "--ros-args", "-r", "add_two_ints:=/sum")
     server.wait_for("Incoming request")
@@ -141,7 +141,7 @@ def test_two_processes_speak_to_each_other(start):
 
 
 @needs_network
-def test_transforms_reach_tf2_echo(start):
+def test_static_transform_reaches_tf2_echo(start):
     echo = start("tf2_ros", "tf2_echo", "map", "base", "10")
     publisher = start(
         *("tf2_ros", "static_transform_publisher", "--x", "1.5", "--frame-id", "map", "--child-frame-id", "base")

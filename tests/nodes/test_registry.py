@@ -39,7 +39,7 @@ def installed(tmp_path, monkeypatch: pytest.MonkeyPatch) -> Iterator[NodeRegistr
     extensions._all_groups.cache_clear()
 
 
-def test_ours_are_declared_in_the_metadata() -> None:
+def test_builtin_nodes_are_declared_as_entry_points() -> None:
     declared = {entry_point.name for entry_point in entry_points(group="linkwright.nodes")}
     assert {"/".join(key) for key in EXECUTABLES} == declared
     assert ("tf2_ros", "tf2_echo") in EXECUTABLES
@@ -48,17 +48,17 @@ def test_ours_are_declared_in_the_metadata() -> None:
 
 
 @pytest.mark.parametrize("key", [*EXECUTABLES, *COMPONENTS], ids="/".join)
-def test_each_of_ours_can_be_imported(key: tuple[str, str]) -> None:
+def test_builtin_nodes_can_be_imported(key: tuple[str, str]) -> None:
     assert callable(EXECUTABLES.get(key) or COMPONENTS[key])
 
 
-def test_a_node_of_another_package_is_started(installed: NodeRegistry, stage: Stage) -> None:
+def test_node_of_another_package_is_started(installed: NodeRegistry, stage: Stage) -> None:
     running = installed["my_robot", "blinker"](stage.graph, NodeOptions())
     assert running.node.get_name() == "blinker"
     running.close()
 
 
-def test_one_that_cannot_be_imported_says_whose_it_is(installed: NodeRegistry) -> None:
+def test_failed_import_names_the_package(installed: NodeRegistry) -> None:
     with pytest.raises(LinkwrightError, match="the node 'my_robot/broken' cannot be imported") as caught:
         installed["my_robot", "broken"]
     (finding,) = caught.value.diagnostics
@@ -68,5 +68,5 @@ def test_one_that_cannot_be_imported_says_whose_it_is(installed: NodeRegistry) -
     )
 
 
-def test_ours_are_not_replaced(installed: NodeRegistry) -> None:
+def test_builtin_nodes_are_not_replaced(installed: NodeRegistry) -> None:
     assert installed["robot_state_publisher", "robot_state_publisher"].__module__.startswith("linkwright.")

@@ -41,7 +41,7 @@ vectors = st.tuples(*[st.floats(-2, 2)] * 3)
         max_size=8,
     )
 )
-def test_joints_move_their_links(cases):
+def test_joint_motion_computes_link_poses(cases):
     joints = [
         Joint(str(number), kind, "p", "c", Pose(xyz, rpy), axis, Limit())
         for number, (kind, xyz, rpy, axis, _) in enumerate(cases)
@@ -59,12 +59,12 @@ def test_joints_move_their_links(cases):
         np.testing.assert_allclose(row, compose(origin, motion), atol=1e-9)
 
 
-def test_a_joint_without_an_axis_stands_still():
+def test_joint_with_zero_axis_does_not_move():
     joints = [Joint("j", kind, "p", "c", axis=(0.0, 0.0, 0.0)) for kind in ("revolute", "prismatic")]
     np.testing.assert_array_equal(JointMotion(joints).poses(np.ones(2)), [[0, 0, 0, 0, 0, 0, 1]] * 2)
 
 
-async def test_description_fixed_and_moving_transforms(stage, clock, logged):
+async def test_description_static_and_moving_transforms_are_published(stage, clock, logged):
     text = robot(joint("wheel", axis="0 1 0", xyz="0 0.19 -0.05"), joint("camera", "fixed", xyz="0.2 0 0"))
     start = clock.now_ns()
     stage.robot_state_publisher(text)
@@ -89,7 +89,7 @@ async def test_description_fixed_and_moving_transforms(stage, clock, logged):
     assert logged("INFO") == ["Robot initialized"]
 
 
-async def test_topics_and_their_quality_of_service(stage, log):
+async def test_topics_have_expected_qos(stage, log):
     stage.robot_state_publisher(TWO)
     listener = stage.graph.create_node("listener")
     listener.create_subscription(JointState, "/joint_states", print, 1)
@@ -112,7 +112,7 @@ async def test_topics_and_their_quality_of_service(stage, log):
     assert stage.graph.count_publishers("/tf") == 1
 
 
-async def test_only_joints_in_the_message_that_move_are_published(stage):
+async def test_only_movable_joints_in_message_are_published(stage):
     stage.robot_state_publisher(robot(joint("a"), joint("b"), joint("f", "fixed")))
     await stage.move({"b": 0.5, "f": 1.0, "unknown": 2.0})
     assert stage.moved_frames() == [["b_link"]]
@@ -120,7 +120,7 @@ async def test_only_joints_in_the_message_that_move_are_published(stage):
     assert len(stage.tf) == 1
 
 
-async def test_floating_joints_are_skipped_and_planar_ones_fixed(stage, logged):
+async def test_floating_joints_are_skipped_and_planar_joints_are_fixed(stage, logged):
     text = robot(joint("float", "floating"), joint("plane", "planar", xyz="1 2 3"), joint("fix", "fixed"))
     stage.robot_state_publisher(text)
     await stage.graph.settle()
@@ -134,7 +134,7 @@ async def test_floating_joints_are_skipped_and_planar_ones_fixed(stage, logged):
     assert stage.log[0].node == "kdl_parser"
 
 
-async def test_inertia_of_the_root_link_is_told_as_kdl_parser_does(stage, logged):
+async def test_root_link_inertia_is_reported_like_kdl_parser(stage, logged):
     inertia = "<inertia ixx='1' ixy='0' ixz='0' iyy='1' iyz='0' izz='1'/>"
     stage.robot_state_publisher(
         f"<robot name='r'><link name='base'><inertial><mass value='1'/>{inertia}</inertial></link></robot>"
@@ -142,7 +142,7 @@ async def test_inertia_of_the_root_link_is_told_as_kdl_parser_does(stage, logged
     assert logged("WARN")[0].startswith("The root link base has an inertia specified in the URDF, but KDL does not")
 
 
-async def test_the_prefix_is_put_before_every_frame_as_it_is(stage):
+async def test_frame_prefix_is_prepended_unchanged(stage):
     publisher = stage.robot_state_publisher(robot(joint("a"), joint("f", "fixed")), frame_prefix="left_")
     await stage.move({"a": 0.0})
     assert stage.tf_static[0].batch.parents == ("left_base",)
@@ -155,7 +155,7 @@ async def test_the_prefix_is_put_before_every_frame_as_it_is(stage):
 
 
 class TestMimic:
-    async def test_it_follows_a_master_in_the_message(self, stage):
+    async def test_mimic_joint_follows_master_in_message(self, stage):
         stage.robot_state_publisher(MIMICS)
         await stage.move({"master": 0.25})
         # `second` mimics a joint that is not in the message itself: chains are not followed.
@@ -163,38 +163,38 @@ class TestMimic:
         turned = 2 * np.arcsin(stage.buffer.lookup("base", "follower_link")[5])
         assert turned == pytest.approx(-2 * 0.25 + 0.5)
 
-    async def test_its_own_position_comes_first(self, stage):
+    async def test_own_position_of_mimic_joint_wins(self, stage):
         stage.robot_state_publisher(MIMICS)
         await stage.move({"follower": 1.0, "master": 0.25})
         assert stage.moved_frames() == [["follower_link", "master_link", "second_link"]]
         for frame in ("follower_link", "second_link"):
             assert 2 * np.arcsin(stage.buffer.lookup("base", frame)[5]) == pytest.approx(1.0)
 
-    async def test_without_its_master_it_stays(self, stage):
+    async def test_mimic_joint_without_master_is_not_published(self, stage):
         stage.robot_state_publisher(MIMICS)
         await stage.move({"other": 1.0})
         assert stage.tf == []
 
 
 class TestBadMessages:
-    async def test_no_positions(self, stage, logged):
+    async def test_message_without_positions_is_ignored(self, stage, logged):
         stage.robot_state_publisher(TWO)
         await stage.send(JointState(name=["a", "b"]))
         about = 'about joint(s) "a"(,...) whose position member was empty.'
         assert logged("WARN") == [f"Robot state publisher ignored a JointState message {about}"]
         assert stage.tf == []
 
-    async def test_more_positions_than_names(self, stage, logged):
+    async def test_message_with_more_positions_than_names_is_ignored(self, stage, logged):
         stage.robot_state_publisher(TWO)
         await stage.send(JointState(name=["a"], position=[1.0, 2.0]))
         assert logged("ERROR") == ["Robot state publisher ignored an invalid JointState message"]
 
-    async def test_nothing_at_all(self, stage, logged):
+    async def test_empty_message_is_ignored_silently(self, stage, logged):
         stage.robot_state_publisher(TWO)
         await stage.send(JointState())
         assert logged("WARN") == logged("ERROR") == []
 
-    async def test_no_stamp(self, stage, logged):
+    async def test_message_without_stamp_is_ignored(self, stage, logged):
         stage.robot_state_publisher(TWO)
         for _ in range(3):
             await stage.move({"a": 0.5}, stamp_ns=0)
@@ -203,7 +203,7 @@ class TestBadMessages:
             "Ignoring JointState messages without a time stamp: set header.stamp, or the parameter ignore_timestamp"
         ]
 
-    async def test_names_twice_take_the_first(self, stage, clock):
+    async def test_first_of_duplicate_names_wins(self, stage, clock):
         stage.robot_state_publisher(TWO)
         stamp = Time.from_nanoseconds(clock.now_ns())
         await stage.send(JointState(header=Header(stamp=stamp), name=["a", "a"], position=[0.0, 1.0]))
@@ -226,11 +226,11 @@ class TestThrottle:
         text = robot(joint("a", "prismatic", axis="1 0 0"), joint("b", "prismatic", axis="1 0 0"))
         return lambda **parameters: stage.robot_state_publisher(text, **parameters)
 
-    async def test_moves_an_interval_apart_pass(self, stage, slide):
+    async def test_messages_one_interval_apart_are_published(self, stage, slide):
         slide()
         assert await self.moves(stage, [0, 50, 100, 151]) == [1, 2, 3, 4]
 
-    async def test_of_moves_within_an_interval_the_last_comes_at_its_end(self, stage, slide, clock):
+    async def test_last_message_within_interval_is_published_at_its_end(self, stage, slide, clock):
         slide()
         start = clock.now_ns()
         arrivals = []
@@ -243,13 +243,13 @@ class TestThrottle:
         assert await self.moves(stage, [0, 10, 20, 30]) == [1, 4]
         assert arrivals == [(0.0, 0), (50.0, 30_000_000)]
 
-    async def test_a_source_that_is_a_little_too_fast_is_held_to_the_limit(self, stage, slide):
+    async def test_slightly_too_fast_source_is_throttled_to_limit(self, stage, slide):
         slide()
         published = await self.moves(stage, range(0, 1000, 40))
         assert 19 <= len(published) <= 22
         assert published[-1] == 25
 
-    async def test_a_beat_does_not_hold_up_the_move_after_it(self, stage, slide):
+    async def test_repeated_message_does_not_delay_next_move(self, stage, slide):
         slide()
         await stage.move({"a": 1.0})
         for _ in range(3):
@@ -260,7 +260,7 @@ class TestThrottle:
         await stage.move({"a": 2.0})
         assert len(stage.tf) == 5
 
-    async def test_a_fast_beat_is_throttled_and_not_made_up_for(self, stage, slide):
+    async def test_fast_repeated_messages_are_throttled(self, stage, slide):
         slide()
         for _ in range(10):
             await stage.move({"a": 1.0})
@@ -268,7 +268,7 @@ class TestThrottle:
         await stage.clock.advance(1.0)
         assert len(stage.tf) == 2
 
-    async def test_going_back_while_a_move_is_held(self, stage, slide):
+    async def test_returning_to_published_position_drops_pending_message(self, stage, slide):
         slide()
         for position in (1.0, 2.0, 1.0):
             await stage.move({"a": position})
@@ -276,34 +276,34 @@ class TestThrottle:
         await stage.clock.advance(0.1)
         assert [message.batch.poses[0, 0] for message in stage.tf] == [1.0, 1.0]
 
-    async def test_the_frequency_counts(self, stage, slide):
+    async def test_publish_frequency_sets_interval(self, stage, slide):
         publisher = slide(publish_frequency=100.0)
         assert await self.moves(stage, [0, 10, 20]) == [1, 2, 3]
         stage.tf.clear()
         assert await stage.set(publisher, publish_frequency=4.0) == [(True, "")]
         assert await self.moves(stage, [0, 100, 249]) == [1, 3]
 
-    async def test_a_joint_that_waited_longest_decides(self, stage, slide):
+    async def test_joint_that_waited_longest_decides(self, stage, slide):
         slide()
         await stage.move({"a": 1.0})
         await stage.clock.advance(0.01)
         await stage.move({"a": 2.0, "b": 2.0})
         assert stage.moved_frames() == [["a_link"], ["a_link", "b_link"]]
 
-    async def test_ignoring_stamps_publishes_all(self, stage, slide):
+    async def test_ignore_timestamp_publishes_all_messages(self, stage, slide):
         slide(ignore_timestamp=True)
         for number in range(3):
             await stage.move({"a": float(number)}, stamp_ns=0)
         assert len(stage.tf) == 3
 
-    async def test_older_data_are_dropped(self, stage, slide, clock):
+    async def test_older_messages_are_dropped(self, stage, slide, clock):
         slide()
         await stage.move({"a": 1.0})
         await stage.move({"a": 2.0}, stamp_ns=clock.now_ns() - 10_000_000)
         await clock.advance(1.0)
         assert len(stage.tf) == 1
 
-    async def test_a_held_message_gives_way_to_newer_data_of_its_joints(self, stage, slide, clock):
+    async def test_pending_message_is_replaced_by_newer_positions(self, stage, slide, clock):
         slide()
         await stage.move({"a": 1.0})
         await clock.advance(0.01)
@@ -313,7 +313,7 @@ class TestThrottle:
         await clock.advance(1.0)
         assert [message.batch.poses[0, 0] for message in stage.tf] == [1.0, 3.0]
 
-    async def test_time_going_backwards_opens_the_throttle(self, stage, slide, clock, logged):
+    async def test_time_jump_backwards_resets_throttle(self, stage, slide, clock, logged):
         slide()
         await stage.move({"a": 1.0})
         await clock.advance(0.01)
@@ -324,7 +324,7 @@ class TestThrottle:
         await clock.advance(1.0)
         assert [message.batch.poses[0, 0] for message in stage.tf] == [1.0, 3.0]
 
-    async def test_closing_drops_what_is_held(self, stage, slide, clock):
+    async def test_close_drops_pending_message(self, stage, slide, clock):
         publisher = slide()
         await stage.move({"a": 1.0})
         await stage.move({"a": 2.0})
@@ -335,14 +335,14 @@ class TestThrottle:
 
 class TestStart:
     @pytest.mark.parametrize("parameters", [{}, {"robot_description": ""}])
-    async def test_without_a_description(self, stage, logged, parameters):
+    async def test_missing_description_is_rejected(self, stage, logged, parameters):
         with pytest.raises(LinkwrightError) as caught:
             RobotStatePublisher(stage.graph, NodeOptions(parameters=parameters))
         assert caught.value.diagnostics[0].code == "NODE101"
         assert logged("FATAL") == ["robot_description parameter must not be empty"]
         assert stage.graph.node_names() == ["/audience"]
 
-    async def test_with_a_description_that_cannot_be_read(self, stage, logged):
+    async def test_unreadable_description_is_rejected(self, stage, logged):
         with pytest.raises(LinkwrightError) as caught:
             stage.robot_state_publisher(robot(joint("a", parent="nowhere")))
         first, *rest = caught.value.diagnostics
@@ -353,22 +353,22 @@ class TestStart:
         assert rest[0].code.startswith("URDF")
         assert rest[0].span is not None
 
-    async def test_with_a_file_name_for_a_description(self, stage):
+    async def test_file_name_as_description_is_rejected(self, stage):
         with pytest.raises(LinkwrightError) as caught:
             stage.robot_state_publisher("/robots/mbot.urdf")
         assert "'/robots/mbot.urdf' is not URDF" in caught.value.diagnostics[0].hint
 
     @pytest.mark.parametrize("frequency", [-1.0, 0.0, 1000.5, float("nan")])
-    async def test_with_a_frequency_out_of_range(self, stage, frequency):
+    async def test_frequency_out_of_range_is_rejected(self, stage, frequency):
         with pytest.raises(LinkwrightError, match="publish_frequency must be between 0 and 1000"):
             stage.robot_state_publisher(TWO, publish_frequency=frequency)
 
-    async def test_with_a_parameter_of_another_type(self, stage):
+    async def test_parameter_of_wrong_type_is_rejected(self, stage):
         with pytest.raises(LinkwrightError) as caught:
             stage.robot_state_publisher(TWO, publish_frequency=30)
         assert caught.value.diagnostics[0].hint == "write 30.0"
 
-    async def test_with_a_file_on_the_command_line(self, stage, logged, tmp_path):
+    async def test_description_file_argument_is_accepted(self, stage, logged, tmp_path):
         path = tmp_path / "robot.urdf"
         path.write_text(TWO, encoding="utf-8")
         RobotStatePublisher(stage.graph, NodeOptions(arguments=[str(path)]))
@@ -378,7 +378,7 @@ class TestStart:
         with pytest.raises(LinkwrightError, match=r"URDF file 'missing.urdf' cannot be read: No such file"):
             RobotStatePublisher(stage.graph, NodeOptions(arguments=["missing.urdf"]))
 
-    async def test_with_ros_arguments(self, stage):
+    async def test_ros_arguments_are_applied(self, stage):
         arguments = ["--ros-args", "-r", "__node:=left", "-r", "/tf:=tf", "-p", "frame_prefix:=l_"]
         publisher = RobotStatePublisher(
             stage.graph,
@@ -391,7 +391,7 @@ class TestStart:
 
 
 class TestUpdate:
-    async def test_a_new_description_takes_over(self, stage, clock):
+    async def test_new_description_replaces_old(self, stage, clock):
         publisher = stage.robot_state_publisher(robot(joint("a"), joint("f", "fixed")))
         await stage.move({"a": 1.0})
         text = robot(joint("a", xyz="0 0 7"), joint("g", "fixed"))
@@ -402,7 +402,7 @@ class TestUpdate:
         await stage.move({"a": 1.0})
         assert stage.buffer.lookup("base", "a_link")[2] == 7.0
 
-    async def test_without_fixed_joints_the_old_ones_are_not_replayed(self, stage):
+    async def test_old_static_transforms_are_not_replayed(self, stage):
         publisher = stage.robot_state_publisher(robot(joint("f", "fixed")))
         await stage.set(publisher, robot_description=robot(joint("a")))
         assert len(stage.tf_static[-1].batch) == 0
@@ -415,7 +415,7 @@ class TestUpdate:
             ("<robot name='r'/>", "Unable to initialize urdf::model from robot description"),
         ],
     )
-    async def test_a_bad_description_is_refused_and_the_last_stands(self, stage, text, reason):
+    async def test_invalid_description_is_rejected_and_last_one_stays(self, stage, text, reason):
         publisher = stage.robot_state_publisher(TWO)
         assert await stage.set(publisher, robot_description=text) == [(False, reason)]
         assert publisher.node.get_parameter("robot_description").value == TWO
@@ -423,19 +423,19 @@ class TestUpdate:
         await stage.move({"a": 0.0})
         assert stage.moved_frames() == [["a_link"]]
 
-    async def test_a_bad_frequency_is_refused(self, stage):
+    async def test_invalid_frequency_is_rejected(self, stage):
         publisher = stage.robot_state_publisher(TWO)
         reason = "publish_frequency must be between 0 and 1000"
         assert await stage.set(publisher, publish_frequency=2000.0) == [(False, reason)]
         assert await stage.set(publisher, publish_frequency=0.0) == [(False, reason)]
 
-    async def test_a_description_of_another_type_is_refused(self, stage):
+    async def test_description_of_wrong_type_is_rejected(self, stage):
         publisher = stage.robot_state_publisher(TWO)
         ((successful, reason),) = await stage.set(publisher, robot_description=3)
         assert not successful
         assert reason == "Wrong parameter type, expected 'Type.STRING' got 'Type.INTEGER'"
 
-    async def test_stamps_can_be_ignored_from_now_on(self, stage):
+    async def test_ignore_timestamp_can_be_enabled_at_runtime(self, stage):
         publisher = stage.robot_state_publisher(TWO)
         await stage.set(publisher, ignore_timestamp=True)
         await stage.move({"a": 0.0}, stamp_ns=0)
@@ -443,7 +443,7 @@ class TestUpdate:
 
 
 @pytest.mark.parametrize("package", TUTORIAL_PACKAGES, ids=lambda package: package.parent.name)
-async def test_the_tutorials_robot_stands_where_forward_kinematics_says(stage, package):
+async def test_tutorial_robot_matches_forward_kinematics(stage, package):
     text = (package / "urdf" / "mbot_base.urdf").read_text(encoding="utf-8")
     stage.robot_state_publisher(text)
     model = DescriptionLibrary().read(text).robot
@@ -460,7 +460,7 @@ async def test_the_tutorials_robot_stands_where_forward_kinematics_says(stage, p
     np.testing.assert_allclose(stage.buffer.lookup("base_link", "left_wheel_link")[:3], [0, 0.19, -0.05])
 
 
-async def test_parameters_override_the_quality_of_service(stage):
+async def test_qos_overrides_are_applied(stage):
     publisher = stage.robot_state_publisher(
         TWO,
         **{"qos_overrides./tf.publisher.depth": 7, "qos_overrides./joint_states.subscription.reliability": "reliable"},

@@ -24,7 +24,7 @@ HALF = sqrt(0.5)
         ("1 2 3 0 0 1 0 map odom", (1, 2, 3), (0, 0, 1, 0), True),
     ],
 )  # fmt: skip
-def test_arguments(arguments, translation, rotation, old_style):
+def test_new_and_old_style_arguments_are_parsed(arguments, translation, rotation, old_style):
     parsed = parse_arguments(arguments.split())
     assert parsed.translation == translation
     assert parsed.rotation == pytest.approx(rotation)
@@ -51,7 +51,7 @@ def test_arguments(arguments, translation, rotation, old_style):
         ("--qw 0 --frame-id a --child-frame-id b", "The quaternion must not be zero"),
     ],
 )
-def test_wrong_arguments(arguments, reason):
+def test_invalid_arguments_are_rejected_with_usage(arguments, reason):
     with pytest.raises(LinkwrightError) as caught:
         parse_arguments(arguments.split())
     (diagnostic,) = caught.value.diagnostics
@@ -60,7 +60,7 @@ def test_wrong_arguments(arguments, reason):
     assert diagnostic.hint.startswith("usage: static_transform_publisher [--x X]")
 
 
-async def test_the_transform_is_published_for_good(stage, logged):
+async def test_static_transform_is_latched(stage, logged):
     options = NodeOptions(arguments=["1", "2", "3", "0", "0", "0", "map", "base"])
     first = StaticTransformPublisher(stage.graph, options)
     second = StaticTransformPublisher(
@@ -81,14 +81,14 @@ async def test_the_transform_is_published_for_good(stage, logged):
     assert stage.graph.count_publishers("/tf_static") == 1
 
 
-async def test_wrong_arguments_end_the_node(stage: object, graph: Graph, logged):
+async def test_invalid_arguments_end_node(stage: object, graph: Graph, logged):
     with pytest.raises(LinkwrightError):
         StaticTransformPublisher(graph, NodeOptions(name="camera_tf", arguments=["1"]))
     assert logged("FATAL") == ["error parsing command line arguments: Extra unparsed arguments on command-line"]
     assert graph.node_names() == ["/audience"]
 
 
-async def test_help(stage):
+async def test_help_is_printed(stage):
     printed = []
     running = StaticTransformPublisher(stage.graph, NodeOptions(arguments=["--help"], output=printed.append))
     assert running.finished.result() == 0

@@ -38,7 +38,7 @@ def started(stage, kind, *arguments):
     return running, printed
 
 
-async def test_tf2_echo_waits_and_prints(stage, send, logged):
+async def test_tf2_echo_waits_and_prints_transform(stage, send, logged):
     _, printed = started(stage, Tf2Echo, "map", "base", "2")
     await stage.clock.advance(1.2)
     waiting = 'Waiting for transform map ->  base: Invalid frame ID "map" passed to canTransform argument target_frame'
@@ -64,7 +64,7 @@ async def test_tf2_echo_waits_and_prints(stage, send, logged):
     assert len(printed) == 3
 
 
-async def test_tf2_echo_tells_a_failure(stage, send):
+async def test_tf2_echo_reports_lookup_failure(stage, send):
     running, printed = started(stage, Tf2Echo, "map", "base")
     await send("map", "base")
     await stage.clock.advance(1.0)
@@ -75,7 +75,7 @@ async def test_tf2_echo_tells_a_failure(stage, send):
 
 
 @pytest.mark.parametrize("pitch", [pi / 2, -pi / 2])
-async def test_straight_up_and_down(stage, send, pitch):
+async def test_tf2_echo_handles_gimbal_lock(stage, send, pitch):
     _, printed = started(stage, Tf2Echo, "map", "base")
     await send("map", "base", rpy=(0.0, pitch, 0.0))
     await stage.clock.advance(1.0)
@@ -83,7 +83,7 @@ async def test_straight_up_and_down(stage, send, pitch):
     assert f"- Rotation: in RPY (radian) [0.000, {angle}, " in printed[0].replace("[-0.000", "[0.000")
 
 
-async def test_misuse_of_tf2_echo(stage):
+async def test_tf2_echo_rejects_invalid_arguments(stage):
     running, printed = started(stage, Tf2Echo, "map")
     assert running.finished.result() == 1
     assert printed[0].startswith("Usage: tf2_echo source_frame target_frame [echo_rate]")
@@ -91,7 +91,7 @@ async def test_misuse_of_tf2_echo(stage):
         started(stage, Tf2Echo, "a", "b", "fast")
 
 
-async def test_tf2_monitor_on_all_frames(stage, send):
+async def test_tf2_monitor_reports_all_frames(stage, send):
     _, printed = started(stage, Tf2Monitor)
     for _ in range(4):
         await send("map", "base")
@@ -109,7 +109,7 @@ async def test_tf2_monitor_on_all_frames(stage, send):
     ]
 
 
-async def test_tf2_monitor_on_the_way_between_two(stage, send):
+async def test_tf2_monitor_reports_chain_between_two_frames(stage, send):
     _, printed = started(stage, Tf2Monitor, "map", "arm")
     await stage.clock.advance(1.0)
     assert printed == ["Waiting for transform chain to become available between map and arm "]
@@ -126,7 +126,7 @@ async def test_tf2_monitor_on_the_way_between_two(stage, send):
     assert started(stage, Tf2Monitor, "one")[0].finished.result() == 255
 
 
-async def test_view_frames_draws_the_tree(stage, send, logged, tmp_path, monkeypatch):
+async def test_view_frames_draws_tree(stage, send, logged, tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)
     running, _ = started(stage, ViewFrames, "-t", "2", "-o", "tree")
     await send("map", "base")
@@ -146,7 +146,7 @@ async def test_view_frames_draws_the_tree(stage, send, logged, tmp_path, monkeyp
     assert texts[3] == "Exporting graph in tree.pdf file..."
 
 
-async def test_view_frames_without_frames(stage, tmp_path, monkeypatch):
+async def test_view_frames_without_transforms_writes_placeholder(stage, tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)
     running, _ = started(stage, ViewFrames)
     await stage.clock.advance(5.0)
@@ -155,7 +155,7 @@ async def test_view_frames_without_frames(stage, tmp_path, monkeypatch):
     assert drawing.read_text() == 'digraph G { "No tf data received" }'
 
 
-async def test_misuse_of_view_frames(stage, logged, tmp_path):
+async def test_view_frames_rejects_invalid_arguments(stage, logged, tmp_path):
     with pytest.raises(LinkwrightError, match="does not accept the arguments --wat"):
         started(stage, ViewFrames, "--wat")
     with pytest.raises(LinkwrightError, match="-t: invalid float value: 'long'"):
@@ -166,14 +166,14 @@ async def test_misuse_of_view_frames(stage, logged, tmp_path):
     assert "cannot write" in logged("ERROR")[0]
 
 
-async def test_describing_a_transform_keeps_the_zeros_of_tf2(stage, send):
+async def test_describe_keeps_negative_zeros_like_tf2(stage, send):
     await send("a", "b")
     await stage.graph.settle()
     assert "[0.000, -0.000, 0.000]" in describe(stage.tf[0].transforms[0])
 
 
 @pytest.fixture
-def asking(stage):
+def send_lookup_goal(stage):
     """Asks a buffer server; gives the result."""
     Tf2BufferServer(stage.graph, NodeOptions())
     client = ActionClient(stage.node, "tf2_msgs/action/LookupTransform", "tf2_buffer_server")
@@ -189,22 +189,24 @@ async def result_of(sent):
     return (await (await sent).get_result_async()).result
 
 
-async def test_buffer_server_looks_transforms_up(asking, send):
+async def test_buffer_server_returns_transform(send_lookup_goal, send):
     await send("map", "base", xyz=(1.0, 2.0, 3.0))
-    result = await result_of(asking(target_frame="map", source_frame="base"))
+    result = await result_of(send_lookup_goal(target_frame="map", source_frame="base"))
     assert (result.error.error, result.transform.transform.translation.y) == (0, 2.0)
-    result = await result_of(asking(target_frame="map", source_frame="base", fixed_frame="map", advanced=True))
+    result = await result_of(
+        send_lookup_goal(target_frame="map", source_frame="base", fixed_frame="map", advanced=True)
+    )
     assert result.transform.child_frame_id == "base"
 
 
-async def test_buffer_server_says_what_is_wrong(asking, send):
+async def test_buffer_server_reports_lookup_error(send_lookup_goal, send):
     await send("map", "base")
-    result = await result_of(asking(target_frame="map", source_frame="nowhere"))
+    result = await result_of(send_lookup_goal(target_frame="map", source_frame="nowhere"))
     assert (result.error.error, "nowhere" in result.error.error_string) == (1, True)
 
 
-async def test_buffer_server_waits_as_long_as_it_is_told(stage, asking, send):
-    early, late = (asking(timeout, target_frame="map", source_frame="base") for timeout in (0.5, 5.0))
+async def test_buffer_server_waits_until_goal_timeout(stage, send_lookup_goal, send):
+    early, late = (send_lookup_goal(timeout, target_frame="map", source_frame="base") for timeout in (0.5, 5.0))
     await stage.clock.advance(1.0)
     await send("map", "base", xyz=(1.0, 0.0, 0.0))
     await stage.clock.advance(0.1)
@@ -212,8 +214,8 @@ async def test_buffer_server_waits_as_long_as_it_is_told(stage, asking, send):
     assert (await result_of(late)).transform.transform.translation.x == 1.0
 
 
-async def test_buffer_server_lets_goals_be_canceled(stage, asking):
-    handle = await asking(60.0, target_frame="map", source_frame="base")
+async def test_buffer_server_goal_can_be_canceled(stage, send_lookup_goal):
+    handle = await send_lookup_goal(60.0, target_frame="map", source_frame="base")
     asked = handle.get_result_async()
     handle.cancel_goal_async()
     await stage.clock.advance(0.1)

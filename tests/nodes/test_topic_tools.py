@@ -27,28 +27,28 @@ def logged(test, level):
     return [record.text for record in test.log if record.level.name == level]
 
 
-async def say(test, topic, *texts):
+async def publish_texts(test, topic, *texts):
     for text in texts:
         test.publish(topic, String(data=text))
         await test.settle()
 
 
-def heard(recording):
+def received_texts(recording):
     return [message.data for message in recording]
 
 
-async def test_relay_finds_the_type_and_hands_on_every_message(test):
+async def test_relay_detects_type_and_forwards_messages(test):
     start(test, Relay, "chatter", "copy")
     copy = test.record("/copy", String)
     await test.settle()
     assert test.graph.count_publishers("/copy") == 0
     test.node.create_publisher(String, "chatter", 10)
     await test.settle()
-    await say(test, "chatter", "one", "two")
-    assert heard(copy) == ["one", "two"]
+    await publish_texts(test, "chatter", "one", "two")
+    assert received_texts(copy) == ["one", "two"]
 
 
-async def test_relay_hands_on_the_very_message(test):
+async def test_relay_forwards_same_message_object(test):
     start(test, Relay, input_topic="chatter")
     relayed = test.record("/chatter_relay", String)
     test.node.create_publisher(String, "chatter", 10)
@@ -59,7 +59,7 @@ async def test_relay_hands_on_the_very_message(test):
     assert relayed.last is message
 
 
-async def test_relay_has_the_quality_of_its_sources_and_goes_with_them(test):
+async def test_relay_adopts_qos_of_source_and_ends_with_it(test):
     start(test, Relay, "chatter", "copy")
     lasting = QoSProfile(1, durability=DurabilityPolicy.TRANSIENT_LOCAL)
     source = test.node.create_publisher(String, "chatter", lasting)
@@ -69,7 +69,7 @@ async def test_relay_has_the_quality_of_its_sources_and_goes_with_them(test):
     assert copy.qos_profile.durability is DurabilityPolicy.TRANSIENT_LOCAL
     late = test.record("/copy")
     await test.settle()
-    assert heard(late) == ["kept"]
+    assert received_texts(late) == ["kept"]
     test.node.create_publisher(String, "chatter", QoSProfile(1, ReliabilityPolicy.BEST_EFFORT))
     await test.settle()
     (copy,) = test.graph.get_publishers_info_by_topic("/copy")
@@ -86,7 +86,7 @@ async def test_relay_has_the_quality_of_its_sources_and_goes_with_them(test):
     assert [each.topic_type for each in test.graph.get_publishers_info_by_topic("/copy")] == ["std_msgs/msg/Int32"]
 
 
-async def test_a_lazy_relay_listens_only_for_listeners(test):
+async def test_lazy_relay_subscribes_only_if_output_has_subscribers(test):
     running = start(test, Relay, "chatter", "copy", lazy=True)
     test.node.create_publisher(String, "chatter", 10)
     await test.settle()
@@ -102,7 +102,7 @@ async def test_a_lazy_relay_listens_only_for_listeners(test):
     assert test.graph.count_publishers("/copy") == 0
 
 
-async def test_throttle_lets_so_many_messages_a_second_through(test):
+async def test_throttle_limits_messages_per_second(test):
     start(test, Throttle, "messages", "chatter", "2.0")
     slow = test.record("/chatter_throttle", String)
     publisher = test.node.create_publisher(String, "chatter", 100)
@@ -111,7 +111,7 @@ async def test_throttle_lets_so_many_messages_a_second_through(test):
     assert slow.times == pytest.approx([0.5 * count for count in range(1, 21)])
 
 
-async def test_throttle_by_bytes(test):
+async def test_throttle_limits_bytes_per_window(test):
     start(test, Throttle, "bytes", "chatter", "100", "1.0", "slow")
     slow = test.record("/slow", String)
     publisher = test.node.create_publisher(String, "chatter", 100)
@@ -120,27 +120,27 @@ async def test_throttle_by_bytes(test):
     assert len(slow) == 3
 
 
-async def test_drop_drops_the_first_of_each_round(test):
+async def test_drop_removes_first_messages_of_each_cycle(test):
     start(test, Drop, "chatter", "1", "3")
     rest = test.record("/chatter_drop", String)
     test.node.create_publisher(String, "chatter", 10)
     await test.settle()
-    await say(test, "chatter", *"abcdefg")
-    assert heard(rest) == ["b", "c", "e", "f"]
+    await publish_texts(test, "chatter", *"abcdefg")
+    assert received_texts(rest) == ["b", "c", "e", "f"]
 
 
-async def test_delay_keeps_the_order_and_the_gaps(test):
+async def test_delay_keeps_order_and_spacing(test):
     start(test, Delay, "chatter", "0.5")
     late = test.record("/chatter_delay", String)
     test.node.create_publisher(String, "chatter", 10)
     await test.settle()
-    await say(test, "chatter", "a", "b")
+    await publish_texts(test, "chatter", "a", "b")
     await test.advance(0.2)
-    await say(test, "chatter", "c")
+    await publish_texts(test, "chatter", "c")
     await test.advance(0.29)
-    assert heard(late) == []
+    assert received_texts(late) == []
     await test.advance(0.5)
-    assert heard(late) == ["a", "b", "c"]
+    assert received_texts(late) == ["a", "b", "c"]
     assert late.times == pytest.approx([0.5, 0.5, 0.7])
 
 
@@ -150,9 +150,9 @@ async def test_mux_selects_adds_lists_and_deletes(test):
     for topic in ("first", "second", "third"):
         test.node.create_publisher(String, topic, 10)
     await test.settle()
-    await say(test, "first", "1")
-    await say(test, "second", "2")
-    assert heard(out) == ["1"]
+    await publish_texts(test, "first", "1")
+    await publish_texts(test, "second", "2")
+    assert received_texts(out) == ["1"]
 
     async def ask(verb, topic=None):
         request = get_service(f"topic_tools_interfaces/srv/Mux{verb.capitalize()}").Request()
@@ -162,9 +162,9 @@ async def test_mux_selects_adds_lists_and_deletes(test):
 
     answer = await ask("select", "/second")
     assert (answer.success, answer.prev_topic) == (True, "first")
-    await say(test, "first", "1")
-    await say(test, "second", "2")
-    assert heard(out) == ["1", "2"]
+    await publish_texts(test, "first", "1")
+    await publish_texts(test, "second", "2")
+    assert received_texts(out) == ["1", "2"]
     assert not (await ask("select", "third")).success
     assert (await ask("add", "third")).success
     assert not (await ask("add", "third")).success
@@ -172,27 +172,27 @@ async def test_mux_selects_adds_lists_and_deletes(test):
     assert not (await ask("delete", "second")).success
     assert (await ask("delete", "first")).success
     assert (await ask("select", "__none")).success
-    await say(test, "second", "2")
-    assert heard(out) == ["1", "2"]
+    await publish_texts(test, "second", "2")
+    assert received_texts(out) == ["1", "2"]
     assert logged(test, "WARN") == [
         "tried to add a topic that mux was already listening to: [third]",
         "tried to delete currently selected topic second from mux",
     ]
 
 
-async def test_demux_publishes_on_the_selected_output(test):
+async def test_demux_publishes_on_selected_output(test):
     start(test, Demux, "in", "left", "right")
     left, right = test.record("/left", String), test.record("/right", String)
     test.node.create_publisher(String, "in", 10)
     await test.settle()
-    await say(test, "in", "1")
+    await publish_texts(test, "in", "1")
     request = get_service("topic_tools_interfaces/srv/DemuxSelect").Request(topic="right")
     assert (await test.call("/demux/select", request)).prev_topic == "left"
-    await say(test, "in", "2")
-    assert (heard(left), heard(right)) == (["1"], ["2"])
+    await publish_texts(test, "in", "2")
+    assert (received_texts(left), received_texts(right)) == (["1"], ["2"])
 
 
-async def test_transform_works_an_expression_out(test):
+async def test_transform_evaluates_expression(test):
     words = ["/imu", "--field", "orientation", "/norm", "std_msgs/Float64"]
     expression = "std_msgs.msg.Float64(data=numpy.linalg.norm([m.x, m.y, m.z, m.w]))"
     start(test, Transform, *words, expression, "--import", "std_msgs", "numpy")
@@ -206,16 +206,16 @@ async def test_transform_works_an_expression_out(test):
     assert norm.last.data == 5.0
 
 
-async def test_relay_field_fills_fields_by_expressions(test):
+async def test_relay_field_evaluates_field_expressions(test):
     start(test, RelayField, "/chatter", "/header", "std_msgs/Header", "{stamp: {sec: 7}, frame_id: m.data + '_link'}")
     header = test.record("/header")
     test.node.create_publisher(String, "/chatter", 10)
     await test.settle()
-    await say(test, "/chatter", "base")
+    await publish_texts(test, "/chatter", "base")
     assert (header.last.stamp.sec, header.last.frame_id) == (7, "base_link")
 
 
-async def test_an_expression_that_fails_is_told_and_the_next_message_counts(test):
+async def test_failing_expression_is_reported_and_next_message_is_processed(test):
     start(
         test,
         Transform,
@@ -229,7 +229,7 @@ async def test_an_expression_that_fails_is_told_and_the_next_message_counts(test
     number = test.record("/number")
     test.node.create_publisher(String, "/chatter", 10)
     await test.settle()
-    await say(test, "/chatter", "one", "1")
+    await publish_texts(test, "/chatter", "one", "1")
     assert [message.data for message in number] == [1]
     (text,) = logged(test, "ERROR")
     assert text.endswith("ValueError: invalid literal for int() with base 10: 'one'")
@@ -252,14 +252,14 @@ async def test_an_expression_that_fails_is_told_and_the_next_message_counts(test
         (RelayField, ["a", "b", "std_msgs/String", "data"], "'data' cannot be parsed: it is not a mapping of fields"),
     ],
 )
-async def test_words_that_mean_nothing(test, kind, words, text):
+async def test_invalid_arguments_are_rejected(test, kind, words, text):
     with pytest.raises(LinkwrightError) as caught:
         start(test, kind, *words)
     assert text in str(caught.value)
     assert test.graph.node_names() == []
 
 
-async def test_parameters_that_a_node_does_not_have_are_named_once(test):
+async def test_unknown_parameters_are_reported_once(test):
     start(test, Relay, input_topic="a", lasy=True, robot_model="x")
     assert logged(test, "WARN") == ["'lasy' is not a parameter of this node; did you mean 'lazy'?"]
     assert logged(test, "INFO") == ["parameters that this node does not have are ignored: robot_model"]
@@ -268,7 +268,7 @@ async def test_parameters_that_a_node_does_not_have_are_named_once(test):
 @pytest.mark.parametrize(
     ("kind", "words"), [(Relay, ["drive", "cmd_vel"]), (Throttle, ["messages", "drive", "1000.0", "cmd_vel"])]
 )
-async def test_a_stop_is_sent_when_who_sent_the_last_velocity_is_lost(test, kind, words):
+async def test_stop_is_sent_when_velocity_publisher_is_lost(test, kind, words):
     twist = get_message("geometry_msgs/msg/Twist")
     start(test, kind, *words)
     test.node.create_publisher(twist, "drive", 10)

@@ -32,7 +32,7 @@ def package(tmp_path: Path) -> Path:
     return tmp_path
 
 
-def test_folders_are_copied_with_their_name(package: Path) -> None:
+def test_install_directory_keeps_folder_name(package: Path) -> None:
     assert copied("install(DIRECTORY urdf launch DESTINATION share/${PROJECT_NAME})", package) == {
         "urdf/arm.urdf": "share/arm/urdf/arm.urdf",
         "urdf/notes.txt": "share/arm/urdf/notes.txt",
@@ -41,12 +41,12 @@ def test_folders_are_copied_with_their_name(package: Path) -> None:
     }
 
 
-def test_a_slash_means_the_content(package: Path) -> None:
+def test_trailing_slash_installs_folder_content(package: Path) -> None:
     found = copied('install(DIRECTORY "launch/" DESTINATION share/arm/start)', package)
     assert found == {"launch/show.launch.py": "share/arm/start/show.launch.py"}
 
 
-def test_patterns(package: Path) -> None:
+def test_install_patterns_select_files(package: Path) -> None:
     only = 'install(DIRECTORY urdf DESTINATION share/arm FILES_MATCHING PATTERN "*.urdf" PATTERN "*.xacro")'
     assert set(copied(only, package)) == {"urdf/arm.urdf", "urdf/parts/hand.xacro"}
     without = 'install(DIRECTORY urdf DESTINATION share/arm PATTERN "parts" EXCLUDE)'
@@ -65,13 +65,13 @@ def test_patterns(package: Path) -> None:
         ("OPTIONAL", False),
     ],
 )
-def test_cmake_asks_patterns_before_it_misses_a_folder(package: Path, more: str, is_required: bool) -> None:
+def test_excluded_missing_folder_is_not_required(package: Path, more: str, is_required: bool) -> None:
     # As file(INSTALL) of CMake 3.25 does: what no pattern takes is passed over, there or not.
     found = rules(f"install(DIRECTORY include/ DESTINATION include {more})")
     assert [item.text for item in found.required] == (["include/"] if is_required else [])
 
 
-def test_programs_and_a_new_name(package: Path) -> None:
+def test_install_programs_and_rename(package: Path) -> None:
     text = (
         "install(PROGRAMS scripts/run.py DESTINATION lib/${PROJECT_NAME})\n"
         "install(FILES urdf/arm.urdf DESTINATION share/${PROJECT_NAME} RENAME robot.urdf)"
@@ -80,7 +80,7 @@ def test_programs_and_a_new_name(package: Path) -> None:
     assert rules(text).programs == {"run.py": "scripts/run.py"}
 
 
-def test_interfaces_and_python_modules() -> None:
+def test_interfaces_and_python_packages_are_found() -> None:
     found = rules(
         'set(messages "msg/A.msg" msg/C.msg)\n'
         'rosidl_generate_interfaces(${PROJECT_NAME} ${messages} "srv/B.srv" DEPENDENCIES std_msgs)\n'
@@ -126,7 +126,7 @@ def test_loops_functions_and_variables_are_followed(package: Path, text: str) ->
     assert copied(text, package) == copied("install(DIRECTORY urdf launch DESTINATION share/arm)", package)
 
 
-def test_patterns_of_files_are_expanded(package: Path) -> None:
+def test_file_glob_is_expanded(package: Path) -> None:
     text = 'file(GLOB_RECURSE found "urdf/*.xacro")\ninstall(FILES ${found} DESTINATION share/arm/xacro)'
     assert copied(text, package) == {"urdf/parts/hand.xacro": "share/arm/xacro/hand.xacro"}
     text = "file(GLOB found RELATIVE ${CMAKE_CURRENT_SOURCE_DIR} urdf/*.urdf)\ninstall(FILES ${found} DESTINATION x)"
@@ -142,12 +142,12 @@ def test_patterns_of_files_are_expanded(package: Path) -> None:
         "GLOB_RECURSE found urdf/**.urdf",
     ],
 )
-def test_options_folders_and_two_stars_of_patterns(package: Path, words: str) -> None:
+def test_file_glob_supports_options_folders_and_double_stars(package: Path, words: str) -> None:
     text = f"project(arm)\nfile({words})\ninstall(FILES ${{found}} DESTINATION share/arm)"
     assert copied(text, package) == {"urdf/arm.urdf": "share/arm/arm.urdf"}
 
 
-def test_subdirectories_and_included_files(package: Path) -> None:
+def test_subdirectories_and_included_files_are_read(package: Path) -> None:
     (package / "urdf" / "CMakeLists.txt").write_text(
         "install(FILES arm.urdf DESTINATION share/${PROJECT_NAME}/robots)\n"
         "install(DIRECTORY ${CMAKE_CURRENT_SOURCE_DIR}/parts DESTINATION share/${PROJECT_NAME})\n"
@@ -163,7 +163,7 @@ def test_subdirectories_and_included_files(package: Path) -> None:
     assert found.span(found.files[1]).file == str(package / "urdf" / "CMakeLists.txt")
 
 
-def test_files_that_are_configured(package: Path) -> None:
+def test_configured_files_are_installed(package: Path) -> None:
     (package / "limits.yaml.in").write_text("@PROJECT_NAME@: ${SPEED}@MISSING@\n")
     found = rules(
         "set(SPEED 2)\nconfigure_file(limits.yaml.in ${CMAKE_CURRENT_BINARY_DIR}/limits.yaml)\n"
@@ -175,7 +175,7 @@ def test_files_that_are_configured(package: Path) -> None:
     assert file.text(package) == "arm: 2\n"
 
 
-def test_what_is_compiled_is_told_and_the_rest_is_read(package: Path) -> None:
+def test_compiled_targets_are_listed_and_other_rules_read(package: Path) -> None:
     text = "add_executable(move src/move.cpp)\nadd_library(kinematics SHARED k.cpp)\nadd_library(headers INTERFACE)\n"
     found = rules(text + "install(DIRECTORY launch DESTINATION share/arm)", package)
     assert found.compiled == ["move", "kinematics"]
@@ -194,11 +194,11 @@ def test_what_is_compiled_is_told_and_the_rest_is_read(package: Path) -> None:
         ("foreach(a 1 2 3 4 5 6 7 8 9)\n" * 9 + "message(x)\n" + "endforeach()\n" * 9, "message()"),
     ],
 )
-def test_what_is_not_known_is_told(package: Path, text: str, message: str) -> None:
+def test_unknown_values_are_reported(package: Path, text: str, message: str) -> None:
     assert any(message in reason for reason in rules(text, package).unknown)
 
 
-def test_what_is_not_there_is_named(package: Path) -> None:
+def test_missing_files_are_reported_unless_optional(package: Path) -> None:
     with pytest.raises(FileNotFoundError, match="meshes"):
         list(rules("install(DIRECTORY meshes DESTINATION share/arm)").installed(package))
     for text in ("install(FILES none DESTINATION x OPTIONAL)", "if(A)\ninstall(FILES none DESTINATION x)\nendif()"):
@@ -395,7 +395,7 @@ _DONE_BY_CMAKE = [
 
 
 @pytest.mark.parametrize(("text", "destinations"), _DONE_BY_CMAKE)
-def test_what_cmake_would_do_is_done(package: Path, text: str, destinations: list[str]) -> None:
+def test_supported_cmake_commands_match_cmake(package: Path, text: str, destinations: list[str]) -> None:
     found = rules(text, package)
     assert found.is_complete, found.unknown
     assert sorted(file.destination for file in found.installed(package)) == destinations
@@ -404,7 +404,7 @@ def test_what_cmake_would_do_is_done(package: Path, text: str, destinations: lis
 @pytest.mark.parametrize(
     "condition", ["ANYTHING", "NOT DEFINED ANYTHING", "A STREQUAL ${B}", "EXISTS notes", "A AND NOT B"]
 )
-def test_of_a_condition_that_only_cmake_can_answer_all_branches_are_read(package: Path, condition: str) -> None:
+def test_undecidable_condition_reads_all_branches(package: Path, condition: str) -> None:
     text = f"""
         if({condition})
           install(FILES urdf/arm.urdf DESTINATION a)
@@ -415,7 +415,7 @@ def test_of_a_condition_that_only_cmake_can_answer_all_branches_are_read(package
     assert copied(text, package) == {"urdf/arm.urdf": "a/arm.urdf"}
 
 
-def test_files_that_the_build_writes(package: Path) -> None:
+def test_files_generated_by_build_are_installed(package: Path) -> None:
     (package / "robot.urdf.in").write_text("@NAME@")
     found = rules(
         "foreach(NAME a b)\n  configure_file(robot.urdf.in ${PROJECT_BINARY_DIR}/made/${NAME}.urdf)\nendforeach()\n"
@@ -428,7 +428,7 @@ def test_files_that_the_build_writes(package: Path) -> None:
     assert written == {"share/arm/made/a.urdf": "a", "share/arm/made/b.urdf": "b", "share/arm/note": "arm is built"}
 
 
-def test_what_commands_of_ament_install(package: Path) -> None:
+def test_ament_commands_install_files(package: Path) -> None:
     for name in ("hooks/arm.dsv.in", "hooks/more.sh", "plugins/arm.xml"):
         (package / name).parent.mkdir(exist_ok=True)
         (package / name).write_text("set;ROBOT;@PROJECT_NAME@" if name.endswith(".in") else "")
@@ -455,7 +455,7 @@ def test_what_commands_of_ament_install(package: Path) -> None:
     assert found.modules == ["scripts/run.py"]
 
 
-def test_what_xacro_would_make_is_told(package: Path) -> None:
+def test_xacro_add_files_is_reported_as_unknown(package: Path) -> None:
     found = rules("xacro_add_files(urdf/arm.urdf.xacro INSTALL DESTINATION urdf)", package)
     assert found.unknown == ["'urdf/arm.urdf' would have to be made by xacro"]
 
@@ -468,6 +468,6 @@ def test_what_xacro_would_make_is_told(package: Path) -> None:
         "set(x a)\nforeach(i RANGE 60)\n  string(APPEND x ${x}${x})\nendforeach()\n",
     ],
 )
-def test_values_that_grow_without_end_are_given_up(text: str, package: Path) -> None:
+def test_exponentially_growing_values_are_rejected(text: str, package: Path) -> None:
     found = rules(f"project(arm)\n{text}install(DIRECTORY launch DESTINATION share/arm)\n", package)
     assert found.unknown

@@ -34,12 +34,12 @@ def finder(start: Path, *prefixes: Path, **extra: Path) -> PackageFinder:
     return PackageFinder(start=start, environment=environment, extra=extra)
 
 
-def test_extra_packages_come_first(tmp_path: Path) -> None:
+def test_extra_packages_take_precedence(tmp_path: Path) -> None:
     install(tmp_path / "ros", "arm")
     assert finder(tmp_path, tmp_path / "ros", arm=tmp_path / "mine").share("arm") == tmp_path / "mine"
 
 
-def test_prefixes_are_asked_in_their_order(tmp_path: Path) -> None:
+def test_prefixes_are_searched_in_order(tmp_path: Path) -> None:
     overlay = install(tmp_path / "overlay", "arm")
     install(tmp_path / "ros", "arm")
     underlay = install(tmp_path / "ros", "gripper")
@@ -48,12 +48,12 @@ def test_prefixes_are_asked_in_their_order(tmp_path: Path) -> None:
     assert found.share("gripper") == underlay
 
 
-def test_a_forgotten_index_marker_does_not_hide_an_installed_package(tmp_path: Path) -> None:
+def test_installed_package_without_index_marker_is_found(tmp_path: Path) -> None:
     share = install(tmp_path / "ros", "arm", marker=False)
     assert finder(tmp_path, tmp_path / "ros").share("arm") == share
 
 
-def test_a_prefix_lookup_does_not_walk_the_disk(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_prefix_lookup_does_not_scan_sources(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     install(tmp_path / "ros", "arm")
     found = finder(tmp_path, tmp_path / "ros")
 
@@ -65,7 +65,7 @@ def test_a_prefix_lookup_does_not_walk_the_disk(tmp_path: Path, monkeypatch: pyt
 
 
 @pytest.mark.parametrize("merged", [True, False])
-def test_colcon_install_folders_are_found_from_inside_the_workspace(tmp_path: Path, merged: bool) -> None:
+def test_colcon_install_folder_is_found_from_inside_workspace(tmp_path: Path, merged: bool) -> None:
     folder = tmp_path / "ws" / "install"
     share = install(folder if merged else folder / "arm", "arm")
     (folder / ".colcon_install_layout").write_text("merged\n" if merged else "isolated\n")
@@ -75,7 +75,7 @@ def test_colcon_install_folders_are_found_from_inside_the_workspace(tmp_path: Pa
     assert finder(inside).packages()["arm"] == share
 
 
-def test_packages_of_the_prefix_that_one_stands_in_are_found_by_their_markers(tmp_path: Path) -> None:
+def test_packages_of_current_prefix_are_found_by_markers(tmp_path: Path) -> None:
     share = install(tmp_path / "ros", "arm-data")
     make_source(share, "arm_descriptions")  # addresses say the marker's name
     (share / "urdf").mkdir()
@@ -89,7 +89,7 @@ def test_packages_of_the_prefix_that_one_stands_in_are_found_by_their_markers(tm
     assert any(str(tmp_path / "ros") in str(note) for note in caught.value.diagnostics[0].notes)
 
 
-def test_a_folder_called_share_without_an_index_is_no_prefix(tmp_path: Path) -> None:
+def test_share_folder_without_index_is_not_a_prefix(tmp_path: Path) -> None:
     inside = tmp_path / "share" / "arm"
     inside.mkdir(parents=True)
     (tmp_path / "share" / "elsewhere").mkdir()
@@ -97,12 +97,12 @@ def test_a_folder_called_share_without_an_index_is_no_prefix(tmp_path: Path) -> 
     assert finder(inside).find("elsewhere") is None
 
 
-def test_a_folder_that_is_merely_called_install_is_none(tmp_path: Path) -> None:
+def test_install_folder_without_colcon_layout_is_not_a_prefix(tmp_path: Path) -> None:
     install(tmp_path / "install", "arm")
     assert finder(tmp_path).find("arm") is None
 
 
-def test_symlink_install_gives_the_path_in_share(tmp_path: Path) -> None:
+def test_symlink_install_returns_share_path(tmp_path: Path) -> None:
     source = make_source(tmp_path / "src" / "arm", "arm")
     share = install(tmp_path / "install" / "arm", "arm")
     (share / "package.xml").unlink()
@@ -111,21 +111,21 @@ def test_symlink_install_gives_the_path_in_share(tmp_path: Path) -> None:
     assert finder(tmp_path).share("arm") == share
 
 
-def test_the_installed_copy_comes_before_the_source(tmp_path: Path) -> None:
+def test_installed_copy_takes_precedence_over_source(tmp_path: Path) -> None:
     make_source(tmp_path / "src" / "arm", "arm")
     share = install(tmp_path / "install" / "arm", "arm")
     (tmp_path / "install" / "local_setup.sh").touch()
     assert finder(tmp_path).share("arm") == share
 
 
-def test_sources_are_found_below_src_of_the_folders_above(tmp_path: Path) -> None:
+def test_sources_are_found_below_src_of_parent_folders(tmp_path: Path) -> None:
     arm = make_source(tmp_path / "ws" / "src" / "group" / "arm", "arm")
     elsewhere = tmp_path / "ws" / "notes" / "today"
     elsewhere.mkdir(parents=True)
     assert finder(elsewhere).share("arm") == arm
 
 
-def test_the_package_one_stands_in_and_those_beside_it_are_found(tmp_path: Path) -> None:
+def test_current_package_and_its_siblings_are_found(tmp_path: Path) -> None:
     arm = make_source(tmp_path / "repo" / "arm", "arm")
     gripper = make_source(tmp_path / "repo" / "gripper", "gripper")
     (arm / "urdf").mkdir()
@@ -134,7 +134,7 @@ def test_the_package_one_stands_in_and_those_beside_it_are_found(tmp_path: Path)
     assert found.share("gripper") == gripper
 
 
-def test_several_starts_are_asked_in_their_order(tmp_path: Path) -> None:
+def test_start_folders_are_searched_in_order(tmp_path: Path) -> None:
     first = make_source(tmp_path / "a" / "arm", "arm")
     make_source(tmp_path / "b" / "arm", "arm")
     only_there = make_source(tmp_path / "b" / "gripper", "gripper")
@@ -148,9 +148,7 @@ def _no_scan_below(folder: Path, root: Path) -> SourceScan:
     return SourceScan(root)
 
 
-def test_a_finder_for_another_place_searches_no_source_tree_again(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_starting_at_reuses_scanned_source_trees(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     arm, leg = make_source(tmp_path / "src" / "arm", "arm"), make_source(tmp_path / "src" / "leg", "leg")
     first = PackageFinder(start=[arm, tmp_path], environment={}, extra={"hand": tmp_path / "mine"})
     assert first.find("wheel") is None
@@ -160,13 +158,13 @@ def test_a_finder_for_another_place_searches_no_source_tree_again(
     assert other.starts == (leg, tmp_path)
 
 
-def test_shipped_packages_are_there_from_anywhere(tmp_path: Path) -> None:
+def test_shipped_packages_are_found_anywhere(tmp_path: Path) -> None:
     shipped = shipped_folder()
     assert shipped is not None
     assert finder(tmp_path).share("my_robot_description") == shipped / "my_robot_description"
 
 
-def test_an_unknown_package_says_what_was_searched_and_what_is_near(tmp_path: Path) -> None:
+def test_unknown_package_error_lists_searched_folders_and_similar_names(tmp_path: Path) -> None:
     install(tmp_path / "ros", "turtlebot4_description")
     make_source(tmp_path / "ws" / "src" / "arm", "arm")
     nameless = tmp_path / "ws" / "src" / "broken"
@@ -186,20 +184,20 @@ def test_an_unknown_package_says_what_was_searched_and_what_is_near(tmp_path: Pa
     assert "my_robot_description" in notes
 
 
-def test_a_package_that_only_shares_common_words_is_not_meant(tmp_path: Path) -> None:
+def test_package_sharing_only_common_words_is_not_suggested(tmp_path: Path) -> None:
     install(tmp_path / "ros", "kuka_robot_description")
     with pytest.raises(PackageNotFoundError) as caught:
         finder(tmp_path, tmp_path / "ros").share("abb_robot_description")
     assert "did you mean" not in (caught.value.diagnostics[0].hint or "")
 
 
-def test_the_error_is_a_key_error_as_in_ament_index_python(tmp_path: Path) -> None:
+def test_error_is_key_error_as_in_ament_index_python(tmp_path: Path) -> None:
     with pytest.raises(KeyError) as caught:
         finder(tmp_path).share("no_such_package_at_all")
     assert "package 'no_such_package_at_all' not found" in str(caught.value)
 
 
-def test_the_finder_in_force(tmp_path: Path) -> None:
+def test_use_finder_sets_current_finder(tmp_path: Path) -> None:
     mine = finder(tmp_path)
     with use_finder(mine):
         assert current_finder() is mine
@@ -208,40 +206,40 @@ def test_the_finder_in_force(tmp_path: Path) -> None:
 
 class TestSourceScan:
     @pytest.mark.parametrize("marker", ["COLCON_IGNORE", "AMENT_IGNORE", "CATKIN_IGNORE"])
-    def test_ignore_markers(self, tmp_path: Path, marker: str) -> None:
+    def test_folders_with_ignore_markers_are_skipped(self, tmp_path: Path, marker: str) -> None:
         make_source(tmp_path / "off" / "arm", "arm")
         (tmp_path / "off" / marker).touch()
         assert SourceScan(tmp_path).packages() == {}
 
     @pytest.mark.parametrize("folder", ["build", "install", "log", ".git", "node_modules"])
-    def test_folders_without_sources(self, tmp_path: Path, folder: str) -> None:
+    def test_folders_without_sources_are_skipped(self, tmp_path: Path, folder: str) -> None:
         make_source(tmp_path / folder / "arm", "arm")
         assert SourceScan(tmp_path).packages() == {}
 
-    def test_nothing_is_looked_for_inside_of_a_package(self, tmp_path: Path) -> None:
+    def test_scan_does_not_descend_into_package(self, tmp_path: Path) -> None:
         arm = make_source(tmp_path / "arm", "arm")
         make_source(arm / "templates" / "x", "template")
         assert SourceScan(tmp_path).packages() == {"arm": arm}
 
-    def test_of_two_with_one_name_the_nearer_counts(self, tmp_path: Path) -> None:
+    def test_nearer_of_duplicate_packages_is_used(self, tmp_path: Path) -> None:
         make_source(tmp_path / "a" / "deep" / "arm", "arm")
         near = make_source(tmp_path / "z_arm", "arm")
         assert SourceScan(tmp_path).find("arm") == near
 
-    def test_links_in_circles_end(self, tmp_path: Path) -> None:
+    def test_circular_symlinks_end_scan(self, tmp_path: Path) -> None:
         arm = make_source(tmp_path / "group" / "arm", "arm")
         (tmp_path / "group" / "loop").symlink_to(tmp_path)
         scan = SourceScan(tmp_path)
         assert scan.packages() == {"arm": arm}
         assert not scan.truncated
 
-    def test_a_linked_package_is_found(self, tmp_path: Path) -> None:
+    def test_symlinked_package_is_found(self, tmp_path: Path) -> None:
         make_source(tmp_path / "elsewhere" / "arm", "arm")
         (tmp_path / "src").mkdir()
         (tmp_path / "src" / "arm").symlink_to(tmp_path / "elsewhere" / "arm")
         assert SourceScan(tmp_path / "src").packages() == {"arm": tmp_path / "src" / "arm"}
 
-    def test_the_search_is_bounded(self, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    def test_scan_is_truncated_at_maximum_folders(self, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
         monkeypatch.setattr("linkwright.packages.manifest.MAXIMUM_FOLDERS", 3)
         for number in range(5):
             (tmp_path / f"f{number}").mkdir()
@@ -250,7 +248,7 @@ class TestSourceScan:
         assert scan.find("arm") is None
         assert scan.truncated
 
-    def test_a_name_in_a_comment_is_none(self, tmp_path: Path) -> None:
+    def test_name_in_xml_comment_is_ignored(self, tmp_path: Path) -> None:
         (tmp_path / "arm").mkdir()
         (tmp_path / "arm" / "package.xml").write_text(
             "<?xml version='1.0'?><!-- <package><name>old</name> --><package format='2'><name> arm </name></package>"
@@ -272,14 +270,14 @@ class TestResolve:
             ("PACKAGE://arm/a.stl", "arm/a.stl"),
         ],
     )
-    def test_package(self, packages: PackageFinder, tmp_path: Path, address: str, path: str) -> None:
+    def test_package_uri_is_resolved(self, packages: PackageFinder, tmp_path: Path, address: str, path: str) -> None:
         assert packages.resolve(address) == tmp_path / path
 
     @pytest.mark.parametrize("address", ["file:///a/b.stl", "file:/a/b.stl", "file://localhost/a/b.stl", "/a/b.stl"])
-    def test_absolute(self, packages: PackageFinder, address: str) -> None:
+    def test_absolute_path_is_resolved(self, packages: PackageFinder, address: str) -> None:
         assert packages.resolve(address) == Path("/a/b.stl")
 
-    def test_relative(self, packages: PackageFinder) -> None:
+    def test_relative_path_is_resolved(self, packages: PackageFinder) -> None:
         assert packages.resolve("meshes/a.stl", Path("/robot")) == Path("/robot/meshes/a.stl")
         assert packages.resolve("meshes/a.stl") == Path("meshes/a.stl")
 
@@ -294,18 +292,18 @@ class TestResolve:
             ("", "is empty"),
         ],
     )
-    def test_malformed(self, packages: PackageFinder, address: str, message: str) -> None:
+    def test_malformed_uri_is_rejected(self, packages: PackageFinder, address: str, message: str) -> None:
         with pytest.raises(LinkwrightError, match=message) as caught:
             packages.resolve(address)
         assert caught.value.diagnostics[0].code == "PKG102"
 
-    def test_an_unknown_package(self, packages: PackageFinder) -> None:
+    def test_unknown_package_is_rejected(self, packages: PackageFinder) -> None:
         with pytest.raises(PackageNotFoundError, match="'armm' not found"):
             packages.resolve("package://armm/a.stl")
 
 
 @pytest.mark.parametrize("name", ["launch_ros", "rclpy", "std_msgs", "robot_state_publisher", "rviz2", "xacro"])
-def test_packages_of_which_we_have_something_have_a_share_folder_after_all_others(tmp_path: Path, name: str) -> None:
+def test_stand_in_packages_have_share_folder_unless_installed(tmp_path: Path, name: str) -> None:
     found = finder(tmp_path)
     share = found.share(name)
     assert is_substitute(share)
@@ -315,7 +313,7 @@ def test_packages_of_which_we_have_something_have_a_share_folder_after_all_other
     assert finder(tmp_path, tmp_path / "ros").share(name) == own
 
 
-def test_a_package_may_bring_substitutes_for_others(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_entry_points_provide_substitutes_for_packages(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     module = tmp_path / "site" / "my_sea_substitutes"
     install(module, "sea_ros")
     (module / "__init__.py").touch()

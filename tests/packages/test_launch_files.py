@@ -11,12 +11,12 @@ from linkwright.packages.launch_files import is_launch_file_name, launch_files_b
 from linkwright.packages.share_layout import share_of_sources
 
 
-def test_names_are_those_that_ros2launch_takes_for_launch_files():
+def test_launch_file_names_match_ros2launch():
     assert all(map(is_launch_file_name, ("a.launch.py", "a_launch.xml", "launch.yaml", "bringuplaunch.yml")))
     assert not any(map(is_launch_file_name, ("a.py", "launch.txt", "launch.py.orig", "a.launch")))
 
 
-def test_they_are_looked_for_below_the_share_folder(tmp_path: Path):
+def test_launch_files_are_found_below_share_folder(tmp_path: Path):
     for path in ("launch/b.launch.py", "launch/sub/a.launch.xml", "c.launch.yaml", "launch/d.py"):
         (tmp_path / path).parent.mkdir(parents=True, exist_ok=True)
         (tmp_path / path).touch()
@@ -24,7 +24,7 @@ def test_they_are_looked_for_below_the_share_folder(tmp_path: Path):
     assert found == ["c.launch.yaml", "launch/b.launch.py", "launch/sub/a.launch.xml"]
 
 
-def test_folders_that_are_built_hidden_or_too_deep_are_left_out(tmp_path: Path):
+def test_build_hidden_and_deep_folders_are_skipped(tmp_path: Path):
     for folder in ("install/launch", ".git", "build", "log", "1/2/3/4/5"):
         (tmp_path / folder).mkdir(parents=True)
         (tmp_path / folder / "a.launch.py").touch()
@@ -33,7 +33,7 @@ def test_folders_that_are_built_hidden_or_too_deep_are_left_out(tmp_path: Path):
 
 
 @pytest.mark.skipif(sys.platform == "win32", reason="links need a right there, without which none are made")
-def test_one_that_is_in_the_sources_and_where_it_is_installed_comes_once(tmp_path: Path, monkeypatch):
+def test_launch_file_in_source_and_install_folder_is_listed_once(tmp_path: Path, monkeypatch):
     monkeypatch.setenv("XDG_CACHE_HOME", str(tmp_path / "cache"))
     package = tmp_path / "arm"
     (package / "start").mkdir(parents=True)

@@ -13,7 +13,7 @@ NAMES = ("a_robot", "b_robot", "c_robot")
 
 
 @pytest.mark.parametrize("asking", NAMES)
-def test_of_modules_with_one_name_a_launch_file_gets_that_of_its_package(tmp_path: Path, asking: str) -> None:
+def test_launch_file_gets_module_of_its_own_package(tmp_path: Path, asking: str) -> None:
     for name in NAMES:
         (tmp_path / name / "scripts").mkdir(parents=True)
         (tmp_path / name / "scripts" / "__init__.py").touch()

@@ -180,7 +180,7 @@ def run_by_python(text: str, package: Path, monkeypatch: pytest.MonkeyPatch) -> 
 
 
 @pytest.mark.parametrize("style", STYLES)
-def test_it_is_what_python_makes_of_it(style: str, package: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_data_files_match_python_run(style: str, package: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     found = read(HEAD + STYLES[style], package)
     assert found
     assert found == run_by_python(HEAD + STYLES[style], package, monkeypatch)
@@ -201,7 +201,7 @@ def test_it_is_what_python_makes_of_it(style: str, package: Path, monkeypatch: p
         "[eval('name')]",
     ],
 )
-def test_nothing_outside_of_the_package_is_looked_at_and_nothing_is_run(files: str, package: Path) -> None:
+def test_setup_py_reads_nothing_outside_package_and_runs_nothing(files: str, package: Path) -> None:
     text = f"""{HEAD}
 for folder in ['a']:
     data = [('share/arm', ['package.xml']), ('share/arm/x', {files})]
@@ -226,6 +226,6 @@ setup(data_files=data)
         "x = {}\nx['own'] = x\ntext = f'{x}' + '%s' % x",
     ],
 )
-def test_what_would_take_long_is_given_up(statements: str, package: Path) -> None:
+def test_expensive_statements_are_abandoned(statements: str, package: Path) -> None:
     text = HEAD + f"{statements}\nsetup(data_files=[('share/arm', ['package.xml']), *more])\n"
     assert read(text, package) <= {("package.xml", "share/arm/package.xml")}

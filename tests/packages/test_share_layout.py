@@ -92,7 +92,7 @@ def files_below(folder: Path) -> set[str]:
     }
 
 
-def test_what_cmake_moves_is_where_it_would_be_installed(moved: Path) -> None:
+def test_layout_places_files_moved_by_cmake(moved: Path) -> None:
     share = finder_of(moved).share("arm")
     assert os.path.realpath(share / "urdf" / "arm.xacro") == str(moved / "description" / "urdf" / "arm.xacro")
     cmake = read_cmake(SourceText("CMakeLists.txt", CMAKE), moved)
@@ -116,7 +116,7 @@ install(DIRECTORY include/ DESTINATION include)
 """
 
 
-def test_only_what_changes_its_place_is_looked_for(write: Callable[..., Path], monkeypatch: pytest.MonkeyPatch) -> None:
+def test_only_moved_folders_are_searched(write: Callable[..., Path], monkeypatch: pytest.MonkeyPatch) -> None:
     names = ("launch/a.py", "urdf/a.xacro", "meshes/base.stl", "config/a.yaml", "rviz/arm.rviz", "include/arm.hpp")
     package = write({"CMakeLists.txt": STAYING, **dict.fromkeys(names, "")})
     read: list[str] = []
@@ -133,7 +133,7 @@ def test_only_what_changes_its_place_is_looked_for(write: Callable[..., Path], m
     assert read == ["meshes"]
 
 
-def test_what_setup_py_moves_too(write: Callable[..., Path]) -> None:
+def test_layout_places_files_moved_by_setup_py(write: Callable[..., Path]) -> None:
     package = write(
         {"setup.py": SETUP, "cfg/a.yaml": "a", "description/parts/hand.xacro": ROBOT, "config/kept.txt": ""}
     )
@@ -158,11 +158,11 @@ def by_ament(finder: PackageFinder) -> str:
 
 
 @pytest.mark.parametrize("find", [by_address, by_launch, by_ament])
-def test_all_who_ask_find_the_same(moved: Path, find: Callable[[PackageFinder], str]) -> None:
+def test_lookups_return_same_file(moved: Path, find: Callable[[PackageFinder], str]) -> None:
     assert os.path.realpath(find(finder_of(moved))) == str(moved / "description" / "urdf" / "arm.xacro")
 
 
-def test_xacro_finds_it_and_its_faults_name_the_source(moved: Path, tmp_path: Path) -> None:
+def test_xacro_finds_moved_file_and_errors_name_source(moved: Path, tmp_path: Path) -> None:
     main = tmp_path / "main.xacro"
     main.write_text(ROBOT.replace('<link name="base"/>', '<xacro:include filename="$(find arm)/urdf/arm.xacro"/>'))
     assert "base" in str(expand(main, packages=finder_of(moved)))
@@ -175,14 +175,14 @@ def test_xacro_finds_it_and_its_faults_name_the_source(moved: Path, tmp_path: Pa
     assert span.file == str(source)
 
 
-def test_a_package_that_moves_nothing_is_its_own_share_folder(write: Callable[..., Path], cache: Path) -> None:
+def test_package_without_moved_files_is_its_own_share_folder(write: Callable[..., Path], cache: Path) -> None:
     cmake = "project(arm)\ninstall(DIRECTORY urdf launch/ DESTINATION share/arm)\n".replace("launch/", "launch")
     package = write({"CMakeLists.txt": cmake, "urdf/arm.xacro": ROBOT, "launch/a.launch.py": ""})
     assert finder_of(package).share("arm") == package
     assert not cache.exists()
 
 
-def test_a_new_file_is_there_at_the_next_question_and_old_layouts_go(moved: Path, cache: Path) -> None:
+def test_layout_is_updated_for_new_file_and_old_layout_removed(moved: Path, cache: Path) -> None:
     finder = finder_of(moved)
     before = finder.share("arm")
     assert finder_of(moved).share("arm") == before, "nothing is made twice"
@@ -196,12 +196,12 @@ def test_a_new_file_is_there_at_the_next_question_and_old_layouts_go(moved: Path
     assert len(list(next(cache.iterdir()).iterdir())) == 1
 
 
-def test_who_starts_from_such_a_folder_finds_it(moved: Path) -> None:
+def test_package_is_found_from_inside_layout(moved: Path) -> None:
     share = finder_of(moved).share("arm")
     assert PackageFinder(start=share / "launch", environment={}).share("arm") == share
 
 
-def test_where_no_links_can_be_made_the_sources_serve(moved: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_sources_are_used_if_symlinks_fail(moved: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     def refuse(*_: object) -> None:
         raise OSError("no links here")
 
@@ -209,7 +209,7 @@ def test_where_no_links_can_be_made_the_sources_serve(moved: Path, monkeypatch: 
     assert finder_of(moved).share("arm") == moved
 
 
-def test_other_paths_are_their_own_sources(tmp_path: Path) -> None:
+def test_source_of_other_path_is_that_path(tmp_path: Path) -> None:
     link = tmp_path / "link"
     link.symlink_to(tmp_path)
     assert source_of(str(link)) == str(link)
@@ -234,9 +234,7 @@ setup(name='arm', data_files=[
 
 
 @pytest.mark.parametrize("build_file", OUTSIDE)
-def test_files_outside_of_the_package_are_not_taken_in(
-    write: Callable[..., Path], build_file: str, tmp_path: Path
-) -> None:
+def test_files_outside_package_are_not_included(write: Callable[..., Path], build_file: str, tmp_path: Path) -> None:
     (tmp_path / "src" / "other").mkdir(parents=True)
     secret = tmp_path / "src" / "other" / "secret.stl"
     secret.write_text("")
@@ -246,7 +244,7 @@ def test_files_outside_of_the_package_are_not_taken_in(
     assert not (share / "meshes").exists()
 
 
-def test_what_loops_of_setup_py_move_is_found(write: Callable[..., Path]) -> None:
+def test_files_moved_by_setup_py_loop_are_found(write: Callable[..., Path]) -> None:
     text = (
         "import os\nfrom setuptools import setup\ndata = []\nfor root, _, files in os.walk('description'):\n"
         "    to = 'share/arm/' + root[len('description/'):]\n"
@@ -256,6 +254,6 @@ def test_what_loops_of_setup_py_move_is_found(write: Callable[..., Path]) -> Non
     assert (share_of_sources("arm", folder) / "urdf" / "arm.xacro").read_text() == ROBOT
 
 
-def test_environment_hooks_make_no_layout(write: Callable[..., Path]) -> None:
+def test_environment_hooks_create_no_layout(write: Callable[..., Path]) -> None:
     folder = write({"CMakeLists.txt": "project(arm)\nament_environment_hooks(a.dsv.in)\n", "a.dsv.in": ""})
     assert share_of_sources("arm", folder) == folder

@@ -18,19 +18,19 @@ def is_let_in(gate, *, host="127.0.0.1:7447", origin=None):
     return gate.refusal({"Host": host} | ({"Origin": origin} if origin is not None else {})) is None
 
 
-def test_the_token_opens_in_the_address(gate):
+def test_token_in_query_is_accepted(gate):
     assert gate.is_shown_token({"token": gate.token})
 
 
 @pytest.mark.parametrize("wrong", ["", "x", "\udcff", "é" * 32])
-def test_nothing_else_does(gate, wrong):
+def test_wrong_or_missing_token_is_rejected(gate, wrong):
     assert not gate.is_shown_token({"token": wrong})
     assert not gate.is_shown_token({"token": gate.token[:-1]})
     assert not gate.is_shown_token({})
     assert not gate.is_shown_token({"other": gate.token})
 
 
-def test_two_servers_have_two_tokens(gate):
+def test_servers_have_different_tokens(gate):
     other = Gate("127.0.0.1", new_token())
     assert gate.token != other.token
 
@@ -38,7 +38,7 @@ def test_two_servers_have_two_tokens(gate):
 @pytest.mark.parametrize(
     "host", ["127.0.0.1", "127.0.0.1:80", "localhost:9000", "LOCALHOST", "[::1]:7447", "192.168.1.5:7447", "localhost."]
 )
-def test_names_of_this_machine_are_known(gate, host):
+def test_host_names_of_this_machine_are_accepted(gate, host):
     assert is_let_in(gate, host=host)
 
 
@@ -58,11 +58,11 @@ def test_names_of_this_machine_are_known(gate, host):
         "[::1",
     ],
 )
-def test_other_names_are_refused(gate, host):
+def test_other_host_names_are_rejected(gate, host):
     assert not is_let_in(gate, host=host)
 
 
-def test_the_host_it_is_bound_to_is_known():
+def test_bound_host_name_is_accepted():
     assert is_let_in(Gate("robot.lan", new_token()), host="robot.lan")
 
 
@@ -81,28 +81,28 @@ def test_the_host_it_is_bound_to_is_known():
         ("http://[", False),
     ],
 )
-def test_only_pages_of_this_origin_may_ask(gate, origin, may):
+def test_only_pages_of_same_origin_are_accepted(gate, origin, may):
     assert is_let_in(gate, origin=origin) == may
 
 
 @given(st.text(), st.text())
-def test_no_header_is_too_strange(host, origin):
+def test_malformed_headers_are_rejected(host, origin):
     assert Gate("127.0.0.1", new_token()).refusal({"Host": host, "Origin": origin})
 
 
-def test_scripts_come_from_files_of_the_server_only():
+def test_security_policy_allows_scripts_of_server_only():
     policy = dict(part.split(" ", 1) for part in security_headers("127.0.0.1:1")["Content-Security-Policy"].split("; "))
     assert policy["script-src"] == "'self' 'unsafe-eval'"
     assert policy["default-src"] == "'none'"
     assert "ws://127.0.0.1:1" in policy["connect-src"]
 
 
-def test_the_proof_for_a_page_is_made_of_its_number_and_the_token(gate):
+def test_proof_is_hmac_of_nonce_and_token(gate):
     nonce = "0123456789abcdef" * 2
     assert gate.proof(nonce) == hmac.new(gate.token.encode(), nonce.encode(), "sha256").hexdigest()
     assert gate.proof(nonce) != Gate("127.0.0.1", new_token()).proof(nonce)
 
 
 @pytest.mark.parametrize("nonce", ["", "0" * 31, "0" * 33, "x" * 32, "0" * 31 + "\n", "é" * 32])
-def test_nothing_but_such_a_number_is_answered(gate, nonce):
+def test_malformed_nonce_has_no_proof(gate, nonce):
     assert gate.proof(nonce) is None

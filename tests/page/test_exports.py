@@ -27,7 +27,7 @@ async def exported(client, kind: str = "glb") -> dict:
             return message
 
 
-async def test_an_export_is_fetched_once_from_an_address_that_nobody_guesses(served):
+async def test_export_is_fetched_once_from_secret_url(served):
     served.describe('<robot name="../../evil name"><link name="base"/></robot>')
     await served.settle()
     async with page(served.viewer) as client:
@@ -45,7 +45,7 @@ async def test_an_export_is_fetched_once_from_an_address_that_nobody_guesses(ser
             assert (await raw(served.viewer, guess))[0] in (403, 404)
 
 
-async def test_exports_that_nobody_fetches_are_forgotten(served):
+async def test_unfetched_exports_expire(served):
     served.describe('<robot name="arm"><link name="base"/></robot>')
     await served.settle()
     async with page(served.viewer) as client:
@@ -53,7 +53,7 @@ async def test_exports_that_nobody_fetches_are_forgotten(served):
         assert [(await raw(served.viewer, each["url"]))[0] for each in ready] == [404, 404, 200, 200, 200, 200]
 
 
-async def test_an_export_that_fails_says_why(served):
+async def test_failed_export_reports_reason(served):
     served.describe(MESHED)
     await served.settle()
     async with page(served.viewer) as client:

@@ -35,7 +35,7 @@ def index(tmp_path, robot):
     return MeshIndex(PackageFinder(start=tmp_path / "nowhere", environment={}, extra={"robot": robot}))
 
 
-def ask(index: MeshIndex, url: str) -> Path:
+def served_path(index: MeshIndex, url: str) -> Path:
     """Return what the server reads for an address."""
     folders = MeshFolders()
     folders.replace("display-1", index.folders)
@@ -43,46 +43,46 @@ def ask(index: MeshIndex, url: str) -> Path:
     return folders.file(key, relative)
 
 
-def test_a_mesh_of_a_package_has_an_address_below_the_package(index, robot):
+def test_package_mesh_has_url_below_package(index, robot):
     located = index.locate("package://robot/meshes/arm.dae", None, MESH_TYPES)
     assert located.problem is None
     assert located.url.startswith("/mesh/robot-")
     assert "/meshes/arm.dae?v=" in located.url
     assert str(robot) not in located.url
-    assert ask(index, located.url) == robot / "meshes" / "arm.dae"
+    assert served_path(index, located.url) == robot / "meshes" / "arm.dae"
 
 
-def test_what_lies_beside_it_is_reachable(index, robot):
+def test_files_beside_mesh_are_served(index, robot):
     url = index.locate("package://robot/meshes/arm.dae", None, MESH_TYPES).url
     base = url[: url.index("meshes/")]
-    assert ask(index, f"{base}meshes/arm.png")
-    assert ask(index, f"{base}materials/wood.png") == robot / "materials" / "wood.png"
+    assert served_path(index, f"{base}meshes/arm.png")
+    assert served_path(index, f"{base}materials/wood.png") == robot / "materials" / "wood.png"
 
 
-def test_an_edited_mesh_has_another_address(index, robot):
+def test_edited_mesh_has_new_url(index, robot):
     before = index.locate("package://robot/meshes/arm.dae", None, MESH_TYPES).url
     os.utime(robot / "meshes" / "arm.dae", ns=(1, 1))
     assert index.locate("package://robot/meshes/arm.dae", None, MESH_TYPES).url != before
 
 
-def test_file_addresses_and_paths_in_a_package_are_of_the_package(index, robot):
+def test_file_uris_and_paths_in_package_use_package_url(index, robot):
     expected = index.locate("package://robot/meshes/arm.dae", None, MESH_TYPES)
     assert index.locate(f"file://{robot}/meshes/arm.dae", None, MESH_TYPES) == expected
     assert index.locate(str(robot / "meshes" / "arm.dae"), None, MESH_TYPES) == expected
     assert index.locate("../meshes/arm.dae", robot / "urdf", MESH_TYPES) == expected
 
 
-def test_a_loose_mesh_opens_its_folder_and_the_folders_in_it(index, tmp_path):
+def test_mesh_outside_package_exposes_its_folder_and_subfolders(index, tmp_path):
     mesh = write(tmp_path / "loose" / "a b" / "part.STL")
     write(mesh.parent / "textures" / "t.png")
     write(mesh.parent / "textures" / "deep" / "t.png")
     url = index.locate(f"file://{mesh.parent.parent}/a%20b/part.STL", None, MESH_TYPES).url
     assert "/part.STL?" in url
     base = url[: url.index("part")]
-    assert ask(index, f"{base}part.STL") == mesh
-    assert ask(index, f"{base}textures/t.png")
+    assert served_path(index, f"{base}part.STL") == mesh
+    assert served_path(index, f"{base}textures/t.png")
     with pytest.raises(FileRefusedError) as caught:
-        ask(index, f"{base}textures/deep/t.png")
+        served_path(index, f"{base}textures/deep/t.png")
     assert caught.value.status == 403
 
 
@@ -98,31 +98,31 @@ def test_a_loose_mesh_opens_its_folder_and_the_folders_in_it(index, tmp_path):
         ("package://robot/meshes/a\0.dae", "no file '"),
     ],
 )
-def test_why_there_is_no_mesh(index, uri, problem):
+def test_missing_mesh_is_reported_with_reason(index, uri, problem):
     located = index.locate(uri, None, MESH_TYPES)
     assert located.url is None
     assert problem in located.problem
     assert index.folders == {}
 
 
-def test_a_package_that_is_not_there_is_looked_for_once(index, monkeypatch):
+def test_missing_package_is_searched_once(index, monkeypatch):
     searched = []
     monkeypatch.setattr(index.finder, "packages", lambda: searched.append("packages") or {})
     problems = {index.locate(f"package://nobody/{number}.dae", None, MESH_TYPES).problem for number in range(5)}
     assert (len(problems), searched) == (1, ["packages"])
 
 
-def test_the_missing_file_is_named_with_its_whole_path(index, robot):
+def test_missing_file_is_reported_with_full_path(index, robot):
     located = index.locate("package://robot/meshes/gone.dae", None, MESH_TYPES)
     assert str(robot / "meshes" / "gone.dae") in located.problem
 
 
-def test_textures_are_images(index):
+def test_textures_must_be_images(index):
     assert index.locate("package://robot/materials/wood.png", None, IMAGE_TYPES).url
     assert index.locate("package://robot/meshes/arm.dae", None, IMAGE_TYPES).url is None
 
 
-def refused(index: MeshIndex, relative: str) -> int:
+def rejection_status(index: MeshIndex, relative: str) -> int:
     (key,) = index.folders
     folders = MeshFolders()
     folders.replace("display-1", index.folders)
@@ -149,35 +149,35 @@ def refused(index: MeshIndex, relative: str) -> int:
         ("meshes/" + "x" * 300 + ".dae", 404),
     ],
 )
-def test_paths_that_lead_elsewhere_are_refused(index, robot, relative, status):
+def test_paths_outside_package_are_rejected(index, robot, relative, status):
     write(robot.parent / "outside.dae")
     index.locate("package://robot/meshes/arm.dae", None, MESH_TYPES)
-    assert refused(index, relative) == status
+    assert rejection_status(index, relative) == status
 
 
 @pytest.mark.parametrize("target", ["outside.dae", "secret.txt"])
-def test_a_link_out_of_the_package_is_refused(index, robot, target):
+def test_symlink_out_of_package_is_rejected(index, robot, target):
     outside = write(robot.parent / target)
     (robot / "meshes" / "link.dae").symlink_to(outside)
     index.locate("package://robot/meshes/arm.dae", None, MESH_TYPES)
-    assert refused(index, "meshes/link.dae") == 403
+    assert rejection_status(index, "meshes/link.dae") == 403
     assert "link" in index.locate("package://robot/meshes/link.dae", None, MESH_TYPES).problem
 
 
-def test_a_linked_folder_that_leads_out_is_refused(index, robot):
+def test_symlinked_folder_out_of_package_is_rejected(index, robot):
     write(robot.parent / "other" / "a.dae")
     (robot / "more").symlink_to(robot.parent / "other")
     index.locate("package://robot/meshes/arm.dae", None, MESH_TYPES)
-    assert refused(index, "more/a.dae") == 403
+    assert rejection_status(index, "more/a.dae") == 403
 
 
-def test_links_in_circles_are_no_files(index, robot):
+def test_circular_symlink_is_not_found(index, robot):
     (robot / "meshes" / "loop.dae").symlink_to("loop.dae")
     index.locate("package://robot/meshes/arm.dae", None, MESH_TYPES)
-    assert refused(index, "meshes/loop.dae") == 404
+    assert rejection_status(index, "meshes/loop.dae") == 404
 
 
-def test_links_of_symlink_install_lead_into_the_sources(tmp_path):
+def test_symlink_install_links_into_sources_are_served(tmp_path):
     source = package(tmp_path / "src" / "robot", "robot")
     mesh = write(source / "meshes" / "arm.dae")
     share = package(tmp_path / "install" / "robot" / "share" / "robot", "robot")
@@ -185,10 +185,10 @@ def test_links_of_symlink_install_lead_into_the_sources(tmp_path):
     (share / "meshes" / "arm.dae").symlink_to(mesh)
     index = MeshIndex(PackageFinder(start=tmp_path / "nowhere", environment={}, extra={"robot": share}))
     url = index.locate("package://robot/meshes/arm.dae", None, MESH_TYPES).url
-    assert ask(index, url) == mesh
+    assert served_path(index, url) == mesh
 
 
-def test_links_into_a_package_of_another_name_are_refused(tmp_path):
+def test_symlinks_into_other_package_are_rejected(tmp_path):
     other = package(tmp_path / "src" / "other", "other")
     write(other / "meshes" / "arm.dae")
     share = package(tmp_path / "share" / "robot", "robot")
@@ -197,7 +197,7 @@ def test_links_into_a_package_of_another_name_are_refused(tmp_path):
     assert index.locate("package://robot/meshes/arm.dae", None, MESH_TYPES).url is None
 
 
-def test_folders_go_with_their_description(index):
+def test_folders_are_removed_with_their_description(index):
     url = index.locate("package://robot/meshes/arm.dae", None, MESH_TYPES).url
     _, _, key, relative = url.partition("?")[0].split("/", 3)
     folders = MeshFolders()
@@ -211,7 +211,7 @@ def test_folders_go_with_their_description(index):
     assert caught.value.status == 404
 
 
-def test_a_pointer_of_git_lfs_is_named_as_such(index, robot):
+def test_git_lfs_pointer_is_reported(index, robot):
     (robot / "meshes" / "arm.dae").write_bytes(b"version https://git-lfs.github.com/spec/v1\noid sha256:4d7a\nsize 9\n")
     located = index.locate("package://robot/meshes/arm.dae", None, MESH_TYPES)
     assert located.url is None

@@ -21,26 +21,26 @@ def output_of(code: str) -> list[str]:
     return done.stdout.split()
 
 
-def test_a_server_does_without_the_client():
+def test_server_does_not_load_client():
     assert output_of("print('aiohttp.web' in sys.modules, 'aiohttp.connector' in sys.modules)") == ["True", "False"]
 
 
-def test_the_client_comes_when_somebody_asks_for_it():
+def test_client_is_loaded_on_demand():
     code = "from aiohttp import ClientSession; print(ClientSession is aiohttp.client.ClientSession)"
     assert output_of(f"{code}; print(aiohttp.web is web, aiohttp.WSMsgType is web.WSMsgType)") == ["True"] * 3
 
 
-def test_the_package_has_the_version_that_is_installed_before_and_after():
+def test_package_version_is_available_before_and_after_client():
     code = "from importlib.metadata import version; print(version('aiohttp'), aiohttp.__version__)"
     assert len(set(output_of(f"{code}; aiohttp.ClientSession; print(aiohttp.__version__)"))) == 1
 
 
-def test_the_names_it_has_not_are_missing_as_ever():
+def test_unknown_attributes_of_package_are_missing():
     for name in ("nothing", "__nothing__"):
         assert output_of(f"print(hasattr(aiohttp, '{name}'))") == ["False"]
 
 
-def test_a_server_that_needs_the_whole_package_gets_it(tmp_path):
+def test_server_that_needs_whole_package_loads_it(tmp_path):
     package = tmp_path / "aiohttp"
     package.mkdir()
     (package / "__init__.py").write_text("X = 1\nfrom .web import A\n")
@@ -53,24 +53,24 @@ def test_a_server_that_needs_the_whole_package_gets_it(tmp_path):
     assert done.stdout.split() == ["2"]
 
 
-def test_what_was_loaded_before_stays():
+def test_already_loaded_package_is_kept():
     code = "import aiohttp.web; given = aiohttp.web; from linkwright.page.http_server import web; print(web is given)"
     done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
     assert done.stdout.split() == ["True"]
 
 
-def test_a_fault_of_the_server_is_told(caplog):
+def test_server_error_is_logged(caplog):
     SERVER_LOGGER.error("Error handling request", exc_info=RuntimeError("ours"))
     assert "ours" in caplog.text
 
 
 @pytest.mark.parametrize("fault", [ConnectionResetError(), BrokenPipeError()])
-def test_a_client_that_left_is_no_fault(caplog, fault):
+def test_disconnected_client_is_not_logged(caplog, fault):
     SERVER_LOGGER.error("Error handling request", exc_info=fault)
     assert caplog.records == []
 
 
-def test_each_server_tells_its_faults_there():
+def test_servers_log_errors_to_server_logger():
     """aiohttp's own logger prints a traceback for each client that leaves."""
     runners = [
         words

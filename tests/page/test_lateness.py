@@ -33,7 +33,7 @@ class Loop:
         self.timer()
 
 
-def test_a_program_is_as_late_as_its_timers_of_the_last_second():
+def test_lateness_is_mean_timer_delay_of_last_second():
     loop = Loop()
     lateness = LoopLag(loop)  # type: ignore[arg-type]
     assert lateness.mean == 0.0

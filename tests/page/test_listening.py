@@ -18,7 +18,7 @@ def taken():
         yield other.getsockname()[1]
 
 
-def test_a_port_in_use_is_named_with_a_way_out(taken):
+def test_port_in_use_is_reported_with_hint(taken):
     with pytest.raises(LinkwrightError) as caught:
         listen("127.0.0.1", taken)
     (diagnostic,) = caught.value.diagnostics
@@ -27,13 +27,13 @@ def test_a_port_in_use_is_named_with_a_way_out(taken):
     assert "--port" in diagnostic.hint
 
 
-def test_without_a_port_the_next_free_one_is_taken(taken, monkeypatch):
+def test_next_free_port_is_used_by_default(taken, monkeypatch):
     monkeypatch.setattr(page_server, "DEFAULT_PORT", taken)
     with listen("127.0.0.1", None) as listener:
         assert listener.getsockname()[1] > taken
 
 
-def test_two_at_once_never_share_a_port():
+def test_servers_do_not_share_a_port():
     with listen("127.0.0.1", 0) as first, pytest.raises(LinkwrightError):
         listen("127.0.0.1", first.getsockname()[1])
 
@@ -41,25 +41,25 @@ def test_two_at_once_never_share_a_port():
 @pytest.mark.parametrize(
     ("host", "port", "code"), [("no.such.host.invalid", 0, "VIEW103"), ("127.0.0.1", 99999, "VIEW102")]
 )
-def test_where_nobody_can_listen(host, port, code):
+def test_invalid_host_or_port_is_rejected(host, port, code):
     with pytest.raises(LinkwrightError) as caught:
         listen(host, port)
     assert caught.value.diagnostics[0].code == code
 
 
-def test_an_address_of_another_machine_cannot_be_listened_on():
+def test_address_of_another_machine_is_rejected():
     with pytest.raises(LinkwrightError) as caught:
         listen("203.0.113.7", 0)
     assert caught.value.diagnostics[0].code == "VIEW102"
 
 
-def test_the_address_to_open_is_one_that_a_browser_can_open():
+def test_url_of_wildcard_address_is_loopback():
     with listen("0.0.0.0", 0) as listener:
         assert url_of(listener) == f"http://127.0.0.1:{listener.getsockname()[1]}/"
 
 
 @pytest.mark.skipif(not socket.has_ipv6, reason="no IPv6 here")
-def test_six_groups_stand_in_brackets():
+def test_ipv6_url_has_brackets():
     try:
         listener = listen("::1", 0)
     except LinkwrightError:

@@ -8,43 +8,43 @@ from hypothesis import strategies as st
 from linkwright.page.outbox import FRAME_TABLE, TRANSFORMS, Outbox, ScaledData
 
 
-async def emptied(outbox: Outbox) -> list:
+async def drain(outbox: Outbox) -> list:
     return [await outbox.take() for _ in range(len(outbox))]
 
 
-async def test_only_the_newest_of_a_kind_waits():
+async def test_only_newest_payload_per_key_is_kept():
     outbox = Outbox()
     for number in range(5):
         outbox.put("a", f"a{number}")
         outbox.put(TRANSFORMS, bytes([number]))
     outbox.put("b", "b")
     assert len(outbox) == 3
-    assert await emptied(outbox) == [bytes([4]), "a4", "b"]
+    assert await drain(outbox) == [bytes([4]), "a4", "b"]
 
 
-async def test_a_replaced_payload_goes_to_the_end():
+async def test_replaced_payload_moves_to_end():
     outbox = Outbox()
     for key, payload in (("a", "a1"), ("b", "b1"), ("a", "a2")):
         outbox.put(key, payload)
-    assert await emptied(outbox) == ["b1", "a2"]
+    assert await drain(outbox) == ["b1", "a2"]
 
 
-def scaled(key: str) -> ScaledData:
+def scaled_data(key: str) -> ScaledData:
     return ScaledData(key, key, lambda _: key, str.encode)
 
 
-async def test_heavy_content_keeps_its_place_so_that_none_starves():
+async def test_replaced_heavy_content_keeps_its_place():
     outbox = Outbox()
     for key in ("a", "b", "c"):
-        outbox.put(key, scaled(key))
-    newer = scaled("a")
+        outbox.put(key, scaled_data(key))
+    newer = scaled_data("a")
     outbox.put("a", newer)
     assert await outbox.take() is newer
 
 
-async def test_heavy_content_that_was_taken_away_comes_after_what_said_so():
+async def test_withdrawn_heavy_content_moves_to_end():
     outbox = Outbox()
-    old, new = scaled("a"), scaled("a")
+    old, new = scaled_data("a"), scaled_data("a")
     outbox.put("a", old)
     old.is_withdrawn = True
     outbox.put("forgotten", "forgotten")
@@ -55,7 +55,7 @@ async def test_heavy_content_that_was_taken_away_comes_after_what_said_so():
     assert await outbox.take() == "b"
 
 
-async def test_a_held_outbox_gives_transforms_only():
+async def test_held_outbox_returns_transforms_only():
     outbox = Outbox()
     outbox.put("a", "a")
     outbox.hold(True)
@@ -69,7 +69,7 @@ async def test_a_held_outbox_gives_transforms_only():
     assert await outbox.take() == "a"
 
 
-async def test_transforms_overtake_but_do_not_starve_the_rest():
+async def test_transforms_take_precedence_without_starving_others():
     outbox = Outbox()
     for key in ("a", "b", "c"):
         outbox.put(key, key)
@@ -81,14 +81,14 @@ async def test_transforms_overtake_but_do_not_starve_the_rest():
     assert sent == ["table", "a", bytes([2]), "b", bytes([4]), "c"]
 
 
-async def test_the_table_goes_before_its_transforms():
+async def test_frame_table_precedes_its_transforms():
     outbox = Outbox()
     outbox.put(FRAME_TABLE, "table")
     outbox.put(TRANSFORMS, b"1")
-    assert await emptied(outbox) == ["table", b"1"]
+    assert await drain(outbox) == ["table", b"1"]
 
 
-async def test_take_waits_for_something():
+async def test_take_waits_for_payload():
     outbox = Outbox()
     taking = asyncio.ensure_future(outbox.take())
     await asyncio.sleep(0)
@@ -98,12 +98,12 @@ async def test_take_waits_for_something():
 
 
 @given(st.lists(st.tuples(st.sampled_from(["a", "b", FRAME_TABLE, TRANSFORMS]), st.integers())))
-def test_the_last_of_every_kind_arrives(puts):
+def test_last_payload_of_every_key_arrives(puts):
     async def scenario():
         outbox = Outbox()
         for key, number in puts:
             outbox.put(key, f"{key} {number}")
-        return await emptied(outbox)
+        return await drain(outbox)
 
     last = {key: f"{key} {number}" for key, number in puts}
     assert sorted(asyncio.run(scenario())) == sorted(last.values())

@@ -58,7 +58,7 @@ def anything(kind: Any, name: str, chance: random.Random) -> Any:
 
 
 @pytest.mark.parametrize("seed", range(3))
-async def test_nothing_that_a_page_may_say_is_too_much(seed, tmp_path, monkeypatch):
+async def test_viewer_survives_random_page_messages(seed, tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)
     chance = random.Random(seed)
     async with world(RvizConfig.parse(CONFIGURATION)) as made, page(made.viewer) as client:

@@ -13,7 +13,7 @@ from tests.viewer.scene import World
 
 
 @asynccontextmanager
-async def opened() -> AsyncIterator[tuple[PageServer, aiohttp.ClientSession]]:
+async def running_server() -> AsyncIterator[tuple[PageServer, aiohttp.ClientSession]]:
     """Start a server that delivers the page, and return it with a browser."""
     server = PageServer("127.0.0.1", 0)
     await server.open()
@@ -28,8 +28,8 @@ def address_of(server: PageServer, path: str) -> str:
     return server.url.replace("/?", f"/{path}?")
 
 
-async def test_the_page_comes_before_there_is_a_viewer_and_its_socket_when_there_is_one():
-    async with opened() as (server, browser):
+async def test_page_is_served_before_viewer_and_socket_waits_for_it():
+    async with running_server() as (server, browser):
         async with browser.get(server.url) as answer:
             assert answer.status == 200
         waiting = asyncio.ensure_future(browser.ws_connect(address_of(server, "ws")))
@@ -46,8 +46,8 @@ async def test_the_page_comes_before_there_is_a_viewer_and_its_socket_when_there
         await made.graph.close()
 
 
-async def test_whoever_has_no_token_waits_for_nothing():
-    async with opened() as (server, browser):
+async def test_request_without_token_is_rejected_at_once():
+    async with running_server() as (server, browser):
         plain = server.url.partition("?")[0]
         async with browser.get(f"{plain}ws") as answer:
             assert answer.status == 401
@@ -55,8 +55,8 @@ async def test_whoever_has_no_token_waits_for_nothing():
             assert answer.status == 401
 
 
-async def test_a_page_that_waits_is_sent_away_when_the_program_ends_before():
-    async with opened() as (server, browser):
+async def test_waiting_page_gets_503_when_server_closes():
+    async with running_server() as (server, browser):
         waiting = asyncio.ensure_future(browser.get(address_of(server, "ws")))
         async with browser.get(server.url) as answer:
             assert answer.status == 200
@@ -65,7 +65,7 @@ async def test_a_page_that_waits_is_sent_away_when_the_program_ends_before():
         assert answer.status == 503
 
 
-async def test_a_server_without_guests_takes_no_recordings():
+async def test_server_without_uploads_has_no_recordings_url():
     made = World()
     await made.viewer.start()
     address = made.viewer.url.replace("/?", "/recordings?")

@@ -68,7 +68,7 @@ def connected(
 
 
 @pytest.mark.parametrize(("listening", "connecting"), FAMILIES)
-def test_a_program_of_the_same_user_is_accepted(listening: str, connecting: str) -> None:
+def test_program_of_same_user_is_accepted(listening: str, connecting: str) -> None:
     with connected(listening, connecting) as (_, connection):
         assert is_local_connection(connection)
         assert may_be_own_user(connection)
@@ -76,7 +76,7 @@ def test_a_program_of_the_same_user_is_accepted(listening: str, connecting: str)
 
 @linux
 @pytest.mark.parametrize(("listening", "connecting"), FAMILIES)
-def test_another_user_is_refused(monkeypatch: pytest.MonkeyPatch, listening: str, connecting: str) -> None:
+def test_other_user_is_rejected(monkeypatch: pytest.MonkeyPatch, listening: str, connecting: str) -> None:
     with connected(listening, connecting) as (_, connection):
         monkeypatch.setattr(os, "geteuid", lambda: NOBODY - 1)
         monkeypatch.setattr(peers, "_ROOT", None)
@@ -87,7 +87,7 @@ def test_another_user_is_refused(monkeypatch: pytest.MonkeyPatch, listening: str
 @linux
 @pytest.mark.skipif(not hasattr(os, "geteuid") or os.geteuid() != 0, reason="only root can become another user")
 @pytest.mark.parametrize(("user", "is_accepted"), [(NOBODY, False), (0, True)])
-def test_the_system_knows_the_user_of_another_process(user: int, is_accepted: bool) -> None:
+def test_user_of_other_process_is_recognized(user: int, is_accepted: bool) -> None:
     with listen("127.0.0.1") as listener:
         program = CONNECT.format(user=user, port=listener.getsockname()[1])
         with subprocess.Popen([sys.executable, "-I", "-c", program], stdin=subprocess.PIPE) as process:
@@ -107,14 +107,14 @@ def test_root_is_accepted(monkeypatch: pytest.MonkeyPatch) -> None:
 
 
 @linux
-def test_a_socket_that_was_closed_is_refused() -> None:
+def test_closed_socket_is_rejected() -> None:
     with connected() as (theirs, connection):
         theirs.close()
         assert not may_be_own_user(connection)
 
 
 @linux
-def test_a_socket_that_the_system_omitted_once_is_found(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_socket_omitted_once_by_system_is_found(monkeypatch: pytest.MonkeyPatch) -> None:
     read = peers._read_tables
     answers = iter(["  sl  local_address\n", "  sl  local_address\n"])
     monkeypatch.setattr(peers, "_read_tables", lambda: next(answers, None) or read())
@@ -122,9 +122,7 @@ def test_a_socket_that_the_system_omitted_once_is_found(monkeypatch: pytest.Monk
         assert may_be_own_user(connection)
 
 
-def test_where_the_system_lists_no_sockets_every_user_of_this_machine_is_accepted(
-    monkeypatch: pytest.MonkeyPatch, tmp_path: Path
-) -> None:
+def test_all_local_users_are_accepted_without_socket_tables(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
     connection = Connection(("127.0.0.1", 1), ("127.0.0.1", 2))
     monkeypatch.setattr(peers, "_TABLES", (tmp_path / "tcp", tmp_path / "tcp6"))
     assert may_be_own_user(connection)
@@ -133,7 +131,7 @@ def test_where_the_system_lists_no_sockets_every_user_of_this_machine_is_accepte
 
 
 @pytest.mark.parametrize("transport", [None, Connection(None, None), Connection(("127.0.0.1", 1), None)])
-def test_a_connection_that_was_lost_is_refused(transport: Connection | None) -> None:
+def test_lost_connection_is_rejected(transport: Connection | None) -> None:
     assert not is_local_connection(transport)
     assert not may_be_own_user(transport)
 
@@ -149,5 +147,5 @@ def test_a_connection_that_was_lost_is_refused(transport: Connection | None) -> 
         (("fe80::1%eth0", 1, 0, 2), ("fe80::2%eth0", 2, 0, 2), False),
     ],
 )
-def test_loopback_and_own_addresses_are_this_machine(peer: Any, own: Any, is_local: bool) -> None:
+def test_loopback_and_own_addresses_are_local(peer: Any, own: Any, is_local: bool) -> None:
     assert is_local_connection(Connection(peer, own)) is is_local

@@ -15,15 +15,15 @@ PORT = 7448
 posix = pytest.mark.skipif(os.name != "posix", reason="Windows guards the user's folders itself")
 
 
-def test_the_next_program_at_a_port_has_the_same_token():
+def test_next_program_on_port_has_same_token():
     assert load_token(PORT).token == load_token(PORT).token
 
 
-def test_each_port_has_its_own():
+def test_ports_have_different_tokens():
     assert load_token(PORT).token != load_token(PORT + 1).token
 
 
-def test_pages_wait_for_the_next_program_only_where_some_were_open_at_the_end():
+def test_pages_wait_is_stored_for_next_program_only():
     token = load_token(PORT).token
     store_pages_wait(PORT, token, pages_wait=True)
     assert load_token(PORT).pages_wait
@@ -32,14 +32,14 @@ def test_pages_wait_for_the_next_program_only_where_some_were_open_at_the_end():
     assert not load_token(PORT).pages_wait
 
 
-def test_a_program_that_ends_leaves_the_token_of_another_alone():
+def test_ending_program_keeps_token_of_other_program():
     token = load_token(PORT).token
     store_pages_wait(PORT, "another", pages_wait=True)
     assert load_token(PORT).token == token
 
 
 @posix
-def test_nobody_else_may_read_the_file_or_list_the_folder():
+def test_token_file_and_folder_are_private():
     load_token(PORT)
     store_pages_wait(PORT, load_token(PORT).token, pages_wait=True)
     assert stat.S_IMODE((token_folder() / str(PORT)).stat().st_mode) == 0o600
@@ -48,7 +48,7 @@ def test_nobody_else_may_read_the_file_or_list_the_folder():
 
 @posix
 @pytest.mark.parametrize("mode", [0o640, 0o604, 0o620])
-def test_a_file_that_others_could_read_or_write_counts_for_nothing(mode):
+def test_token_file_accessible_to_others_is_ignored(mode):
     token = load_token(PORT).token
     (token_folder() / str(PORT)).chmod(mode)
     assert load_token(PORT).token != token
@@ -56,7 +56,7 @@ def test_a_file_that_others_could_read_or_write_counts_for_nothing(mode):
 
 
 @posix
-def test_a_link_counts_for_nothing(tmp_path):
+def test_symlinked_token_file_is_ignored(tmp_path):
     token = load_token(PORT).token
     elsewhere = tmp_path / "token"
     (token_folder() / str(PORT)).rename(elsewhere)
@@ -65,7 +65,7 @@ def test_a_link_counts_for_nothing(tmp_path):
 
 
 @pytest.mark.parametrize("days", [7.1, -1])
-def test_a_token_lives_for_a_week_and_none_is_of_the_future(days):
+def test_old_and_future_tokens_are_ignored(days):
     token = load_token(PORT).token
     file = token_folder() / str(PORT)
     file.write_text(json.dumps({"token": token, "made": time.time() - days * 86400}))
@@ -73,13 +73,13 @@ def test_a_token_lives_for_a_week_and_none_is_of_the_future(days):
 
 
 @pytest.mark.parametrize("text", ["", "{", "[]", '{"token": "short", "made": 0}', "[" * 100_000, '{"token": 1}'])
-def test_whatever_else_is_in_the_file_the_program_starts(text):
+def test_malformed_token_file_is_replaced(text):
     load_token(PORT)
     (token_folder() / str(PORT)).write_text(text)
     assert len(load_token(PORT).token) == 32
 
 
-def test_where_no_state_can_be_kept_each_program_has_a_token_of_its_own(tmp_path, monkeypatch):
+def test_programs_have_different_tokens_without_state_folder(tmp_path, monkeypatch):
     (tmp_path / "blocked").write_text("a file, not a folder")
     monkeypatch.setenv("XDG_STATE_HOME", str(tmp_path / "blocked"))
     assert load_token(PORT).token != load_token(PORT).token

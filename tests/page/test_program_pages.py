@@ -63,7 +63,7 @@ async def status_of(address: str, line: bytes, **headers: str) -> int:
         return answer.status
 
 
-async def test_the_page_is_shown_until_its_program_ends(tmp_path):
+async def test_program_page_is_shown_until_program_ends(tmp_path):
     async with classroom(tmp_path) as made, page(made.viewer) as client, program() as server:
         await client.send("watch_program_pages")
         assert (await client.until("program_pages"))["pages"] == []
@@ -114,7 +114,7 @@ async def test_a_world_resumes_when_the_page_that_paused_it_is_gone(tmp_path):
         await eventually(lambda: asked == [True, False])
 
 
-async def test_the_shell_knows_where_its_page_is(tmp_path):
+async def test_terminal_has_variable_with_page_address(tmp_path):
     command = ("/bin/sh", "-c", f"echo ${VARIABLE}")
     async with classroom(tmp_path, command) as made, page(made.viewer) as client:
         await client.send("open_terminal", columns=200, rows=24)
@@ -122,7 +122,7 @@ async def test_the_shell_knows_where_its_page_is(tmp_path):
         assert output["text"].strip() == environment(made)[VARIABLE]
 
 
-async def test_a_wrong_key_and_a_page_elsewhere_are_refused(tmp_path):
+async def test_wrong_key_and_foreign_origin_are_rejected(tmp_path):
     async with classroom(tmp_path) as made, page(made.viewer), program() as server:
         address = environment(made)[VARIABLE]
         line = json.dumps({"title": "", "url": server.url}).encode() + b"\n"
@@ -136,7 +136,7 @@ async def test_a_wrong_key_and_a_page_elsewhere_are_refused(tmp_path):
         assert await status_of(f"{address.rpartition('/')[0]}/?{token}", line) in (401, 404, 405)
 
 
-async def test_a_page_that_may_have_no_terminal_receives_no_addresses(tmp_path, monkeypatch):
+async def test_page_without_terminals_receives_no_program_pages(tmp_path, monkeypatch):
     monkeypatch.setattr("linkwright.page.server.may_be_own_user", lambda _: False)
     async with classroom(tmp_path) as made, page(made.viewer) as client, program() as server:
         await client.send("watch_program_pages")
@@ -145,7 +145,7 @@ async def test_a_page_that_may_have_no_terminal_receives_no_addresses(tmp_path, 
         assert "frame-ancestors 'none'" in await policy(server)
 
 
-async def test_nobody_shows_it_without_an_open_page_or_after_the_classroom(tmp_path):
+async def test_program_is_not_embedded_without_open_page(tmp_path):
     async with program() as server:
         async with classroom(tmp_path) as made:
             variables = environment(made)
@@ -154,13 +154,13 @@ async def test_nobody_shows_it_without_an_open_page_or_after_the_classroom(tmp_p
         assert not server.is_embedded
 
 
-async def test_a_page_with_terminals_of_its_own_is_never_in_a_frame(tmp_path):
+async def test_page_with_terminals_is_never_embedded(tmp_path):
     async with classroom(tmp_path) as made, page(made.viewer), classroom(tmp_path) as other:
         assert not await other.viewer._server.embed(environment(made), "")
         assert "frame-ancestors 'none'" in await policy(other.viewer._server)
 
 
-async def test_a_server_that_says_nothing_is_not_waited_for_long(monkeypatch):
+async def test_unresponsive_server_is_abandoned_after_timeout(monkeypatch):
     monkeypatch.setattr("linkwright.page.program_pages._TIMEOUT", 0.1)
     with socket.create_server(("127.0.0.1", 0)) as silent:
         address = f"http://127.0.0.1:{silent.getsockname()[1]}/programs/abc"
@@ -174,16 +174,16 @@ async def test_a_server_that_says_nothing_is_not_waited_for_long(monkeypatch):
     ["", "http://evil.example:80/programs/abc", "http://127.0.0.1@evil.example:80/programs/a", "file:///programs/a",
      "http://127.0.0.1:80/programs/a b", "http://127.0.0.1:80/programs/a\r\nX: y"],
 )  # fmt: skip
-def test_only_addresses_on_this_machine_are_used(address):
+def test_embedder_ignores_malformed_or_remote_addresses(address):
     assert Embedder.of({VARIABLE: address}) is None
 
 
-def test_an_embedder_has_the_origin_of_its_address():
+def test_embedder_has_origin_and_path_of_address():
     found = Embedder.of({VARIABLE: "http://localhost:7448/programs/a-b_c"})
     assert found == Embedder("http://localhost:7448", "/programs/a-b_c")
 
 
-async def test_a_server_that_ends_does_not_wait_for_programs(tmp_path, monkeypatch):
+async def test_closing_server_does_not_wait_for_programs(tmp_path, monkeypatch):
     monkeypatch.setattr("linkwright.page.server._CLOSE_TIMEOUT", 600.0)
     async with classroom(tmp_path) as made, program() as server:
         async with page(made.viewer):

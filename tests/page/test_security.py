@@ -69,7 +69,7 @@ def mesh_url(viewer) -> str:
     return display.scene.links[0].visuals[0].url
 
 
-async def test_a_mesh_goes_compressed_to_a_browser_that_takes_it(served, robot):
+async def test_mesh_is_compressed_for_browser_that_accepts_it(served, robot):
     url, mesh = mesh_url(served.viewer), robot / "meshes" / "arm.stl"
     text = "facet normal 0 0 1\n" * 1000
     write(mesh, text)
@@ -88,7 +88,7 @@ async def test_a_mesh_goes_compressed_to_a_browser_that_takes_it(served, robot):
     )
 
 
-async def test_the_mesh_is_served_and_comes_again_only_when_it_changed(served, robot):
+async def test_mesh_is_sent_again_only_after_change(served, robot):
     status, body, head = await raw(served.viewer, mesh_url(served.viewer))
     assert (status, body) == (200, "solid arm")
     assert "content-type: model/stl" in head
@@ -99,7 +99,7 @@ async def test_the_mesh_is_served_and_comes_again_only_when_it_changed(served, r
     assert (await raw(served.viewer, mesh_url(served.viewer), If_None_Match=tag))[1] == "solid arms"
 
 
-async def test_compressed_neighbours_are_never_sent_instead(served):
+async def test_compressed_files_beside_mesh_are_not_served(served):
     status, body, head = await raw(served.viewer, mesh_url(served.viewer), Accept_Encoding="gzip, br")
     assert (status, body) == (200, "solid arm")
     assert "content-encoding" not in head
@@ -127,7 +127,7 @@ async def test_compressed_neighbours_are_never_sent_instead(served):
         "",
     ],
 )
-async def test_no_path_leads_out_of_the_package(served, path):
+async def test_paths_do_not_lead_out_of_package(served, path):
     base = mesh_url(served.viewer).split("meshes/")[0]
     status, body, _ = await raw(served.viewer, base + path)
     assert status in (400, 403, 404)
@@ -135,7 +135,7 @@ async def test_no_path_leads_out_of_the_package(served, path):
     assert "root:" not in body
 
 
-async def test_a_link_out_of_the_package_is_refused(served, robot):
+async def test_symlink_out_of_package_is_rejected(served, robot):
     for name in ("link.stl", "folder"):
         target = robot.parent / "secret.png" if name == "link.stl" else robot.parent
         (robot / "meshes" / name).symlink_to(target)
@@ -149,18 +149,18 @@ async def test_a_link_out_of_the_package_is_refused(served, robot):
 @pytest.mark.parametrize(
     "target", ["/mesh/", "/mesh/robot/meshes/arm.stl", "/mesh/../page/index.html", "/assets/", "/assets"]
 )
-async def test_there_are_no_listings_and_no_unnamed_folders(served, target):
+async def test_folder_listings_and_unknown_folders_are_not_found(served, target):
     assert (await raw(served.viewer, target))[0] == 404
 
 
 @pytest.mark.parametrize("target", ["/../server.py", "/assets/../../server.py", "/..%2fserver.py", "/%2e%2e/server.py"])
-async def test_no_path_leads_out_of_the_page(served, target):
+async def test_paths_do_not_lead_out_of_page_folder(served, target):
     status, body, _ = await raw(served.viewer, target)
     assert status in (400, 404)
     assert "import" not in body
 
 
-async def test_without_the_token_there_is_nothing_but_the_program_of_the_page(served):
+async def test_only_static_page_is_served_without_token(served):
     """What every wheel has in it; not one byte of what is shown."""
     for query in ("", "?token=", "?token=wrong"):
         status, body, _ = await raw(served.viewer, f"/ws{query}", token=False)
@@ -170,7 +170,7 @@ async def test_without_the_token_there_is_nothing_but_the_program_of_the_page(se
     assert (await raw(served.viewer, "/assets/gone.js", token=False))[0] == 404
 
 
-async def test_no_socket_opens_without_the_token(served):
+async def test_web_socket_requires_token(served):
     base = served.viewer.url.partition("?")[0]
     async with aiohttp.ClientSession() as session:
         for query in ("", "?token=", "?token=wrong"):
@@ -180,14 +180,14 @@ async def test_no_socket_opens_without_the_token(served):
                 assert caught.value.status == 401
 
 
-async def test_no_answer_sets_a_cookie(served):
+async def test_responses_set_no_cookies(served):
     """Browsers would send it to every port of this host."""
     for target in ("/", "/ws", "/nothing", mesh_url(served.viewer)):
         for proto in ("http", "https"):
             assert "set-cookie" not in (await raw(served.viewer, target, X_Forwarded_Proto=proto))[2]
 
 
-async def test_the_address_of_a_mesh_cannot_be_guessed(served, robot, monkeypatch):
+async def test_mesh_url_contains_secret(served, robot, monkeypatch):
     """Textures are fetched by image elements, which can show no token: their addresses are told to pages only."""
     address = mesh_url(served.viewer)
     assert (await raw(served.viewer, address, token=False))[:2] == (200, "solid arm")
@@ -202,13 +202,13 @@ async def test_the_address_of_a_mesh_cannot_be_guessed(served, robot, monkeypatc
     assert other != f"{label}~{secret}"
 
 
-async def test_a_name_bent_to_this_machine_is_refused(served):
+async def test_dns_rebinding_host_is_rejected(served):
     status, body, _ = await raw(served.viewer, "/", host="evil.example:7447")
     assert status == 403
     assert "'evil.example:7447'" in body
 
 
-async def test_every_answer_carries_the_security_headers(served):
+async def test_responses_have_security_headers(served):
     for target, token in (("/", True), ("/", False), ("/nothing", True), (mesh_url(served.viewer), True)):
         _, _, head = await raw(served.viewer, target, token=token)
         for header in ("content-security-policy: default-src 'none'", "x-content-type-options: nosniff",
@@ -218,11 +218,11 @@ async def test_every_answer_carries_the_security_headers(served):
 
 
 @pytest.mark.parametrize("method", ["POST", "PUT", "DELETE", "OPTIONS"])
-async def test_only_reading_is_allowed(served, method):
+async def test_methods_other_than_get_are_rejected(served, method):
     assert (await raw(served.viewer, "/", method=method, Content_Length="0"))[0] == 405
 
 
-async def test_a_page_of_another_site_gets_no_socket(served):
+async def test_web_socket_of_other_origin_is_rejected(served):
     async with aiohttp.ClientSession() as session:
         for origin, status in (("http://evil.example", 403), ("null", 403)):
             with pytest.raises(aiohttp.WSServerHandshakeError) as caught:
@@ -233,7 +233,7 @@ async def test_a_page_of_another_site_gets_no_socket(served):
             assert (await socket.receive_json())["type"] == "hello"
 
 
-async def test_a_plain_request_to_the_socket_is_told_so(served):
+async def test_plain_request_to_web_socket_is_rejected(served):
     status, body, _ = await raw(served.viewer, "/ws")
     assert status == 400
     assert "WebSocket" in body
@@ -245,19 +245,19 @@ async def closed_with(client) -> int:
     return client.socket.close_code
 
 
-async def test_a_message_too_long_ends_the_connection(served):
+async def test_oversized_message_closes_connection(served):
     async with page(served.viewer) as client:
         await client.socket.send_str("x" * (MAX_MESSAGE_SIZE + 1))
         assert await closed_with(client) == 1009
 
 
-async def test_a_binary_message_ends_the_connection(served):
+async def test_binary_message_closes_connection(served):
     async with page(served.viewer) as client:
         await client.socket.send_bytes(b"\0")
         assert await closed_with(client) == 1003
 
 
-async def test_nonsense_is_passed_over_and_logged_but_not_forever(served):
+async def test_invalid_messages_are_logged_and_finally_close_connection(served):
     async with page(served.viewer) as client:
         await client.socket.send_str('{"type": "set_joint", "name": 1}')
         await client.set("global/Fixed Frame", "tip")
@@ -268,7 +268,7 @@ async def test_nonsense_is_passed_over_and_logged_but_not_forever(served):
         assert await closed_with(client) == 1008
 
 
-async def test_more_pages_than_allowed_are_refused(served):
+async def test_pages_beyond_maximum_are_rejected(served):
     address = served.viewer.url.replace("/?", "/ws?")
     async with aiohttp.ClientSession() as session:
         pages = [await session.ws_connect(address) for _ in range(MAX_PAGES)]
@@ -304,7 +304,7 @@ async def is_served(client) -> None:
     await client.until("property_changed", id="global/Fixed Frame", value=wanted)
 
 
-async def test_a_thousand_connections_trouble_nobody(served):
+async def test_thousand_idle_connections_do_not_disturb_pages(served):
     async with page(served.viewer) as client:
         await client.opened()
         before = memory()
@@ -319,7 +319,7 @@ async def test_a_thousand_connections_trouble_nobody(served):
         await is_served(client)
 
 
-async def test_a_thousand_sockets_are_refused_but_for_some(served):
+async def test_web_sockets_beyond_maximum_are_rejected(served):
     address = served.viewer.url.replace("/?", "/ws?")
     statuses: list[int] = []
     kept: list[aiohttp.ClientWebSocketResponse | None] = []
@@ -343,7 +343,7 @@ async def test_a_thousand_sockets_are_refused_but_for_some(served):
         assert len(served.viewer._audience) <= MAX_PAGES
 
 
-async def test_half_a_request_is_not_waited_for_long(served, monkeypatch):
+async def test_incomplete_request_times_out(served, monkeypatch):
     monkeypatch.setattr("linkwright.page.access.PATIENCE", 0.2)
     address = urlsplit(served.viewer.url)
     for text in (b"", b"GET / HT", b"GET / HTTP/1.1\r\nHost: localhost\r\nX-Slow: "):
@@ -357,7 +357,7 @@ async def test_half_a_request_is_not_waited_for_long(served, monkeypatch):
         writer.close()
 
 
-async def test_a_page_that_is_let_in_may_take_its_time(served, monkeypatch):
+async def test_connected_page_does_not_time_out(served, monkeypatch):
     monkeypatch.setattr("linkwright.page.access.PATIENCE", 0.1)
     async with page(served.viewer) as client:
         await client.opened()
@@ -369,7 +369,7 @@ async def test_a_page_that_is_let_in_may_take_its_time(served, monkeypatch):
         await is_served(client)
 
 
-async def test_who_asks_for_the_page_and_reads_nothing_costs_little(served, tmp_path, monkeypatch):
+async def test_clients_that_read_nothing_use_little_memory(served, tmp_path, monkeypatch):
     """The page is for everybody: its files are in memory once, and its readers make room for who has the token."""
     (tmp_path / "assets").mkdir()
     (tmp_path / "assets" / "index-abc.js").write_bytes(b"a" * (4 << 20))
@@ -400,7 +400,7 @@ async def test_who_asks_for_the_page_and_reads_nothing_costs_little(served, tmp_
         await is_served(client)
 
 
-async def test_who_reads_the_page_slowly_is_waited_for(served, tmp_path, monkeypatch):
+async def test_slow_download_of_page_does_not_time_out(served, tmp_path, monkeypatch):
     """Its files are fetched without the token: a slow line takes longer for them than a stranger has."""
     monkeypatch.setattr("linkwright.page.access.PATIENCE", 0.1)
     (tmp_path / "assets").mkdir()
@@ -418,7 +418,7 @@ async def test_who_reads_the_page_slowly_is_waited_for(served, tmp_path, monkeyp
     other.close()
 
 
-async def test_a_refused_request_ends_its_connection(served):
+async def test_rejected_request_closes_connection(served):
     address = urlsplit(served.viewer.url)
     reader, writer = await asyncio.open_connection(address.hostname, address.port)
     writer.write(f"GET /ws HTTP/1.1\r\nHost: {address.netloc}\r\n\r\n".encode())
@@ -439,7 +439,7 @@ async def test_a_refused_request_ends_its_connection(served):
     ],
     ids=["path", "header", "headers", "tls", "length", "chunk"],
 )
-async def test_requests_beyond_all_bounds_are_refused(served, message):
+async def test_oversized_requests_are_rejected(served, message):
     before = memory()
     address = urlsplit(served.viewer.url)
     reader, writer = await asyncio.open_connection(address.hostname, address.port)
@@ -487,7 +487,7 @@ async def test_requests_beyond_all_bounds_are_refused(served, message):
         "h2",
     ],
 )
-async def test_what_is_no_request_writes_nothing_on_the_terminal(served, message, caplog):
+async def test_malformed_requests_are_not_logged(served, message, caplog):
     address = urlsplit(served.viewer.url)
     reader, writer = await asyncio.open_connection(address.hostname, address.port)
     with suppress(ConnectionError):
@@ -500,7 +500,7 @@ async def test_what_is_no_request_writes_nothing_on_the_terminal(served, message
 
 
 @pytest.mark.parametrize("target", ["/", "/ws", "/mesh/none/none.stl"])
-async def test_a_client_that_leaves_writes_nothing_on_the_terminal(served, target, caplog):
+async def test_disconnected_client_is_not_logged(served, target, caplog):
     address = urlsplit(served.viewer.url)
     for headers in ("", UPGRADE):
         await ask_and_leave(address.port, f"{target}?{address.query}", headers)
@@ -508,7 +508,7 @@ async def test_a_client_that_leaves_writes_nothing_on_the_terminal(served, targe
     assert [record.getMessage() for record in caplog.records] == []
 
 
-async def test_a_flood_of_messages_slows_its_sender_alone(served):
+async def test_message_flood_slows_only_its_sender(served):
     async with page(served.viewer) as flooding, page(served.viewer) as client:
         await client.opened()
 
@@ -529,7 +529,7 @@ async def test_a_flood_of_messages_slows_its_sender_alone(served):
         await asyncio.gather(task, return_exceptions=True)
 
 
-async def test_a_page_that_reads_nothing_costs_little(served):
+async def test_page_that_reads_nothing_uses_little_memory(served):
     """Its outbox keeps the newest of each kind only."""
     address = urlsplit(served.viewer.url)
     reader, writer = await asyncio.open_connection(address.hostname, address.port)
@@ -556,7 +556,7 @@ async def test_a_page_that_reads_nothing_costs_little(served):
 @pytest.mark.parametrize(
     "name", ["notes.txt", ".bashrc", "x.rviz/../notes.txt", "a.rviz\0.txt", "link.rviz", "dir.rviz"]
 )
-async def test_pages_write_nothing_but_configurations(served, tmp_path, name):
+async def test_pages_can_write_configurations_only(served, tmp_path, name):
     (tmp_path / "notes.txt").write_text("mine")
     (tmp_path / ".bashrc").write_text("mine")
     (tmp_path / "link.rviz").symlink_to(tmp_path / "notes.txt")

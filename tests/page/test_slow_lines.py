@@ -139,7 +139,7 @@ async def publish_all(w, seconds: float, *, rate: float = 50.0, points: int = 10
     ("answers", "latest", "seconds"), [(True, 0.5, 5.0), (False, 1.0, 10.0)], ids=["acknowledging", "silent"]
 )
 @skipping
-async def test_the_robot_keeps_moving_over_a_megabit(answers, latest, seconds):
+async def test_robot_keeps_moving_over_one_megabit(answers, latest, seconds):
     """Of a page that acknowledges nothing, as other programs, less is known."""
     async with world(RvizConfig.parse(FILE)) as w, slow_line(w.viewer.url, MEGABIT) as url:
         async with watching(url, answers=answers) as watcher:
@@ -157,7 +157,7 @@ async def test_the_robot_keeps_moving_over_a_megabit(answers, latest, seconds):
 
 
 @skipping
-async def test_a_quick_line_gets_everything():
+async def test_fast_connection_receives_full_data():
     async with world(RvizConfig.parse(FILE)) as w, watching(w.viewer.url) as watcher:
         await publish_all(w, 1.5)
         assert watcher.of("cloud_points")[-1]["step"] == 1
@@ -166,7 +166,7 @@ async def test_a_quick_line_gets_everything():
 
 
 @skipping
-async def test_what_comes_only_once_follows_whole_when_the_line_turns_out_to_carry_it():
+async def test_single_cloud_is_completed_on_fast_connection():
     async with world(RvizConfig.parse(FILE)) as w, watching(w.viewer.url) as watcher:
         clouds = w.graph.create_node("senses").create_publisher(get_message("sensor_msgs/msg/PointCloud2"), "/cloud", 1)
         await eventually(lambda: watcher.sizes)
@@ -175,7 +175,7 @@ async def test_what_comes_only_once_follows_whole_when_the_line_turns_out_to_car
 
 
 @skipping
-async def test_what_was_thinned_while_the_page_was_busy_follows_whole_when_it_is_quiet():
+async def test_thinned_cloud_is_completed_when_page_is_idle():
     async with world(RvizConfig.parse(FILE)) as w, watching(w.viewer.url, busy=0.2) as watcher:
         clouds = w.graph.create_node("senses").create_publisher(get_message("sensor_msgs/msg/PointCloud2"), "/cloud", 1)
         await eventually(lambda: watcher.sizes)
@@ -188,7 +188,7 @@ async def test_what_was_thinned_while_the_page_was_busy_follows_whole_when_it_is
 
 
 @skipping
-async def test_what_comes_only_once_is_whole_in_the_end_over_a_slow_line_and_transforms_go_between_its_pieces():
+async def test_cloud_over_slow_connection_does_not_delay_transforms():
     async with (
         world(RvizConfig.parse(FILE)) as w,
         slow_line(w.viewer.url, 2 * MEGABIT) as url,
@@ -210,7 +210,7 @@ async def test_what_comes_only_once_is_whole_in_the_end_over_a_slow_line_and_tra
 
 
 @skipping
-async def test_four_pages_lose_nothing_but_stale_frames():
+async def test_four_pages_drop_only_stale_frames():
     """At 100 Hz; one of the pages is slow, and no page waits for another."""
     async with world(RvizConfig.parse(FILE.replace("Rate: 50", "Rate: 100"))) as w:
         async with (
@@ -242,7 +242,7 @@ class Hand:
         return self.now
 
 
-def test_a_line_learns_from_acknowledgements():
+def test_connection_meter_learns_from_acknowledgments():
     clock = Hand()
     line = ConnectionMeter(clock)
     line.sending(10)
@@ -258,7 +258,7 @@ def test_a_line_learns_from_acknowledgements():
     assert line.room == pytest.approx(1e5, rel=0.1)
 
 
-def test_small_messages_never_fill_a_line():
+def test_small_messages_do_not_fill_connection():
     line = ConnectionMeter(Hand())
     line.sending(10)
     line.record_acknowledged(1)
@@ -267,7 +267,7 @@ def test_small_messages_never_fill_a_line():
     assert not line.is_full
 
 
-def test_a_page_cannot_upset_its_line():
+def test_connection_meter_survives_invalid_acknowledgments():
     line = ConnectionMeter(Hand())
     for count in (-5, 10**12, 0):
         line.record_acknowledged(count)

@@ -76,7 +76,7 @@ class Sender:
 
 
 @asynccontextmanager
-async def host() -> AsyncIterator[tuple[World, Sender]]:
+async def upload_server() -> AsyncIterator[tuple[World, Sender]]:
     made = World()
     guests = GuestRecordings(made.viewer)
     made.viewer.make_guests = lambda: guests
@@ -90,7 +90,7 @@ async def host() -> AsyncIterator[tuple[World, Sender]]:
 
 
 @asynccontextmanager
-async def seen(sender: Sender, recording: str) -> AsyncIterator[Client]:
+async def recording_page(sender: Sender, recording: str) -> AsyncIterator[Client]:
     """Return a page that shows a recording."""
     address = f"{sender.base}/ws?token={sender.token}&recording={recording}"
     async with sender.session.ws_connect(address) as socket:
@@ -112,34 +112,34 @@ def left(scratch: Path) -> list[str]:
 
 
 @skipping
-async def test_a_folder_is_shown_with_its_own_timeline_and_the_viewer_shows_what_it_did(tmp_path: Path):
+async def test_uploaded_folder_is_shown_with_own_timeline_and_graph(tmp_path: Path):
     files = contents(recorded(tmp_path))
-    async with host() as (made, sender):
+    async with upload_server() as (made, sender):
         status, answer = await sender.send("drive", files)
         assert status == 200, answer
-        async with seen(sender, answer["recording"]) as client:
+        async with recording_page(sender, answer["recording"]) as client:
             assert (await client.until("hello"))["title"] == "drive"
             timeline = await client.until("timeline")
             assert (timeline["name"], timeline["live"], timeline["end"] - timeline["start"]) == ("drive", False, 10)
             await client.until("playhead", playing=True)
         assert "/p" not in dict(made.viewer.context.node.get_topic_names_and_types()), "it is in a graph of its own"
-        async with seen(sender, "no-such-recording") as client:
+        async with recording_page(sender, "no-such-recording") as client:
             assert (await client.until("hello"))["title"] == ""
 
 
 @skipping
-async def test_a_single_file_is_shown_under_its_name(tmp_path: Path):
+async def test_single_file_is_shown_with_its_name(tmp_path: Path):
     files = contents(recorded(tmp_path))
     name = next(file for file in files if file.endswith(".mcap"))
-    async with host() as (_, sender):
+    async with upload_server() as (_, sender):
         _, answer = await sender.send("anything", {name: files[name]})
-        async with seen(sender, answer["recording"]) as client:
+        async with recording_page(sender, answer["recording"]) as client:
             assert (await client.until("timeline"))["name"] == name
 
 
 @skipping
-async def test_without_the_token_or_from_other_pages_nothing_is_taken(scratch: Path):
-    async with host() as (_, sender):
+async def test_upload_requires_token_and_same_origin(scratch: Path):
+    async with upload_server() as (_, sender):
         for method, path in (
             ("POST", "recordings"),
             ("PUT", "recordings/k/0"),
@@ -168,10 +168,10 @@ async def test_without_the_token_or_from_other_pages_nothing_is_taken(scratch: P
         ("drive", {"a.mcap": 10**18}, REFUSED),
     ],
 )
-async def test_what_is_no_recording_or_has_no_room_is_refused_before_it_comes(
+async def test_invalid_or_oversized_recording_is_rejected_before_upload(
     scratch: Path, name: str, files: dict[str, int], status: int
 ):
-    async with host() as (_, sender):
+    async with upload_server() as (_, sender):
         given, answer = await sender.announce(name, files)
         assert given == status, answer
         assert status == 400 or answer["problem"]
@@ -182,8 +182,8 @@ async def test_what_is_no_recording_or_has_no_room_is_refused_before_it_comes(
 @pytest.mark.parametrize(
     "data", [b"", b"not a recording", b"\x89MCAP0\r\n"], ids=["empty", "other", "only its beginning"]
 )
-async def test_what_cannot_be_read_is_said_without_where_it_lay(scratch: Path, data: bytes):
-    async with host() as (_, sender):
+async def test_unreadable_recording_is_reported_without_server_path(scratch: Path, data: bytes):
+    async with upload_server() as (_, sender):
         status, answer = await sender.send("x", {"x.mcap": data})
         assert status == REFUSED
         assert "'x.mcap'" in answer["problem"]
@@ -192,8 +192,8 @@ async def test_what_cannot_be_read_is_said_without_where_it_lay(scratch: Path, d
 
 
 @skipping
-async def test_why_not_is_said_in_the_language_of_the_page():
-    async with host() as (_, sender):
+async def test_rejection_is_translated_to_page_language():
+    async with upload_server() as (_, sender):
         announced = {"name": "x", "files": [{"name": "x.txt", "size": 1}]}
         for language, words in (("en", "is not a recording file"), ("zh", "不是录制")):
             _, answer = await sender.ask("POST", "recordings", language, json=announced)
@@ -201,13 +201,13 @@ async def test_why_not_is_said_in_the_language_of_the_page():
 
 
 @skipping
-async def test_what_the_program_recorded_is_shown_and_stays(tmp_path: Path):
+async def test_recording_of_program_is_shown_and_kept(tmp_path: Path):
     (path,) = recorded(tmp_path).glob("*.mcap")
-    async with host() as (made, sender):
+    async with upload_server() as (made, sender):
         url = made.viewer.context.downloads.offer_repeatedly(path).lstrip("/")
         status, answer = await sender.ask("POST", url)
         assert status == 200, answer
-        async with seen(sender, answer["recording"]) as client:
+        async with recording_page(sender, answer["recording"]) as client:
             assert not (await client.until("timeline"))["live"]
         await asyncio.sleep(4 * SECONDS)
         assert made.viewer.guests.audience(answer["recording"]) is None
@@ -220,19 +220,19 @@ async def test_what_the_program_recorded_is_shown_and_stays(tmp_path: Path):
 
 
 @skipping
-async def test_a_recording_that_is_cut_off_is_shown_and_the_page_says_so(tmp_path: Path):
+async def test_truncated_recording_is_shown_with_warning(tmp_path: Path):
     files = contents(recorded(tmp_path))
     name = next(file for file in files if file.endswith(".mcap"))
-    async with host() as (_, sender):
+    async with upload_server() as (_, sender):
         status, answer = await sender.send("x", {name: files[name][:-100]})
         assert status == 200, answer
-        async with seen(sender, answer["recording"]) as client:
+        async with recording_page(sender, answer["recording"]) as client:
             assert "is truncated" in (await client.until("playhead"))["problem"]
 
 
 @skipping
-async def test_a_file_that_is_shorter_than_was_said_can_be_sent_again(tmp_path: Path):
-    async with host() as (_, sender):
+async def test_file_of_wrong_size_is_rejected_and_can_be_resent(tmp_path: Path):
+    async with upload_server() as (_, sender):
         _, answer = await sender.announce("x", {"x.mcap": 100})
         assert (await sender.ask("PUT", f"recordings/{answer['key']}/0", data=b"x" * 50))[0] == 400
         assert (await sender.ask("POST", f"recordings/{answer['key']}"))[0] == 404, "it is not there"
@@ -242,8 +242,8 @@ async def test_a_file_that_is_shorter_than_was_said_can_be_sent_again(tmp_path: 
 
 
 @skipping
-async def test_what_is_given_up_or_comes_to_a_standstill_is_removed(scratch: Path):
-    async with host() as (_, sender):
+async def test_canceled_or_stalled_upload_is_removed(scratch: Path):
+    async with upload_server() as (_, sender):
         _, given_up = await sender.announce("x", {"x.mcap": 100})
         _, forgotten = await sender.announce("x", {"x.mcap": 100})
         assert len(left(scratch)) == 2
@@ -255,8 +255,8 @@ async def test_what_is_given_up_or_comes_to_a_standstill_is_removed(scratch: Pat
 
 
 @skipping
-async def test_only_some_are_sent_at_once(scratch: Path):
-    async with host() as (_, sender):
+async def test_number_of_simultaneous_uploads_is_limited(scratch: Path):
+    async with upload_server() as (_, sender):
         for _ in range(4):
             assert (await sender.announce("x", {"x.mcap": 1}))[0] == 200
         status, answer = await sender.announce("x", {"x.mcap": 1})
@@ -266,11 +266,11 @@ async def test_only_some_are_sent_at_once(scratch: Path):
 
 
 @skipping
-async def test_a_recording_is_closed_a_while_after_its_last_page(tmp_path: Path, scratch: Path):
+async def test_recording_is_closed_after_its_last_page(tmp_path: Path, scratch: Path):
     files = contents(recorded(tmp_path))
-    async with host() as (_, sender):
+    async with upload_server() as (_, sender):
         _, answer = await sender.send("drive", files)
-        async with seen(sender, answer["recording"]) as client:
+        async with recording_page(sender, answer["recording"]) as client:
             await client.until("timeline")
             answering = asyncio.create_task(answer_pings(client))
             await asyncio.sleep(3 * SECONDS)
@@ -281,10 +281,10 @@ async def test_a_recording_is_closed_a_while_after_its_last_page(tmp_path: Path,
 
 
 @skipping
-async def test_only_some_are_shown_at_once_and_all_end_with_the_program(tmp_path: Path, scratch: Path, monkeypatch):
+async def test_open_recordings_are_limited_and_removed_at_exit(tmp_path: Path, scratch: Path, monkeypatch):
     monkeypatch.setattr(guests, "PATIENCE", 60.0)
     files = contents(recorded(tmp_path))
-    async with host() as (_, sender):
+    async with upload_server() as (_, sender):
         for _ in range(4):
             assert (await sender.send("drive", files))[0] == 200
         status, answer = await sender.send("drive", files)

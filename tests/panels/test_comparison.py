@@ -110,7 +110,7 @@ def marks(message: dict, side: str) -> dict[str, str]:
     return message[side]["marks"]
 
 
-async def test_a_page_is_told_of_all_differences_and_of_the_links_that_show_them(tmp_path):
+async def test_page_receives_differences_with_links(tmp_path):
     async with compared(tmp_path) as (both, client):
         message = await client.until("compared_descriptions")
         displays = [display.id for display in both.made.viewer.displays if display.CLASS.endswith("RobotModel")]
@@ -134,7 +134,7 @@ async def test_a_page_is_told_of_all_differences_and_of_the_links_that_show_them
         assert (friction["element_kind"], friction["element"], friction["in_old"]) == ("link", "lower", False)
 
 
-async def test_the_old_robot_stands_as_the_new_one_does(tmp_path):
+async def test_old_robot_follows_joints_of_new_robot(tmp_path):
     async with compared(tmp_path) as (both, client):
         await client.until("compared_descriptions")
         await eventually(lambda: both.pose("old/camera") is not None)
@@ -149,7 +149,7 @@ async def test_the_old_robot_stands_as_the_new_one_does(tmp_path):
         assert np.linalg.norm(both.pose("old/upper")[:3]) == pytest.approx(1.0), "its joint does not slide"
 
 
-async def test_a_new_root_carries_the_old_robot_along(tmp_path):
+async def test_new_root_moves_old_robot(tmp_path):
     lifted = NEW.replace('<link name="lidar"/>', '<link name="foot"/>').replace(
         '<joint name="fix" type="fixed"><parent link="upper"/><child link="lidar"/></joint>',
         '<joint name="fix" type="fixed"><origin xyz="0 0 3"/><parent link="foot"/><child link="base"/></joint>',
@@ -162,7 +162,7 @@ async def test_a_new_root_carries_the_old_robot_along(tmp_path):
         assert both.pose("old/foot")[:3] == pytest.approx([0, 0, -3], abs=1e-6)
 
 
-async def test_an_edit_of_either_is_compared_anew(tmp_path):
+async def test_edited_description_is_compared_again(tmp_path):
     async with compared(tmp_path) as (both, client):
         count = len((await client.until("compared_descriptions"))["items"])
         both.write(tmp_path, "new.urdf", NEW.replace('mass value="2"', 'mass value="1"'))
@@ -176,7 +176,7 @@ async def test_an_edit_of_either_is_compared_anew(tmp_path):
         assert (same["items"], marks(same, "new"), marks(same, "old")) == ([], {}, {})
 
 
-async def test_sources_of_both_can_be_asked_for_though_they_say_the_same(tmp_path):
+async def test_source_text_of_both_descriptions_can_be_requested(tmp_path):
     async with compared(tmp_path, NEW, NEW) as (both, client):
         message = await client.until("compared_descriptions")
         assert message["items"] == []
@@ -187,7 +187,7 @@ async def test_sources_of_both_can_be_asked_for_though_they_say_the_same(tmp_pat
         assert both.made.library.packages(both.made.display("RobotModel").text) is None
 
 
-async def test_a_page_without_the_old_display_is_told_that_nothing_shows_it(tmp_path):
+async def test_removed_old_display_is_reported_as_empty(tmp_path):
     async with compared(tmp_path) as (both, client):
         message = await client.until("compared_descriptions")
         await client.send("remove_displays", displays=[message["old"]["display"]])
@@ -195,7 +195,7 @@ async def test_a_page_without_the_old_display_is_told_that_nothing_shows_it(tmp_
         assert both.made.viewer.manager.display(message["old"]["display"]) is None
 
 
-async def test_what_is_given_away_has_no_paths(tmp_path):
+async def test_exported_comparison_contains_no_paths(tmp_path):
     async with compared(tmp_path) as (both, client):
         await client.until("compared_descriptions")
         manager = both.made.viewer.manager

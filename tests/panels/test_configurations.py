@@ -10,7 +10,7 @@ from linkwright.rviz import RvizConfig
 from tests.viewer.configured import TEXT, PointStamped, edit, names, opened
 
 
-async def test_a_configuration_is_saved_and_opened_again(tmp_path):
+async def test_configuration_is_saved_and_reopened(tmp_path):
     path = tmp_path / "a.rviz"
     async with opened(path=path) as (_, client):
         assert client.first["configuration"]["path"] == str(path)
@@ -35,7 +35,7 @@ async def test_a_configuration_is_saved_and_opened_again(tmp_path):
     assert not list(tmp_path.glob(".*rviz*"))
 
 
-async def test_nothing_unsaved_is_lost_unasked(tmp_path):
+async def test_unsaved_changes_are_not_discarded_without_confirmation(tmp_path):
     path = tmp_path / "a.rviz"
     path.write_text(TEXT, encoding="utf-8")
     async with opened() as (made, client):
@@ -53,7 +53,7 @@ async def test_nothing_unsaved_is_lost_unasked(tmp_path):
         assert (await client.until("configuration", opened=2))["unsaved"] is False
 
 
-async def test_a_file_is_not_replaced_unasked(tmp_path):
+async def test_existing_file_is_not_replaced_without_confirmation(tmp_path):
     path, other = tmp_path / "a.rviz", tmp_path / "b.rviz"
     other.write_text("precious", encoding="utf-8")
     async with opened(path=path) as (made, client):
@@ -74,7 +74,7 @@ async def test_a_file_is_not_replaced_unasked(tmp_path):
 
 
 @pytest.mark.parametrize("name", ["/etc/passwd", "a.yaml", "", "a.rviz\0", "link.rviz", "~nobody-at-all/a.rviz"])
-async def test_only_configurations_are_opened_and_saved(tmp_path, name):
+async def test_only_rviz_files_are_opened_and_saved(tmp_path, name):
     (tmp_path / "secret.txt").write_text("secret", encoding="utf-8")
     (tmp_path / "link.rviz").symlink_to(tmp_path / "secret.txt")
     async with opened(path=tmp_path / "a.rviz") as (_, client):
@@ -85,7 +85,7 @@ async def test_only_configurations_are_opened_and_saved(tmp_path, name):
     assert (tmp_path / "secret.txt").read_text() == "secret"
 
 
-async def test_what_cannot_be_opened_is_told_and_changes_nothing(tmp_path):
+async def test_unreadable_configuration_is_reported_and_changes_nothing(tmp_path):
     (tmp_path / "bad.rviz").write_text("a: [1\n", encoding="utf-8")
     async with opened(path=tmp_path / "a.rviz") as (made, client):
         await client.send("open_configuration", path="bad.rviz", discard=True)
@@ -95,7 +95,7 @@ async def test_what_cannot_be_opened_is_told_and_changes_nothing(tmp_path):
         assert (made.viewer.manager.opened, len(names(made))) == (1, 4)
 
 
-async def test_a_text_is_loaded_and_told():
+async def test_configuration_is_loaded_from_text():
     async with opened() as (_, client):
         await client.send("load_configuration", name="mine.rviz", text="\ufeff" + TEXT, discard=False)
         await client.until("configuration", opened=2)
@@ -104,7 +104,7 @@ async def test_a_text_is_loaded_and_told():
         assert (answer["name"], answer["text"]) == ("untitled.rviz", TEXT)
 
 
-async def test_a_configuration_is_reverted(tmp_path):
+async def test_configuration_is_reverted(tmp_path):
     async with opened(path=tmp_path / "a.rviz") as (made, client):
         await edit(client, "remove_displays", displays=["display-1"])
         await client.send("revert_configuration")
@@ -208,7 +208,7 @@ Window Geometry:
 """
 
 
-async def test_a_file_of_rviz_1_is_shown_and_stays_one():
+async def test_rviz1_configuration_keeps_its_format():
     async with opened(ROS_1) as (made, client):
         displays = client.first["tree"]["displays"]
         assert [display["cls"] for display in displays][:5] == [

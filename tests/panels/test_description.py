@@ -78,7 +78,7 @@ def lines(text: str, written: dict) -> str:
     return "".join(rows)
 
 
-async def test_links_and_joints_are_told_with_their_places(files):
+async def test_description_has_links_and_joints_with_locations(files):
     async with world() as scene, page(scene.viewer) as client:
         text = describe(scene, files)
         message = await ask(client, "ask_description", "description", display=DISPLAY)
@@ -106,7 +106,7 @@ async def test_links_and_joints_are_told_with_their_places(files):
     assert joint["mimic"] is None
 
 
-async def test_masses_are_boxes_of_the_same_inertia(files):
+async def test_inertia_is_shown_as_equivalent_box(files):
     async with world() as scene, page(scene.viewer) as client:
         describe(scene, files)
         message = await ask(client, "ask_description", "description", display=DISPLAY)
@@ -117,7 +117,7 @@ async def test_masses_are_boxes_of_the_same_inertia(files):
     assert left["box"] == []  # 1 > 0.1 + 0.1: no body has that
 
 
-async def test_implausible_inertias_are_told_for_each_link_of_a_macro(files):
+async def test_implausible_inertias_are_reported_for_each_link_of_macro(files):
     async with world() as scene, page(scene.viewer) as client:
         describe(scene, files)
         message = await ask(client, "ask_inertia", "inertia_findings", display=DISPLAY)
@@ -126,7 +126,7 @@ async def test_implausible_inertias_are_told_for_each_link_of_a_macro(files):
     assert all(finding["message"] and finding["code"].startswith("LW3") for finding in message["findings"])
 
 
-async def test_texts_are_told_of_the_files_of_the_description_only(files):
+async def test_texts_are_sent_only_for_files_of_description(files):
     (files / "secret.txt").write_text("secret")
     async with world() as scene, page(scene.viewer) as client:
         text = describe(scene, files)
@@ -149,7 +149,7 @@ async def test_texts_are_told_of_the_files_of_the_description_only(files):
         assert await text_of(str(files / "wheel.xacro")) == WHEEL
 
 
-async def test_an_edit_is_told_with_what_it_changed(files):
+async def test_edit_is_reported_with_changed_links_and_joints(files):
     async with world() as scene, page(scene.viewer) as client:
         describe(scene, files)
         first = await client.until("description_changed")
@@ -167,7 +167,7 @@ async def test_an_edit_is_told_with_what_it_changed(files):
         assert first["revision"] < second["revision"] < third["revision"]
 
 
-async def test_a_page_that_opens_is_told_that_there_is_a_description():
+async def test_opened_page_is_notified_of_description():
     async with world() as scene:
         scene.describe(ARM)
         await scene.settle()
@@ -182,7 +182,7 @@ async def test_a_page_that_opens_is_told_that_there_is_a_description():
     assert details["links"][0]["written"]["expanded"]["line"] == 2
 
 
-async def test_the_text_that_is_wrong_is_told_and_not_the_one_of_the_robot_that_stands(files):
+async def test_text_with_errors_is_sent_instead_of_shown_robot(files):
     async with world() as scene, page(scene.viewer) as client:
         describe(scene, files)
         (files / "robot.xacro").write_text(WHEELED.replace('side="left"', 'sid="left"'))
@@ -197,7 +197,7 @@ async def test_the_text_that_is_wrong_is_told_and_not_the_one_of_the_robot_that_
         assert message["text"] == WHEELED
 
 
-async def test_a_robot_none_of_whose_meshes_is_there_is_told_of(files):
+async def test_robot_with_all_meshes_missing_is_reported(files):
     box = '<visual><geometry><box size="1 1 1"/></geometry></visual>'
     mesh = f'<visual><geometry><mesh filename="file://{files}/gone.stl"/></geometry></visual>'
     async with world() as scene, page(scene.viewer) as client:
@@ -210,7 +210,7 @@ async def test_a_robot_none_of_whose_meshes_is_there_is_told_of(files):
         assert "gone.stl" in note["message"]
 
 
-async def test_what_is_not_there_is_not_answered_or_refused():
+async def test_requests_for_unknown_display_are_ignored():
     async with world(RvizConfig.for_model("base")) as scene, page(scene.viewer) as client:
         answer = await ask(client, "ask_description_text", "description_text", display="display-99", file="/etc/passwd")
         assert answer["text"] is None
@@ -220,7 +220,7 @@ async def test_what_is_not_there_is_not_answered_or_refused():
     assert not [message for message in rest if isinstance(message, dict) and message["type"] == "description"]
 
 
-async def test_a_page_with_displays_of_its_own_hears_of_those_only(files):
+async def test_page_with_own_displays_receives_only_their_descriptions(files):
     async with world() as scene, page(scene.viewer) as shared:
         describe(scene, files)
         answer = await shared.until("description_changed")

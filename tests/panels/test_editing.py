@@ -77,7 +77,7 @@ async def preview(client: Any, number: int, part: str, name: str, **fields: Any)
     )
 
 
-async def test_the_parts_of_a_link_are_told_with_numbers_and_places(file: Path) -> None:
+async def test_link_parts_have_numbers_and_locations(file: Path) -> None:
     async with world() as scene, page(scene.viewer) as client:
         describe(scene, file)
         await client.until("description_changed")
@@ -101,7 +101,7 @@ async def test_the_parts_of_a_link_are_told_with_numbers_and_places(file: Path) 
         assert {(each["file"], each["line"]) for each in answer["parts"][:2]} == {(str(file), 19)}
 
 
-async def test_a_robot_in_sdf_is_not_edited_and_it_is_said_why(tmp_path: Path) -> None:
+async def test_sdf_robot_cannot_be_edited(tmp_path: Path) -> None:
     file = tmp_path / "crate.sdf"
     box = "<geometry><box><size>1 1 1</size></box></geometry>"
     file.write_text(
@@ -117,7 +117,7 @@ async def test_a_robot_in_sdf_is_not_edited_and_it_is_said_why(tmp_path: Path) -
         assert refused["refusal"]["message"] == answer["why_not"]
 
 
-async def test_an_edit_is_shown_written_and_taken_back(file: Path) -> None:
+async def test_edit_is_previewed_written_and_undone(file: Path) -> None:
     async with world() as scene, page(scene.viewer) as client:
         describe(scene, file)
         await client.until("description_changed")
@@ -141,7 +141,7 @@ async def test_an_edit_is_shown_written_and_taken_back(file: Path) -> None:
         assert content(file) == ROBOT.replace(old, new)
 
 
-async def test_only_what_was_shown_is_written(file: Path) -> None:
+async def test_only_previewed_edit_is_written(file: Path) -> None:
     async with world() as scene, page(scene.viewer) as client:
         describe(scene, file)
         await client.until("description_changed")
@@ -150,7 +150,7 @@ async def test_only_what_was_shown_is_written(file: Path) -> None:
         assert content(file) == ROBOT
 
 
-async def test_what_would_change_more_is_refused_and_done_together_when_asked(file: Path) -> None:
+async def test_edit_with_side_effects_requires_together_option(file: Path) -> None:
     async with world() as scene, page(scene.viewer) as client:
         describe(scene, file)
         await client.until("description_changed")
@@ -163,7 +163,7 @@ async def test_what_would_change_more_is_refused_and_done_together_when_asked(fi
         assert (shown["refusal"], shown["also"]) == (None, ["joint 'right_joint'"])
 
 
-async def test_a_file_that_changed_after_the_preview_is_left_alone(file: Path) -> None:
+async def test_file_changed_after_preview_is_not_overwritten(file: Path) -> None:
     async with world() as scene, page(scene.viewer) as client:
         describe(scene, file)
         await client.until("description_changed")
@@ -173,7 +173,7 @@ async def test_a_file_that_changed_after_the_preview_is_left_alone(file: Path) -
         assert content(file) == ROBOT + "<!-- mine -->"
 
 
-async def test_a_file_that_is_broken_or_gone_is_told_and_editing_goes_on(file: Path) -> None:
+async def test_malformed_or_missing_file_is_reported_and_editing_continues(file: Path) -> None:
     async with world() as scene, page(scene.viewer) as client:
         describe(scene, file)
         await client.until("description_changed")
@@ -186,7 +186,7 @@ async def test_a_file_that_is_broken_or_gone_is_told_and_editing_goes_on(file: P
         assert (await preview(client, 4, "joint", "turn", xyz=[0, 1]))["refusal"]["code"] == "EDIT102"
 
 
-async def test_a_description_that_is_only_a_text_is_not_edited(file: Path) -> None:
+async def test_description_without_file_cannot_be_edited(file: Path) -> None:
     async with world() as scene, page(scene.viewer) as client:
         scene.describe(ARM)
         await client.until("description_changed")
@@ -195,9 +195,7 @@ async def test_a_description_that_is_only_a_text_is_not_edited(file: Path) -> No
         assert (await preview(client, 1, "joint", "shoulder", xyz=[0, 0, 1]))["refusal"]["code"] == "EDIT101"
 
 
-async def test_a_page_of_another_machine_is_told_why_nothing_is_written(
-    file: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
+async def test_page_on_another_machine_cannot_edit(file: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     made = Page.__init__
 
     def elsewhere(self: Page, *words: Any, is_local: bool = False, **named: Any) -> None:

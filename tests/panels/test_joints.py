@@ -72,12 +72,12 @@ async def filled(graph, panel):
     assert panel.sliders()
 
 
-def test_without_a_panel_there_are_no_joints(bridge):
+def test_bridge_without_panel_has_no_joints(bridge):
     assert bridge.opening_messages() == [Joints(None)]
     bridge.receive(PAGE, RandomizeJoints())
 
 
-async def test_a_panel_is_shown(graph, bridge, panel, published):
+async def test_attached_panel_publishes_controls_and_positions(graph, bridge, panel, published):
     await filled(graph, panel)
     bridge.attach(panel)
     controls, positions = published
@@ -91,7 +91,7 @@ async def test_a_panel_is_shown(graph, bridge, panel, published):
     assert bridge.opening_messages() == published
 
 
-async def test_rows_follow_the_description(graph, bridge, panel, published):
+async def test_joint_rows_follow_description(graph, bridge, panel, published):
     bridge.attach(panel)
     assert published[0] == Joints([])
     await filled(graph, panel)
@@ -101,7 +101,7 @@ async def test_rows_follow_the_description(graph, bridge, panel, published):
     assert set(last[JointPositions].positions) == {"turn", "open", "follow"}
 
 
-async def test_pages_move_joints_that_are_free(graph, bridge, panel, published):
+async def test_pages_move_free_joints(graph, bridge, panel, published):
     await filled(graph, panel)
     bridge.attach(panel)
     bridge.receive(PAGE, SetJoint("turn", 0.5))
@@ -121,7 +121,7 @@ async def test_pages_move_joints_that_are_free(graph, bridge, panel, published):
     assert published[-1].positions["turn"] != 0.0
 
 
-async def test_another_panel_takes_its_place(graph, bridge, panel, published):
+async def test_detached_panel_publishes_nothing(graph, bridge, panel, published):
     await filled(graph, panel)
     bridge.attach(panel)
     bridge.attach(None)

@@ -31,7 +31,7 @@ async def filled(made: World) -> list[float]:
 
 
 @skipping
-async def test_time_stands_still_goes_back_and_is_the_present_again():
+async def test_live_view_pauses_seeks_and_returns_to_live():
     async with world(config(), history=KEPT) as made, page(made.viewer) as client:
         timeline = await client.until("timeline")
         assert timeline["live"]
@@ -55,7 +55,7 @@ async def test_time_stands_still_goes_back_and_is_the_present_again():
 
 
 @skipping
-async def test_what_is_played_goes_on_to_the_present():
+async def test_playback_of_history_reaches_live():
     async with world(config(), history=KEPT) as made, page(made.viewer) as client:
         await client.until("playhead", live=True)
         between = await filled(made)
@@ -68,7 +68,7 @@ async def test_what_is_played_goes_on_to_the_present():
 
 
 @skipping
-async def test_who_subscribes_while_time_stands_still_is_shown_what_was_then():
+async def test_subscription_during_pause_receives_past_latched_message():
     async with world(config(), history=KEPT) as made, page(made.viewer) as client:
         made.describe("<robot name='early'/>")
         heard: list[str] = []
@@ -90,7 +90,7 @@ async def test_who_subscribes_while_time_stands_still_is_shown_what_was_then():
         assert heard[-1] == "<robot name='late'/>"
 
 
-async def test_what_came_is_written_when_somebody_asks_for_it():
+async def test_pending_messages_are_stored_when_history_is_read():
     async with world(config(), history=KEPT) as made:
         live = made.viewer.live
         for x in range(3):
@@ -106,14 +106,14 @@ async def test_what_came_is_written_when_somebody_asks_for_it():
         assert live.size > 0
 
 
-async def test_what_came_does_not_wait_for_long():
+async def test_pending_messages_are_stored_in_batches():
     async with world(config(), history=KEPT) as made:
         for x in range(20):
             moved(made, float(x))
         assert made.viewer.live.size > 0
 
 
-async def test_a_message_that_cannot_be_written_is_told_of_and_the_others_are_kept():
+async def test_unserializable_message_is_reported_and_others_are_stored():
     async with world(config(), history=KEPT) as made:
         began = moved(made, 1.0)
         wrong = String()
@@ -126,7 +126,7 @@ async def test_a_message_that_cannot_be_written_is_told_of_and_the_others_are_ke
 
 
 @skipping
-async def test_without_room_nothing_is_kept():
+async def test_viewer_without_history_stores_nothing():
     async with world(config()) as made, page(made.viewer) as client:
         assert "timeline" not in await client.opened()
         assert made.viewer.context.node.handle.message_filter is None

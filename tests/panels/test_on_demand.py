@@ -30,11 +30,11 @@ except BadMessageError as error:
 
 
 @pytest.mark.parametrize("address", [message for feature in DECLARED for message in feature.receives])
-def test_an_address_is_that_of_a_class_of_messages(address: str):
+def test_message_address_matches_class(address: str):
     module, _, name = address.partition(":")
     assert address_of(getattr(import_module(module), name)) == address
 
 
 @pytest.mark.parametrize(("sent", "defined"), [("", False), (GOOD, True), (WRONG, True)])
-def test_the_first_message_defines_its_class(sent: str, defined: bool):
+def test_first_message_imports_its_class(sent: str, defined: bool):
     assert (PROTOCOL in loaded_by(f"exec({PROGRAM + sent!r})")) is defined

@@ -27,19 +27,19 @@ def changes(config: RvizConfig, before: str) -> list[str]:
     return [line for line in lines if line[0] in "+-" and "QMainWindow State" not in line]
 
 
-def test_the_panels_listed_are_shown_in_the_order_of_the_file():
+def test_listed_panels_are_shown_in_file_order():
     assert parsed().panels.shown == ["displays", "selection", "tool-properties", "views"]
     assert parsed(panels="Panels: []\n").panels.shown == []
     assert parsed(panels="").panels.shown is None
     assert parsed(panels="Panels: ~\n").panels.shown is None
 
 
-def test_panels_that_the_window_hides_are_not_shown():
+def test_panels_hidden_in_window_state_are_not_shown():
     assert parsed(window_state(**FIRST_OF_RVIZ)).panels.shown == ["displays", "views"]
     assert parsed(window_state(Views=False)).panels.shown == ["displays", "selection", "tool-properties"]
 
 
-def test_panels_collapsed_with_their_side_of_the_window_are_not_shown():
+def test_panels_on_collapsed_window_side_are_not_shown():
     assert parsed(window_state(("Views",), hide_right=True)).panels.shown == [
         "displays",
         "selection",
@@ -49,7 +49,7 @@ def test_panels_collapsed_with_their_side_of_the_window_are_not_shown():
     assert "views" in (parsed(window_state(("Views",), Views=False)).panels.shown or [])
 
 
-def test_names_of_rviz_1_are_known_and_entries_without_a_name_are_passed_over():
+def test_rviz1_panel_names_are_recognized_and_unnamed_entries_skipped():
     former = ("Displays, Name: Displays", "Time, Name: Zeit", "Views")
     config = parsed(panels="Panels:\n" + "".join(f"  - {{Class: rviz/{each}}}\n" for each in former))
     assert config.panels.shown == ["displays", "time"]
@@ -59,7 +59,7 @@ def test_names_of_rviz_1_are_known_and_entries_without_a_name_are_passed_over():
     assert "Transformation" not in config.text(), "RViz 1 has none"
 
 
-def test_panels_of_other_packages_are_told_of_once_and_stay():
+def test_unknown_panels_are_reported_once_and_kept():
     config = parsed()
     assert [(warning.code, warning.span.line) for warning in config.warnings] == [("RVIZ204", 16)]
     assert "'Knobs'" in config.warnings[0].message
@@ -68,7 +68,7 @@ def test_panels_of_other_packages_are_told_of_once_and_stay():
     assert "  - Class: some_package/Knobs\n    Level: 11\n    Name: Knobs\n" in config.text()
 
 
-def test_a_closed_panel_is_hidden_in_the_window_and_keeps_its_entry():
+def test_closed_panel_is_hidden_in_window_state_and_keeps_entry():
     config = parsed(window_state(**FIRST_OF_RVIZ))
     before = config.text()
     assert config.panels.show(["displays"])
@@ -80,7 +80,7 @@ def test_a_closed_panel_is_hidden_in_the_window_and_keeps_its_entry():
     assert (again.panels.shown, again.text()) == (["displays", "views"], before)
 
 
-def test_without_a_window_the_entry_goes_and_comes_back_in_its_place():
+def test_closed_panel_without_window_state_returns_to_its_position():
     config = parsed()
     before = config.text()
     config.panels.show(["tool-properties"])
@@ -89,7 +89,7 @@ def test_without_a_window_the_entry_goes_and_comes_back_in_its_place():
     assert config.text() == before
 
 
-def test_an_opened_panel_that_the_file_did_not_list_is_added():
+def test_opened_panel_missing_from_file_is_added():
     for geometry in ("", window_state(**FIRST_OF_RVIZ)):
         config = parsed(geometry)
         before = config.text()
@@ -101,7 +101,7 @@ def test_an_opened_panel_that_the_file_did_not_list_is_added():
         assert config.text() == before
 
 
-def test_an_opened_panel_is_collapsed_no_more():
+def test_opened_panel_is_expanded():
     config = parsed(window_state(("Views",), hide_right=True, Views=False))
     before = config.text()
     config.panels.show([*config.panels.shown, "views"])
@@ -109,7 +109,7 @@ def test_an_opened_panel_is_collapsed_no_more():
     assert changes(config, before) == ["-     collapsed: true", "+     collapsed: false"]
 
 
-def test_a_file_without_panels_gets_a_list():
+def test_file_without_panels_gets_a_list():
     config = parsed(panels="")
     assert config.panels.show(["displays", "time"])
     assert RvizConfig.parse(config.text()).panels.shown == ["displays", "time"]
@@ -117,12 +117,12 @@ def test_a_file_without_panels_gets_a_list():
 
 
 @pytest.mark.parametrize("state", ["", "zz", "00 ff", "fb0000000a0056006900650077007", "fbffffffff00560069"])
-def test_a_window_state_that_is_none_says_nothing(state):
+def test_invalid_window_state_is_ignored(state):
     assert is_shown(state, "Views") is None
     assert set_dock_shown(state, "Views", is_visible=False) == state
 
 
-def test_of_a_dock_named_twice_the_first_counts():
+def test_first_of_duplicate_docks_applies():
     views = "FB0000000A00560069006500770073"
     state = f"00ff{views}01aa{views}03bb"
     assert is_shown(state, "Views") is True
@@ -132,7 +132,7 @@ def test_of_a_dock_named_twice_the_first_counts():
     assert is_shown(state, "View") is None
 
 
-async def test_pages_begin_with_the_file_s_panels_and_the_last_change_is_saved(tmp_path):
+async def test_pages_open_with_panels_of_file_and_last_change_is_saved(tmp_path):
     path = tmp_path / "a.rviz"
     text = RVIZ_PANELS + DISPLAYS + window_state(**FIRST_OF_RVIZ)
     async with opened(text, path) as (made, client):
@@ -151,7 +151,7 @@ async def test_pages_begin_with_the_file_s_panels_and_the_last_change_is_saved(t
         assert message["shown"] == ["displays", "selection", "tool-properties", "views", "time"]
 
 
-async def test_nobody_s_panels_change_by_another_s_hand(tmp_path):
+async def test_panel_changes_do_not_affect_other_pages(tmp_path):
     path = tmp_path / "a.rviz"
     async with opened(RVIZ_PANELS + DISPLAYS, path) as (made, client), page(made.viewer) as other:
         await other.opened()
@@ -162,7 +162,7 @@ async def test_nobody_s_panels_change_by_another_s_hand(tmp_path):
             assert (await late.opened())["panels"]["shown"] == []
 
 
-async def test_where_there_is_no_file_panels_are_no_edit(tmp_path):
+async def test_panel_changes_without_file_are_not_unsaved_edits(tmp_path):
     async with opened(RVIZ_PANELS + DISPLAYS) as (made, client):
         await client.send("show_panels", shown=["time"])
         await client.drain(0.03)

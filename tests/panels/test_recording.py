@@ -49,14 +49,14 @@ def feature(made: World) -> RecordingFeature:
     return made.viewer.add_feature(RecordingFeature)
 
 
-async def begun(client: Client, *topics: str) -> dict:
+async def start_recording(client: Client, *topics: str) -> dict:
     await client.send("record_topics", topics=list(topics))
     while not (state := await client.until("recording_state"))["path"]:
         assert not state["problem"]
     return state
 
 
-async def ended(client: Client) -> dict:
+async def wait_for_end(client: Client) -> dict:
     while (state := await client.until("recording_state"))["path"]:
         pass
     return state
@@ -72,10 +72,10 @@ async def saved(client: Client, start: float | None = None, end: float | None = 
 
 
 @skipping
-async def test_what_all_topics_carry_is_recorded_and_the_file_opens_again(folder: Path):
+async def test_all_topics_are_recorded_and_file_can_be_opened(folder: Path):
     async with world() as made, page(made.viewer) as client:
         assert not (await client.until("recording_state"))["path"]
-        state = await begun(client)
+        state = await start_recording(client)
         await made.settle()
         for x in range(5):
             made.move_arm(float(x))
@@ -84,7 +84,7 @@ async def test_what_all_topics_carry_is_recorded_and_the_file_opens_again(folder
         logged = await client.until("recording_state")
         assert logged["length"] >= 0
         await client.send("stop_recording")
-        (file,) = (await ended(client))["files"]
+        (file,) = (await wait_for_end(client))["files"]
         assert Path(state["path"]).parent == folder
         assert Path(file["path"]) == Path(state["path"])
         with BagReader(file["path"]) as bag:
@@ -93,25 +93,25 @@ async def test_what_all_topics_carry_is_recorded_and_the_file_opens_again(folder
 
 
 @skipping
-async def test_only_chosen_topics_are_recorded():
+async def test_only_selected_topics_are_recorded():
     async with world() as made, page(made.viewer) as client:
-        await begun(client, TF)
+        await start_recording(client, TF)
         await made.settle()
         made.move_arm(1.0)
         made.describe("<robot name='r'/>")
         await made.settle()
         await client.send("stop_recording")
-        (file,) = (await ended(client))["files"]
+        (file,) = (await wait_for_end(client))["files"]
         with BagReader(file["path"]) as bag:
             assert [topic.name for topic in bag.topics] == [TF]
 
 
 @skipping
-async def test_all_pages_see_one_recording_which_outlives_the_page_that_began_it():
+async def test_pages_share_recording_that_outlives_its_page():
     async with world() as made:
         async with page(made.viewer) as other:
             async with page(made.viewer) as client:
-                state = await begun(client)
+                state = await start_recording(client)
                 while (seen := await other.until("recording_state"))["path"] != state["path"]:
                     pass
                 await other.send("record_topics", topics=[])
@@ -124,13 +124,13 @@ async def test_all_pages_see_one_recording_which_outlives_the_page_that_began_it
             made.move_arm(2.0)
             await made.settle()
             await late.send("stop_recording")
-            assert [each["path"] for each in (await ended(late))["files"]] == [state["path"]]
+            assert [each["path"] for each in (await wait_for_end(late))["files"]] == [state["path"]]
 
 
 @skipping
-async def test_a_recording_ends_well_when_the_program_does():
+async def test_program_exit_finishes_recording():
     async with world() as made, page(made.viewer) as client:
-        state = await begun(client, TF)
+        state = await start_recording(client, TF)
         await made.settle()
         made.move_arm(1.0)
         await made.settle()
@@ -140,27 +140,27 @@ async def test_a_recording_ends_well_when_the_program_does():
 
 
 @skipping
-async def test_recordings_of_one_second_have_names_of_their_own(folder: Path):
+async def test_recordings_within_one_second_get_unique_names(folder: Path):
     async with world() as made, page(made.viewer) as client:
         paths = set()
         for _ in range(3):
-            state = await begun(client, TF)
+            state = await start_recording(client, TF)
             await made.settle()
             made.move_arm(1.0)
             await made.settle()
             await client.send("stop_recording")
-            await ended(client)
+            await wait_for_end(client)
             paths.add(state["path"])
         assert len(paths) == 3
         assert {str(folder / each) for each in made_in(folder)} == paths
 
 
 @skipping
-async def test_a_recording_of_nothing_is_not_kept(folder: Path):
+async def test_empty_recording_is_deleted(folder: Path):
     async with world() as made, page(made.viewer) as client:
-        await begun(client, "/nobody")
+        await start_recording(client, "/nobody")
         await client.send("stop_recording")
-        state = await ended(client)
+        state = await wait_for_end(client)
         assert "no messages arrived" in state["problem"]
         assert not state["files"]
         assert made_in(folder) == set()
@@ -168,9 +168,9 @@ async def test_a_recording_of_nothing_is_not_kept(folder: Path):
 
 @skipping
 @needs_limits
-async def test_a_disk_that_refuses_ends_the_recording_and_keeps_what_was_written():
+async def test_full_disk_stops_recording_and_keeps_messages():
     async with world() as made, page(made.viewer) as client:
-        await begun(client, "/long")
+        await start_recording(client, "/long")
         node = made.graph.create_node("talker")
         publisher = node.create_publisher(STRING, "/long", 10)
         await asyncio.sleep(0.5)
@@ -183,7 +183,7 @@ async def test_a_disk_that_refuses_ends_the_recording_and_keeps_what_was_written
                 publisher.publish(publisher.msg_type(data="x" * 1000))
                 await made.settle()
             await asyncio.sleep(2.0)
-            state = await ended(client)
+            state = await wait_for_end(client)
         assert " stopped: " in state["problem"]
         (file,) = state["files"]
         with BagReader(Path(file["path"])) as bag:
@@ -199,14 +199,14 @@ class Usage(NamedTuple):
 
 
 @skipping
-async def test_a_disk_with_little_room_is_left_to_others(monkeypatch: pytest.MonkeyPatch, folder: Path):
+async def test_recording_stops_when_little_disk_space_is_left(monkeypatch: pytest.MonkeyPatch, folder: Path):
     async with world() as made, page(made.viewer) as client:
-        state = await begun(client, TF)
+        state = await start_recording(client, TF)
         await made.settle()
         made.move_arm(1.0)
         await made.settle()
         monkeypatch.setattr(module.shutil, "disk_usage", lambda _: Usage(10**12, 10**12, 10**8))
-        stopped = await ended(client)
+        stopped = await wait_for_end(client)
         assert "less than 256 MB left" in stopped["problem"]
         with BagReader(state["path"]) as bag:
             assert not bag.findings, "it has its end"
@@ -218,7 +218,7 @@ async def test_a_disk_with_little_room_is_left_to_others(monkeypatch: pytest.Mon
 
 
 @skipping
-async def test_a_folder_that_cannot_be_written_is_said(folder: Path):
+async def test_unwritable_folder_is_reported(folder: Path):
     async with world() as made, page(made.viewer) as client:
         feature(made).folder = folder / "gone" / "away"
         (folder / "gone").write_text("a file in its place")
@@ -229,11 +229,11 @@ async def test_a_folder_that_cannot_be_written_is_said(folder: Path):
 
 
 @skipping
-async def test_a_reset_of_simulated_time_ends_the_recording():
+async def test_simulated_time_reset_stops_recording():
     async with world() as made, page(made.viewer) as client:
         made.viewer.context.node.set_parameters([Parameter("use_sim_time", value=True)])
         clock = made.graph.create_node("simulator").create_publisher("rosgraph_msgs/msg/Clock", "/clock", 10)
-        state = await begun(client, TF)
+        state = await start_recording(client, TF)
         for second in (100, 101, 102):
             clock.publish(clock.msg_type(clock=Time(sec=second)))
             await made.settle()
@@ -242,14 +242,14 @@ async def test_a_reset_of_simulated_time_ends_the_recording():
             await made.settle()
         clock.publish(clock.msg_type(clock=Time(sec=1)))
         await made.settle()
-        stopped = await ended(client)
+        stopped = await wait_for_end(client)
         assert "simulated time was reset" in stopped["problem"]
         with BagReader(state["path"]) as bag:
             assert 100 <= bag.start_ns / 1e9 <= bag.end_ns / 1e9 <= 102
 
 
 @skipping
-async def test_the_last_minutes_and_a_part_of_them_are_saved():
+async def test_history_and_part_of_history_are_saved():
     async with world(config(), history=KEPT) as made, page(made.viewer) as client:
         await client.until("recording_state")
         made.move({("tip", "mark"): (0, 0, 0, 0, 0, 0, 1)}, static=True)
@@ -270,7 +270,7 @@ async def test_the_last_minutes_and_a_part_of_them_are_saved():
 
 
 @skipping
-async def test_the_last_minutes_of_a_simulation_have_its_times_since_its_last_reset():
+async def test_saved_simulation_history_starts_at_last_time_reset():
     async with world(config(), history=KEPT) as made, page(made.viewer) as client:
         await client.until("recording_state")
         made.viewer.context.node.set_parameters([Parameter("use_sim_time", value=True)])
@@ -293,15 +293,15 @@ async def test_the_last_minutes_of_a_simulation_have_its_times_since_its_last_re
 
 
 @skipping
-async def test_a_recording_can_be_fetched_whole_and_again():
+async def test_recording_can_be_downloaded_completely_and_repeatedly():
     async with world() as made, page(made.viewer) as client:
-        await begun(client, TF)
+        await start_recording(client, TF)
         await made.settle()
         for x in range(2000):
             made.move_arm(float(x))
             await made.settle()
         await client.send("stop_recording")
-        (file,) = (await ended(client))["files"]
+        (file,) = (await wait_for_end(client))["files"]
         path = mcap(file["path"])
         address = made.viewer.url.split(f"?{TOKEN_PARAMETER}")[0].rstrip("/") + file["url"]
         async with aiohttp.ClientSession() as session:
@@ -316,7 +316,7 @@ async def test_a_recording_can_be_fetched_whole_and_again():
 
 
 @skipping
-async def test_beside_a_recording_nothing_is_recorded(folder: Path):
+async def test_recording_is_disabled_during_playback(folder: Path):
     from tests.panels.test_timeline import shown
 
     async with shown(folder) as made, page(made.viewer) as client:
@@ -327,7 +327,7 @@ async def test_beside_a_recording_nothing_is_recorded(folder: Path):
         assert made_in(folder) == {"drive"}
 
 
-def test_a_writer_tells_how_much_is_written(tmp_path: Path):
+def test_bag_writer_reports_written_size(tmp_path: Path):
     with BagWriter(tmp_path / "bag") as writer:
         writer.add_topic("/chatter", STRING)
         before = writer.size

@@ -60,7 +60,7 @@ async def save(client: Any, path: Path, version: int, text: str) -> dict[str, An
     )
 
 
-async def test_a_file_is_read_and_written_and_the_edit_of_the_robot_is_undone_after_it(file: Path) -> None:
+async def test_source_file_is_read_written_and_undone(file: Path) -> None:
     async with world() as scene, page(scene.viewer) as client:
         answer = await opened(scene, client, file)
         assert (answer["folder"], answer["why_not"]) == (str(file.parents[3]), "")
@@ -76,7 +76,7 @@ async def test_a_file_is_read_and_written_and_the_edit_of_the_robot_is_undone_af
         assert (await client.until("source_file"))["text"] == ROBOT
 
 
-async def test_a_change_on_the_disk_is_sent_and_not_overwritten(file: Path) -> None:
+async def test_external_change_is_sent_and_not_overwritten(file: Path) -> None:
     async with world() as scene, page(scene.viewer) as client:
         await opened(scene, client, file)
         await ask(client, "ask_source_file", "source_file", path=str(file))
@@ -90,7 +90,7 @@ async def test_a_change_on_the_disk_is_sent_and_not_overwritten(file: Path) -> N
         assert content(file) == b"mine"
 
 
-async def test_the_folder_is_listed_and_a_file_is_created(file: Path) -> None:
+async def test_folder_is_listed_and_file_is_created(file: Path) -> None:
     folder = file.parents[1]
     (folder / "build").mkdir()
     (folder / ".git").mkdir()
@@ -107,7 +107,7 @@ async def test_the_folder_is_listed_and_a_file_is_created(file: Path) -> None:
         assert "already exists" in again["refusal"]["message"]
 
 
-async def test_a_file_that_does_not_exist_is_created_with_its_first_text(file: Path) -> None:
+async def test_missing_file_is_created_with_first_text(file: Path) -> None:
     new, other = (file.parents[1] / "launch" / name for name in ("new.launch.py", "other.launch.py"))
     async with world() as scene, page(scene.viewer) as client:
         await opened(scene, client, file)
@@ -126,7 +126,7 @@ async def test_a_file_that_does_not_exist_is_created_with_its_first_text(file: P
 
 
 @pytest.mark.parametrize("path", ["/etc/passwd", "{ws}/.git/config", "{ws}/../outside.txt"])
-async def test_other_files_are_neither_read_nor_created(file: Path, path: str) -> None:
+async def test_files_outside_sources_are_neither_read_nor_created(file: Path, path: str) -> None:
     workspace = file.parents[3]
     (workspace / ".git").mkdir()
     (workspace / ".git" / "config").write_text("secret")
@@ -141,14 +141,14 @@ async def test_other_files_are_neither_read_nor_created(file: Path, path: str) -
         assert (await ask(client, "ask_source_folder", "source_folder", path=str(Path(path).parent)))["files"] == []
 
 
-def test_a_link_out_of_the_workspace_is_not_followed(file: Path, tmp_path: Path) -> None:
+def test_symlink_out_of_workspace_is_not_followed(file: Path, tmp_path: Path) -> None:
     (tmp_path / "secret.txt").write_text("secret")
     link = file.parent / "link.txt"
     link.symlink_to(tmp_path / "secret.txt")
     assert SourceFiles(Workspace(file)).read(link).text is None
 
 
-async def test_a_workspace_is_edited_without_a_description(tmp_path: Path) -> None:
+async def test_workspace_can_be_edited_without_description(tmp_path: Path) -> None:
     async with world() as scene, page(scene.viewer) as client:
         scene.viewer.add_feature(SourceEditorFeature).edit_workspace(tmp_path)
         answer = await ask(client, "open_editor", "editor_opened", file=str(tmp_path))
@@ -160,7 +160,7 @@ async def test_a_workspace_is_edited_without_a_description(tmp_path: Path) -> No
         assert outside["refusal"]["code"] == "EDIT106"
 
 
-async def test_a_page_elsewhere_edits_nothing(file: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+async def test_page_on_another_machine_cannot_edit(file: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(Page, "is_local", False, raising=False)
     monkeypatch.setattr("linkwright.page.server.is_local_connection", lambda _: False)
     async with world() as scene, page(scene.viewer) as client:
@@ -168,14 +168,14 @@ async def test_a_page_elsewhere_edits_nothing(file: Path, monkeypatch: pytest.Mo
         assert "only in pages that are open on the machine" in answer["why_not"]
 
 
-async def test_without_the_extra_the_page_is_told_how_to_get_it(file: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+async def test_missing_lsp_extra_is_reported(file: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setitem(extras.EXTRAS, "lsp", "no_such_module")
     async with world() as scene, page(scene.viewer) as client:
         answer = await opened(scene, client, file)
         assert answer["why_not"].startswith("the editor needs the language server: run ")
 
 
-async def test_a_description_without_a_file_is_not_edited() -> None:
+async def test_description_without_file_cannot_be_edited() -> None:
     async with world() as scene, page(scene.viewer) as client:
         scene.describe(ARM)
         await client.until("description_changed")
@@ -183,7 +183,7 @@ async def test_a_description_without_a_file_is_not_edited() -> None:
         assert "linkwright view FILE" in answer["why_not"]
 
 
-async def test_the_language_server_answers_through_the_page(file: Path) -> None:
+async def test_language_server_answers_through_page(file: Path) -> None:
     async with world() as scene, page(scene.viewer) as client:
         answer = await opened(scene, client, file)
         request = {"jsonrpc": "2.0", "id": 1, "method": "initialize"}
@@ -205,5 +205,5 @@ async def test_the_language_server_answers_through_the_page(file: Path) -> None:
         ("a\r\n", "", ""),
     ],
 )
-def test_lines_keep_their_ends(before: str, text: str, after: str) -> None:
+def test_line_endings_are_preserved(before: str, text: str, after: str) -> None:
     assert with_line_ends(text, before) == after

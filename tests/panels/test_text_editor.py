@@ -37,7 +37,7 @@ ARM = """<robot name="arm" xmlns:xacro="http://www.ros.org/wiki/xacro">
         (11, ("joint", "left")),
     ],
 )
-def test_the_element_at_a_line(tmp_path: Path, line: int, element: tuple[str, str] | None) -> None:
+def test_element_at_cursor_line_is_found(tmp_path: Path, line: int, element: tuple[str, str] | None) -> None:
     file = tmp_path / "arm.urdf.xacro"
     file.write_text(ARM)
     description = examine(file)

@@ -60,7 +60,7 @@ def point(x: float, stamp: float, frame: str = "base"):
     return message
 
 
-def test_exact_shows_the_time_of_the_sources_last_message():
+def test_exact_mode_shows_time_of_last_source_message():
     clock, received = FakeClock(), []
     control = TimeControl(clock, on_signal=lambda: received.append(1))
     control.record_stamp("scan", 90)
@@ -72,7 +72,7 @@ def test_exact_shows_the_time_of_the_sources_last_message():
     assert (control.lookup_ns(), control.now_ns(), received) == (95, 95, [1])
 
 
-def test_approximate_follows_the_delay_of_the_source_smoothly():
+def test_approximate_mode_follows_source_delay_smoothly():
     clock = FakeClock()
     control = TimeControl(clock)
     control.set(paused=False, mode="Approximate", source="scan")
@@ -84,7 +84,7 @@ def test_approximate_follows_the_delay_of_the_source_smoothly():
     assert times == sorted(times, reverse=True)
 
 
-def test_the_time_shown_stands_still_while_paused():
+def test_displayed_time_stops_while_paused():
     clock = FakeClock()
     control = TimeControl(clock)
     control.set(paused=True, mode="Off", source="")
@@ -94,7 +94,7 @@ def test_the_time_shown_stands_still_while_paused():
     assert control.now_ns() == 500
 
 
-async def test_pause_freezes_frames_and_messages_for_all_pages():
+async def test_pause_stops_frames_and_messages_for_all_pages():
     async with world(config()) as made, page(made.viewer) as one, page(made.viewer) as other:
         node = made.graph.create_node("clicker")
         points = node.create_publisher(POINT, "/p", 10)
@@ -132,7 +132,7 @@ Visualization Manager:
 """
 
 
-async def test_the_time_panel_of_the_last_rviz_1_is_read_and_stays_one():
+async def test_rviz1_time_panel_is_read_and_keeps_its_format():
     text = PANEL.replace("    Experimental: true\n", "").replace("rviz_common", "rviz")
     file = RvizConfig.parse(text)
     async with world(file) as made, page(made.viewer) as client:
@@ -143,7 +143,7 @@ async def test_the_time_panel_of_the_last_rviz_1_is_read_and_stays_one():
         assert file.text() == text.replace("SyncMode: 1", "SyncMode: 2")
 
 
-async def test_the_time_panel_of_a_file_is_read_and_written():
+async def test_time_panel_of_file_is_read_and_written():
     file = RvizConfig.parse(PANEL)
     async with world(file) as made, page(made.viewer) as client:
         state = (await client.opened())["time_state"]
@@ -155,7 +155,7 @@ async def test_the_time_panel_of_a_file_is_read_and_written():
 
 
 @skipping
-async def test_exact_synchronization_shows_frames_at_the_time_of_messages():
+async def test_exact_synchronization_shows_frames_at_message_times():
     async with world(config()) as made, page(made.viewer) as client:
         node = made.graph.create_node("clicker")
         points = node.create_publisher(POINT, "/p", 10)
@@ -181,7 +181,7 @@ async def test_exact_synchronization_shows_frames_at_the_time_of_messages():
         assert 0.3 < shown < 0.7
 
 
-async def test_reset_clears_displays_and_moving_frames():
+async def test_reset_clears_displays_and_dynamic_frames():
     async with world(config()) as made, page(made.viewer) as client:
         node = made.graph.create_node("clicker")
         points = node.create_publisher(POINT, "/p", 10)
@@ -198,7 +198,7 @@ async def test_reset_clears_displays_and_moving_frames():
         assert "base" not in frames.names
 
 
-async def test_clocks_are_told_to_pages_that_watch_and_counted_by_them():
+async def test_clock_is_sent_only_to_watching_pages():
     async with world() as made, page(made.viewer) as client:
         await client.opened()
         assert not [each for each in await client.drain() if isinstance(each, dict) and each["type"] == "clock"]
@@ -212,7 +212,7 @@ async def test_clocks_are_told_to_pages_that_watch_and_counted_by_them():
         assert (await client.until("clock"))["running"] is False
 
 
-async def test_simulated_time_is_followed_and_going_back_begins_anew():
+async def test_simulated_time_is_followed_and_resets_when_jumping_back():
     async with world() as made, page(made.viewer) as client:
         await client.opened()
         await client.send("watch_clock", watching=True)

@@ -54,7 +54,7 @@ async def shown(folder: Path, **other: str) -> AsyncIterator[World]:
 
 
 @skipping
-async def test_a_page_is_told_of_the_recording_which_begins_to_play(tmp_path):
+async def test_page_receives_timeline_and_playback_starts(tmp_path):
     async with shown(tmp_path) as made, page(made.viewer) as client:
         timeline = await client.until("timeline")
         assert (timeline["name"], timeline["start"], timeline["end"]) == ("drive", START, START + 10)
@@ -65,7 +65,7 @@ async def test_a_page_is_told_of_the_recording_which_begins_to_play(tmp_path):
 
 
 @skipping
-async def test_a_page_goes_to_another_time_and_all_that_is_shown_is_of_that_time(tmp_path):
+async def test_seek_shows_data_of_that_time(tmp_path):
     async with shown(tmp_path) as made, page(made.viewer) as client:
         await client.until("playhead", playing=True)
         await client.send("play", playing=False)
@@ -80,7 +80,7 @@ async def test_a_page_goes_to_another_time_and_all_that_is_shown_is_of_that_time
 
 
 @skipping
-async def test_a_page_sets_speed_and_whether_it_begins_anew(tmp_path):
+async def test_playback_speed_and_loop_are_set(tmp_path):
     async with shown(tmp_path) as made, page(made.viewer) as client:
         await client.until("playhead", playing=True)
         await client.send("set_playback", speed=5, loop=True)
@@ -92,7 +92,7 @@ async def test_a_page_sets_speed_and_whether_it_begins_anew(tmp_path):
 
 
 @skipping
-async def test_a_simulation_that_was_recorded_has_no_bar(tmp_path):
+async def test_recorded_simulation_has_no_simulation_bar(tmp_path):
     async with shown(tmp_path) as made:
         node = made.graph.create_node("recorded_simulation")
         state = node.create_publisher("simulation_interfaces/msg/SimulationState", "/simulation_state", 1)
@@ -109,7 +109,7 @@ async def test_a_simulation_that_was_recorded_has_no_bar(tmp_path):
 
 
 @skipping
-async def test_a_page_is_told_of_topics_whose_type_nobody_knows(tmp_path):
+async def test_topics_of_unknown_type_are_reported(tmp_path):
     # What the recording carries for the type that nobody has is of no use either.
     async with shown(tmp_path, Point="Paint", float64="flaot64") as made, page(made.viewer) as client:
         message = await client.until("playhead", playing=True)
@@ -121,7 +121,7 @@ async def test_a_page_is_told_of_topics_whose_type_nobody_knows(tmp_path):
 
 
 @skipping
-async def test_a_viewer_without_a_recording_has_no_timeline():
+async def test_viewer_without_recording_has_no_timeline():
     async with world() as made, page(made.viewer) as client:
         assert "timeline" not in await client.opened()
         await client.send("play", playing=True)

@@ -37,7 +37,7 @@ def tools_of(config: RvizConfig) -> list[dict]:
     return yaml.safe_load(config.text())["Visualization Manager"]["Tools"]
 
 
-def test_names_are_those_of_rviz():
+def test_tool_names_match_rviz():
     assert [kind.name for kind in TOOL_KINDS.values()] == [
         "Interact",
         "Move Camera",
@@ -52,7 +52,7 @@ def test_names_are_those_of_rviz():
     assert tool_name("other_plugins/GoalTool") == "Goal Tool"
 
 
-def test_the_tools_of_a_file_keep_order_classes_and_what_is_unknown():
+def test_tools_of_file_keep_order_classes_and_unknown_entries():
     config = RvizConfig.parse(FILE)
     assert [entry.cls.rpartition("/")[2] for entry in config.tools.entries] == [
         "MoveCamera",
@@ -67,7 +67,7 @@ def test_the_tools_of_a_file_keep_order_classes_and_what_is_unknown():
     assert config.text() == FILE.replace("/first", "/second")
 
 
-def test_a_file_without_tools_has_the_usual_ones_and_lists_them_when_one_changes():
+def test_file_without_tools_uses_defaults():
     config = RvizConfig.parse("Visualization Manager: {}\n")
     assert [entry.cls for entry in config.tools.entries] == list(DEFAULT_TOOLS)
     assert "Tools" not in config.text()
@@ -96,7 +96,7 @@ def listen(made, kind: str, topic: str) -> list:
     return heard
 
 
-async def test_poses_and_points_are_published_in_the_fixed_frame(config):
+async def test_tools_publish_poses_and_points_in_fixed_frame(config):
     async with world(config) as made, page(made.viewer) as client:
         point, goal, unknown, pose = (await client.opened())["tools"]["tools"]
         assert [tool["supported"] for tool in (point, goal, unknown, pose)] == [True, True, False, True]
@@ -123,7 +123,7 @@ async def test_poses_and_points_are_published_in_the_fixed_frame(config):
     assert "Setting estimate pose: Frame:odom, Position(1, -2, 0)" in made.logged()
 
 
-async def test_another_topic_is_published_to_and_a_bad_one_is_refused(config):
+async def test_tool_topic_can_be_changed_and_invalid_topic_is_rejected(config):
     async with world(config) as made, page(made.viewer) as one, page(made.viewer) as other:
         goal = (await one.opened())["tools"]["tools"][1]
         await other.opened()
@@ -141,7 +141,7 @@ async def test_another_topic_is_published_to_and_a_bad_one_is_refused(config):
     assert tools_of(config)[1]["Topic"] == "/elsewhere"
 
 
-async def test_tools_are_added_and_removed_for_all_pages(config):
+async def test_tools_are_added_and_removed_on_all_pages(config):
     async with world(config) as made, page(made.viewer) as one, page(made.viewer) as other:
         tools = (await one.opened())["tools"]["tools"]
         await other.opened()
@@ -167,7 +167,7 @@ Visualization Manager:
 """
 
 
-async def test_goals_of_nav2_go_to_its_action_and_the_log_says_when_nobody_takes_them():
+async def test_nav2_goal_uses_action_and_logs_missing_server():
     config = RvizConfig.parse(NAV2)
     async with world(config) as made, page(made.viewer) as opened:
         (tool,) = (await opened.opened())["tools"]["tools"]

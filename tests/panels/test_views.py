@@ -49,14 +49,14 @@ def default_view(cls: str = ORBIT) -> View:
     return next(View(each.cls, CURRENT_NAME, each.defaults) for each in view_classes() if each.cls == cls)
 
 
-def test_a_negative_scale_is_kept():
+def test_negative_scale_is_kept():
     """RViz leads to one when its right button is dragged far."""
     config = config_of("{Class: rviz/TopDownOrtho, Scale: -88.9}")
     assert config.views.current.values["Scale"] == -88.9
     assert config.warnings == []
 
 
-def test_the_classes_are_those_of_rviz_with_its_rows():
+def test_view_classes_and_properties_match_rviz():
     classes = {each.cls.rpartition("/")[2]: each for each in view_classes()}
     assert list(classes) == ["FPS", "Orbit", "ThirdPersonFollower", "TopDownOrtho", "XYOrbit"]
     rows = [row.name for row in classes["Orbit"].properties]
@@ -67,7 +67,7 @@ def test_the_classes_are_those_of_rviz_with_its_rows():
 
 
 @pytest.mark.parametrize("cls", VIEW_SCHEMAS)
-def test_a_view_of_every_class_is_written_and_read_back(cls):
+def test_view_of_each_class_survives_saving(cls):
     config = RvizConfig.default()
     view = default_view(cls)
     view.values |= {name: value + 0.25 for name, value in view.values.items() if isinstance(value, float)}
@@ -80,7 +80,7 @@ def test_a_view_of_every_class_is_written_and_read_back(cls):
     assert current["Value"].startswith(cls.rpartition("/")[2])
 
 
-def test_a_file_is_written_only_where_it_differs():
+def test_file_changes_only_where_view_differs():
     config = RvizConfig.parse(FLYING)
     config.views.current = config.views.current
     assert config.text() == FLYING
@@ -90,18 +90,18 @@ def test_a_file_is_written_only_where_it_differs():
     assert config.text() == FLYING.replace("Pitch: 0.5", "Pitch: 0.75")
 
 
-def test_values_are_clamped_and_angles_stay_as_they_are_written():
+def test_view_values_are_clamped_and_angles_kept():
     config = config_of("{Class: rviz/Orbit, Pitch: 3, Yaw: -0.5, Near Clip Distance: 0}")
     values = config.views.current.values
     assert (values["Pitch"], values["Yaw"], values["Near Clip Distance"]) == (PITCH_LIMIT, -0.5, 0.001)
     assert config.views.current.cls == "rviz_default_plugins/Orbit"
 
 
-def test_a_file_without_a_view_has_rviz_own():
+def test_file_without_view_uses_rviz_default():
     assert RvizConfig.parse("Visualization Manager: {}").views.current == default_view()
 
 
-def test_another_class_takes_the_keys_of_the_one_before_away_and_keeps_what_is_unknown():
+def test_changing_view_class_removes_old_keys_and_keeps_unknown_ones():
     config = RvizConfig.parse(FLYING)
     config.views.current = default_view("rviz_default_plugins/TopDownOrtho")
     current = yaml.safe_load(config.text())["Visualization Manager"]["Views"]["Current"]
@@ -111,7 +111,7 @@ def test_another_class_takes_the_keys_of_the_one_before_away_and_keeps_what_is_u
     assert RvizConfig.parse(config.text()).views.current == default_view("rviz_default_plugins/TopDownOrtho")
 
 
-def test_an_unknown_class_is_shown_as_an_orbit_and_stays_in_the_file():
+def test_unknown_view_class_is_shown_as_orbit_and_kept_in_file():
     text = "Visualization Manager: {Views: {Current: {Class: mine/Fancy, Distance: 3}}}\n"
     config = RvizConfig.parse(text)
     assert [warning.code for warning in config.warnings] == ["RVIZ203"]
@@ -121,7 +121,7 @@ def test_an_unknown_class_is_shown_as_an_orbit_and_stays_in_the_file():
     assert config.text() == text
 
 
-def test_a_frame_aligned_view_is_shown_as_one_that_flies_and_stays_what_it_is():
+def test_frame_aligned_view_is_shown_as_fps_and_keeps_its_class():
     text = (
         "Visualization Manager: {Views: {Current: {Class: rviz/FrameAligned, Name: Current View, "
         "Point towards: +x axis, Yaw: 1.5, Position: {X: 1, Y: 2, Z: 3}}}}\n"
@@ -147,7 +147,7 @@ def test_a_frame_aligned_view_is_shown_as_one_that_flies_and_stays_what_it_is():
         View("rviz_default_plugins/FPS", "n" * 5000, {}),
     ],
 )
-def test_a_view_that_is_none_is_refused_and_nothing_is_written(view):
+def test_invalid_view_is_rejected_and_nothing_is_written(view):
     config = RvizConfig.default()
     before = config.text()
     with pytest.raises(ValueError):
@@ -177,14 +177,14 @@ def test_saved_views_are_renamed_changed_and_removed():
     assert list(again.saved.values()) == [config.views.saved[above], config.views.saved[added]]
 
 
-def test_the_first_saved_view_comes_where_the_file_says_none():
+def test_view_can_be_saved_to_file_without_saved_views():
     config = RvizConfig.default()
     config.views.save(default_view("rviz_default_plugins/FPS"))
     config = RvizConfig.parse(config.text())
     assert [view.cls for view in config.views.saved.values()] == ["rviz_default_plugins/FPS"]
 
 
-async def test_pages_share_the_saved_views():
+async def test_pages_share_saved_views():
     async with world() as made, page(made.viewer) as one, page(made.viewer) as other:
         opening = await one.opened()
         await other.opened()

@@ -20,7 +20,7 @@ DIP = 1.0
 """How far below the horizon the magnetic field points, rad."""
 
 
-def felt(orientation, world=WorldFrame.ENU):
+def acceleration_at_rest(orientation, world=WorldFrame.ENU):
     """What an accelerometer measures at rest."""
     return rotate(quaternion_inverse(orientation), (0.0, 0.0, GRAVITY * world.up))
 
@@ -33,7 +33,7 @@ def field(orientation, world=WorldFrame.ENU):
     )
 
 
-def apart(first, second):
+def angle_between(first, second):
     """The angle between two orientations."""
     x, y, z, w = quaternion_multiply(quaternion_inverse(first), second)
     return 2.0 * atan2((x * x + y * y + z * z) ** 0.5, abs(w))
@@ -41,33 +41,38 @@ def apart(first, second):
 
 @settings(max_examples=50)
 @given(angles, angles, angles, st.sampled_from(WorldFrame))
-def test_a_body_at_rest_knows_how_it_is_turned(roll, pitch, yaw, world):
+def test_attitude_at_rest_matches_orientation(roll, pitch, yaw, world):
     orientation = quaternion_from_rpy((roll, pitch, yaw))
-    assert apart(attitude_at_rest(felt(orientation, world), field(orientation, world), world), orientation) < 1e-6
-    without = rpy_from_quaternion(attitude_at_rest(felt(orientation, world), None, world))
+    assert (
+        angle_between(
+            attitude_at_rest(acceleration_at_rest(orientation, world), field(orientation, world), world), orientation
+        )
+        < 1e-6
+    )
+    without = rpy_from_quaternion(attitude_at_rest(acceleration_at_rest(orientation, world), None, world))
     assert without == pytest.approx((roll, pitch, 0.0), abs=1e-9)
 
 
-def test_where_nothing_tells_a_direction():
+def test_attitude_at_rest_without_direction_is_none():
     assert attitude_at_rest((0.0, 0.0, 0.0), None, WorldFrame.ENU) is None
     assert attitude_at_rest((0.0, 0.0, 9.8), (0.0, 0.0, 1.0), WorldFrame.ENU) is None
     assert attitude_at_rest((0.0, 0.0, 9.8), (0.0, 0.0, 0.0), WorldFrame.ENU) is None
 
 
 @pytest.mark.parametrize("world", WorldFrame)
-def test_madgwick_finds_the_attitude_from_afar(world):
+def test_madgwick_converges_from_large_error(world):
     orientation = quaternion_from_rpy((0.4, -0.3, 1.0))
     each = MadgwickFilter(gain=0.5, world=world)
     for _ in range(1000):
-        each.update((0.0, 0.0, 0.0), felt(orientation, world), field(orientation, world), 0.01)
-    assert apart(each.orientation, orientation) < 0.01
+        each.update((0.0, 0.0, 0.0), acceleration_at_rest(orientation, world), field(orientation, world), 0.01)
+    assert angle_between(each.orientation, orientation) < 0.01
 
 
-def test_madgwick_without_a_magnetometer_finds_roll_and_pitch():
+def test_madgwick_without_magnetometer_finds_roll_and_pitch():
     orientation = quaternion_from_rpy((0.4, -0.3, 0.0))
     each = MadgwickFilter(gain=0.5)
     for _ in range(500):
-        each.update((0.0, 0.0, 0.0), felt(orientation), None, 0.01)
+        each.update((0.0, 0.0, 0.0), acceleration_at_rest(orientation), None, 0.01)
     assert rpy_from_quaternion(each.orientation)[:2] == pytest.approx((0.4, -0.3), abs=0.01)
 
 
@@ -75,14 +80,14 @@ FILTERS = pytest.mark.parametrize("kind", [MadgwickFilter, ComplementaryFilter])
 
 
 @FILTERS
-def test_the_gyroscope_turns_the_attitude(kind):
+def test_gyroscope_rotates_attitude(kind):
     each = kind()
     for _ in range(1000):
         each.update((0.0, 0.0, 0.5), (0.0, 0.0, GRAVITY), None, 0.002)
     assert rpy_from_quaternion(each.orientation) == pytest.approx((0.0, 0.0, 1.0), abs=1e-3)
 
 
-def test_madgwick_learns_the_drift_of_the_gyroscope():
+def test_madgwick_estimates_gyroscope_drift():
     each = MadgwickFilter(gain=0.2, zeta=0.1)
     for _ in range(6000):
         each.update((0.1, 0.0, 0.0), (0.0, 0.0, GRAVITY), None, 0.01)
@@ -90,15 +95,17 @@ def test_madgwick_learns_the_drift_of_the_gyroscope():
     assert abs(rpy_from_quaternion(each.orientation)[0]) < 0.05
 
 
-def test_the_complementary_filter_finds_the_attitude_and_north():
+def test_complementary_filter_finds_attitude_and_north():
     orientation = quaternion_from_rpy((0.3, -0.2, 0.8))
     each = ComplementaryFilter(gain_acc=0.05, gain_mag=0.05)
     for _ in range(500):
-        each.update((0.0, 0.0, 0.0), felt(orientation, WorldFrame.NWU), field(orientation, WorldFrame.NWU), 0.01)
-    assert apart(each.orientation, orientation) < 0.01
+        each.update(
+            (0.0, 0.0, 0.0), acceleration_at_rest(orientation, WorldFrame.NWU), field(orientation, WorldFrame.NWU), 0.01
+        )
+    assert angle_between(each.orientation, orientation) < 0.01
 
 
-def test_the_complementary_filter_learns_the_bias_at_rest():
+def test_complementary_filter_estimates_bias_at_rest():
     each = ComplementaryFilter()
     for _ in range(1500):
         each.update((0.0, 0.0, 0.05), (0.0, 0.0, GRAVITY), None, 0.01)
@@ -108,7 +115,7 @@ def test_the_complementary_filter_learns_the_bias_at_rest():
     assert still.bias == (0.0, 0.0, 0.0)
 
 
-def test_an_accelerating_body_is_not_taken_for_a_tilted_one():
+def test_adaptive_gain_ignores_linear_acceleration():
     careful, trusting = ComplementaryFilter(gain_acc=0.05), ComplementaryFilter(gain_acc=0.05, do_adaptive_gain=False)
     for _ in range(100):
         for each in (careful, trusting):
@@ -117,7 +124,7 @@ def test_an_accelerating_body_is_not_taken_for_a_tilted_one():
     assert abs(rpy_from_quaternion(trusting.orientation)[1]) > 0.5
 
 
-def test_half_a_turn_is_found_too():
+def test_madgwick_converges_from_half_turn():
     each = MadgwickFilter(gain=1.0, orientation=quaternion_from_rpy((pi - 0.1, 0.0, 0.0)))
     for _ in range(2000):
         each.update((0.0, 0.0, 0.0), (0.0, 0.0, GRAVITY), None, 0.005)

@@ -15,7 +15,7 @@ ROBOTS = [ARM, MBOT, REPOSITORY / "robots" / "my_robot_description" / "urdf" / "
 
 
 @pytest.mark.parametrize("source", ROBOTS, ids=["arm", "kinect", "laser"])
-def test_frames_are_those_of_the_kinematics(source: str) -> None:
+def test_link_frames_match_kinematics(source: str) -> None:
     robot = load(source)
     tree = KinematicTree(robot)
     positions = {name: 0.5 + 0.3 * number for number, name in enumerate(tree.joint_names)}
@@ -26,13 +26,13 @@ def test_frames_are_those_of_the_kinematics(source: str) -> None:
         np.testing.assert_allclose(frames[name].position, matrix[:3, 3], atol=1e-10)
 
 
-def test_a_joint_that_cannot_be_at_0_starts_in_the_middle_of_its_limits() -> None:
+def test_joint_that_excludes_zero_starts_in_middle_of_limits() -> None:
     robot = load(ARM)
     started, given = link_frames(robot, {}), link_frames(robot, {"bend": 1.2})
     assert started == given
 
 
-def test_an_unknown_joint_and_one_that_mimics_are_refused() -> None:
+def test_unknown_and_mimic_joints_are_rejected() -> None:
     robot = load(ARM)
     with pytest.raises(UnknownNameError, match="no joint 'elbow'"):
         link_frames(robot, {"elbow": 1.0})

@@ -1,4 +1,4 @@
-"""Meshes with their colours."""
+"""Meshes with their colors."""
 
 from __future__ import annotations
 
@@ -24,14 +24,14 @@ def stl(folder: Path, count: int = 1) -> Path:
     return path
 
 
-def test_a_collada_file_has_its_colours_without_a_library() -> None:
+def test_collada_colors_are_read_without_trimesh() -> None:
     meshes = read_colored_meshes(KINECT.read_bytes())
     assert meshes is not None
     assert {mesh.color for mesh in meshes} >= {(0.055, 0.055, 0.062), (0.11, 0.11, 0.12), (0.2, 0.012, 0.02)}
 
 
 @pytest.mark.extra("mesh")
-def test_they_are_those_that_trimesh_reads() -> None:
+def test_collada_colors_match_trimesh() -> None:
     from linkwright.geometry.mesh_parts import MeshPart, read_parts, read_simple_parts
 
     def facts(parts: list[MeshPart]) -> list[tuple[int, tuple[int, ...], list[float]]]:
@@ -65,24 +65,24 @@ def test_unusual_files_are_left_to_trimesh(change: tuple[bytes, bytes]) -> None:
     assert read_colored_meshes(data.replace(*change)) is None
 
 
-def test_the_colour_of_the_file_precedes_that_of_the_description() -> None:
+def test_file_color_precedes_description_color() -> None:
     from linkwright.geometry.mesh_parts import FileMaterial
 
     blue = FileMaterial((0.0, 0.0, 1.0))
-    assert surface_color(blue, (1.0, 0.0, 0.0), is_textured=False, is_grey=True) == (0.0, 0.0, 1.0)
-    assert surface_color(None, (0.0, 1.0, 0.0), is_textured=False, is_grey=True) == (0.0, 1.0, 0.0)
-    assert surface_color(None, None, is_textured=False, is_grey=False) == DEFAULT_COLOR
-    assert surface_color(None, None, is_textured=False, is_grey=True) == (0.6, 0.6, 0.6)
+    assert surface_color(blue, (1.0, 0.0, 0.0), is_textured=False, is_gray=True) == (0.0, 0.0, 1.0)
+    assert surface_color(None, (0.0, 1.0, 0.0), is_textured=False, is_gray=True) == (0.0, 1.0, 0.0)
+    assert surface_color(None, None, is_textured=False, is_gray=False) == DEFAULT_COLOR
+    assert surface_color(None, None, is_textured=False, is_gray=True) == (0.6, 0.6, 0.6)
 
 
-def test_a_mesh_takes_the_colour_and_the_scale_of_the_description(tmp_path: Path) -> None:
+def test_mesh_uses_color_and_scale_of_description(tmp_path: Path) -> None:
     mesh = f'<mesh filename="{stl(tmp_path).as_uri()}" scale="1 2 0.5"/>'
     text = urdf(link("base", mesh, "0.1 0.8 0.1 1"))
     assert mostly(image(text)[50, 60]) == "green"
     np.testing.assert_allclose(np.ptp(scene(text).points, axis=0), (0, 4, 1), atol=1e-8)
 
 
-def test_a_mirrored_mesh_is_lit_from_the_same_side(tmp_path: Path) -> None:
+def test_mirrored_mesh_is_lit_from_same_side(tmp_path: Path) -> None:
     path = stl(tmp_path).as_uri()
     plain, mirrored = (
         image(urdf(link("base", f'<mesh filename="{path}" scale="{scale}"/>', "0.8 0.8 0.8 1")))
@@ -91,7 +91,7 @@ def test_a_mirrored_mesh_is_lit_from_the_same_side(tmp_path: Path) -> None:
     assert np.abs(plain[60, 60].astype(int) - mirrored[60, 60]).max() <= 2
 
 
-def test_a_file_is_read_once_and_again_when_it_has_changed(tmp_path: Path) -> None:
+def test_mesh_file_is_read_again_only_after_change(tmp_path: Path) -> None:
     library = SurfaceLibrary()
     path = stl(tmp_path)
     first = library.read(path)
@@ -101,7 +101,7 @@ def test_a_file_is_read_once_and_again_when_it_has_changed(tmp_path: Path) -> No
 
 
 @pytest.mark.parametrize("name", ["missing.stl", "missing.dae", "broken.dae", "broken.stl", "a.txt", "folder.dae"])
-def test_what_cannot_be_read_is_one_error(name: str, tmp_path: Path) -> None:
+def test_unreadable_mesh_is_reported_once(name: str, tmp_path: Path) -> None:
     path = tmp_path / name
     if name.startswith("broken"):
         path.write_bytes(b"<COLLADA>")
@@ -115,7 +115,7 @@ def test_what_cannot_be_read_is_one_error(name: str, tmp_path: Path) -> None:
 
 
 @pytest.mark.extra("mesh")
-def test_meshes_are_as_large_and_as_coloured_as_the_page_draws_them(tmp_path: Path) -> None:
+def test_mesh_sizes_and_colors_match_page(tmp_path: Path) -> None:
     shown = scene(robot_of(golden_links(tmp_path)))
     assert shown.problems == ()
     drawn = {body.name: surface for body, surface in zip(shown.mesh.bodies, shown.mesh.surfaces, strict=True)}
@@ -130,7 +130,7 @@ def test_meshes_are_as_large_and_as_coloured_as_the_page_draws_them(tmp_path: Pa
     assert wrong == {}
 
 
-def test_two_robots_share_what_was_read(tmp_path: Path) -> None:
+def test_robots_share_read_meshes(tmp_path: Path) -> None:
     text = urdf(
         link("base", f'<mesh filename="{stl(tmp_path).as_uri()}"/>', "1 0 0 1"),
         link("other", '<sphere radius="1"/>', "1 0 0 1"),

@@ -12,7 +12,7 @@ def triangles(points: list[tuple[float, float, float]]) -> ScreenTriangles:
     return ScreenTriangles.of(x, y, nearness, np.arange(len(points)).reshape(-1, 3))
 
 
-def test_triangles_that_share_edges_cover_each_sample_once() -> None:
+def test_adjacent_triangles_cover_each_sample_once() -> None:
     random = np.random.default_rng(3)
     corners = random.uniform(0, 40, (9, 2))
     middle = corners.mean(axis=0)
@@ -34,7 +34,7 @@ def test_triangles_that_share_edges_cover_each_sample_once() -> None:
     assert (grid[inside] == 1).all()
 
 
-def test_the_nearest_triangle_is_kept_at_each_sample() -> None:
+def test_nearest_triangle_is_kept_at_each_sample() -> None:
     crossing = triangles([(0, 0, 0.0), (20, 0, 1.0), (0, 20, 0.0), (0, 0, 0.5), (20, 0, 0.5), (0, 20, 0.5)])
     for order in ([0, 1], [1, 0]):
         buffer = DepthBuffer(20, 0, 20, 1.0, 0.0)
@@ -46,7 +46,7 @@ def test_the_nearest_triangle_is_kept_at_each_sample() -> None:
         assert row.tolist() == [1] * 10 + [0] * 10 or row.tolist() == [1] * 10 + [0] * 9
 
 
-def test_triangles_beyond_the_borders_are_cut_off() -> None:
+def test_triangles_are_clipped_at_borders() -> None:
     buffer = DepthBuffer(10, 5, 8, 1.0, 0.0)
     buffer.add(triangles([(-1e6, -1e6, 0.5), (1e6, -1e6, 0.5), (0, 1e6, 0.5)]), np.array([0]))
     seen = buffer.seen(1)
@@ -55,7 +55,7 @@ def test_triangles_beyond_the_borders_are_cut_off() -> None:
     assert seen.mask.shape == (3, 10)
 
 
-def test_a_triangle_seen_from_its_edge_has_no_samples() -> None:
+def test_triangle_seen_edge_on_has_no_samples() -> None:
     buffer = DepthBuffer(10, 0, 10, 1.0, 0.0)
     buffer.add(triangles([(1, 1, 0.0), (9, 9, 1.0), (5, 5, 0.5)]), np.array([0]))
     assert buffer.seen(1) is None

@@ -20,7 +20,7 @@ def two(front: str, back: str) -> str:
     return urdf(link("base", BOX, front, "1 0 0"), link("other", BOX, back, "-1 0 0"), joint("j", "base", "other"))
 
 
-def test_a_red_box_is_red_in_the_middle_and_the_background_is_not() -> None:
+def test_red_box_is_drawn_on_gray_background() -> None:
     pixels = image(ONE)
     assert pixels.shape == (90, 120, 4)
     assert mostly(pixels[45, 60]) == "red"
@@ -28,18 +28,18 @@ def test_a_red_box_is_red_in_the_middle_and_the_background_is_not() -> None:
     assert (pixels[:, :, 3] == 255).all()
 
 
-def test_the_nearer_box_is_seen_from_each_side() -> None:
+def test_nearer_box_hides_other_from_each_side() -> None:
     assert mostly(image(two(RED, BLUE), "front")[45, 60]) == "red"
     back = render(scene(two(RED, BLUE)), View(180.0, 0.0), (120, 90))
     assert mostly(back[45, 60]) == "blue"
 
 
-def test_the_order_of_links_does_not_decide_what_is_in_front() -> None:
+def test_link_order_does_not_affect_visibility() -> None:
     reordered = urdf(link("other", BOX, BLUE, "-1 0 0"), link("base", BOX, RED, "1 0 0"), joint("j", "other", "base"))
     assert mostly(image(reordered)[45, 60]) == "red"
 
 
-def test_surfaces_in_one_plane_do_not_flicker() -> None:
+def test_coplanar_surfaces_do_not_flicker() -> None:
     """The same face twice, as two meshes with their own rounding: the first one is seen everywhere."""
     text = urdf(
         link("base", BOX, RED, rpy="0.3 0.2 0.4"),
@@ -51,14 +51,14 @@ def test_surfaces_in_one_plane_do_not_flicker() -> None:
 
 
 @pytest.mark.parametrize("view", ["front", "left", "top"])
-def test_a_sphere_is_symmetrical_in_its_extent(view: str) -> None:
+def test_sphere_is_symmetrical(view: str) -> None:
     alpha = image(urdf(link("base", '<sphere radius="1"/>', RED)), view, (101, 101), transparent=True)[:, :, 3]
     covered = alpha > 127 if view != "top" else alpha == 255
     assert (covered == covered[:, ::-1]).all()
     assert (covered == covered[::-1]).all()
 
 
-def test_left_and_up_are_where_rep_103_has_them() -> None:
+def test_left_and_up_match_rep_103() -> None:
     text = urdf(
         link("base", BOX, RED),
         link("left", BOX, GREEN, "0 2 0"),
@@ -75,7 +75,7 @@ def test_left_and_up_are_where_rep_103_has_them() -> None:
 
 
 @pytest.mark.parametrize("view", [*VIEWS.values(), View(-70.0, -35.0), View(10.0, 75.0, perspective=False)])
-def test_everything_is_within_the_image_and_fills_it(view: View) -> None:
+def test_robot_fits_and_fills_image(view: View) -> None:
     text = urdf(
         link("base", '<box size="3 0.2 0.1"/>', RED),
         link("mast", '<cylinder radius="0.05" length="2"/>', RED, "1 0 1"),
@@ -90,7 +90,7 @@ def test_everything_is_within_the_image_and_fills_it(view: View) -> None:
     assert max((x.max() - x.min()) / 160, (y.max() - y.min()) / 120) > 0.8
 
 
-def test_two_robots_have_one_camera() -> None:
+def test_two_robots_share_camera() -> None:
     small, large = scene(ONE), scene(urdf(link("base", '<box size="3 3 3"/>', RED)))
     camera = camera_for(VIEWS["front"], (480, 360), small, large)
     covered = [
@@ -100,7 +100,7 @@ def test_two_robots_have_one_camera() -> None:
     assert covered[1] == pytest.approx(9 * covered[0], rel=0.1)
 
 
-def test_the_background_can_be_transparent() -> None:
+def test_background_can_be_transparent() -> None:
     pixels = image(ONE, "iso", transparent=True)
     assert pixels[0, 0, 3] == 0
     assert pixels[45, 60, 3] == 255
@@ -108,7 +108,7 @@ def test_the_background_can_be_transparent() -> None:
     assert len(edge) > 20  # smooth outlines, and a shadow
 
 
-def test_transparent_materials_show_what_is_behind() -> None:
+def test_transparent_material_shows_surface_behind() -> None:
     glass = two("0.9 0.1 0.1 0.4", BLUE)
     red, _, blue, alpha = (int(value) for value in image(glass)[45, 60])
     assert red > 80
@@ -117,7 +117,7 @@ def test_transparent_materials_show_what_is_behind() -> None:
     assert mostly(image(two("0.9 0.1 0.1 0", BLUE))[45, 60]) == "blue"
 
 
-def test_the_ground_has_a_shadow_unless_it_is_seen_from_the_side() -> None:
+def test_ground_has_shadow_except_in_side_view() -> None:
     floating = urdf(link("base", '<sphere radius="0.5"/>', RED))
     below = image(floating, "iso")[86, 60, :3].astype(int)
     assert below.sum() < image(floating, "iso")[86, 2, :3].astype(int).sum() - 20
@@ -125,14 +125,14 @@ def test_the_ground_has_a_shadow_unless_it_is_seen_from_the_side() -> None:
     assert alpha[:, :15].max() == 0
 
 
-def test_lines_are_dark_where_a_box_has_its_edges() -> None:
+def test_box_edges_are_drawn_dark() -> None:
     pixels = image(urdf(link("base", BOX, "1 1 1 1")), "front", (200, 200)).astype(int)
     row = pixels[100, :, :3].sum(axis=1)
     left = int(np.argmax(np.abs(np.diff(row)) > 60))
     assert row[left : left + 4].min() < 530 < row[100]
 
 
-def test_an_outlined_link_has_a_line_even_behind_others() -> None:
+def test_outline_is_visible_behind_other_links() -> None:
     text = two(RED, BLUE)
     shown = render(scene(text, outlined={"other": OUTLINE_COLOR}), VIEWS["iso"], (240, 180))
     plain = render(scene(text), VIEWS["iso"], (240, 180))
@@ -141,7 +141,7 @@ def test_an_outlined_link_has_a_line_even_behind_others() -> None:
     assert not (np.abs(plain[:, :, :3].astype(int) - shown[:, :, :3]).max(axis=2) > 0)[:5].any()
 
 
-def test_a_ghost_is_seen_through_and_has_no_shadow() -> None:
+def test_ghost_is_translucent_without_shadow() -> None:
     moved = scene(urdf(link("base", BOX, RED, "0 1.5 0")), ghost=GHOST_COLOR)
     both = Scene.__add__(scene(ONE), moved)
     camera = camera_for(VIEWS["front"], (200, 100), both)
@@ -153,7 +153,7 @@ def test_a_ghost_is_seen_through_and_has_no_shadow() -> None:
     assert solid[3] == 255
 
 
-def test_a_grid_is_drawn_on_the_ground_only_when_asked() -> None:
+def test_grid_is_drawn_on_ground_only_if_enabled() -> None:
     plain, with_grid = image(ONE, "iso", (240, 180)), image(ONE, "iso", (240, 180), grid=True)
     changed = np.abs(plain.astype(int) - with_grid).max(axis=2) > 8
     assert 500 < changed.sum() < plain.shape[0] * plain.shape[1] / 2
@@ -161,22 +161,22 @@ def test_a_grid_is_drawn_on_the_ground_only_when_asked() -> None:
 
 
 @pytest.mark.parametrize("labels", ["links", "joints"])
-def test_labels_are_dark_letters_in_light_areas(labels: str) -> None:
+def test_labels_are_dark_text_on_light_background(labels: str) -> None:
     text = urdf(link("base", BOX, RED), link("other", BOX, RED), joint("shoulder", "base", "other", xyz="0 1 0"))
-    plain, labelled = image(text, size=(320, 240)), image(text, size=(320, 240), labels=labels)
-    changed = labelled[np.abs(plain.astype(int) - labelled).max(axis=2) > 30][:, :3]
+    plain, labeled = image(text, size=(320, 240)), image(text, size=(320, 240), labels=labels)
+    changed = labeled[np.abs(plain.astype(int) - labeled).max(axis=2) > 30][:, :3]
     assert (changed.max(axis=1) < 60).sum() > 10
     assert (changed.min(axis=1) > 200).sum() > 10
 
 
-def test_a_large_image_is_the_same_in_bands(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_large_image_is_identical_when_rendered_in_bands(monkeypatch: pytest.MonkeyPatch) -> None:
     text = two(RED, "0.1 0.1 0.9 0.5")
     whole = image(text, "iso", (160, 120), grid=True)
     monkeypatch.setattr("linkwright.picture.rendering._BAND_SAMPLES", 20_000)
     assert np.abs(image(text, "iso", (160, 120), grid=True).astype(int) - whole).max() <= 1
 
 
-def test_a_robot_without_visuals_is_an_empty_image() -> None:
+def test_robot_without_visuals_gives_empty_image() -> None:
     assert image(urdf('<link name="base"/>'), transparent=True)[:, :, 3].max() == 0
 
 
@@ -190,12 +190,12 @@ def test_a_robot_without_visuals_is_an_empty_image() -> None:
         '<cylinder radius="1e-300" length="1e-300"/>',
     ],
 )
-def test_shapes_without_a_size_do_no_harm(shape: str) -> None:
+def test_shapes_without_size_are_ignored(shape: str) -> None:
     text = urdf(link("base", BOX, RED), link("other", shape, BLUE), joint("j", "base", "other"))
     assert mostly(image(text)[45, 60]) == "red"
 
 
-def test_what_is_out_of_range_is_left_out_with_a_finding() -> None:
+def test_out_of_range_link_is_omitted_with_finding() -> None:
     slide = '<axis xyz="1 0 0"/><limit lower="0" upper="1" effort="1" velocity="1"/>'
     text = urdf(link("base", BOX, RED), link("other", BOX, BLUE), joint("j", "base", "other", "prismatic", rest=slide))
     for broken, positions in (
@@ -208,7 +208,7 @@ def test_what_is_out_of_range_is_left_out_with_a_finding() -> None:
         assert mostly(render(shown, VIEWS["front"], (120, 90))[45, 60]) in ("red", "blue")
 
 
-def test_a_large_angle_is_one_like_any_other() -> None:
+def test_huge_joint_angle_is_accepted() -> None:
     text = urdf(link("base", BOX, RED), link("other", BOX, BLUE), joint("j", "base", "other", "continuous", "0 0 2"))
     assert scene(text, {"j": 1e300}).problems == ()
 
@@ -229,7 +229,7 @@ def test_bodies_cast_shadows_on_each_other() -> None:
 
 
 @pytest.mark.parametrize("view", VIEWS.values(), ids=VIEWS)
-def test_points_are_found_again_from_their_pixels(view: View) -> None:
+def test_points_at_inverts_projection(view: View) -> None:
     points = np.random.default_rng(4).uniform(-1, 1, (20, 3))
     camera = camera_for(view, (160, 120), scene(ONE))
     x, y, _ = camera.project(points)

@@ -74,7 +74,7 @@ def digests() -> dict[str, str]:
     return {name: hashlib.sha256(np.ascontiguousarray(pixels)).hexdigest() for name, pixels in images.items()}
 
 
-def test_pixels_are_those_of_every_other_machine() -> None:
+def test_pixels_match_recorded_digests() -> None:
     assert digests() == DIGESTS
 
 
@@ -86,7 +86,7 @@ def switchable() -> list[str]:
 
 
 @pytest.mark.parametrize("count", [1, 2, 99], ids=["without one", "without two", "without all"])
-def test_pixels_do_not_depend_on_the_processor(count: int) -> None:
+def test_pixels_do_not_depend_on_processor_features(count: int) -> None:
     names = switchable()[-count:]
     paths = [str(REPOSITORY), *filter(None, [os.environ.get("PYTHONPATH")])]
     program = "import json; from tests.picture.test_same_pixels import digests; print(json.dumps(digests()))"
@@ -98,6 +98,6 @@ def test_pixels_do_not_depend_on_the_processor(count: int) -> None:
     assert json.loads(printed) == DIGESTS
 
 
-def test_the_same_scene_twice_gives_the_same_pixels() -> None:
+def test_repeated_rendering_gives_same_pixels() -> None:
     first, second = (render(scene(ARM), VIEWS["iso"], (120, 90)) for _ in range(2))
     assert (first == second).all()

@@ -13,7 +13,7 @@ def soup(positions: np.ndarray, indices: np.ndarray) -> tuple[np.ndarray, np.nda
     return positions[indices], np.arange(len(indices)).reshape(-1, 3)
 
 
-def test_a_sphere_of_separate_triangles_is_smooth_and_its_normals_are_exact() -> None:
+def test_sphere_of_separate_triangles_has_exact_smooth_normals() -> None:
     shape = sphere(2.0, 48)
     points, faces = soup(shape.positions, shape.indices)
     mesh = smooth_mesh(points, faces)
@@ -21,13 +21,13 @@ def test_a_sphere_of_separate_triangles_is_smooth_and_its_normals_are_exact() ->
     np.testing.assert_allclose(mesh.normals, points[mesh.sources] / 2.0, atol=2e-3)
 
 
-def test_the_edges_of_a_box_are_sharp() -> None:
+def test_box_edges_are_sharp() -> None:
     shape = box((1.0, 2.0, 3.0))
     mesh = smooth_mesh(*soup(shape.positions, shape.indices))
     assert set(np.abs(mesh.normals).max(axis=1)) == {1.0}
 
 
-def test_a_cylinder_is_smooth_around_and_sharp_at_its_caps() -> None:
+def test_cylinder_is_smooth_around_and_sharp_at_caps() -> None:
     shape = cylinder(1.0, 1.0, 24)
     points, faces = soup(shape.positions, shape.indices)
     mesh = smooth_mesh(points, faces)
@@ -45,14 +45,14 @@ def test_triangles_keep_their_corners() -> None:
         np.testing.assert_allclose(shape.positions[mesh.sources[mesh.faces]], shape.positions[faces], atol=1e-6)
 
 
-def test_corners_with_other_texture_coordinates_stay_apart() -> None:
+def test_corners_with_different_texture_coordinates_are_not_merged() -> None:
     points = np.array([(0, 0, 0), (1, 0, 0), (0, 1, 0), (0, 0, 0), (0, 1, 0), (-1, 0, 0)], float)
     faces = np.array([(0, 1, 2), (3, 4, 5)])
     assert len(smooth_mesh(points, faces).sources) == 4
     assert sorted(smooth_mesh(points, faces, merged=False).sources) == list(range(6))
 
 
-def test_triangles_without_an_area_do_no_harm() -> None:
+def test_degenerate_triangles_have_finite_normals() -> None:
     points = np.array([(0, 0, 0), (1, 0, 0), (0, 1, 0), (2, 0, 0)], float)
     mesh = smooth_mesh(points, np.array([(0, 1, 2), (0, 1, 3), (0, 0, 0)]))
     assert np.isfinite(mesh.normals).all()

@@ -19,7 +19,7 @@ LONG = urdf(
 )
 
 
-def test_everything_stays_within_the_image_and_of_one_size() -> None:
+def test_robot_stays_within_image_at_constant_scale() -> None:
     shown = scene(LONG)
     scales = set()
     for camera in turning_cameras(VIEWS["iso"], (160, 120), shown.points, 24):
@@ -32,7 +32,7 @@ def test_everything_stays_within_the_image_and_of_one_size() -> None:
     assert len(scales) == 1
 
 
-def test_the_axis_of_the_turn_stays_in_place() -> None:
+def test_rotation_axis_stays_in_place() -> None:
     shown = scene(LONG)
     low, high = shown.points.min(axis=0), shown.points.max(axis=0)
     middle = (low + high)[None, :] / 2
@@ -43,7 +43,7 @@ def test_the_axis_of_the_turn_stays_in_place() -> None:
     np.testing.assert_allclose(places, [places[0]] * 7, atol=1e-6)
 
 
-def test_images_are_those_of_their_cameras_whatever_thread_drew_them() -> None:
+def test_images_match_their_cameras_across_threads() -> None:
     shown = scene(LONG)
     finished: list[int] = []
     images = turntable(shown, VIEWS["iso"], (64, 48), Style(), 4, finished.append)
@@ -54,7 +54,7 @@ def test_images_are_those_of_their_cameras_whatever_thread_drew_them() -> None:
     assert not (images[0] == images[1]).all()
 
 
-def test_an_interruption_does_not_wait_for_the_remaining_images(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_interruption_does_not_wait_for_remaining_images(monkeypatch: pytest.MonkeyPatch) -> None:
     drawn: list[int] = []
 
     def slow(*_: object) -> np.ndarray:

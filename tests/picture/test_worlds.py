@@ -34,7 +34,7 @@ def written(folder: Path, visual: str, pose: str = "1 2 3 0 0 1.5707963267948966
 
 
 @pytest.mark.parametrize("name", ["house.world", "playground.world"])
-def test_the_worlds_of_the_course_are_drawn_completely(name: str) -> None:
+def test_course_worlds_are_drawn_completely(name: str) -> None:
     scene = world(WORLDS / name)
     assert scene.problems == ()
     assert len(scene.mesh.faces) > 100
@@ -51,13 +51,13 @@ def test_the_worlds_of_the_course_are_drawn_completely(name: str) -> None:
         ("<sphere><radius>2</radius></sphere>", (2, 2, 2)),
     ],
 )
-def test_shapes_are_where_the_file_puts_them(shape: str, extent: tuple[float, ...], tmp_path: Path) -> None:
+def test_shapes_are_placed_as_in_file(shape: str, extent: tuple[float, ...], tmp_path: Path) -> None:
     points = written(tmp_path, f"<geometry>{shape}</geometry>").points - (1, 2, 3)
     np.testing.assert_allclose(points.max(axis=0), extent, atol=1e-8)
     np.testing.assert_allclose(points.min(axis=0), np.negative(extent), atol=1e-8)
 
 
-def test_colour_and_transparency_are_those_of_the_visual(tmp_path: Path) -> None:
+def test_color_and_transparency_match_visual(tmp_path: Path) -> None:
     material = "<material><diffuse>0.2 0.4 0.6 0.5</diffuse></material><transparency>0.5</transparency>"
     scene = written(tmp_path, f"<geometry><sphere><radius>1</radius></sphere></geometry>{material}")
     (surface,) = scene.mesh.surfaces
@@ -65,7 +65,7 @@ def test_colour_and_transparency_are_those_of_the_visual(tmp_path: Path) -> None
     assert surface.alpha == 0.25
 
 
-def test_planes_are_left_out_and_other_shapes_with_a_finding(tmp_path: Path) -> None:
+def test_planes_are_omitted_and_unsupported_shapes_reported(tmp_path: Path) -> None:
     plane = written(tmp_path, "<geometry><plane><normal>0 0 1</normal></plane></geometry>")
     assert len(plane.mesh.faces) == 0
     assert plane.problems == ()

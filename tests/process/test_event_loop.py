@@ -1,4 +1,4 @@
-"""Coroutines and Ctrl-C, with the same behaviour on every Python."""
+"""Coroutines and Ctrl-C, with the same behavior on every Python."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ def interrupt() -> None:
         pass
 
 
-def test_a_result() -> None:
+def test_run_coroutine_returns_result() -> None:
     async def seven() -> int:
         return 7
 
@@ -26,7 +26,7 @@ def test_a_result() -> None:
     assert seen == [signal.default_int_handler]
 
 
-def test_ctrl_c_cancels_where_the_coroutine_waits_and_nowhere_else() -> None:
+def test_ctrl_c_cancels_coroutine_at_next_await() -> None:
     steps = []
 
     async def work() -> None:
@@ -45,7 +45,7 @@ def test_ctrl_c_cancels_where_the_coroutine_waits_and_nowhere_else() -> None:
     assert signal.getsignal(signal.SIGINT) is signal.default_int_handler
 
 
-def test_a_second_ctrl_c_is_raised() -> None:
+def test_second_ctrl_c_raises_immediately() -> None:
     async def stubborn() -> None:
         interrupt()
         try:
@@ -58,7 +58,7 @@ def test_a_second_ctrl_c_is_raised() -> None:
         run_coroutine(stubborn, lambda: None)
 
 
-def test_before_there_is_anything_to_cancel_it_is_raised() -> None:
+def test_ctrl_c_before_coroutine_starts_is_raised() -> None:
     async def nothing() -> None:
         pytest.fail("it must not begin")
 
@@ -66,7 +66,7 @@ def test_before_there_is_anything_to_cancel_it_is_raised() -> None:
         run_coroutine(nothing, interrupt)
 
 
-def test_a_coroutine_that_waits_no_more_is_cancelled_too() -> None:
+def test_ctrl_c_after_last_await_is_raised() -> None:
     async def quick() -> int:
         interrupt()
         return 3
@@ -75,7 +75,7 @@ def test_a_coroutine_that_waits_no_more_is_cancelled_too() -> None:
         run_coroutine(quick, lambda: None)
 
 
-def test_somebody_elses_handler_stays() -> None:
+def test_existing_sigint_handler_is_kept() -> None:
     heard = []
     before = signal.signal(signal.SIGINT, lambda *_: heard.append("mine"))
     try:
@@ -91,7 +91,7 @@ def test_somebody_elses_handler_stays() -> None:
     assert heard == ["mine"]
 
 
-def test_tasks_that_are_left_are_cancelled_before_the_loop_closes() -> None:
+def test_remaining_tasks_are_canceled_before_loop_closes() -> None:
     ended = []
 
     async def beside() -> None:
@@ -109,7 +109,7 @@ def test_tasks_that_are_left_are_cancelled_before_the_loop_closes() -> None:
     assert ended == ["beside"]
 
 
-def test_a_cancellation_of_its_own_is_no_ctrl_c() -> None:
+def test_own_cancellation_is_not_keyboard_interrupt() -> None:
     async def work() -> None:
         raise asyncio.CancelledError
 

@@ -26,7 +26,7 @@ PROGRAM = """
 """
 
 
-def test_ctrl_c_that_comes_in_a_destructor_is_raised_again() -> None:
+def test_ctrl_c_in_destructor_is_raised_again() -> None:
     done = subprocess.run(
         [sys.executable, "-c", textwrap.dedent(PROGRAM)], capture_output=True, text=True, timeout=60, check=False
     )

@@ -12,7 +12,7 @@ from linkwright.process.patience import PatientClock
 BUSY = "import os, sys; os.sched_setaffinity(0, [int(sys.argv[1])])\nwhile True: pass"
 
 
-def test_a_clock_counts_time_without_work():
+def test_patient_clock_counts_sleep():
     begin = time.monotonic()
     clock = PatientClock()
     for _ in range(10):
@@ -22,7 +22,7 @@ def test_a_clock_counts_time_without_work():
 
 
 @pytest.mark.skipif(sys.platform != "linux", reason="the waiting of processes is that of Linux")
-def test_a_clock_does_not_count_waiting_for_a_processor():
+def test_patient_clock_excludes_waiting_for_processor():
     processor = str(min(os.sched_getaffinity(0)))
     processes = [subprocess.Popen([sys.executable, "-c", BUSY, processor]) for _ in range(4)]
     try:

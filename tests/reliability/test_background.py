@@ -61,7 +61,7 @@ def ends_by_interrupt(running: Running, text: str) -> int:
 
 @pytest.mark.slow
 @pytest.mark.parametrize("name", COMMANDS)
-def test_a_command_ends(background: Machine, name: str) -> None:
+def test_background_command_ends_on_sigint(background: Machine, name: str) -> None:
     words, text = COMMANDS[name]
     background.write("r.urdf", '<robot name="r"><link name="base"/></robot>')
     if name == "bag play":
@@ -75,12 +75,12 @@ def test_a_command_ends(background: Machine, name: str) -> None:
     assert "Traceback" not in running.text
 
 
-def test_a_node_of_the_user_ends(background: Machine) -> None:
+def test_background_user_node_ends_on_sigint(background: Machine) -> None:
     running = background.program(SPEAKING)
     assert ends_by_interrupt(running, "speaks") == 0, running.text
 
 
-def test_what_a_launch_starts_can_be_interrupted_alone(background: Machine) -> None:
+def test_process_in_background_launch_can_be_interrupted_alone(background: Machine) -> None:
     """It is started as in a terminal, with SIGINT as the system has it, whoever started the launch."""
     path = background.write("speaker.py", program(SPEAKING))
     action = f"ExecuteProcess(cmd=[sys.executable, {str(path)!r}], output='screen')"

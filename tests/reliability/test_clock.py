@@ -66,7 +66,7 @@ class Program(Node):
 """
 
 
-def test_timers_go_on_and_the_tf_buffer_is_cleared(machine: Machine) -> None:
+def test_clock_jump_back_keeps_timers_and_clears_tf_buffer(machine: Machine) -> None:
     follower = machine.program(FOLLOWER)
     follower.wait_for("up")
     conductor = machine.program(CONDUCTOR)

@@ -44,7 +44,7 @@ class Program(Node):
 """
 
 
-def test_a_flood_on_one_topic_does_not_starve_another(machine: Machine) -> None:
+def test_flooded_topic_does_not_starve_another(machine: Machine) -> None:
     listener = machine.program(BOTH)
     flood = machine.program(FLOOD)
     listener.wait_for("flooded")
@@ -58,7 +58,7 @@ def test_a_flood_on_one_topic_does_not_starve_another(machine: Machine) -> None:
     assert statuses == (0, 0), f"{listener.text[-2000:]}\n{flood.text}"
 
 
-def test_a_subscriber_that_blocks_harms_nobody_else(machine: Machine) -> None:
+def test_blocking_subscriber_does_not_delay_others(machine: Machine) -> None:
     """Its own process sleeps; the publisher's other subscribers and other topics go on."""
     sleeper = machine.program(
         """
@@ -111,7 +111,7 @@ def test_a_subscriber_that_blocks_harms_nobody_else(machine: Machine) -> None:
 
 
 @pytest.mark.parametrize("size", [10, 20_000])
-def test_nothing_reliable_is_lost_when_the_subscriber_is_slow(machine: Machine, size: int) -> None:
+def test_reliable_messages_are_not_lost_with_slow_subscriber(machine: Machine, size: int) -> None:
     """A queue without an end: the flood is over long before the subscriber has read it."""
     listener = machine.program(
         """
@@ -149,7 +149,7 @@ def test_nothing_reliable_is_lost_when_the_subscriber_is_slow(machine: Machine, 
     assert not listener.count("lost"), listener.text
 
 
-def test_a_queue_of_ten_keeps_the_last_ten(machine: Machine) -> None:
+def test_queue_of_depth_ten_keeps_last_ten(machine: Machine) -> None:
     listener = machine.program(
         """
         from pathlib import Path
@@ -192,7 +192,7 @@ def test_a_queue_of_ten_keeps_the_last_ten(machine: Machine) -> None:
 
 
 @pytest.mark.slow
-def test_a_service_answers_while_its_process_is_flooded(machine: Machine) -> None:
+def test_service_answers_while_process_is_flooded(machine: Machine) -> None:
     machine.program(FLOOD)
     server = machine.program(
         """
@@ -217,7 +217,7 @@ def test_a_service_answers_while_its_process_is_flooded(machine: Machine) -> Non
         assert "response" in machine.verb("service", "call", "/ask", "std_srvs/srv/Trigger")
 
 
-def test_a_process_that_stands_still_holds_nobody_up(machine: Machine) -> None:
+def test_stopped_process_does_not_block_publisher(machine: Machine) -> None:
     """Stopped as a debugger stops it: the publisher goes on, and once it runs again it hears what comes then."""
     talker = machine.program(
         """

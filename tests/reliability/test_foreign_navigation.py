@@ -113,7 +113,7 @@ class Program(Node):
 """
 
 
-def test_navigation_of_another_process_takes_the_place_of_ours(machine: Machine) -> None:
+def test_external_navigation_replaces_built_in_navigation(machine: Machine) -> None:
     launch = machine.launch(LAUNCH_FILE)
     navigation = machine.program(NAVIGATION)
     navigation.wait_for("it hears scan, odometry and time")

@@ -50,7 +50,7 @@ def traceback_in(text: str) -> bool:
 
 
 @pytest.mark.slow
-def test_a_launch_at_twenty_random_moments_of_its_start(machine: Machine) -> None:
+def test_launch_interrupted_at_random_startup_moments_ends_cleanly(machine: Machine) -> None:
     path = machine.write("talker.py", program(TALKER))
     launch = machine.write(
         "a.launch.py",
@@ -72,7 +72,7 @@ def test_a_launch_at_twenty_random_moments_of_its_start(machine: Machine) -> Non
 
 @pytest.mark.slow
 @pytest.mark.parametrize("delay", [0.1, 0.2, 0.35, 0.6, 1.2])
-def test_the_terminal_is_as_it_was(machine: Machine, delay: float) -> None:
+def test_interrupt_restores_terminal_settings(machine: Machine, delay: float) -> None:
     """A launch and a recording, which reads keys, on a terminal of their own; Ctrl-C is typed there."""
     path = machine.write("a.launch.py", launch_file("Node(package='demo_nodes_cpp', executable='talker')"))
     bag = machine.folder / f"bag_{delay}"
@@ -141,14 +141,14 @@ COMMANDS = [
 
 
 @pytest.mark.parametrize("words", COMMANDS)
-def test_little_is_loaded_before_ctrl_c_is_taken_care_of(machine: Machine, words: tuple[str, ...]) -> None:
+def test_few_modules_are_imported_before_sigint_handler(machine: Machine, words: tuple[str, ...]) -> None:
     running = machine.python("-c", WATCHED, *words)
     assert running.wait() == 0, running.text
     assert {"linkwright", "linkwright.process.interruption"} <= set(running.text.split()) <= FIRST_MODULES
 
 
 @pytest.mark.parametrize("words", COMMANDS)
-def test_loading_modules_ends_without_a_word(machine: Machine, words: tuple[str, ...]) -> None:
+def test_interrupt_during_imports_prints_no_traceback(machine: Machine, words: tuple[str, ...]) -> None:
     machine.write("a.launch.py", launch_file("Node(package='demo_nodes_cpp', executable='talker')"))
     for delay in (0.0, 0.01, 0.025, 0.04, 0.06, 0.09, 0.13, 0.18, 0.25):
         running = machine.begun(*words[1:], module=words[0])
@@ -176,7 +176,7 @@ def _drain(main: int, heard: list[bytes]) -> None:
         (("run", "demo_nodes_cpp", "listener"), ""),
     ],
 )
-def test_verbs_that_go_on_until_then(machine: Machine, words: tuple[str, ...], shown: str) -> None:
+def test_running_command_ends_on_interrupt(machine: Machine, words: tuple[str, ...], shown: str) -> None:
     machine.program(TALKER)
     running = machine.command(*words)
     if shown:
@@ -189,7 +189,7 @@ def test_verbs_that_go_on_until_then(machine: Machine, words: tuple[str, ...], s
 
 
 @pytest.mark.slow
-def test_a_verb_at_random_moments_of_its_start(machine: Machine) -> None:
+def test_topic_echo_interrupted_during_startup_exits_with_130(machine: Machine) -> None:
     machine.program(TALKER)
     for delay in sorted(random.Random(5).uniform(0.0, 0.9) for _ in range(10)):
         running = machine.begun("topic", "echo", "/chatter")
@@ -200,7 +200,7 @@ def test_a_verb_at_random_moments_of_its_start(machine: Machine) -> None:
         assert not traceback_in(running.text), where
 
 
-def test_a_recording_is_whole(machine: Machine) -> None:
+def test_interrupted_recording_is_complete(machine: Machine) -> None:
     machine.program(TALKER)
     bag = machine.folder / "bag"
     recorder = machine.command("bag", "record", "/chatter", "-o", bag)
@@ -222,7 +222,7 @@ def test_a_recording_is_whole(machine: Machine) -> None:
     assert numbers == list(range(numbers[0], numbers[0] + len(numbers)))
 
 
-def test_a_call_on_its_way(machine: Machine) -> None:
+def test_interrupt_during_service_call_ends_client_and_server(machine: Machine) -> None:
     """Both sides: who waits for the answer ends, and who is asked goes on and ends when told to."""
     leave = machine.folder / "leave"
     server = machine.program(

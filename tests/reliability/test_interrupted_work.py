@@ -43,7 +43,7 @@ COMMANDS = [
 @pytest.mark.slow
 @pytest.mark.skipif(sys.platform == "win32", reason="Windows cannot send SIGINT to one process")
 @pytest.mark.parametrize("words", COMMANDS, ids=lambda words: words[0])
-def test_a_command_that_works_ends_when_it_is_told(words: list[str], tmp_path: Path) -> None:
+def test_busy_command_ends_on_interrupt(words: list[str], tmp_path: Path) -> None:
     (tmp_path / "hard.xacro").write_text(HARD)
     (tmp_path / "endless.launch.py").write_text(ENDLESS)
     for moment in MOMENTS:

@@ -33,7 +33,7 @@ class Program(Node):
 """
 
 
-def test_a_node_that_is_killed_comes_back_and_is_heard_again(machine: Machine) -> None:
+def test_killed_node_is_respawned_and_heard_again(machine: Machine) -> None:
     path = machine.write("talker.py", program(TALKER))
     launch = machine.launch(
         machine.write(
@@ -64,7 +64,7 @@ def _words(process: psutil.Process) -> list[str]:
         return []
 
 
-def test_a_subscriber_goes_on_when_its_publisher_is_killed(machine: Machine) -> None:
+def test_subscriber_survives_killed_publisher(machine: Machine) -> None:
     listener = machine.program(LISTENER)
     for _ in range(3):
         before = listener.count("heard")
@@ -76,7 +76,7 @@ def test_a_subscriber_goes_on_when_its_publisher_is_killed(machine: Machine) -> 
     assert "Traceback" not in listener.text
 
 
-def test_a_publisher_goes_on_when_its_subscriber_is_killed(machine: Machine) -> None:
+def test_publisher_survives_killed_subscriber(machine: Machine) -> None:
     talker = machine.program(TALKER)
     for _ in range(3):
         listener = machine.program(LISTENER)
@@ -90,7 +90,7 @@ def test_a_publisher_goes_on_when_its_subscriber_is_killed(machine: Machine) -> 
     assert "Traceback" not in talker.text
 
 
-def test_a_launcher_that_is_killed_leaves_no_process_and_no_node(machine: Machine) -> None:
+def test_killed_launch_leaves_no_processes_or_nodes(machine: Machine) -> None:
     path = machine.write("talker.py", program(TALKER))
     launch = machine.launch(
         machine.write(

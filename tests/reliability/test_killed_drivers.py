@@ -43,7 +43,7 @@ class Program(Node):
 """
 
 
-def test_a_robot_stops_whose_driver_is_killed_and_goes_on_after_one_that_has_left(machine: Machine) -> None:
+def test_robot_stops_when_driver_is_killed_but_not_when_it_exits(machine: Machine) -> None:
     launch = machine.launch(LAUNCH_FILE)
     audience = machine.program(AUDIENCE)
     audience.wait_for("stands")

@@ -14,7 +14,7 @@ ROBOT = Path(__file__).parents[2] / "robots" / "my_robot_description"
 
 
 @pytest.mark.slow
-def test_two_of_one_kind_warn_and_both_work(machine: Machine) -> None:
+def test_two_equal_launches_warn_and_both_work(machine: Machine) -> None:
     actions = (
         "Node(package='demo_nodes_cpp', executable='talker')",
         "Node(package='demo_nodes_cpp', executable='listener')",
@@ -34,7 +34,7 @@ def test_two_of_one_kind_warn_and_both_work(machine: Machine) -> None:
 
 
 @pytest.mark.slow
-def test_five_hundred_nodes(machine: Machine) -> None:
+def test_launch_starts_five_hundred_nodes(machine: Machine) -> None:
     path = machine.write(
         "a.launch.py",
         "from launch import LaunchDescription\nfrom launch_ros.actions import Node\n\n\n"
@@ -70,7 +70,7 @@ def test_five_hundred_nodes(machine: Machine) -> None:
     wait_until(lambda: not launch.left_behind())
 
 
-def test_a_late_comer_gets_the_description_and_the_fixed_frames(machine: Machine) -> None:
+def test_late_subscriber_receives_description_and_static_transforms(machine: Machine) -> None:
     model = ROBOT / "urdf" / "mbot_with_laser.urdf"
     launch = machine.launch(ROBOT / "launch" / "display.launch.py", f"model:={model}")
     launch.wait_for("Robot initialized")
@@ -104,7 +104,7 @@ def test_a_late_comer_gets_the_description_and_the_fixed_frames(machine: Machine
     assert "child_frame_id: laser_link" in echoed
 
 
-def test_a_process_that_keeps_to_itself(machine: Machine) -> None:
+def test_process_without_dds_works_in_isolation(machine: Machine) -> None:
     """LINKWRIGHT_DDS=0: it works, has no socket that others could reach, and sees nobody."""
     path = machine.write(
         "a.launch.py",
@@ -126,7 +126,7 @@ def test_a_process_that_keeps_to_itself(machine: Machine) -> None:
     assert alone.interrupt() == seen.interrupt() == 130
 
 
-def test_nothing_outlives_a_launch(machine: Machine) -> None:
+def test_launch_leaves_no_threads_or_processes(machine: Machine) -> None:
     """Threads and processes of one that was started, looked at from outside, and interrupted."""
     program = machine.write("p.py", "import time\nprint('up', flush=True)\ntime.sleep(60)\n")
     path = machine.write(

@@ -24,7 +24,7 @@ class Program(Node):
 
 
 @pytest.mark.slow
-def test_they_are_dropped_and_told_once_and_everything_goes_on(machine: Machine) -> None:
+def test_malformed_packets_are_dropped_and_reported_once(machine: Machine) -> None:
     listener = machine.program(LISTENER)
     listener.wait_for("up")
     garbage = machine.python("-m", "tests.reliability.garbage", machine.variables["ROS_DOMAIN_ID"])

@@ -59,7 +59,7 @@ def count(path) -> int:
 
 @pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM])
 @pytest.mark.parametrize("storage", ["mcap", "sqlite3"])
-def test_a_recording_is_whole_where_the_event_loop_hangs(machine: Machine, storage: str, number: int) -> None:
+def test_recording_is_complete_if_event_loop_hangs(machine: Machine, storage: str, number: int) -> None:
     running = machine.python(machine.write("hanging.py", HANGING), machine.folder / "bag", storage)
     running.wait_for("writing")
     running.process.send_signal(number)
@@ -70,7 +70,7 @@ def test_a_recording_is_whole_where_the_event_loop_hangs(machine: Machine, stora
 @pytest.mark.slow
 @pytest.mark.parametrize("storage", ["mcap", "sqlite3"])
 @pytest.mark.parametrize("signals", [[signal.SIGINT], [signal.SIGINT] * 2, [signal.SIGINT] * 4, [signal.SIGTERM]])
-def test_bag_record_is_whole_however_it_is_ended(machine: Machine, storage: str, signals: list[int]) -> None:
+def test_bag_record_is_complete_after_any_signal(machine: Machine, storage: str, signals: list[int]) -> None:
     machine.program(FLOOD)
     recording = machine.command("bag", "record", "-a", "-o", "bag", "-s", storage)
     recording.wait_for("Subscribed to topic '/chatter'")
@@ -87,7 +87,7 @@ def test_bag_record_is_whole_however_it_is_ended(machine: Machine, storage: str,
 
 
 @pytest.mark.slow
-def test_the_recording_of_a_launch_is_whole(machine: Machine) -> None:
+def test_recording_started_by_launch_is_complete(machine: Machine) -> None:
     machine.program(FLOOD)
     record = "ExecuteProcess(cmd=['ros2', 'bag', 'record', '-a', '-o', 'bag'], output='screen')"
     launch = machine.launch(machine.write("a.launch.py", launch_file(record)))

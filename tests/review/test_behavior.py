@@ -48,19 +48,19 @@ def test_equal_results_are_not_reported(compared):
     assert compared({}, {"MODE": "'a' + ''"}).is_empty
 
 
-def test_a_difference_beyond_the_noise(compared):
+def test_difference_beyond_noise_is_reported(compared):
     found = compared({"NOISE": "0.1"}, {"NOISE": "0.1", "OFFSET": "0.5"})
     (sentence,) = sentences(found)
     assert sentence == "lap: mean 7.548 -> 8.048, difference 0.5 to 0.5"
 
 
-def test_a_difference_within_the_noise(compared):
+def test_difference_within_noise_is_marked(compared):
     found = compared({"NOISE": "0.1"}, {"NOISE": "(random.random(), random.random(), 0.1)[2]"})
     (sentence,) = sentences(found)
     assert sentence.endswith(", within the noise")
 
 
-def test_a_bound_that_no_longer_holds_is_breaking(compared):
+def test_violated_bound_is_breaking(compared):
     (change,) = compared({}, {"BOUND": "8"}).changes
     assert str(change.sentence) == "arrived: true in 20 -> 16 of 20 runs"
     assert str(change.reason) == "it was true in all runs of the old version"
@@ -74,16 +74,16 @@ def test_runs_that_fail_are_breaking(compared):
     assert found.changes[0].reason is not None
 
 
-def test_texts_and_seeds(compared):
+def test_changed_texts_are_counted_over_seeds(compared):
     assert sentences(compared({}, {"MODE": "'b'"}, seeds=3)) == ["mode: 6 of 6 values differ"]
 
 
-def test_a_scenario_that_cannot_run_is_a_problem(compared):
+def test_scenario_that_cannot_run_is_a_problem(compared):
     (problem,) = compared({}, {"FAILS": "}"}).problems
     assert str(problem.text).startswith("the scenario cannot run in the new version: ")
 
 
-def test_nothing_runs_unless_asked(package, tmp_path, monkeypatch, capsys):
+def test_scenarios_run_only_on_request(package, tmp_path, monkeypatch, capsys):
     mark = tmp_path / "ran"
     package.commit({"tests/drive.py": text_with()})
     package.commit({"tests/drive.py": f"open({str(mark)!r}, 'w')\n" + text_with(BOUND="3")})

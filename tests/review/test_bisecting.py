@@ -40,36 +40,36 @@ def bisect(history, capsys):
     return run
 
 
-def test_the_commit_that_changed_a_joint_is_found_across_a_renamed_file(bisect):
+def test_commit_that_changed_joint_is_found_across_renamed_file(bisect):
     status, output, _ = bisect("--", "middle_joint")
     assert status == 0
     assert output.splitlines()[0].endswith("Ann: Commit 4")
     assert "  joint 'middle_joint': origin xyz 0 0 0.5 -> 0 0 0.6 m (moved by 0.1 m)" in output
 
 
-def test_a_link_has_moved_when_a_joint_above_it_has(bisect):
+def test_link_is_moved_by_changed_parent_joint(bisect):
     _, output, _ = bisect("--", "lower")
     assert output.splitlines()[0].endswith("Ann: Commit 4")
     assert "  link 'lower': moved by 0.3 m" in output
 
 
-def test_a_commit_that_cannot_be_expanded_is_named_as_a_candidate(bisect):
+def test_commit_that_cannot_be_expanded_is_named_as_candidate(bisect):
     _, output, _ = bisect("tool:=probe", "--", "probe_joint")
     assert output.splitlines()[0].endswith("Ann: Commit 10")
     assert "one commit before it cannot be judged and may be the first" in output
 
 
-def test_what_never_changed(bisect):
+def test_unchanged_link_is_reported_with_status_1(bisect):
     status, output, _ = bisect("--", "base_link")
     assert (status, output) == (1, "'base_link' is the same in all commits\n")
 
 
-def test_a_range_of_commits(bisect, history):
+def test_commit_range_limits_bisection(bisect, history):
     assert bisect("--old", "HEAD~3", "--", "middle_joint")[0] == 1
     assert bisect("--new", "HEAD~9", "--", "middle_joint")[0] == 1
 
 
-def test_a_command_runs_in_the_files_of_each_commit(bisect, history):
+def test_command_runs_in_files_of_each_commit(bisect, history):
     program = (
         "import pathlib, sys; sys.exit('0.6' not in pathlib.Path('arm_description/urdf/segment.xacro').read_text())"
     )
@@ -81,7 +81,7 @@ def test_a_command_runs_in_the_files_of_each_commit(bisect, history):
     assert history.git("status", "--porcelain") == ""
 
 
-def test_a_command_can_skip_a_commit(bisect):
+def test_command_can_skip_commit(bisect):
     program = """import pathlib, sys
 text = pathlib.Path(sys.argv[1]).read_text()
 sys.exit(125 if 'missing' in text else '0.3' in text)"""
@@ -90,7 +90,7 @@ sys.exit(125 if 'missing' in text else '0.3' in text)"""
     assert "cannot be judged" in output
 
 
-def test_a_change_on_a_merged_branch_is_found_there(history, bisect):
+def test_change_on_merged_branch_is_found(history, bisect):
     history.git("switch", "--quiet", "--create", "heavy", "HEAD~2")
     text = MACRO.replace("length:=0.5", "length:=0.6").replace('mass value="2"', 'mass value="3"')
     history.commit({SEGMENT: text}, "Heavier")
@@ -109,14 +109,14 @@ def test_a_change_on_a_merged_branch_is_found_there(history, bisect):
         (["tool:=probe"], 2, "pass a link, a joint or a command after --"),
     ],
 )
-def test_bad_input(bisect, words, status, message):
+def test_invalid_arguments_are_errors(bisect, words, status, message):
     result = bisect(*words)
     assert result[0] == status
     assert message in result[2]
     assert "Traceback" not in result[2]
 
 
-def test_a_newest_commit_that_cannot_be_expanded_is_an_error(bisect):
+def test_newest_commit_that_cannot_be_expanded_is_an_error(bisect):
     status, _, errors = bisect("--new", "HEAD~3", "--", "lower")
     assert status == 1
     assert "missing" in errors

@@ -32,13 +32,13 @@ def collisions(compare, repository, text: str) -> list[str]:
     return [sentence for sentence in sentences(subject(compare(repository), PATH)) if "collide" in sentence]
 
 
-def test_an_arm_that_can_fold_further_can_hit_itself(solid, compare):
+def test_wider_joint_limits_report_new_self_collision(solid, compare):
     (found,) = collisions(compare, solid, SOLID.replace('lower="-1.5" upper="1.5"', 'lower="-3" upper="3"'))
     assert found.startswith("links 'upper' and 'lower' can collide: in ")
     assert found.endswith(" % of 300 configurations, in none before")
 
 
-def test_a_collision_at_home(solid, compare):
+def test_collision_at_home_is_reported(solid, compare):
     text = SOLID.replace(
         '<origin xyz="0 0 ${length}"/>', "<origin xyz=\"0 0 ${0.12 if name == 'lower' else length}\"/>"
     )
@@ -46,12 +46,12 @@ def test_a_collision_at_home(solid, compare):
     assert "links 'upper' and 'lower' collide at home" in collisions(compare, solid, text)
 
 
-def test_what_collided_before_is_not_new(solid, compare):
+def test_existing_collision_is_not_reported(solid, compare):
     free = SOLID.replace('lower="-1.5" upper="1.5"', 'lower="-3" upper="3"')
     solid.commit({SEGMENT: free})
     assert collisions(compare, solid, free.replace('mass value="2"', 'mass value="3"')) == []
     assert collisions(compare, solid, SOLID) == []
 
 
-def test_links_that_a_joint_connects_may_touch(solid, compare):
+def test_connected_links_may_touch(solid, compare):
     assert collisions(compare, solid, SOLID.replace("${length - 0.02}", "${length + 0.1}")) == []

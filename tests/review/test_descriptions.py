@@ -24,7 +24,7 @@ def generate_launch_description():
 """
 
 
-def test_a_changed_macro_changes_each_robot_that_includes_it(package, compare):
+def test_changed_macro_changes_robots_that_include_it(package, compare):
     package.write({"arm_description/urdf/segment.xacro": MACRO.replace("length:=0.5", "length:=0.6")})
     result = compare(package)
     (found,) = [item for item in result.subjects if item.kind.value == "description"]
@@ -38,7 +38,7 @@ def test_a_changed_macro_changes_each_robot_that_includes_it(package, compare):
     assert result.breaking_changes == []
 
 
-def test_a_rotation_is_told_in_degrees(package, compare):
+def test_rotation_is_reported_in_degrees(package, compare):
     package.write(
         {
             "arm_description/urdf/segment.xacro": MACRO.replace(
@@ -49,14 +49,14 @@ def test_a_rotation_is_told_in_degrees(package, compare):
     assert any("(rotated by 90°)" in sentence for sentence in sentences(subject(compare(package), PATH)))
 
 
-def test_an_equal_robot_is_not_reported(package, compare):
+def test_equal_robot_is_not_reported(package, compare):
     package.write({"arm_description/urdf/segment.xacro": MACRO.replace("<mass value", "<!-- heavy --><mass value")})
     result = compare(package)
     assert result.subjects == []
     assert result.other_files == ["arm_description/urdf/segment.xacro"]
 
 
-def test_the_argument_sets_of_callers_are_compared(package, compare):
+def test_argument_sets_of_callers_are_compared(package, compare):
     package.commit({"arm_description/launch/arm.launch.py": LAUNCH})
     package.write({PATH: ARM.replace('xyz="0 0 0.2"', 'xyz="0 0 0.3"')})
     found = subject(compare(package), PATH)
@@ -64,7 +64,7 @@ def test_the_argument_sets_of_callers_are_compared(package, compare):
     assert sentences(found) == ["joint 'probe_joint': origin xyz 0 0 0.2 -> 0 0 0.3 m (moved by 0.1 m)"]
 
 
-def test_a_change_with_some_arguments_says_with_which(package, compare):
+def test_change_with_some_arguments_names_them(package, compare):
     package.commit(
         {
             "arm_description/launch/arm.launch.py": LAUNCH,
@@ -94,7 +94,7 @@ CAMERA = """<link name="camera"/>
          "root link 'base_link' -> 'base_footprint'"),
     ],
 )  # fmt: skip
-def test_names_that_others_use_are_breaking(package, compare, old, new, sentence):
+def test_renamed_and_removed_elements_are_breaking(package, compare, old, new, sentence):
     package.write({PATH: ARM.replace(old, new)})
     result = compare(package)
     assert sentence in breaking(result)
@@ -108,7 +108,7 @@ def test_names_that_others_use_are_breaking(package, compare, old, new, sentence
         ("</robot>", CAMERA),
     ],
 )  # fmt: skip
-def test_what_is_only_added_breaks_nothing(package, compare, old, new):
+def test_additions_are_not_breaking(package, compare, old, new):
     package.write({PATH: ARM.replace(old, new)})
     result = compare(package)
     assert sentences(subject(result, PATH))
@@ -141,7 +141,7 @@ CONTROL = """  <ros2_control name="hardware" type="system">
         (">20<", ">30<", None),
     ],
 )  # fmt: skip
-def test_interfaces_and_topics_of_plugins(package, compare, old, new, reason):
+def test_plugin_interfaces_and_topics_are_compared(package, compare, old, new, reason):
     text = ARM.replace("</robot>", CONTROL)
     package.commit({PATH: text})
     package.write({PATH: text.replace(old, new)})
@@ -149,7 +149,7 @@ def test_interfaces_and_topics_of_plugins(package, compare, old, new, reason):
     assert (None if change.reason is None else str(change.reason)) == reason
 
 
-def test_a_version_that_cannot_be_read_is_a_problem_and_costs_nothing_else(package, compare):
+def test_unreadable_version_is_a_problem_of_its_file_only(package, compare):
     package.commit(
         {
             PATH: ARM.replace("</robot>", "${missing}</robot>"),
@@ -164,7 +164,7 @@ def test_a_version_that_cannot_be_read_is_a_problem_and_costs_nothing_else(packa
     assert breaking(result)
 
 
-def test_files_that_were_added_removed_and_renamed(package, compare):
+def test_added_removed_and_renamed_files_are_reported(package, compare):
     package.commit({"arm_description/urdf/old.urdf": "<robot name='old'><link name='a'/></robot>"})
     text = (package.root / PATH).read_text()
     package.commit({PATH: None, "arm_description/urdf/new_arm.urdf.xacro": text})
@@ -177,7 +177,7 @@ def test_files_that_were_added_removed_and_renamed(package, compare):
     assert len(breaking(result)) == 2
 
 
-def test_a_computed_include_is_followed(package, compare):
+def test_computed_include_is_followed(package, compare):
     text = ARM.replace("urdf/segment.xacro", "urdf/$(arg kind)_segment.xacro").replace(
         "<xacro:include", '<xacro:arg name="kind" default="plain"/><xacro:include'
     )
@@ -186,7 +186,7 @@ def test_a_computed_include_is_followed(package, compare):
     assert "link 'upper': inertial mass 2 -> 3 kg" in sentences(subject(compare(package), PATH))
 
 
-def test_a_description_that_is_nested_too_deeply_costs_only_itself(package, compare):
+def test_too_deeply_nested_description_is_a_problem_of_its_file_only(package, compare):
     deep = "<robot name='d'><link name='a'/><gazebo>" + "<a>" * 3000 + "</a>" * 3000 + "</gazebo></robot>"
     package.commit({"arm_description/urdf/deep.urdf": deep})
     package.write(

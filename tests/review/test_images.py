@@ -45,7 +45,7 @@ def orange(image: bytes) -> int:
     return int(np.count_nonzero((red > 200) & (green > 60) & (green < 140) & (blue < 60)))
 
 
-def test_a_moved_link_is_outlined_in_both_versions(images_of):
+def test_moved_link_is_outlined_in_both_versions(images_of):
     result, images = images_of({SEGMENT: MACRO.replace("length:=0.5", "length:=0.6")})
     assert [view.name for view in images] == ["iso", "front", "left", "top"]
     assert all(orange(image) > 50 for view in images[:3] for image in (view.old, view.new))
@@ -55,28 +55,28 @@ def test_a_moved_link_is_outlined_in_both_versions(images_of):
     assert page.count("type='range'") == 4
 
 
-def test_a_robot_that_looks_the_same_has_no_images(images_of):
+def test_robot_with_same_appearance_has_no_images(images_of):
     assert images_of({SEGMENT: MACRO.replace('mass value="2"', 'mass value="3"')})[1] == []
 
 
-def test_a_frame_that_turned_together_with_its_visual_looks_the_same(images_of):
+def test_frame_rotated_together_with_visual_has_no_images(images_of):
     assert images_of({SEGMENT: TURNED})[1] == []
 
 
-def test_an_added_link_is_outlined_only_in_the_new_version(images_of):
+def test_added_link_is_outlined_only_in_new_version(images_of):
     sensor = """<link name="sensor"><visual><geometry><sphere radius="0.2"/></geometry></visual></link>
   <joint name="sensor_joint" type="fixed"><parent link="lower"/><child link="sensor"/></joint></robot>"""
     _, images = images_of({PATH: ARM.replace("</robot>", sensor)})
     assert (orange(images[1].old), orange(images[1].new) > 50) == (0, True)
 
 
-def test_a_new_root_link_moves_nothing(images_of):
+def test_new_root_link_has_no_images(images_of):
     lifted = """<link name="foot"/><joint name="foot_joint" type="fixed"><parent link="foot"/><child link="base_link"/>
     <origin xyz="0 0 0.3"/></joint><link name="base_link"/>"""
     assert images_of({PATH: ARM.replace('<link name="base_link"/>', lifted)})[1] == []
 
 
-def test_a_joint_that_cannot_be_at_zero_any_more_moves_its_link(images_of):
+def test_joint_limits_that_exclude_zero_move_link(images_of):
     _, images = images_of({SEGMENT: MACRO.replace('lower="-1.5"', 'lower="0.5"')})
     assert orange(images[2].old) > 50
     assert images[2].old != images[2].new

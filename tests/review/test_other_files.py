@@ -51,7 +51,7 @@ XML_LAUNCH = """<launch>
         ('"arm/cmd"', '"cmd_vel"', "node 'arm/driver': remappings [[cmd, arm/cmd]] -> [[cmd, cmd_vel]]", True),
     ],
 )  # fmt: skip
-def test_launch_files_in_python(repository, compare, old, new, sentence, is_breaking):
+def test_python_launch_file_changes_are_reported(repository, compare, old, new, sentence, is_breaking):
     repository.commit({"arm/launch/arm.launch.py": LAUNCH})
     repository.write({"arm/launch/arm.launch.py": LAUNCH.replace(old, new)})
     result = compare(repository)
@@ -59,7 +59,7 @@ def test_launch_files_in_python(repository, compare, old, new, sentence, is_brea
     assert (sentence in breaking(result)) is is_breaking
 
 
-def test_a_launch_file_that_only_looks_different_is_not_reported(repository, compare):
+def test_reformatted_launch_file_is_not_reported(repository, compare):
     repository.commit({"arm/launch/arm.launch.py": LAUNCH})
     text = LAUNCH.replace("RATE = 10", "RATE = (  # Hz\n    10\n)").replace('"', "'")
     repository.write({"arm/launch/arm.launch.py": text})
@@ -107,7 +107,7 @@ SPAWNER = '["arm", "--controller-ros-args", "-r /arm/cmd:=/cmd"]'
         ),
     ],
 )
-def test_similar_nodes_are_matched_and_names_that_only_moved_break_nothing(repository, compare, changes, expected):
+def test_similar_launch_nodes_are_matched(repository, compare, changes, expected):
     repository.commit({"arm/launch/arm.launch.py": TRANSFORMS})
     text = TRANSFORMS
     for old, new in changes:
@@ -129,7 +129,7 @@ def test_similar_nodes_are_matched_and_names_that_only_moved_break_nothing(repos
         ('name="driver">', 'name="driver" namespace="left">', "node 'arm/driver': namespace - -> left", True),
     ],
 )  # fmt: skip
-def test_launch_files_in_xml(repository, compare, old, new, sentence, is_breaking):
+def test_xml_launch_file_changes_are_reported(repository, compare, old, new, sentence, is_breaking):
     repository.commit({"arm/launch/arm.launch.xml": XML_LAUNCH})
     repository.write({"arm/launch/arm.launch.xml": XML_LAUNCH.replace(old, new)})
     result = compare(repository)
@@ -137,7 +137,7 @@ def test_launch_files_in_xml(repository, compare, old, new, sentence, is_breakin
     assert (breaking(result) == [sentence]) is is_breaking
 
 
-def test_a_launch_file_is_not_run(repository, compare, tmp_path):
+def test_launch_file_is_not_executed(repository, compare, tmp_path):
     repository.commit({"arm/launch/arm.launch.py": LAUNCH})
     attack = f"open({str(tmp_path / 'stolen')!r}, 'w')\n"
     repository.write({"arm/launch/arm.launch.py": attack + LAUNCH.replace("10", "20")})
@@ -166,7 +166,7 @@ WORLD = """<sdf version="1.9">
         ('name="yard"', 'name="park"', ["world park added", "world yard removed"], True),
     ],
 )  # fmt: skip
-def test_worlds(repository, compare, old, new, expected, is_breaking):
+def test_world_changes_are_reported(repository, compare, old, new, expected, is_breaking):
     repository.commit({"w/worlds/yard.sdf": WORLD})
     repository.write({"w/worlds/yard.sdf": WORLD.replace(old, new)})
     result = compare(repository)
@@ -208,7 +208,7 @@ arm_controller:
         ("    update_rate: 100\n", "", "controller_manager.ros__parameters.update_rate 100 removed", False),
     ],
 )  # fmt: skip
-def test_parameters(repository, compare, old, new, sentence, is_breaking):
+def test_parameter_changes_are_reported(repository, compare, old, new, sentence, is_breaking):
     repository.commit({"a/package.xml": PACKAGE_XML, "a/config/c.yaml": PARAMETERS})
     repository.write({"a/config/c.yaml": PARAMETERS.replace(old, new)})
     result = compare(repository)
@@ -216,7 +216,7 @@ def test_parameters(repository, compare, old, new, sentence, is_breaking):
     assert bool(breaking(result)) is is_breaking
 
 
-def test_a_controller_whose_type_is_now_its_own_parameter_is_still_there(repository, compare):
+def test_controller_type_as_own_parameter_is_not_a_removal(repository, compare):
     repository.commit({"a/package.xml": PACKAGE_XML, "a/config/c.yaml": PARAMETERS})
     text = PARAMETERS.replace("    arm_controller:\n      type: a/B\n", "")
     text = text.replace("    joints: [upper", "    type: a/B\n    joints: [upper")
@@ -234,7 +234,7 @@ def test_a_controller_whose_type_is_now_its_own_parameter_is_still_there(reposit
         PARAMETERS.replace("[upper, lower]", "\n      - upper\n      - lower"),
     ],
 )
-def test_parameters_that_only_look_different(repository, compare, text):
+def test_reformatted_parameters_are_not_reported(repository, compare, text):
     repository.commit({"a/package.xml": PACKAGE_XML, "a/config/c.yaml": PARAMETERS})
     repository.write({"a/config/c.yaml": text})
     assert compare(repository).subjects == []
@@ -244,7 +244,7 @@ ALIASES = "\n".join(["a0: &a0 [{x: 1}]", *(f"a{n}: &a{n} [{', '.join([f'*a{n - 1
 
 
 @pytest.mark.parametrize(("text", "reason"), [("a: [1", "while parsing"), (ALIASES, "more than 20000 values")])
-def test_hostile_yaml_is_a_problem(repository, compare, text, reason):
+def test_malicious_yaml_is_a_problem(repository, compare, text, reason):
     repository.commit({"a/package.xml": PACKAGE_XML, "a/config/c.yaml": PARAMETERS})
     repository.write({"a/config/c.yaml": text})
     (problem,) = subject(compare(repository), "a/config/c.yaml").problems
@@ -261,7 +261,7 @@ def test_hostile_yaml_is_a_problem(repository, compare, text, reason):
         ("string name", "string name 'x'", "default of field 'name': None -> x", False),
     ],
 )  # fmt: skip
-def test_interfaces(repository, compare, old, new, sentence, is_breaking):
+def test_interface_changes_are_reported(repository, compare, old, new, sentence, is_breaking):
     text = "uint8 KIND_A=1\nint32 count\nstring name\ngeometry_msgs/Point point\n"
     repository.commit({"m/package.xml": PACKAGE_XML.replace("arm_description", "m"), "m/msg/Count.msg": text})
     repository.write({"m/msg/Count.msg": text.replace(old, new)})
@@ -270,7 +270,7 @@ def test_interfaces(repository, compare, old, new, sentence, is_breaking):
     assert (breaking(result) == [sentence]) is is_breaking
 
 
-def test_a_comment_in_an_interface_changes_nothing(repository, compare):
+def test_comment_in_interface_is_not_reported(repository, compare):
     repository.commit({"m/msg/Count.msg": "int32 count\n"})
     repository.write({"m/msg/Count.msg": "# How many\nint32 count\n"})
     assert compare(repository).subjects == []
@@ -293,14 +293,14 @@ def test_settings_of_tools_are_other_files(package, compare):
     assert sorted(result.other_files) == sorted(files)
 
 
-def test_manifests(package, compare):
+def test_manifest_changes_are_reported(package, compare):
     text = PACKAGE_XML.replace("1.0.0", "1.1.0").replace("<exec_depend>xacro", "<exec_depend>urdf")
     package.write({"arm_description/package.xml": text})
     found = subject(compare(package), "arm_description/package.xml")
     assert sentences(found) == ["version: 1.0.0 -> 1.1.0", "exec_depend urdf added", "exec_depend xacro removed"]
 
 
-def test_a_renamed_package_is_breaking(package, compare):
+def test_renamed_package_is_breaking(package, compare):
     package.write({"arm_description/package.xml": PACKAGE_XML.replace("arm_description", "robot_description")})
     assert "name: arm_description -> robot_description" in breaking(compare(package))
 
@@ -314,7 +314,7 @@ def _stl(height: float) -> bytes:
     return bytes(80) + len(triangles).to_bytes(4, "little") + triangles.tobytes()
 
 
-def test_meshes(repository, compare):
+def test_mesh_size_changes_are_reported(repository, compare):
     repository.commit({"a/meshes/m.stl": _stl(1.0)})
     repository.write({"a/meshes/m.stl": _stl(2.0)})
     (figure,) = subject(compare(repository), "a/meshes/m.stl").figures
@@ -322,7 +322,7 @@ def test_meshes(repository, compare):
     assert "highest corner" in figure.name
 
 
-def test_a_mesh_in_git_lfs_is_not_downloaded(repository, compare):
+def test_mesh_in_git_lfs_is_not_downloaded(repository, compare):
     pointer = "version https://git-lfs.github.com/spec/v1\noid sha256:{}\nsize 12\n"
     repository.commit({"a/meshes/m.stl": pointer.format("0" * 64)})
     repository.write({"a/meshes/m.stl": pointer.format("1" * 64)})
@@ -333,7 +333,7 @@ def test_a_mesh_in_git_lfs_is_not_downloaded(repository, compare):
     ]
 
 
-def test_maps(repository, compare):
+def test_map_changes_are_reported(repository, compare):
     header = b"P5\n4 2\n255\n"
     repository.commit({"n/maps/house.pgm": header + bytes([255] * 8)})
     repository.write({"n/maps/house.pgm": header + bytes([255, 255, 0, 255, 255, 255, 0, 255])})

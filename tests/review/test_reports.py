@@ -46,13 +46,13 @@ def test_changes_of_a_shared_file_are_listed_once(changed, compare):
     assert text.count("arm_description/urdf/segment.xacro:14:") == 1
 
 
-def test_the_same_bytes_twice(changed, compare):
+def test_reports_are_deterministic(changed, compare):
     first, second = (compare(changed, "HEAD~1..HEAD") for _ in range(2))
     for report in (as_text, as_markdown, as_html, as_data):
         assert report(first) == report(second)
 
 
-def test_names_of_a_repository_are_no_markup():
+def test_repository_names_are_escaped():
     change = Change(phrase("link '{name}' removed", name=HOSTILE))
     subject = Subject(SubjectKind.DESCRIPTION, f"urdf/{HOSTILE}.urdf", "a", "b", [change], cases=[HOSTILE])
     result = Review("main", HOSTILE, [subject], [HOSTILE], notes=[phrase("{path}", path=HOSTILE)])
@@ -70,7 +70,7 @@ def test_names_of_a_repository_are_no_markup():
     assert tags.count("script") == 1
 
 
-def test_names_do_not_control_what_is_shown():
+def test_control_characters_in_names_are_replaced():
     name = "arm\n::error::\x1b[31m\u202e.urdf"
     result = Review("main", "HEAD", [Subject(SubjectKind.DESCRIPTION, name, None, name, [Change(phrase("added"))])])
     assert "arm\N{SYMBOL FOR NEWLINE}::error::" in as_text(result).splitlines()[0]
@@ -78,7 +78,7 @@ def test_names_do_not_control_what_is_shown():
         assert not re.search("^::|\x1b|\u202e", text, re.MULTILINE)
 
 
-def test_a_long_review_fits_into_a_comment():
+def test_long_review_is_truncated_to_comment_size():
     changes = [Change(phrase("link '{name}' removed", name=f"link_{number}")) for number in range(300)]
     subjects = [Subject(SubjectKind.DESCRIPTION, f"urdf/{number}.urdf", "a", "b", changes) for number in range(30)]
     text = as_markdown(Review("main", "", subjects))
@@ -87,12 +87,12 @@ def test_a_long_review_fits_into_a_comment():
     assert text.count("<details>") == text.count("</details>")
 
 
-def test_the_page_needs_no_other_file(changed, compare):
+def test_html_report_is_self_contained(changed, compare):
     page = as_html(compare(changed, "HEAD~1..HEAD"))
     assert not re.search(r"""(src|href)=['"](?!data:)""", page)
 
 
-def test_data_and_diagnostics(changed, compare):
+def test_json_and_diagnostics_have_breaking_changes(changed, compare):
     result = compare(changed, "HEAD~1..HEAD")
     data = json.loads(json.dumps(as_data(result)))
     subject = next(item for item in data["subjects"] if item["path"] == "arm_description/urdf/arm.urdf.xacro")
@@ -104,7 +104,7 @@ def test_data_and_diagnostics(changed, compare):
     assert codes[: len(result.breaking_changes)] == ["REV201"] * len(result.breaking_changes)
 
 
-def test_a_removed_part_has_no_line_in_the_new_version(changed, compare):
+def test_removed_part_has_no_line_in_new_version(changed, compare):
     result = compare(changed, "HEAD~1..HEAD")
     for subject, change in result.breaking_changes:
         if change.location is not None and change.location.is_old:
@@ -126,7 +126,7 @@ def run(changed, monkeypatch, capsys):
     return command
 
 
-def test_the_command_writes_all_reports(run, tmp_path):
+def test_review_command_writes_all_reports(run, tmp_path):
     names = ("comment.md", "report.html", "report.json", "report.sarif")
     options = [f"--{name.rpartition('.')[2].replace('md', 'markdown')}={tmp_path / name}" for name in names]
     status, output, _ = run("HEAD~1..HEAD", *options)
@@ -143,11 +143,11 @@ def test_the_command_writes_all_reports(run, tmp_path):
 @pytest.mark.parametrize(
     ("conditions", "status"), [("breaking", 1), ("changes", 1), ("problems", 0), ("problems,breaking", 1)]
 )
-def test_conditions_of_failure(run, conditions, status):
+def test_fail_on_conditions_set_exit_status(run, conditions, status):
     assert run("HEAD~1..HEAD", "--fail-on", conditions)[0] == status
 
 
-def test_a_commit_that_mends_a_description_has_no_problem(run, changed):
+def test_commit_that_fixes_description_has_no_problem(run, changed):
     text = ARM.replace("</robot>", "${missing}</robot>")
     changed.commit({"arm_description/urdf/arm.urdf.xacro": text})
     changed.commit({"arm_description/urdf/arm.urdf.xacro": ARM})
@@ -155,30 +155,30 @@ def test_a_commit_that_mends_a_description_has_no_problem(run, changed):
     assert run("HEAD~1..HEAD", "--fail-on", "problems")[0] == 0
 
 
-def test_an_unknown_condition_is_wrong_usage(run):
+def test_unknown_fail_on_condition_is_a_usage_error(run):
     status, _, errors = run("--fail-on", "anything")
     assert status == 2
     assert "'anything' is not one of breaking, findings, problems, changes" in errors
 
 
-def test_the_first_word_is_a_commit_or_a_package(run):
+def test_first_argument_is_commit_or_package(run):
     assert run("HEAD~1", "arm_description")[1] == run("HEAD~1..HEAD", "arm_description")[1]
     status, output, _ = run("arm_description")
     assert (status, output) == (0, "0 breaking changes, 0 changes, 0 new findings, 0 fixed\n")
 
 
-def test_annotations_of_github(run):
+def test_github_annotations_are_printed(run):
     _, output, _ = run("HEAD~1..HEAD", "--github")
     assert output.startswith("::warning ")
     assert "title=REV201::" in output
 
 
-def test_chinese(run):
+def test_report_is_in_chinese_with_lang_zh(run):
     _, output, _ = run("HEAD~1..HEAD", "--lang", "zh")
     assert "删除连杆“lower”" in output
 
 
-def test_an_error_is_one_message(run):
+def test_error_is_printed_without_traceback(run):
     status, _, errors = run("nowhere..HEAD")
     assert status == 1
     assert "error[CLI343]" in errors

@@ -23,7 +23,7 @@ def masses(result) -> list[str]:
     return [sentence for sentence in sentences(subject(result, PATH)) if "mass" in sentence]
 
 
-def test_ranges(package, compare):
+def test_commit_ranges_are_resolved(package, compare):
     package.git("switch", "--quiet", "--create", "feature")
     package.commit({"arm_description/urdf/segment.xacro": heavier(3)})
     package.git("switch", "--quiet", "main")
@@ -37,19 +37,19 @@ def test_ranges(package, compare):
     assert masses(compare(package, "HEAD~1..")) == ["link 'upper': inertial mass 2 -> 3 kg"]
 
 
-def test_files_that_git_does_not_know_yet_are_new(package, compare):
+def test_untracked_files_are_new(package, compare):
     package.write({"arm_description/urdf/b.urdf": "<robot name='b'><link name='b'/></robot>"})
     assert sentences(subject(compare(package), "arm_description/urdf/b.urdf")) == ["description added"]
 
 
-def test_the_repository_is_not_changed(package, compare):
+def test_review_does_not_change_repository(package, compare):
     package.write({"arm_description/urdf/segment.xacro": heavier(3)})
     before = package.git("status", "--porcelain=v2", "--branch")
     compare(package, "main")
     assert package.git("status", "--porcelain=v2", "--branch") == before
 
 
-def test_a_review_can_be_limited_to_packages(package, compare):
+def test_review_can_be_limited_to_packages(package, compare):
     other = {
         "b/package.xml": "<package format='3'><name>b</name></package>",
         "b/b.urdf": "<robot name='b'><link name='l'/></robot>",
@@ -65,13 +65,13 @@ def test_a_review_can_be_limited_to_packages(package, compare):
 
 
 @pytest.mark.parametrize(("range_text", "code"), [("nowhere..HEAD", "CLI343"), ("--output=x..HEAD", "CLI343")])
-def test_commits_that_do_not_exist(package, range_text, code):
+def test_missing_commits_are_errors(package, range_text, code):
     with pytest.raises(LinkwrightError) as error:
         open_versions(package.root, range_text)
     assert error.value.diagnostics[0].code == code
 
 
-def test_a_shallow_clone_is_told_how_to_get_the_base(package, tmp_path):
+def test_shallow_clone_error_hints_at_fetching_base(package, tmp_path):
     base = package.git("rev-parse", "HEAD")
     package.commit({"arm_description/urdf/segment.xacro": heavier(3)})
     clone = tmp_path / "clone"
@@ -81,7 +81,7 @@ def test_a_shallow_clone_is_told_how_to_get_the_base(package, tmp_path):
     assert "git fetch --unshallow" in error.value.diagnostics[0].hint
 
 
-def test_versions_without_a_common_commit(package):
+def test_versions_without_common_commit_are_an_error(package):
     package.git("switch", "--quiet", "--orphan", "island")
     package.commit({"b.urdf": "<robot name='b'/>"})
     with pytest.raises(LinkwrightError) as error:
@@ -89,7 +89,7 @@ def test_versions_without_a_common_commit(package):
     assert error.value.diagnostics[0].code == "REV102"
 
 
-def test_without_a_default_branch(tmp_path):
+def test_missing_default_branch_is_an_error(tmp_path):
     repository = Repository(tmp_path / "r")
     repository.git("switch", "--quiet", "--create", "trunk")
     repository.commit({"b.urdf": "<robot name='b'/>"})
@@ -98,7 +98,7 @@ def test_without_a_default_branch(tmp_path):
     assert error.value.diagnostics[0].code == "REV101"
 
 
-def test_a_folder_that_is_not_in_a_repository(tmp_path):
+def test_folder_outside_repository_is_an_error(tmp_path):
     with pytest.raises(LinkwrightError) as error:
         open_versions(tmp_path, "HEAD")
     assert error.value.diagnostics[0].code == "CLI342"
@@ -107,7 +107,7 @@ def test_a_folder_that_is_not_in_a_repository(tmp_path):
 @pytest.mark.skipif(os.name == "nt", reason="symbolic links of POSIX")
 @pytest.mark.parametrize("is_checked_out", [True, False])
 @pytest.mark.parametrize("target", ["{outside}/secret.xacro", "../../.git/secret.xacro"])
-def test_links_out_of_the_repository_are_not_followed(package, compare, tmp_path, target, is_checked_out):
+def test_symlinks_out_of_repository_are_not_followed(package, compare, tmp_path, target, is_checked_out):
     for folder in (tmp_path, package.root / ".git"):
         (folder / "secret.xacro").write_text(MACRO.replace('value="2"', 'value="77"'))
     path = package.root / "arm_description/urdf/segment.xacro"
@@ -124,14 +124,14 @@ def test_links_out_of_the_repository_are_not_followed(package, compare, tmp_path
 
 
 @pytest.mark.skipif(os.name == "nt", reason="symbolic links of POSIX")
-def test_loops_of_links_do_not_stop_a_review(package, compare):
+def test_symlink_loops_do_not_stop_review(package, compare):
     (package.root / "arm_description/urdf/a.xacro").symlink_to("b.xacro")
     (package.root / "arm_description/urdf/b.xacro").symlink_to("a.xacro")
     package.commit({"arm_description/urdf/segment.xacro": heavier(3)})
     assert masses(compare(package, "HEAD~1..HEAD")) == ["link 'upper': inertial mass 2 -> 3 kg"]
 
 
-def test_a_submodule_is_a_note(package, compare, tmp_path):
+def test_submodule_change_is_a_note(package, compare, tmp_path):
     other = Repository(tmp_path / "other")
     other.commit({"a.urdf": "<robot name='a'><link name='a'/></robot>"})
     package.git("submodule", "--quiet", "add", other.root.as_uri(), "vendor")
@@ -140,7 +140,7 @@ def test_a_submodule_is_a_note(package, compare, tmp_path):
     assert [str(note) for note in result.notes] == ["submodule 'vendor' changed; its files are not compared"]
 
 
-def test_files_that_a_partial_clone_lacks_cost_only_themselves(package, compare, tmp_path):
+def test_missing_file_of_partial_clone_is_a_problem_of_that_file_only(package, compare, tmp_path):
     mesh = package.commit({"arm_description/meshes/a.stl": b"solid a\nendsolid a\n" * 1000})
     package.commit({"arm_description/urdf/segment.xacro": heavier(3)})
     blob = package.git("rev-parse", f"{mesh}:arm_description/meshes/a.stl")
@@ -151,7 +151,7 @@ def test_files_that_a_partial_clone_lacks_cost_only_themselves(package, compare,
     assert "git cannot write one file of 'HEAD~1', such as 'arm_description/meshes/a.stl'" in map(str, result.notes)
 
 
-def test_findings_that_are_new_and_fixed(package, compare):
+def test_new_and_fixed_findings_are_reported(package, compare):
     package.commit({"arm_description/urdf/segment.xacro": MACRO.replace('velocity="1"', 'velocity="0"')})
     text = MACRO.replace('mass value="2"', 'mass value="-1"')
     package.write({"arm_description/urdf/segment.xacro": "\n\n" + text if text.startswith("<robot") else text})
@@ -164,7 +164,7 @@ def test_findings_that_are_new_and_fixed(package, compare):
     assert all(finding.span.file.startswith("arm_description/") for finding in result.new_findings)
 
 
-def test_findings_that_only_moved_are_neither(package, compare):
+def test_moved_findings_are_neither_new_nor_fixed(package, compare):
     faulty = MACRO.replace('mass value="2"', 'mass value="-1"')
     package.commit({"arm_description/urdf/segment.xacro": faulty})
     moved = faulty.replace("<xacro:macro", "<!-- a\n\n\ncomment -->\n<xacro:macro").replace(

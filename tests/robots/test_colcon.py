@@ -34,7 +34,7 @@ def share(workspace: Path) -> Path:
 
 
 @pytest.mark.parametrize("folder", INSTALLED_FOLDERS)
-def test_every_file_is_installed(workspace: Path, folder: str) -> None:
+def test_package_files_are_installed(workspace: Path, folder: str) -> None:
     source = workspace / "src" / PACKAGE.name / folder
     written = sorted(path.relative_to(source) for path in source.rglob("*") if path.is_file())
     installed = share(workspace) / folder
@@ -43,25 +43,25 @@ def test_every_file_is_installed(workspace: Path, folder: str) -> None:
     assert all((installed / path).read_bytes() == (source / path).read_bytes() for path in written)
 
 
-def test_every_folder_of_the_package_is_known_to_this_test() -> None:
+def test_all_package_folders_are_tested() -> None:
     folders = {path.name for path in PACKAGE.iterdir() if path.is_dir() and path.name != "__pycache__"}
     assert folders == {*INSTALLED_FOLDERS, "resource", PACKAGE.name}
 
 
-def test_manifest_and_marker_are_installed(workspace: Path) -> None:
+def test_manifest_and_index_marker_are_installed(workspace: Path) -> None:
     assert (share(workspace) / "package.xml").read_bytes() == (PACKAGE / "package.xml").read_bytes()
     index = share(workspace).parent / "ament_index" / "resource_index" / "packages"
     assert (index / PACKAGE.name).is_file()
 
 
-def test_sourcing_the_workspace_makes_the_package_known(workspace: Path) -> None:
+def test_sourced_workspace_provides_package(workspace: Path) -> None:
     prefix = sourced(workspace, "AMENT_PREFIX_PATH")
     assert prefix == str(workspace / "install" / PACKAGE.name)
     finder = PackageFinder(start=Path("/"), environment={"AMENT_PREFIX_PATH": prefix})
     assert finder.share(PACKAGE.name).resolve() == share(workspace).resolve()
 
 
-def test_the_package_of_worlds_is_installed_whole(tmp_path: Path) -> None:
+def test_gazebo_package_is_installed_completely(tmp_path: Path) -> None:
     source = tmp_path / "src" / GAZEBO_PACKAGE.name
     shutil.copytree(GAZEBO_PACKAGE, source, ignore=shutil.ignore_patterns("__pycache__", "*.egg-info"))
     colcon_build(tmp_path, GAZEBO_PACKAGE.name)

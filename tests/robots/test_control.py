@@ -58,7 +58,7 @@ def logged(test: SteppedSimulation) -> list[str]:
 
 
 @pytest.mark.slow
-def test_a_square_is_closed(load: Any) -> None:
+def test_drive_square_closes_square(load: Any) -> None:
     with SteppedSimulation(world("empty"), ROBOT) as test:
         test.init_rclpy()
         load("drive_square").DriveSquare()
@@ -83,7 +83,7 @@ def test_a_square_is_closed(load: Any) -> None:
 
 
 @pytest.mark.slow
-def test_a_wall_is_followed_through_the_maze(load: Any) -> None:
+def test_follow_wall_goes_through_maze(load: Any) -> None:
     with SteppedSimulation(world("maze"), ROBOT, arguments={"laser": True}) as test:
         test.init_rclpy()
         load("follow_wall").FollowWall()
@@ -103,7 +103,7 @@ def test_a_wall_is_followed_through_the_maze(load: Any) -> None:
         assert math.dist(place(test), (0.0, 0.0)) > 4.0, "it gets through the maze"
 
 
-def test_a_wall_on_the_left_can_be_followed(load: Any) -> None:
+def test_follow_wall_works_on_left_side(load: Any) -> None:
     with SteppedSimulation(world("maze"), ROBOT, arguments={"laser": True}) as test:
         test.init_rclpy(["--ros-args", "-p", "side:=left"])
         load("follow_wall").FollowWall()
@@ -114,7 +114,7 @@ def test_a_wall_on_the_left_can_be_followed(load: Any) -> None:
 
 
 @pytest.mark.parametrize(("x", "y", "yaw"), [(1.0, 0.5, 1.57), (-0.8, -0.4, 0.0)])
-def test_a_pose_is_reached(load: Any, x: float, y: float, yaw: float) -> None:
+def test_go_to_pose_reaches_pose(load: Any, x: float, y: float, yaw: float) -> None:
     with SteppedSimulation(world("empty"), ROBOT) as test:
         test.init_rclpy()
         load("go_to_pose").GoToPose()
@@ -141,7 +141,7 @@ def test_a_pose_is_reached(load: Any, x: float, y: float, yaw: float) -> None:
 
 
 @pytest.mark.slow
-def test_a_line_is_followed(load: Any) -> None:
+def test_follow_line_follows_line(load: Any) -> None:
     line = _pieces()
     with SteppedSimulation(world("line_track"), ROBOT, arguments={"camera": True}) as test:
         test.init_rclpy()
@@ -155,7 +155,7 @@ def test_a_line_is_followed(load: Any) -> None:
 
 
 @pytest.mark.slow
-def test_obstacles_are_not_touched(load: Any) -> None:
+def test_avoid_obstacles_touches_nothing(load: Any) -> None:
     with SteppedSimulation(world("obstacles"), ROBOT, arguments={"laser": True}) as test:
         test.init_rclpy()
         load("avoid_obstacles").AvoidObstacles()
@@ -169,7 +169,7 @@ def test_obstacles_are_not_touched(load: Any) -> None:
         assert any("m ahead" in text for text in logged(test))
 
 
-def test_it_stops_before_a_box(load: Any) -> None:
+def test_avoid_obstacles_stops_before_box(load: Any) -> None:
     with SteppedSimulation(world("obstacles"), ROBOT, arguments={"laser": True}) as test:
         test.init_rclpy(["--ros-args", "-p", "wander:=false"])
         load("avoid_obstacles").AvoidObstacles()
@@ -181,7 +181,7 @@ def test_it_stops_before_a_box(load: Any) -> None:
         assert abs(odometry.last.twist.twist.linear.x) < 1e-3
 
 
-def test_a_sensor_that_falls_silent_stops_the_robot(load: Any) -> None:
+def test_silent_laser_stops_robot(load: Any) -> None:
     with SteppedSimulation(world("empty"), ROBOT) as test:
         test.init_rclpy()
         load("avoid_obstacles").AvoidObstacles()
@@ -196,7 +196,7 @@ def test_a_sensor_that_falls_silent_stops_the_robot(load: Any) -> None:
         assert velocities.last.linear.x == 0.0
 
 
-def test_the_tests_of_the_package_pass(load: Any) -> None:
+def test_decision_tests_of_package_pass(load: Any) -> None:
     path = CONTROL_PACKAGE / "test" / "test_decisions.py"
     load("driving_node")
     names: dict[str, Any] = {"__name__": "test_decisions"}
@@ -207,11 +207,11 @@ def test_the_tests_of_the_package_pass(load: Any) -> None:
         test()
 
 
-def test_nothing_is_found_in_the_package(capsys: pytest.CaptureFixture[str]) -> None:
+def test_package_has_no_findings(capsys: pytest.CaptureFixture[str]) -> None:
     assert main(["check", "--strict", str(CONTROL_PACKAGE)]) == 0, capsys.readouterr().out
 
 
-def test_each_node_has_parameters_a_launch_file_and_an_entry_point() -> None:
+def test_nodes_have_parameters_launch_files_and_entry_points() -> None:
     parameters = yaml.safe_load((CONTROL_PACKAGE / "config" / "control.yaml").read_text(encoding="utf-8"))
     assert set(parameters) == set(NODES)
     setup = (CONTROL_PACKAGE / "setup.py").read_text(encoding="utf-8")
@@ -221,7 +221,7 @@ def test_each_node_has_parameters_a_launch_file_and_an_entry_point() -> None:
 
 
 @pytest.mark.parametrize("name", NODES)
-def test_parameter_files_say_what_nodes_have(load: Any, name: str) -> None:
+def test_parameter_file_matches_declared_parameters(load: Any, name: str) -> None:
     text = yaml.safe_load((CONTROL_PACKAGE / "config" / "control.yaml").read_text(encoding="utf-8"))
     with SteppedSimulation(world("empty")) as test:
         test.init_rclpy()
@@ -237,7 +237,7 @@ def test_parameter_files_say_what_nodes_have(load: Any, name: str) -> None:
 
 
 @pytest.mark.parametrize("name", NODES)
-def test_launch_files_bring_the_simulation_and_the_node(name: str, capsys: pytest.CaptureFixture[str]) -> None:
+def test_launch_files_start_simulation_and_node(name: str, capsys: pytest.CaptureFixture[str]) -> None:
     assert main(["launch", str(CONTROL_PACKAGE / "launch" / f"{name}.launch.py"), "--print"]) == 0
     printed = capsys.readouterr().out
     assert name in printed
@@ -245,7 +245,7 @@ def test_launch_files_bring_the_simulation_and_the_node(name: str, capsys: pytes
 
 
 @pytest.mark.slow
-def test_colcon_installs_everything(tmp_path: Path) -> None:
+def test_colcon_installs_package_completely(tmp_path: Path) -> None:
     (tmp_path / "src").mkdir()
     (tmp_path / "src" / CONTROL_PACKAGE.name).symlink_to(CONTROL_PACKAGE)
     colcon_build(tmp_path, CONTROL_PACKAGE.name)

@@ -38,17 +38,17 @@ def robot_of(choice: dict[str, str]) -> Robot:
     return load(MODEL, arguments=choice)
 
 
-def test_nothing_is_found_in_it(choice: dict[str, str]) -> None:
+def test_model_has_no_findings(choice: dict[str, str]) -> None:
     assert examine(MODEL, arguments=choice).diagnostics == ()
 
 
-def test_every_body_has_mass_and_collision_and_frames_have_neither(choice: dict[str, str]) -> None:
+def test_only_bodies_have_mass_collision_and_visual(choice: dict[str, str]) -> None:
     for link in robot_of(choice).links.values():
         bodily = link.name not in WITHOUT_MASS
         assert (link.inertial is not None, bool(link.collisions), bool(link.visuals)) == (bodily,) * 3, link.name
 
 
-def test_wheels_and_casters_touch_the_ground_that_the_footprint_lies_on(choice: dict[str, str]) -> None:
+def test_wheels_and_casters_touch_ground_at_footprint(choice: dict[str, str]) -> None:
     robot = robot_of(choice)
     heights = {link: low for link, (low, _) in extents(robot).items()}
     for part in ("left_wheel_link", "right_wheel_link", "front_caster_link", "back_caster_link"):
@@ -57,14 +57,14 @@ def test_wheels_and_casters_touch_the_ground_that_the_footprint_lies_on(choice: 
 
 
 @pytest.mark.parametrize("choice", [choice for choice in CHOICES if "laser" in choice], ids=name)
-def test_the_scan_passes_over_every_other_part(choice: dict[str, str]) -> None:
+def test_laser_plane_is_above_all_other_parts(choice: dict[str, str]) -> None:
     robot = robot_of(choice)
     plane = height(robot, "laser_link")
     assert all(high < plane for link, (_, high) in extents(robot).items() if link != "laser_link")
 
 
 @pytest.mark.parametrize("sensor", ALONE)
-def test_a_sensor_alone_is_where_the_tutorial_puts_it(sensor: str) -> None:
+def test_single_sensor_is_mounted_as_in_tutorial(sensor: str) -> None:
     link = f"{sensor}_link"
     of_tutorial, ours = load(PACKAGE / "urdf" / ALONE[sensor]), robot_of({sensor: "true"})
     assert ours.joints[f"{sensor}_joint"].origin == of_tutorial.joints[f"{sensor}_joint"].origin
@@ -73,7 +73,7 @@ def test_a_sensor_alone_is_where_the_tutorial_puts_it(sensor: str) -> None:
     ]
 
 
-def test_the_base_is_that_of_the_tutorial() -> None:
+def test_base_matches_tutorial() -> None:
     base, ours = load(PACKAGE / "urdf" / "mbot_base.urdf"), robot_of({})
     for link in base.links.values():
         assert [visual.geometry for visual in ours.links[link.name].visuals] == [visual.geometry for visual in link.visuals]
@@ -85,7 +85,7 @@ def test_the_base_is_that_of_the_tutorial() -> None:
 @pytest.mark.parametrize(
     ("simulator", "drive"), [("classic", "libgazebo_ros_diff_drive.so"), ("gz", "gz-sim-diff-drive-system")]
 )
-def test_the_drive_knows_the_wheels(simulator: str, drive: str) -> None:
+def test_diff_drive_parameters_match_wheels(simulator: str, drive: str) -> None:
     plugins = {
         plugin.attributes["filename"]: {child.tag: child.text() for child in plugin.elements()}
         for extension in robot_of({"simulator": simulator}).extensions
@@ -99,7 +99,7 @@ def test_the_drive_knows_the_wheels(simulator: str, drive: str) -> None:
     assert radius == pytest.approx(0.06)
 
 
-def test_optical_frames_look_along_the_sensors_x_axis() -> None:
+def test_optical_frames_look_along_sensor_x_axis() -> None:
     robot = robot_of({"camera": "true", "kinect": "true"})
     tree = KinematicTree(robot)
     frames = tree.forward({joint: 0.0 for joint in robot.joints if "wheel" in joint or "caster" in joint})
@@ -110,7 +110,7 @@ def test_optical_frames_look_along_the_sensors_x_axis() -> None:
 
 
 def height(robot: Robot, link: str) -> float:
-    """How high a link's frame is above the footprint, in metres; the model's fixed joints are not turned."""
+    """How high a link's frame is above the footprint, in meters; the model's fixed joints are not turned."""
     by_child = {joint.child: joint for joint in robot.joints.values()}
     above = 0.0
     while link in by_child:
@@ -120,7 +120,7 @@ def height(robot: Robot, link: str) -> float:
 
 
 def extents(robot: Robot) -> dict[str, tuple[float, float]]:
-    """The lowest and the highest point of each link's collision above the ground, in metres."""
+    """The lowest and the highest point of each link's collision above the ground, in meters."""
     found = {}
     for link in robot.links.values():
         for collision in link.collisions:

@@ -23,7 +23,7 @@ MODELS = sorted((GAZEBO_PACKAGE / "models").iterdir())
 LAUNCH_FILES = sorted((GAZEBO_PACKAGE / "launch").glob("*.launch.py"))
 ROBOT_HEIGHT = 0.4
 START_RADIUS = 0.3
-"""What has to be free around the origin, in metres; mbot's own radius is 0.2."""
+"""What has to be free around the origin, in meters; mbot's own radius is 0.2."""
 
 
 @pytest.fixture(scope="module")
@@ -33,7 +33,7 @@ def tool() -> Iterator[ModuleType]:
         yield load_tool("make_gazebo_worlds")
 
 
-def test_the_files_are_what_the_tool_writes(tool: ModuleType) -> None:
+def test_files_match_generator_output(tool: ModuleType) -> None:
     written = tool.generate()
     for name, text in written.items():
         assert (GAZEBO_PACKAGE / name).read_text(encoding="utf-8") == text, name
@@ -42,7 +42,7 @@ def test_the_files_are_what_the_tool_writes(tool: ModuleType) -> None:
         assert there == {name for name in written if name.startswith(folder)}
 
 
-def test_the_check_finds_a_stale_file(
+def test_generator_check_reports_stale_file(
     tool: ModuleType, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
     monkeypatch.setattr(tool, "PACKAGE", tmp_path)
@@ -52,19 +52,19 @@ def test_the_check_finds_a_stale_file(
     assert tool.main(["--check"]) == 0
 
 
-def test_the_worlds_are_those_of_the_tutorial() -> None:
+def test_worlds_match_tutorial() -> None:
     assert {path.stem for path in WORLDS} == {"empty", "obstacles", "house", "maze", "playground", "line_track"}
 
 
 @pytest.mark.parametrize("path", [*WORLDS, *(model / "model.sdf" for model in MODELS), GAZEBO_PACKAGE], ids=str)
-def test_nothing_is_found_in_them(path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+def test_worlds_have_no_findings(path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     assert main(["check", "--strict", str(path)]) == 0
     shown = capsys.readouterr()
     assert "not found" not in shown.out + shown.err
 
 
 @pytest.mark.parametrize("path", WORLDS, ids=lambda path: path.stem)
-def test_the_robot_has_room_where_it_starts(path: Path) -> None:
+def test_robot_start_area_is_free(path: Path) -> None:
     for name, x, y, yaw, size in solid_boxes(path):
         # The origin in the box's own axes, and how far it is from the box.
         along, across = (-x * math.cos(yaw) - y * math.sin(yaw), x * math.sin(yaw) - y * math.cos(yaw))
@@ -76,7 +76,7 @@ def test_the_robot_has_room_where_it_starts(path: Path) -> None:
 
 
 def solid_boxes(path: Path) -> Iterator[tuple[str, float, float, float, tuple[float, ...]]]:
-    """The boxes of a world that the robot can run into: name, x, y, yaw and size, metres and radians."""
+    """The boxes of a world that the robot can run into: name, x, y, yaw and size, meters and radians."""
     for model in ET.parse(path).getroot().iter("model"):
         for collision in model.iter("collision"):
             text = collision.findtext("geometry/box/size")
@@ -88,7 +88,7 @@ def solid_boxes(path: Path) -> Iterator[tuple[str, float, float, float, tuple[fl
                 yield f"{model.get('name')}/{collision.get('name')}", x, y, yaw, size
 
 
-def test_every_cell_of_the_maze_can_be_reached_and_one_leads_out() -> None:
+def test_maze_cells_are_reachable_and_one_is_exit() -> None:
     cell, size = 1.1, 9
     boxes = list(solid_boxes(GAZEBO_PACKAGE / "worlds" / "maze.world"))
 
@@ -117,7 +117,7 @@ def test_every_cell_of_the_maze_can_be_reached_and_one_leads_out() -> None:
     assert ways_out == [(size, size - 1)]
 
 
-def test_the_bridge_hands_over_each_topic_of_the_robot() -> None:
+def test_bridge_covers_all_robot_topics() -> None:
     bridged = {each["gz_topic_name"]: each for each in bridge()}
     robot = load(
         PACKAGE / "urdf" / "mbot_gazebo.xacro",
@@ -140,7 +140,7 @@ def bridge() -> list[dict[str, Any]]:
 
 
 @pytest.mark.parametrize("name", ["mbot", "mbot_camera", "mbot_kinect", "mbot_laser"])
-def test_what_rviz_shows_is_published(name: str) -> None:
+def test_rviz_topics_are_bridged(name: str) -> None:
     text = (GAZEBO_PACKAGE / "rviz" / f"{name}.rviz").read_text(encoding="utf-8")
     displays = yaml.safe_load(text)["Visualization Manager"]["Displays"]
     shown = {display["Topic"]["Value"].lstrip("/") for display in displays if "Topic" in display}
@@ -149,7 +149,7 @@ def test_what_rviz_shows_is_published(name: str) -> None:
 
 
 @pytest.mark.parametrize("path", LAUNCH_FILES, ids=lambda path: path.name)
-def test_the_manifest_names_what_a_launch_file_needs(path: Path) -> None:
+def test_manifest_declares_launch_file_dependencies(path: Path) -> None:
     manifest = ET.parse(GAZEBO_PACKAGE / "package.xml").getroot()
     named = {element.text for element in manifest.iter("exec_depend")} | {manifest.findtext("name")}
     tree = ast.parse(path.read_text(encoding="utf-8"))

@@ -15,7 +15,7 @@ from tests.repository_tools import load_tool
 
 MESH = PACKAGE / "meshes" / "kinect.dae"
 COLLADA = {"c": "http://www.collada.org/2005/11/COLLADASchema"}
-PARTS = ["body", "foot", "emitter", "colour_lens", "depth_lens", "led"]
+PARTS = ["body", "foot", "emitter", "color_lens", "depth_lens", "led"]
 
 
 @pytest.fixture(scope="module")
@@ -61,11 +61,11 @@ def geometries(collada: ET.Element) -> dict[str, Geometry]:
     return {geometry.name: geometry for geometry in found}
 
 
-def test_the_file_is_what_the_tool_writes(tool: ModuleType) -> None:
+def test_file_matches_generator_output(tool: ModuleType) -> None:
     assert MESH.read_bytes() == tool.generate().encode("utf-8")
 
 
-def test_the_check_finds_a_stale_file(
+def test_generator_check_reports_stale_file(
     tool: ModuleType, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
     monkeypatch.setattr(tool, "TARGET", tmp_path / "meshes" / "kinect.dae")
@@ -76,7 +76,7 @@ def test_the_check_finds_a_stale_file(
     assert (tmp_path / "meshes" / "kinect.dae").read_bytes() == MESH.read_bytes()
 
 
-def test_units_and_up_axis(collada: ET.Element) -> None:
+def test_mesh_uses_meters_and_z_up(collada: ET.Element) -> None:
     assert collada.attrib["version"] == "1.4.1"
     unit = collada.find("c:asset/c:unit", COLLADA)
     assert unit is not None
@@ -84,7 +84,7 @@ def test_units_and_up_axis(collada: ET.Element) -> None:
     assert collada.findtext("c:asset/c:up_axis", namespaces=COLLADA) == "Z_UP"
 
 
-def test_every_part_is_in_the_scene_with_a_material_that_exists(
+def test_parts_are_in_scene_with_existing_materials(
     collada: ET.Element, geometries: dict[str, Geometry]
 ) -> None:
     assert list(geometries) == PARTS
@@ -111,14 +111,14 @@ def test_surfaces_are_closed_and_face_outward(geometries: dict[str, Geometry], p
 
 
 @pytest.mark.parametrize("part", PARTS)
-def test_normals_are_unit_and_agree_with_the_faces(geometries: dict[str, Geometry], part: str) -> None:
+def test_normals_have_unit_length_and_match_faces(geometries: dict[str, Geometry], part: str) -> None:
     geometry = geometries[part]
     assert np.allclose(np.linalg.norm(geometry.normals, axis=-1), 1.0, atol=1e-5)
     facing = np.einsum("tci,ti->tc", geometry.normals, geometry.mesh.face_normals)
     assert facing.min() > 0.9
 
 
-def test_size_and_place(geometries: dict[str, Geometry]) -> None:
+def test_mesh_has_expected_size_and_position(geometries: dict[str, Geometry]) -> None:
     lower = np.min([geometry.mesh.bounds[0] for geometry in geometries.values()], axis=0)
     upper = np.max([geometry.mesh.bounds[1] for geometry in geometries.values()], axis=0)
     assert upper - lower == pytest.approx([0.28, 0.07, 0.046], abs=1e-6)
@@ -128,8 +128,8 @@ def test_size_and_place(geometries: dict[str, Geometry]) -> None:
     assert geometries["foot"].mesh.bounds[0][2] == pytest.approx(lower[2])
 
 
-def test_the_lenses_look_along_minus_y(geometries: dict[str, Geometry]) -> None:
+def test_lenses_face_negative_y(geometries: dict[str, Geometry]) -> None:
     body = geometries["body"].mesh.bounds
-    for name in ("emitter", "colour_lens", "depth_lens", "led"):
+    for name in ("emitter", "color_lens", "depth_lens", "led"):
         bounds = geometries[name].mesh.bounds
         assert bounds[0][1] < body[0][1] < bounds[1][1], "stands out of the body's front and begins inside it"

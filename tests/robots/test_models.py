@@ -46,7 +46,7 @@ def load_model(name: str) -> Robot:
 
 
 @pytest.mark.parametrize("name", LINKS)
-def test_links(name: str) -> None:
+def test_models_have_expected_links(name: str) -> None:
     robot = load_model(name)
     assert robot.name == "mbot"
     assert robot.root == "base_link"
@@ -56,7 +56,7 @@ def test_links(name: str) -> None:
 
 
 @pytest.mark.parametrize("name", LINKS)
-def test_wheels_and_casters_turn_about_y_and_the_rest_is_fixed(name: str) -> None:
+def test_wheels_and_casters_rotate_about_y_and_rest_is_fixed(name: str) -> None:
     robot = load_model(name)
     turning = {joint.name for joint in robot.joints.values() if joint.type == "continuous"}
     assert turning == {"left_wheel_joint", "right_wheel_joint", "front_caster_joint", "back_caster_joint"}
@@ -66,7 +66,7 @@ def test_wheels_and_casters_turn_about_y_and_the_rest_is_fixed(name: str) -> Non
 
 
 @pytest.mark.parametrize("name", LINKS)
-def test_wheels_stand_on_the_ground_where_the_casters_do(name: str) -> None:
+def test_wheels_and_casters_reach_same_ground(name: str) -> None:
     robot = load_model(name)
     assert robot.joints["left_wheel_joint"].origin.xyz == pytest.approx((0.0, 0.19, -0.05))
     assert robot.joints["right_wheel_joint"].origin.xyz == pytest.approx((0.0, -0.19, -0.05))
@@ -76,7 +76,7 @@ def test_wheels_stand_on_the_ground_where_the_casters_do(name: str) -> None:
     assert robot.joints["front_caster_joint"].origin.xyz[2] - caster.radius == pytest.approx(ground)  # type: ignore[union-attr]
 
 
-def test_the_upper_deck_is_centred_0_32_m_above_base_link() -> None:
+def test_upper_deck_is_centered_0_32_m_above_base_link() -> None:
     robot = load_model("mbot_base.xacro")
     joint = robot.joints["base_link_to_upper"]
     plate = robot.links["base_link_upper"].visuals[0]
@@ -86,7 +86,7 @@ def test_the_upper_deck_is_centred_0_32_m_above_base_link() -> None:
 
 
 @pytest.mark.parametrize("name", LINKS)
-def test_every_visual_but_the_mesh_has_a_colour(name: str) -> None:
+def test_visuals_except_mesh_have_color(name: str) -> None:
     for link in load_model(name).links.values():
         (visual,) = link.visuals
         colored = visual.material is not None and visual.material.rgba is not None
@@ -94,7 +94,7 @@ def test_every_visual_but_the_mesh_has_a_colour(name: str) -> None:
 
 
 @pytest.mark.parametrize("name", ["mbot_with_kinect.urdf", "mbot_base.xacro"])
-def test_the_mesh_is_in_the_package(name: str) -> None:
+def test_kinect_mesh_is_in_package(name: str) -> None:
     (visual,) = load_model(name).links["kinect_link"].visuals
     assert isinstance(visual.geometry, Mesh)
     finder = PackageFinder(start=PACKAGE, environment={})
@@ -102,7 +102,7 @@ def test_the_mesh_is_in_the_package(name: str) -> None:
 
 
 @pytest.mark.parametrize("name", SENSORS)
-def test_sensor_macros_attach_a_sensor_to_a_link(name: str, tmp_path: Path) -> None:
+def test_sensor_macros_attach_sensor_to_link(name: str, tmp_path: Path) -> None:
     macro, link, kind = SENSORS[name]
     model = tmp_path / "robot.xacro"
     model.write_text(
@@ -121,13 +121,13 @@ def test_sensor_macros_attach_a_sensor_to_a_link(name: str, tmp_path: Path) -> N
 
 
 @pytest.mark.parametrize("name", LINKS)
-def test_same_robot_as_the_tutorials(name: str) -> None:
+def test_models_match_tutorial_facts(name: str) -> None:
     assert _facts(load_model(name)) == _approximately(TUTORIAL["models"][name])
 
 
 @pytest.mark.skipif(not PUBLISHED.is_dir(), reason="the tutorial's files are not beside this checkout")
 @pytest.mark.parametrize("name", LINKS)
-def test_the_recorded_facts_are_those_of_the_published_files(name: str) -> None:
+def test_tutorial_facts_match_published_files(name: str) -> None:
     assert _facts(load(PUBLISHED / "urdf" / name)) == TUTORIAL["models"][name]
 
 
@@ -147,9 +147,9 @@ def _visuals(robot: Robot) -> dict[str, list[Any]]:
 
 
 def _visual(visual: Visual) -> list[Any]:
-    colour = list(visual.material.rgba) if visual.material and visual.material.rgba else None
+    color = list(visual.material.rgba) if visual.material and visual.material.rgba else None
     shape = type(visual.geometry).__name__
-    return [shape, *_numbers(visual.geometry), *visual.origin.xyz, *visual.origin.rpy, visual.material_name, colour]
+    return [shape, *_numbers(visual.geometry), *visual.origin.xyz, *visual.origin.rpy, visual.material_name, color]
 
 
 def _numbers(geometry: Any) -> list[Any]:

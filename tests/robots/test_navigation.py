@@ -39,7 +39,7 @@ GOALS = [
 
 
 @pytest.mark.slow
-def test_twenty_goals_in_all_rooms_are_reached_and_nothing_is_touched():
+def test_twenty_goals_in_all_rooms_are_reached_without_contact():
     with House() as house:
         for x, y, yaw in GOALS:
             assert house.go_to(x, y, yaw) == GoalStatus.SUCCEEDED, (x, y)
@@ -47,7 +47,7 @@ def test_twenty_goals_in_all_rooms_are_reached_and_nothing_is_touched():
         assert house.touched == set()
 
 
-def test_it_goes_through_a_door_and_is_stopped():
+def test_robot_passes_door_and_goal_is_canceled():
     with House() as house:
         assert house.go_to(-1.9, 1.6, 1.57) == GoalStatus.SUCCEEDED
         assert math.dist(house.place(), (-1.9, 1.6)) < 0.3
@@ -64,14 +64,14 @@ def test_it_goes_through_a_door_and_is_stopped():
         assert house.touched == set()
 
 
-def test_what_it_touches_is_noticed():
+def test_contacts_are_detected():
     with House() as house:
         house.drive(0.5)
         house.advance_and_watch(5.0)
         assert house.touched == {"walls::link::wall_13#collision"}
 
 
-def test_a_goal_in_a_wall_is_refused_with_a_reason():
+def test_goal_in_wall_is_aborted_with_reason():
     with House() as house:
         assert house.go_to(-0.9, 2.4, seconds=20.0) == GoalStatus.ABORTED
         assert any("the goal (-0.90, 2.40) is" in text for text in house.logged())
@@ -79,7 +79,7 @@ def test_a_goal_in_a_wall_is_refused_with_a_reason():
 
 
 @pytest.mark.slow
-def test_an_obstacle_that_appears_on_the_way_is_driven_around():
+def test_robot_avoids_obstacle_appearing_on_path():
     with House() as house:
         results = house.send(-3.2, 0.0)
         house.advance_and_watch(2.0)

@@ -42,7 +42,7 @@ def test_manifest_is_valid(manifest: Package) -> None:
     assert manifest.get_build_type() == "ament_python"
 
 
-def test_manifest_names_every_package_that_the_launch_files_need(manifest: Package) -> None:
+def test_manifest_declares_launch_file_dependencies(manifest: Package) -> None:
     needed = {dependency.name for dependency in manifest.exec_depends}
     for name in LAUNCH_FILES:
         tree = ast.parse((PACKAGE / "launch" / name).read_text(encoding="utf-8"))
@@ -52,7 +52,7 @@ def test_manifest_names_every_package_that_the_launch_files_need(manifest: Packa
         assert imported | set(_node_words(tree, "package")) <= needed
 
 
-def test_setup_py_agrees_with_the_manifest(manifest: Package) -> None:
+def test_setup_py_matches_manifest(manifest: Package) -> None:
     tree = ast.parse((PACKAGE / "setup.py").read_text(encoding="utf-8"))
     (call,) = [node for node in ast.walk(tree) if isinstance(node, ast.Call) and _name(node) == "setup"]
     values = {word.arg: word.value for word in call.keywords}
@@ -63,7 +63,7 @@ def test_setup_py_agrees_with_the_manifest(manifest: Package) -> None:
 
 
 @pytest.mark.parametrize("name", LAUNCH_FILES)
-def test_launch_arguments(name: str) -> None:
+def test_launch_files_declare_expected_arguments(name: str) -> None:
     tree = ast.parse((PACKAGE / "launch" / name).read_text(encoding="utf-8"))
     declared = [
         node for node in ast.walk(tree) if isinstance(node, ast.Call) and _name(node) == "DeclareLaunchArgument"
@@ -80,13 +80,13 @@ def test_launch_arguments(name: str) -> None:
 
 
 @pytest.mark.parametrize("name", LAUNCH_FILES)
-def test_launch_nodes(name: str) -> None:
+def test_launch_files_start_expected_nodes(name: str) -> None:
     tree = ast.parse((PACKAGE / "launch" / name).read_text(encoding="utf-8"))
     started = {"joint_state_publisher", "joint_state_publisher_gui", "robot_state_publisher", "rviz2"}
     assert set(_node_words(tree, "executable")) == started
 
 
-def test_rviz_configuration(rviz: dict[str, Any]) -> None:
+def test_rviz_configuration_has_expected_displays(rviz: dict[str, Any]) -> None:
     manager = rviz["Visualization Manager"]
     displays = {display["Name"]: display for display in manager["Displays"]}
     assert list(displays) == ["Grid", "RobotModel", "TF"]
@@ -98,12 +98,12 @@ def test_rviz_configuration(rviz: dict[str, Any]) -> None:
     assert manager["Global Options"]["Fixed Frame"] == "base_link"
 
 
-def test_rviz_configuration_keeps_every_value_of_the_tutorials(rviz: dict[str, Any]) -> None:
+def test_rviz_configuration_contains_tutorial_values(rviz: dict[str, Any]) -> None:
     _assert_within(TUTORIAL["rviz"], rviz, "")
 
 
 @pytest.mark.skipif(not PUBLISHED.is_dir(), reason="the tutorial's files are not beside this checkout")
-def test_the_recorded_values_are_those_of_the_published_file() -> None:
+def test_tutorial_values_match_published_file() -> None:
     assert yaml.safe_load((PUBLISHED / "rviz" / "urdf.rviz").read_text(encoding="utf-8")) == TUTORIAL["rviz"]
 
 

@@ -33,7 +33,7 @@ def follow_object(monkeypatch: pytest.MonkeyPatch) -> Iterator[ModuleType]:
         del sys.modules[name]
 
 
-def test_a_ball_that_moves_is_followed(follow_object: Any, tmp_path: Path) -> None:
+def test_follow_object_follows_moving_ball(follow_object: Any, tmp_path: Path) -> None:
     with SeekingRobot(tmp_path, (-1.5, 0.5)) as test:
         test.init_rclpy(["--ros-args", "-p", "thing:=ball", "-p", "use_sim_time:=true"])
         follow_object.FollowObject()
@@ -51,7 +51,7 @@ def test_a_ball_that_moves_is_followed(follow_object: Any, tmp_path: Path) -> No
         assert (speed.linear.x, speed.angular.z) == (0.0, 0.0), "a detector that says nothing stops it"
 
 
-def test_what_the_node_decides(follow_object: Any) -> None:
+def test_decision_tests_of_package_pass(follow_object: Any) -> None:
     path = VISION_PACKAGE / "test" / "test_decisions.py"
     names: dict[str, Any] = {"__name__": "test_decisions"}
     exec(compile(path.read_text(encoding="utf-8"), str(path), "exec"), names)
@@ -61,19 +61,19 @@ def test_what_the_node_decides(follow_object: Any) -> None:
         test()
 
 
-def test_the_package_is_checked(capsys: pytest.CaptureFixture[str]) -> None:
+def test_package_has_no_findings(capsys: pytest.CaptureFixture[str]) -> None:
     assert main(["check", "--strict", str(VISION_PACKAGE)]) == 0, capsys.readouterr().out
 
 
 @pytest.mark.parametrize("name", ["detect", "follow_object"])
-def test_launch_files_start_the_nodes(name: str, capsys: pytest.CaptureFixture[str]) -> None:
+def test_launch_files_start_nodes(name: str, capsys: pytest.CaptureFixture[str]) -> None:
     assert main(["launch", str(VISION_PACKAGE / "launch" / f"{name}.launch.py"), "--print"]) == 0
     output = capsys.readouterr().out
     for executable in ("detector", "tracking_node", "detect_3d_node", "object_seeker", "voice_commander", "gazebo"):
         assert executable in output
 
 
-def test_each_program_of_the_package_is_a_node_of_ours_or_its_own() -> None:
+def test_entry_points_match_executables() -> None:
     setup = (VISION_PACKAGE / "setup.py").read_text(encoding="utf-8")
     for name in ("detector", "tracking_node", "detect_3d_node", "object_seeker"):
         assert ("my_robot_vision", name) in EXECUTABLES
@@ -81,7 +81,7 @@ def test_each_program_of_the_package_is_a_node_of_ours_or_its_own() -> None:
 
 
 @pytest.mark.slow
-def test_colcon_installs_everything(tmp_path: Path) -> None:
+def test_colcon_installs_package_completely(tmp_path: Path) -> None:
     (tmp_path / "src").mkdir()
     (tmp_path / "src" / VISION_PACKAGE.name).symlink_to(VISION_PACKAGE)
     colcon_build(tmp_path, VISION_PACKAGE.name)

@@ -25,7 +25,7 @@ ROBOT = "package://my_robot_description/urdf/mbot_gazebo.xacro"
 STRING = get_message("std_msgs/msg/String")
 
 
-def test_the_commands_are_the_built_in_ones_with_the_rooms_of_the_house():
+def test_commands_are_built_in_commands_with_rooms():
     built_in, ours = read_command_file(DEFAULT_FILE), read_command_file(COMMANDS)
     assert ours.commands == built_in.commands
     assert set(ours.places) - set(built_in.places) == {"kitchen", "bedroom", "study"}
@@ -36,20 +36,20 @@ def test_the_commands_are_the_built_in_ones_with_the_rooms_of_the_house():
 
 
 @pytest.mark.parametrize("name", ["audio_capture", "voice_commander"])
-def test_the_programs_for_ros_2_are_the_nodes_of_their_names(name):
+def test_entry_points_run_nodes_of_same_name(name):
     assert f"'{name} = my_robot_voice.{name}:main'" in (VOICE_PACKAGE / "setup.py").read_text()
     program = (VOICE_PACKAGE / "my_robot_voice" / f"{name}.py").read_text()
     assert f"run('my_robot_voice', '{name}', sys.argv[1:])" in program
 
 
-def test_the_launch_file_has_its_arguments(capsys):
+def test_launch_file_declares_arguments(capsys):
     assert main(["launch", "my_robot_voice", "voice.launch.py", "--show-args"]) == 0
     output = capsys.readouterr().out
     for argument in ("engine", "language", "words_file", "commands_file", "open_listening", "wav", "navigation"):
         assert f"'{argument}':\n" in output
 
 
-async def test_mbot_is_driven_through_the_playground():
+async def test_spoken_commands_drive_robot_through_playground():
     pytest.importorskip("mujoco")
     async with AsyncSteppedSimulation(WORLD, ROBOT, period=0.02) as playground:
         given = {"engine": "", "commands_file": str(COMMANDS), "use_sim_time": True}
@@ -72,12 +72,12 @@ async def test_mbot_is_driven_through_the_playground():
         running.close()
 
 
-def test_nothing_is_found_in_the_package(capsys: pytest.CaptureFixture[str]) -> None:
+def test_package_has_no_findings(capsys: pytest.CaptureFixture[str]) -> None:
     assert main(["check", "--strict", str(VOICE_PACKAGE)]) == 0, capsys.readouterr().out
 
 
 @pytest.mark.slow
-def test_colcon_installs_everything_and_its_program_runs(tmp_path: Path) -> None:
+def test_colcon_installs_package_and_program_runs(tmp_path: Path) -> None:
     (tmp_path / "src").mkdir()
     (tmp_path / "src" / VOICE_PACKAGE.name).symlink_to(VOICE_PACKAGE)
     colcon_build(tmp_path, VOICE_PACKAGE.name)

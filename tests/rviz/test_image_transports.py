@@ -32,7 +32,7 @@ from tests.viewer.packed_images import (
 from tests.viewer.scene import world
 
 CameraInfo = get_message("sensor_msgs/msg/CameraInfo")
-MILLIMETRES = np.array([[0, 1000, 1001], [65535, 0, 1]], np.uint16)
+MILLIMETERS = np.array([[0, 1000, 1001], [65535, 0, 1]], np.uint16)
 
 
 def decode_compressed(message, transport: str = "compressedDepth"):
@@ -57,7 +57,7 @@ def values(image, kind: str) -> list:
         ("", "compressed", ("", "raw", "")),
     ],
 )
-def test_a_transport_has_a_topic_below_the_images(topic, hint, expected):
+def test_image_source_resolves_transport_topic(topic, hint, expected):
     source = ImageSource.of(topic, hint)
     assert (source.base, source.transport, source.topic) == expected
     assert source.message_type.endswith("/Image") == (source.transport == "raw")
@@ -67,15 +67,15 @@ def test_a_transport_has_a_topic_below_the_images(topic, hint, expected):
 
 
 @pytest.mark.parametrize("packing", ["png", "rvl"])
-def test_whole_depths_are_what_they_were(packing):
-    image = decode_compressed(depth_message(MILLIMETRES, packing))
+def test_integer_depths_are_decoded_losslessly(packing):
+    image = decode_compressed(depth_message(MILLIMETERS, packing))
     assert (image.encoding, image.width, image.height, image.step) == ("16UC1", 3, 2, 6)
-    assert values(image, "<u2") == MILLIMETRES.tolist()
+    assert values(image, "<u2") == MILLIMETERS.tolist()
     assert image.header.frame_id == "base"
 
 
 @pytest.mark.parametrize("packing", ["png", "rvl"])
-def test_depths_in_metres_are_nearly_what_they_were(packing):
+def test_depths_in_meters_are_decoded_within_quantization(packing):
     meters = np.array([[0.5, 1.0, 4.0, 9.0], [np.nan, np.inf, 11.0, 2.0]])
     image = decode_compressed(depth_message(meters, packing))
     assert image.encoding == "32FC1"
@@ -87,33 +87,33 @@ def test_depths_in_metres_are_nearly_what_they_were(packing):
     "form", ["16UC1", "16UC1; compressedDepth", "mono16; compressedDepth png", "16UC1;compressedDepth"]
 )
 def test_formats_of_older_publishers_are_read(form):
-    assert values(decode_compressed(packed(form, header() + png(MILLIMETRES))), "<u2") == MILLIMETRES.tolist()
+    assert values(decode_compressed(packed(form, header() + png(MILLIMETERS))), "<u2") == MILLIMETERS.tolist()
 
 
-def test_colours_and_greys_come_out_of_files():
+def test_color_and_gray_images_are_decoded():
     image = decode_compressed(packed("rgb8; jpeg compressed bgr8", jpeg((200, 100, 50), 16, 8)), "compressed")
     assert (image.encoding, image.width, image.height) == ("rgb8", 16, 8)
     assert np.allclose(image.data.reshape(-1, 3), [200, 100, 50], atol=3)
     image = decode_compressed(packed("mono8; jpeg compressed ", jpeg(90, 4, 4)), "compressed")
     assert (image.encoding, image.data.tolist()) == ("mono8", [90] * 16)
-    image = decode_compressed(packed("png", png(MILLIMETRES)), "compressed")
-    assert (image.encoding, values(image, "<u2")) == ("mono16", MILLIMETRES.tolist())
+    image = decode_compressed(packed("png", png(MILLIMETERS)), "compressed")
+    assert (image.encoding, values(image, "<u2")) == ("mono16", MILLIMETERS.tolist())
 
 
-def test_depths_may_come_as_files_too():
-    image = decode_compressed(packed("16UC1; png compressed ", png(MILLIMETRES)), "compressed")
-    assert (image.encoding, values(image, "<u2")) == ("16UC1", MILLIMETRES.tolist())
+def test_depths_are_decoded_from_compressed_transport():
+    image = decode_compressed(packed("16UC1; png compressed ", png(MILLIMETERS)), "compressed")
+    assert (image.encoding, values(image, "<u2")) == ("16UC1", MILLIMETERS.tolist())
     image = decode_compressed(packed("16UC1; jpeg compressed mono8", jpeg(4, 1, 1)), "compressed")
     assert (image.encoding, values(image, "<u2")) == ("16UC1", [[1024]])
 
 
 @given(arrays(np.uint16, st.integers(1, 60), elements=st.sampled_from([0, 0, 0, 1, 2, 900, 901, 40000, 65535])))
-def test_every_rvl_stream_comes_out_as_it_went_in(pixels):
+def test_rvl_round_trip(pixels):
     assert decode_rvl(np.frombuffer(rvl(pixels), np.uint8), len(pixels)).tolist() == pixels.tolist()
 
 
 @given(st.binary(max_size=200), st.integers(1, 5000))
-def test_no_bytes_upset_the_reader_of_rvl_streams(data, pixels):
+def test_rvl_decoder_survives_arbitrary_bytes(data, pixels):
     with suppress(BadRvlError):
         assert len(decode_rvl(np.frombuffer(data, np.uint8), pixels)) == pixels
 
@@ -121,43 +121,43 @@ def test_no_bytes_upset_the_reader_of_rvl_streams(data, pixels):
 @pytest.mark.parametrize(
     ("form", "data", "text"),
     [
-        ("jpeg", header() + png(MILLIMETRES), "The format of the depth image is 'jpeg'; supported are 16UC1"),
-        ("16UC1; compressedDepth zip", header() + png(MILLIMETRES), "supported are 16UC1, mono16 and 32FC1"),
-        ("8UC1; compressedDepth png", header() + png(MILLIMETRES), "The format of the depth image is '8UC1;"),
+        ("jpeg", header() + png(MILLIMETERS), "The format of the depth image is 'jpeg'; supported are 16UC1"),
+        ("16UC1; compressedDepth zip", header() + png(MILLIMETERS), "supported are 16UC1, mono16 and 32FC1"),
+        ("8UC1; compressedDepth png", header() + png(MILLIMETERS), "The format of the depth image is '8UC1;"),
         ("16UC1; compressedDepth png", header()[:7], "has 7 bytes, so it has no data after its header"),
         ("16UC1; compressedDepth png", header() + b"depths", "neither a PNG nor a JPEG"),
-        ("16UC1; compressedDepth png", header() + png(MILLIMETRES)[:50], "The PNG cannot be read: "),
-        ("16UC1; compressedDepth png", header() + png(MILLIMETRES)[:20], "The PNG cannot be read: "),
+        ("16UC1; compressedDepth png", header() + png(MILLIMETERS)[:50], "The PNG cannot be read: "),
+        ("16UC1; compressedDepth png", header() + png(MILLIMETERS)[:20], "The PNG cannot be read: "),
         (
             "16UC1; compressedDepth png",
-            header() + png(MILLIMETRES, says=(60000, 60000)),
+            header() + png(MILLIMETERS, says=(60000, 60000)),
             "The PNG has 60000 x 60000 pixels; at most 16777216 are supported",
         ),
         (
             "16UC1; compressedDepth png",
-            header() + png(MILLIMETRES.astype(np.uint8)),
+            header() + png(MILLIMETERS.astype(np.uint8)),
             "not a PNG of 16 bits and one channel",
         ),
-        ("32FC1; compressedDepth png", header(0.0, 1.0) + png(MILLIMETRES), "has an invalid scale of the depths: 0, 1"),
+        ("32FC1; compressedDepth png", header(0.0, 1.0) + png(MILLIMETERS), "has an invalid scale of the depths: 0, 1"),
         (
             "32FC1; compressedDepth png",
-            header(np.nan, 1.0) + png(MILLIMETRES),
+            header(np.nan, 1.0) + png(MILLIMETERS),
             "has an invalid scale of the depths: nan, 1",
         ),
         ("16UC1; compressedDepth rvl", header() + b"1234567", "is too short to contain its size"),
         (
             "16UC1; compressedDepth rvl",
-            header() + sized_rvl(MILLIMETRES, says=(4_000_000_000, 4_000_000_000)),
+            header() + sized_rvl(MILLIMETERS, says=(4_000_000_000, 4_000_000_000)),
             "declares 4000000000 x 4000000000 pixels; 1 to 16777216 are supported",
         ),
-        ("16UC1; compressedDepth rvl", header() + sized_rvl(MILLIMETRES, says=(0, 7)), "declares 0 x 7"),
+        ("16UC1; compressedDepth rvl", header() + sized_rvl(MILLIMETERS, says=(0, 7)), "declares 0 x 7"),
         (
             "16UC1; compressedDepth rvl",
-            header() + sized_rvl(MILLIMETRES)[:-4],
+            header() + sized_rvl(MILLIMETERS)[:-4],
             "The RVL depth image of 3 x 2 pixels cannot be read: it ends",
         ),
-        ("16UC1; compressedDepth rvl", header() + sized_rvl(MILLIMETRES, says=(1, 2)), "pixels too many"),
-        ("16UC1; compressedDepth rvl", header() + sized_rvl(MILLIMETRES, says=(30, 20)), "empty run|pixels too early"),
+        ("16UC1; compressedDepth rvl", header() + sized_rvl(MILLIMETERS, says=(1, 2)), "pixels too many"),
+        ("16UC1; compressedDepth rvl", header() + sized_rvl(MILLIMETERS, says=(30, 20)), "empty run|pixels too early"),
         (
             "16UC1; compressedDepth rvl",
             header() + struct.pack("<II", 2, 2) + b"\xff" * 40 + bytes(4),
@@ -165,23 +165,23 @@ def test_no_bytes_upset_the_reader_of_rvl_streams(data, pixels):
         ),
     ],
 )
-def test_what_is_wrong_with_a_depth_image_is_said(form, data, text):
+def test_malformed_depth_image_is_rejected_with_reason(form, data, text):
     with pytest.raises(BadImageError, match=text):
         decode_compressed(packed(form, data))
 
 
-def test_what_is_wrong_with_a_colour_image_is_said():
+def test_malformed_color_image_is_rejected_with_reason():
     for data, text in (
         (b"", "neither a PNG nor a JPEG"),
         (jpeg(9, 64, 64)[:100], "The JPEG cannot be read: "),
-        (png(MILLIMETRES, says=(1 << 30, 1 << 30)), r"The PNG has 1073741824 x 1073741824 pixels"),
+        (png(MILLIMETERS, says=(1 << 30, 1 << 30)), r"The PNG has 1073741824 x 1073741824 pixels"),
     ):
         with pytest.raises(BadImageError, match=text):
             decode_compressed(packed("rgb8; jpeg compressed bgr8", data), "compressed")
 
 
-def test_a_file_with_too_many_pixels_is_not_unpacked_to_be_made_smaller():
-    data = np.frombuffer(png(MILLIMETRES, says=(9000, 9000)), np.uint8)
+def test_image_with_too_many_pixels_is_not_compressed():
+    data = np.frombuffer(png(MILLIMETERS, says=(9000, 9000)), np.uint8)
     frame = ImageFrame(0, 0, 0, 0, "file", data, None)
     assert ImageCompressor().compressed(frame, 10) is frame
 
@@ -194,7 +194,7 @@ def info(node):
 
 
 @pytest.mark.parametrize("packing", ["png", "rvl"])
-async def test_a_depth_cloud_takes_the_transports_of_its_hints(packing):
+async def test_depth_cloud_follows_transport_hints(packing):
     topics = {
         "Depth_Map_Topic": "/depth/image",
         "Depth_Map_Transport_Hint": "compressedDepth",
@@ -218,7 +218,7 @@ async def test_a_depth_cloud_takes_the_transports_of_its_hints(packing):
         assert (status["Depth Image Size"], status["Image Size"]) == (("ok", "2 x 1"), ("ok", "2 x 1"))
 
 
-async def test_a_depth_topic_may_name_its_transport_itself():
+async def test_depth_topic_may_name_its_transport():
     async with world(clouds.config("DepthCloud", Depth_Map_Topic="/depth/image/compressedDepth")) as w:
         node = w.graph.create_node("camera")
         info(node)
@@ -230,7 +230,7 @@ async def test_a_depth_topic_may_name_its_transport_itself():
         assert (x, y, round(z, 2)) == (0.0, 0.0, 2.0)
 
 
-async def test_a_broken_depth_image_is_one_row_of_the_status_until_a_whole_one_comes():
+async def test_malformed_depth_image_status_is_cleared_by_valid_image():
     topics = {"Depth_Map_Topic": "/depth/image", "Depth_Map_Transport_Hint": "compressedDepth"}
     async with world(clouds.config("DepthCloud", **topics)) as w:
         node = w.graph.create_node("camera")
@@ -246,7 +246,7 @@ async def test_a_broken_depth_image_is_one_row_of_the_status_until_a_whole_one_c
         assert w.status("DepthCloud")["Message"] == ("ok", "Ok")
 
 
-async def test_a_depth_cloud_says_that_theora_is_not_read_until_another_transport_is_chosen():
+async def test_depth_cloud_reports_unsupported_theora_transport():
     topics = {"Depth_Map_Topic": "/depth/image", "Color_Image_Topic": "/c", "Color_Transport_Hint": "theora"}
     async with world(clouds.config("DepthCloud", **topics)) as w:
         text = "Images of transport 'theora' are not supported: choose raw, compressed or compressedDepth"
@@ -256,7 +256,7 @@ async def test_a_depth_cloud_says_that_theora_is_not_read_until_another_transpor
         assert "Color Transport Hint" not in w.status("DepthCloud")
 
 
-async def test_an_image_display_shows_depths_as_greys():
+async def test_image_display_shows_depths_in_gray():
     async with world(images.config("Image", "/camera/depth/compressedDepth")) as w:
         display = w.display("Image")
         publisher = w.graph.create_node("camera").create_publisher(CompressedImage, "/camera/depth/compressedDepth", 5)
@@ -276,7 +276,7 @@ async def test_an_image_display_shows_depths_as_greys():
         assert w.status("Image")["Image"] == ("error", text)
 
 
-async def test_files_of_more_than_eight_bits_are_given_a_range():
+async def test_compressed_16_bit_images_have_range():
     async with world(images.config("Image", "/camera/depth/compressed")) as w:
         publisher = w.graph.create_node("camera").create_publisher(CompressedImage, "/camera/depth/compressed", 5)
         publisher.publish(packed("16UC1; png compressed ", png(np.array([[0, 500, 1000]], np.uint16))))
@@ -284,7 +284,7 @@ async def test_files_of_more_than_eight_bits_are_given_a_range():
         assert contents(w.display("Image"))[0].fields["data"].tolist() == [0, 127, 255]
 
 
-async def test_a_camera_shows_depths_beside_its_camera_info():
+async def test_camera_display_shows_compressed_depths():
     async with world(images.config("Camera", "/camera/depth/compressedDepth")) as w:
         node = w.graph.create_node("camera")
         node.create_publisher(CameraInfo, "/camera/camera_info", 5).publish(images.info(2, 1))
@@ -297,7 +297,7 @@ async def test_a_camera_shows_depths_beside_its_camera_info():
 
 
 @pytest.mark.parametrize("cls", ["Image", "Camera"])
-async def test_images_of_theora_are_not_read_and_their_topics_that_are_named(cls):
+async def test_theora_image_status_names_supported_topics(cls):
     async with world(images.config(cls, "/camera/image/theora")) as w:
         text = "Images of transport 'theora' are not supported: choose /camera/image or /camera/image/compressed"
         assert w.status(cls)["Topic"] == ("error", text)

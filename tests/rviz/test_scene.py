@@ -44,13 +44,13 @@ def test_shapes_have_their_sizes(geometry, kind, size):
     assert (shape.kind, shape.size) == (kind, size)
 
 
-def test_a_capsule_of_a_newer_file():
+def test_capsule_of_urdf_1_1_is_built():
     text = robot(visual('<capsule radius="1" length="2"/>')).replace('name="r"', 'name="r" version="1.1"')
     (shape,) = built(text)[0]["base"].visuals
     assert (shape.kind, shape.size) == ("capsule", [1, 2])
 
 
-def test_poses_are_those_of_the_origin():
+def test_visual_pose_matches_origin():
     links, _ = built(
         robot(
             f'<visual><origin xyz="1 2 3" rpy="0 0 {math.pi / 2}"/><geometry><sphere radius="1"/></geometry></visual>'
@@ -61,7 +61,7 @@ def test_poses_are_those_of_the_origin():
     assert shape.quaternion == pytest.approx([0, 0, math.sqrt(0.5), math.sqrt(0.5)])
 
 
-def test_colours_follow_the_materials():
+def test_visual_colors_follow_materials():
     box = '<box size="1 1 1"/>'
     links, _ = built(
         robot(
@@ -77,7 +77,7 @@ def test_colours_follow_the_materials():
     assert [shape.color for shape in links["base"].collisions] == [[0, 0, 1, 1]]  # of the first visual, as in RViz
 
 
-def test_links_know_their_frame_joint_and_place():
+def test_links_have_frame_joint_and_source_location():
     text = """<robot name="r">
   <link name="base"/>
   <link name="tip"/>
@@ -90,7 +90,7 @@ def test_links_know_their_frame_joint_and_place():
     assert (place.file, place.line, place.column, place.trail) == ("/some/r.urdf", 3, 3, [])
 
 
-def test_links_from_macros_know_the_calls_they_came_through(tmp_path):
+def test_links_from_macros_have_macro_call_locations(tmp_path):
     write(
         tmp_path / "wheel.xacro",
         '<robot xmlns:xacro="http://www.ros.org/wiki/xacro">\n'
@@ -108,7 +108,7 @@ def test_links_from_macros_know_the_calls_they_came_through(tmp_path):
     assert any("macro 'wheel'" in step and "main.xacro:3:3" in step for step in link.place.trail)
 
 
-def test_meshes_have_an_address_a_format_and_a_scale(tmp_path):
+def test_meshes_have_url_format_and_scale(tmp_path):
     share = package(tmp_path / "robot", "robot")
     write(share / "meshes" / "arm.STL")
     links, builder = built(
@@ -122,14 +122,14 @@ def test_meshes_have_an_address_a_format_and_a_scale(tmp_path):
     assert [folder.root for folder in builder.index.folders.values()] == [share]
 
 
-def test_relative_meshes_are_found_from_the_file_that_names_them(tmp_path):
+def test_relative_mesh_paths_are_resolved_from_naming_file(tmp_path):
     write(tmp_path / "meshes" / "arm.obj")
     text = robot(visual('<mesh filename="../meshes/arm.obj"/>'))
     links, _ = built(text, name=str(tmp_path / "urdf" / "r.urdf"))
     assert links["base"].visuals[0].url
 
 
-def test_missing_files_are_named_with_where_they_were_looked_for(tmp_path):
+def test_missing_meshes_are_reported_with_searched_paths(tmp_path):
     share = package(tmp_path / "robot", "robot")
     links, builder = built(
         robot(
@@ -149,7 +149,7 @@ def test_missing_files_are_named_with_where_they_were_looked_for(tmp_path):
     assert "package 'nobody' not found" in collision
 
 
-def test_textures_have_an_address(tmp_path):
+def test_textures_have_url(tmp_path):
     share = package(tmp_path / "robot", "robot")
     write(share / "wood.png")
     material = '<material name="w"><color rgba="1 1 1 1"/><texture filename="package://robot/wood.png"/></material>'

@@ -21,7 +21,7 @@ def joint(parent: str, child: str, xyz: str) -> str:
     )
 
 
-def test_frames_and_simple_shapes_tell_the_size():
+def test_size_includes_frames_and_primitive_shapes():
     box = '<visual><origin xyz="0 0 0.5"/><geometry><box size="2 2 1"/></geometry></visual>'
     ball = '<collision><geometry><sphere radius="0.5"/></geometry></collision>'
     links = f'<link name="a">{box}</link><link name="b">{ball}</link><link name="c"/>'
@@ -31,18 +31,18 @@ def test_frames_and_simple_shapes_tell_the_size():
     assert size.spacing == pytest.approx(0.8)
 
 
-def test_meshes_are_not_read_for_it():
+def test_size_ignores_meshes():
     mesh = '<visual><geometry><mesh filename="file:///nowhere.stl"/></geometry></visual>'
     size = measured(f'<link name="a">{mesh}</link><link name="b"/>' + joint("a", "b", "0.3 0.4 0"))
     assert size is not None
     assert (size.diagonal, size.spacing) == pytest.approx((0.5, 0.5))
 
 
-def test_a_single_point_has_no_size():
+def test_single_point_has_no_size():
     assert measured('<link name="a"/><link name="b"/>' + joint("a", "b", "0 0 0")) is None
 
 
-def test_a_robot_is_seen_without_its_frames_when_a_visual_can_be_drawn(tmp_path):
+def test_has_visuals_requires_drawable_visual(tmp_path):
     (tmp_path / "a.stl").write_text("solid")
     shapes = {
         "visual": '<visual><geometry><sphere radius="1"/></geometry></visual>',

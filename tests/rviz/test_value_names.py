@@ -11,7 +11,7 @@ from tests.places import REPOSITORY
 
 SAME = {"RGB", "RGB8", "RGBF32", "X", "XY", "XYZ", "XZ", "Y", "YZ", "Z", "compressed", "compressedDepth"}
 SAME |= {"costmap", "map", "raw", "theora"}
-"""What is called alike: axes, fields of messages, transports, and schemes of colours that ROS knows by these names."""
+"""What is called alike: axes, fields of messages, transports, and schemes of colors that ROS knows by these names."""
 
 OFFERED = """
 import gc, importlib, json, pkgutil
@@ -27,7 +27,7 @@ print(json.dumps([option for spec in found for option in spec.options]))
 """Some rows are made by functions, and only the interpreter knows them all, where nothing is frozen."""
 
 
-def test_every_choice_has_a_chinese_name_and_no_name_is_left_over():
+def test_property_choices_match_chinese_value_names():
     run = subprocess.run([sys.executable, "-c", OFFERED], capture_output=True, text=True, check=True, timeout=120)
     offered = set(json.loads(run.stdout))
     text = (REPOSITORY / "frontend/src/strings/zh/values.ts").read_text(encoding="utf-8")

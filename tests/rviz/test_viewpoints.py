@@ -28,13 +28,13 @@ def world(inside: str):
         "<plugin filename='MinimalScene' name='3D View'><camera_pose>1 2 3 0 0 1.5708</camera_pose></plugin>",
     ],
 )
-def test_the_camera_of_the_window_is_where_gazebo_and_gz_read_it(gui):
+def test_gui_camera_pose_is_read_like_gazebo(gui):
     half = math.sqrt(0.5)
     assert camera_of(world(f"<gui>{gui}</gui>")) == pytest.approx([1, 2, 3, 0, 0, half, half], abs=1e-5)
 
 
 @pytest.mark.parametrize("pose", ["", "1 2 3", "1 2 3 0 0 x", "1 2 3 0 0 inf"])
-def test_a_camera_that_is_no_pose_is_none(pose):
+def test_invalid_camera_pose_is_none(pose):
     assert camera_of(world(f"<gui><camera name='user'><pose>{pose}</pose></camera></gui>")) is None
     assert camera_of(world("")) is None
 
@@ -51,5 +51,5 @@ def test_a_camera_that_is_no_pose_is_none(pose):
         ("<model name='n'><link name='a'/><plugin name='p' filename='libdrive.so'/></model>", True),
     ],
 )
-def test_robots_move_and_have_plugins_sensors_or_some_joints(inside, is_robot):
+def test_robots_of_world_are_movable_models_with_plugins_sensors_or_joints(inside, is_robot):
     assert robots_of(world(f"<model name='m'>{inside}</model>")) == (["m"] if is_robot else [])

@@ -133,7 +133,7 @@ FULL = (
 )
 
 
-def test_everything_is_read_into_objects():
+def test_document_is_read_into_objects():
     shed, words = read(FULL)
     assert words == []
     assert (shed.name, shed.width, shed.place) == ("big", 3.0, Hook(1.5))
@@ -142,7 +142,7 @@ def test_everything_is_read_into_objects():
     assert shed.element.tag == "shed"
 
 
-def test_what_is_written_reads_back():
+def test_written_document_reads_back():
     shed, _ = read(FULL)
     text = write(Document(write_element(SHED, shed)))
     assert 'length="1"' not in text  # as by default
@@ -167,17 +167,17 @@ def test_what_is_written_reads_back():
         ('<shed name="a"><size width="1"/><shed name="b"/></shed>', ["shed lacks size"]),
     ],
 )
-def test_all_that_is_wrong_is_told_and_there_is_no_object(text, words):
+def test_all_errors_are_reported_and_no_object_is_returned(text, words):
     assert read(text) == (UNREADABLE, words)
 
 
-def test_a_report_may_give_a_value_to_go_on_with():
+def test_report_can_substitute_malformed_value():
     shed, words = read('<shed name="a"><size width="1"/><tool name="t" kg="much"/></shed>')
     assert words == ["tool of shed has a bad kg"]
     assert shed.tools[0].weight == 7.0
 
 
-def test_versions():
+def test_schema_version_selects_attributes_and_elements():
     text = '<shed name="a"><size width="1"/><tool name="t" kg="2"/><place><bed length="1"/></place></shed>'
     assert read(text, (1, 0)) == (UNREADABLE, ["kg is too new", "bed is no place"])
     shed, words = read(text, (2, 0))
@@ -185,17 +185,17 @@ def test_versions():
     assert shed.tools[0].length == 3.0
 
 
-def test_of_several_children_the_first_counts():
+def test_first_of_several_children_is_used():
     shed, _ = read('<shed name="a"><size width="1"/><size width="2"/></shed>')
     assert shed.width == 1.0
 
 
-def test_what_gave_findings_gives_them_again():
+def test_second_read_reports_same_findings():
     text = '<shed name="a"><size width="x"/></shed>'
     assert read(text) == read(text)
 
 
-def test_descriptions():
+def test_describe_element_lists_attributes():
     assert describe_element(TOOL).splitlines() == [
         "`<tool>`: something to work with",
         "",

@@ -56,7 +56,7 @@ def _is_ours(known) -> bool:
 
 
 @pytest.mark.parametrize("item", FILES)
-def test_a_world_has_what_is_known_to_be_in_it(item):
+def test_corpus_world_contents_match_known_facts(item):
     facts = item["facts"]
     found = examined(item)
     assert found.sdf is not None
@@ -72,7 +72,7 @@ def test_a_world_has_what_is_known_to_be_in_it(item):
 
 
 @pytest.mark.parametrize("item", FILES)
-def test_models_stand_where_they_are_known_to(item):
+def test_corpus_model_poses_match_known_facts(item):
     found = examined(item)
     assert found.sdf is not None
     world = with_saved_state(found.sdf.worlds[0])
@@ -92,5 +92,5 @@ def test_models_stand_where_they_are_known_to(item):
 
 
 @pytest.mark.parametrize("item", FILES)
-def test_a_world_that_simulators_take_has_no_errors(item):
+def test_corpus_world_accepted_by_simulators_has_no_errors(item):
     assert [diagnostic for diagnostic in examined(item).diagnostics if diagnostic.severity.value == "error"] == []

@@ -18,7 +18,7 @@ def near(found: Transform, *xyz: float) -> bool:
     return found[:3] == pytest.approx(xyz, abs=1e-12)
 
 
-def test_links_stand_in_the_frame_of_their_model_or_that_which_they_name():
+def test_link_pose_is_relative_to_model_or_named_frame():
     frames = Frames(
         model(
             f"""<link name="a"><pose>1 0 0 0 0 {pi / 2}</pose></link>
@@ -32,7 +32,7 @@ def test_links_stand_in_the_frame_of_their_model_or_that_which_they_name():
     assert frames.pose("b")[3:] == pytest.approx((0, 0, sqrt(0.5), sqrt(0.5)))
 
 
-def test_joints_stand_in_the_frame_of_their_child():
+def test_joint_pose_is_relative_to_child():
     frames = Frames(
         model(
             LINKS
@@ -45,7 +45,7 @@ def test_joints_stand_in_the_frame_of_their_child():
     assert near(frames.pose("k"), 2, 1, 0)
 
 
-def test_frames_stand_where_they_are_attached_or_where_they_say():
+def test_frame_pose_is_relative_to_attached_or_named_frame():
     frames = Frames(
         model(
             LINKS
@@ -59,7 +59,7 @@ def test_frames_stand_where_they_are_attached_or_where_they_say():
     assert (frames.link("f"), frames.link("g"), frames.link("h")) == ("b", "b", "a")
 
 
-def test_names_reach_into_models():
+def test_nested_names_are_resolved():
     frames = Frames(
         model(
             f"""<model name="arm"><pose>0 0 1 0 0 {pi / 2}</pose>{LINKS}<model name="hand"><pose>2 0 0 0 0 0</pose>
@@ -76,21 +76,21 @@ def test_names_reach_into_models():
     assert "leg::tip" not in frames
 
 
-def test_the_frame_of_a_model_moves_with_its_canonical_link():
+def test_model_frame_is_attached_to_canonical_link():
     assert Frames(model(LINKS)).link("__model__") == "a"
     assert Frames(model(LINKS, 'canonical_link="b"')).link("__model__") == "b"
     only_inner = '<model name="i"><link name="l"/></model>'
     assert Frames(model(only_inner)).link("__model__") == "i::l"
 
 
-def test_a_placement_frame_is_put_where_the_pose_says():
+def test_placement_frame_is_placed_at_model_pose():
     found = world(f"""<model name="m" placement_frame="b"><pose>5 0 0 0 0 {pi / 2}</pose>{LINKS}</model>""")
     frames = Frames(found)
     assert near(frames.pose("m"), 5, -1, 0)
     assert near(frames.pose("m::b"), 5, 0, 0)
 
 
-def test_an_axis_is_told_in_the_frame_of_its_joint():
+def test_axis_is_expressed_in_joint_frame():
     for written in (
         '<xyz expressed_in="__model__">1 0 0</xyz>',
         "<xyz>1 0 0</xyz><use_parent_model_frame>1</use_parent_model_frame>",
@@ -104,20 +104,20 @@ def test_an_axis_is_told_in_the_frame_of_its_joint():
         assert Frames(owner).axis(joint, joint.axis) == pytest.approx((0, -1, 0))
 
 
-def test_a_chain_of_frames_may_be_long_and_told_from_its_end():
+def test_long_chain_of_frames_is_resolved():
     frames = [f'<frame name="f{at}"><pose relative_to="f{at - 1}">1 0 0 0 0 0</pose></frame>' for at in range(1, 5001)]
     chain = Frames(model("".join(reversed(frames)) + '<frame name="f0"/><link name="a"/>'))
     assert near(chain.pose("f5000"), 5000, 0, 0)
 
 
-def test_what_stands_nowhere_is_named():
+def test_unknown_frames_are_errors():
     frames = Frames(model(LINKS))
     for name in ("c", "a::b", "c::d"):
         with pytest.raises(FrameError):
             frames.pose(name)
 
 
-def test_links_of_a_world_have_their_place_and_know_whether_they_move():
+def test_world_links_have_poses_and_static_flag():
     found = world(
         f"""<model name="m"><pose>0 0 1 0 0 0</pose>{LINKS}</model>
         <model name="s"><static>1</static><pose relative_to="m">0 1 0 0 0 0</pose><model name="i">

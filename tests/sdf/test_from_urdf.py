@@ -53,7 +53,7 @@ SHAPED = f"<visual>{BOX}</visual><collision>{BOX}</collision>"
 LIMIT = '<limit lower="-1" upper="2" effort="3" velocity="4"/>'
 
 
-def test_links_stand_at_their_joints():
+def test_links_are_placed_at_joints():
     model = converted(link("a") + link("b") + joint("j", "a", "b", origin="1 2 3", rpy=f"0 0 {pi / 2}"))
     assert [(link.name, link.pose.relative_to) for link in model.links] == [("a", ""), ("b", "j")]
     assert model.joints[0].pose == RawPose(Pose((1.0, 2.0, 3.0), (0.0, 0.0, pi / 2)), "a")
@@ -69,7 +69,7 @@ def test_links_stand_at_their_joints():
         ("prismatic", "prismatic", -1.0, 2.0),
     ],
 )
-def test_a_joint_that_moves_has_its_axis_limits_and_dynamics(kind, expected, lower, upper):
+def test_movable_joint_has_axis_limits_and_dynamics(kind, expected, lower, upper):
     inside = f'<axis xyz="0 1 0"/>{LIMIT}<dynamics damping="0.5" friction="0.25"/>'
     found = converted(link("a") + link("b") + joint("j", "a", "b", kind=kind, inside=inside)).joints[0]
     assert found.type == expected
@@ -80,7 +80,7 @@ def test_a_joint_that_moves_has_its_axis_limits_and_dynamics(kind, expected, low
     assert (found.axis.dynamics.damping, found.axis.dynamics.friction) == (0.5, 0.25)
 
 
-def test_a_mimic_joint_follows():
+def test_mimic_joint_is_converted():
     turning = joint("j", "a", "b", kind="revolute", inside=LIMIT)
     inside = LIMIT + '<mimic joint="j" multiplier="-2" offset="0.5"/>'
     model = converted(
@@ -92,7 +92,7 @@ def test_a_mimic_joint_follows():
     assert (axis.mimic.joint, axis.mimic.multiplier, axis.mimic.offset) == ("j", -2.0, 0.5)
 
 
-def test_a_root_called_world_is_the_world():
+def test_root_named_world_becomes_world():
     model = converted('<link name="world"/>' + link("a") + joint("j", "world", "a", origin="0 0 1"), lump=True)
     assert [link.name for link in model.links] == ["a"]
     assert (model.joints[0].parent, model.joints[0].pose.relative_to) == ("world", "__model__")
@@ -100,7 +100,7 @@ def test_a_root_called_world_is_the_world():
     assert check_references(Sdf("1.11", models=(model,))) == []
 
 
-def test_a_floating_link_moves_freely_and_a_planar_one_too():
+def test_floating_and_planar_links_move_freely():
     robot = robot_of(
         link("a") + link("b") + link("c")
         + joint("f", "a", "b", kind="floating", origin="1 0 0") + joint("p", "a", "c", kind="planar")
@@ -113,7 +113,7 @@ def test_a_floating_link_moves_freely_and_a_planar_one_too():
     ]
 
 
-def test_shapes_are_named_as_gz_names_them():
+def test_shape_names_match_gz():
     inside = f"<visual>{BOX}</visual><visual>{BOX}</visual>" + f'<visual name="a_top">{BOX}</visual>'
     model = converted(link("a", inside + f'<visual name="lid">{BOX}</visual>' + f"<collision>{BOX}</collision>"))
     names = [visual.name for visual in model.links[0].visuals]
@@ -122,13 +122,13 @@ def test_shapes_are_named_as_gz_names_them():
     assert model.links[0].visuals[0].geometry == Box((1.0, 2.0, 3.0))
 
 
-def test_addresses_of_meshes_stay_as_written():
+def test_mesh_uris_are_preserved():
     geometry = '<geometry><mesh filename="package://p/m.dae" scale="1 2 3"/></geometry>'
     model = converted(link("a", f"<visual>{geometry}</visual>"))
     assert model.links[0].visuals[0].geometry == Mesh("package://p/m.dae", (1.0, 2.0, 3.0))
 
 
-def test_colours_are_as_gz_makes_them_and_those_of_gazebo_come_first():
+def test_colors_match_gz_and_gazebo_material_overrides():
     visual = f'<visual>{BOX}<material name="m"><color rgba="0.4 0.8 1 0.5"/></material></visual>'
     material = converted(link("a", visual)).links[0].visuals[0].material
     assert material is not None
@@ -139,7 +139,7 @@ def test_colours_are_as_gz_makes_them_and_those_of_gazebo_come_first():
     assert (material.ambient, material.diffuse) == (None, (1.0, 0.0, 0.0, 1.0))
 
 
-def test_a_material_of_gazebo_is_a_script():
+def test_gazebo_material_becomes_script():
     model = converted(link("a", SHAPED) + '<gazebo reference="a"><material>Gazebo/Blue</material></gazebo>')
     material = model.links[0].visuals[0].material
     assert material is not None
@@ -147,7 +147,7 @@ def test_a_material_of_gazebo_is_a_script():
     assert material.diffuse == (0, 0, 1, 1)
 
 
-def test_a_material_of_gazebo_comes_before_the_colour_of_the_visual():
+def test_gazebo_material_overrides_visual_color():
     visual = f'<visual>{BOX}<material name="m"><color rgba="0.4 0.8 1 0.5"/></material></visual>'
     for name, diffuse in (("Gazebo/Red", (1, 0, 0, 1)), ("Mine/Red", (0.5, 1.0, 1.0, 0.5))):
         model = converted(link("a", visual) + f'<gazebo reference="a"><material>{name}</material></gazebo>')
@@ -156,7 +156,7 @@ def test_a_material_of_gazebo_comes_before_the_colour_of_the_visual():
         assert material.diffuse == pytest.approx(diffuse)
 
 
-def test_words_for_links_and_collisions():
+def test_gazebo_elements_apply_to_links_and_collisions():
     words = {
         "mu1": "0.1", "mu2": "0.2", "fdir1": "1 0 0", "kp": "1000", "kd": "2", "minDepth": "0.003", "maxVel": "4",
         "maxContacts": "5", "laserRetro": "6", "selfCollide": "Yes", "turnGravityOff": "true", "dampingFactor": "0.7",
@@ -176,14 +176,14 @@ def test_words_for_links_and_collisions():
     assert (found.velocity_decay.linear, found.velocity_decay.angular) == (0.7, 0.7)
 
 
-def test_a_word_may_stand_in_an_attribute_and_the_last_of_several_counts():
+def test_gazebo_value_attribute_is_read_and_last_element_applies():
     text = '<gazebo reference="a"><mu1 value="0.1"/></gazebo><gazebo reference="a"><mu1> 0.3 </mu1></gazebo>'
     friction = converted(link("a", SHAPED) + text).links[0].collisions[0].surface.friction
     assert friction is not None
     assert friction.mu == 0.3
 
 
-def test_a_surface_in_collision_and_words_go_together():
+def test_collision_surface_and_gazebo_elements_are_merged():
     surface = "<surface><friction><ode><mu>0.5</mu><mu2>0.6</mu2></ode></friction></surface>"
     text = f'<gazebo reference="a"><collision>{surface}</collision><mu1>0.1</mu1></gazebo>'
     robot = robot_of(link("a", SHAPED) + text)
@@ -194,7 +194,7 @@ def test_a_surface_in_collision_and_words_go_together():
     assert [each.text() for each in robot.extensions[0].walk() if each.tag == "mu"] == ["0.5"]
 
 
-def test_sensors_and_plugins_keep_their_places():
+def test_sensors_and_plugins_keep_locations():
     text = (
         '<robot name="r"><link name="a"/>\n'
         '<gazebo reference="a"><sensor name="s" type="imu"><update_rate>50</update_rate>'
@@ -210,7 +210,7 @@ def test_sensors_and_plugins_keep_their_places():
     assert model.static
 
 
-def test_words_and_sensors_of_joints():
+def test_gazebo_elements_and_sensors_apply_to_joints():
     text = (
         '<gazebo reference="j"><provideFeedback>1</provideFeedback><springStiffness>3</springStiffness>'
         "<springReference>0.5</springReference><implicitSpringDamper>true</implicitSpringDamper><stopErp>0.2</stopErp>"
@@ -225,13 +225,13 @@ def test_words_and_sensors_of_joints():
     assert [sensor.type for sensor in found.sensors] == ["force_torque"]
 
 
-def test_links_and_joints_that_urdf_cannot_have():
+def test_gazebo_joint_can_close_loop():
     loop = '<gazebo><joint name="loop" type="revolute"><parent>a</parent><child>b</child></joint></gazebo>'
     model = converted(link("a") + link("b") + joint("j", "a", "b", kind="revolute", inside=LIMIT) + loop)
     assert [joint.name for joint in model.joints] == ["j", "loop"]
 
 
-def test_what_is_wrong_in_gazebo_is_told_at_its_place():
+def test_invalid_gazebo_elements_are_reported_with_location():
     text = (
         f'<robot name="r"><link name="a">{INERTIAL}</link>\n<gazebo reference="a">\n'
         "<mu1>much</mu1>\n"
@@ -246,7 +246,7 @@ def test_what_is_wrong_in_gazebo_is_told_at_its_place():
     ]
 
 
-def test_a_gazebo_element_that_is_too_deep_is_left_out():
+def test_deeply_nested_gazebo_element_is_omitted():
     deep = "<model>" * 300 + "</model>" * 300
     robot = examine(f'<robot name="r">{link("a")}<gazebo>{deep}</gazebo></robot>').robot
     conversion = model_from_robot(robot, lump_fixed_joints=False)
@@ -254,7 +254,7 @@ def test_a_gazebo_element_that_is_too_deep_is_left_out():
     assert conversion.model.models == ()
 
 
-def test_lumped_links_are_frames_and_their_shapes_and_sensors_move():
+def test_lumped_links_become_frames_and_move_shapes_and_sensors():
     model = converted(
         link("base", SHAPED) + link("arm") + link("camera", SHAPED) + link("optical", SHAPED, inertial="")
         + joint("to_arm", "base", "arm", origin="1 0 0", rpy=f"0 0 {pi / 2}")
@@ -282,7 +282,7 @@ def test_lumped_links_are_frames_and_their_shapes_and_sensors_move():
     assert check_references(Sdf("1.11", models=(model,))) == []
 
 
-def test_lumped_masses_are_one_body():
+def test_lumped_masses_are_combined():
     point = '<inertial><mass value="2"/><inertia ixx="0" ixy="0" ixz="0" iyy="0" iyz="0" izz="0"/></inertial>'
     model = converted(
         link("a", inertial=point) + link("b", inertial=point) + joint("j", "a", "b", origin="2 0 0"), lump=True
@@ -293,7 +293,7 @@ def test_lumped_masses_are_one_body():
     assert (inertial.inertia.ixx, inertial.inertia.iyy, inertial.inertia.izz) == pytest.approx((0.0, 4.0, 4.0))
 
 
-def test_lumped_inertia_stays_in_the_axes_of_the_first():
+def test_lumped_inertia_keeps_axes_of_first_link():
     turned = (
         f'<inertial><origin rpy="0 0 {pi / 2}"/><mass value="1"/>'
         '<inertia ixx="1" ixy="0" ixz="0" iyy="2" iyz="0" izz="2.5"/></inertial>'
@@ -305,7 +305,7 @@ def test_lumped_inertia_stays_in_the_axes_of_the_first():
     assert (inertial.inertia.ixx, inertial.inertia.iyy, inertial.inertia.izz) == pytest.approx((1.0, 2.0, 2.5))
 
 
-def test_what_hangs_from_a_lumped_link_hangs_from_the_body():
+def test_child_of_lumped_link_is_attached_to_merged_link():
     turning = joint("j", "b", "c", kind="revolute", origin="0 1 0", inside=LIMIT)
     model = converted(link("a") + link("b") + link("c") + joint("k", "a", "b", origin="1 0 0") + turning, lump=True)
     assert [link.name for link in model.links] == ["a", "c"]
@@ -314,7 +314,7 @@ def test_what_hangs_from_a_lumped_link_hangs_from_the_body():
 
 
 @pytest.mark.parametrize(("word", "kind"), [("preserveFixedJoint", "fixed"), ("disableFixedJointLumping", "revolute")])
-def test_a_fixed_joint_that_is_to_stay(word, kind):
+def test_fixed_joint_can_be_preserved(word, kind):
     text = f'<gazebo reference="j"><{word}>true</{word}></gazebo>'
     found = converted(link("a") + link("b") + joint("j", "a", "b") + text, lump=True).joints[0]
     assert found.type == kind
@@ -322,7 +322,7 @@ def test_a_fixed_joint_that_is_to_stay(word, kind):
         assert (found.axis.limit.lower, found.axis.limit.upper) == (0.0, 0.0)
 
 
-def test_links_without_mass_are_left_out_only_when_lumping():
+def test_massless_links_are_omitted_only_when_lumping():
     robot = robot_of(
         '<link name="footprint"/>' + link("base") + '<link name="ghost"/>' + link("tip")
         + joint("f", "footprint", "base")
@@ -338,7 +338,7 @@ def test_links_without_mass_are_left_out_only_when_lumping():
     ]
 
 
-def test_a_sensor_of_a_lumped_joint_is_told_of():
+def test_sensor_of_lumped_joint_is_reported():
     text = '<gazebo reference="j"><sensor name="ft" type="force_torque"/></gazebo>'
     conversion = model_from_robot(robot_of(link("a") + link("b") + joint("j", "a", "b") + text), lump_fixed_joints=True)
     assert [(diagnostic.code, str(diagnostic.message)) for diagnostic in conversion.diagnostics] == [
@@ -346,7 +346,7 @@ def test_a_sensor_of_a_lumped_joint_is_told_of():
     ]
 
 
-def test_a_joint_with_the_name_of_a_link():
+def test_joint_with_name_of_link_is_converted():
     robot = robot_of(link("a") + link("b") + link("c") + joint("b", "a", "b", origin="1 0 0", kind="continuous")
                      + joint("c", "b", "c", origin="0 1 0"))  # fmt: skip
     for lump in (False, True):
@@ -355,7 +355,7 @@ def test_a_joint_with_the_name_of_a_link():
         assert {diagnostic.code for diagnostic in conversion.diagnostics} == {"SDF171"}
 
 
-def test_a_chain_of_many_links():
+def test_long_chain_of_links_is_converted():
     count = 3000
     robot = robot_of(
         "".join(link(f"l{i}") for i in range(count))
@@ -388,7 +388,7 @@ def _robots():
 
 
 @pytest.mark.parametrize(("entry", "arguments", "packages", "facts"), list(_robots()))
-def test_real_robots(entry, arguments, packages, facts):
+def test_corpus_robots_are_converted(entry, arguments, packages, facts):
     try:
         robot = examine(entry, arguments=arguments, packages=packages).robot
     except LinkwrightError:
@@ -417,7 +417,7 @@ def test_real_robots(entry, arguments, packages, facts):
             assert sum(len(link.collisions) for link in model.links) == sum(facts["collisions"].values())
 
 
-def test_a_link_without_mass_that_is_kept_weighs_nothing_beside_one_that_has_a_mass():
+def test_kept_massless_link_gets_negligible_mass():
     mass = '<inertial><mass value="2"/><inertia ixx="1" ixy="0" ixz="0" iyy="1" iyz="0" izz="1"/></inertial>'
     text = (
         f'<robot name="r"><link name="a"/><link name="b">{mass}</link><link name="c"/><link name="d"/>'
@@ -430,7 +430,7 @@ def test_a_link_without_mass_that_is_kept_weighs_nothing_beside_one_that_has_a_m
     assert d.inertial is None
 
 
-def test_links_that_move_and_have_no_mass_are_told_once():
+def test_movable_massless_links_are_reported_once():
     arms = "".join(link(name, inertial="") + joint(f"{name}_joint", "a", name, kind="floating") for name in "bc")
     robot = robot_of(link("a") + link("plate", inertial="") + joint("fixed_joint", "a", "plate") + arms)
     (finding,) = model_from_robot(robot, lump_fixed_joints=False).diagnostics

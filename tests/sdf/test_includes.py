@@ -23,7 +23,7 @@ def models(found) -> list[str]:
     return [model.name for model in found.sdf.worlds[0].models]
 
 
-def test_a_model_is_found_in_the_folders_of_each_variable(tmp_path):
+def test_model_is_found_through_each_environment_variable(tmp_path):
     for variable in ("GAZEBO_MODEL_PATH", "GZ_SIM_RESOURCE_PATH", "IGN_GAZEBO_RESOURCE_PATH", "SDF_PATH"):
         write(tmp_path, {f"{variable}/box/model.sdf": BOX.replace("box", variable)})
         found = examined(
@@ -33,7 +33,7 @@ def test_a_model_is_found_in_the_folders_of_each_variable(tmp_path):
         assert found.files[1] == tmp_path / variable / "box" / "model.sdf"
 
 
-def test_a_model_is_found_in_packages(tmp_path):
+def test_model_is_found_in_packages(tmp_path):
     manifest = "<package><name>{}</name>{}</package>"
     export = '<export><gazebo_ros gazebo_model_path="${prefix}/assets:${prefix}/more"/></export>'
     write(
@@ -67,7 +67,7 @@ def test_a_model_is_found_in_packages(tmp_path):
         ("package.xml", '<export><gazebo_ros gazebo_media_path="${prefix}/assets"/></export>'),
     ],
 )
-def test_a_model_is_found_where_a_hook_or_export_of_a_package_says(tmp_path, file, text):
+def test_model_is_found_through_package_hook_or_export(tmp_path, file, text):
     files = {"one/package.xml": "<package><name>one</name></package>", "one/assets/box/model.sdf": BOX}
     written = f"<package><name>one</name>{text}</package>" if file == "package.xml" else text
     write(tmp_path, {**files, f"one/{file}": written})
@@ -75,7 +75,7 @@ def test_a_model_is_found_where_a_hook_or_export_of_a_package_says(tmp_path, fil
     assert (models(found), found.diagnostics) == (["box"], ())
 
 
-def test_a_hook_for_the_folder_that_holds_packages_and_one_that_cannot_be_read(tmp_path):
+def test_share_folder_hook_is_used_and_unreadable_hook_ignored(tmp_path):
     hook = "prepend-non-duplicate;GZ_SIM_RESOURCE_PATH;share\n"
     write(tmp_path, {"one/package.xml": "<package><name>one</name></package>", "one/hooks/a.dsv": hook})
     (tmp_path / "one/hooks/b.dsv").write_bytes(b"\xff;GZ_SIM_RESOURCE_PATH\x00")
@@ -84,14 +84,14 @@ def test_a_hook_for_the_folder_that_holds_packages_and_one_that_cannot_be_read(t
     assert models(examined(tmp_path, "<include><uri>model://box</uri></include>")) == ["box"]
 
 
-def test_a_model_is_found_beside_the_file_that_names_it(tmp_path):
+def test_model_is_found_near_including_file(tmp_path):
     write(tmp_path, {"models/box/model.sdf": BOX, "worlds/x": ""})
     finder = ResourceFinder(PackageFinder(start=tmp_path / "worlds", environment={}), {"HOME": "/nowhere"})
     for beside in (tmp_path, tmp_path / "worlds", tmp_path / "models", tmp_path / "models/box"):
         assert finder.model("model://box", beside) == tmp_path / "models/box/model.sdf"
 
 
-def test_a_file_address_without_a_root_is_below_the_search_path(tmp_path):
+def test_relative_file_uri_is_found_in_search_path(tmp_path):
     write(tmp_path, {"a/models/box/meshes/m.stl": ""})
     packages = PackageFinder(start=tmp_path / "b", environment={})
     mesh = tmp_path / "a/models/box/meshes/m.stl"
@@ -105,13 +105,13 @@ def test_a_file_address_without_a_root_is_below_the_search_path(tmp_path):
 
 
 @pytest.mark.parametrize(("address", "severity"), [("media/models/walk.dae", "INFO"), ("meshes/walk.dae", "WARNING")])
-def test_what_gazebo_classic_brings_along_is_likely_to_be_there(tmp_path, address, severity):
+def test_missing_gazebo_classic_media_is_info(tmp_path, address, severity):
     found = ResourceFinder(PackageFinder(start=tmp_path, environment={}), {}).file(f"file://{address}", tmp_path)
     assert isinstance(found, Missing)
     assert found.severity.name == severity
 
 
-def test_the_newest_file_that_can_be_read_is_taken(tmp_path):
+def test_newest_supported_model_version_is_used(tmp_path):
     config = "<model>{}</model>".format(
         "".join(f'<sdf version="{each}">{each}.sdf</sdf>' for each in ("1.4", "1.12", "1.99", "1.5"))
     )
@@ -120,7 +120,7 @@ def test_the_newest_file_that_can_be_read_is_taken(tmp_path):
     assert isinstance(model_file(tmp_path), Missing)
 
 
-def test_models_of_fuel_come_from_the_caches_of_gz(tmp_path):
+def test_fuel_models_are_found_in_gz_cache(tmp_path):
     place = "fuel.gazebosim.org/openrobotics/models/cafe table"
     write(
         tmp_path,
@@ -143,7 +143,7 @@ def test_models_of_fuel_come_from_the_caches_of_gz(tmp_path):
         assert (models(found), found.diagnostics) == ([name], ())
 
 
-def test_our_sun_and_ground_are_there(tmp_path):
+def test_built_in_sun_and_ground_plane_are_included(tmp_path):
     inside = "<include><uri>model://sun</uri></include><include><uri>model://ground_plane</uri></include>"
     found = examined(tmp_path, inside)
     assert found.sdf is not None
@@ -152,7 +152,7 @@ def test_our_sun_and_ground_are_there(tmp_path):
     assert [(model.name, model.static) for model in world.models] == [("ground_plane", True)]
 
 
-def test_an_include_says_what_is_different_here(tmp_path):
+def test_include_overrides_name_pose_and_static(tmp_path):
     write(tmp_path, {"box/model.sdf": sdf('<model name="box"><pose>1 1 1 0 0 0</pose><link name="l"/></model>')})
     found = examined(
         tmp_path,
@@ -166,7 +166,7 @@ def test_an_include_says_what_is_different_here(tmp_path):
     assert [plugin.filename for plugin in second.plugins] == ["p"]
 
 
-def test_models_include_models_and_know_where_they_stand(tmp_path):
+def test_nested_includes_are_placed(tmp_path):
     write(
         tmp_path,
         {
@@ -186,7 +186,7 @@ def test_models_include_models_and_know_where_they_stand(tmp_path):
     assert places == {"car::body": (5, 0, 0), "car::left::rim": (5, 1, 0)}
 
 
-def test_merged_parts_are_parts_of_the_model_around_them(tmp_path):
+def test_merged_include_joins_enclosing_model(tmp_path):
     write(
         tmp_path,
         {
@@ -215,7 +215,7 @@ def test_merged_parts_are_parts_of_the_model_around_them(tmp_path):
     assert frames.link("_merged__mast__model__") == "pole"
 
 
-def test_what_a_merged_model_could_not_include_is_told_of_once(tmp_path):
+def test_failed_include_in_merged_model_is_reported_once(tmp_path):
     write(tmp_path, {"mast/model.sdf": sdf('<model name="mast"><include><uri>model://pole</uri></include></model>')})
     found = examined(
         tmp_path,
@@ -225,7 +225,7 @@ def test_what_a_merged_model_could_not_include_is_told_of_once(tmp_path):
     assert [diagnostic.code for diagnostic in found.diagnostics] == ["SDF160"]
 
 
-def test_a_merged_model_without_its_placement_frame_is_told_of_and_placed_without(tmp_path):
+def test_missing_placement_frame_of_merged_model_is_reported(tmp_path):
     write(tmp_path, {"mast/model.sdf": sdf('<model name="mast" placement_frame="foot"><link name="pole"/></model>')})
     found = examined(
         tmp_path,
@@ -237,7 +237,7 @@ def test_a_merged_model_without_its_placement_frame_is_told_of_and_placed_withou
     assert Frames(found.sdf.worlds[0].models[0]).pose("pole")[:3] == (0, 0, 5)
 
 
-def test_lights_and_actors_are_included_too(tmp_path):
+def test_lights_and_actors_can_be_included(tmp_path):
     write(tmp_path, {"lamp/model.sdf": sdf('<light name="lamp" type="point"/>')})
     write(tmp_path, {"walker/model.sdf": sdf('<actor name="walker"/>')})
     found = examined(
@@ -251,7 +251,7 @@ def test_lights_and_actors_are_included_too(tmp_path):
     assert [actor.name for actor in world.actors] == ["walker"]
 
 
-def test_what_cannot_be_included_is_said_once_and_the_rest_stays(tmp_path):
+def test_failed_includes_are_reported_once_and_rest_is_kept(tmp_path):
     write(
         tmp_path,
         {
@@ -276,7 +276,7 @@ def test_what_cannot_be_included_is_said_once_and_the_rest_stays(tmp_path):
     assert doubtful.notes[-1].span.file.endswith("w.world")
 
 
-def test_names_in_a_model_that_could_not_be_had_are_not_called_wrong(tmp_path):
+def test_names_in_missing_model_are_not_reported(tmp_path):
     found = examined(
         tmp_path,
         """<model name="m"><link name="l"/><include><uri>model://arm</uri><name>arm</name></include>
@@ -285,7 +285,7 @@ def test_names_in_a_model_that_could_not_be_had_are_not_called_wrong(tmp_path):
     assert [diagnostic.code for diagnostic in found.diagnostics] == ["SDF160"]
 
 
-def test_where_a_model_is_known_or_was_renamed_what_is_missing_is_a_warning_and_else_an_information(tmp_path):
+def test_missing_file_of_known_or_renamed_model_is_warning(tmp_path):
     write(tmp_path, {"box/model.sdf": BOX, "box/model.config": "<model/>", "box/meshes/a.stl": ""})
     finder = ResourceFinder(PackageFinder(start=tmp_path, environment={}), {"GZ_SIM_RESOURCE_PATH": str(tmp_path)})
     facts = {}
@@ -301,7 +301,7 @@ def test_where_a_model_is_known_or_was_renamed_what_is_missing_is_a_warning_and_
 
 
 @pytest.mark.parametrize("name", ["boxed", "box_steel", "old_box"])
-def test_a_model_of_another_name_is_no_misspelling(tmp_path, name):
+def test_similar_model_name_is_not_reported_as_misspelled(tmp_path, name):
     """Gazebo has many models; what shares a word with one that is here is one of those."""
     write(tmp_path, {"box/model.sdf": BOX, "suv/model.sdf": BOX})
     finder = ResourceFinder(PackageFinder(start=tmp_path, environment={}), {"GZ_SIM_RESOURCE_PATH": str(tmp_path)})
@@ -323,7 +323,7 @@ def test_a_model_of_another_name_is_no_misspelling(tmp_path, name):
         ("model://worlds", None),
     ],
 )
-def test_a_model_is_found_from_every_folder_of_the_package_around_a_file(tmp_path, address, found):
+def test_model_is_found_from_each_folder_of_package(tmp_path, address, found):
     """Launch files put one of these folders into the variables of Gazebo."""
     files = ["worlds/yard/shed.sdf", "sim/models/hut/model.sdf", "sim/models/hut/meshes/hut.stl", "tent/model.sdf"]
     write(
@@ -338,7 +338,7 @@ def test_a_model_is_found_from_every_folder_of_the_package_around_a_file(tmp_pat
     assert (None if isinstance(place, Missing) else place.relative_to(tmp_path).as_posix()) == found
 
 
-def test_a_misspelt_model_is_a_warning(tmp_path):
+def test_misspelled_model_is_warning(tmp_path):
     write(tmp_path, {"crate/model.sdf": BOX})
     finder = ResourceFinder(PackageFinder(start=tmp_path, environment={}), {"GZ_SIM_RESOURCE_PATH": str(tmp_path)})
     found = finder.file("model://craet", tmp_path)
@@ -346,7 +346,7 @@ def test_a_misspelt_model_is_a_warning(tmp_path):
     assert (found.severity.name, str(found.hint)) == ("WARNING", "did you mean 'crate'?")
 
 
-def test_a_misspelt_scheme_is_told_of(tmp_path):
+def test_misspelled_uri_scheme_is_reported(tmp_path):
     finder = ResourceFinder(PackageFinder(start=tmp_path, environment={}), {})
     found = finder.file("models://boat/meshes/hull.dae", tmp_path)
     assert isinstance(found, Missing)
@@ -354,7 +354,7 @@ def test_a_misspelt_scheme_is_told_of(tmp_path):
 
 
 @pytest.mark.parametrize("ending", [".jinja", ".em", ".erb", ".xacro"])
-def test_a_file_that_the_build_makes_of_a_template_is_an_information(tmp_path, ending):
+def test_file_generated_from_template_is_info(tmp_path, ending):
     files = {f"plane/plane.sdf{ending}": "", "plane/model.config": "<model/>", f"plane/meshes/wing.stl{ending}": ""}
     write(tmp_path, files)
     finder = ResourceFinder(PackageFinder(start=tmp_path, environment={}), {"GZ_SIM_RESOURCE_PATH": str(tmp_path)})
@@ -365,7 +365,7 @@ def test_a_file_that_the_build_makes_of_a_template_is_an_information(tmp_path, e
     assert (mesh.severity.name, str(mesh.hint)) == ("INFO", f"the build creates it from 'wing.stl{ending}'")
 
 
-def test_our_own_models_do_not_hide_that_those_of_gazebo_have_more_files(tmp_path):
+def test_missing_file_of_built_in_model_is_info(tmp_path):
     finder = ResourceFinder(PackageFinder(start=tmp_path, environment={}), {})
     ours = finder.model("model://person_standing", tmp_path)
     assert isinstance(ours, Path)
@@ -375,7 +375,7 @@ def test_our_own_models_do_not_hide_that_those_of_gazebo_have_more_files(tmp_pat
         assert found.severity.name == severity
 
 
-def test_a_file_address_in_other_capitals_names_the_file_that_is_meant(tmp_path):
+def test_file_uri_with_wrong_case_suggests_file(tmp_path):
     write(tmp_path, {"models/lamp/meshes/lamp_visual.DAE": ""})
     finder = ResourceFinder(PackageFinder(start=tmp_path, environment={}), {})
     found = finder.file("file://models/lamp/meshes/Lamp_visual.DAE", tmp_path / "models" / "lamp")
@@ -383,7 +383,7 @@ def test_a_file_address_in_other_capitals_names_the_file_that_is_meant(tmp_path)
     assert str(found.hint) == "did you mean 'lamp_visual.DAE'?"
 
 
-def test_few_lines_cannot_include_without_end(tmp_path, monkeypatch):
+def test_number_of_included_models_is_limited(tmp_path, monkeypatch):
     """Thirty models, each of which includes the next one twice, would be a thousand million."""
     monkeypatch.setattr("linkwright.sdf.includes._MAX_MODELS", 500)
     twice = "<include><uri>model://m{0}</uri><name>a</name></include><include><uri>model://m{0}</uri><name>b</name></include>"
@@ -394,7 +394,7 @@ def test_few_lines_cannot_include_without_end(tmp_path, monkeypatch):
 
 
 @pytest.mark.parametrize("name", ["w.sdf.xacro", "w.sdf", "w.world"])
-def test_xacro_makes_worlds_too(tmp_path, name):
+def test_world_is_expanded_with_xacro(tmp_path, name):
     from linkwright.descriptions import examine_world
 
     path = tmp_path / name
@@ -410,7 +410,7 @@ def test_xacro_makes_worlds_too(tmp_path, name):
     assert found.sdf.worlds[0].models[0].pose.pose.xyz == (0, 0, 3)
 
 
-def test_all_models_that_can_be_named_are_listed(tmp_path):
+def test_all_available_models_are_listed(tmp_path):
     write(tmp_path, {"a/one/model.sdf": BOX, "b/one/model.sdf": BOX, "b/two/model.config": "<model/>", "b/x/y.txt": ""})
     environment = {"GZ_SIM_RESOURCE_PATH": f"{tmp_path / 'a'}:{tmp_path / 'b'}"}
     finder = ResourceFinder(PackageFinder(start=tmp_path, environment={}), environment)
@@ -420,7 +420,7 @@ def test_all_models_that_can_be_named_are_listed(tmp_path):
     assert "x" not in found
 
 
-def test_an_address_that_means_nothing_is_said_to(tmp_path):
+def test_invalid_uri_is_missing(tmp_path):
     finder = ResourceFinder(PackageFinder(start=tmp_path, environment={}), {"HOME": str(tmp_path)})
     for address in ("model://", "package://nowhere/a", "https://example.org/a", "ftp://a/b", "a.sdf", "/no/a.sdf", ""):
         found = finder.file(address, tmp_path)
@@ -428,7 +428,7 @@ def test_an_address_that_means_nothing_is_said_to(tmp_path):
     assert isinstance(finder.model("", Path(tmp_path)), Missing)
 
 
-def test_what_is_unknown_or_not_there_is_told_of_once(tmp_path):
+def test_unknown_elements_and_missing_models_are_reported_once(tmp_path):
     gone = "<include><uri>model://gone</uri></include>"
     other = sdf('<model name="box"><static>true</static><mine/></model>')
     write(tmp_path, {"box/model.sdf": other})
@@ -444,7 +444,7 @@ def test_what_is_unknown_or_not_there_is_told_of_once(tmp_path):
     ]
 
 
-def test_worlds_are_found_by_path_address_and_name(tmp_path):
+def test_worlds_are_found_by_path_uri_and_name(tmp_path):
     path = tmp_path / "some.world"
     path.write_text("<sdf version='1.6'><world name='w'/></sdf>")
     finder = ResourceFinder(PackageFinder(start=tmp_path, environment={}), {"GZ_SIM_RESOURCE_PATH": str(tmp_path)})

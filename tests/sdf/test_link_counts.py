@@ -18,7 +18,7 @@ def world(inside: str, before: str = "") -> str:
     [LINK * (MOST + 1), "<include><uri>model://m</uri></include>" * MOST + LINK],
     ids=["links", "includes"],
 )
-def test_links_and_includes_count(inside):
+def test_links_and_includes_are_counted(inside):
     assert has_more_links(world(inside), MOST)
     assert has_more_links(world(inside).encode(), MOST)
 
@@ -36,17 +36,17 @@ def test_links_and_includes_count(inside):
     ],
     ids=["as many as there may be", "state", "plugin", "second", "entities", "no XML", "text"],
 )
-def test_all_else_is_left_to_the_reader(text):
+def test_other_text_is_not_counted(text):
     assert not has_more_links(text, MOST)
     assert not has_more_links(text.encode(), MOST)
 
 
-def test_an_unknown_encoding_is_left_to_the_reader():
+def test_unknown_encoding_is_not_counted():
     text = world(LINK * (MOST + 1)).replace('"1.0"', '"1.0" encoding="nothing"')
     assert not has_more_links(text.encode(), MOST)
 
 
-def test_a_world_of_a_million_links_is_refused_with_one_line(tmp_path, capsys):
+def test_world_with_too_many_links_is_rejected_with_one_error(tmp_path, capsys):
     path = tmp_path / "crowd.world"
     path.write_text(world(LINK * 100_001))
     assert main(["world", "check", str(path)]) == 1

@@ -13,7 +13,7 @@ WORLD = """<sdf version="1.9"><world name="w">
 <model name="arm"><link name="tip"/></model></model></world></sdf>"""
 
 
-def test_a_world_is_printed_with_what_stands_in_it(tmp_path, capsys, monkeypatch):
+def test_check_lists_world_contents(tmp_path, capsys, monkeypatch):
     monkeypatch.chdir(tmp_path)
     monkeypatch.setenv("HOME", str(tmp_path))
     write(tmp_path, {"w.world": WORLD})
@@ -27,7 +27,7 @@ def test_a_world_is_printed_with_what_stands_in_it(tmp_path, capsys, monkeypatch
     assert "0 errors, 0 warnings" in printed.err
 
 
-def test_errors_of_a_world_make_the_status_1_and_settings_hold(tmp_path, capsys, monkeypatch):
+def test_world_errors_exit_with_1_and_settings_apply(tmp_path, capsys, monkeypatch):
     monkeypatch.chdir(tmp_path)
     monkeypatch.setenv("HOME", str(tmp_path))
     write(tmp_path, {"w.sdf": '<sdf version="1.6"><world name="w"><model name="m"/><lite/></world></sdf>'})
@@ -37,7 +37,7 @@ def test_errors_of_a_world_make_the_status_1_and_settings_hold(tmp_path, capsys,
     assert "SDF150" not in capsys.readouterr().err
 
 
-def test_a_folder_of_worlds_is_checked(tmp_path, capsys, monkeypatch):
+def test_folder_of_worlds_is_checked(tmp_path, capsys, monkeypatch):
     monkeypatch.chdir(tmp_path)
     monkeypatch.setenv("HOME", str(tmp_path))
     write(

@@ -15,16 +15,16 @@ SECTION = re.compile(r"^### (.+?)\n\n```xml\n(.*?)\n```\n\n```text\n(.*?)\n```$"
 MISTAKES = [pytest.param(text, said, id=title) for title, text, said in SECTION.findall(PAGE)]
 
 
-def test_the_page_was_understood():
+def test_page_of_mistakes_is_parsed():
     assert len(MISTAKES) == PAGE.count("\n### ") > 40
 
 
 @pytest.mark.parametrize(("text", "message"), MISTAKES)
-def test_mistake(text, message):
+def test_mistake_gives_expected_message(text, message):
     assert describe(text) == message
 
 
-def test_every_code_is_shown_here_or_in_other_tests():
+def test_every_sdf_code_is_covered_by_tests():
     tests = Path(__file__).parent
     room = Path(linkwright.sdf.__file__).parent
     written = {code for file in room.glob("*.py") for code in re.findall(r'"(SDF\d{3})"', file.read_text("utf-8"))}

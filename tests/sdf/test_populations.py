@@ -22,7 +22,7 @@ def spread(kind: str, more: str = "") -> str:
     return f"<distribution><type>{kind}</type>{more}</distribution>"
 
 
-def test_a_grid_stands_around_its_pose():
+def test_grid_is_centered_on_pose():
     grid = spread("grid", "<rows>2</rows><cols>3</cols><step>1 0.5 0</step>")
     assert places(grid) == [(x, y, 0) for y in (19.75, 20.25) for x in (9, 10, 11)]
 
@@ -35,12 +35,12 @@ def test_a_grid_stands_around_its_pose():
         ("linear-z", [(10, 20, -0.25), (10, 20, -0.125), (10, 20, 0), (10, 20, 0.125)]),
     ],
 )
-def test_a_row_begins_at_the_side_of_its_box(kind, expected):
+def test_row_starts_at_side_of_box(kind, expected):
     assert places(BOX + spread(kind)) == expected
 
 
 @pytest.mark.parametrize("kind", ["random", "uniform"])
-def test_what_is_spread_over_a_box_stands_in_it_and_is_there_again(kind):
+def test_random_models_are_inside_box_and_reproducible(kind):
     found = places(BOX + spread(kind))
     assert len(set(found)) == 4
     assert all(8 <= x <= 12 and 19 <= y <= 21 and -0.25 <= z <= 0.25 for x, y, z in found)
@@ -48,24 +48,24 @@ def test_what_is_spread_over_a_box_stands_in_it_and_is_there_again(kind):
 
 
 @pytest.mark.parametrize("kind", ["random", "uniform"])
-def test_what_is_spread_over_a_cylinder_stands_on_its_base(kind):
+def test_random_models_are_inside_cylinder_above_base(kind):
     cylinder = "<cylinder><radius>2</radius><length>1</length></cylinder><model_count>50</model_count>"
     found = places(cylinder + spread(kind))
     assert len(set(found)) == 50
     assert all(hypot(x - 10, y - 20) <= 2 and 0 <= z <= 1 for x, y, z in found)
 
 
-def test_a_box_is_turned_about_its_corner_as_gazebo_does():
+def test_box_rotates_about_corner_like_gazebo():
     (first, second, *_) = places(BOX + spread("linear-x"), f"0 0 0 0 0 {pi / 2}")
     assert (second[0] - first[0], second[1] - first[1]) == pytest.approx((0, 1))
 
 
 @pytest.mark.parametrize("inside", [spread("random"), f"{BOX}{spread('grid', '<rows>0</rows>')}", spread("linear-x")])
-def test_a_population_without_a_place_is_nobody(inside):
+def test_population_without_distribution_is_empty(inside):
     assert places(inside) == []
 
 
-def test_the_models_may_come_from_other_files_and_have_names_of_their_own(tmp_path):
+def test_population_can_include_models_and_names_them(tmp_path):
     write(tmp_path, {"can/model.sdf": '<sdf version="1.6"><model name="can"><link name="l"/></model></sdf>'})
     model = '<model name="sip"><include><uri>model://can</uri></include></model>'
     found = examined(tmp_path, f'<population name="p">{model}{BOX}</population>', GAZEBO_MODEL_PATH=str(tmp_path))

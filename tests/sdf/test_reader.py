@@ -43,7 +43,7 @@ MADE = [rule for rule in rules(SDF, {}).values() if is_dataclass(rule.make)]
 
 
 @pytest.mark.parametrize("rule", MADE, ids=[f"{each.tag}{number}" for number, each in enumerate(MADE)])
-def test_an_empty_element_is_read_as_its_class_is_by_default(rule: ElementRule):
+def test_empty_element_has_class_defaults(rule: ElementRule):
     """The defaults of the table, which are SDF's, and those of the classes are the same ones."""
     element = Element(rule.tag, {attribute.name: "n" for attribute in rule.attributes if attribute.required})
     found = reader_of(rule, NEWEST).read(element, element, SdfReport())
@@ -57,7 +57,7 @@ def test_an_empty_element_is_read_as_its_class_is_by_default(rule: ElementRule):
     }
 
 
-def test_a_pose_is_in_metres_and_radians_and_may_be_in_degrees_or_a_quaternion():
+def test_pose_accepts_radians_degrees_and_quaternion():
     assert model("<pose>1 2 3 0.1 0.2 0.3</pose>").pose == RawPose(Pose((1, 2, 3), (0.1, 0.2, 0.3)))
     turned = model('<pose degrees="true">0 0 0 90 0 -45</pose>').pose.pose
     assert turned.rpy == (radians(90), 0, radians(-45))
@@ -66,7 +66,7 @@ def test_a_pose_is_in_metres_and_radians_and_may_be_in_degrees_or_a_quaternion()
     assert isclose(abs(half.rpy[2]), pi)
 
 
-def test_a_pose_names_its_frame_by_the_old_word_too():
+def test_pose_accepts_old_frame_attribute():
     assert model('<link name="a"/><link name="b"><pose frame="a"/></link>').links[1].pose.relative_to == "a"
     assert model('<link name="a"/><link name="b"><pose relative_to="a"/></link>').links[1].pose.relative_to == "a"
 
@@ -99,12 +99,12 @@ def test_a_pose_names_its_frame_by_the_old_word_too():
         ("", shapes.Empty()),
     ],
 )
-def test_shapes(text, shape):
+def test_shapes_are_read(text, shape):
     part = model(f'<link name="a"><collision name="c"><geometry>{text}</geometry></collision></link>')
     assert part.links[0].collisions[0].geometry == shape
 
 
-def test_a_link():
+def test_link_is_read():
     link = model(
         """<link name="a"><pose>0 0 1 0 0 0</pose><gravity>0</gravity><kinematic>true</kinematic>
         <inertial auto="TRUE"><mass>2</mass><pose>0 0 .5 0 0 0</pose><inertia><ixx>3</ixx><ixy>.1</ixy></inertia>
@@ -120,7 +120,7 @@ def test_a_link():
     assert inertial.pose.pose.xyz == (0, 0, 0.5)
 
 
-def test_a_material():
+def test_material_is_read():
     material = (
         model(
             """<link name="a"><visual name="v"><transparency>.5</transparency><material>
@@ -145,7 +145,7 @@ def test_a_material():
     assert (material.pbr.metal.albedo_map, material.pbr.metal.roughness) == ("a.png", 0.2)
 
 
-def test_a_surface():
+def test_surface_is_read():
     surface = (
         model(
             """<link name="a"><collision name="c"><laser_retro>9</laser_retro><surface>
@@ -170,7 +170,7 @@ def test_a_surface():
     )
 
 
-def test_a_joint():
+def test_joint_is_read():
     joint = model(
         """<link name="a"/><link name="b"/><joint name="j" type="revolute"><parent> a </parent><child>b</child>
         <pose relative_to="a">0 0 1 0 0 0</pose><axis><xyz expressed_in="a">0 1 0</xyz>
@@ -190,7 +190,7 @@ def test_a_joint():
     assert axis.mimic == AxisMimic("k", multiplier=2, reference=0.1)
 
 
-def test_the_pitch_of_a_screw_is_in_metres_for_each_turn_whichever_word_says_it():
+def test_screw_pitch_is_read_from_old_and_new_element():
     ends = "<parent>a</parent><child>b</child>"
     inside = '<link name="a"/><link name="b"/><joint name="j" type="screw">{}</joint>'
     new = model(inside.format(f"{ends}<screw_thread_pitch>.01</screw_thread_pitch>")).joints[0]
@@ -200,7 +200,7 @@ def test_the_pitch_of_a_screw_is_in_metres_for_each_turn_whichever_word_says_it(
     assert isclose(old.thread_pitch, 0.01)
 
 
-def test_a_lidar_by_both_words():
+def test_lidar_is_read_from_ray_and_lidar_element():
     scan = """<scan><horizontal><samples>360</samples><min_angle>-3</min_angle><max_angle>3</max_angle></horizontal>
         </scan><range><min>.1</min><max>8</max></range><noise><stddev>.01</stddev></noise>"""
     for word in ("ray", "lidar"):
@@ -221,7 +221,7 @@ def test_a_lidar_by_both_words():
         assert lidar.noise == Noise("gaussian", 0, 0.01)
 
 
-def test_a_camera():
+def test_camera_is_read():
     camera = (
         model(
             """<link name="a"><sensor name="s" type="rgbd_camera"><camera name="c"><horizontal_fov>1</horizontal_fov>
@@ -246,7 +246,7 @@ def test_a_camera():
     assert camera.noise == Noise("gaussian", 1)
 
 
-def test_an_imu_and_a_receiver():
+def test_imu_and_navsat_are_read():
     noise = '<noise type="gaussian"><stddev>{}</stddev></noise>'
     imu, gps = (
         model(
@@ -266,7 +266,7 @@ def test_an_imu_and_a_receiver():
     assert gps.navsat.vertical_position.stddev == 2
 
 
-def test_a_light():
+def test_light_is_read():
     light = world(
         """<light name="l" type="spot"><pose>0 0 5 0 0 0</pose><diffuse>1 .5 0 1</diffuse><cast_shadows>1</cast_shadows>
         <attenuation><range>20</range></attenuation><spot><inner_angle>.1</inner_angle><outer_angle>.5</outer_angle>
@@ -277,7 +277,7 @@ def test_a_light():
     assert light.spot == Spot(0.1, 0.5, 1)
 
 
-def test_an_actor():
+def test_actor_is_read():
     actor = world(
         """<actor name="a"><skin><filename>walk.dae</filename></skin><animation name="walking">
         <filename>walk.dae</filename><interpolate_x>true</interpolate_x></animation><script><loop>0</loop>
@@ -295,7 +295,7 @@ def test_an_actor():
     ]
 
 
-def test_plugins_keep_their_parameters():
+def test_plugins_keep_parameters():
     plugin = model('<link name="a"/><plugin filename="libx.so" name="x"><rate>5</rate></plugin>').plugins[0]
     assert (plugin.filename, plugin.name) == ("libx.so", "x")
     assert plugin.element is not None
@@ -304,13 +304,13 @@ def test_plugins_keep_their_parameters():
     assert rate.text() == "5"
 
 
-def test_two_equal_plugins_are_two():
+def test_equal_plugins_stay_separate():
     same = '<plugin filename="libx.so" name="x"/>'
     first, second = model(f'<link name="a"/>{same}{same}').plugins
     assert first.element is not second.element
 
 
-def test_a_world():
+def test_world_is_read():
     found = world(
         """<gravity>0 0 -1.6</gravity><wind><linear_velocity>1 0 0</linear_velocity></wind>
         <physics type="ode"/><physics type="dart" default="1"><max_step_size>.004</max_step_size></physics>
@@ -326,13 +326,13 @@ def test_a_world():
     assert found.models[0].models[0].links[0].name == "l"
 
 
-def test_the_gravity_of_old_worlds_is_that_of_their_physics():
+def test_gravity_falls_back_to_physics():
     assert gravity_of(World()) == (0.0, 0.0, -9.8)
     assert gravity_of(world("<physics><gravity>0 0 -9</gravity></physics>")) == (0, 0, -9)
     assert gravity_of(world("<gravity>0 0 -2</gravity><physics><gravity>0 0 -9</gravity></physics>")) == (0, 0, -2)
 
 
-def test_comments_keep_their_hyphens():
+def test_comments_with_double_hyphens_are_read():
     text = '<sdf version="1.6"><!-- a --b- c --><world name="w"/><!----x----></sdf>'
     document, warnings = parse_as_gazebo(text, "w.sdf")
     comments = [child.data for child in document.root.children if isinstance(child, Comment)]
@@ -342,14 +342,14 @@ def test_comments_keep_their_hyphens():
     assert document.source.text == text
 
 
-def test_what_follows_the_root_is_not_read_and_told_of():
+def test_text_after_root_is_ignored_with_warning():
     text = '<sdf version="1.6"><world name="w"/></sdf>\n<!-- <plugin>\n<!-- wheels --> <left/>\n</plugin> -->\n'
     document, warnings = parse_as_gazebo(text, "w.sdf")
     assert [element.tag for element in document.root.elements()] == ["world"]
     assert [(warning.code, warning.span.line) for warning in warnings] == [("XML206", 3), ("XML207", 3)]
 
 
-def test_an_empty_file_is_told_how_a_world_begins():
+def test_empty_file_hints_at_sdf_root():
     with pytest.raises(LinkwrightError) as error:
         parse_as_gazebo(" ", "w.sdf")
     (found,) = error.value.diagnostics
@@ -357,13 +357,13 @@ def test_an_empty_file_is_told_how_a_world_begins():
     assert "<sdf" in str(found.hint)
 
 
-def test_words_of_sdf_without_effect_here_are_let_be():
+def test_sdf_elements_without_effect_are_accepted():
     world("<gui fullscreen='0'><camera name='c'/><anything/></gui><physics><ode><solver/></ode></physics>")
     model('<link name="a"><must_be_base_link>1</must_be_base_link></link><plugin filename="p"><any/></plugin>')
 
 
 @given(st.text(alphabet="<>/=\"' sdfworlmk123.-", max_size=60), st.integers(0, 10**6))
-def test_no_text_is_too_much_for_the_reader(text, at):
+def test_random_worlds_are_read_without_exception(text, at):
     """Pieces of a world with something else put in: a tree that is XML is read, whatever it says."""
     whole = (
         '<sdf version="1.6"><world name="w"><model name="m"><pose>0 0 0 0 0 0</pose><link name="l"><visual name="v">'
@@ -377,7 +377,7 @@ def test_no_text_is_too_much_for_the_reader(text, at):
     read(document)
 
 
-def test_elements_in_elements_without_end_are_refused():
+def test_deeply_nested_models_are_rejected():
     text = '<sdf version="1.9">' + '<model name="m">' * 5000 + "</model>" * 5000 + "</sdf>"
     document, _ = parse_as_gazebo(text, "w.sdf")
     reading = read(document)
@@ -385,7 +385,7 @@ def test_elements_in_elements_without_end_are_refused():
     assert [diagnostic.code for diagnostic in reading.diagnostics] == ["SDF133"]
 
 
-def test_tags_may_stand_anywhere():
+def test_any_element_can_be_nested_in_any_other_without_exception():
     """Each element of the table in each other one: nothing is raised, whatever stands where."""
     tags = sorted({rule.tag for rule in rules(SDF, {}).values()})
     for rule in rules(SDF, {}).values():
@@ -394,7 +394,7 @@ def test_tags_may_stand_anywhere():
         reader_of(rule, NEWEST).read(element, element, SdfReport())
 
 
-def test_an_ampersand_that_begins_no_entity_is_one_and_bytes_that_are_no_utf_8_are_latin_1():
+def test_bare_ampersand_and_latin1_bytes_are_read():
     plugin = '<plugin name="ü" filename="x"><y>1 &amp; 2 & 3</y></plugin>'
     text = f'<sdf version="1.6"><world name="a & b">{plugin}</world></sdf>'
     document, warnings = parse_as_gazebo(text.encode("latin-1"), "test.world")
@@ -407,7 +407,7 @@ def test_an_ampersand_that_begins_no_entity_is_one_and_bytes_that_are_no_utf_8_a
     assert found.plugins[0].element.first("y").text() == "1 & 2 & 3"
 
 
-def test_points_that_cannot_be_read_are_left_out():
+def test_malformed_polyline_points_are_omitted():
     text = "<polyline><point/><point>1 x</point><point>1 2</point></polyline>"
     shape = f'<link name="l"><visual name="v"><geometry>{text}</geometry></visual></link>'
     document, _ = parse_as_gazebo(f'<sdf version="1.6"><model name="m">{shape}</model></sdf>', "test.sdf")
@@ -416,7 +416,7 @@ def test_points_that_cannot_be_read_are_left_out():
     assert sdf.models[0].links[0].visuals[0].geometry == (shapes.Polyline(((1.0, 2.0),)),)
 
 
-def test_files_of_gazebo_classic_have_gazebo_as_their_root_or_models_in_names_of_links():
+def test_gazebo_root_and_scoped_link_names_are_read():
     links = '<link name="base"/><link name="laser::link"/>'
     joint = '<joint name="laser::j" type="fixed"><parent>base</parent><child>laser::link</child></joint>'
     text = f'<gazebo version="1.3"><model name="m">{links}{joint}</model></gazebo>'
@@ -462,7 +462,7 @@ OLD = """<gazebo version="1.0">
 </gazebo>"""
 
 
-def test_what_sdf_1_0_writes_in_attributes_is_read():
+def test_sdf_1_0_attributes_are_read():
     document, _ = parse_as_gazebo(OLD, "old.world")
     reading = read(document)
     assert reading.diagnostics == ()
@@ -501,7 +501,7 @@ def test_what_sdf_1_0_writes_in_attributes_is_read():
     assert made.plugins[0].element.first("origin") is not None
 
 
-def test_what_is_wrong_in_an_attribute_of_sdf_1_0_is_told_of_its_element():
+def test_invalid_sdf_1_0_attribute_is_reported():
     text = OLD.replace('<box size="1 2 3"/>', '<box size="1 2"/>')
     document, _ = parse_as_gazebo(text, "old.world")
     (found,) = read(document).diagnostics
@@ -510,14 +510,14 @@ def test_what_is_wrong_in_an_attribute_of_sdf_1_0_is_told_of_its_element():
     assert text.splitlines()[found.span.line - 1][found.span.column - 1 :].startswith("<box")
 
 
-def test_frames_in_whatever_has_a_pose_are_let_be():
+def test_frame_in_any_element_with_pose_is_accepted():
     frame = '<frame name="f"><pose>0 0 0 0 0 0</pose></frame>'
     box = "<geometry><box><size>1 1 1</size></box></geometry>"
     model(f'<link name="a">{frame}<visual name="v">{frame}{box}</visual></link>')
 
 
 @pytest.mark.parametrize(("text", "taken"), [("0x0002", 2), ("0XFF", 255), ("2.5", 2), ("7 8", 7)])
-def test_a_whole_number_is_what_libsdformat_takes(text, taken):
+def test_integers_are_parsed_like_libsdformat(text, taken):
     collision = f'<collision name="c"><max_contacts>{text}</max_contacts></collision>'
     document, _ = parse_as_gazebo(
         f'<sdf version="1.9"><model name="m"><link name="a">{collision}</link></model></sdf>', "m"

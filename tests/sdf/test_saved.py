@@ -17,12 +17,12 @@ def places(inside: str) -> dict[str, tuple[float, ...]]:
     return {placed_link.name: placed_link.pose[:3] for placed_link in placed_links(with_saved_state(world(inside)))}
 
 
-def test_a_world_without_a_state_is_as_it_is():
+def test_world_without_state_is_unchanged():
     plain = world(MODEL)
     assert with_saved_state(plain) is plain
 
 
-def test_the_state_says_where_models_and_links_are_in_the_world():
+def test_state_sets_poses_of_models_and_links():
     found = places(
         MODEL
         + f"""<state world_name="w"><model name="m"><pose>1 0 0 0 0 {pi / 2}</pose>
@@ -32,7 +32,7 @@ def test_the_state_says_where_models_and_links_are_in_the_world():
     assert found["m::b"] == pytest.approx((4, 5, 6))
 
 
-def test_the_last_state_counts_and_a_model_without_one_stays():
+def test_last_state_applies_and_other_models_keep_poses():
     other = MODEL.replace('"m"', '"n"')
     found = places(
         f"""{MODEL}{other}<state><model name="m"><pose>1 0 0 0 0 0</pose></model></state>
@@ -41,7 +41,7 @@ def test_the_last_state_counts_and_a_model_without_one_stays():
     assert (found["m::a"], found["n::a"]) == ((2, 0, 0), (9, 9, 9))
 
 
-def test_models_in_models_and_lights_have_their_state_too():
+def test_state_applies_to_nested_models_and_lights():
     inside = """<model name="o"><pose>1 0 0 0 0 0</pose><model name="i"><pose>1 0 0 0 0 0</pose><link name="l"/></model>
         </model><light name="sun" type="point"><pose>0 0 9 0 0 0</pose></light>
         <state><model name="o"><pose>2 0 0 0 0 0</pose><model name="i"><pose>7 0 0 0 0 0</pose></model></model>
@@ -50,7 +50,7 @@ def test_models_in_models_and_lights_have_their_state_too():
     assert with_saved_state(world(inside)).lights[0].pose.pose.xyz == (0, 0, 3)
 
 
-def test_what_was_put_in_is_there_and_what_was_taken_out_is_gone():
+def test_insertions_and_deletions_of_state_apply():
     inside = f"""{MODEL}<state><insertions><model name="new"><link name="l"/></model></insertions>
         <deletions><name>m</name></deletions></state>"""
     assert list(places(inside)) == ["new::l"]

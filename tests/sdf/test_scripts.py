@@ -40,7 +40,7 @@ def script(name, *uris):
     return f"<script>{''.join(f'<uri>{each}</uri>' for each in uris)}<name>{name}</name></script>"
 
 
-def test_gazebos_own_materials_have_their_colours(tmp_path):
+def test_gazebo_materials_have_their_colors(tmp_path):
     material = material_of(tmp_path, script("Gazebo/Grey", "file://media/materials/scripts/gazebo.material"))
     assert (material.ambient, material.diffuse) == ((0.3, 0.3, 0.3, 1), (0.7, 0.7, 0.7, 1))
     assert material.script.name == "Gazebo/Grey"
@@ -49,18 +49,18 @@ def test_gazebos_own_materials_have_their_colours(tmp_path):
     assert glow.emissive == (0, 0, 1, 1)
 
 
-def test_colours_of_the_file_come_before_those_of_the_script(tmp_path):
+def test_material_colors_override_script(tmp_path):
     material = material_of(tmp_path, script("Gazebo/Grey") + "<ambient>1 0 0 1</ambient>")
     assert (material.ambient, material.diffuse) == ((1, 0, 0, 1), (0.7, 0.7, 0.7, 1))
 
 
-def test_a_name_that_nobody_has_leaves_a_material_as_it_is(tmp_path):
+def test_unknown_script_leaves_material_unchanged(tmp_path):
     material = material_of(tmp_path, script("Gazebo/NoSuch") + "<diffuse>1 0 0 1</diffuse>")
     assert (material.ambient, material.diffuse) == (None, (1, 0, 0, 1))
     assert gazebo_look("Grey") is None
 
 
-def test_a_script_of_a_model_has_colours_and_an_image(tmp_path):
+def test_model_script_has_colors_and_texture(tmp_path):
     write(tmp_path, {"box/materials/scripts/box.material": SCRIPT, "box/materials/textures/box.png": ""})
     uris = "file://box/materials/scripts", "file://box/materials/textures"
     material = material_of(tmp_path, script("Box/Child", *uris))
@@ -71,7 +71,7 @@ def test_a_script_of_a_model_has_colours_and_an_image(tmp_path):
     assert alone.pbr.metal.albedo_map == (tmp_path / "box/materials/textures/box.png").as_uri()
 
 
-def test_what_a_script_says_is_read_as_far_as_it_goes():
+def test_script_is_read_up_to_errors():
     found = read_script(SCRIPT)
     assert list(found) == ["Box/Base", "Box/Child", "Box/Wrong"]
     assert found["Box/Wrong"].diffuse is None
@@ -81,18 +81,18 @@ def test_what_a_script_says_is_read_as_far_as_it_goes():
 @given(
     st.lists(st.sampled_from(["material", "A", ":", "{", "}", "\n", "diffuse", "1", "x", "texture", "//", '"', " "]))
 )
-def test_any_script_is_read(words):
+def test_random_scripts_are_read_without_exception(words):
     read_script(" ".join(words))
 
 
-def test_an_image_that_is_not_there_and_a_folder_that_is_no_script(tmp_path):
+def test_missing_texture_and_folder_as_script_are_ignored(tmp_path):
     write(tmp_path, {"box/box.material": SCRIPT, "box/a.material/x": ""})
     material = material_of(tmp_path, script("Box/Base", "box"))
     assert material.pbr is None
     assert material.diffuse == (0.4, 0.5, 0.6, 0.7)
 
 
-def test_models_in_models_have_the_colours_too(tmp_path):
+def test_nested_models_get_script_colors(tmp_path):
     inner = VISUAL.format(f"<material>{script('Gazebo/Red')}</material>")
     (tmp_path / "m.sdf").write_text(f'<sdf version="1.9"><model name="o">{inner}</model></sdf>')
     found = examine_world(tmp_path / "m.sdf", environment={"HOME": "/nowhere"})

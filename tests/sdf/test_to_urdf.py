@@ -44,7 +44,7 @@ def robot_of(inside: str, start: str = "<model name='m'>") -> Robot:
     return reading.robot
 
 
-def test_the_frame_of_a_link_is_that_of_its_joint():
+def test_link_frame_is_at_joint():
     robot = robot_of(
         "<link name='base'/>"
         f"<link name='arm'><pose>1 0 0 0 0 0</pose><visual name='v'>{BOX}<pose>0 0 0.5 0 0 0</pose></visual></link>"
@@ -61,7 +61,7 @@ def test_the_frame_of_a_link_is_that_of_its_joint():
     assert robot.links["arm"].inertial.origin.xyz == pytest.approx((0.0, 0.0, -2.0))
 
 
-def test_joints_hang_from_frames_and_keep_what_urdf_knows_of_them():
+def test_joints_attach_to_frames_and_keep_urdf_properties():
     robot = robot_of(
         "<link name='a'/><link name='b'/><link name='c'/><frame name='hand' attached_to='a'/>"
         "<joint name='j' type='revolute'><parent>hand</parent><child>b</child><axis><xyz>0 0 1</xyz>"
@@ -77,7 +77,7 @@ def test_joints_hang_from_frames_and_keep_what_urdf_knows_of_them():
     assert (second.type, second.mimic) == ("revolute", Mimic("j", 2.0, 0.5))
 
 
-def test_joints_that_urdf_has_not_float_and_addresses_stay():
+def test_unsupported_joints_become_floating_and_mesh_uris_are_preserved():
     robot = robot_of(
         "<link name='a'><visual name='v'><geometry><mesh><uri>model://m/a.dae</uri><scale>2 2 2</scale></mesh>"
         "</geometry>"
@@ -131,7 +131,7 @@ def joint(parent: str, child: str, name: str = "j") -> str:
         (TWO + joint("a", "nowhere"), "<model name='m'>", "there is no frame 'nowhere'"),
     ],
 )
-def test_what_is_no_robot_is_refused_once_with_its_place(inside, start, words):
+def test_model_unsuitable_as_robot_is_rejected_once_with_location(inside, start, words):
     reading = reading_of(inside, start)
     assert reading.robot is None
     (found,) = reading.diagnostics
@@ -140,12 +140,12 @@ def test_what_is_no_robot_is_refused_once_with_its_place(inside, start, words):
     assert found.span is not None
 
 
-def test_another_canonical_link_is_the_root():
+def test_canonical_link_becomes_root():
     robot = robot_of(TWO + joint("b", "a"), "<model name='m' canonical_link='b'>")
     assert robot.root == "b"
 
 
-def test_a_description_on_a_topic_may_be_sdf():
+def test_description_topic_can_contain_sdf():
     library = DescriptionLibrary()
     text = f"<?xml version='1.0'?>\n<sdf version='1.9'><model name='m'>{TWO}{joint('a', 'b')}</model></sdf>"
     reading = library.read(text)
@@ -164,7 +164,7 @@ def _placed(robot: Robot, root: Transform) -> dict[str, Transform]:
     return places
 
 
-def test_a_robot_that_became_sdf_is_itself_again():
+def test_urdf_survives_conversion_to_sdf_and_back():
     before = load(ROBOTS / "my_robot_description/urdf/mbot_gazebo.xacro", packages=PACKAGES)
     model = model_from_robot(before, lump_fixed_joints=False).model
     after = robot_from_sdf(Sdf("1.11", models=(model,)), before.element).robot
@@ -180,7 +180,7 @@ def test_a_robot_that_became_sdf_is_itself_again():
 
 
 @pytest.mark.skipif(not SHARED.is_dir(), reason="needs the models beside the repository")
-def test_everything_in_models_of_others_stands_where_it_stood():
+def test_visuals_of_shared_models_keep_poses():
     robots = 0
     for path in sorted(SHARED.rglob("model*.sdf")):
         sdf = examine_world(path).sdf

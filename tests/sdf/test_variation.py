@@ -12,24 +12,24 @@ TEXT = """<model name="outer"><link name="bare"/>
 </link></model></model>"""
 
 
-def test_mass_and_inertia_grow_together():
+def test_mass_and_inertia_scale_together():
     outer = with_mass(model(TEXT), 2.0)
     assert outer.links[0].inertial.mass == 2.0
     inertial = outer.models[0].links[0].inertial
     assert (inertial.mass, inertial.inertia.ixx, inertial.inertia.izz) == (4.0, 0.2, 0.6)
 
 
-def test_friction_is_that_of_all_collisions():
+def test_friction_applies_to_all_collisions():
     friction = with_friction(model(TEXT), 0.3).models[0].links[0].collisions[0].surface.friction
     assert (friction.mu, friction.mu2) == (0.3, 0.3)
 
 
-def test_noise_grows_and_its_times_stay():
+def test_noise_scales_and_correlation_time_stays():
     noise = with_noise(model(TEXT), 4.0).models[0].links[0].sensors[0].imu.linear_acceleration.x
     assert (noise.mean, noise.stddev, noise.dynamic_bias_correlation_time) == (4.0, 2.0, 300.0)
 
 
-def test_what_has_no_noise_stays_the_same_object():
+def test_model_without_friction_and_noise_is_unchanged():
     crate = model('<model name="crate"><link name="link"/></model>')
     assert with_friction(crate, 0.5) is crate
     assert with_noise(crate, 0.5) == crate

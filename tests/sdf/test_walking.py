@@ -28,7 +28,7 @@ def at(walk: Walk, seconds: float) -> tuple[float, float]:
     return x, y
 
 
-def test_a_walk_that_loops_begins_again_and_one_that_does_not_ends_where_it_ends():
+def test_looping_walk_restarts_and_other_walk_stays_at_end():
     again, once = Walk(Script(trajectories=(STRAIGHT,))), Walk(Script(loop=False, trajectories=(STRAIGHT,)))
     assert at(again, 1) == at(once, 1) == pytest.approx((2, 0))
     assert at(again, 2) == at(once, 2) == pytest.approx((4, 0))
@@ -36,7 +36,7 @@ def test_a_walk_that_loops_begins_again_and_one_that_does_not_ends_where_it_ends
     assert at(once, 3) == pytest.approx((4, 0))
 
 
-def test_a_walk_waits_where_it_begins():
+def test_walk_waits_for_delay_and_auto_start():
     late = Walk(Script(delay_start=5, trajectories=(STRAIGHT,)))
     assert at(late, 4) == (0, 0)
     assert at(late, 6) == pytest.approx((2, 0))
@@ -44,22 +44,22 @@ def test_a_walk_waits_where_it_begins():
     assert at(never, 100) == (0, 0)
 
 
-def test_trajectories_follow_each_other():
+def test_trajectories_are_walked_in_sequence():
     walk = Walk(Script(trajectories=(STRAIGHT, path((0, 4, 0, 0), (2, 4, 4, 0)))))
     assert at(walk, 3) == pytest.approx((4, 2))
     assert at(walk, 5) == pytest.approx((2, 0))
 
 
-def test_the_first_point_is_where_it_begins_whatever_its_time():
+def test_first_waypoint_is_start_regardless_of_time():
     assert at(Walk(Script(trajectories=(path((1, 0, 0, 0), (2, 4, 0, 0)),))), 1) == pytest.approx((2, 0))
 
 
-def test_without_points_it_is_nowhere():
+def test_script_without_waypoints_has_none():
     assert not Walk(Script()).has_waypoints
     assert not Walk(Script(trajectories=(Trajectory(),))).has_waypoints
 
 
-def test_a_path_is_round_and_with_tension_straight():
+def test_path_is_curved_and_straight_with_full_tension():
     corner = [(0.0, 0.0, 0.0, 0.0), (1.0, 1.0, 0.0, 0.0), (2.0, 1.0, 1.0, 0.0)]
     # Catmull-Rom: from (0, 0) to (1, 0) with the tangents (0.5, 0) and (0.5, 0.5), in the middle of the way
     x, y = at(Walk(Script(trajectories=(path(*corner),))), 0.5)
@@ -68,7 +68,7 @@ def test_a_path_is_round_and_with_tension_straight():
     assert (x, y) == pytest.approx((0.5, 0.0))
 
 
-def test_it_turns_evenly_on_the_short_way():
+def test_orientation_is_interpolated_on_shorter_arc():
     walk = Walk(Script(trajectories=(path((0, 0, 0, 0), (1, 0, 0, pi / 2)),)))
     assert walk.pose(0.5)[3:] == pytest.approx(quaternion_from_rpy((0, 0, pi / 4)))
     walk = Walk(Script(trajectories=(path((0, 0, 0, 3), (1, 0, 0, -3)),)))
@@ -80,7 +80,7 @@ points = st.tuples(st.floats(0.1, 10), coordinates, coordinates, st.floats(-4, 4
 
 
 @given(st.lists(points, min_size=1, max_size=6), st.floats(0, 1), st.floats(0, 100))
-def test_it_passes_through_all_points_and_is_always_somewhere(steps, tension, seconds):
+def test_walk_passes_through_all_waypoints(steps, tension, seconds):
     times = [sum(step[0] for step in steps[:count]) for count in range(len(steps))]
     trajectory = path(*((time, *step[1:]) for time, step in zip(times, steps, strict=True)), tension=tension)
     walk = Walk(Script(loop=False, trajectories=(trajectory,)))

@@ -74,17 +74,17 @@ def same(kind, make):
         (World, lambda part: part),
     ],
 )
-def test_anything_reads_back_as_it_was(kind, make):
+def test_written_objects_are_read_back(kind, make):
     same(kind, make)
 
 
-def test_what_is_usual_is_left_out():
+def test_default_values_are_omitted():
     assert save(Model("m", links=(Link("l"),))) == (
         '<?xml version="1.0" ?>\n<sdf version="1.11">\n  <model name="m">\n    <link name="l"/>\n  </model>\n</sdf>\n'
     )
 
 
-def test_sizes_masses_and_poses_are_written_out():
+def test_sizes_masses_and_poses_are_always_written():
     inertial = "<inertial><inertia><ixy>0.1</ixy></inertia></inertial>"
     collision = '<collision name="c"><geometry><box/></geometry></collision>'
     text = save(model(f'<link name="l">{inertial}{collision}</link>'))
@@ -95,7 +95,7 @@ def test_sizes_masses_and_poses_are_written_out():
     assert '<pose relative_to="l">0 0 0 0 0 0</pose>' in save(framed)
 
 
-def test_the_inside_of_plugins_and_words_without_effect_stay():
+def test_plugin_contents_and_unused_elements_are_preserved():
     inside = (
         '<physics name="p" type="ode"><ode><solver><iters>50</iters></solver></ode></physics>'
         '<scene><sky><clouds/></sky></scene><gui><camera name="user"/></gui>'
@@ -110,7 +110,7 @@ def test_the_inside_of_plugins_and_words_without_effect_stay():
     assert save(read_sdf(text)) == text
 
 
-def test_prefixes_are_declared():
+def test_namespace_prefixes_are_declared():
     document, warnings = parse_as_gazebo(
         '<sdf version="1.9"><model name="m"><link name="l"/><gz:policy a="1"/></model></sdf>', "m.sdf"
     )
@@ -124,7 +124,7 @@ def test_prefixes_are_declared():
 
 @pytest.mark.parametrize("inside", ["", '<plugin name="p" filename="f.so"><a>\n b\n</a></plugin><light name="l"/>'])
 @pytest.mark.parametrize("model", ["", '<model name="m"><link name="l"/><gz:policy a="1"/></model><model name="n"/>'])
-def test_a_world_of_models_that_are_written_already_is_the_text_of_the_whole(inside, model):
+def test_world_from_written_models_equals_whole_world(inside, model):
     document, _ = parse_as_gazebo(f'<sdf version="1.9"><world name="w">{model}{inside}</world></sdf>', "m.world")
     sdf = read(document).sdf
     assert sdf is not None
@@ -133,14 +133,14 @@ def test_a_world_of_models_that_are_written_already_is_the_text_of_the_whole(ins
     assert text == save(whole)
 
 
-def test_the_axis_of_an_old_file_is_in_the_frame_of_its_model():
+def test_old_axis_is_written_in_model_frame():
     axis = "<axis><xyz>1 0 0</xyz><use_parent_model_frame>true</use_parent_model_frame></axis>"
     joint = f'<joint name="j" type="revolute"><parent>a</parent><child>b</child>{axis}</joint>'
     text = save(model(f'<link name="a"/><link name="b"/>{joint}'))
     assert '<xyz expressed_in="__model__">1 0 0</xyz>' in text
 
 
-def test_a_quaternion_stays_one():
+def test_quaternion_is_preserved():
     half = 0.5**0.5
     pose = f'<pose rotation_format="quat_xyzw">1 2 3 0 0 {half} {half}</pose>'
     found = model(f'<link name="a">{pose}</link>')
@@ -162,7 +162,7 @@ def normalized(sdf):
 
 
 @pytest.mark.parametrize("entry", _files())
-def test_real_worlds_and_models(entry):
+def test_corpus_worlds_and_models_are_read_back(entry):
     path = WORLDS / entry
     finder = PackageFinder(start=path.parent, environment={})
     found = examine_world(path, packages=finder, environment={"HOME": "/nowhere"})

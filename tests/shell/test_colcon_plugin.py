@@ -70,7 +70,7 @@ def test_descriptions_scripts_and_interfaces_are_built(tmp_path: Path) -> None:
     assert (tmp_path / "install/arm/share/arm/urdf/arm.urdf").is_file()
 
 
-def test_links_instead_of_copies(tmp_path: Path) -> None:
+def test_symlink_install_creates_links(tmp_path: Path) -> None:
     arm = package(tmp_path, "arm", "install(DIRECTORY urdf DESTINATION share/arm)")
     (arm / "urdf").mkdir()
     (arm / "urdf" / "arm.urdf").write_text("<robot/>")
@@ -78,7 +78,7 @@ def test_links_instead_of_copies(tmp_path: Path) -> None:
     assert (tmp_path / "install/arm/share/arm/urdf/arm.urdf").is_symlink()
 
 
-def test_what_needs_a_compiler_is_told_and_the_rest_is_installed(tmp_path: Path) -> None:
+def test_compiled_targets_are_reported_and_other_files_installed(tmp_path: Path) -> None:
     arm = package(
         tmp_path,
         "arm",
@@ -99,7 +99,7 @@ def test_what_needs_a_compiler_is_told_and_the_rest_is_installed(tmp_path: Path)
     assert (share / "config" / "limits.yaml").read_text() == "arm: 'arm'\n"
 
 
-def test_environment_hooks_and_all_files_of_a_python_package(tmp_path: Path) -> None:
+def test_environment_hooks_and_python_package_files_are_installed(tmp_path: Path) -> None:
     arm = package(
         tmp_path,
         "arm",
@@ -124,7 +124,7 @@ def test_environment_hooks_and_all_files_of_a_python_package(tmp_path: Path) -> 
     assert used.stdout.splitlines() == [str(tmp_path / "install/arm/share/arm/models"), "3 1,2"], used.stderr
 
 
-def test_what_is_not_there_ends_the_build(tmp_path: Path) -> None:
+def test_missing_install_folder_fails_build(tmp_path: Path) -> None:
     package(tmp_path, "arm", "install(DIRECTORY meshes DESTINATION share/arm)")
     result = in_shell(tmp_path, "colcon build")
     assert result.returncode == 1
@@ -132,7 +132,7 @@ def test_what_is_not_there_ends_the_build(tmp_path: Path) -> None:
     assert "Traceback" not in result.stderr
 
 
-def test_with_an_ament_cmake_colcon_goes_its_own_way(tmp_path: Path) -> None:
+def test_installed_ament_cmake_is_used_by_colcon(tmp_path: Path) -> None:
     package(tmp_path, "arm", "")
     real = tmp_path / "opt"
     (real / "share" / "ament_cmake").mkdir(parents=True)

@@ -41,25 +41,25 @@ def inside(words: list[str], **variables: str) -> subprocess.CompletedProcess[st
     )
 
 
-def test_every_program_is_found_in_the_shell() -> None:
+def test_programs_are_found_in_shell() -> None:
     names = " ".join(PROGRAMS)
     result = inside(["sh", "-c", f"for name in {names}; do command -v $name || echo no $name; done"])
     assert len(result.stdout.splitlines()) == len(PROGRAMS)
     assert "no " not in result.stdout
 
 
-def test_a_real_program_comes_before_ours(tmp_path: Path) -> None:
+def test_installed_program_takes_precedence(tmp_path: Path) -> None:
     script(tmp_path / "bin", "xacro", "echo the real one")
     result = inside(["xacro"], PATH=f"{tmp_path / 'bin'}:{BARE}")
     assert result.stdout == "the real one\n"
 
 
-def test_without_a_real_ros_python_is_ours() -> None:
+def test_python_is_linkwrights_without_installed_ros() -> None:
     result = inside(["python3", "-c", "import linkwright, sys; print(sys.prefix)"])
     assert result.stdout.strip() == sys.prefix
 
 
-def test_with_a_real_ros_the_search_path_keeps_its_order(tmp_path: Path) -> None:
+def test_path_keeps_order_with_installed_ros(tmp_path: Path) -> None:
     script(tmp_path / "opt", "ros2", "echo real ros2")
     folder = tmp_path / "programs"
     folder.mkdir()
@@ -67,7 +67,7 @@ def test_with_a_real_ros_the_search_path_keeps_its_order(tmp_path: Path) -> None
     assert path == [str(tmp_path / "opt"), *BARE.split(":"), str(folder)]
 
 
-def test_a_shell_within_a_shell_does_not_stack_up(tmp_path: Path) -> None:
+def test_nested_shell_does_not_extend_path_twice(tmp_path: Path) -> None:
     first, second = tmp_path / "first", tmp_path / "second"
     for folder in (first, second):
         folder.mkdir()
@@ -78,16 +78,16 @@ def test_a_shell_within_a_shell_does_not_stack_up(tmp_path: Path) -> None:
     assert inner["PATH"].split(os.pathsep)[-1] == str(second)
 
 
-def test_the_status_is_that_of_the_command() -> None:
+def test_exit_status_is_that_of_command() -> None:
     assert inside(["sh", "-c", "exit 7"]).returncode == 7
     assert inside(["sh", "-c", "kill -TERM $$"]).returncode == 128 + signal.SIGTERM
 
 
-def test_options_of_the_command_are_its_own() -> None:
+def test_options_of_command_are_passed_on() -> None:
     assert inside(["sh", "-c", "echo $0 $1", "-h", "--help"]).stdout == "-h --help\n"
 
 
-def test_an_unknown_command_is_told_with_the_nearest_name() -> None:
+def test_unknown_command_is_reported_with_nearest_name() -> None:
     with pytest.raises(LinkwrightError) as caught:
         run_shell(["colcn"], {"PATH": BARE})
     (diagnostic,) = caught.value.diagnostics
@@ -95,7 +95,7 @@ def test_an_unknown_command_is_told_with_the_nearest_name() -> None:
     assert "colcon" in (diagnostic.hint or "")
 
 
-def test_a_program_of_ros_that_is_not_here_says_what_to_use() -> None:
+def test_missing_ros_program_suggests_alternative() -> None:
     with pytest.raises(LinkwrightError) as caught:
         run_shell(["rqt_graph"], {"PATH": BARE})
     (diagnostic,) = caught.value.diagnostics
@@ -115,7 +115,7 @@ def in_bash(home: Path, lines: str) -> subprocess.CompletedProcess[str]:
     )
 
 
-def test_a_bash_start_file_that_sets_the_path_leaves_our_commands_behind_it(tmp_path: Path) -> None:
+def test_bashrc_that_sets_path_keeps_commands_available(tmp_path: Path) -> None:
     script(tmp_path / "opt", "ros2", "echo real ros2")
     (tmp_path / ".bashrc").write_text(f"export PATH={tmp_path / 'opt'}:{BARE}\nunset PYTHONPATH\n")
     result = in_bash(tmp_path, 'ros2; command -v check_urdf; echo "$PYTHONPATH"; exit 5\n')
@@ -126,20 +126,20 @@ def test_a_bash_start_file_that_sets_the_path_leaves_our_commands_behind_it(tmp_
     assert result.returncode == 5
 
 
-def test_tab_completes_and_programs_that_are_not_here_say_what_to_use(tmp_path: Path) -> None:
+def test_bash_completes_commands_and_reports_missing_programs(tmp_path: Path) -> None:
     result = in_bash(tmp_path, "complete -p linkwright ros2; rosdep update; echo $?\n")
     assert [line.rpartition(" ")[2] for line in result.stdout.splitlines()] == ["linkwright", "ros2", "127"]
     assert "command 'rosdep' does not exist" in result.stderr
 
 
-def test_a_real_ros2_completes_as_it_does(tmp_path: Path) -> None:
+def test_installed_ros2_keeps_its_completion(tmp_path: Path) -> None:
     script(tmp_path / "opt", "ros2", "echo real ros2")
     (tmp_path / ".bashrc").write_text(f"export PATH={tmp_path / 'opt'}:{BARE}\n")
     assert "ros2" not in in_bash(tmp_path, "complete -p | grep linkwright\n").stdout
 
 
 @pytest.mark.parametrize("start", ["", f"export PATH={BARE}\n", 'export PATH="$PATH:/opt/ros/bin"\n'])
-def test_our_folders_stand_once_on_the_path(tmp_path: Path, start: str) -> None:
+def test_program_folders_are_on_path_once(tmp_path: Path, start: str) -> None:
     (tmp_path / ".bashrc").write_text(start)
     path, mark = in_bash(tmp_path, 'echo "$PATH"; echo "$LINKWRIGHT_SHELL"\n').stdout.splitlines()
     parts = path.split(os.pathsep)
@@ -159,7 +159,7 @@ def in_shell(command: str, folder: Path) -> subprocess.Popen[str]:
     )
 
 
-def test_termination_is_passed_on_and_the_folder_of_programs_goes(tmp_path: Path) -> None:
+def test_sigterm_is_forwarded_and_program_folder_removed(tmp_path: Path) -> None:
     result = tmp_path / "told"
     command = f'trap "echo ended > {result}; exit 3" TERM; echo $LINKWRIGHT_SHELL; while :; do sleep 0.05; done'
     with in_shell(command, tmp_path) as process:
@@ -172,7 +172,7 @@ def test_termination_is_passed_on_and_the_folder_of_programs_goes(tmp_path: Path
     assert not folder.exists()
 
 
-def test_ctrl_c_is_for_the_command(tmp_path: Path) -> None:
+def test_ctrl_c_reaches_command(tmp_path: Path) -> None:
     command = 'trap "exit 4" INT; echo ready; while :; do sleep 0.05; done'
     with in_shell(command, tmp_path) as process:
         assert process.stdout is not None
@@ -181,7 +181,7 @@ def test_ctrl_c_is_for_the_command(tmp_path: Path) -> None:
         assert process.wait(timeout=60) == 4
 
 
-def test_an_interrupt_of_the_shell_alone_reaches_the_command(tmp_path: Path) -> None:
+def test_sigint_to_shell_alone_reaches_command(tmp_path: Path) -> None:
     """As from ``kill -INT``, or a program that started the shell. What is sent to all comes once."""
     command = "trap 'echo heard' INT; echo ready; while :; do sleep 0.05; done"
     with in_shell(command, tmp_path) as process:
@@ -197,7 +197,7 @@ def test_an_interrupt_of_the_shell_alone_reaches_the_command(tmp_path: Path) -> 
 
 
 @pytest.mark.skipif(sys.platform != "linux", reason="only Linux tells a process that its parent was killed")
-def test_the_command_ends_when_the_shell_is_killed(tmp_path: Path) -> None:
+def test_command_ends_when_shell_is_killed(tmp_path: Path) -> None:
     with in_shell("echo ready; exec sleep 600", tmp_path) as process:
         assert process.stdout is not None
         assert process.stdout.readline() == "ready\n"
@@ -205,7 +205,7 @@ def test_the_command_ends_when_the_shell_is_killed(tmp_path: Path) -> None:
         assert process.stdout.read() == ""  # ends when nobody holds it any more
 
 
-def test_ctrl_c_at_the_very_end_of_the_command_leaves_its_status(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_ctrl_c_at_end_of_command_keeps_its_status(monkeypatch: pytest.MonkeyPatch) -> None:
     wait = os.waitpid
 
     def interrupted(pid: int, options: int) -> tuple[int, int]:
@@ -218,7 +218,7 @@ def test_ctrl_c_at_the_very_end_of_the_command_leaves_its_status(monkeypatch: py
     assert signal.getsignal(signal.SIGINT) is signal.default_int_handler
 
 
-def test_what_was_to_be_ignored_is_ignored_by_the_command(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_ignored_signals_stay_ignored_in_command(monkeypatch: pytest.MonkeyPatch) -> None:
     """As with nohup."""
     before = signal.signal(signal.SIGHUP, signal.SIG_IGN)
     try:
@@ -227,7 +227,7 @@ def test_what_was_to_be_ignored_is_ignored_by_the_command(monkeypatch: pytest.Mo
         signal.signal(signal.SIGHUP, before)
 
 
-def test_termination_while_the_command_is_being_started_is_passed_on(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_sigterm_during_command_start_is_forwarded(monkeypatch: pytest.MonkeyPatch) -> None:
     class Hurried(subprocess.Popen[bytes]):
         def __init__(self, *words: Any, **options: Any) -> None:
             super().__init__(*words, **options)

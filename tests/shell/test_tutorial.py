@@ -59,7 +59,7 @@ def typed(text: str, home: Path) -> str:
     return result.stdout
 
 
-def test_the_tutorial_word_for_word(home: Path) -> None:
+def test_tutorial_commands_work_as_written(home: Path) -> None:
     assert "going to create a new package" in typed(PREPARE, home)
     package = home / "ros2_ws" / "src" / "my_robot_description"
     for name in ("urdf", "launch", "rviz", "meshes"):

@@ -60,7 +60,7 @@ def plugin(more: str = "") -> str:
     )
 
 
-async def test_a_car_drives_straight_and_knows_how_far():
+async def test_car_drives_straight_with_correct_odometry():
     async with served(GROUND, car(plugin())) as (server, graph, log):
         odometry, distance = (Recording(graph, server.node, each) for each in ("/odom", "/distance"))
         await drive(server, graph, 0.5)
@@ -75,7 +75,7 @@ async def test_a_car_drives_straight_and_knows_how_far():
 
 
 @pytest.mark.parametrize("forward", [0.5, -0.5])
-async def test_a_car_goes_round_as_its_steered_wheels_say(forward):
+async def test_car_turns_according_to_steering(forward):
     async with served(GROUND, car(plugin())) as (server, graph, log):
         await drive(server, graph, forward, turning=0.3, seconds=2.0)
         begin = yaw_of(server.simulation.model_pose("car"))
@@ -90,7 +90,7 @@ async def test_a_car_goes_round_as_its_steered_wheels_say(forward):
         assert not log
 
 
-async def test_a_wheel_without_a_round_collision_is_told_of():
+async def test_wheel_without_round_collision_is_reported():
     async with served(GROUND, car(plugin(), "<box><size>0.2 0.2 0.05</size></box>")) as (server, _, log):
         assert not server.plugins("car")
         assert [each.text for each in log if "needs a collision that is a cylinder or a sphere" in each.text]

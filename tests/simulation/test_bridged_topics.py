@@ -17,7 +17,7 @@ BRIDGED = f"cmd_vel@{STAMPED}]gz.msgs.Twist"
 
 
 @pytest.mark.parametrize("first", ["bridge", "robot"])
-async def test_a_drive_obeys_stamped_velocities_and_the_topic_has_one_type(first: str) -> None:
+async def test_bridged_drive_accepts_stamped_velocities_on_single_type(first: str) -> None:
     async with served(GROUND) as (server, graph, log):
         bridge = ParameterBridge(graph, NodeOptions(arguments=[BRIDGED])) if first == "bridge" else None
         server.spawn(model(robot(gz())), "mbot")

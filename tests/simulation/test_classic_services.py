@@ -54,7 +54,7 @@ async def push(graph, topic: str, force: tuple[float, float, float]) -> None:
 
 
 @pytest.mark.parametrize(("frame", "way"), [("world", (1.0, 0.0)), ("link", (0.0, 1.0))])
-async def test_a_force_acts_in_the_axes_of_the_world_or_of_the_link(frame, way):
+async def test_force_acts_in_world_or_link_frame(frame, way):
     text = pushed(f"<force_frame>{frame}</force_frame>", yaw=pi / 2)
     async with served("<gravity>0 0 0</gravity>", text) as (server, graph, log):
         await push(graph, "/push", (4.0, 0.0, 0.0))
@@ -66,7 +66,7 @@ async def test_a_force_acts_in_the_axes_of_the_world_or_of_the_link(frame, way):
         assert not log
 
 
-async def test_forces_of_several_add_up():
+async def test_forces_of_several_plugins_add_up():
     names = "<bodyName>link</bodyName><topicName>two</topicName>"
     second = f'<plugin name="two" filename="libgazebo_ros_force.so">{names}</plugin>'
     text = pushed().replace("</model>", f"{second}</model>")
@@ -78,13 +78,13 @@ async def test_forces_of_several_add_up():
         assert not log
 
 
-async def test_a_force_in_another_frame_is_refused():
+async def test_unknown_force_frame_is_rejected():
     async with served(pushed("<force_frame>map</force_frame>")) as (server, _, log):
         assert not server.plugins("crate")
         assert [each.text for each in log if "<force_frame> must be" in each.text]
 
 
-async def test_states_of_all_models_and_links_are_told():
+async def test_model_and_link_states_are_published():
     async with served(GROUND, robot(), STATE) as (server, graph, log):
         models, links = (Recording(graph, server.node, f"/world/{each}") for each in ("model_states", "link_states"))
         server.advance(SECOND)
@@ -98,7 +98,7 @@ async def test_states_of_all_models_and_links_are_told():
         assert not log
 
 
-async def test_services_of_states_are_in_the_namespace_of_the_plugin():
+async def test_state_services_are_in_plugin_namespace():
     async with served(GROUND, robot(), STATE) as (server, graph, log):
         state = get_message("gazebo_msgs/msg/EntityState")(name="mbot")
         state.pose.position.x, state.pose.position.z = 2.0, 0.11
@@ -117,7 +117,7 @@ async def test_services_of_states_are_in_the_namespace_of_the_plugin():
         ]
 
 
-async def test_joints_are_put_by_a_service():
+async def test_service_sets_joint_positions():
     held = arm("").replace("0 1 0", "0 0 1")
     kind, name = "gazebo_msgs/srv/SetModelConfiguration", "/world/set_joint_positions"
     async with served(held, STATE) as (server, graph, _):
@@ -131,7 +131,7 @@ async def test_joints_are_put_by_a_service():
         assert (answer.success, answer.status_message) == (False, "there is no model or link 'legs'")
 
 
-async def test_properties_are_told_and_gravity_is_set():
+async def test_services_return_properties_and_set_gravity():
     async with served(GROUND, arm(""), box("crate", "5 0 1 0 0 0", "1 1 1", 3.0), PROPERTIES) as (server, graph, log):
         answer = await ask(
             graph, server, "gazebo_msgs/srv/GetModelProperties", "/get_model_properties", model_name="arm"
@@ -154,7 +154,7 @@ async def test_properties_are_told_and_gravity_is_set():
         assert not log
 
 
-async def test_masses_and_joints_are_changed_by_services():
+async def test_services_change_link_and_joint_properties():
     crate = box("crate", "5 0 1 0 0 0", "1 1 1", 3.0)
     async with served(GROUND, arm(""), crate, PROPERTIES) as (server, graph, log):
         kind = "gazebo_msgs/srv/SetLinkProperties"
@@ -188,7 +188,7 @@ async def test_masses_and_joints_are_changed_by_services():
         assert not log
 
 
-async def test_joints_jump_from_point_to_point():
+async def test_joint_pose_trajectory_jumps_between_points():
     plugin = '<plugin name="poses" filename="libgazebo_ros_joint_pose_trajectory.so"/>'
     async with served(arm(plugin).replace("0 1 0", "0 0 1")) as (server, graph, log):
         message = trajectory((1.0, 0.3), (1.0, 0.6), (0.0, 0.9))

@@ -14,7 +14,7 @@ from tests.simulation.worlds import GROUND
 
 @pytest.mark.parametrize("strange", [nan, inf], ids=str)
 @pytest.mark.parametrize("model", DRIVES.values(), ids=DRIVES.keys())
-async def test_a_drive_stops_at_a_command_that_is_no_number_and_obeys_the_next(model: str, strange: float) -> None:
+async def test_drive_stops_at_nan_command_and_follows_next(model: str, strange: float) -> None:
     async with served(GROUND, model) as (server, graph, log):
         driver = graph.create_node("driver").create_publisher(get_message("geometry_msgs/msg/Twist"), "/cmd_vel", 10)
         driver.publish(forward(0.3))

@@ -19,7 +19,7 @@ def world(inside: str, before: str = "") -> str:
     [LINK * (MAX_LINKS + 1), "<include><uri>model://m</uri></include>" * MAX_LINKS + LINK],
     ids=["links", "includes"],
 )
-def test_a_crowd_is_refused_before_it_is_read(tmp_path, monkeypatch, inside):
+def test_world_with_too_many_links_is_rejected_before_parsing(tmp_path, monkeypatch, inside):
     monkeypatch.delattr(linkwright.simulation.server.worlds, "examine_world")
     path = tmp_path / "crowd.world"
     path.write_text(world(inside))

@@ -28,7 +28,7 @@ def carrier(more: str = "", child: str = "load", *, held: bool = True, pose: str
     return box("carrier", pose, "0.2 0.2 0.2", 5.0).replace("</model>", f"{POST if held else ''}{plugin}</model>")
 
 
-async def tell(server, graph, topic: str, seconds: float = 0.5) -> None:
+async def send_empty(server, graph, topic: str, seconds: float = 0.5) -> None:
     """Send an empty message, and let time pass."""
     node = graph.create_node("operator")
     node.create_publisher(get_message("std_msgs/msg/Empty"), topic, 10).publish(get_message("std_msgs/msg/Empty")())
@@ -45,23 +45,23 @@ def offset(server) -> np.ndarray:
     )
 
 
-async def test_what_is_attached_hangs_until_it_is_let_go_and_can_be_taken_up_again():
+async def test_attached_link_is_detached_and_attached_again():
     async with served(GROUND, carrier(), LOAD) as (server, graph, log):
         states = Recording(graph, server.node, STATE)
         server.advance(SECOND)
         assert server.simulation.link_pose("load::link")[:3] == pytest.approx((0.05, 0, 1.75), abs=1e-3)
-        await tell(server, graph, DETACH)
+        await send_empty(server, graph, DETACH)
         assert server.simulation.link_pose("load::link")[2] == pytest.approx(1.75 - 9.81 / 8, abs=0.01)
-        await tell(server, graph, DETACH, 2.0)
+        await send_empty(server, graph, DETACH, 2.0)
         resting = server.simulation.link_pose("load::link")
         assert resting[2] == pytest.approx(0.1, abs=1e-3)
-        await tell(server, graph, ATTACH, 1.0)
+        await send_empty(server, graph, ATTACH, 1.0)
         assert server.simulation.link_pose("load::link") == pytest.approx(resting, abs=1e-3)
         assert [state.data for state in states] == ["attached", "detached", "attached"]
         assert not log
 
 
-async def test_what_is_held_moves_along():
+async def test_attached_link_moves_with_parent():
     within = LOAD.replace("1.75", "1.9")
     async with served("<gravity>0 0 0</gravity>", carrier(held=False), within) as (server, _, log):
         before = offset(server)
@@ -72,7 +72,7 @@ async def test_what_is_held_moves_along():
         assert not log
 
 
-async def test_what_is_not_to_be_held_at_the_start_falls_and_topics_have_the_names_that_are_said():
+async def test_initial_attach_and_topic_names_can_be_configured():
     more = (
         "<initial_attach>false</initial_attach><attach_topic>/grab</attach_topic><detach_topic>/drop</detach_topic>"
         "<output_topic>/grip</output_topic>"
@@ -83,15 +83,15 @@ async def test_what_is_not_to_be_held_at_the_start_falls_and_topics_have_the_nam
         server.advance(SECOND // 5)
         height = server.simulation.link_pose("load::link")[2]
         assert height == pytest.approx(1.5 - 9.81 / 2 * 0.04, abs=0.01)
-        await tell(server, graph, "/grab")
+        await send_empty(server, graph, "/grab")
         assert server.simulation.link_pose("load::link")[2] == pytest.approx(height, abs=0.05)
-        await tell(server, graph, "/drop", 0.2)
+        await send_empty(server, graph, "/drop", 0.2)
         assert server.simulation.link_pose("load::link")[2] < height - 0.1
         assert [state.data for state in states] == ["attached", "detached"]
         assert not log
 
 
-async def test_a_model_that_comes_later_is_taken_and_one_that_is_missing_is_told_once():
+async def test_late_model_is_attached_and_missing_model_reported_once():
     async with served(GROUND, carrier()) as (server, _, log):
         server.advance(SECOND // 5)
         assert [each.text for each in log] == [
@@ -111,15 +111,15 @@ async def test_a_model_that_comes_later_is_taken_and_one_that_is_missing_is_told
         assert len(log) == 1
 
 
-async def test_a_reset_brings_the_load_back():
+async def test_reset_attaches_load_again():
     async with served(GROUND, carrier(), LOAD) as (server, graph, _):
-        await tell(server, graph, DETACH, 1.0)
+        await send_empty(server, graph, DETACH, 1.0)
         server.reset()
         server.advance(SECOND)
         assert server.simulation.link_pose("load::link")[:3] == pytest.approx((0.05, 0, 1.75), abs=1e-3)
 
 
-async def test_a_link_that_is_not_there_and_parameters_that_lack_are_told():
+async def test_missing_link_and_parameters_are_reported():
     async with served(GROUND, carrier().replace("<parent_link>link", "<parent_link>hand"), LOAD) as (server, _, log):
         assert not server.plugins("carrier")
         assert ["'hand'" in each.text for each in log] == [True]
@@ -128,12 +128,12 @@ async def test_a_link_that_is_not_there_and_parameters_that_lack_are_told():
         assert any("'child_link'" in each.text for each in log)
 
 
-async def test_a_model_that_comes_anew_holds_what_it_held_and_nothing_else():
+async def test_replaced_model_keeps_attachment_state():
     async with served(GROUND, carrier(), LOAD) as (server, graph, log):
         server.replace_model(model(carrier().replace("0.2 0.2 0.2", "0.2 0.2 0.1")), "carrier")
         server.advance(SECOND)
         assert server.simulation.link_pose("load::link")[2] == pytest.approx(1.75, abs=1e-3)
-        await tell(server, graph, DETACH, 0.2)
+        await send_empty(server, graph, DETACH, 0.2)
         server.replace_model(model(carrier()), "carrier")
         server.advance(SECOND // 2)
         assert server.simulation.link_pose("load::link")[2] < 1.0

@@ -59,7 +59,7 @@ class Driven:
 
 
 @pytest.mark.parametrize("plugin", [classic(), gz()], ids=["classic", "gz"])
-async def test_it_drives_straight_on_and_knows_how_far(plugin):
+async def test_robot_drives_straight_with_correct_odometry(plugin):
     async with served(GROUND, robot(plugin)) as (server, graph, log):
         driven = Driven(server, graph)
         await driven.drive(0.5, 0.0, 1.5)
@@ -74,7 +74,7 @@ async def test_it_drives_straight_on_and_knows_how_far(plugin):
 
 
 @pytest.mark.parametrize("plugin", [classic(), gz()], ids=["classic", "gz"])
-async def test_it_turns_on_the_spot(plugin):
+async def test_robot_turns_in_place(plugin):
     async with served(GROUND, robot(plugin)) as (server, graph, _):
         driven = Driven(server, graph)
         await driven.drive(0.0, 1.0, 1.0)
@@ -84,7 +84,7 @@ async def test_it_turns_on_the_spot(plugin):
         assert driven.odometry.last.twist.twist.angular.z == pytest.approx(1.0, abs=0.02)
 
 
-async def test_odometry_of_the_world_says_where_it_is_and_that_it_drives_backward():
+async def test_world_odometry_reports_true_pose_and_backward_speed():
     async with served(GROUND, robot(classic(source=1))) as (server, graph, _):
         driven = Driven(server, graph)
         transforms = Recording(graph, server.node, "/tf")
@@ -99,7 +99,7 @@ async def test_odometry_of_the_world_says_where_it_is_and_that_it_drives_backwar
         assert (moved.header.frame_id, moved.child_frame_id) == ("odom", "base_footprint")
 
 
-async def test_after_a_reset_it_stands_still_at_the_start():
+async def test_reset_stops_robot_at_start():
     async with served(GROUND, robot(classic())) as (server, graph, _):
         driven = Driven(server, graph)
         await driven.drive(0.5, 0.5, 1.0)
@@ -118,13 +118,13 @@ async def test_after_a_reset_it_stands_still_at_the_start():
         (classic().replace(">left_joint<", ">left_jiont<"), "there is no movable joint 'left_jiont'"),
     ],
 )
-async def test_what_cannot_drive_is_told(plugin, words):
+async def test_invalid_parameters_are_reported(plugin, words):
     async with served(GROUND, robot(plugin)) as (server, _, log):
         assert server.plugins("mbot") == ()
         assert any(words in each.text for each in log)
 
 
-async def test_transforms_of_wheels_are_published_on_request():
+async def test_wheel_transforms_are_published_if_enabled():
     plugin = classic("<publish_wheel_tf>true</publish_wheel_tf>")
     async with served(GROUND, robot(plugin)) as (server, graph, log):
         transforms = Recording(graph, server.node, "/tf")
@@ -139,7 +139,7 @@ async def test_transforms_of_wheels_are_published_on_request():
 
 
 @pytest.mark.parametrize("plugin", [classic(source=1), gz()], ids=["classic", "gz"])
-async def test_where_everything_is_is_computed_only_for_those_who_listen(plugin, monkeypatch):
+async def test_world_poses_are_computed_only_for_subscribers(plugin, monkeypatch):
     async with served(GROUND, robot(plugin)) as (server, graph, _):
         server.advance(SECOND // 10)
         computed: list[int] = []
@@ -154,7 +154,7 @@ async def test_where_everything_is_is_computed_only_for_those_who_listen(plugin,
         assert heard.last.header.stamp.nanosec == 300_000_000
 
 
-async def test_a_world_of_many_driven_robots_is_compiled_once_at_the_start():
+async def test_world_with_many_drives_is_compiled_once():
     robots = (robot(classic(f"<ros><namespace>/{name}</namespace></ros>"), name=name) for name in ("a", "b", "c"))
     async with served(GROUND, *robots) as (server, _graph, _log):
         assert [len(server.plugins(name)) for name in ("a", "b", "c")] == [1, 1, 1]

@@ -96,7 +96,7 @@ def failing(where: str) -> str:
 
 
 @pytest.mark.parametrize("where", HOOKS)
-async def test_a_plugin_that_fails_anywhere_ends_and_nothing_else_does(where):
+async def test_failing_plugin_stops_without_affecting_others(where):
     text = robot(joint_states("before"), failing(where), joint_states("after"))
     async with served(GROUND, text) as (server, graph, log):
         recordings = [
@@ -137,7 +137,7 @@ async def _pass(server, graph) -> None:
         await graph.settle()
 
 
-async def test_a_command_that_waits_for_a_plugin_which_has_ended_is_not_given_to_it():
+async def test_pending_command_of_removed_plugin_is_dropped():
     async with served(GROUND, robot(failing(""))) as (server, graph, log):
         heard: list = []
         (faulty,) = server.plugins("mbot")
@@ -148,7 +148,7 @@ async def test_a_command_that_waits_for_a_plugin_which_has_ended_is_not_given_to
         assert not log
 
 
-def test_the_test_of_a_plugin_fails_where_the_plugin_does(tmp_path):
+def test_stepped_simulation_raises_plugin_error(tmp_path):
     world = tmp_path / "a.world"
     world.write_text(f'<sdf version="1.7"><world name="test">{robot(failing(TASK))}</world></sdf>')
     with SteppedSimulation(world) as test, pytest.raises(FaultError, match=TASK):
@@ -173,7 +173,7 @@ OF_GZ = {kind: sensor(kind, EYE if kind.startswith(_PICTURES) else "", "a") for 
 
 
 @pytest.mark.parametrize("text", (CLASSIC | OF_GZ).values(), ids=(CLASSIC | OF_GZ).keys())
-async def test_a_sensor_measures_while_subscriptions_come_and_go(text, monkeypatch):
+async def test_sensor_survives_changing_subscriptions(text, monkeypatch):
     chance = Random(7)
     if 'type="force_torque"' in text:
         joint = '<joint name="wrist" type="continuous"><parent>head</parent><child>arm</child>{}</joint>'

@@ -20,7 +20,7 @@ BOTH = pytest.mark.parametrize("mistaken", [False, True])
 
 
 @BOTH
-async def test_the_sign_of_the_velocity_backward(mistaken):
+async def test_backward_velocity_sign_mistake_is_optional(mistaken):
     options = ServerOptions(gazebo_mistakes=mistaken)
     async with served(GROUND, robot(classic(source=0)), options=options) as (server, graph, _):
         odometry = Recording(graph, server.node, "/odom")
@@ -31,7 +31,7 @@ async def test_the_sign_of_the_velocity_backward(mistaken):
 
 
 @BOTH
-async def test_velocities_in_the_frame_of_another_link(mistaken):
+async def test_p3d_velocity_frame_mistake_is_optional(mistaken):
     p3d = (
         '<plugin name="p3d" filename="libgazebo_ros_p3d.so"><ros><remapping>odom:=told</remapping></ros>'
         "<body_name>link</body_name><frame_name>frame</frame_name><update_rate>10</update_rate></plugin>"
@@ -47,7 +47,7 @@ async def test_velocities_in_the_frame_of_another_link(mistaken):
 
 
 @BOTH
-def test_the_colours_of_points(mistaken):
+def test_point_color_mistake_is_optional(mistaken):
     cloud = get_message("sensor_msgs/msg/PointCloud2")()
     fill_camera_cloud(cloud, np.zeros((1, 1, 3)), np.array([[[1, 2, 3]]], np.uint8), swap_red_blue=mistaken)
     assert list(bytes(cloud.data)[16:19]) == ([1, 2, 3] if mistaken else [3, 2, 1])

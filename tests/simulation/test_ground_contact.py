@@ -27,20 +27,20 @@ def height(*parts: str, z: float) -> float:
 
 
 @pytest.mark.parametrize(("ground", "top"), [(GROUND, 0.0), (PLATE, 0.05)])
-def test_a_box_that_stands_in_the_ground_is_put_on_it(ground: str, top: float) -> None:
+def test_box_inside_ground_is_lifted_onto_it(ground: str, top: float) -> None:
     assert height(ground, z=0.07) == pytest.approx(top + 0.1, abs=1e-6)
 
 
-def test_a_box_above_the_ground_stays_where_it_is() -> None:
+def test_box_above_ground_is_not_moved() -> None:
     assert height(GROUND, z=0.1) == pytest.approx(0.1)
     assert height(GROUND, z=0.5) == pytest.approx(0.5)
 
 
-def test_a_box_in_a_wall_is_not_lifted() -> None:
+def test_box_inside_wall_is_not_lifted() -> None:
     assert height(GROUND, WALL, z=0.1) == pytest.approx(0.1)
 
 
-def test_it_comes_to_rest_there() -> None:
+def test_lifted_box_rests_on_ground() -> None:
     simulation = simulated(PLATE)
     simulation.spawn(model(box("crate", "0 0 0 0 0 0", "0.2 0.2 0.2")), "crate")
     lift_onto_ground(simulation, "crate")
@@ -49,7 +49,7 @@ def test_it_comes_to_rest_there() -> None:
     assert (x, y, z) == pytest.approx((0.0, 0.0, 0.15), abs=1e-3)
 
 
-def test_a_model_that_touches_nothing_is_told():
+def test_model_without_collisions_is_reported():
     visual = '<visual name="v"><geometry><box><size>1 1 1</size></box></geometry></visual>'
     simulation = simulated(GROUND)
     for name, link in (("seen", visual), ("still", f"{visual}<gravity>false</gravity>")):

@@ -55,7 +55,7 @@ def mecanum(more: str = "", name: str = "robot") -> str:
     return text.replace("</model>", plugin + "</model>")
 
 
-def test_limits_hold_for_velocity_acceleration_and_jerk():
+def test_speed_limits_apply_to_velocity_acceleration_and_jerk():
     limiter = SpeedLimits(max_velocity=1.0, max_linear_acceleration=2.0, min_acceleration=-4.0).limiter("linear")
     assert [limiter.approach(5.0, 0.1) for _ in range(7)] == pytest.approx([0.2, 0.4, 0.6, 0.8, 1.0, 1.0, 1.0])
     assert [limiter.approach(0.0, 0.1) for _ in range(3)] == pytest.approx([0.6, 0.2, 0.0])
@@ -63,7 +63,7 @@ def test_limits_hold_for_velocity_acceleration_and_jerk():
     assert [slow.approach(5.0, 0.1) for _ in range(3)] == pytest.approx([0.1, 0.3, 0.6])
 
 
-async def test_a_car_drives_the_circle_that_a_command_says_and_knows_where_it_is():
+async def test_car_drives_commanded_circle_with_correct_odometry():
     async with served(GROUND, car(steering())) as (server, graph, log):
         odometry, transforms = (Recording(graph, server.node, each) for each in ("/odom", "/tf"))
         await drive(server, graph, 0.5, turning=0.3, seconds=2.0)
@@ -83,7 +83,7 @@ async def test_a_car_drives_the_circle_that_a_command_says_and_knows_where_it_is
         assert not log
 
 
-async def test_a_car_steers_no_further_than_its_limit_and_backward_too():
+async def test_car_respects_steering_limit_backward():
     async with served(GROUND, car(steering("<steering_limit>0.3</steering_limit>"))) as (server, graph, log):
         odometry = Recording(graph, server.node, "/odom")
         await drive(server, graph, -0.5, turning=5.0, seconds=2.0)
@@ -96,7 +96,7 @@ async def test_a_car_steers_no_further_than_its_limit_and_backward_too():
         assert not log
 
 
-async def test_the_steering_alone_takes_an_angle():
+async def test_steering_only_follows_angle():
     only = steering("<steering_only>true</steering_only>").replace("<topic>cmd_vel</topic>", "")
     async with served(GROUND, car(only)) as (server, graph, log):
         node = graph.create_node("driver")
@@ -109,7 +109,7 @@ async def test_the_steering_alone_takes_an_angle():
         assert not log
 
 
-async def test_a_car_without_wheels_to_turn_is_told_of():
+async def test_car_without_wheel_joints_is_reported():
     none = steering().replace("<left_joint>rear_left_joint</left_joint>", "")
     async with served(GROUND, car(none)) as (server, _, log):
         assert not server.plugins("car")
@@ -121,7 +121,7 @@ async def test_a_car_without_wheels_to_turn_is_told_of():
     [((0.5, 0.0, 0.0), (0.5, 0.0, 0.0)), ((0.0, 0.5, 0.0), (0.0, 0.5, 0.0)), ((0.0, 0.0, 1.0), (0.0, 0.0, 1.0))],
     ids=["forward", "sideways", "turning"],
 )
-async def test_mecanum_wheels_go_any_way_and_know_how_far(command, moved):
+async def test_mecanum_drive_moves_in_any_direction_with_correct_odometry(command, moved):
     async with served(GROUND, mecanum()) as (server, graph, log):
         odometry = Recording(graph, server.node, "/odom")
         await drive(server, graph, *command, seconds=1.0)
@@ -137,7 +137,7 @@ async def test_mecanum_wheels_go_any_way_and_know_how_far(command, moved):
         assert not log
 
 
-async def test_wheels_of_a_robot_that_goes_sideways_turn_against_each_other_and_stop_after_a_reset():
+async def test_mecanum_wheels_turn_oppositely_sideways_and_stop_on_reset():
     async with served(GROUND, mecanum("<max_linear_velocity>0.2</max_linear_velocity>")) as (server, graph, log):
         await drive(server, graph, 0.0, 1.0, seconds=1.0)
         names = ("front_left", "front_right", "back_left", "back_right")
@@ -149,7 +149,7 @@ async def test_wheels_of_a_robot_that_goes_sideways_turn_against_each_other_and_
         assert not log
 
 
-async def test_a_model_has_the_velocity_that_it_is_told_in_its_own_axes():
+async def test_velocity_control_sets_velocity_in_model_frame():
     plugin = (
         '<plugin name="gz::sim::systems::VelocityControl" filename="gz-sim-velocity-control-system">'
         "<initial_linear>0 0 0.5</initial_linear></plugin>"
@@ -170,7 +170,7 @@ async def test_a_model_has_the_velocity_that_it_is_told_in_its_own_axes():
         assert not log
 
 
-async def test_a_drive_that_is_not_enabled_comes_to_rest():
+async def test_disabled_drive_comes_to_rest():
     plugin = (
         '<plugin name="drive" filename="gz-sim-diff-drive-system"><left_joint>left_joint</left_joint>'
         "<right_joint>right_joint</right_joint><wheel_separation>0.38</wheel_separation>"

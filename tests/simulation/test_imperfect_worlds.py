@@ -20,7 +20,7 @@ CRATE = f'<model name="crate"><pose>0 0 2 0 0 0</pose>{LINK}</model>'
 CIRCLE = '<link name="a"><pose relative_to="b"/></link><link name="b"><pose relative_to="a"/></link>'
 
 
-def begun(*parts: str, version: str = "1.9") -> Simulation:
+def start_simulation(*parts: str, version: str = "1.9") -> Simulation:
     """A simulation of a world, whatever is wrong with it, after ten milliseconds."""
     text = f'<sdf version="{version}"><world name="test">{GROUND}{"".join(parts)}</world></sdf>'
     document, _ = parse_as_gazebo(text.encode(), "test.world")
@@ -43,66 +43,68 @@ def codes_of(simulation: Simulation) -> list[str]:
         '<model name="m" placement_frame="nowhere"><link name="a"/></model>',
     ],
 )
-def test_a_model_without_a_place_is_left_out(broken):
-    simulation = begun(CRATE, broken)
+def test_model_without_valid_pose_is_omitted(broken):
+    simulation = start_simulation(CRATE, broken)
     assert list(simulation.scene.models) == ["ground", "crate"]
     assert codes_of(simulation) == ["SIM116"]
 
 
-def test_a_model_that_mujoco_cannot_take_is_left_out():
+def test_model_rejected_by_mujoco_is_omitted():
     points = "".join(f"<point>{x} {y}</point>" for x, y in ((0, 0), ("1e200", 0), ("1e200", "1e200")))
     shape = f"<geometry><polyline>{points}<height>1</height></polyline></geometry>"
-    simulation = begun(CRATE, f'<model name="m"><link name="l"><collision name="c">{shape}</collision></link></model>')
+    simulation = start_simulation(
+        CRATE, f'<model name="m"><link name="l"><collision name="c">{shape}</collision></link></model>'
+    )
     assert list(simulation.scene.models) == ["ground", "crate"]
     assert codes_of(simulation) == ["SIM117"]
 
 
-def test_a_part_that_stands_relative_to_nothing_stands_in_its_link():
+def test_collision_with_unknown_frame_is_placed_in_its_link():
     collision = f'<collision name="c"><pose relative_to="gone">0 0 0.25 0 0 0</pose>{BOX}</collision>'
-    simulation = begun(f'<model name="m"><static>true</static><link name="l">{collision}</link></model>')
+    simulation = start_simulation(f'<model name="m"><static>true</static><link name="l">{collision}</link></model>')
     model = simulation.model
     assert model.geom("m::l::c#collision").pos.tolist() == [0, 0, 0.25]
 
 
-def test_a_link_as_light_as_dust_moves():
+def test_tiny_link_moves():
     tensor = "<ixx>1e-20</ixx><iyy>1e-20</iyy><izz>1e-20</izz>"
     inertial = f"<inertial><mass>1e-5</mass><inertia>{tensor}</inertia></inertial>"
-    simulation = begun(f'<model name="m"><pose>0 0 5 0 0 0</pose><link name="l">{inertial}</link></model>')
+    simulation = start_simulation(f'<model name="m"><pose>0 0 5 0 0 0</pose><link name="l">{inertial}</link></model>')
     assert codes_of(simulation) == []
     simulation.advance(100_000_000)
     assert simulation.model_pose("m")[2] < 5.0
 
 
-def test_a_time_step_of_nothing_is_a_millisecond():
-    simulation = begun(CRATE, "<physics type='ode'><max_step_size>0</max_step_size></physics>")
+def test_zero_step_size_falls_back_to_one_millisecond():
+    simulation = start_simulation(CRATE, "<physics type='ode'><max_step_size>0</max_step_size></physics>")
     assert simulation.step == 1_000_000
     assert codes_of(simulation) == ["SIM106"]
 
 
-def test_shapes_and_joints_of_one_name_are_all_there():
+def test_collisions_and_joints_with_duplicate_names_are_kept():
     links = "".join(f'<link name="{name}"><collision name="c">{BOX}</collision></link>' for name in "abd")
     joints = "".join(
         f'<joint name="j" type="revolute"><parent>a</parent><child>{child}</child><axis/></joint>' for child in "bd"
     )
     twice = f'<link name="e"><collision name="c">{BOX}</collision><collision name="c">{BOX}</collision></link>'
-    simulation = begun(f'<model name="m"><pose>0 0 3 0 0 0</pose>{links}{twice}{joints}</model>')
+    simulation = start_simulation(f'<model name="m"><pose>0 0 3 0 0 0</pose>{links}{twice}{joints}</model>')
     assert simulation.model.body("m::e").geomnum == 2
     assert sorted(simulation.scene.joints) == ["m::j", "m::j~"]
 
 
-def test_a_joint_without_a_direction_turns_about_z_and_one_of_a_link_with_itself_is_none():
+def test_zero_axis_defaults_to_z_and_self_joint_is_omitted():
     ends = '<link name="a"/><link name="b"/>'
     first = '<joint name="j" type="revolute"><parent>a</parent><child>b</child><axis><xyz>0 0 0</xyz></axis></joint>'
     second = '<joint name="k" type="revolute"><parent>a</parent><child>a</child><axis/></joint>'
-    simulation = begun(f'<model name="m"><pose>0 0 3 0 0 0</pose>{ends}{first}{second}</model>')
+    simulation = start_simulation(f'<model name="m"><pose>0 0 3 0 0 0</pose>{ends}{first}{second}</model>')
     assert list(simulation.scene.joints) == ["m::j"]
     assert simulation.model.joint("m::j").axis.tolist() == [0, 0, 1]
 
 
-def test_links_of_old_files_have_the_names_of_models_that_were_in_them():
+def test_nested_link_names_of_old_files_are_kept():
     joint = '<joint name="laser::j" type="revolute"><parent>base</parent><child>laser::link</child><axis/></joint>'
     links = '<link name="base"/><link name="laser::link"><pose>0 0 1 0 0 0</pose></link>'
-    simulation = begun(f'<model name="m"><pose>0 0 3 0 0 0</pose>{links}{joint}</model>', version="1.6")
+    simulation = start_simulation(f'<model name="m"><pose>0 0 3 0 0 0</pose>{links}{joint}</model>', version="1.6")
     assert simulation.joint_state("m::laser::j")[0] == pytest.approx(0, abs=1e-6)
     assert simulation.link_pose("m::laser::link")[2] == pytest.approx(4, abs=1e-2)
 
@@ -138,10 +140,10 @@ def broken_models(draw: st.DrawFn) -> str:
 
 @settings(max_examples=60, deadline=None, derandomize=True, suppress_health_check=[HealthCheck.too_slow])
 @given(broken_models())
-def test_whatever_a_model_says_there_is_a_simulation_or_a_clear_error(broken: str):
+def test_arbitrary_model_is_simulated_or_reported(broken: str):
     codes: set[str] = set()
     try:
-        assert "crate" in begun(CRATE, broken).scene.models
+        assert "crate" in start_simulation(CRATE, broken).scene.models
     except LinkwrightError as error:
         codes = {diagnostic.code for diagnostic in error.diagnostics}
     assert codes <= {"SIM120", "SIM121"}

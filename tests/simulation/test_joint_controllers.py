@@ -12,7 +12,7 @@ GRAVITY_PULLS = 1.0 * 9.81 * 0.5
 
 
 def arm(plugin: str, limit: str = "<lower>-2</lower><upper>2</upper>") -> str:
-    """An arm of 1 kg, level, that hangs on the world by a joint; its centre is 0.5 m before the joint."""
+    """An arm of 1 kg, level, that hangs on the world by a joint; its center is 0.5 m before the joint."""
     inertia = "<ixx>0.01</ixx><iyy>0.1</iyy><izz>0.1</izz>"
     return (
         '<model name="arm"><pose>0 0 2 0 0 0</pose><link name="link"><inertial><pose>0.5 0 0 0 0 0</pose>'
@@ -47,7 +47,7 @@ async def command(graph, server, topic: str, value: float, seconds: float) -> No
     node.destroy_node()
 
 
-async def test_a_joint_is_held_whatever_pulls_and_moves_no_faster_than_its_limit():
+async def test_position_controller_holds_joint_within_velocity_limit():
     text = arm(position("<use_velocity_commands>true</use_velocity_commands>"), "<velocity>0.5</velocity>")
     async with served(text) as (server, graph, log):
         server.advance(SECOND)
@@ -61,7 +61,7 @@ async def test_a_joint_is_held_whatever_pulls_and_moves_no_faster_than_its_limit
         assert not log
 
 
-async def test_a_joint_goes_no_farther_than_its_limits_and_is_held_at_the_start_after_a_reset():
+async def test_position_controller_respects_limits_and_reset():
     text = arm(position("<use_velocity_commands>1</use_velocity_commands><topic>/reach</topic>"))
     async with served(text) as (server, graph, log):
         await command(graph, server, "/reach", 5.0, 3.0)
@@ -72,7 +72,7 @@ async def test_a_joint_goes_no_farther_than_its_limits_and_is_held_at_the_start_
         assert not log
 
 
-async def test_gains_push_a_joint_and_gravity_bends_what_no_sum_of_errors_straightens():
+async def test_position_controller_without_integral_gain_sags_under_gravity():
     gains = "<p_gain>100</p_gain><i_gain>0</i_gain><d_gain>20</d_gain>"
     async with served(arm(position(gains))) as (server, _, log):
         server.advance(5 * SECOND)
@@ -86,7 +86,7 @@ async def test_gains_push_a_joint_and_gravity_bends_what_no_sum_of_errors_straig
     "more",
     ["", "<use_force_commands>true</use_force_commands><p_gain>50</p_gain><i_gain>200</i_gain><i_max>50</i_max>"],
 )
-async def test_a_joint_turns_as_fast_as_it_is_told(more):
+async def test_velocity_controller_reaches_commanded_velocity(more):
     text = arm(velocity(more), "<lower>-1e16</lower><upper>1e16</upper>").replace("0 1 0", "0 0 1")
     async with served(text) as (server, graph, log):
         await command(graph, server, "/model/arm/joint/shoulder/cmd_vel", 1.5, 3.0)
@@ -94,13 +94,13 @@ async def test_a_joint_turns_as_fast_as_it_is_told(more):
         assert not log
 
 
-async def test_a_second_axis_is_refused():
+async def test_second_joint_axis_is_rejected():
     async with served(arm(position("<joint_index>1</joint_index>"))) as (server, _, log):
         assert not server.plugins("arm")
         assert [each.text for each in log if "only the first axis" in each.text]
 
 
-async def test_an_arm_on_a_base_that_stands_fast_is_held_too():
+async def test_arm_on_fixed_base_is_held():
     base = '<link name="base"/><joint name="anchor" type="fixed"><parent>world</parent><child>base</child></joint>'
     text = arm(position("<use_velocity_commands>true</use_velocity_commands>"))
     text = text.replace("<parent>world</parent>", "<parent>base</parent>").replace("<joint", f"{base}<joint", 1)
@@ -110,7 +110,7 @@ async def test_an_arm_on_a_base_that_stands_fast_is_held_too():
         assert not log
 
 
-async def test_a_force_on_a_joint_acts_until_another_is_commanded_and_a_reset_clears_it():
+async def test_joint_force_acts_until_changed_or_reset():
     plugin = (
         '<plugin name="gz::sim::systems::ApplyJointForce" filename="gz-sim-apply-joint-force-system">'
         "<joint_name>shoulder</joint_name></plugin>"

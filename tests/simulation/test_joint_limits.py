@@ -43,7 +43,7 @@ def speed_when_pushed(simulation: Simulation, force: float, seconds: float = 0.5
     return simulation.joint_state("arm::turn")[1]
 
 
-async def test_a_controller_lifts_no_more_than_the_effort_of_the_joint():
+async def test_controller_effort_is_limited():
     async with served(arm("<effort>5</effort>", CONTROLLER, more="<dynamics><damping>5</damping></dynamics>")) as (
         server,
         graph,
@@ -59,19 +59,19 @@ async def test_a_controller_lifts_no_more_than_the_effort_of_the_joint():
 
 
 @pytest.mark.parametrize("force", [3.0, -3.0])
-def test_a_push_accelerates_by_the_effort_at_most(force: float):
+def test_push_is_limited_by_joint_effort(force: float):
     simulation = simulated(arm("<effort>2</effort>"), gravity="0 0 0")
     expected = 2.0 * 0.5 / 1.001
     assert abs(speed_when_pushed(simulation, force)) == pytest.approx(expected, rel=0.01)
 
 
 @pytest.mark.parametrize("force", [2.0, 100.0, 1e5, -1e5])
-def test_a_push_brings_a_joint_to_its_velocity_and_no_further(force: float):
+def test_push_stops_at_joint_velocity_limit(force: float):
     simulation = simulated(arm("<velocity>0.8</velocity>"), gravity="0 0 0")
     assert abs(speed_when_pushed(simulation, force)) == pytest.approx(0.8, rel=0.01)
 
 
-def test_a_joint_that_is_faster_is_braked_by_no_bound():
+def test_joint_above_velocity_limit_is_not_braked():
     simulation = simulated(arm("<velocity>0.8</velocity>"), gravity="0 0 0")
     simulation.data.joint("arm::turn").qvel[0] = 3.0
     simulation.mark_moved()
@@ -82,13 +82,13 @@ def test_a_joint_that_is_faster_is_braked_by_no_bound():
 @pytest.mark.parametrize(
     "limit", ["", "<effort>0</effort><velocity>0</velocity>", "<effort>-1</effort><velocity>-1</velocity>"]
 )
-def test_zero_and_less_are_no_limits(limit: str):
+def test_nonpositive_limits_are_ignored(limit: str):
     simulation = simulated(arm(limit), gravity="0 0 0")
     assert speed_when_pushed(simulation, 10.0) == pytest.approx(5.0, rel=0.01)
 
 
 @pytest.mark.parametrize(("velocity", "wanted"), [(1.5, 1.5), (inf, 4.0)])
-async def test_a_motor_of_gz_turns_as_fast_as_the_joint_may(velocity: float, wanted: float):
+async def test_gz_motor_respects_joint_velocity_limit(velocity: float, wanted: float):
     limit = f"<velocity>{velocity}</velocity>"
     async with served(arm(limit, MOTOR, axis="0 0 1")) as (server, _, _log):
         server.advance(NANOSECONDS_PER_SECOND)

@@ -43,7 +43,7 @@ async def follow(graph, server, message, seconds: float) -> None:
     node.destroy_node()
 
 
-async def test_joints_are_at_each_point_until_the_next_is_due():
+async def test_joints_hold_each_point_until_next_is_due():
     async with served(arm(controller("<initial_position>0.5</initial_position>" + GAINS))) as (server, graph, log):
         progress = Recording(graph, server.node, f"{TOPIC}_progress")
         server.advance(3 * SECOND)
@@ -61,7 +61,7 @@ async def test_joints_are_at_each_point_until_the_next_is_due():
         assert not log
 
 
-async def test_a_trajectory_may_begin_later():
+async def test_header_start_time_delays_trajectory():
     more = "<use_header_start_time>true</use_header_start_time>" + GAINS
     async with served(arm(controller(more))) as (server, graph, _):
         progress = Recording(graph, server.node, f"{TOPIC}_progress")
@@ -69,7 +69,7 @@ async def test_a_trajectory_may_begin_later():
         assert [each.data for each in progress] == [0.5, 1.0]
 
 
-async def test_without_gains_efforts_alone_push():
+async def test_efforts_alone_are_applied_without_gains():
     async with served(arm(controller("<joint_name>shoulder</joint_name>"))) as (server, graph, log):
         server.advance(3 * SECOND)
         assert server.simulation.joint_state("arm::shoulder")[0] > 1.0
@@ -80,7 +80,7 @@ async def test_without_gains_efforts_alone_push():
         assert not log
 
 
-async def test_joints_that_are_not_moved_are_named_and_no_points_end_a_trajectory():
+async def test_unknown_joint_is_reported_and_empty_trajectory_ends_current():
     async with served(arm(controller())) as (server, graph, log):
         await follow(graph, server, trajectory((0.0, 1.0), name="elbow"), 0.1)
         assert [each.text for each in log] == [

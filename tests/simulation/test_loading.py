@@ -37,7 +37,7 @@ async def steps(it, count: int) -> None:
     await it.ask("simulation_interfaces/srv/StepSimulation", "/step_simulation", steps=count)
 
 
-async def test_what_is_the_same_goes_on(tmp_path):
+async def test_unchanged_models_keep_moving(tmp_path):
     falling, other = box("one", "0 0 9 0 0 0"), box("two", "3 0 9 0 0 0")
     async with simulator(tmp_path, falling, other) as it:
         simulation = it.simulator.server.simulation
@@ -51,7 +51,7 @@ async def test_what_is_the_same_goes_on(tmp_path):
         assert simulation.revision == 0, "nothing was made anew"
 
 
-async def test_what_stands_elsewhere_is_moved_and_begins_there(tmp_path):
+async def test_relocated_model_is_moved_and_starts_there(tmp_path):
     async with simulator(tmp_path, box("one", "0 0 9 0 0 0"), box("two", "3 0 9 0 0 0")) as it:
         simulation = it.simulator.server.simulation
         await steps(it, 100)
@@ -66,7 +66,7 @@ async def test_what_stands_elsewhere_is_moved_and_begins_there(tmp_path):
         assert simulation.model_pose("two")[:3] == (3, 0, 9)
 
 
-async def test_what_stands_fast_is_moved_with_its_joints_as_they_are(tmp_path):
+async def test_relocated_fixed_model_keeps_joint_positions(tmp_path):
     async with simulator(tmp_path, SPIN.format(more="")) as it:
         simulation = it.simulator.server.simulation
         simulation.set_joint_position("arm::turn", 0.7)
@@ -76,7 +76,7 @@ async def test_what_stands_fast_is_moved_with_its_joints_as_they_are(tmp_path):
         assert simulation.link_pose("arm::tip")[:3] == pytest.approx((6, 5, 1.5))
 
 
-async def test_what_has_changed_comes_anew_where_it_is(tmp_path):
+async def test_changed_model_is_replaced_at_current_pose(tmp_path):
     async with simulator(tmp_path, box("one", "0 0 9 0 0.3 0"), SPIN.format(more="")) as it:
         simulation = it.simulator.server.simulation
         simulation.set_model_velocity("one", (1.0, 2.0, 0.0), (0.0, 0.0, 3.0))
@@ -95,14 +95,14 @@ async def test_what_has_changed_comes_anew_where_it_is(tmp_path):
         assert simulation.model_pose("one")[:3] == (0, 0, 9)
 
 
-async def test_what_has_changed_and_stands_elsewhere_comes_there(tmp_path):
+async def test_changed_and_relocated_model_uses_new_pose(tmp_path):
     async with simulator(tmp_path, box("one", "0 0 9 0 0 0")) as it:
         await steps(it, 100)
         await load(it, tmp_path, box("one", "0 4 9 0 0 0", size="1 1 2"))
         assert it.simulator.server.simulation.model_pose("one")[:3] == (0, 4, 9)
 
 
-async def test_models_come_and_go_and_what_was_spawned_stays(tmp_path):
+async def test_models_are_added_and_removed_and_spawned_ones_kept(tmp_path):
     async with simulator(tmp_path, box("one", "0 0 9 0 0 0"), box("two", "3 0 9 0 0 0")) as it:
         descriptions = it.hear("std_msgs/msg/String", "/world_description", LATCHED)
         xml = f'<sdf version="1.7">{box("spawned", "0 0 0 0 0 0")}</sdf>'
@@ -115,7 +115,7 @@ async def test_models_come_and_go_and_what_was_spawned_stays(tmp_path):
         assert "two" not in descriptions[-1].data
 
 
-async def test_physics_gravity_light_and_plugins_follow(tmp_path):
+async def test_physics_gravity_light_and_plugins_are_updated(tmp_path):
     async with simulator(tmp_path, box("one", "0 0 9 0 0 0"), real_time_factor=0.0) as it:
         simulation = it.simulator.server.simulation
         log = it.hear("rcl_interfaces/msg/Log", "/rosout")
@@ -136,7 +136,7 @@ async def test_physics_gravity_light_and_plugins_follow(tmp_path):
         assert simulation.model_pose("one")[2] < 9.0
 
 
-async def test_plugins_of_what_has_not_changed_run_on_and_those_of_others_restart(tmp_path):
+async def test_plugins_restart_only_with_changed_models(tmp_path):
     async with simulator(tmp_path, robot(joint_states())) as it:
         server = it.simulator.server
         before = server.plugins("mbot")
@@ -163,7 +163,7 @@ async def test_plugins_of_what_has_not_changed_run_on_and_those_of_others_restar
         (text("<includ/>"), 106, "<includ> in <world> is not read"),
     ],
 )
-async def test_a_world_that_cannot_be_had_changes_nothing(tmp_path, content, result, message):
+async def test_invalid_world_changes_nothing(tmp_path, content, result, message):
     async with simulator(tmp_path, box("one", "0 0 9 0 0 0")) as it:
         simulation = it.simulator.server.simulation
         xml = f'<sdf version="1.7">{box("spawned", "0 0 0 0 0 0")}</sdf>'
@@ -179,7 +179,7 @@ async def test_a_world_that_cannot_be_had_changes_nothing(tmp_path, content, res
         assert after == before
 
 
-async def test_what_is_missing_may_be_left_out(tmp_path):
+async def test_missing_assets_can_be_ignored(tmp_path):
     async with simulator(tmp_path) as it:
         missing = "<include><uri>model://nowhere_at_all</uri></include>"
         answer = await load(it, tmp_path, missing, ignore_missing_or_unsupported_assets=True)
@@ -188,7 +188,7 @@ async def test_what_is_missing_may_be_left_out(tmp_path):
         assert answer.result.result == answer.result.RESULT_OK, "it was missing before, too"
 
 
-async def test_no_world_and_no_such_file_are_said(tmp_path):
+async def test_missing_world_and_unknown_file_are_reported(tmp_path):
     async with simulator(tmp_path) as it:
         answer = await it.ask("simulation_interfaces/srv/LoadWorld", "/load_world")
         assert (answer.result.result, answer.result.error_message) == (
@@ -204,7 +204,7 @@ DRIVE = """<plugin name="drive" filename="libgazebo_ros_diff_drive.so"><left_joi
 <right_joint>right_joint</right_joint><wheel_separation>0.38</wheel_separation><wheel_diameter>0.12</wheel_diameter></plugin>"""
 
 
-async def test_a_robot_comes_anew_where_it_is_and_drives(tmp_path):
+async def test_changed_robot_is_replaced_in_place_and_drives(tmp_path):
     async with simulator(tmp_path, robot(DRIVE)) as it:
         simulation = it.simulator.server.simulation
         command = it.node.create_publisher(get_message("geometry_msgs/msg/Twist"), "/cmd_vel", 10)
@@ -231,7 +231,7 @@ MAST = "<link name='mast'/><joint name='m' type='fixed'><parent>base_link</paren
 
 
 @pytest.mark.parametrize("drive", [CLASSIC, GZ])
-async def test_a_drive_that_is_what_it_was_goes_on_with_its_odometry_and_command(tmp_path, drive):
+async def test_unchanged_drive_keeps_odometry_and_command(tmp_path, drive):
     async with simulator(tmp_path, robot(drive)) as it:
         simulation = it.simulator.server.simulation
         command = it.node.create_publisher(get_message("geometry_msgs/msg/Twist"), "/cmd_vel", 10)
@@ -250,7 +250,7 @@ async def test_a_drive_that_is_what_it_was_goes_on_with_its_odometry_and_command
         assert heard[-1].pose.pose.position.x == pytest.approx(simulation.model_pose("mbot")[0], abs=0.05)
 
 
-async def test_a_drive_that_is_another_one_begins_anew(tmp_path):
+async def test_changed_drive_starts_again(tmp_path):
     async with simulator(tmp_path, robot(CLASSIC)) as it:
         command = it.node.create_publisher(get_message("geometry_msgs/msg/Twist"), "/cmd_vel", 10)
         twist = get_message("geometry_msgs/msg/Twist")()

@@ -49,7 +49,7 @@ def warnings(log) -> list[str]:
 
 
 @pytest.mark.parametrize("model", DRIVES.values(), ids=DRIVES.keys())
-async def test_a_drive_stops_when_its_commander_is_lost_and_says_so_once(model: str) -> None:
+async def test_drive_stops_and_reports_lost_commander_once(model: str) -> None:
     async with served(GROUND, model) as (server, graph, log):
         driver = RemotePublisher(RemoteTransport(graph), "/cmd_vel")
         driver.send(forward(0.3))
@@ -62,7 +62,7 @@ async def test_a_drive_stops_when_its_commander_is_lost_and_says_so_once(model: 
 
 
 @pytest.mark.parametrize("model", DRIVES.values(), ids=DRIVES.keys())
-async def test_a_drive_says_once_that_two_drive_it_at_the_same_time(model: str) -> None:
+async def test_drive_reports_two_simultaneous_commanders_once(model: str) -> None:
     async with served(GROUND, model) as (server, graph, log):
         transport = RemoteTransport(graph)
         drivers = [RemotePublisher(transport, "/cmd_vel", name) for name in ("keys", "planner")]
@@ -78,7 +78,7 @@ async def test_a_drive_says_once_that_two_drive_it_at_the_same_time(model: str) 
         )
 
 
-async def test_a_drive_goes_on_whose_last_command_is_that_of_another() -> None:
+async def test_drive_keeps_command_of_remaining_commander() -> None:
     async with served(GROUND, robot(classic())) as (server, graph, log):
         transport = RemoteTransport(graph)
         lost, other = RemotePublisher(transport, "/cmd_vel", "lost"), RemotePublisher(transport, "/cmd_vel", "other")
@@ -90,7 +90,7 @@ async def test_a_drive_goes_on_whose_last_command_is_that_of_another() -> None:
         assert not warnings(log)
 
 
-async def test_who_is_lost_is_told_after_its_last_command() -> None:
+async def test_lost_commander_is_reported_after_pending_command() -> None:
     async with served(GROUND, robot(classic())) as (server, graph, log):
         driver = RemotePublisher(RemoteTransport(graph), "/cmd_vel")
         driver.send(forward(0.3))
@@ -100,7 +100,7 @@ async def test_who_is_lost_is_told_after_its_last_command() -> None:
         assert len(warnings(log)) == 1
 
 
-async def test_nothing_is_said_where_the_robot_stands_already() -> None:
+async def test_lost_commander_of_stopped_robot_is_not_reported() -> None:
     async with served(GROUND, robot(classic())) as (server, graph, log):
         driver = RemotePublisher(RemoteTransport(graph), "/cmd_vel")
         driver.send(forward(0.3))
@@ -111,7 +111,7 @@ async def test_nothing_is_said_where_the_robot_stands_already() -> None:
         assert not warnings(log)
 
 
-async def test_a_drive_with_two_names_of_its_topic_knows_which_command_holds() -> None:
+async def test_drive_with_two_topic_names_tracks_last_commander() -> None:
     plugin = gz().replace("<topic>cmd_vel</topic>", "")
     async with served(GROUND, robot(plugin), options=ServerOptions(usual_names=True)) as (server, graph, log):
         transport = RemoteTransport(graph)

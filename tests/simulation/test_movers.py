@@ -37,7 +37,7 @@ def planar(more: str = "") -> str:
     return f'<plugin name="move" filename="libgazebo_ros_planar_move.so">{more}</plugin>'
 
 
-async def test_planar_move_goes_any_way_and_tells_it_in_the_axes_of_the_robot():
+async def test_planar_move_drives_in_any_direction_with_robot_frame_odometry():
     async with served(GROUND, moving_box(planar(), f"0 0 0.1 0 0 {pi / 2}")) as (server, graph, log):
         odometry, transforms = (Recording(graph, server.node, each) for each in ("/odom", "/tf"))
         await drive(server, graph, 0.5, 0.25)
@@ -53,7 +53,7 @@ async def test_planar_move_goes_any_way_and_tells_it_in_the_axes_of_the_robot():
         assert not log
 
 
-async def test_planar_move_of_wheels_that_grip_is_hardly_slower_and_starts_anew_after_a_reset():
+async def test_planar_move_overcomes_wheel_friction_and_resets():
     async with served(GROUND, robot(planar("<update_rate>50</update_rate>"))) as (server, graph, log):
         await drive(server, graph, sideways=0.5)
         assert server.simulation.model_pose("mbot")[1] == pytest.approx(0.5, abs=0.03)
@@ -63,7 +63,7 @@ async def test_planar_move_of_wheels_that_grip_is_hardly_slower_and_starts_anew_
         assert not log
 
 
-async def test_planar_move_of_a_model_that_stands_fast_is_told_of():
+async def test_planar_move_of_static_model_is_reported():
     text = moving_box(planar()).replace("<link", "<static>true</static><link", 1)
     async with served(GROUND, text) as (server, _, log):
         server.advance(SECOND // 10)
@@ -71,7 +71,7 @@ async def test_planar_move_of_a_model_that_stands_fast_is_told_of():
         assert [each.text for each in log if "fixed to the world" in each.text]
 
 
-async def test_skid_steering_has_the_names_of_ros_1():
+async def test_skid_steering_accepts_ros_1_parameters():
     plugin = (
         '<plugin name="skid" filename="libgazebo_ros_skid_steer_drive.so"><leftFrontJoint>left_joint</leftFrontJoint>'
         "<leftRearJoint>left_joint</leftRearJoint><rightFrontJoint>right_joint</rightFrontJoint>"
@@ -89,7 +89,7 @@ async def test_skid_steering_has_the_names_of_ros_1():
         assert not log
 
 
-async def test_p3d_tells_where_a_link_is_in_the_world_or_in_the_frame_of_another():
+async def test_p3d_publishes_pose_in_world_or_other_link_frame():
     def p3d(name: str, more: str) -> str:
         return (
             f'<plugin name="{name}" filename="libgazebo_ros_p3d.so"><ros><remapping>odom:={name}</remapping></ros>'
@@ -114,7 +114,7 @@ async def test_p3d_tells_where_a_link_is_in_the_world_or_in_the_frame_of_another
 
 
 @pytest.mark.parametrize("dimensions", [2, 3])
-async def test_odometry_of_gz_is_where_the_model_is(dimensions):
+async def test_gz_odometry_publisher_matches_model_pose(dimensions):
     plugin = (
         '<plugin name="gz::sim::systems::OdometryPublisher" filename="gz-sim-odometry-publisher-system">'
         f"<odom_frame>odom</odom_frame><dimensions>{dimensions}</dimensions></plugin>"

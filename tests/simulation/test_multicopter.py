@@ -64,7 +64,7 @@ def quadcopter(names: list[str] | None = None) -> str:
     )
 
 
-def place(server) -> np.ndarray:
+def copter_position(server) -> np.ndarray:
     return np.array(server.simulation.model_pose("x3")[:3])
 
 
@@ -72,22 +72,22 @@ def velocity(server) -> np.ndarray:
     return server.simulation.link_velocity("x3::body")[0]
 
 
-def up(speed: float):
+def climb(speed: float):
     command = forward(0.0)
     command.linear.z = speed
     return command
 
 
-async def test_it_stands_until_it_is_told_rises_hovers_and_flies_ahead() -> None:
+async def test_multicopter_rises_hovers_and_flies_forward() -> None:
     async with served(GROUND, quadcopter()) as (server, graph, log):
         driver = graph.create_node("driver").create_publisher(get_message("geometry_msgs/msg/Twist"), "/X3/cmd_vel", 10)
         await advance(server, graph, 0.5)
-        begin = place(server)
-        driver.publish(up(0.5))
+        begin = copter_position(server)
+        driver.publish(climb(0.5))
         await advance(server, graph, 4.0)
         assert velocity(server) == pytest.approx([0.0, 0.0, 0.5], abs=0.02)
-        assert place(server)[2] - begin[2] > 1.0
-        driver.publish(up(0.0))
+        assert copter_position(server)[2] - begin[2] > 1.0
+        driver.publish(climb(0.0))
         await advance(server, graph, 3.0)
         assert velocity(server) == pytest.approx([0.0, 0.0, 0.0], abs=0.01)
         motors = [plugin for plugin in server.plugins("x3") if hasattr(plugin, "speed")]
@@ -99,7 +99,7 @@ async def test_it_stands_until_it_is_told_rises_hovers_and_flies_ahead() -> None
         assert warnings(log) == []
 
 
-async def test_its_rotors_take_their_speeds_by_number_from_a_topic_where_nothing_flies_it() -> None:
+async def test_rotor_speeds_can_be_commanded_by_actuator_number() -> None:
     async with served(GROUND, quadcopter()) as (server, graph, log):
         kind = get_message("actuator_msgs/msg/Actuators")
         driver = graph.create_node("driver").create_publisher(kind, "/X3/command/motor_speed", 10)
@@ -116,22 +116,22 @@ async def test_its_rotors_take_their_speeds_by_number_from_a_topic_where_nothing
         assert warnings(log) == []
 
 
-async def test_it_turns_and_flies_in_its_own_axes() -> None:
+async def test_multicopter_yaws_at_commanded_rate() -> None:
     async with served(GROUND, quadcopter()) as (server, graph, _):
         driver = graph.create_node("driver").create_publisher(get_message("geometry_msgs/msg/Twist"), "/X3/cmd_vel", 10)
-        driver.publish(up(0.5))
+        driver.publish(climb(0.5))
         await advance(server, graph, 3.0)
-        turning = up(0.0)
+        turning = climb(0.0)
         turning.angular.z = 0.5
         driver.publish(turning)
         await advance(server, graph, 4.0)
         assert server.simulation.link_velocity("x3::body")[1][2] == pytest.approx(0.5, abs=0.05)
 
 
-async def test_it_falls_when_it_is_switched_off_and_hovers_when_its_pilot_is_lost() -> None:
+async def test_multicopter_hovers_without_pilot_and_falls_when_disabled() -> None:
     async with served(GROUND, quadcopter()) as (server, graph, log):
         pilot = RemotePublisher(RemoteTransport(graph), "/X3/cmd_vel")
-        pilot.send(up(0.5))
+        pilot.send(climb(0.5))
         await advance(server, graph, 4.0)
         pilot.be_lost()
         await advance(server, graph, 4.0)
@@ -143,13 +143,13 @@ async def test_it_falls_when_it_is_switched_off_and_hovers_when_its_pilot_is_los
         assert velocity(server)[2] < -1.0
 
 
-async def test_rotors_that_cannot_hold_it_are_refused() -> None:
+async def test_rotors_that_cannot_control_flight_are_rejected() -> None:
     async with served(GROUND, quadcopter(["front_right", "back_left", "front_left"])) as (_, __, log):
         (logged,) = warnings(log)
         assert "its rotors cannot control thrust and all three torques" in logged
 
 
-async def test_a_rotor_without_numbers_is_told() -> None:
+async def test_rotor_with_missing_constant_is_reported() -> None:
     text = quadcopter().replace(f"<momentConstant>{MOMENT}</momentConstant><direction>", "<direction>")
     async with served(GROUND, text) as (_, __, log):
         (logged,) = warnings(log)

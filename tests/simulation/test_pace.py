@@ -15,17 +15,17 @@ def codes_after(measurements, requested=1.0):
     return [None if report is None else report.code for report in reports], reports
 
 
-def test_a_slow_world_is_reported_once_until_it_recovers():
+def test_slow_world_is_reported_once_until_it_recovers():
     codes, reports = codes_after([(0.42, 30), (1.0, 30), (0.3, 9), (1.0, 1), (0.3, 9)])
     assert codes == ["SIM146", None]
     assert "runs at 0.4 of real time" in str(reports[0].message)
 
 
-def test_a_rate_that_was_requested_is_not_slow():
+def test_requested_slow_rate_is_not_reported():
     assert codes_after([(0.5, 60)], requested=0.5)[0] == []
     assert codes_after([(0.5, 60)], requested=inf)[0] == []
     assert codes_after([(0.85, 60)])[0] == []
 
 
-def test_a_slow_world_recovers_above_a_higher_share():
+def test_recovery_threshold_is_above_slow_threshold():
     assert codes_after([(0.5, 20), (0.85, 60)])[0] == ["SIM146"]

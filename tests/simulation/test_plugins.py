@@ -71,11 +71,11 @@ def _element(text: str):
         ("ignition-gazebo-diff-drive-system", "gz-sim-diff-drive-system"),
     ],
 )
-def test_all_spellings_of_a_library_are_one(filename, name):
+def test_library_name_normalizes_spellings(filename, name):
     assert library_name(filename) == name
 
 
-def test_systems_that_are_built_in_need_nothing():
+def test_built_in_systems_are_recognized():
     assert is_built_in("libignition-gazebo-physics-system.so")
     assert is_built_in("libgazebo_ros_factory.so")
     assert not is_built_in("gz-sim-diff-drive-system")
@@ -83,7 +83,7 @@ def test_systems_that_are_built_in_need_nothing():
     assert not is_gz_library("libgazebo_ros_camera.so")
 
 
-def test_what_is_called_simulated_is():
+def test_systems_listed_as_built_in_are_simulated():
     known = extensions(SENSORS)
     assert [kind for kinds in _SENSORS_OF_SYSTEMS.values() for kind in kinds if kind not in known] == []
     for library in _BUILT_IN:
@@ -92,7 +92,7 @@ def test_what_is_called_simulated_is():
 
 
 @pytest.mark.parametrize("name", UNSIMULATED)
-async def test_a_system_that_nothing_simulates_is_told_of(name):
+async def test_unsupported_gz_system_is_reported_with_alternative(name):
     plugin = f'<plugin name="a" filename="gz-sim-{name}-system"/>'
     async with served(robot(plugin)) as (_, __, log):
         logged, *instead = [each.text for each in log]
@@ -102,13 +102,13 @@ async def test_a_system_that_nothing_simulates_is_told_of(name):
         )
 
 
-def test_parameters_come_by_their_types_and_old_names():
+def test_parameters_are_converted_and_accept_old_names():
     given = "<jointName>a</jointName><jointName>b</jointName><updateRate>5</updateRate><sent>1</sent><ros/>"
     parameters, findings = parameters_from(_Table, _element(given))
     assert (parameters, findings) == (_Table(joint=("a", "b"), rate=5.0, sent=True), [])
 
 
-def test_a_parameter_that_is_unknown_or_unreadable_is_told_of():
+def test_unknown_and_malformed_parameters_are_reported():
     parameters, findings = parameters_from(_Table, _element("<joint>a</joint>\n<rat>1</rat>\n<count>many</count>"))
     assert parameters == _Table(joint=("a",))
     assert [(finding.code, str(finding.span)) for finding in findings] == [
@@ -118,12 +118,12 @@ def test_a_parameter_that_is_unknown_or_unreadable_is_told_of():
     assert "rate" in str(findings[1].hint)
 
 
-def test_a_parameter_without_default_must_be_there():
+def test_missing_required_parameter_is_rejected():
     with pytest.raises(LinkwrightError, match="needs the parameter 'joint'"):
         parameters_from(_Table, _element("<rate>1</rate>"))
 
 
-def test_a_plugin_is_the_node_that_ros_says():
+def test_ros_element_configures_plugin_node():
     ros = (
         "<ros><namespace>robots/one</namespace><remapping>odom:=odometry</remapping><argument>~/out:=scan</argument>"
         '<parameter name="gain" type="double">2</parameter></ros>'
@@ -134,7 +134,7 @@ def test_a_plugin_is_the_node_that_ros_says():
     assert node.parameters == {"gain": 2.0}
 
 
-def test_a_plugin_that_names_no_namespace_has_that_of_its_robot():
+def test_plugin_without_namespace_uses_robot_namespace():
     assert node_of("drive-1", _element(""), "/spawned").full_name == "/spawned/drive_1"
     assert node_of("drive", _element("<robotNamespace>/old</robotNamespace>"), "").full_name == "/old/drive"
 
@@ -165,7 +165,7 @@ def joint_states(name: str = "joints", more: str = "") -> str:
     )
 
 
-async def test_what_was_published_until_then_is_there_when_time_has_passed():
+async def test_advance_delivers_messages_published_until_then():
     async with served(GROUND, robot(joint_states())) as (server, graph, log):
         recording = Recording(graph, server.node, "/joint_states")
         server.advance(SECOND)
@@ -177,7 +177,7 @@ async def test_what_was_published_until_then_is_there_when_time_has_passed():
         assert ("joints", "/") in graph.get_node_names_and_namespaces()
 
 
-async def test_a_message_of_values_is_made_once_and_only_when_it_is_handed_over():
+async def test_deferred_message_is_created_once_on_delivery():
     graph, exchange, made = Graph(), Exchange(), []
     node = graph.create_node("robot")
     topics = ("/model/robot/where", "/where")
@@ -202,13 +202,13 @@ async def test_a_message_of_values_is_made_once_and_only_when_it_is_handed_over(
     await graph.close()
 
 
-async def test_the_second_of_two_nodes_of_one_name_is_not_loaded():
+async def test_plugin_with_duplicate_node_name_is_not_loaded():
     async with served(GROUND, robot(joint_states()), robot(joint_states(), name="two")) as (server, _, log):
         assert [len(server.plugins(name)) for name in ("mbot", "two")] == [1, 0]
         assert [each.text for each in log if "another plugin already uses the node name '/joints'" in each.text]
 
 
-async def test_what_is_not_simulated_is_listed_once():
+async def test_unsimulated_plugins_are_reported_once():
     unknown = '<plugin name="a" filename="libvacuum.so"/>'
     known = '<plugin name="b" filename="gz-sim-physics-system"/>'
     async with served(robot(unknown, known), robot(unknown, name="two")) as (_, __, log):
@@ -216,7 +216,7 @@ async def test_what_is_not_simulated_is_listed_once():
         assert logged == ["plugins and sensors that are not simulated: libvacuum.so"]
 
 
-async def test_a_model_that_goes_takes_its_nodes_along():
+async def test_deleted_model_removes_its_nodes():
     async with served(GROUND, robot(joint_states())) as (server, graph, log):
         server.delete("mbot")
         assert ("joints", "/") not in graph.get_node_names_and_namespaces()
@@ -226,7 +226,7 @@ async def test_a_model_that_goes_takes_its_nodes_along():
         assert not log
 
 
-async def test_a_model_that_cannot_be_placed_leaves_the_world_as_it_is():
+async def test_unplaceable_model_leaves_world_unchanged():
     lost = '<model name="lost"><link name="a"><pose relative_to="nowhere">0 0 0 0 0 0</pose></link></model>'
     async with served(GROUND, box("one", "0 0 5 0 0 0")) as (server, _, __):
         server.advance(SECOND // 10)
@@ -238,7 +238,7 @@ async def test_a_model_that_cannot_be_placed_leaves_the_world_as_it_is():
         assert list(server.simulation.scene.models) == ["ground", "one"]
 
 
-async def test_joint_states_of_gz_have_all_joints_under_the_name_of_gz():
+async def test_gz_joint_state_publisher_uses_gz_topic():
     plugin = '<plugin name="gz::sim::systems::JointStatePublisher" filename="gz-sim-joint-state-publisher-system"/>'
     async with served(GROUND, robot(plugin)) as (server, graph, _):
         recording = Recording(graph, server.node, "/world/test/model/mbot/joint_state")
@@ -248,7 +248,7 @@ async def test_joint_states_of_gz_have_all_joints_under_the_name_of_gz():
         assert recording.last.name == ["left_joint", "right_joint"]
 
 
-async def test_a_magnetometer_feels_the_field_in_its_axes():
+async def test_magnetometer_measures_field_in_its_axes():
     sensor = (
         '<sensor name="compass" type="magnetometer"><pose>0 0 0 0 0 1.5707963267948966</pose><topic>mag</topic>'
         "<update_rate>10</update_rate></sensor>"
@@ -263,7 +263,7 @@ async def test_a_magnetometer_feels_the_field_in_its_axes():
         assert recording.last.header.frame_id == "one/link/compass"
 
 
-async def test_warnings_and_errors_are_told_one_after_another():
+async def test_warnings_and_errors_are_logged_once_in_order():
     warning = Diagnostic("SIM100", "odd", severity=Severity.WARNING)
     async with served(GROUND) as (server, _, log):
         server.report([warning, Diagnostic("SIM100", "wrong"), warning])

@@ -20,7 +20,7 @@ def _translation(transform):
     return moved.x, moved.y, moved.z
 
 
-async def test_each_link_is_a_message_unless_they_are_asked_for_together():
+async def test_link_poses_are_published_as_separate_messages():
     async with served(GROUND, robot(poses("<update_frequency>10</update_frequency>"))) as (server, graph, log):
         recording = Recording(graph, server.node, "/model/mbot/pose")
         server.advance(SECOND)
@@ -39,7 +39,7 @@ async def test_each_link_is_a_message_unless_they_are_asked_for_together():
         assert not log
 
 
-async def test_what_no_joint_moves_has_a_topic_of_its_own():
+async def test_static_poses_have_separate_topic():
     more = (
         "<use_pose_vector_msg>true</use_pose_vector_msg><static_publisher>1</static_publisher>"
         "<publish_model_pose>true</publish_model_pose><publish_collision_pose>true</publish_collision_pose>"
@@ -65,7 +65,7 @@ async def test_what_no_joint_moves_has_a_topic_of_its_own():
         assert not log
 
 
-async def test_models_in_models_move_with_their_links():
+async def test_nested_model_poses_are_published():
     inner = box("inner", "0 0 0.5 0 0 0", "0.2 0.2 0.2")
     joint = '<joint name="j" type="fixed"><parent>link</parent><child>inner::link</child></joint>'
     more = (
@@ -90,7 +90,7 @@ async def test_models_in_models_move_with_their_links():
         assert not log
 
 
-async def test_a_model_that_stands_still_has_poses_too():
+async def test_static_model_publishes_poses():
     still = box("one", "0 0 1 0 0 0").replace("<link", "<static>true</static><link", 1)
     text = still.replace("</model>", poses("<publish_model_pose>1</publish_model_pose>") + "</model>")
     async with served(text) as (server, graph, log):

@@ -10,7 +10,7 @@ from linkwright.simulation.ray_casting import GROUPS, cast
 from tests.simulation.worlds import simulated
 
 
-def test_bodies_whose_mass_is_elsewhere_are_hit():
+def test_rays_hit_bodies_with_offset_center_of_mass():
     chance = np.random.default_rng(1)
     models = []
     for index in range(6):

@@ -26,7 +26,7 @@ UPRIGHT = (
 )
 
 
-def free(name: str, shape: str, pose: str) -> str:
+def free_body(name: str, shape: str, pose: str) -> str:
     return (
         f'<model name="{name}"><pose>{pose}</pose><link name="link"><inertial><mass>2</mass><inertia><ixx>0.2</ixx>'
         f"<iyy>0.2</iyy><izz>0.2</izz></inertia></inertial><collision name='c'><geometry>{SHAPES[shape]}</geometry>"
@@ -46,22 +46,24 @@ def fastest(simulation: Simulation, seconds: float, *links: str) -> float:
 @pytest.mark.parametrize("step", [0.001, 0.01])
 @pytest.mark.parametrize("shape", SHAPES)
 @pytest.mark.parametrize("depth", [0.2, 0.6])
-def test_what_begins_in_the_ground_comes_out_slowly_and_stands_on_it(shape: str, depth: float, step: float):
-    simulation = simulated(GROUND, free("thing", shape, f"0 0 {0.5 - depth} 0 0 0"), step=step)
+def test_body_starting_inside_ground_rises_slowly_onto_it(shape: str, depth: float, step: float):
+    simulation = simulated(GROUND, free_body("thing", shape, f"0 0 {0.5 - depth} 0 0 0"), step=step)
     assert fastest(simulation, 3.5, "thing::link") < FASTEST
     assert simulation.link_pose("thing::link")[2] == pytest.approx(0.5, abs=0.01)
 
 
 @pytest.mark.parametrize("shape", SHAPES)
-def test_things_that_begin_in_each_other_part_slowly(shape: str):
-    simulation = simulated(free("one", shape, "0 0 5 0 0 0"), free("other", shape, "0.1 0.05 5 0 0 0"), gravity="0 0 0")
+def test_overlapping_bodies_separate_slowly(shape: str):
+    simulation = simulated(
+        free_body("one", shape, "0 0 5 0 0 0"), free_body("other", shape, "0.1 0.05 5 0 0 0"), gravity="0 0 0"
+    )
     assert fastest(simulation, 4.0, "one::link", "other::link") < FASTEST
     assert not overlaps(simulation)
 
 
-def test_what_is_put_into_a_wall_while_time_passes_leaves_it_slowly():
+def test_body_moved_into_wall_leaves_it_slowly():
     wall = box("wall", "3 0 1 0 0 0", "1 4 2").replace("<link", "<static>true</static><link", 1)
-    simulation = simulated(GROUND, wall, free("crate", "box", "0 0 0.5 0 0 0"))
+    simulation = simulated(GROUND, wall, free_body("crate", "box", "0 0 0.5 0 0 0"))
     simulation.advance(2 * NANOSECONDS_PER_SECOND)
     simulation.set_model_pose("crate", (2.6, 0.0, 0.5, 0.0, 0.0, 0.0, 1.0))
     assert fastest(simulation, 3.0, "crate::link") < FASTEST
@@ -77,7 +79,7 @@ def hinged(limits: str, more: str = "") -> str:
     )
 
 
-def test_a_joint_beyond_its_limit_returns_slowly():
+def test_joint_beyond_its_limit_returns_slowly():
     simulation = simulated(
         hinged("<limit><lower>1.2</lower><upper>2</upper></limit><dynamics><damping>0.5</damping></dynamics>")
     )
@@ -89,9 +91,9 @@ def test_a_joint_beyond_its_limit_returns_slowly():
     assert simulation.joint_state("arm::turn")[0] == pytest.approx(1.2, abs=0.01)
 
 
-def test_a_servo_is_as_fast_as_ever_while_something_else_parts():
+def test_servo_keeps_speed_while_other_bodies_separate():
     simulation = simulated(
-        GROUND, free("deep", "box", "9 0 -0.4 0 0 0"), hinged("<limit><lower>-9</lower><upper>9</upper></limit>")
+        GROUND, free_body("deep", "box", "9 0 -0.4 0 0 0"), hinged("<limit><lower>-9</lower><upper>9</upper></limit>")
     )
     servo = simulation.add_servo("arm::turn", speed=3.0)
     for _ in range(30):
@@ -100,9 +102,9 @@ def test_a_servo_is_as_fast_as_ever_while_something_else_parts():
     assert simulation.joint_state("arm::turn")[0] == pytest.approx(0.9, abs=0.2)
 
 
-def test_deep_things_take_the_same_bits_twice():
+def test_recovery_is_bitwise_reproducible():
     simulation = simulated(
-        GROUND, *[free(f"t{number}", shape, f"0.{number} 0 0 0.2 0 0") for number, shape in enumerate(SHAPES)]
+        GROUND, *[free_body(f"t{number}", shape, f"0.{number} 0 0 0.2 0 0") for number, shape in enumerate(SHAPES)]
     )
     simulation.advance(NANOSECONDS_PER_SECOND)
     once = simulation.data.qpos.tobytes()
@@ -111,20 +113,20 @@ def test_deep_things_take_the_same_bits_twice():
     assert simulation.data.qpos.tobytes() == once
 
 
-def test_the_bound_is_looked_for_no_more_once_nothing_is_deep():
-    simulation = simulated(GROUND, free("thing", "box", "0 0 0.3 0 0 0"))
+def test_recovery_ends_when_no_body_overlaps():
+    simulation = simulated(GROUND, free_body("thing", "box", "0 0 0.3 0 0 0"))
     assert simulation._stepper._recovery.is_expected
     simulation.advance(2 * NANOSECONDS_PER_SECOND)
     assert not simulation._stepper._recovery.is_expected
 
 
-def test_models_that_begin_in_each_other_are_told_the_deepest_first():
+def test_overlapping_models_are_reported_deepest_first():
     simulation = simulated(
         GROUND,
-        free("low", "box", "0 0 0.2 0 0 0"),
-        free("lower", "box", "5 0 0.1 0 0 0"),
-        free("beside", "ball", "5.9 0 0.5 0 0 0"),
-        free("fine", "box", "9 0 0.495 0 0 0"),
+        free_body("low", "box", "0 0 0.2 0 0 0"),
+        free_body("lower", "box", "5 0 0.1 0 0 0"),
+        free_body("beside", "ball", "5.9 0 0.5 0 0 0"),
+        free_body("fine", "box", "9 0 0.495 0 0 0"),
     )
     texts = [str(overlap.message) for overlap in overlaps(simulation)]
     assert texts == [
@@ -135,15 +137,15 @@ def test_models_that_begin_in_each_other_are_told_the_deepest_first():
     assert [str(overlap.message) for overlap in overlaps(simulation, {"beside"})] == texts[2:]
 
 
-def test_many_overlaps_are_counted():
-    simulation = simulated(GROUND, *[free(f"b{each}", "box", f"{2 * each} 0 0.2 0 0 0") for each in range(11)])
+def test_excess_overlaps_are_counted():
+    simulation = simulated(GROUND, *[free_body(f"b{each}", "box", f"{2 * each} 0 0.2 0 0 0") for each in range(11)])
     result = overlaps(simulation)
     assert len(result) == 9
     assert str(result[-1].message) == "3 other pairs of models overlap"
 
 
-async def test_overlaps_are_logged_at_the_start_and_when_something_is_put_in():
-    async with served(GROUND, free("low", "box", "0 0 0.2 0 0 0")) as (server, _, log):
+async def test_overlaps_are_logged_at_start_and_on_spawn():
+    async with served(GROUND, free_body("low", "box", "0 0 0.2 0 0 0")) as (server, _, log):
         assert any("'low' starts 0.30 m inside 'ground'" in line.text for line in log)
-        server.spawn(model(free("new", "ball", "0 0 0 0 0 0")), "new", (0.0, 0.0, 0.6, 0.0, 0.0, 0.0, 1.0))
+        server.spawn(model(free_body("new", "ball", "0 0 0 0 0 0")), "new", (0.0, 0.0, 0.6, 0.0, 0.0, 0.0, 1.0))
         assert any("'new' starts 0.60 m inside 'low'" in line.text for line in log)

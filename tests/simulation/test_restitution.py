@@ -18,7 +18,7 @@ BALL = f"<sphere><radius>{RADIUS}</radius></sphere>"
 BLOCK = "<box><size>0.2 0.2 0.2</size></box>"
 
 
-def bouncy(coefficient: float, more: str = "") -> str:
+def bounce_surface(coefficient: float, more: str = "") -> str:
     return (
         f"<surface><bounce><restitution_coefficient>{coefficient}</restitution_coefficient>{more}</bounce></surface>"
         if coefficient
@@ -29,7 +29,7 @@ def bouncy(coefficient: float, more: str = "") -> str:
 def floor(coefficient: float = 1.0) -> str:
     return (
         '<model name="floor"><static>true</static><link name="l"><collision name="c"><geometry><plane>'
-        f"<normal>0 0 1</normal></plane></geometry>{bouncy(coefficient)}</collision></link></model>"
+        f"<normal>0 0 1</normal></plane></geometry>{bounce_surface(coefficient)}</collision></link></model>"
     )
 
 
@@ -38,7 +38,7 @@ def thing(pose: str, coefficient: float, shape: str = BALL, mass: float = 2.0, m
     return (
         f'<model name="{name}"><pose>{pose}</pose><link name="l"><inertial><mass>{mass}</mass><inertia>'
         f"<ixx>{moment}</ixx><iyy>{moment}</iyy><izz>{moment}</izz></inertia></inertial>"
-        f'<collision name="c"><geometry>{shape}</geometry>{bouncy(coefficient, more)}</collision></link></model>'
+        f'<collision name="c"><geometry>{shape}</geometry>{bounce_surface(coefficient, more)}</collision></link></model>'
     )
 
 
@@ -50,7 +50,7 @@ def heights(simulation: Simulation, milliseconds: int) -> list[float]:
     return found
 
 
-def rise(simulation: Simulation, height: float) -> float:
+def bounce_height(simulation: Simulation, height: float) -> float:
     """How high a thing comes after it has hit for the first time."""
     fall = sqrt(2 * height / G) + 0.005
     while simulation.seconds < fall:
@@ -65,26 +65,26 @@ def rise(simulation: Simulation, height: float) -> float:
 @pytest.mark.parametrize("shape", [BALL, BLOCK])
 @pytest.mark.parametrize("height", [0.3, 1.0, 3.0])
 @pytest.mark.parametrize("coefficient", [0.2, 0.5, 0.9])
-def test_things_rise_as_high_as_their_coefficient_says(coefficient: float, height: float, shape: str, step: float):
+def test_bounce_height_matches_restitution_coefficient(coefficient: float, height: float, shape: str, step: float):
     simulation = simulated(floor(), thing(f"0 0 {height + RADIUS} 0 0 0", coefficient, shape), step=step)
-    assert rise(simulation, height) == pytest.approx(coefficient**2 * height, rel=0.05)
+    assert bounce_height(simulation, height) == pytest.approx(coefficient**2 * height, rel=0.05)
 
 
-def test_the_coefficient_of_two_surfaces_is_their_product():
+def test_restitution_of_two_surfaces_is_their_product():
     start = f"0 0 {1 + RADIUS} 0 0 0"
-    assert sqrt(rise(simulated(floor(0.8), thing(start, 0.8)), 1.0)) == pytest.approx(0.64, abs=0.02)
-    assert rise(simulated(floor(0.0), thing(start, 0.8)), 1.0) < 0.01
+    assert sqrt(bounce_height(simulated(floor(0.8), thing(start, 0.8)), 1.0)) == pytest.approx(0.64, abs=0.02)
+    assert bounce_height(simulated(floor(0.0), thing(start, 0.8)), 1.0) < 0.01
     slow = thing(start, 0.8, more="<threshold>6</threshold>")  # it hits at 4.4 m/s
-    assert rise(simulated(floor(), slow), 1.0) < 0.01
+    assert bounce_height(simulated(floor(), slow), 1.0) < 0.01
 
 
-def test_what_has_bounced_comes_to_rest():
+def test_bouncing_body_comes_to_rest():
     simulation = simulated(floor(), thing(f"0 0 {0.3 + RADIUS} 0.2 0.3 0", 0.5, BLOCK))
     assert max(abs(b - a) for a, b in pairwise(heights(simulation, 5000)[-1000:])) < 1e-6
     assert simulation.link_pose("b::l")[2] == pytest.approx(RADIUS, abs=1e-3)
 
 
-def test_a_ball_that_hits_at_a_slant_is_set_rolling():
+def test_obliquely_bouncing_ball_starts_rolling():
     simulation = simulated(floor(), thing(f"0 0 {1 + RADIUS} 0 0 0", 0.5))
     simulation.set_model_velocity("b", (1.0, 0.0, 0.0), (0.0, 0.0, 0.0))
     heights(simulation, 600)
@@ -93,7 +93,7 @@ def test_a_ball_that_hits_at_a_slant_is_set_rolling():
     assert turn == pytest.approx(x / RADIUS, rel=0.03)
 
 
-def test_equal_balls_change_their_speeds():
+def test_equal_balls_exchange_velocities():
     simulation = simulated(thing("0 0 1 0 0 0", 1.0, name="a"), thing("0.5 0 1 0 0 0", 1.0, name="b"), gravity="0 0 0")
     simulation.set_model_velocity("a", (2.0, 0.0, 0.0), (0.0, 0.0, 0.0))
     simulation.advance(400 * MILLISECOND)
@@ -101,7 +101,7 @@ def test_equal_balls_change_their_speeds():
     assert speeds == pytest.approx([0.0, 2.0], abs=0.02)
 
 
-def test_twice_the_same_bounces_give_the_same_bits():
+def test_bounces_are_bitwise_reproducible():
     def run() -> bytes:
         simulation = simulated(floor(), thing("0 0 0.7 0.3 0.2 0", 0.8, BLOCK))
         simulation.advance(NANOSECONDS_PER_SECOND)

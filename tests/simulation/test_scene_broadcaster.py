@@ -30,7 +30,7 @@ def translation(message, name):
     return moved.x, moved.y, moved.z
 
 
-async def test_what_moves_is_told_models_first_and_links_in_their_models():
+async def test_dynamic_poses_list_models_before_links():
     async with served(GROUND, robot(), BROADCASTER) as (server, graph, log):
         recording = Recording(graph, server.node, DYNAMIC)
         server.advance(SECOND)
@@ -44,7 +44,7 @@ async def test_what_moves_is_told_models_first_and_links_in_their_models():
         assert not log
 
 
-async def test_everything_is_told_with_visuals_and_lights():
+async def test_all_poses_include_visuals_and_lights():
     light = '<light name="sun" type="directional"><pose>0 0 10 0 0 0</pose></light>'
     crate = box("crate", "3 0 0.5 0 0 0", "1 1 1")
     seen = '<visual name="lid"><pose>0 0 0.5 0 0 0</pose><geometry><box><size>1 1 0.1</size></box></geometry></visual>'
@@ -58,7 +58,7 @@ async def test_everything_is_told_with_visuals_and_lights():
         assert not log
 
 
-async def test_a_spawned_model_is_told_and_a_deleted_one_no_more():
+async def test_spawned_models_are_included_and_deleted_ones_removed():
     async with served(GROUND, BROADCASTER) as (server, graph, _):
         recording = Recording(graph, server.node, DYNAMIC)
         server.spawn(model(box("box", "0 0 0.5 0 0 0", "1 1 1")), "crate")
@@ -71,7 +71,7 @@ async def test_a_spawned_model_is_told_and_a_deleted_one_no_more():
         assert names(recording.last) == []
 
 
-async def test_a_model_without_links_is_told_where_it_stands():
+async def test_model_without_links_is_included():
     mark = '<model name="mark"><static>true</static><pose>1 2 3 0 0 0</pose></model>'
     async with served(GROUND, mark, BROADCASTER) as (server, graph, log):
         recording = Recording(graph, server.node, ALL)
@@ -81,7 +81,7 @@ async def test_a_model_without_links_is_told_where_it_stands():
         assert not log
 
 
-async def test_it_keeps_the_rate_that_it_is_given():
+async def test_dynamic_pose_rate_is_configurable():
     slow = BROADCASTER.replace("/>", "><dynamic_pose_hertz>10</dynamic_pose_hertz></plugin>")
     async with served(GROUND, robot(), slow) as (server, graph, log):
         recording = Recording(graph, server.node, DYNAMIC)
@@ -91,7 +91,7 @@ async def test_it_keeps_the_rate_that_it_is_given():
         assert not log
 
 
-async def test_a_world_without_plugins_has_those_of_gz_and_another_only_its_own():
+async def test_default_gz_systems_apply_only_to_world_without_plugins():
     other = '<plugin name="p" filename="gz-sim-physics-system"/>'
     for parts, has in (((), True), ((other,), False), ((other, BROADCASTER), True)):
         async with served(GROUND, *parts, options=ServerOptions(systems=DEFAULT_GZ_SYSTEMS)) as (_, graph, log):
@@ -100,7 +100,7 @@ async def test_a_world_without_plugins_has_those_of_gz_and_another_only_its_own(
 
 
 @pytest.mark.parametrize(("kind", "has"), [(GzServer, True), (Simulator, False)])
-async def test_only_the_server_of_gz_gives_a_world_the_systems_of_gz(kind, has):
+async def test_only_gz_server_adds_default_gz_systems(kind, has):
     graph = Graph()
     running = kind(graph, NodeOptions(parameters={"pause": True}))
     assert any(topic.endswith("/dynamic_pose/info") for topic in graph.topics()) == has
@@ -109,7 +109,7 @@ async def test_only_the_server_of_gz_gives_a_world_the_systems_of_gz(kind, has):
 
 
 @pytest.mark.parametrize("kind", ["tf2_msgs/msg/TFMessage", "geometry_msgs/msg/PoseArray"])
-async def test_a_bridge_hands_the_poses_on(kind):
+async def test_bridge_forwards_poses(kind):
     async with served(GROUND, robot(), BROADCASTER) as (server, graph, _):
         word = f"{DYNAMIC}@{kind}[gz.msgs.Pose_V"
         bridge = ParameterBridge(graph, NodeOptions(arguments=[word], remappings=[(DYNAMIC, "/truth")]))

@@ -73,7 +73,7 @@ PYRAMID = {"URDF": "<pyramid> in <geometry>", "SDF": "the <geometry> of visual '
 
 
 @pytest.mark.parametrize("language", SHAPES)
-async def test_a_model_with_an_unknown_shape_is_refused_with_the_reason(tmp_path, language):
+async def test_model_with_unknown_shape_is_rejected_with_reason(tmp_path, language):
     async with simulator(tmp_path) as it:
         text = SHAPES[language].format("<pyramid/>")
         answer = await it.ask("gazebo_msgs/srv/SpawnEntity", "/spawn_entity", name="one", xml=text)
@@ -84,7 +84,7 @@ async def test_a_model_with_an_unknown_shape_is_refused_with_the_reason(tmp_path
 
 
 @pytest.mark.parametrize("shape", ["", "<box/>", '<cylinder radius="1"/>', '<box size="1 a 1"/>'])
-async def test_a_robot_with_a_shape_without_measures_is_refused(tmp_path, shape):
+async def test_robot_with_shape_without_dimensions_is_rejected(tmp_path, shape):
     async with simulator(tmp_path) as it:
         text = SHAPES["URDF"].format(shape)
         answer = await it.ask("gazebo_msgs/srv/SpawnEntity", "/spawn_entity", name="one", xml=text)
@@ -92,7 +92,7 @@ async def test_a_robot_with_a_shape_without_measures_is_refused(tmp_path, shape)
         assert "of link 'base'" in answer.status_message
 
 
-async def test_models_come_and_go_by_services(tmp_path):
+async def test_models_are_spawned_and_deleted_by_services(tmp_path):
     async with simulator(tmp_path) as it:
         sent = {"name": "one", "xml": URDF, "robot_namespace": ""}
         pose = get_message("geometry_msgs/msg/Pose")()
@@ -120,7 +120,7 @@ async def test_models_come_and_go_by_services(tmp_path):
         ('<robot name="a"/>', ""),
     ],
 )
-async def test_what_cannot_come_is_answered_with_the_reason(tmp_path, xml, reason):
+async def test_invalid_spawn_request_is_rejected_with_reason(tmp_path, xml, reason):
     async with simulator(tmp_path, box("one", "0 0 1 0 0 0")) as it:
         answer = await it.ask("gazebo_msgs/srv/SpawnEntity", "/spawn_entity", name="one", xml=xml)
         assert not answer.success
@@ -129,7 +129,7 @@ async def test_what_cannot_come_is_answered_with_the_reason(tmp_path, xml, reaso
         assert sorted(answer.model_names) == ["ground_plane", "one"]
 
 
-async def test_time_passes_by_steps_while_it_is_paused(tmp_path):
+async def test_step_service_advances_paused_simulation(tmp_path):
     async with simulator(tmp_path, box("one", "0 0 9 0 0 0"), publish_rate=100.0) as it:
         clock = it.hear("rosgraph_msgs/msg/Clock", "/clock", CLOCK_QOS)
         answer = await it.ask("simulation_interfaces/srv/StepSimulation", "/step_simulation", steps=25)
@@ -142,12 +142,12 @@ async def test_time_passes_by_steps_while_it_is_paused(tmp_path):
 
 
 @pytest.mark.parametrize("pause", [True, False])
-async def test_who_begins_paused_says_how_it_goes_on(tmp_path, pause):
+async def test_paused_start_logs_how_to_unpause(tmp_path, pause):
     async with simulator(tmp_path, pause=pause) as it:
         assert any("/unpause_physics" in record.text for record in it.log) is pause
 
 
-async def test_it_runs_beside_the_event_loop_and_ends_after_its_seconds(tmp_path):
+async def test_simulation_runs_in_thread_and_ends_after_duration(tmp_path):
     async with simulator(tmp_path, robot(joint_states()), pause=False, seconds=1.0) as it:
         states = it.hear("simulation_interfaces/msg/SimulationState", "/simulation_state", LATCHED)
         heard = it.hear("sensor_msgs/msg/JointState", "/joint_states")
@@ -159,14 +159,14 @@ async def test_it_runs_beside_the_event_loop_and_ends_after_its_seconds(tmp_path
         assert answer.result.result == answer.result.RESULT_OK
 
 
-async def test_a_simulation_that_fails_does_not_wait_for_its_seconds(tmp_path):
+async def test_failed_simulation_ends_before_its_duration(tmp_path):
     falling = "<gravity>0 0 -1e14</gravity>" + box("one", "0 0 9 0 0 0")
     async with simulator(tmp_path, falling, pause=False, seconds=1.0) as it:
         await eventually(it.simulator.finished.done)
         assert it.simulator.finished.result() == 1
 
 
-async def test_a_simulation_that_runs_makes_no_single_steps(tmp_path):
+async def test_running_simulation_rejects_steps(tmp_path):
     async with simulator(tmp_path, pause=False) as it:
         answer = await it.ask("simulation_interfaces/srv/StepSimulation", "/step_simulation", steps=1)
         assert answer.result.result == answer.result.RESULT_INCORRECT_STATE
@@ -176,7 +176,7 @@ async def test_a_simulation_that_runs_makes_no_single_steps(tmp_path):
         assert not it.simulator.runner.is_paused
 
 
-async def test_an_explosion_pauses_it(tmp_path):
+async def test_unstable_simulation_is_paused(tmp_path):
     async with simulator(tmp_path, box("one", "0 0 9 0 0 0"), pause=False) as it:
         wrench = get_message("geometry_msgs/msg/Wrench")()
         wrench.force.x = float("inf")
@@ -196,7 +196,7 @@ async def test_an_explosion_pauses_it(tmp_path):
         await eventually(lambda: it.simulator.runner.is_paused)
 
 
-async def test_a_wrench_acts_for_its_time(tmp_path):
+async def test_wrench_acts_for_its_duration(tmp_path):
     async with simulator(tmp_path, box("one", "0 0 90 0 0 0", mass=2.0)) as it:
         wrench = get_message("geometry_msgs/msg/Wrench")()
         wrench.force.x = 4.0
@@ -213,7 +213,7 @@ async def test_a_wrench_acts_for_its_time(tmp_path):
         assert state.twist.linear.x == pytest.approx(0.2, abs=1e-9)
 
 
-async def test_a_model_is_put_elsewhere_with_a_velocity(tmp_path):
+async def test_set_entity_state_sets_pose_and_velocity(tmp_path):
     async with simulator(tmp_path, box("one", "0 0 9 0 0 0")) as it:
         state = get_message("gazebo_msgs/msg/EntityState")(name="one")
         state.pose.position.x, state.pose.orientation.z, state.pose.orientation.w = 3.0, 1.0, 0.0
@@ -230,7 +230,7 @@ async def test_a_model_is_put_elsewhere_with_a_velocity(tmp_path):
         assert message.pose.position.x == pytest.approx(3.0)
 
 
-async def test_why_a_service_without_a_text_refuses_is_logged(tmp_path):
+async def test_service_failure_without_message_field_is_logged(tmp_path):
     ends = "<parent>one::link</parent><child>two::link</child>"
     hinge = f'<joint name="hinge" type="revolute">{ends}<axis><xyz>0 0 1</xyz></axis></joint>'
     async with simulator(tmp_path, box("one", "0 0 9 0 0 0"), box("two", "3 0 9 0 0 0"), hinge) as it:
@@ -252,7 +252,7 @@ async def test_why_a_service_without_a_text_refuses_is_logged(tmp_path):
         ]
 
 
-async def test_the_world_is_told_to_who_comes_late_with_all_that_came(tmp_path):
+async def test_late_subscriber_gets_world_with_spawned_models(tmp_path):
     async with simulator(tmp_path) as it:
         await it.ask("gazebo_msgs/srv/SpawnEntity", "/spawn_entity", name="late", xml=URDF)
         worlds = it.hear("std_msgs/msg/String", "/world_description", LATCHED)
@@ -260,7 +260,7 @@ async def test_the_world_is_told_to_who_comes_late_with_all_that_came(tmp_path):
         assert 'name="ground_plane"' in worlds[-1].data
 
 
-async def test_a_world_with_a_robot_is_written_once_at_the_start(tmp_path, monkeypatch):
+async def test_world_with_robot_is_serialized_once_at_start(tmp_path, monkeypatch):
     written: list[str] = []
     monkeypatch.setattr(reports, "save_world", lambda *world: written.append(save_world(*world)) or written[-1])
     async with simulator(tmp_path, robot_description=URDF, robot_name="first") as it:
@@ -270,7 +270,7 @@ async def test_a_world_with_a_robot_is_written_once_at_the_start(tmp_path, monke
         assert 'name="first"' in written[0]
 
 
-async def test_a_model_of_the_description_is_written_again_only_where_it_has_changed(tmp_path, monkeypatch):
+async def test_only_changed_models_are_serialized_again(tmp_path, monkeypatch):
     written: list[str] = []
     monkeypatch.setattr(reports, "save_model_of_world", lambda model: written.append(model.name) or saved(model))
     async with simulator(tmp_path, box("one", "1 0 9 0 0 0")) as it:
@@ -287,7 +287,7 @@ async def test_a_model_of_the_description_is_written_again_only_where_it_has_cha
         ]
 
 
-async def test_actors_and_roads_are_told_as_models_that_look_like_them(tmp_path):
+async def test_actors_and_roads_are_described_as_models(tmp_path):
     ball = "<geometry><sphere><radius>0.5</radius></sphere></geometry>"
     actor = (
         f'<actor name="walker"><link name="head"><visual name="v">{ball}</visual></link><script>'
@@ -308,7 +308,7 @@ async def test_actors_and_roads_are_told_as_models_that_look_like_them(tmp_path)
         assert transform.transform.translation.x == pytest.approx(2.0)
 
 
-async def test_poses_are_of_what_can_move_and_sent_to_who_listens(tmp_path):
+async def test_world_poses_contain_movable_links_only(tmp_path):
     async with simulator(tmp_path, box("one", "1 0 9 0 0 0")) as it:
         poses = it.hear("tf2_msgs/msg/TFMessage", "/world_poses")
         await eventually(lambda: bool(poses))
@@ -317,13 +317,13 @@ async def test_poses_are_of_what_can_move_and_sent_to_who_listens(tmp_path):
         assert transform.transform.translation.z == pytest.approx(9.0)
 
 
-async def test_a_robot_can_be_there_from_the_start(tmp_path):
+async def test_robot_can_be_spawned_at_start(tmp_path):
     there = {"robot_description": URDF, "robot_name": "r", "robot_pose": [1.0, 2.0, 0.5, 0.0, 0.0, 0.0]}
     async with simulator(tmp_path, **there) as it:
         assert it.simulator.server.simulation.model_pose("r")[:3] == (1.0, 2.0, 0.5)
 
 
-async def test_what_is_wrong_with_a_model_is_among_the_findings_while_that_is_in_the_world(tmp_path):
+async def test_findings_of_model_last_while_it_is_in_world(tmp_path):
     seen = URDF.replace("collision>", "visual>")
     async with simulator(tmp_path, robot_description=seen, robot_name="first", pause=False) as it:
         server = it.simulator.server
@@ -341,7 +341,7 @@ async def test_what_is_wrong_with_a_model_is_among_the_findings_while_that_is_in
         assert server.findings == []
 
 
-async def test_a_world_may_be_given_as_text_or_by_the_names_of_ros_gz(tmp_path):
+async def test_world_can_be_given_as_text_or_ros_gz_parameter(tmp_path):
     text = f'<sdf version="1.7"><world name="told">{box("crate", "0 0 1 0 0 0")}</world></sdf>'
     async with simulator(tmp_path, world_sdf_string=text) as it:
         answer = await it.ask("gazebo_msgs/srv/GetModelList", "/get_model_list")
@@ -353,7 +353,7 @@ async def test_a_world_may_be_given_as_text_or_by_the_names_of_ros_gz(tmp_path):
         assert answer.model_names == ["chest"]
 
 
-async def test_a_world_that_is_given_as_text_and_is_none_is_told_of(tmp_path):
+async def test_malformed_world_text_is_rejected(tmp_path):
     with pytest.raises(LinkwrightError, match="world_sdf_string"):
         async with simulator(tmp_path, world_sdf_string="<sdf"):
             pass

@@ -15,7 +15,7 @@ from tests.simulation.worlds import GROUND, box, finder, mbot, model, simulated,
 MILLISECOND = NANOSECONDS_PER_SECOND // 1000
 
 
-def test_a_body_falls_as_galileo_says():
+def test_body_falls_with_gravity():
     simulation = simulated(box("ball", "0 0 100 0 0 0"))
     simulation.advance(NANOSECONDS_PER_SECOND)
     # The semi-implicit step is behind by half a step: g t dt / 2.
@@ -23,7 +23,7 @@ def test_a_body_falls_as_galileo_says():
     assert simulation.link_velocity("ball::link")[0][2] == pytest.approx(-9.81, abs=1e-9)
 
 
-def test_tasks_are_called_at_their_times_in_their_order():
+def test_periodic_tasks_are_called_on_time_in_order():
     simulation = simulated(GROUND)
     calls: list[tuple[str, int]] = []
     simulation.call_every(3 * MILLISECOND, lambda: calls.append(("three", simulation.time // MILLISECOND)))
@@ -32,7 +32,7 @@ def test_tasks_are_called_at_their_times_in_their_order():
     assert calls == [("two", 2), ("three", 3), ("two", 4), ("three", 6), ("two", 6)]
 
 
-def test_a_robot_drives_straight_on():
+def test_robot_drives_straight():
     simulation = simulated(GROUND, mbot())
     motors = [simulation.add_velocity_motor(f"mbot::{side}_joint", 20.0, 5.0) for side in ("left", "right")]
     wheel = simulation.joint_state("mbot::left_joint")[0]
@@ -56,13 +56,13 @@ def test_a_robot_drives_straight_on():
         ("<box><size>1 1 1</size></box>", None),
     ],
 )
-def test_what_is_round_has_a_radius_as_a_wheel(shape, radius):
+def test_wheel_radius_of_round_shapes(shape, radius):
     collision = f"<collision name='c'><geometry>{shape}</geometry></collision>"
     simulation = simulated(f"<model name='a'><link name='link'>{collision}</link></model>")
     assert simulation.wheel_radius("a::link") == radius
 
 
-def test_the_same_twice():
+def test_simulation_is_reproducible():
     def run() -> tuple[float, ...]:
         simulation = simulated(GROUND, mbot(), box("box", "0.5 0.05 0.2 0 0 0", "0.2 0.2 0.2"))
         motors = [simulation.add_velocity_motor(f"mbot::{side}_joint", 20.0, 5.0) for side in ("left", "right")]
@@ -73,7 +73,7 @@ def test_the_same_twice():
     assert run() == run()
 
 
-def test_what_comes_and_goes_leaves_the_others_as_they_are():
+def test_spawn_and_delete_keep_other_models():
     simulation = simulated(GROUND, box("one", "0 0 5 0 0 0"))
     simulation.advance(100 * MILLISECOND)
     before = simulation.model_pose("one"), tuple(simulation.link_velocity("one::link")[0])
@@ -87,13 +87,13 @@ def test_what_comes_and_goes_leaves_the_others_as_they_are():
         simulation.model_pose("one")
 
 
-def test_two_of_one_name_are_refused():
+def test_duplicate_model_name_is_rejected():
     simulation = simulated(box("one", "0 0 5 0 0 0"))
     with pytest.raises(LinkwrightError, match="a model 'one' already exists"):
         simulation.spawn(model(box("one", "0 0 0 0 0 0")), "one")
 
 
-def test_a_reset_begins_anew():
+def test_reset_restores_start():
     simulation = simulated(GROUND, box("one", "0 0 5 0 0 0"))
     calls: list[int] = []
     simulation.call_every(10 * MILLISECOND, lambda: calls.append(simulation.time))
@@ -105,7 +105,7 @@ def test_a_reset_begins_anew():
     assert calls == [10 * MILLISECOND, 20 * MILLISECOND] * 2
 
 
-def test_an_explosion_is_said_with_the_link():
+def test_instability_is_reported_with_link():
     simulation = simulated(box("one", "0 0 5 0 0 0"), box("two", "0 3 5 0 0 0"))
     simulation.advance(10 * MILLISECOND)
     simulation.push("two::link", (0.0, 1e300, 0.0))
@@ -114,20 +114,20 @@ def test_an_explosion_is_said_with_the_link():
     assert all(isfinite(each) for name in ("one", "two") for each in simulation.model_pose(name))
 
 
-def test_a_force_that_is_no_number_is_said_with_the_link():
+def test_nan_force_is_reported_with_link():
     simulation = simulated(box("one", "0 0 5 0 0 0"), box("two", "0 3 5 0 0 0"))
     simulation.push("two::link", (0.0, float("nan"), 0.0))
     with pytest.raises(UnstableError, match="'two::link'"):
         simulation.advance(NANOSECONDS_PER_SECOND)
 
 
-def test_a_second_model_of_a_name_is_left_out():
+def test_duplicate_model_of_world_is_omitted():
     first, second = (world(box("one", f"0 0 {height} 0 0 0")) for height in (5, 9))
     simulation = Simulation(replace(first, models=first.models + second.models), finder())
     assert simulation.model_pose("one")[2] == 5.0
 
 
-def test_more_links_than_can_be_simulated_are_refused(monkeypatch):
+def test_too_many_links_are_rejected(monkeypatch):
     monkeypatch.setattr("linkwright.simulation.scene.compiling.MAX_LINKS", 3)
     with pytest.raises(LinkwrightError, match="the world has 4 links, more than can be simulated"):
         simulated(*(box(f"box{index}", f"{index} 0 5 0 0 0") for index in range(4)))

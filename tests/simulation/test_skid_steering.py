@@ -41,7 +41,7 @@ def friction(mu: float, mu2: float) -> str:
 
 @pytest.mark.parametrize("surface", ["", friction(100.0, 50.0), friction(1.0, 0.05)], ids=["unsaid", "rubber", "mu2"])
 @pytest.mark.parametrize("length", [0.2, 0.4])
-async def test_they_turn_a_robot_nearly_as_fast_as_friction_by_coulomb_lets_them(length, surface):
+async def test_skid_steering_turn_rate_matches_coulomb_friction(length, surface):
     async with served(GROUND, skid(length, surface)) as (server, graph, log):
         await drive(server, graph, turning=0.5, seconds=1.0)
         begin = yaw_of(server.simulation.model_pose("robot"))
@@ -53,7 +53,7 @@ async def test_they_turn_a_robot_nearly_as_fast_as_friction_by_coulomb_lets_them
 
 
 @pytest.mark.parametrize("surface", ["", friction(1.0, 0.05)], ids=["unsaid", "mu2"])
-async def test_they_drive_straight_on(surface):
+async def test_skid_steering_drives_straight(surface):
     async with served(GROUND, skid(0.4, surface)) as (server, graph, log):
         await drive(server, graph, 0.5, seconds=1.0)
         begin = server.simulation.model_pose("robot")

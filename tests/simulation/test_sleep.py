@@ -31,7 +31,7 @@ def are_asleep(simulation: Simulation) -> bool:
 
 
 @pytest.mark.parametrize("amplitude", [0.1, 0.02, 0.005, 0.001])
-def test_a_pendulum_swings_on(amplitude: float):
+def test_pendulum_keeps_swinging(amplitude: float):
     simulation = simulated(swinging())
     simulation.set_joint_position("swing::joint", amplitude)
     half = round(pi / sqrt(9.81) * NANOSECONDS_PER_SECOND)
@@ -40,7 +40,7 @@ def test_a_pendulum_swings_on(amplitude: float):
 
 
 @pytest.mark.parametrize("damping", [2.0, 40.0])
-def test_a_mass_on_a_spring_comes_to_rest_where_force_and_weight_are_equal(damping: float):
+def test_mass_on_spring_rests_at_equilibrium(damping: float):
     simulation = simulated(swinging(kind="prismatic", axis="0 0 1", stiffness=100.0, damping=damping))
     simulation.advance(15 * NANOSECONDS_PER_SECOND)
     assert simulation.joint_state("swing::joint")[0] == pytest.approx(-0.0981, abs=1e-5)
@@ -48,13 +48,13 @@ def test_a_mass_on_a_spring_comes_to_rest_where_force_and_weight_are_equal(dampi
 
 
 @pytest.mark.parametrize("gravity", [0.05, 0.002])
-def test_things_fall_however_little_they_weigh(gravity: float):
+def test_bodies_fall_under_tiny_gravity(gravity: float):
     simulation = simulated(box("crate", "0 0 5 0 0 0"), gravity=f"0 0 {-gravity}")
     simulation.advance(2 * NANOSECONDS_PER_SECOND)
     assert 5.0 - simulation.link_pose("crate::link")[2] == pytest.approx(2 * gravity, rel=0.01)
 
 
-def test_a_ball_rolls_down_a_hardly_sloping_ground():
+def test_ball_rolls_down_tiny_slope():
     slope = 0.0005
     ball = (
         '<model name="ball"><pose>0 0 0.1 0 0 0</pose><link name="link"><inertial><mass>1</mass>'
@@ -67,7 +67,7 @@ def test_a_ball_rolls_down_a_hardly_sloping_ground():
 
 
 @pytest.mark.parametrize("speed", [1.0, 1e-4])
-def test_what_floats_asleep_goes_where_it_is_set_off_to(speed: float):
+def test_sleeping_body_moves_when_velocity_is_set(speed: float):
     simulation = simulated(box("crate", "0 0 5 0 0 0"), gravity=NO_GRAVITY)
     simulation.advance(NANOSECONDS_PER_SECOND)
     assert are_asleep(simulation)
@@ -77,7 +77,7 @@ def test_what_floats_asleep_goes_where_it_is_set_off_to(speed: float):
 
 
 @pytest.mark.parametrize("force", [10.0, 1e-3])
-def test_what_floats_asleep_goes_where_it_is_pushed(force: float):
+def test_sleeping_body_moves_when_pushed(force: float):
     simulation = simulated(box("crate", "0 0 5 0 0 0", mass=1.0), gravity=NO_GRAVITY)
     simulation.advance(NANOSECONDS_PER_SECOND)
     simulation.push("crate::link", (force, 0.0, 0.0))
@@ -85,7 +85,7 @@ def test_what_floats_asleep_goes_where_it_is_pushed(force: float):
     assert simulation.link_pose("crate::link")[0] == pytest.approx(force / 2, rel=0.01)
 
 
-def test_what_sleeps_falls_when_gravity_comes():
+def test_sleeping_body_falls_when_gravity_is_set():
     simulation = simulated(box("crate", "0 0 5 0 0 0"), gravity=NO_GRAVITY)
     simulation.advance(NANOSECONDS_PER_SECOND)
     simulation.set_gravity((0.0, 0.0, -0.01))
@@ -93,7 +93,7 @@ def test_what_sleeps_falls_when_gravity_comes():
     assert 5.0 - simulation.link_pose("crate::link")[2] == pytest.approx(0.02, rel=0.01)
 
 
-def test_boxes_that_lie_fall_asleep_and_stay_where_they_are():
+def test_stacked_boxes_fall_asleep_in_place():
     simulation = simulated(
         GROUND, *[box(f"b{each}", f"0 0 {0.1 + 0.2 * each} 0 0 0", "0.2 0.2 0.2") for each in range(4)]
     )
@@ -104,7 +104,7 @@ def test_boxes_that_lie_fall_asleep_and_stay_where_they_are():
     assert (simulation.data.qpos == heights).all()
 
 
-def test_a_box_falls_when_what_it_lies_on_is_taken_away():
+def test_box_falls_when_its_support_is_deleted():
     simulation = simulated(
         GROUND, box("lower", "0 0 0.1 0 0 0", "0.2 0.2 0.2"), box("upper", "0 0 0.3 0 0 0", "0.2 0.2 0.2")
     )

@@ -41,7 +41,7 @@ def is_together(simulation: Simulation) -> bool:
     return not islands
 
 
-def test_many_robots_drive_the_same_way_together(monkeypatch):
+def test_joint_solving_of_many_robots_gives_same_motion(monkeypatch):
     together = driving()
     together.advance(5 * LOOK)
     assert is_together(together)
@@ -55,13 +55,13 @@ def test_many_robots_drive_the_same_way_together(monkeypatch):
     np.testing.assert_allclose(together.data.qpos, alone.data.qpos, atol=1e-7)
 
 
-def test_few_robots_are_solved_for_one_by_one():
+def test_few_robots_are_solved_separately():
     simulation = driving(robots=4)
     simulation.advance(5 * LOOK)
     assert not is_together(simulation)
 
 
-def test_what_rests_falls_asleep_though_many_robots_drive():
+def test_resting_boxes_fall_asleep_while_robots_drive():
     boxes = [box(f"box{number}", f"{number} -3 0.1 0 0 0", "0.2 0.2 0.2") for number in range(6)]
     simulation = driving(*boxes)
     simulation.advance(2 * LOOK)
@@ -74,7 +74,7 @@ def test_what_rests_falls_asleep_though_many_robots_drive():
     assert simulation.link_pose("box0::link")[2] > 0.11
 
 
-def test_what_slept_is_awake_when_it_is_hit_while_all_are_solved_for_together():
+def test_sleeping_box_wakes_when_hit_during_joint_solving():
     simulation = driving(box("wall", "1.2 8 0.1 0 0 0", "0.2 0.4 0.2", mass=0.2))
     tree = int(simulation.model.body_treeid[simulation.model.body("wall::link").id])
     simulation.advance(51 * LOOK)
@@ -91,7 +91,7 @@ def test_what_slept_is_awake_when_it_is_hit_while_all_are_solved_for_together():
     assert simulation.link_pose("wall::link")[0] > ahead + 0.1
 
 
-def test_a_reset_gives_the_same_bits_again():
+def test_reset_is_bitwise_reproducible():
     simulation = driving()
     simulation.advance(NANOSECONDS_PER_SECOND // 2)
     once = simulation.data.qpos.tobytes()
@@ -104,7 +104,7 @@ def test_a_reset_gives_the_same_bits_again():
     assert simulation.data.qpos.tobytes() == once
 
 
-def test_robots_that_go_leave_the_others_to_be_solved_for_one_by_one():
+def test_remaining_robots_are_solved_separately_after_delete():
     simulation = driving()
     simulation.advance(5 * LOOK)
     assert is_together(simulation)

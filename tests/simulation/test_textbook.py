@@ -37,7 +37,7 @@ def slope(angle: float, mu: float = 1.0) -> str:
     )
 
 
-def test_a_pendulum_swings_with_its_period():
+def test_pendulum_has_textbook_period():
     length, angle = 0.5, 0.1
     bob = part(1.0, 1e-6)
     pendulum = f"""
@@ -62,7 +62,7 @@ def test_a_pendulum_swings_with_its_period():
 
 
 @pytest.mark.parametrize(("mu", "slides"), [(0.4, True), (0.7, False)])
-def test_a_block_on_a_slope_sticks_or_slides(mu, slides):
+def test_block_on_slope_sticks_or_slides(mu, slides):
     angle = atan(0.5)
     height = 0.05 / cos(angle)
     simulation = simulated(
@@ -77,7 +77,7 @@ def test_a_block_on_a_slope_sticks_or_slides(mu, slides):
         assert gone < 2e-3
 
 
-def test_a_ball_rolls_down_a_slope():
+def test_ball_rolls_down_slope():
     angle, radius = 0.2, 0.1
     shape = f"<sphere><radius>{radius}</radius></sphere>"
     link = part(1.0, 0.4 * radius**2, shape, friction(1.0))
@@ -88,7 +88,7 @@ def test_a_ball_rolls_down_a_slope():
     assert hypot(*speed) == pytest.approx(5 / 7 * G * sin(angle), rel=0.01)
 
 
-def test_momentum_stays_in_a_collision():
+def test_collision_conserves_momentum():
     simulation = simulated(
         box("one", "0 0 0 0 0 0", "0.2 0.2 0.2", 2.0), box("two", "1 0 0 0 0 0", "0.2 0.2 0.2", 1.0), gravity="0 0 0"
     )
@@ -102,7 +102,7 @@ def test_momentum_stays_in_a_collision():
     assert 2.0 * one + 1.0 * two == pytest.approx(2.0, abs=1e-6)
 
 
-def test_a_four_bar_linkage_stays_closed():
+def test_four_bar_linkage_stays_closed():
     bars = "".join(
         f'<link name="{name}"><pose>{pose}</pose>{part(0.2, 1e-3)}</link>'
         for name, pose in (("crank", "0 0 1 0 0 0"), ("coupler", "0 0 1.3 0 0 0"), ("rocker", "0.5 0 1 0 0 0"))
@@ -127,7 +127,7 @@ def test_a_four_bar_linkage_stays_closed():
     assert abs(simulation.joint_state("m::a")[0]) > 0.1
 
 
-def test_a_robot_at_rest_stays_where_it_is():
+def test_robot_at_rest_does_not_drift():
     simulation = simulated(GROUND, mbot())
     simulation.advance(NANOSECONDS_PER_SECOND)
     x, y, z, *_ = simulation.model_pose("mbot")
@@ -172,7 +172,7 @@ class Driver:
     [(0.5, 0.0, 1e-3, 1e-3), (1.0, 1.0, 10e-3, 2e-3), (0.0, 1.0, 1e-3, 0.1 * pi / 180)],
     ids=["straight", "arc", "spin"],
 )
-def test_a_robot_drives_as_its_wheels_turn(forward, turning, off, turned):
+def test_robot_motion_matches_wheel_rotation(forward, turning, off, turned):
     driver = Driver(forward, turning)
     driver.simulation.advance(10 * NANOSECONDS_PER_SECOND + 500 * MILLISECOND)
     distance, angle = driver.errors()

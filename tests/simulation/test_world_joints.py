@@ -23,7 +23,7 @@ def joint(kind: str, parent: str, child: str, more: str = "", name: str = "held"
 
 
 @pytest.mark.parametrize("parent", ["base", "base::link"])
-def test_a_pendulum_of_two_models_swings_as_the_textbook_says(parent):
+def test_pendulum_of_two_models_has_textbook_period(parent):
     bob, base = BAR.format(name="bob", pose="0.05 0 1.001249 0 0 0"), box("base", "0 0 2 0 0 0")
     swing = joint("revolute", parent, "bob::link", HINGE.format(at="base"), name="swing")
     simulation = simulated(bob, base, joint("fixed", "world", "base", name="anchor"), swing)
@@ -41,7 +41,7 @@ def test_a_pendulum_of_two_models_swings_as_the_textbook_says(parent):
     assert list(simulation.scene.models) == ["base", "bob"], "what hangs comes last"
 
 
-def test_two_models_fixed_to_each_other_fall_as_one():
+def test_models_fixed_to_each_other_move_as_one():
     one, other = box("one", "0 0 9 0 0 0"), box("two", "1.5 0 9 0 0 0")
     simulation = simulated(other, one, joint("fixed", "one", "two"), gravity="0 0 0")
     simulation.set_model_velocity("one", (0.0, 0.0, 0.0), (0.0, 0.0, pi / 2))
@@ -52,7 +52,7 @@ def test_two_models_fixed_to_each_other_fall_as_one():
     assert abs(one[5]) > 0.5, "both turn"
 
 
-def test_a_slider_on_what_is_static_stops_at_its_limits_whichever_of_both_is_the_child():
+def test_prismatic_world_joint_stops_at_limits_for_either_child():
     post = box("post", "0 0 1 0 0 0").replace("<link", "<static>true</static><link", 1)
     rail = "<axis><xyz>0 0 1</xyz><limit><lower>-0.3</lower><upper>0.3</upper></limit></axis>"
     for parent, child, end in (("post", "slider", -0.3), ("slider", "post", 0.3)):
@@ -62,7 +62,7 @@ def test_a_slider_on_what_is_static_stops_at_its_limits_whichever_of_both_is_the
         assert simulation.model_pose("slider")[:3] == pytest.approx((0, 0, 0.7), abs=1e-3)
 
 
-def test_a_ball_and_a_universal_joint_keep_what_hangs_at_its_distance():
+def test_ball_and_universal_joints_keep_distance():
     parts = [BAR.format(name=name, pose=f"{x} 0 3 0 0 0") for name, x in (("a", 0), ("b", 1), ("c", 2))]
     axes = "<axis><xyz>0 1 0</xyz></axis><axis2><xyz>0 0 1</xyz></axis2>"
     joints = (
@@ -78,7 +78,7 @@ def test_a_ball_and_a_universal_joint_keep_what_hangs_at_its_distance():
     assert c[2] < b[2] < 2.9
 
 
-def test_a_joint_between_what_is_held_already_closes_a_loop_or_is_told_of():
+def test_loop_joint_is_closed_or_reported():
     ends = [box(name, f"{x} 0 3 0 0 0") for name, x in (("a", 0), ("b", 2))]
     middle = box("bridge", "1 0 3 0 0 0")
     held = [joint("fixed", "world", name, name=f"hold_{name}") for name in "ab"]
@@ -92,7 +92,7 @@ def test_a_joint_between_what_is_held_already_closes_a_loop_or_is_told_of():
     ]
 
 
-def test_joints_to_nowhere_and_in_circles_leave_the_rest_as_it_is():
+def test_circular_and_dangling_joints_are_ignored():
     parts = [box(name, f"{x} 0 9 0 0 0") for name, x in (("a", 0), ("b", 2))]
     joints = [joint("fixed", "a", "b", name="on"), joint("fixed", "b", "a", name="back"), joint("fixed", "a", "nobody")]
     simulation = simulated(*parts, *joints, gravity="0 0 -10")
@@ -101,7 +101,7 @@ def test_joints_to_nowhere_and_in_circles_leave_the_rest_as_it_is():
     assert simulation.model_pose("b")[2] == pytest.approx(9 - 1.25, abs=0.01)
 
 
-def test_joints_of_a_world_follow_each_other_and_turn_by_gears():
+def test_world_joints_support_mimic_and_gearbox():
     wheels = [box(name, f"{x} 0 3 0 0 0", "0.2 0.2 0.2") for name, x in (("base", 0), ("a", 1), ("b", 2), ("c", 3))]
     axis = "<axis><xyz>0 0 1</xyz>{}</axis>"
     follow = axis.format('<mimic joint="turn_a"><multiplier>2</multiplier></mimic>')
@@ -122,13 +122,13 @@ def test_joints_of_a_world_follow_each_other_and_turn_by_gears():
     assert simulation.joint_state("turn_c")[0] == pytest.approx(-3 * turned, rel=0.01)
 
 
-def test_a_sensor_in_a_joint_of_a_world_is_named_as_not_simulated():
+def test_sensor_in_world_joint_is_reported_as_unsimulated():
     sensor = '<sensor name="force" type="force_torque"/>'
     simulation = simulated(box("a", "0 0 9 0 0 0"), joint("fixed", "world", "a", sensor))
     assert unsimulated_elements(simulation.world) == ["<sensor> in <joint> of <world>"]
 
 
-async def test_what_hangs_on_a_model_goes_on_without_it(tmp_path):
+async def test_attached_model_falls_when_its_parent_is_deleted(tmp_path):
     parts = box("base", "0 0 9 0 0 0"), box("load", "0 0 7.5 0 0 0")
     joints = joint("fixed", "world", "base", name="anchor"), joint("fixed", "base", "load", name="rope")
     async with simulator(tmp_path, *parts, *joints) as it:
@@ -143,7 +143,7 @@ async def test_what_hangs_on_a_model_goes_on_without_it(tmp_path):
         assert simulation.model_pose("load")[2] == 7.5
 
 
-async def test_a_world_with_joints_is_followed(tmp_path):
+async def test_load_world_updates_world_joints(tmp_path):
     base, weight = box("base", "0 0 9 0 0 0"), BAR.format(name="bob", pose="1 0 9 0 0 0")
     anchor = joint("fixed", "world", "base", name="anchor")
     swing = joint("revolute", "base", "bob", HINGE.format(at="base"), name="swing")
@@ -163,7 +163,7 @@ async def test_a_world_with_joints_is_followed(tmp_path):
         assert not simulation.moves_freely("bob")
 
 
-def test_a_joint_whose_child_is_the_world_holds_its_parent():
+def test_joint_with_child_fixed_to_world_holds_parent():
     simulation = simulated(box("crate", "0 0 2 0 0 0"), joint("ball", "crate", "pin"), '<frame name="pin"/>')
     simulation.advance(500_000_000)
     assert simulation.model_pose("crate")[:3] == pytest.approx((0, 0, 2), abs=1e-3)

@@ -26,14 +26,14 @@ def installed(monkeypatch):
     monkeypatch.setattr("linkwright.speech.engine.extensions", lambda group: {"deaf": entry})
 
 
-def test_an_engine_is_made_with_its_options():
+def test_engine_is_created_with_options():
     options = EngineOptions(("forward", "stop"), "en")
     engine = make_engine("deaf", options)
     assert isinstance(engine, SpeechEngine)
     assert engine.options is options
 
 
-def test_an_unknown_engine_is_an_error_that_names_one_that_is_near():
+def test_unknown_engine_is_rejected_with_suggestion():
     with pytest.raises(LinkwrightError) as caught:
         make_engine("daef", EngineOptions(("stop",)))
     (diagnostic,) = caught.value.diagnostics

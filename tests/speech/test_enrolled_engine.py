@@ -10,7 +10,7 @@ import pytest
 from linkwright.diagnostics import LinkwrightError
 from linkwright.speech.engine import EngineOptions, make_engine
 from linkwright.speech.enrolled.engine import EnrolledEngine
-from linkwright.speech.enrolled.enrolment import enrol
+from linkwright.speech.enrolled.enrollment import enroll
 from linkwright.speech.enrolled.recognition import Guess
 from linkwright.speech.enrolled.words import Words
 from linkwright.speech.sound.samples import BLOCK, RATE
@@ -26,7 +26,7 @@ def words():
     for name, phones in WORDS.items():
         for number in range(3):
             assert (
-                enrol(found, name, say(phones, speed=0.95 + 0.05 * number, pitch=115 + 5 * number, seed=number)) == ()
+                enroll(found, name, say(phones, speed=0.95 + 0.05 * number, pitch=115 + 5 * number, seed=number)) == ()
             )
     return found
 
@@ -42,22 +42,22 @@ def engine(path):
     return EnrolledEngine(EngineOptions(tuple(WORDS), model=path))
 
 
-def heard(engine, samples, block=BLOCK):
+def results_of(engine, samples, block=BLOCK):
     found = []
     for at in range(0, len(samples), block):
         found += engine.hear(samples[at : at + block])
     return found
 
 
-def finals(engine, samples):
-    return [one.text for one in heard(engine, samples) if one.final]
+def final_texts(engine, samples):
+    return [one.text for one in results_of(engine, samples) if one.final]
 
 
 @pytest.mark.parametrize("name", WORDS)
 @pytest.mark.parametrize(("speed", "pitch", "level"), [(0.9, 122, 1000), (1.1, 117, 8000), (1.0, 120, 300)])
-def test_a_word_is_recognised_faster_slower_higher_lower_and_softer(engine, name, speed, pitch, level):
+def test_word_is_recognized_at_other_speed_pitch_and_level(engine, name, speed, pitch, level):
     samples = say(WORDS[name], speed=speed, pitch=pitch, level=level, silence=0.8, seed=9)
-    (found,) = [one for one in heard(engine, samples) if one.final]
+    (found,) = [one for one in results_of(engine, samples) if one.final]
     assert found.text == name
     assert 0.5 < found.confidence <= 1.0
     assert abs(found.start - 0.8) < 0.15
@@ -65,9 +65,9 @@ def test_a_word_is_recognised_faster_slower_higher_lower_and_softer(engine, name
 
 
 @pytest.mark.parametrize("name", WORDS)
-def test_a_word_is_recognised_in_noise(engine, name):
+def test_word_is_recognized_in_noise(engine, name):
     samples = say(WORDS[name], speed=1.05, level=2000, noise=2000 / 10 ** (15 / 20), silence=0.8, seed=10)
-    assert finals(engine, samples) == [name]
+    assert final_texts(engine, samples) == [name]
 
 
 def in_a_room(samples, direct, seed):
@@ -83,22 +83,22 @@ def in_a_room(samples, direct, seed):
 
 def heard_in_a_room(engine, phones, number):
     samples = say(phones, speed=(0.9, 1.1)[number % 2], level=2000, silence=0.8, seed=20 + number)
-    return finals(engine, in_a_room(samples, 8.0, number))
+    return final_texts(engine, in_a_room(samples, 8.0, number))
 
 
-def test_what_was_enrolled_close_is_recognised_two_metres_away_in_a_room(engine):
+def test_word_is_recognized_two_meters_away_in_room(engine):
     result = [(name, heard_in_a_room(engine, WORDS[name], number)) for name in WORDS for number in range(3)]
     assert all(set(found) <= {name, ""} for name, found in result)
     assert sum(found == [name] for name, found in result) >= 13
 
 
 @pytest.mark.parametrize("phones", OTHERS)
-def test_what_was_not_enrolled_is_no_command_in_a_room(engine, phones):
+def test_unknown_word_is_not_recognized_in_room(engine, phones):
     assert set(heard_in_a_room(engine, phones, 1)) <= {""}
 
 
-def test_a_phrase_with_a_number_asks_for_more_confidence(words, tmp_path, monkeypatch):
-    phrases = ("stop", "two metres", "两米")
+def test_phrase_with_number_requires_higher_confidence(words, tmp_path, monkeypatch):
+    phrases = ("stop", "two meters", "两米")
     numbered = Words({name: words.takes("stop") for name in phrases})
     numbered.write(tmp_path / "words.json")
     engine = EnrolledEngine(EngineOptions(phrases, model=tmp_path / "words.json"))
@@ -107,7 +107,7 @@ def test_a_phrase_with_a_number_asks_for_more_confidence(words, tmp_path, monkey
         *((name, 0.8, name) for name in phrases),
     ):
         monkeypatch.setattr(engine._recognizer, "guess", Mock(return_value=Guess(name, confidence, 0, 9)))
-        assert finals(engine, say("mumi", silence=0.8)) == [expected]
+        assert final_texts(engine, say("mumi", silence=0.8)) == [expected]
 
 
 def in_babble(phones, seed):
@@ -115,12 +115,12 @@ def in_babble(phones, seed):
     return beside(samples, babble(len(samples) / RATE + 0.1, np.random.default_rng(seed)), 15.0, 2000.0)
 
 
-def test_words_are_recognised_while_others_talk(path):
+def test_words_are_recognized_in_babble(path):
     right = []
     for name in ("forward", "turn left", "turn right", "stop"):
         for seed in range(1, 4):
             engine = EnrolledEngine(EngineOptions(tuple(WORDS), model=path))
-            found = heard(engine, in_babble(WORDS[name], seed)) + list(engine.finish())
+            found = results_of(engine, in_babble(WORDS[name], seed)) + list(engine.finish())
             text = {one.text for one in found if one.final} - {""}
             assert text <= {name}
             right.append(text == {name})
@@ -128,40 +128,40 @@ def test_words_are_recognised_while_others_talk(path):
 
 
 @pytest.mark.parametrize("phones", OTHERS)
-def test_what_was_not_enrolled_is_no_command_while_others_talk(engine, phones):
-    found = heard(engine, in_babble(phones, 1)) + list(engine.finish())
+def test_unknown_word_is_not_recognized_in_babble(engine, phones):
+    found = results_of(engine, in_babble(phones, 1)) + list(engine.finish())
     assert {one.text for one in found} <= {""}
 
 
-def test_the_talk_of_others_alone_is_no_command(engine):
+def test_babble_alone_is_not_recognized(engine):
     sound = np.rint(300 * babble(20.0, np.random.default_rng(4))).astype(np.int16)
-    assert not [one.text for one in heard(engine, sound) if one.text]
+    assert not [one.text for one in results_of(engine, sound) if one.text]
 
 
 @pytest.mark.parametrize("phones", OTHERS)
-def test_what_was_not_enrolled_is_told_as_unknown(engine, phones):
-    assert finals(engine, say(phones, silence=0.8, seed=11)) == [""]
+def test_unknown_word_gives_empty_text(engine, phones):
+    assert final_texts(engine, say(phones, silence=0.8, seed=11)) == [""]
 
 
 @pytest.mark.parametrize("phones", ["s.to.s", "s.to.t", "s.to.f", ".pae.s"])
-def test_what_differs_from_a_word_in_one_sound_is_no_command(engine, phones):
+def test_word_differing_in_one_sound_is_not_recognized(engine, phones):
     samples = say(phones, level=2000, silence=0.8, seed=9)
-    assert [one.text for one in heard(engine, samples) if one.text] == []
+    assert [one.text for one in results_of(engine, samples) if one.text] == []
 
 
-def test_of_what_is_much_like_a_word_the_word_is_told_as_the_nearest(engine, path):
+def test_similar_utterance_reports_nearest_word(engine, path):
     in_noise = say(WORDS["turn left"], speed=1.05, level=2000, noise=1000, silence=0.8, seed=1)
-    (found,) = [one for one in heard(engine, in_noise) if one.final]
+    (found,) = [one for one in results_of(engine, in_noise) if one.final]
     assert (found.text, found.nearest) == ("", "turn left")
     others = EnrolledEngine(EngineOptions(("stop", "back"), model=path))  # a word that is no phrase is not told
-    (found,) = [one for one in heard(others, in_noise) if one.final]
+    (found,) = [one for one in results_of(others, in_noise) if one.final]
     assert (found.text, found.nearest) == ("", "")
-    (found,) = [one for one in heard(others, say(OTHERS[0], silence=0.8, seed=11)) if one.final]
+    (found,) = [one for one in results_of(others, say(OTHERS[0], silence=0.8, seed=11)) if one.final]
     assert (found.text, found.nearest) == ("", "")
 
 
 @pytest.mark.parametrize("kind", ["silence", "noise", "hum", "click", "chirp"])
-def test_what_is_no_speech_is_no_command(engine, kind):
+def test_sound_without_speech_is_not_recognized(engine, kind):
     rng = np.random.default_rng(12)
     at = np.arange(10 * RATE) / RATE
     sound = {
@@ -171,10 +171,10 @@ def test_what_is_no_speech_is_no_command(engine, kind):
         "click": 20_000.0 * (np.arange(len(at)) % RATE < 30) + rng.normal(size=len(at)),
         "chirp": 3000 * np.sin(2 * np.pi * (200 * at + 300 * at**2)) + rng.normal(size=len(at)),
     }[kind]
-    assert not [one.text for one in heard(engine, sound.astype(np.int16)) if one.text]
+    assert not [one.text for one in results_of(engine, sound.astype(np.int16)) if one.text]
 
 
-def test_a_partial_comes_with_the_block_after_the_word_before_the_final(engine):
+def test_partial_is_reported_within_300_ms_of_word(engine):
     samples = say(WORDS["stop"], silence=0.8, seed=13)
     end = len(samples) - int(0.8 * RATE)
     known = None
@@ -187,68 +187,68 @@ def test_a_partial_comes_with_the_block_after_the_word_before_the_final(engine):
     assert known - end <= 0.3 * RATE
 
 
-def test_all_that_hearing_needs_is_computed_before_the_first_word(engine, monkeypatch):
+def test_templates_are_computed_before_first_word(engine, monkeypatch):
     monkeypatch.setattr("linkwright.speech.enrolled.recognition.Templates", None)
-    assert finals(engine, say(WORDS["stop"], silence=0.8, seed=13)) == ["stop"]
+    assert final_texts(engine, say(WORDS["stop"], silence=0.8, seed=13)) == ["stop"]
 
 
-def test_the_end_of_the_sound_ends_the_utterance_at_once(engine):
+def test_finish_ends_utterance(engine):
     samples = say(WORDS["back"], silence=0.5, seed=14)
-    heard(engine, samples[: -int(0.45 * RATE)])
+    results_of(engine, samples[: -int(0.45 * RATE)])
     (found,) = engine.finish()
     assert (found.text, found.final) == ("back", True)
     assert engine.finish() == []
 
 
 @pytest.mark.parametrize("block", [37, 480, 16_000])
-def test_what_is_heard_does_not_depend_on_the_blocks(engine, block):
+def test_results_do_not_depend_on_block_size(engine, block):
     sound = np.concatenate([say(WORDS[name], silence=0.6, seed=15) for name in ("forward", "stop")])
-    assert [one.text for one in heard(engine, sound, block) if one.final] == ["forward", "stop"]
+    assert [one.text for one in results_of(engine, sound, block) if one.final] == ["forward", "stop"]
 
 
-def test_words_that_are_no_phrases_are_not_told(path):
+def test_enrolled_words_outside_phrases_are_not_reported(path):
     engine = EnrolledEngine(EngineOptions(("stop",), model=path))
-    assert finals(engine, say(WORDS["forward"], silence=0.8)) == [""]
-    assert finals(engine, say(WORDS["stop"], silence=0.8)) == ["stop"]
+    assert final_texts(engine, say(WORDS["forward"], silence=0.8)) == [""]
+    assert final_texts(engine, say(WORDS["stop"], silence=0.8)) == ["stop"]
 
 
-def test_phrases_are_told_as_they_were_asked_for(path):
+def test_phrases_are_reported_with_requested_spelling(path):
     engine = EnrolledEngine(EngineOptions(("Turn  Left",), model=path))
-    assert finals(engine, say(WORDS["turn left"], silence=0.8)) == ["Turn  Left"]
+    assert final_texts(engine, say(WORDS["turn left"], silence=0.8)) == ["Turn  Left"]
 
 
-def test_a_long_speech_is_no_command_and_is_not_kept(engine):
+def test_long_speech_is_not_recognized(engine):
     sound = np.concatenate([say(WORDS[name], silence=0.0, seed=16) for name in list(WORDS) * 4])
-    found = heard(engine, np.concatenate((say("a", level=1.0), sound, np.zeros(RATE, np.int16))))
+    found = results_of(engine, np.concatenate((say("a", level=1.0), sound, np.zeros(RATE, np.int16))))
     assert [one.text for one in found if one.final] == [""]
 
 
-def test_one_enrolled_word_is_enough(words, tmp_path):
+def test_single_enrolled_word_is_recognized(words, tmp_path):
     alone = Words({"stop": words.takes("stop")[:1]})
     alone.write(tmp_path / "words.json")
     engine = EnrolledEngine(EngineOptions(("stop",), model=tmp_path / "words.json"))
-    assert finals(engine, say(WORDS["stop"], silence=0.8, seed=17)) == ["stop"]
-    assert finals(engine, say("mumi", silence=0.8, seed=18)) == [""]
+    assert final_texts(engine, say(WORDS["stop"], silence=0.8, seed=17)) == ["stop"]
+    assert final_texts(engine, say("mumi", silence=0.8, seed=18)) == [""]
 
 
-def test_the_file_is_followed_as_it_comes_changes_and_goes(words, tmp_path):
+def test_words_file_is_followed_when_created_changed_and_deleted(words, tmp_path):
     path = tmp_path / "words.json"
     engine = EnrolledEngine(EngineOptions(("stop", "back"), model=path))
     samples = say(WORDS["stop"], silence=0.8)
     assert engine.problem.code == "VOICE201"
-    assert finals(engine, samples) == [""]
+    assert final_texts(engine, samples) == [""]
     words.write(path)
-    assert finals(engine, samples) == ["stop"]
+    assert final_texts(engine, samples) == ["stop"]
     assert engine.problem is None
     path.write_text("{", encoding="utf-8")
-    assert finals(engine, samples) == ["stop"]
+    assert final_texts(engine, samples) == ["stop"]
     assert engine.problem.code == "VOICE203"
     path.unlink()
-    assert finals(engine, samples) == [""]
+    assert final_texts(engine, samples) == [""]
     assert engine.problem.code == "VOICE201"
 
 
-def test_a_file_that_is_damaged_from_the_start_is_an_error(tmp_path):
+def test_damaged_words_file_is_rejected_at_start(tmp_path):
     (tmp_path / "words.json").write_text("[]", encoding="utf-8")
     with pytest.raises(LinkwrightError) as caught:
         make_engine("enrolled", EngineOptions(("stop",), model=tmp_path / "words.json"))

@@ -1,4 +1,4 @@
-"""What is written down by language covers the languages of the catalogue."""
+"""What is written down by language covers the languages of the catalog."""
 
 from __future__ import annotations
 
@@ -13,10 +13,10 @@ from linkwright.vision.places import object_requests
 
 
 @pytest.mark.parametrize("table", [voice._LANGUAGES, object_requests._NUMBERS, *GRAMMAR_VALUES.values()])
-def test_a_table_has_each_language(table) -> None:
+def test_tables_cover_languages(table) -> None:
     assert tuple(table) == LANGUAGES
 
 
 @pytest.mark.parametrize("language", LANGUAGES)
-def test_vosk_has_a_model_of_each_language(language) -> None:
+def test_vosk_has_model_for_each_language(language) -> None:
     assert model_entry(MODELS[language])

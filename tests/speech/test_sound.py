@@ -41,7 +41,7 @@ def encoded(values, kind, bits):
 
 @pytest.mark.parametrize(("kind", "bits"), [(1, 8), (1, 16), (1, 24), (1, 32), (3, 32), (3, 64)])
 @pytest.mark.parametrize("extensible", [False, True])
-def test_wav_files_of_all_depths_hold_the_same_sound(kind, bits, extensible):
+def test_wav_bit_depths_give_same_samples(kind, bits, extensible):
     data = wav(encoded(tone(440), kind, bits), kind=kind, bits=bits, extensible=extensible)
     expected = np.rint(tone(440) * 32768)
     assert np.abs(parse_wav(data, "a.wav") - expected).max() <= (260 if bits == 8 else 2)
@@ -52,16 +52,16 @@ def test_channels_are_averaged():
     assert not parse_wav(wav(encoded(both, 1, 16), channels=2), "a.wav").any()
 
 
-def test_chunks_that_are_not_needed_are_passed_over_with_their_padding():
+def test_unneeded_wav_chunks_are_skipped_with_padding():
     data = wav(encoded(tone(440), 1, 16), before=b"LIST" + struct.pack("<I", 3) + b"abc\0")
     assert len(parse_wav(data, "a.wav")) == RATE // 2
 
 
-def test_a_file_that_was_cut_off_gives_what_is_there():
+def test_truncated_wav_gives_available_samples():
     assert len(parse_wav(wav(encoded(tone(440), 1, 16))[:-1001], "a.wav")) == RATE // 2 - 501
 
 
-def test_what_is_written_is_read(tmp_path):
+def test_encoded_wav_reads_back(tmp_path):
     samples = say(WORDS["stop"])
     (tmp_path / "stop.wav").write_bytes(encode_wav(samples))
     assert np.array_equal(read_wav(tmp_path / "stop.wav"), samples)
@@ -82,7 +82,7 @@ def test_what_is_written_is_read(tmp_path):
         (wav(bytes(8), rate=10_000_000), "10000000 Hz"),
     ],
 )
-def test_a_file_that_is_no_wav_file_is_one_error_that_says_why(data, why):
+def test_malformed_wav_is_rejected_with_reason(data, why):
     with pytest.raises(LinkwrightError) as caught:
         parse_wav(data, "a.wav")
     (finding,) = caught.value.diagnostics
@@ -92,14 +92,14 @@ def test_a_file_that_is_no_wav_file_is_one_error_that_says_why(data, why):
     assert finding.hint is not None
 
 
-def test_a_file_that_is_not_there_is_one_error(tmp_path):
+def test_missing_wav_is_reported(tmp_path):
     with pytest.raises(LinkwrightError) as caught:
         read_wav(tmp_path / "none.wav")
     assert caught.value.diagnostics[0].code == "VOICE401"
 
 
 @pytest.mark.parametrize("rate", [8_000, 11_025, 22_050, 44_100, 48_000, 96_000])
-def test_a_tone_is_the_same_tone_at_another_rate(rate):
+def test_resampling_keeps_tone(rate):
     found = resample(tone(1000, rate), rate)
     assert abs(len(found) - RATE // 2) <= 2
     middle = slice(500, 7000)
@@ -107,13 +107,13 @@ def test_a_tone_is_the_same_tone_at_another_rate(rate):
 
 
 @pytest.mark.parametrize("hertz", [8_200, 9_000, 12_000, 20_000])
-def test_what_is_above_half_the_rate_does_not_come_back_as_an_alias(hertz):
+def test_resampling_does_not_alias(hertz):
     found = resample(tone(hertz, 48_000), 48_000) / 32768
     assert np.sqrt(np.mean(found[500:7000] ** 2)) < 1e-3
 
 
 @pytest.mark.parametrize("length", [50, 777, 4410])
-def test_a_stream_is_resampled_as_the_whole(length):
+def test_streamed_resampling_matches_whole(length):
     values = np.random.default_rng(1).normal(size=20_000) / 10
     resampler = Resampler(44_100)
     parts = [resampler.feed(values[at : at + length]) for at in range(0, len(values), length)]
@@ -122,12 +122,12 @@ def test_a_stream_is_resampled_as_the_whole(length):
     assert np.abs(found[: len(whole)].astype(int) - whole).max() <= 1
 
 
-def test_values_beyond_full_scale_are_clipped_and_no_numbers_are_silence():
+def test_resampling_clips_values_and_silences_nan():
     assert resample(np.array([2.0, -2.0, np.nan, 0.5]), RATE).tolist() == [32767, -32768, 0, 16384]
 
 
 @pytest.mark.parametrize("length", [1, 159, 160, 1600, 5000])
-def test_frames_do_not_depend_on_the_blocks_that_the_stream_comes_in(length):
+def test_mel_frames_do_not_depend_on_block_size(length):
     samples = say(WORDS["forward"], silence=0.1)
     if length == 1:
         samples = samples[:1000]
@@ -136,7 +136,7 @@ def test_frames_do_not_depend_on_the_blocks_that_the_stream_comes_in(length):
     assert np.allclose(np.concatenate(parts), mel_frames(samples))
 
 
-def test_a_tone_is_strongest_in_its_band():
+def test_tone_is_strongest_in_its_band():
     strongest = [int(mel_frames(np.rint(tone(hertz) * 32768).astype(np.int16)).mean(axis=0).argmax()) for hertz in
                  (150, 500, 1000, 2000, 4000, 7000)]  # fmt: skip
     assert strongest == sorted(set(strongest))
@@ -144,20 +144,20 @@ def test_a_tone_is_strongest_in_its_band():
     assert strongest[-1] == BANDS - 1
 
 
-def test_no_samples_are_no_frames():
+def test_too_few_samples_give_no_frames():
     assert mel_frames(np.zeros(0, np.int16)).shape == (0, BANDS)
     assert mel_frames(np.zeros(100, np.int16)).shape == (0, BANDS)
 
 
 @pytest.mark.parametrize("noise", [0.0, 3.0, 100.0])
-def test_speech_is_found_where_it_is(noise):
+def test_speech_span_is_found(noise):
     samples = say(WORDS["forward"], silence=0.6, noise=noise)
     first, last, _ = speech_span(mel_frames(samples))
     assert abs(first * HOP - 0.6 * RATE) < 0.06 * RATE
     assert abs(last * HOP - (len(samples) - 0.6 * RATE)) < 0.08 * RATE
 
 
-def test_speech_is_found_where_the_noise_fades_as_a_browser_suppresses_it():
+def test_speech_span_is_found_in_fading_noise():
     samples = say(WORDS["forward"], silence=1.2, noise=0.0)
     fading = 5.0 * np.exp(-np.arange(len(samples)) / RATE) * np.random.default_rng(3).normal(size=len(samples))
     first, last, _ = speech_span(mel_frames(np.rint(samples + fading).astype(np.int16)))
@@ -165,34 +165,34 @@ def test_speech_is_found_where_the_noise_fades_as_a_browser_suppresses_it():
     assert abs(last * HOP - (len(samples) - 1.2 * RATE)) < 0.08 * RATE
 
 
-def spoken(samples):
+def voice_activity(samples):
     activity = VoiceActivity()
     return np.array([activity.step(frame) for frame in mel_frames(samples)])
 
 
 @pytest.mark.parametrize("noise", [0.0, 3.0, 100.0])
-def test_voice_activity_begins_with_the_word_and_ends_after_its_hangover(noise):
+def test_voice_activity_covers_word_and_hangover(noise):
     samples = say(WORDS["forward"], silence=1.0, noise=noise)
-    changes = np.flatnonzero(np.diff(spoken(samples).astype(int)))
+    changes = np.flatnonzero(np.diff(voice_activity(samples).astype(int)))
     assert len(changes) == 2
     assert 95 <= changes[0] <= 110
     assert 0.3 <= changes[1] / 100 - (len(samples) / RATE - 1.0) <= 0.5
 
 
 @pytest.mark.parametrize("level", [0.0, 1.0, 30.0, 1000.0])
-def test_steady_noise_is_no_speech(level):
+def test_steady_noise_is_not_speech(level):
     samples = np.rint(level * np.random.default_rng(2).normal(size=10 * RATE)).astype(np.int16)
-    assert not spoken(samples).any()
+    assert not voice_activity(samples).any()
 
 
-def test_a_fan_that_is_switched_on_is_speech_for_no_longer_than_two_seconds():
+def test_sudden_noise_counts_as_speech_for_at_most_two_seconds():
     rng = np.random.default_rng(3)
     levels = np.where(np.arange(8 * RATE) < 2 * RATE, 5.0, 300.0)
-    found = spoken(np.rint(levels * rng.normal(size=8 * RATE)).astype(np.int16))
+    found = voice_activity(np.rint(levels * rng.normal(size=8 * RATE)).astype(np.int16))
     assert not found[450:].any()
 
 
-def noise_told(samples):
+def floor_and_unsteady_noise(samples):
     """The floor at the end of a recording, and the noise beside it where it is no steady one."""
     powers, activity = mel_frames(samples), VoiceActivity()
     for frame in powers:
@@ -202,23 +202,23 @@ def noise_told(samples):
 
 @pytest.mark.parametrize("name", WORDS)
 @pytest.mark.parametrize("level", [3.0, 300.0, 900.0])
-def test_steady_noise_beside_a_word_is_what_the_floor_says(name, level):
-    assert noise_told(say(WORDS[name], level=3000.0, noise=level))[1] is None
+def test_steady_noise_beside_word_is_not_unsteady(name, level):
+    assert floor_and_unsteady_noise(say(WORDS[name], level=3000.0, noise=level))[1] is None
 
 
-def test_a_hum_that_wavers_and_a_soft_beginning_are_no_talk_of_others():
+def test_wavering_hum_and_soft_onset_are_not_unsteady_noise():
     at = np.arange(2 * RATE) / RATE
     hum = (1.0 + 0.3 * np.sin(2 * np.pi * 11 * at)) * np.sin(2 * np.pi * 100 * at)
     samples = say(WORDS["forward"], level=3000.0)
-    assert noise_told(beside(samples, hum, 10.0, 3000.0))[1] is None
+    assert floor_and_unsteady_noise(beside(samples, hum, 10.0, 3000.0))[1] is None
     softly = samples * np.clip((at[: len(samples)] - 0.5) / 0.3, 0.02, 1.0)
-    assert noise_told(np.rint(softly).astype(np.int16))[1] is None
+    assert floor_and_unsteady_noise(np.rint(softly).astype(np.int16))[1] is None
 
 
-def test_the_talk_of_others_beside_a_word_is_told_as_noise_as_strong_as_it_gets():
+def test_babble_beside_word_is_unsteady_noise_above_floor():
     samples = say(WORDS["forward"], level=3000.0)
     talk = babble(len(samples) / RATE + 0.1, np.random.default_rng(5))
-    floor, noise = noise_told(beside(samples, talk, 15.0, 3000.0))
+    floor, noise = floor_and_unsteady_noise(beside(samples, talk, 15.0, 3000.0))
     assert noise is not None
     assert (noise >= floor).all()
     before = mel_frames(beside(np.zeros_like(samples), talk, 15.0, 3000.0))
@@ -226,13 +226,13 @@ def test_the_talk_of_others_beside_a_word_is_told_as_noise_as_strong_as_it_gets(
     assert np.mean(before <= floor) < 0.5
 
 
-def test_too_little_before_a_word_tells_nothing():
+def test_short_lead_gives_no_unsteady_noise():
     powers = mel_frames(say(WORDS["forward"], silence=0.1))
     assert unsteady_noise(powers, np.full(BANDS, 1e-3)) is None
 
 
 @pytest.mark.parametrize("value", [np.nan, np.inf, -np.inf])
-def test_floating_point_that_is_no_sound_is_an_error(value):
+def test_wav_with_non_finite_samples_is_rejected(value):
     sound = np.array([0.0, 0.5, value, 0.1], "<f4").tobytes()
     with pytest.raises(LinkwrightError) as caught:
         parse_wav(wav(sound, kind=3, bits=32), "sound.wav")

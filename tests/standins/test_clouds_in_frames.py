@@ -14,7 +14,7 @@ from tf_transformations import quaternion_from_euler
 
 @pytest.fixture
 def turned():
-    """One metre along x, and a quarter of a turn around z."""
+    """One meter along x, and a quarter of a turn around z."""
     made = TransformStamped(child_frame_id="lidar")
     made.header.frame_id = "base"
     made.transform.translation.x = 1.0
@@ -23,14 +23,14 @@ def turned():
     return made
 
 
-def test_points(turned):
+def test_transform_points_applies_transform(turned):
     for transform in (turned, turned.transform):
         np.testing.assert_allclose(
             transform_points([[1, 0, 0], [0, 0, 2]], transform), [[1, 1, 0], [1, 0, 2]], atol=1e-12
         )
 
 
-def test_a_cloud_keeps_its_other_fields(turned):
+def test_transformed_cloud_keeps_other_fields(turned):
     fields = [PointField(name=name, offset=4 * at, datatype=7, count=1) for at, name in enumerate(["x", "y", "z", "i"])]
     cloud = point_cloud2.create_cloud(Header(frame_id="lidar"), fields, [(1.0, 0.0, 0.0, 7.0), (0.0, 0.0, 2.0, 8.0)])
     moved = do_transform_cloud(cloud, turned)
@@ -40,7 +40,7 @@ def test_a_cloud_keeps_its_other_fields(turned):
     np.testing.assert_allclose(found, [[1, 1, 0, 7], [1, 0, 2, 8]], atol=1e-6)
 
 
-def test_a_buffer_transforms_clouds(turned, monkeypatch):
+def test_buffer_transforms_clouds(turned, monkeypatch):
     monkeypatch.setenv("LINKWRIGHT_DDS", "0")
     buffer = tf2_ros.Buffer()
     buffer.set_transform_static(turned, "test")

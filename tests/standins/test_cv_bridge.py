@@ -36,11 +36,11 @@ class TestTypes:
             ("yuv422", 8, "uint8", 2),
         ],
     )
-    def test_encodings(self, name, number, dtype, channels):
+    def test_encoding_maps_to_cv_type_and_dtype(self, name, number, dtype, channels):
         assert getCvType(name) == BRIDGE.encoding_to_cvtype2(name) == number
         assert BRIDGE.encoding_to_dtype_with_channels(name) == (dtype, channels)
 
-    def test_an_encoding_that_is_none(self):
+    def test_unknown_encoding_is_rejected(self):
         with pytest.raises(RuntimeError, match=r"\[nonsense\]"):
             getCvType("nonsense")
         with pytest.raises(CvBridgeError, match=r"\[nonsense\]"):
@@ -50,7 +50,7 @@ class TestTypes:
 class TestImages:
     @pytest.mark.parametrize("name", ["uint8", "int8", "uint16", "int16", "int32", "float32", "float64"])
     @pytest.mark.parametrize("shape", [(4, 6), (4, 6, 2), (4, 6, 3), (4, 6, 4)])
-    def test_there_and_back(self, name, shape):
+    def test_array_round_trips_through_message(self, name, shape):
         array = (np.arange(np.prod(shape)).reshape(shape) % 100).astype(name)
         message = BRIDGE.cv2_to_imgmsg(array)
         assert (message.height, message.width) == shape[:2]
@@ -60,29 +60,29 @@ class TestImages:
         assert np.array_equal(back, array)
         assert back.flags.writeable
 
-    def test_the_header(self):
+    def test_header_is_set(self):
         header = Header(frame_id="camera")
         assert BRIDGE.cv2_to_imgmsg(RED, "bgr8", header=header).header.frame_id == "camera"
 
-    def test_rows_with_padding(self):
+    def test_padded_rows_are_read(self):
         message = Image(height=2, width=2, step=4, encoding="mono8", data=[1, 2, 0, 0, 3, 4, 0, 0])
         assert BRIDGE.imgmsg_to_cv2(message).tolist() == [[1, 2], [3, 4]]
 
-    def test_numbers_whose_high_byte_comes_first(self):
+    def test_big_endian_image_is_read(self):
         message = Image(height=1, width=2, step=4, encoding="mono16", is_bigendian=1, data=[1, 0, 0, 2])
         array = BRIDGE.imgmsg_to_cv2(message)
         assert array.tolist() == [[256, 2]]
         assert array.dtype == np.uint16
 
-    def test_too_few_bytes(self):
+    def test_too_short_data_is_rejected(self):
         with pytest.raises(TypeError, match="buffer is too small"):
             BRIDGE.imgmsg_to_cv2(Image(height=2, width=2, step=2, encoding="mono8", data=[1]))
 
-    def test_what_is_no_array(self):
+    def test_non_array_is_rejected(self):
         with pytest.raises(TypeError, match="not a numpy array"):
             BRIDGE.cv2_to_imgmsg([[1, 2]])
 
-    def test_an_encoding_of_another_type(self):
+    def test_encoding_of_other_type_is_rejected(self):
         with pytest.raises(CvBridgeError, match="encoding specified as mono8, but image has incompatible type 8UC3"):
             BRIDGE.cv2_to_imgmsg(RED, "mono8")
 
@@ -100,23 +100,23 @@ class TestConversions:
             ("32FC3", [0.0, 0.0, 255.0]),
         ],
     )
-    def test_red(self, wanted, pixel):
+    def test_bgr8_is_converted_to_other_encodings(self, wanted, pixel):
         assert BRIDGE.imgmsg_to_cv2(image(RED, "bgr8"), wanted)[0, 0].tolist() == pixel
 
-    def test_depths(self):
+    def test_depth_values_are_scaled_and_clamped(self):
         deep = image(np.array([[0, 65535, 32896]], np.uint16), "mono16")
         assert BRIDGE.imgmsg_to_cv2(deep, "mono8").tolist() == [[0, 255, 128]]
         assert BRIDGE.imgmsg_to_cv2(deep, "bgr8")[0, 1].tolist() == [255, 255, 255]
         meters = image(np.array([[1.6, np.nan, 1e9]], np.float32), "32FC1")
         assert BRIDGE.imgmsg_to_cv2(meters, "16UC1").tolist() == [[2, 0, 65535]]
 
-    def test_a_mosaic(self):
+    def test_bayer_image_is_demosaiced(self):
         mosaic = np.full((4, 4), 10, np.uint8)
         mosaic[::2, ::2] = 200
         assert BRIDGE.imgmsg_to_cv2(image(mosaic, "bayer_rggb8"), "rgb8")[2, 2].tolist() == [200, 10, 10]
         assert BRIDGE.imgmsg_to_cv2(image(mosaic, "bayer_rggb8"), "bgr8")[2, 2].tolist() == [10, 10, 200]
 
-    def test_yuv(self):
+    def test_yuv422_is_converted(self):
         gray = np.array([[[128, 100], [128, 200]]], np.uint8)
         assert BRIDGE.imgmsg_to_cv2(image(gray, "yuv422"), "bgr8")[0, 0].tolist() == pytest.approx([98] * 3, abs=3)
 
@@ -129,12 +129,12 @@ class TestConversions:
             ("bgr8", "nonsense", "nonsense"),
         ],
     )
-    def test_what_makes_no_sense(self, source, wanted, words):
+    def test_impossible_conversions_are_rejected(self, source, wanted, words):
         array = RED if source == "bgr8" else np.zeros((2, 2), np.float32)
         with pytest.raises(CvBridgeError, match=words):
             BRIDGE.imgmsg_to_cv2(image(array, source), wanted)
 
-    def test_the_result_is_a_copy(self):
+    def test_converted_image_is_a_copy(self):
         message = image(RED, "bgr8")
         BRIDGE.imgmsg_to_cv2(message, "bgr8")[:] = 7
         assert 7 not in message.data
@@ -142,23 +142,23 @@ class TestConversions:
 
 class TestCompressed:
     @pytest.mark.parametrize("format_", ["png", "bmp", "tiff"])
-    def test_without_loss(self, format_):
+    def test_lossless_compression_round_trips(self, format_):
         array = np.arange(4 * 5 * 3, dtype=np.uint8).reshape(4, 5, 3)
         message = BRIDGE.cv2_to_compressed_imgmsg(array, format_)
         assert message.format == format_
         assert np.array_equal(BRIDGE.compressed_imgmsg_to_cv2(message), array)
 
-    def test_jpeg(self):
+    def test_jpeg_is_the_default_format(self):
         message = BRIDGE.cv2_to_compressed_imgmsg(np.full((16, 16, 3), (0, 0, 250), np.uint8))
         assert bytes(message.data[:2]) == b"\xff\xd8"
         assert BRIDGE.compressed_imgmsg_to_cv2(message, "rgb8")[8, 8].tolist() == pytest.approx([250, 0, 0], abs=4)
 
-    def test_grey(self):
+    def test_gray_image_is_compressed(self):
         message = BRIDGE.cv2_to_compressed_imgmsg(np.array([[1, 2], [3, 4]], np.uint8), "png")
         assert BRIDGE.compressed_imgmsg_to_cv2(message).tolist() == [[1, 2], [3, 4]]
         assert BRIDGE.compressed_imgmsg_to_cv2(message, "bgr8").shape == (2, 2, 3)
 
-    def test_what_cannot_be_read_or_written(self):
+    def test_invalid_compressed_images_are_rejected(self):
         with pytest.raises(CvBridgeError, match="cannot be read"):
             BRIDGE.compressed_imgmsg_to_cv2(CompressedImage(data=[1, 2, 3]))
         with pytest.raises(CvBridgeError, match="cannot be written as 'nonsense'"):

@@ -31,7 +31,7 @@ def refused(came):
 
 
 class TestHumble:
-    def test_numpy_arrays_are_refused_for_sequences_in_its_words(self):
+    def test_numpy_arrays_are_rejected_for_sequences(self):
         humble = outcomes(ROS_DISTRO="humble")
         assert humble["Image.data set of numpy"] == (
             "The 'data' field must be a set or sequence and each value of type 'int' "
@@ -40,13 +40,13 @@ class TestHumble:
         assert refused(humble["JointState.position set of numpy"])
         assert refused(humble["UnboundedSequences.bool_values set of numpy"])
 
-    def test_what_it_takes_is_taken(self):
+    def test_supported_sequence_types_are_accepted(self):
         humble = outcomes(ROS_DISTRO="humble")
         assert humble["Image.data set of bytes"] == humble["Image.data set of list"] == ["array", list(range(12))]
         assert humble["JointState.position set of list of numpy's"] == ["array", [0.5, 1.5]]
         assert humble["CameraInfo.k set of numpy"] == ["ndarray", list(range(9))]
 
-    def test_constructors_convert(self):
+    def test_constructors_convert_values(self):
         humble = outcomes(ROS_DISTRO="humble")
         assert humble["Image.data made of numpy"] == ["array", list(range(12))]
         assert humble["Image.data made of numpy of rows"] == "TypeError"
@@ -56,14 +56,14 @@ class TestHumble:
 
 
 @pytest.mark.parametrize("variables", [{}, {"ROS_DISTRO": "humble", ASSUMED: "1"}, {"ROS_DISTRO": "jazzy"}])
-def test_without_it_named_numpy_is_taken(variables):
+def test_numpy_arrays_are_accepted_unless_ros_distro_is_set_to_humble(variables):
     came = outcomes(**variables)
     assert came["Image.data set of numpy of rows"] == ["array", list(range(12))]
     assert came["JointState.position made of array of another type"] == ["array", [0.5]]
     assert came["UnboundedSequences.bool_values set of numpy"] == ["list", [True, False]]
 
 
-def test_our_own_commands_take_what_they_always_do(tmp_path):
+def test_own_commands_accept_numpy_arrays(tmp_path):
     """In the shell their processes find stand-ins as users' programs do."""
     program = tmp_path / "ours.py"
     imports = "import json, linkwright.cli, numpy, rclpy\nfrom sensor_msgs.msg import Image"
@@ -74,7 +74,7 @@ def test_our_own_commands_take_what_they_always_do(tmp_path):
 
 
 @pytest.mark.skipif(not PYTHON, reason="LINKWRIGHT_ROS_PYTHON names no interpreter with rclpy")
-def test_all_comes_to_the_same_as_with_the_real_classes_that_check():
+def test_field_rules_match_real_message_classes():
     """Jazzy's do where they are asked to; setters are those of Humble."""
     real = outcomes(python=PYTHON, ROS_PYTHON_CHECK_FIELDS="1")
     assert outcomes(ROS_DISTRO="jazzy", ROS_PYTHON_CHECK_FIELDS="1") == real

@@ -32,16 +32,16 @@ from rclpy.task import Future
         ("tf2_geometry_msgs", "PoseStamped", geometry_msgs.msg.PoseStamped),
     ],
 )
-def test_names_that_come_from_elsewhere(module, name, origin):
+def test_names_imported_by_ros_modules_are_available(module, name, origin):
     assert getattr(importlib.import_module(module), name) is origin
 
 
-def test_modules_after_the_package_alone():
+def test_submodules_are_available_after_package_import():
     assert rclpy.qos.QoSProfile is importlib.import_module("rclpy.qos").QoSProfile
     assert tf2_ros.transform_listener.TransformListener is tf2_ros.TransformListener
 
 
 @pytest.mark.parametrize("module", ["rclpy.time", "rclpy", "tf2_ros", "tf2_geometry_msgs"])
-def test_what_nobody_has(module):
+def test_unknown_and_private_names_are_missing(module):
     assert not hasattr(importlib.import_module(module), "Durations")
     assert not hasattr(importlib.import_module(module), "_private")

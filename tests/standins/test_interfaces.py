@@ -51,7 +51,7 @@ def workspace(tmp_path):
     return tmp_path
 
 
-def test_messages_services_and_actions_are_imported(tmp_path):
+def test_messages_services_and_actions_are_importable(tmp_path):
     program = """
         from sensor_msgs.msg import JointState
         from sensor_msgs.msg._joint_state import JointState as Same
@@ -73,7 +73,7 @@ def test_messages_services_and_actions_are_imported(tmp_path):
     assert run(program, tmp_path) == "<class 'nav_msgs.msg._odometry.Odometry'> 0.0 True\n"
 
 
-def test_names_that_are_not_there(tmp_path):
+def test_missing_names_raise_import_error_with_suggestion(tmp_path):
     program = """
         for line in ("from std_msgs.msg import Strng", "from std_msgs.msg import JointState", "import nomsgs.msg",
                      "from std_msgs.srv import A", "import std_msgs.msg._strng", "import std_msgs.other",
@@ -97,7 +97,7 @@ def test_names_that_are_not_there(tmp_path):
 
 
 @pytest.mark.parametrize("below", ["", "src", "src/my_msgs"])
-def test_a_package_of_the_workspace_is_imported_without_a_build(workspace, below):
+def test_workspace_package_is_importable_without_build(workspace, below):
     # In src, Python itself sees folders my_msgs and my_msgs/msg, and would take them for empty packages.
     program = """
         sys.path.insert(0, "")
@@ -116,7 +116,7 @@ def test_a_package_of_the_workspace_is_imported_without_a_build(workspace, below
 
 
 @pytest.mark.parametrize("line", ["from my_msgs.msg import Wrong", "import my_msgs.msg._wrong"])
-def test_a_faulty_file_is_told_in_one_traceback(workspace, line):
+def test_malformed_interface_file_raises_one_traceback(workspace, line):
     program = textwrap.dedent(PREAMBLE) + f"{line}\n"
     done = subprocess.run(
         [sys.executable, "-c", program], cwd=workspace, capture_output=True, text=True, check=False, timeout=60
@@ -128,7 +128,7 @@ def test_a_faulty_file_is_told_in_one_traceback(workspace, line):
     assert last.endswith("Wrong.msg:1:7: 'X' is not a valid name for a field")
 
 
-def test_what_is_installed_comes_first(tmp_path):
+def test_installed_package_takes_precedence(tmp_path):
     package = tmp_path / "std_msgs" / "msg"
     package.mkdir(parents=True)
     (tmp_path / "std_msgs" / "__init__.py").touch()
@@ -141,7 +141,7 @@ def test_what_is_installed_comes_first(tmp_path):
     assert run(program, tmp_path) == "True\n"
 
 
-def test_a_python_package_and_messages_of_one_name(workspace):
+def test_python_package_and_messages_can_share_a_name(workspace):
     module = workspace / "src" / "my_msgs" / "my_msgs"
     module.mkdir()
     (module / "__init__.py").write_text("helper = 1\n")
@@ -154,7 +154,7 @@ def test_a_python_package_and_messages_of_one_name(workspace):
     assert run(program, workspace) == "1 5\n"
 
 
-def test_rosidl_runtime_py(tmp_path):
+def test_rosidl_runtime_py_functions_work(tmp_path):
     program = """
         from rosidl_runtime_py import message_to_yaml, message_to_csv, message_to_ordereddict, set_message_fields
         from rosidl_runtime_py import get_message_interfaces, get_interfaces
@@ -199,7 +199,7 @@ def test_rosidl_runtime_py(tmp_path):
     ]
 
 
-def test_modules_of_no_interfaces_are_left_to_others():
+def test_other_modules_are_not_intercepted():
     assert find_spec("std_msgs.msg.something.deeper") is None
     assert find_spec("std_msgs.launch") is None
     assert find_spec("Std_msgs") is None

@@ -58,14 +58,14 @@ def hide(folder: Path, *names: str) -> str:
     return str(folder)
 
 
-def test_a_new_package_passes_its_own_tests(package: Path) -> None:
+def test_new_package_passes_its_linter_tests(package: Path) -> None:
     status, output = plain_pytest(package)
     assert status == 0, output
     assert "2 passed, 1 skipped" in output
     assert "no copyright header yet" in output
 
 
-def test_rclpy_and_messages_are_imported_without_a_variable(package: Path) -> None:
+def test_rclpy_and_messages_are_importable_in_plain_pytest(package: Path) -> None:
     (package / "test" / "test_node.py").write_text(
         textwrap.dedent("""\
         import rclpy
@@ -85,7 +85,7 @@ def test_rclpy_and_messages_are_imported_without_a_variable(package: Path) -> No
     assert status == 0, output
 
 
-def test_bad_style_fails_and_is_said(package: Path) -> None:
+def test_style_errors_fail_flake8_test(package: Path) -> None:
     (package / "my_nodes" / "first.py").write_text(f"{GOOD}    x = {'1 + ' * 40}1\n")
     status, output = plain_pytest(package, "test/test_flake8.py")
     assert status == 1
@@ -94,14 +94,14 @@ def test_bad_style_fails_and_is_said(package: Path) -> None:
     assert "first.py:12:5: F841" in output
 
 
-def test_a_docstring_that_does_not_end_fails(package: Path) -> None:
+def test_docstring_without_period_fails_pep257_test(package: Path) -> None:
     (package / "my_nodes" / "first.py").write_text(GOOD.replace("Start it.", "Start it"))
     status, output = plain_pytest(package, "test/test_pep257.py")
     assert status == 1
     assert "D400" in output
 
 
-def test_headers_are_asked_for_once_the_skip_is_gone(package: Path) -> None:
+def test_missing_copyright_headers_fail_without_skip(package: Path) -> None:
     (package / "my_nodes" / "first.py").write_text(GOOD)
     test = package / "test" / "test_copyright.py"
     test.write_text("\n".join(line for line in test.read_text().splitlines() if "skip" not in line) + "\n")
@@ -113,11 +113,11 @@ def test_headers_are_asked_for_once_the_skip_is_gone(package: Path) -> None:
     status, output = plain_pytest(package, "test/test_copyright.py")
     assert status == 1
     assert "second.py: could not find copyright notice" in output
-    assert "third.py: could not find a licence that is known" in output
+    assert "third.py: could not find a license that is known" in output
 
 
 @pytest.mark.parametrize("name", ["generated/AMENT_IGNORE", "_generated/x", ".generated/x"])
-def test_folders_that_ament_leaves_out_are_left_out(package: Path, name: str) -> None:
+def test_folders_ignored_by_ament_are_ignored(package: Path, name: str) -> None:
     (package / name).parent.mkdir()
     (package / name).touch()
     (package / name).with_name("bad.py").write_text("import os\n")
@@ -125,7 +125,7 @@ def test_folders_that_ament_leaves_out_are_left_out(package: Path, name: str) ->
     assert status == 0, output
 
 
-def test_a_linter_that_is_not_installed_skips_its_test_and_says_what_to_install(package: Path, tmp_path: Path) -> None:
+def test_missing_linter_skips_its_test_with_install_hint(package: Path, tmp_path: Path) -> None:
     hidden = hide(tmp_path / "hidden", "flake8", "pydocstyle")
     status, output = plain_pytest(package, PYTHONPATH=hidden)
     assert status == 0, output

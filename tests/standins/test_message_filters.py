@@ -38,7 +38,7 @@ class Matches(list):
         synchronizer.registerCallback(lambda *messages: self.append([stamp(each) for each in messages]))
 
 
-def test_subscribers_of_a_node(node):
+def test_time_synchronizer_matches_node_subscribers(node):
     got = []
     picture = Subscriber(node, Image, "image", qos_profile=5)
     camera = Subscriber(node, CameraInfo, "camera_info")
@@ -54,7 +54,7 @@ def test_subscribers_of_a_node(node):
         picture.nothing  # noqa: B018
 
 
-def test_the_same_stamps():
+def test_time_synchronizer_requires_equal_stamps():
     left, right = SimpleFilter(), SimpleFilter()
     synchronizer = TimeSynchronizer([left, right], queue_size=2)
     got = Matches(synchronizer)
@@ -68,7 +68,7 @@ def test_the_same_stamps():
     assert [list(each) for each in synchronizer.queues] == [[], [10**9]]
 
 
-def test_a_callback_that_feeds_the_filter_again():
+def test_callback_may_signal_its_own_filter():
     source = SimpleFilter()
     synchronizer = TimeSynchronizer([source], 1)
     got = Matches(synchronizer)
@@ -81,7 +81,7 @@ def test_a_callback_that_feeds_the_filter_again():
     ("slop", "expected"),
     [(0.05, []), (0.2, [[1.0, 1.1]]), (0.3, [[1.0, 1.1], [1.5, 1.3]])],
 )
-def test_near_stamps(slop, expected):
+def test_approximate_synchronizer_matches_within_slop(slop, expected):
     left, right = SimpleFilter(), SimpleFilter()
     got = Matches(ApproximateTimeSynchronizer([left, right], 10, slop))
     left.signalMessage(image(1.0))
@@ -92,7 +92,7 @@ def test_near_stamps(slop, expected):
     assert got == expected
 
 
-def test_three_topics_are_within_the_slop_of_each_other():
+def test_three_topics_are_matched_within_slop():
     inputs = [SimpleFilter() for _ in range(3)]
     got = Matches(ApproximateTimeSynchronizer(inputs, 10, 0.15))
     inputs[0].signalMessage(image(0.9))
@@ -102,7 +102,7 @@ def test_three_topics_are_within_the_slop_of_each_other():
     assert got == [[1.05, 1.1, 1.0]]
 
 
-def test_messages_without_a_stamp(node, capfd):
+def test_messages_without_header_need_sync_arrival_time(node, capfd):
     plain, other = SimpleFilter(), SimpleFilter()
     got = []
     ApproximateTimeSynchronizer([plain, other], 10, 0.1).registerCallback(lambda *each: got.append(each))
@@ -115,7 +115,7 @@ def test_messages_without_a_stamp(node, capfd):
     assert got == [(String(data="now"), String(data="too"))]
 
 
-def test_the_time_of_arrival():
+def test_sync_arrival_time_ignores_stamps():
     left, right = SimpleFilter(), SimpleFilter()
     got = Matches(ApproximateTimeSynchronizer([left, right], 10, 60.0, sync_arrival_time=True))
     left.signalMessage(image(1))
@@ -123,7 +123,7 @@ def test_the_time_of_arrival():
     assert got == [[1, 1000]]
 
 
-def test_a_cache():
+def test_cache_keeps_last_messages():
     source = SimpleFilter()
     cache = Cache(source, cache_size=3)
     got = Matches(cache)

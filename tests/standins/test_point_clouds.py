@@ -23,14 +23,14 @@ def cloud():
     return point_cloud2.create_cloud_xyz32(Header(frame_id="map"), points)
 
 
-def test_a_cloud_of_three_coordinates(cloud):
+def test_create_cloud_xyz32_packs_three_coordinates(cloud):
     assert (cloud.header.frame_id, cloud.width, cloud.height, cloud.point_step, cloud.row_step) == ("map", 4, 1, 12, 48)
     assert [(field.name, field.offset) for field in cloud.fields] == [("x", 0), ("y", 4), ("z", 8)]
     assert len(cloud.data) == 48
     assert point_cloud2.read_points(cloud)["z"].tolist() == [3, 6, 9, 12]
 
 
-def test_some_points_and_fields(cloud):
+def test_read_points_selects_points_and_fields(cloud):
     assert point_cloud2.read_points(cloud, skip_nans=True)["x"].tolist() == [1, 7, 10]
     assert point_cloud2.read_points(cloud, ("z", "x"), uvs=[2, 0]).tolist() == [(9, 7), (3, 1)]
     assert point_cloud2.read_points(cloud, uvs=[(3, 0)]).tolist() == [(10, 11, 12)]
@@ -38,7 +38,7 @@ def test_some_points_and_fields(cloud):
         point_cloud2.read_points(cloud, ["intensity"])
 
 
-def test_as_tuples_and_as_a_matrix(cloud):
+def test_points_are_read_as_tuples_and_matrix(cloud):
     second = point_cloud2.read_points_list(cloud)[1]
     assert (second.x, math.isnan(second.y), second.z) == (4.0, True, 6.0)
     matrix = point_cloud2.read_points_numpy(cloud, ["x", "z"])
@@ -46,7 +46,7 @@ def test_as_tuples_and_as_a_matrix(cloud):
     assert matrix.tolist() == [[1, 3], [4, 6], [7, 9], [10, 12]]
 
 
-def test_from_a_matrix_and_organised():
+def test_cloud_from_matrix_can_be_organized():
     matrix = np.arange(18, dtype=np.float32).reshape(3, 2, 3)
     cloud = point_cloud2.create_cloud_xyz32(Header(), matrix)
     assert (cloud.width, cloud.height) == (3, 2)
@@ -55,7 +55,7 @@ def test_from_a_matrix_and_organised():
     assert read["y"].tolist() == matrix[..., 1].tolist()
 
 
-def test_fields_of_several_types_with_gaps():
+def test_mixed_field_types_with_gaps_are_read():
     fields = [field("x", 0), field("rgb", 8, PointField.UINT8, 3), field("", 12, PointField.FLOAT64)]
     cloud = point_cloud2.create_cloud(Header(), fields, [(1.5, 1, 2, 3, 0.25)], step=32)
     assert (cloud.point_step, len(cloud.data)) == (32, 32)
@@ -69,7 +69,7 @@ def test_fields_of_several_types_with_gaps():
     assert not any(again.data[4:8]), "what no field covers is zero"
 
 
-def test_rows_with_something_behind_them_and_big_endian():
+def test_padded_rows_and_big_endian_are_read():
     cloud = point_cloud2.create_cloud_xyz32(Header(), [(0.0, 0.0, 0.0)] * 4)
     rows = np.zeros((2, 7), ">f4")
     rows[:, :6] = np.arange(12).reshape(2, 6)
@@ -78,7 +78,7 @@ def test_rows_with_something_behind_them_and_big_endian():
     assert point_cloud2.read_points(cloud)["x"].tolist() == [0, 3, 6, 9]
 
 
-def test_points_that_do_not_fit():
+def test_points_with_wrong_fields_are_rejected():
     with pytest.raises(AssertionError, match="2 values, but there are 3 fields"):
         point_cloud2.create_cloud_xyz32(Header(), np.zeros((5, 2)))
     with pytest.raises(AssertionError, match="but the fields have the type"):

@@ -52,34 +52,34 @@ if __name__ == "__main__":
 
 
 class TestRunning:
-    def test_a_file(self, tmp_path):
+    def test_file_is_run_with_standins(self, tmp_path):
         (tmp_path / "my_node.py").write_text(NODE)
         assert output_of("my_node.py", cwd=tmp_path) == "hello"
 
     @pytest.mark.parametrize("module", ["launch", "xacro"])
-    def test_a_folder_of_that_name_does_not_hide_a_stand_in(self, tmp_path, module):
+    def test_folder_with_same_name_does_not_hide_standin(self, tmp_path, module):
         (tmp_path / module).mkdir()
         program = f"import {module}; print({module}.__spec__.origin)"
         assert output_of("-c", program, cwd=tmp_path).endswith(f"{module}.txt")
 
-    def test_a_package_of_that_name_goes_before_a_stand_in(self, tmp_path):
+    def test_package_with_same_name_takes_precedence(self, tmp_path):
         (tmp_path / "launch").mkdir()
         (tmp_path / "launch" / "__init__.py").write_text("mine = 1")
         assert output_of("-c", "import launch; print(launch.mine)", cwd=tmp_path) == "1"
 
-    def test_with_nothing_but_the_path_set(self, tmp_path):
+    def test_pythonpath_alone_enables_standins(self, tmp_path):
         (tmp_path / "my_node.py").write_text(NODE)
         variables = {"PATH": os.environ["PATH"], "PYTHONPATH": process.standin_path(), "LINKWRIGHT_DDS": "0"}
         assert output_of("my_node.py", cwd=tmp_path, env=variables) == "hello"
 
-    def test_a_module(self, tmp_path):
+    def test_module_is_run_with_standins(self, tmp_path):
         package = tmp_path / "my_package"
         package.mkdir()
         (package / "__init__.py").touch()
         (package / "my_node.py").write_text(NODE)
         assert output_of("-m", "my_package.my_node", cwd=tmp_path) == "hello"
 
-    def test_an_entry_point(self, tmp_path):
+    def test_entry_point_script_is_run_with_standins(self, tmp_path):
         (tmp_path / "my_node.py").write_text(NODE)
         script = tmp_path / "bin" / "talker"
         script.parent.mkdir()
@@ -88,13 +88,13 @@ class TestRunning:
         )
         assert output_of(script) == "hello"
 
-    def test_a_process_of_a_process(self, tmp_path):
+    def test_child_process_inherits_standins(self, tmp_path):
         (tmp_path / "my_node.py").write_text(NODE)
         parent = "import subprocess, sys; sys.exit(subprocess.call([sys.executable, 'my_node.py']))"
         assert output_of("-c", parent, cwd=tmp_path) == "hello"
 
     @pytest.mark.slow
-    def test_a_virtual_environment_of_its_own(self, tmp_path):
+    def test_virtual_environment_finds_standins(self, tmp_path):
         subprocess.run([sys.executable, "-m", "venv", "--without-pip", tmp_path / "venv"], check=True, timeout=60)
         (tmp_path / "my_node.py").write_text(NODE)
         python = tmp_path / "venv" / "bin" / "python"
@@ -110,7 +110,7 @@ class TestRunning:
         )
         assert (ended.stdout, ended.returncode) == ("hello\n", 0), ended.stderr
 
-    def test_all_stand_ins(self):
+    def test_all_standins_can_be_imported(self):
         names = table.packages()
         assert {"rclpy", "tf2_ros", "tf2_py", "tf2_geometry_msgs", "tf_transformations", "launch", "xacro"} <= set(
             names
@@ -118,11 +118,11 @@ class TestRunning:
         imports = "; ".join(f"import {name}; assert {name}.__file__" for name in names)
         assert output_of("-c", f"{imports}; print('all')") == "all"
 
-    def test_interfaces(self, tmp_path):
+    def test_interfaces_can_be_imported(self, tmp_path):
         code = "from sensor_msgs.msg import JointState; from std_srvs.srv import SetBool; print(JointState.__name__)"
         assert output_of("-c", code, cwd=tmp_path) == "JointState"
 
-    def test_interfaces_of_the_workspace_without_a_build(self, tmp_path):
+    def test_workspace_interfaces_are_importable_without_build(self, tmp_path):
         package = tmp_path / "src" / "my_robot"
         (package / "msg").mkdir(parents=True)
         (package / "msg" / "Count.msg").write_text("int32 number\nstring[] names\n")
@@ -144,7 +144,7 @@ class TestInterrupt:
         assert ended.returncode == -signal.SIGINT
         return ended.stderr
 
-    def test_a_node_that_waits_ends_without_a_traceback(self, tmp_path):
+    def test_spinning_node_ends_without_traceback(self, tmp_path):
         code = """
             import os, threading
             rclpy.init()
@@ -153,11 +153,11 @@ class TestInterrupt:
             """
         assert self.interrupted(tmp_path, code) == ""
 
-    def test_one_that_is_being_imported_ends_without_a_traceback(self, tmp_path):
+    def test_interrupt_during_import_ends_without_traceback(self, tmp_path):
         (tmp_path / "parts.py").write_text("import signal\nsignal.raise_signal(signal.SIGINT)\n")
         assert self.interrupted(tmp_path, "import parts") == ""
 
-    def test_code_of_the_user_is_named(self, tmp_path):
+    def test_interrupt_in_user_code_names_its_line(self, tmp_path):
         code = """
             rclpy.init()
             node = rclpy.create_node("mine")
@@ -170,7 +170,7 @@ class TestInterrupt:
 
 
 class TestManners:
-    def test_a_program_that_asks_for_nothing_loads_nothing(self):
+    def test_unrelated_imports_load_nothing_of_linkwright(self):
         code = """
             import sys
             for name in ("no_such_module", "other._private", "json.nothing"):
@@ -186,7 +186,7 @@ class TestManners:
         )  # as Ubuntu has
         assert output_of("-c", textwrap.dedent(code)) == ("['importlib.util']" if others else "[]")
 
-    def test_a_module_that_is_missing_is_missing(self):
+    def test_similar_missing_module_is_not_found(self):
         ended = run("-c", "import rclpy_of_another_kind")
         assert "ModuleNotFoundError: No module named 'rclpy_of_another_kind'" in ended.stderr
 
@@ -199,7 +199,7 @@ class TestManners:
             ("unheard_of", "ModuleNotFoundError: No module named 'unheard_of'"),
         ],
     )
-    def test_what_to_do_about_a_missing_module(self, module, hint):
+    def test_missing_module_has_hint(self, module, hint):
         last = run("-c", f"import {module}").stderr.splitlines()[-1]
         assert last.startswith(hint)
 
@@ -211,16 +211,16 @@ class TestManners:
             ("from tf2_ros import PoseArray", "ImportError: cannot import name 'PoseArray' from 'tf2_ros'"),
         ],
     )
-    def test_where_a_name_is_that_a_module_does_not_have(self, line, hint):
+    def test_missing_name_in_module_has_hint(self, line, hint):
         last = run("-c", line).stderr.splitlines()[-1]
         assert last.startswith(hint)
 
-    def test_the_next_sitecustomize_runs(self, tmp_path):
+    def test_next_sitecustomize_is_run(self, tmp_path):
         (tmp_path / "sitecustomize.py").write_text("WAS_RUN = 'yes'\n")
         code = "import sitecustomize; print(sitecustomize.WAS_RUN); import rclpy"
         assert output_of("-c", code, PYTHONPATH=str(tmp_path)) == "yes"
 
-    def test_a_real_rclpy_is_used_and_nothing_of_ours_beside_it(self, tmp_path):
+    def test_real_rclpy_disables_all_standins(self, tmp_path):
         for name in ("rclpy", "std_msgs"):
             (tmp_path / name).mkdir()
             (tmp_path / name / "__init__.py").write_text("REAL = True\n")
@@ -241,7 +241,7 @@ class TestManners:
             "No module named 'launch'",
         ]
 
-    def test_the_environment(self, tmp_path):
+    def test_environment_prepends_standin_path_once(self, tmp_path):
         once = process.environment({"PYTHONPATH": str(tmp_path), "OTHER": "kept"})
         assert once["PYTHONPATH"] == os.pathsep.join([process.standin_path(), str(tmp_path)])
         assert once["OTHER"] == "kept"
@@ -249,7 +249,7 @@ class TestManners:
         modules = {path.name for path in Path(process.standin_path()).glob("*.py")}
         assert modules == {"linkwright_pytest.py", "sitecustomize.py"}
 
-    def test_the_interpreter(self, tmp_path):
+    def test_python_command_prefers_virtual_environment(self, tmp_path):
         assert process.python_command(["node.py"], {}) == [sys.executable, "node.py"]
         name = f"python{sys.version_info.major}.{sys.version_info.minor}"
         other = tmp_path / "bin" / name

@@ -119,7 +119,7 @@ def spun():
 
 
 class TestActions:
-    def test_a_goal_with_feedback_and_a_result(self, spun):
+    def test_goal_succeeds_with_feedback_and_result(self, spun):
         server, client = Server(), Client()
         spun(server, client)
         client.send_goal(6)
@@ -129,7 +129,7 @@ class TestActions:
         assert outcome.result.sequence.tolist() == fibonacci(6)
         assert client.feedback == [fibonacci(length) for length in range(1, 7)]
 
-    def test_in_one_thread(self):
+    def test_server_and_client_share_one_executor(self):
         server, client = Server(), Client()
         executor = SingleThreadedExecutor()
         executor.add_node(server)
@@ -138,7 +138,7 @@ class TestActions:
         executor.spin_until_future_complete(client.outcome, timeout_sec=60.0)
         assert client.outcome.result().result.sequence.tolist() == fibonacci(4)
 
-    def test_a_goal_that_is_cancelled(self, spun):
+    def test_goal_is_canceled(self, spun):
         server, client = Server(pause=0.02), Client()
         spun(server, client)
         client.send_goal(90 // 2, cancel_after=3)
@@ -147,14 +147,14 @@ class TestActions:
         assert client.canceling == 1
         assert len(client.feedback) < 40
 
-    def test_a_goal_that_is_rejected(self, spun):
+    def test_goal_is_rejected(self, spun):
         server, client = Server(), Client()
         spun(server, client)
         client.send_goal(200)
         assert client.outcome.wait(60.0)
         assert client.outcome.result() == "rejected"
 
-    def test_a_callback_that_says_nothing_of_the_end_aborts(self, spun):
+    def test_goal_without_final_state_is_aborted(self, spun):
         node, client = Node("silent"), Client()
         ActionServer(node, Fibonacci, "fibonacci", lambda _handle: Fibonacci.Result())
         spun(node, client)
@@ -162,7 +162,7 @@ class TestActions:
         assert client.outcome.wait(60.0)
         assert client.outcome.result().status == GoalStatus.STATUS_ABORTED
 
-    def test_a_deferred_goal(self, spun):
+    def test_accepted_goal_is_executed_later(self, spun):
         waiting = []
         server, client = Server(handle_accepted_callback=waiting.append), Client()
         spun(server, client)
@@ -173,7 +173,7 @@ class TestActions:
         assert client.outcome.wait(60.0)
         assert client.outcome.result().status == GoalStatus.STATUS_SUCCEEDED
 
-    def test_a_queue_of_goals(self, spun):
+    def test_queued_goals_run_one_after_another(self, spun):
         class Queued(Server):
             def __init__(self):
                 self.queue, self.current, self.lock, self.most = deque(), None, threading.Lock(), 0
@@ -204,7 +204,7 @@ class TestActions:
             assert client.outcome.wait(60.0)
             assert client.outcome.result().result.sequence.tolist() == fibonacci(3)
 
-    def test_one_goal_at_a_time_aborts_the_one_before(self, spun):
+    def test_new_goal_aborts_previous_goal(self, spun):
         class Single(Server):
             goal = None
 
@@ -235,13 +235,13 @@ class TestActions:
         assert first.outcome.result().status == GoalStatus.STATUS_ABORTED
         assert second.outcome.result().status == GoalStatus.STATUS_SUCCEEDED
 
-    def test_a_synchronous_client_beside_a_thread_that_spins(self, spun):
+    def test_send_goal_blocks_beside_spinning_thread(self, spun):
         server, client = Server(), Client()
         spun(server, client)
         result = client.client.send_goal(Fibonacci.Goal(order=3))
         assert result.result.sequence.tolist() == fibonacci(3)
 
-    def test_awaited_in_a_coroutine(self, spun):
+    def test_goal_and_result_are_awaited_in_coroutine(self, spun):
         server, client = Server(), Client()
         results = []
 
@@ -255,14 +255,14 @@ class TestActions:
         wait_until(lambda: results)
         assert results == [fibonacci(2)]
 
-    def test_names_and_types(self):
+    def test_action_names_and_types_are_listed(self):
         server = Server()
         assert ("/fibonacci", ["example_interfaces/action/Fibonacci"]) in get_action_names_and_types(server)
         assert get_action_server_names_and_types_by_node(server, "fibonacci_server", "/") == [
             ("/fibonacci", ["example_interfaces/action/Fibonacci"])
         ]
 
-    def test_no_server(self):
+    def test_wait_for_server_times_out(self):
         client = Client()
         assert not client.client.wait_for_server(timeout_sec=0.05)
         assert not client.client.server_is_ready()
@@ -295,7 +295,7 @@ class Managed(LifecycleNode):
 
 
 class TestLifecycle:
-    def test_by_its_own_methods(self):
+    def test_transitions_are_triggered_by_methods(self):
         node = Managed("managed", enable_communication_interface=False)
         assert node.trigger_configure() == TransitionCallbackReturn.SUCCESS
         assert node.trigger_activate() == TransitionCallbackReturn.SUCCESS
@@ -304,7 +304,7 @@ class TestLifecycle:
         assert node.trigger_shutdown() == TransitionCallbackReturn.SUCCESS
         assert node.seen == ["unconfigured", "inactive"]
 
-    def test_its_publisher_is_silent_unless_it_is_active(self):
+    def test_lifecycle_publisher_is_silent_unless_active(self):
         node, heard = Managed("managed", enable_communication_interface=False), []
         listener = rclpy.create_node("listener")
         listener.create_subscription(String, "lifecycle_chatter", heard.append, 10)
@@ -320,7 +320,7 @@ class TestLifecycle:
             executor.spin_once(timeout_sec=0.05)
         assert heard
 
-    def test_by_its_services(self, spun):
+    def test_transitions_are_triggered_by_services(self, spun):
         node, client = Managed("managed"), rclpy.create_node("client")
         spun(node, client)
         change = client.create_client(ChangeState, "/managed/change_state")
@@ -333,7 +333,7 @@ class TestLifecycle:
         request.transition.id = Transition.TRANSITION_CONFIGURE
         assert not change.call(request).success
 
-    def test_a_transition_that_fails(self):
+    def test_exception_in_transition_returns_error(self):
         class Failing(LifecycleNode):
             def on_configure(self, _state):
                 raise ValueError("mine")
@@ -342,6 +342,6 @@ class TestLifecycle:
         assert node.trigger_configure() == TransitionCallbackReturn.ERROR
         assert node._state_machine.state.label == "unconfigured"
 
-    def test_the_interface_is_switched_on_or_off(self):
+    def test_communication_interface_must_be_bool(self):
         with pytest.raises(TypeError):
             LifecycleNode("wrong", enable_communication_interface="yes")

@@ -64,7 +64,7 @@ def node():
 
 
 class TestMistakes:
-    def test_names_that_are_not_valid_are_value_errors(self, node):
+    def test_invalid_names_raise_value_errors(self, node):
         with pytest.raises(ValueError, match="unknown substitution") as topic:
             node.create_publisher(String, "topic/{what}", 10)
         assert isinstance(topic.value, InvalidTopicNameException)
@@ -85,27 +85,27 @@ class TestMistakes:
             "get_subscriptions_info_by_topic",
         ],
     )
-    def test_questions_about_names_that_are_none(self, node, question):
+    def test_graph_queries_reject_invalid_names(self, node, question):
         with pytest.raises(TypeError, match="bad argument type for built-in operation"):
             getattr(node, question)(1)
         with pytest.raises(ValueError, match="is invalid"):
             getattr(node, question)("42")
 
-    def test_declarations_of_the_wrong_form(self, node):
+    def test_invalid_declarations_are_rejected(self, node):
         with pytest.raises(TypeError, match="is not a str"):
             node.declare_parameter(1, "value")
         with pytest.raises(TypeError, match="is not a ParameterDescriptor"):
             node.declare_parameter("name", 1, "descriptor")
         assert node.declare_parameter("name", 1, None).value == 1
 
-    def test_names_of_parameters(self):
+    def test_parameter_names_are_validated(self):
         assert validate_parameter_name("a.b") is True
         with pytest.raises(InvalidParameterException):
             validate_parameter_name("")
 
 
 class TestParameters:
-    def test_the_callbacks_that_are_asked(self, node):
+    def test_parameter_callbacks_are_added_and_removed(self, node):
         def callback(_):
             return SetParametersResult(successful=True)
 
@@ -116,10 +116,10 @@ class TestParameters:
             assert callback not in getattr(node, f"_{kind}_parameters_callbacks")
         assert node._parameters_callbacks == node._on_set_parameters_callbacks
 
-    def test_blank_texts_stay_as_they_are(self):
+    def test_blank_strings_stay_unchanged(self):
         assert [get_parameter_value(text).string_value for text in ("", " ")] == ["", " "]
 
-    def test_events_by_the_callbacks_of_a_handler(self, node):
+    def test_parameter_event_handler_calls_matching_callbacks(self, node):
         handler, received = ParameterEventHandler(node), []
         first = handler.add_parameter_callback("a", "", lambda each: received.append(("first", each.name)))
         handler.add_parameter_callback("a", "node", lambda each: received.append(("second", each.name)))
@@ -136,7 +136,7 @@ class TestParameters:
             handler.remove_parameter_event_callback(everything)
 
     @pytest.mark.parametrize("accepts", [True, False])
-    def test_the_verdict_of_a_callback_for_quality_of_service(self, node, accepts):
+    def test_qos_override_callback_can_reject(self, node, accepts):
         def verdict(_):
             result = QosCallbackResult()
             result.successful, result.reason = accepts, "too deep"
@@ -150,7 +150,7 @@ class TestParameters:
             node.create_publisher(String, "topic", 10, qos_overriding_options=options)
 
     @pytest.mark.parametrize(("kind", "word"), [(Publisher, "publisher"), (Subscription, "subscription")])
-    def test_declaring_what_overrides_a_profile(self, kind, word):
+    def test_qos_override_parameters_are_declared(self, kind, word):
         node = rclpy.create_node("n", parameter_overrides=[Parameter(f"qos_overrides./topic.{word}.depth", value=3)])
         profile = QoSProfile(depth=10)
         _declare_qos_parameters(kind, node, "/topic", profile, QoSOverridingOptions.with_default_policies())
@@ -164,7 +164,7 @@ class TestParameters:
 
 
 class TestTime:
-    def test_what_a_timer_tells(self):
+    def test_timer_info_has_call_times(self):
         info = TimerInfo()
         assert (info.expected_call_time.nanoseconds, info.actual_call_time.clock_type) == (0, ClockType.SYSTEM_TIME)
         info = TimerInfo(expected_call_time=1, actual_call_time=2, clock_type=ClockType.STEADY_TIME)
@@ -173,7 +173,7 @@ class TestTime:
             info.expected_call_time = Time()
 
     @pytest.mark.parametrize("wrapped", [lambda callback: callback, functools.partial])
-    def test_a_timer_that_tells(self, node, wrapped):
+    def test_timer_callback_receives_timer_info(self, node, wrapped):
         messages = []
 
         def callback(info: TimerInfo) -> None:
@@ -184,7 +184,7 @@ class TestTime:
             assert messages[0].expected_call_time.clock_type == timer.clock.clock_type
         assert timer not in node.timers
 
-    def test_sleep_needs_a_context_that_is_initialised(self, node):
+    def test_sleep_for_requires_initialized_context(self, node):
         with pytest.raises(NotInitializedException):
             Clock().sleep_for(Duration(seconds=60), context=Context())
         clock = node.get_clock()
@@ -192,7 +192,7 @@ class TestTime:
         with pytest.raises(NotInitializedException):
             clock.sleep_for(Duration(seconds=60))
 
-    def test_clocks_of_a_time_source(self, node):
+    def test_time_source_sets_attached_clocks(self, node):
         source, clock = TimeSource(node=node), ROSClock()
         source.attach_clock(clock)
         assert not clock.ros_time_is_active
@@ -214,7 +214,7 @@ class TestTime:
         assert [jump.clock_change for jump in jumps] == [ClockChange.ROS_TIME_DEACTIVATED]
         assert source._clock_sub is None
 
-    def test_a_time_source_changes_its_node(self, node):
+    def test_time_source_can_be_attached_to_another_node(self, node):
         source = TimeSource()
         simulated = rclpy.create_node("simulated", parameter_overrides=[Parameter("use_sim_time", value=True)])
         source.attach_node(simulated)
@@ -228,14 +228,14 @@ class TestTime:
 
 
 class TestLifecycle:
-    def test_the_state_machine(self):
+    def test_state_machine_services_follow_communication_interface(self):
         silent = LifecycleNode("silent", enable_communication_interface=False)
         assert silent._state_machine.service_get_state is None
         assert silent._state_machine.current_state == (1, "unconfigured")
         driven = LifecycleNode("driven")
         assert driven._state_machine.service_get_state in driven.services
 
-    def test_what_is_published_goes_through_the_publisher(self):
+    def test_lifecycle_publisher_delegates_to_publisher(self):
         node = LifecycleNode("node")
         with mock.patch.object(Publisher, "publish") as publish:
             publisher = node.create_lifecycle_publisher(String, "topic", 10)
@@ -248,7 +248,7 @@ class TestLifecycle:
             publish.assert_called_with(publisher, message)
 
 
-def test_how_much_an_action_is_made_of(node):
+def test_action_entities_are_counted(node):
     server = ActionServer(node, Fibonacci, "fibonacci", lambda _: Fibonacci.Result())
     client = ActionClient(node, Fibonacci, "fibonacci")
     assert server.get_num_entities() == NumberOfEntities(num_timers=1, num_services=3)
@@ -258,7 +258,7 @@ def test_how_much_an_action_is_made_of(node):
     assert total == NumberOfEntities(2, 0, 1, 3, 3)
 
 
-def test_feedback_comes_before_the_answer_that_the_goal_is_accepted(node):
+def test_feedback_arrives_before_goal_response(node):
     """Where one thread does everything, rclpy executes the goal and tells of it first."""
     order = []
 
@@ -279,7 +279,7 @@ def test_feedback_comes_before_the_answer_that_the_goal_is_accepted(node):
     assert order == ["feedback", "answer"]
 
 
-def test_endpoints_as_text(node):
+def test_topic_endpoint_info_is_printed(node):
     assert str(TopicEndpointInfo()).splitlines()[:5] == [
         "Node name: ",
         "Node namespace: ",
@@ -298,7 +298,7 @@ def test_endpoints_as_text(node):
     assert described == TopicEndpointInfo()
 
 
-def test_the_first_node_waits_for_the_network(monkeypatch):
+def test_first_node_waits_for_network_once(monkeypatch):
     context, waits = Context(), []
 
     class Joining:
@@ -314,11 +314,11 @@ def test_the_first_node_waits_for_the_network(monkeypatch):
 
 
 class TestEventHandlers:
-    def test_without_callbacks_the_log_tells_of_mismatches(self, node):
+    def test_default_event_handler_is_installed_without_callbacks(self, node):
         for endpoint in (node.create_publisher(String, "t", 1), node.create_subscription(String, "t", print, 1)):
             assert [handler.callback for handler in endpoint.event_handlers] == [None]
 
-    def test_each_callback_has_a_handler(self, node):
+    def test_event_callbacks_have_one_handler_each(self, node):
         callbacks = PublisherEventCallbacks(deadline=print, matched=print)
         publisher = node.create_publisher(String, "t", 1, event_callbacks=callbacks)
         assert [handler.event_type for handler in publisher.event_handlers] == [
@@ -327,13 +327,13 @@ class TestEventHandlers:
             QoSPublisherEventType.RCL_PUBLISHER_MATCHED,
         ]
 
-    def test_without_the_default_callbacks_nothing_is_left(self, node):
+    def test_default_event_callbacks_can_be_disabled(self, node):
         callbacks = SubscriptionEventCallbacks(use_default_callbacks=False)
         assert node.create_subscription(String, "t", print, 1, event_callbacks=callbacks).event_handlers == []
 
 
 class TestServiceIntrospection:
-    def test_a_call_is_told_from_both_sides(self, node):
+    def test_service_events_are_published_by_client_and_service(self, node):
         events = []
         service = node.create_service(Empty, "empty", lambda _request, response: response)
         client = node.create_client(Empty, "empty")
@@ -346,14 +346,14 @@ class TestServiceIntrospection:
         assert {event.info.event_type for event in events} == {0, 1, 2, 3}
         assert [len(event.request) + len(event.response) for event in events] == [1] * 4
 
-    def test_the_topic_of_its_events_is_none_of_the_nodes_own(self, node):
+    def test_service_event_publisher_is_not_listed_by_node(self, node):
         before = len(list(node.publishers))
         service = node.create_service(Empty, "empty", lambda _request, response: response)
         service.configure_introspection(node.get_clock(), QoSProfile(depth=10), ServiceIntrospectionState.METADATA)
         assert len(list(node.publishers)) == before
 
 
-def test_exceptions_are_called_as_those_of_rclpy():
+def test_exceptions_are_printed_with_rclpy_names():
     output = subprocess.run(
         [sys.executable, "-c", "import rclpy\nrclpy.init()\nrclpy.create_node('a b')"],
         env=process.environment() | {"ROS_DOMAIN_ID": "142"},

@@ -40,7 +40,7 @@ def node():
 class TestMessagesAreSnapshots:
     """Nothing that is done to a message after it was sent, or after it came, is seen by others."""
 
-    def test_a_message_that_is_filled_again_and_again(self, node):
+    def test_reused_message_is_published_as_snapshot(self, node):
         heard, message = [], String()
         node.create_subscription(String, "topic", lambda each: heard.append(each.data), 10)
         publisher = node.create_publisher(String, "topic", 10)
@@ -51,7 +51,7 @@ class TestMessagesAreSnapshots:
             rclpy.spin_once(node, timeout_sec=SECONDS)
         assert heard == ["one", "two", "three"]
 
-    def test_what_subscriptions_do_to_theirs(self, node):
+    def test_subscription_callbacks_receive_separate_copies(self, node):
         heard = []
 
         def callback(message):
@@ -67,7 +67,7 @@ class TestMessagesAreSnapshots:
         assert heard == [[7, 1], [7, 1]]
         assert sent.data.tolist() == [7]
 
-    def test_a_request_that_is_used_again(self, node):
+    def test_reused_request_is_sent_as_snapshot(self, node):
         def add(request, response):
             response.sum = request.a + request.b
             return response
@@ -82,7 +82,7 @@ class TestMessagesAreSnapshots:
             rclpy.spin_until_future_complete(node, future, timeout_sec=SECONDS)
         assert [future.result().sum for future in futures] == [0, 1, 2]
 
-    def test_feedback_that_grows(self, node):
+    def test_growing_feedback_is_sent_as_snapshot(self, node):
         heard = []
 
         def execute(goal_handle):
@@ -158,7 +158,7 @@ class ThrottledCallbackGroup(CallbackGroup):
 
 
 class TestOwnParts:
-    def test_an_executor_with_priorities(self, node):
+    def test_custom_executor_runs_by_priority(self, node):
         order, slow = [], threading.Event()
         urgent = rclpy.create_node("urgent")
 
@@ -180,7 +180,7 @@ class TestOwnParts:
             pool.shutdown()
         assert order == ["urgent", "slow"]
 
-    def test_a_group_that_throttles(self, node):
+    def test_custom_callback_group_throttles_timer(self, node):
         group, begun = ThrottledCallbackGroup(node), []
         node.create_timer(0.001, lambda: begun.append(time.monotonic()), callback_group=group)
         end = rclpy.create_node("end").create_timer(0.28, lambda: None)
@@ -191,7 +191,7 @@ class TestOwnParts:
         assert end.timer_period_ns == 280_000_000
         assert len(begun) <= 2 * (group.refills + 1)
 
-    def test_the_events_executor(self, node):
+    def test_events_executor_completes_task(self, node):
         executor = EventsExecutor()
         executor.add_node(node)
         future = executor.create_task(lambda: "done")
@@ -200,7 +200,7 @@ class TestOwnParts:
 
 
 class TestEvents:
-    def test_who_listens_is_told_of(self, node):
+    def test_matched_events_report_endpoint_counts(self, node):
         seen = []
         node.create_publisher(
             String,
@@ -224,7 +224,7 @@ class TestEvents:
 
 
 class TestAsyncio:
-    def test_a_goal_from_a_coroutine_of_asyncio(self, node):
+    def test_action_goal_is_awaited_in_asyncio(self, node):
         """As the asyncio client among the examples: the loop spins the node between its own steps."""
 
         def execute(goal_handle):
@@ -253,7 +253,7 @@ class TestAsyncio:
 
 
 class TestLittleThings:
-    def test_a_node_that_is_spun_within_its_own_callback_goes_on(self, node):
+    def test_node_can_be_spun_in_its_own_callback(self, node):
         calls = []
 
         def callback():
@@ -265,21 +265,21 @@ class TestLittleThings:
         rclpy.spin_until_future_complete(node, rclpy.task.Future(), timeout_sec=0.1)
         assert len(calls) > 3
 
-    def test_destroying_what_is_not_there(self, node):
+    def test_destroy_timer_returns_false_if_missing(self, node):
         assert node.destroy_timer(None) is False
         timer = node.create_timer(1, None)
         assert (node.destroy_timer(timer), node.destroy_timer(timer)) == (True, False)
 
-    def test_names_of_loggers_and_kinds_of_callbacks(self, node):
+    def test_subscription_has_logger_name_and_callback_type(self, node):
         subscription = node.create_subscription(String, "topic", lambda _message, _info: None, 10)
         assert subscription.logger_name == "node"
         assert subscription._callback_type is rclpy.subscription.Subscription.CallbackType.WithMessageInfo
 
-    def test_types_in_annotations(self):
+    def test_classes_are_subscriptable_in_annotations(self):
         assert ActionClient[Fibonacci].__origin__ is ActionClient
         assert Parameter[bool].__args__ == (bool,)
 
-    def test_a_content_filter(self, node):
+    def test_content_filter_selects_messages(self, node):
         heard = []
         options = ContentFilterOptions(filter_expression="data = %0", expression_parameters=["'yes'"])
         subscription = node.create_subscription(
@@ -297,7 +297,7 @@ class TestLittleThings:
         assert heard == ["yes", "all"]
         assert not subscription.is_cft_enabled
 
-    def test_a_context_may_be_initialised_by_its_block(self):
+    def test_context_manager_initializes_context(self):
         with rclpy.context.Context() as context:
             assert context.ok()
             assert Node("other", context=context).context is context

@@ -132,7 +132,7 @@ def start(folder, name, program, surroundings):
     )
 
 
-def test_everything_between_two_processes(tmp_path, surroundings):
+def test_all_interfaces_work_between_two_processes(tmp_path, surroundings):
     server = start(tmp_path, "server", SERVER, surroundings)
     with server:
         printed = server.stdout.readline()
@@ -153,7 +153,7 @@ def test_everything_between_two_processes(tmp_path, surroundings):
     assert (server.returncode, ended, server_errors) == (0, "ended\n", "")
 
 
-def test_what_is_published_in_the_first_moment_arrives(tmp_path, surroundings):
+def test_message_published_right_after_match_arrives(tmp_path, surroundings):
     """A reliable reader that is there gets what is published as soon as it is matched."""
     listener = start(
         tmp_path,

@@ -85,7 +85,7 @@ def node(ros):
 
 
 class TestMinimal:
-    def test_talker_and_listener(self, ros):
+    def test_talker_and_listener_exchange_messages(self, ros):
         executor = SingleThreadedExecutor()
         talker, listener = Counter(), Listener(5)
         executor.add_node(talker)
@@ -96,7 +96,7 @@ class TestMinimal:
         talker.destroy_node()
         listener.destroy_node()
 
-    def test_old_school(self, ros):
+    def test_node_without_subclass_publishes_and_subscribes(self, ros):
         got = []
         node = rclpy.create_node("minimal")
         publisher = node.create_publisher(String, "topic", 10)
@@ -108,7 +108,7 @@ class TestMinimal:
         assert got == ["hi"] * 3
         node.destroy_node()
 
-    def test_a_local_function_as_timer(self, node):
+    def test_timer_callback_can_be_a_closure(self, node):
         i, seen = 0, []
 
         def timer_callback():
@@ -123,7 +123,7 @@ class TestMinimal:
         assert seen == [1, 2, 3]
         assert not rclpy.ok()
 
-    def test_service_and_client(self, ros):
+    def test_service_returns_response_to_client(self, ros):
         class MinimalService(Node):
             def __init__(self):
                 super().__init__("minimal_service")
@@ -160,7 +160,7 @@ class TestMinimal:
         thread.join(SECONDS)
         assert not thread.is_alive()
 
-    def test_synchronous_call_beside_a_thread_that_spins(self, node):
+    def test_synchronous_call_works_beside_spinning_thread(self, node):
         node.create_service(AddTwoInts, "add", _sum)
         client = node.create_client(AddTwoInts, "add")
         executor = SingleThreadedExecutor()
@@ -171,7 +171,7 @@ class TestMinimal:
         executor.shutdown()
         thread.join(SECONDS)
 
-    def test_a_client_in_a_callback_of_another_group(self, node):
+    def test_synchronous_call_works_in_callback_of_reentrant_group(self, node):
         answers = []
         node.create_service(AddTwoInts, "add", _sum)
         client = node.create_client(AddTwoInts, "add", callback_group=ReentrantCallbackGroup())
@@ -189,14 +189,14 @@ class TestMinimal:
         executor.shutdown()
         assert answers == [5]
 
-    def test_a_call_that_would_wait_for_itself_says_so(self, node):
+    def test_deadlocking_call_raises_runtime_error(self, node):
         node.create_service(AddTwoInts, "add", _sum)
         client = node.create_client(AddTwoInts, "add")
         node.create_timer(0.01, lambda: client.call(AddTwoInts.Request()))
         with pytest.raises(RuntimeError, match="call_async"):
             rclpy.spin_once(node, timeout_sec=SECONDS)
 
-    def test_a_coroutine_awaits_a_service(self, node):
+    def test_coroutine_awaits_service_call(self, node):
         answers = []
         node.create_service(AddTwoInts, "add", _sum)
         client = node.create_client(AddTwoInts, "add")
@@ -212,7 +212,7 @@ class TestMinimal:
             rclpy.spin_once(node, timeout_sec=0.1)
         assert answers == [7]
 
-    def test_a_service_that_is_a_coroutine(self, node):
+    def test_service_callback_can_be_a_coroutine(self, node):
         async def answer(request, response):
             response.sum = request.a * request.b
             return response
@@ -222,7 +222,7 @@ class TestMinimal:
         rclpy.spin_until_future_complete(node, future, timeout_sec=SECONDS)
         assert future.result().sum == 42
 
-    def test_done_callbacks_run_in_the_executor(self, node):
+    def test_done_callbacks_run_in_executor(self, node):
         seen = []
         node.create_service(AddTwoInts, "add", _sum)
         future = node.create_client(AddTwoInts, "add").call_async(AddTwoInts.Request(a=1, b=1))
@@ -232,7 +232,7 @@ class TestMinimal:
             rclpy.spin_once(node, timeout_sec=0.1)
         assert seen == [2]
 
-    def test_composed_in_one_executor(self, ros):
+    def test_two_nodes_share_multithreaded_executor(self, ros):
         talker, listener = Counter(), Listener(3)
         with MultiThreadedExecutor(num_threads=4) as executor:
             executor.add_node(talker)
@@ -240,7 +240,7 @@ class TestMinimal:
             executor.spin_until_future_complete(listener.done, timeout_sec=SECONDS)
         assert len(listener.heard) >= 3
 
-    def test_guard_condition(self, node):
+    def test_guard_condition_calls_callback(self, node):
         called = []
         guard = node.create_guard_condition(lambda: called.append(1))
         guard.trigger()
@@ -248,7 +248,7 @@ class TestMinimal:
         assert called == [1]
         assert node.destroy_guard_condition(guard)
 
-    def test_rate_loop_beside_a_thread_that_spins(self, node):
+    def test_rate_sleeps_beside_spinning_thread(self, node):
         thread = threading.Thread(target=rclpy.spin, args=(node,), daemon=True)
         thread.start()
         rate = node.create_rate(50)
@@ -262,7 +262,7 @@ class TestMinimal:
 
 
 class TestNode:
-    def test_names(self, node):
+    def test_names_are_resolved_in_namespace(self, node):
         assert node.get_name() == "tested"
         assert node.get_namespace() == "/ns"
         assert node.get_fully_qualified_name() == "/ns/tested"
@@ -271,13 +271,13 @@ class TestNode:
         assert node.resolve_topic_name("~/chatter") == "/ns/tested/chatter"
         assert node.resolve_service_name("/add") == "/add"
 
-    def test_invalid_names(self, ros):
+    def test_invalid_node_names_are_rejected(self, ros):
         with pytest.raises(InvalidNodeNameException, match="must not contain characters"):
             rclpy.create_node("bad?")
         with pytest.raises(InvalidNamespaceException, match="must not contain characters"):
             rclpy.create_node("good", namespace="/bad?")
 
-    def test_invalid_topics_and_services(self, node):
+    def test_invalid_topic_and_service_names_are_rejected(self, node):
         with pytest.raises(InvalidTopicNameException, match="must not contain characters"):
             node.create_publisher(String, "chatter?", 1)
         with pytest.raises(InvalidTopicNameException, match="must not start with a number"):
@@ -287,28 +287,28 @@ class TestNode:
         with pytest.raises(InvalidServiceNameException, match="must not start with a number"):
             node.create_service(AddTwoInts, "/add/2", print)
 
-    def test_quality_of_service_is_a_profile_or_a_depth(self, node):
+    def test_qos_must_be_profile_or_depth(self, node):
         node.create_publisher(String, "chatter", qos_profile_sensor_data)
         with pytest.raises(TypeError, match="Expected QoSProfile or int"):
             node.create_publisher(String, "chatter", "best")
         with pytest.raises(ValueError, match="greater than or equal to zero"):
             node.create_publisher(String, "chatter", -1)
 
-    def test_a_type_that_is_none_of_ours(self, node):
+    def test_invalid_message_types_are_rejected(self, node):
         with pytest.raises(AttributeError, match="not an interface class"):
             node.create_publisher(int, "chatter", 1)
         with pytest.raises(RuntimeError, match="might be a service"):
             node.create_publisher(AddTwoInts, "chatter", 1)
 
-    def test_publishing_another_type(self, node):
+    def test_publishing_another_type_is_rejected(self, node):
         with pytest.raises(TypeError):
             node.create_publisher(String, "chatter", 1).publish(Int64())
 
-    def test_without_init(self):
+    def test_node_requires_init(self):
         with pytest.raises(NotInitializedException, match=r"rclpy.init\(\) has not been called"):
             rclpy.create_node("early", context=rclpy.context.Context())
 
-    def test_what_it_made_is_listed_and_destroyed(self, node):
+    def test_entities_are_listed_and_destroyed(self, node):
         publisher = node.create_publisher(String, "chatter", 1)
         assert publisher in list(node.publishers)
         assert len(list(node.publishers)) == 2  # and /parameter_events
@@ -323,7 +323,7 @@ class TestNode:
         node.destroy_node()
         assert list(node.publishers) == []
 
-    def test_attributes_of_users_classes_may_have_any_name_that_rclpy_leaves(self, ros):
+    def test_subclass_attributes_may_shadow_internal_names(self, ros):
         class Planner(Node):
             def __init__(self):
                 super().__init__("planner")
@@ -353,7 +353,7 @@ class TestNode:
         node.destroy_node()
         executor.shutdown()
 
-    def test_destroying_it_twice(self, node):
+    def test_destroy_node_can_be_called_twice(self, node):
         node.destroy_node()
         node.destroy_node()
 
@@ -366,12 +366,12 @@ class TestNode:
             lambda node: node.create_service(Trigger, "trigger", print),
         ],
     )
-    def test_nothing_is_made_of_a_destroyed_one(self, node, make):
+    def test_destroyed_node_creates_nothing(self, node, make):
         node.destroy_node()
         with pytest.raises(InvalidHandle, match="destruction was requested"):
             make(node)
 
-    def test_handles(self, node):
+    def test_handle_of_destroyed_entity_is_invalid(self, node):
         subscription = node.create_subscription(String, "chatter", print, 1)
         with subscription.handle:
             pass
@@ -385,7 +385,7 @@ class TestNode:
         with pytest.raises(InvalidHandle), node.handle:
             pass
 
-    def test_executor_attribute(self, node):
+    def test_executor_attribute_can_be_set(self, node):
         first, second = SingleThreadedExecutor(), SingleThreadedExecutor()
         assert node.executor is None
         node.executor = first
@@ -398,7 +398,7 @@ class TestNode:
         assert node.executor is None
         assert second.get_nodes() == []
 
-    def test_the_graph_around_it(self, node):
+    def test_graph_queries_return_names_types_and_endpoints(self, node):
         node.create_publisher(String, "chatter", QoSProfile(depth=3, reliability=QoSReliabilityPolicy.BEST_EFFORT))
         assert node.count_publishers("chatter") == 1
         assert ("/ns/chatter", ["std_msgs/msg/String"]) in node.get_topic_names_and_types()
@@ -410,7 +410,7 @@ class TestNode:
         services = [name for name, _ in node.get_service_names_and_types_by_node("tested", "/ns")]
         assert "/ns/tested/get_parameters" in services
 
-    def test_message_info(self, node):
+    def test_callback_receives_message_info(self, node):
         got = []
         node.create_subscription(String, "chatter", lambda msg, info: got.append((msg.data, info)), 1)
         node.create_publisher(String, "chatter", 1).publish(String(data="x"))
@@ -418,14 +418,14 @@ class TestNode:
         assert got[0][0] == "x"
         assert got[0][1].source_timestamp > 0
 
-    def test_raw_messages(self, node):
+    def test_raw_subscription_receives_bytes(self, node):
         got = []
         node.create_subscription(String, "chatter", got.append, 1, raw=True)
         node.create_publisher(String, "chatter", 1).publish(String(data="x"))
         rclpy.spin_once(node, timeout_sec=SECONDS)
         assert got == [b"\x00\x01\x00\x00\x02\x00\x00\x00x\x00"]
 
-    def test_a_late_subscription_gets_what_was_kept(self, node):
+    def test_late_subscription_receives_latched_message(self, node):
         got = []
         profile = QoSProfile(depth=1, durability=QoSDurabilityPolicy.TRANSIENT_LOCAL)
         node.create_publisher(String, "latched", profile).publish(String(data="kept"))
@@ -433,13 +433,13 @@ class TestNode:
         rclpy.spin_once(node, timeout_sec=SECONDS)
         assert got == ["kept"]
 
-    def test_context_managers(self, ros):
+    def test_nodes_and_publishers_are_context_managers(self, ros):
         with rclpy.create_node("managed") as node, node.create_publisher(String, "chatter", 1):
             assert node.count_publishers("chatter") == 1
         with pytest.raises(InvalidHandle), node.handle:
             pass
 
-    def test_what_it_logs_goes_to_rosout(self, node):
+    def test_log_messages_are_published_on_rosout(self, node):
         from rcl_interfaces.msg import Log
 
         got = []
@@ -449,13 +449,13 @@ class TestNode:
         assert (got[0].name, got[0].msg, got[0].level) == ("ns.tested", "careful", logging.WARNING)
         assert got[0].file == __file__
 
-    def test_policies_by_their_old_names(self):
+    def test_deprecated_policy_names_warn(self):
         with pytest.warns(UserWarning, match="Use ReliabilityPolicy.BEST_EFFORT instead"):
             assert QoSReliabilityPolicy.RMW_QOS_POLICY_RELIABILITY_BEST_EFFORT is QoSReliabilityPolicy.BEST_EFFORT
 
 
 class TestParameters:
-    def test_declared_read_and_set(self, node):
+    def test_parameter_is_declared_read_and_set(self, node):
         assert node.declare_parameter("speed", 1.5).value == 1.5
         assert node.get_parameter("speed").get_parameter_value().double_value == 1.5
         results = node.set_parameters([Parameter("speed", Parameter.Type.DOUBLE, 2.5)])
@@ -468,12 +468,12 @@ class TestParameters:
             node.get_parameter("height")
         assert node.get_parameter_or("height", Parameter("height", value=3)).value == 3
 
-    def test_descriptors(self, node):
+    def test_descriptor_makes_parameter_read_only(self, node):
         node.declare_parameter("speed", 1.5, ParameterDescriptor(description="how fast", read_only=True))
         assert node.describe_parameter("speed").description == "how fast"
         assert not node.set_parameters([Parameter("speed", value=2.5)])[0].successful
 
-    def test_a_callback_refuses(self, node):
+    def test_on_set_callback_can_reject(self, node):
         def check(parameters):
             return SetParametersResult(
                 successful=all(parameter.value < 10 for parameter in parameters), reason="too fast"
@@ -486,9 +486,9 @@ class TestParameters:
         node.remove_on_set_parameters_callback(check)
         assert node.set_parameters([Parameter("speed", value=20)])[0].successful
 
-    def test_from_the_constructor_and_the_command_line(self, ros):
+    def test_overrides_from_constructor_and_command_line_are_applied(self, ros):
         node = rclpy.create_node(
-            "parametrised",
+            "parametrized",
             namespace="/ns",
             parameter_overrides=[Parameter("mine", value=1)],
             cli_args=["--ros-args", "-p", "mine:=2", "-p", "theirs:=3", "-r", "__ns:=/other", "-r", "chatter:=news"],
@@ -498,7 +498,7 @@ class TestParameters:
         assert node.get_namespace() == "/other"
         assert node.resolve_topic_name("chatter") == "/other/news"
 
-    def test_undeclared_ones(self, ros):
+    def test_undeclared_parameters_can_be_allowed(self, ros):
         node = rclpy.create_node(
             "free",
             allow_undeclared_parameters=True,
@@ -510,7 +510,7 @@ class TestParameters:
         node.set_parameters([Parameter("new", value=True)])
         assert node.get_parameter("new").value is True
 
-    def test_quality_of_service_from_parameters(self, ros):
+    def test_qos_overrides_from_parameters_are_applied(self, ros):
         from rclpy.qos_overriding_options import QoSOverridingOptions
 
         node = rclpy.create_node(

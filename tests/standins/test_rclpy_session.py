@@ -40,7 +40,7 @@ def node():
 
 
 class TestContexts:
-    def test_begin_and_end(self):
+    def test_init_and_shutdown_can_be_repeated(self):
         rclpy.init(args=[])
         assert rclpy.ok()
         rclpy.shutdown()
@@ -49,7 +49,7 @@ class TestContexts:
         assert rclpy.ok()
         rclpy.shutdown()
 
-    def test_twice_is_once_too_often(self):
+    def test_repeated_init_and_shutdown_are_rejected(self):
         context = Context()
         rclpy.init(args=[], context=context)
         with pytest.raises(RuntimeError):
@@ -59,12 +59,12 @@ class TestContexts:
             rclpy.shutdown(context=context)
         rclpy.try_shutdown(context=context)
 
-    def test_end_without_beginning(self):
+    def test_shutdown_without_init_is_rejected(self):
         with pytest.raises(RCLError, match="Context must be initialized before it can be shutdown"):
             rclpy.shutdown()
         rclpy.try_shutdown()
 
-    def test_domains(self, monkeypatch):
+    def test_domain_id_is_read_from_argument_and_environment(self, monkeypatch):
         with rclpy.init(args=[], domain_id=12) as init:
             assert init.context.get_domain_id() == 12
             assert init.context.ok()
@@ -74,7 +74,7 @@ class TestContexts:
         with pytest.raises(RuntimeError, match="lower than zero"):
             rclpy.init(args=[], domain_id=-1)
 
-    def test_what_wants_to_know_the_end(self):
+    def test_on_shutdown_callbacks_are_called(self):
         context, text = Context(), []
         rclpy.init(args=[], context=context)
         context.on_shutdown(lambda: text.append(1))
@@ -84,7 +84,7 @@ class TestContexts:
         with pytest.raises(TypeError):
             context.on_shutdown(3)
 
-    def test_ros_arguments_that_are_wrong(self):
+    def test_invalid_ros_arguments_are_rejected(self):
         with pytest.raises(UnknownROSArgsError, match=r"\['unknown'\]"):
             rclpy.init(args=["--ros-args", "unknown"], context=Context())
         with pytest.raises(RCLInvalidROSArgsError, match=r"Failed to parse ROS arguments:.*not-a-remap"):
@@ -93,7 +93,7 @@ class TestContexts:
             rclpy.init(args=["Ragnar\udcc3"], context=Context())
         assert issubclass(RCLInvalidROSArgsError, RCLError)
 
-    def test_ros_arguments_hold_for_all_nodes_that_want_them(self):
+    def test_ros_arguments_apply_to_nodes_with_global_arguments(self):
         context = Context()
         rclpy.init(args=["program", "--ros-args", "-r", "__node:=renamed", "-p", "speed:=3"], context=context)
         node = rclpy.create_node("mine", context=context)
@@ -103,13 +103,13 @@ class TestContexts:
         assert other.declare_parameter("speed", 1).value == 1
         rclpy.shutdown(context=context)
 
-    def test_nodes_may_be_destroyed_after_the_end(self):
+    def test_node_can_be_destroyed_after_shutdown(self):
         rclpy.init(args=[])
         node = rclpy.create_node("late")
         rclpy.shutdown()
         node.destroy_node()
 
-    def test_executors_belong_to_a_context(self):
+    def test_executor_belongs_to_its_context(self):
         context = Context()
         rclpy.init(args=[], context=context)
         executor = SingleThreadedExecutor(context=context)
@@ -120,7 +120,7 @@ class TestContexts:
 
 
 class TestSignals:
-    def test_handlers_are_put_back(self):
+    def test_shutdown_restores_signal_handlers(self):
         before = signal.getsignal(signal.SIGINT), signal.getsignal(signal.SIGTERM)
         rclpy.init(args=[])
         assert signals.get_current_signal_handlers_options() == SignalHandlerOptions.ALL
@@ -128,7 +128,7 @@ class TestSignals:
         assert signals.get_current_signal_handlers_options() == SignalHandlerOptions.NO
         assert (signal.getsignal(signal.SIGINT), signal.getsignal(signal.SIGTERM)) == before
 
-    def test_none_are_installed_when_not_wanted(self):
+    def test_no_signal_handlers_are_installed_if_disabled(self):
         before = signal.getsignal(signal.SIGINT)
         rclpy.init(args=[], signal_handler_options=SignalHandlerOptions.NO)
         assert signal.getsignal(signal.SIGINT) is before
@@ -143,7 +143,7 @@ class TestSignals:
         with pytest.raises(RCLError, match="already called on the given context"):
             rclpy.shutdown()
 
-    def test_after_a_signal_a_node_can_log_but_not_publish(self, node):
+    def test_node_can_log_but_not_publish_after_signal(self, node):
         """The real rclpy of Humble, Jazzy and Kilted does the same."""
         publisher = node.create_publisher(String, "chatter", 1)
         client = node.create_client(AddTwoInts, "sum")
@@ -166,7 +166,7 @@ class TestSignals:
             rclpy.spin(node)
 
     @pytest.mark.parametrize("executor", ["SingleThreadedExecutor", "MultiThreadedExecutor"])
-    def test_ctrl_c_of_a_program(self, executor, tmp_path):
+    def test_ctrl_c_raises_keyboard_interrupt_in_program(self, executor, tmp_path):
         program = tmp_path / "program.py"
         program.write_text(
             textwrap.dedent(f"""\
@@ -196,7 +196,7 @@ class TestSignals:
             assert child.wait(60.0) == 0
         assert output.endswith("interrupted\n")
 
-    def test_a_program_that_forgets_to_shut_down_ends(self, tmp_path):
+    def test_program_without_shutdown_ends(self, tmp_path):
         program = tmp_path / "program.py"
         program.write_text(
             textwrap.dedent("""\
@@ -223,7 +223,7 @@ class TestSignals:
 
 
 class TestLogging:
-    def test_levels_are_the_process_s(self, node, capsys):
+    def test_log_levels_are_process_wide(self, node, capsys):
         logger = node.get_logger()
         rclpy.logging.set_logger_level("tested", LoggingSeverity.WARN)
         assert logger.get_effective_level() == LoggingSeverity.WARN
@@ -235,7 +235,7 @@ class TestLogging:
         lines = capsys.readouterr().err.splitlines()
         assert [line.partition("]: ")[2] for line in lines] == ["loud", "loud again"]
 
-    def test_loggers_without_nodes(self, capsys):
+    def test_named_loggers_work_without_node(self, capsys):
         rclpy.logging.get_logger("mine").error("broken")
         assert capsys.readouterr().err.endswith("[mine]: broken\n")
         with pytest.raises(ValueError, match="must not be empty"):
@@ -244,19 +244,19 @@ class TestLogging:
         with pytest.raises(RuntimeError):
             rclpy.logging.get_logging_severity_from_string("dire")
 
-    def test_filters(self, node):
+    def test_log_filters_once_and_skip_first(self, node):
         logger = node.get_logger()
         assert [logger.info("once", once=True) for _ in range(3)] == [True, False, False]
         assert [logger.info("later", skip_first=True) for _ in range(3)] == [False, True, True]
 
-    def test_levels_from_the_command_line(self, capsys):
+    def test_log_level_is_read_from_command_line(self, capsys):
         with rclpy.init(args=["--ros-args", "--log-level", "quiet:=error"]):
             rclpy.create_node("quiet").get_logger().warning("not this")
             rclpy.create_node("other").get_logger().warning("this")
         rclpy.logging.clear_config()
         assert "not this" not in capsys.readouterr().err
 
-    def test_log_files(self, tmp_path, monkeypatch):
+    def test_log_file_is_written(self, tmp_path, monkeypatch):
         monkeypatch.setenv("ROS_LOG_DIR", str(tmp_path / "log"))
         assert rclpy.logging.get_logging_directory() == tmp_path / "log"
         with rclpy.init(args=[]):
@@ -266,13 +266,13 @@ class TestLogging:
 
 
 class TestSmallModules:
-    def test_bytes_of_messages(self):
+    def test_messages_are_serialized_and_deserialized(self):
         data = serialize_message(String(data="hello"))
         assert deserialize_message(data, String).data == "hello"
         with pytest.raises(TypeError):
             serialize_message("hello")
 
-    def test_waiting_for_one_message(self, node):
+    def test_wait_for_message_returns_message_or_times_out(self, node):
         publisher = node.create_publisher(String, "chatter", 1)
         timer = threading.Timer(0.05, publisher.publish, [String(data="here")])
         timer.start()
@@ -282,7 +282,7 @@ class TestSmallModules:
         assert wait_for_message(String, node, "chatter", 0.02) == (False, None)
         assert list(node.subscriptions) == []
 
-    def test_utilities(self):
+    def test_utilities_handle_ros_arguments_and_timeouts(self):
         from rclpy.utilities import get_rmw_implementation_identifier, remove_ros_args, timeout_sec_to_nsec
 
         line = ["program", "-d", "--ros-args", "-r", "a:=b", "--", "--foo"]
@@ -292,7 +292,7 @@ class TestSmallModules:
         has_dds = find_spec("cyclonedds") is not None
         assert get_rmw_implementation_identifier() == ("rmw_cyclonedds_cpp" if has_dds else "rmw_zenoh_cpp")
 
-    def test_names(self):
+    def test_name_functions_expand_and_validate(self):
         from rclpy.expand_topic_name import expand_topic_name
         from rclpy.topic_or_service_is_hidden import topic_or_service_is_hidden
         from rclpy.validate_full_topic_name import validate_full_topic_name
@@ -314,19 +314,19 @@ class TestSmallModules:
         with pytest.raises(InvalidServiceNameException, match="must be absolute"):
             validate_full_topic_name("chatter", is_service=True)
 
-    def test_type_hashes(self):
+    def test_type_hash_has_text_and_equality(self):
         assert str(TypeHash()) == "INVALID"
         assert str(TypeHash(version=1, value=bytes(range(32)))).startswith("RIHS01_000102")
         assert TypeHash() == TypeHash()
         assert TypeHash(version=5) != TypeHash()
 
-    def test_modules_are_there_after_importing_the_package(self):
+    def test_submodules_are_available_after_package_import(self):
         assert rclpy.time.Time(seconds=1).nanoseconds == 1_000_000_000
         assert rclpy.duration.Duration(seconds=1) == rclpy.duration.Duration(nanoseconds=1_000_000_000)
         with pytest.raises(AttributeError, match="no attribute 'rmw_internals'"):
             rclpy.rmw_internals  # noqa: B018
 
-    def test_parameters_from_text_and_files(self, tmp_path):
+    def test_parameters_are_parsed_from_text_and_files(self, tmp_path):
         from rclpy.parameter import get_parameter_value, parameter_dict_from_yaml_file
 
         assert get_parameter_value("1.5").double_value == 1.5
@@ -342,7 +342,7 @@ class TestSmallModules:
         with pytest.raises(RuntimeError, match="/nobody"):
             parameter_dict_from_yaml_file(str(file), target_nodes=["/nobody"])
 
-    def test_a_parameter_client(self, node):
+    def test_async_parameter_client_reads_and_sets_parameters(self, node):
         from rclpy.parameter import Parameter
         from rclpy.parameter_client import AsyncParameterClient
 
@@ -354,6 +354,6 @@ class TestSmallModules:
         assert future.result().results[0].successful
         assert node.get_parameter("speed").value == 2
 
-    def test_service_names_after_remapping(self, node):
+    def test_service_name_is_remapped(self, node):
         other = rclpy.create_node("other", namespace="ns", cli_args=["--ros-args", "-r", "add:=sum/add"])
         assert other.create_client(AddTwoInts, "add").service_name == "/ns/sum/add"

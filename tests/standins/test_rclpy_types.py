@@ -63,7 +63,7 @@ PROGRAM = """\
 
 
 @pytest.mark.slow
-def test_names_types_and_mistakes_of_a_users_node(tmp_path):
+def test_type_checker_sees_names_types_and_errors_of_user_node(tmp_path):
     program = tmp_path / "my_node.py"
     program.write_text(textwrap.dedent(PROGRAM))
     stubs = tmp_path / "stubs"

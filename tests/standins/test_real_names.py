@@ -29,7 +29,7 @@ print(json.dumps(lacking))
 
 @pytest.mark.skipif(not PYTHON, reason="LINKWRIGHT_ROS_PYTHON names no interpreter with rclpy")
 @pytest.mark.parametrize("package", ["rclpy", "ament_index_python", "rosidl_parser"])
-def test_the_real_modules_have_the_names_that_the_tables_say(package):
+def test_real_modules_have_names_of_tables(package):
     asked = {
         module.name: [name for name, found in module.names.items() if found.since not in AFTER_JAZZY]
         for module in table.read(package).values()

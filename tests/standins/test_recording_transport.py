@@ -55,7 +55,7 @@ def words(path: Path) -> list[str]:
 WORDS = [f"word {number}" for number in range(4)]
 
 
-def test_a_recorder_records_until_it_is_cancelled(node, tmp_path) -> None:
+def test_recorder_records_until_canceled(node, tmp_path) -> None:
     options = rosbag2_py.RecordOptions()
     options.topics = ["/words"]
     options.disable_keyboard_controls = True
@@ -76,7 +76,7 @@ def test_a_recorder_records_until_it_is_cancelled(node, tmp_path) -> None:
     assert set(words(tmp_path / "drive")) == {"x" * 2000}
 
 
-def test_a_recorder_that_is_cancelled_before_it_runs_ends_at_once(tmp_path) -> None:
+def test_recorder_canceled_before_start_ends_at_once(tmp_path) -> None:
     recorder = rosbag2_py.Recorder("warn")
     recorder.cancel()
     options = rosbag2_py.RecordOptions()
@@ -87,7 +87,7 @@ def test_a_recorder_that_is_cancelled_before_it_runs_ends_at_once(tmp_path) -> N
         rosbag2_py.Recorder("xxx")
 
 
-def test_a_player_plays_until_it_is_cancelled(node, tmp_path) -> None:
+def test_player_plays_until_canceled(node, tmp_path) -> None:
     heard: list[str] = []
     node.create_subscription(String, "/other_words", lambda message: heard.append(message.data), 10)
     options = rosbag2_py.PlayOptions()
@@ -108,14 +108,14 @@ def test_a_player_plays_until_it_is_cancelled(node, tmp_path) -> None:
         playing.join()
 
 
-def test_a_player_ends_with_the_recording_and_says_what_is_not_there(tmp_path) -> None:
+def test_player_ends_with_recording_and_reports_missing_file(tmp_path) -> None:
     player = rosbag2_py.Player("warn")
     player.play(StorageOptions(uri=str(write(tmp_path / "drive"))), rosbag2_py.PlayOptions())
     with pytest.raises(RuntimeError, match="no recording"):
         player.play(StorageOptions(uri=str(tmp_path / "none")), rosbag2_py.PlayOptions())
 
 
-def test_lost_metadata_are_made_anew(tmp_path) -> None:
+def test_reindexer_restores_metadata(tmp_path) -> None:
     path = write(tmp_path / "drive")
     (path / "metadata.yaml").unlink()
     rosbag2_py.Reindexer().reindex(StorageOptions(uri=str(path), storage_id="mcap"))
@@ -125,7 +125,7 @@ def test_lost_metadata_are_made_anew(tmp_path) -> None:
         rosbag2_py.Reindexer().reindex(StorageOptions(uri=str(tmp_path / "none")))
 
 
-def test_a_recording_is_rewritten(tmp_path) -> None:
+def test_bag_rewrite_converts_recording(tmp_path) -> None:
     options = tmp_path / "options.yaml"
     options.write_text(f"output_bags: [{{uri: {tmp_path / 'new'}, storage_id: sqlite3, all: true}}]", encoding="utf-8")
     rosbag2_py.bag_rewrite([StorageOptions(uri=str(write(tmp_path / "drive")))], str(options))
@@ -134,7 +134,7 @@ def test_a_recording_is_rewritten(tmp_path) -> None:
         rosbag2_py.bag_rewrite([], str(options))
 
 
-def test_a_writer_takes_snapshots_splits_and_compresses(tmp_path) -> None:
+def test_writer_takes_snapshots_splits_and_compresses(tmp_path) -> None:
     writer = rosbag2_py.SequentialWriter()
     writer.open(StorageOptions(uri=str(tmp_path / "a"), snapshot_mode=True, max_cache_size=1000))
     assert writer.take_snapshot()
@@ -149,7 +149,7 @@ def test_a_writer_takes_snapshots_splits_and_compresses(tmp_path) -> None:
         rosbag2_py.SequentialWriter().open(StorageOptions(uri=str(tmp_path / "c"), snapshot_mode=True))
 
 
-def test_formats_are_told() -> None:
+def test_default_storage_id_and_compressors_are_returned() -> None:
     assert rosbag2_py.get_default_storage_id() == "mcap"
     assert rosbag2_py.get_registered_compressors() == {"zstd"}
     assert rosbag2_py.compression_mode_from_string("file") is CompressionMode.FILE

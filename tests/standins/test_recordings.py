@@ -57,7 +57,7 @@ def rest(reader):
 
 
 @pytest.mark.parametrize("storage", ["mcap", "sqlite3"])
-def test_what_was_written_is_read(tmp_path, storage):
+def test_written_messages_are_read(tmp_path, storage):
     write(tmp_path / "bag", storage)
     reader = opened(tmp_path / "bag")
     types = {topic.name: topic.type for topic in reader.get_all_topics_and_types()}
@@ -70,7 +70,7 @@ def test_what_was_written_is_read(tmp_path, storage):
         reader.read_next()
 
 
-def test_topics_are_filtered_and_times_sought(tmp_path):
+def test_topics_are_filtered_and_seek_moves_to_time(tmp_path):
     write(tmp_path / "bag")
     reader = opened(tmp_path / "bag")
     reader.set_filter(StorageFilter(topics=["/words"]))
@@ -86,7 +86,7 @@ def test_topics_are_filtered_and_times_sought(tmp_path):
 
 
 @pytest.mark.parametrize("storage", ["mcap", "sqlite3"])
-def test_a_filter_that_changes_neither_repeats_nor_skips_a_message(tmp_path, storage):
+def test_changed_filter_neither_repeats_nor_skips_messages(tmp_path, storage):
     writer = SequentialWriter()
     writer.open(StorageOptions(str(tmp_path / "bag"), storage), CDR)
     for name in "abc":
@@ -103,7 +103,7 @@ def test_a_filter_that_changes_neither_repeats_nor_skips_a_message(tmp_path, sto
 
 
 @pytest.mark.parametrize("storage", ["mcap", "sqlite3"])
-def test_messages_are_read_backwards(tmp_path, storage):
+def test_messages_are_read_in_reverse(tmp_path, storage):
     write(tmp_path / "bag", storage)
     reader = opened(tmp_path / "bag")
     forwards = rest(reader)
@@ -132,11 +132,11 @@ def test_messages_are_read_backwards(tmp_path, storage):
         (StorageFilter(regex_to_exclude="/a"), ["/c"]),
     ],
 )
-def test_filters(storage_filter, admitted):
+def test_storage_filter_selects_topics(storage_filter, admitted):
     assert [topic for topic in ("/a/b", "/c") if storage_filter.admits(topic)] == admitted
 
 
-def test_what_is_known_without_reading(tmp_path):
+def test_metadata_is_read_without_messages(tmp_path):
     write(tmp_path / "bag", writer_class=rosbag2_py.SequentialCompressionWriter)
     metadata = rosbag2_py.Info().read_metadata(str(tmp_path / "bag"), "mcap")
     assert (metadata.message_count, metadata.storage_identifier) == (8, "mcap")
@@ -147,7 +147,7 @@ def test_what_is_known_without_reading(tmp_path):
     assert [profile.depth for profile in words.topic_metadata.offered_qos_profiles] == [3]
 
 
-def test_metadata_are_written_and_read(tmp_path):
+def test_metadata_is_written_and_read(tmp_path):
     write(tmp_path / "bag")
     reader, metadata_io = opened(tmp_path / "bag"), rosbag2_py.MetadataIo()
     metadata = metadata_io.read_metadata(str(tmp_path / "bag"))
@@ -169,7 +169,7 @@ def test_metadata_are_written_and_read(tmp_path):
         metadata_io.deserialize_metadata("[]")
 
 
-def test_definitions_of_types_are_told(tmp_path):
+def test_message_definitions_are_returned(tmp_path):
     write(tmp_path / "bag")
     definitions = {
         get_all_message_definition.topic_type: get_all_message_definition
@@ -181,13 +181,13 @@ def test_definitions_of_types_are_told(tmp_path):
     assert local.get_full_text("some_pkg") == rosbag2_py.MessageDefinition("some_pkg", "unknown", "", "")
 
 
-def test_options_that_do_not_exist_cannot_be_set():
+def test_unknown_options_cannot_be_set():
     for options in (rosbag2_py.RecordOptions(), rosbag2_py.PlayOptions(), StorageOptions("bag")):
         with pytest.raises(AttributeError):
             options.all_topic = True
 
 
-def test_topics_as_humble_and_as_later_ones_give_them():
+def test_topic_metadata_accepts_humble_and_later_arguments():
     old = TopicMetadata("/t", "std_msgs/msg/String", "cdr", "")
     new = TopicMetadata(
         id=0, name="/t", type="std_msgs/msg/String", serialization_format="cdr", offered_qos_profiles=""
@@ -197,7 +197,7 @@ def test_topics_as_humble_and_as_later_ones_give_them():
         TopicMetadata(name="/t", kind="x")
 
 
-def test_mistakes_are_runtime_errors(tmp_path):
+def test_invalid_use_raises_runtime_errors(tmp_path):
     with pytest.raises(RuntimeError, match="there is no recording"):
         opened(tmp_path / "nowhere")
     with pytest.raises(RuntimeError, match="not open"):
@@ -217,7 +217,7 @@ def test_mistakes_are_runtime_errors(tmp_path):
     writer.close()
 
 
-def test_a_recording_is_complete_when_the_program_has_ended(tmp_path):
+def test_recording_is_complete_after_program_exit(tmp_path):
     program = """
 from rosbag2_py._storage import ConverterOptions, StorageOptions, TopicMetadata
 import rosbag2_py

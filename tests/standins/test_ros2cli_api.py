@@ -21,7 +21,7 @@ def node(monkeypatch):
     rclpy.try_shutdown()
 
 
-def test_packages_and_their_programs(tmp_path):
+def test_packages_and_executables_are_listed(tmp_path):
     program = tmp_path / "lib" / "arm" / "move"
     hidden = tmp_path / "lib" / "arm" / ".cache" / "x"
     for path in (program, hidden):
@@ -44,7 +44,7 @@ def test_packages_and_their_programs(tmp_path):
             get_executable_paths(package_name="none")
 
 
-def test_topics_and_the_classes_of_their_messages(node, capsys):
+def test_topics_and_message_classes_are_found(node, capsys):
     node.create_publisher(String, "talk", 1)
     node.create_publisher(String, "_quiet", 1)
     assert ("/robot/talk", ["std_msgs/msg/String"]) in get_topic_names_and_types(node=node)
@@ -60,7 +60,7 @@ def test_topics_and_the_classes_of_their_messages(node, capsys):
         get_msg_class(node, "talk")
 
 
-def test_numbers_of_command_lines():
+def test_argument_types_parse_integers():
     assert (unsigned_int("0"), positive_int("1")) == (0, 1)
     for read, text in ((unsigned_int, "-1"), (positive_int, "0")):
         with pytest.raises(ArgumentTypeError):

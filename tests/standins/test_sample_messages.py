@@ -15,7 +15,7 @@ NAMES = [name.removeprefix("get_msg_") for name in message_fixtures.__all__ if n
 
 
 @pytest.mark.parametrize("name", NAMES)
-def test_samples_survive_serialization_and_can_be_shown(name):
+def test_sample_messages_survive_serialization(name):
     messages = getattr(message_fixtures, f"get_msg_{name}")()
     assert messages == get_test_msg(type(messages[0]).__name__)
     for message in messages:
@@ -24,7 +24,7 @@ def test_samples_survive_serialization_and_can_be_shown(name):
         assert message_to_yaml(message, truncate_length=100)
 
 
-def test_samples_differ():
+def test_sample_messages_have_expected_values():
     default, small, extreme = message_fixtures.get_msg_basic_types()
     assert default == BasicTypes()
     assert (small.bool_value, small.byte_value, small.uint8_value) == (True, b"\x17", 23)
@@ -36,14 +36,14 @@ def test_samples_differ():
         get_test_msg("Basic")
 
 
-def test_bytes_of_messages():
+def test_bytes_are_converted_to_yaml_csv_and_dict():
     data = b"\xce\xbb"
     assert message_to_ordereddict(data) == {"bytes": data}
     assert safe_load(message_to_yaml(data)) == {"bytes": data}
     assert message_to_csv(data) == str(data)
 
 
-def test_values_as_plain_ones():
+def test_values_are_converted_and_truncated():
     assert [_convert_value(each, truncate_length=0) for each in (5, 4.5, True)] == [5, 4.5, True]
     assert _convert_value(("123", "456", "789"), truncate_length=2) == ("12...", "45...", "...")
     assert _convert_value([1, 2, 3], truncate_length=0) == ["..."]

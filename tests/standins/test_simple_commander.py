@@ -126,7 +126,7 @@ def finished(navigator):
     return navigator.getResult()
 
 
-def test_a_robot_is_placed_and_sent_somewhere(navigator):
+def test_navigator_sets_initial_pose_and_goes_to_pose(navigator):
     navigator.setInitialPose(pose(0.0))
     navigator.waitUntilNav2Active()
     assert navigator.goToPose(pose(1.0))
@@ -134,7 +134,7 @@ def test_a_robot_is_placed_and_sent_somewhere(navigator):
     assert navigator.getFeedback().distance_remaining == 1.5
 
 
-def test_what_fails_and_what_is_canceled_is_told(navigator):
+def test_failed_and_canceled_goals_are_reported(navigator):
     assert navigator.goToPose(pose(-9.0))
     assert finished(navigator) == TaskResult.FAILED
     assert navigator.status == GoalStatus.STATUS_ABORTED
@@ -145,7 +145,7 @@ def test_what_fails_and_what_is_canceled_is_told(navigator):
     assert finished(navigator) == TaskResult.CANCELED
 
 
-def test_spinning_plans_and_costmaps(navigator, servers):
+def test_navigator_spins_plans_and_clears_costmaps(navigator, servers):
     assert navigator.spin(spin_dist=1.57, time_allowance=10)
     assert finished(navigator) == TaskResult.SUCCEEDED
     assert [each.pose.position.x for each in navigator.getPath(pose(0.0), pose(2.0)).poses] == [0.0, 2.0]
@@ -155,7 +155,7 @@ def test_spinning_plans_and_costmaps(navigator, servers):
 
 
 @pytest.mark.parametrize("page", [DOCS / "tutorial-navigation.md", DOCS / "zh" / "tutorial-navigation.md"])
-def test_the_program_of_the_tutorial_goes_to_all_rooms_from_wherever_the_robot_is(page, servers, monkeypatch, capsys):
+def test_tutorial_patrol_program_visits_all_rooms(page, servers, monkeypatch, capsys):
     (program,) = [block for block in blocks(page) if block.title == "patrol.py"]
     monkeypatch.setattr(rclpy, "init", lambda: None)
     monkeypatch.setattr(rclpy, "shutdown", lambda: None)

@@ -19,14 +19,14 @@ NAMES = {package: {name for module in table.read(package).values() for name in m
 
 
 @pytest.mark.parametrize("name", MODULES)
-def test_each_name_that_a_table_has_can_be_imported(name):
+def test_table_names_can_be_imported(name):
     module = importlib.import_module(name)
     for each in [*MODULES[name].names, *MODULES[name].submodules]:
         assert hasattr(module, each), f"from {name} import {each}"
 
 
 @pytest.mark.parametrize("name", [name for name, module in MODULES.items() if not module.others])
-def test_a_name_that_the_table_does_not_have_is_not_there(name):
+def test_names_missing_from_table_are_not_exported(name):
     module = importlib.import_module(name)
     described = MODULES[name]
     elsewhere = NAMES[name.partition(".")[0]] - described.names.keys() - set(described.submodules)
@@ -46,12 +46,12 @@ def test_a_name_that_the_table_does_not_have_is_not_there(name):
         ("tf2_ros", "PoseArray"),
     ],
 )
-def test_what_ros_does_not_export_there(module, name):
+def test_names_that_ros_does_not_export_cannot_be_imported(module, name):
     with pytest.raises(ImportError, match=f"cannot import name '{name}' from '{module}'"):
         exec(f"from {module} import {name}", {})
 
 
-def test_origins_among_the_stand_ins_are_names_of_their_tables():
+def test_origins_are_names_of_other_tables():
     """So that a table's mistake is not hidden by what the module of another one imports."""
     for name, module in MODULES.items():
         for each, found in module.names.items():
@@ -61,7 +61,7 @@ def test_origins_among_the_stand_ins_are_names_of_their_tables():
 
 
 class TestModules:
-    def test_pkgutil_finds_them(self):
+    def test_pkgutil_lists_submodules(self):
         import launch.events
 
         import launch
@@ -73,7 +73,7 @@ class TestModules:
         assert {"launch.actions.timer_action", "launch.events.process.process_exited"} <= set(walked)
         assert {"launch", "rclpy"} <= {iter_module.name for iter_module in pkgutil.iter_modules([modules.FOLDER])}
 
-    def test_names_are_looked_up_once_and_can_be_replaced(self):
+    def test_names_are_cached_and_can_be_patched(self):
         import rclpy.qos
 
         with mock.patch("rclpy.qos.QoSProfile") as replaced:
@@ -82,7 +82,7 @@ class TestModules:
 
         assert rclpy.qos.QoSProfile is QoSProfile
 
-    def test_dir_and_star(self):
+    def test_dir_and_star_import_list_names(self):
         import launch.conditions
 
         assert {"IfCondition", "if_condition", "__path__"} <= set(dir(launch.conditions))
@@ -91,21 +91,21 @@ class TestModules:
         assert "IfCondition" in everything
         assert "if_condition" not in everything
 
-    def test_classes_are_pickled_and_shown(self):
+    def test_classes_can_be_pickled_and_inspected(self):
         from rclpy.time import Time
         from tf2_ros import Buffer
 
         assert pickle.loads(pickle.dumps(Time(nanoseconds=5))) == Time(nanoseconds=5)
         assert "class Buffer" in inspect.getsource(Buffer)
 
-    def test_files_of_a_package(self):
+    def test_package_has_file_and_resources(self):
         import launch
 
         assert launch.__file__.endswith("launch.txt")
         assert launch.__spec__.submodule_search_locations
         assert importlib.resources.files("launch") is not None
 
-    def test_reload(self):
+    def test_modules_can_be_reloaded(self):
         import launch.conditions
 
         assert importlib.reload(launch.conditions) is launch.conditions
@@ -113,7 +113,7 @@ class TestModules:
 
 
 class TestReading:
-    def test_a_table(self):
+    def test_table_is_parsed(self):
         read = table.parse(
             "# Words.\n"
             "[one]\n"
@@ -142,6 +142,6 @@ class TestReading:
         assert modules.value_of(one, "F") == ("x", 1)
 
     @pytest.mark.parametrize("text", ["[one]\nno line\n", "here: A\n"])
-    def test_a_line_that_is_none(self, text):
+    def test_malformed_line_is_rejected(self, text):
         with pytest.raises(ValueError, match="not a line of a table"):
             table.parse(text)

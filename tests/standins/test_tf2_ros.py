@@ -93,7 +93,7 @@ class FrameListener(Node):
 
 
 class TestTopics:
-    def test_the_turtles(self):
+    def test_turtle_tf2_example_runs(self):
         executor = SingleThreadedExecutor()
         listener, publisher = FrameListener(), FramePublisher()
         executor.add_node(listener)
@@ -103,7 +103,7 @@ class TestTopics:
         assert listener.commands[0].angular.z == pytest.approx(math.pi / 2)
         assert all('"world" passed to lookupTransform' in miss for miss in listener.misses)
 
-    def test_static_transforms_reach_who_comes_late(self, node):
+    def test_late_listener_receives_static_transforms(self, node):
         broadcaster = StaticTransformBroadcaster(node)
         broadcaster.sendTransform(transform("base", "laser", Time()))
         broadcaster.sendTransform(transform("base", "camera", Time()))
@@ -113,7 +113,7 @@ class TestTopics:
         for frame in ("laser", "camera"):
             assert buffer.lookup_transform("base", frame, Time()).transform.translation.x == 1.0
 
-    def test_a_listener_with_a_thread_of_its_own(self, node):
+    def test_listener_with_own_thread_receives_transforms(self, node):
         buffer = Buffer()
         listener = TransformListener(buffer, node, spin_thread=True)
         TransformBroadcaster(rclpy.create_node("other")).sendTransform(transform("a", "b", Time(seconds=5)))
@@ -122,7 +122,7 @@ class TestTopics:
         listener.unregister()
         assert threading.active_count() == before - 1
 
-    def test_waiting_in_a_callback_of_the_same_node(self, node):
+    def test_lookup_waits_in_callback_of_same_node(self, node):
         """The listener's callbacks are in a reentrant group, so a second thread takes them meanwhile."""
         buffer, found = Buffer(), []
         TransformListener(buffer, node)
@@ -143,7 +143,7 @@ class TestTopics:
             thread.join(60.0)
         assert found[0].transform.translation.x == 1.0
 
-    def test_awaited_in_a_coroutine(self, node):
+    def test_lookup_is_awaited_in_coroutine(self, node):
         buffer, found = Buffer(), []
         TransformListener(buffer, node)
 
@@ -160,7 +160,7 @@ class TestTopics:
 
 
 class TestBuffer:
-    def test_errors(self):
+    def test_lookup_errors_have_specific_exceptions(self):
         buffer = Buffer()
         buffer.set_transform(transform("a", "b", Time(seconds=5)), "test")
         buffer.set_transform(transform("x", "y", Time(seconds=5)), "test")
@@ -174,13 +174,13 @@ class TestBuffer:
             buffer.lookup_transform("/a", "b", Time())
         assert issubclass(tf2_py.LookupException, tf2_ros.TransformException)
 
-    def test_the_stamp_of_a_message_is_a_time(self):
+    def test_message_stamp_is_accepted_as_time(self):
         buffer = Buffer()
         message = transform("a", "b", Time(seconds=5))
         assert buffer.set_transform(message, "test") is None
         assert buffer.lookup_transform("a", "b", message.header.stamp).header.stamp.sec == 5
 
-    def test_messages_are_taken_to_other_frames(self):
+    def test_messages_are_transformed_to_other_frames(self):
         assert tf2_geometry_msgs.do_transform_point is not None
         buffer = Buffer()
         buffer.set_transform(transform("map", "base", Time(seconds=5), 1.0, math.pi / 2), "test")
@@ -198,13 +198,13 @@ class TestBuffer:
         assert buffer.transform(point, "map", new_type=PointStamped) == moved
         assert buffer.transform_full(point, "map", Time(seconds=5), "map") == moved
 
-    def test_types_that_are_not_registered(self):
+    def test_unregistered_types_are_rejected(self):
         with pytest.raises(tf2_ros.TypeException, match="not loaded or supported"):
             Buffer().transform(Twist(), "map")
         with pytest.raises(tf2_ros.NotImplementedException):
             tf2_ros.BufferInterface().lookup_transform("a", "b", Time())
 
-    def test_conversions(self):
+    def test_convert_uses_registered_conversions(self):
         class Own:
             def __init__(self, x):
                 self.x = x
@@ -250,20 +250,20 @@ class TestClient:
         executor.shutdown()
         thread.join(60.0)
 
-    def test_a_transform_of_another_process(self, client):
+    def test_buffer_client_looks_up_transform(self, client):
         assert client.lookup_transform("a", "b", Time()).transform.translation.x == 1.0
         assert client.can_transform("a", "b", Time())
 
-    def test_an_error_of_another_process(self, client):
+    def test_buffer_client_raises_lookup_error(self, client):
         with pytest.raises(tf2_ros.LookupException, match="does not exist"):
             client.lookup_transform("a", "nowhere", Time())
         assert not client.can_transform("a", "nowhere", Time())
 
-    def test_nobody_there(self, node):
+    def test_buffer_client_times_out_without_server(self, node):
         with pytest.raises(tf2_ros.TimeoutException, match="not ready"):
             tf2_ros.BufferClient(node, "nowhere").lookup_transform("a", "b", Time())
 
-    def test_one_that_is_destroyed_asks_no_more(self, node):
+    def test_destroyed_buffer_client_is_invalid(self, node):
         client = tf2_ros.BufferClient(node, "nowhere")
         client.destroy()
         with pytest.raises(InvalidHandle):
@@ -278,7 +278,7 @@ class TestClient:
         ("tf2_sensor_msgs", "sensor_msgs.msg.PointCloud2"),
     ],
 )
-def test_importing_a_package_of_conversions_is_enough(package, type_name):
+def test_importing_conversion_package_registers_types(package, type_name):
     """Nothing of it has to be used: its import alone registers the types with every buffer."""
     module, _, name = type_name.rpartition(".")
     program = (

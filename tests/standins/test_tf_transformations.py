@@ -25,18 +25,18 @@ def turn(axis: int, angle: float) -> np.ndarray:
     return matrix
 
 
-def test_roll_pitch_yaw_of_a_quarter_turn_to_the_left():
+def test_quarter_turn_has_expected_quaternion():
     assert tf.quaternion_from_euler(0, 0, math.pi / 2) == pytest.approx([0, 0, math.sqrt(0.5), math.sqrt(0.5)])
     assert tf.euler_from_quaternion([0, 0, math.sqrt(0.5), math.sqrt(0.5)]) == pytest.approx((0, 0, math.pi / 2))
 
 
-def test_there_are_twenty_four_conventions():
+def test_all_24_axis_conventions_are_supported():
     assert len(AXES) == 24
 
 
 @pytest.mark.parametrize("axes", AXES)
 @given(i=ANGLES, j=ANGLES, k=ANGLES)
-def test_angles_are_turned_about_their_axes_in_order(axes, i, j, k):
+def test_euler_matrix_rotates_about_axes_in_order(axes, i, j, k):
     first, second, third = (turn("xyz".index(letter), angle) for letter, angle in zip(axes[1:], (i, j, k), strict=True))
     expected = third @ second @ first if axes[0] == "s" else first @ second @ third
     assert tf.euler_matrix(i, j, k, axes)[:3, :3] == pytest.approx(expected, abs=1e-9)
@@ -44,27 +44,27 @@ def test_angles_are_turned_about_their_axes_in_order(axes, i, j, k):
 
 @pytest.mark.parametrize("axes", AXES)
 @given(u=UNIT, v=UNIT, w=UNIT)
-def test_angles_of_a_rotation_give_it_again(axes, u, v, w):
+def test_euler_angles_round_trip_through_matrix(axes, u, v, w):
     matrix = tf.random_rotation_matrix((u, v, w))
     assert tf.euler_matrix(*tf.euler_from_matrix(matrix, axes), axes) == pytest.approx(matrix, abs=1e-6)
 
 
 @pytest.mark.parametrize("axes", AXES)
 @pytest.mark.parametrize("middle", [0.0, math.pi / 2, -math.pi / 2, math.pi])
-def test_angles_where_only_a_sum_is_given(axes, middle):
+def test_euler_angles_round_trip_in_gimbal_lock(axes, middle):
     matrix = tf.euler_matrix(0.3, middle, 0.4, axes)
     assert tf.euler_matrix(*tf.euler_from_matrix(matrix, axes), axes) == pytest.approx(matrix, abs=1e-6)
 
 
 @given(u=UNIT, v=UNIT, w=UNIT)
-def test_quaternion_of_the_matrix_of_a_quaternion(u, v, w):
+def test_quaternion_round_trips_through_matrix(u, v, w):
     quaternion = tf.random_quaternion((u, v, w))
     again = tf.quaternion_from_matrix(tf.quaternion_matrix(quaternion))
     assert abs(float(again @ quaternion)) == pytest.approx(1.0)
     assert again[3] >= 0
 
 
-def test_product_turns_by_the_right_one_first():
+def test_quaternion_multiply_applies_right_operand_first():
     first, second = tf.quaternion_about_axis(0.3, (1, 0, 0)), tf.quaternion_about_axis(0.7, (0, 0, 1))
     product = tf.quaternion_matrix(tf.quaternion_multiply(second, first))
     assert product == pytest.approx(tf.quaternion_matrix(second) @ tf.quaternion_matrix(first))
@@ -72,7 +72,7 @@ def test_product_turns_by_the_right_one_first():
     assert tf.quaternion_conjugate(first) == pytest.approx(tf.quaternion_inverse(first))
 
 
-def test_half_way_between_two_quaternions():
+def test_slerp_interpolates_halfway():
     start, end = tf.quaternion_about_axis(0.0, (0, 0, 1)), tf.quaternion_about_axis(1.0, (0, 0, 1))
     assert tf.quaternion_slerp(start, end, 0.5) == pytest.approx(tf.quaternion_about_axis(0.5, (0, 0, 1)))
     assert tf.quaternion_slerp(start, -end, 0.5) == pytest.approx(tf.quaternion_about_axis(0.5, (0, 0, 1)))
@@ -80,7 +80,7 @@ def test_half_way_between_two_quaternions():
 
 
 @given(u=UNIT, v=UNIT, w=UNIT)
-def test_matrix_is_taken_apart_and_put_together(u, v, w):
+def test_matrix_is_decomposed_and_composed(u, v, w):
     angles = tf.euler_from_quaternion(tf.random_quaternion((u, v, w)))
     matrix = tf.compose_matrix((1.5, 2.0, 0.5), (0.2, -0.3, 0.4), angles, (1, 2, 3))
     scale, shear, again, translate, perspective = tf.decompose_matrix(matrix)
@@ -90,7 +90,7 @@ def test_matrix_is_taken_apart_and_put_together(u, v, w):
     assert tf.compose_matrix(scale, shear, again, translate, perspective) == pytest.approx(matrix, abs=1e-6)
 
 
-def test_turn_about_an_axis_beside_the_origin():
+def test_rotation_matrix_about_offset_axis():
     matrix = tf.rotation_matrix(math.pi / 2, (0, 0, 1), (1, 0, 0))
     assert matrix @ [1, 0, 0, 1] == pytest.approx([1, 0, 0, 1])
     assert matrix @ [2, 0, 0, 1] == pytest.approx([1, 1, 0, 1])
@@ -98,7 +98,7 @@ def test_turn_about_an_axis_beside_the_origin():
     assert tf.rotation_matrix(angle, direction, point) == pytest.approx(matrix)
 
 
-def test_motions():
+def test_matrices_are_concatenated_inverted_and_compared():
     there = tf.concatenate_matrices(tf.translation_matrix((1, 2, 3)), tf.euler_matrix(0.1, 0.2, 0.3))
     assert tf.concatenate_matrices(there, tf.inverse_matrix(there)) == pytest.approx(tf.identity_matrix())
     assert tf.translation_from_matrix(there) == pytest.approx([1, 2, 3])
@@ -108,11 +108,11 @@ def test_motions():
     assert tf.reflection_matrix((0, 0, 1), (0, 0, 1)) @ [5, 6, 3, 1] == pytest.approx([5, 6, -1, 1])
 
 
-def test_lengths():
+def test_vector_norm_and_unit_vector():
     assert tf.vector_norm((3, 4)) == pytest.approx(5)
     assert tf.unit_vector([(3, 4), (0, 2)], axis=1) == pytest.approx(np.array([[0.6, 0.8], [0, 1]]))
 
 
-def test_axes_that_are_none_are_refused():
+def test_unknown_axes_are_rejected():
     with pytest.raises(ValueError, match="unknown axes 'sxx'"):
         tf.quaternion_from_euler(0, 0, 0, "sxx")

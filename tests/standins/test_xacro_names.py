@@ -11,7 +11,7 @@ import xacro
 from tests.standins.conftest import HEAD
 
 
-def test_where_an_expansion_is(write, capsys):
+def test_print_location_shows_macro_and_include_stack(write, capsys):
     write("b.xacro", '<xacro:macro name="in">${xacro.print_location()}</xacro:macro>')
     write("c.xacro", '<xacro:macro name="out"><xacro:in/><xacro:call macro="in"/></xacro:macro><xacro:out/>')
     path = write("a.xacro", '<xacro:include filename="b.xacro"/><xacro:include filename="c.xacro"/>')
@@ -26,7 +26,7 @@ def test_where_an_expansion_is(write, capsys):
     assert xacro.macrostack == []
 
 
-def test_where_an_expansion_failed(write, capsys):
+def test_failed_expansion_keeps_file_stack(write, capsys):
     write("b.xacro", '<l n="${no}"/>')
     with pytest.raises(xacro.XacroException):
         xacro.process_file(write("a.xacro", '<xacro:include filename="b.xacro"/>'))
@@ -36,7 +36,7 @@ def test_where_an_expansion_failed(write, capsys):
     assert capsys.readouterr().err.startswith("when processing file: ")
 
 
-def test_file_names():
+def test_abs_filename_spec_is_relative_to_current_file():
     xacro.init_stacks("sub/a.xacro")
     assert xacro.abs_filename_spec("b.xacro") == "sub/b.xacro"
     assert xacro.abs_filename_spec("/b.xacro") == "/b.xacro"
@@ -44,7 +44,7 @@ def test_file_names():
     assert xacro.abs_filename_spec("b.xacro") == "./b.xacro"
 
 
-def test_texts():
+def test_eval_text_and_safe_eval():
     symbols = xacro.Table({})
     symbols["a"] = "2"
     symbols["b"] = "${a * 3}"
@@ -57,7 +57,7 @@ def test_texts():
             xacro.eval_text(text, symbols)
 
 
-def test_namespaces_in_texts():
+def test_eval_text_resolves_namespaces():
     symbols, inner = xacro.Table({}), xacro.NameSpace()
     inner["p"] = "4"
     symbols["A"] = inner
@@ -67,7 +67,7 @@ def test_namespaces_in_texts():
         inner.q  # noqa: B018 - asking is what is tested
 
 
-def test_substitutions(monkeypatch):
+def test_resolve_args_evaluates_substitutions(monkeypatch):
     monkeypatch.setenv("V", "1")
     assert xacro.eval_extension("$(env V)") == "1"
     resolve = xacro.substitution_args.resolve_args
@@ -80,7 +80,7 @@ def test_substitutions(monkeypatch):
         resolve("$(find no_such_package)")
 
 
-def test_yaml(write):
+def test_load_yaml_returns_attribute_access(write):
     write("a.yaml", "a: {b: [{c: !degrees 180}]}\nkeys: 1\n")
     value = xacro.load_yaml("a.yaml")
     assert value.a.b[0].c == math.pi
@@ -92,7 +92,7 @@ def test_yaml(write):
         xacro.load_yaml("none.yaml")
 
 
-def test_tables(capsys):
+def test_table_evaluates_lazily_and_inherits(capsys):
     language = {"pi": 3}
     top = xacro.Table(language)
     inner = xacro.Table(top)
@@ -117,7 +117,7 @@ def test_tables(capsys):
     assert "parent" in str(inner)
 
 
-def test_the_log_of_a_table(capsys):
+def test_table_logs_by_verbosity(capsys):
     xacro.verbosity = 3
     top = xacro.Table({})
     inner = xacro.Table(top)
@@ -141,18 +141,18 @@ def test_the_log_of_a_table(capsys):
         ("*a", ("*a", None, "")),
     ],
 )
-def test_parameters(text, expected):
+def test_parse_macro_arg_splits_parameters(text, expected):
     assert xacro.parse_macro_arg(text) == expected
 
 
-def test_an_empty_list_of_parameters():
+def test_parse_macro_arg_rejects_malformed_parameters():
     with pytest.raises(IndexError):
         xacro.parse_macro_arg("  ")
     with pytest.raises(xacro.XacroException):
         xacro.parse_macro_arg("a:='b")
 
 
-def test_macros_of_namespaces():
+def test_resolve_macro_searches_namespaces():
     inner = {"m": 2}
     outer = {"m": 1, "N": inner}
     assert xacro.resolve_macro("m", outer, outer) == (outer, outer, 1)
@@ -161,7 +161,7 @@ def test_macros_of_namespaces():
         xacro.resolve_macro("N.x", outer, outer)
 
 
-def test_definitions_are_taken_out_of_a_document(capsys):
+def test_grab_functions_remove_definitions_from_document(capsys):
     document = minidom.parseString(
         f"""{HEAD}
         <!-- stays -->
@@ -196,20 +196,20 @@ def test_definitions_are_taken_out_of_a_document(capsys):
         '<xacro:property name="a" value="1" scope="parent"/>',
     ],
 )
-def test_definitions_that_are_wrong(tag):
+def test_grab_property_rejects_malformed_properties(tag):
     document = minidom.parseString(f"{HEAD}{tag}</robot>")
     with pytest.raises(xacro.XacroException):
         xacro.grab_property(document.documentElement.firstChild, xacro.Table({}))
 
 
 @pytest.mark.parametrize("name", ["call", "a.b"])
-def test_macros_that_are_named_wrong(name):
+def test_grab_macro_rejects_malformed_names(name):
     document = minidom.parseString(f'{HEAD}<xacro:macro name="{name}"/></robot>')
     with pytest.raises(xacro.XacroException):
         xacro.grab_macro(document.documentElement.firstChild, xacro.Table())
 
 
-def test_properties_of_outer_tables():
+def test_grab_property_sets_outer_scopes():
     top = xacro.Table({})
     middle = xacro.Table(top)
     inner = xacro.Table(middle)
@@ -227,7 +227,7 @@ def test_properties_of_outer_tables():
     assert dict.__getitem__(inner, "z") == 5
 
 
-def test_nodes():
+def test_node_functions_navigate_and_replace():
     document = minidom.parseString('<a x="1"><!-- c --><b><i/>t</b><c/></a>')
     root = document.documentElement
     first = xacro.first_child_element(root)
@@ -243,7 +243,7 @@ def test_nodes():
         xacro.reqd_attrs(root, ["y"])
 
 
-def test_declared_namespaces(capsys):
+def test_import_xml_namespaces_copies_declarations(capsys):
     document = minidom.parseString('<a xmlns:n="1"><b xmlns:n="2" xmlns:m="3" o="4"/></a>')
     root = document.documentElement
     xacro.import_xml_namespaces(root, root.firstChild.attributes)
@@ -252,7 +252,7 @@ def test_declared_namespaces(capsys):
     assert "xmlns:n" in capsys.readouterr().err
 
 
-def test_defaults_of_parameters():
+def test_eval_default_arg_uses_outer_value_or_default():
     table = xacro.Table({})
     table["a"] = "1"
     assert xacro.eval_default_arg("a", "${2}", table, None) == 1
@@ -262,7 +262,7 @@ def test_defaults_of_parameters():
         xacro.eval_default_arg("b", None, table, None)
 
 
-def test_conditions_and_names():
+def test_get_boolean_value_and_is_valid_name():
     assert xacro.get_boolean_value("true") is True
     assert xacro.get_boolean_value(0.0, "c") is False
     with pytest.raises(xacro.XacroException, match="'c' gives 'maybe'"):
@@ -273,7 +273,7 @@ def test_conditions_and_names():
     assert "pi" in xacro.create_global_symbols()
 
 
-def test_the_words_of_the_command():
+def test_process_args_parses_command_line():
     options, file = xacro.cli.process_args(["-v", "a.xacro", "x:=1", "_y:=2", "z:=", "-o", "out"])
     assert file == "a.xacro"
     assert vars(options) == {
@@ -292,7 +292,7 @@ def test_the_words_of_the_command():
         xacro.cli.process_args(["a", "x:=1:=2"])
 
 
-def test_printing(capsys):
+def test_message_functions_print_to_stderr(capsys):
     xacro.warning("w", 1)
     xacro.error("e")
     xacro.message("m", color="red")
@@ -300,7 +300,7 @@ def test_printing(capsys):
     assert xacro.color.colorize("x", "red", alt_text="a: ") == "a: x"
 
 
-def test_variables_of_the_module_are_live():
+def test_module_variables_can_be_reassigned():
     xacro.filestack = ["a"]
     xacro.macrostack = []
     assert xacro.filestack == ["a"]

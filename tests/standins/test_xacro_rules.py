@@ -12,7 +12,7 @@ from tests.xacro.test_rules import CASES
 
 
 @pytest.mark.parametrize("case", CASES.values(), ids=CASES.keys())
-def test_rule(case: Case, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_xacro_module_matches_engine(case: Case, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     case.write(tmp_path)
     share = tmp_path / "share" / "pkg_a"
     share.mkdir(parents=True)

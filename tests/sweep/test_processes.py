@@ -58,7 +58,7 @@ def ran(path: Path, workers: int) -> dict[int, object]:
     return outcomes
 
 
-def test_rows_are_the_same_bits_in_any_process_and_order(tmp_path):
+def test_results_are_identical_in_any_process_and_order(tmp_path):
     path = write(tmp_path, SIMULATED)
     scenario = load_scenario(path)
     here = {run.row: run_once(scenario, run) for run in reversed(plan_runs(scenario))}
@@ -68,7 +68,7 @@ def test_rows_are_the_same_bits_in_any_process_and_order(tmp_path):
 
 
 @pytest.mark.skipif(sys.platform == "win32", reason="there are no signals there")
-def test_a_process_that_dies_is_replaced_and_its_run_tried_once_more(tmp_path):
+def test_dead_worker_process_is_replaced_and_run_retried_once(tmp_path):
     path = write(tmp_path, DYING)
     outcomes = ran(path, 2)
     assert [outcomes[row].results.get("square") for row in (1, 2, 3, 4)] == [1, 4, 9, None]
@@ -76,7 +76,7 @@ def test_a_process_that_dies_is_replaced_and_its_run_tried_once_more(tmp_path):
 
 
 @pytest.mark.skipif(sys.platform == "win32", reason="Ctrl-C is no signal there")
-def test_ctrl_c_keeps_what_is_done_and_resume_goes_on(tmp_path):
+def test_interrupted_sweep_keeps_rows_and_resumes(tmp_path):
     write(tmp_path, HELD)
     words = ["sweep", "squares.py", "--workers", "1"]
     process = subprocess.Popen(
@@ -104,7 +104,7 @@ def test_ctrl_c_keeps_what_is_done_and_resume_goes_on(tmp_path):
     assert (tmp_path / "squares.csv").read_text() == "row,n,seed,square,error\n1,1,0,1,\n2,2,0,4,\n3,3,0,9,\n"
 
 
-def test_the_command_makes_table_and_summary(tmp_path, monkeypatch, capsys):
+def test_sweep_command_writes_table_and_summary(tmp_path, monkeypatch, capsys):
     monkeypatch.chdir(tmp_path)
     write(tmp_path, SQUARES)
     assert main(["sweep", "squares.py", "n:=4,5", "--seeds", "1", "--workers", "1", "--out", "a/b.csv"]) == 0
@@ -116,7 +116,7 @@ def test_the_command_makes_table_and_summary(tmp_path, monkeypatch, capsys):
     assert Path.cwd() == tmp_path
 
 
-def test_a_run_that_fails_makes_status_1(tmp_path, monkeypatch, capsys):
+def test_failed_run_exits_with_status_1(tmp_path, monkeypatch, capsys):
     monkeypatch.chdir(tmp_path)
     write(tmp_path, f"{HEAD}@scenario(n=[0, 1])\ndef f(n): return {{'x': 1 / n}}\n")
     assert main(["sweep", "squares.py", "--workers", "1"]) == 1
@@ -124,7 +124,7 @@ def test_a_run_that_fails_makes_status_1(tmp_path, monkeypatch, capsys):
     assert "--rerun 1</td>" in (tmp_path / "squares.html").read_text()
 
 
-def test_a_row_is_run_again_by_its_number(tmp_path, monkeypatch, capsys):
+def test_rerun_repeats_row_by_number(tmp_path, monkeypatch, capsys):
     monkeypatch.chdir(tmp_path)
     path = write(tmp_path, SQUARES)
     fourth = plan_runs(load_scenario(path))[3]
@@ -150,7 +150,7 @@ def test_a_row_is_run_again_by_its_number(tmp_path, monkeypatch, capsys):
         (["squares.py", "--resume"], "SWEEP109"),
     ],
 )
-def test_bad_input_is_one_error(tmp_path, monkeypatch, capsys, words, code):
+def test_invalid_input_is_one_error(tmp_path, monkeypatch, capsys, words, code):
     monkeypatch.chdir(tmp_path)
     write(tmp_path, SQUARES)
     assert main(["sweep", *words]) == 1

@@ -38,7 +38,7 @@ sys.exit(status)
 
 
 @pytest.mark.slow
-def test_a_cluster_of_two_workers_loses_one_and_the_table_is_whole(tmp_path):
+def test_ray_cluster_completes_table_after_losing_worker(tmp_path):
     path = write(tmp_path, LOSING)
     (tmp_path / "beside.py").write_text("def square(n): return n * n\n")
     lost = tmp_path / "lost"
@@ -54,7 +54,7 @@ def test_a_cluster_of_two_workers_loses_one_and_the_table_is_whole(tmp_path):
     assert rows == "row,n,seed,square,error\n1,1,0,1,\n2,2,0,4,\n3,3,0,9,\n4,4,0,16,\n"
 
 
-def test_where_nobody_listens_there_is_no_cluster(tmp_path):
+def test_unreachable_ray_cluster_is_an_error(tmp_path):
     with socket.socket() as unused:
         unused.bind(("127.0.0.1", 0))  # and nobody else can listen there
         address = f"127.0.0.1:{unused.getsockname()[1]}"
@@ -64,7 +64,7 @@ def test_where_nobody_listens_there_is_no_cluster(tmp_path):
             assert raised.value.diagnostics[0].code == "SWEEP114"
 
 
-def test_without_ray_it_is_asked_for(tmp_path, monkeypatch):
+def test_missing_ray_is_reported(tmp_path, monkeypatch):
     monkeypatch.setitem(sys.modules, "ray", None)
     with pytest.raises(LinkwrightError) as raised:
         run_on_ray(write(tmp_path), [], "auto", ignore)

@@ -9,14 +9,14 @@ from linkwright.sweep.scenario import load_scenario
 from tests.sweep.scenarios import HEAD, SQUARES, loaded, write
 
 
-def test_each_value_is_run_with_each_seed(tmp_path):
+def test_scenario_runs_each_value_with_each_seed(tmp_path):
     runs = plan_runs(loaded(tmp_path))
     assert [run.row for run in runs] == [1, 2, 3, 4, 5, 6]
     assert [(run.parameters["n"], run.seed) for run in runs] == [(1, 0), (1, 1), (2, 0), (2, 1), (3, 0), (3, 1)]
     assert list(runs[0].parameters) == ["n", "drawn"]
 
 
-def test_what_is_drawn_depends_on_seed_and_name_alone(tmp_path):
+def test_drawn_values_depend_only_on_seed_and_name(tmp_path):
     scenario = loaded(tmp_path)
     drawn = {run.seed: run.parameters["drawn"] for run in plan_runs(scenario)}
     assert all(run.parameters["drawn"] == drawn[run.seed] for run in plan_runs(scenario))
@@ -26,7 +26,7 @@ def test_what_is_drawn_depends_on_seed_and_name_alone(tmp_path):
     assert all(0.0 <= run.parameters["drawn"] < 1.0 for run in more)
 
 
-def test_values_of_the_command_line_are_yaml(tmp_path):
+def test_command_line_values_are_parsed_as_yaml(tmp_path):
     text = f"{HEAD}\n@scenario(world=['empty'], laser=[True], mass=Normal(1.0, 0.1))\ndef f(world, laser, mass): ...\n"
     scenario = with_values(loaded(tmp_path, text), {"world": "maze,house", "laser": "true,false", "mass": "1.5"}, None)
     assert {name: list(values) for name, values in scenario.parameters.items()} == {
@@ -36,7 +36,7 @@ def test_values_of_the_command_line_are_yaml(tmp_path):
     }
 
 
-def test_a_run_is_what_the_function_returns(tmp_path):
+def test_run_outcome_contains_function_results(tmp_path):
     scenario = loaded(tmp_path)
     last = plan_runs(scenario)[-1]
     outcome = run_once(scenario, last)
@@ -45,7 +45,7 @@ def test_a_run_is_what_the_function_returns(tmp_path):
     assert run_once(scenario, last) == outcome
 
 
-def test_random_numbers_of_python_and_numpy_begin_with_the_seed(tmp_path):
+def test_python_and_numpy_random_generators_use_seed(tmp_path):
     text = f"""import random
 import numpy
 {HEAD}
@@ -72,7 +72,7 @@ def draw():
         ("from linkwright.descriptions import load; load('<robot')", "XML203 <robot_description>:1:1"),
     ],
 )
-def test_what_goes_wrong_is_the_outcome(tmp_path, body, error):
+def test_run_failure_is_recorded_as_outcome(tmp_path, body, error):
     scenario = loaded(tmp_path, f"{HEAD}\n@scenario(n=[1])\ndef f(n):\n    {body}\n")
     outcome = run_once(scenario, plan_runs(scenario)[0])
     assert outcome.error.startswith(error)
@@ -113,7 +113,7 @@ BAD = {
 
 
 @pytest.mark.parametrize(("message", "text"), BAD.items(), ids=range(len(BAD)))
-def test_a_bad_scenario_is_one_error(tmp_path, monkeypatch, message, text):
+def test_invalid_scenario_is_one_error(tmp_path, monkeypatch, message, text):
     monkeypatch.chdir(tmp_path)
     with pytest.raises(LinkwrightError) as raised:
         loaded(tmp_path, text)
@@ -122,7 +122,7 @@ def test_a_bad_scenario_is_one_error(tmp_path, monkeypatch, message, text):
 
 
 @pytest.mark.parametrize("name", ["none.py", "drive.yaml", "."])
-def test_what_is_no_file_of_python_is_no_scenario(tmp_path, name):
+def test_scenario_must_be_a_python_file(tmp_path, name):
     (tmp_path / "drive.yaml").write_text("a: 1")
     with pytest.raises(LinkwrightError) as raised:
         load_scenario(tmp_path / name)
@@ -132,13 +132,13 @@ def test_what_is_no_file_of_python_is_no_scenario(tmp_path, name):
 @pytest.mark.parametrize(
     ("words", "code"), [({"m": "1"}, "SWEEP106"), ({"n": ""}, "SWEEP105"), ({"n": "]"}, "SWEEP105")]
 )
-def test_bad_values_of_the_command_line(tmp_path, words, code):
+def test_invalid_command_line_values_are_rejected(tmp_path, words, code):
     with pytest.raises(LinkwrightError) as raised:
         with_values(loaded(tmp_path), words, None)
     assert raised.value.diagnostics[0].code == code
 
 
-def test_the_fingerprint_is_that_of_file_and_values(tmp_path):
+def test_fingerprint_depends_on_file_and_values(tmp_path):
     scenario = loaded(tmp_path)
     whole = fingerprint(scenario, plan_runs(scenario))
     assert whole == fingerprint(scenario, plan_runs(scenario))

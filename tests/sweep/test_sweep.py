@@ -48,7 +48,7 @@ def swept(tmp_path, text=SQUARES, name="out.csv", until=None, resume=False):
     return table, messages
 
 
-def test_rows_are_in_their_order_whichever_came_first(tmp_path):
+def test_table_rows_are_sorted_regardless_of_completion_order(tmp_path):
     table, result = swept(tmp_path)
     assert result[-1] == (6, 6, 0)
     rows = rows_of(tmp_path / "out.csv")
@@ -60,7 +60,7 @@ def test_rows_are_in_their_order_whichever_came_first(tmp_path):
     assert sorted(path.name for path in tmp_path.iterdir() if path.is_file()) == ["out.csv", "out.html", "squares.py"]
 
 
-def test_a_run_that_fails_is_a_row_with_its_error(tmp_path):
+def test_failed_run_is_a_row_with_error(tmp_path):
     table, result = swept(tmp_path, MIXED)
     assert result[-1] == (4, 4, 1)
     assert table.failed == [1]
@@ -70,7 +70,7 @@ def test_a_run_that_fails_is_a_row_with_its_error(tmp_path):
     assert rows[2]["world"] == 'a,"b"'
 
 
-def test_parquet_has_the_same_and_its_types(tmp_path):
+def test_parquet_table_has_same_values_and_types(tmp_path):
     table, _ = swept(tmp_path, MIXED, "out.parquet")
     read = pq.read_table(tmp_path / "out.parquet").to_pydict()
     assert read["row"] == [1, 2, 3, 4]
@@ -80,7 +80,7 @@ def test_parquet_has_the_same_and_its_types(tmp_path):
     assert list(read) == list(table.columns)
 
 
-def test_what_was_interrupted_goes_on_and_ends_with_the_same_bytes(tmp_path):
+def test_resumed_sweep_writes_identical_files(tmp_path):
     whole, interrupted = tmp_path / "whole", tmp_path / "interrupted"
     whole.mkdir()
     interrupted.mkdir()
@@ -98,7 +98,7 @@ def test_what_was_interrupted_goes_on_and_ends_with_the_same_bytes(tmp_path):
         assert (interrupted / name).read_bytes() == (whole / name).read_bytes()
 
 
-def test_an_unfinished_sweep_is_neither_lost_nor_mixed_with_another(tmp_path):
+def test_unfinished_sweep_is_neither_lost_nor_mixed_with_another(tmp_path):
     with pytest.raises(LinkwrightError) as raised:
         swept(tmp_path, resume=True)
     assert raised.value.diagnostics[0].code == "SWEEP109"
@@ -112,7 +112,7 @@ def test_an_unfinished_sweep_is_neither_lost_nor_mixed_with_another(tmp_path):
 
 
 @needs_limits
-def test_on_a_full_disk_the_table_that_was_there_stays(tmp_path):
+def test_full_disk_keeps_previous_table(tmp_path):
     (tmp_path / "out.csv").write_text("old")
     scenario = loaded(tmp_path)
     sweep = Sweep(scenario, tmp_path / "out.csv", ["linkwright"])
@@ -124,7 +124,7 @@ def test_on_a_full_disk_the_table_that_was_there_stays(tmp_path):
     assert table.columns["row"] == [1, 2, 3, 4, 5, 6]
 
 
-def test_what_ends_before_the_first_row_leaves_nothing_behind(tmp_path):
+def test_sweep_failing_before_first_row_leaves_no_files(tmp_path):
     def refused(runs, report):
         raise LinkwrightError(Diagnostic("SWEEP114", phrase("there is no cluster")))
 
@@ -151,7 +151,7 @@ class Page(HTMLParser):
         return sum(name == tag and attributes.items() <= found.items() for name, found in self.tags)
 
 
-def test_the_summary_has_plots_and_fetches_nothing(tmp_path):
+def test_summary_has_plots_and_no_external_resources(tmp_path):
     swept(tmp_path)
     page = Page((tmp_path / "out.html").read_text())
     assert page.count("svg") == 3 + 2 * 3, "of each result one by itself, and one against each parameter that differs"
@@ -163,7 +163,7 @@ def test_the_summary_has_plots_and_fetches_nothing(tmp_path):
     assert "6 runs" in page.text.getvalue()
 
 
-def test_the_summary_tells_what_failed_and_how_to_run_it_again(tmp_path):
+def test_summary_lists_failures_with_rerun_command(tmp_path):
     swept(tmp_path, MIXED)
     text = (tmp_path / "out.html").read_text()
     assert "&lt;no&gt; way" in text
@@ -171,14 +171,14 @@ def test_the_summary_tells_what_failed_and_how_to_run_it_again(tmp_path):
     assert "1 failed" in text
 
 
-def test_a_sweep_of_nothing_but_errors_has_a_page(tmp_path):
+def test_summary_exists_for_sweep_of_only_errors(tmp_path):
     table, _ = swept(tmp_path, f"{HEAD}@scenario(n=[1])\ndef f(n): return {{'x': 1 / 0}}\n")
     assert table.failed == [0]
     assert Page((tmp_path / "out.html").read_text()).count("svg") == 0
 
 
 @pytest.mark.parametrize("values", [[1.0, 1.0], [0.0, 1e-12], [-5.0, 1e9], [1e-300, 2e-300]])
-def test_plots_of_extreme_values(tmp_path, values):
+def test_summary_plots_extreme_values(tmp_path, values):
     text = f"{HEAD}@scenario(n=[0, 1])\ndef f(n): return {{'x': {values}[n]}}\n"
     swept(tmp_path, text)
     page = (tmp_path / "out.html").read_text()
@@ -186,7 +186,7 @@ def test_plots_of_extreme_values(tmp_path, values):
     assert Page(page).count("circle") == 2
 
 
-def test_tables_are_csv_or_parquet(tmp_path):
+def test_table_format_must_be_csv_or_parquet(tmp_path):
     with pytest.raises(LinkwrightError) as raised:
         check_format(tmp_path / "out.xlsx")
     assert raised.value.diagnostics[0].code == "SWEEP110"
@@ -194,7 +194,7 @@ def test_tables_are_csv_or_parquet(tmp_path):
         check_format(tmp_path / name)
 
 
-def test_what_is_not_returned_everywhere_is_empty_there(tmp_path):
+def test_missing_results_are_empty_cells(tmp_path):
     runs = plan_runs(loaded(tmp_path))[:2]
     table = Table.of(runs, {1: Outcome(1, {"a": 1}), 2: Outcome(2, {"b": "x"})})
     lines = table_bytes(table, tmp_path / "out.csv").decode().splitlines()

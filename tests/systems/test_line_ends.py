@@ -25,13 +25,13 @@ def packages(request, tmp_path, monkeypatch) -> Path:
     return tmp_path
 
 
-def test_packages_are_checked_without_a_finding(packages, capfd):
+def test_packages_with_crlf_have_no_findings(packages, capfd):
     assert main(["check", PACKAGE.name, GAZEBO_PACKAGE.name]) == 0
     output = capfd.readouterr()
     assert output.out + output.err == "0 errors, 0 warnings\n"
 
 
-def test_xacro_writes_the_same(packages, capfd):
+def test_xacro_output_is_the_same_with_crlf(packages, capfd):
     assert main(["xacro", f"{PACKAGE.name}/urdf/mbot_gazebo.xacro", "laser:=true"]) == 0
     written = capfd.readouterr().out
     assert main(["xacro", str(PACKAGE / "urdf" / "mbot_gazebo.xacro"), "laser:=true"]) == 0
@@ -41,12 +41,12 @@ def test_xacro_writes_the_same(packages, capfd):
     assert written.count("\n") > 100
 
 
-def test_launch_files_say_their_arguments(packages, capfd):
+def test_launch_file_with_crlf_lists_arguments(packages, capfd):
     assert main(["launch", f"{PACKAGE.name}/launch/display.launch.py", "--show-args"]) == 0
     assert "'gui':" in capfd.readouterr().out
 
 
-def test_a_wrong_frame_is_found_and_named(packages, capfd):
+def test_wrong_frame_in_crlf_file_is_reported(packages, capfd):
     file = packages / PACKAGE.name / "rviz" / "urdf.rviz"
     file.write_bytes(file.read_bytes().replace(b"Fixed Frame: base_link", b"Fixed Frame: base_lnk"))
     main(["check", PACKAGE.name])

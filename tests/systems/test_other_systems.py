@@ -77,12 +77,12 @@ def output_of(process: subprocess.Popen[str]) -> str:
     return out
 
 
-def test_every_module_can_be_imported(elsewhere, tmp_path):
+def test_all_modules_can_be_imported(elsewhere, tmp_path):
     (tmp_path / "import_all.py").write_text(IMPORT_ALL, encoding="utf-8")
     assert output_of(elsewhere(module="import_all")).splitlines()[-1] == "all"
 
 
-def test_commands_work(elsewhere, tmp_path):
+def test_commands_run(elsewhere, tmp_path):
     assert "base_link" in output_of(elsewhere("check", ROBOT))
     assert (
         output_of(elsewhere("xacro", PACKAGE / "urdf" / "mbot_gazebo.xacro", "laser:=true"))
@@ -94,7 +94,7 @@ def test_commands_work(elsewhere, tmp_path):
     assert "base_link" in output_of(elsewhere("inertia", ROBOT))
 
 
-def test_the_page_answers_and_ctrl_c_ends_it(elsewhere):
+def test_viewer_serves_page_and_ctrl_c_ends_it(elsewhere):
     viewer = elsewhere("view", ROBOT, "--no-open")
     try:
         address = next(found[0] for line in viewer.stdout if (found := re.search(r"http://\S+", line)))
@@ -108,7 +108,7 @@ def test_the_page_answers_and_ctrl_c_ends_it(elsewhere):
 
 
 @pytest.mark.parametrize("emulated", ["", "emulate_tty=True"])
-def test_processes_of_a_launch_are_ended_without_complaint(elsewhere, tmp_path, emulated):
+def test_launched_processes_end_cleanly(elsewhere, tmp_path, emulated):
     (tmp_path / "it.launch.py").write_text(PROGRAM.replace("EMULATED", emulated), encoding="utf-8")
     process = elsewhere("launch", "./it.launch.py")
     out, error = process.communicate(timeout=120)
@@ -117,7 +117,7 @@ def test_processes_of_a_launch_are_ended_without_complaint(elsewhere, tmp_path, 
     assert "has died" not in out + error
 
 
-def test_a_world_is_simulated(elsewhere):
+def test_world_is_simulated(elsewhere):
     pytest.importorskip("mujoco")
     output_of(elsewhere("sim", "empty", ROBOT, "--headless", "--seconds", "0.5"))
 
@@ -132,19 +132,19 @@ def test_a_world_is_simulated(elsewhere):
         ("/d:/my%20robots/arm.stl", "d:/my robots/arm.stl"),
     ],
 )
-def test_addresses_with_drives_name_files_on_windows(address, path):
+def test_file_urls_with_drive_letter_are_absolute_on_windows(address, path):
     found = absolute_path(address, with_drives=True)
     assert found == path
     assert PureWindowsPath(found).is_absolute()
 
 
-def test_elsewhere_a_drive_is_a_folder_like_any_other():
+def test_drive_letter_is_a_folder_on_other_systems():
     assert absolute_path("///C:/robots", with_drives=False) == "/C:/robots"
     assert PurePosixPath(absolute_path("///C:/robots", with_drives=False)).is_absolute()
     assert absolute_path("//C:/robots", with_drives=False) is None
 
 
-def test_signals_are_sent_again_without_ending_the_process_on_windows(monkeypatch):
+def test_signal_again_does_not_end_process_on_windows(monkeypatch):
     monkeypatch.setattr(sys, "platform", "win32")
     monkeypatch.setattr(os, "kill", lambda *_: pytest.fail("this ends a process on Windows"))
     came = []
@@ -171,7 +171,7 @@ class Recorded:
 @pytest.mark.parametrize(
     ("platform", "asked"), [("linux", signal.SIGINT), ("darwin", signal.SIGINT), ("win32", "terminate")]
 )
-def test_processes_are_interrupted_where_that_can_be_sent(monkeypatch, platform, asked):
+def test_interrupt_uses_sigint_or_terminate_by_platform(monkeypatch, platform, asked):
     monkeypatch.setattr(sys, "platform", platform)
     process = Recorded()
     interruption.interrupt(process)
@@ -183,7 +183,7 @@ NAMES = "ä漢字"
 
 @pytest.mark.parametrize("encoding", ["cp1252", "cp936", "cp437", "latin-1"])
 @pytest.mark.parametrize("verb", ["check", "xacro", "inertia"])
-def test_any_text_comes_through_a_code_page(tmp_path, encoding, verb):
+def test_unicode_output_survives_code_pages(tmp_path, encoding, verb):
     robot = tmp_path / "robot.urdf"
     robot.write_text(f'<robot name="r"><link name="{NAMES}"/></robot>', encoding="utf-8")
     program = f"""
@@ -200,7 +200,7 @@ sys.exit(main())
     assert NAMES in done.stdout.decode("utf-8")
 
 
-def test_an_encoding_that_was_asked_for_is_kept(monkeypatch, tmp_path):
+def test_requested_output_encoding_is_kept(monkeypatch, tmp_path):
     monkeypatch.setenv("PYTHONIOENCODING", "cp1252")
     with (tmp_path / "out").open("w", encoding="cp1252") as stream:
         monkeypatch.setattr(sys, "stdout", stream)

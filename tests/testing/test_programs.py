@@ -51,7 +51,7 @@ def run(path, seconds=2.0, args=(), topic="/chatter"):
     return messages, program
 
 
-def test_a_spinning_node_runs_in_simulated_time(write):
+def test_spinning_node_runs_in_simulated_time(write):
     program = write("""
         def main():
             rclpy.init()
@@ -69,7 +69,7 @@ def test_a_spinning_node_runs_in_simulated_time(write):
     assert not ended.is_running
 
 
-def test_a_loop_that_spins_once_and_sleeps(write):
+def test_loop_with_spin_once_and_sleep_runs_in_simulated_time(write):
     program = write("""
         rclpy.init()
         node = Node("talker")
@@ -82,7 +82,7 @@ def test_a_loop_that_spins_once_and_sleeps(write):
     assert run(program)[0] == ["0.100", "0.600", "1.100", "1.600"]
 
 
-def test_a_loop_that_never_waits_still_sees_time_pass(write):
+def test_busy_loop_sees_time_advance(write):
     program = write("""
         rclpy.init()
         node = Node("talker")
@@ -98,7 +98,7 @@ def test_a_loop_that_never_waits_still_sees_time_pass(write):
     assert run(program)[0] == ["tick", "tick", "tick", "end"]
 
 
-def test_a_rate_with_a_spinning_thread(write):
+def test_rate_works_with_spinning_thread(write):
     program = write("""
         def spin(node):
             try:
@@ -125,7 +125,7 @@ def test_a_rate_with_a_spinning_thread(write):
     assert run(program)[0] == ["0.5", "1.0", "1.5", "2.0"]
 
 
-def test_a_client_waits_for_a_service_of_the_graph(write):
+def test_client_waits_for_service_of_graph(write):
     program = write("""
         from example_interfaces.srv import AddTwoInts
 
@@ -196,14 +196,14 @@ ACTION = """
 """
 
 
-def test_an_action_in_an_executor_of_several_threads(write):
+def test_action_runs_in_multi_threaded_executor(write):
     program = write(ACTION)
     messages, _ = run(program)
     assert messages == ["0.2 3", "0.4 4", "0.6 5", "0.6 [0, 1, 1, 2, 3]", "0.6 end"]
     assert run(program)[0] == messages
 
 
-def test_threads_queues_pools_and_conditions_of_a_program(write):
+def test_threads_queues_pools_and_conditions_run_in_simulated_time(write):
     program = write("""
         import queue
         from concurrent.futures import ThreadPoolExecutor
@@ -244,7 +244,7 @@ def test_threads_queues_pools_and_conditions_of_a_program(write):
     assert run(program)[0] == messages
 
 
-def test_asyncio_in_a_program(write):
+def test_asyncio_runs_in_simulated_time(write):
     program = write("""
         import asyncio
 
@@ -265,7 +265,7 @@ def test_asyncio_in_a_program(write):
     assert run(program)[0] == ["0.2", "0.5", "1.1"]
 
 
-def test_simulated_time_of_the_clock_topic(write):
+def test_program_follows_clock_topic(write):
     program = write("""
         rclpy.init()
         node = Node("talker")
@@ -280,7 +280,7 @@ def test_simulated_time_of_the_clock_topic(write):
         assert [message.data for message in chatter] == ["0.5", "1.0", "1.5"]
 
 
-def test_two_programs_have_contexts_and_arguments_of_their_own(write):
+def test_two_programs_have_separate_contexts_and_arguments(write):
     program = write("""
         rclpy.init()
         node = Node("talker")
@@ -302,7 +302,7 @@ def test_two_programs_have_contexts_and_arguments_of_their_own(write):
     assert [message.data for message in chatter] == [f"/{name} {name} __main__" for name in ("red", "blue") * 2]
 
 
-def test_an_exception_reaches_the_test_with_the_place_in_the_file(write):
+def test_exception_of_program_is_raised_in_test_with_location(write):
     program = write("""
         rclpy.init()
         time.sleep(0.5)
@@ -318,7 +318,7 @@ def test_an_exception_reaches_the_test_with_the_place_in_the_file(write):
         test.advance(1.0)
 
 
-def test_sys_exit_ends_a_program(write):
+def test_sys_exit_ends_program(write):
     assert run(write("sys.exit(3)"))[1].exit_code == 3
     assert run(write("sys.exit('no robot')"))[1].exit_code == 1
 
@@ -346,7 +346,7 @@ def run_until_ctrl_c(program):
     return [message.data for message in chatter], ended
 
 
-def test_a_program_that_handles_ctrl_c_itself_can_stop_the_robot(write):
+def test_program_with_own_ctrl_c_handling_can_stop_robot(write):
     program = write(STOPS_AT_CTRL_C.format(options="signal_handler_options=SignalHandlerOptions.NO"))
     messages, ended = run_until_ctrl_c(program)
     assert messages == ["stop", "stopped"]
@@ -361,7 +361,7 @@ def test_after_ctrl_c_rclpy_publishes_nothing(write, capsys):
     assert "RCLError: the context is invalid" in capsys.readouterr().err
 
 
-def test_a_handler_of_the_program_receives_ctrl_c(write):
+def test_signal_handler_of_program_receives_ctrl_c(write):
     program = write("""
         import signal
 
@@ -373,7 +373,7 @@ def test_a_handler_of_the_program_receives_ctrl_c(write):
     assert run(program)[1].exit_code == 4
 
 
-def test_a_program_that_ignores_ctrl_c_is_ended(write):
+def test_program_that_ignores_ctrl_c_is_ended(write):
     program = write("""
         while True:
             try:
@@ -388,7 +388,7 @@ def test_a_program_that_ignores_ctrl_c_is_ended(write):
     assert threading.active_count() <= before + 1
 
 
-def test_an_endless_loop_is_ended_with_its_place(write):
+def test_endless_loop_is_ended_with_location(write):
     program = write("""
         def work():
             count = 0
@@ -404,7 +404,7 @@ def test_an_endless_loop_is_ended_with_its_place(write):
             test.advance(1.0)
 
 
-def test_a_program_that_waits_for_a_processor_is_not_ended(write, monkeypatch):
+def test_program_that_waits_for_processor_is_not_ended(write, monkeypatch):
     class StandingClock:
         def read(self):
             return 0.0
@@ -423,7 +423,7 @@ def test_a_program_that_waits_for_a_processor_is_not_ended(write, monkeypatch):
         assert started.exit_code == 0
 
 
-def test_random_numbers_are_the_same_in_each_run(write):
+def test_random_numbers_are_equal_in_each_run(write):
     program = write("""
         rclpy.init()
         publisher = Node("talker").create_publisher(String, "chatter", 10)
@@ -437,7 +437,7 @@ def test_random_numbers_are_the_same_in_each_run(write):
     assert run(program)[0] == first
 
 
-def test_a_file_that_only_defines_main_is_a_program(write):
+def test_file_that_only_defines_main_is_run(write):
     program = write("""
         def main():
             rclpy.init()
@@ -447,7 +447,7 @@ def test_a_file_that_only_defines_main_is_a_program(write):
     assert run(write(program.read_text()[len(HEAD) :] + "\nmain()", "calls_main.py"))[0] == ["once"]
 
 
-def test_functions_and_modules_are_programs_too(write, monkeypatch, tmp_path):
+def test_functions_and_modules_can_be_run_as_programs(write, monkeypatch, tmp_path):
     said = []
 
     def main():
@@ -461,20 +461,20 @@ def test_functions_and_modules_are_programs_too(write, monkeypatch, tmp_path):
     assert run("my_program_module")[1].exit_code == 7
 
 
-def test_a_file_that_does_not_exist_is_an_error_at_once(tmp_path):
+def test_missing_program_file_is_an_error(tmp_path):
     sleep = time.sleep
     with SteppedGraph() as test, pytest.raises(FileNotFoundError):
         test.start_program(tmp_path / "missing.py")
     assert time.sleep is sleep
 
 
-def test_the_functions_of_python_are_restored(write):
+def test_patched_python_functions_are_restored(write):
     originals = (time.sleep, time.time, threading.Lock, threading.Thread.start)
     run(write("time.sleep(0.1)"))
     assert (time.sleep, time.time, threading.Lock, threading.Thread.start) == originals
 
 
-def test_the_nodes_of_a_package_drive_in_a_simulation():
+def test_package_node_drives_robot_in_simulation():
     poses = []
     for _ in range(2):
         with SteppedSimulation("empty", ROBOT) as test:

@@ -38,13 +38,13 @@ LASER_BEHIND_A_POST = """<robot name="observer">
 <frame_name>laser</frame_name></plugin></sensor></gazebo></robot>"""
 
 
-def test_the_example_of_the_documentation_runs():
+def test_documentation_example_runs():
     results = doctest.testmod(linkwright.testing.simulated)
     assert results.attempted == 1
     assert results.failed == 0
 
 
-def test_mbot_drives_a_metre_and_its_odometry_says_so():
+def test_mbot_drives_one_meter_and_odometry_matches():
     with SteppedSimulation("empty", MBOT) as test:
         odometry = test.record("/odom")
         test.drive(0.5)
@@ -60,7 +60,7 @@ def test_mbot_drives_a_metre_and_its_odometry_says_so():
 
 
 @pytest.mark.parametrize(("linear", "angular"), [(0.5, 0.0), (-0.5, 0.0), (0.0, 1.0), (0.3, 0.6), (0.3, -0.6)])
-def test_wheels_that_begin_to_turn_do_not_slip_away_from_their_odometry(linear, angular):
+def test_accelerating_wheels_match_odometry(linear, angular):
     """The plugin steps the speeds that it asks of the motors."""
     with SteppedSimulation("empty", MBOT) as test:
         odometry = test.record("/odom")
@@ -75,7 +75,7 @@ def test_wheels_that_begin_to_turn_do_not_slip_away_from_their_odometry(linear, 
         assert rpy_from_quaternion(rotation)[2] == pytest.approx(rpy_from_quaternion(result)[2], abs=1e-3)
 
 
-def test_a_laser_measures_the_links_on_fixed_joints_as_in_the_server(tmp_path):
+def test_laser_measures_links_on_fixed_joints(tmp_path):
     """gz merges them with the laser's link, whose collisions no ray meets. The server keeps them."""
     robot = tmp_path / "robot.urdf"
     robot.write_text(LASER_BEHIND_A_POST, encoding="utf-8")
@@ -95,16 +95,16 @@ def _driven(seed: int) -> tuple[list[bytes], list[float]]:
         return [np.asarray([each.linear_acceleration.x]).tobytes() for each in imu], poses
 
 
-def test_twice_the_same_is_the_same_bits_and_another_seed_makes_other_noise():
+def test_same_seed_gives_identical_run_and_other_seed_other_noise():
     assert _driven(1) == _driven(1)
     assert _driven(1)[0] != _driven(2)[0]
 
 
-def test_a_node_for_rclpy_drives_it_without_a_thread():
+def test_rclpy_node_drives_robot_without_thread():
     from linkwright.standins.rclpy_api.node import Node
 
     class Keeper(Node):
-        """Drives on until odometry says half a metre, and looks at the clock."""
+        """Drives on until odometry says half a meter, and looks at the clock."""
 
         def __init__(self):
             super().__init__("keeper", parameter_overrides=[Parameter("use_sim_time", value=True)])
@@ -128,7 +128,7 @@ def test_a_node_for_rclpy_drives_it_without_a_thread():
         assert threading.active_count() == threads
 
 
-def test_it_begins_anew():
+def test_reset_restarts_simulation():
     with SteppedSimulation("empty", MBOT) as test:
         odometry = test.record("/odom")
         test.drive(0.5)
@@ -143,7 +143,7 @@ def test_it_begins_anew():
         assert test.now == pytest.approx(2.0)
 
 
-async def test_in_a_coroutine():
+async def test_async_simulation_runs_in_coroutine():
     async with AsyncSteppedSimulation("empty", MBOT, pose=(1.0, 2.0, 0.0, 0.0, 0.0, 0.0)) as test:
         odometry = test.record("/odom")
         await test.advance(0.25)
@@ -152,7 +152,7 @@ async def test_in_a_coroutine():
         assert test.robot_pose()[:2] == pytest.approx((1.0, 2.0), abs=1e-3)
 
 
-def test_short_times_add_up():
+def test_short_advances_add_up():
     with SteppedSimulation() as test:
         for _ in range(100):
             test.advance(0.0015)
@@ -160,7 +160,7 @@ def test_short_times_add_up():
 
 
 @pytest.mark.parametrize(("friction", "slides"), [(0.2, True), (0.5, False)])
-def test_friction_of_what_stands_still(tmp_path, friction, slides):
+def test_friction_option_determines_sliding(tmp_path, friction, slides):
     (tmp_path / "crate.sdf").write_text(BOX)
     (tmp_path / "slope.world").write_text(SLOPE)
     pose = (0.0, 0.0, 0.55, 0.0, 0.3, 0.0)
@@ -171,7 +171,7 @@ def test_friction_of_what_stands_still(tmp_path, friction, slides):
         assert (test.robot_pose()[0] - before > 0.3) is slides
 
 
-def test_mass_and_arguments():
+def test_mass_and_xacro_arguments_are_applied():
     with SteppedSimulation("empty", MBOT, arguments={"laser": True, "camera": False}) as test:
         light = test.simulation.mass_of("mbot")
         assert "/scan" in dict(test.graph.get_topic_names_and_types())
@@ -180,7 +180,7 @@ def test_mass_and_arguments():
         assert "/scan" not in dict(test.graph.get_topic_names_and_types())
 
 
-def test_a_file_that_has_changed_is_read_anew(tmp_path):
+def test_changed_file_is_read_again(tmp_path):
     path = tmp_path / "crate.sdf"
     masses = []
     for mass, moment in (("2", 1_000_000_000), ("7", 2_000_000_000)):
@@ -200,7 +200,7 @@ def test_a_file_that_has_changed_is_read_anew(tmp_path):
         ("empty", "package://nowhere/a.urdf", "PKG101"),
     ],
 )
-def test_what_cannot_be_had_is_one_error(tmp_path, monkeypatch, world, robot, code):
+def test_missing_or_invalid_world_or_robot_is_one_error(tmp_path, monkeypatch, world, robot, code):
     monkeypatch.chdir(tmp_path)
     (tmp_path / "world.sdf").write_text(SLOPE)
     with pytest.raises(LinkwrightError) as raised:
@@ -208,14 +208,14 @@ def test_what_cannot_be_had_is_one_error(tmp_path, monkeypatch, world, robot, co
     assert [diagnostic.code for diagnostic in raised.value.diagnostics] == [code]
 
 
-def test_an_error_in_a_callback_comes_out_of_the_step():
+def test_callback_error_is_raised_by_advance():
     with SteppedSimulation() as test:
         test.create_node("broken").create_timer(0.05, lambda: 1 / 0)
         with pytest.raises(ZeroDivisionError):
             test.advance(0.1)
 
 
-def test_robots_come_and_go_while_the_test_runs(tmp_path):
+def test_robots_are_spawned_and_removed_during_test(tmp_path):
     (tmp_path / "crate.sdf").write_text(BOX)
     with SteppedSimulation("empty") as test:
         assert test.spawn(tmp_path / "crate.sdf", pose=(1, 2, 0.5, 0, 0, 0)) == "crate"
@@ -231,7 +231,7 @@ def test_robots_come_and_go_while_the_test_runs(tmp_path):
         assert [name for name in test.simulation.scene.models if name != "ground"] == ["second", "mbot"]
 
 
-def test_the_services_of_a_simulator_answer_at_once():
+def test_simulator_services_answer_at_once():
     spawn, empty = get_service("gazebo_msgs/srv/SpawnEntity"), get_service("std_srvs/srv/Empty")
     with SteppedSimulation("empty") as test:
         request = spawn.Request(name="crate", xml=BOX)
@@ -250,7 +250,7 @@ def test_the_services_of_a_simulator_answer_at_once():
         assert test.simulation.model_pose("crate")[2] < 4.0
 
 
-def test_robot_state_publisher_is_there_on_request():
+def test_robot_state_publisher_runs_on_request():
     with SteppedSimulation("empty", MBOT, robot_state_publisher=True) as test:
         description, transforms = test.record("/robot_description"), test.record("/tf")
         test.drive(0.5)

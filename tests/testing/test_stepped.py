@@ -21,13 +21,13 @@ ROBOT = (
 )
 
 
-def test_the_example_of_the_documentation_runs():
+def test_documentation_example_runs():
     results = doctest.testmod(linkwright.testing.stepped_sync)
     assert results.attempted == 2
     assert results.failed == 0
 
 
-async def test_an_hour_of_timers_takes_a_moment():
+async def test_one_hour_of_timers_runs_quickly():
     begin = time.perf_counter()
     async with AsyncSteppedGraph() as test:
         beats = []
@@ -39,7 +39,7 @@ async def test_an_hour_of_timers_takes_a_moment():
     assert time.perf_counter() - begin < 60.0, "the hour would have to pass"
 
 
-def test_a_node_of_ours_under_test():
+def test_built_in_node_runs_in_stepped_graph():
     with SteppedGraph() as test:
         test.record("/tf_static", TFMessage)
         description, transforms = test.record("/robot_description"), test.record("/tf")
@@ -56,7 +56,7 @@ def test_a_node_of_ours_under_test():
         assert transforms.times == pytest.approx([number / 10 for number in range(10)], abs=0.011)
 
 
-def test_a_node_for_rclpy_under_test():
+def test_rclpy_node_runs_in_stepped_graph():
     from linkwright.standins.rclpy_api.node import Node
 
     class Talker(Node):
@@ -91,7 +91,7 @@ def test_a_node_for_rclpy_under_test():
         assert len(chatter) == before
 
 
-def test_rclpy_may_be_used_by_one_test_after_another():
+def test_rclpy_can_be_initialized_in_successive_tests():
     from linkwright.standins.rclpy_api.node import Node
 
     for _ in range(2):
@@ -101,7 +101,7 @@ def test_rclpy_may_be_used_by_one_test_after_another():
             assert test.graph.node_names() == ["/node"]
 
 
-async def test_recordings_keep_what_comes_with_its_time():
+async def test_recordings_keep_messages_with_receive_time():
     async with AsyncSteppedGraph() as test:
         latched = test.create_node("node").create_publisher(String, "description", DESCRIPTION_QOS)
         latched.publish(String(data="kept"))
@@ -118,7 +118,7 @@ async def test_recordings_keep_what_comes_with_its_time():
         assert len(recording) == 0
 
 
-async def test_services_may_take_their_time():
+async def test_slow_services_complete_or_time_out():
     async with AsyncSteppedGraph() as test:
         node = test.create_node("server")
         rate = node.create_rate(1.0)
@@ -136,7 +136,7 @@ async def test_services_may_take_their_time():
             await test.call("none", AddTwoInts.Request())
 
 
-async def test_errors_of_callbacks_are_raised_by_the_step():
+async def test_callback_error_is_raised_by_advance():
     async with AsyncSteppedGraph() as test:
         test.create_node("node").create_timer(1.0, lambda: 1 / 0)
         with pytest.raises(ZeroDivisionError):
@@ -144,7 +144,7 @@ async def test_errors_of_callbacks_are_raised_by_the_step():
         assert "timer callback failed" in test.log[0].text
 
 
-def test_errors_may_be_left_to_the_log():
+def test_callback_errors_are_only_logged_if_not_strict():
     with SteppedGraph(strict=False) as test:
 
         async def fail(_message):
@@ -156,7 +156,7 @@ def test_errors_may_be_left_to_the_log():
         assert [type(error) for error in test.errors] == [KeyError]
 
 
-def test_simulated_time_and_jumps():
+def test_simulated_time_and_clock_jumps():
     clock_message = get_message("rosgraph_msgs/msg/Clock")
     with SteppedGraph() as test:
         node = test.create_node("node")
@@ -171,7 +171,7 @@ def test_simulated_time_and_jumps():
         assert test.now == 0.0
 
 
-def test_nothing_is_left_behind():
+def test_closed_graph_leaves_no_threads():
     threads = set(threading.enumerate())
     with SteppedGraph() as test:
         test.node.create_timer(1.0, print)

@@ -42,7 +42,7 @@ geometries = st.one_of(
     st.builds(Sphere, sizes),
     st.builds(Mesh, names, vectors),
 )
-colours = st.tuples(shares, shares, shares, shares)
+colors = st.tuples(shares, shares, shares, shares)
 limits = st.builds(
     lambda low, span, effort, velocity: Limit(low, low + span, effort, velocity), numbers, sizes, numbers, numbers
 )
@@ -53,7 +53,7 @@ def robots(draw, max_links: int = 8) -> Robot:
     """Generate a robot of version 1.1 with all kinds of joints, mimic chains, shapes and materials."""
     link_names = draw(st.lists(names, min_size=1, max_size=max_links, unique=True).filter(all))
     materials = {
-        name: Material(name, draw(st.none() | colours), draw(st.none() | names))
+        name: Material(name, draw(st.none() | colors), draw(st.none() | names))
         for name in draw(st.lists(names.filter(bool), max_size=3, unique=True))
     }
     materials = {
@@ -86,7 +86,7 @@ def _links(draw, name: str, materials: dict[str, Material]) -> Link:
         elif how == "undefined":
             material_name = "nowhere defined"
         elif how == "own":
-            material = Material("", draw(colours))
+            material = Material("", draw(colors))
         visuals.append(Visual(geometry, draw(poses), draw(names), material_name, material))
     collisions = draw(st.lists(st.builds(Collision, geometries, poses, names), max_size=2))
     return Link(name, draw(st.none() | inertial), tuple(visuals), tuple(collisions))

@@ -110,19 +110,19 @@ def check(root: Element) -> None:
 
 @settings(max_examples=150, suppress_health_check=[HealthCheck.data_too_large])
 @given(robots(sloppy=False))
-def test_elements_with_good_values(root):
+def test_valid_elements_are_read_without_loss(root):
     check(root)
 
 
 @settings(max_examples=150, suppress_health_check=[HealthCheck.data_too_large])
 @given(robots(sloppy=True))
-def test_elements_with_anything(root):
+def test_arbitrary_elements_are_read_without_crash(root):
     check(root)
 
 
 @settings(max_examples=100, suppress_health_check=[HealthCheck.data_too_large])
 @given(robots(sloppy=True))
-def test_every_finding_can_be_printed(root):
+def test_findings_can_be_rendered_and_serialized(root):
     for diagnostic in read(parse(write(Document(root)), "robot.urdf")).diagnostics:
         assert diagnostic.span is not None
         assert diagnostic.code in render(diagnostic)

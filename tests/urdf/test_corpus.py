@@ -14,14 +14,14 @@ models = pytest.mark.parametrize("model", MODELS, ids=str)
 
 
 @models
-def test_verdict(model: Model) -> None:
+def test_verdict_matches_urdfdom(model: Model) -> None:
     reading = examine(model.expected)
     assert (reading.robot is not None) == model.accepted
     assert has_errors(reading.diagnostics) == bool(model.complaints)
 
 
 @models
-def test_links_joints_and_diagram(model: Model) -> None:
+def test_links_joints_and_diagram_match_urdfdom(model: Model) -> None:
     if not model.data["links"]:
         assert examine(model.expected).diagnostics[0].code == "URDF106"
         return
@@ -32,7 +32,7 @@ def test_links_joints_and_diagram(model: Model) -> None:
 
 
 @models
-def test_round_trip(model: Model) -> None:
+def test_round_trip_keeps_robot(model: Model) -> None:
     robot = examine(model.expected).robot
     if robot is not None:
         assert read(parse(save(robot), "saved.urdf")).robot == robot

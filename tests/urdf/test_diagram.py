@@ -20,14 +20,14 @@ FORMATS = [("pdf", b"%PDF-"), ("svg", b"<?xml"), ("png", b"\x89PNG"), ("SVG", b"
 
 @pytest.mark.extra("diagram")
 @pytest.mark.parametrize(("ending", "start"), FORMATS)
-def test_the_ending_picks_the_format(tmp_path, ending, start):
+def test_file_suffix_selects_format(tmp_path, ending, start):
     diagram = tmp_path / f"robot.{ending}"
     render(GV, diagram)
     assert diagram.read_bytes().startswith(start)
 
 
 @pytest.mark.extra("diagram")
-def test_links_are_boxes_and_joints_ellipses(tmp_path):
+def test_links_are_boxes_and_joints_are_ellipses(tmp_path):
     diagram = tmp_path / "robot.svg"
     render(GV, diagram)
     text = diagram.read_text()
@@ -37,21 +37,21 @@ def test_links_are_boxes_and_joints_ellipses(tmp_path):
 
 
 @pytest.mark.extra("diagram")
-def test_names_that_are_not_ascii(tmp_path):
+def test_non_ascii_names_are_rendered(tmp_path):
     diagram = tmp_path / "robot.svg"
     render(to_gv(load(robot_text('<link name="底盘"/>'))), diagram)
     assert "底盘" in diagram.read_text(encoding="utf-8")
 
 
 @pytest.mark.parametrize(("name", "hint"), [("robot.pfd", ".pdf"), ("robot", "choose from")])
-def test_another_ending(tmp_path, name, hint):
+def test_unknown_suffix_is_rejected_with_hint(tmp_path, name, hint):
     with pytest.raises(LinkwrightError) as caught:
         render(GV, tmp_path / name)
     assert caught.value.diagnostics[0].code == "URDF201"
     assert hint in caught.value.diagnostics[0].hint
 
 
-def test_no_pygraphviz(tmp_path, monkeypatch):
+def test_missing_pygraphviz_is_reported(tmp_path, monkeypatch):
     monkeypatch.setitem(sys.modules, "pygraphviz", None)
     with pytest.raises(LinkwrightError) as caught:
         render(GV, tmp_path / "robot.pdf")
@@ -59,12 +59,12 @@ def test_no_pygraphviz(tmp_path, monkeypatch):
 
 
 @pytest.mark.extra("diagram")
-def test_a_folder_that_is_not_there(tmp_path):
+def test_missing_folder_is_reported(tmp_path):
     with pytest.raises(LinkwrightError, match="cannot write"):
         render(GV, tmp_path / "missing" / "robot.pdf")
 
 
 @pytest.mark.extra("diagram")
-def test_a_text_that_graphviz_cannot_read(tmp_path):
+def test_invalid_dot_text_is_reported(tmp_path):
     with pytest.raises(LinkwrightError, match="could not draw"):
         render("digraph {", tmp_path / "robot.svg")

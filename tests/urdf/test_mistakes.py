@@ -21,17 +21,17 @@ NO_TREES = {"A loop below the root", "A loop beside the root", "A link with two 
 """urdfdom accepts them and then walks along the joints for ever, or loses a joint."""
 
 
-def test_the_page_was_understood():
+def test_all_cases_of_page_are_parsed():
     assert len(MISTAKES) == PAGE.count("\n### ") > 80
 
 
 @pytest.mark.parametrize(("text", "message"), MISTAKES)
-def test_mistake(text, message):
+def test_message_matches_page(text, message):
     assert describe(text) == message
 
 
 @pytest.mark.parametrize(("text", "message"), MISTAKES)
-def test_urdfdom_keeps_the_robot_and_complains_where_we_do(text, message, request):
+def test_urdfdom_verdict_matches_findings(text, message, request):
     title = request.node.callspec.id
     urdfdom = VERDICTS[title]
     if title in NO_TREES:
@@ -41,7 +41,7 @@ def test_urdfdom_keeps_the_robot_and_complains_where_we_do(text, message, reques
     assert bool(urdfdom["errors"]) == ("error URDF" in message)
 
 
-def test_every_code_of_the_reader_is_shown():
+def test_all_reader_codes_are_on_page():
     room = Path(linkwright.urdf.__file__).parent
     written = {
         code

@@ -39,36 +39,36 @@ def visual(inside, version=None):
 
 
 class TestDefaults:
-    def test_link(self):
+    def test_link_has_no_parts_by_default(self):
         link = robot('<link name="a"/>').links["a"]
         assert (link.inertial, link.visuals, link.collisions) == (None, (), ())
 
-    def test_joint(self):
+    def test_joint_is_read(self):
         read_joint = joint(kind="continuous")
         assert read_joint.origin == Pose()
         assert read_joint.axis == (1, 0, 0)
         assert read_joint.limit is read_joint.mimic is read_joint.safety is read_joint.dynamics is None
 
-    def test_an_axis_tag_without_a_direction_is_zero(self):
+    def test_axis_tag_without_xyz_is_zero(self):
         assert joint("<axis/>", "continuous").axis == (0, 0, 0)
 
-    def test_an_axis_is_kept_as_written(self):
+    def test_axis_is_not_normalized(self):
         assert joint('<axis xyz="0 0 2"/>', "continuous").axis == (0, 0, 2)
 
     @pytest.mark.parametrize("kind", ["fixed", "floating"])
-    def test_the_axis_of_a_joint_without_one_is_not_even_looked_at(self, kind):
+    def test_axis_of_fixed_and_floating_joints_is_ignored(self, kind):
         assert joint('<axis xyz="nonsense"/>', kind).axis == (1, 0, 0)
 
-    def test_limit(self):
+    def test_limit_defaults_to_zero_bounds(self):
         assert joint('<limit effort="1" velocity="2"/>').limit == Limit(0, 0, 1, 2)
 
-    def test_a_limit_of_a_fixed_joint_is_read(self):
+    def test_limit_of_fixed_joint_is_read(self):
         assert joint('<limit effort="1" velocity="2"/>', "fixed").limit == Limit(0, 0, 1, 2)
 
-    def test_mimic(self):
+    def test_mimic_has_default_multiplier_and_offset(self):
         assert joint('<mimic joint="x"/>', "continuous").mimic == Mimic("x", 1, 0)
 
-    def test_half_an_origin(self):
+    def test_origin_without_xyz_has_zero_position(self):
         assert joint('<origin rpy="0 0 1"/>').origin == Pose((0, 0, 0), (0, 0, 1))
 
 
@@ -85,7 +85,7 @@ class TestLenience:
             '<limit effort="1" velocity="1"/><limit effort="x"/>',
         ],
     )
-    def test_joint(self, inside):
+    def test_joint_is_read(self, inside):
         assert not any(d.severity is Severity.ERROR for d in reading(chain(f"revolute:{inside}")).diagnostics)
 
     @pytest.mark.parametrize(
@@ -98,23 +98,23 @@ class TestLenience:
             '<sphere radius="1"/><cube/>',
         ],
     )
-    def test_shape(self, shape):
+    def test_unusual_shapes_are_accepted(self, shape):
         result = visual(f"<geometry>{shape}</geometry>")
         assert not result.diagnostics
         assert len(result.robot.links["a"].visuals) == 1
 
-    def test_an_empty_robot_name(self):
+    def test_empty_robot_name_is_accepted(self):
         assert read(parse('<robot name=""><link name="a"/></robot>', "x")).robot.name == ""
 
-    def test_the_one_link_may_be_without_a_name(self):
+    def test_single_link_may_be_unnamed(self):
         result = reading('<link><visual name="lost"/></link>')
         assert result.robot.root == ""
         assert result.robot.links[""].visuals == ()
 
-    def test_two_materials_without_a_name_clash(self):
+    def test_two_unnamed_materials_are_rejected(self):
         assert reading('<material/><material/><link name="a"/>').robot is None
 
-    def test_a_negative_mass(self):
+    def test_negative_mass_is_accepted(self):
         inertia = '<inertia ixx="0" ixy="0" ixz="0" iyy="0" iyz="0" izz="0"/>'
         link = robot(f'<link name="a"><inertial><mass value="-1"/>{inertia}</inertial></link>').links["a"]
         assert link.inertial.mass == -1
@@ -130,17 +130,17 @@ class TestTruncation:
         link = robot(f'<link name="a">{inside}</link>').links["a"]
         return link.inertial is not None, len(link.visuals), len(link.collisions)
 
-    def test_nothing_bad(self):
+    def test_valid_link_keeps_all_parts(self):
         assert self.parts(self.GOOD_COLLISION + self.GOOD_VISUAL + self.INERTIAL.format(1)) == (True, 1, 1)
 
-    def test_inertial(self):
+    def test_malformed_inertial_drops_visuals_and_collisions(self):
         assert self.parts(self.GOOD_COLLISION + self.GOOD_VISUAL + self.INERTIAL.format("x")) == (False, 0, 0)
 
-    def test_visual(self):
+    def test_malformed_visual_drops_later_visuals_and_collisions(self):
         inside = self.GOOD_COLLISION + self.GOOD_VISUAL + "<visual/>" + self.GOOD_VISUAL + self.INERTIAL.format(1)
         assert self.parts(inside) == (True, 1, 0)
 
-    def test_collision(self):
+    def test_malformed_collision_drops_later_collisions(self):
         inside = self.GOOD_COLLISION + "<collision/>" + self.GOOD_COLLISION + self.GOOD_VISUAL
         assert self.parts(inside) == (False, 1, 1)
 
@@ -150,118 +150,118 @@ class TestMaterials:
 
     @staticmethod
     def material(name, rgba=None):
-        colour = f'<color rgba="{" ".join(map(str, rgba))}"/>' if rgba else ""
-        return f'<material name="{name}">{colour}</material>'
+        color = f'<color rgba="{" ".join(map(str, rgba))}"/>' if rgba else ""
+        return f'<material name="{name}">{color}</material>'
 
     def link(self, name, material):
         return f'<link name="{name}"><visual>{BOX}{material}</visual></link>'
 
     @staticmethod
-    def colour(read_robot, link):
+    def color(read_robot, link):
         material = read_robot.links[link].visuals[0].material
         return material and material.rgba
 
     def two(self, *parts):
         return robot(*parts, '<joint name="j" type="fixed"><parent link="a"/><child link="b"/></joint>')
 
-    def test_a_global_material_may_follow_its_use(self):
+    def test_global_material_may_follow_its_use(self):
         read_robot = robot(self.link("a", self.material("m")), self.material("m", self.RED))
-        assert self.colour(read_robot, "a") == self.RED
+        assert self.color(read_robot, "a") == self.RED
 
-    def test_a_global_material_wins_over_the_visuals_own_colour(self):
+    def test_global_material_overrides_color_of_visual(self):
         read_robot = robot(self.material("m", self.RED), self.link("a", self.material("m", self.GREEN)))
-        assert self.colour(read_robot, "a") == self.RED
+        assert self.color(read_robot, "a") == self.RED
 
-    def test_the_first_link_to_define_it_wins(self):
+    def test_first_link_that_defines_material_wins(self):
         read_robot = self.two(
             self.link("a", self.material("m", self.RED)), self.link("b", self.material("m", self.GREEN))
         )
-        assert self.colour(read_robot, "b") == self.RED
+        assert self.color(read_robot, "b") == self.RED
         assert list(read_robot.materials) == ["m"]
 
-    def test_a_later_link_may_use_it(self):
+    def test_later_link_may_use_material_of_earlier_link(self):
         read_robot = self.two(self.link("a", self.material("m", self.RED)), self.link("b", self.material("m")))
-        assert self.colour(read_robot, "b") == self.RED
+        assert self.color(read_robot, "b") == self.RED
 
-    def test_an_earlier_link_may_not(self):
+    def test_earlier_link_cannot_use_material_of_later_link(self):
         read_robot = self.two(self.link("a", self.material("m")), self.link("b", self.material("m", self.RED)))
-        assert self.colour(read_robot, "a") is None
+        assert self.color(read_robot, "a") is None
         assert read_robot.links["a"].visuals[0].material_name == "m"
 
-    def test_a_material_without_a_name_is_its_visuals_own(self):
+    def test_unnamed_material_belongs_to_its_visual(self):
         read_robot = self.two(self.link("a", self.material("", self.RED)), self.link("b", self.material("")))
-        assert self.colour(read_robot, "a") == self.RED
-        assert self.colour(read_robot, "b") is None
+        assert self.color(read_robot, "a") == self.RED
+        assert self.color(read_robot, "b") is None
         assert read_robot.materials == {}
 
-    def test_a_texture_is_a_definition(self):
+    def test_texture_defines_material(self):
         textured = '<material name="m"><texture filename="wood.png"/></material>'
         assert robot(self.link("a", textured)).links["a"].visuals[0].material.texture == "wood.png"
 
-    def test_a_lost_visual_defines_nothing(self):
+    def test_dropped_visual_defines_no_material(self):
         lost = f'<link name="a"><visual><geometry/>{self.material("m", self.RED)}</visual></link>'
         assert robot(lost).materials == {}
 
 
 class TestVersions:
     @pytest.mark.parametrize("version", ["1.0", "1.1", "1.2", " 1.0", "+1.0", "01.00"])
-    def test_accepted(self, version):
+    def test_supported_versions_are_accepted(self, version):
         assert reading('<link name="a"/>', version=version).robot is not None
 
     @pytest.mark.parametrize(
         "version", ["", "1", "1.", ".1", "1.0.0", "1.3", "0.9", "2.0", "-1.0", "1.-1", "1.0 ", "a.b"]
     )
-    def test_refused(self, version):
+    def test_malformed_and_unsupported_versions_are_rejected(self, version):
         assert reading('<link name="a"/>').robot is not None
         text = f'<robot name="r" version="{version}"><link name="a"/></robot>'
         assert codes(read(parse(text, "x"))) == ["URDF104"]
 
-    def test_capsules(self):
+    def test_capsule_requires_version_1_1(self):
         capsule = '<geometry><capsule radius="1" length="2"/></geometry>'
         assert visual(capsule, "1.1").robot.links["a"].visuals[0].geometry == Capsule(1, 2)
         assert visual(capsule, "1.0").robot.links["a"].visuals == ()
 
-    def test_sizes_must_be_positive_from_1_2_on(self):
+    def test_sizes_must_be_positive_since_1_2(self):
         sphere = '<geometry><sphere radius="-1"/></geometry>'
         assert len(visual(sphere, "1.1").robot.links["a"].visuals) == 1
         assert visual(sphere, "1.2").robot.links["a"].visuals == ()
 
-    def test_quaternions(self):
+    def test_quaternion_origin_is_read_since_1_1(self):
         turned = joint('<origin xyz="1 2 3" quat_xyzw="0 0 2 2"/>', "fixed", "1.1").origin
         assert turned.xyz == (1, 2, 3)
         assert pose_quaternion(turned) == pytest.approx((0, 0, 0.5**0.5, 0.5**0.5))
         assert turned.rpy == pytest.approx((0, 0, pi / 2))
 
-    def test_a_zero_quaternion_is_the_identity(self):
+    def test_zero_quaternion_is_identity(self):
         assert pose_quaternion(joint('<origin quat_xyzw="0 0 0 0"/>', "fixed", "1.1").origin) == (0, 0, 0, 1)
 
-    def test_a_quaternion_of_three_numbers(self):
+    def test_quaternion_with_three_numbers_is_rejected(self):
         result = reading(chain('fixed:<origin quat_xyzw="0 0 1"/>'), version="1.1")
         assert (result.robot, codes(result)) == (None, ["URDF122"])
 
-    def test_limits_of_1_2_are_infinite_where_not_given(self):
+    def test_limits_default_to_infinity_since_1_2(self):
         assert joint("<limit/>", "continuous", "1.2").limit == Limit(-inf, inf, inf, inf)
 
-    def test_braking_is_as_strong_as_accelerating(self):
+    def test_deceleration_defaults_to_acceleration(self):
         limit = joint('<limit lower="0" upper="1" acceleration="5"/>', version="1.2").limit
         assert (limit.acceleration, limit.deceleration, limit.jerk) == (5, 5, None)
 
-    def test_limits_of_1_2_are_ignored_before(self):
+    def test_limit_attributes_of_1_2_are_ignored_before(self):
         result = reading(chain('revolute:<limit effort="1" velocity="1" jerk="nonsense"/>'))
         assert codes(result) == ["URDF171"]
         assert result.robot.joints["j0"].limit == Limit(0, 0, 1, 1)
 
     @pytest.mark.parametrize("name", ["effort", "velocity", "acceleration", "deceleration", "jerk"])
-    def test_negative_limits_are_refused_from_1_2_on(self, name):
+    def test_negative_limits_are_rejected_since_1_2(self, name):
         assert reading(chain(f'revolute:<limit lower="0" upper="1" {name}="-1"/>'), version="1.2").robot is None
 
 
 class TestRest:
-    def test_elements_of_other_rooms_are_kept_in_order(self):
+    def test_extension_elements_are_kept_in_order(self):
         result = robot('<gazebo reference="a"/>', '<link name="a"/>', "<transmission/>", "<ros2_control/>")
         assert [element.tag for element in result.extensions] == ["gazebo", "transmission", "ros2_control"]
 
-    def test_links_and_joints_are_in_the_order_of_the_file(self):
+    def test_links_and_joints_keep_file_order(self):
         ends = '<parent link="z"/><child link="{}"/>'
         result = robot(
             '<link name="z"/><link name="b"/><link name="a"/>',
@@ -272,23 +272,23 @@ class TestRest:
         assert list(result.joints) == ["y", "x"]
         assert result.root == "z"
 
-    def test_parts_know_their_elements(self):
+    def test_robot_parts_refer_to_their_elements(self):
         result = robot(f'<link name="a"><visual>{BOX}</visual></link>')
         assert result.links["a"].visuals[0].element.tag == "visual"
         assert result.links["a"].visuals[0].geometry == Box((1, 2, 3))
 
-    def test_an_element_made_by_a_program_has_no_place(self):
+    def test_finding_of_generated_element_has_no_span(self):
         result = read(Document(Element("robot", {"name": "r"})))
         assert codes(result) == ["URDF106"]
         assert result.diagnostics[0].span is None
 
-    def test_findings_come_in_the_order_of_the_text(self):
+    def test_findings_are_in_text_order(self):
         result = reading('\n<link name="a"/>', '\n<link name="a"/>', '\n<material name="m"/>', '\n<link name="b"/>')
         lines = [diagnostic.span.line for diagnostic in result.diagnostics]
         assert lines == sorted(lines)
         assert len(lines) == 3
 
-    def test_an_expanded_macro_file_says_how_to_use_it(self):
+    def test_file_with_only_macros_has_hint_to_call_one(self):
         text = (
             '<robot xmlns:xacro="http://www.ros.org/wiki/xacro" name="r">'
             '<xacro:macro name="arm" params="side"/></robot>'
@@ -297,7 +297,7 @@ class TestRest:
         document.root.children.clear()
         assert "call one there, <xacro:arm .../>" in read(document).diagnostics[0].hint
 
-    def test_a_deep_chain_is_read(self):
+    def test_deep_chain_is_read(self):
         count = 3000
         links = "".join(f'<link name="l{n}"/>' for n in range(count))
         joints = "".join(
@@ -307,7 +307,7 @@ class TestRest:
         assert len(robot(links, joints).joints) == count - 1
 
 
-def test_the_room_imports_what_reading_a_robot_uses_alone():
+def test_reader_imports_only_required_modules():
     loaded = loaded_by("from linkwright.urdf import read")
     slow = {"contextlib", "dataclasses", "inspect", "pathlib", "typing", "warnings", "xml.parsers"}
     assert not slow & loaded

@@ -100,7 +100,7 @@ def prepared(version, path):
 
 
 @pytest.mark.parametrize("version", VERSIONS)
-def test_a_robot_with_all_the_table_knows_is_read(version):
+def test_robot_with_all_schema_elements_is_read(version):
     result = read(Document(full_robot(version)))
     assert [diagnostic.message for diagnostic in result.diagnostics if diagnostic.code != "URDF180"] == []
     assert result.robot.joints["b"].safety is not None
@@ -109,14 +109,14 @@ def test_a_robot_with_all_the_table_knows_is_read(version):
 @pytest.mark.parametrize(
     ("version", "path", "attribute"), attribute_cases(lambda rule, version: rule.is_required(version))
 )
-def test_what_the_table_requires_is_required(version, path, attribute: AttributeRule):
+def test_required_attributes_are_required_by_reader(version, path, attribute: AttributeRule):
     robot, element = prepared(version, path)
     del element.attributes[attribute.name]
     assert any(f"no '{attribute.name}'" in diagnostic.message for diagnostic in read(Document(robot)).diagnostics)
 
 
 @pytest.mark.parametrize(("version", "path", "attribute"), attribute_cases(lambda rule, _: rule.type != TEXT))
-def test_malformed_values_are_found(version, path, attribute: AttributeRule):
+def test_malformed_values_are_reported(version, path, attribute: AttributeRule):
     robot, element = prepared(version, path)
     if attribute.name == "quat_xyzw":
         element.attributes.pop("rpy")
@@ -131,7 +131,7 @@ def test_malformed_values_are_found(version, path, attribute: AttributeRule):
         lambda rule, version: not rule.is_required(version) and rule.name not in ("lower", "upper", "rgba", "quat_xyzw")
     ),
 )
-def test_what_the_table_does_not_require_is_optional(version, path, attribute: AttributeRule):
+def test_optional_attributes_may_be_missing(version, path, attribute: AttributeRule):
     robot, element = prepared(version, path)
     del element.attributes[attribute.name]
     result = read(Document(robot))
@@ -151,7 +151,7 @@ def test_what_the_table_does_not_require_is_optional(version, path, attribute: A
         ("robot link visual geometry mesh", Mesh("")),
     ],
 )
-def test_defaults_are_those_of_the_model(path, values):
+def test_schema_defaults_match_model(path, values):
     rule = ROBOT
     for tag in path.split()[1:]:
         rule = rule.child_rules.get(tag)
@@ -162,6 +162,6 @@ def test_defaults_are_those_of_the_model(path, values):
             assert parsed == default
 
 
-def test_the_full_robot_is_what_a_file_would_say():
+def test_minimal_robot_text_is_read():
     text = '<robot name="a" version="1.0"><link name="b"/></robot>'
     assert read(parse(text, "x")).robot is not None

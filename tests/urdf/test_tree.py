@@ -30,13 +30,13 @@ DIAMOND = robot_text(
 )
 
 
-def test_children_come_in_the_order_of_their_joints_names():
+def test_children_are_ordered_by_joint_name():
     children = children_of(load(BRANCHES))
     assert [below.child for below in children["base"]] == ["b", "a"]
     assert children["tip"] == ()
 
 
-def test_tree_text():
+def test_tree_text_lists_children():
     assert tree_text(load(BRANCHES)) == (
         "robot name is: r\n"
         "---------- Successfully Parsed XML ---------------\n"
@@ -47,11 +47,11 @@ def test_tree_text():
     )
 
 
-def test_tree_text_of_one_link():
+def test_tree_text_of_single_link():
     assert tree_text(load(robot_text('<link name="only"/>'))).endswith("root Link: only has 0 child(ren)\n")
 
 
-def test_gv():
+def test_gv_matches_urdf_to_graphviz():
     assert to_gv(load(BRANCHES)) == (
         "digraph G {\n"
         "node [shape=box];\n"
@@ -70,7 +70,7 @@ def test_gv():
     )
 
 
-def test_a_link_with_two_parents_is_listed_under_both_with_the_joint_that_urdfdom_keeps():
+def test_link_with_two_parents_is_listed_under_both():
     robot = load(DIAMOND)
     assert parent_joints(robot)["b"].name == "k"
     assert tree_text(robot).count("  b\n") == 2
@@ -80,7 +80,7 @@ def test_a_link_with_two_parents_is_listed_under_both_with_the_joint_that_urdfdo
     assert '"j"' not in gv
 
 
-def test_many_ways_down_do_not_take_forever():
+def test_tree_text_of_many_paths_is_bounded():
     count = 60
     links = "".join(f'<link name="l{n}"/>' for n in range(count))
     doubled = "".join(joint(f"{side}{n:02}", f"l{n - 1}", f"l{n}") for n in range(1, count) for side in "xy")
@@ -89,7 +89,7 @@ def test_many_ways_down_do_not_take_forever():
 
 
 @given(robots())
-def test_every_walk_visits_each_link_once_and_parents_first(robot):
+def test_walk_visits_each_link_once_after_its_parent(robot):
     seen = [robot.root]
     steps = list(walk(robot))
     for below, _ in steps:

@@ -49,7 +49,7 @@ def reads(text: str) -> bool:
 
 
 @pytest.mark.parametrize("text", ["1", "-1", "+1", " 1", "\t1", "1e3", "1E-3", ".5", "5.", "-.5e+2", "007", "1e-400"])
-def test_numbers(text):
+def test_numbers_are_parsed(text):
     assert number(text) == float(text)
 
 
@@ -57,18 +57,18 @@ NO_NUMBERS = """inf -inf nan 0x10 0,5 1_0 1e 1e400 . + --1 1.2.3 ١ 1f 1d ${x} 1
 
 
 @pytest.mark.parametrize("text", ["", " ", "-1 ", "1 2", "1\t", "- 1", *NO_NUMBERS.split()])
-def test_no_numbers(text):
+def test_malformed_numbers_are_rejected(text):
     assert not reads(text)
 
 
 @given(st.text("0123456789+-.eE \t\nxin,_", max_size=8))
 @example("1e5e5")
-def test_number_agrees_with_the_stream(text):
+def test_number_matches_cpp_stream(text):
     assert reads(text) == stream_reads(text)
 
 
 @given(st.floats(allow_nan=False, allow_infinity=False))
-def test_a_plain_number_is_read_back_exactly(value):
+def test_plain_number_round_trips(value):
     written = plain(value)
     assert math.copysign(1, number(written)) == math.copysign(1, value)
     assert number(written) == value
@@ -76,20 +76,20 @@ def test_a_plain_number_is_read_back_exactly(value):
 
 
 @pytest.mark.parametrize("text", ["1 2 3", "  1   2 3  ", "1 \t2 3", "+1 -2e0 .5"])
-def test_vectors(text):
+def test_vectors_are_parsed(text):
     assert vector3(text) == tuple(float(piece) for piece in text.split())
 
 
 @pytest.mark.parametrize(
     "text", ["", "1 2", "1 2 3 4", "1\t2\t3", "1 2\n3", "1, 2, 3", "1 2 3\t", "1 2 inf", "1 2 1e400"]
 )
-def test_no_vectors(text):
+def test_malformed_vectors_are_rejected(text):
     with pytest.raises(ValueError):
         vector3(text)
 
 
 @given(st.text("0123.e- \t\n,x", max_size=12))
-def test_the_vector_pattern_agrees_with_reading_piece_by_piece(text):
+def test_vector_pattern_matches_piecewise_parsing(text):
     try:
         pieces = numbers(text)
     except ValueError:
@@ -102,7 +102,7 @@ def test_the_vector_pattern_agrees_with_reading_piece_by_piece(text):
 
 
 @given(st.text(max_size=20))
-def test_hints_never_fail(text):
+def test_hints_accept_any_text(text):
     number_hint(text)
     vector_hint(text, 3)
 
@@ -113,13 +113,13 @@ def test_hints_never_fail(text):
         ("", "give a number"),
         ("1 2", "give one number"),
         ("90 deg", "angles are in radians: '1.5708'"),
-        ("5 mm", "lengths are in metres: '0.005'"),
+        ("5 mm", "lengths are in meters: '0.005'"),
         ("250g", "masses are in kilograms: '0.25'"),
         ("1e999", "only finite numbers are read"),
         ("foo", None),
     ],
 )
-def test_number_hints(text, hint):
+def test_malformed_numbers_have_hints(text, hint):
     assert number_hint(text) == hint
 
 
@@ -127,5 +127,5 @@ def test_number_hints(text, hint):
     ("angles", "degrees"),
     [((0, 0, 90), True), ((-180, 180), True), ((3.14, 6.28), False), ((100.5,), False), ((9,), False), ((1e9,), False)],
 )
-def test_degrees(angles, degrees):
+def test_looks_like_degrees_detects_degree_values(angles, degrees):
     assert looks_like_degrees(*angles) is degrees

@@ -12,19 +12,19 @@ from tests.urdf.robots import chain, robot_text, robots
 
 
 @given(robots())
-def test_round_trip(robot):
+def test_round_trip_keeps_robot_and_order(robot):
     again = read(parse(save(robot), "saved.urdf")).robot
     assert again == robot
     assert list(again.links) == list(robot.links)
     assert list(again.joints) == list(robot.joints)
 
 
-def test_saving_twice_gives_the_same_text():
+def test_saving_twice_returns_same_text():
     robot = load(PACKAGE / "urdf" / "mbot_base.urdf")
     assert save(load(save(robot))) == save(robot)
 
 
-def test_the_text():
+def test_saved_text_is_formatted():
     text = robot_text(
         '<material name="m"><color rgba="1 0.5 0 1"/></material>',
         chain('revolute:<limit lower="-1.50" upper="1" effort="10" velocity="1e-3"/><origin xyz="0 0 .1"/>'),
@@ -52,14 +52,14 @@ def test_the_text():
     )
 
 
-def test_elements_with_a_prefix_keep_its_declaration():
+def test_prefixed_elements_keep_namespace_declaration():
     text = '<robot name="r" xmlns:gz="urn:gz"><link name="a"/><gz:thing gz:size="1"/></robot>'
     saved = save(load(text))
     assert 'xmlns:gz="urn:gz"' in saved
     assert [element.tag for element in load(saved).extensions] == ["gz:thing"]
 
 
-def test_limits_of_urdf_1_2():
+def test_limits_of_urdf_1_2_round_trip():
     text = robot_text(
         chain('continuous:<limit effort="3"/>', 'revolute:<limit lower="0" upper="1" acceleration="2" jerk="4"/>'),
         version="1.2",
@@ -69,7 +69,7 @@ def test_limits_of_urdf_1_2():
     assert '<limit effort="3"/>' in save(robot)
 
 
-def test_quaternions_of_urdf_1_1():
+def test_quaternions_of_urdf_1_1_round_trip():
     robot = load(robot_text(chain('fixed:<origin quat_xyzw="0.5 0.5 0.5 0.5"/>'), version="1.1"))
     assert 'quat_xyzw="0.5 0.5 0.5 0.5"' in save(robot)
     assert load(save(robot)) == robot

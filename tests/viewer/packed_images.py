@@ -20,7 +20,7 @@ def chunk(kind: bytes, data: bytes) -> bytes:
 
 
 def png(values: np.ndarray, *, says: tuple[int, int] | None = None) -> bytes:
-    """Return a grey PNG with 8 or 16 bits, optionally with a false width and height."""
+    """Return a gray PNG with 8 or 16 bits, optionally with a false width and height."""
     height, width = values.shape
     rows = values.astype(values.dtype.newbyteorder(">"))
     data = b"".join(b"\0" + row.tobytes() for row in rows)
@@ -29,10 +29,10 @@ def png(values: np.ndarray, *, says: tuple[int, int] | None = None) -> bytes:
     return b"\x89PNG\r\n\x1a\n" + b"".join(parts)
 
 
-def jpeg(colour: tuple[int, int, int] | int, width: int, height: int) -> bytes:
-    """Return a JPEG with one colour or grey value."""
+def jpeg(color: tuple[int, int, int] | int, width: int, height: int) -> bytes:
+    """Return a JPEG with one color or gray value."""
     file = BytesIO()
-    Pictures.new("L" if isinstance(colour, int) else "RGB", (width, height), colour).save(file, "JPEG", quality=95)
+    Pictures.new("L" if isinstance(color, int) else "RGB", (width, height), color).save(file, "JPEG", quality=95)
     return file.getvalue()
 
 
@@ -75,7 +75,7 @@ def header(first: float = 0.0, second: float = 0.0) -> bytes:
 
 
 def depth_message(values, packing: str = "png", frame: str = "base"):
-    """A message of `compressedDepth` of depths: whole millimetres (uint16), or metres (float), at most 10 of them."""
+    """A message of `compressedDepth` of depths: whole millimeters (uint16), or meters (float), at most 10 of them."""
     values = np.asarray(values)
     scale = header()
     encoding = "16UC1"

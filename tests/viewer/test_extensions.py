@@ -10,7 +10,7 @@ import pytest
 
 from linkwright.loading import extensions
 from linkwright.rviz import RvizConfig
-from linkwright.rviz.displays import catalogue
+from linkwright.rviz.displays import catalog
 from tests.viewer.scene import page, world
 
 MODULE = """\
@@ -61,12 +61,12 @@ def brought(tmp_path, monkeypatch):
     (facts / "entry_points.txt").write_text(ENTRY_POINTS)
     monkeypatch.syspath_prepend(str(tmp_path))
     extensions._all_groups.cache_clear()
-    catalogue._display_class.cache_clear()
+    catalog._display_class.cache_clear()
     yield
     monkeypatch.undo()
     sys.modules.pop("brought_to_linkwright", None)
     extensions._all_groups.cache_clear()
-    catalogue._display_class.cache_clear()
+    catalog._display_class.cache_clear()
 
 
 def config_with(cls: str) -> RvizConfig:
@@ -75,7 +75,7 @@ def config_with(cls: str) -> RvizConfig:
     return config
 
 
-async def test_a_display_of_another_package_is_made_and_offered(brought):
+async def test_display_of_another_package_is_created_and_offered(brought):
     async with world(config_with("brought/Fence")) as w, page(w.viewer) as client:
         first = await client.opened()
         (fence,) = [each for each in first["tree"]["displays"] if each["cls"] == "brought/Fence"]
@@ -85,17 +85,17 @@ async def test_a_display_of_another_package_is_made_and_offered(brought):
         assert {"cls": "brought/Fence", "messages": ["geometry_msgs/msg/PolygonStamped"]} in offered
 
 
-async def test_a_display_that_cannot_be_imported_is_kept_and_told_of(brought):
+async def test_display_that_cannot_be_imported_is_kept_and_reported(brought):
     async with world(config_with("brought/Broken")) as w:
         assert not w.viewer.displays[-1].SUPPORTED
         assert "'brought/Broken' cannot be imported: AttributeError" in w.logged()
 
 
-def test_what_is_ours_cannot_be_replaced(brought):
+def test_built_in_display_cannot_be_replaced(brought):
     assert extensions.extensions("linkwright.displays")["rviz_default_plugins/Grid"].value.startswith("linkwright.")
 
 
-async def test_a_page_feature_of_another_package_answers_its_messages(brought):
+async def test_page_feature_of_another_package_receives_messages(brought):
     async with world() as w, page(w.viewer) as client:
         await client.opened()
         await client.send("greet", name="you")
@@ -103,11 +103,11 @@ async def test_a_page_feature_of_another_package_answers_its_messages(brought):
         assert "The page feature 'broken' cannot be loaded: AttributeError" in w.logged()
 
 
-def test_what_is_found_is_what_the_metadata_of_the_installation_say():
+def test_extensions_match_installation_metadata():
     for group, found in extensions._all_groups().items():
         declared = {(entry.name, entry.value) for entry in entry_points(group=group)}
         assert {(entry.name, entry.value) for entry in found.values()} == declared
 
 
-def test_attributes_may_be_nested_and_name_extras():
+def test_entry_points_support_nested_attributes_and_extras():
     assert extensions.EntryPoint("join", "os:path.join [some, extras]", "none").load() is os.path.join

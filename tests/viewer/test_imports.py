@@ -22,7 +22,7 @@ asyncio.run(main())
 """
 
 
-def test_panels_and_displays_are_imported_when_they_are_asked_for():
+def test_panels_and_displays_are_imported_on_demand():
     root = Path(__file__).parents[2]
     done = subprocess.run([sys.executable, "-c", OPENING], capture_output=True, text=True, cwd=root, check=True)
     opened, watching = (set(line.split()) for line in done.stdout.splitlines())
@@ -48,7 +48,7 @@ asyncio.run(main())
 """
 
 
-def test_a_page_is_given_out_before_what_shows_the_robot_is_imported():
+def test_page_is_served_before_robot_modules_are_imported():
     root = Path(__file__).parents[2]
     done = subprocess.run([sys.executable, "-c", GIVING_OUT], capture_output=True, text=True, cwd=root, check=True)
     rooms = {f"linkwright.{room}" for room in ("graph", "messages", "urdf", "viewer.viewer", "page.protocol")}

@@ -53,7 +53,7 @@ def recorded(path: Path, lifts: Sequence[float], transforms: bool = False) -> Pa
 
 
 class Shown:
-    """A published recording, and the last positions of the links: x, y, z in the parent link, in metres."""
+    """A published recording, and the last positions of the links: x, y, z in the parent link, in meters."""
 
     def __init__(self, bag: BagReader) -> None:
         self.graph = Graph()
@@ -84,7 +84,7 @@ class Shown:
         await self.graph.close()
 
 
-async def test_its_links_are_where_the_joint_states_of_each_time_say(tmp_path: Path) -> None:
+async def test_link_poses_follow_recorded_joint_states(tmp_path: Path) -> None:
     """Joints that nobody tells of are at zero, or in the middle of limits without it; one that mimics follows."""
     with BagReader(recorded(tmp_path / "bag", [0.5, 1.0, 7.0])) as bag:
         shown = Shown(bag)
@@ -98,7 +98,7 @@ async def test_its_links_are_where_the_joint_states_of_each_time_say(tmp_path: P
         await shown.close()
 
 
-async def test_without_joint_states_it_stands_at_zero(tmp_path: Path) -> None:
+async def test_joints_without_recorded_states_are_at_zero(tmp_path: Path) -> None:
     with BagReader(recorded(tmp_path / "bag", [])) as bag:
         shown = Shown(bag)
         places = await shown.at(0)
@@ -107,7 +107,7 @@ async def test_without_joint_states_it_stands_at_zero(tmp_path: Path) -> None:
 
 
 @pytest.mark.parametrize("transforms", [False, True])
-async def test_recorded_transforms_are_those_that_count(tmp_path: Path, transforms: bool) -> None:
+async def test_recorded_transforms_take_precedence(tmp_path: Path, transforms: bool) -> None:
     with BagReader(recorded(tmp_path / "bag", [0.5], transforms)) as bag:
         shown = Shown(bag)
         assert isinstance(shown.output, RecordingWithTransforms) is not transforms
@@ -115,7 +115,7 @@ async def test_recorded_transforms_are_those_that_count(tmp_path: Path, transfor
         await shown.close()
 
 
-async def test_transforms_in_a_namespace_stand_for_those_of_the_recording(tmp_path: Path) -> None:
+async def test_namespaced_transforms_are_used(tmp_path: Path) -> None:
     """At any time: those of a second before it, and static ones."""
     names = ("one", "two", "laser")
     with BagWriter(tmp_path / "bag") as writer:

@@ -28,7 +28,7 @@ def transform(parent: str, child: str) -> bytes:
 
 
 @pytest.mark.parametrize("described", [True, False])
-def test_transforms_are_drawn_where_there_is_no_robot(tmp_path: Path, described: bool) -> None:
+def test_transforms_are_displayed_without_robot(tmp_path: Path, described: bool) -> None:
     with BagWriter(tmp_path / "bag") as writer:
         writer.add_topic("/tf", "tf2_msgs/msg/TFMessage", [DEFAULT_QOS])
         writer.add_topic("/scan", "sensor_msgs/msg/LaserScan", [SENSOR_DATA_QOS])
@@ -47,7 +47,7 @@ def test_transforms_are_drawn_where_there_is_no_robot(tmp_path: Path, described:
     assert scan.section.text("Topic", "Reliability Policy") == "Best Effort"
 
 
-def test_a_recording_of_a_simulation_opens_with_its_world(tmp_path: Path) -> None:
+def test_recorded_simulation_opens_with_its_world(tmp_path: Path) -> None:
     with BagWriter(tmp_path / "bag") as writer:
         for name, message in (
             ("/tf", transform("odom", "base_link")),
@@ -69,7 +69,7 @@ def test_a_recording_of_a_simulation_opens_with_its_world(tmp_path: Path) -> Non
     assert config.views.current.values["Target Frame"] == "<Fixed Frame>", "the camera stands still"
 
 
-def test_a_scan_without_transforms_is_looked_at_from_its_own_frame(tmp_path: Path) -> None:
+def test_scan_without_transforms_uses_its_own_fixed_frame(tmp_path: Path) -> None:
     with BagWriter(tmp_path / "bag") as writer:
         writer.add_topic("/scan", "sensor_msgs/msg/LaserScan", [SENSOR_DATA_QOS])
         scan = LaserScan()
@@ -80,7 +80,7 @@ def test_a_scan_without_transforms_is_looked_at_from_its_own_frame(tmp_path: Pat
 
 
 @pytest.mark.parametrize("storage", STORAGES)
-def test_transforms_that_begin_late_tell_the_fixed_frame(tmp_path: Path, storage: str) -> None:
+def test_fixed_frame_is_found_in_late_transforms(tmp_path: Path, storage: str) -> None:
     """Those of the robot after five seconds, and those on the map later still."""
     second = 1_000_000_000
     with BagWriter(tmp_path / "bag", storage) as writer:
@@ -95,7 +95,7 @@ def test_transforms_that_begin_late_tell_the_fixed_frame(tmp_path: Path, storage
         assert recording_config(bag).options.text("Fixed Frame") == "map"
 
 
-def test_of_robots_in_namespaces_the_first_with_a_description_is_shown(tmp_path: Path) -> None:
+def test_first_namespaced_robot_with_description_is_shown(tmp_path: Path) -> None:
     """Their frames have the same names, so what the others saw is there, but off."""
     with BagWriter(tmp_path / "bag") as writer:
         for number in range(3):
@@ -122,7 +122,7 @@ def test_of_robots_in_namespaces_the_first_with_a_description_is_shown(tmp_path:
 
 
 @pytest.mark.parametrize("place", ["odom", "world"])
-def test_a_robot_that_drives_about_is_followed_and_one_that_stands_is_seen_whole(tmp_path: Path, place: str) -> None:
+def test_view_follows_moving_robot_and_fits_unmoving_robot(tmp_path: Path, place: str) -> None:
     text = (
         "<robot name='r'><link name='base'><visual><geometry><sphere radius='0.1'/></geometry></visual></link></robot>"
     )

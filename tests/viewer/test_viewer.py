@@ -32,7 +32,7 @@ from tests.viewer.scene import ARM, World, page, world
 Clock = get_message("rosgraph_msgs/msg/Clock")
 
 
-async def test_a_page_that_opens_gets_everything_in_order():
+async def test_opened_page_receives_messages_in_order():
     async with world(title="arm") as made:
         made.describe(ARM)
         made.move_arm(1.0)
@@ -44,7 +44,7 @@ async def test_a_page_that_opens_gets_everything_in_order():
     whatever_is_shown = [
         "diagnostics",
         "joints",
-        "modelling_state",
+        "modeling_state",
         "recording_state",
         "simulation_status",
         "view_classes",
@@ -61,7 +61,7 @@ async def test_a_page_that_opens_gets_everything_in_order():
     assert transforms.poses[table["names"].index("tip")].tolist() == [1, 0, 0, 0, 0, 0, 1]
 
 
-async def test_transforms_are_in_the_fixed_frame_and_follow_it():
+async def test_transforms_are_relative_to_fixed_frame():
     async with world() as made, page(made.viewer) as client:
         await client.opened()
         made.move_arm(1.0)
@@ -74,7 +74,7 @@ async def test_transforms_are_in_the_fixed_frame_and_follow_it():
         assert (await client.transforms()).poses[names.index("base")][0] == -2.0
 
 
-async def test_the_fixed_frame_has_rviz_status():
+async def test_fixed_frame_status_matches_rviz():
     async with world(RvizConfig.for_model("map")) as made, page(made.viewer) as client:
         opening = await client.opened()
         assert opening["tree"]["global_status"] == [
@@ -92,7 +92,7 @@ async def test_the_fixed_frame_has_rviz_status():
         assert (status["level"], status["status"][0]["text"]) == ("ok", "OK")
 
 
-async def test_known_frames_are_offered_where_frames_are_asked_for():
+async def test_known_frames_are_offered_as_options():
     async with world() as made, page(made.viewer) as client:
         await client.opened()
         made.move_arm()
@@ -104,7 +104,7 @@ async def test_known_frames_are_offered_where_frames_are_asked_for():
     assert options == ["base", "mark", "tip"]
 
 
-async def test_what_one_page_sets_all_pages_hear():
+async def test_property_change_is_sent_to_all_pages():
     async with world() as made, page(made.viewer) as one, page(made.viewer) as other:
         await one.opened()
         await other.opened()
@@ -116,7 +116,7 @@ async def test_what_one_page_sets_all_pages_hear():
         assert "Background Color: 255; 255; 255" in made.viewer.config.text()
 
 
-async def test_a_refused_value_is_answered_with_the_one_that_stands():
+async def test_rejected_value_is_answered_with_current_value():
     async with world() as made, page(made.viewer) as client:
         await client.opened()
         for identity, value, standing in (
@@ -133,7 +133,7 @@ async def test_a_refused_value_is_answered_with_the_one_that_stands():
         assert await client.drain() == []
 
 
-async def test_every_page_begins_with_the_view_of_the_file():
+async def test_pages_open_with_view_of_file():
     config = RvizConfig.for_model("base")
     async with world(config) as made:
         async with page(made.viewer) as client:
@@ -151,7 +151,7 @@ async def test_every_page_begins_with_the_view_of_the_file():
     assert "an invalid view" in made.logged()
 
 
-async def test_a_page_that_has_drawn_the_meshes_says_how_large_grid_and_axes_are():
+async def test_measured_robot_sets_size_of_grid_and_axes():
     async with world(RvizConfig.for_model("base")) as made, page(made.viewer) as client:
         await client.opened()
         await client.send("robot_measured", diagonal=100.0, ground=-2.5)
@@ -164,7 +164,7 @@ async def test_a_page_that_has_drawn_the_meshes_says_how_large_grid_and_axes_are
         assert (await client.until("property_changed"))["id"] == "display-1/Alpha"
 
 
-async def test_diagnostics_are_shown_with_their_line_and_cleared():
+async def test_diagnostics_are_shown_with_line_and_cleared():
     source = SourceText("/some/r.xacro", "<robot>\n  <xacro:whel/>\n</robot>\n")
     span = source.span(10, 21)
     diagnostic = Diagnostic("XAC101", "unknown macro", span, notes=(Note("called", span),), hint="did", source=source)
@@ -192,7 +192,7 @@ async def test_diagnostics_are_shown_with_their_line_and_cleared():
         assert (await client.until("diagnostics"))["items"] == []
 
 
-async def test_what_the_file_says_wrong_is_in_the_terminal():
+async def test_configuration_errors_are_logged():
     text = "Visualization Manager:\n  Global Options: {Frame Rate: often}\n  Displays:\n    - {Name: x}\n"
     async with world(RvizConfig.parse(text, "a.rviz")) as made:
         made.viewer.config.options.rows()
@@ -201,7 +201,7 @@ async def test_what_the_file_says_wrong_is_in_the_terminal():
 
 
 @skipping
-async def test_a_slider_in_the_page_turns_the_joint_in_the_page():
+async def test_joint_slider_moves_joint_in_page():
     graph = Graph(clock=graph_clock(), on_log=lambda _: None)
     library = DescriptionLibrary()
     viewer = Viewer(graph, library=library, finder=PackageFinder(), config=RvizConfig.for_model("base"), port=0)
@@ -233,7 +233,7 @@ async def test_a_slider_in_the_page_turns_the_joint_in_the_page():
     await graph.close()
 
 
-async def test_closing_says_goodbye_and_leaves_the_graph():
+async def test_close_notifies_page_and_leaves_graph():
     async with world() as made:
         async with page(made.viewer) as client:
             await client.opened()
@@ -248,7 +248,7 @@ async def test_closing_says_goodbye_and_leaves_the_graph():
                 await session.get(made.viewer.url)
 
 
-async def test_it_may_be_closed_when_the_graph_is_gone_and_more_than_once():
+async def test_viewer_can_be_closed_repeatedly_after_graph():
     async with world() as made:
         await made.graph.close()
         await made.viewer.close()
@@ -256,7 +256,7 @@ async def test_it_may_be_closed_when_the_graph_is_gone_and_more_than_once():
 
 
 @skipping
-async def test_a_page_that_answers_nothing_does_not_hold_up_the_end():
+async def test_unresponsive_page_does_not_delay_close():
     async with world() as made:
         address = urlsplit(made.viewer.url)
         reader, writer = await asyncio.open_connection(address.hostname, address.port)
@@ -277,7 +277,7 @@ async def test_a_page_that_answers_nothing_does_not_hold_up_the_end():
         writer.close()
 
 
-async def test_listening_to_other_machines_is_pointed_out():
+async def test_listening_on_all_interfaces_is_logged():
     async with world(host="0.0.0.0") as made:
         assert "anyone who can reach it" in made.logged()
         assert made.viewer.url.startswith("http://127.0.0.1:")
@@ -285,7 +285,7 @@ async def test_listening_to_other_machines_is_pointed_out():
         assert made.logged() == ""
 
 
-async def test_a_taken_port_leaves_no_node_behind():
+async def test_port_in_use_leaves_no_node():
     async with world() as made:
         port = urlsplit(made.viewer.url).port
         second = Viewer(
@@ -304,7 +304,7 @@ async def test_a_taken_port_leaves_no_node_behind():
 
 @pytest.mark.parametrize("times", [1, 2])
 @pytest.mark.parametrize("steps", range(1, 6))
-async def test_a_start_that_is_broken_off_leaves_no_node_and_no_socket_behind(steps, times, monkeypatch):
+async def test_canceled_start_leaves_no_node_or_socket(steps, times, monkeypatch):
     listeners = []
     monkeypatch.setattr(page_server, "listen", lambda host, port: listeners.append(listen(host, port)) or listeners[0])
     made = World()
@@ -323,7 +323,7 @@ async def test_a_start_that_is_broken_off_leaves_no_node_and_no_socket_behind(st
     await made.graph.close()
 
 
-async def test_it_listens_no_longer_where_a_part_of_it_cannot_be_started(monkeypatch):
+async def test_failed_feature_start_closes_socket(monkeypatch):
     def fail(feature):
         raise OSError("the disk is full")
 
@@ -338,7 +338,7 @@ async def test_it_listens_no_longer_where_a_part_of_it_cannot_be_started(monkeyp
     await made.graph.close()
 
 
-async def test_it_listens_no_longer_where_a_part_of_it_cannot_be_closed(monkeypatch):
+async def test_failed_feature_close_closes_socket(monkeypatch):
     def fail(feature):
         raise OSError("the disk is full")
 
@@ -354,14 +354,14 @@ async def test_it_listens_no_longer_where_a_part_of_it_cannot_be_closed(monkeypa
     await made.graph.close()
 
 
-async def test_without_a_built_page_the_answer_says_how_to_build_it(tmp_path, monkeypatch):
+async def test_missing_page_build_is_explained(tmp_path, monkeypatch):
     monkeypatch.setattr(server, "WebServer", partial(server.WebServer, page_folder=tmp_path))
     async with world() as made, aiohttp.ClientSession() as session, session.get(made.viewer.url) as answer:
         assert answer.status == 503
         assert "make page" in await answer.text()
 
 
-async def test_the_page_and_its_hashed_files_are_served(tmp_path, monkeypatch):
+async def test_page_and_hashed_assets_are_served(tmp_path, monkeypatch):
     (tmp_path / "assets").mkdir()
     (tmp_path / "index.html").write_text("<!doctype html><title>x</title>", encoding="utf-8")
     (tmp_path / "assets" / "index-abc.js").write_text("export {}", encoding="utf-8")
@@ -412,7 +412,7 @@ async def test_the_page_and_its_hashed_files_are_served(tmp_path, monkeypatch):
     ("model", "links"),
     [("mbot_base", 5), ("mbot_with_camera", 6), ("mbot_with_kinect", 6), ("mbot_with_laser", 6)],
 )
-async def test_the_models_of_the_tutorial_are_shown(package, model, links, tmp_path):
+async def test_tutorial_models_are_shown(package, model, links, tmp_path):
     share = without_meshes(package, tmp_path)
     config = RvizConfig.load(share / "rviz" / "urdf.rviz")
     async with world(config, packages={"my_robot_description": share}) as made:
@@ -429,7 +429,7 @@ async def test_the_models_of_the_tutorial_are_shown(package, model, links, tmp_p
         assert str(share / "meshes" / "kinect.dae") in made.status("RobotModel")["kinect_link"][1]
 
 
-async def test_the_node_is_given_what_a_launch_file_gives_it():
+async def test_viewer_node_applies_node_options():
     options = NodeOptions(
         name="eyes",
         namespace="/robot",
@@ -447,7 +447,7 @@ async def test_the_node_is_given_what_a_launch_file_gives_it():
         assert made.viewer.manager.time.now_ns() == 12_000_000_000
 
 
-async def test_a_ros_argument_that_is_none_is_refused():
+async def test_unknown_ros_argument_is_rejected():
     with pytest.raises(LinkwrightError, match="--no-such"):
         async with world(options=NodeOptions(arguments=["--ros-args", "--no-such"])):
             pass

@@ -1,4 +1,4 @@
-"""Prints the files of Linkwright whose functions run on two ways, as JSON; for `tests.viewer.test_ways`.
+"""Prints the files of Linkwright whose functions run on two ways, as JSON; for `tests.viewer.test_data_path_length`.
 
 The ways are from the start of `linkwright view` to an open page, and from a slider of a page to the page's next joint
 positions and transforms. The process must have imported nothing of Linkwright yet: importing is part of the first way.

@@ -7,7 +7,7 @@ import numpy as np
 from linkwright.vision.detections import Detections
 
 
-def test_each_has_a_name():
+def test_detections_have_names():
     found = Detections(
         np.array([[0, 0, 2, 2], [1, 1, 3, 3]], np.float32),
         np.array([0.9, 0.8], np.float32),
@@ -17,5 +17,5 @@ def test_each_has_a_name():
     assert [found.name(index) for index in range(len(found))] == ["box", "ball"]
 
 
-def test_a_image_may_have_none():
+def test_empty_detections_have_length_zero():
     assert len(Detections.empty(("ball",))) == 0

@@ -28,19 +28,19 @@ def found(*rows, names=NAMES):
     return Detections(table[:, 2:], table[:, 1], table[:, 0].astype(np.int32), names)
 
 
-def test_boxes_overlap_by_intersection_over_union():
+def test_intersection_over_union_of_boxes():
     one = np.array([[0, 0, 10, 10]], np.float32)
     others = np.array([[0, 0, 10, 10], [5, 0, 15, 10], [20, 20, 30, 30], [0, 0, 5, 5]], np.float32)
     assert intersection_over_union(one, others)[0] == pytest.approx([1, 1 / 3, 0, 0.25])
 
 
-def test_all_found_exactly_is_one():
+def test_perfect_detections_have_map_1():
     figures = evaluate(NAMES, [objects((0, *BOX), (1, *ELSEWHERE))], [found((0, 0.9, *BOX), (1, 0.8, *ELSEWHERE))])
     assert (figures.map50, figures.map) == (pytest.approx(1), pytest.approx(1))
     assert figures.confusion.tolist() == [[1, 0, 0], [0, 1, 0], [0, 0, 0]]
 
 
-def test_half_found_counts_the_recalls_up_to_a_half():
+def test_half_of_objects_found_limits_average_precision():
     figures = evaluate(NAMES, [objects((0, *BOX), (0, *ELSEWHERE))], [found((0, 0.9, *BOX))])
     assert figures.classes[0].ap50 == pytest.approx(51 / 101)
     assert figures.classes[1].ap50 is None
@@ -48,26 +48,26 @@ def test_half_found_counts_the_recalls_up_to_a_half():
     assert figures.classes[0].recall == 0.5
 
 
-def test_a_wrong_box_costs_only_where_it_is_surer_than_a_right_one():
+def test_false_positive_costs_only_above_score_of_true_positive():
     truth = [objects((0, *BOX))]
     assert evaluate(NAMES, truth, [found((0, 0.9, *BOX), (0, 0.8, *ELSEWHERE))]).map50 == pytest.approx(1)
     assert evaluate(NAMES, truth, [found((0, 0.8, *BOX), (0, 0.9, *ELSEWHERE))]).map50 == pytest.approx(0.5)
 
 
-def test_a_second_box_on_a_thing_is_wrong():
+def test_duplicate_detection_is_a_false_positive():
     truth = [objects((0, *BOX)), objects((0, *BOX))]
     figures = evaluate(NAMES, truth, [found((0, 0.9, *BOX), (0, 0.8, *BOX)), found((0, 0.7, *BOX))])
     assert figures.map50 == pytest.approx((51 + 50 * 2 / 3) / 101)
 
 
-def test_a_box_that_is_not_exact_counts_up_to_its_overlap():
+def test_inexact_box_counts_up_to_its_overlap():
     shifted = (10.0, 10.0, 30.0, 25.0)  # three quarters of it
     figures = evaluate(NAMES, [objects((0, *BOX))], [found((0, 0.9, *shifted))])
     assert figures.map50 == pytest.approx(1)
     assert figures.map == pytest.approx(0.6)  # right at 0.50 to 0.75, six of ten
 
 
-def test_who_finds_what_is_to_be_ignored_is_neither_right_nor_wrong():
+def test_detection_of_ignored_object_is_not_counted():
     truth = [objects((0, *BOX), (0, *ELSEWHERE), ignored={1})]
     figures = evaluate(NAMES, truth, [found((0, 0.9, *ELSEWHERE), (0, 0.8, *BOX))])
     assert figures.map50 == pytest.approx(1)
@@ -75,19 +75,19 @@ def test_who_finds_what_is_to_be_ignored_is_neither_right_nor_wrong():
     assert figures.confusion.tolist() == [[1, 0, 0], [0, 0, 0], [0, 0, 0]]
 
 
-def test_classes_are_told_by_their_names():
+def test_classes_are_matched_by_name():
     other_order = found((1, 0.9, *BOX), (0, 0.9, *ELSEWHERE), (2, 0.9, *BOX), names=("box", "ball", "cat"))
     assert evaluate(NAMES, [objects((0, *BOX), (1, *ELSEWHERE))], [other_order]).map50 == pytest.approx(1)
 
 
-def test_confusion_tells_what_was_taken_for_what_and_what_was_missed():
+def test_confusion_matrix_counts_mistaken_and_missed_classes():
     truth = [objects((0, *BOX), (1, *ELSEWHERE))]
     figures = evaluate(NAMES, truth, [found((1, 0.9, *BOX), (0, 0.3, *ELSEWHERE), (1, 0.6, 0, 60, 9, 69))])
     assert figures.confusion.tolist() == [[0, 1, 0], [0, 0, 1], [0, 1, 0]]
     assert figures.classes[1].precision == 0
 
 
-def test_recall_is_told_by_size():
+def test_recall_is_reported_by_size():
     truth = [objects((0, 0, 0, 8, 8), (0, 20, 20, 80, 40))]
     figures = evaluate(NAMES, truth, [found((0, 0.9, 20, 20, 80, 40))])
     assert figures.recall_by_size == (
@@ -98,7 +98,7 @@ def test_recall_is_told_by_size():
     )
 
 
-def test_the_balanced_score_is_that_of_the_last_detection_that_is_worth_it():
+def test_best_f1_threshold_is_score_of_last_useful_detection():
     truth = [objects((0, *BOX), (1, *ELSEWHERE), (1, 200, 200, 240, 240), ignored={2})]
     rows = [(0, 0.9, *BOX), (1, 0.6, *ELSEWHERE), (0, 0.4, 90, 90, 99, 99), (1, 0.7, 200, 200, 240, 240)]
     assert best_f1_threshold(NAMES, truth, [found(*rows)]) == pytest.approx(0.6)
@@ -107,7 +107,7 @@ def test_the_balanced_score_is_that_of_the_last_detection_that_is_worth_it():
 
 
 @given(st.lists(st.tuples(st.integers(0, 1), st.integers(0, 60), st.integers(0, 60)), max_size=6), st.randoms())
-def test_the_order_of_detections_does_not_matter(places, chance):
+def test_evaluation_does_not_depend_on_order_of_detections(places, chance):
     rows = [(kind, 0.3 + 0.1 * number, x, y, x + 20, y + 20) for number, (kind, x, y) in enumerate(places)]
     truth = [objects((0, 5, 5, 25, 25), (1, 40, 40, 60, 60))]
     mixed = rows[:]

@@ -30,7 +30,7 @@ class Writer:
         return [self.backlog.send(bytes([number]) * size) for number in numbers][-1]
 
 
-def test_no_more_large_samples_are_underway_than_the_writer_keeps():
+def test_large_samples_in_flight_are_limited_by_history_depth():
     writer = Writer()
     assert not writer.send(1, 2)
     assert writer.send(3)
@@ -40,7 +40,7 @@ def test_no_more_large_samples_are_underway_than_the_writer_keeps():
     assert writer.written == [1, 2, 3]
 
 
-def test_newer_samples_replace_those_that_wait():
+def test_newer_samples_replace_queued_ones():
     writer = Writer()
     assert writer.send(1, 2, 3, 4, 5)
     writer.acknowledged = True
@@ -48,7 +48,7 @@ def test_newer_samples_replace_those_that_wait():
     assert writer.written == [1, 2, 4, 5]
 
 
-def test_small_samples_alone_never_wait():
+def test_small_samples_alone_are_not_queued():
     writer = Writer()
     assert not writer.send(1, 2, 3, 4, size=SMALL)
     assert writer.written == [1, 2, 3, 4]
@@ -64,14 +64,14 @@ def test_small_samples_do_not_overtake_or_replace_large_ones():
     assert writer.written == [1, 2, 3, 4]
 
 
-def test_nobody_waits_where_only_others_than_fast_dds_listen():
+def test_samples_are_not_queued_without_fast_dds_readers():
     writer = Writer()
     writer.matters = False
     assert not writer.send(1, 2, 3, 4)
     assert writer.written == [1, 2, 3, 4]
 
 
-def test_a_reader_that_does_not_answer_holds_a_topic_up_once():
+def test_unresponsive_reader_delays_topic_once():
     writer = Writer()
     assert writer.send(1, 2, 3)
     writer.now = PATIENCE
@@ -85,7 +85,7 @@ def test_a_reader_that_does_not_answer_holds_a_topic_up_once():
     assert writer.send(8)
 
 
-def test_what_waits_is_written_when_readers_have_acknowledged(processes, monkeypatch):
+def test_queued_samples_are_written_after_acknowledgment(processes, monkeypatch):
     a, b = processes("a"), processes("b")
     monkeypatch.setattr(a.transport._remote, "is_read_by_fast", lambda topic: True)
     got: list[int] = []

@@ -34,7 +34,7 @@ def tool(domain, monkeypatch):
     return run
 
 
-def test_it_shows_our_participant_and_its_topics(processes, tool, domain):
+def test_cyclonedds_ps_shows_participant(processes, tool, domain):
     us = processes("ours")
     us.node.create_publisher(JointState, "joint_states", 10)
     shown = tool("ps", "-i", str(domain))
@@ -44,7 +44,7 @@ def test_it_shows_our_participant_and_its_topics(processes, tool, domain):
         assert topic in shown
 
 
-def test_it_lists_our_endpoints_with_their_facts(processes, tool, domain):
+def test_cyclonedds_ls_shows_endpoints_and_qos(processes, tool, domain):
     us = processes("ours")
     us.node.create_publisher(JointState, "joint_states", 7)
     shown = tool("ls", "-i", str(domain), "-q", "-t", "rt/joint_states")
@@ -55,7 +55,7 @@ def test_it_lists_our_endpoints_with_their_facts(processes, tool, domain):
     assert "enclave=/;" in shown
 
 
-def test_types_go_by_their_names(processes, tool, domain):
+def test_cyclonedds_typeof_shows_no_type_description(processes, tool, domain):
     """Descriptions of types are not sent: rmw_fastrtps_cpp and Humble's Cyclone DDS do not get on with ours."""
     us = processes("ours")
     us.node.create_publisher(JointState, "joint_states", 10)

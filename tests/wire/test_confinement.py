@@ -28,7 +28,7 @@ def memberships() -> set[str]:
     return {socket.inet_ntoa(int(source, 16).to_bytes(4, "big")) for source in sources}
 
 
-def opened() -> Graph:
+def join_network() -> Graph:
     """Return a graph that is on the network as far as the settings allow."""
     graph = Graph(threads=True)
     transport = join(graph)
@@ -37,13 +37,13 @@ def opened() -> Graph:
     return graph
 
 
-def test_each_interface_accepts_announcements_of_its_own_address_alone():
-    graph = opened()
+def test_interfaces_accept_announcements_of_own_address_only():
+    graph = join_network()
     assert memberships() >= set(own_addresses())
     asyncio.run(graph.close())
 
 
-def test_loopback_alone_is_used_where_the_system_refuses_a_membership(monkeypatch):
+def test_only_loopback_is_used_if_memberships_fail(monkeypatch):
     def refuse(addresses):
         raise OSError("no buffer space")
 
@@ -56,6 +56,6 @@ def test_loopback_alone_is_used_where_the_system_refuses_a_membership(monkeypatc
 
     monkeypatch.setattr(open_domains, "confine", refuse)
     monkeypatch.setattr(open_domains, "_first_taken", note)
-    asyncio.run(opened().close())
+    asyncio.run(join_network().close())
     assert used
     assert not any("autodetermine" in configuration for configuration in used)

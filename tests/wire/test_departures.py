@@ -44,7 +44,7 @@ class Scene:
         return self.departures.report_lost_publishers()
 
 
-def test_who_withdraws_a_publisher_before_it_goes_has_left():
+def test_withdrawn_publisher_is_not_lost():
     scene = Scene()
     scene.announce(OTHER)
     scene.remote.remove_endpoint(WRITER)
@@ -53,7 +53,7 @@ def test_who_withdraws_a_publisher_before_it_goes_has_left():
     assert not scene.lost
 
 
-def test_a_farewell_may_be_heard_after_the_participant_has_gone():
+def test_withdrawal_after_participant_removal_is_not_a_loss():
     scene = Scene()
     scene.remote.remove_participant(PARTICIPANT)
     assert scene.after(10.0) is not None
@@ -62,7 +62,7 @@ def test_a_farewell_may_be_heard_after_the_participant_has_gone():
     assert not scene.lost
 
 
-def test_a_participant_that_goes_without_a_farewell_is_lost_with_its_publishers():
+def test_participant_without_withdrawal_is_lost_with_its_publishers():
     scene = Scene()
     scene.remote.remove_participant(PARTICIPANT)
     scene.after(10.0)  # what had come by then was not taken before
@@ -74,7 +74,7 @@ def test_a_participant_that_goes_without_a_farewell_is_lost_with_its_publishers(
     assert len(scene.lost) == 1
 
 
-def test_a_participant_whose_process_is_gone_is_lost_before_its_lease_is_over(monkeypatch):
+def test_participant_of_ended_process_is_lost_before_lease_expires(monkeypatch):
     running = True
     monkeypatch.setattr("linkwright.wire.dds.remote.is_process_running", lambda _: running)
     scene = Scene(RemoteParticipant(PARTICIPANT, peer_process=7))
@@ -89,7 +89,7 @@ def test_a_participant_whose_process_is_gone_is_lost_before_its_lease_is_over(mo
     assert len(scene.lost) == 1
 
 
-def test_a_process_that_ends_after_it_has_left_is_not_lost(monkeypatch):
+def test_process_that_ends_after_withdrawal_is_not_lost(monkeypatch):
     monkeypatch.setattr("linkwright.wire.dds.remote.is_process_running", lambda _: False)
     scene = Scene(RemoteParticipant(PARTICIPANT, peer_process=7))
     scene.after(0.0)
@@ -99,12 +99,12 @@ def test_a_process_that_ends_after_it_has_left_is_not_lost(monkeypatch):
     assert not scene.lost
 
 
-def test_nothing_is_looked_at_before_somebody_asks():
+def test_departures_are_not_polled_without_watchers():
     scene = Scene(RemoteParticipant(PARTICIPANT, peer_process=7), watched=False)
     assert scene.after(0.0) is None
 
 
-def test_a_publisher_that_is_destroyed_and_a_process_that_leaves_are_not_lost(processes, programs):
+def test_destroyed_publisher_and_leaving_process_are_not_lost(processes, programs):
     us = processes("ours")
     lost: list[EndpointInfo] = []
     us.node.create_subscription(String, "/other", lambda _: None, 10).watch_lost(lost.append)
@@ -123,7 +123,7 @@ def test_a_publisher_that_is_destroyed_and_a_process_that_leaves_are_not_lost(pr
     assert {each.node.name for each in lost} == {"marker"}, lost
 
 
-def test_a_program_that_ends_with_an_exception_that_nobody_caught_is_lost(processes, monkeypatch):
+def test_program_that_ends_with_uncaught_exception_is_lost(processes, monkeypatch):
     us = processes("ours")
     lost: list[EndpointInfo] = []
     us.node.create_subscription(String, "/other", lambda _: None, 10).watch_lost(lost.append)
@@ -140,6 +140,6 @@ def test_a_program_that_ends_with_an_exception_that_nobody_caught_is_lost(proces
     ("error", "is_one"),
     [(ValueError(), True), (None, False), (KeyboardInterrupt(), False), (ExternalShutdownException(), False)],
 )
-def test_what_is_an_end_by_error(monkeypatch, error, is_one):
+def test_ends_by_error_distinguishes_exceptions(monkeypatch, error, is_one):
     monkeypatch.setattr(sys, "last_value", error, raising=False)
     assert ends_by_error() is is_one

@@ -17,7 +17,7 @@ def names(process):
     return sorted(name for name, _ in process.node.get_node_names_and_namespaces())
 
 
-def test_nodes_come_and_go(processes):
+def test_nodes_appear_and_disappear(processes):
     a, b = processes("a"), processes("b")
     extra = b.graph.create_node("extra", namespace="/deep/er")
     a.spin_until(lambda: NodeIdentity("extra", "/deep/er") in a.transport.remote_nodes())
@@ -28,13 +28,13 @@ def test_nodes_come_and_go(processes):
     a.spin_until(lambda: names(a) == ["a"])
 
 
-def test_each_of_two_nodes_of_one_name_is_listed(processes):
+def test_nodes_with_duplicate_names_are_listed_separately(processes):
     a, b = processes("a"), processes("twin")
     b.graph.create_node("twin")
     a.spin_until(lambda: names(a) == ["a", "twin", "twin"])
 
 
-def test_changes_are_announced(processes):
+def test_graph_watchers_are_notified(processes):
     a = processes("a")
     changes: list[int] = []
     a.transport.watch(lambda: changes.append(1))
@@ -45,7 +45,7 @@ def test_changes_are_announced(processes):
     a.spin_until(lambda: len(changes) > seen and a.node.count_publishers("chatter") == 1)
 
 
-def test_the_endpoints_of_each_node_are_known(processes):
+def test_endpoints_of_nodes_are_discovered(processes):
     a, b = processes("a"), processes("b")
     b.node.create_publisher(String, "said", 10)
     b.node.create_subscription(String, "heard", print, 10)
@@ -56,7 +56,7 @@ def test_the_endpoints_of_each_node_are_known(processes):
     assert services["/b/list_parameters"] == ["rcl_interfaces/srv/ListParameters"]
 
 
-def test_waiting_for_discovery_ends_when_everybody_is_known(processes, programs):
+def test_wait_for_discovery_ends_when_all_nodes_are_discovered(processes, programs):
     programs("our_program", "one")
     programs("our_program", "two")
     us = processes("ours")
@@ -64,7 +64,7 @@ def test_waiting_for_discovery_ends_when_everybody_is_known(processes, programs)
     assert {node.name for node in us.transport.remote_nodes()} == {"one", "two"}
 
 
-def test_a_process_announces_its_nodes_when_all_it_has_is_made(processes, monkeypatch):
+def test_process_announces_nodes_after_creating_all_endpoints(processes, monkeypatch):
     may_join = threading.Event()
 
     class Late(engine.Engine):
@@ -92,12 +92,12 @@ def test_a_process_announces_its_nodes_when_all_it_has_is_made(processes, monkey
     assert {publisher.gid for publisher in publishers} <= set(announced[0].nodes[0].writers)
 
 
-def test_alone_it_ends_soon(processes):
+def test_wait_for_discovery_ends_soon_without_peers(processes):
     us = processes("ours")
     assert us.transport.wait_for_discovery(SECONDS)
 
 
-def test_a_killed_process_and_the_one_that_takes_its_place_are_one(processes, programs):
+def test_killed_process_and_its_successor_are_listed_once(processes, programs):
     us = processes("ours")
     first = programs("our_program", "worker")
     us.spin_until(lambda: names(us) == ["ours", "worker"])
@@ -107,7 +107,7 @@ def test_a_killed_process_and_the_one_that_takes_its_place_are_one(processes, pr
     us.spin_until(lambda: names(us) == ["ours", "worker"])
 
 
-def test_a_process_of_this_machine_is_known_by_the_name_and_the_id_of_the_machine(monkeypatch):
+def test_local_process_is_recognized_by_host_name_and_machine_id(monkeypatch):
     """Fast DDS 3 tells the id, Fast DDS 2 and Cyclone tell the name."""
     here = socket.gethostname()
     monkeypatch.setattr(discovery, "machine_id", lambda: "3d12")
@@ -118,7 +118,7 @@ def test_a_process_of_this_machine_is_known_by_the_name_and_the_id_of_the_machin
     assert list(discovery.announced_processes(lambda name: elsewhere.get(name, ""))) == [("", ""), ("elsewhere", "42")]
 
 
-def test_fifty_nodes_with_their_services_are_found(processes, programs):
+def test_fifty_nodes_with_services_are_discovered(processes, programs):
     us = processes("ours")
     for number in range(50):
         us.graph.create_node(f"node_{number}")
@@ -127,7 +127,7 @@ def test_fifty_nodes_with_their_services_are_found(processes, programs):
     assert "node_49" in found
 
 
-def test_what_fast_dds_tells_of_a_request_is_no_hash_of_the_service():
+def test_type_hash_of_fast_dds_request_is_not_service_hash():
     """Its two halves tell each its own hash, where Cyclone's tell that of the service."""
     hashes = {
         guid[:2]: [

@@ -22,21 +22,21 @@ participants = st.builds(ParticipantEntities, gids, st.lists(nodes, max_size=3))
 
 
 @given(participants, st.sampled_from([GID_SIZE, OLD_GID_SIZE]))
-def test_what_is_written_is_read(info, gid_size):
+def test_discovery_info_round_trips(info, gid_size):
     assert decode(encode(info, gid_size)) == info
 
 
 @given(st.binary(max_size=200))
-def test_any_bytes_are_read_or_refused(data):
+def test_arbitrary_bytes_do_not_raise(data):
     decode(b"\0\1\0\0" + data)
 
 
 @pytest.mark.parametrize("data", [b"", b"\0", b"\0\1\0\0", b"\0\1\0\0" + bytes(15)])
-def test_short_samples_are_refused(data):
+def test_short_samples_are_rejected(data):
     assert decode(data) is None
 
 
-def test_the_layout_is_that_of_rmw_dds_common():
+def test_layout_matches_rmw_dds_common():
     gid, other = bytes(range(16)), bytes(range(16, 32))
     info = ParticipantEntities(gid, [NodeEntities("/", "abc", [other], [])])
     body = struct.pack("<I", 1)

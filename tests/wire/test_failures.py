@@ -41,7 +41,7 @@ def flip(request, response):
 
 
 @both_wires
-def test_a_message_that_fails_on_its_way_in_takes_no_other_with_it(processes):
+def test_failing_message_does_not_affect_others(processes):
     a, b = processes("a"), processes("b")
     got = []
     subscription = b.node.create_subscription(String, "chatter", lambda message: got.append(message.data), 10)
@@ -56,7 +56,7 @@ def test_a_message_that_fails_on_its_way_in_takes_no_other_with_it(processes):
 
 
 @both_wires
-def test_who_watches_the_graph_and_fails_keeps_nobody_from_knowing_it(processes):
+def test_failing_graph_watcher_does_not_affect_others(processes):
     a = processes("a")
     failing, after = Once(), Once()
     after.calls = 1
@@ -74,7 +74,7 @@ def test_who_watches_the_graph_and_fails_keeps_nobody_from_knowing_it(processes)
 
 
 @both_wires
-def test_a_request_and_a_response_that_fail_on_their_way_in_are_told(processes):
+def test_failing_request_and_response_are_reported(processes):
     a, b = processes("a"), processes("b")
     service = b.node.create_service(SetBool, "flip", flip)
     client = a.node.create_client(SetBool, "flip")
@@ -94,18 +94,18 @@ def test_a_request_and_a_response_that_fail_on_their_way_in_are_told(processes):
     assert warnings_of(a, "client of service '/flip' failed:")
 
 
-def unfit(message, value):
+def with_invalid_data(message, value):
     """A message with a value that does not fit, which nothing has looked at."""
     message._data = value
     return message
 
 
 @both_wires
-def test_a_kept_message_that_cannot_be_written_is_told_and_the_others_are_sent(processes):
+def test_unserializable_latched_message_is_reported_and_others_sent(processes):
     a = processes("a", join_now=False)
     publisher = a.node.create_publisher(String, "described", LASTING)
     publisher._copies_messages = False  # as of nodes that come with Linkwright, which hand their messages over
-    for message in (String(data="one"), unfit(String(), 5), String(data="three")):
+    for message in (String(data="one"), with_invalid_data(String(), 5), String(data="three")):
         publisher.publish(message)
     a.join()
     b = processes("b")
@@ -117,11 +117,11 @@ def test_a_kept_message_that_cannot_be_written_is_told_and_the_others_are_sent(p
 
 
 @both_wires
-def test_a_request_that_waited_and_cannot_be_written_fails_and_the_next_is_answered(processes):
+def test_unserializable_queued_request_fails_and_next_is_answered(processes):
     a, b = processes("a"), processes("b")
     a.node.handle.copies_messages = False  # as of nodes that come with Linkwright
     client = a.node.create_client(SetBool, "flip")
-    requests = (unfit(SetBool.Request(), "neither true nor false"), SetBool.Request(data=False))
+    requests = (with_invalid_data(SetBool.Request(), "neither true nor false"), SetBool.Request(data=False))
     futures = [client.call_async(request) for request in requests]
     b.node.create_service(SetBool, "flip", flip)
 
@@ -134,7 +134,7 @@ def test_a_request_that_waited_and_cannot_be_written_fails_and_the_next_is_answe
     assert futures[1].result().success
 
 
-def test_a_thread_goes_on_where_the_log_fails_too(monkeypatch):
+def test_thread_continues_when_logging_fails(monkeypatch):
     seen = []
     monkeypatch.setattr(threading, "excepthook", lambda hook: seen.append((hook.exc_type, str(hook.exc_value))))
 

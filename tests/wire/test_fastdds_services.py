@@ -27,19 +27,19 @@ def echo(request, response):
     return response
 
 
-def says(text):
+def camera_request(text):
     request = SetCameraInfo.Request()
     request.camera_info.distortion_model = text
     return request
 
 
 @pytest.mark.parametrize("text", ["hej", LARGE])
-def test_a_client_of_ours_takes_the_answer_that_is_for_it(processes, programs, text):
+def test_client_takes_response_with_its_identity(processes, programs, text):
     us = processes("ours")
     client = us.node.create_client(SetCameraInfo, "/fast_echo")
     peer = programs("fast_peer")
     us.spin_until(client.service_is_ready)
-    future = client.call_async(says(text))
+    future = client.call_async(camera_request(text))
     us.spin_until(future.done)
     assert future.result().status_message == text
     assert not us.warnings()
@@ -48,7 +48,7 @@ def test_a_client_of_ours_takes_the_answer_that_is_for_it(processes, programs, t
 
 
 @pytest.mark.parametrize("text", ["hej", LARGE])
-def test_a_service_of_ours_answers_with_the_identity_of_the_request(processes, programs, text):
+def test_service_responds_with_identity_of_request(processes, programs, text):
     us = processes("ours")
     us.node.create_service(SetCameraInfo, "/our_echo", echo)
     peer = programs("fast_peer")
@@ -62,7 +62,7 @@ def test_a_service_of_ours_answers_with_the_identity_of_the_request(processes, p
     assert not us.warnings()
 
 
-def test_who_speaks_with_cyclone_alone_has_no_other_participant(processes):
+def test_no_rtps_participant_is_created_with_cyclone_peers_only(processes):
     a, b = processes("a"), processes("b")
     a.node.create_service(SetCameraInfo, "/our_echo", echo)
     client = b.node.create_client(SetCameraInfo, "/our_echo")
@@ -70,7 +70,7 @@ def test_who_speaks_with_cyclone_alone_has_no_other_participant(processes):
     assert not [thread.name for thread in threading.enumerate() if thread.name == "linkwright-rtps"]
 
 
-def test_without_a_socket_there_is_one_warning_and_the_rest_works(processes, programs, monkeypatch):
+def test_missing_socket_is_reported_once_and_other_services_work(processes, programs, monkeypatch):
     def refuse(*_):
         raise OSError("no sockets today")
 
@@ -115,13 +115,13 @@ class _Service:
         self.asked.append((request.camera_info.distortion_model, request_id.number))
 
 
-def test_early_requests_get_the_numbers_before_the_first_that_was_heard(monkeypatch):
+def test_early_requests_get_numbers_before_first_received(monkeypatch):
     now = 100.0
     monkeypatch.setattr("linkwright.wire.dds.fastdds_services.time.monotonic", lambda: now)
     service, participant = _Service(), _Heard(heard_at=None, last=7)
     server = FastServer(service, participant)
     for number, text in enumerate(["six", "seven"]):
-        server.on_early_request(EarlyRequest(b"w" * 16, serialize(says(text)), 1_000_000 * number, now))
+        server.on_early_request(EarlyRequest(b"w" * 16, serialize(camera_request(text)), 1_000_000 * number, now))
     server.write_pending_replies()
     assert service.asked == []
     participant.heard_at = now
@@ -131,25 +131,25 @@ def test_early_requests_get_the_numbers_before_the_first_that_was_heard(monkeypa
     server.write_pending_replies()
     assert service.asked == [("six", 6), ("seven", 7)]
     assert not server.has_more_to_do
-    server.on_early_request(EarlyRequest(b"w" * 16, serialize(says("eight")), 9_000_000, now))
+    server.on_early_request(EarlyRequest(b"w" * 16, serialize(camera_request("eight")), 9_000_000, now))
     assert not server.has_more_to_do  # what comes from now on comes with its number
 
 
-def test_an_early_request_that_comes_late_with_its_number_is_carried_out_once(monkeypatch):
+def test_early_request_repeated_with_number_is_executed_once(monkeypatch):
     now = 100.0
     monkeypatch.setattr("linkwright.wire.dds.fastdds_services.time.monotonic", lambda: now)
     service, participant = _Service(), _Heard(heard_at=now, last=1)
     server = FastServer(service, participant)
-    server.on_early_request(EarlyRequest(b"w" * 16, serialize(says("first")), 5_000_000, now))
+    server.on_early_request(EarlyRequest(b"w" * 16, serialize(camera_request("first")), 5_000_000, now))
     now += 0.2
     server.write_pending_replies()
     for number, text in enumerate(["first", "second"], 1):
-        request = serialize(says(text))
+        request = serialize(camera_request(text))
         participant.deliver(Data(b"w" * 12, b"r" * 4, b"w" * 16, number, "<", {}, request, 5_000_000 * number + 1))
     assert service.asked == [("first", 1), ("second", 2)]
 
 
-def test_replies_to_others_may_come_while_a_client_is_made():
+def test_replies_to_others_during_client_creation_are_ignored():
     """A server may know the new reader before the client has it."""
     inline, _ = read_parameters(related_identity(b"o" * 16, 1), 0, "<")
     reply = Data(b"s" * 12, b"r" * 4, b"s" * 16, 1, "<", inline, b"")
@@ -167,18 +167,18 @@ def test_replies_to_others_may_come_while_a_client_is_made():
 
     client = FastClient(CLIENT, Hasty(), lambda _: False)
     answers = []
-    client.send(says("hej"), answers.append)
+    client.send(camera_request("hej"), answers.append)
     client._on_data(replace(reply, inline=read_parameters(related_identity(b"r" * 16, 1), 0, "<")[0], payload=ANSWER))
     assert [answer.status_message for answer in answers] == ["hej"]
 
 
-def test_what_fails_in_the_thread_of_the_participant_is_told_and_the_next_is_answered(processes, programs, monkeypatch):
+def test_error_in_participant_thread_is_reported_and_next_call_answered(processes, programs, monkeypatch):
     us = processes("ours")
     client = us.node.create_client(SetCameraInfo, "/fast_echo")
     peer = programs("fast_peer")
     us.spin_until(client.service_is_ready)
     client.announce = Once(client.announce)
-    futures = [client.call_async(says(text)) for text in ("one", "two")]
+    futures = [client.call_async(camera_request(text)) for text in ("one", "two")]
     us.spin_until(lambda: all(future.done() for future in futures))
     assert warnings_of(us, "client of service '/fast_echo' failed:")
     seen = []
@@ -191,6 +191,6 @@ def test_what_fails_in_the_thread_of_the_participant_is_told_and_the_next_is_ans
     programs("fast_peer")
     us.spin_until(lambda: participant.changed.calls > 2)
     us.spin_until(client.service_is_ready)
-    again = client.call_async(says("again"))
+    again = client.call_async(camera_request("again"))
     us.spin_until(again.done)
     assert again.result().status_message == "again"

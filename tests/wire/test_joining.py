@@ -32,7 +32,7 @@ def texts(log):
     return [record.text for record in log]
 
 
-def goes_on(graph) -> bool:
+def delivers_locally(graph) -> bool:
     got = []
     node = graph.create_node("alone")
     node.create_subscription(String, "chatter", got.append, 10)
@@ -40,22 +40,22 @@ def goes_on(graph) -> bool:
     return graph.count_publishers("/chatter") == 1
 
 
-def test_importing_does_not_load_the_library():
+def test_import_does_not_load_cyclonedds():
     code = "import sys, linkwright.wire.dds; print('cyclonedds' in sys.modules)"
     done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
     assert done.stdout == "False\n"
 
 
-def test_a_switch_keeps_a_process_to_itself(graph, log, monkeypatch):
+def test_linkwright_dds_0_keeps_process_offline(graph, log, monkeypatch):
     monkeypatch.setenv("LINKWRIGHT_DDS", "0")
     assert not available()
     assert unavailable_reason() == "the environment variable LINKWRIGHT_DDS is 0"
     assert join(graph) is None
     assert log == []
-    assert goes_on(graph)
+    assert delivers_locally(graph)
 
 
-def test_without_a_wheel_a_process_says_so_and_goes_on(graph, log, monkeypatch):
+def test_missing_cyclonedds_is_reported_and_process_continues(graph, log, monkeypatch):
     monkeypatch.setattr("linkwright.wire.dds.joining.find_spec", lambda _name: None)
     assert "'cyclonedds' is not installed" in unavailable_reason()
     assert join(graph) is None
@@ -63,35 +63,35 @@ def test_without_a_wheel_a_process_says_so_and_goes_on(graph, log, monkeypatch):
     assert text.startswith(
         "This process does not communicate with other processes: the package 'cyclonedds' is not installed"
     )
-    assert goes_on(graph)
+    assert delivers_locally(graph)
 
 
 @with_dds
 @pytest.mark.parametrize("number", ["233", "-1", "one", "1.5"])
-def test_a_domain_that_is_none_is_told(graph, log, monkeypatch, number):
+def test_invalid_domain_id_is_reported(graph, log, monkeypatch, number):
     monkeypatch.setenv("ROS_DOMAIN_ID", number)
     assert join(graph) is None
     (text,) = texts(log)
     assert f"error[DDS101]: '{number}' is not a DDS domain ID" in text
     assert "This process continues without the network" in text
-    assert goes_on(graph)
+    assert delivers_locally(graph)
 
 
 @with_dds
 @pytest.mark.parametrize("uri", ["file:///no/such/file.xml", "<CycloneDDS><Nonsense/></CycloneDDS>", "<Cyclone"])
-def test_a_configuration_that_cyclone_refuses_is_told(graph, log, monkeypatch, uri, capfd):
+def test_configuration_rejected_by_cyclone_is_reported(graph, log, monkeypatch, uri, capfd):
     monkeypatch.setenv("CYCLONEDDS_URI", uri)
     transport = join(graph)
     assert not transport.wait_until_ready(10)
     assert transport.problem.diagnostics[0].code == "DDS102"
     (text,) = texts(log)
     assert uri in text
-    assert goes_on(graph)
+    assert delivers_locally(graph)
     capfd.readouterr()
 
 
 @with_dds
-def test_a_wrong_range_is_told_and_stays_on_the_machine(graph, log, monkeypatch):
+def test_invalid_discovery_range_is_reported_and_falls_back_to_machine(graph, log, monkeypatch):
     monkeypatch.setenv("ROS_AUTOMATIC_DISCOVERY_RANGE", "LOCALHOTS")
     transport = join(graph)
     assert transport.wait_until_ready(60)
@@ -101,7 +101,7 @@ def test_a_wrong_range_is_told_and_stays_on_the_machine(graph, log, monkeypatch)
 
 
 @with_dds
-def test_a_domain_without_free_ports_is_told(graph, log, domain, capfd):
+def test_domain_without_free_ports_is_reported(graph, log, domain, capfd):
     with ExitStack() as taken:
         for index in range(max_participants(domain) + 1):
             each = taken.enter_context(socket.socket(socket.AF_INET, socket.SOCK_DGRAM))
@@ -110,12 +110,12 @@ def test_a_domain_without_free_ports_is_told(graph, log, domain, capfd):
         transport = join(graph)
         assert not transport.wait_until_ready(10)
     assert transport.problem.diagnostics[0].code == "DDS103"
-    assert goes_on(graph)
+    assert delivers_locally(graph)
     capfd.readouterr()
 
 
 @with_dds
-def test_the_highest_domain_is_one_to_join(graph, monkeypatch):
+def test_highest_domain_id_can_be_joined(graph, monkeypatch):
     monkeypatch.setenv("ROS_DOMAIN_ID", str(MAX_DOMAIN_ID))
     transport = join(graph)
     assert transport.wait_until_ready(60), transport.problem

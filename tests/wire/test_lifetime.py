@@ -35,7 +35,7 @@ def kernel_threads() -> int:
 
 
 @on_linux
-def test_nothing_is_left_after_closing(processes):
+def test_close_leaves_no_threads_or_sockets(processes):
     processes("warm").close()
     threads, sockets = (
         threading.active_count(),
@@ -51,7 +51,7 @@ def test_nothing_is_left_after_closing(processes):
     wait_until(lambda: kernel_threads() <= tasks)  # a thread that was joined is listed a moment longer
 
 
-def test_closing_twice_and_before_being_ready_is_fine(processes):
+def test_close_twice_and_before_ready_is_allowed(processes):
     us = processes("ours", join_now=False)
     from linkwright.wire.dds import join
 
@@ -61,7 +61,7 @@ def test_closing_twice_and_before_being_ready_is_fine(processes):
     assert transport.remote_nodes() == []
 
 
-def test_a_domain_that_is_joined_after_joining_was_given_up_is_left_again(processes, monkeypatch):
+def test_domain_joined_after_close_is_left_again(processes, monkeypatch):
     from linkwright.wire import background
     from linkwright.wire.dds import engine, join, open_domains
 
@@ -87,7 +87,7 @@ def test_a_domain_that_is_joined_after_joining_was_given_up_is_left_again(proces
 
 
 @pytest.mark.parametrize("seconds", [0.0, 0.05, 0.1, 0.15, 0.2])
-def test_a_program_that_ends_while_the_domain_is_joined_says_nothing(seconds):
+def test_program_that_ends_while_joining_prints_nothing(seconds):
     done = run(
         f"""
         import asyncio, time
@@ -104,7 +104,7 @@ def test_a_program_that_ends_while_the_domain_is_joined_says_nothing(seconds):
     assert (done.returncode, done.stdout, done.stderr) == (0, "", "")
 
 
-def test_who_waits_for_others_goes_on_when_the_domain_is_left(processes):
+def test_close_ends_wait_for_discovery(processes):
     us = processes("ours")
     ended = threading.Event()
 
@@ -120,7 +120,7 @@ def test_who_waits_for_others_goes_on_when_the_domain_is_left(processes):
     assert ended.wait(SECONDS)
 
 
-def test_what_was_sent_reliably_before_closing_arrives(processes):
+def test_reliable_messages_sent_before_close_arrive(processes):
     b = processes("b")
     got: list[int] = []
     deep = QoSProfile(500)
@@ -134,7 +134,7 @@ def test_what_was_sent_reliably_before_closing_arrives(processes):
     b.spin_until(lambda: len(got) == 300)
 
 
-def test_a_program_that_closes_nothing_ends(domain):
+def test_program_without_close_ends(domain):
     done = run(
         """
         from linkwright.graph import Graph
@@ -149,7 +149,7 @@ def test_a_program_that_closes_nothing_ends(domain):
     assert (done.returncode, done.stderr) == (0, "")
 
 
-def test_a_program_that_fails_ends(domain):
+def test_failing_program_ends(domain):
     done = run(
         """
         from linkwright.graph import Graph
@@ -162,7 +162,7 @@ def test_a_program_that_fails_ends(domain):
     assert (done.returncode, done.stderr) == (3, "")
 
 
-def test_packets_that_are_none_of_dds_leave_no_line_on_standard_error(domain):
+def test_packets_that_are_not_dds_print_nothing_to_stderr(domain):
     done = run(
         """
         import os, socket, time
@@ -185,7 +185,7 @@ def test_packets_that_are_none_of_dds_leave_no_line_on_standard_error(domain):
 
 @pytest.mark.skipif(not hasattr(os, "fork"), reason="there is no fork here")
 @pytest.mark.filterwarnings("ignore:.*fork.*:DeprecationWarning")
-def test_a_child_that_is_forked_off_takes_no_part(processes, programs):
+def test_forked_child_does_not_participate(processes, programs):
     us = processes("ours")
     us.node.create_subscription("std_msgs/msg/Int32", "/flood", print, 10)
     other = programs("our_program", "forking")
@@ -194,7 +194,7 @@ def test_a_child_that_is_forked_off_takes_no_part(processes, programs):
     assert other.ask("nodes") == ["forking", "ours"]
 
 
-def test_a_peer_that_is_killed_does_not_hold_us_up(processes, programs):
+def test_killed_peer_does_not_block_publisher(processes, programs):
     us = processes("ours")
     publisher = us.node.create_publisher(String, "/to_ros", 10)
     peer = programs("ros_peer", "humble", "victim", "localhost")

@@ -50,25 +50,25 @@ def test_processes_are_counted_by_their_ports(tables, ports, count):
 
 
 @on_linux
-def test_sockets_of_this_process_do_not_count(tables):
+def test_sockets_of_this_process_are_not_counted(tables):
     with socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as own:
         inode = os.fstat(own.fileno()).st_ino
         assert other_processes(DOMAIN, tables(FIRST, **{f"p{FIRST}": inode})) == 0
 
 
-def test_where_the_system_has_no_tables_the_number_is_not_known(tmp_path):
+def test_count_is_unknown_without_socket_tables(tmp_path):
     assert other_processes(DOMAIN, tmp_path) is None
 
 
 @on_linux
-def test_a_table_that_is_written_otherwise_tells_nothing(tmp_path):
+def test_malformed_socket_table_gives_no_count(tmp_path):
     (tmp_path / "udp").write_text("sl\nsomething else\n")
     (tmp_path / "udp6").write_text("sl\n")
     assert other_processes(DOMAIN, tmp_path) is None
 
 
 @on_linux
-def test_the_system_tells_of_another_process(processes, programs, domain):
+def test_other_process_is_counted_by_system_tables(processes, programs, domain):
     assert other_processes(domain) == 0
     programs("our_program", "one")
     assert other_processes(domain) == 1
@@ -77,7 +77,7 @@ def test_the_system_tells_of_another_process(processes, programs, domain):
 
 
 @on_linux
-def test_what_waits_at_a_port_is_told_until_it_is_taken():
+def test_waiting_bytes_are_reported_until_received():
     sending = socket.socket(socket.AF_INET, socket.SOCK_DGRAM)
     receiving = socket.socket(socket.AF_INET, socket.SOCK_DGRAM)
     with sending, receiving:
@@ -93,5 +93,5 @@ def test_what_waits_at_a_port_is_told_until_it_is_taken():
     assert waiting_bytes(port) == 0
 
 
-def test_without_the_tables_of_the_system_nothing_is_known_of_what_waits(tmp_path):
+def test_waiting_bytes_are_unknown_without_socket_tables(tmp_path):
     assert waiting_bytes(7411, tmp_path) is None

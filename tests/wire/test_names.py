@@ -20,16 +20,16 @@ names = st.lists(words, min_size=1, max_size=3).map(lambda parts: "/" + "/".join
 
 
 @given(st.sampled_from(Role), names)
-def test_names_come_back(role, name):
+def test_ros_names_round_trip(role, name):
     assert ros_name(dds_topic(role, name)) == RosName(role, name)
 
 
 @given(words, st.sampled_from(["msg", "srv", "action"]), st.from_regex(r"[A-Z][A-Za-z0-9]{0,8}", fullmatch=True))
-def test_types_come_back(package, kind, name):
+def test_type_names_round_trip(package, kind, name):
     assert ros_type(dds_type(f"{package}/{kind}/{name}")) == f"{package}/{kind}/{name}"
 
 
-def test_names_are_those_of_ros():
+def test_dds_names_match_ros():
     assert dds_topic(Role.TOPIC, "/joint_states") == "rt/joint_states"
     assert dds_topic(Role.REQUEST, "/node/get_parameters") == "rq/node/get_parametersRequest"
     assert dds_topic(Role.REPLY, "/node/get_parameters") == "rr/node/get_parametersReply"
@@ -38,29 +38,29 @@ def test_names_are_those_of_ros():
 
 
 @pytest.mark.parametrize("topic", ["ros_discovery_info", "rt", "xy/name", "rq/askedReply", "rq/Request", "/plain"])
-def test_other_topics_are_none_of_ros(topic):
+def test_other_topics_are_not_ros_names(topic):
     assert ros_name(topic) is None
 
 
 @pytest.mark.parametrize("name", ["Plain", "a::b::C", "std_msgs::msg::String_", "std_msgs::msg::dds_::String"])
-def test_other_types_are_none_of_ros(name):
+def test_other_types_are_not_ros_types(name):
     assert ros_type(name) is None
     assert ros_service_type(name) is None
 
 
-def test_both_halves_of_a_service_are_of_its_type():
+def test_request_and_response_types_map_to_service_type():
     assert ros_service_type("std_srvs::srv::dds_::SetBool_Request_") == "std_srvs/srv/SetBool"
     assert ros_service_type("std_srvs::srv::dds_::SetBool_Response_") == "std_srvs/srv/SetBool"
     assert ros_service_type("std_srvs::srv::dds_::SetBool_") is None
     assert ros_service_type("demo::action::dds_::Count_SendGoal_Request_") == "demo/action/Count_SendGoal"
 
 
-def test_user_data_is_read_as_rmw_reads_it():
+def test_user_data_is_parsed_like_rmw():
     assert parse_user_data(b"enclave=/;") == {"enclave": "/"}
     assert parse_user_data(b"clientid= 1.2.ff;typehash=RIHS01_00;") == {"clientid": "1.2.ff", "typehash": "RIHS01_00"}
     assert parse_user_data(b"") == {}
     assert parse_user_data(b"\xff;=x;nothing") == {}
 
 
-def test_ids_are_written_as_rmw_cyclonedds_writes_them():
+def test_endpoint_id_matches_rmw_cyclonedds():
     assert endpoint_id(bytes([1, 2, 0xAB])) == " 1.2.ab"

@@ -37,7 +37,7 @@ class Buffer:
         self.pauses += 1
 
 
-def test_three_packets_go_into_an_empty_buffer_before_it_is_looked_at_again():
+def test_three_packets_fit_in_empty_buffer_before_next_check():
     buffer = Buffer(0, 3 * PACKET, 2 * PACKET, PACKET, 0)
     assert [buffer.receiver.wait_for_room() for _ in range(3)] == [True] * 3
     assert not buffer.pauses
@@ -45,7 +45,7 @@ def test_three_packets_go_into_an_empty_buffer_before_it_is_looked_at_again():
     assert buffer.pauses == 2
 
 
-def test_nobody_waits_twice_for_a_reader_that_takes_nothing():
+def test_blocked_reader_is_waited_for_once():
     buffer = Buffer(3 * PACKET)
     assert not buffer.receiver.wait_for_room()
     pauses = buffer.pauses
@@ -57,13 +57,13 @@ def test_nobody_waits_twice_for_a_reader_that_takes_nothing():
     assert buffer.receiver.wait_for_room()
 
 
-def test_where_the_system_does_not_tell_there_is_a_pause_after_every_other_packet():
+def test_unknown_buffer_state_pauses_every_second_packet():
     buffer = Buffer(None)
     assert all(buffer.receiver.wait_for_room() for _ in range(4))
     assert buffer.pauses == 2
 
 
-def test_a_sample_arrives_under_the_name_of_the_writer():
+def test_paced_sample_has_guid_of_writer():
     reader = socket.socket(socket.AF_INET, socket.SOCK_DGRAM)
     reader.bind(("127.0.0.1", 0))
     reader.settimeout(60)
@@ -114,7 +114,7 @@ class Line:
             pass
 
 
-def test_large_samples_are_sent_before_they_are_written_and_nothing_overtakes_them():
+def test_large_samples_are_sent_before_write_in_order():
     line = Line()
     line.publish(1, len(SMALL))
     line.publish(2, len(LARGE))
@@ -129,7 +129,7 @@ def test_large_samples_are_sent_before_they_are_written_and_nothing_overtakes_th
     assert line.log[-1] == ("written", 4, True)
 
 
-def test_newer_samples_replace_those_that_wait():
+def test_newer_samples_replace_queued_ones():
     line = Line(depth=2)
     for number in (1, 2, 3):
         line.publish(number, len(LARGE))
@@ -137,13 +137,13 @@ def test_newer_samples_replace_those_that_wait():
     assert line.log == [("sent", 2, 1), ("written", 2, False), ("sent", 3, 2), ("written", 3, False)]
 
 
-def test_without_a_reader_of_fast_dds_samples_are_written_at_once():
+def test_samples_are_written_at_once_without_fast_dds_readers():
     line = Line(readers=())
     line.publish(1, len(LARGE))
     assert line.log == [("written", 1, True)]
 
 
-def test_no_number_is_sent_with_two_samples():
+def test_sequence_number_is_not_sent_with_two_samples():
     """Cyclone has not written what was sent as number 1, and will give that number to the next sample."""
     line = Line()
     line.works = False
@@ -154,7 +154,7 @@ def test_no_number_is_sent_with_two_samples():
     assert line.log == [("sent", 1, 1), ("written", 1, False), ("written", 2, True)]
 
 
-def test_a_writer_that_is_closed_sends_nothing_more():
+def test_closed_writer_sends_nothing():
     line = Line()
     line.publish(1, len(LARGE))
     line.writer.close()
@@ -162,7 +162,7 @@ def test_a_writer_that_is_closed_sends_nothing_more():
     assert not line.log
 
 
-def test_an_image_goes_packet_by_packet_and_then_by_cyclone(processes, monkeypatch):
+def test_image_is_sent_packet_by_packet_before_cyclone(processes, monkeypatch):
     """Cyclone's reader counts as one of Fast DDS here, and a socket of the test listens in its place."""
     with socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as listening:
         listening.bind(("127.0.0.1", 0))

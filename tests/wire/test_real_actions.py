@@ -36,7 +36,7 @@ def peers(programs):
 
 @pytest.mark.parametrize(("asking", "asked"), SIDES)
 @pytest.mark.parametrize("server_is_first", [True, False])
-def test_a_goal_is_carried_out_with_its_feedback(peers, asking, asked, server_is_first):
+def test_goal_is_executed_with_feedback(peers, asking, asked, server_is_first):
     first, second = (asked, asking) if server_is_first else (asking, asked)
     both = {first: peers(first), second: peers(second)}
     message = both[asking].ask("act", f"/{asked}/fibonacci", 5)
@@ -44,7 +44,7 @@ def test_a_goal_is_carried_out_with_its_feedback(peers, asking, asked, server_is
 
 
 @pytest.mark.parametrize(("asking", "asked"), SIDES)
-def test_goals_are_refused_aborted_and_cancelled(peers, asking, asked):
+def test_goals_are_rejected_aborted_and_canceled(peers, asking, asked):
     peers(asked)
     asks = peers(asking)
     action = f"/{asked}/fibonacci"
@@ -57,13 +57,13 @@ def test_goals_are_refused_aborted_and_cancelled(peers, asking, asked):
 
 
 @pytest.mark.parametrize(("asking", "asked"), SIDES)
-def test_many_goals_at_once_have_each_its_own_result(peers, asking, asked):
+def test_simultaneous_goals_get_their_own_results(peers, asking, asked):
     peers(asked)
     assert peers(asking).ask("acts_are_right", f"/{asked}/fibonacci", GOALS) == GOALS
 
 
 @pytest.mark.parametrize(("asking", "asked"), SIDES)
-def test_a_managed_node_is_led_through_its_states(peers, asking, asked):
+def test_managed_node_changes_states(peers, asking, asked):
     answers, asks = peers(asked), peers(asking)
     asks.ask("watch", asked)
     for each in (asks, answers):
@@ -82,7 +82,7 @@ def test_a_managed_node_is_led_through_its_states(peers, asking, asked):
 
 
 @pytest.mark.parametrize(("asking", "asked"), SIDES)
-def test_parameter_events_are_heard(peers, asking, asked):
+def test_parameter_events_are_received(peers, asking, asked):
     hears, tells = peers(asking), peers(asked)
     for each in (hears, tells):
         each.ask_until(lambda known: known == [2, 2], "ends_of", "/parameter_events")
@@ -92,7 +92,7 @@ def test_parameter_events_are_heard(peers, asking, asked):
     assert events == [["new", "speed", 1.5], ["changed", "speed", 2.5]]
 
 
-def test_verbs_ask_for_actions_and_states_there(peers):
+def test_verbs_use_actions_and_lifecycle_of_real_node(peers):
     peers("theirs")
     out, err, status = linkwright(
         "action", "send_goal", "--feedback", "/theirs/fibonacci", "test_msgs/action/Fibonacci", "{order: 3}"

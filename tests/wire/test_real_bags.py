@@ -24,7 +24,7 @@ def real_node(programs):
 
 
 @pytest.mark.parametrize("storage", ["mcap", "sqlite3"])
-def test_what_they_publish_is_recorded_and_played_to_them(real_node, tmp_path, storage):
+def test_bag_records_real_node_and_plays_to_it(real_node, tmp_path, storage):
     """Images, joint states and what was said before, each once and in order."""
     bag = tmp_path / "bag"
     real = real_node()

@@ -81,7 +81,7 @@ def peer(programs):
     return start
 
 
-def both(peer, program):
+def start_both_sides(peer, program):
     return {side: peer(program, side) for side in RMW}
 
 
@@ -108,9 +108,9 @@ def show_until_seen(shown, seen):
     seen.ask_until(came, "received_images")
 
 
-def test_each_side_knows_the_other_with_its_topics_services_and_parameters(bridge, peer):
+def test_bridge_connects_topics_services_and_parameters(bridge, peer):
     bridge()
-    sides = both(peer, "real_peer")
+    sides = start_both_sides(peer, "real_peer")
     for side in sides.values():
         side.ask_until(lambda nodes: ["/", "ours"] in nodes and ["/", "theirs"] in nodes, "nodes")
     for saying, hearing in SIDES:
@@ -132,9 +132,9 @@ def test_each_side_knows_the_other_with_its_topics_services_and_parameters(bridg
 
 
 @pytest.mark.parametrize(("asking", "asked"), SIDES)
-def test_goals_are_carried_out_refused_aborted_and_cancelled(bridge, peer, asking, asked):
+def test_goals_are_executed_rejected_aborted_and_canceled(bridge, peer, asking, asked):
     bridge()
-    asks = both(peer, "managed_peer")[asking]
+    asks = start_both_sides(peer, "managed_peer")[asking]
     action = f"/{asked}/fibonacci"
     message = asks.ask("act", action, 5)
     assert (message["accepted"], message["status"], message["sequence"]) == (True, "SUCCEEDED", [0, 1, 1, 2, 3, 5])
@@ -148,7 +148,7 @@ def test_goals_are_carried_out_refused_aborted_and_cancelled(bridge, peer, askin
 
 @pytest.mark.skipif(not TYPES, reason="LINKWRIGHT_ROS_TYPES names no types of tf2")
 @pytest.mark.parametrize(("telling", "hearing"), SIDES)
-def test_transforms_are_heard(bridge, peer, telling, hearing):
+def test_transforms_are_received(bridge, peer, telling, hearing):
     bridge()
     tells = peer("tf_peer", telling)
     tells.ask("tell", "/tf_static", "map", "odom", 1.0)
@@ -159,9 +159,9 @@ def test_transforms_are_heard(bridge, peer, telling, hearing):
 
 
 @pytest.mark.parametrize(("saying", "hearing"), SIDES)
-def test_images_come_in_their_order(bridge, peer, saying, hearing):
+def test_images_arrive_in_order(bridge, peer, saying, hearing):
     bridge()
-    sides = both(peer, "real_peer")
+    sides = start_both_sides(peer, "real_peer")
     show_until_seen(sides[saying], sides[hearing])
     sides[saying].ask("publish_images", IMAGES, RATE)
     got = sides[hearing].ask_until(lambda numbers: IMAGES - 1 in numbers, "received_images")
@@ -169,9 +169,9 @@ def test_images_come_in_their_order(bridge, peer, saying, hearing):
 
 
 @pytest.mark.parametrize("killed", RMW)
-def test_who_is_killed_is_gone_beyond_the_bridge_and_comes_again(bridge, peer, killed):
+def test_killed_node_disappears_and_returns_across_bridge(bridge, peer, killed):
     bridge()
-    sides = both(peer, "real_peer")
+    sides = start_both_sides(peer, "real_peer")
     (left,) = RMW.keys() - {killed}
     say_until_heard(sides[killed], sides[left], "once")
     sides[killed].kill()
@@ -183,9 +183,9 @@ def test_who_is_killed_is_gone_beyond_the_bridge_and_comes_again(bridge, peer, k
     assert sides[left].ask("echoes_are_right", f"/{killed}_echo", "again", 10) == 10
 
 
-def test_a_bridge_that_was_killed_is_followed_by_another(bridge, peer):
+def test_killed_bridge_is_replaced(bridge, peer):
     first = bridge()
-    sides = both(peer, "real_peer")
+    sides = start_both_sides(peer, "real_peer")
     say_until_heard(sides["theirs"], sides["ours"], "once")
     first.kill()
     for side, other in SIDES:
@@ -199,9 +199,9 @@ def test_a_bridge_that_was_killed_is_followed_by_another(bridge, peer):
     assert nodes == sides["ours"].ask("nodes")
 
 
-def test_the_verbs_tell_of_what_is_beyond_the_bridge(bridge, peer, monkeypatch):
+def test_verbs_show_nodes_beyond_bridge(bridge, peer, monkeypatch):
     bridge()
-    sides = both(peer, "real_peer")
+    sides = start_both_sides(peer, "real_peer")
     say_until_heard(sides["theirs"], sides["ours"], "we know each other")
     monkeypatch.setenv("RMW_IMPLEMENTATION", RMW["ours"])
     assert {"/ours", "/theirs"} <= set(linkwright("node", "list")[0].splitlines())

@@ -86,7 +86,7 @@ def interrupt(process: subprocess.Popen[str]) -> str:
     return process.communicate(timeout=SECONDS)[1]
 
 
-def test_first_move_drives_by_its_parameters_and_stops_the_robot_at_ctrl_c(velocities, run):
+def test_first_move_follows_parameters_and_stops_on_ctrl_c(velocities, run):
     us, heard = velocities
     program = run("my_control", "first_move", "speed:=0.4", "duration:=60.0")
     us.spin_until(lambda: (0.4, 0.5) in heard, SECONDS)
@@ -94,7 +94,7 @@ def test_first_move_drives_by_its_parameters_and_stops_the_robot_at_ctrl_c(veloc
     us.spin_until(lambda: heard[-1] == (0.0, 0.0), SECONDS)
 
 
-def test_the_odometer_adds_up_and_is_reset(processes, run):
+def test_odometer_accumulates_distance_and_resets(processes, run):
     us = processes("ours")
     distances: list[float] = []
     us.node.create_subscription(Float64, "/distance", lambda message: distances.append(message.data), 10)
@@ -136,7 +136,7 @@ def scan(distance):
         ("wander", "/scan", scan(5.0), scan(0.4)),
     ],
 )
-def test_nodes_drive_by_what_they_measure(velocities, run, executable, topic, drives, does_not_drive):
+def test_course_nodes_drive_by_measurements(velocities, run, executable, topic, drives, does_not_drive):
     us, heard = velocities
     publisher = us.node.create_publisher(type(drives), topic, 10)
     program = run("my_control", executable)
@@ -152,7 +152,7 @@ def test_nodes_drive_by_what_they_measure(velocities, run, executable, topic, dr
     assert "Traceback" not in interrupt(program)
 
 
-def test_a_node_that_waits_for_words_notices_ctrl_c(velocities, run):
+def test_word_driver_ends_on_ctrl_c(velocities, run):
     us, heard = velocities
     publisher = us.node.create_publisher(String, "/voice/text", 10)
     program = run("my_voice", "word_driver")
@@ -163,7 +163,7 @@ def test_a_node_that_waits_for_words_notices_ctrl_c(velocities, run):
 
 @pytest.mark.extra("sim")
 @pytest.mark.parametrize("workspace", ["11", "12"], indirect=True)
-def test_the_mission_is_told_in_chinese_and_arrives_at_the_red_ball(workspace, processes, run):
+def test_mission_spoken_in_chinese_reaches_red_ball(workspace, processes, run):
     """The world is ours, and each node of the learner runs under the real rclpy.
 
     In lesson 12, the images come with best effort. Kilted's Fast DDS sometimes does not connect two real nodes, logs

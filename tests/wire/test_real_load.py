@@ -34,7 +34,7 @@ def peers(programs):
 
 
 @pytest.mark.parametrize("server", ["theirs", "ours"])
-def test_a_thousand_calls_of_mixed_kinds_from_three_clients_at_once(peers, server):
+def test_thousand_mixed_calls_from_three_clients_are_answered(peers, server):
     """None is lost, and none gets the answer to another one."""
     peers(server)
     clients = [peers(name) for name in CLIENTS]
@@ -48,7 +48,7 @@ def test_a_thousand_calls_of_mixed_kinds_from_three_clients_at_once(peers, serve
 
 
 @pytest.mark.parametrize(("asks", "answers"), [("theirs", "ours"), ("ours", "theirs")])
-def test_goals_are_cancelled_and_preempted_while_much_else_goes_on(peers, asks, answers):
+def test_goals_are_canceled_and_preempted_under_load(peers, asks, answers):
     client, server, other = peers(asks), peers(answers), peers(f"{asks}_2")
     client.ask("chatter", RATE, answers)
     server.ask("chatter", RATE, asks)

@@ -70,7 +70,7 @@ def peers(programs, monkeypatch):
     ],
     ids=lambda value: str(getattr(value, "name", value)),
 )
-def test_what_does_not_fit_is_told_on_both_sides(peers, says, hears, offered, requested, policy):
+def test_incompatible_qos_is_reported_on_both_sides(peers, says, hears, offered, requested, policy):
     publishes, subscribes = peers(says), peers(hears)
     publishes.ask("publisher", "/topic", offered)
     subscribes.ask("subscription", "/topic", requested)
@@ -79,7 +79,7 @@ def test_what_does_not_fit_is_told_on_both_sides(peers, says, hears, offered, re
 
 
 @pytest.mark.parametrize(("says", "hears"), SIDES)
-def test_those_and_only_those_that_fit_hear_each_other(peers, says, hears):
+def test_only_compatible_qos_profiles_match(peers, says, hears):
     publishes, subscribes = peers(says), peers(hears)
     fits = {}
     for number, (offered, requested) in enumerate(product(PROFILES, PROFILES)):
@@ -92,21 +92,21 @@ def test_those_and_only_those_that_fit_hear_each_other(peers, says, hears):
         publishes.ask("keep_saying", topic, 1.0)
     for topic, fit in fits.items():
         for each in (publishes, subscribes):
-            answer = each.ask_until(partial(told_that, "matched" if fit else "incompatible"), "told", topic)
-            assert not told_that("incompatible" if fit else "matched", answer)
+            answer = each.ask_until(partial(has_event, "matched" if fit else "incompatible"), "told", topic)
+            assert not has_event("incompatible" if fit else "matched", answer)
     for topic, fit in fits.items():
         if fit:
             subscribes.ask_until(bool, "heard", topic)
     assert [topic for topic, fit in fits.items() if not fit and subscribes.ask("heard", topic)] == []
 
 
-def told_that(kind, events):
+def has_event(kind, events):
     """Whether an event of a kind is among those that an endpoint was told of."""
     return kind in [each for each, *_ in events]
 
 
 @pytest.mark.parametrize(("says", "hears"), SIDES)
-def test_the_best_that_is_available_always_fits(peers, says, hears):
+def test_best_available_qos_always_matches(peers, says, hears):
     publishes, subscribes = peers(says), peers(hears)
     for number, offered in enumerate(({}, SENSOR_DATA, LATCHED, LIVELY)):
         publishes.ask("publisher", f"/topic_{number}", offered)
@@ -122,7 +122,7 @@ def test_the_best_that_is_available_always_fits(peers, says, hears):
 
 
 @pytest.mark.parametrize(("says", "hears"), SIDES)
-def test_a_deadline_that_is_missed_is_told_on_both_sides(peers, says, hears):
+def test_missed_deadline_is_reported_on_both_sides(peers, says, hears):
     """It begins with the first message, and is not missed while they come in time."""
     publishes, subscribes = peers(says), peers(hears)
     for topic in ("/topic", "/silent"):
@@ -145,7 +145,7 @@ def missed(peer, topic):
 
 
 @pytest.mark.parametrize(("says", "hears"), SIDES)
-def test_liveliness_is_lost_and_found_again(peers, says, hears):
+def test_liveliness_is_lost_and_regained(peers, says, hears):
     """Asserted by hand, and let go."""
     publishes, subscribes = peers(says), peers(hears)
     by_hand = {"liveliness": "manual_by_topic", "lease": 1.0}
@@ -161,7 +161,7 @@ def test_liveliness_is_lost_and_found_again(peers, says, hears):
 
 
 @pytest.mark.parametrize(("says", "hears"), SIDES)
-def test_a_publisher_that_is_killed_is_no_longer_alive(peers, says, hears):
+def test_killed_publisher_loses_liveliness(peers, says, hears):
     publishes, subscribes = peers(says), peers(hears)
     publishes.ask("publisher", "/topic", LIVELY)
     subscribes.ask("subscription", "/topic", LIVELY)
@@ -172,7 +172,7 @@ def test_a_publisher_that_is_killed_is_no_longer_alive(peers, says, hears):
 
 
 @pytest.mark.parametrize(("says", "hears"), SIDES)
-def test_what_has_outlived_its_lifespan_is_told_to_nobody(peers, says, hears):
+def test_message_beyond_its_lifespan_is_not_delivered(peers, says, hears):
     publishes = peers(says)
     for topic, lifespan in (("/short", 0.5), ("/long", 300.0)):
         publishes.ask("publisher", topic, {"durability": "transient_local", "lifespan": lifespan})

@@ -31,7 +31,7 @@ def run(name):
     return linkwright(*shlex.split(line)[1:])
 
 
-def test_the_robot_is_found_with_the_variables_of_the_page(robot, monkeypatch) -> None:
+def test_robot_is_found_with_documented_variables(robot, monkeypatch) -> None:
     for name, value in re.findall(r"^export (\w+)=(\w+)", FIND_IT, re.MULTILINE):
         monkeypatch.setenv(name, str(own_domain()) if name == "ROS_DOMAIN_ID" else value)
     robot()
@@ -41,11 +41,11 @@ def test_the_robot_is_found_with_the_variables_of_the_page(robot, monkeypatch) -
 
 
 @pytest.mark.parametrize(("transports", "found"), [("SHM", False), ("LARGE_DATA", False), ("DEFAULT", True)])
-def test_which_transports_of_fast_dds_hide_the_robot(robot, transports, found) -> None:
+def test_fast_dds_transports_that_hide_robot(robot, transports, found) -> None:
     robot(FASTDDS_BUILTIN_TRANSPORTS=transports)
     assert ("/from_ros" in run("topic list")[0].splitlines()) is found
 
 
-def test_the_doctor_says_that_the_domain_may_be_another(robot) -> None:
+def test_doctor_reports_possibly_different_domain(robot) -> None:
     robot(ROS_DOMAIN_ID=str(own_domain(2)))
     assert "DOC801" in run("doctor")[1]

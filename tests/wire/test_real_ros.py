@@ -40,7 +40,7 @@ def has(us, name):
 
 
 @pytest.mark.parametrize("we_are_first", [True, False])
-def test_nodes_know_each_other(processes, real_node, we_are_first):
+def test_nodes_discover_each_other(processes, real_node, we_are_first):
     if we_are_first:
         us = processes("ours")
         real = real_node()
@@ -58,7 +58,7 @@ RANGES: list[dict[str, str]] = [{}, LOCALHOST, SUBNET, LOCALHOST_ONLY]
 
 
 @pytest.mark.parametrize(("theirs", "ours"), list(product(RANGES, RANGES)), ids=str)
-def test_nodes_know_each_other_however_far_they_look(processes, real_node, monkeypatch, theirs, ours):
+def test_nodes_discover_each_other_for_any_discovery_range(processes, real_node, monkeypatch, theirs, ours):
     real = real_node(**theirs)
     for name, value in ours.items():
         monkeypatch.setenv(name, value)
@@ -67,7 +67,7 @@ def test_nodes_know_each_other_however_far_they_look(processes, real_node, monke
     real.ask_until(lambda nodes: ["/", "ours"] in nodes, "nodes")
 
 
-def test_a_node_that_keeps_to_this_machine_comes_after_one_on_the_network(processes, real_node, monkeypatch):
+def test_localhost_node_is_discovered_by_earlier_subnet_node(processes, real_node, monkeypatch):
     monkeypatch.setenv("ROS_AUTOMATIC_DISCOVERY_RANGE", "SUBNET")
     us = processes("ours")
     real = real_node(**LOCALHOST)
@@ -75,7 +75,7 @@ def test_a_node_that_keeps_to_this_machine_comes_after_one_on_the_network(proces
     real.ask_until(lambda nodes: ["/", "ours"] in nodes, "nodes")
 
 
-def test_domains_are_kept_apart(processes, real_node, domain):
+def test_domains_are_isolated(processes, real_node, domain):
     real = real_node(ROS_DOMAIN_ID=str(own_domain(2)))
     us = processes("ours")
     time.sleep(1.5)
@@ -83,7 +83,7 @@ def test_domains_are_kept_apart(processes, real_node, domain):
     assert real.ask("nodes") == [["/", "real_node"]]
 
 
-def test_who_comes_later_knows_all_when_discovery_is_complete(processes, real_node):
+def test_late_node_sees_everything_after_wait_for_discovery(processes, real_node):
     """Down to the last service, which Fast DDS tells some time after the first topic."""
     real_node()
     us = processes("ours")
@@ -95,7 +95,7 @@ def test_who_comes_later_knows_all_when_discovery_is_complete(processes, real_no
     assert len([name for name in services if "parameter" in name]) == 6
 
 
-def test_topics_go_both_ways(processes, real_node):
+def test_topics_work_in_both_directions(processes, real_node):
     us = processes("ours")
     got: list[str] = []
     us.node.create_subscription(String, "/from_ros", lambda message: got.append(message.data), 10)
@@ -111,7 +111,7 @@ def test_topics_go_both_ways(processes, real_node):
     assert got == ["från 0", "från 1", "från 2"]
 
 
-def test_types_with_sequences_go_both_ways(processes, real_node):
+def test_types_with_sequences_work_in_both_directions(processes, real_node):
     """Cyclone cannot read what Fast DDS 3 says of these."""
     us = processes("ours")
     real = real_node()
@@ -127,7 +127,7 @@ def test_types_with_sequences_go_both_ways(processes, real_node):
     assert (got[0].name, list(got[0].position), list(got[0].velocity)) == (["left", "right"], [0.25], [])
 
 
-def test_images_come_whole_at_30_hz_both_ways(processes, real_node):
+def test_images_at_30_hz_arrive_complete_in_both_directions(processes, real_node):
     us = processes("ours")
     real = real_node()
     got: list[int] = []
@@ -150,7 +150,7 @@ def test_images_come_whole_at_30_hz_both_ways(processes, real_node):
     assert real.ask_until(lambda images: len(images) == IMAGES, "received_images") == list(range(IMAGES))
 
 
-def test_images_that_are_replaced_while_they_are_on_their_way_do_not_stop_the_reader(processes, real_node):
+def test_images_replaced_in_transit_do_not_stop_reader(processes, real_node):
     """Fast DDS keeps reading a sample that it has freed when a GAP replaces the rest of an image."""
     us = processes("ours")
     real = real_node()
@@ -164,7 +164,7 @@ def test_images_that_are_replaced_while_they_are_on_their_way_do_not_stop_the_re
     assert real.ask_until(lambda images: images and images[-1] == FLOOD - 1, "received_images")
 
 
-def test_best_effort_images_come_though_they_are_larger_than_the_buffer_of_the_reader(processes, real_node):
+def test_best_effort_images_larger_than_reader_buffer_arrive(processes, real_node):
     """Most packets of an image sent at once are lost, and nobody sends them again."""
     us = processes("ours")
     us.node.create_client(
@@ -186,7 +186,7 @@ def test_best_effort_images_come_though_they_are_larger_than_the_buffer_of_the_r
     assert len([number for number in came if number >= FRAMES // 2]) >= 0.9 * FRAMES / 2  # it was known by then
 
 
-def test_what_was_said_before_is_heard_by_who_comes_later(processes, real_node):
+def test_late_subscriber_gets_latched_message(processes, real_node):
     us = processes("ours")
     us.node.create_publisher(String, "/lasting_to_ros", LASTING).publish(String(data="said before"))
     real = real_node()
@@ -197,7 +197,7 @@ def test_what_was_said_before_is_heard_by_who_comes_later(processes, real_node):
     late.spin_until(lambda: got == ["said before"])
 
 
-def test_our_endpoints_have_their_node_and_their_type_hash(processes, real_node):
+def test_endpoints_have_node_and_type_hash(processes, real_node):
     us = processes("ours")
     us.node.create_publisher(String, "/named", 10)
     real = real_node()
@@ -210,7 +210,7 @@ def test_our_endpoints_have_their_node_and_their_type_hash(processes, real_node)
     us.spin_until(lambda: [info.node_name for info in publishers("/from_ros")] == ["real_node"])
 
 
-def test_a_mismatch_of_quality_of_service_is_told_on_both_sides(processes, real_node):
+def test_incompatible_qos_is_reported_on_both_sides(processes, real_node):
     us = processes("ours")
     real = real_node()
     us.node.create_publisher(String, "/to_ros", QoSProfile(5, reliability=ReliabilityPolicy.BEST_EFFORT))
@@ -222,7 +222,7 @@ def test_a_mismatch_of_quality_of_service_is_told_on_both_sides(processes, real_
     assert sorted(answer) == ["publisher", "subscription"]
 
 
-def test_one_that_is_killed_is_gone_long_before_its_lease_is_over(processes, real_node):
+def test_killed_real_node_disappears_before_lease_expires(processes, real_node):
     us = processes("ours")
     real = real_node()
     us.spin_until(lambda: has(us, "real_node"))
@@ -230,7 +230,7 @@ def test_one_that_is_killed_is_gone_long_before_its_lease_is_over(processes, rea
     us.spin_until(lambda: not has(us, "real_node"), 5.0)
 
 
-def test_one_that_is_killed_and_comes_back_is_heard_again(processes, real_node):
+def test_killed_real_node_is_received_again_after_restart(processes, real_node):
     us = processes("ours")
     got: list[str] = []
     us.node.create_subscription(String, "/from_ros", lambda message: got.append(message.data), 10)
@@ -249,7 +249,7 @@ def test_one_that_is_killed_and_comes_back_is_heard_again(processes, real_node):
     us.spin_until(lambda: got == ["back"])
 
 
-def test_ours_that_is_killed_is_gone_there_and_its_successor_is_heard(processes, programs, real_node):
+def test_killed_linkwright_node_disappears_and_successor_is_received(processes, programs, real_node):
     real = real_node()
     ours = programs("our_program", "victim")
     real.ask_until(lambda nodes: ["/", "victim"] in nodes, "nodes")
@@ -262,7 +262,7 @@ def test_ours_that_is_killed_is_gone_there_and_its_successor_is_heard(processes,
     real.ask_until(lambda nodes: nodes.count(["/", "victim"]) == 1, "nodes", seconds=10)
 
 
-def test_fifty_nodes_there_are_all_known_and_gone_with_their_process(processes, real_node):
+def test_fifty_real_nodes_appear_and_disappear_with_their_process(processes, real_node):
     us = processes("ours")
     real = real_node()
     real.ask("make_nodes", NODES)
@@ -274,7 +274,7 @@ def test_fifty_nodes_there_are_all_known_and_gone_with_their_process(processes, 
     us.spin_until(lambda: not us.transport.remote_nodes())
 
 
-def test_verbs_measure_describe_and_dump(real_node):
+def test_verbs_measure_describe_and_dump_real_node(real_node):
     real = real_node()
     real.ask("publish_images", 3000, 30.0)
     command = [sys.executable, "-m", "linkwright", "topic", "hz", "/images_from_ros"]
@@ -290,7 +290,7 @@ def test_verbs_measure_describe_and_dump(real_node):
     assert yaml.safe_load(dumped)["/real_node"]["ros__parameters"]["speed"] == 1.5
 
 
-def test_verbs_show_what_a_node_there_has(real_node):
+def test_verbs_list_endpoints_of_real_node(real_node):
     real_node()
     assert linkwright("node", "list") == ("/real_node\n", "", 0)
     topics = linkwright("topic", "list", "-t")[0].splitlines()

@@ -34,18 +34,18 @@ def echo(request, response):
     return response
 
 
-def says(text):
+def camera_request(text):
     request = SetCameraInfo.Request()
     request.camera_info.distortion_model = text
     return request
 
 
-def answered(us, future):
+def wait_for_result(us, future):
     us.spin_until(future.done, 30)
     return future.result()
 
 
-def asking(us, peer, *question):
+def ask_while_spinning(us, peer, *question):
     """The answer to a question, for which our callbacks have to run meanwhile."""
     answers = []
     thread = threading.Thread(target=lambda: answers.append(peer.ask(*question)))
@@ -56,34 +56,36 @@ def asking(us, peer, *question):
 
 
 @pytest.mark.parametrize("we_are_first", [True, False])
-def test_a_thousand_calls_of_ours_are_answered_each_with_its_own(processes, real_node, we_are_first):
+def test_thousand_calls_to_real_service_get_their_own_responses(processes, real_node, we_are_first):
     us = processes("ours") if we_are_first else None
     real_node()
     us = us or processes("ours")
     client = us.node.create_client(SetCameraInfo, "/echo")
     us.spin_until(client.service_is_ready)
     for number in range(CALLS):
-        assert answered(us, client.call_async(says(f"call {number}"))).status_message == f"call {number}"
+        assert (
+            wait_for_result(us, client.call_async(camera_request(f"call {number}"))).status_message == f"call {number}"
+        )
 
 
-def test_a_thousand_calls_from_there_are_answered_each_with_its_own(processes, real_node):
+def test_thousand_calls_from_real_client_get_their_own_responses(processes, real_node):
     us = processes("ours")
     us.node.create_service(SetCameraInfo, "/our_echo", echo)
     peer = real_node()
-    assert asking(us, peer, "echoes_are_right", "/our_echo", "call", CALLS) == CALLS
+    assert ask_while_spinning(us, peer, "echoes_are_right", "/our_echo", "call", CALLS) == CALLS
 
 
-def test_the_first_call_of_the_first_node_there_is_answered(processes, real_node):
+def test_first_call_of_first_real_node_is_answered(processes, real_node):
     """It takes the service for ready as soon as it knows what Cyclone tells, so it asks before we know who it is."""
     us = processes("ours")
     us.node.create_service(SetCameraInfo, "/our_echo", echo)
     for attempt in range(3):
         peer = real_node(f"real_node_{attempt}")
-        assert asking(us, peer, "echoes", "/our_echo", ["one", "two"]) == ["one", "two"]
+        assert ask_while_spinning(us, peer, "echoes", "/our_echo", ["one", "two"]) == ["one", "two"]
         peer.end()
 
 
-def test_three_clients_there_and_one_here_at_once(processes, real_node):
+def test_simultaneous_real_and_linkwright_clients_are_answered(processes, real_node):
     us = processes("ours")
     us.node.create_service(SetCameraInfo, "/our_echo", echo)
     client = us.node.create_client(SetCameraInfo, "/echo")
@@ -100,7 +102,9 @@ def test_three_clients_there_and_one_here_at_once(processes, real_node):
     for thread in threads:
         thread.start()
     us.spin_until(client.service_is_ready)
-    mine = [answered(us, client.call_async(says(f"mine {number}"))).status_message for number in range(20)]
+    mine = [
+        wait_for_result(us, client.call_async(camera_request(f"mine {number}"))).status_message for number in range(20)
+    ]
     us.spin_until(lambda: len(counts) == 3, 120)
     for thread in threads:
         thread.join()
@@ -108,7 +112,7 @@ def test_three_clients_there_and_one_here_at_once(processes, real_node):
     assert mine == [f"mine {number}" for number in range(20)]
 
 
-def test_what_they_keep_is_unknown_as_they_do_not_tell_it(processes, real_node):
+def test_history_of_real_publisher_is_unknown(processes, real_node):
     us = processes("ours")
     real_node()
     us.spin_until(lambda: us.node.get_publishers_info_by_topic("/from_ros"))
@@ -118,7 +122,7 @@ def test_what_they_keep_is_unknown_as_they_do_not_tell_it(processes, real_node):
 
 @pytest.mark.parametrize("ours", [{"ROS_LOCALHOST_ONLY": "1"}, {"ROS_AUTOMATIC_DISCOVERY_RANGE": "LOCALHOST"}])
 @pytest.mark.parametrize("we_are_first", [True, False])
-def test_calls_go_both_ways_where_both_stay_on_the_machine(processes, real_node, monkeypatch, ours, we_are_first):
+def test_calls_work_in_both_directions_on_localhost(processes, real_node, monkeypatch, ours, we_are_first):
     peer = None if we_are_first else real_node(ROS_AUTOMATIC_DISCOVERY_RANGE="LOCALHOST")
     for name, value in ours.items():
         monkeypatch.setenv(name, value)
@@ -127,34 +131,34 @@ def test_calls_go_both_ways_where_both_stay_on_the_machine(processes, real_node,
     client = us.node.create_client(SetCameraInfo, "/echo")
     peer = peer or real_node(ROS_AUTOMATIC_DISCOVERY_RANGE="LOCALHOST")
     us.spin_until(client.service_is_ready)
-    assert answered(us, client.call_async(says("hej"))).status_message == "hej"
-    assert asking(us, peer, "echoes", "/our_echo", ["hej"]) == ["hej"]
+    assert wait_for_result(us, client.call_async(camera_request("hej"))).status_message == "hej"
+    assert ask_while_spinning(us, peer, "echoes", "/our_echo", ["hej"]) == ["hej"]
 
 
-def test_what_is_larger_than_a_packet_goes_both_ways(processes, real_node):
+def test_calls_larger_than_packet_work_in_both_directions(processes, real_node):
     us = processes("ours")
     us.node.create_service(SetCameraInfo, "/our_echo", echo)
     client = us.node.create_client(SetCameraInfo, "/echo")
     peer = real_node()
     us.spin_until(client.service_is_ready)
     large = "".join(chr(ord("a") + number % 26) for number in range(LARGE))
-    assert answered(us, client.call_async(says(large))).status_message == large
-    assert asking(us, peer, "echoes", "/our_echo", [large, "small"]) == [large, "small"]
+    assert wait_for_result(us, client.call_async(camera_request(large))).status_message == large
+    assert ask_while_spinning(us, peer, "echoes", "/our_echo", [large, "small"]) == [large, "small"]
 
 
-def test_a_server_there_that_is_killed_is_gone_and_its_successor_is_called(processes, real_node):
+def test_killed_real_server_disappears_and_successor_is_called(processes, real_node):
     us = processes("ours")
     client = us.node.create_client(SetCameraInfo, "/echo")
     first = real_node()
     us.spin_until(client.service_is_ready)
-    assert answered(us, client.call_async(says("first"))).status_message == "first"
+    assert wait_for_result(us, client.call_async(camera_request("first"))).status_message == "first"
     first.kill()
     real_node()
     us.spin_until(client.service_is_ready)
-    us.spin_until(lambda: answered(us, client.call_async(says("again"))).status_message == "again")
+    us.spin_until(lambda: wait_for_result(us, client.call_async(camera_request("again"))).status_message == "again")
 
 
-def test_a_server_of_ours_that_is_killed_has_a_successor_that_answers(processes, programs, real_node):
+def test_successor_of_killed_linkwright_server_answers(processes, programs, real_node):
     ours = programs("our_program", "ours")
     peer = real_node()
     assert "use_sim_time" in peer.ask("parameters_of", "ours")
@@ -162,23 +166,23 @@ def test_a_server_of_ours_that_is_killed_has_a_successor_that_answers(processes,
     us = processes("ours")
     us.node.declare_parameter("second", 1.0)
     # What is asked before the new one is known there was asked of the one that was killed.
-    while "second" not in asking(us, peer, "parameters_of", "ours"):
+    while "second" not in ask_while_spinning(us, peer, "parameters_of", "ours"):
         pass
 
 
-def test_parameters_are_read_and_set_both_ways(processes, real_node):
+def test_parameters_are_read_and_set_in_both_directions(processes, real_node):
     us = processes("ours")
     us.node.declare_parameter("speed", 1.5)
     peer = real_node()
-    assert "speed" in asking(us, peer, "parameters_of", "ours")
-    assert asking(us, peer, "set_parameter_of", "ours", "speed", 2.5) == [True, 2.5]
+    assert "speed" in ask_while_spinning(us, peer, "parameters_of", "ours")
+    assert ask_while_spinning(us, peer, "set_parameter_of", "ours", "speed", 2.5) == [True, 2.5]
     assert us.node.get_parameter("speed").value == 2.5
     parameters = AsyncParameterClient(us.node, "/real_node")
     us.spin_until(parameters.services_are_ready)
-    assert answered(us, parameters.get_parameters(["speed"])).values[0].double_value == 1.5
+    assert wait_for_result(us, parameters.get_parameters(["speed"])).values[0].double_value == 1.5
 
 
-def test_verbs_call_services_and_parameters_there(real_node):
+def test_verbs_use_services_and_parameters_of_real_node(real_node):
     real_node()
     out, err, status = linkwright("service", "call", "/flip", "std_srvs/srv/SetBool", "{data: false}")
     assert "success=True, message='by ROS'" in out

@@ -43,7 +43,7 @@ def transform(parent, child, x):
     return stamped
 
 
-def test_a_chain_of_theirs_is_looked_up_here(processes, theirs):
+def test_transform_chain_of_real_node_is_looked_up(processes, theirs):
     """Fixed and moving transforms; the fixed ones also by who comes late."""
     peer = theirs("tf_peer")
     peer.ask("tell", "/tf_static", "map", "odom", 1.0)
@@ -56,7 +56,7 @@ def test_a_chain_of_theirs_is_looked_up_here(processes, theirs):
     assert us.node.get_publishers_info_by_topic("/tf")[0].qos_profile.durability.name == "VOLATILE"
 
 
-def test_ours_are_heard_there(processes, theirs):
+def test_linkwright_transforms_are_received_by_real_node(processes, theirs):
     us = processes("ours")
     StaticTransformBroadcaster(us.node).sendTransform([transform("map", "odom", 1.0), transform("base", "arm", 2.0)])
     moving = TransformBroadcaster(us.node)
@@ -71,7 +71,7 @@ def test_ours_are_heard_there(processes, theirs):
     )
 
 
-def test_verbs_show_transforms_of_theirs(theirs):
+def test_verbs_show_transforms_of_real_node(theirs):
     peer = theirs("tf_peer")
     peer.ask("tell", "/tf_static", "map", "odom", 1.0)
     peer.ask("keep_telling", "odom", "base_link", 0.5)
@@ -80,7 +80,7 @@ def test_verbs_show_transforms_of_theirs(theirs):
 
 
 @pytest.mark.parametrize(("says", "hears"), SIDES)
-def test_messages_and_services_of_a_package_of_ones_own(programs, tmp_path, says, hears):
+def test_messages_and_services_of_custom_package(programs, tmp_path, says, hears):
     """Here they are read from the files, there they were compiled from them."""
     package = tmp_path / "src" / "wire_msgs"
     shutil.copytree(Path(__file__).parent / "types" / "wire_msgs", package)

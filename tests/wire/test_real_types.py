@@ -45,7 +45,7 @@ def common(kind, peer):
 
 
 @pytest.mark.parametrize(("says", "hears"), SIDES)
-def test_every_message_is_the_same_there(peers, says, hears):
+def test_messages_have_same_values_on_both_sides(peers, says, hears):
     both = {side: peers(side) for side in ("theirs", "ours")}
     types = common("msg", both["theirs"])
     assert {"test_msgs/msg/WStrings", "test_msgs/msg/BoundedSequences", "sensor_msgs/msg/PointCloud2"} <= set(types)
@@ -63,7 +63,7 @@ def test_every_message_is_the_same_there(peers, says, hears):
 
 
 @pytest.mark.parametrize(("asks", "answers"), SIDES)
-def test_every_service_gets_and_gives_the_same(peers, asks, answers):
+def test_services_have_same_values_on_both_sides(peers, asks, answers):
     both = {side: peers(side) for side in ("theirs", "ours")}
     services = common("srv", both["theirs"])
     assert {"test_msgs/srv/Arrays", "test_msgs/srv/Empty", "nav_msgs/srv/GetPlan"} <= set(services)
@@ -76,7 +76,7 @@ def test_every_service_gets_and_gives_the_same(peers, asks, answers):
 
 @pytest.mark.parametrize(("asks", "answers"), SIDES)
 @pytest.mark.parametrize("action", ["test_msgs/action/NestedMessage", "test_msgs/action/Fibonacci"])
-def test_actions_carry_the_same_in_all_their_parts(peers, asks, answers, action):
+def test_actions_have_same_values_on_both_sides(peers, asks, answers, action):
     both = {side: peers(side) for side in ("theirs", "ours")}
     both[answers].ask("act", action)
     feedback, result, (goal, meant_feedback, meant_result) = both[asks].ask("send_goal", action)
@@ -86,7 +86,7 @@ def test_actions_carry_the_same_in_all_their_parts(peers, asks, answers, action)
 
 
 @pytest.mark.parametrize(("says", "hears"), SIDES)
-def test_arrays_of_eight_megabytes_come_whole(peers, says, hears):
+def test_arrays_of_eight_megabytes_arrive_complete(peers, says, hears):
     both = {side: peers(side) for side in ("theirs", "ours")}
     both[hears].ask("hear_large", "/large")
     both[says].ask_until(lambda count: count == 1, "said_to", "/large")

@@ -26,7 +26,7 @@ def endpoint(guid, *, is_writer, topic=DISCOVERY_TOPIC):
     return RemoteEndpoint(guid, 1, PARTICIPANT, is_writer, topic, TYPE_NAME, QoSProfile(1))
 
 
-def test_the_readers_of_a_node_may_be_heard_of_before_its_writers(remote):
+def test_graph_is_incomplete_until_writers_of_node_are_discovered(remote):
     """Fast DDS tells one a second before the other."""
     assert not remote.is_complete()
     remote.add_endpoint(endpoint(LISTENER, is_writer=False))
@@ -39,13 +39,13 @@ def test_the_readers_of_a_node_may_be_heard_of_before_its_writers(remote):
     assert remote.is_complete()
 
 
-def test_who_never_speaks_is_not_waited_for_for_ever():
+def test_participant_without_writers_is_not_waited_for_indefinitely():
     remote = RemoteGraph()
     remote.add_participant(RemoteParticipant(PARTICIPANT, discovered_at=time.monotonic() - 10.0))
     remote.add_endpoint(endpoint(LISTENER, is_writer=False))
     assert remote.is_complete()
 
 
-def test_other_programs_of_dds_are_not_waited_for(remote):
+def test_other_dds_programs_are_not_waited_for(remote):
     remote.add_endpoint(endpoint(LISTENER, is_writer=False, topic="temperature"))
     assert remote.is_complete()

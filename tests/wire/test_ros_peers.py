@@ -21,7 +21,7 @@ def distribution(request):
     return request.param
 
 
-def test_a_real_node_and_its_endpoints_are_seen(processes, programs, distribution):
+def test_ros_node_and_endpoints_are_discovered(processes, programs, distribution):
     programs("ros_peer", distribution, "real_node", "localhost")
     us = processes("ours")
     us.spin_until(lambda: NodeIdentity("real_node", "/") in us.transport.remote_nodes())
@@ -39,7 +39,7 @@ def test_a_real_node_and_its_endpoints_are_seen(processes, programs, distributio
 
 
 @pytest.mark.parametrize("other", ["", "humble", "jazzy"])
-def test_a_real_node_sees_ours_with_gids_of_its_size(processes, programs, distribution, other, monkeypatch):
+def test_ros_node_sees_gids_of_its_own_size(processes, programs, distribution, other, monkeypatch):
     """Whatever ROS_DISTRO says: what is heard counts."""
     monkeypatch.setenv("ROS_DISTRO", other)
     us = processes("ours")
@@ -53,7 +53,7 @@ def test_a_real_node_sees_ours_with_gids_of_its_size(processes, programs, distri
     assert all(len(gid) == 2 * size for gid in readers + writers)
 
 
-def test_gids_are_the_older_ones_where_both_are_heard(processes, programs):
+def test_older_gid_size_is_used_with_mixed_distributions(processes, programs):
     us = processes("ours")
     programs("ros_peer", "jazzy", "new_node", "localhost")
     us.spin_until(lambda: NodeIdentity("new_node", "/") in us.transport.remote_nodes())
@@ -62,7 +62,7 @@ def test_gids_are_the_older_ones_where_both_are_heard(processes, programs):
     old.ask_until(lambda nodes: any(node[1] == "ours" for node in nodes), "nodes")
 
 
-def test_topics_go_both_ways(processes, programs, distribution):
+def test_topics_work_in_both_directions(processes, programs, distribution):
     us = processes("ours")
     got: list[str] = []
     us.node.create_subscription(String, "/from_ros", lambda message: got.append(message.data), 10)
@@ -78,7 +78,7 @@ def test_topics_go_both_ways(processes, programs, distribution):
     assert got == ["från 0", "från 1", "från 2"]
 
 
-def test_a_service_of_ours_answers_a_real_client(processes, programs, distribution):
+def test_service_answers_ros_client(processes, programs, distribution):
     us = processes("ours")
 
     def flip(request, response):
@@ -92,7 +92,7 @@ def test_a_service_of_ours_answers_a_real_client(processes, programs, distributi
     us.spin_until(lambda: peer.ask("replies") == [[0x0123456789ABCDEF, 41, True, "by us"]])
 
 
-def test_a_real_service_answers_a_client_of_ours(processes, programs, distribution):
+def test_client_is_answered_by_ros_service(processes, programs, distribution):
     us = processes("ours")
     client = us.node.create_client(SetBool, "/ros_flip")
     future = client.call_async(SetBool.Request(data=False))
@@ -104,7 +104,7 @@ def test_a_real_service_answers_a_client_of_ours(processes, programs, distributi
     peer.kill()
 
 
-def test_endpoints_tell_type_hashes_and_which_belong_together(processes, programs):
+def test_endpoints_announce_type_hashes_and_client_ids(processes, programs):
     us = processes("ours")
     us.node.create_publisher(String, "/named", 10)
     us.node.create_service(SetBool, "/asked", lambda _request, response: response)
@@ -129,7 +129,7 @@ def test_endpoints_tell_type_hashes_and_which_belong_together(processes, program
 @pytest.mark.parametrize("network", ["humble", "jazzy", "jazzy localhost", "localhost"])
 @pytest.mark.parametrize("we_are_first", [True, False])
 @pytest.mark.parametrize("variable", ["", "ROS_LOCALHOST_ONLY=1", "ROS_AUTOMATIC_DISCOVERY_RANGE=LOCALHOST"])
-def test_real_nodes_with_the_network_settings_they_have_are_met(
+def test_ros_nodes_are_discovered_for_any_network_settings(
     processes, programs, network, we_are_first, variable, monkeypatch
 ):
     name, _, value = variable.partition("=")

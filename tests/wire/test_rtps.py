@@ -27,7 +27,7 @@ AT = (("127.0.0.1", 7411),)
 WRITER, READER = OURS + b"\0\0\1\3", THEIRS + b"\0\0\1\4"
 
 
-def test_a_request_of_fast_dds_is_read_as_it_is_on_the_wire():
+def test_fast_dds_request_is_parsed():
     packet = bytes.fromhex(
         "52545053 0203 010f 010f000102030405060708 09".replace(" ", "")  # header, version 2.3, eProsima
         + "09010800 05000000 00000080".replace(" ", "")  # INFO_TS: 5.5 s
@@ -44,26 +44,26 @@ def test_a_request_of_fast_dds_is_read_as_it_is_on_the_wire():
     assert values.read_related_identity(parsed.inline, parsed.order) == (THEIRS + b"\0\0\3\4", values.NO_NUMBER)
 
 
-def test_the_identity_of_a_reply_stands_under_both_parameters_of_fast_dds():
+def test_reply_identity_uses_both_fast_dds_parameters():
     inline = values.related_identity(READER, (3 << 32) + 5)
     identity = READER + bytes.fromhex("0300000005000000")
     assert inline == b"\x83\0\x18\0" + identity + b"\x0f\x80\x18\0" + identity + b"\1\0\0\0"
 
 
-def test_an_acknowledgement_names_what_is_missing():
+def test_acknack_lists_missing_samples():
     packet = message(THEIRS, acknack(READER[12:], WRITER[12:], 40, [41, 72], 1), to=OURS)
     (parsed,) = parse(packet, OURS)
     assert parsed == AckNack(THEIRS, READER, WRITER[12:], 40, [41, 72], final=True)
 
 
 @pytest.mark.parametrize("cut", range(4, 100, 3))
-def test_what_is_cut_short_is_not_believed(cut):
+def test_truncated_packet_is_not_misread(cut):
     packet = message(THEIRS, data(b"\0\0\1\4", b"\0\0\2\3", 1, b"\0\1\0\0hej!", values.related_identity(READER, 1)))
     for text in parse(packet[:cut], OURS):
         assert isinstance(text, Data)
 
 
-def test_noise_is_survived():
+def test_corrupted_packets_do_not_raise():
     noise = random.Random(5)
     whole = message(THEIRS, data(b"\0\0\1\4", b"\0\0\2\3", 1, b"\0\1\0\0hej!", values.related_identity(READER, 1)))
     for _ in range(2000):
@@ -73,12 +73,12 @@ def test_noise_is_survived():
         list(parse(bytes(packet), OURS))
 
 
-def test_messages_for_others_are_passed_over():
+def test_messages_for_other_participants_are_ignored():
     packet = message(THEIRS, data(b"\0\0\1\4", b"\0\0\2\3", 1, b"\0\1\0\0"), to=b"somebody els")
     assert list(parse(packet, OURS)) == []
 
 
-def test_endpoints_are_told_and_read():
+def test_endpoint_data_round_trips():
     result = discovery_data.describe_endpoint(WRITER, "rr/flipReply", "std_srvs::srv::dds_::SetBool_Response_", b"a=b;")
     read = discovery_data.read_endpoint(result, is_writer=True)
     assert read == discovery_data.EndpointData(
@@ -131,7 +131,7 @@ class _Line:
 
 
 @pytest.mark.parametrize("loss", [0.0, 0.3, 0.6])
-def test_everything_arrives_once(loss):
+def test_samples_arrive_once_despite_loss(loss):
     line = _Line(loss)
     for number in range(50):
         line.carry(line.writer.write(b"\0\1\0\0" + number.to_bytes(4, "little")))
@@ -140,7 +140,7 @@ def test_everything_arrives_once(loss):
 
 
 @pytest.mark.parametrize("loss", [0.0, 0.3])
-def test_fragments_become_the_sample_they_were(loss):
+def test_fragments_are_reassembled(loss):
     line = _Line(loss)
     payload = random.Random(2).randbytes(FRAGMENT * 7 + 12)
     line.carry(line.writer.write(payload, inline=values.related_identity(READER, 9)))
@@ -148,7 +148,7 @@ def test_fragments_become_the_sample_they_were(loss):
     assert line.got == [(1, payload)]
 
 
-def test_what_is_for_another_reader_is_no_gap_to_wait_for():
+def test_sample_for_other_reader_is_not_waited_for():
     line = _Line(0.0)
     line.carry(line.writer.write(b"\0\1\0\0", to=b"somebody els"))
     line.carry(line.writer.write(b"\0\1\0\0mine", to=THEIRS))
@@ -156,7 +156,7 @@ def test_what_is_for_another_reader_is_no_gap_to_wait_for():
     assert line.writer.next_reminder() is None
 
 
-def test_a_reader_that_comes_late_gets_nothing_of_before():
+def test_late_reader_gets_no_earlier_samples():
     writer = Writer(WRITER)
     for _ in range(3):
         writer.write(b"\0\1\0\0")

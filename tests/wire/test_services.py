@@ -19,7 +19,7 @@ def flip(request, response):
 
 
 @both_wires
-def test_requests_made_before_the_server_is_there_are_answered(processes):
+def test_requests_made_before_server_exists_are_answered(processes):
     a = processes("a")
     client = a.node.create_client(SetBool, "flip")
     futures = [client.call_async(SetBool.Request(data=value)) for value in (True, False)]
@@ -36,7 +36,7 @@ def test_requests_made_before_the_server_is_there_are_answered(processes):
 
 
 @both_wires
-def test_a_client_is_ready_while_the_server_is_there(processes):
+def test_client_is_ready_while_server_exists(processes):
     a, b = processes("a"), processes("b")
     client = a.node.create_client(SetBool, "flip")
     service = b.node.create_service(SetBool, "flip", flip)
@@ -46,7 +46,7 @@ def test_a_client_is_ready_while_the_server_is_there(processes):
 
 
 @both_wires
-def test_answers_go_to_who_asked(processes):
+def test_responses_go_to_requesting_client(processes):
     a, b, server = processes("a"), processes("b"), processes("server")
     server.node.create_service(SetBool, "flip", flip)
     clients = [process.node.create_client(SetBool, "flip") for process in (a, b)]
@@ -63,7 +63,7 @@ def test_answers_go_to_who_asked(processes):
     assert [future.result().success for future in futures] == [False, True]
 
 
-def test_a_server_is_woken_by_requests_and_not_again_and_again_by_who_has_matched(processes, monkeypatch):
+def test_server_is_woken_by_requests_and_not_repeatedly_by_matches(processes, monkeypatch):
     on_data, woken = IncomingService.on_data, []
     monkeypatch.setattr(IncomingService, "on_data", lambda self: woken.append(self.pair.name) or on_data(self))
     a, b = processes("a"), processes("b")
@@ -76,7 +76,7 @@ def test_a_server_is_woken_by_requests_and_not_again_and_again_by_who_has_matche
 
 
 @both_wires
-def test_messages_without_members_travel(processes):
+def test_messages_without_fields_are_transferred(processes):
     a, b = processes("a"), processes("b")
     calls = []
     b.node.create_service(Empty, "poke", lambda _request, response: calls.append(1) or response)
@@ -88,7 +88,7 @@ def test_messages_without_members_travel(processes):
 
 
 @both_wires
-def test_parameters_of_a_node_elsewhere_are_read_and_set(processes):
+def test_parameters_of_remote_node_are_read_and_set(processes):
     a, b = processes("a"), processes("b")
     b.node.declare_parameter("speed", 1.5)
     parameters = AsyncParameterClient(a.node, "/b")
@@ -102,7 +102,7 @@ def test_parameters_of_a_node_elsewhere_are_read_and_set(processes):
 
 
 @both_wires
-def test_an_action_elsewhere_is_carried_out(processes):
+def test_remote_action_is_executed(processes):
     a, b = processes("a"), processes("b")
 
     def execute(goal):

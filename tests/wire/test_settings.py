@@ -22,7 +22,7 @@ def elements(settings):
     return found
 
 
-def test_left_to_itself_a_process_stays_inside_the_machine():
+def test_default_range_is_own_machine():
     settings = read_settings({})
     assert (settings.domain_id, settings.range) == (0, Range.MACHINE)
     document = elements(settings)
@@ -32,7 +32,7 @@ def test_left_to_itself_a_process_stays_inside_the_machine():
     assert peers == ["127.0.0.1", *own_addresses()[:3]]
 
 
-def test_a_machine_without_a_network_has_loopback_alone(monkeypatch):
+def test_machine_without_network_uses_loopback(monkeypatch):
     monkeypatch.setattr("linkwright.wire.dds.settings.own_addresses", list)
     settings = elements(read_settings({}))
     assert settings["General/Interfaces/NetworkInterface"] == [{"address": "127.0.0.1", "multicast": "true"}]
@@ -52,19 +52,19 @@ def test_a_machine_without_a_network_has_loopback_alone(monkeypatch):
         ({"ROS_STATIC_PEERS": "192.0.2.7"}, Range.SUBNET),
     ],
 )
-def test_variables_of_ros_are_followed(variables, expected):
+def test_ros_variables_set_discovery_range(variables, expected):
     assert read_settings(variables).range is expected
 
 
-def for_good(address: str) -> dict[str, str]:
+def permanent_peer(address: str) -> dict[str, str]:
     """An address that is asked though nobody answers for long."""
     return {"address": address, "PruneDelay": "inf"}
 
 
-THIS_MACHINE = for_good("127.0.0.1")
+THIS_MACHINE = permanent_peer("127.0.0.1")
 
 
-def test_the_subnet_is_as_rmw_cyclonedds_has_it_and_this_machine_is_told_for_good():
+def test_subnet_settings_match_rmw_cyclonedds_and_keep_own_machine():
     """A node of Fast DDS that keeps to this machine listens for nobody else's announcements."""
     settings = elements(
         read_settings({"ROS_AUTOMATIC_DISCOVERY_RANGE": "SUBNET", "ROS_STATIC_PEERS": "192.0.2.7;host"})
@@ -76,37 +76,37 @@ def test_the_subnet_is_as_rmw_cyclonedds_has_it_and_this_machine_is_told_for_goo
         "Discovery/MaxAutoParticipantIndex": ["32"],
         "Discovery/SPDPInterval": ["3 s"],
         "Discovery/Peers": [{}],
-        "Discovery/Peers/Peer": [THIS_MACHINE, for_good("192.0.2.7"), for_good("host")],
+        "Discovery/Peers/Peer": [THIS_MACHINE, permanent_peer("192.0.2.7"), permanent_peer("host")],
     }
 
 
-def test_localhost_is_this_machine_on_all_its_ways():
+def test_localhost_range_equals_own_machine():
     """rmw_cyclonedds of Humble takes the loopback interface alone then, and Jazzy the one that Cyclone chooses."""
     machine = read_settings({}).configurations
     assert read_settings({"ROS_LOCALHOST_ONLY": "1"}).configurations == machine
     assert read_settings({"ROS_AUTOMATIC_DISCOVERY_RANGE": "LOCALHOST"}).configurations == machine
 
 
-def test_localhost_with_peers_is_as_rmw_cyclonedds_has_it():
+def test_localhost_with_peers_matches_rmw_cyclonedds():
     settings = elements(read_settings({"ROS_LOCALHOST_ONLY": "1", "ROS_STATIC_PEERS": "192.0.2.7"}))
     assert settings["General/AllowMulticast"] == ["false"]
-    assert settings["Discovery/Peers/Peer"] == [THIS_MACHINE, for_good("192.0.2.7")]
+    assert settings["Discovery/Peers/Peer"] == [THIS_MACHINE, permanent_peer("192.0.2.7")]
 
 
-def test_the_users_configuration_goes_last():
+def test_user_configuration_is_applied_last():
     settings = read_settings({"CYCLONEDDS_URI": "file:///a.xml"})
     assert all(configuration.endswith(",file:///a.xml") for configuration in settings.configurations)
     system = read_settings({"CYCLONEDDS_URI": "file:///a.xml", "ROS_AUTOMATIC_DISCOVERY_RANGE": "SYSTEM_DEFAULT"})
     assert system.configurations == ("file:///a.xml",)
 
 
-def test_without_discovery_nobody_else_has_the_tag():
+def test_discovery_off_uses_unique_tag():
     settings = elements(read_settings({"ROS_AUTOMATIC_DISCOVERY_RANGE": "OFF"}))
     assert settings["Discovery/ParticipantIndex"] == ["none"]
     assert settings["Discovery/Tag"][0].startswith("ros_discovery_off_")
 
 
-def test_static_peers_that_are_ignored_are_told():
+def test_ignored_static_peers_are_reported():
     settings = read_settings({"ROS_AUTOMATIC_DISCOVERY_RANGE": "OFF", "ROS_STATIC_PEERS": "192.0.2.7"})
     assert settings.warnings == ("1 static peers were specified, but discovery is OFF: they are ignored",)
 
@@ -115,18 +115,18 @@ def test_static_peers_that_are_ignored_are_told():
     ("distribution", "size"),
     [("", OLD_GID_SIZE), ("humble", OLD_GID_SIZE), ("Foxy", OLD_GID_SIZE), ("iron", GID_SIZE), ("jazzy", GID_SIZE)],
 )
-def test_gids_have_the_size_of_the_distribution(distribution, size):
+def test_gid_size_matches_distribution(distribution, size):
     assert read_settings({"ROS_DISTRO": distribution}).gid_size == size
 
 
 @pytest.mark.parametrize(("text", "expected"), [("", 0), ("0", 0), (" 7 ", 7), ("232", 232)])
-def test_domains(text, expected):
+def test_domain_id_is_read(text, expected):
     assert read_settings({"ROS_DOMAIN_ID": text}).domain_id == expected
     assert read_settings({"ROS_DOMAIN_ID": "50"}, domain_id=3).domain_id == 3
 
 
 @pytest.mark.parametrize("text", ["233", "-1", "x", "1.0"])
-def test_what_is_no_domain(text):
+def test_invalid_domain_id_is_rejected(text):
     with pytest.raises(LinkwrightError) as caught:
         read_settings({"ROS_DOMAIN_ID": text})
     assert caught.value.diagnostics[0].code == "DDS101"

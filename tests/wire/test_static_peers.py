@@ -41,7 +41,7 @@ def hosts() -> Iterator[Hosts]:
     made.close()
 
 
-def test_a_static_peer_is_found_that_comes_late_and_again(hosts):
+def test_late_and_returning_static_peer_is_discovered(hosts):
     def start(host: str, other: str, name: str, **environment: str) -> Program:
         settings = {"CYCLONEDDS_URI": configuration(f"to{other}"), "ROS_AUTOMATIC_DISCOVERY_RANGE": "SUBNET"}
         return Program("far_program", name, within=hosts.within(host), **settings, **environment)

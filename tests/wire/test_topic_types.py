@@ -109,7 +109,7 @@ def shared(processes, domain):
     return opened._opened[domain]
 
 
-def test_graphs_share_the_types_of_their_domain(shared, processes):
+def test_graphs_share_types_of_their_domain(shared, processes):
     for name in ("c", "d"):
         processes(name).node.create_publisher(String, "chatter", 10)
     assert shared.users == 4
@@ -122,7 +122,7 @@ def test_graphs_share_the_types_of_their_domain(shared, processes):
     assert shared.types._type_addresses[described] == address
 
 
-def test_a_type_outlives_its_last_topic(shared, processes):
+def test_type_outlives_its_last_topic(shared, processes):
     described = shared.descriptions.message(Point)
     a = processes("short")
     a.node.create_publisher(Point, "points", 10)
@@ -131,7 +131,7 @@ def test_a_type_outlives_its_last_topic(shared, processes):
     assert described in shared.types._type_addresses
 
 
-def test_a_closed_domain_keeps_nothing(processes, domain):
+def test_closed_domain_frees_types(processes, domain):
     us = processes("alone")
     us.node.create_publisher(String, "chatter", 10)
     us.spin_until(lambda: domain in opened._opened and len(opened._opened[domain].types._type_addresses) > 1)
@@ -141,7 +141,7 @@ def test_a_closed_domain_keeps_nothing(processes, domain):
     assert types._type_addresses == {}
 
 
-def test_the_functions_that_describe_a_type_are_left_out(shared, processes):
+def test_type_description_functions_are_omitted(shared, processes):
     processes("c").node.create_publisher(String, "chatter", 10)
     for address in tuple(shared.types._type_addresses.values()):
         table = ctypes.c_void_p.from_address(address).value
@@ -150,12 +150,12 @@ def test_the_functions_that_describe_a_type_are_left_out(shared, processes):
         assert all(functions[index] for index in (0, 2, 3, 4, 5, 6, 7, 11))
 
 
-def test_a_table_of_another_version_is_left_alone():
+def test_function_table_of_other_version_is_kept():
     table = (ctypes.c_void_p * 14)(*range(100, 114))
     assert _table_without_descriptions(ctypes.addressof(table)) == ctypes.addressof(table)
 
 
-def test_a_topic_that_cyclone_refuses_is_an_error(processes):
+def test_topic_rejected_by_cyclone_raises_error(processes):
     us = processes("ours")
     participant = us.transport._engine._participant
     with pytest.raises(CycloneError, match="topic 'not a name'"):
@@ -163,17 +163,17 @@ def test_a_topic_that_cyclone_refuses_is_an_error(processes):
 
 
 @pytest.mark.skipif(not sys.platform.startswith("linux"), reason="looks into /proc")
-def test_graphs_that_come_and_go_leave_no_memory_and_no_pointer_to_it_behind(domain):
+def test_repeated_graphs_do_not_leak_memory(domain):
     assert float(output_of(CHURN)) < 3.0, "0.5 MB a graph, were its types made anew"
 
 
 @pytest.mark.slow
-def test_graphs_may_join_at_the_same_time(domain):
+def test_graphs_can_join_simultaneously(domain):
     assert output_of(TOGETHER) == ""
 
 
 @pytest.mark.parametrize("name", ["A_", "Ab_", "Abc_", "ParticipantEntitiesInfo_", "Müller_"])
-def test_a_type_known_by_its_name_is_described_as_the_package_does(name):
+def test_empty_type_data_matches_cyclonedds(name):
     type_name = f"some_interfaces::msg::dds_::{name}"
     described = make_idl_struct(name, type_name.replace("::", "."), {}, dataclassify=False)
     described.__idl__.fill_type_data()

@@ -23,7 +23,7 @@ EVERYTHING = QoSProfile(history=HistoryPolicy.KEEP_ALL)
 
 
 @both_wires
-def test_a_message_goes_from_process_to_process_once(processes):
+def test_message_is_delivered_once_between_processes(processes):
     a, b = processes("a"), processes("b")
     got: list[str] = []
     for process in (a, b):
@@ -42,7 +42,7 @@ def test_a_message_goes_from_process_to_process_once(processes):
 
 
 @both_wires
-def test_nothing_is_serialised_while_nobody_outside_listens(processes):
+def test_messages_are_not_serialized_without_remote_subscribers(processes):
     a, b = processes("a"), processes("b")
     publisher = a.node.create_publisher(String, "chatter", 10)
     assert a.transport.wait_until_ready(60)
@@ -55,7 +55,7 @@ def test_nothing_is_serialised_while_nobody_outside_listens(processes):
 
 
 @both_wires
-def test_late_comers_get_what_was_published_before_the_domain_was_joined(processes):
+def test_late_subscriber_gets_messages_latched_before_join(processes):
     a = processes("a", join_now=False)
     publisher = a.node.create_publisher(String, "described", LASTING)
     for word in ("one", "two", "three", "four"):
@@ -73,7 +73,7 @@ def test_late_comers_get_what_was_published_before_the_domain_was_joined(process
 
 
 @both_wires
-def test_a_latched_message_of_the_same_process_comes_once(processes):
+def test_latched_message_of_same_process_is_delivered_once(processes):
     a, b = processes("a"), processes("b")
     publisher = a.node.create_publisher(String, "described", LASTING)
     publisher.publish(String(data="one"))
@@ -89,7 +89,7 @@ def test_a_latched_message_of_the_same_process_comes_once(processes):
 
 
 @both_wires
-def test_what_a_process_that_keeps_everything_said_last_is_heard_after_it_left(processes):
+def test_keep_all_messages_arrive_after_publisher_closes(processes):
     a, b = processes("a"), processes("b")
     got: list[str] = []
     b.node.create_subscription(String, "chatter", lambda message: got.append(message.data), EVERYTHING)
@@ -103,7 +103,7 @@ def test_what_a_process_that_keeps_everything_said_last_is_heard_after_it_left(p
 
 
 @both_wires
-def test_what_is_published_as_soon_as_there_is_a_publisher_goes_to_who_is_known(processes):
+def test_messages_of_new_publisher_reach_known_subscriber(processes):
     a, b = processes("a"), processes("b")
     got: list[str] = []
     b.node.create_subscription(String, "chatter", lambda message: got.append(message.data), 10)
@@ -117,7 +117,7 @@ def test_what_is_published_as_soon_as_there_is_a_publisher_goes_to_who_is_known(
 
 
 @both_wires
-def test_callbacks_learn_where_a_message_comes_from(processes, wire):
+def test_callbacks_get_message_info(processes, wire):
     a, b = processes("a"), processes("b")
     infos = []
     b.node.create_subscription(String, "chatter", lambda _message, info: infos.append(info), 10)
@@ -136,7 +136,7 @@ def test_callbacks_learn_where_a_message_comes_from(processes, wire):
     assert bytes(seen.endpoint_gid[:16]) == publisher.gid
 
 
-def test_bytes_are_passed_on_as_they_are(processes):
+def test_raw_subscription_gets_serialized_bytes(processes):
     a, b = processes("a"), processes("b")
     got: list[bytes] = []
     b.node.create_subscription(String, "chatter", got.append, 10, raw=True)
@@ -149,7 +149,7 @@ def test_bytes_are_passed_on_as_they_are(processes):
     assert len(got[0]) % 4 == 0
 
 
-def test_a_mismatch_of_quality_of_service_is_told_on_both_sides(processes):
+def test_incompatible_qos_is_reported_on_both_sides(processes):
     a, b = processes("a"), processes("b")
     a.node.create_publisher(String, "chatter", QoSProfile(5, reliability=ReliabilityPolicy.BEST_EFFORT))
     b.node.create_subscription(String, "chatter", print, QoSProfile(5))
@@ -168,7 +168,7 @@ def test_a_mismatch_of_quality_of_service_is_told_on_both_sides(processes):
     assert "'/b'" in ours
 
 
-def test_the_quality_of_service_of_others_is_known(processes):
+def test_qos_of_remote_endpoints_is_available(processes):
     a, b = processes("a"), processes("b")
     offered = QoSProfile(
         7,
@@ -188,7 +188,7 @@ def test_the_quality_of_service_of_others_is_known(processes):
     assert seen.qos_profile.history is HistoryPolicy.KEEP_ALL
 
 
-def test_a_topic_may_go_by_its_own_name(processes):
+def test_topic_can_avoid_ros_namespace_conventions(processes):
     a, b = processes("a"), processes("b")
     plain = QoSProfile(10, avoid_ros_namespace_conventions=True)
     got: list[str] = []
@@ -201,7 +201,7 @@ def test_a_topic_may_go_by_its_own_name(processes):
     assert got == ["hej"]
 
 
-def test_malformed_samples_are_dropped_counted_and_told_once(processes, programs):
+def test_malformed_samples_are_dropped_counted_and_reported_once(processes, programs):
     us = processes("ours")
     got: list[str] = []
     subscription = us.node.create_subscription(String, "/from_ros", lambda message: got.append(message.data), 10)
@@ -233,7 +233,7 @@ def test_messages_of_any_size_arrive(processes, size):
 
 
 @pytest.mark.skipif(platform.libc_ver()[0] != "glibc", reason="other C libraries decide by themselves")
-def test_a_publisher_of_images_uses_the_same_memory_again(processes):
+def test_image_publisher_reuses_memory(processes):
     resource = pytest.importorskip("resource")
     a, b = processes("a"), processes("b")
     image_class = get_message("sensor_msgs/msg/Image")
@@ -254,7 +254,7 @@ def test_a_publisher_of_images_uses_the_same_memory_again(processes):
     assert new_pages() < 80 * 25  # an image has 245
 
 
-def test_a_reliable_flood_loses_nothing(processes, programs):
+def test_reliable_flood_loses_no_messages(processes, programs):
     us = processes("ours")
     got: list[int] = []
     us.node.create_subscription("std_msgs/msg/Int32", "flood", lambda message: got.append(message.data), EVERYTHING)
@@ -266,7 +266,7 @@ def test_a_reliable_flood_loses_nothing(processes, programs):
     assert got == list(range(count))
 
 
-def test_a_publisher_outside_that_shows_no_life_is_told(processes):
+def test_lost_liveliness_of_remote_publisher_is_reported(processes):
     a, b = processes("a"), processes("b")
     manual = QoSProfile(
         5, liveliness=LivelinessPolicy.MANUAL_BY_TOPIC, liveliness_lease_duration=Duration(nanoseconds=400_000_000)
@@ -286,7 +286,7 @@ def test_a_publisher_outside_that_shows_no_life_is_told(processes):
     b.spin_until(is_alive_again)
 
 
-def test_the_best_available_is_chosen_among_those_outside_too(processes):
+def test_best_available_qos_considers_remote_endpoints(processes):
     us, them = processes("us"), processes("them")
     best = QoSPresetProfiles.BEST_AVAILABLE.value
     them.node.create_publisher(String, "/scan", QoSPresetProfiles.SENSOR_DATA.value)
@@ -300,7 +300,7 @@ def test_the_best_available_is_chosen_among_those_outside_too(processes):
     assert offered.qos_profile.deadline == Duration(seconds=2)
 
 
-def test_every_type_can_be_described():
+def test_shipped_message_types_can_be_described():
     """To Cyclone, which makes a description of each when it is used first."""
     pytest.importorskip("cyclonedds", reason="there is no DDS here")
     from linkwright.messages import shipped_packages

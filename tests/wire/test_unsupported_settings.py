@@ -45,18 +45,18 @@ def codes(variables):
         ({**SECURE, **SERVER}, ["DDS122", "DDS123"]),
     ],
 )
-def test_what_is_not_followed_is_told(variables, message):
+def test_unsupported_settings_are_reported(variables, message):
     assert codes(variables) == message
 
 
 @pytest.mark.parametrize(
     "variables", [{}, SECURE, {"ROS_SECURITY_STRATEGY": "Enforce"}, {**ENFORCED, "LINKWRIGHT_DDS": "0"}]
 )
-def test_who_needs_no_security_is_not_refused(variables):
+def test_settings_without_enforced_security_are_accepted(variables):
     check_security(variables)
 
 
-def test_nobody_joins_where_security_is_enforced():
+def test_join_is_rejected_if_security_is_enforced():
     graph = Graph(threads=True)
     try:
         with pytest.raises(LinkwrightError) as caught:
@@ -66,14 +66,14 @@ def test_nobody_joins_where_security_is_enforced():
     assert [diagnostic.code for diagnostic in caught.value.diagnostics] == ["DDS121"]
 
 
-def test_each_setting_is_told_once_in_a_process(monkeypatch):
+def test_setting_is_reported_once_per_process(monkeypatch):
     monkeypatch.setattr("linkwright.wire.unsupported_settings._reported", set())
     assert [setting.code for setting in new_unsupported_settings(SERVER)] == ["DDS123"]
     assert [setting.code for setting in new_unsupported_settings({**SERVER, **SECURE})] == ["DDS122"]
 
 
 @with_network
-def test_graphs_that_join_log_it(monkeypatch):
+def test_joining_graphs_log_unsupported_settings(monkeypatch):
     monkeypatch.setattr("linkwright.wire.unsupported_settings._reported", set())
     for name, value in SERVER.items():
         monkeypatch.setenv(name, value)
@@ -86,7 +86,7 @@ def test_graphs_that_join_log_it(monkeypatch):
     assert text.startswith("warning[DDS123]: ROS_DISCOVERY_SERVER is set")
 
 
-def test_rclpy_does_not_initialise_where_security_is_enforced(monkeypatch):
+def test_rclpy_init_fails_if_security_is_enforced(monkeypatch):
     for name, value in ENFORCED.items():
         monkeypatch.setenv(name, value)
     context = Context()
@@ -98,7 +98,7 @@ def test_rclpy_does_not_initialise_where_security_is_enforced(monkeypatch):
 @pytest.mark.parametrize(
     "words", [["node", "list"], ["view", "--join", "--no-open", "r.urdf"], ["bridge", "dds", "zenoh"]]
 )
-def test_commands_that_join_say_one_error_where_security_is_enforced(monkeypatch, capsys, tmp_path, words):
+def test_commands_report_enforced_security_once(monkeypatch, capsys, tmp_path, words):
     (tmp_path / "r.urdf").write_text("<robot name='r'><link name='a'/></robot>")
     monkeypatch.chdir(tmp_path)
     for name, value in ENFORCED.items():

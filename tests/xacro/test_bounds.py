@@ -170,7 +170,7 @@ HUGE = [
 
 
 @pytest.mark.parametrize("source", HUGE, ids=lambda source: source[:40])
-def test_what_would_grow_or_never_end_is_stopped(source: str) -> None:
+def test_unbounded_expressions_are_stopped(source: str) -> None:
     with ends(), pytest.raises(Fault):
         evaluate("${" + source + "}", items=[1], data={"a": 1})
 
@@ -185,14 +185,14 @@ def test_growth_over_many_properties_is_stopped() -> None:
         assert caught.value.diagnostics[0].code in ("XAC202", "XAC204")
 
 
-def test_long_texts_are_counted() -> None:
+def test_total_text_length_is_limited() -> None:
     text = f'{ROOT}<xacro:property name="p" value="${{"a" * 100000}}"/>'.replace('"a"', "'a'")
     with pytest.raises(LinkwrightError) as caught:
         expand("m.xacro", text=text + '<a v="${p}"/>' * 20 + "</robot>", limits=Limits(characters=1_000_000))
     assert caught.value.diagnostics[0].code == "XAC605"
 
 
-def test_macros_that_multiply_are_stopped() -> None:
+def test_exponential_macro_calls_are_stopped() -> None:
     macros = "".join(
         f'<xacro:macro name="m{number}"><xacro:m{number + 1}/><xacro:m{number + 1}/></xacro:macro>'
         for number in range(60)
@@ -210,7 +210,7 @@ RECURSIVE = (
 
 
 @pytest.mark.parametrize("levels", [1, 150, 200])
-def test_deep_recursion_of_macros_works(levels: int) -> None:
+def test_deep_macro_recursion_is_expanded(levels: int) -> None:
     limit = sys.getrecursionlimit()
     text = str(expand("m.xacro", text=f"{ROOT}{RECURSIVE % levels}</robot>"))
     assert text.count("<l>") == levels
@@ -218,7 +218,7 @@ def test_deep_recursion_of_macros_works(levels: int) -> None:
 
 
 @pytest.mark.parametrize("levels", [201, 100_000])
-def test_too_deep_recursion_is_one_clear_error(levels: int) -> None:
+def test_too_deep_macro_recursion_is_one_error(levels: int) -> None:
     with pytest.raises(LinkwrightError) as caught:
         expand("m.xacro", text=f"{ROOT}{RECURSIVE % levels}</robot>")
     (diagnostic,) = caught.value.diagnostics
@@ -226,20 +226,20 @@ def test_too_deep_recursion_is_one_clear_error(levels: int) -> None:
     assert "more than 200 levels deep" in diagnostic.message
 
 
-def test_too_deep_nesting_of_elements_is_an_error() -> None:
+def test_too_deep_element_nesting_is_an_error() -> None:
     with pytest.raises(LinkwrightError) as caught:
         expand("m.xacro", text=f"{ROOT}{'<a>' * 5000}{'</a>' * 5000}</robot>")
     assert [diagnostic.code for diagnostic in caught.value.diagnostics] == ["XAC601"]
 
 
-def test_a_long_chain_of_lazy_properties_is_an_error() -> None:
+def test_long_chain_of_lazy_properties_is_an_error() -> None:
     chain = "".join(f'<xacro:property name="p{n}" value="${{p{n + 1} + 1}}"/>' for n in range(5000))
     with pytest.raises(LinkwrightError) as caught:
         expand("m.xacro", text=f'{ROOT}{chain}<a v="${{p0}}"/></robot>')
     assert caught.value.diagnostics[0].code == "XAC601"
 
 
-def test_iterators_do_not_pile_up() -> None:
+def test_nested_map_iterators_are_evaluated() -> None:
     chain = "".join(
         f'<xacro:property name="p{n + 1}" value="${{map(str, p{n})}}" lazy_eval="false"/>' for n in range(5000)
     )
@@ -282,7 +282,7 @@ LARGE_BUT_ALLOWED = [
 
 
 @pytest.mark.parametrize("source", LARGE_BUT_ALLOWED, ids=lambda source: source[:40])
-def test_what_is_large_but_allowed_does_not_take_long(source: str) -> None:
+def test_large_allowed_expressions_are_fast(source: str) -> None:
     with ends():
         evaluate("${" + source + "}", items=[1], data={"a": 1})
 
@@ -311,7 +311,7 @@ def test_macros_that_double_are_stopped_by_default(body: str) -> None:
         ('<xacro:arg name="a" default="1"/>', 10_000),
     ],
 )
-def test_tags_that_leave_nothing_behind_count_too(body: str, calls: int) -> None:
+def test_tags_without_output_count_toward_limit(body: str, calls: int) -> None:
     text = f'{ROOT}<xacro:macro name="m">{body * 1_000}</xacro:macro>{"<xacro:m/>" * calls}</robot>'
     with pytest.raises(LinkwrightError) as caught:
         expand("m.xacro", text=text)
@@ -329,7 +329,7 @@ def test_blocks_that_double_are_stopped() -> None:
     assert caught.value.diagnostics[0].code == "XAC602"
 
 
-def test_time_runs_out() -> None:
+def test_time_limit_is_enforced() -> None:
     text = nested_macros(60, "{call}{call}")
     assert codes(text, Limits(elements=10**9, seconds=0.1)) == ["XAC606"]
     with pytest.raises(Fault) as caught:
@@ -337,7 +337,7 @@ def test_time_runs_out() -> None:
     assert caught.value.code == "XAC606"
 
 
-def test_lists_that_grow_from_call_to_call_are_stopped() -> None:
+def test_lists_growing_across_macro_calls_are_stopped() -> None:
     body = (
         '<xacro:macro name="r" params="items:=^ n"><a v="${items.append(items[-1] * 2)}"/>'
         '<xacro:r n="${n-1}"/></xacro:macro>'
@@ -360,11 +360,11 @@ def test_lists_that_grow_from_call_to_call_are_stopped() -> None:
     ],
     ids=lambda body: body[:40],
 )
-def test_endless_depth_is_an_error(body: str) -> None:
+def test_infinite_recursion_is_an_error(body: str) -> None:
     assert codes(f"{ROOT}{body}</robot>") == ["XAC601"]
 
 
-def test_a_file_that_includes_itself_is_an_error(tmp_path: Path) -> None:
+def test_file_that_includes_itself_is_an_error(tmp_path: Path) -> None:
     file = tmp_path / "m.xacro"
     file.write_text(f'{ROOT}<xacro:include filename="m.xacro"/><xacro:include filename="m.xacro"/></robot>')
     with ends(), pytest.raises(LinkwrightError) as caught:
@@ -374,12 +374,12 @@ def test_a_file_that_includes_itself_is_an_error(tmp_path: Path) -> None:
 
 @pytest.mark.skipif(not Path("/dev/zero").exists(), reason="there is no such device")
 @pytest.mark.parametrize("use", ['<xacro:include filename="/dev/zero"/>', "<a v=\"${xacro.load_yaml('/dev/zero')}\"/>"])
-def test_a_file_without_end_is_an_error(use: str) -> None:
+def test_endless_file_is_an_error(use: str) -> None:
     assert codes(f"{ROOT}{use}</robot>")[0] in ("XML103", "XAC506")
 
 
 @pytest.mark.parametrize("written", ["'\\x00'", "'\\x01'", "'\\ud800'", "'\\uffff'", "'%c' % 2"])
-def test_what_xml_cannot_hold_is_an_error(written: str) -> None:
+def test_characters_invalid_in_xml_are_an_error(written: str) -> None:
     assert codes(f'{ROOT}<a v="${{{written}}}"/></robot>') == ["XAC206"]
 
 
@@ -413,7 +413,7 @@ BOMBS = {
 
 
 @pytest.mark.parametrize("text", BOMBS.values(), ids=BOMBS.keys())
-def test_a_yaml_file_that_would_explode_is_an_error(text: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_yaml_bomb_is_an_error(text: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.chdir(tmp_path)
     Path("d.yaml").write_text(text)
     found = codes(

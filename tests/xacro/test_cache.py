@@ -4,7 +4,7 @@ from linkwright.xacro import cache, expand
 from linkwright.xacro.cache import BoundedCache
 
 
-def test_what_is_kept_stays_below_the_bound() -> None:
+def test_cache_size_stays_below_bound() -> None:
     cache: BoundedCache[int, str] = BoundedCache(100, lambda _, text: len(text))
     for number in range(1000):
         cache.store(number, "x" * (number % 7))
@@ -12,7 +12,7 @@ def test_what_is_kept_stays_below_the_bound() -> None:
         assert number in cache.values
 
 
-def test_a_round_through_more_than_is_kept_finds_a_part_of_it_again() -> None:
+def test_cyclic_access_beyond_capacity_has_hits() -> None:
     cache: BoundedCache[int, int] = BoundedCache(100, lambda *_: 1)
     found = 0
     for _ in range(10):
@@ -23,7 +23,7 @@ def test_a_round_through_more_than_is_kept_finds_a_part_of_it_again() -> None:
     assert found > 9 * 50
 
 
-def test_one_in_the_place_of_another_counts_once() -> None:
+def test_replaced_entry_is_counted_once() -> None:
     cache: BoundedCache[str, int] = BoundedCache(100, lambda _, size: size)
     cache.store("first", 40)
     for _ in range(50):
@@ -31,7 +31,7 @@ def test_one_in_the_place_of_another_counts_once() -> None:
     assert cache.values == {"first": 40, "edited": 50}
 
 
-def test_a_process_that_runs_for_days_stores_less(monkeypatch) -> None:
+def test_divisor_reduces_cache_bound(monkeypatch) -> None:
     monkeypatch.setattr(BoundedCache, "divisor", 8)
     cache: BoundedCache[int, str] = BoundedCache(800, lambda _, text: len(text))
     for number in range(1000):
@@ -39,7 +39,7 @@ def test_a_process_that_runs_for_days_stores_less(monkeypatch) -> None:
     assert 50 < sum(map(len, cache.values.values())) <= 100
 
 
-def test_more_files_than_a_package_has_are_parsed_once(tmp_path) -> None:
+def test_document_cache_holds_600_files(tmp_path) -> None:
     for number in range(600):
         (tmp_path / f"{number}.urdf").write_text(f'<robot name="r{number}"><link name="base"/></robot>')
     robots = [tmp_path / f"{number}.urdf" for number in range(600)]

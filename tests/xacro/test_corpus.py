@@ -9,7 +9,7 @@ from tests.corpora import MODELS, Model
 
 
 @pytest.mark.parametrize("model", MODELS, ids=str)
-def test_expands_as_ros_xacro_does(model: Model, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_expansion_matches_ros_xacro(model: Model, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.chdir(model.corpus.robots)
     expansion = expand(model.path, model.arguments, packages=model.packages)
     assert model.marked(str(expansion)) == model.expected

@@ -31,7 +31,7 @@ def find(expansion: Expansion, tag: str) -> Element:
     raise AssertionError(tag)
 
 
-def test_text_with_banner(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_expanded_text_has_banner(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     (tmp_path / "my-robot--v2.urdf").write_text('<robot name="r"><link name="a"/></robot>', encoding="utf-8")
     monkeypatch.chdir(tmp_path)
     rule = "=" * 83
@@ -45,7 +45,7 @@ def test_text_with_banner(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> No
     )
 
 
-def test_arguments_do_not_leak(tmp_path: Path) -> None:
+def test_arguments_of_caller_are_not_changed(tmp_path: Path) -> None:
     main = write(tmp_path, main='<xacro:arg name="a" default="1"/><x v="$(arg a)"/>')
     given: dict[str, str] = {}
     assert expand(main, given).arguments == {"a": "1"}
@@ -54,14 +54,14 @@ def test_arguments_do_not_leak(tmp_path: Path) -> None:
     assert 'v="1"' in str(expand(main))
 
 
-def test_an_argument_that_nothing_uses_is_probably_misspelt(tmp_path: Path) -> None:
+def test_unused_argument_suggests_similar_name(tmp_path: Path) -> None:
     main = write(tmp_path, main='<xacro:arg name="radius" default="1"/><x v="$(arg given)"/>')
     (warning,) = expand(main, {"given": "1", "raduis": "2"}).diagnostics
     assert (warning.code, warning.hint) == ("XAC215", "did you mean 'radius'?")
     assert "'raduis'" in warning.message
 
 
-def test_dependencies_are_all_files_read_the_main_file_first(tmp_path: Path) -> None:
+def test_dependencies_list_all_files_with_main_file_first(tmp_path: Path) -> None:
     main = write(
         tmp_path,
         main='<xacro:include filename="a.xacro"/><xacro:include filename="a.xacro"/>'
@@ -73,7 +73,7 @@ def test_dependencies_are_all_files_read_the_main_file_first(tmp_path: Path) -> 
     assert expand(main).dependencies == (main, *(tmp_path / name for name in ("a.xacro", "b.xacro", "c.yaml")))
 
 
-def test_text_stands_for_the_file(tmp_path: Path) -> None:
+def test_given_text_replaces_file(tmp_path: Path) -> None:
     write(tmp_path, part="<y/>")
     main = tmp_path / "unsaved.xacro"
     expansion = expand(main, text=f'{ROOT}<xacro:include filename="part.xacro"/></robot>')
@@ -83,7 +83,7 @@ def test_text_stands_for_the_file(tmp_path: Path) -> None:
     assert expansion.document.source.name == str(main)
 
 
-def test_a_changed_file_is_read_again(tmp_path: Path) -> None:
+def test_changed_file_is_read_again(tmp_path: Path) -> None:
     main = write(tmp_path, main='<xacro:include filename="part.xacro"/>', part="<y/>")
     assert "<y/>" in str(expand(main))
     part = tmp_path / "part.xacro"
@@ -92,7 +92,7 @@ def test_a_changed_file_is_read_again(tmp_path: Path) -> None:
     assert "<z1/>" in str(expand(main))
 
 
-def test_expanding_twice_gives_the_same_and_leaves_the_source_alone(tmp_path: Path) -> None:
+def test_repeated_expansion_is_equal_and_keeps_source(tmp_path: Path) -> None:
     main = write(
         tmp_path,
         main='<xacro:macro name="m" params="*b"><!-- c --><xacro:property name="p" value="1"/>'
@@ -102,7 +102,7 @@ def test_expanding_twice_gives_the_same_and_leaves_the_source_alone(tmp_path: Pa
     assert str(expand(main)) == str(expand(main))
 
 
-def test_elements_know_where_they_were_written_and_what_brought_them(tmp_path: Path) -> None:
+def test_elements_have_source_locations_and_call_chains(tmp_path: Path) -> None:
     main = write(
         tmp_path,
         main='\n<xacro:include filename="part.xacro"/>\n<xacro:outer/>\n',
@@ -126,14 +126,14 @@ def test_elements_know_where_they_were_written_and_what_brought_them(tmp_path: P
     assert expansion.origin(expansion.document.root).trail == ()
 
 
-def test_attributes_of_expanded_elements_have_their_places(tmp_path: Path) -> None:
+def test_attributes_of_expanded_elements_have_spans(tmp_path: Path) -> None:
     main = write(tmp_path, main='\n<x a="1" 名="${1 + 1}"/>\n')
     span = find(expand(main), "x").attribute_span("名")
     assert span is not None
     assert (span.line, span.column, span.end_column) == (2, 13, 21)
 
 
-def test_packages_from_a_mapping_or_a_finder(tmp_path: Path) -> None:
+def test_packages_accept_mapping_or_finder(tmp_path: Path) -> None:
     main = write(tmp_path, main='<x v="$(find p)/m"/>')
 
     class Finder:
@@ -145,7 +145,7 @@ def test_packages_from_a_mapping_or_a_finder(tmp_path: Path) -> None:
     assert 'v="/found/m"' in str(expand(main, packages=Finder()))
 
 
-def test_an_unknown_package_is_reported_where_it_is_named(tmp_path: Path) -> None:
+def test_unknown_package_is_reported_with_location(tmp_path: Path) -> None:
     main = write(tmp_path, main='\n<x v="$(find no_such_package_anywhere)"/>')
     with pytest.raises(LinkwrightError) as caught:
         expand(main, packages={"p": "/given"})
@@ -156,7 +156,7 @@ def test_an_unknown_package_is_reported_where_it_is_named(tmp_path: Path) -> Non
     assert (diagnostic.span.line, diagnostic.span.column) == (2, 14)
 
 
-def test_a_package_in_a_colcon_workspace_is_found(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_package_in_colcon_workspace_is_found(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     share = tmp_path / "prefix" / "share"
     (share / "ament_index/resource_index/packages").mkdir(parents=True)
     (share / "ament_index/resource_index/packages/some_robot").touch()
@@ -166,7 +166,7 @@ def test_a_package_in_a_colcon_workspace_is_found(tmp_path: Path, monkeypatch: p
     assert f'v="{share / "some_robot"}"' in str(expand(main))
 
 
-def test_warnings_do_not_stop_and_come_once(tmp_path: Path) -> None:
+def test_warning_is_reported_once(tmp_path: Path) -> None:
     main = write(
         tmp_path, main='<xacro:macro name="m"><xacro:property name="pi" value="3"/></xacro:macro>' + "<xacro:m/>" * 3
     )
@@ -176,14 +176,14 @@ def test_warnings_do_not_stop_and_come_once(tmp_path: Path) -> None:
     assert warning.span is not None
 
 
-def test_files_that_cannot_be_read(tmp_path: Path) -> None:
+def test_unreadable_files_are_errors(tmp_path: Path) -> None:
     for path, code in ((tmp_path / "none.xacro", "XML101"), (tmp_path, "XML102")):
         with pytest.raises(LinkwrightError) as caught:
             expand(path)
         assert caught.value.diagnostics[0].code == code
 
 
-def test_where_the_reference_crashes_or_loses_something(tmp_path: Path) -> None:
+def test_bugs_of_ros_xacro_are_not_reproduced(tmp_path: Path) -> None:
     """Bugs of ros/xacro that Linkwright does not have."""
     in_a_condition = '<x><xacro:if value="1"><xacro:attribute name="k" value="v"/></xacro:if></x>'
     assert '<x k="v"/>' in str(expand(write(tmp_path, main=in_a_condition)))
@@ -196,7 +196,7 @@ def test_where_the_reference_crashes_or_loses_something(tmp_path: Path) -> None:
     assert 'v="7"' in str(expand(write(tmp_path, main='<xacro:arg name="a" default="1"/><x v="$(arg a)"/>'), {"a": 7}))  # type: ignore[dict-item]
 
 
-def test_cold_import_stays_light() -> None:
+def test_import_of_expand_loads_no_heavy_modules() -> None:
     """Importing the room imports no slow modules, and none that only some files need."""
     names = loaded_by("from linkwright.xacro import expand")
     heavy = {"yaml", "numpy", "asyncio", "xml.dom", "linkwright.packages", "datetime"}
@@ -205,7 +205,7 @@ def test_cold_import_stays_light() -> None:
     assert not (heavy | stands_for_less | {"argparse", "linkwright.xacro.tracing", "xml.parsers"}) & names
 
 
-def test_of_a_file_that_is_not_utf_8_one_warning_says_that_ros_cannot_read_it(tmp_path: Path) -> None:
+def test_file_that_is_not_utf_8_has_one_warning(tmp_path: Path) -> None:
     latin = '<?xml version="1.0" encoding="ISO-8859-1"?><robot name="é"><a v="é"/></robot>'.encode("latin-1")
     (tmp_path / "latin.xacro").write_bytes(latin)
     (tmp_path / "wide.yaml").write_bytes("a: é".encode("utf-16"))
@@ -226,7 +226,7 @@ def test_of_a_file_that_is_not_utf_8_one_warning_says_that_ros_cannot_read_it(tm
         assert not expand(tmp_path / readable).diagnostics
 
 
-def test_variables_that_each_ros_sets_are_there_without_one(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
+def test_ros_environment_variables_have_defaults(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
     robot = tmp_path / "r.xacro"
     robot.write_text(f'{ROOT}<link name="v$(env ROS_VERSION)$(optenv ROS_DISTRO no)"/></robot>')
     for name in ("ROS_VERSION", "ROS_DISTRO"):

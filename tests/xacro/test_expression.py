@@ -45,7 +45,7 @@ PYTHON = [
 
 
 @pytest.mark.parametrize("source", PYTHON)
-def test_means_what_it_means_in_python(source: str) -> None:
+def test_expression_value_matches_python(source: str) -> None:
     python = evaluate("${python.vars(python)}")
     assert evaluate("${" + source + "}", **python) == eval(source)
 
@@ -71,7 +71,7 @@ EXPRESSIONS = st.recursive(
 
 
 @given(EXPRESSIONS)
-def test_agrees_with_python_or_both_fail(source: str) -> None:
+def test_random_expression_matches_python_or_both_fail(source: str) -> None:
     try:
         expected = eval(source, {"a": 2.5, "b": 3})
     except (TypeError, ValueError, ArithmeticError):
@@ -84,7 +84,7 @@ def test_agrees_with_python_or_both_fail(source: str) -> None:
 
 
 @given(st.floats(allow_nan=False), st.sampled_from([operator.add, operator.mul, operator.sub]), st.integers())
-def test_numbers_are_exact(left: float, operation: Any, right: int) -> None:
+def test_arithmetic_matches_python(left: float, operation: Any, right: int) -> None:
     sign = {operator.add: "+", operator.mul: "*", operator.sub: "-"}[operation]
     try:
         expected = operation(left, right)
@@ -93,26 +93,26 @@ def test_numbers_are_exact(left: float, operation: Any, right: int) -> None:
     assert repr(evaluate("${l " + sign + " r}", l=left, r=right)) == repr(expected)
 
 
-def test_a_lone_name_keeps_its_object() -> None:
+def test_single_name_returns_same_object() -> None:
     items = [1, 2]
     assert evaluate("${items}", items=items) is items
     assert evaluate("${ items }", items=items) is items
 
 
-def test_more_than_one_token_is_a_string() -> None:
+def test_several_tokens_give_a_string() -> None:
     assert evaluate("${1}${2}") == "12"
     assert evaluate(" ${1}") == " 1"
     assert evaluate("${1}") == 1
 
 
-def test_unknown_kinds_of_node_are_refused() -> None:
+def test_unsupported_syntax_nodes_are_rejected() -> None:
     for source in ("(yield)", "await x"):
         with pytest.raises(Fault) as caught:
             evaluate("${" + source + "}")
         assert caught.value.code in ("XAC102", "XAC204")
 
 
-def test_every_node_of_the_grammar_is_compiled_or_refused() -> None:
+def test_every_syntax_node_is_compiled_or_rejected() -> None:
     from linkwright.xacro.expressions.compiler import Compiler
 
     refused = {"Await", "Interpolation", "Starred", "TemplateStr", "Yield", "YieldFrom"}
@@ -136,7 +136,7 @@ def test_every_node_of_the_grammar_is_compiled_or_refused() -> None:
         ("$(arg  nope)", 7, 11),
     ],
 )
-def test_places_are_exact(text: str, start: int, end: int) -> None:
+def test_error_spans_are_exact(text: str, start: int, end: int) -> None:
     with pytest.raises(Fault) as caught:
         evaluate(text, a=1.5)
     assert (caught.value.start, caught.value.end) == (start, end)

@@ -31,7 +31,7 @@ TEXTS = st.text(alphabet="$${}()ab 1", max_size=30)
         ("$()", [(TokenKind.SUBSTITUTION, "")]),
     ],
 )
-def test_tokens(text: str, tokens: list[tuple[TokenKind, str]]) -> None:
+def test_text_is_split_into_tokens(text: str, tokens: list[tuple[TokenKind, str]]) -> None:
     assert [(token.kind, token.text) for token in tokenize(text)] == tokens
 
 
@@ -39,7 +39,7 @@ def test_tokens(text: str, tokens: list[tuple[TokenKind, str]]) -> None:
     ("text", "start", "end"),
     [("a${b", 1, 4), ("$(b", 0, 3), ("ab$$c", 2, 4), ("x$$", 1, 3), ("${a}$$ ${b}", 4, 6)],
 )
-def test_malformed_text_is_refused_with_its_place(text: str, start: int, end: int) -> None:
+def test_malformed_text_is_rejected_with_location(text: str, start: int, end: int) -> None:
     with pytest.raises(Fault) as caught:
         tokenize(text)
     assert (caught.value.code, caught.value.start, caught.value.end) == ("XAC101", start, end)
@@ -53,7 +53,7 @@ def _tokens(text: str) -> list[Token] | None:
 
 
 @given(TEXTS)
-def test_tokens_cover_the_whole_text(text: str) -> None:
+def test_tokens_cover_whole_text(text: str) -> None:
     tokens = _tokens(text)
     assume(tokens is not None)
     assert tokens is not None
@@ -74,14 +74,14 @@ def test_only_dollars_can_be_malformed(text: str) -> None:
 
 
 @given(TEXTS)
-def test_text_without_dollars_is_itself(text: str) -> None:
+def test_text_without_dollars_is_unchanged(text: str) -> None:
     plain = text.replace("$", "")
     assert "".join(token.text for token in tokenize(plain)) == plain
     assert len(tokenize(plain)) <= 1
 
 
 @given(st.text(alphabet="ab {$(", max_size=10), st.integers(min_value=1, max_value=4))
-def test_escaping_takes_one_dollar_away(rest: str, dollars: int) -> None:
+def test_escaping_removes_one_dollar(rest: str, dollars: int) -> None:
     rest = rest.replace("$", "")
     tokens = tokenize("$" * (dollars + 1) + "{" + rest)
     assert "".join(token.text for token in tokens) == "$" * dollars + "{" + rest

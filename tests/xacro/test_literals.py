@@ -35,7 +35,7 @@ def reference(value: str) -> Any:
         *(("link", "link"), ("-", "-"), ("e5", "e5"), ("1e400", math.inf), ("٣", 3), ("null", "null")),
     ],
 )
-def test_literals(text: str, value: object) -> None:
+def test_literals_are_converted(text: str, value: object) -> None:
     assert literal(text) == value
     assert type(literal(text)) is type(value)
 
@@ -43,14 +43,14 @@ def test_literals(text: str, value: object) -> None:
 @given(
     st.one_of(st.text(max_size=8), st.text(alphabet="0123456789.+-eE_'infatrueTF ", max_size=8), st.floats().map(str))
 )
-def test_the_short_cuts_change_nothing(text: str) -> None:
+def test_literal_shortcuts_match_reference(text: str) -> None:
     expected, value = reference(text), literal(text)
     assert type(value) is type(expected)
     assert value == expected or (math.isnan(value) and math.isnan(expected))
 
 
 @given(st.one_of(st.integers(), st.booleans(), st.none(), st.lists(st.integers())))
-def test_what_is_no_string_stays(value: object) -> None:
+def test_value_that_is_not_a_string_is_unchanged(value: object) -> None:
     assert literal(value) is value
 
 
@@ -59,11 +59,11 @@ FALSE = ["false", "False", "0", "00", 0.0, [], None]
 
 
 @pytest.mark.parametrize(("value", "holds"), [*((value, True) for value in TRUE), *((value, False) for value in FALSE)])
-def test_truth(value: object, holds: bool) -> None:
+def test_truth_values_are_evaluated(value: object, holds: bool) -> None:
     assert truth(value) is holds
 
 
 @pytest.mark.parametrize("value", ["1.0", "", "yes", "TRUE", " true", "none"])
-def test_what_is_neither_true_nor_false(value: str) -> None:
+def test_invalid_truth_value_is_an_error(value: str) -> None:
     with pytest.raises(ValueError):
         truth(value)

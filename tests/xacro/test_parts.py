@@ -36,7 +36,7 @@ def problems(expansion: Expansion) -> list[str]:
     return [found.code for found in expansion.problems]
 
 
-def test_without_mistakes_it_is_the_whole(tmp_path):
+def test_parts_of_valid_description_are_complete(tmp_path):
     body = '<xacro:property name="a" value="1"/><link name="l${a}"><inertial><mass value="${a}"/></inertial></link>'
     whole = parts(tmp_path, body)
     found = expand_parts(Inputs(str(tmp_path / "robot.xacro"), {}), LinkwrightError(Diagnostic("XAC201", "")))
@@ -44,13 +44,13 @@ def test_without_mistakes_it_is_the_whole(tmp_path):
     assert write_element(found.document.root) == write_element(whole.document.root)
 
 
-def test_an_element_with_a_failed_attribute_is_left_out_with_what_is_around_it(tmp_path):
+def test_element_with_failed_attribute_omits_its_ancestors(tmp_path):
     found = parts(tmp_path, '<link name="a"><visual><origin xyz="${nowhere} 0 0"/></visual></link><link name="b"/>')
     assert links(found) == ["b"]
     assert problems(found) == ["XAC201"]
 
 
-def test_mistakes_in_several_places_are_all_told(tmp_path):
+def test_all_mistakes_are_reported(tmp_path):
     found = parts(
         tmp_path,
         '<link name="${1/0}"/><xacro:wheel/><link name="a"/><xacro:insert_block name="b"/><link name="${x}"/>',
@@ -59,23 +59,23 @@ def test_mistakes_in_several_places_are_all_told(tmp_path):
     assert problems(found) == ["XAC202", "XAC401", "XAC406", "XAC201"]
 
 
-def test_a_text_that_fails(tmp_path):
+def test_failed_text_omits_its_element(tmp_path):
     found = parts(tmp_path, '<gazebo><a>${nowhere}</a></gazebo><link name="a"/>')
     assert [element.tag for element in found.document.root.elements()] == ["link"]
 
 
-def test_a_call_inside_of_an_element_that_fails(tmp_path):
+def test_failed_call_omits_element_around_it(tmp_path):
     found = parts(tmp_path, '<link name="a"><xacro:shape/></link><link name="b"/>')
     assert links(found) == ["b"]
 
 
-def test_a_gap_in_the_body_of_a_macro_is_one_in_the_element_around_its_call(tmp_path):
+def test_failure_in_macro_body_omits_element_around_call(tmp_path):
     macro = '<xacro:macro name="m"><xacro:none/><visual/></xacro:macro>'
     found = parts(tmp_path, f'{macro}<link name="a"><xacro:m/></link><link name="b"/>')
     assert links(found) == ["b"]
 
 
-def test_a_gap_goes_with_its_block(tmp_path):
+def test_failure_in_block_omits_element_that_inserts_it(tmp_path):
     macro = (
         '<xacro:macro name="m" params="*block"><link name="a"><xacro:insert_block name="block"/></link></xacro:macro>'
     )
@@ -83,7 +83,7 @@ def test_a_gap_goes_with_its_block(tmp_path):
     assert links(parts(tmp_path, body)) == ["b"]
 
 
-def test_a_call_that_lacks_a_block_because_of_a_mistake_is_left_out_in_silence(tmp_path):
+def test_call_without_its_failed_block_is_omitted_without_report(tmp_path):
     macro = '<xacro:macro name="m" params="*block"><link name="a"/></xacro:macro>'
     found = parts(tmp_path, f'{macro}<xacro:m><xacro:none/></xacro:m><link name="b"/>')
     assert links(found) == ["b"]
@@ -91,7 +91,7 @@ def test_a_call_that_lacks_a_block_because_of_a_mistake_is_left_out_in_silence(t
 
 
 class TestConsequences:
-    def test_what_a_missing_file_would_have_defined_is_not_missed(self, tmp_path):
+    def test_names_of_missing_include_are_not_reported(self, tmp_path):
         found = parts(
             tmp_path,
             '<xacro:include filename="none.xacro"/><link name="${prefix}a"/><xacro:wheel/><link name="b"/>',
@@ -99,15 +99,15 @@ class TestConsequences:
         assert links(found) == ["b"]
         assert problems(found) == ["XML101"]
 
-    def test_other_missing_files_are_told(self, tmp_path):
+    def test_all_missing_files_are_reported(self, tmp_path):
         includes = '<xacro:include filename="none.xacro"/><xacro:include filename="$(cwd)/nor_this.xacro"/>'
         assert problems(parts(tmp_path, includes)) == ["XML101", "XML101"]
 
-    def test_expressions_that_are_none_are_told(self, tmp_path):
+    def test_malformed_expressions_are_reported(self, tmp_path):
         found = parts(tmp_path, '<xacro:include filename="none.xacro"/><link name="${1 +}"/>')
         assert problems(found) == ["XML101", "XAC102"]
 
-    def test_a_value_may_be_another_than_meant(self, tmp_path):
+    def test_elements_with_uncertain_values_are_omitted(self, tmp_path):
         mass = '<link name="a"><inertial><mass value="${m}"/></inertial></link>'
         found = parts(
             tmp_path,
@@ -117,43 +117,43 @@ class TestConsequences:
         assert links(found) == ["b"]
         assert problems(found) == ["XAC201"]
 
-    def test_a_condition_on_it_too(self, tmp_path):
+    def test_conditions_on_uncertain_values_are_omitted(self, tmp_path):
         body = '<xacro:include filename="none.xacro"/><xacro:unless value="${m}"><link name="a"/></xacro:unless>'
         assert links(parts(tmp_path, f'<xacro:property name="m" value="0"/>{body}<link name="b"/>')) == ["b"]
 
-    def test_a_macro_defines_nothing_outside(self, tmp_path):
+    def test_missing_macro_leaves_outer_properties_certain(self, tmp_path):
         found = parts(tmp_path, '<xacro:property name="m" value="1"/><xacro:wheeel/><link name="a${m}"/>')
         assert links(found) == ["a1"]
 
-    def test_unless_it_says_so(self, tmp_path):
+    def test_missing_macro_may_set_properties_of_parent_scope(self, tmp_path):
         macro = '<xacro:macro name="m"><xacro:property name="x" value="2" scope="parent"/></xacro:macro>'
         found = parts(tmp_path, f'{macro}<xacro:property name="x" value="1"/><xacro:n/><link name="a${{x}}"/>')
         assert links(found) == []
         assert problems(found) == ["XAC401"]
 
-    def test_warnings_that_may_be_consequences_are_not_told(self, tmp_path):
+    def test_warnings_that_may_be_consequences_are_omitted(self, tmp_path):
         warning = '<xacro:property name="none" remove="true"/>'
         assert [diagnostic.code for diagnostic in parts(tmp_path, warning).diagnostics] == ["XAC310"]
         assert parts(tmp_path, f'<xacro:include filename="none.xacro"/>{warning}').diagnostics == ()
 
 
 class TestNothingToBeHad:
-    def test_no_xml(self, tmp_path):
+    def test_malformed_xml_is_an_error(self, tmp_path):
         with pytest.raises(LinkwrightError, match="does not close"):
             parts(tmp_path, "<link>")
 
-    def test_a_bound_of_the_expansion(self, tmp_path):
+    def test_exceeded_limit_is_an_error(self, tmp_path):
         macro = '<xacro:macro name="m"><xacro:m/></xacro:macro>'
         with pytest.raises(LinkwrightError, match="nested"):
             parts(tmp_path, f"{macro}<xacro:m/>")
 
-    def test_too_many_mistakes(self, tmp_path):
+    def test_too_many_mistakes_are_an_error(self, tmp_path):
         with pytest.raises(LinkwrightError) as caught:
             parts(tmp_path, "".join(f'<link name="${{a{number}}}"/>' for number in range(30)))
         assert len(caught.value.diagnostics) == 20
 
 
-def test_an_included_file_with_a_mistake_keeps_the_rest(tmp_path):
+def test_included_file_with_mistake_keeps_other_parts(tmp_path):
     found = parts(
         tmp_path,
         '<xacro:include filename="part.xacro"/><link name="c"/>',

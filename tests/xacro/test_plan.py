@@ -22,7 +22,7 @@ def written(tmp_path: Path, inside: str) -> Path:
     return path
 
 
-def test_each_call_of_a_macro_gives_elements_of_its_own(tmp_path: Path) -> None:
+def test_macro_calls_give_separate_elements(tmp_path: Path) -> None:
     macro = '<xacro:macro name="m"><link name="a"><visual/></link></xacro:macro>'
     expansion = expand(written(tmp_path, f"{macro}<xacro:m/>\n<xacro:m/>"))
     first, second = expansion.document.root.elements("link")
@@ -33,7 +33,7 @@ def test_each_call_of_a_macro_gives_elements_of_its_own(tmp_path: Path) -> None:
     assert lines == [1, 2]
 
 
-def test_changing_a_result_changes_no_other(tmp_path: Path) -> None:
+def test_changed_result_does_not_affect_other_results(tmp_path: Path) -> None:
     path = written(tmp_path, '<link name="a"><visual name="v"/></link>')
     expansion = expand(path)
     before = str(expansion)
@@ -48,7 +48,7 @@ def test_changing_a_result_changes_no_other(tmp_path: Path) -> None:
     ("limits", "code", "before"),
     [(Limits(elements=5), "XAC602", 4), (Limits(nesting=5), "XAC601", 5), (Limits(), "", 0)],
 )
-def test_what_is_copied_counts(tmp_path: Path, limits: Limits, code: str, before: int) -> None:
+def test_copied_elements_count_toward_limits(tmp_path: Path, limits: Limits, code: str, before: int) -> None:
     path = written(tmp_path, "<a>" * 150 + "</a>" * 150)
     if not code:
         assert str(expand(path, limits=limits)).count("<a") == 150
@@ -59,7 +59,7 @@ def test_what_is_copied_counts(tmp_path: Path, limits: Limits, code: str, before
     assert caught.value.diagnostics[0].span.column == len(HEAD) + 1 + before * len("<a>")
 
 
-def test_comments_are_evaluated_where_they_are_switched_on(tmp_path: Path) -> None:
+def test_eval_comments_enables_comments_after_it(tmp_path: Path) -> None:
     inside = (
         '<xacro:property name="p" value="1"/><a><!-- ${p} --><!-- xacro:eval-comments --><!-- ${p} --> '
         "<!-- ${p + 1} -->"
@@ -70,7 +70,7 @@ def test_comments_are_evaluated_where_they_are_switched_on(tmp_path: Path) -> No
     assert comments == [" ${p} ", " 1 ", " 2 ", " ${p} ", " ${p} "]
 
 
-def test_a_copy_that_is_looked_into_is_written_as_it_is_then(tmp_path: Path) -> None:
+def test_modified_copy_is_written_with_changes(tmp_path: Path) -> None:
     path = written(tmp_path, '<link name="a"><visual name="v"> </visual></link>')
     whole = str(expand(path))
     expansion = expand(path)
@@ -81,21 +81,21 @@ def test_a_copy_that_is_looked_into_is_written_as_it_is_then(tmp_path: Path) -> 
 
 
 @pytest.mark.parametrize("copied", [copy.copy, copy.deepcopy])
-def test_a_copy_of_a_copy_is_one_of_its_own(tmp_path: Path, copied: Callable[[Element], Element]) -> None:
+def test_copy_of_copy_is_independent(tmp_path: Path, copied: Callable[[Element], Element]) -> None:
     expansion = expand(written(tmp_path, '<link name="a"><visual/></link>'))
     link = copied(expansion.document.root.first("link"))
     link.children.clear()
     assert write_element(link) == '<link name="a"/>\n'
 
 
-def test_a_copy_may_be_nested_deeper_than_calls_of_python(tmp_path: Path) -> None:
+def test_copy_may_be_nested_deeper_than_recursion_limit(tmp_path: Path) -> None:
     depth = 3 * sys.getrecursionlimit()
     path = written(tmp_path, "<a>" * depth + "</a>" * depth)
     root = expand(path, limits=Limits(nesting=depth + 10)).document.root
     assert sum(1 for _ in root.walk()) == depth + 1
 
 
-def test_what_is_written_at_another_depth_is_indented_anew(tmp_path: Path) -> None:
+def test_indentation_follows_depth_of_output(tmp_path: Path) -> None:
     macro = '<xacro:macro name="m"><a><b/></a></xacro:macro>'
     text = str(expand(written(tmp_path, f"{macro}<xacro:m/><c><xacro:m/></c><xacro:m/>")))
     assert [line for line in text.splitlines() if "<b/>" in line] == ["    <b/>", "      <b/>", "    <b/>"]
@@ -112,11 +112,11 @@ def test_what_is_written_at_another_depth_is_indented_anew(tmp_path: Path) -> No
         ("<a><b/><xacro:if value='${p}'><c/></xacro:if></a>", "<c/>"),
     ],
 )
-def test_what_does_not_come_out_as_it_is_shows_in_the_text(tmp_path: Path, inside: str, expected: str) -> None:
+def test_elements_that_need_evaluation_are_not_copied(tmp_path: Path, inside: str, expected: str) -> None:
     assert expected in str(expand(written(tmp_path, f'<xacro:property name="p" value="1"/>{inside}')))
 
 
-def test_a_long_value_is_paid_for_among_others(tmp_path: Path) -> None:
+def test_long_values_count_toward_character_limit(tmp_path: Path) -> None:
     path = written(tmp_path, f'<a><b n="{"x" * 2000}"/></a>')
     with pytest.raises(LinkwrightError) as caught:
         expand(path, limits=Limits(characters=1500))

@@ -49,7 +49,7 @@ def soon() -> Iterator[None]:
         yield
 
 
-def tried(function: Callable[..., Any], *arguments: Any) -> None:
+def call_quickly(function: Callable[..., Any], *arguments: Any) -> None:
     with soon():
         call(Budget(Limits()), function, list(arguments), {})
 
@@ -60,35 +60,35 @@ def methods(kind: type) -> list[str]:
 
 
 @pytest.mark.parametrize("name", methods(str))
-def test_methods_of_texts(name: str) -> None:
+def test_string_methods_end_quickly(name: str) -> None:
     for text in TEXTS.values():
         method = sandbox.attribute(text, name)
-        tried(method)
+        call_quickly(method)
         for argument in (*TEXTS.values(), 2**30):
-            tried(method, argument)
-        tried(method, "a", "b")
+            call_quickly(method, argument)
+        call_quickly(method, "a", "b")
 
 
 @pytest.mark.parametrize("name", methods(bytes))
-def test_methods_of_bytes(name: str) -> None:
+def test_bytes_methods_end_quickly(name: str) -> None:
     for text in (b"a" * LONG, b"ab" + b"a" * (LONG // 2), b"a-" * (LONG // 2)):
         for argument in (b"ab" + b"a" * (LONG // 2), "punycode", "idna", "utf-7"):
-            tried(sandbox.attribute(text, name), argument)
+            call_quickly(sandbox.attribute(text, name), argument)
 
 
 @pytest.mark.parametrize("kind", [set, frozenset, dict, list, tuple])
-def test_methods_of_collections_with_keys_of_one_hash(kind: type) -> None:
+def test_collection_methods_end_quickly_with_colliding_keys(kind: type) -> None:
     for name in methods(kind):
         for items in (ALIKE, iter(ALIKE), ALIKE_PAIRS, map(abs, ALIKE), zip(ALIKE, ALIKE, strict=True)):
             owner = kind({1: 1}) if kind is not dict else {1: 1}
-            tried(sandbox.attribute(owner, name), items)
+            call_quickly(sandbox.attribute(owner, name), items)
 
 
 @pytest.mark.parametrize("name", sorted(name for name, value in MATHEMATICS.items() if callable(value)))
-def test_functions_of_mathematics(name: str) -> None:
+def test_math_functions_end_quickly(name: str) -> None:
     function = MATHEMATICS[name]
     for arguments in ((NUMBERS,), NUMBERS, (NUMBERS, NUMBERS), (NUMBERS[0],), NUMBERS[:2], (2000, 1000)):
-        tried(function, *arguments)
+        call_quickly(function, *arguments)
 
 
 @pytest.mark.parametrize(
@@ -105,14 +105,14 @@ def test_functions_of_mathematics(name: str) -> None:
         "python.set([complex(-1000003.0 * i, i) for i in python.range(60000)] + {})",
     ],
 )
-def test_keys_of_one_hash_are_refused(text: str) -> None:
+def test_colliding_keys_are_rejected(text: str) -> None:
     source = text.format(*["[i * 2305843009213693951 for i in python.range(60000)]"] * 2)
     source = source.replace("complex", "python.complex")
     with soon(), pytest.raises(Fault, match=r"same hash|more than \d+"):
         evaluate("${len(" + source + ")}")
 
 
-def test_keys_that_are_equal_or_few_are_taken() -> None:
+def test_equal_or_few_colliding_keys_are_accepted() -> None:
     assert checked_keys([7] * 5_000) == [7] * 5_000
     assert len(set(checked_keys(ALIKE[:900]))) == 900
     assert checked_keys([["a"], {}] * 1_000) == [["a"], {}] * 1_000
@@ -120,14 +120,14 @@ def test_keys_that_are_equal_or_few_are_taken() -> None:
 
 
 @pytest.mark.parametrize("form", ["{}: 1\n", "? {}\n: 1\n"])
-def test_keys_of_one_hash_in_a_yaml_file_are_refused(tmp_path: Path, form: str) -> None:
+def test_colliding_keys_in_yaml_are_rejected(tmp_path: Path, form: str) -> None:
     (tmp_path / "a.yaml").write_text("".join(form.format(number) for number in ALIKE))
     text = "<robot name=\"r\" xmlns:xacro='x'><a v=\"${len(xacro.load_yaml('a.yaml'))}\"/></robot>"
     with soon(), pytest.raises(LinkwrightError, match="60 bits"):
         expand(tmp_path / "a.xacro", text=text)
 
 
-def test_numbers_of_a_yaml_file_have_an_end(tmp_path: Path) -> None:
+def test_long_numbers_in_yaml_are_rejected(tmp_path: Path) -> None:
     (tmp_path / "a.yaml").write_text("a: " + ":".join(["59"] * 300_000))
     text = "<robot name=\"r\" xmlns:xacro='x'><a v=\"${xacro.load_yaml('a.yaml')}\"/></robot>"
     with soon(), pytest.raises(LinkwrightError, match="4,000 characters"):
@@ -135,19 +135,19 @@ def test_numbers_of_a_yaml_file_have_an_end(tmp_path: Path) -> None:
 
 
 @pytest.mark.parametrize("sep", ["\\\\](a+)+b", "\\\\](a|aa)+$", "^\\\\](.*)*x[", "\\\\]((a*)*)*b"])
-def test_an_expression_where_characters_are_expected_ends(sep: str) -> None:
+def test_tokenize_ends_quickly_with_pattern_as_separator(sep: str) -> None:
     for text in ("\\" + "a" * 40, "\\" + "aa" * 5_000):
         with soon():
             tokenize(text, sep)
 
 
-def test_characters_that_end_their_class_early_split_as_the_expression_says() -> None:
+def test_tokenize_treats_separator_as_regular_expression_class() -> None:
     assert tokenize("a\\b]xc", "\\\\]b") == ["a", "xc"]
     assert tokenize("1]2[3,4", "][,") == ["1", "2", "3", "4"]
     assert tokenize("1-2^3", "-^") == ["1", "2", "3"]
 
 
-def test_math_keeps_what_is_usual() -> None:
+def test_common_math_and_string_calls_work() -> None:
     assert evaluate("${math.gcd(12, 18, 27)}") == 3
     if hasattr(math, "sumprod"):
         assert evaluate("${math.sumprod([1, 2], [3, 4])}") == 11

@@ -19,12 +19,12 @@ def values(text: str, **arguments: str) -> dict[str, tuple[str, ...]]:
     return {whole[each.start : each.end]: each.values for each in found}
 
 
-def test_each_call_has_its_value():
+def test_values_of_each_macro_call_are_listed():
     text = '<xacro:macro name="m" params="n"><link name="${n}_l"/></xacro:macro><xacro:m n="a"/><xacro:m n="b"/>'
     assert values(text) == {"${n}": ("'a'", "'b'"), "${n}_l": ("'a_l'", "'b_l'")}
 
 
-def test_an_evaluation_has_its_call_and_its_names():
+def test_evaluation_has_call_and_names():
     text = (
         f'{HEAD}<xacro:property name="w" value="2"/><xacro:macro name="m" params="n">'
         '<link name="l${n * w}"/></xacro:macro>\n<xacro:m n="3"/></robot>'
@@ -48,22 +48,22 @@ def test_properties_conditions_parameters_and_texts_have_values():
     assert values(text) == expected
 
 
-def test_arguments_decide_values():
+def test_arguments_determine_values():
     text = '<xacro:arg name="side" default="left"/><link name="$(arg side)"/>'
     assert values(text) == {"$(arg side)": ("'left'",)}
     assert values(text, side="right") == {"$(arg side)": ("'right'",)}
 
 
-def test_values_before_an_error_are_known():
+def test_values_before_error_are_listed():
     assert values('<link name="${1 + 1}"/><link name="${missing}"/>') == {"${1 + 1}": ("2",)}
 
 
 @pytest.mark.parametrize("text", ["<a", '<link name="${1 +"/>', '<xacro:include filename="missing.xacro"/>'])
-def test_a_broken_text_has_no_values(text):
+def test_malformed_text_has_no_values(text):
     assert values(text) == {}
 
 
-def test_an_expression_that_changes_a_value_is_evaluated_once():
+def test_expression_with_side_effect_is_evaluated_once():
     text = (
         '<xacro:property name="items" value="${[1, 2, 3]}"/><link name="l${items.pop(0)}"/><link name="k${items[0]}"/>'
     )
@@ -80,11 +80,11 @@ def test_included_files_have_values(tmp_path: Path):
     assert (Path(found.file).name, found.values) == ("part.xacro", ("'x'",))
 
 
-def test_a_list_of_parameters_has_no_value():
+def test_macro_parameter_list_has_no_value():
     text = '<xacro:macro name="m" params="n:=${k}"><link name="${n}"/></xacro:macro><xacro:m n="a"/>'
     assert values(f'<xacro:property name="k" value="2"/>{text}') == {"${n}": ("'a'",)}
 
 
-def test_the_values_before_a_mistake_in_a_list_of_parameters_remain():
+def test_values_before_malformed_parameter_list_remain():
     text = """<link name="${1 + 1}"/><xacro:macro name="m" params="a:='${'"/><xacro:m a="1"/>"""
     assert values(text) == {"${1 + 1}": ("2",)}

@@ -27,12 +27,12 @@ WARNED_OF = {
 """What ros/xacro refuses is taken here, with a warning that says so."""
 
 
-def test_every_mistake_has_a_verdict() -> None:
+def test_every_case_has_verdict() -> None:
     assert VERDICTS.keys() == CASES.keys(), "run `make reference`"
 
 
 @pytest.mark.parametrize("name", CASES)
-def test_verdict(name: str, tmp_path, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_verdict_matches_ros_xacro(name: str, tmp_path, monkeypatch: pytest.MonkeyPatch) -> None:
     case: Case = CASES[name]
     case.write(tmp_path)
     monkeypatch.chdir(tmp_path)

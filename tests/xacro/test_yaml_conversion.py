@@ -37,7 +37,7 @@ def loaded(text: str) -> Any:
 
 
 @given(st.lists(st.sampled_from(PIECES), max_size=14).map("".join))
-def test_any_text(text: str) -> None:
+def test_conversion_of_any_text_matches_pyyaml(text: str) -> None:
     assert outcome(lambda: loaded(text)) == outcome(lambda: yaml.load(text, PLAIN))
 
 
@@ -50,10 +50,10 @@ def test_any_text(text: str) -> None:
         "",
     ],
 )
-def test_some_texts(text: str) -> None:
+def test_conversion_of_examples_matches_pyyaml(text: str) -> None:
     assert loaded(text) == yaml.safe_load(text)
 
 
-def test_what_aliases_name_is_one_value() -> None:
+def test_aliases_share_one_value() -> None:
     value = loaded("a: &x [1]\nb: *x")
     assert value["a"] is value["b"]

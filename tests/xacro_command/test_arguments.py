@@ -14,7 +14,7 @@ def listed(path, arguments=None, **options):
     return {argument.name: argument for argument in arguments_of(path, arguments, **options)}
 
 
-def test_declared_arguments(write):
+def test_declared_arguments_are_listed(write):
     path = write(
         "a.xacro", '<xacro:arg name="x" default="1"/>\n<xacro:arg name="y" default="$(arg x)0"/><l n="$(arg y)"/>'
     )
@@ -26,13 +26,13 @@ def test_declared_arguments(write):
     assert (y.span.file, y.span.line, y.span.column) == ("a.xacro", 3, 18)
 
 
-def test_an_argument_that_is_given(write):
+def test_given_argument_overrides_default(write):
     path = write("a.xacro", '<xacro:arg name="x" default="1"/><l n="$(arg x)"/>')
     x = listed(path, {"x": "5"})["x"]
     assert (x.default, x.value, x.required, x.is_given) == ("1", "5", False, True)
 
 
-def test_arguments_of_includes_and_their_includes(write):
+def test_arguments_of_nested_includes_are_listed(write):
     write("sub/b.xacro", '<xacro:arg name="b" default="1"/><xacro:include filename="../c.xacro"/>')
     write("c.xacro", '<xacro:arg name="c" default="1"/>')
     path = write("a.xacro", '<xacro:include filename="sub/b.xacro"/><xacro:arg name="a" default=""/>')
@@ -42,7 +42,7 @@ def test_arguments_of_includes_and_their_includes(write):
     assert not found["c"].used
 
 
-def test_the_root_asks_before_the_declaration(write):
+def test_argument_used_in_root_before_declaration_is_required(write):
     path = write(
         "a.xacro",
         '<robot name="$(arg name)" xmlns:xacro="x">\n<xacro:arg name="name" default="ur"/>\n'
@@ -55,7 +55,7 @@ def test_the_root_asks_before_the_declaration(write):
     assert not listed(path, {"name": "x"})["name"].required
 
 
-def test_an_argument_that_nothing_declares(write):
+def test_undeclared_argument_is_required(write):
     path = write("a.xacro", '<l n="$(arg a)"/><l n="${xacro.arg(\'b\')}"/><t>$(arg a) $(arg c)</t>')
     found = listed(path)
     assert list(found) == ["a", "b", "c"]
@@ -66,7 +66,7 @@ def test_an_argument_that_nothing_declares(write):
     assert not any(argument.required for argument in arguments_of(path, {"a": "1", "b": "1", "c": "1"}))
 
 
-def test_branches_not_taken_and_macros_not_called(write):
+def test_arguments_in_unused_branches_and_macros_are_listed(write):
     path = write(
         "a.xacro",
         '<xacro:arg name="arm" default="false"/>'
@@ -78,7 +78,7 @@ def test_branches_not_taken_and_macros_not_called(write):
     assert "nowhere" in listed(path, {"nowhere": "1"})
 
 
-def test_arguments_decide_which_file_is_included(write):
+def test_argument_value_selects_included_file(write):
     write("one.xacro", '<xacro:arg name="of_one" default=""/>')
     write("two.xacro", '<xacro:arg name="of_two" default=""/>')
     path = write("a.xacro", '<xacro:arg name="kind" default="one"/><xacro:include filename="$(arg kind).xacro"/>')
@@ -86,7 +86,7 @@ def test_arguments_decide_which_file_is_included(write):
     assert list(listed(path, {"kind": "two"})) == ["kind", "of_two"]
 
 
-def test_a_file_that_cannot_be_expanded(write):
+def test_file_that_cannot_be_expanded_lists_known_arguments(write):
     write("c.xacro", '<xacro:arg name="c" default="2"/>')
     path = write(
         "a.xacro",
@@ -102,7 +102,7 @@ def test_a_file_that_cannot_be_expanded(write):
     assert found["c"].default == "2"
 
 
-def test_a_file_that_is_no_xml(write):
+def test_malformed_and_missing_files_are_rejected(write):
     path = write("a.xacro", "<robot><l></robot>")
     with pytest.raises(LinkwrightError):
         arguments_of(path)
@@ -110,7 +110,7 @@ def test_a_file_that_is_no_xml(write):
         arguments_of("none.xacro")
 
 
-def test_packages_and_texts(write, tmp_path):
+def test_packages_and_text_can_be_passed(write, tmp_path):
     write("share/b.xacro", '<xacro:arg name="b" default="1"/>')
     text = '<r xmlns:xacro="x"><xacro:include filename="$(find p)/b.xacro"/></r>'
     assert list(listed("new.xacro", text=text, packages={"p": str(tmp_path / "share")})) == ["b"]
@@ -139,7 +139,7 @@ def robot(write):
     )
 
 
-def test_the_list(robot, run):
+def test_args_option_prints_list(robot, run):
     answer = run("--args", str(robot), "size:=3", "siz:=4")
     assert answer.status == 0
     assert [line.split() for line in answer.out.splitlines()] == [line.split() for line in LIST.splitlines()]
@@ -149,7 +149,7 @@ def test_the_list(robot, run):
     assert run("--args", str(robot), "size:=3", "siz:=4", "-q").err == ""
 
 
-def test_the_list_as_data(robot, run):
+def test_args_option_prints_json(robot, run):
     answer = run("--args", str(robot), "--format", "json")
     first, *_, last = json.loads(answer.out)["arguments"]
     assert first == {
@@ -166,7 +166,7 @@ def test_the_list_as_data(robot, run):
     assert (last["name"], last["default"], last["required"]) == ("need", None, True)
 
 
-def test_the_list_of_a_file_that_cannot_be_expanded(write, run):
+def test_incomplete_list_is_reported_with_warning(write, run):
     write("a.xacro", '<xacro:include filename="$(arg which).xacro"/>')
     answer = run("--args", "a.xacro")
     assert answer.status == 0
@@ -178,7 +178,7 @@ def test_the_list_of_a_file_that_cannot_be_expanded(write, run):
     assert "hint: pass which:=..." in answer.err
 
 
-def test_the_argument_is_named_that_leads_to_a_missing_file(write, run):
+def test_hint_names_argument_that_leads_to_missing_file(write, run):
     write(
         "a.xacro",
         '<xacro:arg name="kind" default="k5"/><xacro:arg name="other" default="o"/>'
@@ -188,7 +188,7 @@ def test_the_argument_is_named_that_leads_to_a_missing_file(write, run):
     assert run("--args", "a.xacro").err.endswith("hint: pass kind:=...\n")
 
 
-def test_the_list_goes_to_a_file(write, run):
+def test_list_is_written_to_output_file(write, run):
     write("a.xacro", "<l/>")
     assert run("--args", "a.xacro").out == "the file has no arguments\n"
     assert run("--args", "a.xacro", "-o", "list.txt").out == ""

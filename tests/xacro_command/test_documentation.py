@@ -29,7 +29,7 @@ def printed(block: Block, run) -> tuple[str, str]:
 
 
 @pytest.mark.parametrize("page", PAGES, ids=["en", "zh"])
-def test_the_outputs_are_true(page, run, tmp_path, monkeypatch):
+def test_shown_outputs_are_current(page, run, tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)
     found = blocks(page)
     files = [block for block in found if block.language == "xml"]

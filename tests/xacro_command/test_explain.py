@@ -15,7 +15,7 @@ def robot(write):
     write(
         "wheel.xacro",
         """<xacro:property name="width" value="0.02"/>
-<xacro:macro name="wheel" params="side y tint:=grey *place">
+<xacro:macro name="wheel" params="side y tint:=gray *place">
   <link name="${side}_wheel">
     <cylinder radius="${radius}" length="${width}" fixed="1"/><material name="${tint}"/>
     <note>the ${side} one</note>
@@ -49,7 +49,7 @@ def attributes(found):
     return {f"{part.element.tag}.{attribute.name}": attribute for part in found.walk() for attribute in part.attributes}
 
 
-def test_place_and_calls(robot):
+def test_explain_shows_location_and_macro_calls(robot):
     found = only(robot, "left_wheel")
     assert str(found.span) == "wheel.xacro:4:3"
     (call,) = found.calls
@@ -61,7 +61,7 @@ def test_place_and_calls(robot):
     ]
 
 
-def test_attributes(robot):
+def test_explain_shows_attributes_and_values(robot):
     found = attributes(only(robot, "left_wheel"))
     name = found["link.name"]
     assert (name.value, name.written, str(name.span)) == ("left_wheel", "${side}_wheel", "wheel.xacro:4:15")
@@ -72,14 +72,14 @@ def test_attributes(robot):
     assert (fixed.value, fixed.written, str(fixed.span), fixed.values) == ("1", "1", "wheel.xacro:5:59", ())
 
 
-def test_text(robot):
+def test_explain_shows_text_content(robot):
     *_, note = only(robot, "left_wheel").children
     (text,) = note.texts
     assert (text.value, text.written, str(text.span)) == ("the left one", "the ${side} one", "wheel.xacro:6:11")
     assert [value.name for value in text.values] == ["side"]
 
 
-def test_a_block_keeps_the_place_and_values_of_the_caller(robot):
+def test_block_keeps_location_and_values_of_caller(robot):
     origin, parent = only(robot, "left_joint").children
     assert str(origin.span) == "a.xacro:6:42"
     assert [facts(value) for value in origin.attributes[0].values] == [
@@ -89,19 +89,19 @@ def test_a_block_keeps_the_place_and_values_of_the_caller(robot):
     assert facts(value) == ("$(arg prefix)", "argument", "'my_'", "a.xacro:2:35", "my_")
 
 
-def test_an_argument_that_was_given_has_no_place(robot):
+def test_given_argument_has_no_location(robot):
     parent = only(robot, "left_joint", {"prefix": "his_"}).children[1]
     (value,) = parent.attributes[0].values
     assert facts(value) == ("$(arg prefix)", "argument", "'his_'", None, None)
 
 
-def test_an_attribute_that_a_tag_set(robot):
+def test_attribute_set_by_xacro_attribute_tag_is_traced(robot):
     extra = attributes(only(robot, "left_joint"))["joint.extra"]
     assert (extra.value, extra.written, str(extra.span)) == ("0.1", "${y}", "wheel.xacro:10:62")
     assert [value.name for value in extra.values] == ["y"]
 
 
-def test_the_provenance_of_an_element_of_an_expansion(robot):
+def test_provenance_of_expanded_element_matches_explain(robot):
     expansion = expand(robot)
     link = next(expansion.document.root.elements("link"))
     found, same = expansion.provenance(link), only(robot, "left_wheel")
@@ -110,7 +110,7 @@ def test_the_provenance_of_an_element_of_an_expansion(robot):
     assert expansion.provenance(cylinder).calls == expansion.provenance(link).calls
 
 
-def test_the_provenance_of_what_has_changed_since(robot):
+def test_provenance_rejects_changed_file(robot):
     expansion = expand(robot)
     link = next(expansion.document.root.elements("link"))
     robot.write_text(robot.read_text().replace('side="left"', 'side="right"'))
@@ -118,7 +118,7 @@ def test_the_provenance_of_what_has_changed_since(robot):
         expansion.provenance(link)
 
 
-def test_nested_calls_and_includes(write):
+def test_nested_calls_and_includes_are_traced(write):
     write("c.xacro", '<link name="deep_${x}"/>')
     write("b.xacro", '<xacro:macro name="in" params="x"><xacro:include filename="c.xacro"/></xacro:macro>')
     path = write(
@@ -137,7 +137,7 @@ def test_nested_calls_and_includes(write):
     assert [facts(value) for value in found.calls[2].parameters] == [("y", "parameter", "1", "a.xacro:3:38", "1")]
 
 
-def test_values_are_those_of_the_moment(write):
+def test_property_values_are_those_at_evaluation(write):
     path = write(
         "a.xacro",
         """<xacro:property name="n" value="1"/><link name="l1" v="${n}"/>
@@ -149,7 +149,7 @@ def test_values_are_those_of_the_moment(write):
         assert (found.value, str(found.span)) == (value, place)
 
 
-def test_keys_namespaces_and_names_that_are_no_values(write, tmp_path):
+def test_keys_and_namespaces_are_traced_and_functions_are_not(write, tmp_path):
     (tmp_path / "v.yaml").write_text("arm: {length: [1, 2]}\n")
     write("b.xacro", '<xacro:property name="p" value="7"/>')
     path = write(
@@ -170,7 +170,7 @@ def test_keys_namespaces_and_names_that_are_no_values(write, tmp_path):
     assert found["link.d"].values == ()
 
 
-def test_packages_and_variables(write, tmp_path, monkeypatch):
+def test_packages_and_environment_variables_are_traced(write, tmp_path, monkeypatch):
     monkeypatch.setenv("LENGTH", "3")
     path = write("a.xacro", '<link name="l" a="$(find p)/x" b="$(env LENGTH)" c="$(optenv NONE 4)"/>')
     found = attributes(only(path, "l", packages={"p": "/share/p"}))
@@ -179,7 +179,7 @@ def test_packages_and_variables(write, tmp_path, monkeypatch):
     assert facts(found["link.c"].values[0])[2] == "'4'"
 
 
-def test_properties_of_outer_scopes(write):
+def test_properties_set_in_outer_scopes_are_traced(write):
     path = write(
         "a.xacro",
         """<xacro:macro name="m"><xacro:property name="g" value="1" scope="global"/>
@@ -191,14 +191,14 @@ def test_properties_of_outer_scopes(write):
     assert facts(found["link.p"].values[0]) == ("p", "property", "2", "a.xacro:3:33", "${g+1}")
 
 
-def test_elements_whose_tag_is_evaluated(write):
+def test_elements_with_evaluated_tag_are_traced(write):
     path = write("a.xacro", '<xacro:property name="t" value="link"/><xacro:element xacro:name="${t}" name="l${1+1}"/>')
     found = only(path, "l2")
     assert found.element.tag == "link"
     assert found.attributes[0].written == "l${1+1}"
 
 
-def test_names_of_elements_deeper_down(write):
+def test_nested_elements_are_found_by_name(write):
     path = write("a.xacro", '<gazebo><plugin name="p"/><plugin name="p"/></gazebo>')
     assert [found.element.tag for found in explain(path, "p")] == ["plugin", "plugin"]
 
@@ -210,7 +210,7 @@ def test_names_of_elements_deeper_down(write):
         ("zz", "there are 2 links and joints, such as left_wheel, left_joint"),
     ],
 )
-def test_unknown_names(robot, run, name, hint):
+def test_unknown_name_has_suggestion(robot, run, name, hint):
     answer = run("--explain", name, str(robot))
     assert answer.status == 1
     assert answer.err == (
@@ -218,7 +218,7 @@ def test_unknown_names(robot, run, name, hint):
     )
 
 
-def test_a_file_with_mistakes(write, run):
+def test_expansion_error_is_reported(write, run):
     write("a.xacro", '<link name="${no}"/>')
     answer = run("--explain", "l", "a.xacro")
     assert answer.status == 1
@@ -251,13 +251,13 @@ written at wheel.xacro:8:3
 """
 
 
-def test_the_text_of_a_provenance(robot, run):
+def test_explain_option_prints_text(robot, run):
     answer = run("--explain", "left_joint", str(robot))
     assert (answer.status, answer.err) == (0, "")
     assert answer.out == STORY
 
 
-def test_the_data_of_a_provenance(robot, run):
+def test_explain_option_prints_json(robot, run):
     answer = run("--explain", "left_wheel", str(robot), "--format", "json")
     (element,) = json.loads(answer.out)["elements"]
     assert (element["tag"], element["file"], element["line"], element["column"]) == ("link", "wheel.xacro", 4, 3)
@@ -267,7 +267,7 @@ def test_the_data_of_a_provenance(robot, run):
     assert element["attributes"][0]["values"][0]["name"] == "side"
 
 
-def test_a_text_that_is_not_saved(write):
+def test_unsaved_text_can_be_explained(write):
     text = '<robot xmlns:xacro="x"><xacro:property name="p" value="1"/><link name="l" a="${p}">t${p}</link></robot>'
     found = only("new.xacro", "l", text=text)
     assert (found.texts[0].written, found.texts[0].value) == ("t${p}", "t1")

@@ -8,7 +8,7 @@ from pathlib import Path
 import pytest
 
 
-def test_values_may_stand_anywhere(write, run):
+def test_argument_values_may_be_anywhere(write, run):
     write(
         "a.xacro", '<xacro:arg name="x" default="1"/><xacro:arg name="y" default="1"/><link name="$(arg x)$(arg y)"/>'
     )
@@ -16,7 +16,7 @@ def test_values_may_stand_anywhere(write, run):
         assert '<link name="23"/>' in run(*words).out
 
 
-def test_an_empty_value_leaves_the_default_in_force(write, run):
+def test_empty_argument_value_keeps_default(write, run):
     write("a.xacro", '<xacro:arg name="x" default="d"/><link name="$(arg x)"/>')
     answer = run("a.xacro", "x:=")
     assert '<link name="d"/>' in answer.out
@@ -24,7 +24,7 @@ def test_an_empty_value_leaves_the_default_in_force(write, run):
     assert run("a.xacro", "x:=", "-q").err == ""
 
 
-def test_a_name_with_an_underscore_is_a_parameter_of_ros(write, run):
+def test_argument_with_leading_underscore_is_ignored(write, run):
     write(
         "a.xacro", '<xacro:arg name="_x" default="d"/><xacro:arg name="__y" default="d"/><l n="$(arg _x)$(arg __y)"/>'
     )
@@ -33,7 +33,7 @@ def test_a_name_with_an_underscore_is_a_parameter_of_ros(write, run):
     assert "'_x' is ignored" in answer.err
 
 
-def test_value_with_two_signs(write, run):
+def test_argument_value_may_contain_assignment_sign(write, run):
     write("a.xacro", '<xacro:arg name="x" default="d"/><link name="$(arg x)"/>')
     assert '<link name="a:=b"/>' in run("a.xacro", "x:=a:=b").out
 
@@ -41,14 +41,14 @@ def test_value_with_two_signs(write, run):
 @pytest.mark.parametrize(
     "words", [["x:=1"], ["a.xacro", "b.xacro"], ["--args", "--deps", "a"], ["--explain", "l", "--args", "a"]]
 )
-def test_wrong_usage(write, run, words):
+def test_invalid_usage_returns_2(write, run, words):
     answer = run(*words)
     assert answer.status == 2
     assert answer.err.startswith("linkwright xacro: ")
     assert answer.out == ""
 
 
-def test_dependencies(write, run):
+def test_deps_option_lists_dependencies(write, run):
     write("sub/b.xacro", '<xacro:include filename="../c.xacro"/>')
     write("c.xacro", "")
     Path("v.yaml").write_text("a: 1\n")
@@ -62,7 +62,7 @@ def test_dependencies(write, run):
     assert Path("deps.txt").read_text() == "sub/b.xacro sub/../c.xacro c.xacro v.yaml"
 
 
-def test_root_dir(write, run, tmp_path, monkeypatch):
+def test_root_dir_option_sets_base_folder(write, run, tmp_path, monkeypatch):
     write("in/b.xacro", "<b/>")
     write("in/c1.xacro", "<c/>")
     (tmp_path / "in/v.yaml").write_text("a: 7\n")
@@ -83,14 +83,14 @@ def test_root_dir(write, run, tmp_path, monkeypatch):
     assert run("a.xacro").status == 1
 
 
-def test_root_dir_stands_in_messages(write, run):
+def test_root_dir_appears_in_messages(write, run):
     write("in/a.xacro", "<l n='${no}'/>")
     answer = run("a.xacro", "--root-dir", "in")
     assert answer.status == 1
     assert " in/a.xacro:2:9" in answer.err
 
 
-def test_inorder_has_no_effect_but_a_remark(write, run):
+def test_inorder_option_prints_notice(write, run):
     write("a.xacro", "<l/>")
     for option in ("-i", "--inorder"):
         answer = run(option, "a.xacro")
@@ -99,7 +99,7 @@ def test_inorder_has_no_effect_but_a_remark(write, run):
     assert run("-i", "-q", "a.xacro").err == ""
 
 
-def test_standard_input(write, run, monkeypatch):
+def test_standard_input_is_expanded(write, run, monkeypatch):
     write("b.xacro", "<b/>")
     text = '<robot xmlns:xacro="x"><xacro:include filename="b.xacro"/></robot>'
     monkeypatch.setattr("sys.stdin", io.StringIO(text))
@@ -108,7 +108,7 @@ def test_standard_input(write, run, monkeypatch):
     assert "from <stdin>" in answer.out
 
 
-def test_quiet_leaves_errors_only(write, run):
+def test_quiet_option_prints_only_errors(write, run):
     write("a.xacro", '<xacro:property name="pi" value="3"/>${xacro.warning("w")}${xacro.error("e")}')
     loud = run("a.xacro").err
     assert "XAC306" in loud
@@ -163,14 +163,14 @@ use r: 0.5 (a.xacro:7:3)
         (["--verbosity", "4"], OF_ALL),
     ],
 )
-def test_the_log_of_properties(write, run, words, log):
+def test_verbosity_logs_properties(write, run, words, log):
     write("a.xacro", PROPERTIES)
     answer = run("a.xacro", *words)
     assert answer.err == log
     assert answer.out == run("a.xacro", "-q").out
 
 
-def test_the_log_of_an_expansion_that_fails(write, run):
+def test_verbosity_log_ends_where_expansion_fails(write, run):
     write("a.xacro", '<xacro:property name="a" value="1"/>\n<l v="${a}"/>\n<l v="${no}"/>')
     answer = run("a.xacro", "--verbosity", "3")
     assert answer.status == 1
@@ -179,7 +179,7 @@ def test_the_log_of_an_expansion_that_fails(write, run):
     assert rest.startswith("error[XAC201]")
 
 
-def test_the_log_of_a_namespace(write, run):
+def test_verbosity_logs_namespace_properties(write, run):
     write("b.xacro", '<xacro:property name="p" value="1"/><l v="${p}"/>')
     write("a.xacro", '<xacro:include filename="b.xacro" ns="N"/><l v="${N.p}"/>')
     log = run("a.xacro", "--verbosity", "4").err

@@ -37,7 +37,7 @@ def inputs(write: Write, tmp_path, monkeypatch):
 
 
 @pytest.mark.parametrize("case", CASES.values(), ids=CASES.keys())
-def test_every_attribute_has_a_place(case: Case, inputs) -> None:
+def test_traced_attributes_have_locations(case: Case, inputs) -> None:
     inputs(case)
     expansion = expand("main.xacro", case.arguments, packages=PACKAGES)
     provenance = expansion.provenance(expansion.document.root)
@@ -51,7 +51,7 @@ def test_every_attribute_has_a_place(case: Case, inputs) -> None:
 
 
 @pytest.mark.parametrize("case", [*CASES.values(), *ERRORS.values()], ids=[*CASES, *ERRORS])
-def test_nothing_else_than_our_errors_is_raised(case: Case, inputs) -> None:
+def test_tracing_raises_only_linkwright_errors(case: Case, inputs) -> None:
     given = inputs(case)
     for ask in (
         lambda: arguments_of("main.xacro", case.arguments, packages=PACKAGES),

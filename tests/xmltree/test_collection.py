@@ -12,7 +12,7 @@ from linkwright.xmltree.nodes import seldom_collected
 
 
 @pytest.fixture
-def asked(monkeypatch):
+def fake_gc(monkeypatch):
     """Return the calls to a garbage collector of the test, with a number of frozen objects."""
     calls: list[object] = []
     settings = SimpleNamespace(frozen=0, threshold=(700, 10, 10))
@@ -32,28 +32,28 @@ def asked(monkeypatch):
     return SimpleNamespace(calls=calls, settings=settings)
 
 
-def test_what_is_new_counts_as_old_at_the_end_of_the_outermost(asked):
+def test_outermost_context_freezes_new_objects_at_end(fake_gc):
     with seldom_collected(), seldom_collected():
-        assert asked.calls == [(50_000, 10, 10)]
-    assert asked.calls == [(50_000, 10, 10), "freeze", "unfreeze", (700, 10, 10)]
+        assert fake_gc.calls == [(50_000, 10, 10)]
+    assert fake_gc.calls == [(50_000, 10, 10), "freeze", "unfreeze", (700, 10, 10)]
 
 
-def test_what_a_program_has_frozen_stays_so(asked):
-    asked.settings.frozen = 3
+def test_frozen_objects_stay_frozen(fake_gc):
+    fake_gc.settings.frozen = 3
     with seldom_collected():
         pass
-    assert asked.calls == [(50_000, 10, 10), (700, 10, 10)]
+    assert fake_gc.calls == [(50_000, 10, 10), (700, 10, 10)]
 
 
 @pytest.mark.parametrize("first", [0, 60_000])
-def test_a_collector_that_is_off_or_seldom_runs_is_left_so(asked, first):
-    asked.settings.threshold = (first, 10, 10)
+def test_disabled_or_rare_collection_is_unchanged(fake_gc, first):
+    fake_gc.settings.threshold = (first, 10, 10)
     with seldom_collected():
-        assert asked.settings.threshold == (first, 10, 10)
-    assert asked.settings.threshold == (first, 10, 10)
+        assert fake_gc.settings.threshold == (first, 10, 10)
+    assert fake_gc.settings.threshold == (first, 10, 10)
 
 
-def test_an_error_ends_it_too():
+def test_exception_restores_collection_threshold():
     before = gc.get_threshold()
     with pytest.raises(ZeroDivisionError), seldom_collected():
         1 / (gc.get_threshold() == before)

@@ -71,14 +71,16 @@ CASES = [
 
 
 @pytest.mark.parametrize(("text", "code", "message", "line", "column", "hint"), CASES, ids=[case[2] for case in CASES])
-def test_mistakes(text: str, code: str, message: str, line: int, column: int, hint: str | None) -> None:
+def test_mistakes_have_expected_findings(
+    text: str, code: str, message: str, line: int, column: int, hint: str | None
+) -> None:
     found = finding_of(text)
     assert found[:4] == (code, message, line, column)
     if hint is not None:
         assert found[4] == hint
 
 
-def test_a_mismatched_tag_says_where_it_was_opened() -> None:
+def test_mismatched_tag_notes_opening_tag() -> None:
     with pytest.raises(LinkwrightError) as caught:
         parse("<a>\n  <b>\n</a>", "x")
     (note,) = caught.value.diagnostics[0].notes
@@ -86,7 +88,7 @@ def test_a_mismatched_tag_says_where_it_was_opened() -> None:
     assert (note.message, note.span.line, note.span.column) == ("'<b>' is opened here", 2, 3)
 
 
-def test_an_attribute_whose_quote_is_missing() -> None:
+def test_missing_attribute_quote_is_reported() -> None:
     code, _, line, _, hint = finding_of('<a>\n<b x="1 y="2">\n</b></a>')
     assert code == "XML206"
     assert line == 2
@@ -94,7 +96,7 @@ def test_an_attribute_whose_quote_is_missing() -> None:
 
 
 @pytest.mark.parametrize("text", ["", "  \n "])
-def test_empty_files(text: str) -> None:
+def test_empty_file_is_reported(text: str) -> None:
     code, message, *_ = finding_of(text)
     assert (code, message) == ("XML105", "'robot.urdf' is empty")
 
@@ -103,13 +105,13 @@ def test_empty_files(text: str) -> None:
     ("name", "element"),
     [("arm.xacro", "<robot"), ("package.xml", "<package"), ("a.launch", "<launch>"), ("a.launch.xml", "<launch>")],
 )
-def test_the_hint_for_an_empty_file_names_its_first_element(name: str, element: str) -> None:
+def test_empty_file_hint_names_root_element(name: str, element: str) -> None:
     with pytest.raises(LinkwrightError) as caught:
         parse("", name)
     assert element in str(caught.value.diagnostics[0].hint)
 
 
-def test_bytes_that_are_no_text() -> None:
+def test_invalid_utf8_byte_is_reported() -> None:
     code, message, line, column, hint = finding_of(b"<a>\n\xc3\xa9<b n='\xff'/></a>")
     assert (code, message, line, column) == ("XML104", "byte 0xff is not valid UTF-8", 2, 8)
     assert hint is not None
@@ -119,20 +121,20 @@ def test_bytes_that_are_no_text() -> None:
     "data",
     [b"\x89PNG\r\n\x1a\n\0\0\0\rIHDR", b"PK\x03\x04\0\0\0", b"\x7fELF\x02\x01\x01\0", b"\0" * 80 + b"\x0c\0\0\0"],
 )
-def test_files_that_are_no_text(data: bytes) -> None:
+def test_binary_file_is_reported(data: bytes) -> None:
     code, message, *_, hint = finding_of(data)
     assert (code, message) == ("XML104", "'robot.urdf' is not a text file")
     assert "check that it is the intended file" in str(hint)
 
 
 @pytest.mark.parametrize("encoding", ["utf-16-le", "utf-16-be"])
-def test_utf_16_without_a_byte_order_mark(encoding: str) -> None:
+def test_utf_16_without_byte_order_mark_is_reported(encoding: str) -> None:
     code, message, *_, hint = finding_of("<a b='车'/>".encode(encoding))
     assert (code, message) == ("XML104", "'robot.urdf' is in UTF-16 and has no byte order mark")
     assert hint == "save the file as UTF-8"
 
 
-def test_a_zero_byte_in_a_text_is_shown_at_its_place() -> None:
+def test_null_character_is_reported_with_location() -> None:
     assert finding_of(b"<a>\n <b n='\0'/></a>")[:4] == ("XML206", "the character U+0000 is not allowed in XML", 2, 8)
 
 
@@ -143,14 +145,14 @@ def test_a_zero_byte_in_a_text_is_shown_at_its_place() -> None:
         '<a\n<<<<<<< HEAD\n b="1"\n=======\n b="2"\n>>>>>>> theirs\n/>',
     ],
 )
-def test_an_unfinished_merge(text: str) -> None:
+def test_merge_conflict_is_reported(text: str) -> None:
     code, message, line, column, hint = finding_of(text)
     assert (code, message) == ("XML206", "there is an unresolved merge conflict here")
     assert (line, column) == (2, 1)
     assert "keep one of the two" in str(hint)
 
 
-def test_a_text_in_gbk_is_known_by_its_pairs() -> None:
+def test_gbk_text_is_recognized() -> None:
     code, message, line, column, hint = finding_of('<a>\n <b n="机器人底盘"/></a>'.encode("gbk"))
     assert (code, message, line, column) == ("XML104", "byte 0xbb is not valid UTF-8", 2, 8)
     assert "though it looks like GBK" in str(hint)
@@ -167,24 +169,24 @@ def test_a_text_in_gbk_is_known_by_its_pairs() -> None:
         ("{#- told -#}\n<a/>", "Jinja", 1),
     ],
 )
-def test_a_template_is_named_for_what_it_is(text: str, language: str, column: int) -> None:
+def test_template_language_is_named(text: str, language: str, column: int) -> None:
     code, message, _, at, hint = finding_of(text)
     assert (code, at) == ("XML206", column)
     assert message == f"this is a {language} template, not XML"
     assert "pass that file" in str(hint)
 
 
-def test_what_is_wrong_before_a_template_begins_is_told_first() -> None:
+def test_error_before_template_is_reported_first() -> None:
     assert finding_of("<a>1 < 2 <% %></a>")[1] == "'<' does not begin a tag"
 
 
-def test_an_unknown_encoding() -> None:
+def test_unknown_encoding_is_reported() -> None:
     with pytest.raises(LinkwrightError) as caught:
         parse(b'<?xml version="1.0" encoding="klingon"?><a>\xff</a>', "x")
     assert caught.value.diagnostics[0].code == "XML104"
 
 
-def test_files_that_cannot_be_read(tmp_path: Path) -> None:
+def test_unreadable_paths_are_reported(tmp_path: Path) -> None:
     codes = []
     for path in (tmp_path / "none.urdf", tmp_path, Path("a\0b")):
         with pytest.raises(LinkwrightError) as caught:
@@ -193,7 +195,7 @@ def test_files_that_cannot_be_read(tmp_path: Path) -> None:
     assert codes == ["XML101", "XML102", "XML103"]
 
 
-def test_a_file_without_permission(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_missing_file_permission_is_reported(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     def refuse(_path: Path, _at_most: int) -> bytes:
         raise PermissionError(13, "Permission denied")
 
@@ -204,7 +206,7 @@ def test_a_file_without_permission(tmp_path: Path, monkeypatch: pytest.MonkeyPat
     assert "Permission denied" in caught.value.diagnostics[0].message
 
 
-def test_prefixes_are_in_scope_only_below_their_declaration() -> None:
+def test_namespace_prefix_is_valid_only_below_declaration() -> None:
     parse('<a><b xmlns:k="u"><k:c k:d="1"/></b></a>', "x")
     parse('<a xml:lang="en" xmlns:k="u"><k:b/><c xmlns:k="v"><k:d/></c><k:e/></a>', "x")
     with pytest.raises(LinkwrightError) as caught:
@@ -213,7 +215,7 @@ def test_prefixes_are_in_scope_only_below_their_declaration() -> None:
 
 
 @pytest.mark.parametrize("name", ["arm.urdf", "arm.xacro"])
-def test_a_pointer_of_git_lfs_is_named_as_such(name: str, tmp_path: Path) -> None:
+def test_git_lfs_pointer_is_recognized(name: str, tmp_path: Path) -> None:
     path = tmp_path / name
     path.write_bytes(b"version https://git-lfs.github.com/spec/v1\noid sha256:4d7a\nsize 12345\n")
     with pytest.raises(LinkwrightError) as caught:

@@ -70,23 +70,23 @@ CASES = {
 
 
 @pytest.mark.parametrize(("before", "after"), CASES.values(), ids=CASES)
-def test_form(before: str, after: str):
+def test_text_is_formatted(before: str, after: str):
     style = Style(width=40)
     assert format_text(before, "a.xml", style) == after
     assert format_text(after, "a.xml", style) == after
 
 
-def test_the_indent_is_an_option():
+def test_indent_is_configurable():
     assert format_text("<a><b/>\n</a>", "a.xml", Style(indent=4)) == "<a>\n    <b/>\n</a>\n"
 
 
-def test_what_is_no_xml_is_not_formatted():
+def test_malformed_xml_is_not_formatted():
     with pytest.raises(LinkwrightError) as caught:
         format_text("<a>\n<b></a>", "a.xml")
     assert caught.value.diagnostics[0].code.startswith("XML2")
 
 
-def test_only_lines_of_a_range_change():
+def test_range_changes_only_its_lines():
     before = "<a>\n<b/>\n<c/>\n\n<d/>\n</a>\n"
     after = format_text(before, "a.xml")
     assert apply_edits(before, changes(before, after, (4, 5))) == "<a>\n<b/>\n<c/>\n\n  <d/>\n</a>\n"
@@ -104,14 +104,14 @@ TREES = st.recursive(
 
 
 @given(TREES.map(lambda inner: f"<a>{inner}</a>"))
-def test_the_expansion_stays_and_formatting_again_changes_nothing(text: str):
+def test_formatting_is_idempotent_and_preserves_expansion(text: str):
     formatted = format_text(text, "a.xml", Style(width=20))
     assert str(expand(formatted)) == str(expand(text))
     assert format_text(formatted, "a.xml", Style(width=20)) == formatted
 
 
 @pytest.mark.parametrize("path", FILES, ids=lambda path: path.name)
-def test_files_of_others(path: Path):
+def test_corpus_files_are_formatted_idempotently(path: Path):
     text = path.read_bytes().decode("utf-8", "replace")
     try:
         parse(text, path.name)

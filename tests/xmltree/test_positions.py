@@ -10,7 +10,7 @@ TAG = """<joint\n\tname = "a b"\n  type='fixed' note="type='x' &lt;1&gt;\r\n2"/>
 
 
 @pytest.mark.parametrize(("name", "value"), [("name", "a b"), ("type", "fixed"), ("note", "type='x' &lt;1&gt;\r\n2")])
-def test_values_and_names(name: str, value: str) -> None:
+def test_attribute_name_and_value_ranges_are_found(name: str, value: str) -> None:
     text = f"<robot>é{TAG}</robot>"
     found = attribute_value_range(text, 8, name)
     assert found is not None
@@ -21,12 +21,12 @@ def test_values_and_names(name: str, value: str) -> None:
 
 
 @pytest.mark.parametrize("name", ["absent", "joint", "x", "1"])
-def test_absent(name: str) -> None:
+def test_absent_attribute_has_no_range(name: str) -> None:
     assert attribute_value_range(TAG, 0, name) is None
     assert attribute_name_range(TAG, 0, name) is None
 
 
-def test_offsets_in_values_with_entities() -> None:
+def test_raw_offsets_account_for_entities() -> None:
     start, end = attribute_value_range(TAG, 0, "note") or (0, 0)
     value = "type='x' <1> 2"
     assert [TAG[raw_offset(TAG, start, end, value.index(sign))] for sign in "x<1>2"] == ["x", "&", "1", "&", "2"]

@@ -20,7 +20,7 @@ def nodes(element: Element) -> list[Element | Text | Comment | ProcessingInstruc
     return found
 
 
-def test_names_attributes_and_children_are_as_written() -> None:
+def test_names_attributes_and_children_are_preserved() -> None:
     document = parse('<r:robot xmlns:r="u" z="1" a=" 2 "><a/>t<b/><a r:k="v"/></r:robot>', "x")
     root = document.root
     assert root.tag == "r:robot"
@@ -31,12 +31,12 @@ def test_names_attributes_and_children_are_as_written() -> None:
     assert root.text() == "t"
 
 
-def test_a_walk_goes_through_all_elements_in_the_order_of_the_text() -> None:
+def test_walk_visits_elements_in_document_order() -> None:
     root = parse("<r><a><b/>text<c><d/></c></a><!-- e --><f/></r>", "x").root
     assert [element.tag for element in root.walk()] == ["r", "a", "b", "c", "d", "f"]
 
 
-def test_every_node_knows_where_it_was_written() -> None:
+def test_every_node_has_source_location() -> None:
     text = (
         '<?xml version="1.0"?>\n<!-- 前 -->\n<robot name="轮">\n  <!--c-->文<a\n b="é">x &lt; y</a><?pi d?>'
         "<![CDATA[<é>]]>\r\n<b/>ü</robot>\n<!-- after -->"
@@ -59,7 +59,7 @@ def test_every_node_knows_where_it_was_written() -> None:
     assert (span.line, span.column, span.end_column) == (4, 12, 14)
 
 
-def test_spans_of_attributes() -> None:
+def test_attribute_spans_are_found() -> None:
     root = parse("<robot\n  name = 'a &amp; b'   名=\"é\" /><!---->", "x").root
     for name, place in (("name", (2, 11, 20)), ("名", (2, 27, 28)), ("absent", (1, 1, 7))):
         span = root.attribute_span(name)
@@ -69,7 +69,7 @@ def test_spans_of_attributes() -> None:
     assert Element("made").attribute_span("x") is None
 
 
-def test_cdata_comments_and_instructions_are_kept() -> None:
+def test_cdata_comments_and_instructions_are_preserved() -> None:
     document = parse("<?a b?><!--p--><r>t<![CDATA[c]]><!--i--><?k v?></r><!--e-->", "x")
     assert [type(node) for node in document.prolog] == [ProcessingInstruction, Comment]
     assert [type(node) for node in document.root.children] == [Text, Text, Comment, ProcessingInstruction]
@@ -87,7 +87,7 @@ def test_internal_entities_are_expanded() -> None:
     assert document.doctype == '<!DOCTYPE r [<!ENTITY e "v"><!ENTITY f "&e;&e;">]>'
 
 
-def test_line_ends_are_normalised_in_the_tree_only() -> None:
+def test_line_endings_are_normalized_only_in_tree() -> None:
     document = parse("<r>a\r\nb</r>", "x")
     assert document.root.text() == "a\nb"
     assert document.source is not None
@@ -114,11 +114,11 @@ def test_deep_documents_are_read() -> None:
         ('<?xml version="1.0" encoding="ISO-8859-1"?><r>é</r>'.encode(), "é"),
     ],
 )
-def test_encodings(data: bytes, text: str) -> None:
+def test_encodings_are_detected(data: bytes, text: str) -> None:
     assert parse(data, "x").root.text() == text
 
 
-def test_files(tmp_path: Path) -> None:
+def test_parse_file_reads_file(tmp_path: Path) -> None:
     path = tmp_path / "a.urdf"
     path.write_bytes(b"<robot/>")
     document = parse_file(path)
@@ -148,7 +148,7 @@ TREES = st.recursive(
 
 
 @given(st.lists(TREES, max_size=4))
-def test_agrees_with_element_tree(parts: list[str]) -> None:
+def test_tree_matches_element_tree(parts: list[str]) -> None:
     text = write("root", {}, parts)
     ours, theirs = parse(text, "x").root, ET.fromstring(text)
     pending = [(ours, theirs)]
@@ -162,7 +162,7 @@ def test_agrees_with_element_tree(parts: list[str]) -> None:
 
 
 @given(st.text(alphabet="<>/&;=\"'ab !-[]?x:é\n\x01", max_size=25))
-def test_any_text_is_read_or_refused_at_a_place_within_it(text: str) -> None:
+def test_random_text_is_read_or_rejected_with_location(text: str) -> None:
     try:
         ET.fromstring(text)
         well_formed = True
@@ -179,7 +179,7 @@ def test_any_text_is_read_or_refused_at_a_place_within_it(text: str) -> None:
     assert diagnostic.span.line <= text.count("\n") + 1
 
 
-def test_blank_texts_may_be_left_out() -> None:
+def test_whitespace_only_text_can_be_omitted() -> None:
     text = "<a>\n  <b> x </b> <!-- c -->\n  <c> </c><![CDATA[ ]]></a>"
     root = parse(text, "a", blanks=False).root
     assert [type(child).__name__ for child in root.children] == ["Element", "Comment", "Element"]

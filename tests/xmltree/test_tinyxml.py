@@ -12,7 +12,7 @@ MANY = "<!-- a - b -->\n" * 60
 
 
 @pytest.mark.parametrize("before", ["", '<?xml version="1.0"?>\n'])
-def test_many_comments_in_a_row_are_read_at_once(before):
+def test_many_consecutive_comments_are_read(before):
     text = f"{before}{MANY}<robot>{MANY}<link/></robot>{MANY}"
     for document, warnings in (parse_as_tinyxml(text, "r.urdf", phrase("readers")), parse_as_gazebo(text, "r.urdf")):
         assert document.root.tag == "robot"
@@ -20,14 +20,14 @@ def test_many_comments_in_a_row_are_read_at_once(before):
 
 
 @pytest.mark.parametrize("text", [f"{MANY}words\n{MANY}<robot/>", f"<?xml version='1.0'?>{MANY}words <robot/>{MANY}"])
-def test_text_among_comments_before_the_root_is_found(text):
+def test_text_between_comments_before_root_is_reported(text):
     _, warnings = parse_as_tinyxml(text, "r.urdf", phrase("readers"))
     (found,) = warnings
     assert found.span is not None
     assert text.splitlines()[found.span.line - 1][found.span.column - 1 :].startswith("words")
 
 
-def test_a_declaration_behind_comments_is_found():
+def test_declaration_after_comments_is_reported():
     _, warnings = parse_as_gazebo(f'{MANY}<?xml version="1.0"?><sdf/>{MANY}', "w.sdf")
     (found,) = warnings
     assert found.span is not None

@@ -25,14 +25,14 @@ def attributes(text: str) -> list[tuple[str, str | None, str]]:
 
 
 @given(MARKUP)
-def test_each_character_belongs_to_one_token(text: str):
+def test_tokens_cover_all_characters(text: str):
     found = [*tokens(text)]
     assert "".join(token.text for token in found) == text
     assert [token.start for token in found] == [sum(len(each.text) for each in found[:at]) for at in range(len(found))]
 
 
 @given(MARKUP)
-def test_attributes_are_where_they_say(text: str):
+def test_token_attributes_have_correct_positions(text: str):
     for token in tokens(text):
         for attribute in token.attributes():
             assert text[attribute.start :].startswith(attribute.name)
@@ -47,7 +47,7 @@ def _elements(element: Element):
 
 
 @pytest.mark.parametrize("path", ROBOTS, ids=lambda path: path.name)
-def test_start_tags_are_those_of_the_tree(path: Path):
+def test_start_tags_match_parsed_tree(path: Path):
     text = path.read_text(encoding="utf-8")
     tree = {element.offset: element for element in _elements(parse(text, path.name).root)}
     starts = [token for token in tokens(text) if token.kind is Kind.START]
@@ -71,7 +71,7 @@ def test_start_tags_are_those_of_the_tree(path: Path):
         ),
     ],
 )
-def test_markup_that_is_not_complete_ends_before_the_next_tag(text, expected):
+def test_incomplete_markup_ends_before_next_tag(text, expected):
     assert kinds(text) == expected
 
 
@@ -87,12 +87,12 @@ def test_markup_that_is_not_complete_ends_before_the_next_tag(text, expected):
         ('<a b="x/>', [("b", "x", '"')]),
     ],
 )
-def test_attributes_that_are_not_complete_are_found(text, expected):
+def test_incomplete_attributes_are_found(text, expected):
     assert attributes(text) == expected
 
 
 @pytest.mark.parametrize("piece", ["<", "<!", "<![", '<a b="', "<!--", "<a '", "<a b=", '"', "<!DOCTYPE ["])
-def test_hostile_texts_take_no_longer_than_others(piece: str):
+def test_tokenizing_hostile_text_takes_linear_time(piece: str):
     """A quadratic pattern would take minutes, and the test would run into its time limit."""
     found = [token.attributes() for token in tokens("<a " + piece * 200_000)]
     assert found

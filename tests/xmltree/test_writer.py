@@ -34,11 +34,11 @@ HEAD = '<?xml version="1.0" ?>\n'
         ("<a><b><c> t </c></b></a>", "<a>\n  <b>\n    <c> t </c>\n  </b>\n</a>\n"),
     ],
 )
-def test_form(text: str, written: str) -> None:
+def test_output_matches_ros_xacro(text: str, written: str) -> None:
     assert write(parse(text, "x")) == HEAD + written
 
 
-def test_an_element_alone() -> None:
+def test_single_element_is_written() -> None:
     assert write_element(parse("<a><b/></a>", "x").root) == "<a>\n  <b/>\n</a>\n"
 
 
@@ -47,13 +47,13 @@ def test_deep_documents_are_written() -> None:
     assert text.count("<a>") == 1_999
 
 
-def test_cdata_that_would_end_itself_is_split() -> None:
+def test_cdata_end_marker_is_split() -> None:
     element = Element("a")
     element.children.append(Text("x]]>y", cdata=True))
     assert parse(write(Document(element)), "x").root.text().strip() == "x]]>y"
 
 
-def test_comments_that_cannot_be_written() -> None:
+def test_invalid_comment_is_rejected() -> None:
     element = Element("a")
     element.children.append(Comment("a--b"))
     with pytest.raises(LinkwrightError) as caught:
@@ -98,14 +98,14 @@ def content(element: Element) -> object:
 
 
 @given(ELEMENTS)
-def test_what_is_written_is_read_back(element: Element) -> None:
+def test_written_document_is_read_back(element: Element) -> None:
     text = write(Document(element))
     again = parse(text, "x")
     assert content(again.root) == content(element)
 
 
 @given(ELEMENTS)
-def test_writing_twice_changes_nothing_where_text_stands_alone(element: Element) -> None:
+def test_rewritten_document_keeps_content(element: Element) -> None:
     text = write(Document(element))
     once = write(parse(text, "x"))
     assert content(parse(once, "x").root) == content(element)

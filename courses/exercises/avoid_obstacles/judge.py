@@ -17,7 +17,7 @@ class AvoidObstacles(Judge):
             y = self.random.uniform(-1.0, 1.0)
             radius = self.random.uniform(0.25, 0.4)
             scene.add_cylinder(f"column_{number}", (x, y, 0.3), radius, 0.6)
-            # A second one, where the gaps stay wider than a metre.
+            # A second one, where the gaps stay wider than a meter.
             side = -1.0 if y > 0.0 else 1.0
             size = self.random.uniform(0.2, 0.5)
             scene.add_box(f"box_{number}", (x + 0.3, side * (half - size / 2 - 0.05), 0.3), (0.4, size, 0.6))

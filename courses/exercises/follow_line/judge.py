@@ -23,7 +23,7 @@ class FollowLine(Judge):
         scene.add_line("line", [tuple(point) for point in self.track], WIDTH)
         along = self.track[1] - self.track[0]
         yaw = float(np.arctan2(along[1], along[0]) + self.random.uniform(-0.15, 0.15))
-        # The camera sees the floor half a metre ahead.
+        # The camera sees the floor half a meter ahead.
         x, y = self.track[0] + self.random.uniform(-0.03, 0.03, 2)
         scene.start = (float(x), float(y), yaw)
 

@@ -1,4 +1,4 @@
-"""Stay a metre behind the person in red: the camera sees the coat, /scan tells distances."""
+"""Stay a meter behind the person in red: the camera sees the coat, /scan tells distances."""
 
 import rclpy
 from geometry_msgs.msg import Twist

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The judge of "Localise by Monte Carlo": a known house, an unknown start, and an estimate on /estimate."""
+"""The judge of "Localize by Monte Carlo": a known house, an unknown start, and an estimate on /estimate."""
 
 import math
 

@@ -62,7 +62,7 @@ class MapHouse(Judge):
 
 
 def along_wall(begin, end):
-    """Return points of a wall, a tenth of a metre apart."""
+    """Return points of a wall, a tenth of a meter apart."""
     count = max(2, round(math.dist(begin, end) / 0.1))
     return [tuple(np.array(begin) + (np.array(end) - begin) * part) for part in np.linspace(0.0, 1.0, count)]
 

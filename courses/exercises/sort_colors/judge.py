@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The judge of "Sort by colour with an arm": six blocks on the floor, and a tile for each colour."""
+"""The judge of "Sort by color with an arm": six blocks on the floor, and a tile for each color."""
 
 import math
 
@@ -14,7 +14,7 @@ REACH = 0.035  # m between the gripper and the middle of a block
 
 
 class SortColors(Judge):
-    """The figure is the number of blocks on the tiles of their colours, less those on other tiles."""
+    """The figure is the number of blocks on the tiles of their colors, less those on other tiles."""
 
     TOPICS = (("/grip", "std_msgs/msg/Bool"),)
 

@@ -130,7 +130,9 @@ CASES = [
     wrong(
         "program", "an indentation", Edit(PROGRAM, SLEEP, SLEEP.replace("    ", "   ")), says="first_drive.py, line 14"
     ),
-    wrong("program", "a misspelt import", Edit(PROGRAM, "import Twist", "import twist"), says="first_drive.py, line 4"),
+    wrong(
+        "program", "a misspelled import", Edit(PROGRAM, "import Twist", "import twist"), says="first_drive.py, line 4"
+    ),
     wrong(
         "package",
         "an ampersand in the description",
@@ -170,9 +172,9 @@ CASES = [
         Edit(URDF, '<robot name="mbot">', XACRO_PREFIX),
         Edit(URDF, '"0.20"', '"${r}"'),
     ),
-    wrong("body", "a misspelt name", Edit(URDF, "base_link", "base_lnk"), says="there is 'base_lnk'"),
+    wrong("body", "a misspelled name", Edit(URDF, "base_link", "base_lnk"), says="there is 'base_lnk'"),
     wrong("body", "the diameter as radius", Edit(URDF, '"0.20"', '"0.40"'), says="radius is 0.4 m"),
-    wrong("body", "a misspelt attribute", Edit(URDF, "length=", "lenght="), says="has no 'length'"),
+    wrong("body", "a misspelled attribute", Edit(URDF, "length=", "lenght="), says="has no 'length'"),
     wrong("body", "millimeters", Edit(URDF, '"0.20" length="0.16"', '"200" length="160"'), says="radius is 200 m"),
     wrong("body", "no closing tag", Edit(URDF, "</robot>", ""), says="mbot_base.urdf, line"),
     right("left-wheel", "turned the other way", Edit(URDF, "1.5707 0 0", "-1.5708 0 0")),

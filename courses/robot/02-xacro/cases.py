@@ -54,7 +54,7 @@ CASES = [
     ),
     wrong(
         "properties",
-        "a misspelt name",
+        "a misspelled name",
         Edit(XACRO, 'radius="${base_radius}"', 'radius="${base_raduis}"'),
         says="base_raduis",
     ),
@@ -129,6 +129,6 @@ CASES = [
         Edit(XACRO, "$(arg camera)", "true"),
         says="still has 'camera_link'",
     ),
-    wrong("include", "a misspelt file", Edit(XACRO, "parts.xacro", "parst.xacro"), says="parst.xacro"),
+    wrong("include", "a misspelled file", Edit(XACRO, "parts.xacro", "parst.xacro"), says="parst.xacro"),
     right("include", "a relative path", Edit(XACRO, "$(find my_robot_description)/urdf/parts.xacro", "parts.xacro")),
 ]

@@ -66,7 +66,7 @@ CASES = [
     ),
     wrong(
         "publisher",
-        "a misspelt executable",
+        "a misspelled executable",
         Edit(LAUNCH, "executable='robot_state_publisher'", "executable='state'"),
         says="no executable 'state'",
     ),
@@ -104,13 +104,13 @@ CASES = [
     ),
     wrong(
         "publisher",
-        "a misspelt package",
+        "a misspelled package",
         Edit(LAUNCH, "package='robot_state_publisher'", "package='robot_state_publishr'"),
         says="robot_state_publishr",
     ),
     wrong(
         "publisher",
-        "a misspelt import",
+        "a misspelled import",
         Edit(LAUNCH, "from launch import LaunchDescription", "from launch import LaunchDescripton"),
         says="LaunchDescripton",
     ),

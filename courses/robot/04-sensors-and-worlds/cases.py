@@ -35,7 +35,7 @@ CASES = [
     ),
     wrong(
         "drive",
-        "a misspelt frame",
+        "a misspelled frame",
         Edit(SIM, "<robot_base_frame>base_footprint", "<robot_base_frame>base_footprnt"),
         says="compare <odometry_frame>",
     ),
@@ -79,7 +79,7 @@ CASES = [
     ),
     wrong(
         "drive",
-        "a misspelt joint",
+        "a misspelled joint",
         Edit(SIM, "<left_joint>left_wheel_joint", "<left_joint>left_whell_joint"),
         says="but the robot has no such joint",
     ),

@@ -92,7 +92,7 @@ CASES = [
     ),
     wrong(
         "package",
-        "a misspelt module",
+        "a misspelled module",
         Edit(SETUP, "my_control.first_move:main", "my_control.frist_move:main"),
         says="is missing",
     ),
@@ -106,7 +106,10 @@ CASES = [
     ),
     wrong("publish", "another topic", Edit(MOVE, "'cmd_vel'", "'cmd_val'"), says="publishes /cmd_val"),
     wrong(
-        "publish", "a misspelt method", Edit(MOVE, "create_publisher", "create_publihser"), says="first_move.py, line 9"
+        "publish",
+        "a misspelled method",
+        Edit(MOVE, "create_publisher", "create_publihser"),
+        says="first_move.py, line 9",
     ),
     wrong("publish", "to the right", Edit(MOVE, "angular.z = 0.5", "angular.z = -0.5"), says="angular.z is -0.5"),
     wrong("publish", "once a second", Edit(MOVE, "create_timer(0.1", "create_timer(1.0"), says="messages in 2 s"),

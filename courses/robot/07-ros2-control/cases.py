@@ -97,7 +97,7 @@ CASES = [
     ),
     wrong(
         "controllers",
-        "a misspelt type",
+        "a misspelled type",
         Edit(CONTROLLERS, "DiffDriveController", "DiffDriveControler"),
         says="The type of base_controller",
     ),
@@ -131,7 +131,7 @@ CASES = [
     right("limits", "as for Jazzy", Edit(CONTROLLERS, "    linear.x.has_velocity_limits: true\n", "")),
     wrong(
         "limits",
-        "a misspelt parameter",
+        "a misspelled parameter",
         Edit(CONTROLLERS, "linear.x.max_velocity", "linear.x.max_velocty"),
         says="base_controller has no linear.x.max_velocity",
     ),

@@ -175,7 +175,7 @@ CASES = [
         Edit(BALL, "        if np.count_nonzero(mask) < LEAST_AREA:\n            return\n", ""),
         says="looks away from the ball",
     ),
-    wrong("ball", "a misspelt field", Edit(BALL, "header.frame_id", "header.frame"), says="ball_finder.py, line"),
+    wrong("ball", "a misspelled field", Edit(BALL, "header.frame_id", "header.frame"), says="ball_finder.py, line"),
     wrong(
         "ball",
         "no executable",

@@ -345,7 +345,7 @@ def markers_face_camera(work):
 
 
 def read_balls(work):
-    """Return the names and the labelled images of the learner's data set."""
+    """Return the names and the labeled images of the learner's data set."""
     from linkwright.vision.training.yolo_dataset import open_dataset
 
     if not (work.folder / "balls").is_dir():

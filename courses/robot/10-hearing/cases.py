@@ -186,7 +186,7 @@ CASES = [
     right("grammar", "other names and words", {COMMANDS: OTHER_GRAMMAR}),
     wrong(
         "grammar",
-        "a misspelt slot",
+        "a misspelled slot",
         Edit(COMMANDS, 'zh: ["前进{distance}"]', 'zh: ["前进{distanse}"]'),
         says="distanse",
     ),

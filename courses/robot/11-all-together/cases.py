@@ -150,7 +150,7 @@ CASES = [
     wrong("unit-test", "no test", {UNIT_TEST: "from my_mission.decisions import velocity\n"}, says="has no test"),
     wrong(
         "unit-test",
-        "a misspelt import",
+        "a misspelled import",
         Edit(UNIT_TEST, "my_mission.decisions", "my_mission.decision"),
         says="ModuleNotFoundError",
     ),
@@ -178,7 +178,7 @@ CASES = [
     wrong("node", "a constant", Edit(NODE, "self.value('stop_distance'),", "0.5,"), says="With stop_distance:=1.5"),
     wrong(
         "node",
-        "a misspelt name",
+        "a misspelled name",
         Edit(NODE, "self.ball = message.point", "self.ball = message.pont"),
         says="go_to_ball.py, line",
     ),

@@ -68,7 +68,7 @@ CASES = [
     ),
     wrong(
         "camera",
-        "a misspelt encoding",
+        "a misspelled encoding",
         Edit(FINDER, "'bgr8'", "'brg8'"),
         says="of encoding bgr8, color_finder publishes nothing",
     ),
@@ -224,7 +224,7 @@ CASES = [
     ),
     wrong(
         "install",
-        "a misspelt folder",
+        "a misspelled folder",
         Edit(CMAKE, "config launch urdf", "confg launch urdf"),
         says="which does not exist",
     ),

@@ -22,7 +22,7 @@ const LONGEST_RETRY_MS = 2000;
 const GOING_AWAY = 1001;
 const UNAUTHORIZED = 401;
 /**
- * Messages of at least this length, in bytes or characters, are acknowledged. The server relies on acknowledgements of
+ * Messages of at least this length, in bytes or characters, are acknowledged. The server relies on acknowledgments of
  * longer ones only.
  */
 const LARGE = 1024;

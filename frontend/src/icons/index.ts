@@ -1,12 +1,12 @@
 import { DISPLAY_PATHS, type DisplayIcon } from "./displays";
-import { MODELLING_PATHS } from "./modelling";
+import { MODELING_PATHS } from "./modeling";
 import { SHELL_PATHS } from "./shell";
 
-/** Our own icons, 16 x 16, drawn with lines in the current text colour. */
+/** Our own icons, 16 x 16, drawn with lines in the current text color. */
 const PATHS = {
   ...DISPLAY_PATHS,
   ...SHELL_PATHS,
-  ...MODELLING_PATHS,
+  ...MODELING_PATHS,
   chevron: "M6 4l4 4-4 4",
   close: "M4.5 4.5l7 7M11.5 4.5l-7 7",
   check: "M3.5 8.5l3 3 6-7",

@@ -45,7 +45,7 @@ export interface Written {
   calls: CallSite[];
 }
 
-/** The mass of a link in kg, its centre of mass in its frame in m, and its equivalent box. */
+/** The mass of a link in kg, its center of mass in its frame in m, and its equivalent box. */
 export interface LinkInertia {
   mass: number;
   center: number[];

@@ -6,8 +6,8 @@ export interface CameraModel {
   height: number;
   focal_x: number;
   focal_y: number;
-  centre_x: number;
-  centre_y: number;
+  center_x: number;
+  center_y: number;
   offset_x: number;
   offset_y: number;
 }

@@ -134,11 +134,11 @@ import type {
   GroupEntities,
   ModelAdded,
   ModelChoices,
-  ModellingState,
+  ModelingState,
   PushLink,
   RedoWorld,
   SaveWorld,
-  SetModelling,
+  SetModeling,
   SimulationNotice,
   SimulationStatus,
   SpawnModel,
@@ -299,7 +299,7 @@ export type ServerMessage =
   | LogLines
   | ModelAdded
   | ModelChoices
-  | ModellingState
+  | ModelingState
   | NavigationState
   | NodeGraph
   | NodeParameters
@@ -438,7 +438,7 @@ export type PageMessage =
   | SeekTime
   | SetJoint
   | SetJoints
-  | SetModelling
+  | SetModeling
   | SetParameter
   | SetPlayback
   | SetProperty

@@ -17,7 +17,7 @@ export interface ProgramIsLate {
   type: "program_is_late";
 }
 
-/** The acknowledgement of messages: the number of messages that the page has received. */
+/** The acknowledgment of messages: the number of messages that the page has received. */
 export interface Received {
   count: number;
   type: "received";

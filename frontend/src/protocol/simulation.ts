@@ -21,13 +21,13 @@ export interface WorldEntity {
   static: boolean;
   shape: WorldShape | null;
   size: number[];
-  colour: number[] | null;
+  color: number[] | null;
   address: string | null;
   parts: string[];
 }
 
 /** Whether the world can be edited and is being edited, and its models and lights. */
-export interface ModellingState {
+export interface ModelingState {
   available: boolean;
   active: boolean;
   file: string | null;
@@ -35,7 +35,7 @@ export interface ModellingState {
   can_undo: boolean;
   can_redo: boolean;
   entities: WorldEntity[];
-  type: "modelling_state";
+  type: "modeling_state";
 }
 
 /** A model on the search path, and the address that an ``<include>`` needs. */
@@ -57,13 +57,13 @@ export interface EntityChange {
   size: number[] | null;
   new_name: string | null;
   static: boolean | null;
-  colour: number[] | null;
+  color: number[] | null;
 }
 
 /** Whether the user edits the world. During editing, the simulation is paused at its start. */
-export interface SetModelling {
+export interface SetModeling {
   active: boolean;
-  type: "set_modelling";
+  type: "set_modeling";
 }
 
 /** A request to add an object to the world. */

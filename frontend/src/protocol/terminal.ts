@@ -86,7 +86,7 @@ export interface ResizeTerminal {
   type: "resize_terminal";
 }
 
-/** The acknowledgement of the output up to the message with this number. */
+/** The acknowledgment of the output up to the message with this number. */
 export interface AcknowledgeTerminal {
   terminal: number;
   number: number;

@@ -131,7 +131,7 @@ export interface PoseChosen {
   type: "pose_chosen";
 }
 
-/** A point that the user has selected with a Publish Point tool, in the Fixed Frame, metres. */
+/** A point that the user has selected with a Publish Point tool, in the Fixed Frame, meters. */
 export interface PointChosen {
   tool: string;
   x: number;

@@ -50,7 +50,7 @@ export interface CameraScene {
   far: number;
 }
 
-/** The fog of a world: its colour (red, green, blue) and its range. */
+/** The fog of a world: its color (red, green, blue) and its range. */
 export interface FogScene {
   color: number[];
   start: number;

@@ -2,20 +2,20 @@ import { Color, Matrix4, Mesh, PlaneGeometry, ShaderMaterial } from "three";
 import type { Theme } from "../state/theme";
 
 /**
- * The number of squares along each side; colours are computed at their corners and interpolated, which is not visible.
+ * The number of squares along each side; colors are computed at their corners and interpolated, which is not visible.
  */
 const SQUARES = 24;
 /** The render order of the backdrop: drawn before everything else. */
 const RENDER_ORDER = -1000;
 
-/** Colours as 0xrrggbb; `ground` is the colour straight down. */
+/** Colors as 0xrrggbb; `ground` is the color straight down. */
 interface Colors {
   readonly zenith: number;
   readonly horizon: number;
   readonly ground: number;
 }
 
-/** The colours are of medium brightness where robots stand, so that both black and white robots stand out. */
+/** The colors are of medium brightness where robots stand, so that both black and white robots stand out. */
 const COLORS: Readonly<Record<Theme, Colors>> = {
   light: { zenith: 0xbccbda, horizon: 0xeef2f5, ground: 0xaeb7c0 },
   dark: { zenith: 0x39424d, horizon: 0x77828e, ground: 0x545d67 },
@@ -40,7 +40,7 @@ const FRAGMENT = /* glsl */ `
 `;
 
 /**
- * A sky and a ground behind everything, which meet at a bright horizon. Colours are computed at few points, so that
+ * A sky and a ground behind everything, which meet at a bright horizon. Colors are computed at few points, so that
  * without a GPU they cost little more than a plain background.
  */
 export class Backdrop {

@@ -55,7 +55,7 @@ export class DepthMap {
     const column = Math.round(((x + 1) / 2) * this.size.x - 0.5);
     const row = Math.round(((y + 1) / 2) * this.size.y - 0.5);
     const distance = this.toDistance(z);
-    // Check the neighbours, too: points on an edge fall next to their surface as often as on it.
+    // Check the neighbors, too: points on an edge fall next to their surface as often as on it.
     for (let dy = -1; dy <= 1; dy++) {
       for (let dx = -1; dx <= 1; dx++) {
         if (this.surfaceDistance(column + dx, row + dy) >= distance * (1 - TOLERANCE)) return true;

@@ -31,7 +31,7 @@ export class FreeRoom {
     private readonly invalidate: () => void,
   ) {}
 
-  /** Returns the size of the free part, and moves the camera's centre to the centre of that part. */
+  /** Returns the size of the free part, and moves the camera's center to the center of that part. */
   center(): ViewSize {
     const { width, height } = this.viewport.size;
     const [right, above] = [Math.min(this.covered(), width * MAX_COVERED), Math.min(this.coveredAbove, height * MAX_COVERED)];
@@ -40,7 +40,7 @@ export class FreeRoom {
   }
 
   /**
-   * Moves the focal point to the centre of the part that nothing covers at the right, as far as robots stay on the
+   * Moves the focal point to the center of the part that nothing covers at the right, as far as robots stay on the
    * canvas.
    */
   makeRoom(): void {

@@ -1,4 +1,4 @@
-/** The share of a surface's colour that is visible even where the camera's light does not reach. */
+/** The share of a surface's color that is visible even where the camera's light does not reach. */
 export const AMBIENT = 0.2;
 
 /** The lighting: RViz's light at the camera, a soft one at the camera, a studio, or the lights of a world. */
@@ -11,7 +11,7 @@ export function usesSceneLights(lighting: Lighting): boolean {
 
 /**
  * GLSL functions for light that moves with the camera. `byCamera` is RViz's light, which shows a surface facing the
- * camera in exactly its colour. `softly` is a lamp above the viewer's left shoulder, a sky, and the sky's reflection,
+ * camera in exactly its color. `softly` is a lamp above the viewer's left shoulder, a sky, and the sky's reflection,
  * which reveals the shape of black surfaces. `normal` is in the camera's frame, so that neither lights nor shadows have
  * to be computed; on a software renderer this is as fast as RViz's light.
  */

@@ -5,7 +5,7 @@ import { MapDrawing } from "./displays/map";
 import { spanOf } from "./initial-view";
 import type { FreeRoom } from "./free-room";
 
-/** Selects the windows of phones. A scale from a file, in pixels per metre, would cut off most of a map there. */
+/** Selects the windows of phones. A scale from a file, in pixels per meter, would cut off most of a map there. */
 const SMALL = "(max-width: 900px), (max-height: 480px)";
 
 /**

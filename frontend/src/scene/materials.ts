@@ -56,7 +56,7 @@ export interface Look {
   surface?: Surface | null;
 }
 
-/** RViz's colour for surfaces without a material: RVIZ/ShadedRed. */
+/** RViz's color for surfaces without a material: RVIZ/ShadedRed. */
 export const RVIZ_RED = [1, 0, 0] as const;
 /** Below this alpha, RViz blends and does not write depth. */
 export const OPAQUE_FROM = 0.9998;
@@ -73,7 +73,7 @@ export function offsetBehind(isBehind: boolean): { polygonOffset: boolean; polyg
   return { polygonOffset: isBehind, polygonOffsetFactor: 1, polygonOffsetUnits: 1 };
 }
 
-/** Whether any lines are translucent, by their opacity or the alpha of their colours r g b a. */
+/** Whether any lines are translucent, by their opacity or the alpha of their colors r g b a. */
 export function areTranslucent(opacity: number, colors: BufferAttribute | InterleavedBufferAttribute | undefined): boolean {
   if (opacity < 1) return true;
   for (let i = 0; colors && i < colors.count; i++) if (colors.getW(i) < 1) return true;
@@ -138,7 +138,7 @@ export class MaterialPool {
   }
 }
 
-/** Returns a material that reflects lights and, as far as it is metallic, a grey room. */
+/** Returns a material that reflects lights and, as far as it is metallic, a gray room. */
 function reflectiveMaterial(style: MeshStandardMaterialParameters, surface: Surface): MeshStandardMaterial {
   const envMap = surface.metalness > 0 ? roomMap() : null;
   const emissive = new Color(...surface.emissive);
@@ -155,8 +155,8 @@ let cachedRoom: DataTexture | null = null;
  */
 function roomMap(): DataTexture {
   if (cachedRoom) return cachedRoom;
-  const greys = [90, 90, 110, 150, 190, 215, 230, 240];
-  cachedRoom = new DataTexture(new Uint8Array(greys.flatMap((grey) => [grey, grey, grey, 255])), 1, greys.length);
+  const grays = [90, 90, 110, 150, 190, 215, 230, 240];
+  cachedRoom = new DataTexture(new Uint8Array(grays.flatMap((gray) => [gray, gray, gray, 255])), 1, grays.length);
   cachedRoom.mapping = EquirectangularReflectionMapping;
   cachedRoom.magFilter = cachedRoom.minFilter = LinearFilter;
   cachedRoom.needsUpdate = true;

@@ -98,7 +98,7 @@ export class Picker {
     return null;
   }
 
-  /** Returns the centre of the selection, or of all selectable objects if nothing is selected. */
+  /** Returns the center of the selection, or of all selectable objects if nothing is selected. */
   centerOfSelection(): Vector | null {
     const span = this.boundsOfSelection() ?? this.boundsOfAll();
     return span && scale(add(span.min, span.max), 0.5);

@@ -30,7 +30,7 @@ export class RobotLight {
   /**
    * Places light and shadows around robots.
    *
-   * @param backdrop - the background colour of a studio.
+   * @param backdrop - the background color of a studio.
    * @returns the light in the scene, if any.
    */
   update(lighting: Lighting, robots: readonly LitRobot[], backdrop: string): OwnLight | null {

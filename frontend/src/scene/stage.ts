@@ -132,7 +132,7 @@ export class Stage {
     return [...this.enabled()].some(([, drawing]) => "pointer" in drawing);
   }
 
-  /** Looks at the centre of the selection, or of all selectable objects if nothing is selected. */
+  /** Looks at the center of the selection, or of all selectable objects if nothing is selected. */
   focusSelected(): void {
     const middle = this.picker.centerOfSelection();
     if (middle) this.session.view.lookAt(middle);

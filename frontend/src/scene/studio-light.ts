@@ -11,7 +11,7 @@ import {
   type SpotLight,
 } from "three";
 
-/** The light intensity at which a surface facing the light has exactly its own colour. */
+/** The light intensity at which a surface facing the light has exactly its own color. */
 export const FULL_INTENSITY = Math.PI;
 /** The intensity of the studio's lamp, and its direction in worlds. */
 export const STUDIO_KEY = 0.74;

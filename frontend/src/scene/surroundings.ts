@@ -1,13 +1,13 @@
 import { Color, DataTexture, EquirectangularReflectionMapping, Fog, FogExp2, LinearFilter, type Scene } from "three";
 import type { FogScene } from "../protocol";
 
-/** The surroundings of a world: a background colour or a sky, and fog. */
+/** The surroundings of a world: a background color or a sky, and fog. */
 export interface Surroundings {
   readonly background: string | null;
   /** The brightness of the sky, from 0 to 1; null for no sky. */
   readonly daylight: number | null;
   readonly fog: FogScene | null;
-  /** A background colour, brighter towards the horizon, instead of a sky. */
+  /** A background color, brighter towards the horizon, instead of a sky. */
   readonly backdrop?: string | null;
 }
 
@@ -22,7 +22,7 @@ export function hasOwnBackground(light: OwnLight | null): boolean {
 }
 
 type Rgb = readonly [number, number, number];
-/** The colours at the nadir, the horizon and the zenith. */
+/** The colors at the nadir, the horizon and the zenith. */
 type Sky = readonly [below: Rgb, middle: Rgb, above: Rgb];
 
 /** The pixels of a sky texture from the nadir to the zenith. */
@@ -43,7 +43,7 @@ export class SkyAndFog {
     scene.backgroundRotation.x = Math.PI / 2;
   }
 
-  /** Applies surroundings; `flat` for an orthographic camera, which sees the same colour of a sky everywhere. */
+  /** Applies surroundings; `flat` for an orthographic camera, which sees the same color of a sky everywhere. */
   set({ daylight, fog, backdrop = null }: Surroundings, flat: boolean): void {
     const wanted = daylight ?? backdrop;
     if (wanted !== this.skyKey) {
@@ -65,7 +65,7 @@ function fogOf({ color: [r = 1, g = 1, b = 1], start, end, density }: FogScene):
   return density === null ? new Fog(hex, start, end) : new FogExp2(hex, density);
 }
 
-/** Returns the colour of a sky at a height: -1 nadir, 0 horizon, 1 zenith. */
+/** Returns the color of a sky at a height: -1 nadir, 0 horizon, 1 zenith. */
 function colorAt(height: number, [below, middle, above]: Sky): Rgb {
   return height < 0 ? mix(middle, below, Math.min(1, -8 * height)) : mix(middle, above, Math.sqrt(height));
 }
@@ -74,7 +74,7 @@ function skyAt(daylight: number): Sky {
   return [mix(NIGHT[0], DAY[0], daylight), mix(NIGHT[1], DAY[1], daylight), mix(NIGHT[2], DAY[2], daylight)];
 }
 
-/** Returns a backdrop of a colour. */
+/** Returns a backdrop of a color. */
 function skyOf(color: string): Sky {
   const { r, g, b } = new Color(color);
   const own: Rgb = [r, g, b];

@@ -34,7 +34,7 @@ const SOFTWARE = /swiftshader|llvmpipe|softpipe|software|basic render/i;
 /** The longest side of a screenshot, pixels. */
 const LARGEST_SCREENSHOT = 8192;
 
-// RViz writes colours to the screen as in the URDF; a surface facing the camera has exactly its colour.
+// RViz writes colors to the screen as in the URDF; a surface facing the camera has exactly its color.
 ColorManagement.enabled = false;
 
 /** The canvas, its camera, and the light that follows the camera. */
@@ -46,9 +46,9 @@ export class Viewport {
   readonly renderer: WebGLRenderer;
   private readonly smoothing = new Smoothing();
   private resolution = 1;
-  /** The shift of the camera's centre to the left of the canvas's centre, pixels. */
+  /** The shift of the camera's center to the left of the canvas's center, pixels. */
   shiftLeft = 0;
-  /** The shift of the camera's centre downwards, pixels. */
+  /** The shift of the camera's center downwards, pixels. */
   shiftDown = 0;
   private readonly ambient = new AmbientLight(0xffffff, AMBIENT * Math.PI);
   private readonly surroundings = new SkyAndFog(this.scene);

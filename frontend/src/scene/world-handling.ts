@@ -63,8 +63,8 @@ export class WorldHandling {
       else if (event.type === "up" && !event.left) this.release(this.grabbed);
       return true;
     }
-    const { simulation, modelling, tools } = this.session;
-    if (!simulation.present || modelling.active || (tools.current && !HANDLING_TOOLS.includes(tools.current.cls))) return false;
+    const { simulation, modeling, tools } = this.session;
+    if (!simulation.present || modeling.active || (tools.current && !HANDLING_TOOLS.includes(tools.current.cls))) return false;
     if (event.type === "down" && event.button === "left" && event.ctrl) return this.grab(event);
     if (event.type === "up" && event.button === "right" && event.click) this.openMenu(event);
     return false;

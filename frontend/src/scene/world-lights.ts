@@ -16,7 +16,7 @@ import type { PropertyRows } from "../state/properties";
 import { usesSceneLights, type Lighting } from "./light";
 import { aimSun, castShadows, FULL_INTENSITY, setShadowed, STUDIO_DIRECTION, STUDIO_KEY, studioSky } from "./studio-light";
 
-/** The maximum radius around the centre of the drawn objects in which shadows are drawn, m. */
+/** The maximum radius around the center of the drawn objects in which shadows are drawn, m. */
 const MAX_SHADOW_RADIUS = 25;
 /** The assumed distance between a lamp and the objects that it lights, m. */
 const TYPICAL_DISTANCE = 3;
@@ -68,7 +68,7 @@ export class WorldLights {
     return this.chosen === "World";
   }
 
-  /** Returns the background colour of the world. */
+  /** Returns the background color of the world. */
   background(scene: WorldScene): string {
     const [r = 0, g = 0, b = 0] = scene.background;
     return `#${new Color(r, g, b).getHexString()}`;

@@ -1,6 +1,6 @@
 import { button, h } from "../dom";
 import { icon } from "../icons";
-import { WORLD_KEYS } from "../panels/modelling/world-commands";
+import { WORLD_KEYS } from "../panels/modeling/world-commands";
 import { FIT_KEY, toolName } from "../panels/over-scene/toolbar";
 import { TERMINAL_KEYS, terminalKeyText } from "../panels/terminal/terminal-keys";
 import { TALK_KEY } from "../panels/voice/talk-button";
@@ -44,7 +44,7 @@ export class KeySheet {
 
   private sections(): (readonly [title: string, rows: readonly Row[], note?: string])[] {
     const words = strings.keys;
-    const { shell, displays, modelling, terminal } = strings;
+    const { shell, displays, modeling, terminal } = strings;
     const tools = this.tools.tools.flatMap((tool): Row[] => {
       const entry = TOOLS.get(tool.cls);
       return entry ? [[entry.key.toUpperCase(), toolName(tool)]] : [];
@@ -82,15 +82,15 @@ export class KeySheet {
         ],
       ],
       [
-        modelling.label,
+        modeling.label,
         [
-          ["T R S", Object.values(modelling.modes).join(", ")],
-          [`${keyText(WORLD_KEYS.copy)} ${keyText(WORLD_KEYS.paste)}`, modelling.copyPaste],
-          [keyText(WORLD_KEYS.duplicate), modelling.duplicate],
-          [keyText(WORLD_KEYS.remove), modelling.remove],
-          [keyText(WORLD_KEYS.group), modelling.group],
-          [keyText(WORLD_KEYS.ungroup), modelling.ungroup],
-          ["Esc", modelling.deselect],
+          ["T R S", Object.values(modeling.modes).join(", ")],
+          [`${keyText(WORLD_KEYS.copy)} ${keyText(WORLD_KEYS.paste)}`, modeling.copyPaste],
+          [keyText(WORLD_KEYS.duplicate), modeling.duplicate],
+          [keyText(WORLD_KEYS.remove), modeling.remove],
+          [keyText(WORLD_KEYS.group), modeling.group],
+          [keyText(WORLD_KEYS.ungroup), modeling.ungroup],
+          ["Esc", modeling.deselect],
         ],
       ],
       [

@@ -25,7 +25,7 @@ export class AngleUnits {
     this.changed.emit();
   }
 
-  /** Returns the factor from a joint's position to the displayed value: 1 for metres. */
+  /** Returns the factor from a joint's position to the displayed value: 1 for meters. */
   scale(kind: string): number {
     return kind !== "prismatic" && this.unit === "deg" ? DEGREES : 1;
   }

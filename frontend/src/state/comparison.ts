@@ -6,7 +6,7 @@ import type { ElementName } from "./description-model";
 export type MarkName = "added" | "changed" | "removed" | "old";
 
 /**
- * Colours that are distinct with red-green or blue-yellow colour blindness; `comparison.test.ts` computes how
+ * Colors that are distinct with red-green or blue-yellow color blindness; `comparison.test.ts` computes how
  * well.
  */
 export const MARK_COLORS: Readonly<Record<MarkName, string>> = {
@@ -16,7 +16,7 @@ export const MARK_COLORS: Readonly<Record<MarkName, string>> = {
   old: "#c4ccd6",
 };
 
-/** Replaces the colours of a link's description. */
+/** Replaces the colors of a link's description. */
 export interface LinkOverride {
   /** r g b, 0 to 1. */
   readonly color: readonly [number, number, number];
@@ -42,7 +42,7 @@ export class ComparisonState {
     return this.descriptions;
   }
 
-  /** Whether links are coloured by their differences. */
+  /** Whether links are colored by their differences. */
   get marks(): boolean {
     return this.showsMarks;
   }

@@ -3,7 +3,7 @@ import type { DescriptionModel, ElementName } from "./description-model";
 import { formatGeneral } from "./number-text";
 import { layOutTree, type TreeNode } from "./tidy-tree";
 
-/** A box (link) or ellipse (joint) of the diagram; x and y of its centre, px. */
+/** A box (link) or ellipse (joint) of the diagram; x and y of its center, px. */
 export interface DiagramNode {
   readonly element: ElementName;
   readonly x: number;
@@ -90,7 +90,7 @@ function buildTree(
 }
 
 /**
- * Returns the text of an origin as urdf_to_graphviz writes it: metres, and radians converted through the quaternion.
+ * Returns the text of an origin as urdf_to_graphviz writes it: meters, and radians converted through the quaternion.
  */
 function originText({ xyz, rpy }: Pick<JointDetails, "xyz" | "rpy">): [string, string] {
   return [`xyz: ${xyz.map(formatGeneral).join(" ")}`, `rpy: ${rpy.map(formatGeneral).join(" ")}`];

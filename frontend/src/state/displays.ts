@@ -182,7 +182,7 @@ export class DisplaysState {
     return this.globalOptions.text("", "Fixed Frame");
   }
 
-  /** Whether a sky and a ground are behind the scene instead of the background colour. */
+  /** Whether a sky and a ground are behind the scene instead of the background color. */
   get hasBackdrop(): boolean {
     return this.globalOptions.text("Color", "Backdrop") !== "Color";
   }

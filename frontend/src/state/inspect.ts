@@ -5,7 +5,7 @@ const KEY = "linkwright.inspect";
 
 /** The invisible properties of a robot that are drawn. */
 export interface Inspected {
-  /** Centres of mass of the links and of the whole robot. */
+  /** Centers of mass of the links and of the whole robot. */
   centers: boolean;
   /** Boxes with the same inertia. */
   boxes: boolean;
@@ -15,7 +15,7 @@ export interface Inspected {
   joints: boolean;
   /** Collisions over pale visuals. */
   contrast: boolean;
-  /** Frames of links, in a size and colour by their depth in the tree. */
+  /** Frames of links, in a size and color by their depth in the tree. */
   frames: boolean;
 }
 

@@ -17,7 +17,7 @@ import { InspectState } from "./inspect";
 import { JointsState } from "./joints";
 import { PageMemory } from "./page-memory";
 import { MeshProgress } from "./mesh-progress";
-import { Modelling } from "./modelling/modelling";
+import { Modeling } from "./modeling/modeling";
 import { MonitorState } from "./monitor/monitor";
 import { PoseStore } from "./named-poses";
 import { RecordingControl } from "./recording";
@@ -57,7 +57,7 @@ export class Session {
   readonly meshProgress = new MeshProgress();
   readonly drawingPace = new DrawingPace();
   readonly simulation: SimulationState;
-  readonly modelling: Modelling;
+  readonly modeling: Modeling;
   readonly editing: EditingState;
   readonly robotChanged = new Signal<RobotScene>();
   readonly diagnosticsChanged = new Signal();
@@ -92,7 +92,7 @@ export class Session {
     this.slowConnection = new SlowConnection(this.data);
     this.slowness = new Slowness(this.slowConnection, this.drawingPace, connection);
     this.simulation = new SimulationState(connection);
-    this.modelling = new Modelling(connection, browserStorage());
+    this.modeling = new Modeling(connection, browserStorage());
     this.editing = new EditingState(connection, browserStorage());
     this.joints = new JointsState(connection);
     this.description = new DescriptionState(connection);

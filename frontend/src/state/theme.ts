@@ -7,7 +7,7 @@ export type Theme = "dark" | "light";
 
 const KEY = "linkwright.theme";
 
-/** The page's colours: the user's choice, or else the system's. The scene has colours of its own, as in RViz. */
+/** The page's colors: the user's choice, or else the system's. The scene has colors of its own, as in RViz. */
 export class ThemeState {
   readonly changed = new Signal<Theme>();
   private currentChoice: ThemeChoice;

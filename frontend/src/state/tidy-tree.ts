@@ -6,7 +6,7 @@ export interface TreeNode {
   readonly children: readonly TreeNode[];
 }
 
-/** A node with the position of its centre; y points down. */
+/** A node with the position of its center; y points down. */
 interface PlacedNode {
   readonly node: TreeNode;
   readonly x: number;
@@ -20,14 +20,14 @@ export interface TidyTree {
   readonly height: number;
 }
 
-/** The left and right edges of a subtree on each level, relative to the centre of its top node. */
+/** The left and right edges of a subtree on each level, relative to the center of its top node. */
 interface Contour {
   left: number[];
   right: number[];
 }
 
 /**
- * Lays out a tree with its root at the top: each level in a row, each parent centred over its children, and subtrees as
+ * Lays out a tree with its root at the top: each level in a row, each parent centered over its children, and subtrees as
  * close to each other as `gap` permits on every level (after Reingold and Tilford).
  */
 export function layOutTree(root: TreeNode, gap: number, levelGap: number): TidyTree {

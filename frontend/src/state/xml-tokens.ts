@@ -1,4 +1,4 @@
-/** The kind of a token of XML text, which determines its colour. */
+/** The kind of a token of XML text, which determines its color. */
 type TokenKind = "text" | "tag" | "attribute" | "value" | "expression" | "comment" | "punctuation";
 
 export interface Token {

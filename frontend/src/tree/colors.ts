@@ -8,7 +8,7 @@ export function formatColor(hex: string): string {
     .join("; ");
 }
 
-/** Parses `48; 48; 48`, `48, 48, 48`, `48 48 48` or `#303030`; returns null if the text is not a colour. */
+/** Parses `48; 48; 48`, `48, 48, 48`, `48 48 48` or `#303030`; returns null if the text is not a color. */
 export function parseColor(text: string): string | null {
   const trimmed = text.trim();
   if (/^#[0-9a-f]{6}$/i.test(trimmed)) return trimmed.toLowerCase();

@@ -11,7 +11,7 @@ export interface TreeItem {
   readonly value: PropertyValue;
   readonly description: string;
   readonly icon?: IconName;
-  /** Sets the colour of the row, and the icon if `showLevelIcon` is set. */
+  /** Sets the color of the row, and the icon if `showLevelIcon` is set. */
   readonly level?: ShownLevel;
   readonly showLevelIcon?: boolean;
   readonly strong?: boolean;

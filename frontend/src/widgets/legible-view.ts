@@ -15,7 +15,7 @@ const MIN_TEXT = 10;
  * makes them legible.
  *
  * @param text - the size of the image's smallest text, px.
- * @param point - a point of the image, px, which is centred as far as the image's edges permit.
+ * @param point - a point of the image, px, which is centered as far as the image's edges permit.
  */
 export function legibleView(image: Size, window: Size, text: number, point: readonly [number, number], margin = 16): ImageView {
   const fits = Math.min((window[0] - 2 * margin) / image[0], (window[1] - 2 * margin) / image[1]);

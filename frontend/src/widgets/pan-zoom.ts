@@ -57,14 +57,14 @@ export class PanZoom {
     this.set((clientWidth - width * scale) / 2, Math.max(margin, (clientHeight - height * scale) / 2), scale);
   }
 
-  /** Shows an image of this size with legible texts; if it is too large for that, `point` is centred. */
+  /** Shows an image of this size with legible texts; if it is too large for that, `point` is centered. */
   showLegibly(width: number, height: number, text: number, point: readonly [number, number]): void {
     const { clientWidth, clientHeight } = this.element;
     const { x, y, scale } = legibleView([width, height], [clientWidth, clientHeight], text, point);
     this.set(x, y, scale);
   }
 
-  /** Scrolls a point of the image into view: to the centre, if it is outside. */
+  /** Scrolls a point of the image into view: to the center, if it is outside. */
   reveal(x: number, y: number, margin = 40): void {
     const { clientWidth, clientHeight } = this.element;
     const [at, below] = [this.x + x * this.zoom, this.y + y * this.zoom];

@@ -20,7 +20,7 @@ export function matches(event: KeyboardEvent, { key, mod = false, shift = false,
 
 const NAMES: Readonly<Record<string, string>> = { Delete: "Del", Insert: "Ins", ArrowUp: "↑", ArrowDown: "↓" };
 
-/** Returns the keys as labelled on the keyboard: `Ctrl+Shift+S`. */
+/** Returns the keys as labeled on the keyboard: `Ctrl+Shift+S`. */
 export function keyText({ key, mod = false, shift = false, alt = false }: Shortcut): string {
   const name = NAMES[key] ?? key.toUpperCase();
   if (MAC) return `${alt ? "⌥" : ""}${shift ? "⇧" : ""}${mod ? "⌘" : ""}${name}`;

@@ -46,7 +46,7 @@ class FollowWall(DrivingNode):
 
 
 def wall_distance(beside, before, look_ahead):
-    """Return how far the wall will be after `look_ahead` metres straight on, from two rays BETWEEN apart."""
+    """Return how far the wall will be after `look_ahead` meters straight on, from two rays BETWEEN apart."""
     angle = math.atan2(before * math.cos(BETWEEN) - beside, before * math.sin(BETWEEN))
     return beside * math.cos(angle) + look_ahead * math.sin(angle)
 

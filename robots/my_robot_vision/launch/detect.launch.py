@@ -48,7 +48,7 @@ def generate_launch_description():
         DeclareLaunchArgument('laser', default_value='true', choices=SWITCH, description='A laser for obstacles'),
         DeclareLaunchArgument('voice', default_value='false', choices=SWITCH, description='Commands by voice'),
         DeclareLaunchArgument(
-            'engine', default_value='enrolled', description='What recognises speech: enrolled, vosk, pocketsphinx'
+            'engine', default_value='enrolled', description='What recognizes speech: enrolled, vosk, pocketsphinx'
         ),
         DeclareLaunchArgument(
             'language', default_value='en', choices=['en', 'zh'], description='What is spoken, by the robot, too'

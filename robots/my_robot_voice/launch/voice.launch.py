@@ -34,7 +34,7 @@ def generate_launch_description():
             DeclareLaunchArgument(
                 'engine',
                 default_value='enrolled',
-                description='What recognises speech: enrolled (words that you have said), vosk, pocketsphinx',
+                description='What recognizes speech: enrolled (words that you have said), vosk, pocketsphinx',
             ),
             DeclareLaunchArgument('language', default_value='en', description='The language that is spoken: en or zh'),
             DeclareLaunchArgument(

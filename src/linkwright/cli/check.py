@@ -157,7 +157,7 @@ def run(arguments: argparse.Namespace | SimpleNamespace) -> int:
     if arguments.format == "text":
         if checked_file is not None:
             sys.stdout.write(_contents_text(checked_file))
-        _summarise(diagnostics, fix_results)
+        _summarize(diagnostics, fix_results)
     if arguments.statistics:
         _print_statistics(diagnostics)
     failed = has_errors(diagnostics) or (
@@ -311,7 +311,7 @@ def _print_findings(diagnostics: Sequence[Diagnostic], form: str, *, everything:
         sys.stdout.write(format_diagnostics(diagnostics, form))
 
 
-def _summarise(diagnostics: Sequence[Diagnostic], fix_results: Sequence[FixResult]) -> None:
+def _summarize(diagnostics: Sequence[Diagnostic], fix_results: Sequence[FixResult]) -> None:
     if fix_results:
         count = sum(sum(fix_result.counts.values()) for fix_result in fix_results)
         files = len({file for fix_result in fix_results for file in fix_result.texts})

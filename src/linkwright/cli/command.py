@@ -209,7 +209,7 @@ def _parse(name: str, module: Verb, words: list[str], program: str, *, in_order:
 def _begins_without_verb(words: Sequence[str], verbs: Mapping[str, SubVerb]) -> bool:
     """Return whether words are arguments of a default subcommand.
 
-    They are not if they begin with a subcommand, a misspelt one, or --help.
+    They are not if they begin with a subcommand, a misspelled one, or --help.
     """
     first = next(iter(words), "")
     if first in verbs or first in ("-h", "--help"):

@@ -1,6 +1,6 @@
 """``linkwright control``: list and change the controllers and hardware of a robot.
 
-Source: ros2controlcli (verbs, options, output without colours).
+Source: ros2controlcli (verbs, options, output without colors).
 """
 
 from __future__ import annotations

@@ -1,4 +1,4 @@
-"""``linkwright dataset``: render labelled images of worlds, to train a detector."""
+"""``linkwright dataset``: render labeled images of worlds, to train a detector."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ if TYPE_CHECKING:
     from linkwright.vision.datasets.rendering import Studio
 
 _MIN_SIDE, _MAX_SIDE = 32, 4096
-_FIXABLE_PROPERTIES = ("lights", "colours", "lens")
+_FIXABLE_PROPERTIES = ("lights", "colors", "lens")
 
 
 def configure(parser: argparse.ArgumentParser) -> None:
@@ -95,7 +95,7 @@ def configure(parser: argparse.ArgumentParser) -> None:
         metavar="PROPERTIES",
         type=_parse_fixed_properties,
         default=(),
-        help="properties not to randomize: lights, colours, lens (no blur, no noise), separated by commas",
+        help="properties not to randomize: lights, colors, lens (no blur, no noise), separated by commas",
     )
     parser.add_argument(
         "--min-size",

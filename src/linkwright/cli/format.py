@@ -75,7 +75,7 @@ def run(arguments: argparse.Namespace) -> int:
     dry_run = arguments.check or arguments.diff
     changes = [_format_file(file, arguments, dry_run=dry_run) for file in files]
     changed_count, has_failed = changes.count(True), None in changes
-    _summarise(changed_count, changes.count(False), dry_run=dry_run)
+    _summarize(changed_count, changes.count(False), dry_run=dry_run)
     return _HAS_CHANGES if has_failed or (changed_count and dry_run) else FINE
 
 
@@ -140,7 +140,7 @@ def _style(file: Path, arguments: argparse.Namespace) -> Style:
     return style._replace(indent=arguments.indent or style.indent, width=arguments.width or style.width)
 
 
-def _summarise(changed_count: int, unchanged_count: int, *, dry_run: bool) -> None:
+def _summarize(changed_count: int, unchanged_count: int, *, dry_run: bool) -> None:
     parts = []
     if changed_count and dry_run:
         parts.append(counted("{count} file would be formatted", "{count} files would be formatted", changed_count))
@@ -148,7 +148,7 @@ def _summarise(changed_count: int, unchanged_count: int, *, dry_run: bool) -> No
         parts.append(counted("{count} file formatted", "{count} files formatted", changed_count))
     if unchanged_count:
         parts.append(counted("{count} file left unchanged", "{count} files left unchanged", unchanged_count))
-    if parts:  # there is nothing to summarise if every file has an error
+    if parts:  # there is nothing to summarize if every file has an error
         print_message(localized(joined(parts)))
 
 

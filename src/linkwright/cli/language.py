@@ -53,6 +53,6 @@ def translate_help(text: str) -> str:
     lang = language()
     if lang == "en" or not text:
         return text
-    catalogue = wording(lang)
-    translation = catalogue.gettext(text)
-    return catalogue.pgettext(TERMS, text) if translation == text else translation
+    catalog = wording(lang)
+    translation = catalog.gettext(text)
+    return catalog.pgettext(TERMS, text) if translation == text else translation

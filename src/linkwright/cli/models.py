@@ -36,7 +36,7 @@ def run_list(arguments: argparse.Namespace) -> int:
                 "name": entry.name,
                 "kind": entry.kind,
                 "megabytes": entry.megabytes,
-                "licence": entry.license,
+                "license": entry.license,
                 "address": entry.address,
                 "purpose": entry.purpose,
                 "path": str(models_folder() / entry.installed_name) if is_installed(entry) else None,

@@ -38,11 +38,11 @@ class _Parser(argparse.ArgumentParser):
     """
 
     def error(self, message: str) -> NoReturn:
-        """Print a usage error with a suggestion for a misspelt option, and end the process."""
+        """Print a usage error with a suggestion for a misspelled option, and end the process."""
         suggestion = None
-        unrecognised_prefix = translate_help("unrecognized arguments: %s").removesuffix("%s")
-        if message.startswith(f"{unrecognised_prefix}-"):
-            option = message.removeprefix(unrecognised_prefix).split()[0].partition("=")[0]
+        unrecognized_prefix = translate_help("unrecognized arguments: %s").removesuffix("%s")
+        if message.startswith(f"{unrecognized_prefix}-"):
+            option = message.removeprefix(unrecognized_prefix).split()[0].partition("=")[0]
             suggestion = did_you_mean(option, _long_options(self))
         super().error(f"{message}; {suggestion}" if suggestion else message)
 
@@ -75,7 +75,7 @@ def _make_formatter(prog: str) -> argparse.HelpFormatter:
 
 
 # Replace the function with which argparse translates its own messages, such as "the following arguments are required".
-# argparse uses gettext by default, which searches for catalogues that do not exist and imports `locale` to do so.
+# argparse uses gettext by default, which searches for catalogs that do not exist and imports `locale` to do so.
 argparse._ = translate_help  # type: ignore[attr-defined]  # argparse imports it so
 
 

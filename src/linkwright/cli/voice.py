@@ -140,8 +140,8 @@ class _Trial:
         return phrase("'{text}' ({confidence}), command {intent}", intent=understood.command.intent, **words)
 
 
-def configure_enrol(parser: argparse.ArgumentParser) -> None:
-    """Declare the arguments of ``voice enrol``."""
+def configure_enroll(parser: argparse.ArgumentParser) -> None:
+    """Declare the arguments of ``voice enroll``."""
     parser.add_argument("word", metavar="WORD", help="the word or phrase, as in the commands")
     parser.add_argument(
         "files", metavar="WAV", nargs="+", help="recordings that each contain the word once; three are best"
@@ -149,9 +149,9 @@ def configure_enrol(parser: argparse.ArgumentParser) -> None:
     _add_file_argument(parser)
 
 
-def run_enrol(arguments: argparse.Namespace) -> int:
-    """Enrol a word from recordings, but only if all of them are usable."""
-    from linkwright.speech.enrolled.enrolment import enrol
+def run_enroll(arguments: argparse.Namespace) -> int:
+    """Enroll a word from recordings, but only if all of them are usable."""
+    from linkwright.speech.enrolled.enrollment import enroll
     from linkwright.speech.enrolled.words import RECOMMENDED_TAKES
     from linkwright.speech.sound.wav import read_wav
 
@@ -160,7 +160,7 @@ def run_enrol(arguments: argparse.Namespace) -> int:
     diagnostics: list[Diagnostic] = []
     for file in arguments.files:
         note = Note(phrase("in '{path}'", path=file))
-        new_diagnostics = enrol(words, arguments.word, read_wav(file))
+        new_diagnostics = enroll(words, arguments.word, read_wav(file))
         diagnostics += [diagnostic.with_changes(notes=(*diagnostic.notes, note)) for diagnostic in new_diagnostics]
     if diagnostics:
         raise LinkwrightError(*diagnostics)
@@ -264,7 +264,7 @@ def _write_words(words: Words, path: Path) -> None:
 
 VERBS = {
     "try": SubVerb(configure_try, run_try, help="print the words and commands that an engine recognizes in recordings"),
-    "enrol": SubVerb(configure_enrol, run_enrol, help="enrol a word from recordings of it"),
+    "enroll": SubVerb(configure_enroll, run_enroll, help="enroll a word from recordings of it"),
     "words": SubVerb(configure_words, run_words, help="list the enrolled words"),
     "forget": SubVerb(configure_forget, run_forget, help="remove an enrolled word"),
     "engines": SubVerb(configure_engines, run_engines, help="list the engines and their missing requirements"),

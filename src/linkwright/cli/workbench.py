@@ -26,8 +26,8 @@ GROUPS = {
     },
     "vision and voice": {
         "vision": "detect objects in images; train and evaluate detectors",
-        "dataset": "render labelled images of a world in COCO and YOLO format, to train a detector",
-        "voice": "try speech engines on recordings, and enrol words",
+        "dataset": "render labeled images of a world in COCO and YOLO format, to train a detector",
+        "voice": "try speech engines on recordings, and enroll words",
         "models": "download, verify and remove models for speech and vision",
     },
     "the running ROS graph": {

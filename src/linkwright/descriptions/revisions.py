@@ -119,7 +119,7 @@ def leads_outside(path: Path, root: Path) -> bool:
 def file_in_commit(path: Path, name: str) -> tuple[CommitFiles, Path]:
     """Return the files of a commit, and the path among them of a file of the working tree.
 
-    A file that was renamed after the commit is found by its old name, as git recognises it. The caller closes the
+    A file that was renamed after the commit is found by its old name, as git recognizes it. The caller closes the
     files.
 
     Args:
@@ -152,7 +152,7 @@ def _path_before_rename(repository: GitRepository, commit: str, relative_path: P
     The renaming need not be staged.
 
     Raises:
-        LinkwrightError: CLI344 if git does not recognise the file as the new version of a file that was removed.
+        LinkwrightError: CLI344 if git does not recognize the file as the new version of a file that was removed.
     """
     new_path = relative_path.as_posix()
     with ScratchFolder("revision") as folder:

@@ -236,7 +236,7 @@ class WorldDescription:
 
     Attributes:
         path: the file.
-        sdf: the content of the file, in which models replace the includes, and materials have the colours of their
+        sdf: the content of the file, in which models replace the includes, and materials have the colors of their
             scripts. None if the file is not valid SDF.
         diagnostics: all findings about the file and its included models.
         files: the files that were read, starting with the main file.
@@ -394,7 +394,7 @@ def load(
     A part of a link that urdfdom would drop with an error message is dropped silently; `examine` reports it.
 
     Args:
-        path_or_text: the path of a file, or a text, which is recognised by its ``<``.
+        path_or_text: the path of a file, or a text, which is recognized by its ``<``.
         arguments: values for the file's ``<xacro:arg>``.
         packages: the packages for ``$(find)``, as a mapping of names to share folders, or a finder.
 
@@ -482,7 +482,7 @@ def _unexpanded_description(
     """Return the description that urdfdom reads from an unexpanded document.
 
     If `is_reported` is true, the remarks already report that the document is not expanded. Findings about missing parts
-    are then left out, because xacro might add these parts, such as the colours of an included file.
+    are then left out, because xacro might add these parts, such as the colors of an included file.
     """
     reading = read(document)
     diagnostics = tuple(

@@ -22,11 +22,11 @@ from linkwright.diagnostics.phrase import (
     term,
     title_of_page,
 )
-from linkwright.diagnostics.render import display_path, print_diagnostics, render, to_data, wants_colour
+from linkwright.diagnostics.render import display_path, print_diagnostics, render, to_data, wants_color
 from linkwright.diagnostics.suggest import (
     as_typed,
     did_you_mean,
-    is_misspelt,
+    is_misspelled,
     missing_file_hint,
     nearest,
     words_of,
@@ -48,7 +48,7 @@ __all__ = [
     "foreign",
     "has_errors",
     "install_hint",
-    "is_misspelt",
+    "is_misspelled",
     "join_messages",
     "joined",
     "missing_extra",
@@ -64,6 +64,6 @@ __all__ = [
     "title_of_page",
     "to_data",
     "translated",
-    "wants_colour",
+    "wants_color",
     "words_of",
 ]

@@ -46,7 +46,7 @@ TEXT_NAME = "<robot_description>"
 def is_text(path_or_text: object) -> bool:
     """Return whether a description was passed as text, not as a path.
 
-    A text is recognised by a ``<`` in it.
+    A text is recognized by a ``<`` in it.
     """
     return isinstance(path_or_text, str) and "<" in path_or_text
 

@@ -8,13 +8,13 @@ from __future__ import annotations
 
 from collections.abc import Iterable
 
-from linkwright.diagnostics.suggest import is_misspelt, words_of
+from linkwright.diagnostics.suggest import is_misspelled, words_of
 
 _MIN_LENGTH = 3
-"""The minimum length of a word that can be misspelt. Shorter words, such as ``fl`` and ``fr``, differ on purpose."""
+"""The minimum length of a word that can be misspelled. Shorter words, such as ``fl`` and ``fr``, differ on purpose."""
 
 
-def find_misspelt(name: str, names: Iterable[str]) -> str | None:
+def find_misspelled(name: str, names: Iterable[str]) -> str | None:
     """Return the existing name that a name misspells, or None.
 
     The result is None if there is no such name, or if there are several names with different words.
@@ -32,16 +32,16 @@ def _is_misspelling(name: str, known_name: str) -> bool:
         return True
     if len(words) != len(others):
         # Either a separator is missing, or there is also a typing error.
-        return _is_misspelt_word("".join(words), "".join(others)) and not any(map(str.isdigit, name + known_name))
+        return _is_misspelled_word("".join(words), "".join(others)) and not any(map(str.isdigit, name + known_name))
     differing_pairs = [pair for pair in zip(words, others, strict=True) if pair[0] != pair[1]]
-    return len(differing_pairs) == 1 and _is_misspelt_word(*differing_pairs[0])
+    return len(differing_pairs) == 1 and _is_misspelled_word(*differing_pairs[0])
 
 
-def _is_misspelt_word(word: str, known_name: str) -> bool:
+def _is_misspelled_word(word: str, known_name: str) -> bool:
     return (
         min(len(word), len(known_name)) >= _MIN_LENGTH
         and not word.isdigit()
         and not known_name.isdigit()
         and word[0] == known_name[0]
-        and is_misspelt(word, [known_name])
+        and is_misspelled(word, [known_name])
     )

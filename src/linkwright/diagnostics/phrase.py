@@ -1,7 +1,7 @@
 """Translatable texts: an English template with its arguments.
 
 A `Phrase` is an ordinary string that contains the English text. For another language, the template is looked up in
-that language's catalogue and formatted with the same arguments. Arguments that are phrases are translated as
+that language's catalog and formatted with the same arguments. Arguments that are phrases are translated as
 well.
 """
 
@@ -15,7 +15,7 @@ if TYPE_CHECKING:
     from typing_extensions import Self
 
 TERMS = "term"
-"""The context of terms from tables and files, such as ``link``, in catalogues."""
+"""The context of terms from tables and files, such as ``link``, in catalogs."""
 
 FOREIGN = "foreign"
 """The context of texts from other programs: Python, the operating system and libraries."""
@@ -25,9 +25,9 @@ RULES = "rule"
 
 
 class Wording(Protocol):
-    """The catalogue of a language, with the interface of gettext's translations.
+    """The catalog of a language, with the interface of gettext's translations.
 
-    A text that the catalogue lacks is returned unchanged.
+    A text that the catalog lacks is returned unchanged.
     """
 
     def gettext(self, message: str, /) -> str:
@@ -153,7 +153,7 @@ class _Counted(Phrase):
 
 
 class _Known(Phrase):
-    """A text that is translated as a whole, in a context of the catalogue."""
+    """A text that is translated as a whole, in a context of the catalog."""
 
     __slots__ = ("context",)
     context: str
@@ -173,7 +173,7 @@ class _Known(Phrase):
 class _Foreign(_Known):
     """A text of another program.
 
-    The catalogue contains the text unchanged, or with ``'…'`` for each quoted part.
+    The catalog contains the text unchanged, or with ``'…'`` for each quoted part.
     """
 
     __slots__ = ()
@@ -223,7 +223,7 @@ def phrase(template: str, **arguments: object) -> Phrase:
     """Return a text that can be translated.
 
     Args:
-        template: the English text. It must be a literal, because the catalogues are checked against the literals in
+        template: the English text. It must be a literal, because the catalogs are checked against the literals in
                 the source. Each argument has a placeholder with its name, optionally with a number format: ``{length:g}
             m``.
         arguments: names from the user's input, numbers, or phrases; phrases are translated as well.
@@ -262,7 +262,7 @@ def title_of_page(text: str) -> Phrase:
 def foreign(words: object) -> Phrase:
     """Return a phrase for a text from another program, such as an exception's.
 
-    The text is translated if a catalogue contains it, as it is or with ``'…'`` for each part in quotation marks.
+    The text is translated if a catalog contains it, as it is or with ``'…'`` for each part in quotation marks.
     """
     text = str(words)
     return text if isinstance(text, Phrase) else _Foreign(text, FOREIGN)

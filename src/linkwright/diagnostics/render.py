@@ -13,7 +13,7 @@ from linkwright.loading.lean_typing import IO, TYPE_CHECKING, Any
 if TYPE_CHECKING:
     from pathlib import Path
 
-_COLOURS = {Severity.ERROR: "31", Severity.WARNING: "33", Severity.INFO: "36"}
+_COLORS = {Severity.ERROR: "31", Severity.WARNING: "33", Severity.INFO: "36"}
 MAX_PRINTED = 500
 """The maximum number of findings to print. No user reads more, and the errors among them would scroll away."""
 _TAB = "    "
@@ -28,27 +28,27 @@ _REPLACEMENTS = {
 """The replacements of characters that control a terminal or the order of the text after them."""
 
 
-def wants_colour(stream: IO[str]) -> bool:
-    """Return whether output to a stream should be coloured.
+def wants_color(stream: IO[str]) -> bool:
+    """Return whether output to a stream should be colored.
 
-    Output to a terminal is coloured, unless NO_COLOR is set or TERM is ``dumb``.
+    Output to a terminal is colored, unless NO_COLOR is set or TERM is ``dumb``.
     """
     if os.environ.get("NO_COLOR"):
         return False
     return stream.isatty() and os.environ.get("TERM") != "dumb"
 
 
-def render(diagnostic: Diagnostic, *, colour: bool = False, lang: str = "en") -> str:
+def render(diagnostic: Diagnostic, *, color: bool = False, lang: str = "en") -> str:
     """Format a diagnostic for a terminal.
 
     The result has a headline, the position, an excerpt with carets, notes and the hint. The texts of the diagnostic are
     not translated; `lang` is the language of the labels, such as "error" and "hint".
     """
-    paint = _Painter(colour)
+    paint = _Painter(color)
     words = labels(lang)
     severity, colon = diagnostic.severity, words[": "]
     head = f"{words[severity.value]}[{diagnostic.code}]"
-    lines = [f"{paint(head, _COLOURS[severity] + ';1')}{paint(colon + printable(diagnostic.message), '1')}"]
+    lines = [f"{paint(head, _COLORS[severity] + ';1')}{paint(colon + printable(diagnostic.message), '1')}"]
     if diagnostic.span:
         lines.append(f"  {paint('-->', '34')} {_location_text(diagnostic.span)}")
         lines += _excerpt(diagnostic, paint)
@@ -63,14 +63,14 @@ def render(diagnostic: Diagnostic, *, colour: bool = False, lang: str = "en") ->
 def print_diagnostics(diagnostics: Iterable[Diagnostic], stream: IO[str]) -> None:
     """Write diagnostics to a stream, in the user's language.
 
-    The diagnostics are coloured if the stream supports colours. Diagnostics beyond `MAX_PRINTED` are only counted.
+    The diagnostics are colored if the stream supports colors. Diagnostics beyond `MAX_PRINTED` are only counted.
     Formats for programs contain all diagnostics.
     """
-    colour, lang = wants_colour(stream), language()
+    color, lang = wants_color(stream), language()
     all_diagnostics = list(diagnostics)
     printed = _most_severe(all_diagnostics)
     for diagnostic in translated(printed):
-        print(render(diagnostic, colour=colour, lang=lang), file=stream)
+        print(render(diagnostic, color=color, lang=lang), file=stream)
     if len(printed) < len(all_diagnostics):
         print(
             localized(phrase("... and {count:,} more findings", count=len(all_diagnostics) - len(printed))), file=stream
@@ -129,11 +129,11 @@ def _note_data(note: Note) -> dict[str, Any]:
 
 
 class _Painter:
-    def __init__(self, colour: bool) -> None:
-        self._colour = colour
+    def __init__(self, color: bool) -> None:
+        self._color = color
 
     def __call__(self, text: str, code: str) -> str:
-        return f"\x1b[{code}m{text}\x1b[0m" if self._colour else text
+        return f"\x1b[{code}m{text}\x1b[0m" if self._color else text
 
 
 def _location_text(span: Span) -> str:
@@ -162,7 +162,7 @@ def _excerpt(diagnostic: Diagnostic, paint: _Painter) -> list[str]:
     number = str(span.line)
     gutter = " " * len(number)
     bar = paint("|", "34")
-    carets = paint("^" * max(1, shown_width(marked)), _COLOURS[diagnostic.severity])
+    carets = paint("^" * max(1, shown_width(marked)), _COLORS[diagnostic.severity])
     visible_line = printable(line).replace("\t", _TAB)
     return [
         f"{gutter} {bar}",

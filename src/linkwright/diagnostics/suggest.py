@@ -106,7 +106,7 @@ def _is_abbreviation(shorter: str, longer: str) -> bool:
     return len(shorter) < len(longer) <= 2 * len(shorter) and all(letter in letters for letter in shorter)
 
 
-def is_misspelt(name: str, names: Iterable[str]) -> bool:
+def is_misspelled(name: str, names: Iterable[str]) -> bool:
     """Return whether a name is equal to one of some names, except for a typing error.
 
     The error is a missing, extra, wrong or swapped letter. Long names may have more errors, one more for every ten
@@ -155,7 +155,7 @@ def _similar_files(name: str, names: Iterable[str]) -> list[str]:
     for other in names:
         other_stem, other_extension = _split_extension(other)
         if other_extension == extension or (
-            extension and (is_misspelt(extension, [other_extension]) or other_extension.endswith(extension))
+            extension and (is_misspelled(extension, [other_extension]) or other_extension.endswith(extension))
         ):
             stems.setdefault(other_stem, []).append(other)
     return [other for similar_stem in nearest(stem, stems) for other in stems[similar_stem]][:3]

@@ -3,7 +3,7 @@
 A quaternion is x, y, z, w in the last axis, as in ROS messages, and has unit length unless stated otherwise. A rotation
 is active: it rotates vectors of the child frame into the parent frame. Roll, pitch and yaw are angles in radians about
 the fixed axes x, y, z in this order, R = Rz(yaw) Ry(pitch) Rx(roll) (REP 103). A pose is the pose of a child frame in
-its parent frame, as a row x, y, z, qx, qy, qz, qw: metres and a unit quaternion.
+its parent frame, as a row x, y, z, qx, qy, qz, qw: meters and a unit quaternion.
 """
 
 from __future__ import annotations

@@ -59,7 +59,7 @@ class Arrays:
 def _transform(tag: str, values: Array) -> Array:
     """Return the matrix of a transform element, given its tag and numbers.
 
-    As in pycollada, the axis of a rotation is not normalised.
+    As in pycollada, the axis of a rotation is not normalized.
     """
     matrix = np.eye(4)
     if tag == "matrix":

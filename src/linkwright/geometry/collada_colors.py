@@ -1,4 +1,4 @@
-"""Reading of COLLADA files with the colours of their materials, without a library.
+"""Reading of COLLADA files with the colors of their materials, without a library.
 
 Files with textures or with unusual content are left to trimesh.
 """
@@ -26,8 +26,8 @@ class ColoredMesh(NamedTuple):
     Attributes:
         mesh: the triangles, in the file's unit.
         matrix: the matrix of the mesh's frame in the frame of the file, shape (4, 4).
-        unit: metres per unit.
-        color: the diffuse colour of the material, or None if the triangles have no material.
+        unit: meters per unit.
+        color: the diffuse color of the material, or None if the triangles have no material.
     """
 
     mesh: PlainMesh
@@ -37,7 +37,7 @@ class ColoredMesh(NamedTuple):
 
 
 def read_colored_meshes(data: bytes) -> list[ColoredMesh] | None:
-    """Return the meshes of a file with their colours.
+    """Return the meshes of a file with their colors.
 
     Returns None for a file with textures, unusual content or mistakes; only trimesh can read such a file.
     """
@@ -88,7 +88,7 @@ class _Materials:
         self._effects = self._by_id(root, "library_effects", "effect")
 
     def colors(self, instance: ET.Element) -> list[_Color | None]:
-        """Return the colour of each element with triangles in an instance of a geometry."""
+        """Return the color of each element with triangles in an instance of a geometry."""
         bound = {
             material.get("symbol", ""): material.get("target", "").removeprefix("#")
             for material in instance.iter(f"{self._space}instance_material")

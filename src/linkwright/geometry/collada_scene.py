@@ -49,7 +49,7 @@ class Numbers(Protocol[MadeT_co, MatrixT, FacesT]):
     def moved(self, matrix: MatrixT, tag: str, text: str | None) -> MatrixT:
         """Return the product of a matrix and the matrix of a transform element.
 
-        The axis of a rotation is not normalised, as in pycollada.
+        The axis of a rotation is not normalized, as in pycollada.
         """
 
     def faces(self, tag: str, texts: list[str], counted: str, width: int, column: int, limits: Limits) -> FacesT:
@@ -83,7 +83,7 @@ class ColladaFile(Generic[MeshT, MatrixT]):
     """The meshes of a COLLADA file, in the file's unit.
 
     Attributes:
-        unit: metres per unit.
+        unit: meters per unit.
         placed_meshes: each mesh with the matrix of its frame in the frame of the file; shape (4, 4).
         instances: the ``<instance_geometry>`` of each mesh.
         root: the root of the document.
@@ -164,8 +164,8 @@ class _File(Generic[MeshT, MatrixT]):
     def _unit(self) -> float:
         for asset in self._all(self._root, "asset")[:1]:
             for unit in self._all(asset, "unit")[:1]:
-                metres = float(unit.get("meter", "1"))
-                return 1.0 if math.isclose(metres, 1.0, rel_tol=1e-5) else metres
+                meters = float(unit.get("meter", "1"))
+                return 1.0 if math.isclose(meters, 1.0, rel_tol=1e-5) else meters
         return 1.0
 
     # --- scene ------------------------------------------------------------------------------------------------

@@ -45,7 +45,7 @@ class _Hull:
 
     Attributes:
         edges: the face of each directed edge, by start and end. The edge in the opposite direction belongs to a
-            neighbour.
+            neighbor.
         outside: the points outside each face; each point is assigned to only one face.
     """
 
@@ -86,16 +86,16 @@ class _Hull:
         horizon = []
         while pending:
             for edge in _edges(self.faces[pending.pop()]):
-                neighbour = self.edges[edge[1], edge[0]]
-                if neighbour in visible:
+                neighbor = self.edges[edge[1], edge[0]]
+                if neighbor in visible:
                     continue
-                if neighbour not in hidden:
-                    normal, level = self.planes[neighbour]
+                if neighbor not in hidden:
+                    normal, level = self.planes[neighbor]
                     if float(point @ normal) - level > self.near:
-                        visible.add(neighbour)
-                        pending.append(neighbour)
+                        visible.add(neighbor)
+                        pending.append(neighbor)
                         continue
-                    hidden.add(neighbour)
+                    hidden.add(neighbor)
                 horizon.append(edge)
         return visible, horizon
 

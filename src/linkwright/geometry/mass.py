@@ -1,4 +1,4 @@
-"""Mass, centre of mass and inertia tensor of a rigid body, and quantities derived from them."""
+"""Mass, center of mass and inertia tensor of a rigid body, and quantities derived from them."""
 
 from __future__ import annotations
 
@@ -37,8 +37,8 @@ class MassProperties:
 
     Attributes:
         mass: the mass in kg.
-        center: the centre of mass in m; shape (3,).
-        inertia: the inertia tensor about the centre of mass in kg m2, in the axes of the frame; shape (3, 3). Products
+        center: the center of mass in m; shape (3,).
+        inertia: the inertia tensor about the center of mass in kg m2, in the axes of the frame; shape (3, 3). Products
             of inertia have the sign of the tensor's entries, as in URDF and Gazebo: ``ixy = -integral(x y
             dm)``.
     """

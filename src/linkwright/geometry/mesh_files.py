@@ -37,7 +37,7 @@ class PlacedMesh(NamedTuple):
     Attributes:
         mesh: a `trimesh.Trimesh` or a `PlainMesh` with triangles.
         matrix: the homogeneous matrix of the mesh's frame in the frame of the file, in the file's unit; shape (4, 4).
-        unit: metres per unit of the file.
+        unit: meters per unit of the file.
         names: the names of the mesh and of the instance in the file.
     """
 
@@ -75,13 +75,13 @@ def placed_meshes(data: bytes, kind: str, *, is_plain: bool = False, **options: 
 
     Lines and points are ignored.
 
-    STL and OBJ have no unit, and URDF takes their numbers as metres. As in RViz, the unit of COLLADA is returned, and
+    STL and OBJ have no unit, and URDF takes their numbers as meters. As in RViz, the unit of COLLADA is returned, and
     its up axis is not applied.
 
     Args:
         data: the content of the file.
         kind: the file extension, without the dot.
-        is_plain: whether to read only triangles, without colours, normals and names. In this case, most files are read
+        is_plain: whether to read only triangles, without colors, normals and names. In this case, most files are read
             without trimesh, whose import takes longer.
         options: options of `trimesh.load_scene`.
 
@@ -241,7 +241,7 @@ def file_resolver(path: str) -> Any:
 
 
 def _collada_unit(mesh: Any) -> float:
-    """Return the metres per unit of a COLLADA file, from a mesh.
+    """Return the meters per unit of a COLLADA file, from a mesh.
 
     trimesh stores the unit with the meshes, and does not apply it to the numbers.
     """

@@ -39,8 +39,8 @@ class Triangles:
     colors: Array | None = None
 
 
-UNCOLOURED = 0.6
-"""The grey value of a mesh without a colour, from 0 for black to 1 for white."""
+UNCOLORED = 0.6
+"""The gray value of a mesh without a color, from 0 for black to 1 for white."""
 
 _Y_UP_TO_Z_UP = np.array([[1.0, 0, 0, 0], [0, 0, -1, 0], [0, 1, 0, 0], [0, 0, 0, 1]])
 """The matrix that converts glTF's axes, with y up, to axes with z up."""

@@ -1,4 +1,4 @@
-"""Reading of the triangles in mesh files, in metres and in the frame that RViz uses."""
+"""Reading of the triangles in mesh files, in meters and in the frame that RViz uses."""
 
 from __future__ import annotations
 
@@ -102,7 +102,7 @@ class TriangleMesh:
 def read_mesh(path: Path) -> TriangleMesh:
     """Return the triangles of an STL, COLLADA, OBJ or glTF file.
 
-    STL and OBJ have no unit, and URDF takes their numbers as metres. As in RViz, the unit of COLLADA is applied, and
+    STL and OBJ have no unit, and URDF takes their numbers as meters. As in RViz, the unit of COLLADA is applied, and
     its up axis is not. Materials and textures are not read, and the only other files that are read are the buffers of a
     glTF file.
 

@@ -1,4 +1,4 @@
-"""Meshes without colours, and the parsing of numbers in text files."""
+"""Meshes without colors, and the parsing of numbers in text files."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ class PlainMesh:
         vertices: the corners, shape (n, 3), in the file's unit.
         faces: the three indices of corners of each triangle, shape (m, 3).
         name: the name in the file.
-        visual: an object whose ``kind`` is None, because there are no colours.
+        visual: an object whose ``kind`` is None, because there are no colors.
     """
 
     def __init__(self, vertices: Array, faces: Faces, name: str = "") -> None:
@@ -52,7 +52,7 @@ def parse_numbers(text: str | None, kind: type[Any]) -> Any:
 def triangulate_fans(corners: Faces, counts: Faces) -> Faces:
     """Split polygons into triangles of shape (n, 3).
 
-    Each triangle joins the first corner of its polygon and two neighbouring other corners.
+    Each triangle joins the first corner of its polygon and two neighboring other corners.
 
     Args:
         corners: the corners of all polygons, one polygon after another.

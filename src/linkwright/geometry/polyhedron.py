@@ -77,7 +77,7 @@ def is_closed(faces: Faces) -> bool:
 
     The condition is that every edge occurs equally often in both directions. This is exactly the condition of the
     divergence theorem. It holds for several bodies in one mesh, and where more than two triangles meet at an edge. It
-    does not hold if there is a hole, or if neighbours have opposite orientations.
+    does not hold if there is a hole, or if neighbors have opposite orientations.
     """
     if not len(faces):
         return False

@@ -1,6 +1,6 @@
 """The primitive shapes in descriptions, and frames as rotation matrix and position.
 
-Rotations are matrices as three rows, from the child frame to the parent frame; lengths are metres. All numbers are
+Rotations are matrices as three rows, from the child frame to the parent frame; lengths are meters. All numbers are
 plain floats: for few frames, this is faster than arrays, and it needs no numpy.
 """
 
@@ -24,14 +24,14 @@ from linkwright.loading.lean_dataclasses import NamedTuple, dataclass
 
 @dataclass(frozen=True, slots=True)
 class Box:
-    """A box with edge lengths along x, y, z in metres, centred at the origin."""
+    """A box with edge lengths along x, y, z in meters, centered at the origin."""
 
     size: Vector3
 
 
 @dataclass(frozen=True, slots=True)
 class Cylinder:
-    """A cylinder along z, centred at the origin, with lengths in metres."""
+    """A cylinder along z, centered at the origin, with lengths in meters."""
 
     radius: float
     length: float
@@ -39,9 +39,9 @@ class Cylinder:
 
 @dataclass(frozen=True, slots=True)
 class Capsule:
-    """A capsule along z, centred at the origin (URDF 1.1).
+    """A capsule along z, centered at the origin (URDF 1.1).
 
-    Lengths are in metres, and `length` is the length of the cylindrical part.
+    Lengths are in meters, and `length` is the length of the cylindrical part.
     """
 
     radius: float
@@ -50,7 +50,7 @@ class Capsule:
 
 @dataclass(frozen=True, slots=True)
 class Sphere:
-    """A sphere centred at the origin, with its radius in metres."""
+    """A sphere centered at the origin, with its radius in meters."""
 
     radius: float
 
@@ -168,7 +168,7 @@ class Bounds(NamedTuple):
 
     @property
     def center(self) -> Vector3:
-        """The centre in m."""
+        """The center in m."""
         return scaled(add_vectors(self.low, self.high), 0.5)
 
     @property

@@ -1,6 +1,6 @@
 """Single poses, rotations and vectors, as tuples of plain floats.
 
-Quaternions are x, y, z, w; lengths are metres and angles radians. The functions have the same names as the functions
+Quaternions are x, y, z, w; lengths are meters and angles radians. The functions have the same names as the functions
 for arrays in `linkwright.geometry.arrays`. This module lets readers of descriptions work without numpy.
 """
 
@@ -60,7 +60,7 @@ class Pose:
     """The pose of a child frame in its parent frame, as written in descriptions.
 
     Attributes:
-        xyz: the translation in metres.
+        xyz: the translation in meters.
         rpy: roll, pitch, yaw in radians about the fixed axes x, y, z: R = Rz(yaw) Ry(pitch) Rx(roll) (REP 103).
         quaternion: the quaternion if the file has ``quat_xyzw`` (URDF 1.1), from which `rpy` is then derived; else
             None.

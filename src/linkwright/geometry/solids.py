@@ -1,7 +1,7 @@
 """Mass properties of the primitive shapes, in closed form.
 
 The formulae are found in any table of moments of inertia of homogeneous bodies, for instance Beer, Johnston: *Vector
-Mechanics for Engineers: Dynamics*, inside back cover. All refer to the centre of mass and the shape's own axes.
+Mechanics for Engineers: Dynamics*, inside back cover. All refer to the center of mass and the shape's own axes.
 """
 
 from __future__ import annotations
@@ -71,8 +71,8 @@ def _sphere(sphere: Sphere, density: float) -> MassProperties:
 def _capsule(capsule: Capsule, density: float) -> MassProperties:
     """Return the mass properties of a capsule: a cylinder with a half sphere on each end.
 
-    A half sphere has its centre of mass 3/8 r above its flat side and the moment ``83/320 m r2`` about this centre,
-    across its axis. Moved to the centre of the capsule, that becomes ``2/5 r2 + l2/4 + 3/8 l r`` per unit of mass.
+    A half sphere has its center of mass 3/8 r above its flat side and the moment ``83/320 m r2`` about this center,
+    across its axis. Moved to the center of the capsule, that becomes ``2/5 r2 + l2/4 + 3/8 l r`` per unit of mass.
     """
     r, length = capsule.radius, capsule.length
     if r <= 0 or length < 0:

@@ -18,7 +18,7 @@ SIDES = 32
 
 
 def box(size: Sequence[float]) -> Triangles:
-    """Return the triangles of a box that is centred at the origin."""
+    """Return the triangles of a box that is centered at the origin."""
     positions, normals, coordinates = [], [], []
     for axis in range(3):
         for sign in (1.0, -1.0):
@@ -34,7 +34,7 @@ def box(size: Sequence[float]) -> Triangles:
 
 
 def cylinder(radius: float, length: float, sides: int = SIDES) -> Triangles:
-    """Return the triangles of a cylinder along z with caps, centred at the origin."""
+    """Return the triangles of a cylinder along z with caps, centered at the origin."""
     half_length = length / 2
     profile = [
         (0.0, half_length, 0, 1),
@@ -47,7 +47,7 @@ def cylinder(radius: float, length: float, sides: int = SIDES) -> Triangles:
 
 
 def cone(radius: float, length: float, sides: int = SIDES) -> Triangles:
-    """Return the triangles of a cone along z with its tip at the top, centred at half its height."""
+    """Return the triangles of a cone along z with its tip at the top, centered at half its height."""
     half_length = length / 2
     profile = [(0.0, half_length, length, radius), (radius, -half_length, length, radius)]
     profile += [(radius, -half_length, 0.0, -1.0), (0.0, -half_length, 0.0, -1.0)]
@@ -55,13 +55,13 @@ def cone(radius: float, length: float, sides: int = SIDES) -> Triangles:
 
 
 def sphere(radius: float, sides: int = SIDES) -> Triangles:
-    """Return the triangles of a sphere that is centred at the origin."""
+    """Return the triangles of a sphere that is centered at the origin."""
     r, z = _half_circle(sides)
     return _surface_of_revolution(np.stack([radius * r, radius * z, r, z], axis=1), sides)
 
 
 def capsule(radius: float, length: float, sides: int = SIDES) -> Triangles:
-    """Return the triangles of a cylinder along z with hemispherical ends, centred at the origin."""
+    """Return the triangles of a cylinder along z with hemispherical ends, centered at the origin."""
     r, z = (np.insert(values, sides // 4, values[sides // 4]) for values in _half_circle(sides))
     shift = np.where(np.arange(len(z)) <= sides // 4, length / 2, -length / 2)
     return _surface_of_revolution(np.stack([radius * r, radius * z + shift, r, z], axis=1), sides)

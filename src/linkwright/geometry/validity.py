@@ -131,13 +131,13 @@ def excessive_products(tensor: Array | Matrix) -> list[tuple[str, float]]:
 
 
 def largest_moment_within(center: Vector3, box: Bounds, mass: float) -> float:
-    """Return an upper bound of the moments about its centre of mass of a body in a box.
+    """Return an upper bound of the moments about its center of mass of a body in a box.
 
     The result is in kg m2. No point of the body is farther away than the farthest corner, and a moment about an axis
-    through the centre of mass is at most the moment of the entire mass at that distance.
+    through the center of mass is at most the moment of the entire mass at that distance.
 
     Args:
-        center: the centre of mass in m.
+        center: the center of mass in m.
         box: the box, in m.
         mass: the mass in kg.
     """

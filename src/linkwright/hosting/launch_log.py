@@ -14,7 +14,7 @@ from contextlib import suppress
 from pathlib import Path
 from typing import IO, TYPE_CHECKING
 
-from linkwright.diagnostics import Diagnostic, Severity, foreign, phrase, print_diagnostics, wants_colour
+from linkwright.diagnostics import Diagnostic, Severity, foreign, phrase, print_diagnostics, wants_color
 from linkwright.process.nanoseconds import NANOSECONDS_PER_SECOND
 
 if TYPE_CHECKING:
@@ -81,7 +81,7 @@ class LaunchLog:
 
     def __init__(self, stdout: IO[str] | None = None, stderr: IO[str] | None = None, *, debug: bool = False) -> None:
         self._streams = {1: stdout or sys.stdout, 2: stderr or sys.stderr}
-        self._uses_color = wants_colour(self._streams[2])
+        self._uses_color = wants_color(self._streams[2])
         self._debug = debug
         self._files: dict[str, IO[str] | None] = {}
         self._folder: Path | None = None

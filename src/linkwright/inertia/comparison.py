@@ -18,7 +18,7 @@ class Comparison:
     Attributes:
         mass: the mass in the file, in kg.
         mass_ratio: the mass in the file divided by the computed mass; None if one of them is not positive.
-        center_distance: the distance between the centres of mass in m.
+        center_distance: the distance between the centers of mass in m.
         moment_ratios: the principal moments per kg in the file divided by the computed ones, in the order of the
             moments, smallest first; None if they cannot be divided.
         problems: the reasons why no body can have the file's values.

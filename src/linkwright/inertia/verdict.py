@@ -22,7 +22,7 @@ _ROUGH_RATIO = 2.0
 
 _DOUBTFUL_DISTANCE = 0.5
 _ROUGH_DISTANCE = 0.1
-"""The thresholds for doubtful and for rough centres of mass, as distances in fractions of the diagonal."""
+"""The thresholds for doubtful and for rough centers of mass, as distances in fractions of the diagonal."""
 
 
 class Grade(Enum):
@@ -147,7 +147,7 @@ def _comparison_reasons(comparison: Comparison, computed: MassProperties) -> lis
     box = computed.equivalent_box()
     relative_distance = 0.0 if box is None else comparison.center_distance / float(np.linalg.norm(box))
     if relative_distance > _ROUGH_DISTANCE:
-        words = phrase("its centre of mass is {length} from the centre of its shapes", length=_length_text(comparison))
+        words = phrase("its center of mass is {length} from the center of its shapes", length=_length_text(comparison))
         reasons.append(
             _Reason(
                 Grade.DOUBTFUL if relative_distance > _DOUBTFUL_DISTANCE else Grade.ROUGH,

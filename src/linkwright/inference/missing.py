@@ -118,9 +118,9 @@ def _visual_to_collision(
     if len(corners) > _MAX_MESH_VERTICES:
         minimum, maximum = corners.min(axis=0), corners.max(axis=0)
         x, y, z = (float(size) for size in maximum - minimum)
-        centre = tuple(float(coordinate) for coordinate in (minimum + maximum) / 2.0)
+        center = tuple(float(coordinate) for coordinate in (minimum + maximum) / 2.0)
         box = _shape_element(Box((x, y, z)))
-        return _collision_element((centre[0], centre[1], centre[2]), (0.0, 0.0, 0.0), box), phrase(
+        return _collision_element((center[0], center[1], center[2]), (0.0, 0.0, 0.0), box), phrase(
             "the box around its mesh '{name}'", name=name
         )
     shape = Element("mesh", {"filename": geometry.filename})
@@ -208,7 +208,7 @@ def _inertial_finding(code: str, message: Phrase, link: Link, properties: MassPr
 
 
 def _wheel_in_link(survey: Survey, wheel: Wheel) -> tuple[Vector3, Vector3]:
-    """Return the axis and the centre of a wheel in its link's frame."""
+    """Return the axis and the center of a wheel in its link's frame."""
     frame = survey.frame(wheel.link)
     inverse_rotation = transposed(frame.rotation)
     offset = add_vectors(wheel.center, scaled(frame.position, -1.0))

@@ -26,7 +26,7 @@ class Wheel:
     Attributes:
         joint: the joint about which the wheel rotates.
         link: the link that the joint moves.
-        center: the centre of the wheel in the base frame, in m.
+        center: the center of the wheel in the base frame, in m.
         axis: the unit vector of the joint's axis in the base frame, in the direction that the file declares.
         radius: the radius in m.
         width: the width in m; None for a ball.

@@ -1,4 +1,4 @@
-"""The colours in an XML text: URDF's ``rgba``, and the colours of SDF materials and lights."""
+"""The colors in an XML text: URDF's ``rgba``, and the colors of SDF materials and lights."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ _COLOR = re.compile(rf"\s*({_NUMBER})\s+({_NUMBER})\s+({_NUMBER})(?:\s+({_NUMBER
 
 
 class ColorLiteral(NamedTuple):
-    """A colour in a text.
+    """A color in a text.
 
     Attributes:
         start: the character offset of the first number.
@@ -28,7 +28,7 @@ class ColorLiteral(NamedTuple):
 
 
 def colors_in(text: str) -> Iterator[ColorLiteral]:
-    """Yield the colours that consist of plain numbers from 0 to 1, in text order."""
+    """Yield the colors that consist of plain numbers from 0 to 1, in text order."""
     tag = ""
     for token in tokens(text):
         if token.kind is Kind.START:
@@ -41,7 +41,7 @@ def colors_in(text: str) -> Iterator[ColorLiteral]:
 
 
 def format_color(rgba: tuple[float, float, float, float], *, with_alpha: bool) -> str:
-    """Return the numbers of a colour in the notation of descriptions, separated by spaces."""
+    """Return the numbers of a color in the notation of descriptions, separated by spaces."""
     return " ".join(f"{value:.4g}" for value in rgba[: 4 if with_alpha else 3])
 
 

@@ -165,7 +165,7 @@ def _link_facts(robot: Robot, link: Link) -> Iterator[str]:
         yield "- " + localized(phrase("mass {mass:g} kg", mass=inertial.mass))
         center = " ".join(f"{value:g}" for value in inertial.origin.xyz)
         moments = ", ".join(f"{name} {getattr(inertial, name):.4g}" for name in ("ixx", "iyy", "izz"))
-        yield "- " + localized(phrase("centre of mass {center} m; {moments} kg m²", center=center, moments=moments))
+        yield "- " + localized(phrase("center of mass {center} m; {moments} kg m²", center=center, moments=moments))
 
 
 def _joint_facts(joint: Joint) -> Iterator[str]:

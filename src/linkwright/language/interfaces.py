@@ -13,7 +13,7 @@ from linkwright.diagnostics.translation import localized
 from linkwright.language.completion import Completion, ItemKind
 from linkwright.language.format import Document, Format, Symbol, SymbolKind, Target
 from linkwright.language.hover import Explanation
-from linkwright.messages import catalogue
+from linkwright.messages import catalog
 from linkwright.messages.definitions.interfaces import PRIMITIVES, snake_case
 from linkwright.messages.definitions.parser import SECTIONS
 from linkwright.packages import enclosing_package
@@ -73,10 +73,10 @@ def _find_message(document: Document, type_name: str) -> _Message | None:
     if file is not None:
         file = Path(source_of(str(file)))
         return _Message(document.other(file), Target(file))
-    text = catalogue.texts(package).get(f"msg/{name}")
+    text = catalog.texts(package).get(f"msg/{name}")
     if text is None:
         return None
-    known = catalogue.file_of(package)
+    known = catalog.file_of(package)
     start = known.read_text(encoding="utf-8").find(f"=== msg/{name}\n")
     return _Message(text, Target(known, start + 4, start + 8 + len(name)))
 
@@ -114,7 +114,7 @@ def _offer_types(document: Document, typed: str, start: int) -> Iterator[Complet
             yield Completion(name, ItemKind.NAME, start, own)
     for name in likely:
         yield Completion(name, ItemKind.NAME, start)
-    for package in dict.fromkeys((*_COMMON_PACKAGES, *sorted({*catalogue.packages(), *document.finder.packages()}))):
+    for package in dict.fromkeys((*_COMMON_PACKAGES, *sorted({*catalog.packages(), *document.finder.packages()}))):
         for name in _names_in(document, package) if package != own else ():
             if f"{package}/{name}" not in likely:
                 yield Completion(f"{package}/{name}", ItemKind.NAME, start)
@@ -141,7 +141,7 @@ def _used_types(document: Document, excluded_offset: int) -> list[str]:
 def _names_in(document: Document, package: str) -> list[str]:
     share = document.finder.find(package) if package else None
     own = {} if share is None else interface_files(share, "msg")
-    known = [name.removeprefix("msg/") for name in catalogue.texts(package) if name.startswith("msg/")]
+    known = [name.removeprefix("msg/") for name in catalog.texts(package) if name.startswith("msg/")]
     return sorted({*own, *known})
 
 

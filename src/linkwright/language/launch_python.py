@@ -40,7 +40,7 @@ from linkwright.language.offers import (
     target_of_package,
     target_of_program,
 )
-from linkwright.language.parameter_catalogue import ParameterInfo, node_parameters
+from linkwright.language.parameter_catalog import ParameterInfo, node_parameters
 from linkwright.language.parameter_completion import describe_parameter_info
 from linkwright.language.python_paths import JOINS, PACKAGE_FUNCTIONS, PythonPaths, Value
 from linkwright.language.python_text import Group, Item, Name, Text, python_text

@@ -46,7 +46,7 @@ from linkwright.language.offers import (
     target_of_package,
     target_of_program,
 )
-from linkwright.language.parameter_catalogue import ParameterInfo, node_parameters
+from linkwright.language.parameter_catalog import ParameterInfo, node_parameters
 from linkwright.language.source_parameters import parameters_in_sources
 from linkwright.packages.share_layout import source_of
 from linkwright.schema import describe_attribute

@@ -10,7 +10,7 @@ from linkwright.diagnostics.translation import localized
 from linkwright.language.completion import Completion, ItemKind
 from linkwright.language.definitions import NameKind
 from linkwright.language.format import Document
-from linkwright.language.parameter_catalogue import (
+from linkwright.language.parameter_catalog import (
     ParameterInfo,
     controller_purpose,
     controller_types,

@@ -11,7 +11,7 @@ from linkwright.language.definitions import NameDefinition, NameKind
 from linkwright.language.format import Document, Format, Target
 from linkwright.language.hover import Explanation
 from linkwright.language.hover_facts import part_facts, robots_of
-from linkwright.language.parameter_catalogue import controller_purpose, load_tables, node_parameters, plugins
+from linkwright.language.parameter_catalog import controller_purpose, load_tables, node_parameters, plugins
 from linkwright.language.parameter_completion import complete_parameters, describe_parameter_info
 from linkwright.language.parameter_sections import (
     PARAMETERS,

@@ -7,7 +7,7 @@ from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 from functools import cache
 
-from linkwright.language.parameter_catalogue import (
+from linkwright.language.parameter_catalog import (
     MANAGER,
     ParameterInfo,
     controller_parameters,

@@ -1,10 +1,10 @@
-"""The parameters that the sources of a node declare, as parameters of the catalogue."""
+"""The parameters that the sources of a node declare, as parameters of the catalog."""
 
 from __future__ import annotations
 
 from linkwright.language.format import Document
 from linkwright.language.node_topics import NodeProgram
-from linkwright.language.parameter_catalogue import ParameterInfo
+from linkwright.language.parameter_catalog import ParameterInfo
 from linkwright.language.source_declarations import declared_parameters
 
 

@@ -99,7 +99,7 @@ SRDF = ElementRule(
                 _element(
                     "sphere",
                     "a sphere in the frame of the link",
-                    _required("center", ValueType("3 numbers"), "the centre", "m"),
+                    _required("center", ValueType("3 numbers"), "the center", "m"),
                     _required("radius", _NUMBER, "the radius", "m"),
                 ),
             ),

@@ -284,8 +284,8 @@ def _simulator_plugin(document: Document, cursor: Cursor, start: int) -> Iterato
     if name == "filename":
         named = plugin_of("", class_name)
         for plugin in ([] if named is None else [named]) + plugins:
-            spelt = _spelled(plugin.filename, cursor.typed)
-            yield Completion(spelt, ItemKind.VALUE, start, plugin.class_name, plugin.about)
+            spelled = _spelled(plugin.filename, cursor.typed)
+            yield Completion(spelled, ItemKind.VALUE, start, plugin.class_name, plugin.about)
     elif name == "name":
         known = plugin_of(library)
         if known is not None and known.class_name:

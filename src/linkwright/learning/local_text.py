@@ -28,7 +28,7 @@ class LocalText:
 
     @classmethod
     def from_phrase(cls, phrase: Phrase) -> LocalText:
-        """Return a phrase of Linkwright's catalogue in all languages."""
+        """Return a phrase of Linkwright's catalog in all languages."""
         return cls({language: translate_phrase(phrase, language) for language in LANGUAGES})
 
     def get(self, language: str) -> str:

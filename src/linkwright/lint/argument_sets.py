@@ -400,7 +400,7 @@ def _condition(run: _Run, runs: Sequence[_Run]) -> Note:
 def undeclared_argument(diagnostic: Diagnostic) -> str | None:
     """Return the name of the argument that a finding reports as undeclared, or None.
 
-    The result is also None if the name may be misspelt.
+    The result is also None if the name may be misspelled.
     """
     if diagnostic.code != UNDECLARED or as_phrase(diagnostic.hint or "").template.startswith("did you mean"):
         return None

@@ -16,7 +16,7 @@ _MISSING = "PKG101"
 def with_package_severity(diagnostics: Iterable[Diagnostic]) -> Iterator[Diagnostic]:
     """Yield the diagnostics, with missing packages that are declared dependencies as warnings.
 
-    Either the package that uses the missing package or a neighbouring package must declare the dependency.
+    Either the package that uses the missing package or a neighboring package must declare the dependency.
     """
     packages: dict[Path, PackageContext | None] = {}
     for diagnostic in diagnostics:
@@ -38,7 +38,7 @@ def with_package_severity(diagnostics: Iterable[Diagnostic]) -> Iterator[Diagnos
 
 
 def is_declared(package: PackageContext, name: str) -> bool:
-    """Return whether a package or a neighbour in its workspace declares a dependency."""
-    neighbours = (PackageContext(manifest.parent) for manifest in sorted(package.folder.parent.glob(f"*/{MANIFEST}")))
-    manifests = (package_context.manifest for package_context in (package, *neighbours))
+    """Return whether a package or a neighbor in its workspace declares a dependency."""
+    neighbors = (PackageContext(manifest.parent) for manifest in sorted(package.folder.parent.glob(f"*/{MANIFEST}")))
+    manifests = (package_context.manifest for package_context in (package, *neighbors))
     return any(manifest is not None and manifest.declares(name) for manifest in manifests)

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from linkwright.diagnostics import Span, words_of
-from linkwright.diagnostics.misspellings import find_misspelt
+from linkwright.diagnostics.misspellings import find_misspelled
 from linkwright.lint.extension_names import CHILDREN
 from linkwright.lint.structure import EXTENSIONS, SchemaElement
 from linkwright.lint.subject import Subject
@@ -22,7 +22,7 @@ _OTHER_ELEMENTS = {
     "inertia_tensor": "inertia",
     "limits": "limit",
     "safety": "safety_controller",
-    "colour": "color",
+    "color": "color",
     "shape": "geometry",
     "collider": "collision",
 }
@@ -113,15 +113,15 @@ def intended_element(rule: ElementRule, child: Element) -> str | None:
         return equivalent
     if rule is schema.ROBOT:
         allowed_tags = [*allowed_tags, *EXTENSIONS]
-    return find_misspelt(child.tag, allowed_tags)
+    return find_misspelled(child.tag, allowed_tags)
 
 
-def is_misspelt(name: str, intended: str) -> bool:
+def is_misspelled(name: str, intended: str) -> bool:
     """Return whether a name is a misspelling of another.
 
     The equivalent in another format is not a misspelling.
     """
-    return find_misspelt(name, [intended]) is not None
+    return find_misspelled(name, [intended]) is not None
 
 
 def intended_attribute(schema_element: SchemaElement, attribute: str) -> str | None:
@@ -132,7 +132,7 @@ def intended_attribute(schema_element: SchemaElement, attribute: str) -> str | N
     equivalent = _OTHER_ATTRIBUTES.get(attribute.casefold())
     if equivalent in absent_attributes:
         return equivalent
-    return find_misspelt(attribute, absent_attributes)
+    return find_misspelled(attribute, absent_attributes)
 
 
 def location_phrase(schema_element: SchemaElement) -> str:

@@ -236,7 +236,7 @@ def _size_findings(shape: Visual | Collision) -> Iterator[Diagnostic]:
         geometry_element = shape.element.first("geometry") or shape.element
         message = phrase("{owner} has a size that is not positive", owner=described(shape.element))
         yield _warning(
-            "SDF122", message, next(geometry_element.elements(), geometry_element), phrase("sizes are in metres")
+            "SDF122", message, next(geometry_element.elements(), geometry_element), phrase("sizes are in meters")
         )
 
 

@@ -306,13 +306,13 @@ class XacroFacts:
         return {path: facts for path, facts in self.files.items() if path == main or _is_in_folder(path, folder)}
 
     @cached_property
-    def neighbours(self) -> Mapping[Path, FileFacts]:
+    def neighbors(self) -> Mapping[Path, FileFacts]:
         """The facts about other description files of the package or folder, by path.
 
         Such a file may use definitions of this description.
         """
         package = self.package
-        documents = _neighbouring_descriptions(self.path) if package is None else package.descriptions
+        documents = _neighboring_descriptions(self.path) if package is None else package.descriptions
         known_paths = {path.absolute() for path in self.files}
         return {
             path: FileFacts.of(document) for path, document in documents.items() if path.absolute() not in known_paths
@@ -325,7 +325,7 @@ class XacroFacts:
 
     @cached_property
     def names(self) -> frozenset[str]:
-        """All names that a file or a neighbour uses, or could substitute, in an expression."""
+        """All names that a file or a neighbor uses, or could substitute, in an expression."""
         mentioned_names: set[str] = set()
         for facts in self._all_facts():
             mentioned_names |= facts.names | facts.blocks
@@ -336,12 +336,12 @@ class XacroFacts:
 
     @cached_property
     def used_arguments(self) -> frozenset[str]:
-        """The names of all arguments that a file or a neighbour uses."""
+        """The names of all arguments that a file or a neighbor uses."""
         return frozenset(name for facts in self._all_facts() for name in facts.used_arguments)
 
     @cached_property
     def called(self) -> frozenset[str]:
-        """The names of all macros that a file or a neighbour calls, without namespaces."""
+        """The names of all macros that a file or a neighbor calls, without namespaces."""
         return frozenset(name for facts in self._all_facts() for name in facts.called_macros)
 
     @cached_property
@@ -362,7 +362,7 @@ class XacroFacts:
     @cached_property
     def _misses_files(self) -> bool:
         """Whether a file that was not read is included in a branch that is not taken."""
-        known_names = {path.name for path in self.files} | {path.name for path in self.neighbours}
+        known_names = {path.name for path in self.files} | {path.name for path in self.neighbors}
         for facts in self.files.values():
             for include in facts.includes:
                 name = include.name.replace("\\", "/").rpartition("/")[2]
@@ -375,7 +375,7 @@ class XacroFacts:
 
     def _all_facts(self) -> Iterator[FileFacts]:
         yield from self.files.values()
-        yield from self.neighbours.values()
+        yield from self.neighbors.values()
 
 
 def is_global(name: str) -> bool:
@@ -414,7 +414,7 @@ def _matches(pattern: str, name: str) -> bool:
     return fnmatchcase(name, pattern)
 
 
-def _neighbouring_descriptions(path: Path) -> dict[Path, Document]:
+def _neighboring_descriptions(path: Path) -> dict[Path, Document]:
     from linkwright.xacro.cache import read_document
 
     documents: dict[Path, Document] = {}

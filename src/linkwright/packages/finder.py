@@ -13,7 +13,7 @@ from linkwright.diagnostics import (
     Phrase,
     did_you_mean,
     display_path,
-    is_misspelt,
+    is_misspelled,
     joined,
     phrase,
 )
@@ -283,8 +283,10 @@ class PackageFinder:
     def _nearest(self, name: str) -> tuple[Phrase | None, bool]:
         """Return a hint on a similar package name, or None, and whether the name is a misspelling."""
         shipped = shipped_packages()
-        candidates = [package for package in self.packages() if package not in shipped or is_misspelt(name, [package])]
-        return did_you_mean(name, candidates), is_misspelt(name, candidates)
+        candidates = [
+            package for package in self.packages() if package not in shipped or is_misspelled(name, [package])
+        ]
+        return did_you_mean(name, candidates), is_misspelled(name, candidates)
 
     def _searched_locations(self) -> list[Phrase]:
         prefixes = self._prefixes()

@@ -229,7 +229,7 @@ class Page:
             self._loop_lag.close()
             self._loop_lag = None
         is_late = self._loop_lag is not None and self._loop_lag.mean * _LAG_FACTOR >= (
-            self.line.acknowledgement_time or math.inf
+            self.line.acknowledgment_time or math.inf
         )
         if is_late != self._has_reported_late:
             self._has_reported_late = is_late

@@ -206,7 +206,7 @@ _MIN_BLOCKED_TIME = 0.02
 """The minimum time of waiting for the socket, in s, of a slow connection."""
 
 _AVERAGED_COUNT = 8
-"""The number of acknowledgements over which times are averaged."""
+"""The number of acknowledgments over which times are averaged."""
 
 _MAX_IN_TRANSIT = 64
 """The largest number of stored messages for a page that has not acknowledged any message yet."""
@@ -223,20 +223,20 @@ class ConnectionMeter:
     """A meter of the connection to one page.
 
     A page acknowledges large messages, so that the full path is measured, including tunnels with buffers. For a page
-    without acknowledgements, only the time in which the socket accepts the data is known.
+    without acknowledgments, only the time in which the socket accepts the data is known.
 
     Args:
         clock: returns the time in seconds.
 
     Attributes:
         rate: bytes per second; None until it is known.
-        acknowledgement_time: the mean time in seconds between a large message and its acknowledgement; None until it
+        acknowledgment_time: the mean time in seconds between a large message and its acknowledgment; None until it
             is known.
     """
 
     def __init__(self, clock: Callable[[], float] = time.monotonic) -> None:
         self.rate: float | None = None
-        self.acknowledgement_time: float | None = None
+        self.acknowledgment_time: float | None = None
         self._clock = clock
         self._number = 0
         self._has_acknowledged = False
@@ -295,10 +295,10 @@ class ConnectionMeter:
             acknowledged = self._in_transit.popleft()
             elapsed = now - acknowledged.sent
             self._shortest_time = min(self._shortest_time, elapsed)
-            self.acknowledgement_time = (
+            self.acknowledgment_time = (
                 elapsed
-                if self.acknowledgement_time is None
-                else self.acknowledgement_time + (elapsed - self.acknowledgement_time) / _AVERAGED_COUNT
+                if self.acknowledgment_time is None
+                else self.acknowledgment_time + (elapsed - self.acknowledgment_time) / _AVERAGED_COUNT
             )
             if 2 * acknowledged.size >= min(self.room, _INITIAL_BUDGET):
                 self._update_rate(acknowledged.size / max(elapsed - self._shortest_time, elapsed / 10, 1e-4))

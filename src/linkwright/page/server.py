@@ -550,7 +550,7 @@ def limit_buffers(transport: asyncio.Transport) -> None:
 
     Buffered data can be neither replaced by newer data nor overtaken. The send buffer of the operating system can grow
     to megabytes, which take many seconds on a slow connection. On Windows, which does not offer this limit, only the
-    acknowledgements of pages limit the buffered data.
+    acknowledgments of pages limit the buffered data.
     """
     transport.set_write_buffer_limits(high=MAX_UNSENT_BYTES)
     connection = transport.get_extra_info("socket")

@@ -41,7 +41,7 @@ from linkwright.rviz.config import file as configuration_file
 from linkwright.rviz.config.locations import RecentFiles, configuration_path, list_folder, remove_recovery_files
 from linkwright.rviz.config.rviz_config import RvizConfig
 from linkwright.rviz.config.schema import MAX_TEXT_LENGTH
-from linkwright.rviz.displays.catalogue import has_display
+from linkwright.rviz.displays.catalog import has_display
 
 if TYPE_CHECKING:
     from linkwright.rviz.displays.base.display import ViewerDisplay

@@ -15,7 +15,7 @@ from linkwright.panels.page_feature import FeatureHost, PageFeature
 from linkwright.rviz.config.former_names import GROUP
 from linkwright.rviz.config.schema import PropertySpec
 from linkwright.rviz.displays.base.display import ViewerDisplay
-from linkwright.rviz.displays.catalogue import display_classes
+from linkwright.rviz.displays.catalog import display_classes
 
 
 class DisplaysFeature(PageFeature):
@@ -60,7 +60,7 @@ class DisplaysFeature(PageFeature):
 class PointsFeature(PageFeature):
     """The feature that sends the fields of selected points to pages.
 
-    Pages have only the positions and colours of points.
+    Pages have only the positions and colors of points.
     """
 
     def receive(self, page: Page, message: AskPoint) -> None:

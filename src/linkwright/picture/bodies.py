@@ -34,9 +34,9 @@ class Surface:
         points: the vertices in m, shape (n, 3).
         normals: the unit normals at the vertices, shape (n, 3).
         faces: the triangles as indices of vertices, shape (m, 3).
-        color: the colour, which multiplies the texture and the colours of vertices.
+        color: the color, which multiplies the texture and the colors of vertices.
         alpha: the opacity, 0 to 1.
-        vertex_colors: a colour for each vertex, shape (n, 3), or None.
+        vertex_colors: a color for each vertex, shape (n, 3), or None.
         texture: the texture, or None.
         coordinates: the texture coordinates of each vertex from the upper left corner, shape (n, 2), or None.
     """
@@ -70,7 +70,7 @@ class Surface:
         )
 
     def colored(self, color: Color, alpha: float) -> Surface:
-        """Return the surface with a colour and opacity."""
+        """Return the surface with a color and opacity."""
         return replace(self, color=color, alpha=alpha)
 
     def scaled(self, scale: Vector3) -> Surface:
@@ -115,8 +115,8 @@ class Body:
         name: the name of the link.
         frame: the frame of the link in the scene.
         surfaces: what is drawn, in the link's frame.
-        ghost: the colour in which the body is drawn as transparent, without a shadow; None for its own colours.
-        outline: the colour of a line around the body, which is seen through other bodies; None for none.
+        ghost: the color in which the body is drawn as transparent, without a shadow; None for its own colors.
+        outline: the color of a line around the body, which is seen through other bodies; None for none.
     """
 
     name: str

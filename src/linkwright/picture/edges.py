@@ -45,7 +45,7 @@ def edge_strength(distances: Floats, normals: Floats, bodies: NDArray[np.int32],
         before, after = _pairs(axis)
         middle = (slice(1, -1), slice(None)) if axis == 0 else (slice(None), slice(1, -1))
         outer[middle] |= np.abs(steps[after] - steps[before]) > _JUMP
-    outer |= _neighbours(outer)
+    outer |= _neighbors(outer)
     outer &= is_seen
     inner &= is_seen & ~outer
     strength = np.where(outer, np.float32(_OUTER), np.where(inner, np.float32(_INNER), np.float32(0.0)))
@@ -54,7 +54,7 @@ def edge_strength(distances: Floats, normals: Floats, bodies: NDArray[np.int32],
     return strength
 
 
-def _neighbours(mask: NDArray[np.bool_]) -> NDArray[np.bool_]:
+def _neighbors(mask: NDArray[np.bool_]) -> NDArray[np.bool_]:
     """Return the samples beside those of a mask."""
     beside = np.zeros_like(mask)
     for axis in (0, 1):

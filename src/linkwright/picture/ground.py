@@ -31,7 +31,7 @@ _LINE_WIDTH, _AXIS_WIDTH = 0.9, 1.8
 _LINE_STRENGTH, _AXIS_STRENGTH = 0.30, 0.65
 _GRID_COLOR: Color = (0.30, 0.34, 0.40)
 _AXIS_COLORS: tuple[Color, Color] = ((0.80, 0.20, 0.18), (0.22, 0.60, 0.22))
-"""The colours of the lines along x and along y through the origin."""
+"""The colors of the lines along x and along y through the origin."""
 _FLAT = 0.06
 """The least sine of the elevation from which the ground is drawn."""
 

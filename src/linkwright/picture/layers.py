@@ -83,13 +83,13 @@ class Mesh:
         return self.selected([part.alpha > 0.0 and body.ghost is None for part, body in self._pairs])
 
     def outlined(self) -> dict[Color, Indices]:
-        """Return the triangles of bodies with an outline, by its colour."""
+        """Return the triangles of bodies with an outline, by its color."""
         colors = dict.fromkeys(body.outline for body in self.bodies if body.outline is not None)
         return {color: self.selected([body.outline == color for body in self.bodies]) for color in colors}
 
     @property
     def colors(self) -> NDArray[np.float32]:
-        """The colour of each surface, as displayed, shape (surfaces, 3)."""
+        """The color of each surface, as displayed, shape (surfaces, 3)."""
         pairs = self._pairs
         return np.array([body.ghost or part.color for part, body in pairs], np.float32).reshape(-1, 3)
 

@@ -11,7 +11,7 @@ import numpy as np
 
 from linkwright.diagnostics import LinkwrightError
 from linkwright.geometry.mesh_files import MESH_ENDINGS, BadMeshError, file_resolver
-from linkwright.geometry.mesh_parts import UNCOLOURED, FileMaterial, MeshPart, Triangles, read_parts, read_simple_parts
+from linkwright.geometry.mesh_parts import UNCOLORED, FileMaterial, MeshPart, Triangles, read_parts, read_simple_parts
 from linkwright.geometry.meshes import MAX_FILE_SIZE, read_mesh, unreadable
 from linkwright.geometry.shapes import Box, Capsule, Cylinder, SimpleShape
 from linkwright.geometry.surfaces import box, capsule, cylinder, sphere
@@ -20,7 +20,7 @@ from linkwright.picture.bodies import Color, Surface, Texture
 ROUND_SIDES = 72
 """The number of sides of round shapes, so many that their edges are not seen."""
 DEFAULT_COLOR: Color = (1.0, 0.0, 0.0)
-"""The colour of a shape without a material, as in RViz."""
+"""The color of a shape without a material, as in RViz."""
 _MAX_TEXTURE = 768
 """The maximum width and height of textures. Larger ones are reduced."""
 _MISSING_EXTRA = "INR104"
@@ -45,7 +45,7 @@ class SurfaceLibrary:
     """A reader of mesh files that reads each file once, for one scene or several.
 
     Attributes:
-        colorless: the files that were read without their colours, because a library is not installed, each with the
+        colorless: the files that were read without their colors, because a library is not installed, each with the
             error that names it.
     """
 
@@ -104,7 +104,7 @@ def _resolver(path: Path) -> object:
 
 
 def _plain_part(path: Path) -> MeshPart:
-    """Return a mesh file without its colours."""
+    """Return a mesh file without its colors."""
     mesh = read_mesh(path)
     return MeshPart(Triangles(mesh.vertices, np.asarray(mesh.faces, np.int64).reshape(-1)), None)
 
@@ -123,15 +123,15 @@ def shape_surface(shape: SimpleShape, texture: Texture | None = None) -> Surface
 
 
 def surface_color(
-    file_material: FileMaterial | None, described: Color | None, *, is_textured: bool, is_grey: bool
+    file_material: FileMaterial | None, described: Color | None, *, is_textured: bool, is_gray: bool
 ) -> Color:
-    """Return the colour of a surface by the rules of RViz.
+    """Return the color of a surface by the rules of RViz.
 
     Args:
         file_material: the material in the mesh file, which precedes the description's.
-        described: the colour in the description, or None.
+        described: the color in the description, or None.
         is_textured: whether the description sets a texture.
-        is_grey: whether the surface is that of a mesh file whose format has colours.
+        is_gray: whether the surface is that of a mesh file whose format has colors.
     """
     if file_material is not None:
         return file_material.color
@@ -139,7 +139,7 @@ def surface_color(
         return 1.0, 1.0, 1.0
     if described is not None:
         return described
-    return (UNCOLOURED,) * 3 if is_grey else DEFAULT_COLOR
+    return (UNCOLORED,) * 3 if is_gray else DEFAULT_COLOR
 
 
 def _texture(part: MeshPart) -> Texture | None:

@@ -46,7 +46,7 @@ def ambient_light(depth: Floats, normals: Floats, is_seen: NDArray[np.bool_], ca
         is_seen: whether a surface is seen, shape (rows, columns).
         camera: the camera.
     """
-    metres = _metres_per_pixel(depth, camera)
+    meters = _meters_per_pixel(depth, camera)
     reach = float(_examined_reach(camera))
     blocked = np.zeros(depth.shape, np.float32)
     for ring, part in enumerate(_RINGS):
@@ -54,7 +54,7 @@ def ambient_light(depth: Floats, normals: Floats, is_seen: NDArray[np.bool_], ca
             cosine, sine = circle(_DIRECTIONS * len(_RINGS))[direction * len(_RINGS) + ring]
             shift = round(cosine * part * reach), round(sine * part * reach)
             if shift != (0, 0):
-                _add_blocked(blocked, depth, normals, is_seen, metres, shift, reach)
+                _add_blocked(blocked, depth, normals, is_seen, meters, shift, reach)
     light = 1.0 - blocked * (_STRENGTH / (_DIRECTIONS * len(_RINGS)))
     steps = np.where(is_seen, np.rint(np.maximum(light, np.float32(_LEAST)) * _STEPS), 0.0).astype(np.int64)
     count = np.maximum(box_sums(is_seen.astype(np.int64), _BLUR), 1)
@@ -62,11 +62,11 @@ def ambient_light(depth: Floats, normals: Floats, is_seen: NDArray[np.bool_], ca
     return ambient
 
 
-def _metres_per_pixel(depth: Floats, camera: Camera) -> Floats:
+def _meters_per_pixel(depth: Floats, camera: Camera) -> Floats:
     if not camera.distance:
         return np.full(depth.shape, 1.0 / camera.scale, np.float32)
-    metres: Floats = (camera.distance - depth) * np.float32(1.0 / (camera.scale * camera.distance))
-    return metres
+    meters: Floats = (camera.distance - depth) * np.float32(1.0 / (camera.scale * camera.distance))
+    return meters
 
 
 def _add_blocked(
@@ -74,7 +74,7 @@ def _add_blocked(
     depth: Floats,
     normals: Floats,
     is_seen: NDArray[np.bool_],
-    metres: Floats,
+    meters: Floats,
     shift: tuple[int, int],
     reach: float,
 ) -> None:
@@ -85,7 +85,7 @@ def _add_blocked(
     there = (slice(max(0, down), min(rows, rows + down)), slice(max(0, across), min(columns, columns + across)))
     if here[0].stop <= here[0].start or here[1].stop <= here[1].start:
         return
-    size = metres[here]
+    size = meters[here]
     x, y = size * float(across), size * float(-down)
     z = depth[there] - depth[here]
     square = x * x + y * y + z * z

@@ -13,7 +13,7 @@ from linkwright.picture.vectors import Floats
 _WIDTH = 2.2
 """The width of an outline in pixels."""
 _TINT = np.float32(0.20)
-"""How strongly the body itself takes the colour."""
+"""How strongly the body itself takes the color."""
 
 
 def draw_outline(light: Floats, alpha: Floats, mask: NDArray[np.bool_], color: Color, per_pixel: int) -> None:
@@ -23,7 +23,7 @@ def draw_outline(light: Floats, alpha: Floats, mask: NDArray[np.bool_], color: C
         light: the light of samples multiplied by their opacity, shape (rows, width, 3), which is changed.
         alpha: the opacity of samples, shape (rows, width), which is changed.
         mask: the samples of the body, shape (rows, width).
-        color: the colour of the line.
+        color: the color of the line.
         per_pixel: the samples per pixel along a row.
     """
     reach = max(1, round(_WIDTH * per_pixel))

@@ -1,6 +1,6 @@
-"""Rasterisation of triangles into samples, by arithmetic on arrays.
+"""Rasterization of triangles into samples, by arithmetic on arrays.
 
-The triangles become rows, and the rows become fragments: samples whose centre is inside the triangle. The corners are
+The triangles become rows, and the rows become fragments: samples whose center is inside the triangle. The corners are
 snapped to a grid finer than a sample, and an edge that two triangles share is computed in the same way for both, so
 that each sample on it belongs to one of them.
 """
@@ -83,7 +83,7 @@ def fragments(
 
     Args:
         triangles: the triangles.
-        selected: the indices of the triangles to rasterise.
+        selected: the indices of the triangles to rasterize.
         width: the number of samples in a row.
         first_row: the first row.
         last_row: the row after the last one. Samples are counted from the first row.
@@ -194,8 +194,8 @@ class SeenTriangles:
         mask: whether a triangle is seen at each sample of the window, shape (rows, columns).
         triangles: the triangle at each of these samples, row by row.
         distances: its distance, 0 to 1 within the scene.
-        x: the centres of the samples, from the left.
-        y: the centres of the samples, from the top.
+        x: the centers of the samples, from the left.
+        y: the centers of the samples, from the top.
     """
 
     window: tuple[slice, slice]

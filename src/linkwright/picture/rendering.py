@@ -36,7 +36,7 @@ _PEELED_LAYERS = 3
 _GHOST_ALPHA = 0.38
 _EDGE_LIGHT = 0.012
 _UPPER, _LOWER = (0.98, 0.984, 0.988), (0.87, 0.89, 0.914)
-"""The colours of the background at its upper and lower side."""
+"""The colors of the background at its upper and lower side."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -101,7 +101,7 @@ class _Renderer:
         bands = [self._band(first, min(first + rows, self._height)) for first in range(0, self._height, rows)]
         light, alpha = (np.concatenate(arrays) for arrays in zip(*bands, strict=True))
         draw_labels(light, alpha, self._anchors, self._camera)
-        return _quantised(light, alpha)
+        return _quantized(light, alpha)
 
     def _band(self, first: int, last: int) -> tuple[Floats, Floats]:
         """Return light multiplied by opacity, and opacity, of the pixels of some rows."""
@@ -251,7 +251,7 @@ class _Renderer:
 
 
 def _filtered(samples: Floats, per_pixel: int) -> Floats:
-    """Return pixels from samples, shape (rows, columns, ...): weighted averages that reach into neighbouring pixels."""
+    """Return pixels from samples, shape (rows, columns, ...): weighted averages that reach into neighboring pixels."""
     return _filtered_rows(_filtered_rows(samples.swapaxes(0, 1), per_pixel).swapaxes(0, 1), per_pixel)
 
 
@@ -274,7 +274,7 @@ def _filtered_rows(samples: Floats, per_pixel: int) -> Floats:
     return total
 
 
-def _quantised(light: Floats, alpha: Floats) -> Image:
+def _quantized(light: Floats, alpha: Floats) -> Image:
     """Return the pixels of light multiplied by opacity."""
     image = np.empty((*alpha.shape, 4), np.uint8)
     light = light / np.maximum(alpha, np.float32(1e-6))[:, :, None]

@@ -16,9 +16,9 @@ from linkwright.picture.scene import Scene
 from linkwright.urdf import Link, Material, Mesh, Robot, Visual
 
 GHOST_COLOR: Color = (0.25, 0.45, 0.85)
-"""The usual colour of ghosts."""
+"""The usual color of ghosts."""
 OUTLINE_COLOR: Color = (0.93, 0.36, 0.05)
-"""The usual colour of outlines."""
+"""The usual color of outlines."""
 
 
 def robot_scene(
@@ -38,8 +38,8 @@ def robot_scene(
         finder: finds the packages of its meshes.
         positions: joint positions in rad or m by name; see `link_frames` for the others.
         folder: the folder for relative paths in a description without a file; the current folder by default.
-        ghost: the colour in which the robot is drawn as transparent, for the old one of two; None for its own colours.
-        outlined: the colours of lines around links, by the names of the links.
+        ghost: the color in which the robot is drawn as transparent, for the old one of two; None for its own colors.
+        outlined: the colors of lines around links, by the names of the links.
         library: the meshes that were already read, to share them between scenes.
 
     Raises:
@@ -106,7 +106,7 @@ class _VisualReader:
             texture = self._texture(link, material)
         if not isinstance(geometry, Mesh):
             surface = shape_surface(geometry, texture)
-            shown = surface_color(None, rgb, is_textured=surface.texture is not None, is_grey=False)
+            shown = surface_color(None, rgb, is_textured=surface.texture is not None, is_gray=False)
             return [surface.colored(shown, alpha)]
         try:
             path = self._files.locate(geometry.filename, visual.element)
@@ -116,10 +116,10 @@ class _VisualReader:
             return []
         if path in self._library.colorless:
             self._add_colorless(link, geometry.filename, self._library.colorless[path])
-        is_grey = path.suffix.lower() != ".stl"
+        is_gray = path.suffix.lower() != ".stl"
         return [
             part.surface.scaled(geometry.scale).colored(
-                surface_color(part.file_material, rgb, is_textured=False, is_grey=is_grey), alpha
+                surface_color(part.file_material, rgb, is_textured=False, is_gray=is_gray), alpha
             )
             for part in parts
         ]
@@ -148,7 +148,7 @@ class _VisualReader:
         self._add(Diagnostic("PIC101", message, severity=Severity.WARNING, hint=cause.hint))
 
     def _add_colorless(self, link: Link, name: str, error: LinkwrightError) -> None:
-        message = phrase("link '{link}' is drawn without the colours of the mesh '{name}'", link=link.name, name=name)
+        message = phrase("link '{link}' is drawn without the colors of the mesh '{name}'", link=link.name, name=name)
         self._add(Diagnostic("PIC103", message, severity=Severity.WARNING, hint=error.diagnostics[0].hint))
 
     def _add(self, problem: Diagnostic) -> None:

@@ -1,6 +1,6 @@
-"""Light on surfaces: the colour of samples from normals, materials and lights.
+"""Light on surfaces: the color of samples from normals, materials and lights.
 
-Colours are computed in proportion to light, which is taken as the square of the displayed value. That is close to sRGB,
+Colors are computed in proportion to light, which is taken as the square of the displayed value. That is close to sRGB,
 and unlike its power it has the same bits on every machine.
 """
 
@@ -51,7 +51,7 @@ class Lights:
 
 @dataclass(frozen=True, slots=True)
 class Shaded:
-    """The colours of samples.
+    """The colors of samples.
 
     Attributes:
         light: red, green and blue in proportion to light, shape (n, 3).
@@ -65,7 +65,7 @@ class Shaded:
 
 
 class Shader:
-    """Computes the colours of samples.
+    """Computes the colors of samples.
 
     Args:
         mesh: the triangles of the scene.
@@ -89,7 +89,7 @@ class Shader:
         self._starts = np.cumsum([0, *(len(surface.points) for surface in mesh.surfaces)])
 
     def shade(self, seen: SeenTriangles) -> Shaded:
-        """Return the colours of the samples at which triangles are seen."""
+        """Return the colors of the samples at which triangles are seen."""
         table, rows = self._table(seen.triangles)
         parts = [
             self._shade(seen.x[part], seen.y[part], seen.triangles[part], table, rows[part])
@@ -154,7 +154,7 @@ class Shader:
         return lit
 
     def _albedo(self, triangles: Indices, parts: Indices, second: Floats, third: Floats) -> Floats:
-        """Return the colours of the materials, in proportion to light."""
+        """Return the colors of the materials, in proportion to light."""
         albedo = self._light[parts]
         for index, texture in self._textures.items():
             selected = np.flatnonzero(parts == index)

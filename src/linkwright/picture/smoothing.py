@@ -20,7 +20,7 @@ CREASE_COSINE = 0.8
 """Triangles at a larger angle to each other, about 37 degrees, meet at a crease."""
 _WELDED_STEPS = (1 << 20) - 1
 """Corners that agree in this fraction of the mesh's extent are one."""
-_MAX_NEIGHBOURS = 48
+_MAX_NEIGHBORS = 48
 """The largest number of triangles at a creased corner to compare with each other; beyond, their shading is flat."""
 _NORMAL_GRID = 4096.0
 """Components of normals are multiples of 1 / _NORMAL_GRID."""
@@ -48,7 +48,7 @@ def smooth_mesh(points: Array, faces: Indices, *, merged: bool = True) -> Smooth
         points: the corners, shape (n, 3); corners at the same place count as one.
         faces: the triangles, shape (m, 3).
         merged: whether corners at the same place become one vertex; false if they differ in texture coordinates or
-            colours.
+            colors.
     """
     corners = faces.reshape(-1)
     places = _welded_points(points)
@@ -111,11 +111,11 @@ def _creased_normals(rough_corners: Indices, welded: Indices, face_normals: Arra
     order = np.argsort(places, kind="stable")
     sorted_places = places[order]
     starts = np.searchsorted(sorted_places, sorted_places, side="left")
-    neighbour_counts = np.searchsorted(sorted_places, sorted_places, side="right") - starts
-    neighbour_counts[neighbour_counts > _MAX_NEIGHBOURS] = 0
+    neighbor_counts = np.searchsorted(sorted_places, sorted_places, side="right") - starts
+    neighbor_counts[neighbor_counts > _MAX_NEIGHBORS] = 0
     weighted = face_normals[faces[order]] * weights[rough_corners[order], None]
     sums = weighted.copy()
-    items, numbers = expanded(neighbour_counts)
+    items, numbers = expanded(neighbor_counts)
     others = starts[items] + numbers
     own_faces, other_faces = faces[order][items], faces[order][others]
     meets = (own_faces != other_faces) & (

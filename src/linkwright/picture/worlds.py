@@ -21,7 +21,7 @@ from linkwright.sdf.shapes import Cone, Ellipsoid, Empty, Mesh, Plane, Shape
 from linkwright.sdf.worlds import Sdf
 
 _DEFAULT_COLOR = (0.7, 0.7, 0.7, 1.0)
-"""The colour of shapes without a material: grey, as in Gazebo."""
+"""The color of shapes without a material: gray, as in Gazebo."""
 _POSE_GRID = float(1 << 36)
 """Poses are rounded to multiples of 1 / _POSE_GRID, as sines differ between machines in the last bits."""
 

@@ -105,7 +105,7 @@ class _Reviewer:
         old_names = {new_path: old_path for old_path, new_path in self._new_paths.items()}
         added = new_findings(new, root, count_keys(old, old_root, self._new_paths))
         fixed = new_findings(old, old_root, count_keys(new, root, old_names))
-        return list(map(self._versions.new.labelled, added)), list(map(self._versions.old.labelled, fixed))
+        return list(map(self._versions.new.labeled, added)), list(map(self._versions.old.labeled, fixed))
 
     def _is_in_scope(self, path: str) -> bool:
         return not self._folders or any(PurePosixPath(path).is_relative_to(folder) for folder in self._folders)

@@ -54,7 +54,7 @@ class Version:
         file = self.file(path)
         return Model(file, values, self.finder(file.parent), self.commit)
 
-    def labelled(self, finding: Diagnostic) -> Diagnostic:
+    def labeled(self, finding: Diagnostic) -> Diagnostic:
         """Return a finding in which files of the repository have paths relative to the root."""
         notes = tuple(note._replace(span=self._relative_span(note.span)) for note in finding.notes)
         return finding.with_changes(span=self._relative_span(finding.span), notes=notes)

@@ -102,7 +102,7 @@ class ElementRule:
         get: the function that returns the value to write from the parent's object, if this is not simply the field.
         default: the default of an absent element: an object, or the tuple of values for the fields of the parent's
             object.
-        owns: whether messages about the contents of the element name this element, as for the colour of a material.
+        owns: whether messages about the contents of the element name this element, as for the color of a material.
         keeps: whether an element with unreadable parts still results in an object, with defaults for these parts. An
             unreadable part that may occur many times is `UNREADABLE`.
         nests: whether the element may contain elements of its own kind.

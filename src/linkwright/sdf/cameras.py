@@ -25,7 +25,7 @@ class ImageFormat:
 
 @dataclass(frozen=True, slots=True)
 class Clip:
-    """The near and the far clipping distance, in metres."""
+    """The near and the far clipping distance, in meters."""
 
     near: float = 0.1
     far: float = 100.0
@@ -48,7 +48,7 @@ class Distortion:
 
 @dataclass(frozen=True, slots=True)
 class Intrinsics:
-    """The focal lengths and the image centre in pixels, and the skew."""
+    """The focal lengths and the image center in pixels, and the skew."""
 
     fx: float = 277.0
     fy: float = 277.0
@@ -67,7 +67,7 @@ class Camera:
         horizontal_fov: the horizontal field of view, in radians.
         image: the size and format of the image.
         clip: the minimum and the maximum distance at which the camera sees objects.
-        noise: the noise on each colour value; colour values are from 0 to 1.
+        noise: the noise on each color value; color values are from 0 to 1.
         distortion: the distortion of the lens; None for a lens without distortion.
         intrinsics: the intrinsics, which override the field of view; None to compute them from the field of view.
         depth_clip: the range of a depth camera; None to use `clip`.
@@ -147,7 +147,7 @@ CAMERA = ElementRule(
             value("k3", NUMBER, "the third radial coefficient", default="0"),
             value("p1", NUMBER, "the first tangential coefficient", default="0"),
             value("p2", NUMBER, "the second tangential coefficient", default="0"),
-            value("center", VECTOR2, "the centre of distortion, as fractions of the image size", default="0.5 0.5"),
+            value("center", VECTOR2, "the center of distortion, as fractions of the image size", default="0.5 0.5"),
         ),
         object_rule(
             _Lens,

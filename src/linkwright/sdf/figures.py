@@ -40,7 +40,7 @@ def actor_model(actor: Actor, hips: Vector3 | None = (0.0, 0.0, 0.0)) -> Model:
 
     Args:
         actor: the actor to display.
-        hips: the position of the skeleton's first joint in the mesh of the skin, in metres of the mesh; Gazebo puts
+        hips: the position of the skeleton's first joint in the mesh of the skin, in meters of the mesh; Gazebo puts
             this joint at the pose of the actor. None if the skin does not exist: a plain figure of a person's size
             replaces the skin.
     """

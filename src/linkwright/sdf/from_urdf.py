@@ -36,7 +36,7 @@ _LUMP_SEPARATOR = "_fixed_joint_lump__"
 _TINY_INERTIAL = Inertial(1e-6, inertia=Inertia(1e-9, 1e-9, 1e-9))
 """The mass properties of a massless link that is fixed to links with mass. Without them, SDF assumes 1 kg."""
 _BRIGHTNESS_FACTOR = 1.25
-"""The factor that brightens URDF colours, because gz renders them darker than RViz does."""
+"""The factor that brightens URDF colors, because gz renders them darker than RViz does."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -331,7 +331,7 @@ def _shape(geometry: urdf.Geometry) -> shapes.Shape:
 def _material(urdf_material: urdf.Material | None, extension: Material | None) -> Material | None:
     """Return the material of a visual, or None if there is none.
 
-    The colours and scripts of ``<gazebo>`` take precedence over the URDF material.
+    The colors and scripts of ``<gazebo>`` take precedence over the URDF material.
     """
     if (
         extension is not None

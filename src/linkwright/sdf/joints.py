@@ -103,7 +103,7 @@ class Joint:
         pose: the pose of the joint, in the frame of its child unless it names another frame.
         axis: the first axis; None for a joint without axes.
         axis2: the second axis; None if the joint type has fewer than two axes.
-        thread_pitch: for a screw joint, in metres per revolution (``screw_thread_pitch``); None if not given.
+        thread_pitch: for a screw joint, in meters per revolution (``screw_thread_pitch``); None if not given.
         gearbox_ratio: for a gearbox, the revolutions of the child, in the opposite direction, per revolution of the
             parent.
         gearbox_reference_body: for a gearbox, the link relative to which parent and child rotate.
@@ -158,7 +158,7 @@ def _joint(
     screw_thread_pitch: float | None, thread_pitch: float | None, physics: _Physics | None, **parts: Any
 ) -> Joint:
     if screw_thread_pitch is None and thread_pitch is not None:
-        # The older tag <thread_pitch> is in radians per metre, with the opposite sign.
+        # The older tag <thread_pitch> is in radians per meter, with the opposite sign.
         screw_thread_pitch = -6.283185307179586 / thread_pitch if thread_pitch else None
     is_force_measured = physics is not None and (
         physics.provide_feedback or bool(physics.ode and physics.ode.provide_feedback)
@@ -254,7 +254,7 @@ JOINT = ElementRule(
         value(
             "screw_thread_pitch",
             NUMBER,
-            "the pitch of a screw, in metres per revolution",
+            "the pitch of a screw, in meters per revolution",
             "m",
             get=lambda joint: joint.thread_pitch,
         ),

@@ -18,7 +18,7 @@ from linkwright.xmltree import Element
 class Attenuation:
     """The decrease of light with distance.
 
-    At d metres, the factor is 1 / (constant + linear d + quadratic d^2). Beyond `range`, in metres, there is no light.
+    At d meters, the factor is 1 / (constant + linear d + quadratic d^2). Beyond `range`, in meters, there is no light.
     """
 
     range: float = 10.0
@@ -46,13 +46,13 @@ class Light:
     Attributes:
         type: ``point``, ``directional`` or ``spot``.
         pose: the pose in the frame of the light's world or link, unless it names another frame.
-        diffuse: the colour of the light.
-        specular: the colour of highlights.
+        diffuse: the color of the light.
+        specular: the color of highlights.
         direction: the direction of the rays in the light's own frame, for spot and directional lights.
         attenuation: the decrease of the light with distance.
         spot: the cone of a spot light; None for other types.
         cast_shadows: whether lit objects cast shadows.
-        intensity: the factor by which the colour is multiplied.
+        intensity: the factor by which the color is multiplied.
         light_on: whether the light is switched on.
     """
 
@@ -79,8 +79,8 @@ LIGHT = ElementRule(
     ),
     (
         POSE,
-        value("diffuse", COLOR, "the colour", default="1 1 1 1"),
-        value("specular", COLOR, "the colour of highlights", default="0.1 0.1 0.1 1"),
+        value("diffuse", COLOR, "the color", default="1 1 1 1"),
+        value("specular", COLOR, "the color of highlights", default="0.1 0.1 0.1 1"),
         value("direction", VECTOR3, "the direction of the rays in the frame of the light", default="0 0 -1"),
         object_rule(
             Attenuation,
@@ -101,7 +101,7 @@ LIGHT = ElementRule(
             value("falloff", NUMBER, "the decrease of light between the two angles", default="0"),
         ),
         value("cast_shadows", TRUTH, "whether lit objects cast shadows", default="false"),
-        value("intensity", NUMBER, "the factor for the colour", default="1"),
+        value("intensity", NUMBER, "the factor for the color", default="1"),
         value("light_on", TRUTH, "whether the light is switched on", default="true"),
     ),
     many=True,

@@ -21,7 +21,7 @@ from linkwright.xmltree import Element
 
 @dataclass(frozen=True, slots=True)
 class Inertia:
-    """The inertia tensor about the centre of mass, in kg m2.
+    """The inertia tensor about the center of mass, in kg m2.
 
     Its axes are those of the inertial frame.
     """
@@ -40,7 +40,7 @@ class Inertial:
 
     Attributes:
         mass: the mass in kg.
-        pose: the centre of mass and the axes of the inertia tensor, in the frame of the link.
+        pose: the center of mass and the axes of the inertia tensor, in the frame of the link.
         inertia: the inertia tensor.
         auto: whether the mass properties are computed from the collisions and their densities (SDF 1.11).
         density: the density in kg/m3 for `auto`; None for the density of each collision.
@@ -151,7 +151,7 @@ INERTIAL = ElementRule(
         object_rule(
             Inertia,
             "inertia",
-            "the inertia tensor about the centre of mass, in the axes of the inertial frame",
+            "the inertia tensor about the center of mass, in the axes of the inertial frame",
             *_TENSOR,
             default=Inertia(),
         ),

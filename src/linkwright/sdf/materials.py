@@ -1,4 +1,4 @@
-"""The element ``<material>``: colours, textures and shaders.
+"""The element ``<material>``: colors, textures and shaders.
 
 Source of the elements and defaults: the SDFormat specification 1.12, ``material.sdf``.
 """
@@ -75,18 +75,18 @@ class Shader:
 class Material:
     """The material of a visual.
 
-    Missing colours and images are None.
+    Missing colors and images are None.
 
     Attributes:
-        ambient: the colour under ambient light.
-        diffuse: the colour under direct light.
-        specular: the colour of highlights.
-        emissive: the colour of emitted light.
+        ambient: the color under ambient light.
+        diffuse: the color under direct light.
+        specular: the color of highlights.
+        emissive: the color of emitted light.
         shininess: the specular exponent; higher values make highlights narrower.
         lighting: whether lights affect the material.
         double_sided: whether the surface is also visible from inside.
         render_order: the drawing order of overlapping surfaces; the highest is drawn on top.
-        script: a material from a script, which overrides the colours in Gazebo classic.
+        script: a material from a script, which overrides the colors in Gazebo classic.
         pbr: a physically based material, which overrides everything else in gz-sim.
     """
 
@@ -120,10 +120,10 @@ MATERIAL = object_rule(
     Material,
     "material",
     "the material of a visual",
-    value("ambient", COLOR, "the colour under ambient light"),
-    value("diffuse", COLOR, "the colour under direct light"),
-    value("specular", COLOR, "the colour of highlights"),
-    value("emissive", COLOR, "the emitted colour"),
+    value("ambient", COLOR, "the color under ambient light"),
+    value("diffuse", COLOR, "the color under direct light"),
+    value("specular", COLOR, "the color of highlights"),
+    value("emissive", COLOR, "the emitted color"),
     value("shininess", NUMBER, "the specular exponent", default="0"),
     value("lighting", TRUTH, "whether lights affect the material", default="true"),
     value("double_sided", TRUTH, "whether the surface is also visible from inside", default="false"),
@@ -160,7 +160,7 @@ MATERIAL = object_rule(
         object_rule(
             Workflow,
             "specular",
-            "a material with specular colour and glossiness",
+            "a material with specular color and glossiness",
             *_COMMON_IMAGE_RULES,
             _image_rule("specular_map", "the specular map"),
             _image_rule("glossiness_map", "the glossiness map"),

@@ -28,7 +28,7 @@ class Optics:
     Attributes:
         width, height: the size of the image in pixels.
         fx, fy: the focal lengths in pixels.
-        cx, cy: the principal point in pixels; the centre of the first pixel is at 0.5.
+        cx, cy: the principal point in pixels; the center of the first pixel is at 0.5.
         near, far: the limits of the visible distance along the optical axis, in m.
         distortion: the distortion of the lens; None for a lens without distortion.
     """

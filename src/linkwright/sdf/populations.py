@@ -33,7 +33,7 @@ _GOLDEN_ANGLE = pi * (3 - sqrt(5))
 class Distribution:
     """The distribution of models.
 
-    `rows`, `columns` and `step` (in metres) apply only to a grid.
+    `rows`, `columns` and `step` (in meters) apply only to a grid.
     """
 
     type: str = "random"
@@ -47,7 +47,7 @@ class Population:
     """A model and the distribution of its copies.
 
     Attributes:
-        pose: the pose of the centre of the box or grid, or of the centre of the cylinder's base.
+        pose: the pose of the center of the box or grid, or of the center of the cylinder's base.
         models: the repeated model; only the first is used.
         count: the number of copies, unless the copies form a grid.
         box: the box that contains the copies; None if there is no box.
@@ -86,7 +86,7 @@ def models_of(population: Population) -> Iterator[Model]:
 
 
 def _offset_from_corner(population: Population) -> Vector3:
-    """Return the offset in metres from the first corner of a volume to its pose.
+    """Return the offset in meters from the first corner of a volume to its pose.
 
     Gazebo does not rotate this offset.
     """

@@ -54,7 +54,7 @@ def _read(values: dict[str, Any], element: Element, owner: Element, report: Repo
 
 POSE = ElementRule(
     "pose",
-    "the pose: x y z in metres, roll pitch yaw about the fixed axes in radians",
+    "the pose: x y z in meters, roll pitch yaw about the fixed axes in radians",
     (
         AttributeRule(
             "relative_to",

@@ -41,13 +41,13 @@ def described(element: Element) -> Phrase:
 class SdfReport(Findings):
     """A report that collects the findings on one document, and formulates their messages."""
 
-    __slots__ = ("_misspelt", "is_of_classic")
+    __slots__ = ("_misspelled", "is_of_classic")
 
     def __init__(self) -> None:
         super().__init__(NEWEST)
         self.is_of_classic = False
         """Whether the SDF version is older than 1.7. Gazebo classic accepts more than newer libsdformat."""
-        self._misspelt: list[Element] = []
+        self._misspelled: list[Element] = []
 
     def missing_attribute(self, element: Element, rule: ElementRule, attribute: AttributeRule, owner: Element) -> None:
         """Report a missing required attribute, or an empty element whose text is required."""
@@ -107,15 +107,15 @@ class SdfReport(Findings):
         """Report a missing required child element."""
         candidates = [child for child in element.elements() if child.tag not in rule.child_rules]
         similar_tags = nearest(child.tag, [candidate.tag for candidate in candidates], limit=1)
-        misspelt = next((candidate for candidate in candidates if candidate.tag in similar_tags), None)
+        misspelled = next((candidate for candidate in candidates if candidate.tag in similar_tags), None)
         hint = phrase("add <{tag}>...</{tag}>", tag=child.tag)
-        if misspelt is not None:
-            hint = phrase("did you mean '{name}' instead of '{similar}'?", name=child.tag, similar=misspelt.tag)
-            self._misspelt.append(misspelt)
+        if misspelled is not None:
+            hint = phrase("did you mean '{name}' instead of '{similar}'?", name=child.tag, similar=misspelled.tag)
+            self._misspelled.append(misspelled)
         self.error(
             "SDF130",
             phrase("{element} has no <{tag}>", element=described(element), tag=child.tag),
-            misspelt or element,
+            misspelled or element,
             hint=hint,
         )
 
@@ -130,18 +130,18 @@ class SdfReport(Findings):
     def unknown_elements(self, elements: Sequence[Element], rule: ElementRule, harmless: Sequence[bool]) -> None:
         """Report the child elements of one parent that have no rule.
 
-        Misspelt, misplaced and harmless elements are reported separately, and all others in one finding.
+        Misspelled, misplaced and harmless elements are reported separately, and all others in one finding.
 
         Args:
             elements: the child elements without a rule.
             rule: the rule of the parent.
             harmless: for each element, whether reading it would make no difference; such an element is reported as
-                information, unless it is misspelt.
+                information, unless it is misspelled.
         """
         known_tags = [child.tag for child in rule.children]
         unexplained: list[Element] = []
         for element, is_harmless in zip(elements, harmless, strict=True):
-            if any(element is child for child in self._misspelt):
+            if any(element is child for child in self._misspelled):
                 continue
             hint = did_you_mean(element.tag, known_tags)
             if hint is None and is_harmless:

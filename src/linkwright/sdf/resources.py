@@ -15,7 +15,7 @@ from typing import NamedTuple
 from urllib.parse import unquote, urlsplit
 
 from linkwright.diagnostics import LinkwrightError, Phrase, Severity, did_you_mean, joined, phrase, quoted
-from linkwright.diagnostics.misspellings import find_misspelt
+from linkwright.diagnostics.misspellings import find_misspelled
 from linkwright.packages import PackageFinder, enclosing_package
 from linkwright.packages.finder import shipped_folder
 from linkwright.packages.manifest import MANIFEST
@@ -120,7 +120,7 @@ class ResourceFinder:
         try:
             path = self._packages.resolve(address, beside)
         except LinkwrightError as error:
-            suggested_scheme = find_misspelt(scheme, _SCHEMES)
+            suggested_scheme = find_misspelled(scheme, _SCHEMES)
             hint = error.diagnostics[0].hint if suggested_scheme is None else did_you_mean(scheme, [suggested_scheme])
             return Missing(error.diagnostics[0].message, hint)
         return path if path.exists() else _no_file(path)
@@ -252,7 +252,7 @@ class ResourceFinder:
                 reason,
                 phrase("the folder that contains '{path}' is named '{name}'", path=path_in_model, name=folder_name),
             )
-        suggested_name = find_misspelt(name, self.models()) if len(name) >= _MIN_NAME_LENGTH else None
+        suggested_name = find_misspelled(name, self.models()) if len(name) >= _MIN_NAME_LENGTH else None
         if suggested_name is not None:
             return Missing(reason, did_you_mean(name, [suggested_name]))
         hint = phrase("add the folder that contains '{path}' to {variable}", path=name, variable=SEARCH_VARIABLES[0])

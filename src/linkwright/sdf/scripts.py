@@ -1,7 +1,7 @@
 """Reading of material scripts: Gazebo's built-in materials, and models' ``.material`` files.
 
-The renderer of Gazebo classic, Ogre, defines materials in a script language. Only the colours and the first image of a
-material are read here. Colours in the SDF file take precedence over the colours of the script.
+The renderer of Gazebo classic, Ogre, defines materials in a script language. Only the colors and the first image of a
+material are read here. Colors in the SDF file take precedence over the colors of the script.
 
 Source: ``gazebo.material`` of Gazebo classic, and Ogre's manual, "Material scripts".
 """
@@ -24,9 +24,9 @@ from linkwright.sdf.worlds import Sdf
 
 
 class Look(NamedTuple):
-    """The colours and the texture that a script defines for a material.
+    """The colors and the texture that a script defines for a material.
 
-    A colour is None if the script does not set it; without a texture, `image` is empty.
+    A color is None if the script does not set it; without a texture, `image` is empty.
     """
 
     ambient: Color | None = None
@@ -49,7 +49,7 @@ _BUILT_IN_LOOKS = {
     "BlueTransparent": _uniform_look(0, 0, 1, 0.5),
     "Bricks": _uniform_look(0.6, 0.35, 0.27),
     "CeilingTiled": _uniform_look(0.8, 0.8, 0.78),
-    "DarkGrey": _uniform_look(0.175, 0.175, 0.175),
+    "DarkGray": _uniform_look(0.175, 0.175, 0.175),
     "DarkYellow": _uniform_look(0.7, 0.7, 0),
     "FlatBlack": _uniform_look(0.1, 0.1, 0.1),
     "Gold": Look((0.4, 0.24869, 0.020759, 1.0), (0.8, 0.64869, 0.120759, 1.0), (0.4, 0.4, 0.4, 1.0)),
@@ -88,7 +88,7 @@ _BUILT_IN_LOOKS = {
     "YellowTransparent": _uniform_look(1, 1, 0, 0.5),
     "ZincYellow": _uniform_look(0.9725, 0.9529, 0.2078),
 }
-"""Gazebo's built-in materials by name without prefix. Textured materials have the approximate colour of their image."""
+"""Gazebo's built-in materials by name without prefix. Textured materials have the approximate color of their image."""
 _PREFIX = "Gazebo/"
 _MAX_SCRIPT_BYTES = 1_000_000
 """The maximum size of a script in bytes. The script with Gazebo's materials has 19 000."""
@@ -102,7 +102,7 @@ def gazebo_look(name: str) -> Look | None:
 
 
 def with_look(material: Material, look: Look) -> Material:
-    """Return a material with missing colours and a missing texture taken from a script's look."""
+    """Return a material with missing colors and a missing texture taken from a script's look."""
     pbr = material.pbr
     if look.image and pbr is None:
         pbr = Pbr(metal=Workflow(albedo_map=look.image))
@@ -117,7 +117,7 @@ def with_look(material: Material, look: Look) -> Material:
 
 
 def appearance(material: Material) -> tuple[Color | None, str]:
-    """Return the colour of a material or None, and the address of its colour image or ``""``.
+    """Return the color of a material or None, and the address of its color image or ``""``.
 
     Material scripts were read with the world. For a model from text, only Gazebo's own material names are known here.
     """
@@ -232,7 +232,7 @@ def _with_property(look: Look, keyword: str, values: list[str]) -> Look:
     if keyword in _COLORS and getattr(look, keyword) is None:
         with suppress(ValueError):
             numbers = [float(value) for value in values[:4]]
-            # In a specular colour, the last of four or five numbers is the shininess.
+            # In a specular color, the last of four or five numbers is the shininess.
             alpha = numbers[3] if len(numbers) == 4 and (keyword != "specular" or len(values) == 5) else 1.0
             if len(numbers) >= 3:
                 colors: dict[str, Any] = {keyword: (numbers[0], numbers[1], numbers[2], alpha)}

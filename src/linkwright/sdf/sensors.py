@@ -41,7 +41,7 @@ class Sweep:
 
 @dataclass(frozen=True, slots=True)
 class Reach:
-    """The minimum and maximum distance that a sensor measures, and the resolution, in metres."""
+    """The minimum and maximum distance that a sensor measures, and the resolution, in meters."""
 
     min: float = 0.0
     max: float = 0.0
@@ -93,7 +93,7 @@ class ContactSensor:
 
 @dataclass(frozen=True, slots=True)
 class Navsat:
-    """The noise of a satellite receiver: of positions in metres and of velocities in m/s."""
+    """The noise of a satellite receiver: of positions in meters and of velocities in m/s."""
 
     horizontal_position: Noise = NO_NOISE
     vertical_position: Noise = NO_NOISE
@@ -109,7 +109,7 @@ class ForceTorque:
         frame: the frame of the measurement: ``child``, ``parent`` or ``sensor``.
         measure_direction: ``child_to_parent`` or ``parent_to_child``.
         force: the noise in newtons.
-        torque: the noise in newton metres.
+        torque: the noise in newton meters.
     """
 
     frame: str = "child"
@@ -120,7 +120,7 @@ class ForceTorque:
 
 @dataclass(frozen=True, slots=True)
 class Altimeter:
-    """The noise of an altimeter: of the height in metres and of the vertical velocity in m/s."""
+    """The noise of an altimeter: of the height in meters and of the vertical velocity in m/s."""
 
     vertical_position: Noise = NO_NOISE
     vertical_velocity: Noise = NO_NOISE
@@ -128,7 +128,7 @@ class Altimeter:
 
 @dataclass(frozen=True, slots=True)
 class AirPressure:
-    """A barometer, with the altitude of the world's origin in metres and noise in pascals."""
+    """A barometer, with the altitude of the world's origin in meters and noise in pascals."""
 
     reference_altitude: float = 0.0
     noise: Noise = NO_NOISE
@@ -136,7 +136,7 @@ class AirPressure:
 
 @dataclass(frozen=True, slots=True)
 class Sonar:
-    """A sonar, with lengths in metres.
+    """A sonar, with lengths in meters.
 
     `geometry` is the shape of its beam, such as ``cone`` or ``sphere``.
     """
@@ -151,7 +151,7 @@ class Sonar:
 class LogicalCamera:
     """A sensor that reports the models in its field of view.
 
-    Distances are in metres, and the horizontal field of view is in radians.
+    Distances are in meters, and the horizontal field of view is in radians.
     """
 
     near: float = 0.0

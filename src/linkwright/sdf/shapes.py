@@ -1,4 +1,4 @@
-"""The element ``<geometry>``: the shapes of visuals and collisions, with lengths in metres.
+"""The element ``<geometry>``: the shapes of visuals and collisions, with lengths in meters.
 
 Source of the elements and defaults: the SDFormat specification 1.12, ``geometry.sdf`` and the files of each shape.
 """
@@ -37,16 +37,16 @@ class Plane:
 
 @dataclass(frozen=True, slots=True)
 class Ellipsoid:
-    """An ellipsoid centred at the origin, with its semi-axes along x, y and z in metres."""
+    """An ellipsoid centered at the origin, with its semi-axes along x, y and z in meters."""
 
     radii: Vector3 = (1.0, 1.0, 1.0)
 
 
 @dataclass(frozen=True, slots=True)
 class Cone:
-    """A cone along z with its tip at the top, centred at half its height.
+    """A cone along z with its tip at the top, centered at half its height.
 
-    Lengths are in metres.
+    Lengths are in meters.
     """
 
     radius: float = 0.5
@@ -55,7 +55,7 @@ class Cone:
 
 @dataclass(frozen=True, slots=True)
 class Submesh:
-    """A named part of a mesh file, centred at the origin if `center` is set."""
+    """A named part of a mesh file, centered at the origin if `center` is set."""
 
     name: str
     center: bool = False
@@ -72,7 +72,7 @@ class Mesh:
 
 @dataclass(frozen=True, slots=True)
 class TerrainTexture:
-    """A texture of a heightmap: its colour image, normal image and edge length in metres.
+    """A texture of a heightmap: its color image, normal image and edge length in meters.
 
     The images are URIs.
     """
@@ -100,7 +100,7 @@ class Heightmap:
     Attributes:
         uri: the address of the file; an image has 2^n + 1 pixels along each side.
         size: the extent along x and y, and the height between the lowest and the highest value.
-        position: the offset of the centre.
+        position: the offset of the center.
         textures: the textures, from the lowest to the highest.
         blends: the transitions between consecutive textures.
         sampling: the number of heights per pixel.
@@ -191,7 +191,7 @@ GEOMETRY = object_rule(
     object_rule(
         Box,
         "box",
-        "a box centred at the origin",
+        "a box centered at the origin",
         value("size", VECTOR3, "the edge lengths along x, y, z", "m", default="1 1 1", usual=True),
         get=_shape_if(Box),
     ),
@@ -200,16 +200,16 @@ GEOMETRY = object_rule(
     ),
     object_rule(Cone, "cone", "a cone along z with its tip at the top", _HALF, _LENGTH, get=_shape_if(Cone)),
     object_rule(
-        Cylinder, "cylinder", "a cylinder along z, centred at the origin", _RADIUS, _LENGTH, get=_shape_if(Cylinder)
+        Cylinder, "cylinder", "a cylinder along z, centered at the origin", _RADIUS, _LENGTH, get=_shape_if(Cylinder)
     ),
     object_rule(
         Ellipsoid,
         "ellipsoid",
-        "an ellipsoid centred at the origin",
+        "an ellipsoid centered at the origin",
         value("radii", VECTOR3, "the semi-axes along x, y, z", "m", default="1 1 1", usual=True),
         get=_shape_if(Ellipsoid),
     ),
-    object_rule(Sphere, "sphere", "a sphere centred at the origin", _RADIUS, get=_shape_if(Sphere)),
+    object_rule(Sphere, "sphere", "a sphere centered at the origin", _RADIUS, get=_shape_if(Sphere)),
     object_rule(
         Plane,
         "plane",
@@ -229,7 +229,7 @@ GEOMETRY = object_rule(
             "submesh",
             "a named part of the mesh file",
             value("name", TEXT, "the name of the part in the file", default=""),
-            value("center", TRUTH, "whether the part is centred at the origin", default="false"),
+            value("center", TRUTH, "whether the part is centered at the origin", default="false"),
         ),
         get=_shape_if(Mesh),
     ),
@@ -239,12 +239,12 @@ GEOMETRY = object_rule(
         "terrain with heights from an image",
         _URI,
         value("size", VECTOR3, "the extent along x, y and z", "m", default="1 1 1", usual=True),
-        value("pos", VECTOR3, "the offset of the centre", "m", default="0 0 0", field="position"),
+        value("pos", VECTOR3, "the offset of the center", "m", default="0 0 0", field="position"),
         object_rule(
             TerrainTexture,
             "texture",
             "a texture of the terrain; the first is the lowest",
-            value("diffuse", TEXT, "the address of the colour image", default=""),
+            value("diffuse", TEXT, "the address of the color image", default=""),
             value("normal", TEXT, "the address of the normal image", default=""),
             value("size", NUMBER, "the edge length of the texture", "m", default="10"),
             many=True,
@@ -267,7 +267,7 @@ GEOMETRY = object_rule(
         "image",
         "boxes wherever an image is bright",
         _URI,
-        value("scale", NUMBER, "the metres per pixel", "m", default="1"),
+        value("scale", NUMBER, "the meters per pixel", "m", default="1"),
         value("threshold", INTEGER, "the minimum brightness of a box, from 0 to 255", default="200"),
         value("height", NUMBER, "the height of the boxes", "m", default="1"),
         value("granularity", INTEGER, "the pixels per box along each side", default="1"),
@@ -277,7 +277,7 @@ GEOMETRY = object_rule(
         without_unreadable(Polyline),
         "polyline",
         "a polygon extruded along z; further polygons cut holes",
-        values("point", VECTOR2, "x and y of a corner in metres"),
+        values("point", VECTOR2, "x and y of a corner in meters"),
         value("height", NUMBER, "the height along z", "m", default="1", usual=True),
         many=True,
         get=lambda shape: shape if isinstance(shape, tuple) else (),

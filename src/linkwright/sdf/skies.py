@@ -26,7 +26,7 @@ class Fog:
     """Fog in a scene.
 
     Attributes:
-        color: the colour of the fog.
+        color: the color of the fog.
         type: ``none``; ``linear`` for fog from `start` to `end`; or ``constant`` or ``quadratic`` for fog by `density`,
             which Gazebo calls ``exp`` and ``exp2``.
         start: the distance in m at which linear fog begins.
@@ -54,7 +54,7 @@ FOG = object_rule(
     Fog,
     "fog",
     "fog",
-    value("color", COLOR, "the colour", default="1 1 1 1"),
+    value("color", COLOR, "the color", default="1 1 1 1"),
     value("type", TEXT, "the type: none, linear, constant or quadratic", default="none"),
     value("start", NUMBER, "the distance at which linear fog begins", "m", default="1"),
     value("end", NUMBER, "the distance beyond which linear fog hides everything", "m", default="100"),

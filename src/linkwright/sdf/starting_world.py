@@ -6,7 +6,7 @@ from xml.sax.saxutils import quoteattr
 
 _TEXT = """\
 <?xml version="1.0"?>
-<!-- Lengths are in metres, angles in radians, masses in kg. A pose is: x y z roll pitch yaw. -->
+<!-- Lengths are in meters, angles in radians, masses in kg. A pose is: x y z roll pitch yaw. -->
 <sdf version="1.6">
   <world name={name}>
 

@@ -46,7 +46,7 @@ class BulletFriction:
 
 @dataclass(frozen=True, slots=True)
 class TorsionalFriction:
-    """Friction against rotation about the contact normal, with radii in metres."""
+    """Friction against rotation about the contact normal, with radii in meters."""
 
     coefficient: float = 1.0
     use_patch_radius: bool = True
@@ -64,7 +64,7 @@ class Contact:
         kp: the stiffness in N/m.
         kd: the damping in N s/m.
         max_vel: the maximum speed at which an overlap is corrected, in m/s.
-        min_depth: the overlap in metres below which nothing is corrected.
+        min_depth: the overlap in meters below which nothing is corrected.
     """
 
     soft_cfm: float = 0.0

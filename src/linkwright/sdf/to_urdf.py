@@ -37,7 +37,7 @@ _UNBOUNDED = 1e16
 It is also written to URDF, which cannot express an unbounded limit.
 """
 _AMBIENT_INTENSITY, _DIFFUSE_INTENSITY = 0.4, 0.8
-"""The intensities of the light in a default Gazebo world, from which sdformat_urdf computes one colour."""
+"""The intensities of the light in a default Gazebo world, from which sdformat_urdf computes one color."""
 
 
 class _ConversionError(Exception):

@@ -13,7 +13,7 @@ _TRUE_TEXTS, _FALSE_TEXTS = ("true", "1"), ("false", "")
 _NEUTRAL_SCALE = 1.0
 _MAX_PARENTS = 3
 _HARMLESS_PAIRS = frozenset({("collision", "material")})
-"""Pairs of parent and child tags that no reader needs: a collision is never drawn, so its colour has no effect."""
+"""Pairs of parent and child tags that no reader needs: a collision is never drawn, so its color has no effect."""
 
 
 def allowed_parents(tag: str) -> tuple[str, ...]:

@@ -40,7 +40,7 @@ from linkwright.xmltree import Element
 class Scene:
     """The appearance of a world: ambient light, background, sky and fog.
 
-    Colours are red, green, blue and alpha from 0 to 1. `sky` and `fog` are None for a scene without them.
+    Colors are red, green, blue and alpha from 0 to 1. `sky` and `fog` are None for a scene without them.
     """
 
     ambient: Color = (0.4, 0.4, 0.4, 1.0)
@@ -57,7 +57,7 @@ class Scene:
 class SphericalCoordinates:
     """The position and heading on earth of a world's origin.
 
-    Latitude (to the north), longitude (to the east) and heading are in degrees. The elevation is in metres above the
+    Latitude (to the north), longitude (to the east) and heading are in degrees. The elevation is in meters above the
     ellipsoid.
     """
 
@@ -84,7 +84,7 @@ class Atmosphere:
 
 @dataclass(frozen=True, slots=True)
 class Road:
-    """A road through points, with a width in metres."""
+    """A road through points, with a width in meters."""
 
     name: str = ""
     width: float = 1.0
@@ -96,7 +96,7 @@ class Road:
 class World:
     """A world.
 
-    Lengths are in metres, gravity in m/s2, the magnetic field in tesla and wind in m/s.
+    Lengths are in meters, gravity in m/s2, the magnetic field in tesla and wind in m/s.
 
     Attributes:
         gravity: the gravity; None if the world does not set it (`gravity_of` then returns the effective gravity).
@@ -192,7 +192,7 @@ WORLD = ElementRule(
             "scene",
             "the appearance of the world",
             value("ambient", COLOR, "the ambient light", default="0.4 0.4 0.4 1"),
-            value("background", COLOR, "the background colour", default="0.7 0.7 0.7 1"),
+            value("background", COLOR, "the background color", default="0.7 0.7 0.7 1"),
             value("shadows", TRUTH, "whether there are shadows", default="true"),
             value("grid", TRUTH, "whether a grid is drawn", default="true"),
             value("origin_visual", TRUTH, "whether the origin is drawn", default="true"),

@@ -28,7 +28,7 @@ PROGRAMS = {
 }
 """The Python module of each command, with the first argument of the module or None.
 
-For years, urdfdom spelt a command ``urdf_to_graphiz``. It still installs this name next to the correct one.
+For years, urdfdom spelled a command ``urdf_to_graphiz``. It still installs this name next to the correct one.
 """
 
 

@@ -16,7 +16,7 @@ from types import ModuleType
 from typing import Any
 
 from linkwright.diagnostics import LinkwrightError, did_you_mean, phrase
-from linkwright.messages import catalogue
+from linkwright.messages import catalog
 from linkwright.messages.classes import get_interface
 from linkwright.messages.definitions.interfaces import KINDS, is_package_name, snake_case
 from linkwright.messages.definitions.library import LIBRARY
@@ -98,7 +98,7 @@ def _interfaces(package: str, kind: str) -> list[str]:
 
     Packages that are part of Linkwright are not searched for on disk.
     """
-    shipped_names = [name.rpartition("/")[2] for name in catalogue.texts(package) if name.startswith(kind + "/")]
+    shipped_names = [name.rpartition("/")[2] for name in catalog.texts(package) if name.startswith(kind + "/")]
     return sorted(shipped_names) or [name.rpartition("/")[2] for name in LIBRARY.names(kind, package)]
 
 

@@ -103,7 +103,7 @@ def copyright_headers(argv: Sequence[str] | None = None) -> int:
         if header and not _COPYRIGHT.search(header):
             findings.append(f"{path}: could not find copyright notice")
         elif header and not _LICENSE.search(header):
-            findings.append(f"{path}: could not find a licence that is known")
+            findings.append(f"{path}: could not find a license that is known")
     print("\n".join([*findings, f"{len(findings)} errors, checked {len(files)} files"]))
     return int(bool(findings))
 

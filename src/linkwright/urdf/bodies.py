@@ -82,16 +82,16 @@ class Bodies:
 
     @cached_property
     def _links_including_massless(self) -> frozenset[str]:
-        """The names of links with mass whose neighbours include a massless link with a shape.
+        """The names of links with mass whose neighbors include a massless link with a shape.
 
-        Neighbours are connected by fixed joints, possibly through massless links without a shape.
+        Neighbors are connected by fixed joints, possibly through massless links without a shape.
         """
         links = self._robot.links if self._robot is not None else {}
-        neighbours: dict[str, list[str]] = {name: [] for name in links}
+        neighbors: dict[str, list[str]] = {name: [] for name in links}
         for joint in self._robot.joints.values() if self._robot is not None else ():
             if joint.type == "fixed" and joint.parent in links and joint.child in links:
-                neighbours[joint.parent].append(joint.child)
-                neighbours[joint.child].append(joint.parent)
+                neighbors[joint.parent].append(joint.child)
+                neighbors[joint.child].append(joint.parent)
         massless_links = {name for name, link in links.items() if not _has_mass(link)}
         names: set[str] = set()
         visited: set[str] = set()
@@ -102,14 +102,12 @@ class Bodies:
             group = [name]
             for member in group:
                 unvisited = [
-                    neighbour
-                    for neighbour in neighbours[member]
-                    if neighbour in massless_links and neighbour not in visited
+                    neighbor for neighbor in neighbors[member] if neighbor in massless_links and neighbor not in visited
                 ]
                 visited.update(unvisited)
                 group += unvisited
             if any(links[item].visuals or links[item].collisions for item in group):
-                names.update(other for item in group for other in neighbours[item] if other not in massless_links)
+                names.update(other for item in group for other in neighbors[item] if other not in massless_links)
         return frozenset(names)
 
     @cached_property

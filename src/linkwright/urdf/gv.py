@@ -10,7 +10,7 @@ from linkwright.urdf.tree import parent_joints, walk
 def to_gv(robot: Robot) -> str:
     """Return Graphviz text with links as boxes and joints as ellipses.
 
-    Labels contain xyz in metres and rpy in radians. Numbers have six significant digits, as C++ streams print them. The
+    Labels contain xyz in meters and rpy in radians. Numbers have six significant digits, as C++ streams print them. The
     angles are converted back from the quaternion, as in urdfdom.
     """
     lines = ["digraph G {", "node [shape=box];", f'"{robot.root}" [label="{robot.root}"];']

@@ -1,6 +1,6 @@
 """The robot model: the typed contents of a URDF file.
 
-Units are SI: metres, radians, kilograms, seconds, newtons. Every pose is the pose of a child frame in its parent
+Units are SI: meters, radians, kilograms, seconds, newtons. Every pose is the pose of a child frame in its parent
 frame. Every part stores its XML element with its position in the file, even if the file was expanded by
 xacro. The sources are the XML specification of the ROS package ``urdf``, and urdfdom's interpretation of it.
 """
@@ -40,9 +40,9 @@ Geometry = SimpleShape | Mesh
 
 @dataclass(frozen=True, slots=True)
 class Material:
-    """A material with a colour, a texture URI, or both.
+    """A material with a color, a texture URI, or both.
 
-    The colour is red, green, blue, alpha, each from 0 to 1. Colour and texture are None in a reference to a material by
+    The color is red, green, blue, alpha, each from 0 to 1. Color and texture are None in a reference to a material by
     name.
     """
 
@@ -81,7 +81,7 @@ class Collision:
 class Inertial:
     """The mass properties of a link.
 
-    These are the mass in kg, the pose of the centre of mass in the link frame, and the inertia tensor about the centre
+    These are the mass in kg, the pose of the center of mass in the link frame, and the inertia tensor about the center
     of mass in kg m2.
     """
 
@@ -194,7 +194,7 @@ class Joint:
     """A joint between a parent link and a child link.
 
     `origin` is the pose of the joint frame in the parent link's frame. `axis` is given in the joint frame, and is not
-    normalised.
+    normalized.
     """
 
     name: str

@@ -8,7 +8,7 @@ link, but without this part and without the parts after it, in the order inertia
 does the same, and reports all errors.
 
 If a material is defined several times, the first definition applies. Definitions at robot level take precedence over
-definitions in links, even over the colour in the visual. A definition in a later link does not apply to an earlier
+definitions in links, even over the color in the visual. A definition in a later link does not apply to an earlier
 link.
 """
 
@@ -115,7 +115,7 @@ class MaterialTable:
     def define(self, element: Element, robot: Element) -> None:
         """Add a material at robot level.
 
-        A material without colour and texture is black.
+        A material without color and texture is black.
         """
         findings = self._findings
         material = read_material(element, robot, findings) or Material("", element=element)
@@ -124,7 +124,7 @@ class MaterialTable:
             if color is None or "rgba" not in color.attributes:
                 findings.error(
                     "URDF162",
-                    phrase("material '{name}' has neither a colour nor a texture, so it is black", name=material.name),
+                    phrase("material '{name}' has neither a color nor a texture, so it is black", name=material.name),
                     color or element,
                     hint=phrase('add <color rgba="0.8 0.8 0.8 1"/>'),
                 )
@@ -158,7 +158,7 @@ class MaterialTable:
             assert element is not None
             color = element.first("color")
             if color is not None and "rgba" in color.attributes:
-                continue  # the malformed colour of this material is reported already
+                continue  # the malformed color of this material is reported already
             later_definition = self.materials.get(material.name)
             if later_definition is not None:
                 hint = phrase("a later link defines it: move the definition to robot level")

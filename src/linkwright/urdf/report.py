@@ -215,7 +215,7 @@ class UrdfReport(Findings):
     def malformed(self, element: Element, rule: ElementRule, attribute: AttributeRule, owner: Element) -> Any:
         """Report a malformed attribute, and return the value to use instead, or `UNREADABLE`.
 
-        A colour with a wrong count of numbers becomes black, and any other malformed colour becomes None. Other
+        A color with a wrong count of numbers becomes black, and any other malformed color becomes None. Other
         attributes are unreadable.
         """
         name, value = attribute.name, element.attributes[attribute.name]
@@ -270,13 +270,13 @@ class UrdfReport(Findings):
         """
         candidates = [child for child in element.elements() if child.tag not in rule.child_rules]
         similar_tags = nearest(child.tag, [candidate.tag for candidate in candidates], limit=1)
-        misspelt_child = next((candidate for candidate in candidates if candidate.tag in similar_tags), None)
+        misspelled_child = next((candidate for candidate in candidates if candidate.tag in similar_tags), None)
         hint = phrase(
             "add <{tag}/>: {meaning}", tag=f"{child.tag}{_usual_attributes(child)}", meaning=term(child.meaning)
         )
-        if misspelt_child is not None:
+        if misspelled_child is not None:
             hint = phrase(
-                "did you mean '{name}' instead of '{given_name}'?", name=child.tag, given_name=misspelt_child.tag
+                "did you mean '{name}' instead of '{given_name}'?", name=child.tag, given_name=misspelled_child.tag
             )
         owner_text = owner_name(owner)
         if kind:
@@ -284,7 +284,7 @@ class UrdfReport(Findings):
         elif rule.tag not in ("link", "joint"):
             owner_text = phrase("<{tag}> of {owner}", tag=rule.tag, owner=owner_text)
         message = phrase("{owner} has no <{tag}>", owner=owner_text, tag=child.tag)
-        self.error("URDF130", message, misspelt_child or element, hint=hint)
+        self.error("URDF130", message, misspelled_child or element, hint=hint)
 
     def empty_choice(self, element: Element, rule: ElementRule, owner: Element) -> None:
         """Report that a geometry does not contain a shape."""
@@ -310,7 +310,7 @@ class UrdfReport(Findings):
             hint = None
             if all(0 <= part <= 255 for part in values):
                 scaled = [f"{part / 255:.3g}" if part > 1 else f"{part:g}" for part in values]
-                hint = phrase("colours range from 0 to 1, not to 255: write '{scaled}'", scaled=" ".join(scaled))
+                hint = phrase("colors range from 0 to 1, not to 255: write '{scaled}'", scaled=" ".join(scaled))
             message = phrase("'rgba' of {owner} has a number outside 0 to 1: '{text}'", owner=owner, text=text)
             self.error("URDF123", message, color, "rgba", hint=hint)
             return None

@@ -57,7 +57,7 @@ _UNSIGNED = ("effort", "velocity", "acceleration", "deceleration", "jerk")
 def pose_of(xyz: Vector3, rpy: Vector3, quaternion: Quaternion | None) -> Pose:
     """Return the pose of an ``<origin>``.
 
-    A quaternion takes precedence over `rpy`. It is normalised, and a zero quaternion is the identity.
+    A quaternion takes precedence over `rpy`. It is normalized, and a zero quaternion is the identity.
     """
     if quaternion is None:
         return Pose(xyz, rpy)
@@ -194,20 +194,20 @@ _RADIUS = _number("radius", "radius", "m", required=True)
 SHAPES = (
     ElementRule(
         "box",
-        "a box centred at the origin",
+        "a box centered at the origin",
         (AttributeRule("size", VECTOR3, "edge lengths along x, y, z", "m", required=True),),
         make=Box,
     ),
     ElementRule(
         "cylinder",
-        "a cylinder along z, centred at the origin",
+        "a cylinder along z, centered at the origin",
         (_RADIUS, _number("length", "length along z", "m", required=True)),
         make=Cylinder,
     ),
-    ElementRule("sphere", "a sphere centred at the origin", (_RADIUS,), make=Sphere),
+    ElementRule("sphere", "a sphere centered at the origin", (_RADIUS,), make=Sphere),
     ElementRule(
         "capsule",
-        "a cylinder along z with a half sphere at each end, centred at the origin",
+        "a cylinder along z with a half sphere at each end, centered at the origin",
         (_RADIUS, _number("length", "length of the cylindrical part", "m", required=True)),
         since=(1, 1),
         make=Capsule,
@@ -234,10 +234,10 @@ GEOMETRY = ElementRule(
 
 MATERIAL = ElementRule(
     "material",
-    "a colour, a texture, or the name of a material defined elsewhere",
+    "a color, a texture, or the name of a material defined elsewhere",
     (AttributeRule("name", TEXT, "the name by which others refer to it", required=True),),
     (
-        ElementRule("color", "the colour", (AttributeRule("rgba", RGBA, "red, green, blue, alpha"),), default=(None,)),
+        ElementRule("color", "the color", (AttributeRule("rgba", RGBA, "red, green, blue, alpha"),), default=(None,)),
         ElementRule(
             "texture", "an image", (AttributeRule("filename", TEXT, "its URI", field="texture"),), default=(None,)
         ),
@@ -257,7 +257,7 @@ INERTIAL = ElementRule(
         ),
         ElementRule(
             "inertia",
-            "the inertia tensor about the centre of mass, in the axes of the inertial frame",
+            "the inertia tensor about the center of mass, in the axes of the inertial frame",
             tuple(
                 _number(name, f"the {name[1:]} component", "kg m2", required=True)
                 for name in ("ixx", "ixy", "ixz", "iyy", "iyz", "izz")

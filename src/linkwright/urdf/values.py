@@ -37,8 +37,8 @@ _UNITS = {
     "°": (phrase("angles are in radians"), 0.017453292519943295),
     "rad": (phrase("leave out the unit"), 1.0),
     "m": (phrase("leave out the unit"), 1.0),
-    "mm": (phrase("lengths are in metres"), 0.001),
-    "cm": (phrase("lengths are in metres"), 0.01),
+    "mm": (phrase("lengths are in meters"), 0.001),
+    "cm": (phrase("lengths are in meters"), 0.01),
     "kg": (phrase("leave out the unit"), 1.0),
     "g": (phrase("masses are in kilograms"), 0.001),
 }

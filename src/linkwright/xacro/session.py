@@ -295,7 +295,7 @@ class Session:
     # findings
 
     def warn_of_unused_arguments(self) -> None:
-        """Warn about passed arguments that no file declares or uses, because they may be misspelt."""
+        """Warn about passed arguments that no file declares or uses, because they may be misspelled."""
         self.current_node = self.frame = None
         for name in self.arguments:
             if name not in self.known_arguments:

@@ -15,7 +15,7 @@ from linkwright.loading.lean_dataclasses import NamedTuple
 
 UTF_8 = "utf-8"
 _POINTER_CHECK_LENGTH = 100
-"""The number of characters that suffice to recognise a Git LFS pointer."""
+"""The number of characters that suffice to recognize a Git LFS pointer."""
 _DECLARED_ENCODING = (
     rb"""^\s*<\?xml[^>]*?\bencoding\s*=\s*["']([A-Za-z][A-Za-z0-9._-]*)["']"""  # compiled only when needed
 )

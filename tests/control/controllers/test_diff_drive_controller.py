@@ -36,11 +36,11 @@ def command(stand, *velocity: float, at: int = 0) -> None:
     stand.say("geometry_msgs/msg/TwistStamped", f"/{NAME}/cmd_vel", stamped(at, *velocity))
 
 
-def test_it_is_found_by_its_type():
+def test_controller_is_found_by_type():
     assert controller_class("diff_drive_controller/DiffDriveController") is DiffDriveController
 
 
-async def test_a_command_turns_the_wheels(wheels):
+async def test_command_turns_wheels(wheels):
     controller = wheels.start(DiffDriveController, NAME, **ROBOT)
     await wheels.step(controller)
     assert speeds(wheels) == [0.0, 0.0]
@@ -49,7 +49,7 @@ async def test_a_command_turns_the_wheels(wheels):
     assert speeds(wheels) == pytest.approx([9.0, 11.0])
 
 
-async def test_multipliers_correct_the_sizes_of_wheels(wheels):
+async def test_multipliers_correct_wheel_dimensions(wheels):
     more = {
         "wheel_separation_multiplier": 2.0,
         "left_wheel_radius_multiplier": 0.5,
@@ -61,7 +61,7 @@ async def test_multipliers_correct_the_sizes_of_wheels(wheels):
     assert speeds(wheels) == pytest.approx([0.8 / 0.05, 1.2 / 0.2])
 
 
-async def test_all_wheels_of_a_side_turn_alike_and_their_mean_is_measured(stand):
+async def test_wheels_of_one_side_turn_equally_and_are_averaged(stand):
     for joint in ("fl", "rl", "fr", "rr"):
         stand.joint(joint, commands=("velocity",), position=0.0, velocity=0.0)
     four = ROBOT | {"left_wheel_names": ["fl", "rl"], "right_wheel_names": ["fr", "rr"], "publish_rate": 100.0}
@@ -78,7 +78,7 @@ async def test_all_wheels_of_a_side_turn_alike_and_their_mean_is_measured(stand)
 
 
 @pytest.mark.parametrize("feedback", [True, False], ids=["positions", "velocities"])
-async def test_odometry_is_the_arc_that_was_driven(wheels, feedback):
+async def test_odometry_matches_driven_arc(wheels, feedback):
     controller = wheels.start(DiffDriveController, NAME, **ROBOT, position_feedback=feedback, cmd_vel_timeout=60.0)
     heard = wheels.heard("nav_msgs/msg/Odometry", f"/{NAME}/odom")
     transforms = wheels.heard("tf2_msgs/msg/TFMessage", "/tf")
@@ -95,7 +95,7 @@ async def test_odometry_is_the_arc_that_was_driven(wheels, feedback):
     assert last.transform.translation.x == place.position.x
 
 
-async def test_wheels_may_stand_at_any_angle_when_it_begins(wheels):
+async def test_odometry_starts_at_zero_for_any_wheel_angle(wheels):
     wheels.states["left/position"].value = 100.0
     controller = wheels.start(DiffDriveController, NAME, **ROBOT, publish_rate=100.0)
     heard = wheels.heard("nav_msgs/msg/Odometry", f"/{NAME}/odom")
@@ -103,7 +103,7 @@ async def test_wheels_may_stand_at_any_angle_when_it_begins(wheels):
     assert heard[-1].pose.pose.position.x == 0.0
 
 
-async def test_odometry_in_open_loop_is_that_of_the_command_within_its_limits(wheels):
+async def test_open_loop_odometry_follows_limited_command(wheels):
     limits = {"linear": {"x": {"max_acceleration": 1.0}}}
     controller = wheels.start(DiffDriveController, NAME, **ROBOT, open_loop=True, cmd_vel_timeout=60.0, **limits)
     assert controller.states == []
@@ -115,7 +115,7 @@ async def test_odometry_in_open_loop_is_that_of_the_command_within_its_limits(wh
 
 
 @pytest.mark.parametrize("zero", [True, False], ids=["no time in the header", "time in the header"])
-async def test_a_command_holds_for_its_time_and_no_update_longer(wheels, zero):
+async def test_command_expires_after_timeout(wheels, zero):
     controller = wheels.start(DiffDriveController, NAME, **ROBOT, cmd_vel_timeout=0.25)
     await wheels.step(controller, 0.001)
     command(wheels, 1.0, at=0 if zero else wheels.time_ns + 1_000_000)
@@ -125,7 +125,7 @@ async def test_a_command_holds_for_its_time_and_no_update_longer(wheels, zero):
     assert speeds(wheels) == [0.0, 0.0]
 
 
-async def test_a_command_of_another_clock_does_not_hold_for_ever(wheels):
+async def test_command_with_stamp_of_other_clock_expires(wheels):
     controller = wheels.start(DiffDriveController, NAME, **ROBOT)
     command(wheels, 1.0, at=1_700_000_000_000_000_000)
     await wheels.step(controller)
@@ -134,7 +134,7 @@ async def test_a_command_of_another_clock_does_not_hold_for_ever(wheels):
     assert speeds(wheels) == [0.0, 0.0]
 
 
-async def test_a_command_that_is_too_old_when_it_comes_is_ignored_and_told(wheels):
+async def test_outdated_command_is_ignored_and_reported(wheels):
     controller = wheels.start(DiffDriveController, NAME, **ROBOT)
     await wheels.step(controller, count=100)
     command(wheels, 1.0, at=100_000_000)
@@ -147,7 +147,7 @@ async def test_a_command_that_is_too_old_when_it_comes_is_ignored_and_told(wheel
     )
 
 
-async def test_a_command_from_before_time_began_anew_is_forgotten(wheels):
+async def test_command_is_dropped_when_time_resets(wheels):
     controller = wheels.start(DiffDriveController, NAME, **ROBOT)
     await wheels.step(controller, count=100)
     command(wheels, 1.0)
@@ -158,7 +158,7 @@ async def test_a_command_from_before_time_began_anew_is_forgotten(wheels):
 
 
 @pytest.mark.parametrize("value", [nan, inf])
-async def test_a_command_that_is_no_number_stops_the_robot(wheels, value):
+async def test_command_that_is_not_a_number_stops_robot(wheels, value):
     controller = wheels.start(DiffDriveController, NAME, **ROBOT)
     command(wheels, 1.0, at=1)
     await wheels.step(controller)
@@ -168,7 +168,7 @@ async def test_a_command_that_is_no_number_stops_the_robot(wheels, value):
     assert warnings(wheels) == ["a velocity command that is not a finite number is rejected, and the drive stops"]
 
 
-async def test_commands_of_humble_may_have_no_header(wheels):
+async def test_humble_accepts_unstamped_commands(wheels):
     controller = wheels.start(DiffDriveController, NAME, **ROBOT, use_stamped_vel=False)
     wheels.say("geometry_msgs/msg/Twist", f"/{NAME}/cmd_vel_unstamped", twist(1.0))
     await wheels.step(controller)
@@ -185,7 +185,7 @@ LIMITS = {
 }
 
 
-async def test_limits_are_never_exceeded_and_published(wheels):
+async def test_limits_are_respected_and_limited_command_published(wheels):
     controller = wheels.start(DiffDriveController, NAME, **ROBOT, **LIMITS, publish_limited_velocity=True)
     heard = wheels.heard("geometry_msgs/msg/TwistStamped", f"/{NAME}/cmd_vel_out")
     for number in range(200):
@@ -201,7 +201,7 @@ async def test_limits_are_never_exceeded_and_published(wheels):
     assert controller.commands[0].value == pytest.approx((forward[-1] - turning[-1] * 0.2) / 0.1)
 
 
-async def test_limits_of_humble_that_are_off_are_off(wheels):
+async def test_disabled_humble_limits_are_ignored(wheels):
     off = {"has_velocity_limits": False, "max_velocity": 0.1, "has_jerk_limits": False, "max_jerk": 0.0}
     controller = wheels.start(DiffDriveController, NAME, **ROBOT, linear={"x": off | {"max_acceleration": 0.0}})
     command(wheels, 1.0)
@@ -209,7 +209,7 @@ async def test_limits_of_humble_that_are_off_are_off(wheels):
     assert speeds(wheels) == pytest.approx([10.0, 10.0])
 
 
-async def test_the_limits_of_jazzy_have_two_directions(wheels):
+async def test_jazzy_limits_differ_by_direction(wheels):
     limits = {
         "max_acceleration": 2.0,
         "max_deceleration": -4.0,
@@ -223,7 +223,7 @@ async def test_the_limits_of_jazzy_have_two_directions(wheels):
         assert speeds(wheels)[0] * 0.1 == pytest.approx(reached, abs=1e-9)
 
 
-async def test_another_controller_may_command_it(wheels):
+async def test_chained_mode_accepts_reference_interfaces(wheels):
     controller = wheels.start(DiffDriveController, NAME, **ROBOT)
     assert [reference.name for reference in controller.references] == ["base/linear/velocity", "base/angular/velocity"]
     controller.is_chained = True
@@ -234,7 +234,7 @@ async def test_another_controller_may_command_it(wheels):
     assert speeds(wheels) == pytest.approx([9.0, 11.0])
 
 
-async def test_it_stops_when_it_is_deactivated(wheels):
+async def test_deactivation_stops_wheels(wheels):
     controller = wheels.start(DiffDriveController, NAME, **ROBOT)
     command(wheels, 1.0, at=1)
     await wheels.step(controller)
@@ -249,7 +249,7 @@ async def test_it_stops_when_it_is_deactivated(wheels):
     assert speeds(wheels) == [0.0, 0.0]
 
 
-async def test_odometry_comes_at_its_rate_with_its_covariances(wheels):
+async def test_odometry_has_publish_rate_and_covariances(wheels):
     diagonal = [1.0, 2.0, 3.0, 4.0, 5.0, 6.0]
     more = {"publish_rate": 20.0, "pose_covariance_diagonal": diagonal, "enable_odom_tf": False}
     controller = wheels.start(DiffDriveController, NAME, **ROBOT, **more)
@@ -273,14 +273,14 @@ async def test_odometry_comes_at_its_rate_with_its_covariances(wheels):
         ("/a/b/base", {"tf_frame_prefix": "~/c"}, "a/b/c/odom"),
     ],
 )
-async def test_frames_have_the_prefix_that_is_asked_for(wheels, name, parameters, frame):
+async def test_frame_ids_have_requested_prefix(wheels, name, parameters, frame):
     controller = wheels.start(DiffDriveController, name, **ROBOT, **parameters)
     heard = wheels.heard("nav_msgs/msg/Odometry", f"{name if name[0] == '/' else '/' + name}/odom")
     await wheels.step(controller)
     assert heard[0].header.frame_id == frame
 
 
-async def test_others_may_say_where_the_robot_is(wheels):
+async def test_set_odometry_service_sets_pose(wheels):
     controller = wheels.start(DiffDriveController, NAME, **ROBOT, publish_rate=100.0)
     heard = wheels.heard("nav_msgs/msg/Odometry", f"/{NAME}/odom")
     client = wheels.node.create_client("control_msgs/srv/SetOdometry", f"/{NAME}/set_odometry")
@@ -316,13 +316,13 @@ async def test_others_may_say_where_the_robot_is(wheels):
         ),
     ],
 )
-def test_what_cannot_drive_is_not_configured(wheels, parameters, words):
+def test_invalid_parameters_fail_configuration(wheels, parameters, words):
     with pytest.raises(ControllerError) as error:
         wheels.start(DiffDriveController, NAME, **ROBOT | parameters)
     assert words in str(error.value)
 
 
-async def test_a_wheel_that_tells_no_number_is_named(wheels):
+async def test_wheel_state_that_is_not_a_number_is_reported(wheels):
     controller = wheels.start(DiffDriveController, NAME, **ROBOT)
     wheels.states["right/position"].value = nan
     await wheels.step(controller)
@@ -331,6 +331,6 @@ async def test_a_wheel_that_tells_no_number_is_named(wheels):
         await wheels.step(controller)
 
 
-def test_what_is_no_parameter_is_named(wheels):
+def test_unknown_parameter_is_reported(wheels):
     wheels.start(DiffDriveController, NAME, **ROBOT, open_lop=True)
     assert warnings(wheels) == ["'open_lop' is not a parameter of this controller; did you mean 'open_loop'?"]

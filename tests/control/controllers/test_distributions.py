@@ -27,7 +27,7 @@ def declared(controller) -> set[str]:
     ],
     ids=["drive", "trajectory", "car"],
 )
-async def test_the_parameters_are_those_of_the_distribution(stand, monkeypatch, kind, given, humble, jazzy):
+async def test_declared_parameters_match_distribution(stand, monkeypatch, kind, given, humble, jazzy):
     found = {}
     for distribution in ("", "humble", "jazzy"):
         monkeypatch.setenv("ROS_DISTRO", distribution)
@@ -40,7 +40,7 @@ async def test_the_parameters_are_those_of_the_distribution(stand, monkeypatch, 
 
 
 @pytest.mark.parametrize(("distribution", "allowed"), [("humble", True), ("jazzy", False)])
-async def test_a_default_is_that_of_the_distribution(stand, monkeypatch, distribution, allowed):
+async def test_default_matches_distribution(stand, monkeypatch, distribution, allowed):
     monkeypatch.setenv("ROS_DISTRO", distribution)
     controller = stand.make(controller_class(TRAJECTORY), **ARM)
     assert controller.parameters.allow_nonzero_velocity_at_trajectory_end is allowed
@@ -49,7 +49,7 @@ async def test_a_default_is_that_of_the_distribution(stand, monkeypatch, distrib
 
 
 @pytest.mark.parametrize("distribution", ["humble", "jazzy"])
-async def test_a_file_for_the_other_one_is_read_as_it_is(stand, monkeypatch, log, distribution):
+async def test_parameters_of_other_distribution_are_accepted(stand, monkeypatch, log, distribution):
     monkeypatch.setenv("ROS_DISTRO", distribution)
     limits = {"linear": {"x": {"has_velocity_limits": True, "max_velocity": 1.0, "max_deceleration": -2.0}}}
     controller = stand.make(controller_class(DRIVE), **WHEELS, **limits)

@@ -26,7 +26,7 @@ TYPES = {
 
 
 @pytest.mark.parametrize("name", TYPES)
-async def test_a_parameter_file_is_read_whole(stand, name):
+async def test_all_parameters_of_file_are_recognized(stand, name):
     for joint in ("left_front", "left_rear", "right_front", "right_rear"):
         stand.joint(joint, commands=("velocity",), position=0.0, velocity=0.0)
     for joint in ("steer_left", "steer_right"):
@@ -45,7 +45,7 @@ def documented(page: str) -> str:
 
 
 @pytest.mark.parametrize("page", ["control.md", "zh/control.md"])
-async def test_the_documented_drive_starts(stand, page):
+async def test_documented_drive_starts(stand, page):
     for joint in ("left_joint", "right_joint"):
         stand.joint(joint, commands=("velocity",), position=0.0, velocity=0.0)
     parameters = parse_parameters(SourceText(page, documented(page))).for_node("/base_controller")

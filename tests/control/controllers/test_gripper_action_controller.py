@@ -54,11 +54,11 @@ class Fingers:
         ("parallel_gripper_action_controller/GripperActionController", ParallelGripper),
     ],
 )
-def test_they_are_found_by_their_types(name, kind):
+def test_controllers_are_found_by_type(name, kind):
     assert controller_class(name) is kind
 
 
-async def test_it_stays_where_it_is_and_goes_where_a_goal_says(stand):
+async def test_gripper_holds_position_and_moves_to_goal(stand):
     fingers = Fingers(stand)
     await fingers.run(0.05)
     assert fingers.command == 0.0
@@ -73,7 +73,7 @@ async def test_it_stays_where_it_is_and_goes_where_a_goal_says(stand):
 
 
 @pytest.mark.parametrize(("allowed", "status"), [(False, ABORTED), (True, SUCCEEDED)])
-async def test_one_that_holds_something_is_stalled(stand, allowed, status):
+async def test_blocked_gripper_stalls(stand, allowed, status):
     fingers = Fingers(stand, allow_stalling=allowed, stall_timeout=0.5)
     fingers.limit = 0.02
     asked = fingers.ask(0.05)
@@ -85,7 +85,7 @@ async def test_one_that_holds_something_is_stalled(stand, allowed, status):
     assert fingers.command == 0.05
 
 
-async def test_a_canceled_goal_leaves_it_where_it_is(stand):
+async def test_canceled_goal_holds_position(stand):
     fingers = Fingers(stand)
     asked = fingers.ask(0.5)
     await fingers.run(0.2)
@@ -95,7 +95,7 @@ async def test_a_canceled_goal_leaves_it_where_it_is(stand):
     assert fingers.command == pytest.approx(0.02, abs=0.0021)
 
 
-async def test_a_new_goal_takes_the_place_of_the_last_one(stand):
+async def test_new_goal_preempts_previous_goal(stand):
     fingers = Fingers(stand)
     first = fingers.ask(0.5)
     await fingers.run(0.1)
@@ -104,7 +104,7 @@ async def test_a_new_goal_takes_the_place_of_the_last_one(stand):
     assert (first.status, second.status) == (CANCELED, SUCCEEDED)
 
 
-async def test_a_goal_that_is_no_number_or_comes_too_late_is_refused(stand):
+async def test_goal_is_rejected_if_not_a_number_or_inactive(stand):
     fingers = Fingers(stand)
     wrong = fingers.ask(nan)
     await fingers.run(0.02)
@@ -114,7 +114,7 @@ async def test_a_goal_that_is_no_number_or_comes_too_late_is_refused(stand):
     assert (wrong.accepted, late.accepted) == (False, False)
 
 
-async def test_efforts_come_of_errors_and_keep_to_what_a_goal_allows(stand):
+async def test_effort_follows_error_up_to_maximum_of_goal(stand):
     fingers = Fingers(
         stand, EffortGripper, ("effort", "position"), gains={"finger": {"p": 100.0, "d": 10.0}}, goal_tolerance=0.001
     )
@@ -132,7 +132,7 @@ async def test_efforts_come_of_errors_and_keep_to_what_a_goal_allows(stand):
     assert asked.status == CANCELED
 
 
-async def test_a_parallel_gripper_passes_the_greatest_effort_and_velocity_on(stand):
+async def test_parallel_gripper_forwards_maximum_effort_and_velocity(stand):
     stand.joint("limits", commands=("effort", "velocity"))
     fingers = Fingers(
         stand,

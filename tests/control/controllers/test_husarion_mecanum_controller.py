@@ -35,7 +35,7 @@ def commanded(stand) -> list[float]:
     return [stand.commands[f"{corner}/velocity"].value for corner in CORNERS]
 
 
-def test_it_is_the_controller_of_that_type_where_its_parameters_are_given():
+def test_husarion_parameters_select_husarion_controller():
     assert MecanumDriveController.variant(list(ROBOT)) is HusarionMecanumController
     assert MecanumDriveController.variant(["front_left_wheel_command_joint_name"]) is MecanumDriveController
     assert HusarionMecanumController.variant(list(ROBOT)) is HusarionMecanumController
@@ -49,7 +49,7 @@ def test_it_is_the_controller_of_that_type_where_its_parameters_are_given():
         ((0.0, 0.0, 1.0), [-5.0, 5.0, -5.0, 5.0]),
     ],
 )
-async def test_each_wheel_turns_as_the_motion_needs_with_and_without_header(wheels, velocity, wheels_turn):
+async def test_wheel_speeds_match_motion_with_and_without_header(wheels, velocity, wheels_turn):
     controller = wheels.start(HusarionMecanumController, NAME, **ROBOT, use_stamped_vel=False)
     command(wheels, *velocity)
     await wheels.step(controller)
@@ -61,7 +61,7 @@ async def test_each_wheel_turns_as_the_motion_needs_with_and_without_header(whee
     assert commanded(wheels) == pytest.approx([-each for each in wheels_turn])
 
 
-async def test_a_command_holds_for_its_time(wheels):
+async def test_command_expires_after_timeout(wheels):
     controller = wheels.start(HusarionMecanumController, NAME, **ROBOT, cmd_vel_timeout=0.1)
     command(wheels, 1.0, 0.0, 0.0)
     await wheels.step(controller, 0.05)
@@ -70,7 +70,7 @@ async def test_a_command_holds_for_its_time(wheels):
     assert commanded(wheels) == [0.0] * 4
 
 
-async def test_limits_hold_for_every_axis_and_what_they_leave_is_published(wheels):
+async def test_limits_apply_to_each_axis_and_result_is_published(wheels):
     limits = {"linear": {"y": {"has_velocity_limits": True, "max_velocity": 0.5}}}
     controller = wheels.start(HusarionMecanumController, NAME, **ROBOT, **limits, publish_limited_velocity=True)
     heard = wheels.heard("geometry_msgs/msg/TwistStamped", f"/{NAME}/cmd_vel_out")
@@ -80,7 +80,7 @@ async def test_limits_hold_for_every_axis_and_what_they_leave_is_published(wheel
 
 
 @pytest.mark.parametrize("source", [{"position_feedback": True}, {"position_feedback": False}, {"open_loop": True}])
-async def test_odometry_is_the_arc_that_was_driven(wheels, source):
+async def test_odometry_matches_driven_arc(wheels, source):
     controller = wheels.start(HusarionMecanumController, NAME, **ROBOT, **source, cmd_vel_timeout=60.0)
     heard = wheels.heard("nav_msgs/msg/Odometry", f"/{NAME}/odom")
     command(wheels, 0.3, 0.4, 0.5)
@@ -94,7 +94,7 @@ async def test_odometry_is_the_arc_that_was_driven(wheels, source):
 
 
 @pytest.mark.parametrize("missing", [f"{CORNERS[0]}_wheel_name", "wheel_radius", "wheel_separation_x"])
-def test_what_is_missing_is_named(wheels, missing):
+def test_missing_parameter_is_reported(wheels, missing):
     given = {name: value for name, value in ROBOT.items() if name != missing}
     with pytest.raises(ControllerError, match=missing):
         wheels.make(HusarionMecanumController, NAME, **given).on_configure()

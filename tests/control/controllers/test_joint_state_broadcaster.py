@@ -9,11 +9,11 @@ DESCRIPTION = """<robot name='r'><link name='a'/><link name='b'/><joint name='hi
 <parent link='a'/><child link='b'/></joint></robot>"""
 
 
-def test_it_is_found_by_its_type():
+def test_controller_is_found_by_type():
     assert controller_class("joint_state_broadcaster/JointStateBroadcaster") is JointStateBroadcaster
 
 
-async def test_positions_and_what_is_not_known(stand):
+async def test_missing_state_interfaces_are_nan(stand):
     stand.joint("hip", position=0.5, velocity=1.0)
     stand.joint("knee", position=-0.5, temperature=30.0)
     heard = stand.heard("sensor_msgs/msg/JointState", "joint_states")
@@ -30,7 +30,7 @@ async def test_positions_and_what_is_not_known(stand):
     assert list(dynamic[0].interface_values[1].values) == [-0.5, 30.0]
 
 
-async def test_what_is_not_known_is_each_message_s_own(stand):
+async def test_missing_values_are_not_shared_between_messages(stand):
     stand.joint("hip", position=0.5)
     heard = stand.heard("sensor_msgs/msg/JointState", "joint_states")
     broadcaster = stand.start(JointStateBroadcaster)
@@ -40,7 +40,7 @@ async def test_what_is_not_known_is_each_message_s_own(stand):
     assert isnan(heard[1].effort[0])
 
 
-async def test_only_joints_of_the_description_and_extra_ones(stand):
+async def test_only_described_and_extra_joints_are_published(stand):
     stand.joint("hip", position=0.5)
     stand.joint("imu", position=1.0)
     heard = stand.heard("sensor_msgs/msg/JointState", "joint_states")
@@ -49,7 +49,7 @@ async def test_only_joints_of_the_description_and_extra_ones(stand):
     assert list(heard[0].position) == [0.5, 0.0]
 
 
-async def test_chosen_interfaces_and_local_topics(stand):
+async def test_selected_interfaces_are_published_on_local_topics(stand):
     stand.joint("hip", position=0.5, velocity=1.0)
     stand.joint("knee", position=0.7, velocity=2.0)
     parameters = {"joints": ["knee"], "interfaces": ["velocity"], "use_local_topics": True}
@@ -59,14 +59,14 @@ async def test_chosen_interfaces_and_local_topics(stand):
     assert (heard[0].name, list(heard[0].velocity)) == (["knee"], [2.0])
 
 
-async def test_interfaces_may_have_other_names(stand):
+async def test_state_interfaces_can_be_mapped(stand):
     stand.joint("hip", kinematic=0.5)
     heard = stand.heard("sensor_msgs/msg/JointState", "joint_states")
     await stand.step(stand.start(JointStateBroadcaster, map_interface_to_joint_state={"position": "kinematic"}))
     assert list(heard[0].position) == [0.5]
 
 
-async def test_what_is_no_parameter_is_named(stand):
+async def test_unknown_parameter_is_reported(stand):
     stand.start(JointStateBroadcaster, joint=["hip"])
     (logged,) = [each.text for each in stand.log if "not a parameter" in each.text]
     assert logged == "'joint' is not a parameter of this controller; did you mean 'joints'?"

@@ -54,11 +54,11 @@ class Arm:
         return [str(each.text) for each in self.stand.log]
 
 
-def test_it_is_found_by_its_type():
+def test_controller_is_found_by_type():
     assert controller_class("joint_trajectory_controller/JointTrajectoryController") is JointTrajectoryController
 
 
-async def test_joints_are_held_where_they_are_until_a_trajectory_comes(stand):
+async def test_joints_are_held_until_first_trajectory(stand):
     stand.joint("shoulder", commands=("position",), position=0.3, velocity=0.0)
     stand.joint("elbow", commands=("position",), position=-0.2, velocity=0.0)
     controller = stand.start(JointTrajectoryController, **BY_POSITION)
@@ -66,7 +66,7 @@ async def test_joints_are_held_where_they_are_until_a_trajectory_comes(stand):
     assert [command.value for command in controller.commands] == [0.3, -0.2]
 
 
-async def test_positions_alone_are_connected_by_lines_and_commanded_one_update_ahead(stand):
+async def test_positions_are_interpolated_linearly_one_update_ahead(stand):
     arm = Arm(stand)
     await arm.run(0.1)
     arm.say(trajectory((1.0, [1.0, -2.0]), (2.0, [0.0, 0.0])))
@@ -80,7 +80,7 @@ async def test_positions_alone_are_connected_by_lines_and_commanded_one_update_a
     assert (arm.command("shoulder"), arm.command("elbow")) == (0.0, 0.0)
 
 
-async def test_velocities_make_cubics_and_go_out_where_they_are_commanded(stand):
+async def test_velocities_are_interpolated_as_cubic_and_commanded(stand):
     arm = Arm(stand, command_interfaces=["position", "velocity"])
     arm.say(trajectory((2.0, [1.0, 1.0], [0.0, 0.0])))
     await arm.run(1.0)
@@ -90,7 +90,7 @@ async def test_velocities_make_cubics_and_go_out_where_they_are_commanded(stand)
     assert arm.command("shoulder", "velocity") == 0.0
 
 
-async def test_accelerations_go_out_where_they_are_commanded(stand):
+async def test_accelerations_are_commanded(stand):
     for joint in JOINTS:
         stand.joint(
             joint, commands=("position", "velocity", "acceleration"), position=0.0, velocity=0.0, acceleration=0.0
@@ -106,7 +106,7 @@ async def test_accelerations_go_out_where_they_are_commanded(stand):
     assert values == pytest.approx([0.5, 15.0 / 16.0, 0.0], abs=1e-9)
 
 
-async def test_velocities_of_a_joint_come_from_its_error_and_the_wanted_velocity(stand):
+async def test_velocity_command_is_feed_forward_plus_error(stand):
     gains = {joint: {"p": 2.0, "ff_velocity_scale": 1.0} for joint in JOINTS}
     arm = Arm(stand, command_interfaces=["velocity"], gains=gains)
     arm.say(trajectory((1.0, [1.0, 1.0])))
@@ -114,7 +114,7 @@ async def test_velocities_of_a_joint_come_from_its_error_and_the_wanted_velocity
     assert arm.command("shoulder", "velocity") == pytest.approx(1.0 + 2.0 * 0.49)
 
 
-async def test_effort_by_pid_brings_a_mass_along_a_trajectory(stand):
+async def test_effort_by_pid_moves_mass_along_trajectory(stand):
     gains = {joint: {"p": 400.0, "d": 40.0, "i": 10.0, "i_clamp": 5.0} for joint in JOINTS}
     arm = Arm(stand, command_interfaces=["effort"], gains=gains)
 
@@ -130,7 +130,7 @@ async def test_effort_by_pid_brings_a_mass_along_a_trajectory(stand):
     assert asked.status == SUCCEEDED
 
 
-async def test_gains_may_be_changed_while_it_runs(stand):
+async def test_gains_can_be_changed_while_active(stand):
     arm = Arm(stand, command_interfaces=["velocity"], gains={joint: {"p": 1.0} for joint in JOINTS})
     arm.say(trajectory((0.01, [1.0, 1.0])))
     await arm.run(0.1)
@@ -141,7 +141,7 @@ async def test_gains_may_be_changed_while_it_runs(stand):
     assert (arm.command("shoulder", "velocity"), arm.command("elbow", "velocity")) == pytest.approx((3.0, 1.0))
 
 
-async def test_a_goal_is_reached_with_feedback_on_the_way(stand):
+async def test_goal_succeeds_with_feedback(stand):
     arm = Arm(stand, action_monitor_rate=10.0)
     asked = arm.ask(trajectory((1.0, [1.0, 0.5])))
     await arm.run(1.1)
@@ -154,14 +154,14 @@ async def test_a_goal_is_reached_with_feedback_on_the_way(stand):
     assert "Goal reached, success!" in arm.logged()
 
 
-async def test_joints_may_come_in_another_order(stand):
+async def test_joints_can_be_listed_in_any_order(stand):
     arm = Arm(stand)
     arm.say(trajectory((0.5, [2.0, 1.0]), names=("elbow", "shoulder")))
     await arm.run(1.0)
     assert (arm.command("shoulder"), arm.command("elbow")) == (1.0, 2.0)
 
 
-async def test_joints_that_a_partial_goal_does_not_name_stay(stand):
+async def test_joints_omitted_from_partial_goal_are_held(stand):
     arm = Arm(stand, allow_partial_joints_goal=True)
     arm.say(trajectory((0.5, [0.7, 0.4])))
     await arm.run(1.0)
@@ -209,7 +209,7 @@ GOOD = (1.0, [1.0, 1.0])
         ),
     ],
 )
-async def test_what_no_trajectory_can_be_is_refused_with_its_reason(stand, message, expected):
+async def test_invalid_trajectory_is_rejected_with_reason(stand, message, expected):
     arm = Arm(stand)
     await arm.run(1.0)
     asked = arm.ask(message)
@@ -220,7 +220,7 @@ async def test_what_no_trajectory_can_be_is_refused_with_its_reason(stand, messa
     assert arm.command("shoulder") == 0.0
 
 
-async def test_names_must_be_there_even_where_some_joints_are_enough(stand):
+async def test_partial_goal_requires_joint_names(stand):
     arm = Arm(stand, allow_partial_joints_goal=True)
     asked = arm.ask(trajectory(names=()))
     await arm.run(0.05)
@@ -228,7 +228,7 @@ async def test_names_must_be_there_even_where_some_joints_are_enough(stand):
     assert "Empty joint names on incoming trajectory." in arm.logged()
 
 
-async def test_a_last_velocity_may_be_forbidden(stand):
+async def test_nonzero_final_velocity_can_be_forbidden(stand):
     arm = Arm(stand, allow_nonzero_velocity_at_trajectory_end=False)
     asked = arm.ask(trajectory((1.0, [1.0, 1.0], [0.0, 0.1])))
     await arm.run(0.05)
@@ -236,7 +236,7 @@ async def test_a_last_velocity_may_be_forbidden(stand):
     assert "Velocity of last trajectory point of joint elbow is not zero: 0.100000000000000" in arm.logged()
 
 
-async def test_points_without_positions_are_integrated_where_that_is_allowed(stand):
+async def test_points_without_positions_are_integrated_if_allowed(stand):
     arm = Arm(stand, allow_integration_in_goal_trajectories=True)
     asked = arm.ask(trajectory((1.0, [], [2.0, 0.0]), (2.0, [], [0.0, 0.0])))
     await arm.run(2.5)
@@ -247,7 +247,7 @@ async def test_points_without_positions_are_integrated_where_that_is_allowed(sta
     assert empty.accepted is False
 
 
-async def test_a_start_in_the_future_gives_the_first_point_that_time(stand):
+async def test_trajectory_with_future_start_reaches_first_point_on_time(stand):
     arm = Arm(stand)
     await arm.run(1.0)
     arm.say(trajectory((1.0, [1.0, 1.0]), start_ns=2 * SECOND))
@@ -257,7 +257,7 @@ async def test_a_start_in_the_future_gives_the_first_point_that_time(stand):
     assert arm.command("shoulder") == pytest.approx(1.0)
 
 
-async def test_a_start_in_the_past_goes_on_where_it_would_be(stand):
+async def test_trajectory_with_past_start_continues_at_current_time(stand):
     arm = Arm(stand)
     await arm.run(1.0)
     arm.say(trajectory((0.5, [0.5, 0.5]), (2.5, [2.5, 2.5]), start_ns=SECOND // 2))
@@ -265,7 +265,7 @@ async def test_a_start_in_the_past_goes_on_where_it_would_be(stand):
     assert arm.command("shoulder") == pytest.approx(1.01)
 
 
-async def test_a_path_tolerance_that_is_violated_aborts_and_holds(stand):
+async def test_violated_path_tolerance_aborts_goal_and_holds_joints(stand):
     arm = Arm(stand, constraints={"shoulder": {"trajectory": 0.1}})
     arm.stuck.add("shoulder")
     asked = arm.ask(trajectory((1.0, [1.0, 1.0])))
@@ -280,7 +280,7 @@ async def test_a_path_tolerance_that_is_violated_aborts_and_holds(stand):
     )
 
 
-async def test_a_goal_that_is_not_reached_in_time_is_aborted(stand):
+async def test_goal_is_aborted_after_goal_time(stand):
     arm = Arm(stand, constraints={"goal_time": 0.5, "shoulder": {"goal": 0.1}})
     arm.stuck.add("shoulder")
     asked = arm.ask(trajectory((1.0, [1.0, 1.0])))
@@ -293,7 +293,7 @@ async def test_a_goal_that_is_not_reached_in_time_is_aborted(stand):
     assert arm.command("shoulder") == 0.0
 
 
-async def test_without_a_goal_time_the_goal_is_waited_for(stand):
+async def test_goal_never_times_out_without_goal_time(stand):
     arm = Arm(stand, constraints={"shoulder": {"goal": 0.1}})
     arm.stuck.add("shoulder")
     asked = arm.ask(trajectory((0.1, [1.0, 1.0])))
@@ -304,7 +304,7 @@ async def test_without_a_goal_time_the_goal_is_waited_for(stand):
     assert asked.status == SUCCEEDED
 
 
-async def test_a_goal_brings_tolerances_of_its_own(stand):
+async def test_goal_overrides_tolerances(stand):
     arm = Arm(stand, constraints={"goal_time": 0.1, "shoulder": {"trajectory": 0.1, "goal": 0.1}})
     arm.stuck.add("shoulder")
     erased = [tolerance("shoulder", -1.0)]
@@ -335,7 +335,7 @@ async def test_a_goal_brings_tolerances_of_its_own(stand):
         ),
     ],
 )
-async def test_wrong_tolerances_of_a_goal_leave_those_of_the_controller(stand, wrong, message):
+async def test_invalid_goal_tolerances_keep_controller_tolerances(stand, wrong, message):
     arm = Arm(stand, constraints={"shoulder": {"trajectory": 0.1}})
     arm.stuck.add("shoulder")
     asked = arm.ask(trajectory((0.5, [1.0, 1.0])), path_tolerance=[tolerance("shoulder", -1.0), wrong])
@@ -344,7 +344,7 @@ async def test_wrong_tolerances_of_a_goal_leave_those_of_the_controller(stand, w
     assert message in arm.logged()
 
 
-async def test_a_canceled_goal_leaves_the_joints_where_they_are(stand):
+async def test_canceled_goal_holds_joints(stand):
     arm = Arm(stand)
     asked = arm.ask(trajectory((1.0, [1.0, 1.0])))
     await arm.run(0.5)
@@ -356,7 +356,7 @@ async def test_a_canceled_goal_leaves_the_joints_where_they_are(stand):
     assert arm.command("shoulder") == pytest.approx(0.5)
 
 
-async def test_a_new_goal_takes_the_place_of_the_last_one(stand):
+async def test_new_goal_preempts_previous_goal(stand):
     arm = Arm(stand)
     first = arm.ask(trajectory((1.0, [1.0, 1.0])))
     await arm.run(0.5)
@@ -367,7 +367,7 @@ async def test_a_new_goal_takes_the_place_of_the_last_one(stand):
     assert first.result.error_string == "Current goal cancelled due to new incoming action."
 
 
-async def test_a_trajectory_by_topic_takes_the_place_of_a_goal(stand):
+async def test_trajectory_on_topic_preempts_goal(stand):
     arm = Arm(stand)
     asked = arm.ask(trajectory((1.0, [1.0, 1.0])))
     await arm.run(0.5)
@@ -377,7 +377,7 @@ async def test_a_trajectory_by_topic_takes_the_place_of_a_goal(stand):
     assert arm.command("shoulder") == 0.0
 
 
-async def test_a_goal_that_is_refused_leaves_the_one_before_alone(stand):
+async def test_rejected_goal_keeps_previous_goal(stand):
     arm = Arm(stand)
     first = arm.ask(trajectory((1.0, [1.0, 1.0])))
     await arm.run(0.5)
@@ -386,7 +386,7 @@ async def test_a_goal_that_is_refused_leaves_the_one_before_alone(stand):
     assert first.status == SUCCEEDED
 
 
-async def test_an_inactive_controller_takes_no_goals_and_ends_the_one_that_it_has(stand):
+async def test_inactive_controller_rejects_goals_and_ends_current_goal(stand):
     arm = Arm(stand, command_interfaces=["position", "velocity"])
     running = arm.ask(trajectory((1.0, [1.0, 1.0], [0.0, 0.0])))
     await arm.run(0.5)
@@ -401,7 +401,7 @@ async def test_an_inactive_controller_takes_no_goals_and_ends_the_one_that_it_ha
     assert arm.command("shoulder", "velocity") == 0.0
 
 
-async def test_activated_again_it_holds_the_last_commands_of_hardware_that_sags(stand):
+async def test_reactivation_holds_last_commands(stand):
     arm = Arm(stand)
     arm.say(trajectory((0.5, [1.0, 1.0])))
     await arm.run(1.0)
@@ -411,7 +411,7 @@ async def test_activated_again_it_holds_the_last_commands_of_hardware_that_sags(
     assert arm.controller._trajectory.points[0].state.positions == [1.0, 1.0]
 
 
-async def test_open_loop_trajectories_begin_at_the_last_command(stand):
+async def test_open_loop_trajectory_starts_at_last_command(stand):
     arm = Arm(stand, open_loop_control=True)
     arm.say(trajectory((0.5, [1.0, 1.0])))
     await arm.run(1.0)
@@ -423,7 +423,7 @@ async def test_open_loop_trajectories_begin_at_the_last_command(stand):
     assert arm.command("shoulder") == pytest.approx(1.5)
 
 
-async def test_a_continuous_joint_turns_the_shorter_way(stand):
+async def test_angle_wraparound_turns_shorter_way(stand):
     arm = Arm(stand, gains={"shoulder": {"angle_wraparound": True}})
     stand.states["shoulder/position"].value = 3.0
     stand.commands["shoulder/position"].value = 3.0
@@ -435,7 +435,7 @@ async def test_a_continuous_joint_turns_the_shorter_way(stand):
     assert asked.status == SUCCEEDED
 
 
-async def test_without_interpolation_points_are_commanded_when_they_are_due(stand):
+async def test_points_are_commanded_when_due_without_interpolation(stand):
     arm = Arm(stand, interpolation_method="none")
     arm.say(trajectory((1.0, [1.0, 1.0]), (2.0, [2.0, 2.0])))
     await arm.run(0.9)
@@ -444,7 +444,7 @@ async def test_without_interpolation_points_are_commanded_when_they_are_due(stan
     assert arm.command("shoulder") == 2.0
 
 
-async def test_a_trajectory_that_ended_long_ago_is_given_up_where_a_timeout_is_set(stand):
+async def test_ended_trajectory_is_dropped_after_cmd_timeout(stand):
     arm = Arm(stand, cmd_timeout=0.5)
     arm.stuck.update(JOINTS)
     arm.say(trajectory((0.5, [1.0, 1.0])))
@@ -455,12 +455,12 @@ async def test_a_trajectory_that_ended_long_ago_is_given_up_where_a_timeout_is_s
     assert arm.command("shoulder") == 0.0
 
 
-async def test_a_timeout_within_the_goal_time_is_none(stand):
+async def test_cmd_timeout_below_goal_time_is_ignored_with_warning(stand):
     arm = Arm(stand, cmd_timeout=0.5, constraints={"goal_time": 0.6})
     assert "Command timeout must be higher than goal_time tolerance (0.500000 vs. 0.600000)" in arm.logged()
 
 
-async def test_states_come_at_each_update_or_as_often_as_said(stand):
+async def test_state_is_published_each_update_or_at_set_rate(stand):
     arm = Arm(stand, state_publish_rate=20.0)
     new, old = (
         stand.heard("control_msgs/msg/JointTrajectoryControllerState", f"/controller/{topic}")
@@ -477,7 +477,7 @@ async def test_states_come_at_each_update_or_as_often_as_said(stand):
     assert message.error.positions[0] == message.reference.positions[0] - message.feedback.positions[0]
 
 
-async def test_the_errors_of_joints_that_are_held_are_computed_for_who_listens(stand, monkeypatch):
+async def test_errors_of_held_joints_are_computed_only_for_subscribers(stand, monkeypatch):
     compare, compared = JointTrajectoryController._compare, []
     monkeypatch.setattr(
         JointTrajectoryController, "_compare", lambda self, wanted: compared.append(wanted) or compare(self, wanted)
@@ -491,7 +491,7 @@ async def test_the_errors_of_joints_that_are_held_are_computed_for_who_listens(s
     assert list(states[-1].error.positions) == [0.0, 0.0]
 
 
-async def test_the_state_at_a_time_can_be_asked_for(stand):
+async def test_query_state_returns_state_at_time(stand):
     arm = Arm(stand)
     query = get_service("control_msgs/srv/QueryTrajectoryState")
     client = stand.node.create_client(query, "/controller/query_state")
@@ -528,26 +528,26 @@ async def test_the_state_at_a_time_can_be_asked_for(stand):
         ({"interpolation_method": "linear"}, "'linear' is not one of"),
     ],
 )
-async def test_parameters_that_cannot_be_are_refused(stand, parameters, message):
+async def test_invalid_parameters_are_rejected(stand, parameters, message):
     with pytest.raises(LinkwrightError, match=message):
         stand.make(JointTrajectoryController, **{**BY_POSITION, **parameters})
 
 
 @pytest.mark.parametrize("kind", ["velocity", "effort"])
-async def test_commands_by_pid_need_positions_and_velocities(stand, kind):
+async def test_pid_commands_require_position_and_velocity_states(stand, kind):
     parameters = {"joints": ["hip"], "command_interfaces": [kind], "state_interfaces": ["position"]}
     with pytest.raises(ControllerError, match=f"'{kind}' command interface can only be used alone if"):
         stand.make(JointTrajectoryController, **parameters).on_configure()
 
 
-async def test_hardware_that_tells_no_positions_yet_cannot_be_held(stand):
+async def test_activation_fails_without_known_positions(stand):
     stand.joint("hip", commands=("position",), position=nan)
     parameters = {"joints": ["hip"], "command_interfaces": ["position"], "state_interfaces": ["position"]}
     with pytest.raises(ControllerError, match="not known yet"):
         stand.start(JointTrajectoryController, **parameters)
 
 
-async def test_a_velocity_that_hardware_does_not_know_is_taken_for_none(stand):
+async def test_unknown_velocity_state_counts_as_zero(stand):
     arm = Arm(stand)
     stand.states["shoulder/velocity"].value = nan
     arm.say(trajectory((1.0, [1.0, 1.0], [0.0, 0.0])))
@@ -557,7 +557,7 @@ async def test_a_velocity_that_hardware_does_not_know_is_taken_for_none(stand):
     assert arm.command("shoulder") == 1.0
 
 
-async def test_other_joints_may_be_commanded_than_those_that_are_measured(stand):
+async def test_command_joints_can_differ_from_state_joints(stand):
     stand.joint("hip", position=0.0)
     stand.joint("motor", commands=("position",))
     parameters = {"joints": ["hip"], "command_interfaces": ["position"], "state_interfaces": ["position"]}
@@ -566,7 +566,7 @@ async def test_other_joints_may_be_commanded_than_those_that_are_measured(stand)
     assert stand.commands["motor/position"].value == 0.0
 
 
-async def test_time_that_begins_anew_holds_the_joints(stand):
+async def test_time_reset_holds_joints(stand):
     arm = Arm(stand)
     arm.say(trajectory((1.0, [1.0, 1.0])))
     await arm.run(0.5)
@@ -575,7 +575,7 @@ async def test_time_that_begins_anew_holds_the_joints(stand):
     assert arm.command("shoulder") == pytest.approx(0.5)
 
 
-async def test_after_a_cleanup_it_can_be_configured_again(stand):
+async def test_controller_can_be_configured_again_after_cleanup(stand):
     arm = Arm(stand)
     arm.controller.on_deactivate()
     arm.controller.on_cleanup()

@@ -23,7 +23,7 @@ WHEELS = {"left_wheel_names": ["left"], "right_wheel_names": ["right"], "wheel_s
         (FORWARD, "effort", 0.5),
     ],
 )
-async def test_velocities_end_and_positions_and_efforts_are_held(stand, kind, interface, after):
+async def test_lost_publisher_stops_velocity_and_holds_position_and_effort(stand, kind, interface, after):
     stand.joint("hip", commands=(interface,))
     more = {"interface_name": interface} if kind == FORWARD else {}
     controller = stand.start(controller_class(kind), "hips", joints=["hip"], **more)
@@ -38,7 +38,7 @@ async def test_velocities_end_and_positions_and_efforts_are_held(stand, kind, in
     assert len(logged) == (after == 0.0)
 
 
-async def test_a_drive_stops_before_its_time_out(stand):
+async def test_drive_stops_before_timeout_when_publisher_is_lost(stand):
     for side in ("left", "right"):
         stand.joint(side, commands=("velocity",), position=0.0)
     drive = controller_class("diff_drive_controller/DiffDriveController")
@@ -56,7 +56,7 @@ async def test_a_drive_stops_before_its_time_out(stand):
     assert logged.startswith("'/driver', which sent the commands on '/base/cmd_vel', was lost")
 
 
-async def test_a_drive_says_once_that_two_drive_it_at_the_same_time(stand, clock):
+async def test_drive_reports_two_simultaneous_publishers_once(stand, clock):
     for side in ("left", "right"):
         stand.joint(side, commands=("velocity",), position=0.0)
     drive = controller_class("diff_drive_controller/DiffDriveController")
@@ -76,7 +76,7 @@ async def test_a_drive_says_once_that_two_drive_it_at_the_same_time(stand, clock
     assert logged.startswith("several nodes drive the robot: '/keys', '/planner' send commands on '/base/cmd_vel'")
 
 
-async def test_nothing_is_said_of_a_command_that_has_ended(stand):
+async def test_lost_publisher_of_expired_command_is_not_reported(stand):
     for side in ("left", "right"):
         stand.joint(side, commands=("velocity",), position=0.0)
     drive = controller_class("diff_drive_controller/DiffDriveController")

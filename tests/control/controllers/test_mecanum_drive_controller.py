@@ -32,7 +32,7 @@ def commanded(stand) -> list[float]:
     return [stand.commands[f"{corner}/velocity"].value for corner in CORNERS]
 
 
-def test_it_is_found_by_its_type():
+def test_controller_is_found_by_type():
     assert controller_class("mecanum_drive_controller/MecanumDriveController") is MecanumDriveController
 
 
@@ -44,14 +44,14 @@ def test_it_is_found_by_its_type():
         ((0.0, 0.0, 1.0), [-5.0, 5.0, 5.0, -5.0]),
     ],
 )
-async def test_each_wheel_turns_as_the_motion_needs(wheels, velocity, wheels_turn):
+async def test_wheel_speeds_match_motion(wheels, velocity, wheels_turn):
     controller = wheels.start(MecanumDriveController, NAME, **ROBOT, reference_timeout=1.0)
     command(wheels, *velocity)
     await wheels.step(controller)
     assert commanded(wheels) == pytest.approx(wheels_turn)
 
 
-async def test_odometry_is_the_arc_that_was_driven(wheels):
+async def test_odometry_matches_driven_arc(wheels):
     controller = wheels.start(MecanumDriveController, NAME, **ROBOT, reference_timeout=60.0)
     heard = wheels.heard("nav_msgs/msg/Odometry", f"/{NAME}/odometry")
     transforms = wheels.heard("tf2_msgs/msg/TFMessage", f"/{NAME}/tf_odometry")
@@ -65,7 +65,7 @@ async def test_odometry_is_the_arc_that_was_driven(wheels):
     assert transforms[-1].transforms[0].transform.translation.x == place.position.x
 
 
-async def test_the_base_may_be_elsewhere_than_the_middle_of_the_wheels(wheels):
+async def test_base_frame_offset_is_applied(wheels):
     offset = {"x": 0.2, "y": -0.1, "theta": pi / 2.0}
     sizes = {"kinematics": SIZES | {"base_frame_offset": offset}}
     controller = wheels.start(MecanumDriveController, NAME, **ROBOT | sizes, reference_timeout=60.0)
@@ -79,7 +79,7 @@ async def test_the_base_may_be_elsewhere_than_the_middle_of_the_wheels(wheels):
     assert (velocity.linear.x, velocity.linear.y, velocity.angular.z) == pytest.approx((0.3, 0.4, 0.5))
 
 
-async def test_a_command_holds_for_its_time_or_for_one_update(wheels):
+async def test_command_expires_after_timeout_or_one_update(wheels):
     controller = wheels.start(MecanumDriveController, NAME, **ROBOT)
     command(wheels, 1.0, 0.0, 0.0)
     await wheels.step(controller, 0.001)
@@ -91,7 +91,7 @@ async def test_a_command_holds_for_its_time_or_for_one_update(wheels):
     assert commanded(wheels) == [0.0] * 4
 
 
-async def test_another_controller_may_command_it_and_its_state_is_published(wheels):
+async def test_chained_mode_accepts_references_and_publishes_state(wheels):
     controller = wheels.start(MecanumDriveController, NAME, **ROBOT)
     assert [reference.name for reference in controller.references] == [
         "base/linear/x/velocity",
@@ -120,7 +120,7 @@ async def test_another_controller_may_command_it_and_its_state_is_published(whee
         ),
     ],
 )
-def test_what_cannot_drive_is_not_configured(wheels, parameters, words):
+def test_invalid_parameters_fail_configuration(wheels, parameters, words):
     with pytest.raises(ControllerError) as error:
         wheels.start(MecanumDriveController, NAME, **ROBOT | parameters)
     assert words in str(error.value)

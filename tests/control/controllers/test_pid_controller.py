@@ -32,7 +32,7 @@ def ask(stand: Any, *values: float, names: tuple[str, ...] = ("wheel",), rates: 
     stand.say(COMMAND, "/controller/reference", command(list(names), list(values), list(rates)))
 
 
-async def test_a_command_is_made_of_the_error(stand):
+async def test_command_follows_error(stand):
     controller = wheel(stand, velocity=1.0, **WHEEL, gains={"wheel": {"p": 2.0, "i": 1.0}})
     await stand.step(controller)
     assert isnan(stand.commands["wheel/effort"].value)
@@ -41,14 +41,14 @@ async def test_a_command_is_made_of_the_error(stand):
     assert stand.commands["wheel/effort"].value == pytest.approx(6.03)
 
 
-async def test_the_derivative_of_the_error_comes_from_the_second_interface(stand):
+async def test_error_derivative_uses_second_interface(stand):
     controller = wheel(stand, position=1.0, velocity=0.5, **BOTH, gains={"wheel": {"p": 10.0, "d": 2.0}})
     ask(stand, 2.0, rates=(1.0,))
     await stand.step(controller)
     assert stand.commands["wheel/effort"].value == pytest.approx(10.0 + 1.0)
 
 
-async def test_feed_forward_is_switched_on_by_a_service(stand):
+async def test_service_enables_feed_forward(stand):
     controller = wheel(stand, **WHEEL, gains={"wheel": {"p": 1.0, "feedforward_gain": 3.0}})
     ask(stand, 2.0)
     await stand.step(controller)
@@ -62,7 +62,7 @@ async def test_feed_forward_is_switched_on_by_a_service(stand):
     assert future.result().success
 
 
-async def test_angles_may_wrap_around(stand):
+async def test_angle_wraparound_uses_shorter_way(stand):
     facts = {**WHEEL, "reference_and_state_interfaces": ["position"]}
     controller = wheel(stand, position=3.0, **facts, gains={"wheel": {"p": 1.0, "angle_wraparound": True}})
     ask(stand, -3.0)
@@ -70,7 +70,7 @@ async def test_angles_may_wrap_around(stand):
     assert stand.commands["wheel/effort"].value == pytest.approx(2.0 * pi - 6.0)
 
 
-async def test_states_may_come_by_topic(stand):
+async def test_measured_states_can_come_from_topic(stand):
     controller = wheel(stand, **WHEEL, use_external_measured_states=True, gains={"wheel": {"p": 1.0}})
     ask(stand, 4.0)
     stand.say(COMMAND, "/controller/measured_state", command(["wheel"], [1.0], []))
@@ -78,7 +78,7 @@ async def test_states_may_come_by_topic(stand):
     assert stand.commands["wheel/effort"].value == pytest.approx(3.0)
 
 
-async def test_another_controller_may_command_the_references(stand):
+async def test_chained_mode_accepts_reference_interfaces(stand):
     controller = wheel(stand, **BOTH, gains={"wheel": {"p": 1.0}})
     assert [reference.name for reference in controller.references] == [
         "controller/wheel/position",
@@ -92,7 +92,7 @@ async def test_another_controller_may_command_the_references(stand):
     assert [each.value for each in controller.exported] == [0.0, 0.0]
 
 
-async def test_a_reference_of_other_sizes_or_names_is_told_of(stand):
+async def test_reference_of_wrong_size_or_names_is_reported(stand):
     controller = wheel(stand, **WHEEL, gains={"wheel": {"p": 1.0}})
     ask(stand, 1.0, 2.0)
     await stand.step(controller)
@@ -104,7 +104,7 @@ async def test_a_reference_of_other_sizes_or_names_is_told_of(stand):
     assert isnan(stand.commands["wheel/effort"].value)
 
 
-async def test_it_tells_its_state(stand):
+async def test_controller_state_is_published(stand):
     controller = wheel(stand, velocity=1.0, **WHEEL, gains={"wheel": {"p": 2.0}})
     heard = stand.heard("control_msgs/msg/MultiDOFStateStamped", "/controller/controller_state")
     ask(stand, 4.0)
@@ -115,7 +115,7 @@ async def test_it_tells_its_state(stand):
 
 
 @pytest.mark.parametrize("kept", [True, False])
-async def test_the_integral_is_kept_when_it_is_activated_again_unless_told_otherwise(stand, kept):
+async def test_save_i_term_keeps_integral_on_reactivation(stand, kept):
     controller = wheel(stand, **WHEEL, gains={"wheel": {"i": 1.0, "save_i_term": kept}})
     for _ in range(2):
         controller.on_activate()
@@ -126,7 +126,7 @@ async def test_the_integral_is_kept_when_it_is_activated_again_unless_told_other
     assert controller._pids[0].integral == pytest.approx(0.02 if kept else 0.0)
 
 
-async def test_it_stops_pushing_when_it_is_deactivated(stand):
+async def test_deactivation_sets_effort_to_zero(stand):
     controller = wheel(stand, **WHEEL, gains={"wheel": {"p": 2.0}})
     ask(stand, 4.0)
     await stand.step(controller)
@@ -137,11 +137,11 @@ async def test_it_stops_pushing_when_it_is_deactivated(stand):
 
 
 @pytest.mark.parametrize("missing", ["dof_names", "command_interface", "reference_and_state_interfaces"])
-async def test_what_must_be_given(stand, missing):
+async def test_missing_required_parameter_is_rejected(stand, missing):
     with pytest.raises(LinkwrightError, match=missing):
         stand.make(PidController, **{name: value for name, value in WHEEL.items() if name != missing})
 
 
-async def test_as_many_states_as_commands(stand):
+async def test_state_and_command_counts_must_match(stand):
     with pytest.raises(ControllerError, match="has to be the same"):
         stand.make(PidController, **WHEEL, reference_and_state_dof_names=["a", "b"]).on_configure()

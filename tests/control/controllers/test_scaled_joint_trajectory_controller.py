@@ -35,17 +35,17 @@ async def position_after(stand, seconds, factor=None, **more):
 
 
 @pytest.mark.parametrize(("factor", "reached"), [(1.0, 1.0), (0.5, 0.5), (0.0, 0.0)])
-async def test_it_goes_as_fast_as_the_robot_says(stand, factor, reached):
+async def test_trajectory_advances_at_robot_speed_scaling(stand, factor, reached):
     position, _ = await position_after(stand, 1.0, factor)
     assert position == pytest.approx(reached, abs=0.03)
 
 
-async def test_a_goal_takes_longer_and_is_reached_all_the_same(stand):
+async def test_scaled_goal_takes_longer_and_succeeds(stand):
     position, asked = await position_after(stand, 4.2, 0.5)
     assert position == pytest.approx(2.0)
     assert asked.status == SUCCEEDED
 
 
-async def test_without_an_interface_it_goes_as_planned(stand):
+async def test_trajectory_runs_unscaled_without_interface(stand):
     position, _ = await position_after(stand, 1.0, speed_scaling_interface_name="")
     assert position == pytest.approx(1.0, abs=0.03)

@@ -30,11 +30,11 @@ POSE = [*(f"position.{axis}" for axis in "xyz"), *(f"orientation.{axis}" for axi
         ("pose_broadcaster/PoseBroadcaster", PoseBroadcaster),
     ],
 )
-def test_they_are_found_by_their_types(name, kind):
+def test_broadcasters_are_found_by_type(name, kind):
     assert controller_class(name) is kind
 
 
-async def test_an_imu(stand):
+async def test_imu_is_published(stand):
     kinds = [*(f"orientation.{axis}" for axis in "xyzw")]
     kinds += [f"{kind}.{axis}" for kind in ("angular_velocity", "linear_acceleration") for axis in "xyz"]
     stand.joint("imu", **{kind: float(number) for number, kind in enumerate(reversed(kinds))})
@@ -53,7 +53,7 @@ async def test_an_imu(stand):
     assert list(message.angular_velocity_covariance) == [0.0] * 9
 
 
-async def test_a_force_torque_sensor(stand):
+async def test_wrench_is_published(stand):
     stand.joint("tcp", **{kind: float(number) for number, kind in enumerate(WRENCH)})
     broadcaster = stand.start(ForceTorqueBroadcaster, sensor_name="tcp", frame_id="tool0")
     heard = stand.heard("geometry_msgs/msg/WrenchStamped", "/controller/wrench")
@@ -61,7 +61,7 @@ async def test_a_force_torque_sensor(stand):
     assert (heard[0].header.frame_id, heard[0].wrench.force.y, heard[0].wrench.torque.z) == ("tool0", 1.0, 5.0)
 
 
-async def test_axes_of_a_wrench_may_have_other_names_and_some_may_lack(stand):
+async def test_wrench_axes_can_be_renamed_or_missing(stand):
     stand.joint("cell", pull=3.0, twist=4.0)
     broadcaster = stand.start(
         ForceTorqueBroadcaster,
@@ -74,7 +74,7 @@ async def test_axes_of_a_wrench_may_have_other_names_and_some_may_lack(stand):
     assert (wrench.force.x, wrench.force.z, wrench.torque.x) == (0.0, 3.0, 4.0)
 
 
-async def test_a_wrench_is_moved_by_an_offset_and_then_multiplied(stand):
+async def test_wrench_offset_is_applied_before_multiplier(stand):
     stand.joint("tcp", **dict.fromkeys(WRENCH, 1.0))
     broadcaster = stand.start(
         ForceTorqueBroadcaster,
@@ -89,7 +89,7 @@ async def test_a_wrench_is_moved_by_an_offset_and_then_multiplied(stand):
     assert (wrench.force.x, wrench.force.z, wrench.torque.x) == (1.0, -3.0, 0.5)
 
 
-async def test_a_range_sensor(stand):
+async def test_range_is_published(stand):
     stand.joint("sonar", range=1.5)
     broadcaster = stand.start(RangeBroadcaster, sensor_name="sonar", frame_id="sonar_link", max_range=3.0)
     heard = stand.heard("sensor_msgs/msg/Range", "/controller/range")
@@ -98,7 +98,7 @@ async def test_a_range_sensor(stand):
     assert heard[0].field_of_view == pytest.approx(0.52)
 
 
-async def test_a_pose_and_its_transform(stand):
+async def test_pose_and_transform_are_published(stand):
     stand.joint("tcp", **dict(zip(POSE, (1.0, 2.0, 3.0, 0.0, 0.0, 0.0, 1.0), strict=True)))
     broadcaster = stand.start(
         PoseBroadcaster, pose_name="tcp", frame_id="base", tf={"child_frame_id": "tool", "publish_rate": 20.0}
@@ -123,7 +123,7 @@ async def test_a_pose_and_its_transform(stand):
 
 
 @pytest.mark.parametrize(("kind", "name"), [(ForceTorqueBroadcaster, "sensor_name"), (PoseBroadcaster, "pose_name")])
-async def test_either_the_sensor_or_its_interfaces_are_named(stand, kind, name):
+async def test_sensor_and_interface_names_are_mutually_exclusive(stand, kind, name):
     names = {"force": {"x": "a/b"}} if kind is ForceTorqueBroadcaster else {"position": {"x": "a/b"}}
     with pytest.raises(ControllerError, match="has to be specified"):
         stand.make(kind, "first", frame_id="base").on_configure()
@@ -143,12 +143,12 @@ async def test_either_the_sensor_or_its_interfaces_are_named(stand, kind, name):
         ),
     ],
 )
-async def test_what_must_be_given(stand, kind, parameters, message):
+async def test_missing_or_invalid_parameters_are_rejected(stand, kind, parameters, message):
     with pytest.raises(LinkwrightError, match=message):
         stand.make(kind, **parameters)
 
 
-def test_the_admittance_controller_is_left_out_with_a_word():
+def test_admittance_controller_is_rejected_with_hint():
     with pytest.raises(LinkwrightError) as raised:
         controller_class("admittance_controller/AdmittanceController")
     (found,) = raised.value.diagnostics

@@ -53,13 +53,13 @@ def commanded(stand, *joints: str) -> list[float]:
     ]
 
 
-def test_they_are_found_by_their_types():
+def test_controllers_are_found_by_type():
     for kind, _ in ALL:
         package = kind.__module__.rpartition(".")[2]
         assert controller_class(f"{package}/{kind.__name__}") is kind
 
 
-async def test_the_wheels_of_a_car_roll_about_one_point(stand):
+async def test_ackermann_wheels_roll_about_one_point(stand):
     controller = vehicle(stand, AckermannSteeringController, ACKERMANN)
     for _ in range(3):
         command(stand, 1.0, 0.5)
@@ -71,21 +71,21 @@ async def test_the_wheels_of_a_car_roll_about_one_point(stand):
     assert (left, right) == pytest.approx((0.5 * (circle - TRACK / 2) / RADIUS, 0.5 * (circle + TRACK / 2) / RADIUS))
 
 
-async def test_steered_wheels_may_have_another_track(stand):
+async def test_steering_track_width_can_differ(stand):
     controller = vehicle(stand, AckermannSteeringController, ACKERMANN, steering_track_width=0.4)
     command(stand, 1.0, 0.5)
     await stand.step(controller)
     assert commanded(stand, "steer_left") == pytest.approx([atan(BASE / (2.0 - 0.2))])
 
 
-async def test_the_wheels_of_a_tricycle_and_of_a_bicycle(stand):
+async def test_tricycle_wheel_commands(stand):
     controller = vehicle(stand, TricycleSteeringController, TRICYCLE, open_loop=True)
     command(stand, 1.0, 0.5)
     await stand.step(controller)
     assert commanded(stand, "right", "left", "steer") == pytest.approx([12.0, 8.0, atan(0.6)])
 
 
-async def test_a_bicycle_has_one_wheel_of_each(stand):
+async def test_bicycle_wheel_commands(stand):
     controller = vehicle(stand, BicycleSteeringController, BICYCLE)
     command(stand, 1.0, 0.5)
     await stand.step(controller)
@@ -96,7 +96,7 @@ async def test_a_bicycle_has_one_wheel_of_each(stand):
 @pytest.mark.parametrize(
     "how", [{}, {"position_feedback": True}, {"open_loop": True}], ids=["velocity", "position", "open"]
 )
-async def test_odometry_is_the_arc_that_was_driven(stand, kind, sizes, how):
+async def test_odometry_matches_driven_arc(stand, kind, sizes, how):
     controller = vehicle(stand, kind, sizes, reference_timeout=60.0, **how)
     heard = stand.heard("nav_msgs/msg/Odometry", f"/{NAME}/odometry")
     transforms = stand.heard("tf2_msgs/msg/TFMessage", f"/{NAME}/tf_odometry")
@@ -114,7 +114,7 @@ async def test_odometry_is_the_arc_that_was_driven(stand, kind, sizes, how):
 
 
 @EACH
-async def test_a_command_holds_for_its_time_and_no_update_longer(stand, kind, sizes):
+async def test_command_expires_after_timeout(stand, kind, sizes):
     controller = vehicle(stand, kind, sizes, reference_timeout=0.1)
     command(stand, 1.0, 0.5)
     await stand.step(controller, 0.001, count=101)
@@ -125,7 +125,7 @@ async def test_a_command_holds_for_its_time_and_no_update_longer(stand, kind, si
     assert commanded(stand, sizes["steering_joints_names"][0]) == angle
 
 
-async def test_without_a_time_out_a_command_holds_for_one_update(stand):
+async def test_command_holds_for_one_update_without_timeout(stand):
     controller = vehicle(stand, BicycleSteeringController, BICYCLE, reference_timeout=0.0)
     command(stand, 1.0)
     await stand.step(controller)
@@ -134,14 +134,14 @@ async def test_without_a_time_out_a_command_holds_for_one_update(stand):
     assert commanded(stand, "wheel") == [0.0]
 
 
-async def test_commands_of_humble_may_have_no_header(stand):
+async def test_humble_accepts_unstamped_commands(stand):
     controller = vehicle(stand, BicycleSteeringController, BICYCLE, use_stamped_vel=False)
     stand.say("geometry_msgs/msg/Twist", f"/{NAME}/reference_unstamped", twist(1.0))
     await stand.step(controller)
     assert commanded(stand, "wheel") == [10.0]
 
 
-async def test_the_older_names_of_parameters_are_those_of_humble(stand):
+async def test_humble_accepts_older_parameter_names(stand):
     older = {
         "front_steering": True,
         "rear_wheels_names": ["right", "left"],
@@ -162,7 +162,7 @@ async def test_the_older_names_of_parameters_are_those_of_humble(stand):
     assert not [warning for warning in warnings(stand) if "not a parameter" in warning]
 
 
-async def test_wheels_are_slow_until_they_are_steered_where_that_is_asked_for(stand):
+async def test_wheel_speed_can_be_reduced_until_steering_is_reached(stand):
     controller = vehicle(stand, BicycleSteeringController, BICYCLE, reduce_wheel_speed_until_steering_reached=True)
     command(stand, 1.0, tan(1.0) / BASE)
     await stand.step(controller)
@@ -172,7 +172,7 @@ async def test_wheels_are_slow_until_they_are_steered_where_that_is_asked_for(st
     assert commanded(stand, "wheel") == pytest.approx([10.0])
 
 
-async def test_another_controller_may_command_it(stand):
+async def test_chained_mode_accepts_reference_interfaces(stand):
     controller = vehicle(stand, BicycleSteeringController, BICYCLE)
     assert [reference.name for reference in controller.references] == ["car/linear/velocity", "car/angular/velocity"]
     controller.is_chained = True
@@ -184,7 +184,7 @@ async def test_another_controller_may_command_it(stand):
     assert commanded(stand, "wheel") == [0.0]
 
 
-async def test_its_state_is_published(stand):
+async def test_controller_state_is_published(stand):
     controller = vehicle(stand, BicycleSteeringController, BICYCLE)
     heard = stand.heard("control_msgs/msg/SteeringControllerStatus", f"/{NAME}/controller_state")
     command(stand, 1.0, 0.5)
@@ -194,7 +194,7 @@ async def test_its_state_is_published(stand):
     assert list(last.steer_positions) == list(last.steering_angle_command) == [atan(0.6)]
 
 
-async def test_it_stops_when_it_is_deactivated_or_told_no_number(stand):
+async def test_deactivation_or_nan_command_stops_vehicle(stand):
     controller = vehicle(stand, BicycleSteeringController, BICYCLE)
     command(stand, 1.0)
     await stand.step(controller)
@@ -219,7 +219,7 @@ async def test_it_stops_when_it_is_deactivated_or_told_no_number(stand):
         (BicycleSteeringController, BICYCLE | {"wheelbase": 0.0}, "'wheelbase' with the value 0 must be above 0"),
     ],
 )
-def test_what_cannot_drive_is_not_configured(stand, kind, sizes, words):
+def test_invalid_parameters_fail_configuration(stand, kind, sizes, words):
     with pytest.raises(ControllerError) as error:
         stand.start(kind, NAME, **sizes)
     assert words in str(error.value)

@@ -30,11 +30,11 @@ def commanded(stand) -> list[float]:
     return [command.value for command in stand.commands.values()]
 
 
-def test_it_is_found_by_its_type():
+def test_controller_is_found_by_type():
     assert controller_class("tricycle_controller/TricycleController") is TricycleController
 
 
-async def test_the_wheel_is_as_fast_as_it_has_to_be_once_it_is_steered(wheel):
+async def test_wheel_speed_matches_command_once_steered(wheel):
     controller = wheel.start(TricycleController, NAME, **ROBOT)
     command(wheel, 1.0, 0.8)
     await roll(wheel, controller, 2)
@@ -42,7 +42,7 @@ async def test_the_wheel_is_as_fast_as_it_has_to_be_once_it_is_steered(wheel):
     assert commanded(wheel) == pytest.approx([10.0 / cos(angle), angle])
 
 
-async def test_the_wheel_is_slow_while_it_is_far_from_its_angle(wheel):
+async def test_wheel_is_slow_while_steering_angle_is_off(wheel):
     controller = wheel.start(TricycleController, NAME, **ROBOT)
     wheel.states["steer/position"].value = -0.2
     command(wheel, 0.0, 1.0)
@@ -54,7 +54,7 @@ async def test_the_wheel_is_slow_while_it_is_far_from_its_angle(wheel):
 
 
 @pytest.mark.parametrize("open_loop", [True, False])
-async def test_odometry_is_the_arc_that_was_driven(wheel, open_loop):
+async def test_odometry_matches_driven_arc(wheel, open_loop):
     controller = wheel.start(
         TricycleController, NAME, **ROBOT, open_loop=open_loop, cmd_vel_timeout=60000, enable_odom_tf=True
     )
@@ -71,7 +71,7 @@ async def test_odometry_is_the_arc_that_was_driven(wheel, open_loop):
     assert transforms[-1].transforms[0].transform.translation.x == end.position.x
 
 
-async def test_odometry_may_have_velocities_only(wheel):
+async def test_odometry_can_contain_twist_only(wheel):
     controller = wheel.start(TricycleController, NAME, **ROBOT, odom_only_twist=True)
     heard = wheel.heard("nav_msgs/msg/Odometry", f"/{NAME}/odom")
     command(wheel, 0.5)
@@ -80,7 +80,7 @@ async def test_odometry_may_have_velocities_only(wheel):
     assert (heard[-1].pose.pose.position.x, heard[-1].pose.pose.orientation.w) == (0.0, 1.0)
 
 
-async def test_odometry_begins_anew_on_request(wheel):
+async def test_reset_odometry_service_resets_pose(wheel):
     controller = wheel.start(TricycleController, NAME, **ROBOT)
     heard = wheel.heard("nav_msgs/msg/Odometry", f"/{NAME}/odom")
     command(wheel, 0.5)
@@ -92,7 +92,7 @@ async def test_odometry_begins_anew_on_request(wheel):
     assert heard[-1].pose.pose.position.x == pytest.approx(0.005)
 
 
-async def test_a_command_holds_for_its_time_in_milliseconds(wheel):
+async def test_command_expires_after_timeout_in_milliseconds(wheel):
     controller = wheel.start(TricycleController, NAME, **ROBOT, cmd_vel_timeout=100)
     command(wheel, 1.0)
     await wheel.step(controller, 0.001, count=101)
@@ -101,14 +101,14 @@ async def test_a_command_holds_for_its_time_in_milliseconds(wheel):
     assert commanded(wheel) == [0.0, 0.0]
 
 
-async def test_commands_of_humble_may_have_no_header(wheel):
+async def test_humble_accepts_unstamped_commands(wheel):
     controller = wheel.start(TricycleController, NAME, **ROBOT, use_stamped_vel=False)
     wheel.say("geometry_msgs/msg/Twist", f"/{NAME}/cmd_vel", twist(1.0))
     await wheel.step(controller)
     assert commanded(wheel)[0] == pytest.approx(10.0)
 
 
-async def test_limits_are_never_exceeded_and_commands_published(wheel):
+async def test_limits_are_respected_and_ackermann_command_published(wheel):
     limits = {
         "traction": {"max_velocity": 8.0, "max_acceleration": 20.0, "max_deceleration": 40.0},
         "steering": {"max_position": 0.5, "max_velocity": 1.0},
@@ -131,7 +131,7 @@ async def test_limits_are_never_exceeded_and_commands_published(wheel):
     assert (heard[-1].speed, heard[-1].steering_angle) == pytest.approx((speeds[-1], angles[-1]))
 
 
-async def test_it_stops_when_it_is_deactivated(wheel):
+async def test_deactivation_stops_wheel(wheel):
     controller = wheel.start(TricycleController, NAME, **ROBOT)
     command(wheel, 1.0, 0.2)
     await roll(wheel, controller)
@@ -139,7 +139,7 @@ async def test_it_stops_when_it_is_deactivated(wheel):
     assert commanded(wheel) == [0.0, 0.0]
 
 
-async def test_a_wheel_that_tells_no_number_ends_it(wheel):
+async def test_wheel_state_that_is_not_a_number_raises_error(wheel):
     controller = wheel.start(TricycleController, NAME, **ROBOT)
     wheel.states["steer/position"].value = nan
     with pytest.raises(ControllerError, match="Could not read feedback value"):
@@ -162,7 +162,7 @@ async def test_a_wheel_that_tells_no_number_ends_it(wheel):
         ),
     ],
 )
-def test_what_cannot_drive_is_not_configured(wheel, parameters, words):
+def test_invalid_parameters_fail_configuration(wheel, parameters, words):
     with pytest.raises(ControllerError) as error:
         wheel.start(TricycleController, NAME, **ROBOT | parameters)
     assert words in str(error.value)

@@ -5,7 +5,7 @@ from math import isnan
 from tests.control.robots import described, joint, robot
 
 
-def test_components_interfaces_and_parameters():
+def test_components_interfaces_and_parameters_are_parsed():
     text = robot(
         joint("hip", "position velocity", initial="0.5")
         + "<sensor name='imu'><state_interface name='orientation.x'/><param name='frame_id'>base</param></sensor>"
@@ -23,7 +23,7 @@ def test_components_interfaces_and_parameters():
     assert [component.kind for component in hardware.components] == ["joint", "sensor", "gpio"]
 
 
-def test_limits_of_commands():
+def test_command_limits_are_parsed():
     limits = "<param name='min'>-1</param><param name='max'>2.5</param>"
     text = robot(f"<joint name='hip'><command_interface name='position'>{limits}</command_interface></joint>")
     (hardware,), _ = described(text)
@@ -31,7 +31,7 @@ def test_limits_of_commands():
     assert (command.minimum, command.maximum) == (-1.0, 2.5)
 
 
-def test_mimicry_is_of_the_joint_or_of_its_parameters():
+def test_mimic_is_read_from_joint_or_parameters():
     text = robot(joint("hip") + joint("knee", ""), mimic="<mimic joint='hip' multiplier='-2' offset='0.5'/>")
     (hardware,), _ = described(text)
     mimic = hardware.joints[1].mimic
@@ -44,7 +44,7 @@ def test_mimicry_is_of_the_joint_or_of_its_parameters():
     assert (mimic.joint, mimic.multiplier) == ("hip", 3.0)
 
 
-def test_mistakes_are_told_and_left_out():
+def test_invalid_elements_are_reported_and_omitted():
     text = robot(joint("hip") + joint("kne") + joint("knee", more="<param name='mimic'>hipp</param>"))
     text = text.replace(
         "</robot>", "<ros2_control name='b' type='sytem'/><ros2_control name='c' type='system'/></robot>"

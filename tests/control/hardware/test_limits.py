@@ -38,19 +38,19 @@ class Joint:
         return self.command.value
 
 
-def test_positions_stay_within_their_limits_and_move_no_faster_than_the_joint_may():
+def test_position_commands_respect_position_and_velocity_limits():
     hip = Joint(POSITION, {POSITION: 0.0}, position=(-1.0, 0.35), velocity=2.0)
     assert [hip.send(5.0) for _ in range(3)] == pytest.approx([0.2, 0.35, 0.35])
     assert [hip.send(-5.0) for _ in range(2)] == pytest.approx([0.15, -0.05])
     assert hip.send(-0.1) == -0.1
 
 
-def test_a_joint_beyond_its_limit_comes_back_no_faster_than_it_may():
+def test_joint_beyond_limit_returns_at_velocity_limit():
     hip = Joint(POSITION, {POSITION: 1.0}, position=(-0.5, 0.5), velocity=1.0)
     assert [hip.send(3.0) for _ in range(6)] == pytest.approx([0.9, 0.8, 0.7, 0.6, 0.5, 0.5])
 
 
-def test_velocities_have_a_greatest_value_an_acceleration_and_an_end_of_the_way():
+def test_velocity_commands_respect_all_limits():
     wheel = Joint(VELOCITY, velocity=1.0, acceleration=4.0, deceleration=8.0)
     wheel.send(0.0)
     assert [wheel.send(5.0) for _ in range(4)] == pytest.approx([0.4, 0.8, 1.0, 1.0])
@@ -61,7 +61,7 @@ def test_velocities_have_a_greatest_value_an_acceleration_and_an_end_of_the_way(
     assert (hip.send(1.0), hip.send(-1.0)) == (0.0, -1.0)
 
 
-def test_efforts_have_a_greatest_value_and_do_not_push_out_of_the_limits():
+def test_effort_commands_do_not_push_beyond_limits():
     hip = Joint(EFFORT, {POSITION: 0.0, VELOCITY: 0.0}, position=(-1.0, 1.0), velocity=2.0, effort=10.0)
     assert (hip.send(50.0), hip.send(-50.0), hip.send(3.0)) == (10.0, -10.0, 3.0)
     hip.states[POSITION].value = 1.0
@@ -70,12 +70,12 @@ def test_efforts_have_a_greatest_value_and_do_not_push_out_of_the_limits():
     assert (hip.send(5.0), hip.send(-5.0)) == (5.0, 0.0)
 
 
-def test_accelerations_are_limited_apart_from_decelerations():
+def test_acceleration_and_deceleration_have_separate_limits():
     hip = Joint(ACCELERATION, {VELOCITY: 1.0}, acceleration=2.0, deceleration=5.0)
     assert (hip.send(9.0), hip.send(-9.0)) == (2.0, -5.0)
 
 
-def test_behind_soft_limits_it_goes_slower_and_slower():
+def test_soft_limits_reduce_velocity():
     safety = Safety(k_velocity=10.0, k_position=5.0, soft_lower_limit=-0.8, soft_upper_limit=0.8)
     hip = Joint(VELOCITY, {POSITION: 0.7}, position=(-1.0, 1.0), velocity=2.0, safety=safety)
     assert hip.send(2.0) == pytest.approx(0.5)
@@ -85,7 +85,7 @@ def test_behind_soft_limits_it_goes_slower_and_slower():
     assert pushed.send(9.0) == pytest.approx(1.0)
 
 
-def test_what_is_no_number_or_nobodys_is_left_alone():
+def test_nan_and_unclaimed_commands_are_not_limited():
     hip = Joint(POSITION, {POSITION: 0.0}, position=(-1.0, 1.0), velocity=1.0)
     assert hip.send(nan) != hip.send(nan)
     hip.command.value = 7.0
@@ -104,7 +104,7 @@ CONTROL = robot(
     ("distribution", "message", "limited"),
     [("jazzy", None, False), ("jazzy", True, True), ("kilted", None, True), ("kilted", False, False)],
 )
-async def test_the_manager_enforces_them_where_it_is_asked_to(graph, log, monkeypatch, distribution, message, limited):
+async def test_manager_enforces_command_limits_if_enabled(graph, log, monkeypatch, distribution, message, limited):
     monkeypatch.setenv("ROS_DISTRO", distribution)
     parameters = {} if message is None else {"enforce_command_limits": message}
     made = manager(

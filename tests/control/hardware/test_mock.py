@@ -9,7 +9,7 @@ from tests.control.robots import described, joint, robot
 
 
 @pytest.fixture
-def made(graph: Graph):
+def load_hardware(graph: Graph):
     def make(text: str) -> GenericSystem:
         (hardware,), _ = described(text)
         return GenericSystem(hardware, graph.get_logger("mock"))
@@ -29,8 +29,8 @@ def command(hardware: GenericSystem, name: str, value: float) -> None:
     next(command for command in hardware.commands if command.name == name).value = value
 
 
-async def test_states_follow_commands_from_their_initial_values(made):
-    hardware = made(robot(joint("hip", "position velocity", initial="0.5") + joint("knee")))
+async def test_states_start_at_initial_values_and_follow_commands(load_hardware):
+    hardware = load_hardware(robot(joint("hip", "position velocity", initial="0.5") + joint("knee")))
     hardware.read(0, 0.01)
     assert states(hardware) == {"hip/position": 0.5, "hip/velocity": 0, "knee/position": 0, "knee/velocity": 0}
     command(hardware, "hip/position", 1.0)
@@ -39,45 +39,45 @@ async def test_states_follow_commands_from_their_initial_values(made):
     assert (states(hardware)["hip/position"], states(hardware)["hip/velocity"]) == (1.0, 2.0)
 
 
-async def test_an_offset_of_positions(made):
-    hardware = made(robot(joint("hip"), parameters=parameter("position_state_following_offset", "-0.1")))
+async def test_position_following_offset_is_applied(load_hardware):
+    hardware = load_hardware(robot(joint("hip"), parameters=parameter("position_state_following_offset", "-0.1")))
     command(hardware, "hip/position", 1.0)
     hardware.read(0, 0.01)
     hardware.read(0, 0.01)
     assert states(hardware)["hip/position"] == pytest.approx(0.9)
 
 
-async def test_an_offset_of_another_interface(made):
+async def test_following_offset_applies_to_custom_interface(load_hardware):
     parameters = parameter("position_state_following_offset", "0.5") + parameter(
         "custom_interface_with_following_offset", "actual_position"
     )
-    hardware = made(robot(joint("hip", states="position actual_position"), parameters=parameters))
+    hardware = load_hardware(robot(joint("hip", states="position actual_position"), parameters=parameters))
     command(hardware, "hip/position", 1.0)
     hardware.read(0, 0.01)
     assert states(hardware) == {"hip/position": 1.0, "hip/actual_position": 1.5}
 
 
-async def test_mimicry(made):
+async def test_mimic_joint_follows(load_hardware):
     text = robot(joint("hip") + joint("knee", ""), mimic="<mimic joint='hip' multiplier='-2' offset='0.5'/>")
-    hardware = made(text)
+    hardware = load_hardware(text)
     command(hardware, "hip/position", 1.0)
     hardware.read(0, 0.01)
     assert states(hardware)["knee/position"] == -1.5
 
 
-async def test_disabled_commands(made):
-    hardware = made(robot(joint("hip"), parameters=parameter("disable_commands", "true")))
+async def test_disabled_commands_are_ignored(load_hardware):
+    hardware = load_hardware(robot(joint("hip"), parameters=parameter("disable_commands", "true")))
     command(hardware, "hip/position", 1.0)
     hardware.read(0, 0.01)
     assert states(hardware)["hip/position"] == 0.0
 
 
-async def test_dynamics_of_a_velocity(made):
+async def test_dynamics_integrate_velocity_command(load_hardware):
     text = robot(
         joint("hip", "position velocity", "position velocity acceleration"),
         parameters=parameter("calculate_dynamics", "true"),
     )
-    hardware = made(text)
+    hardware = load_hardware(text)
     hardware.prepare_switch(["hip/velocity"], [])
     hardware.perform_switch(["hip/velocity"], [])
     command(hardware, "hip/velocity", 2.0)
@@ -89,13 +89,13 @@ async def test_dynamics_of_a_velocity(made):
         hardware.prepare_switch(["hip/velocity", "hip/position"], [])
 
 
-async def test_sensors_and_gpios(made):
+async def test_sensors_and_gpios_are_mocked(load_hardware):
     control = (
         joint("hip")
         + "<sensor name='ft'><state_interface name='force.x'/></sensor>"
         + "<gpio name='io'><command_interface name='out'/><state_interface name='out'/></gpio>"
     )
-    hardware = made(robot(control, parameters=parameter("mock_sensor_commands", "true")))
+    hardware = load_hardware(robot(control, parameters=parameter("mock_sensor_commands", "true")))
     command(hardware, "ft/force.x", 3.0)
     command(hardware, "io/out", 1.0)
     hardware.read(0, 0.01)

@@ -44,7 +44,7 @@ class Robot:
         return [state.value for state in self.manager.resources.states([f"{name}/position" for name in JOINTS])]
 
 
-async def test_it_holds_where_it_is_and_follows_a_trajectory(graph):
+async def test_arm_holds_position_and_follows_trajectory(graph):
     arm = Robot(graph)
     await arm.advance(0.1)
     assert arm.positions() == [0.2, 0.0]
@@ -56,7 +56,7 @@ async def test_it_holds_where_it_is_and_follows_a_trajectory(graph):
     assert arm.positions() == [1.2, -1.0]
 
 
-async def test_a_goal_is_canceled_on_the_event_loop_too(graph):
+async def test_goal_can_be_canceled_on_event_loop(graph):
     arm = Robot(graph)
     asked = arm.ask((1.0, [1.2, 1.0]))
     await arm.advance(0.5)
@@ -69,7 +69,7 @@ async def test_a_goal_is_canceled_on_the_event_loop_too(graph):
     assert held[0] == pytest.approx(0.7, abs=0.03)
 
 
-async def test_a_goal_ends_when_its_controller_is_deactivated_and_another_may_follow(graph):
+async def test_deactivation_ends_goal_and_allows_new_one(graph):
     arm = Robot(graph)
     first = arm.ask((1.0, [1.2, 1.0]))
     await arm.advance(0.5)

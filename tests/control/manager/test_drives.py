@@ -45,7 +45,7 @@ class Base:
         return [command.value for command in self.manager.resources.commands(["left/velocity", "right/velocity"])]
 
 
-async def test_a_drive_commands_pid_controllers_in_chained_mode(graph):
+async def test_drive_commands_pid_controllers_in_chained_mode(graph):
     given = {
         f"pid_{side}": {
             "dof_names": [side],
@@ -71,7 +71,7 @@ async def test_a_drive_commands_pid_controllers_in_chained_mode(graph):
     assert base.manager.controllers["pid_left"].controller.is_chained
 
 
-async def test_a_drive_whose_wheel_tells_no_number_is_deactivated_and_stands(graph, log):
+async def test_drive_is_deactivated_if_wheel_state_is_not_a_number(graph, log):
     names = {"left_wheel_names": ["left"], "right_wheel_names": ["right"]}
     base = Base(graph, {"base": DRIVE}, base=SAID | names)
     await base.drive(1.0, 0.0, 10)
@@ -90,7 +90,7 @@ async def test_a_drive_whose_wheel_tells_no_number_is_deactivated_and_stands(gra
     assert any("Either the left or right wheel position is invalid" in each.text for each in log)
 
 
-async def test_the_manager_takes_the_controller_of_that_type_whose_parameters_are_given(graph):
+async def test_manager_selects_controller_variant_by_parameters(graph):
     wheels = {f"{corner}_wheel_name": side for corner, side in CORNERS.items()}
     sizes = {"wheel_separation_x": 0.2, "wheel_separation_y": 0.2, "wheel_radius": 0.1, "open_loop": True}
     made = manager(graph, WHEELS, {"base": {"type": MECANUM}}, base={**wheels, **sizes})

@@ -73,9 +73,7 @@ def arm(tmp_path, monkeypatch) -> Iterator[type[Arm]]:
 
 
 @pytest.mark.parametrize("wrong", [HardwareError("the cable is out"), OSError("the cable is out")])
-async def test_its_controllers_stop_the_others_go_on_and_it_can_be_activated_again(
-    graph, clock, tmp_path, logged, arm, wrong
-):
+async def test_failed_hardware_stops_its_controllers_and_can_be_reactivated(graph, clock, tmp_path, logged, arm, wrong):
     path = tmp_path / "controllers.yaml"
     path.write_text(FILE)
     words = ["--ros-args", "--params-file", str(path)]

@@ -57,7 +57,7 @@ class Broken(Controller):
 
 
 @pytest.fixture
-def made(graph, monkeypatch):
+def create_manager(graph, monkeypatch):
     """A manager with controllers of this file, too."""
     ours = {"t/Low": Low, "t/High": High, "t/Reluctant": Reluctant, "t/Broken": Broken}
     original = registry.controller_class
@@ -74,18 +74,18 @@ def made(graph, monkeypatch):
     return make
 
 
-def started(made, *names):
+def started(manager, *names):
     for name in names:
-        assert made.load(name)
-        assert made.configure(name)
+        assert manager.load(name)
+        assert manager.configure(name)
 
 
-def value(made, name):
-    return {command.name: command.value for command in made.resources.commands([name])}[name]
+def value(manager, name):
+    return {command.name: command.value for command in manager.resources.commands([name])}[name]
 
 
-async def test_a_controller_is_loaded_configured_switched_and_unloaded(made, logged):
-    it = made({"forward": FORWARD}, forward={"joints": ["hip"], "interface_name": "position"})
+async def test_controller_lifecycle(create_manager, logged):
+    it = create_manager({"forward": FORWARD}, forward={"joints": ["hip"], "interface_name": "position"})
     started(it, "forward")
     assert it.switch(["forward"], [], STRICT) == (True, "Successfully switched controllers!")
     assert it.resources.claims == {"hip/position": "forward"}
@@ -101,8 +101,8 @@ async def test_a_controller_is_loaded_configured_switched_and_unloaded(made, log
     assert it.controllers == {}
 
 
-async def test_what_cannot_be_loaded(made, logged):
-    it = made({"a": "t/Unknown", "broken": "t/Broken", "low": "t/Low"})
+async def test_unknown_and_broken_controllers_are_not_loaded(create_manager, logged):
+    it = create_manager({"a": "t/Unknown", "broken": "t/Broken", "low": "t/Low"})
     assert not it.load("none")
     assert not it.load("a")
     assert not it.load("broken")
@@ -116,8 +116,8 @@ async def test_what_cannot_be_loaded(made, logged):
     assert errors[5] == "A controller named 'low' was already loaded inside the controller manager"
 
 
-async def test_a_controller_may_refuse(made, logged):
-    it = made({"reluctant": "t/Reluctant"})
+async def test_controller_can_refuse_transitions(create_manager, logged):
+    it = create_manager({"reluctant": "t/Reluctant"})
     it.load("reluctant")
     assert not it.configure("reluctant")
     assert logged("ERROR") == [
@@ -126,8 +126,8 @@ async def test_a_controller_may_refuse(made, logged):
     ]
 
 
-async def test_interfaces_have_one_owner(made, logged):
-    it = made({"one": FORWARD, "two": FORWARD}, one=POSITIONS, two=POSITIONS)
+async def test_command_interface_has_one_owner(create_manager, logged):
+    it = create_manager({"one": FORWARD, "two": FORWARD}, one=POSITIONS, two=POSITIONS)
     started(it, "one", "two")
     assert it.switch(["one"], [], STRICT)[0]
     text = "Resource conflict for controller 'two'. Command interface 'hip/position' is already claimed."
@@ -139,15 +139,15 @@ async def test_interfaces_have_one_owner(made, logged):
     assert logged("ERROR") == [text]
 
 
-async def test_unknown_interfaces_are_told(made, logged):
-    it = made({"one": FORWARD}, one={**POSITIONS, "interface_name": "effort"})
+async def test_unknown_interface_is_reported(create_manager, logged):
+    it = create_manager({"one": FORWARD}, one={**POSITIONS, "interface_name": "effort"})
     started(it, "one")
     text = "Can't activate controller 'one': Command interface with key 'hip/effort' does not exist"
     assert it.switch(["one"], [], STRICT) == (False, text)
 
 
-async def test_strictness(made, logged):
-    it = made()
+async def test_strict_switch_fails_where_best_effort_continues(create_manager, logged):
+    it = create_manager()
     started(it, "low")
     assert not it.switch(["low", "nobody"], [], STRICT)[0]
     assert it.controllers["low"].is_inactive
@@ -160,8 +160,8 @@ async def test_strictness(made, logged):
     assert logged("ERROR") == ["Aborting, no controller is switched! ('STRICT' switch)"]
 
 
-async def test_a_chain(made):
-    it = made()
+async def test_chained_controllers_are_ordered_and_activated(create_manager):
+    it = create_manager()
     started(it, "low", "high")
     assert list(it.controllers) == ["high", "low"]
     assert not it.switch(["high"], [], STRICT)[0]
@@ -179,8 +179,8 @@ async def test_a_chain(made):
     assert value(it, "hip/velocity") == 0.5
 
 
-async def test_a_chain_is_activated_together_or_by_itself(made):
-    it = made()
+async def test_chain_is_activated_together_or_separately(create_manager):
+    it = create_manager()
     started(it, "low", "high")
     assert it.switch(["high", "low"], [], STRICT)[0]
     assert it.controllers["low"].controller.is_chained
@@ -189,8 +189,8 @@ async def test_a_chain_is_activated_together_or_by_itself(made):
     assert all(controller.controller.state is ACTIVE for controller in it.controllers.values())
 
 
-async def test_a_controller_that_throws_is_deactivated_and_what_it_moved_stands(made, logged):
-    it = made()
+async def test_controller_that_raises_is_deactivated_and_joints_stop(create_manager, logged):
+    it = create_manager()
     started(it, "low", "high")
     it.switch(["high", "low"], [], STRICT)
     it.cycle(1, 0.01)
@@ -205,8 +205,8 @@ async def test_a_controller_that_throws_is_deactivated_and_what_it_moved_stands(
 
 
 @pytest.mark.parametrize("wrong", [nan, inf])
-async def test_what_is_no_number_does_not_reach_the_hardware(made, logged, wrong):
-    it = made()
+async def test_nan_commands_do_not_reach_hardware(create_manager, logged, wrong):
+    it = create_manager()
     started(it, "low")
     it.switch(["low"], [], STRICT)
     it.cycle(1, 0.01)
@@ -216,8 +216,8 @@ async def test_what_is_no_number_does_not_reach_the_hardware(made, logged, wrong
     assert "'hip/velocity' is not a number" in logged("ERROR")[0]
 
 
-async def test_numbers_reach_the_hardware_whatever_their_sum_is(made, logged):
-    it = made()
+async def test_commands_with_overflowing_sum_reach_hardware(create_manager, logged):
+    it = create_manager()
     started(it, "low")
     it.switch(["low"], [], STRICT)
     loaded = it.controllers["low"]
@@ -228,8 +228,8 @@ async def test_numbers_reach_the_hardware_whatever_their_sum_is(made, logged):
     assert logged("ERROR") == []
 
 
-async def test_hardware_that_fails_stops_its_controllers(made, logged):
-    it = made()
+async def test_failing_hardware_stops_its_controllers(create_manager, logged):
+    it = create_manager()
     started(it, "low", "high")
     it.switch(["high", "low"], [], STRICT)
     command = it.resources.commands(["hip/velocity"])[0]
@@ -248,8 +248,8 @@ async def test_hardware_that_fails_stops_its_controllers(made, logged):
     ]
 
 
-async def test_hardware_is_led_through_its_life(made):
-    it = made()
+async def test_hardware_lifecycle(create_manager):
+    it = create_manager()
     started(it, "low")
     it.switch(["low"], [], STRICT)
     assert it.set_hardware_state("arm", INACTIVE)
@@ -258,8 +258,8 @@ async def test_hardware_is_led_through_its_life(made):
     assert it.switch(["low"], [], STRICT)[0]
 
 
-async def test_a_slower_controller_is_updated_at_its_own_rate(made):
-    it = made({"low": "t/Low"}, low={"update_rate": 50})
+async def test_slower_controller_is_updated_at_its_own_rate(create_manager):
+    it = create_manager({"low": "t/Low"}, low={"update_rate": 50})
     started(it, "low")
     times = []
     it.controllers["low"].controller.update = lambda time_ns, period_s: times.append((time_ns, period_s))
@@ -269,24 +269,26 @@ async def test_a_slower_controller_is_updated_at_its_own_rate(made):
     assert times == [(10_000_000, 0.02), (30_000_000, 0.02), (50_000_000, 0.02)]
 
 
-async def test_initial_states_of_hardware(graph, logged):
+async def test_hardware_initial_states_are_applied(graph, logged):
     states = {"hardware_components_initial_state": {"inactive": ["arm"], "unconfigured": ["leg"]}}
     it = manager(graph, CONTROL, states)
     assert it.resources.components["arm"].state is INACTIVE
     assert logged("WARN") == ["Hardware component 'leg' is unknown, therefore not set in 'unconfigured' state."]
 
 
-async def test_hardware_of_others_is_stood_in_for(graph, logged):
+async def test_unsupported_hardware_is_replaced_by_mock(graph, logged):
     it = manager(graph, CONTROL.replace("mock_components/GenericSystem", "acme/Driver"))
     assert it.resources.components["arm"].state is ACTIVE
     assert logged("WARN")[0].startswith("hardware 'arm': Linkwright does not support 'acme/Driver', so mock_components")
 
 
 @pytest.mark.parametrize("distribution", ["humble", "jazzy"])
-async def test_what_is_asynchronous_in_ros_runs_in_the_loop_which_is_said(made, logged, monkeypatch, distribution):
+async def test_async_controllers_and_hardware_run_synchronously_with_notice(
+    create_manager, logged, monkeypatch, distribution
+):
     monkeypatch.setenv("ROS_DISTRO", distribution)
     text = CONTROL.replace("type='system'", "type='system' is_async='true'")
-    it = made({"low": "t/Low"}, text, low={"is_async": True})
+    it = create_manager({"low": "t/Low"}, text, low={"is_async": True})
     started(it, "low")
     assert it.switch(["low"], [], STRICT)[0]
     it.cycle(1, 0.01)

@@ -47,7 +47,7 @@ async def advance(graph, clock, count):
         await graph.settle()
 
 
-async def test_controllers_run_by_services_and_topics(graph, clock, tmp_path, logged):
+async def test_controllers_are_managed_by_services_and_topics(graph, clock, tmp_path, logged):
     running = start(graph, tmp_path, CONTROL)
     node = graph.create_node("audience")
     states, activity = [], []
@@ -92,7 +92,7 @@ async def test_controllers_run_by_services_and_topics(graph, clock, tmp_path, lo
     running.close()
 
 
-async def test_remappings_of_the_process_reach_controllers(graph, clock, tmp_path):
+async def test_process_remappings_apply_to_controllers(graph, clock, tmp_path):
     running = start(graph, tmp_path, CONTROL)
     node = graph.create_node("audience")
     states = []
@@ -108,7 +108,7 @@ async def test_remappings_of_the_process_reach_controllers(graph, clock, tmp_pat
     running.close()
 
 
-async def test_the_description_comes_by_its_topic(graph, clock, tmp_path, logged):
+async def test_description_is_received_from_topic(graph, clock, tmp_path, logged):
     running = start(graph, tmp_path)
     node = graph.create_node("audience")
     node.create_publisher(String, "/robot_description", DESCRIPTION_QOS).publish(String(data=CONTROL))
@@ -121,7 +121,7 @@ async def test_the_description_comes_by_its_topic(graph, clock, tmp_path, logged
     running.close()
 
 
-async def test_a_description_that_cannot_be_read_is_told_and_the_next_one_taken(graph, clock, tmp_path, logged):
+async def test_malformed_description_is_reported_and_next_one_used(graph, clock, tmp_path, logged):
     running = start(graph, tmp_path)
     publisher = graph.create_node("audience").create_publisher(String, "/robot_description", DESCRIPTION_QOS)
     publisher.publish(String(data="<robot"))
@@ -160,7 +160,7 @@ OVERRUN = (
         ({"overruns.manage": False}, [0.025, 0.0, 0.005, 0.01], []),
     ],
 )
-async def test_updates_that_were_missed_are_left_out_and_told_or_made_up_for(
+async def test_missed_updates_are_skipped_with_warning_or_caught_up(
     graph, clock, tmp_path, logged, parameters, then, message
 ):
     running = start(graph, tmp_path, CONTROL, **parameters)
@@ -174,7 +174,7 @@ async def test_updates_that_were_missed_are_left_out_and_told_or_made_up_for(
     running.close()
 
 
-async def test_simulated_time_that_jumps_is_no_overrun_and_none_goes_back(graph, clock, tmp_path, logged):
+async def test_simulated_time_jump_is_not_an_overrun(graph, clock, tmp_path, logged):
     running = start(graph, tmp_path, CONTROL, use_sim_time=True)
     await graph.settle()
     time = running._node.get_clock()
@@ -196,7 +196,7 @@ async def test_simulated_time_that_jumps_is_no_overrun_and_none_goes_back(graph,
 @pytest.mark.parametrize(
     "plugin", ["gazebo_ros2_control/GazeboSystem", "gz_ros2_control/GazeboSimSystem", "ign_ros2_control/IgnitionSystem"]
 )
-async def test_the_hardware_of_a_simulator_is_left_to_the_simulators_manager(graph, tmp_path, logged, plugin):
+async def test_simulator_hardware_is_left_to_simulator(graph, tmp_path, logged, plugin):
     start(graph, tmp_path, CONTROL.replace("mock_components/GenericSystem", plugin))
     await graph.settle()
     assert [each for each in logged("ERROR") if plugin in each]

@@ -51,14 +51,14 @@ async def test_controllers_are_spawned_and_unspawned(graph, tmp_path, logged):
     ("option", "state"),
     [("--load-only", "unconfigured"), ("--inactive", "inactive"), ("--activate-as-group", "active")],
 )
-async def test_how_far_they_are_led(graph, tmp_path, option, state):
+async def test_spawner_options_select_final_state(graph, tmp_path, option, state):
     running = start(graph, tmp_path, CONTROL)
     assert await run(graph, Spawner, "broadcaster", option) == 0
     assert states(running) == {"broadcaster": state}
     running.close()
 
 
-async def test_a_parameter_file_of_its_own_and_other_names_of_topics(graph, tmp_path, logged):
+async def test_spawner_accepts_parameter_file_and_remappings(graph, tmp_path, logged):
     running = start(graph, tmp_path, CONTROL)
     path = tmp_path / "own.yaml"
     path.write_text(OWN)
@@ -70,14 +70,14 @@ async def test_a_parameter_file_of_its_own_and_other_names_of_topics(graph, tmp_
 
 
 @pytest.mark.parametrize("words", [("", "broadcaster"), ("broadcaster", "--namespace", "", "-c", "controller_manager")])
-async def test_words_that_a_launch_file_leaves_empty(graph, tmp_path, words):
+async def test_spawner_ignores_empty_arguments(graph, tmp_path, words):
     running = start(graph, tmp_path, CONTROL)
     assert await run(graph, Spawner, *words) == 0
     assert states(running) == {"broadcaster": "active"}
     running.close()
 
 
-async def test_what_fails_is_told(graph, tmp_path, logged):
+async def test_spawner_failures_are_reported(graph, tmp_path, logged):
     running = start(graph, tmp_path, CONTROL)
     assert await run(graph, Spawner, "nobody") == 1
     assert logged("FATAL") == ["Failed loading controller nobody"]
@@ -88,7 +88,7 @@ async def test_what_fails_is_told(graph, tmp_path, logged):
     running.close()
 
 
-async def test_a_spawner_waits_for_its_manager(graph, clock, tmp_path, logged):
+async def test_spawner_waits_for_controller_manager(graph, clock, tmp_path, logged):
     spawner = Spawner(graph, NodeOptions(arguments=["broadcaster"]))
     await graph.settle()
     assert logged("INFO") == ["waiting for service /controller_manager/list_controllers to become available..."]
@@ -101,7 +101,7 @@ async def test_a_spawner_waits_for_its_manager(graph, clock, tmp_path, logged):
     running.close()
 
 
-async def test_it_does_not_wait_for_ever_if_it_is_said(graph, clock, logged):
+async def test_controller_manager_timeout_ends_waiting(graph, clock, logged):
     spawner = Spawner(graph, NodeOptions(arguments=["broadcaster", "--controller-manager-timeout", "5"]))
     await graph.settle()
     await clock.advance(5.1)
@@ -110,7 +110,7 @@ async def test_it_does_not_wait_for_ever_if_it_is_said(graph, clock, logged):
     spawner.close()
 
 
-async def test_controllers_go_with_their_spawner(graph, tmp_path):
+async def test_unload_on_kill_removes_controllers(graph, tmp_path):
     running = start(graph, tmp_path, CONTROL)
     spawner = Spawner(graph, NodeOptions(arguments=["broadcaster", "-u"]))
     await graph.settle()

@@ -13,7 +13,7 @@ from tests.control.manager.test_ros2_control_node import CONTROL, advance, ask, 
 LATCHED = QoSProfile(depth=1, durability=DurabilityPolicy.TRANSIENT_LOCAL)
 
 
-def test_the_statistics_of_what_is_done_regularly():
+def test_timing_statistics():
     timing = Timing()
     for time_ns in (0, 10_000_000, 20_000_000, 40_000_000):
         timing.measure(lambda *_: None, time_ns, 0.01)
@@ -27,7 +27,7 @@ def test_the_statistics_of_what_is_done_regularly():
     assert facts["execution_time/min"] >= 0.0
 
 
-async def test_they_are_published_each_second_while_somebody_listens(graph, clock, tmp_path, monkeypatch):
+async def test_statistics_are_published_each_second_to_subscribers(graph, clock, tmp_path, monkeypatch):
     monkeypatch.setenv("ROS_DISTRO", "jazzy")
     running = start(graph, tmp_path, CONTROL)
     node = graph.create_node("audience")
@@ -58,7 +58,7 @@ async def test_they_are_published_each_second_while_somebody_listens(graph, cloc
     assert loaded.timing is None
 
 
-async def test_humble_has_no_such_topics(graph, tmp_path, monkeypatch):
+async def test_humble_has_no_statistics_topics(graph, tmp_path, monkeypatch):
     monkeypatch.setenv("ROS_DISTRO", "humble")
     start(graph, tmp_path, CONTROL)
     assert not [name for name, _ in graph.get_topic_names_and_types() if "statistics" in name]

@@ -25,7 +25,7 @@ def pid(wheel: str) -> dict[str, Any]:
     }
 
 
-async def test_a_drive_turns_its_wheels_by_way_of_pid(graph):
+async def test_drive_turns_wheels_through_pid_controllers(graph):
     types = {f"pid_{wheel}": {"type": "pid_controller/PidController"} for wheel in WHEELS}
     types["base"] = {"type": "diff_drive_controller/DiffDriveController"}
     base = {

@@ -9,7 +9,7 @@ import pytest
 from linkwright.control.motion.odometer import Odometer
 
 
-def test_an_arc_is_exact_however_many_steps_it_takes():
+def test_arc_is_exact_for_any_number_of_steps():
     odometer = Odometer(10)
     for _ in range(1000):
         odometer.measure((0.5, 0.0, 0.4), 0.01)
@@ -19,7 +19,7 @@ def test_an_arc_is_exact_however_many_steps_it_takes():
     assert odometer.velocity == pytest.approx((0.5, 0.0, 0.4))
 
 
-def test_velocities_are_the_mean_of_the_last_ones():
+def test_velocity_is_mean_of_last_measurements():
     odometer = Odometer(4)
     messages = []
     for speed in (1.0, 1.0, 3.0, 3.0, 3.0):
@@ -29,14 +29,14 @@ def test_velocities_are_the_mean_of_the_last_ones():
     assert odometer.velocity[1] == pytest.approx(-2.5)
 
 
-def test_what_is_told_is_not_smoothed():
+def test_commanded_velocity_is_not_smoothed():
     odometer = Odometer(4)
     odometer.add_commanded((1.0, 0.0, 0.0), 0.5)
     odometer.add_commanded((0.0, 0.0, 0.0), 0.5)
     assert (odometer.pose.x, odometer.velocity) == (0.5, (0.0, 0.0, 0.0))
 
 
-def test_it_may_begin_anywhere():
+def test_reset_sets_pose():
     odometer = Odometer()
     odometer.measure((1.0, 0.0, 0.0), 1.0)
     odometer.reset(2.0, 3.0, 0.0)

@@ -12,14 +12,14 @@ from linkwright.control.motion.pid import BACK_CALCULATION, CLAMPED, CONDITIONAL
 from linkwright.control.motion.tolerances import StateTolerance, Tolerances, resolved
 
 
-def test_a_command_is_the_sum_of_what_the_gains_make_of_the_error_its_integral_and_its_change():
+def test_command_is_sum_of_p_i_and_d_terms():
     pid = Pid(PidGains(p=2.0, i=4.0, d=0.5))
     assert pid.command(1.0, 0.1) == pytest.approx(2.0 + 4.0 * 0.1 + 0.5 * 10.0)
     assert pid.command(0.5, 0.1) == pytest.approx(1.0 + 4.0 * 0.15 - 0.5 * 5.0)
     assert pid.command(0.5, 0.1, 3.0) == pytest.approx(1.0 + 4.0 * 0.2 + 1.5)
 
 
-def test_what_the_integral_adds_is_bounded_while_it_grows_on_unless_it_is_bounded_itself():
+def test_integral_term_is_bounded_with_and_without_clamping():
     loose, clamped = (Pid(PidGains(i=1.0, i_min=-1.0, i_max=1.0, antiwindup=each)) for each in ("none", CLAMPED))
     for pid in (loose, clamped):
         assert [pid.command(1.0, 1.0) for _ in range(5)] == [1.0] * 5
@@ -28,7 +28,7 @@ def test_what_the_integral_adds_is_bounded_while_it_grows_on_unless_it_is_bounde
 
 
 @pytest.mark.parametrize("strategy", [CONDITIONAL, BACK_CALCULATION])
-def test_a_bounded_command_lets_the_integral_not_run_away(strategy: str):
+def test_antiwindup_bounds_integral(strategy: str):
     pid = Pid(PidGains(p=1.0, i=1.0, u_min=-2.0, u_max=2.0, antiwindup=strategy, tracking_time_constant=1.0))
     for _ in range(1000):
         assert pid.command(1.5, 0.1) <= 2.0
@@ -38,41 +38,41 @@ def test_a_bounded_command_lets_the_integral_not_run_away(strategy: str):
 
 
 @given(st.lists(st.floats(-1e3, 1e3), min_size=1, max_size=30), st.sampled_from(STRATEGIES))
-def test_a_command_never_leaves_its_bounds(errors: list[float], strategy: str):
+def test_command_stays_within_bounds(errors: list[float], strategy: str):
     pid = Pid(PidGains(p=3.0, i=2.0, d=0.1, u_min=-5.0, u_max=5.0, antiwindup=strategy))
     assert all(-5.0 <= pid.command(error, 0.01) <= 5.0 for error in errors)
 
 
 @pytest.mark.parametrize("error", [nan, inf])
-def test_an_error_that_is_no_number_gives_nothing_and_changes_nothing(error: float):
+def test_error_that_is_not_a_number_gives_zero_command(error: float):
     pid = Pid(PidGains(p=1.0, i=1.0))
     pid.command(1.0, 1.0)
     assert pid.command(error, 1.0) == pid.command(1.0, 1.0, error) == pid.command(1.0, 0.0) == 0.0
     assert pid.integral == 1.0
 
 
-def test_a_reset_forgets_the_errors_before():
+def test_reset_clears_previous_errors():
     pid = Pid(PidGains(i=1.0, d=1.0))
     pid.command(5.0, 1.0)
     pid.reset()
     assert pid.command(1.0, 1.0) == 2.0
 
 
-def test_the_time_constant_of_back_calculation_follows_from_the_gains():
+def test_tracking_time_is_derived_from_gains():
     assert PidGains(p=6.0, i=2.0).tracking_time == 3.0
     assert PidGains(p=6.0, i=2.0, d=8.0).tracking_time == 2.0
     assert PidGains(p=6.0, i=2.0, tracking_time_constant=0.5).tracking_time == 0.5
     assert PidGains(p=6.0).tracking_time == 0.0
 
 
-def test_tolerances_hold_up_to_their_value_and_zero_allows_anything():
+def test_tolerances_bound_errors_unless_zero():
     tolerance = StateTolerance(0.1, 0.0, 1.0)
     assert tolerance.is_within(-0.1, 99.0, 1.0)
     assert not tolerance.is_within(0.11, 0.0, 0.0)
     assert list(tolerance.violations(-0.2, 9.0, 2.0)) == [("Position", -0.2, 0.1), ("Acceleration", 2.0, 1.0)]
 
 
-def test_tolerances_of_a_goal_replace_erase_or_keep_those_of_the_controller():
+def test_goal_tolerances_replace_erase_or_keep_defaults():
     assert [resolved(0.5, given) for given in (0.2, 0.0, -1.0)] == [0.2, 0.5, 0.0]
     with pytest.raises(ValueError, match="-2"):
         resolved(0.5, -2.0)

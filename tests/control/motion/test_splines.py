@@ -41,7 +41,7 @@ def solution(start: list[float], end: list[float], duration: float) -> np.ndarra
 
 
 @given(numbers, numbers, durations)
-def test_between_positions_alone_a_joint_goes_straight(p0: float, p1: float, duration: float):
+def test_segment_of_positions_is_linear(p0: float, p1: float, duration: float):
     segment = Segment(MotionState([p0]), MotionState([p1]), duration)
     for share in (0.0, 0.3, 1.0):
         state = segment.at(share * duration)
@@ -51,7 +51,7 @@ def test_between_positions_alone_a_joint_goes_straight(p0: float, p1: float, dur
 
 
 @given(*[numbers] * 6, durations, st.sampled_from([2, 3]))
-def test_a_segment_is_the_polynomial_that_has_what_both_points_say(p0, v0, a0, p1, v1, a1, duration, known):
+def test_segment_is_polynomial_through_both_points(p0, v0, a0, p1, v1, a1, duration, known):
     start, end = [p0, v0, a0][:known], [p1, v1, a1][:known]
     segment = Segment(MotionState(*([each] for each in start)), MotionState(*([each] for each in end)), duration)
     theory = np.polynomial.Polynomial(solution(start, end, duration))
@@ -64,7 +64,7 @@ def test_a_segment_is_the_polynomial_that_has_what_both_points_say(p0, v0, a0, p
         assert state.accelerations[0] == pytest.approx(float(theory.deriv(2)(time)), abs=1e-7 * scale)
 
 
-def test_a_segment_of_velocities_and_accelerations_of_one_side_only_goes_by_what_both_have():
+def test_segment_uses_only_values_given_at_both_points():
     state = Segment(MotionState([0.0], [1.0], [1.0]), MotionState([1.0]), 2.0).at(1.0)
     assert (state.positions, state.velocities) == ([0.5], [0.5])
     cubic = Segment(MotionState([0.0], [0.0], [9.0]), MotionState([1.0], [0.0]), 2.0).at(1.0)
@@ -72,7 +72,7 @@ def test_a_segment_of_velocities_and_accelerations_of_one_side_only_goes_by_what
     assert cubic.velocities == pytest.approx([0.75])
 
 
-def test_a_trajectory_begins_where_the_joints_are_and_ends_at_its_last_point():
+def test_trajectory_starts_at_joint_state_and_ends_at_last_point():
     trajectory = Trajectory([point(1.0, [1.0]), point(3.0, [2.0])])
     trajectory.begin(10 * SECOND, MotionState([0.0]))
     assert trajectory.sample(9 * SECOND) is None
@@ -85,26 +85,26 @@ def test_a_trajectory_begins_where_the_joints_are_and_ends_at_its_last_point():
     assert sampled(trajectory, 99.0).state == MotionState([2.0], [0.0], [0.0])
 
 
-def test_a_trajectory_can_be_asked_for_earlier_moments_again():
+def test_trajectory_can_be_sampled_backwards():
     trajectory = Trajectory([point(float(each), [float(each)]) for each in range(1, 6)])
     trajectory.begin(SECOND, MotionState([0.0]))
     assert [sampled(trajectory, time).state.positions[0] for time in (5.5, 1.5, 3.5)] == pytest.approx([4.5, 0.5, 2.5])
 
 
-def test_a_trajectory_with_a_start_in_the_future_goes_to_its_first_point_from_now_on():
+def test_trajectory_with_future_start_moves_to_first_point_from_now():
     trajectory = Trajectory([point(0.0, [1.0])], start_ns=4 * SECOND)
     trajectory.begin(2 * SECOND, MotionState([0.0]))
     assert sampled(trajectory, 3.0).state.positions == pytest.approx([0.5])
     assert sampled(trajectory, 4.0).has_ended
 
 
-def test_a_trajectory_with_a_start_in_the_past_goes_on_at_the_segment_that_is_due():
+def test_trajectory_with_past_start_continues_at_current_segment():
     trajectory = Trajectory([point(1.0, [1.0]), point(5.0, [5.0])], start_ns=SECOND)
     trajectory.begin(4 * SECOND, MotionState([0.0]))
     assert sampled(trajectory, 4.0).state.positions == pytest.approx([3.0])
 
 
-def test_positions_follow_from_velocities_and_velocities_from_accelerations():
+def test_missing_positions_and_velocities_are_integrated():
     trajectory = Trajectory([point(1.0, [], [2.0]), point(2.0, [], [4.0]), point(3.0, [], [], [0.0])])
     trajectory.begin(SECOND, MotionState([0.0]))
     assert [point.state.positions for point in trajectory.points] == [[1.0], [4.0], [8.0]]
@@ -116,7 +116,7 @@ def test_positions_follow_from_velocities_and_velocities_from_accelerations():
     numbers,
     st.sampled_from([1, 2, 3]),
 )
-def test_a_trajectory_goes_through_its_points_without_a_jump(points, begin, known):
+def test_trajectory_is_continuous_through_its_points(points, begin, known):
     times = np.cumsum([point[0] for point in points])
     made = [
         point(float(time), *([value] for value in values[:known]))
@@ -135,21 +135,21 @@ def test_a_trajectory_goes_through_its_points_without_a_jump(points, begin, know
     assert sampled(trajectory, float(times[-1])).has_ended
 
 
-def test_without_interpolation_the_next_point_is_sent_at_once():
+def test_points_are_sampled_when_due_without_interpolation():
     trajectory = Trajectory([point(1.0, [1.0]), point(2.0, [2.0])], interpolated=False)
     trajectory.begin(SECOND, MotionState([0.0]))
     assert [sampled(trajectory, time).state.positions for time in (1.5, 2.0, 3.0)] == [[0.0], [2.0], [2.0]]
 
 
 @given(st.floats(-20.0, 20.0), st.floats(-20.0, 20.0))
-def test_the_shortest_turn_leads_there_and_is_at_most_half_a_turn(start: float, end: float):
+def test_shortest_turn_is_at_most_half_a_turn(start: float, end: float):
     turn = shortest_turn(start, end)
     assert -pi <= turn <= pi
     assert np.cos(start + turn) == pytest.approx(np.cos(end), abs=1e-9)
     assert np.sin(start + turn) == pytest.approx(np.sin(end), abs=1e-9)
 
 
-def test_a_joint_that_turns_without_an_end_goes_the_shorter_way():
+def test_continuous_joint_turns_shorter_way():
     trajectory = Trajectory([point(1.0, [-3.0, -3.0])])
     trajectory.begin(0, MotionState([3.0, 3.0]), (True, False))
     middle = sampled(trajectory, 0.5).state.positions

@@ -53,7 +53,7 @@ def joystick(tmp_path, monkeypatch):
 
 
 @pytest.fixture
-def heard(stage):
+def joy_messages(stage):
     messages = []
     stage.node.create_subscription(JOY, "/joy", messages.append, 100)
     return messages
@@ -72,25 +72,27 @@ async def start(stage):
         each.close()
 
 
-async def test_axes_and_buttons_are_those_of_ros(joystick, stage, heard, start):
+async def test_axes_and_buttons_match_ros(joystick, stage, joy_messages, start):
     joystick.plug_in()
     joystick.say((AXIS | INITIAL, 0, 0), (AXIS | INITIAL, 1, 0), (BUTTON | INITIAL, 0, 0), (BUTTON | INITIAL, 1, 0))
     node = start(deadzone=0.2, autorepeat_rate=0.0)
     await eventually(lambda: len(node._buttons) == 2)
     await stage.clock.advance(0.01)
-    assert [(list(each.axes), list(each.buttons)) for each in heard] == [([0, 0], [0, 0])], "one message of the start"
+    assert [(list(each.axes), list(each.buttons)) for each in joy_messages] == [([0, 0], [0, 0])], (
+        "one message of the start"
+    )
     joystick.say((BUTTON, 1, 1))
-    await eventually(lambda: len(heard) == 2)
-    assert list(heard[-1].buttons) == [0, 1]
-    assert heard[-1].header.frame_id == "joy"
+    await eventually(lambda: len(joy_messages) == 2)
+    assert list(joy_messages[-1].buttons) == [0, 1]
+    assert joy_messages[-1].header.frame_id == "joy"
     joystick.say((AXIS, 1, -32767), (AXIS, 0, 19661))
     await eventually(lambda: node._axes[0] != 0)
     await stage.clock.advance(0.01)
-    assert list(heard[-1].axes) == pytest.approx([-0.5, 1.0], abs=1e-4)
-    assert len(heard) == 3, "what comes within a millisecond is one message"
+    assert list(joy_messages[-1].axes) == pytest.approx([-0.5, 1.0], abs=1e-4)
+    assert len(joy_messages) == 3, "what comes within a millisecond is one message"
 
 
-def test_a_deadzone_is_smooth():
+def test_deadzone_is_continuous():
     assert [round(deflection(value, 0.1), 4) for value in (0, 3276, -3277, -32767, 32767, -32768)] == [
         0,
         0,
@@ -102,26 +104,26 @@ def test_a_deadzone_is_smooth():
     assert deflection(-18022, 0.1) == pytest.approx(0.5, abs=1e-4)
 
 
-async def test_what_does_not_change_is_repeated(joystick, stage, heard, start):
+async def test_unchanged_state_is_republished_at_autorepeat_rate(joystick, stage, joy_messages, start):
     joystick.plug_in()
     joystick.say((AXIS | INITIAL, 0, 0))
     node = start(autorepeat_rate=10.0)
     await eventually(lambda: len(node._axes) == 1)
     await stage.clock.advance(1.005)
-    assert len(heard) == 11
+    assert len(joy_messages) == 11
 
 
-async def test_sticky_buttons_stay(joystick, stage, heard, start):
+async def test_sticky_buttons_toggle(joystick, stage, joy_messages, start):
     joystick.plug_in()
     start(sticky_buttons=True, autorepeat_rate=0.0)
     for count, value in enumerate((1, 0, 1), 1):
         joystick.say((BUTTON, 0, value))
         if value:
-            await eventually(lambda expected=(count + 1) // 2: len(heard) == expected)
-    assert [list(each.buttons) for each in heard] == [[1], [0]]
+            await eventually(lambda expected=(count + 1) // 2: len(joy_messages) == expected)
+    assert [list(each.buttons) for each in joy_messages] == [[1], [0]]
 
 
-async def test_it_waits_for_a_joystick_and_says_so_once(joystick, stage, heard, start, logged):
+async def test_missing_joystick_is_reported_once(joystick, stage, joy_messages, start, logged):
     node = start(autorepeat_rate=0.0)
     await stage.clock.advance(5.0)
     assert logged("WARN") == ["the joystick /dev/input/js0 is not connected; waiting for it"]
@@ -130,42 +132,42 @@ async def test_it_waits_for_a_joystick_and_says_so_once(joystick, stage, heard, 
     await stage.clock.advance(1.0)
     await eventually(lambda: node._buttons == [1])
     await stage.clock.advance(0.01)
-    assert list(heard[-1].buttons) == [1]
+    assert list(joy_messages[-1].buttons) == [1]
 
 
-async def test_a_joystick_that_is_pulled_out_lets_go_of_everything(joystick, stage, heard, start, logged):
+async def test_disconnected_joystick_releases_axes_and_buttons(joystick, stage, joy_messages, start, logged):
     joystick.plug_in()
     start(autorepeat_rate=0.0)
     joystick.say((BUTTON, 0, 1), (AXIS, 0, 32767))
-    await eventually(lambda: heard and list(heard[-1].axes))
+    await eventually(lambda: joy_messages and list(joy_messages[-1].axes))
     joystick.pull_out()
     await eventually(lambda: "the joystick was disconnected; waiting for it" in logged("WARN"))
     await stage.graph.settle()
-    assert (list(heard[-1].axes), list(heard[-1].buttons)) == ([0.0], [0])
+    assert (list(joy_messages[-1].axes), list(joy_messages[-1].buttons)) == ([0.0], [0])
     joystick.plug_in()
     await stage.clock.advance(1.0)
     joystick.say((BUTTON, 2, 1))
-    await eventually(lambda: list(heard[-1].buttons) == [0, 0, 1])
+    await eventually(lambda: list(joy_messages[-1].buttons) == [0, 0, 1])
 
 
-async def test_a_joystick_that_may_not_be_read_is_told_of(tmp_path, stage, start, logged):
+async def test_unreadable_joystick_is_reported(tmp_path, stage, start, logged):
     start(JoyLinuxNode, dev=str(tmp_path))  # a folder
     (text,) = logged("WARN")
     assert text.startswith(f"the joystick {tmp_path} cannot be read: ")
 
 
-async def test_joy_linux_takes_a_device_by_its_path(tmp_path, stage, heard, start):
+async def test_joy_linux_accepts_device_path(tmp_path, stage, joy_messages, start):
     joystick = Joystick(tmp_path / "mine")
     joystick.plug_in()
     start(JoyLinuxNode, dev=str(joystick.path), coalesce_interval=0.0, autorepeat_rate=0.0)
     joystick.say((AXIS, 0, -32767))
-    await eventually(lambda: heard)
-    assert list(heard[0].axes) == [1.0]
+    await eventually(lambda: joy_messages)
+    assert list(joy_messages[0].axes) == [1.0]
     os.close(joystick.file)
 
 
 @pytest.mark.parametrize("wrong", [{"deadzone": 1.5}, {"autorepeat_rate": -1.0}, {"coalesce_interval_ms": -1}])
-async def test_parameters_out_of_range_are_refused(stage, wrong):
+async def test_out_of_range_parameters_are_rejected(stage, wrong):
     with pytest.raises(LinkwrightError) as raised:
         JoyNode(stage.graph, NodeOptions(parameters=wrong))
     assert raised.value.diagnostics[0].code == "NODE903"
@@ -199,7 +201,7 @@ class Pilot:
 AXES = [0.5, 0.25, 1.0, 0.0, 0.0, 1.0]
 
 
-async def test_a_button_must_be_held(stage, start):
+async def test_enable_button_must_be_held(stage, start):
     pilot = Pilot(stage)
     start(TeleopTwistJoy)
     assert await pilot.hold(AXES) is None
@@ -208,7 +210,7 @@ async def test_a_button_must_be_held(stage, start):
     assert await pilot.hold(AXES) is None, "it stops once"
 
 
-async def test_turbo_scales_and_more_axes(stage, start):
+async def test_turbo_scales_and_additional_axes(stage, start):
     pilot = Pilot(stage)
     start(
         TeleopTwistJoy,
@@ -219,27 +221,27 @@ async def test_turbo_scales_and_more_axes(stage, start):
     assert await pilot.hold(AXES, 7) == (1.0, 0, 0)
 
 
-async def test_backwards_turns_can_be_inverted_and_no_button_be_needed(stage, start):
+async def test_inverted_reverse_and_optional_enable_button(stage, start):
     pilot = Pilot(stage)
     start(TeleopTwistJoy, inverted_reverse=True, require_enable_button=False)
     assert await pilot.hold([0, 0, 1.0, 0, 0, -1.0]) == (-0.5, 0, -0.5)
 
 
-async def test_parameters_can_change(stage, start):
+async def test_parameters_can_be_changed(stage, start):
     pilot = Pilot(stage)
     node = start(TeleopTwistJoy)
     assert await stage.set(node, enable_button=1) == [(True, "")]
     assert await pilot.hold(AXES, 1) == (0.5, 0, 0.5)
 
 
-async def test_the_type_is_that_of_who_listens(stage, start):
+async def test_message_type_matches_subscriber(stage, start):
     pilot = Pilot(stage, "geometry_msgs/msg/TwistStamped")
     start(TeleopTwistJoy, frame="base_link")
     assert await pilot.hold(AXES, 5) == (0.5, 0, 0.5)
     assert pilot.velocities[0].header.frame_id == "base_link"
 
 
-async def test_a_joystick_nobody_speaks_for_stops_the_robot(stage, start, logged):
+async def test_lost_joy_publisher_stops_robot(stage, start, logged):
     pilot = Pilot(stage)
     start(TeleopTwistJoy)
     await pilot.hold(AXES, 5)
@@ -250,7 +252,7 @@ async def test_a_joystick_nobody_speaks_for_stops_the_robot(stage, start, logged
     assert logged("WARN") == ["no node publishes '/joy' any more, so the robot is stopped"]
 
 
-async def test_its_end_stops_the_robot(stage):
+async def test_closing_node_stops_robot(stage):
     pilot = Pilot(stage)
     node = TeleopTwistJoy(stage.graph, NodeOptions())
     await pilot.hold(AXES, 5)

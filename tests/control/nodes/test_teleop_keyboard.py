@@ -81,7 +81,7 @@ def start(stage, terminal):
             each.close()
 
 
-async def test_keys_move_as_those_of_ros_do(start):
+async def test_keys_match_teleop_twist_keyboard(start):
     driver = start()
     forwards = {"i": (0.5, 0, 0, 0), "o": (0.5, 0, 0, -1), "u": (0.5, 0, 0, 1), "j": (0, 0, 0, 1), "l": (0, 0, 0, -1)}
     backwards = {",": (-0.5, 0, 0, 0), ".": (-0.5, 0, 0, 1), "m": (-0.5, 0, 0, -1), "k": (0, 0, 0, 0)}
@@ -93,7 +93,7 @@ async def test_keys_move_as_those_of_ros_do(start):
         assert await driver.type(key, count) == velocity, key
 
 
-async def test_speeds_change_by_a_tenth_and_are_told(start):
+async def test_speed_keys_change_by_ten_percent_and_print_speed(start):
     driver = start(speed=0.2, turn=2.0)
     assert "u    i    o" in driver.printed[0]
     assert driver.printed[1] == "currently:\tspeed 0.2\tturn 2.0 "
@@ -107,21 +107,21 @@ async def test_speeds_change_by_a_tenth_and_are_told(start):
     assert sum("u    i    o" in line for line in driver.printed) == 2, "the help comes again after fifteen changes"
 
 
-async def test_arrow_keys_stop(start):
+async def test_arrow_keys_stop_robot(start):
     driver = start()
     await driver.type("i", 1)
     assert await driver.type("\x1bOC", 2) == (0, 0, 0, 0)
     assert list(keys_in("\x1b[1;5Ai\x1b")) == ["\x1b[1;5A", "i", "\x1b"]
 
 
-async def test_the_type_is_that_of_who_listens(start, stage):
+async def test_message_type_matches_subscriber(start, stage):
     driver = start(kind=TWIST_STAMPED, frame_id="base_link")
     await driver.type("i", 1)
     assert driver.heard[0].header.frame_id == "base_link"
     assert driver.heard[0].header.stamp.sec == stage.clock.now_ns() // 10**9
 
 
-async def test_the_type_follows_who_comes_later(start, stage):
+async def test_message_type_follows_late_subscriber(start, stage):
     driver = start(kind=None)
     stage.node.create_subscription(TWIST_STAMPED, "/cmd_vel", driver.heard.append, 10)
     await stage.clock.advance(0.6)
@@ -129,12 +129,12 @@ async def test_the_type_follows_who_comes_later(start, stage):
 
 
 @pytest.mark.parametrize(("stamped", "kind"), [(True, TWIST_STAMPED), (False, TWIST)])
-async def test_the_type_is_the_one_asked_for(start, stage, stamped, kind):
+async def test_message_type_matches_stamped_parameter(start, stage, stamped, kind):
     start(kind=None, stamped=stamped)
     assert [endpoint.type_name for endpoint in stage.graph.endpoints() if endpoint.name == "/cmd_vel"] == [kind]
 
 
-async def test_a_key_that_is_lost_stops_the_robot(start, stage):
+async def test_key_timeout_stops_robot(start, stage):
     driver = start(key_timeout=0.6)
     await driver.type("i", 1)
     await stage.clock.advance(0.5)
@@ -147,7 +147,7 @@ async def test_a_key_that_is_lost_stops_the_robot(start, stage):
     assert len(driver.heard) == 3, "it stops once"
 
 
-async def test_velocities_are_repeated_on_request(start, stage):
+async def test_repeat_rate_republishes_velocity(start, stage):
     driver = start(repeat_rate=10.0)
     await driver.type("u", 1)
     await stage.clock.advance(1.05)
@@ -155,7 +155,7 @@ async def test_velocities_are_repeated_on_request(start, stage):
     assert driver.last() == (0.5, 0, 0, 1)
 
 
-async def test_nobody_listening_is_told_once(start, stage, logged):
+async def test_missing_subscriber_is_reported_once(start, stage, logged):
     driver = start(kind=None)
     os.write(driver.typing, b"i")
     await eventually(lambda: driver.node._direction.x == 1.0)
@@ -164,7 +164,7 @@ async def test_nobody_listening_is_told_once(start, stage, logged):
 
 
 @pytest.mark.parametrize("end", ["\x03", "closed"])
-async def test_its_end_stops_the_robot_and_gives_the_terminal_back(start, end):
+async def test_exit_stops_robot_and_restores_terminal(start, end):
     driver = start()
     assert not echoes(driver.own)
     await driver.type("i", 1)
@@ -182,7 +182,7 @@ async def test_its_end_stops_the_robot_and_gives_the_terminal_back(start, end):
     assert end == "closed" or echoes(driver.own)
 
 
-async def test_closing_the_node_stops_the_robot(start):
+async def test_closing_node_stops_robot(start):
     driver = start()
     await driver.type("i", 1)
     driver.close()
@@ -191,21 +191,21 @@ async def test_closing_the_node_stops_the_robot(start):
     assert echoes(driver.own)
 
 
-async def test_without_a_terminal_it_says_so(stage):
+async def test_missing_terminal_is_reported(stage):
     with pytest.raises(LinkwrightError) as raised:
         TeleopTwistKeyboard(stage.graph, NodeOptions())
     assert [diagnostic.code for diagnostic in raised.value.diagnostics] == ["NODE901"]
     assert stage.graph.topics().get("/cmd_vel") is None
 
 
-async def test_a_negative_speed_is_refused(stage):
+async def test_negative_speed_is_rejected(stage):
     with pytest.raises(LinkwrightError) as raised:
         TeleopTwistKeyboard(stage.graph, NodeOptions(parameters={"speed": -1.0}))
     assert [diagnostic.code for diagnostic in raised.value.diagnostics] == ["NODE902"]
 
 
 @pytest.mark.parametrize("end", [signal.SIGINT, signal.SIGTERM, signal.SIGHUP, None], ids=str)
-def test_a_process_gives_its_terminal_back(terminal, tmp_path, end):
+def test_process_restores_terminal(terminal, tmp_path, end):
     typing, own = terminal
     process = subprocess.Popen(
         [sys.executable, "-m", "linkwright.node_program", "teleop_twist_keyboard", "teleop_twist_keyboard"],

@@ -61,7 +61,7 @@ def mux(stage, **more):
     return TwistMux(stage.graph, NodeOptions(parameters={**PARAMETERS, **more}))
 
 
-async def test_the_highest_priority_goes_through_until_it_falls_silent(stage, traffic):
+async def test_highest_priority_topic_is_forwarded_until_timeout(stage, traffic):
     mux(stage)
     assert await traffic.send("nav_vel", 1.0) == [1.0]
     assert await traffic.send("joy_vel", 2.0) == [2.0]
@@ -70,7 +70,7 @@ async def test_the_highest_priority_goes_through_until_it_falls_silent(stage, tr
     assert await traffic.send("nav_vel", 1.0) == [1.0]
 
 
-async def test_a_topic_without_a_time_out_counts_from_its_first_message(stage, traffic):
+async def test_topic_without_timeout_stays_active_after_first_message(stage, traffic):
     mux(stage, topics={**PARAMETERS["topics"], "tablet": {"topic": "tab_vel", "timeout": 0.0, "priority": 20}})
     assert await traffic.send("nav_vel", 1.0) == [1.0]
     assert await traffic.send("tab_vel", 3.0) == [3.0]
@@ -78,7 +78,7 @@ async def test_a_topic_without_a_time_out_counts_from_its_first_message(stage, t
     assert await traffic.send("nav_vel", 1.0) == []
 
 
-async def test_a_lock_shuts_out_lower_priorities(stage, traffic):
+async def test_lock_blocks_lower_priorities(stage, traffic):
     mux(stage)
     assert await traffic.send("pause", True) == []
     assert await traffic.send("nav_vel", 1.0) == []
@@ -88,7 +88,7 @@ async def test_a_lock_shuts_out_lower_priorities(stage, traffic):
     assert await traffic.send("nav_vel", 1.0) == [1.0]
 
 
-async def test_a_lock_that_is_not_heard_of_locks(stage, traffic):
+async def test_silent_lock_with_timeout_blocks(stage, traffic):
     mux(stage, locks={"watchdog": {"topic": "alive", "timeout": 0.5, "priority": 255}})
     assert await traffic.send("joy_vel", 2.0) == []
     await traffic.send("alive", False)
@@ -97,13 +97,13 @@ async def test_a_lock_that_is_not_heard_of_locks(stage, traffic):
     assert await traffic.send("joy_vel", 2.0) == []
 
 
-async def test_velocities_may_be_stamped(stage):
+async def test_stamped_velocities_are_supported(stage):
     traffic = Traffic(stage, get_message("geometry_msgs/msg/TwistStamped"))
     mux(stage, use_stamped=True)
     assert await traffic.send("nav_vel", 1.0) == [1.0]
 
 
-async def test_diagnostics_tell_who_is_shut_out(stage, traffic):
+async def test_diagnostics_report_masked_topics(stage, traffic):
     mux(stage)
     await traffic.send("pause", True)
     await traffic.send("joy_vel", 2.0)
@@ -122,7 +122,7 @@ async def test_diagnostics_tell_who_is_shut_out(stage, traffic):
         ({"a": {"topic": "a", "timeout": 0.5}}, "topics.a.priority"),
     ],
 )
-async def test_what_is_not_whole_is_refused(stage, topics, named):
+async def test_incomplete_topic_parameters_are_rejected(stage, topics, named):
     with pytest.raises(LinkwrightError) as raised:
         TwistMux(stage.graph, NodeOptions(parameters={"topics": topics}))
     (found,) = raised.value.diagnostics
@@ -130,12 +130,12 @@ async def test_what_is_not_whole_is_refused(stage, topics, named):
     assert f"'{named}'" in found.message
 
 
-async def test_without_topics_it_says_so_and_runs(stage, logged):
+async def test_missing_topics_are_reported_and_node_runs(stage, logged):
     TwistMux(stage.graph, NodeOptions())
     assert logged("WARN") == ["no parameter topics.NAME.topic is set, so nothing is forwarded"]
 
 
-async def test_two_on_one_of_its_topics_are_told_and_not_what_it_chooses_between(traffic):
+async def test_two_publishers_on_one_input_topic_are_reported(traffic):
     mux(traffic.stage)
     transport = RemoteTransport(traffic.stage.graph)
     named = (("/tab_vel", "tab"), ("/joy_vel", "joy"), ("/joy_vel", "pad"))
@@ -159,7 +159,7 @@ async def test_two_on_one_of_its_topics_are_told_and_not_what_it_chooses_between
     assert "'/joy', '/pad' send commands on '/joy_vel'" in text
 
 
-async def test_a_stop_goes_out_when_who_sent_the_last_velocity_is_lost(traffic):
+async def test_lost_publisher_of_last_velocity_stops_robot(traffic):
     mux(traffic.stage)
     transport = RemoteTransport(traffic.stage.graph)
     tablet, joystick = (RemotePublisher(transport, topic, topic[1:]) for topic in ("/tab_vel", "/joy_vel"))

@@ -33,7 +33,7 @@ def raised(path: Path, z: float) -> EditPlan:
     ],
     ids=["utf-8", "byte order mark", "latin-1", "utf-16"],
 )
-def test_bytes_around_an_edit_stay_and_come_back(tmp_path: Path, bytes_of: Callable[[str], bytes]) -> None:
+def test_edit_and_undo_preserve_other_bytes(tmp_path: Path, bytes_of: Callable[[str], bytes]) -> None:
     path = tmp_path / "robot.urdf"
     path.write_bytes(bytes_of(ROBOT))
     history = EditHistory()
@@ -48,7 +48,7 @@ def test_bytes_around_an_edit_stay_and_come_back(tmp_path: Path, bytes_of: Calla
     assert path.read_bytes() == after
 
 
-def test_a_file_that_changed_meanwhile_is_left_as_it_is(tmp_path: Path) -> None:
+def test_file_changed_meanwhile_is_not_overwritten(tmp_path: Path) -> None:
     path = tmp_path / "robot.urdf"
     path.write_bytes(ROBOT.encode())
     plan, history = raised(path, 2), EditHistory()
@@ -66,7 +66,7 @@ def test_a_file_that_changed_meanwhile_is_left_as_it_is(tmp_path: Path) -> None:
     assert history.can_undo
 
 
-def test_of_several_files_all_are_written_or_none(tmp_path: Path) -> None:
+def test_several_files_are_written_together_or_not_at_all(tmp_path: Path) -> None:
     first, second = tmp_path / "one.xacro", tmp_path / "two.xacro"
     first.write_text("1")
     second.write_text("2")
@@ -85,7 +85,7 @@ def test_of_several_files_all_are_written_or_none(tmp_path: Path) -> None:
     assert second.read_text() == "two"
 
 
-def test_a_link_to_a_file_stays_a_link(tmp_path: Path) -> None:
+def test_symlink_is_preserved(tmp_path: Path) -> None:
     real, link = tmp_path / "real.urdf", tmp_path / "robot.urdf"
     real.write_bytes(ROBOT.encode())
     link.symlink_to(real)
@@ -94,7 +94,7 @@ def test_a_link_to_a_file_stays_a_link(tmp_path: Path) -> None:
     assert "0 0 2" in real.read_text()
 
 
-def test_the_workspace_is_that_of_the_package_the_repository_or_the_src_folder(tmp_path: Path) -> None:
+def test_workspace_is_package_repository_or_src_parent(tmp_path: Path) -> None:
     folder = tmp_path / "ws" / "src" / "robot" / "urdf"
     folder.mkdir(parents=True)
     main = folder / "robot.urdf"
@@ -107,7 +107,7 @@ def test_the_workspace_is_that_of_the_package_the_repository_or_the_src_folder(t
     assert Workspace(lone / "robot.urdf").folder == (tmp_path / "lone").resolve()
 
 
-def test_files_that_are_not_the_users_to_write_are_refused_with_their_path(tmp_path: Path) -> None:
+def test_files_outside_workspace_or_installed_are_rejected(tmp_path: Path) -> None:
     main = tmp_path / "mine" / "robot.urdf"
     main.parent.mkdir()
     main.write_text("")

@@ -121,7 +121,7 @@ def changed_lines(before: str, after: str) -> list[str]:
         ),
     ],
 )
-def test_a_position_goes_into_the_text_that_made_it(
+def test_position_edit_changes_text_that_produced_it(
     tmp_path: Path, body: str, joint: str, asked: tuple[float, ...], line: str
 ) -> None:
     text = robot(body, joint)
@@ -142,24 +142,24 @@ def test_a_position_goes_into_the_text_that_made_it(
         ('<origin xyz="0 0 1"/>', (0, 0, 0.5), '<origin xyz="0 0 1" rpy="0 0 0.5"/>'),
     ],
 )
-def test_angles_are_written_as_angles_were(tmp_path: Path, joint: str, rpy: tuple[float, ...], line: str) -> None:
+def test_angles_keep_their_notation(tmp_path: Path, joint: str, rpy: tuple[float, ...], line: str) -> None:
     text = robot("", joint)
     assert changed_lines(text, edited(tmp_path, text, EditRequest("joint", "j", rpy=rpy))) == [line]
 
 
-def test_a_quaternion_stays_one(tmp_path: Path) -> None:
+def test_quaternion_is_kept(tmp_path: Path) -> None:
     text = robot("", '<origin quat_xyzw="0 0 0 1"/>')
     after = edited(tmp_path, text, EditRequest("joint", "j", rpy=(0, 0, math.pi / 2)))
     assert changed_lines(text, after) == ['<origin quat_xyzw="0 0 0.707106781 0.707106781"/>']
 
 
-def test_what_is_asked_for_and_is_so_changes_nothing(tmp_path: Path) -> None:
+def test_unchanged_value_plans_no_edit(tmp_path: Path) -> None:
     path = tmp_path / "robot.urdf"
     path.write_text(robot(""))
     assert plan_edit(examine(path), EditRequest("joint", "j", xyz=(0, 0, 0.25), rpy=(0, 0, 0))).texts == {}
 
 
-def test_an_origin_and_an_axis_that_are_not_there_are_written_with_the_indentation_around(tmp_path: Path) -> None:
+def test_missing_origin_and_axis_are_inserted_with_indentation(tmp_path: Path) -> None:
     text = robot("", "").replace("\n", "\r\n").replace("    ", "\t\t")
     after = edited(tmp_path, text, EditRequest("joint", "j", xyz=(0, 0, 0.5)))
     assert '\r\n\t\t<origin xyz="0 0 0.5"/>\r\n\t\t<parent' in after
@@ -168,7 +168,7 @@ def test_an_origin_and_an_axis_that_are_not_there_are_written_with_the_indentati
     assert '<child link="b"/>\r\n\t\t<axis xyz="0 0 1"/>\r\n' in after
 
 
-def test_an_axis_is_not_made_of_zeros(tmp_path: Path) -> None:
+def test_zero_axis_is_rejected(tmp_path: Path) -> None:
     assert refused(tmp_path, robot(""), EditRequest("axis", "j", xyz=(0, 0, 0))).code == "EDIT102"
 
 
@@ -187,19 +187,19 @@ WHEELS = f"""<robot name="r" {XACRO}>
 """
 
 
-def test_an_argument_of_a_macro_is_edited_where_the_call_gives_it(tmp_path: Path) -> None:
+def test_macro_argument_is_edited_in_macro_call(tmp_path: Path) -> None:
     after = edited(tmp_path, WHEELS, EditRequest("joint", "left_joint", xyz=(0.1, 0.3, 0.1)))
     assert changed_lines(WHEELS, after) == ['<xacro:wheel side="left" y="0.3"/>']
     after = edited(tmp_path, WHEELS, EditRequest("joint", "right_joint", xyz=(0.1, 0.05, 0.1)))
     assert changed_lines(WHEELS, after) == ['<xacro:wheel side="right" y="${0.05}"/>']
 
 
-def test_a_call_that_relies_on_a_default_is_given_the_argument(tmp_path: Path) -> None:
+def test_macro_call_relying_on_default_gets_argument(tmp_path: Path) -> None:
     after = edited(tmp_path, WHEELS, EditRequest("visual", "left", xyz=(0, 0, 0.4)))
     assert changed_lines(WHEELS, after) == ['<xacro:wheel side="left" y="0.2" at="0 0 0.4"/>']
 
 
-def test_what_a_macro_makes_several_times_is_refused_with_what_else_would_change(tmp_path: Path) -> None:
+def test_edit_of_repeated_macro_text_is_rejected_with_side_effects(tmp_path: Path) -> None:
     found = refused(tmp_path, WHEELS, EditRequest("joint", "left_joint", xyz=(0.1, 0.2, 0.3)))
     assert found.code == "EDIT104"
     assert "joint 'right_joint'" in found.message
@@ -209,7 +209,7 @@ def test_what_a_macro_makes_several_times_is_refused_with_what_else_would_change
     assert "'0.05'" in found.notes[0].message
 
 
-def test_what_would_change_is_told_of_the_text_that_would_change_least(tmp_path: Path) -> None:
+def test_rejection_names_text_with_fewest_side_effects(tmp_path: Path) -> None:
     """A length that much is made of is no reason: a sum in the macro reaches only what it makes."""
     joint = '<origin xyz="${lift} 0 0"/><parent link="base"/><child link="tip"/>'
     more = f'<link name="tip"/>\n  <joint name="far" type="fixed">{joint}</joint>\n</robot>'
@@ -235,7 +235,7 @@ SIDES = f"""<robot name="r" {XACRO}>
 """
 
 
-def test_of_two_texts_that_change_as_much_it_is_not_the_one_that_says_a_side(tmp_path: Path) -> None:
+def test_edit_with_equal_side_effects_keeps_side_argument(tmp_path: Path) -> None:
     request = EditRequest("axis", "left_joint", xyz=(0, 0.8, 0))
     assert "joint 'right_joint'" in refused(tmp_path, SIDES, request).message
     (tmp_path / "robot.urdf.xacro").write_text(SIDES)
@@ -244,7 +244,7 @@ def test_of_two_texts_that_change_as_much_it_is_not_the_one_that_says_a_side(tmp
     assert changed_lines(SIDES, *plan.texts.values()) == ['<axis xyz="0 ${reflect - 0.2} 0"/>']
 
 
-def test_all_of_them_are_changed_where_that_is_asked_for(tmp_path: Path) -> None:
+def test_together_option_edits_all_affected_elements(tmp_path: Path) -> None:
     path = tmp_path / "robot.urdf.xacro"
     path.write_text(WHEELS)
     plan = plan_edit(examine(path), EditRequest("joint", "left_joint", xyz=(0.1, 0.2, 0.3), together=True))
@@ -252,21 +252,21 @@ def test_all_of_them_are_changed_where_that_is_asked_for(tmp_path: Path) -> None
     assert changed_lines(WHEELS, *plan.texts.values()) == ['<xacro:property name="lift" value="0.15"/>']
 
 
-def test_a_factor_that_says_which_side_is_meant_stays(tmp_path: Path) -> None:
+def test_factor_selecting_side_is_kept(tmp_path: Path) -> None:
     text = WHEELS.replace('side="left" y="0.2"', 'side="left" y="1"').replace('y="${{-0.2}}"', 'y="-1"')
     text = text.replace("0.1 ${y}", "0.1 ${y * 0.3}").replace('y="${-0.2}"', 'y="-1"')
     found = refused(tmp_path, text, EditRequest("joint", "left_joint", xyz=(0.1, 0.25, 0.1)))
     assert any("selects a side" in note.message for note in found.notes)
 
 
-def test_a_property_that_a_plugin_reads_too_is_left_alone(tmp_path: Path) -> None:
+def test_property_used_by_plugin_is_kept(tmp_path: Path) -> None:
     body = '<xacro:property name="h" value="0.5"/>\n  <gazebo><plugin name="p"><height>${h}</height></plugin></gazebo>'
     text = robot(body, '<origin xyz="0 0 ${h}"/>')
     after = edited(tmp_path, text, EditRequest("joint", "j", xyz=(0, 0, 0.6)))
     assert changed_lines(text, after) == ['<origin xyz="0 0 ${h + 0.1}"/>']
 
 
-def test_a_value_of_a_yaml_file_is_edited_there(tmp_path: Path) -> None:
+def test_value_from_yaml_file_is_edited_there(tmp_path: Path) -> None:
     body = '<xacro:property name="c" value="${xacro.load_yaml(\'sizes.yaml\')}"/>'
     text = robot(body, "<origin xyz=\"0 0 ${c['mast']['height']}\" rpy=\"${c['mast']['tilt']} 0 0\"/>")
     sizes = "base: {height: 1}  # wide\nmast:\n  height: 0.250  # high\n  tilt: !degrees 10\n"
@@ -277,7 +277,7 @@ def test_a_value_of_a_yaml_file_is_edited_there(tmp_path: Path) -> None:
     assert edited(tmp_path, text, turned, sizes_yaml=sizes) == sizes.replace("10", "20")
 
 
-def test_a_block_is_edited_where_the_call_has_it(tmp_path: Path) -> None:
+def test_block_is_edited_in_macro_call(tmp_path: Path) -> None:
     text = f"""<robot name="r" {XACRO}>
   <xacro:macro name="mount" params="name *origin"><link name="${{name}}"/>
     <joint name="${{name}}_joint" type="fixed"><xacro:insert_block name="origin"/>
@@ -291,7 +291,7 @@ def test_a_block_is_edited_where_the_call_has_it(tmp_path: Path) -> None:
     assert changed_lines(text, after) == ['<xacro:mount name="two"><origin xyz="0 0 2"/></xacro:mount>']
 
 
-def test_an_included_file_is_edited_where_it_may_be_written_and_named_where_not(tmp_path: Path) -> None:
+def test_included_file_is_edited_only_if_writable(tmp_path: Path) -> None:
     (tmp_path / "part.xacro").write_text(f'<robot {XACRO}><xacro:property name="h" value="0.5"/></robot>')
     text = robot('<xacro:include filename="part.xacro"/>', '<origin xyz="0 0 ${h}"/>')
     path = tmp_path / "robot.urdf.xacro"
@@ -308,7 +308,7 @@ def test_an_included_file_is_edited_where_it_may_be_written_and_named_where_not(
     assert caught.value.diagnostic is why
 
 
-def test_what_is_not_there_is_refused(tmp_path: Path) -> None:
+def test_missing_elements_and_infinite_values_are_rejected(tmp_path: Path) -> None:
     assert refused(tmp_path, robot(""), EditRequest("joint", "k", xyz=(0, 0, 1))).code == "EDIT101"
     assert refused(tmp_path, robot(""), EditRequest("visual", "a", 0, xyz=(0, 0, 1))).code == "EDIT101"
     assert refused(tmp_path, robot(""), EditRequest("joint", "j", xyz=(0, 0, math.inf))).code == "EDIT102"
@@ -403,7 +403,7 @@ ROBOTS = [model for model in OWN.models if model.data["links"]]
 NUMBERS = st.integers(-2000, 2000).map(lambda number: number / 1000)
 
 
-def test_a_joint_without_an_axis_has_none_to_be_edited(tmp_path: Path) -> None:
+def test_joint_without_axis_has_no_axis_to_edit(tmp_path: Path) -> None:
     text = robot("").replace('type="revolute"', 'type="floating"')
     found = refused(tmp_path, text, EditRequest("axis", "j", xyz=(0, 0, 1)))
     assert found.code == "EDIT101"
@@ -412,7 +412,7 @@ def test_a_joint_without_an_axis_has_none_to_be_edited(tmp_path: Path) -> None:
 
 @settings(max_examples=150, deadline=None, suppress_health_check=[HealthCheck.too_slow])
 @given(st.data())
-def test_expansions_differ_in_exactly_what_was_edited(data: st.DataObject) -> None:
+def test_expansion_changes_only_edited_values(data: st.DataObject) -> None:
     model = data.draw(st.sampled_from(ROBOTS))
     before = described(model)
     assert before.robot is not None

@@ -58,7 +58,7 @@ def stage(graph):
     return Stage(graph)
 
 
-async def test_a_goal_is_reached(stage):
+async def test_goal_succeeds_with_feedback_and_result(stage):
     stage.serve()
     assert stage.client.server_is_ready()
     assert stage.client.wait_for_server(0.1)
@@ -73,7 +73,7 @@ async def test_a_goal_is_reached(stage):
     assert handle.status == GoalStatus.SUCCEEDED
 
 
-async def test_without_a_server_nothing_is_ready(stage):
+async def test_action_client_is_not_ready_without_server(stage):
     assert not stage.client.server_is_ready()
     assert not stage.client.wait_for_server(0.01)
     server = stage.serve()
@@ -82,7 +82,7 @@ async def test_without_a_server_nothing_is_ready(stage):
     assert not stage.client.server_is_ready()
 
 
-async def test_work_in_a_coroutine_lets_the_others_go_on(stage, clock):
+async def test_coroutine_execute_callback_does_not_block_other_callbacks(stage, clock):
     rate = stage.server_node.create_rate(10.0)
 
     async def work(goal):
@@ -100,7 +100,7 @@ async def test_work_in_a_coroutine_lets_the_others_go_on(stage, clock):
     assert [result.done() for result in results] == [True, True]
 
 
-async def test_goals_are_rejected(stage, log):
+async def test_goal_callback_rejects_goals(stage, log):
     stage.serve(goal_callback=lambda goal: GoalResponse.ACCEPT if goal.order < 10 else GoalResponse.REJECT)
     assert not (await stage.send(10)).accepted
     assert (await stage.send(9)).accepted
@@ -109,7 +109,7 @@ async def test_goals_are_rejected(stage, log):
     assert log[-1].text == "Goal request callback did not return a GoalResponse type. Rejecting goal."
 
 
-async def test_the_same_goal_is_taken_once(stage):
+async def test_duplicate_goal_uuid_is_rejected(stage):
     stage.defer()
     first = await stage.send()
     again = await stage.send(goal_uuid=first.goal_id)
@@ -117,7 +117,7 @@ async def test_the_same_goal_is_taken_once(stage):
     assert not again.accepted
 
 
-async def test_work_is_canceled(stage, clock):
+async def test_goal_is_canceled(stage, clock):
     rate = stage.server_node.create_rate(1.0)
 
     async def work(goal):
@@ -138,7 +138,7 @@ async def test_work_is_canceled(stage, clock):
     assert (await handle.cancel_goal_async()).return_code == ERROR_GOAL_TERMINATED
 
 
-async def test_canceling_is_refused_unless_it_is_provided_for(stage):
+async def test_cancel_is_rejected_without_cancel_callback(stage):
     stage.defer()
     handle = await stage.send()
     answer = await handle.cancel_goal_async()
@@ -147,7 +147,7 @@ async def test_canceling_is_refused_unless_it_is_provided_for(stage):
     assert stage.handles[0].status == GoalStatus.ACCEPTED
 
 
-async def test_an_unknown_goal_cannot_be_canceled(stage):
+async def test_canceling_unknown_goal_is_rejected(stage):
     stage.defer()
     handle = await stage.send()
     stage.server.destroy()
@@ -156,7 +156,7 @@ async def test_an_unknown_goal_cannot_be_canceled(stage):
     assert (await handle.get_result_async()).status == GoalStatus.UNKNOWN
 
 
-async def test_a_request_to_cancel_may_mean_many_goals(stage, clock):
+async def test_cancel_request_can_match_many_goals(stage, clock):
     stage.defer(cancel_callback=lambda _goal: CancelResponse.ACCEPT)
     for _ in range(3):
         await stage.send()
@@ -170,7 +170,7 @@ async def test_a_request_to_cancel_may_mean_many_goals(stage, clock):
     assert all(goal.is_cancel_requested for goal in stage.handles)
 
 
-async def test_a_newer_goal_preempts_an_older_one(stage, clock):
+async def test_newer_goal_preempts_older_goal(stage, clock):
     """The pattern of the public example: one goal at a time, begun by handle_accepted_callback."""
     current = None
     beat = stage.server_node.create_rate(10.0)
@@ -196,7 +196,7 @@ async def test_a_newer_goal_preempts_an_older_one(stage, clock):
     assert [(await result).status for result in results] == [GoalStatus.ABORTED, GoalStatus.SUCCEEDED]
 
 
-async def test_work_that_fails_or_forgets_to_end_is_aborted(stage, log):
+async def test_goal_is_aborted_if_execute_callback_fails_or_sets_no_state(stage, log):
     def fail(_goal):
         raise ZeroDivisionError("no")
 
@@ -210,7 +210,7 @@ async def test_work_that_fails_or_forgets_to_end_is_aborted(stage, log):
     assert (response.status, list(response.result.sequence)) == (GoalStatus.ABORTED, [5])
 
 
-async def test_a_result_of_the_wrong_type_is_told(stage, log):
+async def test_result_of_wrong_type_is_reported(stage, log):
     def work(goal):
         goal.succeed()
         return [1, 2]
@@ -221,7 +221,7 @@ async def test_a_result_of_the_wrong_type_is_told(stage, log):
     assert "returned <class 'list'>, not" in log[-1].text
 
 
-async def test_the_result_may_come_with_the_end(stage):
+async def test_result_passed_to_succeed_is_sent_immediately(stage):
     gate = asyncio.Event()
 
     async def work(goal):
@@ -236,7 +236,7 @@ async def test_the_result_may_come_with_the_end(stage):
     await stage.graph.settle()
 
 
-async def test_states_change_only_as_the_protocol_allows(stage):
+async def test_invalid_goal_state_transitions_are_rejected(stage):
     stage.defer()
     await stage.send()
     (goal,) = stage.handles
@@ -253,7 +253,7 @@ async def test_states_change_only_as_the_protocol_allows(stage):
     goal.abort()
 
 
-async def test_states_are_published_to_late_comers_too(stage):
+async def test_goal_status_reaches_late_subscription(stage):
     stage.defer()
     handle = await stage.send()
     stage.handles[0].execute(lambda goal: (goal.succeed(), Fibonacci.Result())[1])
@@ -269,7 +269,7 @@ async def test_states_are_published_to_late_comers_too(stage):
 
 
 @pytest.mark.parametrize(("timeout", "kept"), [(10, [2, 2, 1, 0]), (-1, [2, 2, 2, 2])])
-async def test_results_are_kept_for_a_while(stage, clock, timeout, kept):
+async def test_results_expire_after_result_timeout(stage, clock, timeout, kept):
     stage.serve(result_timeout=timeout)
     await (await stage.send()).get_result_async()
     await clock.advance(5.0)
@@ -281,7 +281,7 @@ async def test_results_are_kept_for_a_while(stage, clock, timeout, kept):
     assert counts == kept
 
 
-async def test_mistakes_are_told(stage):
+async def test_invalid_callbacks_and_goal_types_are_rejected(stage):
     with pytest.raises(TypeError, match="not callable"):
         stage.serve(None)
     stage.serve()
@@ -291,7 +291,7 @@ async def test_mistakes_are_told(stage):
         stage.client.cancel("goal")
 
 
-async def test_actions_are_listed_by_their_names(stage):
+async def test_actions_are_listed_by_name(stage):
     stage.serve()
     graph, name = stage.graph, "example_interfaces/action/Fibonacci"
     assert graph.get_action_names_and_types() == [("/fibonacci", [name])]
@@ -300,14 +300,14 @@ async def test_actions_are_listed_by_their_names(stage):
     assert graph.get_action_client_names_and_types_by_node("client", "/") == [("/fibonacci", [name])]
 
 
-async def test_destroyed_with_the_node(stage):
+async def test_actions_are_destroyed_with_node(stage):
     stage.serve()
     stage.server_node.destroy_node()
     stage.client_node.destroy_node()
     assert stage.graph.topics() == {}
 
 
-def test_work_in_threads():
+def test_blocking_execute_callback_works_with_multi_threaded_executor():
     """A server whose work blocks, as most of the tutorials' do, under a multi-threaded executor."""
     graph = Graph(threads=True, on_log=print)
     nodes = graph.create_node("server"), graph.create_node("client")

@@ -7,7 +7,7 @@ from linkwright.graph import LogLevel
 from linkwright.graph.command_line.ros_arguments import RemapRule, parse, remove_ros_arguments
 
 
-def test_ros_arguments_are_told_from_others(tmp_path):
+def test_ros_arguments_are_separated_from_other_arguments(tmp_path):
     file = tmp_path / "parameters.yaml"
     file.write_text("node:\n  ros__parameters:\n    rate: 30\n    zeros: {a: 1.0}\n", encoding="utf-8")
     words = [
@@ -24,7 +24,7 @@ def test_ros_arguments_are_told_from_others(tmp_path):
     assert remove_ros_arguments(words) == ros.non_ros_arguments
 
 
-def test_rules_may_be_for_one_node():
+def test_remap_rules_and_parameters_can_target_one_node():
     ros = parse(
         [
             *("--ros-args", "-r", "talker:chatter:=/c", "-r", "talker:__ns:=/t", "-r", "x:=y", "-r", "talker:/a:=/b"),
@@ -41,7 +41,7 @@ def test_rules_may_be_for_one_node():
     assert ros.parameters_for("/robot/talker") == {"rate": 4, "all": True, "a.b": True}
 
 
-def test_logging_and_enclave():
+def test_logging_and_enclave_arguments_are_parsed():
     ros = parse(
         [
             *("--ros-args", "--log-level", "warn", "--log-config-file", "log.conf", "--enclave", "/a/b"),
@@ -73,14 +73,14 @@ def test_logging_and_enclave():
         (["-e", "x"], "'x' is not a valid enclave", "write a name that begins with a slash, such as /robot/talker"),
     ],
 )
-def test_wrong_ros_arguments(arguments, message, hint):
+def test_invalid_ros_arguments_are_rejected(arguments, message, hint):
     with pytest.raises(LinkwrightError) as caught:
         parse(["--ros-args", *arguments])
     (diagnostic,) = caught.value.diagnostics
     assert (diagnostic.code, diagnostic.message, diagnostic.hint) == ("GRAPH221", message, hint)
 
 
-def test_what_is_wrong_with_files_and_values_is_told(tmp_path):
+def test_missing_parameter_files_and_invalid_values_are_rejected(tmp_path):
     with pytest.raises(LinkwrightError, match=r"parameter file '.*gone.yaml' does not exist"):
         parse(["--ros-args", "--params-file", str(tmp_path / "gone.yaml")])
     with pytest.raises(LinkwrightError, match="parameter file is not YAML"):

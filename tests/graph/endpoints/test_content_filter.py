@@ -38,17 +38,17 @@ def accepts(expression, *parameters, message=STATE):
         ("(position[0] > 1 OR position[1] < 0) AND NOT (header.stamp.sec = 1)", ()),
     ],
 )
-def test_conditions_that_hold(expression, parameters):
+def test_filter_accepts_true_conditions(expression, parameters):
     assert accepts(expression, *parameters)
     assert not accepts(f"NOT ({expression})", *parameters)
 
 
 @pytest.mark.parametrize("expression", ["position[7] > 0", "position > 0", "header.frame_id > 5 AND name[9] = 'x'"])
-def test_what_cannot_be_compared_does_not_hold(expression):
+def test_filter_rejects_incomparable_values(expression):
     assert not accepts(expression)
 
 
-def test_truth_values_and_texts_that_look_like_numbers():
+def test_filter_compares_booleans_and_numeric_strings():
     assert accepts("data = TRUE", message=Bool(data=True))
     assert not accepts("data = %0", "false", message=Bool(data=True))
     assert accepts("data = %0", "5", message=String(data="5"))
@@ -69,18 +69,18 @@ def test_truth_values_and_texts_that_look_like_numbers():
         ("name[0] MATCH '('", "'\\(' is not a regular expression"),
     ],
 )
-def test_mistakes(expression, problem):
+def test_invalid_filter_expressions_are_rejected(expression, problem):
     with pytest.raises(ContentFilterError, match=problem):
         accepts(expression)
 
 
 @given(st.text(alphabet="position[0]headr.fm_ ()<>=!%'\"ANDORTBEWLIKM123.-"))
-def test_any_expression_is_understood_or_refused(expression):
+def test_random_filter_expressions_are_parsed_or_rejected(expression):
     with suppress(ContentFilterError):
         assert accepts(expression) in (True, False)
 
 
-async def test_messages_that_are_kept_are_filtered_too(graph):
+async def test_latched_messages_are_filtered(graph):
     node = graph.create_node("node")
     publisher = node.create_publisher(String, "topic", DESCRIPTION_QOS)
     heard = []
@@ -95,7 +95,7 @@ async def test_messages_that_are_kept_are_filtered_too(graph):
     assert heard == [String(data="a")]
 
 
-async def test_a_filter_that_cannot_be_understood_makes_no_subscription(graph):
+async def test_invalid_filter_creates_no_subscription(graph):
     node = graph.create_node("node")
     with pytest.raises(ContentFilterError):
         node.create_subscription(String, "topic", print, 1, content_filter_options=ContentFilterOptions("dat = 1"))

@@ -25,7 +25,7 @@ def nothing(_message):
     pass
 
 
-async def test_mismatches(graph, node, log):
+async def test_publisher_receives_incompatible_qos_events(graph, node, log):
     events = []
     node.create_publisher(
         String, "topic", BEST_EFFORT, event_callbacks=PublisherEventCallbacks(incompatible_qos=events.append)
@@ -45,7 +45,7 @@ async def test_mismatches(graph, node, log):
     assert log == []
 
 
-async def test_matches(graph, node):
+async def test_matched_events_count_endpoints(graph, node):
     published, subscribed = [], []
     publisher = node.create_publisher(
         String, "topic", 1, event_callbacks=PublisherEventCallbacks(matched=published.append)
@@ -65,7 +65,7 @@ async def test_matches(graph, node):
     assert [numbers(event) for event in subscribed] == [(1, 1, 1, 1), (3, 2, 3, 2), (3, 0, 2, -1)]
 
 
-async def test_missed_deadlines(graph, node, clock):
+async def test_deadline_missed_events_are_sent_to_both_sides(graph, node, clock):
     offered, requested = [], []
     qos = QoSProfile(depth=1, deadline=Duration(seconds=1.0))
     publisher = node.create_publisher(
@@ -88,7 +88,7 @@ async def test_missed_deadlines(graph, node, clock):
     assert len(offered) == 3
 
 
-async def test_messages_of_other_processes_keep_a_deadline(node, clock):
+async def test_remote_messages_satisfy_deadline(node, clock):
     missed = []
     qos = QoSProfile(depth=1, deadline=Duration(seconds=1.0))
     events = SubscriptionEventCallbacks(deadline=missed.append)
@@ -103,7 +103,7 @@ async def test_messages_of_other_processes_keep_a_deadline(node, clock):
     assert [event.total_count for event in missed] == [1]
 
 
-async def test_a_deadline_is_missed_while_nothing_runs_the_callbacks(graph, node, clock):
+async def test_deadline_is_missed_without_running_executor(graph, node, clock):
     missed = []
     qos = QoSProfile(depth=1, deadline=Duration(seconds=1.0))
     node.create_subscription(
@@ -119,7 +119,7 @@ async def test_a_deadline_is_missed_while_nothing_runs_the_callbacks(graph, node
     assert [event.total_count for event in missed] == [1]
 
 
-async def test_liveliness(graph, node, clock):
+async def test_liveliness_events_are_sent_to_both_sides(graph, node, clock):
     lost, changed = [], []
     qos = QoSProfile(
         depth=1, liveliness=LivelinessPolicy.MANUAL_BY_TOPIC, liveliness_lease_duration=Duration(seconds=1.0)
@@ -141,7 +141,7 @@ async def test_liveliness(graph, node, clock):
     assert [(event.alive_count, event.not_alive_count) for event in changed] == [(1, 0), (0, 1), (1, 0)]
 
 
-async def test_who_is_not_alive_goes_as_one_that_is_not(graph, node, clock):
+async def test_destroyed_lost_publisher_decrements_not_alive_count(graph, node, clock):
     changed = []
     qos = QoSProfile(
         depth=1, liveliness=LivelinessPolicy.MANUAL_BY_TOPIC, liveliness_lease_duration=Duration(seconds=1.0)
@@ -158,7 +158,7 @@ async def test_who_is_not_alive_goes_as_one_that_is_not(graph, node, clock):
     assert [(event.alive_count, event.not_alive_count) for event in changed] == [(0, 1), (1, 0), (0, 1), (0, 0)]
 
 
-async def test_the_liveliness_of_publishers_of_other_processes(graph, node):
+async def test_liveliness_of_remote_publishers_is_counted(graph, node):
     changed = []
     subscription = node.create_subscription(
         String, "topic", nothing, 1, event_callbacks=SubscriptionEventCallbacks(liveliness=changed.append)
@@ -171,7 +171,7 @@ async def test_the_liveliness_of_publishers_of_other_processes(graph, node):
     assert result == [(2, 0, 2), (1, 1, -1), (0, 1, -1), (0, 0, 0)]
 
 
-async def test_lost_messages(graph, node):
+async def test_message_lost_events_count_messages(graph, node):
     lost = []
     subscription = node.create_subscription(
         String, "topic", nothing, 2, event_callbacks=SubscriptionEventCallbacks(message_lost=lost.append)
@@ -184,7 +184,7 @@ async def test_lost_messages(graph, node):
     assert [(event.total_count, event.total_count_change) for event in lost] == [(1, 1), (2, 1), (3, 1), (7, 4)]
 
 
-async def test_a_message_is_worth_nothing_after_its_lifespan(graph, clock):
+async def test_message_expires_after_lifespan(graph, clock):
     node = graph.create_node("node")
     received = []
     node.create_subscription(String, "topic", received.append, 10)

@@ -42,14 +42,14 @@ def configure(endpoint, state):
     endpoint.configure_introspection(ROSClock(timebase=endpoint.node.timebase), SERVICES_QOS, state)
 
 
-async def test_nothing_is_told_before_it_is_asked_for(graph, client, events):
+async def test_service_events_are_off_by_default(graph, client, events):
     await client.call_async(AddTwoInts.Request(a=1, b=2))
     await graph.settle()
     assert events == []
     assert dict(graph.topics()).get("/add/_service_event") == ["example_interfaces/srv/AddTwoInts_Event"]
 
 
-async def test_metadata_tell_what_happened_without_what_was_said(graph, service, client, events):
+async def test_metadata_events_have_no_contents(graph, service, client, events):
     for endpoint in (service, client):
         configure(endpoint, METADATA)
     await client.call_async(AddTwoInts.Request(a=1, b=2))
@@ -59,7 +59,7 @@ async def test_metadata_tell_what_happened_without_what_was_said(graph, service,
     assert all(event.request == [] and event.response == [] for event in events)
 
 
-async def test_all_events_of_a_request_carry_its_client_and_its_number(graph, service, client, events):
+async def test_service_events_have_client_gid_and_sequence_number(graph, service, client, events):
     for endpoint in (service, client):
         configure(endpoint, METADATA)
     for _ in range(2):
@@ -69,7 +69,7 @@ async def test_all_events_of_a_request_carry_its_client_and_its_number(graph, se
     assert {bytes(event.info.client_gid) for event in events} == {client.gid}
 
 
-async def test_contents_are_told_in_the_events_that_they_belong_to(graph, service, client, events):
+async def test_content_events_contain_request_and_response(graph, service, client, events):
     for endpoint in (service, client):
         configure(endpoint, CONTENTS)
     await client.call_async(AddTwoInts.Request(a=1, b=2))
@@ -79,14 +79,14 @@ async def test_contents_are_told_in_the_events_that_they_belong_to(graph, servic
     assert [(each.request, each.response[0].sum) for each in (answered, got)] == [([], 3)] * 2
 
 
-async def test_one_side_can_be_watched_alone(graph, service, client, events):
+async def test_introspection_can_be_enabled_on_service_only(graph, service, client, events):
     configure(service, METADATA)
     await client.call_async(AddTwoInts.Request())
     await graph.settle()
     assert [event.info.event_type for event in events] == [Info.REQUEST_RECEIVED, Info.RESPONSE_SENT]
 
 
-async def test_events_are_stamped_by_the_clock_that_was_given(graph, clock, service, client, events):
+async def test_service_events_use_given_clock(graph, clock, service, client, events):
     own = Clock(timebase=graph.timebase)
     service.configure_introspection(own, SERVICES_QOS, METADATA)
     await client.call_async(AddTwoInts.Request())
@@ -94,7 +94,7 @@ async def test_events_are_stamped_by_the_clock_that_was_given(graph, clock, serv
     assert events[0].info.stamp == own.now().to_msg()
 
 
-async def test_the_state_can_be_changed_and_turned_off(graph, service, client, events):
+async def test_introspection_state_can_change_and_be_disabled(graph, service, client, events):
     configure(service, METADATA)
     configure(service, CONTENTS)
     await client.call_async(AddTwoInts.Request(a=4, b=0))
@@ -107,7 +107,7 @@ async def test_the_state_can_be_changed_and_turned_off(graph, service, client, e
     assert len(events) == 2
 
 
-async def test_an_endpoint_that_is_destroyed_takes_its_events_with_it(graph, service, client):
+async def test_destroyed_client_removes_event_publisher(graph, service, client):
     configure(client, METADATA)
     client.destroy()
     assert not list(graph.bus.publishers("/add/_service_event"))
@@ -115,6 +115,6 @@ async def test_an_endpoint_that_is_destroyed_takes_its_events_with_it(graph, ser
         configure(client, METADATA)
 
 
-async def test_a_state_that_there_is_not_is_refused(service):
+async def test_invalid_introspection_state_is_rejected(service):
     with pytest.raises(ValueError, match="7"):
         configure(service, 7)

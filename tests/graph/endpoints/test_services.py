@@ -21,7 +21,7 @@ def nodes(graph):
     return graph.create_node("server", namespace="robot"), graph.create_node("client", namespace="robot")
 
 
-async def test_a_request_is_answered(graph, nodes):
+async def test_service_answers_request(graph, nodes):
     server, user = nodes
     service = server.create_service(AddTwoInts, "add", add)
     client = user.create_client(AddTwoInts, "add")
@@ -33,7 +33,7 @@ async def test_a_request_is_answered(graph, nodes):
     assert future.done()
 
 
-async def test_many_requests_are_answered_each_by_its_own_response(graph, nodes):
+async def test_concurrent_requests_receive_matching_responses(graph, nodes):
     server, user = nodes
     server.create_service(AddTwoInts, "add", add)
     client = user.create_client(AddTwoInts, "add")
@@ -41,7 +41,7 @@ async def test_many_requests_are_answered_each_by_its_own_response(graph, nodes)
     assert [response.sum for response in await asyncio.gather(*futures)] == [1, 2, 3, 4, 5]
 
 
-async def test_a_callback_may_be_a_coroutine_function(graph, nodes):
+async def test_service_callback_can_be_coroutine(graph, nodes):
     server, user = nodes
     gate = asyncio.Event()
 
@@ -57,7 +57,7 @@ async def test_a_callback_may_be_a_coroutine_function(graph, nodes):
     assert (await future).sum == 2
 
 
-async def test_an_answer_may_be_sent_later(graph, nodes):
+async def test_service_can_reply_later(graph, nodes):
     server, user = nodes
     replies = []
     server.create_service(AddTwoInts, "add", lambda request, reply: replies.append(reply), replying=True)
@@ -68,7 +68,7 @@ async def test_an_answer_may_be_sent_later(graph, nodes):
     assert (await future).sum == 7
 
 
-async def test_a_request_waits_for_its_server(graph, nodes):
+async def test_request_waits_for_server(graph, nodes):
     server, user = nodes
     client = user.create_client(AddTwoInts, "add")
     assert not client.service_is_ready()
@@ -79,7 +79,7 @@ async def test_a_request_waits_for_its_server(graph, nodes):
     assert (await future).sum == 3
 
 
-async def test_a_request_that_was_given_up_gets_no_response(graph, nodes):
+async def test_removed_pending_request_receives_no_response(graph, nodes):
     server, user = nodes
     server.create_service(AddTwoInts, "add", add)
     client = user.create_client(AddTwoInts, "add")
@@ -89,7 +89,7 @@ async def test_a_request_that_was_given_up_gets_no_response(graph, nodes):
     assert not future.done()
 
 
-async def test_the_next_server_takes_over(graph, nodes):
+async def test_next_server_takes_over_when_first_is_destroyed(graph, nodes):
     server, user = nodes
     first = server.create_service(AddTwoInts, "add", lambda _request, response: AddTwoInts.Response(sum=1))
     server.create_service(AddTwoInts, "add", lambda _request, response: AddTwoInts.Response(sum=2))
@@ -99,13 +99,13 @@ async def test_the_next_server_takes_over(graph, nodes):
     assert (await client.call_async(AddTwoInts.Request())).sum == 2
 
 
-async def test_a_service_of_another_type_is_none(graph, nodes):
+async def test_service_of_another_type_is_not_ready(graph, nodes):
     server, user = nodes
     server.create_service(SetBool, "add", lambda _request, response: response)
     assert not user.create_client(AddTwoInts, "add").service_is_ready()
 
 
-async def test_mistakes_are_told(graph, nodes, log):
+async def test_invalid_request_and_response_types_are_reported(graph, nodes, log):
     server, user = nodes
     server.create_service(AddTwoInts, "add", lambda _request, _response: "five")
     client = user.create_client(AddTwoInts, "add")
@@ -127,14 +127,14 @@ async def test_mistakes_are_told(graph, nodes, log):
         client.call_async(AddTwoInts.Request())
 
 
-async def test_requests_are_remapped(graph):
+async def test_service_names_are_remapped(graph):
     server = graph.create_node("server", remappings=[("add", "sum"), ("rostopic://sum", "never")])
     server.create_service(AddTwoInts, "add", add)
     client = graph.create_node("client").create_client(AddTwoInts, "/sum")
     assert (await client.call_async(AddTwoInts.Request(a=1, b=1))).sum == 2
 
 
-def test_a_call_blocks_while_another_thread_answers():
+def test_blocking_call_is_answered_in_another_thread():
     graph = Graph(threads=True, on_log=print)
     server, user = graph.create_node("server"), graph.create_node("client")
     server.create_service(AddTwoInts, "add", add)
@@ -153,7 +153,7 @@ def test_a_call_blocks_while_another_thread_answers():
     assert not thread.is_alive()
 
 
-def test_a_call_that_is_not_answered_in_time_ends():
+def test_call_returns_none_after_timeout():
     graph = Graph(threads=True, on_log=print)
     node = graph.create_node("node")
     client = node.create_client(AddTwoInts, "add")
@@ -161,7 +161,7 @@ def test_a_call_that_is_not_answered_in_time_ends():
     graph.close_threadsafe()
 
 
-def test_waiting_for_a_service_ends_with_the_graph():
+def test_wait_for_service_ends_when_graph_closes():
     graph = Graph(threads=True, on_log=print)
     client = graph.create_node("node").create_client(AddTwoInts, "add")
     found = []
@@ -179,7 +179,7 @@ def _waits(client):
         return False
 
 
-def test_a_service_is_answered_by_the_executor_that_spins():
+def test_spinning_executor_answers_service():
     graph = Graph(threads=True, on_log=print)
     node = graph.create_node("node")
     node.create_service(AddTwoInts, "add", add)

@@ -23,7 +23,7 @@ def texts(received):
     return [message.data for message in received]
 
 
-async def test_messages_arrive_in_order_and_never_inside_publish(graph):
+async def test_messages_arrive_in_order_and_outside_publish(graph):
     received = []
     talker, listener = graph.create_node("talker"), graph.create_node("listener")
     listener.create_subscription(String, "chatter", received.append, 10)
@@ -36,7 +36,7 @@ async def test_messages_arrive_in_order_and_never_inside_publish(graph):
     assert publisher.get_subscription_count() == 1
 
 
-async def test_messages_that_are_taken_together_come_in_one_call_of_the_dispatcher(graph):
+async def test_batched_messages_arrive_in_one_dispatcher_call(graph):
     node, order = graph.create_node("node"), []
     many = node.create_subscription(String, "many", lambda message: order.append(message.data), 10)
     node.create_subscription(String, "few", lambda message: order.append(message.data), 10)
@@ -49,7 +49,7 @@ async def test_messages_that_are_taken_together_come_in_one_call_of_the_dispatch
     assert order == ["many 0", "many 1", "many 2", "few 0", "few 1", "few 2"]
 
 
-async def test_of_messages_that_are_taken_together_those_that_cannot_be_read_are_left_out(graph):
+async def test_malformed_messages_in_batch_are_skipped(graph):
     node, received = graph.create_node("node"), []
     subscription = node.create_subscription(String, "many", received.append, 10)
     subscription.deliver_in_batches()
@@ -95,7 +95,7 @@ async def test_order_holds_across_topics_and_subscriptions(graph):
     assert order == [("b", 1), ("b", 2), ("a", 1), ("a", 2)]
 
 
-async def test_a_turn_of_work_lets_the_loop_run_in_between(graph):
+async def test_self_publishing_node_does_not_block_event_loop(graph):
     """A node that answers its own messages for ever starves nobody."""
     node = graph.create_node("node")
     publisher = node.create_publisher(String, "loop", 1)
@@ -105,7 +105,7 @@ async def test_a_turn_of_work_lets_the_loop_run_in_between(graph):
         await asyncio.sleep(0)
 
 
-async def test_a_failing_callback_is_logged_and_stops_nobody(graph, log):
+async def test_failing_callback_is_logged_and_others_continue(graph, log):
     node = graph.create_node("node", namespace="/robot")
     received = []
 
@@ -127,7 +127,7 @@ async def test_a_failing_callback_is_logged_and_stops_nobody(graph, log):
     assert user_error.text == "callback of topic '/robot/topic' failed: the robot has no arm"
 
 
-async def test_only_the_last_messages_wait(graph):
+async def test_queue_keeps_last_messages_up_to_depth(graph):
     node = graph.create_node("node")
     last, everything = [], []
     node.create_subscription(String, "topic", last.append, 2)
@@ -140,7 +140,7 @@ async def test_only_the_last_messages_wait(graph):
     assert texts(everything) == ["0", "1", "2", "3", "4"]
 
 
-async def test_late_comers_get_what_a_transient_local_publisher_keeps(graph):
+async def test_late_subscription_receives_latched_messages(graph):
     node = graph.create_node("node")
     publisher = node.create_publisher(String, "topic", QoSProfile(depth=2, durability=DurabilityPolicy.TRANSIENT_LOCAL))
     for text in "abc":
@@ -154,7 +154,7 @@ async def test_late_comers_get_what_a_transient_local_publisher_keeps(graph):
     assert texts(volatile) == ["d"]
 
 
-async def test_late_comers_do_not_get_what_has_outlived_its_lifespan(graph, clock):
+async def test_late_subscription_does_not_receive_expired_messages(graph, clock):
     node = graph.create_node("node")
     qos = QoSProfile(depth=5, durability=DurabilityPolicy.TRANSIENT_LOCAL, lifespan=Duration(seconds=1))
     publisher = node.create_publisher(String, "topic", qos)
@@ -169,7 +169,7 @@ async def test_late_comers_do_not_get_what_has_outlived_its_lifespan(graph, cloc
     assert texts(sent) == ["c"]
 
 
-async def test_a_volatile_publisher_keeps_nothing(graph):
+async def test_volatile_publisher_keeps_no_messages(graph):
     node = graph.create_node("node")
     received = []
     node.create_publisher(String, "topic", 10).publish(String(data="gone"))
@@ -192,7 +192,9 @@ async def test_a_volatile_publisher_keeps_nothing(graph):
     ],
 )
 @pytest.mark.parametrize("publisher_first", [True, False])
-async def test_incompatible_qos_is_told_to_both_sides(graph, log, offered, requested, policy, sides, publisher_first):
+async def test_incompatible_qos_is_reported_to_both_sides(
+    graph, log, offered, requested, policy, sides, publisher_first
+):
     talker, listener = graph.create_node("talker"), graph.create_node("listener")
     received = []
     if publisher_first:
@@ -221,7 +223,7 @@ async def test_incompatible_qos_is_told_to_both_sides(graph, log, offered, reque
 
 
 @pytest.mark.parametrize("requested", [BEST_EFFORT, QoSProfile(5)])
-async def test_more_may_be_offered_than_is_requested(graph, log, requested):
+async def test_subscription_can_request_less_than_offered(graph, log, requested):
     node = graph.create_node("node")
     received = []
     node.create_subscription(String, "topic", received.append, requested)
@@ -231,7 +233,7 @@ async def test_more_may_be_offered_than_is_requested(graph, log, requested):
     assert log == []
 
 
-async def test_different_types_on_a_topic_are_told(graph, log):
+async def test_different_types_on_topic_are_reported(graph, log):
     node = graph.create_node("node")
     node.create_publisher(String, "topic", 1)
     node.create_subscription(Header, "topic", print, 1)
@@ -239,7 +241,7 @@ async def test_different_types_on_a_topic_are_told(graph, log):
     assert graph.topics()["/topic"] == ["std_msgs/msg/Header", "std_msgs/msg/String"]
 
 
-async def test_a_node_that_takes_both_types_is_not_warned(graph, log):
+async def test_node_subscribing_to_both_types_causes_no_warning(graph, log):
     node, other = graph.create_node("node"), graph.create_node("other")
     received = []
     for kind in (String, Header):
@@ -253,13 +255,13 @@ async def test_a_node_that_takes_both_types_is_not_warned(graph, log):
     assert ["'/other' subscribes to std_msgs/msg/Header" in each.text for each in log] == [True]
 
 
-async def test_a_message_of_another_type_is_refused(graph):
+async def test_publishing_another_message_type_is_rejected(graph):
     publisher = graph.create_node("node").create_publisher(String, "topic", 1)
     with pytest.raises(TypeError, match="topic '/topic' carries std_msgs/msg/String, not Header"):
         publisher.publish(Header())
 
 
-async def test_what_is_destroyed_is_silent(graph):
+async def test_destroyed_publishers_and_subscriptions_are_silent(graph):
     talker, listener = graph.create_node("talker"), graph.create_node("listener")
     kept, dropped = [], []
     publisher = talker.create_publisher(String, "topic", 10)
@@ -279,7 +281,7 @@ async def test_what_is_destroyed_is_silent(graph):
     assert graph.count_subscribers("/topic") == 1
 
 
-async def test_close_forgets_what_was_not_delivered():
+async def test_graph_close_drops_undelivered_messages():
     graph = Graph(on_log=lambda _record: None)
     node = graph.create_node("node")
     received = []
@@ -291,7 +293,7 @@ async def test_close_forgets_what_was_not_delivered():
     assert received == []
 
 
-async def test_equal_node_names_are_told(graph, log):
+async def test_duplicate_node_names_are_reported(graph, log):
     graph.create_node("twin", namespace="home")
     graph.create_node("twin")
     assert log == []

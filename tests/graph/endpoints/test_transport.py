@@ -72,7 +72,7 @@ def transport():
     return FakeTransport()
 
 
-async def test_what_there_is_and_what_comes_is_mirrored(graph, transport):
+async def test_transport_mirrors_nodes_and_endpoints(graph, transport):
     node = graph.create_node("early")
     node.create_publisher(String, "topic", 1)
     graph.attach(transport)
@@ -96,7 +96,7 @@ async def test_what_there_is_and_what_comes_is_mirrored(graph, transport):
 
 
 @pytest.mark.parametrize("is_early", [True, False])
-async def test_a_node_that_stays_inside_is_not_mirrored_and_is_heard_inside(graph, transport, is_early):
+async def test_internal_node_is_not_mirrored_but_heard_in_process(graph, transport, is_early):
     if not is_early:
         graph.attach(transport)
     node = graph.create_node("inside", stays_inside=True)
@@ -115,7 +115,7 @@ async def test_a_node_that_stays_inside_is_not_mirrored_and_is_heard_inside(grap
     assert transport.open == ["listener", (EndpointKind.SUBSCRIPTION, "/topic")]
 
 
-async def test_there_is_one_transport_at_most(graph, transport):
+async def test_graph_accepts_only_one_transport(graph, transport):
     graph.attach(transport)
     with pytest.raises(RuntimeError, match="has a transport already"):
         graph.attach(FakeTransport())
@@ -124,7 +124,7 @@ async def test_there_is_one_transport_at_most(graph, transport):
     graph.attach(FakeTransport())
 
 
-async def test_what_is_published_goes_out_while_somebody_matches(graph):
+async def test_publisher_sends_to_transport_while_remote_endpoint_matches(graph):
     publisher = graph.create_node("node").create_publisher(String, "topic", 1)
     sent = []
     publisher.publish(String(data="before"))
@@ -139,7 +139,7 @@ async def test_what_is_published_goes_out_while_somebody_matches(graph):
     assert sent == [String(data="out"), data]
 
 
-async def test_what_is_kept_for_late_comers_goes_out_first_and_once(graph):
+async def test_latched_messages_are_sent_first_and_once(graph):
     publisher = graph.create_node("node").create_publisher(String, "topic", LATCHED)
     for text in "abcd":
         publisher.publish(String(data=text))
@@ -150,7 +150,7 @@ async def test_what_is_kept_for_late_comers_goes_out_first_and_once(graph):
     assert [message.data for message in sent] == list("bcde")
 
 
-async def test_what_is_published_before_there_is_a_writer_is_held(graph):
+async def test_early_messages_are_held_until_writer_exists(graph):
     from linkwright.graph import Duration
 
     publisher = graph.create_node("node").create_publisher(String, "topic", 2)
@@ -169,7 +169,7 @@ async def test_what_is_published_before_there_is_a_writer_is_held(graph):
     assert len(waited) == 2
 
 
-async def test_nothing_is_held_when_nobody_listens(graph):
+async def test_messages_are_not_held_without_remote_subscription(graph):
     publisher = graph.create_node("node").create_publisher(String, "topic", 2)
     publisher.hold_for_remote(lambda _: True)
     publisher.publish(String(data="a"))
@@ -179,7 +179,7 @@ async def test_nothing_is_held_when_nobody_listens(graph):
     assert sent == []
 
 
-async def test_acknowledgements_are_waited_for(graph):
+async def test_wait_for_all_acked_asks_transport(graph):
     from linkwright.graph import Duration
 
     publisher = graph.create_node("node").create_publisher(String, "topic", LATCHED)
@@ -191,7 +191,7 @@ async def test_acknowledgements_are_waited_for(graph):
     assert asked == [2.0, None]
 
 
-async def test_bytes_that_come_in_are_read_when_their_turn_comes(graph, log):
+async def test_incoming_bytes_are_deserialized_on_delivery(graph, log):
     node = graph.create_node("node")
     messages, raw, received = [], [], []
     readers = [
@@ -215,7 +215,7 @@ async def test_bytes_that_come_in_are_read_when_their_turn_comes(graph, log):
         info["sender"]
 
 
-async def test_malformed_bytes_are_dropped_and_told_once(graph, log):
+async def test_malformed_bytes_are_dropped_and_reported_once(graph, log):
     node = graph.create_node("node")
     received = []
     reader = node.create_subscription(String, "topic", received.append, 10)
@@ -229,7 +229,7 @@ async def test_malformed_bytes_are_dropped_and_told_once(graph, log):
     assert record.text.startswith("Dropped a malformed message of topic '/topic'")
 
 
-async def test_raw_subscriptions_and_publications_inside_the_process(graph):
+async def test_raw_subscriptions_and_publications_work_in_process(graph):
     node = graph.create_node("node")
     messages, raw = [], []
     node.create_subscription(String, "topic", messages.append, 10)
@@ -242,7 +242,7 @@ async def test_raw_subscriptions_and_publications_inside_the_process(graph):
     assert raw == [serialize(String(data="object")), serialize(String(data="bytes"))]
 
 
-async def test_the_sender_is_told_to_callbacks_that_ask(graph, clock):
+async def test_message_info_is_passed_to_callbacks_that_accept_it(graph, clock):
     node = graph.create_node("node")
     messages = []
     node.create_subscription(String, "topic", lambda _message, info: messages.append(info), 10)
@@ -254,7 +254,7 @@ async def test_the_sender_is_told_to_callbacks_that_ask(graph, clock):
     assert not messages[0].is_remote
 
 
-async def test_requests_go_out_where_this_process_has_no_server(graph):
+async def test_requests_use_transport_without_local_server(graph):
     node = graph.create_node("node")
     client = node.create_client(Trigger, "trigger")
     early = client.call_async(Trigger.Request())
@@ -282,7 +282,7 @@ async def test_requests_go_out_where_this_process_has_no_server(graph):
     assert len(asked) == 3
 
 
-async def test_requests_that_come_in_are_answered(graph):
+async def test_incoming_requests_are_answered(graph):
     node = graph.create_node("node")
     service = node.create_service(Trigger, "trigger", lambda _request, _response: Trigger.Response(message="yes"))
     answers = []
@@ -291,7 +291,7 @@ async def test_requests_that_come_in_are_answered(graph):
     assert [answer.message for answer in answers] == ["yes"]
 
 
-async def test_queries_tell_of_both_sides(graph, transport):
+async def test_graph_queries_include_local_and_remote_endpoints(graph, transport):
     node = graph.create_node("here")
     node.create_publisher(String, "topic", LATCHED)
     node.create_service(Trigger, "trigger", print)
@@ -331,7 +331,7 @@ async def test_queries_tell_of_both_sides(graph, transport):
         node.get_publisher_names_and_types_by_node("nobody", "/")
 
 
-async def test_a_transport_learns_that_somebody_asks(graph, transport):
+async def test_graph_query_triggers_transport_discovery(graph, transport):
     graph.create_node("ours").create_publisher(String, "chatter", 10)
     graph.attach(transport)
     assert not transport.looked
@@ -339,7 +339,7 @@ async def test_a_transport_learns_that_somebody_asks(graph, transport):
     assert transport.looked == 1
 
 
-async def test_what_is_waited_for_comes_from_outside(graph, transport):
+async def test_wait_for_node_finds_remote_node(graph, transport):
     import asyncio
 
     graph.attach(transport)
@@ -355,7 +355,7 @@ async def test_what_is_waited_for_comes_from_outside(graph, transport):
     assert graph.wait_until(lambda: graph.count_publishers("/topic") == 1, timeout_sec=0.01)
 
 
-async def test_who_watches_is_told_of_changes(graph):
+async def test_graph_watchers_are_notified_of_changes(graph):
     messages = []
     graph.watch(lambda: messages.append(len(graph.endpoints())))
     node = graph.create_node("node", start_parameter_services=False, enable_rosout=False)

@@ -75,7 +75,7 @@ def spun(executor):
 
 class TestWaiting:
     @BOTH
-    def test_a_timer_is_waited_for_and_called(self, kind, node):
+    def test_timer_is_called(self, kind, node):
         called = threading.Event()
         node.create_timer(0.02, called.set)
         with kind() as executor:
@@ -83,23 +83,23 @@ class TestWaiting:
             executor.spin_once(timeout_sec=SECONDS)
             assert called.wait(SECONDS)
 
-    def test_without_work_the_wait_takes_as_long_as_said(self, executor):
+    def test_spin_once_waits_for_timeout(self, executor):
         start = time.monotonic()
         executor.spin_once(timeout_sec=0.05)
         assert time.monotonic() - start >= 0.05
 
-    def test_timeout_zero_does_not_wait(self, executor, monkeypatch):
+    def test_zero_timeout_does_not_block(self, executor, monkeypatch):
         monkeypatch.setattr(threading.Condition, "wait", lambda *_: pytest.fail("it waits"))
         executor.spin_once(timeout_sec=0)
 
-    def test_timeout_zero_runs_what_is_ready(self, node, executor):
+    def test_zero_timeout_runs_ready_callback(self, node, executor):
         got = []
         node.create_subscription(String, "chatter", got.append, 10)
         node.create_publisher(String, "chatter", 10).publish(String(data="here"))
         executor.spin_once(timeout_sec=0)
         assert [message.data for message in got] == ["here"]
 
-    def test_one_callback_at_a_time(self, node, executor):
+    def test_spin_once_runs_one_callback(self, node, executor):
         got = []
         node.create_subscription(String, "chatter", got.append, 10)
         publisher = node.create_publisher(String, "chatter", 10)
@@ -110,7 +110,7 @@ class TestWaiting:
         executor.spin_once(timeout_sec=0)
         assert len(got) == 2
 
-    def test_the_queue_keeps_as_many_as_the_quality_of_service_says(self, node, executor):
+    def test_queue_keeps_messages_up_to_qos_depth(self, node, executor):
         got = []
         node.create_subscription(String, "chatter", lambda message: got.append(message.data), 3)
         publisher = node.create_publisher(String, "chatter", 10)
@@ -120,7 +120,7 @@ class TestWaiting:
             executor.spin_once(timeout_sec=0)
         assert got == ["7", "8", "9"]
 
-    def test_a_node_that_is_added_ends_the_wait(self, graph):
+    def test_added_node_ends_wait(self, graph):
         node = graph.create_node("late")
         called = threading.Event()
         with SingleThreadedExecutor() as executor:
@@ -133,7 +133,7 @@ class TestWaiting:
         thread.join(SECONDS)
         assert not thread.is_alive()
 
-    def test_a_message_from_another_thread_ends_the_wait_at_once(self, node, executor):
+    def test_message_from_another_thread_ends_wait(self, node, executor):
         got = []
         node.create_subscription(String, "chatter", got.append, 10)
         publisher = node.create_publisher(String, "chatter", 10)
@@ -144,18 +144,18 @@ class TestWaiting:
         executor.shutdown()
         thread.join(SECONDS)
 
-    def test_waiting_costs_no_time_of_the_processor(self, node, executor):
+    def test_waiting_does_not_busy_loop(self, node, executor):
         node.create_timer(10.0, lambda: None)
         assert lines_run(lambda: executor.spin_once(timeout_sec=0.1)) < 1_000
 
-    def test_a_cancelled_timer_is_not_called(self, node, executor):
+    def test_canceled_timer_is_not_called(self, node, executor):
         called = []
         timer = node.create_timer(0.01, lambda: called.append(1))
         timer.cancel()
         executor.spin_once(timeout_sec=0.05)
         assert called == []
 
-    def test_many_cancelled_timers_leave_nothing_behind(self, node, executor):
+    def test_canceled_timers_leave_no_alarms(self, node, executor):
         timer = node.create_timer(100.0, lambda: None)
         for _ in range(1000):
             timer.reset()
@@ -171,14 +171,14 @@ class TestNodes:
         executor.remove_node(other)
         assert executor.get_nodes() == [node]
 
-    def test_a_node_that_was_removed_is_not_run(self, node, executor):
+    def test_removed_node_is_not_run(self, node, executor):
         called = []
         node.create_timer(0.01, lambda: called.append(1))
         executor.remove_node(node)
         executor.spin_once(timeout_sec=0.05)
         assert called == []
 
-    def test_what_is_due_waits_for_the_next_executor(self, node, executor):
+    def test_pending_callbacks_wait_for_next_executor(self, node, executor):
         got = []
         node.create_subscription(String, "chatter", got.append, 10)
         publisher = node.create_publisher(String, "chatter", 10)
@@ -193,7 +193,7 @@ class TestNodes:
             other.spin_once(timeout_sec=0)
         assert [message.data for message in got] == ["1", "2"]
 
-    def test_what_was_destroyed_is_not_run(self, node, executor):
+    def test_destroyed_subscription_is_not_run(self, node, executor):
         got = []
         subscription = node.create_subscription(String, "chatter", got.append, 10)
         node.create_publisher(String, "chatter", 10).publish(String())
@@ -203,7 +203,7 @@ class TestNodes:
 
 
 class TestFaults:
-    def test_what_a_callback_raises_leaves_spin(self, node, executor):
+    def test_callback_exception_is_raised_by_spin(self, node, executor):
         def fail():
             raise ValueError("mine")
 
@@ -211,7 +211,7 @@ class TestFaults:
         with pytest.raises(ValueError, match="mine"):
             executor.spin()
 
-    def test_what_a_callback_in_a_thread_raises_leaves_spin(self, node):
+    def test_threaded_callback_exception_is_raised_by_spin(self, node):
         def fail():
             raise ValueError("mine")
 
@@ -221,7 +221,7 @@ class TestFaults:
             with pytest.raises(ValueError, match="mine"):
                 executor.spin()
 
-    def test_what_a_task_raises_leaves_spin(self, executor):
+    def test_task_exception_is_raised_by_spin(self, executor):
         def fail():
             raise ValueError("mine")
 
@@ -230,7 +230,7 @@ class TestFaults:
             executor.spin_once(timeout_sec=0)
         assert isinstance(task.exception(), ValueError)
 
-    def test_what_a_coroutine_raises_after_an_await_leaves_spin(self, node, executor):
+    def test_coroutine_exception_after_await_is_raised_by_spin(self, node, executor):
         future = Future()
 
         async def fail():
@@ -244,7 +244,7 @@ class TestFaults:
         with pytest.raises(ValueError, match="mine"):
             executor.spin_once(timeout_sec=SECONDS)
 
-    def test_spinning_goes_on_after_a_fault(self, node, executor):
+    def test_spin_continues_after_exception(self, node, executor):
         got = []
 
         def receive(message):
@@ -263,7 +263,7 @@ class TestFaults:
 
 
 class TestShutdown:
-    def test_it_ends_spin_in_another_thread(self, node, executor):
+    def test_shutdown_ends_spin_in_another_thread(self, node, executor):
         node.create_timer(10_000.0, lambda: None)
         thread = spun(executor)
         wait_until(lambda: is_waiting(thread))
@@ -271,11 +271,11 @@ class TestShutdown:
         thread.join(SECONDS)
         assert not thread.is_alive()
 
-    def test_it_may_come_from_a_callback(self, node, executor):
+    def test_shutdown_can_be_called_from_callback(self, node, executor):
         node.create_timer(0.01, executor.shutdown)
         executor.spin()
 
-    def test_it_waits_for_a_callback_that_runs(self, node, executor):
+    def test_shutdown_waits_for_running_callback(self, node, executor):
         begun, may_end, ended = threading.Event(), threading.Event(), []
 
         def work():
@@ -292,7 +292,7 @@ class TestShutdown:
         assert ended == [1]
         thread.join(SECONDS)
 
-    def test_threads_end(self, node):
+    def test_shutdown_ends_threads(self, node):
         before = threading.active_count()
         called = threading.Event()
         node.create_timer(0.01, called.set)
@@ -305,14 +305,14 @@ class TestShutdown:
         assert threading.active_count() == before
 
     @BOTH
-    def test_waiting_for_work_afterwards_says_so(self, kind):
+    def test_waiting_for_callbacks_after_shutdown_raises(self, kind):
         executor = kind()
         executor.shutdown()
         with pytest.raises(ShutdownException):
             executor.wait_for_ready_callbacks()
 
     @BOTH
-    def test_spinning_afterwards_ends_at_once(self, kind):
+    def test_spin_after_shutdown_returns_immediately(self, kind):
         executor = kind()
         executor.shutdown()
         executor.spin()
@@ -321,21 +321,21 @@ class TestShutdown:
 
 
 class TestContext:
-    def test_its_end_raises_in_a_wait(self):
+    def test_context_shutdown_raises_in_single_threaded_spin(self):
         context = Context()
         executor = SingleThreadedExecutor(context=context)
         threading.Timer(0.05, context.shutdown).start()
         with pytest.raises(ExternalShutdownException):
             executor.spin()
 
-    def test_its_end_ends_spin_of_many_threads(self):
+    def test_context_shutdown_ends_multi_threaded_spin(self):
         context = Context()
         executor = MultiThreadedExecutor(2, context=context)
         threading.Timer(0.05, context.shutdown).start()
         executor.spin()
         executor.shutdown()
 
-    def test_its_end_in_a_callback_ends_spin(self, node):
+    def test_context_shutdown_in_callback_ends_spin(self, node):
         context = Context()
         with SingleThreadedExecutor(context=context) as executor:
             executor.add_node(node)
@@ -345,7 +345,7 @@ class TestContext:
 
 class TestFutures:
     @BOTH
-    def test_it_is_waited_for(self, kind):
+    def test_spin_until_future_complete_returns_after_result(self, kind):
         future = Future()
         with kind() as executor:
             threading.Timer(0.05, future.set_result, ["done"]).start()
@@ -353,7 +353,7 @@ class TestFutures:
         assert future.result() == "done"
 
     @BOTH
-    def test_it_is_not_waited_for_longer_than_said(self, kind, node):
+    def test_spin_until_future_complete_times_out(self, kind, node):
         node.create_timer(0.003, lambda: None)
         with kind() as executor:
             executor.add_node(node)
@@ -361,28 +361,28 @@ class TestFutures:
             executor.spin_until_future_complete(Future(), timeout_sec=0.1)
             assert time.monotonic() - start >= 0.1
 
-    def test_timeout_zero_does_not_wait(self, executor):
+    def test_zero_timeout_does_not_block(self, executor):
         executor.spin_until_future_complete(Future(), timeout_sec=0)
 
-    def test_a_negative_timeout_is_none(self, executor):
+    def test_negative_timeout_waits_indefinitely(self, executor):
         future = Future()
         threading.Timer(0.05, future.set_result, [1]).start()
         executor.spin_until_future_complete(future, timeout_sec=-1)
         assert future.done()
 
-    def test_a_cancelled_one_ends_the_wait(self, executor):
+    def test_canceled_future_ends_wait(self, executor):
         future = Future()
         threading.Timer(0.05, future.cancel).start()
         executor.spin_until_future_complete(future, timeout_sec=SECONDS)
         assert future.cancelled()
 
-    def test_waiting_again_and_again_leaves_nothing_behind(self, executor):
+    def test_repeated_waits_leave_one_waiter(self, executor):
         future = Future()
         for _ in range(50):
             executor.spin_until_future_complete(future, timeout_sec=0)
         assert len(future._waiters) == 1
 
-    def test_one_that_is_done_runs_nothing(self, node, executor):
+    def test_completed_future_runs_no_callbacks(self, node, executor):
         got = []
         node.create_subscription(String, "chatter", got.append, 10)
         node.create_publisher(String, "chatter", 10).publish(String())
@@ -393,7 +393,7 @@ class TestFutures:
 
 
 class TestGroups:
-    def test_members_of_an_exclusive_group_take_turns(self, node):
+    def test_mutually_exclusive_group_runs_one_callback_at_a_time(self, node):
         running, most = [], []
         group = MutuallyExclusiveCallbackGroup()
 
@@ -416,7 +416,7 @@ class TestGroups:
             thread.join(SECONDS)
         assert max(most) == 1
 
-    def test_the_default_group_is_exclusive(self, node):
+    def test_default_group_is_mutually_exclusive(self, node):
         most, running = [], []
 
         def work(_message):
@@ -438,7 +438,7 @@ class TestGroups:
             thread.join(SECONDS)
         assert max(most) == 1
 
-    def test_one_callback_of_a_reentrant_group_runs_beside_itself(self, node):
+    def test_reentrant_group_runs_callback_concurrently(self, node):
         barrier = threading.Barrier(3, timeout=60.0)
         passed = []
 
@@ -457,7 +457,7 @@ class TestGroups:
             executor.shutdown()
             thread.join(SECONDS)
 
-    def test_messages_of_an_exclusive_group_keep_their_order(self, node):
+    def test_mutually_exclusive_group_keeps_message_order(self, node):
         got = []
         node.create_subscription(String, "chatter", lambda message: got.append(int(message.data)), 1000)
         publisher = node.create_publisher(String, "chatter", 1000)
@@ -471,7 +471,7 @@ class TestGroups:
             thread.join(SECONDS)
         assert got == list(range(500))
 
-    def test_a_coroutine_keeps_its_exclusive_group_until_its_end(self, node, executor):
+    def test_coroutine_holds_mutually_exclusive_group_until_end(self, node, executor):
         future, order = Future(), []
         group = MutuallyExclusiveCallbackGroup()
 
@@ -492,7 +492,7 @@ class TestGroups:
             executor.spin_once(timeout_sec=0)
         assert order == ["begins", "ends", "other"]
 
-    def test_a_nested_spin_runs_other_groups(self, node, executor):
+    def test_nested_spin_runs_other_groups(self, node, executor):
         got = []
         inner = node.create_guard_condition(lambda: got.append("inner"), callback_group=ReentrantCallbackGroup())
 
@@ -505,7 +505,7 @@ class TestGroups:
         executor.spin_once(timeout_sec=SECONDS)
         assert got == ["inner", "outer"]
 
-    def test_a_group_of_ones_own_is_asked(self, node, executor):
+    def test_custom_callback_group_decides_execution(self, node, executor):
         class Every(MutuallyExclusiveCallbackGroup):
             allowed = False
 
@@ -522,7 +522,7 @@ class TestGroups:
         executor.spin_once(timeout_sec=0)
         assert got == [1]
 
-    def test_groups_know_their_members(self, node):
+    def test_callback_group_knows_members(self, node):
         group = ReentrantCallbackGroup()
         inside = node.create_timer(1.0, lambda: None, callback_group=group)
         outside = node.create_timer(1.0, lambda: None)
@@ -531,7 +531,7 @@ class TestGroups:
 
 
 class TestOwnExecutors:
-    def test_work_comes_with_its_entity_and_node(self, node, executor):
+    def test_ready_callback_has_entity_and_node(self, node, executor):
         got = []
         subscription = node.create_subscription(String, "chatter", got.append, 10)
         node.create_publisher(String, "chatter", 10).publish(String())
@@ -542,7 +542,7 @@ class TestOwnExecutors:
         assert len(got) == 1
         assert handler.exception() is None
 
-    def test_a_fault_is_kept_in_the_handler(self, node, executor):
+    def test_callback_exception_is_kept_in_handler(self, node, executor):
         def fail():
             raise ValueError("mine")
 
@@ -551,7 +551,7 @@ class TestOwnExecutors:
         handler()
         assert str(handler.exception()) == "mine"
 
-    def test_work_of_some_nodes_leaves_that_of_others(self, graph, node, executor):
+    def test_ready_callbacks_can_be_limited_to_nodes(self, graph, node, executor):
         other = graph.create_node("other")
         executor.add_node(other)
         got = []
@@ -563,13 +563,13 @@ class TestOwnExecutors:
         executor.spin_once(timeout_sec=0)
         assert got == ["other", "node"]
 
-    def test_the_end_of_a_wait_has_a_reason(self, executor):
+    def test_wait_end_raises_specific_exception(self, executor):
         with pytest.raises(TimeoutException):
             executor.wait_for_ready_callbacks(timeout_sec=0)
         with pytest.raises(ConditionReachedException):
             executor.wait_for_ready_callbacks(condition=lambda: True)
 
-    def test_spin_of_the_base_class_spins_once_and_again(self, node):
+    def test_base_class_spin_calls_spin_once_repeatedly(self, node):
         class Own(Executor):
             times = 0
 
@@ -584,12 +584,12 @@ class TestOwnExecutors:
             executor.spin()
             assert executor.times == 3
 
-    def test_many_threads_are_one_too_few(self):
+    def test_multi_threaded_executor_warns_about_single_thread(self):
         with pytest.warns(UserWarning, match="single thread"):
             MultiThreadedExecutor(1)
 
 
-def test_a_pool_of_busy_threads_waits_for_one_timeout_in_all():
+def test_busy_workers_share_one_shutdown_timeout():
     go_on = threading.Event()
     workers = Workers(4, "busy", lambda: None)
     for _ in range(4):

@@ -46,13 +46,13 @@ class Asking:
         self._graph = Graph(threads=True, on_log=self._heard)
         self._nodes = [
             self._graph.create_node(name, parameters=parameters, start_parameter_services=False, enable_rosout=False)
-            for name in ("server", "asking")
+            for name in ("server", "make_scene")
         ]
-        server, asking = self._nodes
+        server, make_scene = self._nodes
         server.create_service(TRIGGER, "ask", lambda _, response: response)
         self._server = ActionServer(server, FIBONACCI, "count", self._count)
-        self.client = asking.create_client(TRIGGER, "ask", callback_group=client_group)
-        self.action = ActionClient(asking, FIBONACCI, "count", callback_group=client_group)
+        self.client = make_scene.create_client(TRIGGER, "ask", callback_group=client_group)
+        self.action = ActionClient(make_scene, FIBONACCI, "count", callback_group=client_group)
         self.executor = executor()
 
     def run(self, ask: Callable[[], Any], *, seconds: float = SECONDS) -> bool:
@@ -85,7 +85,7 @@ class Asking:
 
 
 @pytest.fixture
-def asking(monkeypatch: pytest.MonkeyPatch) -> Any:
+def make_scene(monkeypatch: pytest.MonkeyPatch) -> Any:
     """Makes an `Asking`."""
     monkeypatch.setattr(self_waits, "_reported", set())
     made: list[Asking] = []
@@ -99,8 +99,8 @@ def asking(monkeypatch: pytest.MonkeyPatch) -> Any:
         each.close()
 
 
-def test_a_call_in_the_callbacks_own_group_is_told_once_with_both_places(asking) -> None:
-    asks = asking()
+def test_call_in_own_callback_group_is_reported_once_with_both_locations(make_scene) -> None:
+    asks = make_scene()
 
     def ask() -> None:
         for _ in range(2):
@@ -115,27 +115,27 @@ def test_a_call_in_the_callbacks_own_group_is_told_once_with_both_places(asking)
 
 
 @pytest.mark.parametrize("kind", [SingleThreadedExecutor, MultiThreadedExecutor])
-def test_spinning_until_the_response_in_the_callbacks_own_group_is_told(asking, kind) -> None:
-    asks = asking(executor=kind)
+def test_spin_for_response_in_own_callback_group_is_reported(make_scene, kind) -> None:
+    asks = make_scene(executor=kind)
     assert asks.run(lambda: asks.executor.spin_until_future_complete(asks.client.call_async(TRIGGER.Request())))
     assert len(asks.errors) == 1
 
 
-def test_a_goal_that_is_waited_for_in_the_callbacks_own_group_is_told(asking) -> None:
-    asks = asking()
+def test_send_goal_in_own_callback_group_is_reported(make_scene) -> None:
+    asks = make_scene()
     assert asks.run(lambda: asks.action.send_goal(FIBONACCI.Goal(order=1)))
     assert "for the client of service '/count" in asks.errors[0]
 
 
 @pytest.mark.parametrize("group", [ReentrantCallbackGroup, MutuallyExclusiveCallbackGroup])
-def test_a_client_in_another_group_is_fine(asking, group) -> None:
-    asks = asking(client_group=group())
+def test_client_in_another_group_is_not_reported(make_scene, group) -> None:
+    asks = make_scene(client_group=group())
     assert asks.run(lambda: (asks.client.call(TRIGGER.Request()), asks.action.send_goal(FIBONACCI.Goal(order=1))))
     assert asks.errors == []
 
 
-def test_what_is_there_already_and_who_waits_outside_of_callbacks_are_fine(asking) -> None:
-    asks = asking()
+def test_waits_outside_callbacks_and_completed_futures_are_not_reported(make_scene) -> None:
+    asks = make_scene()
     future = asks.client.call_async(TRIGGER.Request())
     assert asks.run(lambda: None)
     assert future.wait(SECONDS)
@@ -144,8 +144,8 @@ def test_what_is_there_already_and_who_waits_outside_of_callbacks_are_fine(askin
     assert asks.errors == []
 
 
-def test_it_hangs_as_on_a_robot_where_a_parameter_of_the_node_asks_for_it(asking) -> None:
-    asks = asking(parameters={self_waits.STRICT: True})
+def test_strict_parameter_makes_call_block_until_timeout(make_scene) -> None:
+    asks = make_scene(parameters={self_waits.STRICT: True})
     answers: list[Any] = []
     assert asks.run(lambda: answers.append(asks.client.call(TRIGGER.Request(), timeout_sec=0.2)))
     assert answers == [None]

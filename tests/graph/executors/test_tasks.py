@@ -22,18 +22,18 @@ def executor():
 class TestByHand:
     """A task without an executor runs a step at each call."""
 
-    def test_a_callable(self):
+    def test_task_runs_callable(self):
         task = Task(lambda word: word.upper(), ("done",))
         assert not task.done()
         task()
         assert task.result() == "DONE"
 
-    def test_keyword_arguments(self):
+    def test_task_passes_keyword_arguments(self):
         task = Task(lambda word=None: word, kwargs={"word": "done"})
         task()
         assert task.result() == "done"
 
-    def test_a_coroutine_function_runs_in_steps(self):
+    def test_task_runs_coroutine_function_in_steps(self):
         steps = []
 
         async def work():
@@ -48,7 +48,7 @@ class TestByHand:
         task()
         assert (steps, task.result()) == ([1, 2], "done")
 
-    def test_a_coroutine(self):
+    def test_task_runs_coroutine(self):
         async def work():
             return "done"
 
@@ -56,7 +56,7 @@ class TestByHand:
         task()
         assert task.result() == "done"
 
-    def test_a_callable_that_gives_a_coroutine(self):
+    def test_task_runs_callable_returning_coroutine(self):
         async def work():
             return "done"
 
@@ -64,7 +64,7 @@ class TestByHand:
         task()
         assert task.result() == "done"
 
-    def test_a_fault_is_kept(self):
+    def test_task_keeps_exception(self):
         def fail():
             raise ValueError("mine")
 
@@ -75,14 +75,14 @@ class TestByHand:
         with pytest.raises(ValueError, match="mine"):
             task.result()
 
-    def test_it_runs_once(self):
+    def test_task_runs_once(self):
         runs = []
         task = Task(lambda: runs.append(1))
         task()
         task()
         assert runs == [1]
 
-    def test_a_cancelled_one_does_not_run(self):
+    def test_canceled_task_does_not_run(self):
         runs = []
         task = Task(lambda: runs.append(1))
         task.cancel()
@@ -91,13 +91,13 @@ class TestByHand:
         assert not task.done()
         assert runs == []
 
-    def test_cancelling_after_the_end_does_nothing(self):
+    def test_cancel_after_completion_does_nothing(self):
         task = Task(lambda: None)
         task()
         task.cancel()
         assert not task.cancelled()
 
-    def test_cancelling_closes_the_coroutine(self):
+    def test_cancel_closes_coroutine(self):
         closed = []
 
         async def work():
@@ -111,7 +111,7 @@ class TestByHand:
         task.cancel()
         assert closed == [1]
 
-    def test_whether_it_runs(self):
+    def test_executing_is_true_while_task_runs(self):
         during = []
         task = Task(lambda: during.append(task.executing()))
         assert not task.executing()
@@ -121,13 +121,13 @@ class TestByHand:
 
 
 class TestByAnExecutor:
-    def test_it_runs_when_the_executor_spins(self, executor):
+    def test_executor_runs_task_when_spinning(self, executor):
         task = executor.create_task(lambda: "done")
         assert not task.done()
         executor.spin_once(timeout_sec=0)
         assert task.result() == "done"
 
-    def test_in_the_order_of_creation(self, executor):
+    def test_tasks_run_in_order_of_creation(self, executor):
         order = []
         for number in range(5):
             executor.create_task(order.append, number)
@@ -135,13 +135,13 @@ class TestByAnExecutor:
             executor.spin_once(timeout_sec=0)
         assert order == [0, 1, 2, 3, 4]
 
-    def test_it_ends_a_wait(self, executor):
+    def test_created_task_ends_wait(self, executor):
         done = []
         threading.Timer(0.05, executor.create_task, [done.append, 1]).start()
         executor.spin_once(timeout_sec=60.0)
         assert done == [1]
 
-    def test_a_coroutine_waits_for_a_future(self, executor):
+    def test_coroutine_waits_for_future(self, executor):
         future = Future()
 
         async def work():
@@ -155,7 +155,7 @@ class TestByAnExecutor:
         executor.spin_once(timeout_sec=0)
         assert task.result() == "done"
 
-    def test_waiting_for_a_future_costs_nothing(self, executor):
+    def test_awaiting_future_does_not_busy_loop(self, executor):
         async def work():
             await Future()
 
@@ -163,7 +163,7 @@ class TestByAnExecutor:
         executor.spin_once(timeout_sec=0)
         assert lines_run(lambda: executor.spin_once(timeout_sec=0.1)) < 1_000
 
-    def test_the_fault_of_a_future_comes_out_of_its_await(self, executor):
+    def test_future_exception_is_raised_by_await(self, executor):
         future = Future()
 
         async def work():
@@ -177,7 +177,7 @@ class TestByAnExecutor:
         executor.spin_once(timeout_sec=0)
         assert task.result() == "caught"
 
-    def test_tasks_that_await_each_other_take_turns(self, executor):
+    def test_tasks_can_await_each_other(self, executor):
         async def first():
             return 1
 
@@ -193,7 +193,7 @@ class TestByAnExecutor:
         executor.spin_once(timeout_sec=0)
         assert two.result() == 2
 
-    def test_one_that_awaits_a_later_one(self, executor):
+    def test_task_can_await_later_task(self, executor):
         later = []
 
         async def first():
@@ -207,7 +207,7 @@ class TestByAnExecutor:
         executor.spin_until_future_complete(one, timeout_sec=60.0)
         assert one.result() == 2
 
-    def test_done_callbacks_are_run_by_the_executor(self, executor):
+    def test_executor_runs_done_callbacks(self, executor):
         order = []
         future = executor.create_future()
         future.add_done_callback(lambda done: order.append(done.result()))
@@ -216,7 +216,7 @@ class TestByAnExecutor:
         executor.spin_once(timeout_sec=0)
         assert order == ["done"]
 
-    def test_a_deep_chain_of_awaits(self, executor):
+    def test_deep_chain_of_awaits_completes(self, executor):
         future = Future()
 
         async def deep(level):
@@ -228,7 +228,7 @@ class TestByAnExecutor:
         executor.spin_until_future_complete(task, timeout_sec=60.0)
         assert task.result() == 100
 
-    def test_a_timer_that_is_a_coroutine_goes_on_in_the_next_turn(self, executor):
+    def test_coroutine_timer_callback_continues_in_next_step(self, executor):
         graph = Graph(threads=True)
         node = graph.create_node("tested", start_parameter_services=False)
         steps = []
@@ -246,7 +246,7 @@ class TestByAnExecutor:
         assert steps == [1, 2]
         graph.close_threadsafe()
 
-    def test_a_hundred_coroutines_in_four_threads_end(self):
+    def test_hundred_coroutines_complete_in_four_threads(self):
         futures = [Future() for _ in range(100)]
 
         async def work(number):
@@ -266,7 +266,7 @@ class TestByAnExecutor:
             executor.shutdown()
             thread.join(60.0)
 
-    async def test_inside_of_a_running_event_loop(self, executor):
+    async def test_executor_runs_inside_event_loop(self, executor):
         future = Future()
 
         async def work():
@@ -279,7 +279,7 @@ class TestByAnExecutor:
         executor.spin_once(timeout_sec=0)
         assert task.result() == "done"
 
-    async def test_a_task_can_be_awaited_by_asyncio(self, executor):
+    async def test_asyncio_can_await_task(self, executor):
         async def work():
             return "done"
 

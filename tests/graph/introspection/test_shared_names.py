@@ -7,7 +7,7 @@ from linkwright.graph.introspection.graph_queries import SharedNameMonitor
 from linkwright.graph.names.rules import NodeIdentity
 
 
-def test_each_is_told_once_as_long_as_it_is_there():
+def test_shared_name_is_reported_once_until_node_disappears():
     log: list[LogRecord] = []
     graph = Graph(threads=True, on_log=log.append)
     graph.create_node("talker", namespace="/robot")
@@ -26,7 +26,7 @@ def test_each_is_told_once_as_long_as_it_is_there():
     graph.close_threadsafe()
 
 
-def test_names_of_the_root_have_one_slash():
+def test_root_namespace_names_have_one_slash():
     log: list[LogRecord] = []
     graph = Graph(threads=True, on_log=log.append)
     graph.create_node("talker")
@@ -35,7 +35,7 @@ def test_names_of_the_root_have_one_slash():
     graph.close_threadsafe()
 
 
-def test_who_asks_to_be_told_hears_of_each_change_and_nothing_is_logged():
+def test_shared_name_callback_receives_changes_without_logging():
     log: list[LogRecord] = []
     messages: list[frozenset[str]] = []
     graph = Graph(threads=True, on_log=log.append)

@@ -17,7 +17,7 @@ def jazzy(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setenv("ROS_DISTRO", "jazzy")
 
 
-async def asked(graph: Graph, node: Node, **request: Any) -> Any:
+async def request_description(graph: Graph, node: Node, **request: Any) -> Any:
     asking = graph.create_node("asking")
     service = get_service("type_description_interfaces/srv/GetTypeDescription")
     client = asking.create_client(service, f"{node.get_fully_qualified_name()}/get_type_description")
@@ -27,10 +27,10 @@ async def asked(graph: Graph, node: Node, **request: Any) -> Any:
     return answer.result()
 
 
-async def test_a_type_and_all_within_it(graph: Graph) -> None:
+async def test_message_description_includes_nested_types(graph: Graph) -> None:
     node = graph.create_node("node", namespace="ns")
     node.create_publisher(get_message(JOINT_STATE), "joint_states", 1)
-    response = await asked(graph, node, type_name=JOINT_STATE, type_hash=type_hash(JOINT_STATE))
+    response = await request_description(graph, node, type_name=JOINT_STATE, type_hash=type_hash(JOINT_STATE))
     assert (response.successful, response.failure_reason) == (True, "")
     described = response.type_description
     assert described.type_description.type_name == JOINT_STATE
@@ -51,19 +51,23 @@ async def test_a_type_and_all_within_it(graph: Graph) -> None:
     assert "float64[] position" in response.type_sources[0].raw_file_contents
 
 
-async def test_a_service_whose_parts_stand_in_no_file_of_their_own(graph: Graph) -> None:
+async def test_service_request_and_response_sources_are_implicit(graph: Graph) -> None:
     node = graph.create_node("node")
     node.create_client(get_service("std_srvs/srv/SetBool"), "switch")
-    response = await asked(graph, node, type_name="std_srvs/srv/SetBool", type_hash=type_hash("std_srvs/srv/SetBool"))
+    response = await request_description(
+        graph, node, type_name="std_srvs/srv/SetBool", type_hash=type_hash("std_srvs/srv/SetBool")
+    )
     encodings = {type_source.type_name: type_source.encoding for type_source in response.type_sources}
     assert encodings["std_srvs/srv/SetBool"] == "srv"
     assert encodings["std_srvs/srv/SetBool_Request"] == "implicit"
 
 
-async def test_without_the_texts(graph: Graph) -> None:
+async def test_type_sources_can_be_omitted(graph: Graph) -> None:
     node = graph.create_node("node")
     name = "rcl_interfaces/msg/ParameterEvent"
-    response = await asked(graph, node, type_name=name, type_hash=type_hash(name), include_type_sources=False)
+    response = await request_description(
+        graph, node, type_name=name, type_hash=type_hash(name), include_type_sources=False
+    )
     assert response.successful
     assert list(response.type_sources) == []
 
@@ -76,13 +80,15 @@ async def test_without_the_texts(graph: Graph) -> None:
         ("rcl_interfaces/msg/ParameterEvent", "RIHS01_12", "Failed to parse type hash"),
     ],
 )
-async def test_what_cannot_be_told(graph: Graph, name: str, sent: str, reason: str) -> None:
-    response = await asked(graph, graph.create_node("node"), type_name=name, type_hash=sent)
+async def test_unused_types_and_invalid_hashes_are_rejected(graph: Graph, name: str, sent: str, reason: str) -> None:
+    response = await request_description(graph, graph.create_node("node"), type_name=name, type_hash=sent)
     assert (response.successful, response.failure_reason) == (False, reason)
 
 
 @pytest.mark.parametrize("distribution", ["", "humble", "Humble"])
-async def test_nodes_of_humble_have_none(graph: Graph, monkeypatch: pytest.MonkeyPatch, distribution: str) -> None:
+async def test_humble_nodes_have_no_type_description_service(
+    graph: Graph, monkeypatch: pytest.MonkeyPatch, distribution: str
+) -> None:
     monkeypatch.setenv("ROS_DISTRO", distribution)
     node = graph.create_node("node")
     assert "/node/get_type_description" not in dict(node.get_service_names_and_types())
@@ -90,7 +96,7 @@ async def test_nodes_of_humble_have_none(graph: Graph, monkeypatch: pytest.Monke
 
 
 @pytest.mark.parametrize(("distribution", "wanted"), [("humble", True), ("jazzy", False)])
-async def test_the_parameter_decides(
+async def test_parameter_enables_type_description_service(
     graph: Graph, monkeypatch: pytest.MonkeyPatch, distribution: str, wanted: bool
 ) -> None:
     monkeypatch.setenv("ROS_DISTRO", distribution)

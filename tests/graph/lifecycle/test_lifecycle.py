@@ -55,7 +55,7 @@ def managed(graph):
     return ManagedNode(graph.create_node("managed"), {})
 
 
-async def test_the_life_of_a_node(managed):
+async def test_lifecycle_node_goes_through_all_states(managed):
     assert managed.lifecycle_state.label == "unconfigured"
     states = []
     for trigger in ("configure", "activate", "deactivate", "cleanup", "configure", "activate", "shutdown"):
@@ -70,7 +70,7 @@ async def test_the_life_of_a_node(managed):
         managed.trigger_shutdown()
 
 
-async def test_what_does_not_begin_here_is_refused(managed):
+async def test_invalid_transition_is_rejected_with_hint(managed):
     with pytest.raises(RclError, match="No transition matching activate found for current state") as e:
         managed.trigger_activate()
     assert "Transition is not registered" in str(e.value)
@@ -89,7 +89,7 @@ async def test_what_does_not_begin_here_is_refused(managed):
         ({"configure": True}, ERROR, "unconfigured"),
     ],
 )
-async def test_failures_and_errors(managed, log, answers, verdict, state):
+async def test_callback_failures_and_errors_set_state(managed, log, answers, verdict, state):
     managed.answers = answers
     assert managed.trigger_configure() is verdict
     assert managed.lifecycle_state.label == state
@@ -102,13 +102,13 @@ async def test_failures_and_errors(managed, log, answers, verdict, state):
 
 
 @pytest.mark.parametrize(("answer", "state"), [(FAILURE, "finalized"), (ERROR, "unconfigured")])
-async def test_a_shutdown_that_fails(managed, answer, state):
+async def test_failed_shutdown_sets_state(managed, answer, state):
     managed.answers = {"shutdown": answer}
     assert managed.trigger_shutdown() is answer
     assert managed.lifecycle_state.label == state
 
 
-async def test_publishers_are_silent_unless_the_node_is_active(graph, managed):
+async def test_lifecycle_publisher_is_silent_unless_active(graph, managed):
     heard = []
     graph.create_node("listener").create_subscription(String, "/words", lambda message: heard.append(message.data), 10)
     publisher = managed.create_lifecycle_publisher(String, "/words", 10)
@@ -132,7 +132,7 @@ async def test_publishers_are_silent_unless_the_node_is_active(graph, managed):
         managed.create_lifecycle_publisher(String, "/words", 10, publisher_class=object)
 
 
-async def test_entities_are_asked_until_one_objects(managed):
+async def test_managed_entities_are_notified_until_one_fails(managed):
     class Stubborn(ManagedEntity):
         def on_configure(self, state):
             return FAILURE
@@ -166,7 +166,7 @@ async def test_entities_are_asked_until_one_objects(managed):
     assert asked == ["unconfigured", "unconfigured"]
 
 
-async def test_others_drive_it_through_services(graph, managed, log):
+async def test_lifecycle_services_change_state(graph, managed, log):
     asking = graph.create_node("asking")
     events = []
     asking.create_subscription(
@@ -215,7 +215,7 @@ async def test_others_drive_it_through_services(graph, managed, log):
     ]
 
 
-async def test_numbers_are_those_of_lifecycle_msgs(managed):
+async def test_transition_ids_match_lifecycle_msgs(managed):
     message = get_message("lifecycle_msgs/msg/Transition")
     assert [message.TRANSITION_CALLBACK_SUCCESS, message.TRANSITION_CALLBACK_FAILURE] == [SUCCESS, FAILURE]
     assert message.TRANSITION_ON_ACTIVATE_ERROR == 32
@@ -225,7 +225,7 @@ async def test_numbers_are_those_of_lifecycle_msgs(managed):
     ]
 
 
-async def test_it_may_keep_to_itself(graph):
+async def test_lifecycle_services_can_be_disabled(graph):
     node = graph.create_node("quiet")
 
     class Quiet(ManagedNode):

@@ -17,7 +17,7 @@ from linkwright.messages import get_message, get_service
 RECORD = LogRecord("robot.node", LogLevel.WARN, 1_700_000_000_123_456_789, "hello", "/src/a.py", "run", 7)
 
 
-async def test_the_console_format_is_that_of_rcutils(capsys):
+async def test_console_format_matches_rcutils(capsys):
     graph = Graph(clock=JumpClock(1_700_000_000_123_456_789))
     logger = graph.create_node("node", namespace="/robot").get_logger()
     logger.debug("hidden")
@@ -48,17 +48,17 @@ async def test_the_console_format_is_that_of_rcutils(capsys):
         (r"a\tb\n\x1b[0m", "a\tb\n\x1b[0m"),
     ],
 )
-def test_the_format_is_that_of_the_environment(monkeypatch, form, line):
+def test_console_format_is_read_from_environment(monkeypatch, form, line):
     monkeypatch.setenv("RCUTILS_CONSOLE_OUTPUT_FORMAT", form)
     assert console_line(RECORD) == line
 
 
-def test_newer_tokens_of_the_format(monkeypatch):
+def test_newer_format_tokens_are_supported(monkeypatch):
     monkeypatch.setenv("RCUTILS_CONSOLE_OUTPUT_FORMAT", "{date_time_with_ms} {thread_id}")
     assert re.fullmatch(r"2023-11-1\d \d\d:\d\d:20\.123 \d+", console_line(RECORD))
 
 
-async def test_a_terminal_gets_colours_unless_it_asks_for_none(capsys, monkeypatch):
+async def test_terminal_output_is_colored_unless_disabled(capsys, monkeypatch):
     monkeypatch.setattr("sys.stderr.isatty", lambda: True, raising=False)
     monkeypatch.delenv("NO_COLOR", raising=False)
     graph = Graph(clock=JumpClock(0))
@@ -77,28 +77,28 @@ async def test_a_terminal_gets_colours_unless_it_asks_for_none(capsys, monkeypat
     ]
 
 
-async def test_the_environment_chooses_the_stream(capsys, monkeypatch):
+async def test_environment_selects_output_stream(capsys, monkeypatch):
     monkeypatch.setenv("RCUTILS_LOGGING_USE_STDOUT", "1")
     Graph(clock=JumpClock(0)).get_logger("a").info("x")
     assert capsys.readouterr().out == "[INFO] [0.000000000] [a]: x\n"
 
 
 @pytest.mark.parametrize("stream", [None, "closed"])
-def test_without_a_console_nothing_is_printed_and_the_program_goes_on(monkeypatch, stream):
+def test_missing_console_is_ignored(monkeypatch, stream):
     closed = io.StringIO()
     closed.close()
     monkeypatch.setattr("sys.stderr", closed if stream else None)
     assert Graph().get_logger("a").info("nobody reads this")
 
 
-async def test_records_name_their_place(graph, log):
+async def test_log_record_names_file_function_and_line(graph, log):
     graph.get_logger("a").info("x")
     assert log[0].file == __file__
-    assert log[0].function == "test_records_name_their_place"
-    assert log[0].line == test_records_name_their_place.__code__.co_firstlineno + 1
+    assert log[0].function == "test_log_record_names_file_function_and_line"
+    assert log[0].line == test_log_record_names_file_function_and_line.__code__.co_firstlineno + 1
 
 
-async def test_levels_are_inherited(graph, log):
+async def test_logger_levels_are_inherited(graph, log):
     robot, arm = graph.get_logger("robot"), graph.get_logger("robot.arm")
     assert arm.get_effective_level() is LogLevel.INFO
     robot.set_level(LogLevel.DEBUG)
@@ -119,7 +119,7 @@ async def test_levels_are_inherited(graph, log):
     assert log == [LogRecord("robot.arm.hand", LogLevel.DEBUG, graph.clock.now_ns(), "now")]
 
 
-async def test_once_skip_first_and_throttle(graph, log, clock):
+async def test_once_skip_first_and_throttle_limit_messages(graph, log, clock):
     logger = graph.get_logger("a")
     node_clock = graph.create_node("node").get_clock()
     written = []
@@ -135,7 +135,7 @@ async def test_once_skip_first_and_throttle(graph, log, clock):
     assert written == [True, False, True, False]
 
 
-async def test_filters_are_those_of_one_place(graph, log):
+async def test_filters_are_tracked_per_call_site(graph, log):
     logger = graph.get_logger("a")
     logger.info("here", once=True)
     logger.info("there", once=True)
@@ -155,7 +155,7 @@ async def test_filters_are_those_of_one_place(graph, log):
     assert [record.text for record in log] == ["here", "there", "same"]
 
 
-async def test_misuse_of_filters(graph):
+async def test_invalid_filters_are_rejected(graph):
     logger = graph.get_logger("a")
     with pytest.raises(TypeError, match='parameter "twice" is not one of the recognized logging options'):
         logger.info("x", twice=True)
@@ -165,7 +165,7 @@ async def test_misuse_of_filters(graph):
         logger.info("x", throttle_duration_sec=1.0, throttle_time_source_type="x")
 
 
-async def test_what_nodes_log_goes_to_rosout(graph, log, clock):
+async def test_node_logs_are_published_on_rosout(graph, log, clock):
     node = graph.create_node("talker", namespace="/robot")
     node.get_logger().warning("before")
     node.get_logger().get_child("part").info("child")
@@ -181,26 +181,26 @@ async def test_what_nodes_log_goes_to_rosout(graph, log, clock):
         ("robot.talker", "after", 40),
     ]
     assert heard[0].file == __file__
-    assert heard[0].function == "test_what_nodes_log_goes_to_rosout"
+    assert heard[0].function == "test_node_logs_are_published_on_rosout"
     assert heard[0].stamp.sec == clock.now_ns() // 10**9
     graph.get_logger("other").info("not a node's")
     await graph.settle()
     assert len(heard) == 3
 
 
-async def test_a_node_without_rosout(graph):
+async def test_node_can_disable_rosout(graph):
     graph.create_node("quiet", enable_rosout=False).get_logger().info("x")
     assert "/rosout" not in graph.topics()
 
 
-def test_the_folder_of_log_files(monkeypatch, tmp_path):
+def test_log_folder_is_read_from_environment(monkeypatch, tmp_path):
     assert log_folder({"ROS_LOG_DIR": str(tmp_path), "ROS_HOME": "/x"}) == tmp_path
     assert log_folder({"ROS_HOME": "/x"}).as_posix() == "/x/log"
     monkeypatch.setenv("HOME", str(tmp_path))
     assert log_folder({}) == tmp_path / ".ros" / "log"
 
 
-def test_log_files_are_named_as_those_of_spdlog(tmp_path):
+def test_log_files_are_named_like_spdlog(tmp_path):
     file = LogFile("talker", tmp_path / "deep")
     assert list(tmp_path.iterdir()) == []
     file.write(RECORD)
@@ -213,7 +213,7 @@ def test_log_files_are_named_as_those_of_spdlog(tmp_path):
     LogFile("talker", tmp_path / "blocked").write(RECORD)
 
 
-def test_arguments_choose_where_records_go(monkeypatch, tmp_path, capsys):
+def test_ros_arguments_select_log_outputs_and_levels(monkeypatch, tmp_path, capsys):
     monkeypatch.setenv("ROS_LOG_DIR", str(tmp_path))
     silent = set_up(parse(["--ros-args", "--disable-stdout-logs", "--log-level", "a.b:=error"]), "talker")
     silent.sink(RECORD)
@@ -232,7 +232,7 @@ def test_arguments_choose_where_records_go(monkeypatch, tmp_path, capsys):
     assert (loud.file, loud.rosout, loud.levels.effective_level("x")) == (None, False, LogLevel.DEBUG)
 
 
-async def test_levels_over_services(graph):
+async def test_logger_level_services_set_and_get_levels(graph):
     node = graph.create_node("node")
     LoggerServices(node, graph.levels)
     asking = graph.create_node("asking")

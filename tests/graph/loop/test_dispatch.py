@@ -20,7 +20,7 @@ from tests.waiting import wait_until
 Trigger = get_service("std_srvs/srv/Trigger")
 
 
-async def test_a_flood_on_one_topic_starves_nobody(graph):
+async def test_flooded_topic_does_not_starve_others(graph):
     node = graph.create_node("node")
     order = []
     everything = QoSProfile(history=HistoryPolicy.KEEP_ALL)
@@ -38,7 +38,7 @@ async def test_a_flood_on_one_topic_starves_nobody(graph):
     assert order.count("flood") == 10_000
 
 
-async def test_a_topic_that_feeds_itself_lets_the_others_have_their_turn(graph):
+async def test_self_publishing_topic_does_not_starve_others(graph):
     node = graph.create_node("node")
     publisher = node.create_publisher(String, "loop", 1)
     counts = {"loop": 0, "other": 0}
@@ -101,14 +101,14 @@ def run_of(seed):
 
 
 @pytest.mark.parametrize("seed", [1, 2])
-def test_the_order_is_the_same_each_time(seed):
+def test_dispatch_order_is_reproducible(seed):
     first = run_of(seed)
     assert len(first) > 100
     assert run_of(seed) == first
     assert run_of(seed + 10) != first
 
 
-async def test_coroutines_of_a_node_follow_one_another(graph):
+async def test_coroutines_of_node_run_one_at_a_time(graph):
     """The default group: one at a time, as rclpy's mutually exclusive one."""
     node, other = graph.create_node("node"), graph.create_node("other")
     gates, order = deque(asyncio.Event() for _ in range(3)), []
@@ -136,7 +136,7 @@ async def test_coroutines_of_a_node_follow_one_another(graph):
 
 
 @pytest.mark.parametrize("group", [FREE_GROUP, ReentrantCallbackGroup()])
-async def test_coroutines_of_a_free_group_overlap(graph, group):
+async def test_coroutines_of_free_group_overlap(graph, group):
     node = graph.create_node("node")
     inside, gate = [], asyncio.Event()
 
@@ -153,7 +153,7 @@ async def test_coroutines_of_a_free_group_overlap(graph, group):
 
 
 @pytest.mark.parametrize("make", [MutuallyExclusiveCallbackGroup])
-async def test_groups_are_respected_across_nodes(graph, make):
+async def test_callback_groups_apply_across_nodes(graph, make):
     group = make()
     gate, order = asyncio.Event(), []
 
@@ -172,7 +172,7 @@ async def test_groups_are_respected_across_nodes(graph, make):
     assert order == ["one", "two"]
 
 
-async def test_a_coroutine_may_ask_a_service_of_its_own_node(graph):
+async def test_coroutine_can_call_service_of_same_node(graph):
     """With rclpy's groups this would wait for ever."""
     node = graph.create_node("node")
     node.create_service(Trigger, "inner", lambda _request, response: response, callback_group=FREE_GROUP)
@@ -188,7 +188,7 @@ async def test_a_coroutine_may_ask_a_service_of_its_own_node(graph):
     assert len(answers) == 1
 
 
-async def test_coroutines_end_with_their_node(graph):
+async def test_coroutines_are_canceled_with_node(graph):
     node = graph.create_node("node")
     ended = []
 
@@ -207,7 +207,7 @@ async def test_coroutines_end_with_their_node(graph):
     assert ended == [True]
 
 
-async def test_coroutines_that_fail_are_logged(graph, log):
+async def test_coroutine_exceptions_are_logged(graph, log):
     node = graph.create_node("node")
 
     async def work(_message):
@@ -221,7 +221,7 @@ async def test_coroutines_that_fail_are_logged(graph, log):
     assert log[0].text.endswith("ValueError: no good")
 
 
-async def test_messages_of_other_threads_arrive_on_the_loop(graph):
+async def test_messages_from_other_threads_arrive_on_event_loop(graph):
     node = graph.create_node("node")
     received, done = [], asyncio.Event()
     here = threading.get_ident()
@@ -249,7 +249,7 @@ async def test_messages_of_other_threads_arrive_on_the_loop(graph):
         assert [text for text, _ in received if text[0] == name] == [f"{name}{number}" for number in range(1000)]
 
 
-async def test_timers_may_be_made_in_other_threads():
+async def test_timers_can_be_created_in_other_threads():
     graph = Graph(on_log=print)
     node = graph.create_node("node")
     done = asyncio.Event()
@@ -261,7 +261,7 @@ async def test_timers_may_be_made_in_other_threads():
     await graph.close()
 
 
-def test_what_falls_due_without_a_dispatcher_waits_for_one():
+def test_callbacks_wait_for_dispatcher():
     graph = Graph(threads=True, on_log=print)
     node = graph.create_node("node")
     received, calls = [], []
@@ -306,7 +306,7 @@ class Collecting:
                 call()
 
 
-def test_a_flood_announces_an_entity_once():
+def test_flooded_subscription_is_announced_once():
     graph = Graph(threads=True, on_log=print)
     node = graph.create_node("node")
     dispatcher = Collecting()
@@ -319,7 +319,7 @@ def test_a_flood_announces_an_entity_once():
     graph.close_threadsafe()
 
 
-def test_a_subscriber_that_blocks_holds_up_nobody_else():
+def test_blocking_subscriber_does_not_delay_others():
     graph = Graph(threads=True, on_log=print)
     slow, quick = graph.create_node("slow"), graph.create_node("quick")
     gate, blocked, received = threading.Event(), threading.Event(), []
@@ -356,7 +356,7 @@ def test_a_subscriber_that_blocks_holds_up_nobody_else():
         graph.close_threadsafe()
 
 
-async def test_closing_leaves_nothing_behind():
+async def test_close_leaves_no_threads_tasks_or_objects():
     """No thread, no task, no alarm, no object."""
     threads, loop = set(threading.enumerate()), asyncio.get_running_loop()
     graph = Graph(on_log=print)

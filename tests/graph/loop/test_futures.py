@@ -7,7 +7,7 @@ from linkwright.graph import Future
 from linkwright.graph.loop.future import StepsByExecutor
 
 
-def test_a_result():
+def test_future_returns_result():
     future, received = Future(), []
     future.add_done_callback(received.append)
     assert not future.done()
@@ -20,7 +20,7 @@ def test_a_result():
     assert received == [future, future]
 
 
-def test_an_exception():
+def test_future_raises_exception():
     future = Future()
     future.set_exception(ValueError("no"))
     assert future.done()
@@ -29,14 +29,14 @@ def test_an_exception():
     assert isinstance(future.exception(), ValueError)
 
 
-def test_an_exception_that_nobody_asks_for_is_told(capsys):
+def test_unretrieved_exception_is_reported(capsys):
     future = Future()
     future.set_exception(ValueError("lost"))
     del future
     assert capsys.readouterr().err == "The following exception was never retrieved: lost\n"
 
 
-def test_cancelling():
+def test_future_can_be_canceled():
     future, received = Future(), []
     future.add_done_callback(received.append)
     future.cancel()
@@ -49,7 +49,7 @@ def test_cancelling():
     assert not done.cancelled()
 
 
-def test_callbacks_are_taken_back():
+def test_done_callbacks_can_be_removed():
     future, received = Future(), []
     future.add_done_callback(received.append)
     assert future.remove_done_callback(received.append) == 1
@@ -58,7 +58,7 @@ def test_callbacks_are_taken_back():
     assert received == []
 
 
-def test_an_executor_runs_the_callbacks():
+def test_executor_runs_done_callbacks():
     tasks = []
 
     class Executor:
@@ -71,20 +71,20 @@ def test_an_executor_runs_the_callbacks():
     assert tasks == [(print, (future,))]
 
 
-async def test_awaited_in_a_task():
+async def test_future_can_be_awaited():
     future = Future()
     asyncio.get_running_loop().call_later(0.001, future.set_result, 5)
     assert await future == 5
     assert await future == 5
 
 
-async def test_completed_by_another_thread():
+async def test_future_completed_by_another_thread_resumes_await():
     future = Future()
     threading.Timer(0.01, future.set_result, [7]).start()
     assert await asyncio.wait_for(_value(future), 5.0) == 7
 
 
-async def test_a_task_that_waits_can_be_cancelled():
+async def test_task_awaiting_future_can_be_canceled():
     future = Future()
     task = asyncio.ensure_future(_value(future))
     await asyncio.sleep(0)
@@ -99,7 +99,7 @@ async def _value(future):
     return await future
 
 
-async def test_stepped_by_an_executor_inside_a_loop():
+async def test_executor_steps_coroutine_inside_event_loop():
     """A coroutine that rclpy's executors step gives them the future it waits for."""
     future = Future()
     coroutine = _value(future)
@@ -111,7 +111,7 @@ async def test_stepped_by_an_executor_inside_a_loop():
     assert ended.value.value == 4
 
 
-def test_a_thread_waits():
+def test_thread_can_wait_for_future():
     future = Future()
     assert not future.wait(0.01)
     threading.Timer(0.01, future.set_result, [1]).start()

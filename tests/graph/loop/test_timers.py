@@ -7,7 +7,7 @@ from linkwright.messages import String
 from linkwright.messages import Time as TimeMessage
 
 
-async def test_timers_keep_to_their_period(graph, clock):
+async def test_timers_keep_period(graph, clock):
     start = clock.now_ns()
     calls = []
     graph.create_node("node").create_timer(0.1, lambda: calls.append((clock.now_ns() - start) / 1e9))
@@ -17,7 +17,7 @@ async def test_timers_keep_to_their_period(graph, clock):
     assert calls[-1] == pytest.approx(0.4)
 
 
-async def test_timers_of_equal_time_keep_their_order(graph, clock):
+async def test_simultaneous_timers_keep_order(graph, clock):
     node = graph.create_node("node")
     calls = []
     for name in "abc":
@@ -26,7 +26,7 @@ async def test_timers_of_equal_time_keep_their_order(graph, clock):
     assert calls == list("abcabc")
 
 
-async def test_what_a_timer_causes_comes_before_the_next_timer(graph, clock):
+async def test_messages_of_timer_arrive_before_next_timer(graph, clock):
     node = graph.create_node("node")
     order = []
     publisher = node.create_publisher(String, "topic", 10)
@@ -37,7 +37,7 @@ async def test_what_a_timer_causes_comes_before_the_next_timer(graph, clock):
     assert order == ["timer", "message", "later"]
 
 
-async def test_a_timer_that_is_reset_again_and_again_sets_an_alarm_a_period(monkeypatch):
+async def test_repeated_reset_sets_one_alarm_per_period(monkeypatch):
     clock = JumpClock()
     alarms = []
     monkeypatch.setattr(
@@ -60,7 +60,7 @@ async def test_a_timer_that_is_reset_again_and_again_sets_an_alarm_a_period(monk
     await graph.close()
 
 
-async def test_a_cancelled_timer_is_silent_until_it_is_reset(graph, clock):
+async def test_canceled_timer_is_silent_until_reset(graph, clock):
     calls = []
     timer = graph.create_node("node").create_timer(0.1, lambda: calls.append(clock.steady_ns()))
     timer.cancel()
@@ -72,7 +72,7 @@ async def test_a_cancelled_timer_is_silent_until_it_is_reset(graph, clock):
     assert calls == [1_100_000_000]
 
 
-async def test_reset_counts_the_period_from_now(graph, clock):
+async def test_reset_restarts_period(graph, clock):
     calls = []
     timer = graph.create_node("node").create_timer(0.1, lambda: calls.append(clock.steady_ns()))
     await clock.advance(0.06)
@@ -85,7 +85,7 @@ async def test_reset_counts_the_period_from_now(graph, clock):
     assert calls[1:] == [190_000_000, 210_000_000]
 
 
-async def test_a_timer_may_cancel_itself_and_fail(graph, clock, log):
+async def test_timer_can_cancel_itself_and_fail(graph, clock, log):
     node = graph.create_node("node")
     calls = []
 
@@ -101,7 +101,7 @@ async def test_a_timer_may_cancel_itself_and_fail(graph, clock, log):
     assert log[0].text.startswith("timer callback failed:\nTraceback")
 
 
-async def test_missed_calls_are_left_out():
+async def test_missed_timer_calls_are_skipped():
     """A loop that was busy for several periods gets one call, and the beat stays where it was."""
     clock = JumpClock()
     graph = Graph(clock=clock, on_log=print)
@@ -114,7 +114,7 @@ async def test_missed_calls_are_left_out():
     await graph.close()
 
 
-async def test_a_period_must_not_be_negative(graph):
+async def test_timer_period_must_not_be_negative(graph):
     node = graph.create_node("node")
     with pytest.raises(ValueError, match="timer period must be non-negative"):
         node.create_timer(-1.0, print)
@@ -123,7 +123,7 @@ async def test_a_period_must_not_be_negative(graph):
         timer.timer_period_ns = -1
 
 
-async def test_guard_conditions_run_once_for_many_triggers(graph):
+async def test_guard_condition_runs_once_for_many_triggers(graph):
     node = graph.create_node("node")
     calls = []
     guard = node.create_guard_condition(lambda: calls.append(1))
@@ -143,7 +143,7 @@ async def test_guard_conditions_run_once_for_many_triggers(graph):
     assert calls == [1, 1]
 
 
-async def test_a_jump_moves_stamps_and_no_timers(graph, clock):
+async def test_clock_jump_changes_stamps_but_not_timers(graph, clock):
     node = graph.create_node("node")
     calls = []
     node.create_timer(0.1, lambda: calls.append(1))
@@ -155,7 +155,7 @@ async def test_a_jump_moves_stamps_and_no_timers(graph, clock):
     assert calls == []
 
 
-def test_points_in_time_become_messages():
+def test_time_converts_to_message():
     assert Time(nanoseconds=1_700_000_000_123_456_789).to_msg() == TimeMessage(sec=1_700_000_000, nanosec=123_456_789)
 
 

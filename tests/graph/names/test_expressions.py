@@ -20,11 +20,11 @@ ENDLESS = r"(a|aa)+$"
         (r"[\w-]/", ["a/", "-/"], ["/"]),
     ],
 )
-def test_expressions_mean_what_they_mean_to_rviz(expression: str, found: list[str], not_found: list[str]) -> None:
+def test_expressions_match_like_rviz(expression: str, found: list[str], not_found: list[str]) -> None:
     assert Expression(expression).found_in(found + not_found) == set(found)
 
 
-def test_a_match_is_of_the_whole_name() -> None:
+def test_matches_requires_whole_name() -> None:
     assert Expression("/scan.*").matches("/scan_front")
     assert not Expression("/scan").matches("/scan_front")
 
@@ -38,13 +38,13 @@ def test_a_match_is_of_the_whole_name() -> None:
         ("a" * 2001, "it has 2001 characters, more than 2000"),
     ],
 )
-def test_what_is_no_expression_is_said(expression: str, problem: str) -> None:
+def test_invalid_expression_is_reported(expression: str, problem: str) -> None:
     with pytest.raises(ExpressionError) as caught:
         Expression(expression)
     assert str(caught.value) == problem
 
 
-def test_a_search_that_takes_too_long_is_given_up() -> None:
+def test_costly_search_is_aborted() -> None:
     endless = Expression(ENDLESS)
     with pytest.raises(TooCostlyError):
         endless.found_in(["a" * 200 + "!"])

@@ -48,7 +48,7 @@ async def test_topic_names_are_expanded(graph, namespace, topic, resolved):
         ("{robot}/x", "unknown substitution '{robot}'"),
     ],
 )
-async def test_invalid_topic_names_say_why(graph, topic, reason):
+async def test_invalid_topic_names_are_rejected_with_reason(graph, topic, reason):
     with pytest.raises(InvalidNameError) as caught:
         graph.create_node("node").create_subscription(String, topic, print, 1)
     (diagnostic,) = caught.value.diagnostics
@@ -66,14 +66,14 @@ async def test_invalid_topic_names_say_why(graph, topic, reason):
         ("x" * 256, "length should not exceed '255'"),
     ],
 )
-async def test_invalid_node_names_say_why(graph, name, reason):
+async def test_invalid_node_names_are_rejected_with_reason(graph, name, reason):
     with pytest.raises(InvalidNameError, match="is not a valid node name: node name") as caught:
         graph.create_node(name)
     assert reason in str(caught.value)
 
 
 @pytest.mark.parametrize("namespace", ["/a/", "a b", "/a//b", "/1st"])
-async def test_invalid_namespaces_are_refused(graph, namespace):
+async def test_invalid_namespaces_are_rejected(graph, namespace):
     with pytest.raises(InvalidNameError, match="is not a valid namespace"):
         graph.create_node("node", namespace=namespace)
 
@@ -90,12 +90,12 @@ async def test_invalid_namespaces_are_refused(graph, namespace):
         ([("first", "second"), ("chatter", "first")], "chatter", "/robot/first"),
     ],
 )
-async def test_remappings(graph, rules, topic, resolved):
+async def test_remap_rules_apply_to_topics(graph, rules, topic, resolved):
     node = graph.create_node("node", namespace="/robot", remappings=rules)
     assert node.resolve_topic_name(topic) == resolved
 
 
-async def test_a_node_is_renamed_by_remapping(graph):
+async def test_node_is_renamed_by_remap_rules(graph):
     rules = [("__node", "other"), ("__ns", "/there"), ("~/x", "~/y")]
     node = graph.create_node("node", namespace="/here", remappings=rules)
     assert node.get_fully_qualified_name() == "/there/other"
@@ -104,13 +104,13 @@ async def test_a_node_is_renamed_by_remapping(graph):
     assert node.resolve_topic_name("~/x") == "/there/other/y"
 
 
-async def test_an_invalid_side_of_a_rule_is_refused(graph):
+async def test_invalid_remap_target_is_rejected(graph):
     node = graph.create_node("node", remappings=[("chatter", "two words")])
     with pytest.raises(InvalidNameError, match="'two words' is not a valid topic name"):
         node.create_publisher(String, "chatter", 1)
 
 
-async def test_each_kind_of_name_has_its_error(graph):
+async def test_invalid_names_raise_specific_errors(graph):
     node = graph.create_node("node")
     cases = [
         (InvalidTopicNameError, "topic name", 1, lambda: node.create_publisher(String, "a b", 1)),
@@ -138,19 +138,19 @@ async def test_each_kind_of_name_has_its_error(graph):
         ([("rosservice://name", "one"), ("name", "two")], "/two", "/one"),
     ],
 )
-async def test_rules_may_be_for_one_node_and_one_kind(graph, rules, topic, service):
+async def test_remap_rules_can_target_one_node_or_kind(graph, rules, topic, service):
     node = graph.create_node("node", remappings=rules)
     assert (node.resolve_topic_name("name"), node.resolve_service_name("name")) == (topic, service)
     assert node.resolve_topic_name("name", only_expand=True) == "/name"
 
 
-async def test_one_rule_renames_one_of_two_nodes(graph):
+async def test_remap_rule_renames_only_matching_node(graph):
     rules = [("first:__node", "renamed"), ("second:__ns", "/away")]
     names = [graph.create_node(name, remappings=rules).get_fully_qualified_name() for name in ("first", "second")]
     assert names == ["/renamed", "/away/second"]
 
 
-async def test_wildcards_in_rules_are_refused(graph):
+async def test_wildcards_in_remap_rules_are_rejected(graph):
     with pytest.raises(LinkwrightError) as caught:
         graph.create_node("node", remappings=[("/*/chatter", "/talk")])
     assert caught.value.diagnostics[0].code == "GRAPH102"
@@ -159,5 +159,5 @@ async def test_wildcards_in_rules_are_refused(graph):
 @pytest.mark.parametrize(
     ("name", "hidden"), [("/chatter", False), ("/_hidden", True), ("/a/_action/status", True), ("/a_b", False)]
 )
-def test_hidden_names(name, hidden):
+def test_hidden_names_are_recognized(name, hidden):
     assert is_hidden(name) is hidden

@@ -58,18 +58,18 @@ def values(text: str):
         ("[a, 'b', \"c\"]", ["a", "b", "c"]),
     ],
 )
-def test_scalars_are_read_as_rcl_reads_them(word, value):
+def test_scalars_are_parsed_like_rcl(word, value):
     found = values(f"p: {word}")["p"]
     assert (found, type(found)) == (value, type(value))
     assert parse_value(word, "p") == value
 
 
-def test_not_a_number():
+def test_nan_is_parsed():
     assert math.isnan(values("p: .nan")["p"])
     assert math.isnan(values("p: .NaN")["p"])
 
 
-def test_names_nest_and_later_entries_win():
+def test_nested_names_are_joined_and_later_entries_override():
     rules = read(
         """
 talker:
@@ -103,12 +103,12 @@ talker:
         ("/**" * 300 + "/talker", ["/talker", "/a/b/talker"], ["/a/b/c/listener"]),
     ],
 )
-def test_wildcards(pattern, fits, misses):
+def test_node_name_wildcards_match(pattern, fits, misses):
     rules = read(f"{pattern}: {{ros__parameters: {{a: 1}}}}")
     assert [name for name in [*fits, *misses] if rules.for_node(name)] == fits
 
 
-def test_patterns_count_in_the_order_in_which_they_came_up():
+def test_patterns_apply_in_order_of_appearance():
     rules = read("/**: {ros__parameters: {a: 1, b: 1}}\n/node: {ros__parameters: {a: 2}}")
     assert rules.for_node("/node") == {"a": 2, "b": 1}
     more = read("/**: {ros__parameters: {a: 3}}")
@@ -129,7 +129,7 @@ def test_patterns_count_in_the_order_in_which_they_came_up():
         ("[1, [], 3]", "the list of parameter 'a.b' contains a list"),
     ],
 )
-def test_a_parameter_whose_list_has_more_than_values_is_left_out_and_the_rest_is_read(value, message):
+def test_unsupported_list_is_skipped_and_rest_is_read(value, message):
     """As in the example of gpio_controllers: lists of mappings, which rcl has no type for."""
     any_node = f"/**:\n  ros__parameters:\n    first: 1\n    a:\n      b: {value}\n      c: [2]\n"
     rules = read(f"{any_node}x:\n  ros__parameters: {{y: 3}}\n")
@@ -140,7 +140,7 @@ def test_a_parameter_whose_list_has_more_than_values_is_left_out_and_the_rest_is
 
 
 @pytest.mark.parametrize("text", ["", "# only a comment\n", "node:\n  ros__parameters:\n"])
-def test_files_may_say_nothing(text):
+def test_empty_files_and_sections_are_accepted(text):
     assert read(text).for_node("/node") == {}
 
 
@@ -211,7 +211,7 @@ def test_files_may_say_nothing(text):
         ("node:\n  ros__parameters: 3", "2:20", "'ros__parameters' must be a mapping of names to values", None),
     ],
 )
-def test_what_is_wrong_is_told_with_its_place(text, place, message, hint):
+def test_invalid_file_is_reported_with_location(text, place, message, hint):
     with pytest.raises(LinkwrightError) as caught:
         read(text)
     (diagnostic,) = caught.value.diagnostics
@@ -219,7 +219,7 @@ def test_what_is_wrong_is_told_with_its_place(text, place, message, hint):
     assert str(diagnostic.span) == f"params.yaml:{place}"
 
 
-def test_tabs_and_other_faults_of_yaml():
+def test_tabs_and_yaml_errors_are_reported():
     with pytest.raises(LinkwrightError, match=r"params.yaml:2:1: parameter file is not YAML: ") as caught:
         read("node:\n\tros__parameters:\n\t\ta: 1")
     assert caught.value.diagnostics[0].hint == "line 2: indent with spaces: YAML does not allow tabs"
@@ -227,7 +227,7 @@ def test_tabs_and_other_faults_of_yaml():
         read("node: {ros__parameters: {a: [1, ")
 
 
-def test_files_that_cannot_be_read(tmp_path):
+def test_missing_file_suggests_nearest(tmp_path):
     (tmp_path / "params.yaml").write_text("node: {ros__parameters: {a: 1}}")
     assert read_parameter_file(tmp_path / "params.yaml").for_node("/node") == {"a": 1}
     with pytest.raises(LinkwrightError, match=r"param.yaml' does not exist") as caught:
@@ -239,7 +239,7 @@ def test_files_that_cannot_be_read(tmp_path):
             read_parameter_file(tmp_path / name)
 
 
-def test_values_on_the_command_line():
+def test_command_line_values_are_parsed():
     assert parse_value("", "p") == ""
     with pytest.raises(LinkwrightError, match="the value of parameter 'p' is a mapping"):
         parse_value("{a: 1}", "p")

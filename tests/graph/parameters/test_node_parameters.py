@@ -25,7 +25,7 @@ IntegerRange = get_message("rcl_interfaces/msg/IntegerRange")
 FloatingPointRange = get_message("rcl_interfaces/msg/FloatingPointRange")
 
 
-async def test_declared_parameters_have_their_default_or_what_is_given(graph):
+async def test_declared_parameters_use_default_or_override(graph):
     node = graph.create_node("node", parameters={"rate": 50, "zeros": {"arm": {"elbow": 1.5}}})
     assert node.declare_parameter("rate", 10).value == 50
     assert node.declare_parameter("frame", "map").value == "map"
@@ -38,7 +38,7 @@ async def test_declared_parameters_have_their_default_or_what_is_given(graph):
     assert node.declare_parameter("other", 1, ignore_override=True).value == 1
 
 
-async def test_what_is_given_is_declared_on_demand(graph):
+async def test_overrides_are_declared_on_demand(graph):
     node = graph.create_node("node", parameters={"zeros": {"a": 1.0, "b.c": 2.0}})
     node.declare_parameters_from_overrides()
     node.declare_parameters_from_overrides()
@@ -47,13 +47,13 @@ async def test_what_is_given_is_declared_on_demand(graph):
     assert set(node.get_parameters_by_prefix("")) == {"use_sim_time", "zeros.a", "zeros.b.c"}
 
 
-async def test_what_is_given_can_be_declared_from_the_start(graph):
+async def test_overrides_can_be_declared_automatically(graph):
     parameters = [Parameter("a", value=1), Parameter("b", value=["x"])]
     node = graph.create_node("node", parameters=parameters, automatically_declare_parameters_from_overrides=True)
     assert [node.get_parameter(name).value for name in ("a", "b")] == [1, ["x"]]
 
 
-async def test_a_value_of_another_type_is_refused_with_a_hint(graph):
+async def test_override_of_wrong_type_is_rejected_with_hint(graph):
     node = graph.create_node("node", parameters={"frequency": 30, "name": 3, "mixed": [1, "a"]})
     with pytest.raises(InvalidParameterTypeException) as caught:
         node.declare_parameter("frequency", 20.0)
@@ -87,7 +87,7 @@ async def test_a_value_of_another_type_is_refused_with_a_hint(graph):
         ([], "BYTE_ARRAY"),
     ],
 )
-def test_types_of_values(value, kind):
+def test_parameter_type_is_inferred_from_value(value, kind):
     parameter = Parameter("p", value=value)
     assert parameter.type_ is ParameterType[kind]
     again = Parameter.from_parameter_msg(parameter.to_parameter_msg())
@@ -96,7 +96,7 @@ def test_types_of_values(value, kind):
 
 
 @pytest.mark.parametrize("value", [[1, 1.0], [None], {}, object(), [[1]]])
-def test_values_that_no_parameter_has(value):
+def test_unsupported_parameter_values_are_rejected(value):
     with pytest.raises(TypeError, match="The given value is not "):
         Parameter("p", value=value)
 
@@ -109,7 +109,7 @@ def test_type_and_value_must_agree():
     assert Parameter("p", Parameter.Type.DOUBLE_ARRAY, []).value == []
 
 
-async def test_an_empty_list_goes_with_every_array(graph):
+async def test_empty_list_fits_every_array_type(graph):
     node = graph.create_node("node", parameters={"sources": []})
     assert node.declare_parameter("sources", [1.0]).type_ is ParameterType.DOUBLE_ARRAY
     node.declare_parameter("names", [], ParameterDescriptor(type=ParameterType.STRING_ARRAY))
@@ -119,7 +119,7 @@ async def test_an_empty_list_goes_with_every_array(graph):
     assert node.get_parameter("names").type_ is ParameterType.STRING_ARRAY
 
 
-async def test_setting_obeys_declaration_and_type(graph):
+async def test_set_parameters_requires_declaration_and_type(graph):
     node = graph.create_node("node")
     node.declare_parameter("rate", 10)
     node.declare_parameter("model", "mbot", DescriptorMessage(read_only=True))
@@ -161,7 +161,7 @@ async def test_undeclared_parameters_can_be_allowed(graph):
     assert node.set_descriptor("b", DescriptorMessage()).type == 0
 
 
-async def test_statically_typed_parameters_without_a_value(graph):
+async def test_statically_typed_parameter_can_be_uninitialized(graph):
     node = graph.create_node("node", parameters={"given": 3})
     node.declare_parameter("later", Parameter.Type.INTEGER)
     assert node.declare_parameter("given", Parameter.Type.INTEGER).value == 3
@@ -182,7 +182,7 @@ async def test_statically_typed_parameters_without_a_value(graph):
         node.declare_parameter("x")
 
 
-async def test_several_parameters_are_declared_with_a_namespace(graph):
+async def test_declare_parameters_prepends_namespace(graph):
     node = graph.create_node("node", parameters={"arm.a": 5})
     declared = node.declare_parameters("arm", [("a", 1), ("b", Parameter.Type.STRING), ("c", 2.0, DescriptorMessage())])
     assert [(each.name, each.value) for each in declared] == [("arm.a", 5), ("arm.b", None), ("arm.c", 2.0)]
@@ -197,7 +197,7 @@ async def test_several_parameters_are_declared_with_a_namespace(graph):
     assert not node.has_parameter("x")
 
 
-async def test_of_several_declarations_with_one_name_the_last_counts(graph):
+async def test_last_of_duplicate_declarations_applies(graph):
     node = graph.create_node("node")
     declared = node.declare_parameters("", [("a", 1), ("b", 2), ("a", 3)])
     assert [(each.name, each.value) for each in declared] == [("a", 3), ("b", 2), ("a", 3)]
@@ -216,7 +216,7 @@ async def test_of_several_declarations_with_one_name_the_last_counts(graph):
         (5, "The parameter value for p is not a valid step. Min: 0, max: 10, value: 5, step: 2"),
     ],
 )
-async def test_integer_ranges(graph, value, reason):
+async def test_integer_range_is_enforced(graph, value, reason):
     node = graph.create_node("node")
     allowed = DescriptorMessage(integer_range=[IntegerRange(from_value=0, to_value=10, step=2)])
     node.declare_parameter("p", 2, allowed)
@@ -237,7 +237,7 @@ async def test_integer_ranges(graph, value, reason):
         ),
     ],
 )
-async def test_floating_point_ranges(graph, value, reason):
+async def test_floating_point_range_is_enforced(graph, value, reason):
     node = graph.create_node("node")
     node.declare_parameter("p", 0.75, ParameterDescriptor(floating_point_range=[Range(0.5, 2.0, 0.25)]))
     result = node.set_parameters_atomically([Parameter("p", value=value)])
@@ -247,7 +247,7 @@ async def test_floating_point_ranges(graph, value, reason):
     ]
 
 
-async def test_a_default_out_of_range_is_refused(graph):
+async def test_default_out_of_range_is_rejected(graph):
     node = graph.create_node("node")
     with pytest.raises(InvalidParameterValueException, match=r"Invalid parameter value \(9\) .* out of range"):
         node.declare_parameter("p", 9, ParameterDescriptor(integer_range=[Range(0, 1)]))
@@ -255,7 +255,7 @@ async def test_a_default_out_of_range_is_refused(graph):
 
 
 @pytest.mark.parametrize("made", [ParameterDescriptor, DescriptorMessage])
-async def test_one_descriptor_may_be_given_for_several_parameters(graph, made):
+async def test_descriptor_can_be_shared_by_parameters(graph, made):
     node = graph.create_node("sharing")
     share = made(read_only=True)
     node.declare_parameter("wide", 1.5, share)
@@ -265,7 +265,7 @@ async def test_one_descriptor_may_be_given_for_several_parameters(graph, made):
     assert not share.name
 
 
-async def test_descriptors_are_described_and_replaced(graph):
+async def test_descriptors_are_returned_and_replaced(graph):
     node = graph.create_node("node")
     node.declare_parameter("p", 5, ParameterDescriptor(description="how many"))
     assert node.describe_parameter("p") == DescriptorMessage(name="p", type=2, description="how many")
@@ -286,7 +286,7 @@ async def test_descriptors_are_described_and_replaced(graph):
         node.set_descriptor("gone", tight)
 
 
-async def test_undeclaring(graph):
+async def test_undeclare_parameter_removes_parameter(graph):
     node = graph.create_node("node")
     node.declare_parameter("a", 1)
     node.declare_parameter("fixed", 1, ParameterDescriptor(read_only=True))
@@ -298,7 +298,7 @@ async def test_undeclaring(graph):
         node.undeclare_parameter("fixed")
 
 
-async def test_callbacks_may_refuse_with_a_reason(graph):
+async def test_set_callbacks_reject_with_reason(graph):
     node = graph.create_node("node", parameters={"late": -1})
     applied = []
 
@@ -323,7 +323,7 @@ async def test_callbacks_may_refuse_with_a_reason(graph):
     assert not node.has_parameter("late")
 
 
-async def test_the_callback_added_last_is_called_first_and_all_can_be_removed(graph):
+async def test_set_callbacks_run_last_added_first_and_can_be_removed(graph):
     node = graph.create_node("node")
     node.declare_parameter("a", 1)
     node.declare_parameter("b", 1)
@@ -364,7 +364,7 @@ async def test_the_callback_added_last_is_called_first_and_all_can_be_removed(gr
     assert "parameter list cannot be empty" in node.set_parameters([Parameter("a", value=5)])[0].reason
 
 
-async def test_names_are_listed_by_prefix_and_depth(graph):
+async def test_parameters_are_listed_by_prefix_and_depth(graph):
     node = graph.create_node("node")
     for name in ("a", "arm.b", "arm.hand.c", "arm.hand.d", "army"):
         node.declare_parameter(name, 1)
@@ -385,7 +385,7 @@ async def test_names_are_listed_by_prefix_and_depth(graph):
         node.list_parameters([], -1)
 
 
-async def test_misuse_is_told(graph):
+async def test_duplicate_and_undeclared_parameters_are_reported(graph):
     node = graph.create_node("node")
     node.declare_parameter("publish_frequency", 20.0)
     with pytest.raises(ParameterAlreadyDeclaredException, match=r"already declared: \['publish_frequency'\]"):
@@ -399,12 +399,12 @@ async def test_misuse_is_told(graph):
         node.set_parameters_atomically(["a"])
 
 
-async def test_nothing_is_logged_for_a_node_with_simulated_time(graph, log):
+async def test_use_sim_time_logs_no_warnings(graph, log):
     graph.create_node("node", parameters={"use_sim_time": True})
     assert [record for record in log if record.level >= LogLevel.WARN] == []
 
 
-async def test_a_callback_without_a_verdict_rejects(graph):
+async def test_set_callback_without_result_rejects(graph):
     node = graph.create_node("node")
     node.declare_parameter("a", 1)
     node.add_on_set_parameters_callback(lambda _: None)

@@ -9,7 +9,7 @@ from linkwright.graph.time.values import Duration
 START = "qos_overrides./chatter.publisher"
 
 
-async def test_parameters_override_what_code_says(graph):
+async def test_parameters_override_qos_in_code(graph):
     node = graph.create_node("node", parameters={f"{START}.depth": 3, f"{START}.reliability": "best_effort"})
     given = QoSProfile(depth=10)
     profile = override_qos(node, "publisher", "/chatter", given, QoSOverridingOptions.with_default_policies())
@@ -31,7 +31,7 @@ async def test_parameters_override_what_code_says(graph):
     assert again.depth == 3
 
 
-async def test_every_policy_and_an_id(graph):
+async def test_all_policies_and_entity_id_are_supported(graph):
     start = "qos_overrides./chatter.subscription_left"
     node = graph.create_node("node", parameters={f"{start}.deadline": 5, f"{start}.durability": "transient_local"})
     options = QoSOverridingOptions(
@@ -44,7 +44,7 @@ async def test_every_policy_and_an_id(graph):
     assert not node.has_parameter(f"{start}.lifespan")
 
 
-async def test_wrong_overrides(graph):
+async def test_invalid_qos_overrides_are_rejected(graph):
     node = graph.create_node("node", parameters={f"{START}.reliability": "relyable"})
     with pytest.raises(InvalidQosOverridesError, match="Unexpected QoS override for policy `reliability`") as caught:
         override_qos(

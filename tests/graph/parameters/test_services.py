@@ -29,7 +29,7 @@ async def answer(graph, future):
     return future.result()
 
 
-async def test_every_node_has_the_six_services(graph, server):
+async def test_node_has_six_parameter_services(graph, server):
     services = dict(server.get_service_names_and_types_by_node("server", "/robot"))
     assert services == {
         f"/robot/server/{name}": [f"rcl_interfaces/srv/{kind}"]
@@ -44,13 +44,13 @@ async def test_every_node_has_the_six_services(graph, server):
     }
 
 
-async def test_a_node_may_do_without(graph):
+async def test_parameter_services_can_be_disabled(graph):
     node = graph.create_node("quiet", start_parameter_services=False, enable_rosout=False)
     assert node.get_service_names_and_types_by_node("quiet", "/") == []
     assert "/rosout" not in graph.topics()
 
 
-async def test_values_types_and_descriptions_are_asked_for(graph, client):
+async def test_parameter_client_gets_values_types_and_descriptions(graph, client):
     assert client.services_are_ready()
     assert client.wait_for_services(0.0)
     values = (await answer(graph, client.get_parameters(["rate", "arm.name"]))).values
@@ -65,7 +65,7 @@ async def test_values_types_and_descriptions_are_asked_for(graph, client):
     assert len((await answer(graph, client.list_parameters(depth=1))).result.names) == 4
 
 
-async def test_one_unknown_name_empties_the_answer(graph, client):
+async def test_unknown_parameter_empties_response(graph, client):
     for ask in (client.get_parameters, client.get_parameter_types, client.describe_parameters):
         response = await answer(graph, ask(["rate", "gone"]))
         (field,) = response.get_fields_and_field_types()
@@ -73,7 +73,7 @@ async def test_one_unknown_name_empties_the_answer(graph, client):
     assert len((await answer(graph, client.get_parameters(["rate", "late"]))).values) == 0
 
 
-async def test_setting_from_outside(graph, server, client):
+async def test_parameter_client_sets_parameters(graph, server, client):
     server.add_on_set_parameters_callback(
         lambda given: SetParametersResult(all(each.value != 13 for each in given), "unlucky")
     )
@@ -97,14 +97,14 @@ async def test_setting_from_outside(graph, server, client):
     assert not server.has_parameter("any")
 
 
-async def test_a_value_of_an_unknown_type_is_refused(graph, client):
+async def test_value_of_unknown_type_is_rejected(graph, client):
     message = Parameter("rate", value=1).to_parameter_msg()
     message.value.type = 77
     response = await answer(graph, client.set_parameters([message]))
     assert not response.results[0].successful
 
 
-async def test_a_file_is_loaded(graph, server, client, tmp_path):
+async def test_parameter_client_loads_file(graph, server, client, tmp_path):
     file = tmp_path / "p.yaml"
     file.write_text(
         "/**: {ros__parameters: {rate: 1}}\n/robot/server: {ros__parameters: {rate: 2, arm: {name: right}}}\n"
@@ -124,7 +124,7 @@ async def test_a_file_is_loaded(graph, server, client, tmp_path):
         parameter_dict_from_yaml_file(str(file))
 
 
-async def test_changes_are_published_and_refusals_are_not(graph, server, clock):
+async def test_parameter_events_are_published_for_accepted_changes(graph, server, clock):
     events = []
     watcher = graph.create_node("watcher")
     watcher.create_subscription(
@@ -147,7 +147,7 @@ async def test_changes_are_published_and_refusals_are_not(graph, server, clock):
     assert events[0].changed_parameters[0].value.integer_value == 3
 
 
-async def test_the_event_handler_tells_of_single_parameters(graph, server):
+async def test_parameter_event_handler_reports_single_parameters(graph, server):
     watcher = graph.create_node("watcher", namespace="/robot")
     handler = ParameterEventHandler(watcher)
     messages = []

@@ -31,7 +31,7 @@ def seconds(value):
 
 
 class TestProfiles:
-    def test_history_or_depth_is_needed(self):
+    def test_history_or_depth_is_required(self):
         with pytest.raises(InvalidQoSProfileError, match="History and/or depth settings are required"):
             QoSProfile()
         with pytest.raises(InvalidQoSProfileError, match="KEEP_LAST without a depth"):
@@ -39,14 +39,14 @@ class TestProfiles:
         assert QoSProfile(history=HistoryPolicy.KEEP_ALL).queue_length is None
         assert QoSProfile(depth=3).history is HistoryPolicy.KEEP_LAST
 
-    def test_a_depth_of_nothing_is_warned_of_and_keeps_one(self):
+    def test_zero_depth_warns_and_keeps_one_message(self):
         with pytest.warns(UserWarning, match="A zero depth with KEEP_LAST doesn't make sense"):
             profile = QoSProfile(depth=0)
         assert profile.queue_length == 1
         with pytest.raises(ValueError, match="depth"):
             QoSProfile(depth=-1)
 
-    def test_values_are_checked_and_numbers_accepted(self):
+    def test_policy_values_are_checked_and_integers_accepted(self):
         profile = QoSProfile(depth=1)
         profile.reliability = 2
         assert profile.reliability is BEST_EFFORT
@@ -57,17 +57,17 @@ class TestProfiles:
         with pytest.raises(AssertionError):
             profile.deadline = 1.0
 
-    def test_equal_policies_make_equal_profiles(self):
+    def test_profiles_with_equal_policies_are_equal(self):
         assert QoSProfile(depth=5, reliability=BEST_EFFORT) == SENSOR_DATA_QOS
         assert QoSProfile(depth=6, reliability=BEST_EFFORT) != SENSOR_DATA_QOS
         assert DEFAULT_QOS != 10
 
-    def test_numbers_stand_for_depths(self):
+    def test_integers_are_converted_to_depths(self):
         assert QoSProfile.of(10) == DEFAULT_QOS
         with pytest.raises(TypeError, match="Expected QoSProfile or int"):
             QoSProfile.of("10")
 
-    def test_names_for_command_lines(self):
+    def test_policy_short_names_match_command_line(self):
         assert ReliabilityPolicy.short_keys() == [
             "system_default",
             "reliable",
@@ -81,12 +81,12 @@ class TestProfiles:
         assert "services_default" in QoSPresetProfiles.short_keys()
         assert qos_policy_name_from_kind(16) == "RELIABILITY"
 
-    def test_shown_as_rclpy_does(self):
+    def test_profile_string_matches_rclpy(self):
         assert str(SENSOR_DATA_QOS).startswith(
             "QoSProfile(history=HistoryPolicy.KEEP_LAST, depth=5, reliability=ReliabilityPolicy.BEST_EFFORT, "
         )
 
-    def test_what_is_left_to_the_middleware_is_chosen(self):
+    def test_system_defaults_are_resolved(self):
         chosen = resolved(SYSTEM_DEFAULT_QOS)
         assert (chosen.history, chosen.depth) == (HistoryPolicy.KEEP_LAST, 1)
         assert (chosen.reliability, chosen.durability) == (RELIABLE, VOLATILE)
@@ -136,19 +136,19 @@ MISMATCHES = [
 
 class TestCompatibility:
     @pytest.mark.parametrize(("offered", "requested", "policy", "reason"), MISMATCHES)
-    def test_less_is_offered_than_asked_for(self, offered, requested, policy, reason):
+    def test_offering_less_than_requested_is_incompatible(self, offered, requested, policy, reason):
         assert incompatible_policies(offered, requested) == [QoSPolicyKind[policy]]
         assert qos_check_compatible(offered, requested) == (QoSCompatibility.ERROR, f"ERROR: {reason};")
         assert incompatible_policies(requested, offered) == []
 
-    def test_all_that_is_wrong_is_told(self):
+    def test_all_incompatible_policies_are_reported(self):
         verdict, reason = qos_check_compatible(
             profile(reliability=BEST_EFFORT), profile(durability=TRANSIENT_LOCAL, deadline=seconds(1))
         )
         assert verdict is QoSCompatibility.ERROR
         assert reason.count("ERROR: ") == 3
 
-    def test_what_is_not_known_is_warned_of(self):
+    def test_unknown_policies_cause_warning(self):
         unknown = profile(reliability=ReliabilityPolicy.UNKNOWN, liveliness=LivelinessPolicy.AUTOMATIC)
         assert qos_check_compatible(unknown, profile(liveliness=LivelinessPolicy.AUTOMATIC)) == (
             QoSCompatibility.WARNING,
@@ -158,7 +158,7 @@ class TestCompatibility:
     @pytest.mark.parametrize(
         ("reliability", "durability"), [*itertools.product((RELIABLE, BEST_EFFORT), (VOLATILE, TRANSIENT_LOCAL))]
     )
-    def test_the_best_that_is_available_goes_together(self, reliability, durability):
+    def test_best_available_profile_is_compatible(self, reliability, durability):
         there = profile(reliability=reliability, durability=durability, deadline=seconds(3))
         asked = best_available(BEST_AVAILABLE_QOS, [there], publisher=False)
         assert (asked.reliability, asked.durability, asked.deadline) == (reliability, durability, seconds(3))

@@ -9,13 +9,13 @@ LASTING = QoSProfile(depth=1, durability=DurabilityPolicy.TRANSIENT_LOCAL)
 WEAK = QoSProfile(depth=1, reliability=ReliabilityPolicy.BEST_EFFORT)
 
 
-def test_without_publishers_it_is_what_is_wanted():
+def test_fit_returns_requested_profile_without_publishers():
     fitting = fit(WANTED, [])
     assert fitting.profile == WANTED
     assert fitting.profile is not WANTED
 
 
-def test_all_that_everybody_offers_is_asked_for():
+def test_fit_uses_policies_offered_by_all_publishers():
     fitting = fit(WANTED, [LASTING, LASTING])
     assert fitting.profile.reliability is ReliabilityPolicy.RELIABLE
     assert fitting.profile.durability is DurabilityPolicy.TRANSIENT_LOCAL
@@ -23,7 +23,7 @@ def test_all_that_everybody_offers_is_asked_for():
     assert fitting.mixed == ()
 
 
-def test_where_they_differ_the_weaker_is_taken_and_told():
+def test_fit_uses_weaker_policy_and_reports_differences():
     fitting = fit(WANTED, [LASTING, RELIABLE, WEAK])
     assert fitting.profile.reliability is ReliabilityPolicy.BEST_EFFORT
     assert fitting.profile.durability is DurabilityPolicy.VOLATILE

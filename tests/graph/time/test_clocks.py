@@ -32,7 +32,7 @@ def at(seconds):
 
 
 class TestArithmetic:
-    def test_spans_and_points(self):
+    def test_times_and_durations_support_arithmetic(self):
         point = Time(seconds=10, nanoseconds=5, clock_type=ClockType.ROS_TIME)
         assert point.seconds_nanoseconds() == (10, 5)
         assert (point + Duration(seconds=1.5)).nanoseconds == 11_500_000_005
@@ -43,7 +43,7 @@ class TestArithmetic:
         assert Duration(seconds=1) * float("inf") == INFINITE
         assert Duration(seconds=2) - Duration(seconds=1) < Duration(seconds=1.5) <= Duration(seconds=1.5)
 
-    def test_messages(self):
+    def test_times_and_durations_convert_to_messages(self):
         point = Time(nanoseconds=1_500_000_000, clock_type=ClockType.ROS_TIME)
         assert Time.from_msg(point.to_msg()) == point
         span = Duration(seconds=-0.25)
@@ -52,7 +52,7 @@ class TestArithmetic:
         with pytest.raises(TypeError, match=r"builtin_interfaces\.msg\.Time"):
             Time.from_msg(span.to_msg())
 
-    def test_kinds_of_time_do_not_mix(self):
+    def test_clock_types_do_not_mix(self):
         ros, system = Time(seconds=1, clock_type=ClockType.ROS_TIME), Time(seconds=1)
         with pytest.raises(TypeError, match="Can't compare times with different clock types"):
             assert ros == system
@@ -64,7 +64,7 @@ class TestArithmetic:
             Time(clock_type="ros")
 
     @pytest.mark.parametrize("value", [Time(seconds=1), Duration(seconds=1)])
-    def test_something_else_is_not_equal_and_in_humble_not_to_be_compared(self, value, monkeypatch):
+    def test_comparison_with_other_types_depends_on_distribution(self, value, monkeypatch):
         monkeypatch.setenv("ROS_DISTRO", "jazzy")
         assert value != 1
         assert not value == 1  # noqa: SIM201  # another method
@@ -74,7 +74,7 @@ class TestArithmetic:
         with pytest.raises(TypeError, match="Can't compare"):
             assert value != 1
 
-    def test_limits(self):
+    def test_negative_times_and_overflows_are_rejected(self):
         with pytest.raises(ValueError, match="must not be negative"):
             Time(seconds=-1)
         with pytest.raises(OverflowError):
@@ -86,7 +86,7 @@ class TestArithmetic:
 
 
 class TestClocks:
-    def test_types(self):
+    def test_clock_type_selects_clock(self):
         assert isinstance(Clock(clock_type=ClockType.ROS_TIME), ROSClock)
         assert repr(Clock(clock_type=ClockType.STEADY_TIME)) == "Clock(clock_type=STEADY_TIME)"
         assert abs(Clock().now().nanoseconds - time.time_ns()) < SECOND
@@ -94,7 +94,7 @@ class TestClocks:
         with pytest.raises(TypeError):
             Clock(clock_type=3)
 
-    def test_simulated_time_stands_still_until_it_is_set(self):
+    def test_simulated_time_stops_until_set(self):
         clock = ROSClock()
         assert not clock.ros_time_is_active
         clock.set_ros_time_override(Time(seconds=5, clock_type=ClockType.ROS_TIME))
@@ -102,7 +102,7 @@ class TestClocks:
         clock.set_ros_time_is_active(True)
         assert clock.now() == Time(seconds=5, clock_type=ClockType.ROS_TIME)
 
-    def test_jumps_are_told(self):
+    def test_clock_jumps_are_reported(self):
         clock = ROSClock()
         messages = []
         clock.create_jump_callback(
@@ -131,7 +131,7 @@ class TestClocks:
         clock.set_ros_time_is_active(False)
         assert messages[-1].clock_change is ClockChange.ROS_TIME_DEACTIVATED
 
-    def test_thresholds_have_signs(self):
+    def test_jump_thresholds_require_signs(self):
         with pytest.raises(ValueError, match="min_forward must be a positive"):
             JumpThreshold(min_forward=Duration(), min_backward=None)
         with pytest.raises(ValueError, match="min_backward must be a negative"):
@@ -141,7 +141,7 @@ class TestClocks:
         with pytest.raises(ValueError, match="must be callable"):
             ROSClock().create_jump_callback(JumpThreshold(min_forward=None, min_backward=None))
 
-    def test_sleep(self):
+    def test_sleep_for_and_sleep_until_wait(self):
         clock = Clock(clock_type=ClockType.STEADY_TIME)
         start = clock.now()
         assert clock.sleep_for(Duration(seconds=0.02))
@@ -150,7 +150,7 @@ class TestClocks:
         with pytest.raises(ValueError, match="clock type"):
             clock.sleep_until(Time(seconds=1))
 
-    def test_sleep_ends_with_its_context(self):
+    def test_sleep_ends_on_context_shutdown(self):
         class Ending:
             def __init__(self):
                 self.looks = 0
@@ -161,7 +161,7 @@ class TestClocks:
 
         assert not Clock().sleep_for(Duration(seconds=60), Ending())
 
-    def test_sleep_does_not_begin_without_its_context(self):
+    def test_sleep_requires_context(self):
         class Over:
             def ok(self):
                 return False
@@ -173,7 +173,7 @@ class TestClocks:
         with pytest.raises(NotInitializedError):
             clock.sleep_for(Duration(seconds=60))
 
-    def test_sleep_by_simulated_time(self):
+    def test_sleep_follows_simulated_time(self):
         clock = ROSClock()
         clock.set_ros_time_is_active(True)
         slept = []
@@ -197,7 +197,7 @@ def simulated(graph):
 
 
 class TestSimulatedTime:
-    async def test_the_clock_follows_the_topic(self, simulated):
+    async def test_clock_follows_clock_topic(self, simulated):
         node, set_time = simulated
         assert node.get_clock().ros_time_is_active
         assert node.get_clock().now().nanoseconds == 0
@@ -206,7 +206,7 @@ class TestSimulatedTime:
         set_time(3)
         assert node.get_clock().now_ns() == 3 * SECOND
 
-    async def test_the_parameter_may_be_set_later(self, graph):
+    async def test_use_sim_time_can_be_set_later(self, graph):
         node = graph.create_node("node")
         publisher = graph.create_node("simulator").create_publisher(ClockMessage, "/clock", 10)
         assert publisher.get_subscription_count() == 0
@@ -217,7 +217,7 @@ class TestSimulatedTime:
         assert publisher.get_subscription_count() == 0
         assert node.get_clock().now_ns() == graph.clock.now_ns()
 
-    async def test_timers_follow(self, graph, simulated, clock):
+    async def test_timers_follow_simulated_time(self, graph, simulated, clock):
         node, set_time = simulated
         set_time(100)
         calls = []
@@ -229,7 +229,7 @@ class TestSimulatedTime:
             await graph.settle()
         assert calls == [101.0, 102.1, 105.5, 106.0]
 
-    async def test_a_jump_back_loses_no_timer(self, graph, simulated):
+    async def test_time_jump_back_keeps_timers(self, graph, simulated):
         node, set_time = simulated
         set_time(100)
         calls = []
@@ -248,7 +248,7 @@ class TestSimulatedTime:
         await graph.settle()
         assert calls[3:] == [55.0, "once"]
 
-    async def test_timers_keep_the_rest_of_their_period_when_time_becomes_simulated(self, graph, clock):
+    async def test_timers_keep_remaining_period_when_switching_to_simulated_time(self, graph, clock):
         node = graph.create_node("node")
         publisher = graph.create_node("simulator").create_publisher(ClockMessage, "/clock", 10)
         calls = []
@@ -265,7 +265,7 @@ class TestSimulatedTime:
         await clock.advance(0.1)
         assert calls == [1]
 
-    async def test_steady_timers_do_not_follow(self, graph, simulated, clock):
+    async def test_steady_timers_ignore_simulated_time(self, graph, simulated, clock):
         node, set_time = simulated
         calls = []
         steady = Clock(clock_type=ClockType.STEADY_TIME, timebase=graph.timebase)
@@ -276,13 +276,13 @@ class TestSimulatedTime:
         await clock.advance(2.0)
         assert calls == [1, 1]
 
-    async def test_only_booleans_switch(self, graph, log):
+    async def test_use_sim_time_must_be_boolean(self, graph, log):
         node = graph.create_node("node")
         (result,) = node.set_parameters([Parameter("use_sim_time", value="yes")])
         assert not result.successful
         assert not node.get_clock().ros_time_is_active
 
-    async def test_rates_follow(self, graph, simulated):
+    async def test_rates_follow_simulated_time(self, graph, simulated):
         node, set_time = simulated
         set_time(10)
         rate = node.create_rate(2.0)
@@ -302,7 +302,7 @@ class TestSimulatedTime:
         assert turns == [10.5, 11.2, 11.5]
         await task
 
-    async def test_simulated_time_ends_with_the_node(self, graph, simulated):
+    async def test_simulated_time_ends_with_node(self, graph, simulated):
         node, set_time = simulated
         calls = []
         node.create_timer(1.0, lambda: calls.append(1))
@@ -313,7 +313,7 @@ class TestSimulatedTime:
 
 
 class TestRates:
-    def test_a_thread_sleeps_while_another_spins(self):
+    def test_rate_sleeps_while_another_thread_spins(self):
         graph = Graph(threads=True, on_log=print)
         node = graph.create_node("node")
         rate = node.create_rate(100.0)
@@ -331,7 +331,7 @@ class TestRates:
         with pytest.raises(InterruptedWaitError):
             rate.sleep()
 
-    def test_the_end_of_the_node_wakes_a_sleeper(self):
+    def test_node_destruction_ends_rate_sleep(self):
         graph = Graph(threads=True, on_log=print)
         node = graph.create_node("node")
         rate = node.create_rate(0.001)
@@ -348,6 +348,6 @@ class TestRates:
         thread.join(60.0)
         assert raised == [True]
 
-    async def test_a_rate_is_positive(self, graph):
+    async def test_rate_must_be_positive(self, graph):
         with pytest.raises(ValueError, match="must be > 0"):
             graph.create_node("node").create_rate(0.0)

@@ -22,7 +22,7 @@ async def alarms() -> FineAlarms:
     return found
 
 
-async def test_calls_come_in_the_order_in_which_they_are_due_and_never_early():
+async def test_alarms_are_called_in_order_and_never_early():
     fine, now_ns = await alarms(), time.monotonic_ns()
     made = []
     for late_ns in (3 * MILLISECOND, 400_000, 0, 400_000, -5):
@@ -34,7 +34,7 @@ async def test_calls_come_in_the_order_in_which_they_are_due_and_never_early():
     assert all(called_ns >= due_ns for due_ns, called_ns in made)
 
 
-def test_a_loop_has_alarms_of_its_own_where_one_that_is_gone_was():
+def test_each_event_loop_has_its_own_alarms():
     async def called() -> None:
         fine, made = await alarms(), asyncio.Event()
         fine.call_at(time.monotonic_ns(), made.set)
@@ -45,7 +45,7 @@ def test_a_loop_has_alarms_of_its_own_where_one_that_is_gone_was():
         gc.collect()
 
 
-async def test_an_alarm_that_is_cancelled_is_not_called_even_by_one_before_it():
+async def test_alarm_canceled_by_earlier_alarm_is_not_called():
     fine, made, later = await alarms(), [], []
 
     def cancel():
@@ -59,7 +59,7 @@ async def test_an_alarm_that_is_cancelled_is_not_called_even_by_one_before_it():
     assert made == ["third"]
 
 
-async def test_what_an_alarm_schedules_comes_in_another_turn_of_the_loop():
+async def test_rescheduled_alarm_runs_in_next_loop_iteration():
     fine, made = await alarms(), []
 
     def again():
@@ -73,7 +73,7 @@ async def test_what_an_alarm_schedules_comes_in_another_turn_of_the_loop():
     assert made == ["alarm", "other"] * 4 + ["alarm"]
 
 
-async def test_an_interrupted_call_takes_none_of_the_others_with_it():
+async def test_exception_in_alarm_keeps_other_alarms():
     fine, made = await alarms(), []
 
     def interrupted():
@@ -87,7 +87,7 @@ async def test_an_interrupted_call_takes_none_of_the_others_with_it():
     await eventually(lambda: made)
 
 
-async def test_short_waits_are_fine_and_long_ones_the_loops_own():
+async def test_short_waits_use_fine_alarms_and_long_waits_the_event_loop():
     await alarms()
     clock, loop = SystemClock(), asyncio.get_running_loop()
     long = clock.call_at(loop, clock.steady_ns() + 1000 * MILLISECOND, lambda: None)
@@ -97,7 +97,7 @@ async def test_short_waits_are_fine_and_long_ones_the_loops_own():
     assert not isinstance(short, asyncio.TimerHandle)
 
 
-def test_a_loop_that_watches_no_files_has_its_own_alarms_only():
+def test_event_loop_without_readers_uses_its_own_timers():
     class Blind(asyncio.SelectorEventLoop):
         def add_reader(self, *_):
             raise NotImplementedError
@@ -113,7 +113,7 @@ def test_a_loop_that_watches_no_files_has_its_own_alarms_only():
         loop.close()
 
 
-def test_the_file_ends_with_its_loop(monkeypatch):
+def test_timer_file_is_closed_with_event_loop(monkeypatch):
     close, closed, watched = os.close, [], []
     monkeypatch.setattr(os, "close", lambda file: (closed.append(file), close(file)))
 

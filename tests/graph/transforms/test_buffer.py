@@ -54,7 +54,7 @@ def forests(draw):
 
 
 @given(forests())
-def test_snapshots_agree_with_one_composition_after_another(forest):
+def test_snapshots_match_step_by_step_composition(forest):
     parents, local, order, fixed = forest
     attached = [number for number in order if parents[number] >= 0]
     buffer = TransformBuffer()
@@ -87,14 +87,14 @@ def test_snapshots_agree_with_one_composition_after_another(forest):
                     buffer.lookup(f"f{fixed}", name)
 
 
-def test_a_chain_of_hundreds_is_composed_in_full():
+def test_long_chain_is_composed_completely():
     buffer = buffer_of(*((f"f{number}", f"f{number + 1}", 1.0) for number in range(700)))
     snapshot = buffer.snapshot("f0", 0)
     np.testing.assert_allclose(snapshot.poses[:, 0], [int(name[1:]) for name in snapshot.names])
     assert buffer.lookup("f700", "f100")[0] == pytest.approx(-600.0)
 
 
-def test_the_revision_changes_with_names_and_parents_only():
+def test_revision_changes_only_with_names_and_parents():
     buffer = buffer_of(("world", "base", 1.0), ("base", "arm", 1.0))
     first = buffer.snapshot("world", 0)
     buffer.update(message(("world", "base", 2.0), ("base", "arm", 3.0)), static=False, now_ns=1)
@@ -112,7 +112,7 @@ def test_the_revision_changes_with_names_and_parents_only():
     assert fourth.parents == (-1, 0, 1, 1)
 
 
-def test_two_publishers_of_a_frame_take_turns():
+def test_two_publishers_of_frame_alternate():
     buffer = TransformBuffer()
     ours, theirs = message(("world", "base", 1.0)), message(("odom", "base", 5.0))
     for _ in range(2):
@@ -124,12 +124,12 @@ def test_two_publishers_of_a_frame_take_turns():
             buffer.lookup("world", "base")
 
 
-def test_what_comes_last_in_a_message_holds():
+def test_last_duplicate_in_message_applies():
     buffer = buffer_of(("world", "base", 1.0), ("world", "base", 2.0))
     assert buffer.lookup("world", "base")[0] == 2.0
 
 
-def test_ages_count_from_the_last_update_of_moving_frames():
+def test_ages_count_from_last_update_of_dynamic_frames():
     buffer = TransformBuffer()
     buffer.update(message(("world", "base", 1.0)), static=True, now_ns=0)
     buffer.update(message(("base", "arm", 1.0)), static=False, now_ns=SECOND)
@@ -140,7 +140,7 @@ def test_ages_count_from_the_last_update_of_moving_frames():
     assert buffer.snapshot("world", 3 * SECOND).ages.max() == 0.0
 
 
-def test_an_unknown_fixed_frame_has_no_poses():
+def test_unknown_fixed_frame_has_no_poses():
     snapshot = buffer_of(("world", "base", 1.0)).snapshot("map", 0)
     assert snapshot.names == ("world", "base")
     assert np.isnan(snapshot.poses).all()
@@ -189,7 +189,7 @@ def test_an_unknown_fixed_frame_has_no_poses():
         ),
     ],
 )
-def test_lookups_fail_in_the_words_of_tf2(target, source, error, text):
+def test_lookup_errors_match_tf2(target, source, error, text):
     buffer = buffer_of(("world", "base", 1.0), ("stand", "camera", 1.0))
     with pytest.raises(error) as caught:
         buffer.lookup(target, source)
@@ -197,7 +197,7 @@ def test_lookups_fail_in_the_words_of_tf2(target, source, error, text):
     assert caught.value.diagnostics[0].message == text
 
 
-def test_frames_in_a_loop_have_no_poses():
+def test_frames_in_loop_have_no_poses():
     buffer = buffer_of(("a", "b", 1.0), ("b", "c", 1.0), ("c", "a", 1.0), ("c", "below", 1.0), ("w", "x", 1.0))
     snapshot = buffer.snapshot("w", 0)
     assert [name for name, row in zip(snapshot.names, snapshot.poses, strict=True) if not np.isnan(row).any()] == [
@@ -211,7 +211,7 @@ def test_frames_in_a_loop_have_no_poses():
     assert buffer.lookup("w", "below")[0] == 4.0
 
 
-def test_bad_transforms_are_left_out_and_told_once():
+def test_invalid_transforms_are_ignored_and_reported_once():
     problems = []
     bad = message(
         ("world", "nan", [np.nan, 0, 0, 0, 0, 0, 1]),
@@ -240,7 +240,7 @@ def test_bad_transforms_are_left_out_and_told_once():
     assert buffer.lookup("world", "nan")[0] == 3.0
 
 
-def test_a_transform_that_was_bad_once_is_connected_when_it_is_good():
+def test_frame_is_connected_after_invalid_transform_becomes_valid():
     """The parents of a list of frames count only once its transforms were taken in."""
     buffer = TransformBuffer()
     children, parents = ("base",), ("world",)
@@ -251,7 +251,7 @@ def test_a_transform_that_was_bad_once_is_connected_when_it_is_good():
     assert buffer.lookup("world", "base")[0] == 1.0
 
 
-def test_removed_frames_vanish_unless_others_hang_from_them():
+def test_removed_frames_disappear_unless_they_have_children():
     buffer = buffer_of(("world", "base", 1.0), ("base", "arm", 1.0), ("arm", "hand", 1.0), ("arm", "camera", 1.0))
     before = buffer.snapshot("world", 0).revision
     buffer.remove(["arm", "hand", "never heard of"])
@@ -267,14 +267,14 @@ def test_removed_frames_vanish_unless_others_hang_from_them():
     assert buffer.frames() == ()
 
 
-def test_many_different_lists_of_frames_are_taken_in():
+def test_many_different_frame_lists_are_accepted():
     buffer = TransformBuffer()
     for number in range(200):
         buffer.update(message((f"f{number}", f"f{number + 1}", 1.0)), static=False, now_ns=0)
     assert buffer.lookup("f0", "f200")[0] == pytest.approx(200.0)
 
 
-async def test_a_listener_fills_a_buffer(graph, clock):
+async def test_transform_listener_fills_buffer(graph, clock):
     buffer = TransformBuffer()
     robot, viewer = graph.create_node("robot", namespace="/mbot"), graph.create_node("viewer")
     static = robot.create_publisher(TFMessage, "/tf_static", STATIC_TF_PUBLISHER_QOS)

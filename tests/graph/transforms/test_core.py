@@ -59,7 +59,7 @@ def x_of(buffer, target, source, time=LATEST):
     return buffer.lookup_transform_core(target, source, time).transform.translation.x
 
 
-def test_a_lookup_gives_the_pose_of_the_source_in_the_target(buffer):
+def test_lookup_returns_pose_of_source_in_target(buffer):
     fill(buffer, stamped("map", "base", 1, x=1.0, yaw=pi / 2), stamped("base", "arm", 1, x=2.0))
     found = buffer.lookup_transform_core("map", "arm", LATEST)
     assert (found.header.frame_id, found.child_frame_id, found.header.stamp.sec) == ("map", "arm", 1)
@@ -70,12 +70,12 @@ def test_a_lookup_gives_the_pose_of_the_source_in_the_target(buffer):
     assert (back.x, back.y) == (pytest.approx(-2.0), pytest.approx(1.0))
 
 
-def test_a_number_is_no_time(buffer):
+def test_number_is_rejected_as_time(buffer):
     with pytest.raises(TypeError, match=r"time must have sec and nanosec, or nanoseconds. It is 1\.5"):
         buffer.lookup_transform_core("a", "b", 1.5)
 
 
-def test_between_two_times_poses_are_interpolated(buffer):
+def test_poses_are_interpolated_between_stamps(buffer):
     fill(buffer, stamped("a", "b", 1, x=0.0, yaw=0.0), stamped("a", "b", 3, x=4.0, yaw=pi / 2))
     assert x_of(buffer, "a", "b", at(1.5)) == pytest.approx(1.0)
     rotation = buffer.lookup_transform_core("a", "b", at(2.0)).transform.rotation
@@ -85,7 +85,7 @@ def test_between_two_times_poses_are_interpolated(buffer):
     assert buffer.lookup_transform_core("a", "b", at(2.0).to_msg()).transform.translation.x == pytest.approx(2.0)
 
 
-def test_the_shorter_way_round_is_taken():
+def test_interpolation_takes_shorter_rotation():
     first = (0.0, 0.0, 0.0, 0.0, 0.0, sin(0.1), cos(0.1))
     second = (0.0, 0.0, 0.0, 0.0, 0.0, -sin(0.2), -cos(0.2))
     middle = interpolate(first, second, 0.5)
@@ -93,14 +93,14 @@ def test_the_shorter_way_round_is_taken():
     assert interpolate(first, first, 0.3) == pytest.approx(first)
 
 
-def test_a_frame_that_changed_its_parent_is_where_it_was(buffer):
+def test_reparented_frame_keeps_earlier_poses(buffer):
     fill(buffer, stamped("a", "c", 1, x=1.0), stamped("b", "c", 3, x=9.0), stamped("a", "b", 1, x=5.0))
     fill(buffer, stamped("a", "b", 3, x=5.0))
     assert x_of(buffer, "a", "c", at(2.0)) == 1.0
     assert x_of(buffer, "a", "c", at(3.0)) == 14.0
 
 
-def test_extrapolation_is_refused_in_tf2s_words(buffer):
+def test_extrapolation_is_rejected_like_tf2(buffer):
     fill(buffer, stamped("map", "base", 10), stamped("map", "base", 11), stamped("base", "arm", 10))
     for time, text in (
         (
@@ -132,7 +132,7 @@ def test_extrapolation_is_refused_in_tf2s_words(buffer):
         buffer.lookup_transform_core("arm", "map", at(10.5))
 
 
-def test_the_latest_common_time_is_that_of_the_slowest_frame(buffer):
+def test_latest_common_time_is_of_slowest_frame(buffer):
     fill(buffer, stamped("map", "base", 1, x=1.0), stamped("map", "base", 5, x=5.0), stamped("base", "arm", 3, x=10.0))
     found = buffer.lookup_transform_core("map", "arm", LATEST)
     assert found.header.stamp.sec == 3
@@ -145,7 +145,7 @@ def test_the_latest_common_time_is_that_of_the_slowest_frame(buffer):
     assert buffer.get_latest_common_time("base", "leg") == LATEST
 
 
-def test_what_does_not_move_holds_at_all_times(buffer):
+def test_static_transforms_hold_at_all_times(buffer):
     fill(buffer, stamped("base", "camera", 100, x=1.0), static=True)
     assert [x_of(buffer, "base", "camera", at(time)) for time in (0, 1, 1000)] == [1.0, 1.0, 1.0]
     assert buffer.lookup_transform_core("base", "camera", at(7)).header.stamp.sec == 7
@@ -157,7 +157,7 @@ def test_what_does_not_move_holds_at_all_times(buffer):
         x_of(buffer, "base", "camera", at(5))
 
 
-def test_time_travel_by_a_fixed_frame(buffer):
+def test_time_travel_uses_fixed_frame(buffer):
     fill(buffer, *(stamped("world", "robot", time, x=float(time)) for time in range(1, 6)))
     fill(buffer, stamped("world", "other", 1, x=100.0), stamped("world", "other", 5, x=100.0))
     found = buffer.lookup_transform_full_core("robot", at(4), "robot", at(1.5), "world")
@@ -173,7 +173,7 @@ def test_time_travel_by_a_fixed_frame(buffer):
         buffer.lookup_transform_full_core("robot", at(4), "other", at(2), "gone")
 
 
-def test_frames_that_are_not_known_or_not_connected(buffer):
+def test_unknown_and_unconnected_frames_are_rejected(buffer):
     fill(buffer, stamped("map", "base", 1), stamped("x", "y", 1))
     for call, kind, text in (
         (("mapp", "base"), LookupException, '"mapp" passed to lookupTransform argument target_frame does not exist. '),
@@ -214,7 +214,7 @@ def test_frames_that_are_not_known_or_not_connected(buffer):
     assert x_of(buffer, "anything", "anything") == 0.0
 
 
-def test_a_loop_is_told(buffer):
+def test_frame_loop_is_reported(buffer):
     fill(buffer, stamped("a", "b", 1), stamped("b", "c", 1), stamped("c", "a", 1), stamped("x", "y", 1))
     for time in (LATEST, at(1)):
         with pytest.raises(LookupException, match=r"it contains a loop.\nFrame b exists"):
@@ -248,13 +248,13 @@ def test_a_loop_is_told(buffer):
         ),
     ],
 )
-def test_bad_transforms_are_left_out_and_told(buffer, logged, transform, text):
+def test_invalid_transforms_are_ignored_and_reported(buffer, logged, transform, text):
     fill(buffer, transform)
     assert logged == [("ERROR", text)]
     assert buffer.all_frames_as_string() == ""
 
 
-def test_a_quaternion_must_be_of_unit_length(buffer, logged):
+def test_quaternion_must_have_unit_length(buffer, logged):
     bad = stamped("a", "b")
     bad.transform.rotation.w = 0.9
     fill(buffer, bad)
@@ -270,7 +270,7 @@ def test_a_quaternion_must_be_of_unit_length(buffer, logged):
     assert len(logged) == 2
 
 
-def test_old_data_is_refused_and_the_rest_put_in_order(buffer, logged):
+def test_old_data_is_ignored_and_out_of_order_data_sorted(buffer, logged):
     fill(buffer, stamped("a", "b", 100, x=1.0), stamped("a", "b", 95, x=2.0), stamped("a", "b", 98, x=3.0))
     assert [x_of(buffer, "a", "b", at(time)) for time in (95, 98, 100)] == [2.0, 3.0, 1.0]
     assert x_of(buffer, "a", "b", at(99)) == pytest.approx(2.0)
@@ -288,7 +288,7 @@ def test_old_data_is_refused_and_the_rest_put_in_order(buffer, logged):
     ]
 
 
-def test_what_is_older_than_the_cache_time_goes(logged):
+def test_data_older_than_cache_time_is_dropped(logged):
     buffer = BufferCore(Duration(seconds=2))
     for tick in range(3000):
         buffer.set_transform(stamped("a", "b", 1 + tick * 0.01, x=float(tick)), "me")
@@ -298,7 +298,7 @@ def test_what_is_older_than_the_cache_time_goes(logged):
     assert "rate: 100." in buffer.all_frames_as_yaml()
 
 
-def test_clearing_leaves_what_does_not_move(buffer):
+def test_clear_keeps_static_transforms(buffer):
     fill(buffer, stamped("map", "base", 1))
     fill(buffer, stamped("base", "camera"), static=True)
     buffer.clear()
@@ -306,7 +306,7 @@ def test_clearing_leaves_what_does_not_move(buffer):
     assert not buffer.can_transform_core("map", "base", LATEST)[0]
 
 
-def test_reports(buffer):
+def test_all_frames_are_printed_as_text_yaml_and_dot(buffer):
     assert buffer.all_frames_as_yaml() == "[]"
     assert "no tf data recieved" in buffer.all_frames_as_dot()
     fill(buffer, stamped("map", "base", 1), stamped("map", "base", 3))
@@ -327,7 +327,7 @@ def test_reports(buffer):
     assert not buffer._frameExists("gone")
 
 
-def test_the_chain_between_two_frames(buffer):
+def test_chain_contains_frames_between_two_frames(buffer):
     fill(
         buffer,
         *(stamped(parent, child, 1) for parent, child in (("map", "base"), ("base", "arm"), ("arm", "hand"))),
@@ -338,7 +338,7 @@ def test_the_chain_between_two_frames(buffer):
     assert buffer._chain("leg", LATEST, "hand", LATEST, "map") == ["hand", "arm", "base", "map", "base", "leg"]
 
 
-def test_velocities(buffer):
+def test_velocity_is_computed_from_poses(buffer):
     fill(buffer, *(stamped("world", "robot", time, x=3.0 * time, yaw=0.1 * time) for time in range(6)))
     linear, angular = buffer.lookupVelocityCore("robot", "world", at(3), Duration(seconds=2))
     assert (angular[2], linear[2]) == (pytest.approx(0.1), pytest.approx(0.0))
@@ -352,7 +352,7 @@ def test_velocities(buffer):
     assert angular == pytest.approx((0.0, 0.0, 0.0))
 
 
-def test_messages_may_hold_arrays(buffer):
+def test_messages_can_contain_arrays(buffer):
     poses = np.array([[1.0, 0, 0, 0, 0, 0, 1], [2.0, 0, 0, 0, 0, 0, 1]])
     buffer.update(TFMessage(batch=TransformBatch(("a", "b"), ("b", "c"), 5 * SECOND, poses)), static=False)
     assert x_of(buffer, "a", "c") == 3.0
@@ -371,7 +371,7 @@ pose = (
 
 
 @given(pose, pose)
-def test_single_poses_compose_as_arrays_do(first, second):
+def test_single_poses_compose_like_arrays(first, second):
     assert compose(first, second) == pytest.approx(compose_arrays(first, second).tolist(), abs=1e-9)
     back = compose(first, invert(first))
     assert back[:3] == pytest.approx((0.0, 0.0, 0.0), abs=1e-9)

@@ -30,7 +30,7 @@ def xyz(vector):
     return pytest.approx((vector.x, vector.y, vector.z), abs=1e-12)
 
 
-def test_points_are_turned_and_shifted_and_vectors_turned():
+def test_points_are_rotated_and_translated_and_vectors_rotated():
     point = message("PointStamped")
     point.point.x = 1.0
     before = deepcopy(TRANSFORM)
@@ -43,7 +43,7 @@ def test_points_are_turned_and_shifted_and_vectors_turned():
     assert before == TRANSFORM
 
 
-def test_poses():
+def test_poses_are_transformed():
     pose = message("PoseStamped")
     pose.pose.position.y = 1.0
     pose.pose.orientation.z, pose.pose.orientation.w = sin(pi / 4), cos(pi / 4)
@@ -56,7 +56,7 @@ def test_poses():
     assert do_transform_pose(pose.pose, TRANSFORM).orientation.z == pytest.approx(sin(pi / 4))
 
 
-def test_covariances_turn_with_the_pose():
+def test_covariances_rotate_with_pose():
     pose = message("PoseWithCovarianceStamped")
     pose.pose.covariance = np.diag([1.0, 2.0, 3.0, 4.0, 5.0, 6.0]).reshape(36)
     found = do_transform_pose_with_covariance_stamped(pose, TRANSFORM)
@@ -65,7 +65,7 @@ def test_covariances_turn_with_the_pose():
     assert transform_covariance(pose.pose.covariance, TRANSFORM).shape == (36,)
 
 
-def test_wrenches_and_polygons():
+def test_wrenches_and_polygons_are_transformed():
     wrench = message("WrenchStamped")
     wrench.wrench.force.x, wrench.wrench.torque.y = 1.0, 1.0
     found = do_transform_wrench(wrench, TRANSFORM)

@@ -16,7 +16,7 @@ from tests.waiting import SECONDS
 LATEST = Time()
 
 
-def test_a_lookup_waits_for_another_thread():
+def test_lookup_waits_for_transform_from_another_thread():
     buffer = Buffer()
     timer = threading.Timer(0.05, lambda: buffer.set_transform(stamped("map", "base", 1, x=2.0), "me"))
     timer.start()
@@ -25,7 +25,7 @@ def test_a_lookup_waits_for_another_thread():
     timer.join()
 
 
-def test_a_wait_in_vain_ends_with_the_reason():
+def test_wait_timeout_returns_reason():
     buffer = Buffer()
     assert buffer.can_transform("map", "base", LATEST, Duration(seconds=0.02)) is False
     possible, reason = buffer.can_transform("map", "base", LATEST, return_debug_tuple=True)
@@ -44,7 +44,7 @@ def test_a_wait_in_vain_ends_with_the_reason():
     assert buffer.lookup_transform_full(*question).child_frame_id == "base"
 
 
-async def test_futures_get_the_transform_when_it_comes():
+async def test_async_wait_completes_when_transform_arrives():
     buffer = Buffer()
     future = buffer.wait_for_transform_async("map", "base", Time(seconds=2))
     buffer.set_transform(stamped("map", "base", 1), "me")
@@ -66,7 +66,7 @@ async def test_futures_get_the_transform_when_it_comes():
     assert buffer._new_data_callbacks == []
 
 
-async def test_a_node_gives_a_service_and_clears_the_buffer_when_time_jumps_back(graph, clock, log):
+async def test_buffer_offers_frame_graph_service_and_clears_on_time_jump_back(graph, clock, log):
     node = graph.create_node("node")
     buffer = Buffer(node=node)
     buffer.set_transform(stamped("map", "base", 1), "me")
@@ -79,7 +79,7 @@ async def test_a_node_gives_a_service_and_clears_the_buffer_when_time_jumps_back
     assert log[-1].text.startswith("TF_NO_FRAME_ID")
 
 
-async def test_broadcasters_and_a_listener(graph, clock):
+async def test_broadcasters_reach_transform_listener(graph, clock):
     node = graph.create_node("robot", namespace="/r")
     moving, static = TransformBroadcaster(node), StaticTransformBroadcaster(node)
     messages = []
@@ -102,7 +102,7 @@ async def test_broadcasters_and_a_listener(graph, clock):
     assert buffer.get_latest_common_time("map", "base") == Time(seconds=6)
 
 
-async def test_a_listener_may_have_other_topics(graph):
+async def test_transform_listener_topics_can_be_changed(graph):
     node = graph.create_node("node")
     buffer = Buffer()
     TransformListener(buffer, node, tf_topic="/moving", tf_static_topic="/fixed", static_only=True)

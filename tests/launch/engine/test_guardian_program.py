@@ -62,7 +62,7 @@ def guard(monkeypatch: pytest.MonkeyPatch, text: str, mark: str = "nobody") -> N
     guardian_program.main(f"{MARK}={mark}")
 
 
-def test_what_was_started_is_ended_and_the_folder_goes(
+def test_guardian_ends_processes_and_removes_folder(
     start: Start, monkeypatch: pytest.MonkeyPatch, tmp_path: Path
 ) -> None:
     meek, stubborn, gone = start(), start("SIGINT", "SIGTERM"), start()
@@ -75,14 +75,14 @@ def test_what_was_started_is_ended_and_the_folder_goes(
     assert not folder.exists()
 
 
-def test_a_launch_that_ended_in_order_is_left_alone(start: Start, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_guardian_ignores_launch_that_ended_normally(start: Start, monkeypatch: pytest.MonkeyPatch) -> None:
     process = start()
     guard(monkeypatch, f"+{process.pid}\n.\n")
     assert process.poll() is None
 
 
 @pytest.mark.skipif(not Path("/proc/self/environ").exists(), reason="other processes' environments cannot be read here")
-def test_what_it_was_not_told_of_is_found_by_its_mark(start: Start, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_guardian_finds_unreported_processes_by_mark(start: Start, monkeypatch: pytest.MonkeyPatch) -> None:
     marked, other = start(**{MARK: "mine"}), start(**{MARK: "theirs"})
     guard(monkeypatch, "", "mine")
     assert marked.wait(SECONDS) in (1, -signal.SIGINT)

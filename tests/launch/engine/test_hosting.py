@@ -44,7 +44,7 @@ def prefixed(prefix: str, pattern: str) -> list[Any]:
 
 
 class TestWhere:
-    async def test_isolated_nodes_are_processes(self, launch) -> None:
+    async def test_isolated_nodes_run_as_processes(self, launch) -> None:
         started = RegisterEventHandler(
             OnProcessExit(on_exit=lambda event, _: LogInfo(msg=f"{event.process_name} {event.returncode}"))
         )
@@ -66,7 +66,9 @@ class TestWhere:
             ),
         ],
     )
-    async def test_what_only_a_process_can_have_makes_one(self, launch, options: Any, before: list[Any]) -> None:
+    async def test_node_with_prefix_or_own_domain_runs_as_process(
+        self, launch, options: Any, before: list[Any]
+    ) -> None:
         done = await launch(*before, talker(**options), ends_when(printed("[talker-1]: process started")))
         assert "[INFO] [talker-1]: process started with pid [" in done.err
 
@@ -77,7 +79,7 @@ class TestWhere:
             ({}, prefixed("env", "x")),
         ],
     )
-    async def test_what_makes_no_difference_to_our_nodes_does_not(
+    async def test_irrelevant_options_keep_node_in_launcher_process(
         self, launch, options: Any, before: list[Any]
     ) -> None:
         done = await launch(*before, talker(**options), ends_when(printed("[talker-1]: started in")))
@@ -85,7 +87,7 @@ class TestWhere:
 
 
 class TestOutput:
-    async def test_logs_go_where_the_action_says(self, launch, tmp_path: Path) -> None:
+    async def test_output_option_selects_log_destination(self, launch, tmp_path: Path) -> None:
         logs = {
             "quiet-1-stderr.log": "[talker]: Publishing: 'Hello World: 1'",
             "launch.log": "[loud]: Publishing: 'Hello",
@@ -101,7 +103,7 @@ class TestOutput:
         assert "[quiet-1] [INFO]" not in done.err
         assert "[talker-2] [INFO] [" in done.err
 
-    async def test_a_node_that_has_done_its_work_ends(self, launch) -> None:
+    async def test_finished_node_emits_process_exit(self, launch) -> None:
         node = Node(package="demo_nodes_py", executable="talker_qos", arguments=["--number_of_cycles", "1"])
         done = await launch(
             node, RegisterEventHandler(OnProcessExit(target_action=node, on_exit=[LogInfo(msg="over")]))
@@ -110,7 +112,7 @@ class TestOutput:
         assert "[INFO] [talker_qos-1]: has finished cleanly" in done.err
         assert node.return_code == 0
 
-    async def test_a_node_that_has_done_its_work_respawns(self, launch) -> None:
+    async def test_finished_node_respawns(self, launch) -> None:
         node = Node(
             package="demo_nodes_py",
             executable="talker_qos",
@@ -123,7 +125,7 @@ class TestOutput:
         assert done.err.count("started in the launcher's process") == 3
         assert done.err.count("[talker_qos-1]: has finished cleanly") == 3
 
-    async def test_a_respawn_that_waits_ends_with_the_launch(self, launch) -> None:
+    async def test_pending_respawn_is_canceled_at_shutdown(self, launch) -> None:
         node = Node(
             package="demo_nodes_py", executable="talker_qos", arguments=["-n", "1"], respawn=True, respawn_delay=60.0
         )
@@ -132,7 +134,7 @@ class TestOutput:
         assert done.err.count("started in the launcher's process") == 1
         assert time.monotonic() - began < 60.0
 
-    async def test_its_command_line_may_be_wrong(self, launch) -> None:
+    async def test_invalid_node_arguments_fail_launch(self, launch) -> None:
         node = Node(package="demo_nodes_py", executable="talker_qos", arguments=["--number_of_cycles", "x"])
         done = await launch(node)
         assert "error[NODE602]" in done.err
@@ -140,7 +142,7 @@ class TestOutput:
 
 
 class TestMany:
-    async def test_five_hundred_nodes_in_one_launch(self, launch) -> None:
+    async def test_five_hundred_nodes_start_in_one_launch(self, launch) -> None:
         up: list[int] = []
 
         def look(context: LaunchContext) -> None:
@@ -162,7 +164,7 @@ class TestMany:
         assert done.err.count("has finished cleanly") == 500
         assert up[0] >= 500
 
-    async def test_the_loop_gets_its_turn_between_nodes(self, launch) -> None:
+    async def test_event_loop_runs_between_node_starts(self, launch) -> None:
         found: list[int] = []
 
         async def watch(context: LaunchContext) -> None:
@@ -177,7 +179,7 @@ class TestMany:
 
 
 class TestScope:
-    async def test_the_log_folder_of_processes(self, launch, tmp_path: Path) -> None:
+    async def test_set_ros_log_dir_sets_environment_variable(self, launch, tmp_path: Path) -> None:
         done = await launch(
             SetROSLogDir("inner"),
             LogInfo(msg=EnvironmentVariable("ROS_LOG_DIR")),
@@ -186,18 +188,18 @@ class TestScope:
         )
         assert done.messages == [str(tmp_path / "ros_log" / "inner"), "/elsewhere"]
 
-    async def test_a_ros_timer(self, launch) -> None:
+    async def test_ros_timer_runs_actions_after_period(self, launch) -> None:
         began = time.monotonic()
         done = await launch(RosTimer(period=0.3, actions=[LogInfo(msg="now")]))
         assert done.messages == ["now"]
         assert time.monotonic() - began >= 0.3
 
-    async def test_a_ros_timer_can_be_cancelled(self, launch) -> None:
+    async def test_ros_timer_can_be_canceled(self, launch) -> None:
         timer = RosTimer(period=60.0, actions=[LogInfo(msg="never")])
         done = await launch(timer, TimerAction(period=0.1, actions=[OpaqueFunction(function=lambda _: timer.cancel())]))
         assert done.messages == []
 
-    async def test_a_ros_timer_goes_by_simulated_time(self, launch) -> None:
+    async def test_ros_timer_follows_simulated_time(self, launch) -> None:
         def publish(context: LaunchContext) -> None:
             from linkwright.messages import get_message
 
@@ -223,7 +225,7 @@ class TestScope:
 
 
 class TestNetwork:
-    async def test_it_is_joined_only_where_nodes_are(self, launch, monkeypatch: pytest.MonkeyPatch) -> None:
+    async def test_network_is_joined_only_if_nodes_are_launched(self, launch, monkeypatch: pytest.MonkeyPatch) -> None:
         joined: list[float] = []
         monkeypatch.setattr(Network, "_join", lambda self: joined.append(time.monotonic()))
         monkeypatch.delenv("LINKWRIGHT_DDS")
@@ -237,7 +239,7 @@ class TestNetwork:
         await launch(talker(), ends_when(speaks))
         assert len(joined) == 1
 
-    async def test_the_page_comes_before_it(self, launch, monkeypatch: pytest.MonkeyPatch) -> None:
+    async def test_viewer_starts_before_network_is_joined(self, launch, monkeypatch: pytest.MonkeyPatch) -> None:
         joined: list[float] = []
         monkeypatch.setattr(Network, "_join", lambda self: joined.append(time.monotonic()))
         monkeypatch.delenv("LINKWRIGHT_DDS")
@@ -246,7 +248,7 @@ class TestNetwork:
         assert joined[0] - began > 0.7
 
 
-async def test_the_port_that_is_asked_for_is_that_of_one_page(launch) -> None:
+async def test_requested_port_is_used_by_only_one_viewer(launch) -> None:
     with socket.create_server(("127.0.0.1", 0)) as taken:
         port = taken.getsockname()[1]
     two = [Node(package="rviz2", executable="rviz2", name=name) for name in ("one", "other")]

@@ -74,9 +74,7 @@ def begin(start: Callable[..., Running], monkeypatch: pytest.MonkeyPatch) -> Cal
 
 
 class TestKilled:
-    def test_a_launcher_that_is_killed_takes_its_processes_with_it(
-        self, begin: Callable[..., Running], write: Write
-    ) -> None:
+    def test_killed_launcher_takes_its_processes_with_it(self, begin: Callable[..., Running], write: Write) -> None:
         fork = "import os, time; os.fork(); print('up', flush=True); time.sleep(60)"
         forking = f"ExecuteProcess(cmd=[sys.executable, '-c', {fork!r}], output='screen', name='c')"
         shell = "ExecuteProcess(cmd=['sleep 60; echo x'], shell=True)"
@@ -89,7 +87,7 @@ class TestKilled:
         running.process.wait()
         assert gone_within(30.0, running.identity)
 
-    def test_also_those_that_ignore_polite_signals(self, begin: Callable[..., Running], write: Write) -> None:
+    def test_processes_that_ignore_signals_are_killed(self, begin: Callable[..., Running], write: Write) -> None:
         stubborn = (
             "import signal, time\nfor n in (signal.SIGINT, signal.SIGTERM): signal.signal(n, signal.SIG_IGN)\n"
             "print('up', flush=True)\ntime.sleep(60)"
@@ -101,7 +99,7 @@ class TestKilled:
         running.process.wait()
         assert gone_within(30.0, running.identity)
 
-    def test_its_temporary_files_go_too(self, begin: Callable[..., Running], write: Write, tmp_path: Path) -> None:
+    def test_temporary_files_are_removed(self, begin: Callable[..., Running], write: Write, tmp_path: Path) -> None:
         program = "import sys; print('given', sys.argv[3], flush=True); import time; time.sleep(60)"
         write("python", f'#!/bin/sh\nexec {sys.executable} -c "{program}" "$@"\n').chmod(0o755)
         node = f"Node(executable='{tmp_path}/python', exec_name='n', parameters=[{{'a': 1}}], output='screen')"
@@ -115,7 +113,7 @@ class TestKilled:
         assert not Path(path).parent.exists()
 
     @pytest.mark.slow
-    def test_whenever_it_is_killed(self, begin: Callable[..., Running], write: Write) -> None:
+    def test_killed_launcher_leaves_no_process_at_any_time(self, begin: Callable[..., Running], write: Write) -> None:
         path = write("a.launch.py", launch_file(sleeper("a"), TALKER, sleeper("b")))
         for delay in random.Random(4).sample([0.05 * each for each in range(1, 31)], 8):
             running = begin(path)
@@ -124,7 +122,7 @@ class TestKilled:
             running.process.wait()
             assert gone_within(30.0, running.identity), f"killed after {delay} s"
 
-    async def test_a_node_that_is_killed_comes_back(self, launch) -> None:
+    async def test_killed_node_respawns(self, launch) -> None:
         pids: list[int] = []
 
         def kill(context: Any) -> None:
@@ -146,7 +144,7 @@ class TestKilled:
 
 class TestInterrupted:
     @pytest.mark.slow
-    def test_at_every_moment_of_the_start(self, begin: Callable[..., Running], write: Write) -> None:
+    def test_interrupt_during_startup_ends_cleanly(self, begin: Callable[..., Running], write: Write) -> None:
         path = write("a.launch.py", launch_file(sleeper("a"), TALKER, sleeper("b")))
         began = time.monotonic()
         running = begin(path)
@@ -163,7 +161,7 @@ class TestInterrupted:
             assert gone_within(30.0, running.identity), f"interrupted after {delay:.2f} s:\n{running.err}"
 
     @pytest.mark.parametrize("given", ["", ", sigterm_timeout='8'"])
-    def test_a_process_has_the_time_of_ros_to_save_its_file(
+    def test_interrupted_process_has_time_to_save_file(
         self, begin: Callable[..., Running], write: Write, given: str
     ) -> None:
         slow = (
@@ -182,7 +180,7 @@ class TestInterrupted:
 
 
 class TestCounts:
-    async def test_threads_and_processes_before_and_after(self, launch, monkeypatch: pytest.MonkeyPatch) -> None:
+    async def test_launch_leaves_no_threads_or_processes(self, launch, monkeypatch: pytest.MonkeyPatch) -> None:
         monkeypatch.delenv("LINKWRIGHT_DDS")
         me = psutil.Process()
         await launch()  # what is made once and kept, is made
@@ -215,7 +213,7 @@ def _is_pooled(thread: threading.Thread) -> bool:
 
 
 class TestGuardian:
-    def test_it_ends_with_the_launch(self) -> None:
+    def test_guardian_ends_with_launch(self) -> None:
         guardian = Guardian()
         guardian.start_and_mark({})
         process = guardian._process
@@ -227,7 +225,7 @@ class TestGuardian:
         assert guardian.start_and_mark({})[MARK]
         assert guardian._process is None
 
-    def test_a_guardian_that_was_killed_is_done_without(self) -> None:
+    def test_killed_guardian_is_tolerated(self) -> None:
         guardian = Guardian()
         guardian.start_and_mark({})
         assert guardian._process is not None
@@ -237,6 +235,6 @@ class TestGuardian:
         guardian.release(1)
         guardian.close()
 
-    def test_groups_that_are_gone_are_no_error(self) -> None:
+    def test_missing_process_groups_are_ignored(self) -> None:
         guardian_program.end_groups({2**22 - 3})
         assert guardian_program.marked_groups(b"LINKWRIGHT_LAUNCH=no-such-launch") == set()

@@ -19,7 +19,7 @@ Write = Callable[[str, str], Path]
 SKIP = {"skip_missing": True}
 
 
-async def test_all_that_is_missing_is_left_out_and_listed_once(launch, write: Write) -> None:
+async def test_missing_parts_are_skipped_and_listed_once(launch, write: Write) -> None:
     (missing_module, missing_file) = (
         write("module.launch.py", "import no_such_module\n"),
         write("package.launch.py", "").with_name("no_such.launch.py"),
@@ -43,7 +43,7 @@ async def test_all_that_is_missing_is_left_out_and_listed_once(launch, write: Wr
         assert named in done.err
 
 
-async def test_what_needs_a_value_of_what_is_left_out_goes_with_it(launch) -> None:
+async def test_actions_that_depend_on_missing_value_are_skipped(launch) -> None:
     done = await launch(
         DeclareLaunchArgument("folder", default_value=FindPackageShare("no_such_package")),
         LogInfo(msg=LaunchConfiguration("folder")),
@@ -55,20 +55,20 @@ async def test_what_needs_a_value_of_what_is_left_out_goes_with_it(launch) -> No
     assert done.succeeded
 
 
-async def test_a_program_that_cannot_be_started(launch) -> None:
+async def test_missing_program_is_skipped(launch) -> None:
     done = await launch(ExecuteProcess(cmd=["/no/such/program"]), LogInfo(msg="rest"), session_options=SKIP)
     assert done.messages == ["rest"]
     assert "one part of the launch is skipped" in done.err
     assert done.succeeded
 
 
-async def test_other_mistakes_end_the_launch_all_the_same(launch) -> None:
+async def test_other_errors_end_launch(launch) -> None:
     done = await launch(LogInfo(msg=LaunchConfiguration("typo")), LogInfo(msg="rest"), session_options=SKIP)
     assert done.messages == []
     assert not done.succeeded
 
 
-async def test_the_error_offers_the_command(launch) -> None:
+async def test_error_offers_skip_missing_command(launch) -> None:
     options = {"command_to_skip_missing": "linkwright launch --skip-missing a.launch.py"}
     done = await launch(Node(package="robot_state_publishr", executable="driver"), session_options=options)
     assert "to launch without this part, run linkwright launch --skip-missing a.launch.py" in done.err
@@ -80,7 +80,7 @@ async def test_the_error_offers_the_command(launch) -> None:
 class TestWithoutTheOption:
     """Parts that need missing third-party packages are skipped by default, because robots start many."""
 
-    async def test_a_node_of_another_package(self, launch) -> None:
+    async def test_nodes_of_missing_packages_are_skipped(self, launch) -> None:
         done = await launch(
             Node(package="moveit_ros_move_group", executable="move_group"),
             Node(package="nav2_route", executable="route_server"),
@@ -93,12 +93,12 @@ class TestWithoutTheOption:
         assert "error" not in done.err
         assert done.succeeded
 
-    async def test_a_launch_of_which_nothing_is_left_has_failed(self, launch) -> None:
+    async def test_launch_with_only_missing_parts_fails(self, launch) -> None:
         done = await launch(Node(package="moveit_ros_move_group", executable="move_group"))
         assert "one part of the launch is skipped" in done.err
         assert not done.succeeded
 
-    async def test_includes_from_packages_that_are_not_here(self, launch, write: Write) -> None:
+    async def test_includes_from_missing_packages_are_skipped(self, launch, write: Write) -> None:
         asks = "from ament_index_python.packages import get_package_share_directory as share\nshare('zzz_of_others')\n"
         files = (write("imports.launch.py", "import zzz_config_of_others\n"), write("asks.launch.py", asks))
         done = await launch(
@@ -111,7 +111,7 @@ class TestWithoutTheOption:
         assert "4 parts of the launch are skipped, and the rest runs" in done.err
         assert done.succeeded
 
-    async def test_a_compiled_node_that_was_not_built(self, launch, tmp_path: Path) -> None:
+    async def test_unbuilt_compiled_node_is_skipped(self, launch, tmp_path: Path) -> None:
         (tmp_path / "package.xml").write_text("<package><name>of_others</name></package>")
         (tmp_path / "CMakeLists.txt").write_text(
             "add_executable(driver src/driver.cpp)\ninstall(TARGETS driver DESTINATION lib/${PROJECT_NAME})\n"
@@ -122,7 +122,7 @@ class TestWithoutTheOption:
             assert (done.messages == ["rest"]) is is_left_out
             assert ("is skipped" in done.err) is is_left_out
 
-    async def test_a_component(self, launch) -> None:
+    async def test_component_of_missing_package_is_skipped(self, launch) -> None:
         done = await launch(
             ComposableNodeContainer(
                 name="box",
@@ -137,7 +137,7 @@ class TestWithoutTheOption:
         assert "'zzz::Driver'" in done.err
         assert done.succeeded
 
-    async def test_what_is_misspelt_ends_the_launch(self, launch, write: Write) -> None:
+    async def test_misspelled_names_end_launch(self, launch, write: Write) -> None:
         for wrong in (
             Node(package="robot_state_publishr", executable="robot_state_publisher"),
             Node(package="robot_state_publisher", executable="robot_state_publishr"),

@@ -54,7 +54,7 @@ def is_gone(pid: int) -> bool:
     return False
 
 
-async def test_a_process_from_start_to_end(launch) -> None:
+async def test_process_output_and_exit_are_logged(launch) -> None:
     done = await launch(python("import sys; print('out'); print('err', file=sys.stderr); sys.stdout.write('rest')"))
     assert done.out.splitlines() == ["[py-1] out", "[py-1] rest"]
     assert "[INFO] [py-1]: process started with pid [" in done.err
@@ -63,7 +63,7 @@ async def test_a_process_from_start_to_end(launch) -> None:
     assert done.succeeded
 
 
-async def test_names_are_numbered_in_order(launch) -> None:
+async def test_process_names_are_numbered_in_order(launch) -> None:
     done = await launch(
         ExecuteProcess(cmd=["sh", "-c", "echo a"], output="screen"),
         ExecuteProcess(cmd=["sh", "-c", "sleep 0.1; echo b"], output="screen"),
@@ -71,7 +71,7 @@ async def test_names_are_numbered_in_order(launch) -> None:
     assert done.out.splitlines() == ["[sh-1] a", "[sh-2] b"]
 
 
-async def test_folder_environment_and_substitutions(launch, tmp_path: Path) -> None:
+async def test_cwd_env_and_substitutions_are_applied(launch, tmp_path: Path) -> None:
     done = await launch(
         SetLaunchConfiguration("w", "x y"),
         ExecuteProcess(
@@ -85,12 +85,12 @@ async def test_folder_environment_and_substitutions(launch, tmp_path: Path) -> N
     assert done.out == f"[sh-1] {tmp_path} 1 x y x y\n"
 
 
-async def test_a_shell(launch) -> None:
+async def test_shell_command_is_run(launch) -> None:
     done = await launch(ExecuteProcess(cmd=[["echo ", "a", " && echo b"]], shell=True, output="screen"))
     assert done.out.splitlines() == ["[echo-1] a", "[echo-1] b"]
 
 
-async def test_words_that_a_substitution_gives_can_be_divided(launch) -> None:
+async def test_split_arguments_divides_substituted_words(launch) -> None:
     program = "import sys; print(sys.argv[1:])"
     words = ExecuteProcess(
         cmd=[sys.executable, "-c", repr(program), LaunchConfiguration("words")],
@@ -102,13 +102,13 @@ async def test_words_that_a_substitution_gives_can_be_divided(launch) -> None:
     assert done.out == "[py-1] ['--name', 'a b']\n"
 
 
-async def test_prefix_and_log_cmd(launch) -> None:
+async def test_prefix_and_log_cmd_are_applied(launch) -> None:
     done = await launch(ExecuteProcess(cmd=["x"], prefix="echo 'a b'", output="screen", name="n", log_cmd=True))
     assert done.out == "[n-1] a b x\n"
     assert "process details: cmd='echo a b x'" in done.err
 
 
-async def test_a_pseudo_terminal(launch) -> None:
+async def test_emulate_tty_provides_pseudo_terminal(launch) -> None:
     program = "import sys; print(sys.stdout.isatty(), sys.stderr.isatty())"
     assert (await launch(python(program, emulate_tty=True))).out == "[py-1] True True\n"
     assert (await launch(python(program))).out == "[py-1] False False\n"
@@ -146,13 +146,15 @@ class TestOutput:
             ({"both": {"screen"}}, True, True, {}),
         ],
     )
-    async def test_modes(self, launch, tmp_path: Path, mode: object, out: bool, err: bool, files: dict) -> None:
+    async def test_output_mode_selects_screen_and_log_files(
+        self, launch, tmp_path: Path, mode: object, out: bool, err: bool, files: dict
+    ) -> None:
         done = await launch(python(self.PROGRAM, output=mode))
         assert ("[py-1] out" in done.out) is out
         assert ("[py-1] err" in done.err) is err
         assert written_below(tmp_path / "ros_log") == files
 
-    async def test_the_launch_log_has_all_lines_of_the_launcher(self, launch, tmp_path: Path) -> None:
+    async def test_launch_log_contains_all_launcher_lines(self, launch, tmp_path: Path) -> None:
         done = await launch(python("0"))
         folder = (tmp_path / "ros_log" / "latest").resolve()
         assert done.err.splitlines()[:2] == [
@@ -163,14 +165,16 @@ class TestOutput:
         lines = (folder / "launch.log").read_text().splitlines()
         assert [re.sub(r"^\d{10}\.\d{7} ", "", line) for line in lines] == done.err.splitlines()
 
-    async def test_formats(self, launch, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    async def test_log_formats_are_read_from_environment(
+        self, launch, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+    ) -> None:
         monkeypatch.setenv("OVERRIDE_LAUNCH_SCREEN_FORMAT", "{name}|{levelname}|{msg}")
         monkeypatch.setenv("OVERRIDE_LAUNCH_LOG_FORMAT", "{msg}")
         done = await launch(LogInfo(msg="hello"))
         assert "launch.user|INFO|hello" in done.err.splitlines()
         assert "hello" in (tmp_path / "ros_log" / "latest" / "launch.log").read_text().splitlines()
 
-    async def test_a_folder_that_cannot_be_written(self, launch, tmp_path: Path, monkeypatch) -> None:
+    async def test_unwritable_log_folder_is_reported_once(self, launch, tmp_path: Path, monkeypatch) -> None:
         (tmp_path / "file").write_text("")
         monkeypatch.setenv("ROS_LOG_DIR", str(tmp_path / "file" / "logs"))
         done = await launch(python("print('out')", output="both"))
@@ -179,16 +183,16 @@ class TestOutput:
         assert done.out == "[py-1] out\n"
         assert done.succeeded
 
-    async def test_all_output_on_the_screen_by_the_environment(self, launch, monkeypatch) -> None:
+    async def test_process_output_override_is_read_from_environment(self, launch, monkeypatch) -> None:
         monkeypatch.setenv("OVERRIDE_LAUNCH_PROCESS_OUTPUT", "both")
         assert "[py-1] out" in (await launch(python(self.PROGRAM, output="own_log"))).out
 
-    async def test_an_unknown_mode(self, launch) -> None:
+    async def test_unknown_output_mode_is_rejected(self, launch) -> None:
         done = await launch(python("0", output="scren"))
         assert "error[LAUNCH141]: output destination 'scren' does not exist" in done.err
         assert "did you mean 'screen'?" in done.err
 
-    async def test_format_and_cache(self, launch) -> None:
+    async def test_output_format_and_cached_output_are_applied(self, launch) -> None:
         action = python(
             self.PROGRAM, output_format="<{this.process_description.final_name}> {line}", cached_output=True
         )
@@ -198,7 +202,7 @@ class TestOutput:
         assert action.return_code == 0
 
 
-def test_what_a_process_will_be_is_known_before_it_runs() -> None:
+def test_process_description_is_available_before_start() -> None:
     context = LaunchContext()
     context.launch_configurations["word"] = "b"
     action = ExecuteProcess(cmd=["echo", ["a", LaunchConfiguration("word")]], cwd="/", env={"A": "1"}, name="py")
@@ -209,13 +213,13 @@ def test_what_a_process_will_be_is_known_before_it_runs() -> None:
 
 
 class TestFailures:
-    async def test_an_exit_status(self, launch) -> None:
+    async def test_exit_status_is_logged(self, launch) -> None:
         done = await launch(python("raise SystemExit(3)"))
         assert "[ERROR] [py-1]: process has died [pid " in done.err
         assert "exit code 3, cmd '" in done.err
         assert done.succeeded  # as with ros2 launch
 
-    async def test_a_program_that_does_not_exist(self, launch) -> None:
+    async def test_missing_program_is_reported(self, launch) -> None:
         done = await launch(ExecuteProcess(cmd=["no-such-program --flag"]), LogInfo(msg="others go on"))
         assert "error[LAUNCH142]: process 'no-such-program --flag-1' cannot be started" in done.err
         assert "test_processes.py" in done.err
@@ -223,7 +227,7 @@ class TestFailures:
         assert done.messages == ["others go on"]
         assert not done.succeeded
 
-    async def test_a_terminal_that_does_not_exist(self, launch, monkeypatch) -> None:
+    async def test_missing_terminal_emulator_is_reported(self, launch, monkeypatch) -> None:
         monkeypatch.setenv("PATH", "/no/such/folder")
         done = await launch(python("0", prefix="xterm -e"), LogInfo(msg="others go on"))
         assert "program 'xterm' does not exist" in done.err
@@ -231,16 +235,16 @@ class TestFailures:
         assert "linkwright run" in done.err
         assert done.messages == ["others go on"]
 
-    async def test_a_folder_that_does_not_exist(self, launch) -> None:
+    async def test_missing_working_directory_is_reported(self, launch) -> None:
         done = await launch(python("0", cwd="/no/such/folder"))
         assert "folder '/no/such/folder' does not exist" in done.err
 
-    async def test_an_empty_command(self, launch) -> None:
+    async def test_empty_command_is_rejected(self, launch) -> None:
         assert "the command of the process is empty" in (await launch(ExecuteProcess(cmd=[""]))).err
 
 
 class TestHandlers:
-    async def test_start_io_and_exit(self, launch) -> None:
+    async def test_process_start_io_and_exit_handlers_run(self, launch) -> None:
         first, second = python("import os; os.write(1, b'hello\\n')", output="log"), python("0")
         done = await launch(
             first,
@@ -258,13 +262,13 @@ class TestHandlers:
         )
         assert done.messages == ["started", "hello", "exited", "py-2 0"]
 
-    async def test_handle_once(self, launch) -> None:
+    async def test_handle_once_runs_handler_once(self, launch) -> None:
         done = await launch(
             RegisterEventHandler(OnProcessExit(on_exit=LogInfo(msg="one"), handle_once=True)), python("0"), python("0")
         )
         assert done.messages == ["one"]
 
-    async def test_on_exit_shutdown_ends_the_others(self, launch) -> None:
+    async def test_on_exit_shutdown_ends_other_processes(self, launch) -> None:
         done = await launch(
             python("import time; time.sleep(60)", name="other"),
             TimerAction(period=0.3, actions=[python("0", on_exit=Shutdown(reason="over"))]),
@@ -274,17 +278,17 @@ class TestHandlers:
         assert "process[py-2] was required: shutting down launched system" in done.err
         assert "sending signal 'SIGINT' to process[other-1]" in done.err
 
-    async def test_on_exit_function(self, launch) -> None:
+    async def test_on_exit_accepts_function(self, launch) -> None:
         done = await launch(
             python("raise SystemExit(4)", on_exit=lambda event, _: LogInfo(msg=f"rc {event.returncode}"))
         )
         assert done.messages == ["rc 4"]
 
-    async def test_a_target_must_be_an_action(self) -> None:
+    async def test_target_action_must_be_execute_process(self) -> None:
         with pytest.raises(TypeError, match="target_action must be an ExecuteProcess"):
             OnProcessExit(target_action="talker", on_exit=[])
 
-    async def test_each_action_is_completed_and_a_process_once_it_has_ended(self, launch) -> None:
+    async def test_execution_complete_is_emitted_when_process_has_ended(self, launch) -> None:
         first, second = LogInfo(msg="first"), python("0", on_exit=[LogInfo(msg="exited")])
         third = OpaqueFunction(function=lambda _: None)
         done = await launch(
@@ -296,17 +300,17 @@ class TestHandlers:
         assert done.messages[:2] == ["first", "then"]
         assert sorted(done.messages[2:]) == ["exited", "last"]
 
-    async def test_a_handler_of_all_completions_does_not_react_to_its_own_actions(self, launch) -> None:
+    async def test_completion_handler_ignores_its_own_actions(self, launch) -> None:
         done = await launch(RegisterEventHandler(OnExecutionComplete(on_completion=[LogInfo(msg="x")])))
         assert done.messages == ["x"]
 
 
 class TestEnds:
-    async def test_respawn(self, launch) -> None:
+    async def test_respawn_repeats_up_to_max_retries(self, launch) -> None:
         done = await launch(python("print('up')", respawn=True, respawn_delay=0.01, respawn_max_retries=2))
         assert done.out == "[py-1] up\n" * 3
 
-    async def test_a_process_that_was_about_to_start_ends_with_the_launch(self, launch) -> None:
+    async def test_failing_action_ends_processes_that_are_starting(self, launch) -> None:
         began = time.monotonic()
         done = await launch(
             python("import time; time.sleep(60)"),
@@ -316,14 +320,14 @@ class TestEnds:
         assert time.monotonic() - began < 60.0
         assert not done.succeeded
 
-    async def test_a_process_before_an_action_that_fails_is_started_and_its_exit_handled(self, launch) -> None:
+    async def test_failing_action_ends_started_process_and_runs_on_exit(self, launch) -> None:
         done = await launch(
             python("import time; time.sleep(60)", on_exit=LogInfo(msg="exited")), LogInfo(msg=LaunchConfiguration("x"))
         )
         assert done.messages == ["exited"]
         assert "sending signal 'SIGINT' to process[py-1]" in done.err
 
-    async def test_a_respawn_that_waits_ends_with_the_launch(self, launch) -> None:
+    async def test_pending_respawn_is_canceled_at_shutdown(self, launch) -> None:
         began = time.monotonic()
         done = await launch(
             python("0", respawn=True, respawn_delay=60.0), TimerAction(period=0.3, actions=[Shutdown(reason="over")])
@@ -331,7 +335,7 @@ class TestEnds:
         assert time.monotonic() - began < 60.0
         assert done.err.count("process started") == 1
 
-    async def test_escalation(self, launch) -> None:
+    async def test_shutdown_escalates_to_sigterm_and_sigkill(self, launch) -> None:
         action = python(STUBBORN, sigterm_timeout=0.15, sigkill_timeout="0.15")
         done = await launch(
             action,
@@ -350,7 +354,7 @@ class TestEnds:
         assert "escalating to 'SIGKILL'" in done.err
         assert action.return_code == -9
 
-    async def test_signal_process(self, launch) -> None:
+    async def test_signal_process_event_sends_signal(self, launch) -> None:
         action = python("import time; print('ready', flush=True); time.sleep(60)")
         done = await launch(
             action,
@@ -365,7 +369,7 @@ class TestEnds:
         assert action.return_code == -15
         assert "sending signal 'SIGTERM' to process[py-1]" in done.err
 
-    async def test_grandchildren_do_not_outlive_the_launch(self, launch, tmp_path: Path) -> None:
+    async def test_grandchildren_are_ended_with_launch(self, launch, tmp_path: Path) -> None:
         pid_file = tmp_path / "pid"
         program = f"sleep 60 & echo $! > {pid_file}; exit 0"
         began = time.monotonic()
@@ -375,7 +379,7 @@ class TestEnds:
         assert is_gone(int(pid_file.read_text()))
 
 
-def test_a_launch_description_can_be_added_to() -> None:
+def test_actions_can_be_added_to_launch_description() -> None:
     description = LaunchDescription()
     description.add_action(LogInfo(msg="a"))
     description.add_entity(LogInfo(msg="b"))

@@ -110,7 +110,7 @@ async def running(path: Path, *arguments: str, viewer: bool = True, delay: float
             await asyncio.wait_for(task, SECONDS)
 
 
-async def test_a_saved_file_reaches_the_node_at_once(write) -> None:
+async def test_saved_file_reaches_running_node(write) -> None:
     path = write("r.xacro", model("a"))
     async with running(path) as bench:
         await bench.shows("a")
@@ -121,7 +121,7 @@ async def test_a_saved_file_reaches_the_node_at_once(write) -> None:
         assert "reloaded" in bench.err
 
 
-async def test_a_node_that_starts_later_is_served_too(write) -> None:
+async def test_node_started_later_receives_reloaded_description(write) -> None:
     path = write("r.xacro", model("a"))
     async with running(path, delay=0.2) as bench:
         await bench.shows("a")
@@ -130,7 +130,7 @@ async def test_a_node_that_starts_later_is_served_too(write) -> None:
         await bench.shows("b")
 
 
-async def test_an_editor_that_renames(write) -> None:
+async def test_file_replaced_by_rename_is_reloaded(write) -> None:
     path = write("r.xacro", model("a"))
     async with running(path) as bench:
         await bench.shows("a")
@@ -145,7 +145,7 @@ async def test_an_editor_that_renames(write) -> None:
         assert "error" not in bench.err
 
 
-async def test_an_include_behind_a_link(write, tmp_path: Path) -> None:
+async def test_include_behind_symlink_is_watched(write, tmp_path: Path) -> None:
     real = write("sources/part.xacro", f'<robot {XACRO}><link name="a"/></robot>')
     link = tmp_path / "share" / "part.xacro"
     link.parent.mkdir()
@@ -158,7 +158,7 @@ async def test_an_include_behind_a_link(write, tmp_path: Path) -> None:
         await bench.shows("b")
 
 
-async def test_a_new_include_is_watched_too(write) -> None:
+async def test_new_include_is_watched(write) -> None:
     path = write("r.xacro", model("a"))
     part = write("parts/part.xacro", f'<robot {XACRO}><link name="b"/></robot>')
     async with running(path) as bench:
@@ -171,7 +171,7 @@ async def test_a_new_include_is_watched_too(write) -> None:
         await bench.shows("c")
 
 
-async def test_a_broken_file_leaves_the_last_good_robot_until_it_is_repaired(write) -> None:
+async def test_broken_file_keeps_last_valid_robot_until_fixed(write) -> None:
     path = write("r.xacro", model("a"))
     async with running(path) as bench:
         await bench.shows("a")
@@ -190,7 +190,7 @@ async def test_a_broken_file_leaves_the_last_good_robot_until_it_is_repaired(wri
         assert "repaired" in bench.err
 
 
-async def test_two_roots_are_refused_with_the_readers_words(write) -> None:
+async def test_description_with_two_roots_is_rejected(write) -> None:
     path = write("r.urdf", '<robot name="r"><link name="a"/></robot>')
     async with running(path) as bench:
         await bench.shows("a")
@@ -201,7 +201,7 @@ async def test_two_roots_are_refused_with_the_readers_words(write) -> None:
         assert '<link name="b"/>' not in bench.description()
 
 
-async def test_a_deleted_file_is_told_after_a_while_and_may_come_back(write) -> None:
+async def test_deleted_file_is_reported_and_reloaded_when_recreated(write) -> None:
     path = write("r.xacro", model("a"))
     async with running(path) as bench:
         await bench.shows("a")
@@ -214,7 +214,7 @@ async def test_a_deleted_file_is_told_after_a_while_and_may_come_back(write) -> 
 
 
 @pytest.mark.parametrize("start", [BROKEN, '<robot name="r"><link name="a"/><link name="b"/></robot>', "<robot", ""])
-async def test_a_model_broken_at_the_start_waits_for_the_repair(write, start: str) -> None:
+async def test_model_broken_at_start_is_loaded_once_fixed(write, start: str) -> None:
     path = write("r.xacro", start)
     async with running(path) as bench:
         await bench.until(lambda: "Viewer: " in bench.out and bool(bench.findings()))
@@ -229,21 +229,21 @@ async def test_a_model_broken_at_the_start_waits_for_the_repair(write, start: st
         await bench.shows("better")
 
 
-async def test_a_broken_model_with_no_viewer_ends_the_launch(write) -> None:
+async def test_broken_model_without_viewer_ends_launch(write) -> None:
     path = write("r.xacro", BROKEN)
     async with running(path, viewer=False) as bench:
         await bench.until(lambda: bench.session.is_ending)
         assert bench.err.count("error[XAC") == 1
 
 
-async def test_a_model_that_does_not_exist_ends_the_launch(tmp_path: Path) -> None:
+async def test_missing_model_ends_launch(tmp_path: Path) -> None:
     async with running(tmp_path / "none.urdf") as bench:
         await bench.until(lambda: bench.session.is_ending)
         assert bench.err.count("error[") == 1
         assert "Viewer:" not in bench.out
 
 
-async def test_a_change_before_the_watch_began_is_not_missed(write) -> None:
+async def test_change_before_watch_starts_is_detected(write) -> None:
     path = write("r.xacro", model("a"))
     async with running(path) as bench:
         await bench.shows("a")
@@ -252,7 +252,7 @@ async def test_a_change_before_the_watch_began_is_not_missed(write) -> None:
         await bench.shows("b")
 
 
-async def test_a_save_without_a_change_of_meaning_keeps_the_positions_right(write) -> None:
+async def test_whitespace_change_updates_source_positions(write) -> None:
     path = write("r.xacro", model("a"))
     async with running(path) as bench:
         await bench.shows("a")
@@ -266,7 +266,7 @@ async def test_a_save_without_a_change_of_meaning_keeps_the_positions_right(writ
         assert span.line == 3
 
 
-async def test_a_package_that_comes_later_repairs_the_model(write, tmp_path: Path) -> None:
+async def test_package_added_later_fixes_model(write, tmp_path: Path) -> None:
     path = write("r.xacro", f'<robot name="r" {XACRO}><xacro:include filename="$(find late)/part.xacro"/></robot>')
     async with running(path) as bench:
         await bench.until(lambda: "Viewer: " in bench.out and bool(bench.findings()))
@@ -278,7 +278,7 @@ async def test_a_package_that_comes_later_repairs_the_model(write, tmp_path: Pat
         await bench.shows("a")
 
 
-async def test_what_the_viewer_says_carries_its_name(write) -> None:
+async def test_viewer_messages_have_node_name_prefix(write) -> None:
     path = write(
         "r.urdf",
         '<robot name="r"><link name="a"><visual><geometry><mesh filename="package://none_at_all/a.dae"/></geometry>'
@@ -296,7 +296,7 @@ async def test_what_the_viewer_says_carries_its_name(write) -> None:
 
 
 @pytest.mark.parametrize("depth", [1, 3])
-async def test_a_folder_that_is_removed_and_made_anew_is_watched_again(tmp_path: Path, depth: int) -> None:
+async def test_recreated_folder_is_watched_again(tmp_path: Path, depth: int) -> None:
     top = tmp_path / "install"
     path = top.joinpath(*("share", "r", "urdf")[: depth - 1], "r.xacro")
 
@@ -317,7 +317,7 @@ async def test_a_folder_that_is_removed_and_made_anew_is_watched_again(tmp_path:
             assert not bench.findings()
 
 
-async def test_what_was_removed_before_the_watch_began_is_told(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+async def test_file_deleted_before_watch_starts_is_reported(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(FileWatch, "watch", lambda *_: True)  # it never begins
     path = tmp_path / "m.xacro"
     path.write_text(model("a"))
@@ -328,7 +328,7 @@ async def test_what_was_removed_before_the_watch_began_is_told(tmp_path: Path, m
         await bench.until(lambda: bool(bench.findings()))
 
 
-async def test_what_is_wrong_elsewhere_is_told_with_what_cannot_be_expanded(tmp_path: Path) -> None:
+async def test_urdf_findings_are_reported_with_xacro_error(tmp_path: Path) -> None:
     path = tmp_path / "m.xacro"
     path.write_text(model("good"))
     async with running(path, viewer=False) as bench:

@@ -47,13 +47,13 @@ def run(*entities: Any) -> int:
     return service.run()
 
 
-def test_names_of_the_log() -> None:
+def test_log_file_name_and_logger_name_are_derived() -> None:
     assert LaunchService()._log_file_name == "launch.log"
     assert LaunchService(log_file_name="mine")._log_file_name == "mine.log"
     assert LaunchService(log_file_name="mine.log")._logger_name == "mine"
 
 
-def test_processes_and_their_ends() -> None:
+def test_run_executes_process_and_exit_handler() -> None:
     ended: list[int] = []
     process = ExecuteProcess(cmd=[sys.executable, "-c", "import sys; print('out'); sys.exit(3)"], cached_output=True)
     handler = OnProcessExit(target_action=process, on_exit=lambda event, context: ended.append(event.returncode))
@@ -65,7 +65,7 @@ def test_processes_and_their_ends() -> None:
     assert process.name.startswith(Path(sys.executable).name)
 
 
-def test_an_exception_ends_what_runs_and_gives_1() -> None:
+def test_exception_ends_processes_and_returns_1() -> None:
     ended: list[object] = []
 
     def fail(context: LaunchContext) -> None:
@@ -79,7 +79,7 @@ def test_an_exception_ends_what_runs_and_gives_1() -> None:
     assert len(ended) == 1
 
 
-def test_events_from_before_and_from_another_thread_and_a_second_run() -> None:
+def test_events_are_handled_across_threads_and_repeated_runs() -> None:
     service = LaunchService()
     handled: queue.Queue[Any] = queue.Queue()
     service.include_launch_description(
@@ -114,7 +114,7 @@ def test_events_from_before_and_from_another_thread_and_a_second_run() -> None:
     assert [handled.get(block=False).name for _ in range(2)] == ["test.Custom", "launch.events.Shutdown"]
 
 
-def test_a_timer_may_outlast_the_shutdown() -> None:
+def test_timer_with_cancel_on_shutdown_false_outlasts_shutdown() -> None:
     reasons: list[str] = []
     listener = RegisterEventHandler(OnShutdown(on_shutdown=lambda event, context: reasons.append(event.reason)))
     assert (
@@ -129,7 +129,7 @@ def test_a_timer_may_outlast_the_shutdown() -> None:
     assert reasons == ["fast", "slow"]
 
 
-def test_a_coroutine_is_waited_for_and_cancelled() -> None:
+def test_opaque_coroutine_is_awaited_or_canceled() -> None:
     import asyncio
 
     messages: list[str] = []
@@ -154,7 +154,7 @@ def test_a_coroutine_is_waited_for_and_cancelled() -> None:
         OpaqueCoroutine(coroutine=print)
 
 
-def test_the_launch_file_is_known_inside_of_it_only(tmp_path: Path) -> None:
+def test_filename_substitution_is_scoped_to_its_launch_file(tmp_path: Path) -> None:
     inner = tmp_path / "inner.launch.xml"
     inner.write_text('<launch><set_env name="INNER" value="$(filename)"/></launch>')
     outer = tmp_path / "outer.launch.yaml"
@@ -169,12 +169,12 @@ def test_the_launch_file_is_known_inside_of_it_only(tmp_path: Path) -> None:
     assert run(IncludeLaunchDescription(str(outer)), SetEnvironmentVariable("X", ThisLaunchFile())) == 1
 
 
-def test_emit_event_takes_events_only() -> None:
+def test_emit_event_rejects_other_types() -> None:
     with pytest.raises(TypeError):
         EmitEvent(event="x")  # type: ignore[arg-type]
 
 
-def test_introspection_has_no_addresses() -> None:
+def test_introspector_output_has_no_memory_addresses() -> None:
     def make_nodes(context: LaunchContext) -> list[Any]:
         return []
 
@@ -198,7 +198,7 @@ def test_introspection_has_no_addresses() -> None:
     ]
 
 
-def test_a_program_of_a_user(tmp_path: Path) -> None:
+def test_user_program_runs_launch_service(tmp_path: Path) -> None:
     program = tmp_path / "program.py"
     program.write_text(
         "import sys\n"
@@ -220,7 +220,7 @@ def test_a_program_of_a_user(tmp_path: Path) -> None:
     assert "[INFO] [launch.user]: here" in done.stderr
 
 
-def test_it_is_ended_between_two_runs_of_its_loop() -> None:
+def test_service_can_be_shut_down_between_loop_runs() -> None:
     loop = asyncio.new_event_loop()
     service = LaunchService()
     running = loop.create_task(service.run_async(shutdown_when_idle=False))

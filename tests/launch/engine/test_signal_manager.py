@@ -11,7 +11,7 @@ pytestmark = pytest.mark.skipif(sys.platform == "win32", reason="signals of user
 
 
 @pytest.fixture
-def before():
+def previous_handler_calls():
     """Record the signals that are handled outside of the manager."""
     seen = []
 
@@ -25,11 +25,11 @@ def before():
         signal.signal(number, handler)
 
 
-async def test_handlers_are_called_by_the_loop_while_it_is_entered(before):
+async def test_signal_handlers_run_in_loop_only_while_entered(previous_handler_calls):
     manager, received = AsyncSafeSignalManager(asyncio.get_running_loop()), []
     assert manager.handle(signal.SIGUSR1, received.append) is None
     signal.raise_signal(signal.SIGUSR1)
-    assert before == [signal.SIGUSR1]
+    assert previous_handler_calls == [signal.SIGUSR1]
     with manager:
         manager.handle(signal.SIGUSR2, received.append)
         signal.raise_signal(signal.SIGUSR1)
@@ -40,15 +40,15 @@ async def test_handlers_are_called_by_the_loop_while_it_is_entered(before):
         assert received == [signal.SIGUSR1, signal.SIGUSR2]
         assert manager.handle(signal.SIGUSR1, None) == received.append
         signal.raise_signal(signal.SIGUSR1)
-        assert before == [signal.SIGUSR1] * 2
+        assert previous_handler_calls == [signal.SIGUSR1] * 2
     signal.raise_signal(signal.SIGUSR2)
-    assert before[-1] == signal.SIGUSR2
+    assert previous_handler_calls[-1] == signal.SIGUSR2
     with manager:
         signal.raise_signal(signal.SIGUSR2)
         await asyncio.sleep(0)
     assert received == [signal.SIGUSR1, signal.SIGUSR2, signal.SIGUSR2]
 
 
-async def test_a_number_that_is_no_signal():
+async def test_invalid_signal_number_is_rejected():
     with pytest.raises(ValueError, match="12345"):
         AsyncSafeSignalManager(asyncio.get_running_loop()).handle(12345, print)

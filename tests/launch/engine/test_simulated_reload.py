@@ -84,7 +84,7 @@ async def launched(folder: Path) -> AsyncIterator[Launched]:
             await asyncio.wait_for(task, SECONDS)
 
 
-async def test_what_a_launch_file_simulates_follows_its_files(write) -> None:
+async def test_launched_simulation_reloads_world_and_robot(write) -> None:
     files = write("a.world", world(FALLING)), write("arm.xacro", ARM.format(""))
     async with launched(files[0].parent) as it:
         await it.when(lambda simulation: set(simulation.scene.models) == {"ground", "falling", "one"})

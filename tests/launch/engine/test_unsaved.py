@@ -18,7 +18,7 @@ URDF = '<robot name="arm"><link name="base"/></robot>'
 
 
 @pytest.fixture(autouse=True)
-def kept(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
+def recovery_folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
     monkeypatch.setenv("XDG_STATE_HOME", str(tmp_path / "state"))
     return tmp_path / "state" / "linkwright" / "unsaved"
 
@@ -38,8 +38,8 @@ def add_axes(running: Running) -> None:
 
 
 @pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM, signal.SIGHUP])
-def test_they_are_kept_and_the_terminal_says_where(
-    start: Callable[..., Running], tmp_path: Path, kept: Path, number: int
+def test_unsaved_displays_are_stored_and_path_is_printed(
+    start: Callable[..., Running], tmp_path: Path, recovery_folder: Path, number: int
 ) -> None:
     config = tmp_path / "mine.rviz"
     config.write_text(RvizConfig.default().text())
@@ -53,7 +53,7 @@ def test_they_are_kept_and_the_terminal_says_where(
     running.until("Robot initialized")
     add_axes(running)
     assert running.end(number)[0] == 128 + number
-    (file,) = kept.iterdir()
+    (file,) = recovery_folder.iterdir()
     assert [display.name for display in RvizConfig.load(file).walk()] == ["Grid", "Added"]
     text = f"unsaved changes to '{config}' are stored in '{file}': open that file in the page, or with 'rviz2"
     assert text in running.err
@@ -63,21 +63,23 @@ def test_they_are_kept_and_the_terminal_says_where(
     assert str(file) in again.err
     assert again.end()[0] == 130
     assert "RVIZ301" not in again.err
-    assert list(kept.iterdir()) == [file]
+    assert list(recovery_folder.iterdir()) == [file]
 
 
-def test_those_about_a_single_model_are_kept_too(start: Callable[..., Running], tmp_path: Path, kept: Path) -> None:
+def test_unsaved_displays_of_viewed_model_are_stored(
+    start: Callable[..., Running], tmp_path: Path, recovery_folder: Path
+) -> None:
     (tmp_path / "arm.urdf").write_text(URDF)
     running = start("view", tmp_path / "arm.urdf")
     add_axes(running)
     assert running.end()[0] == 130
-    (file,) = kept.iterdir()
-    assert file.name.startswith("arm-"), "edits beside another model are kept in another file"
+    (file,) = recovery_folder.iterdir()
+    assert file.name.startswith("arm-"), "edits beside another model are recovery_folder in another file"
     assert [display.name for display in RvizConfig.load(file).walk()] == ["Grid", "RobotModel", "TF", "Added"]
 
 
-def test_a_launch_that_nobody_edited_leaves_nothing(start: Callable[..., Running], kept: Path) -> None:
+def test_unedited_launch_stores_nothing(start: Callable[..., Running], recovery_folder: Path) -> None:
     running = start("my_robot_description", "display.launch.py")
     running.until("Robot initialized")
     assert running.end()[0] == 130
-    assert not kept.exists()
+    assert not recovery_folder.exists()

@@ -58,11 +58,11 @@ def texts(value: str) -> list[str]:
         ("$(said '' a)", ["|a"]),
     ],
 )
-def test_text_with_substitutions(written: str, parts: list[str]) -> None:
+def test_text_is_split_into_substitutions(written: str, parts: list[str]) -> None:
     assert texts(written) == parts
 
 
-def test_names_of_the_substitutions() -> None:
+def test_substitution_names_map_to_classes() -> None:
     [environment] = parse_substitution("$(env NAME 'a b')")
     assert isinstance(environment, EnvironmentVariable)
     assert environment.name[0].perform(None) == "NAME"
@@ -93,18 +93,18 @@ def test_names_of_the_substitutions() -> None:
         ("$(path-join a 'b c' d)", "a/b c/d"),
     ],
 )
-def test_values(written: str, value: str) -> None:
+def test_substitutions_are_evaluated(written: str, value: str) -> None:
     assert perform_substitutions(LaunchContext(), parse_substitution(written)) == value
 
 
-def test_an_expression_without_the_module_is_a_name_error() -> None:
+def test_eval_without_module_raises_name_error() -> None:
     [expression] = parse_substitution('$(eval "ceil(1.3)" "")')
     assert isinstance(expression, PythonExpression)
     with pytest.raises(NameError):
         expression.perform(LaunchContext())
 
 
-def test_the_same_anonymous_name_each_time() -> None:
+def test_anon_returns_same_name_for_same_id() -> None:
     context = LaunchContext()
     first, again, other = (
         parse_substitution(text)[0].perform(context) for text in ("$(anon a)", "$(anon a)", "$(anon b)")
@@ -127,7 +127,7 @@ def test_the_same_anonymous_name_each_time() -> None:
         ("$(path-join)", "expects at least 1 argument", None),
     ],
 )
-def test_what_cannot_be_read(written: str, message: str, hint: str | None) -> None:
+def test_malformed_substitutions_are_rejected(written: str, message: str, hint: str | None) -> None:
     with pytest.raises(LinkwrightError) as raised:
         parse_substitution(written)
     [diagnostic] = raised.value.diagnostics
@@ -137,7 +137,7 @@ def test_what_cannot_be_read(written: str, message: str, hint: str | None) -> No
         assert hint in (diagnostic.hint or "")
 
 
-def test_classes_of_errors() -> None:
+def test_grammar_errors_have_documented_exception_types() -> None:
     with pytest.raises(RuntimeError, match="Unknown substitution: vra"):
         parse_substitution("$(vra x)")
     with pytest.raises(ValueError, match="cannot be parsed"):
@@ -146,7 +146,7 @@ def test_classes_of_errors() -> None:
         parse_substitution("$(not maybe)")[0].perform(LaunchContext())
 
 
-def test_values_with_and_without_substitutions() -> None:
+def test_parse_if_substitutions_keeps_plain_values() -> None:
     assert parse_if_substitutions(1) == 1
     assert parse_if_substitutions("a") == "a"
     assert len(parse_if_substitutions("[$(said a), $(said b)]")) == 5
@@ -158,13 +158,13 @@ def test_values_with_and_without_substitutions() -> None:
 
 
 @given(st.text(max_size=40))
-def test_escaped_text_is_that_text(text: str) -> None:
+def test_escaped_text_round_trips(text: str) -> None:
     escaped = "".join("\\" + each if each in "\\$" else each for each in text)
     assert "".join(texts(escaped)) == text
 
 
 @given(st.text(alphabet="$()'\" \\avr", max_size=25))
-def test_anything_is_read_or_refused_with_a_diagnostic(text: str) -> None:
+def test_arbitrary_text_is_parsed_or_rejected_with_diagnostic(text: str) -> None:
     try:
         parts = parse_substitution(text)
     except LinkwrightError as error:
@@ -174,7 +174,7 @@ def test_anything_is_read_or_refused_with_a_diagnostic(text: str) -> None:
 
 
 @given(st.lists(st.text(alphabet="ab c'\"\\$()", max_size=6), max_size=4))
-def test_quoted_arguments_come_through(words: list[str]) -> None:
+def test_quoted_arguments_round_trip(words: list[str]) -> None:
     def quoted(word: str) -> str:
         return "'" + "".join("\\" + each if each in "'\\$" else each for each in word) + "'"
 

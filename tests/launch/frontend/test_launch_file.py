@@ -33,18 +33,18 @@ def count(description: LaunchDescription) -> int:
     return len(description.entities)
 
 
-def test_a_python_file_as_a_module_and_as_a_description() -> None:
+def test_python_file_is_loaded_as_module_or_description() -> None:
     Path("a.launch.py").write_text(PYTHON)
     assert count(load_python_launch_file_as_module("a.launch.py").generate_launch_description()) == 1
     assert count(get_launch_description_from_python_launch_file("a.launch.py")) == 1
 
 
-def test_a_file_in_markup() -> None:
+def test_xml_file_is_loaded_as_description() -> None:
     Path("a.launch.xml").write_text(MARKUP)
     assert count(get_launch_description_from_frontend_launch_file("a.launch.xml")) == 1
 
 
-def test_a_parser_that_is_given_reads_it() -> None:
+def test_custom_parser_is_used() -> None:
     description = LaunchDescription()
 
     class Parser:
@@ -59,12 +59,12 @@ def test_a_parser_that_is_given_reads_it() -> None:
 
 
 @pytest.mark.parametrize(("name", "text"), [("a.py", PYTHON), ("a.xml", MARKUP), ("b.txt", PYTHON), ("c.py", MARKUP)])
-def test_any_file_is_read_as_its_name_says_or_as_what_it_is(name: str, text: str) -> None:
+def test_file_type_is_detected_by_name_or_content(name: str, text: str) -> None:
     Path(name).write_text(text)
     assert count(get_launch_description_from_any_launch_file(name)) == 1
 
 
-def test_a_file_that_is_neither_is_told_with_both_reasons() -> None:
+def test_file_of_unknown_type_is_rejected_with_both_reasons() -> None:
     Path("a.py").write_text("<launch")
     with pytest.raises(InvalidLaunchFileError, match="multiple exceptions"):
         get_launch_description_from_any_launch_file("a.py")

@@ -88,7 +88,7 @@ YAML = """
 
 
 @pytest.mark.parametrize("text", [XML, YAML], ids=["xml", "yaml"])
-def test_the_actions(text: str) -> None:
+def test_xml_and_yaml_files_create_same_actions(text: str) -> None:
     entities = parse(text).entities
     context = LaunchContext()
     argument, let, group, reset, executable, timer, include, append, loop, shutdown = entities
@@ -121,7 +121,7 @@ def test_the_actions(text: str) -> None:
     assert shutdown.event.reason
 
 
-def test_what_newer_ros_lets_be_written_shorter() -> None:
+def test_newer_yaml_shorthand_is_accepted() -> None:
     description = parse(
         """
         launch:
@@ -140,7 +140,7 @@ def test_what_newer_ros_lets_be_written_shorter() -> None:
     assert "other.launch.py" in include.launch_description_source.location
 
 
-def test_a_packages_own_tag_and_the_entity_that_it_reads() -> None:
+def test_custom_tag_reads_typed_attributes() -> None:
     seen: dict[str, Any] = {}
 
     @expose_action("spin_around")
@@ -160,7 +160,7 @@ def test_a_packages_own_tag_and_the_entity_that_it_reads() -> None:
         parse('<launch><spin_around times="$(var a)"><axis name="x"/></spin_around></launch>')
 
 
-def test_the_name_of_a_tag_can_be_taken_once() -> None:
+def test_duplicate_tag_name_is_rejected() -> None:
     def reads(entity: Entity, parser: Parser) -> Any:
         raise AssertionError
 
@@ -170,7 +170,7 @@ def test_the_name_of_a_tag_can_be_taken_once() -> None:
         expose_action("five")(5)
 
 
-def test_an_element_of_python_s_own_xml_will_do() -> None:
+def test_xml_entity_accepts_elementtree_element() -> None:
     from xml.etree import ElementTree as ET
 
     tag = XmlEntity(ET.fromstring('<root><tag attr="1, 2, 3" attr-sep=", "/></root>')).children[0]
@@ -214,7 +214,7 @@ CASES = [
 
 
 @pytest.mark.parametrize(("text", "code", "place", "message", "hint"), CASES, ids=[case[0][:40] for case in CASES])
-def test_errors_have_a_place_and_a_hint(
+def test_errors_have_location_and_hint(
     text: str, code: str, place: tuple[int, int], message: str, hint: str | None
 ) -> None:
     with pytest.raises(LinkwrightError) as raised:
@@ -228,13 +228,13 @@ def test_errors_have_a_place_and_a_hint(
         assert hint in (diagnostic.hint or "")
 
 
-def test_independent_errors_come_together() -> None:
+def test_independent_errors_are_reported_together() -> None:
     with pytest.raises(LinkwrightError) as raised:
         parse('<launch><argg name="x"/><let nam="a"/></launch>')
     assert [diagnostic.code for diagnostic in raised.value.diagnostics] == ["LAUNCH115", "LAUNCH117"]
 
 
-def test_classes_of_errors() -> None:
+def test_markup_errors_have_documented_exception_types() -> None:
     for text, kind, words in (
         ("<launch><argg/></launch>", RuntimeError, "Unrecognized entity of the type: argg"),
         ('<launch><arg nam="x"/></launch>', AttributeError, "Attribute 'name' of type"),
@@ -259,22 +259,22 @@ def test_classes_of_errors() -> None:
         ("b", "from launch import LaunchDescription as L\ndef generate_launch_description(): return L()"),
     ],
 )
-def test_the_kind_of_a_file(write: Any, name: str, text: str) -> None:
+def test_file_type_is_detected_by_name_or_content(write: Any, name: str, text: str) -> None:
     assert load_launch_file(write(name, text)).entities == []
 
 
-def test_a_file_of_no_kind(write: Any) -> None:
+def test_file_of_unknown_type_is_rejected(write: Any) -> None:
     with pytest.raises(InvalidLaunchFileError) as raised:
         load_launch_file(write("notes", "what is this"))
     assert raised.value.diagnostics[0].code == "LAUNCH107"  # type: ignore[attr-defined]
 
 
-def test_a_missing_file(tmp_path: Path) -> None:
+def test_missing_file_raises_file_not_found(tmp_path: Path) -> None:
     with pytest.raises(FileNotFoundError):
         load_launch_file(tmp_path / "no.launch.xml")
 
 
-def test_a_warning_stands_at_its_line(tmp_path: Path) -> None:
+def test_warning_names_file_and_line(tmp_path: Path) -> None:
     file = tmp_path / "old.launch.xml"
     file.write_text('<launch>\n  <log message="m"/>\n</launch>\n')
     root, parser = Parser.load(str(file))

@@ -32,7 +32,7 @@ def marked(diagnostic: Diagnostic) -> str:
     return source.text[source.offset(span.line, span.column) : source.offset(span.end_line, span.end_column)]
 
 
-def test_a_launch_file_knows_its_own_path(write: Write) -> None:
+def test_launch_file_has_absolute_file_variable(write: Write) -> None:
     path = write(
         "a.launch.py",
         HEAD + "HERE = __file__\ndef generate_launch_description():\n"
@@ -41,7 +41,7 @@ def test_a_launch_file_knows_its_own_path(write: Write) -> None:
     assert load_python_launch_file(path).entities == []
 
 
-def test_missing(write: Write, tmp_path: Path) -> None:
+def test_missing_file_is_reported_with_hint(write: Write, tmp_path: Path) -> None:
     write("display.launch.py", "")
     diagnostic = fault(tmp_path / "dispaly.launch.py")
     assert diagnostic.code == "LAUNCH101"
@@ -50,7 +50,7 @@ def test_missing(write: Write, tmp_path: Path) -> None:
     assert "is a folder" in fault(tmp_path).message
 
 
-def test_unreadable(write: Write, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_unreadable_file_is_reported(write: Write, monkeypatch: pytest.MonkeyPatch) -> None:
     path = write("a.launch.py", "")
 
     def refuse(*_arguments: object, **_more: object) -> str:
@@ -60,13 +60,13 @@ def test_unreadable(write: Write, monkeypatch: pytest.MonkeyPatch) -> None:
     assert fault(path).code == "LAUNCH102"
 
 
-def test_not_text(tmp_path: Path) -> None:
+def test_binary_file_is_rejected(tmp_path: Path) -> None:
     path = tmp_path / "a.launch.py"
     path.write_bytes(b"\xff\xfe\x00")
     assert fault(path).code == "LAUNCH102"
 
 
-def test_a_syntax_error(write: Write) -> None:
+def test_syntax_error_is_reported_with_line(write: Write) -> None:
     diagnostic = fault(write("a.launch.py", "x = 1\nfor y in (1, 2:\n    pass\n"))
     assert diagnostic.code == "LAUNCH103"
     assert diagnostic.span is not None
@@ -74,14 +74,14 @@ def test_a_syntax_error(write: Write) -> None:
     assert "Traceback" not in diagnostic.message
 
 
-def test_an_indentation_error(write: Write) -> None:
+def test_indentation_error_is_reported_with_line(write: Write) -> None:
     diagnostic = fault(write("a.launch.py", "def f():\npass\n"))
     assert diagnostic.code == "LAUNCH103"
     assert diagnostic.span is not None
     assert diagnostic.span.line == 2
 
 
-def test_an_exception_points_at_the_innermost_line_of_the_user(write: Write) -> None:
+def test_exception_points_at_innermost_user_line(write: Write) -> None:
     path = write(
         "a.launch.py",
         "import json\ndef helper(text):\n    return json.loads(text)\n"
@@ -128,7 +128,7 @@ def test_an_exception_points_at_the_innermost_line_of_the_user(write: Write) -> 
         ("raise RuntimeError", "raised RuntimeError", None),
     ],
 )
-def test_messages_and_hints(write: Write, line: str, message: str, hint: str | None) -> None:
+def test_exceptions_have_plain_messages_and_hints(write: Write, line: str, message: str, hint: str | None) -> None:
     diagnostic = fault(write("a.launch.py", f"{HEAD}{line}\n"))
     assert diagnostic.code == "LAUNCH104"
     assert message in diagnostic.message
@@ -142,14 +142,14 @@ def test_messages_and_hints(write: Write, line: str, message: str, hint: str | N
 NODE = "from launch_ros.actions import Node\n"
 
 
-def test_a_misspelt_argument_of_a_node(write: Write) -> None:
+def test_misspelled_node_argument_has_hint(write: Write) -> None:
     diagnostic = fault(write("a.launch.py", f"{NODE}Node(executable='a', paramters=[])\n"))
     assert diagnostic.hint == "did you mean 'parameters'?"
     diagnostic = fault(write("b.launch.py", f"{NODE}Node(exectuable='a')\n"))
     assert diagnostic.hint == "argument 'executable' is missing; the call passes 'exectuable'"
 
 
-def test_the_place_of_a_call_of_several_lines(write: Write) -> None:
+def test_multiline_call_is_located_at_first_line(write: Write) -> None:
     diagnostic = fault(write("a.launch.py", f"{NODE}n = Node(\n    executable='a',\n    parameters={{'a': 1}},\n)\n"))
     assert diagnostic.code == "LAUNCH132"
     assert diagnostic.message == "'parameters' of a node must be a list"
@@ -164,7 +164,7 @@ def test_columns_count_characters(write: Write) -> None:
     assert marked(diagnostic) in ("nothing", "x = '机器人'; y = nothing")
 
 
-def test_a_package_that_is_not_there(write: Write, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_missing_package_is_reported(write: Write, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.chdir(tmp_path)  # packages are looked for below the current folder too
     diagnostic = fault(
         write(
@@ -179,7 +179,7 @@ def test_a_package_that_is_not_there(write: Write, tmp_path: Path, monkeypatch: 
     assert diagnostic.hint == "did you mean 'my_robot_description'?"
 
 
-def test_a_package_error_can_be_caught_by_its_ros_name(write: Write) -> None:
+def test_package_error_can_be_caught_by_ros_name(write: Write) -> None:
     path = write(
         "a.launch.py",
         HEAD + "from ament_index_python.packages import get_package_share_directory, PackageNotFoundError\n"
@@ -198,13 +198,13 @@ def test_a_package_error_can_be_caught_by_its_ros_name(write: Write) -> None:
         ("def generate_launch_description():\n    return []\n", "LAUNCH106", "returned a list"),
     ],
 )
-def test_no_description(write: Write, text: str, code: str, message: str) -> None:
+def test_missing_or_invalid_launch_description_is_rejected(write: Write, text: str, code: str, message: str) -> None:
     diagnostic = fault(write("a.launch.py", text))
     assert diagnostic.code == code
     assert message in diagnostic.message
 
 
-def test_entities_that_are_none(write: Write) -> None:
+def test_non_action_in_group_is_rejected(write: Write) -> None:
     diagnostic = fault(write("a.launch.py", "from launch.actions import GroupAction\nGroupAction(['a node'])\n"))
     assert "expected launch actions, got 'a node' of type str" in diagnostic.message
 
@@ -227,7 +227,7 @@ class TestFilesThatArePutElsewhere:
         return share_of_sources("arm", tmp_path / "arm")
 
     @pytest.mark.parametrize("name", ["sound.launch.py", "syntax.launch.py", "tag.launch.xml"])
-    def test_messages_name_the_users_own_file(self, share: Path, tmp_path: Path, name: str) -> None:
+    def test_messages_name_source_file_in_workspace(self, share: Path, tmp_path: Path, name: str) -> None:
         assert share != tmp_path / "arm"
         with pytest.raises(LinkwrightError) as caught:
             load_launch_file(share / "launch" / name)
@@ -235,12 +235,12 @@ class TestFilesThatArePutElsewhere:
         assert found.span is not None
         assert found.span.file == str(tmp_path / "arm" / "start" / name)
 
-    def test_the_file_sees_itself_where_the_package_installs_it(self, share: Path) -> None:
+    def test_launch_file_sees_its_installed_path(self, share: Path) -> None:
         with pytest.raises(LinkwrightError) as caught:
             load_launch_file(share / "launch" / "sound.launch.py")
         assert str(share / "launch" / "sound.launch.py") in caught.value.diagnostics[0].message
 
-    def test_a_message_without_a_line_names_it_too(self, share: Path, tmp_path: Path) -> None:
+    def test_message_without_line_names_source_file(self, share: Path, tmp_path: Path) -> None:
         with pytest.raises(LinkwrightError) as caught:
             load_launch_file(share / "launch" / "other.launch.py")
         message = caught.value.diagnostics[0].message

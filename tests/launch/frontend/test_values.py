@@ -13,7 +13,7 @@ from launch import LaunchContext
 TEXT = TextSubstitution(text="a")
 
 
-def test_types() -> None:
+def test_type_annotations_are_recognized() -> None:
     assert type_utils.is_typing_list(List)  # noqa: UP006
     assert type_utils.is_typing_list(List[int])  # noqa: UP006
     assert not type_utils.is_typing_list(list)
@@ -25,7 +25,7 @@ def test_types() -> None:
             type_utils.extract_type(wrong)
 
 
-def test_instances() -> None:
+def test_is_instance_of_checks_values_and_strings() -> None:
     assert type_utils.is_instance_of([1, 2], list[int])
     assert not type_utils.is_instance_of([1, 2.0], list[int])
     assert not type_utils.is_instance_of(1, float)
@@ -49,7 +49,7 @@ def test_instances() -> None:
         ("[.2, .1]", list[float], [0.2, 0.1]),
     ],
 )
-def test_text_as_a_value(text: str, data_type: object, value: object) -> None:
+def test_text_is_coerced_to_type(text: str, data_type: object, value: object) -> None:
     assert type_utils.coerce_to_type(text, data_type) == value
 
 
@@ -57,12 +57,12 @@ def test_text_as_a_value(text: str, data_type: object, value: object) -> None:
     ("text", "data_type"),
     [("''1''", None), ("{1}", None), ("[1, 2.0]", None), ("1000.5", int), ("Bsd", bool), ("[1, 2.0]", list[float])],
 )
-def test_text_that_is_no_such_value(text: str, data_type: object) -> None:
+def test_invalid_text_is_rejected(text: str, data_type: object) -> None:
     with pytest.raises(ValueError, match=r".+"):
         type_utils.coerce_to_type(text, data_type)
 
 
-def test_text_may_stay_text() -> None:
+def test_can_be_str_keeps_text() -> None:
     assert type_utils.get_typed_value("asd", float, can_be_str=True) == "asd"
     assert type_utils.get_typed_value("[asd, 2.0]", list[float], can_be_str=True) == ["asd", 2.0]
     assert type_utils.get_typed_value(["asd", "1000"], None, can_be_str=True) == ["asd", 1000]
@@ -72,7 +72,7 @@ def test_text_may_stay_text() -> None:
         type_utils.coerce_list(["asd", "1000"])
 
 
-def test_normal_form() -> None:
+def test_typed_substitution_is_normalized() -> None:
     normalize = type_utils.normalize_typed_substitution
     assert normalize(1, int) == 1
     assert normalize(TEXT, int) == [TEXT]
@@ -86,7 +86,7 @@ def test_normal_form() -> None:
         normalize(1, bytes)
 
 
-def test_values_of_normal_forms() -> None:
+def test_normalized_substitution_is_evaluated() -> None:
     context = LaunchContext()
     perform = type_utils.perform_typed_substitution
     parts = [TextSubstitution(text=text) for text in ("100", ".", "5")]

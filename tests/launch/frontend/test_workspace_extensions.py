@@ -77,7 +77,7 @@ def read(text: str, folder: Path, **environment: str) -> list[object]:
 
 
 @pytest.mark.parametrize("file", IN_SETUP)
-def test_a_tag_of_a_package_in_its_sources(tmp_path: Path, write: Callable[[str, str], Path], file: str) -> None:
+def test_tag_of_source_package_is_found(tmp_path: Path, write: Callable[[str, str], Path], file: str) -> None:
     name = f"waving_{file.partition('.')[2]}"
     write(f"src/{name}/package.xml", MANIFEST.format(name))
     write(f"src/{name}/{file}", IN_SETUP[file].format(name))
@@ -88,9 +88,7 @@ def test_a_tag_of_a_package_in_its_sources(tmp_path: Path, write: Callable[[str,
     assert [part.perform(LaunchContext()) for part in log.msg] == ["waved"]
 
 
-def test_a_tag_of_a_package_whose_modules_python_does_not_find(
-    tmp_path: Path, write: Callable[[str, str], Path]
-) -> None:
+def test_tag_of_built_package_outside_python_path_is_found(tmp_path: Path, write: Callable[[str, str], Path]) -> None:
     name, site = "waving_built", "install/waving_built/lib/python3.11/site-packages"
     write(f"install/{name}/share/{name}/package.xml", MANIFEST.format(name))
     write(f"install/{name}/share/ament_index/resource_index/packages/{name}", "")
@@ -104,7 +102,7 @@ def test_a_tag_of_a_package_whose_modules_python_does_not_find(
     assert action.hands == 1
 
 
-def test_a_module_that_fails_is_told_and_the_tag_stays_unknown(
+def test_failing_extension_module_is_reported_and_tag_stays_unknown(
     tmp_path: Path, write: Callable[[str, str], Path]
 ) -> None:
     name = "waving_wrong"

@@ -48,7 +48,7 @@ def say(*parts: object) -> LogInfo:
     return LogInfo(msg=list(parts))
 
 
-async def test_conditions_decide(launch) -> None:
+async def test_conditions_control_execution(launch) -> None:
     done = await launch(
         LogInfo(msg="a", condition=IfCondition("true")),
         LogInfo(msg="b", condition=UnlessCondition("true")),
@@ -58,31 +58,31 @@ async def test_conditions_decide(launch) -> None:
 
 
 class TestDeclareLaunchArgument:
-    async def test_default_and_given_value(self, launch) -> None:
+    async def test_default_value_is_used_unless_given(self, launch) -> None:
         entities = (DeclareLaunchArgument("x", default_value=["d", "1"]), say(LaunchConfiguration("x")))
         assert (await launch(*entities)).messages == ["d1"]
         assert (await launch(*entities, x="mine")).messages == ["mine"]
 
-    async def test_required(self, launch) -> None:
+    async def test_required_argument_is_reported_if_missing(self, launch) -> None:
         done = await launch(DeclareLaunchArgument("x", description="the x"), say("after"))
         assert "error[LAUNCH114]: argument 'x' (the x) is required, but was not given" in done.err
         assert "test_actions.py" in done.err
         assert done.messages == []
         assert not done.succeeded
 
-    async def test_choices(self, launch) -> None:
+    async def test_value_must_be_one_of_choices(self, launch) -> None:
         done = await launch(DeclareLaunchArgument("x", default_value="a", choices=["a", "b"]), x="c")
         assert "error[LAUNCH112]: argument 'x' has the value 'c', which is not one of its choices" in done.err
         assert "hint: choose from 'a', 'b'" in done.err
 
-    def test_descriptions(self) -> None:
+    def test_description_lists_choices(self) -> None:
         assert DeclareLaunchArgument("x").description == "no description given"
         assert DeclareLaunchArgument("x", choices=["a"]).description == "One of: ['a']"
         argument = DeclareLaunchArgument("x", description="What.", choices=["a"])
         assert argument.description == "What. Valid choices are: ['a']"
 
 
-async def test_set_and_unset_configurations(launch) -> None:
+async def test_launch_configurations_are_set_and_unset(launch) -> None:
     done = await launch(
         SetLaunchConfiguration("x", ["1", "2"]),
         say(LaunchConfiguration("x")),
@@ -99,7 +99,7 @@ async def test_set_and_unset_configurations(launch) -> None:
     assert done.messages == ["12", "none", "none3y", "3"]
 
 
-async def test_environment(launch, monkeypatch: pytest.MonkeyPatch) -> None:
+async def test_environment_variables_are_set_appended_and_unset(launch, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setenv("LW_A", "a")
     done = await launch(
         SetEnvironmentVariable("LW_B", "b"),
@@ -115,7 +115,7 @@ async def test_environment(launch, monkeypatch: pytest.MonkeyPatch) -> None:
 
 
 class TestGroupAction:
-    async def test_scope(self, launch) -> None:
+    async def test_scoped_group_restores_configurations_and_environment(self, launch) -> None:
         done = await launch(
             SetLaunchConfiguration("x", "outer"),
             GroupAction(
@@ -134,13 +134,13 @@ class TestGroupAction:
         )
         assert done.messages == ["inner", "outer--"]
 
-    async def test_without_scope(self, launch) -> None:
+    async def test_unscoped_group_keeps_changes(self, launch) -> None:
         done = await launch(
             GroupAction([SetLaunchConfiguration("x", "inner")], scoped=False), say(LaunchConfiguration("x"))
         )
         assert done.messages == ["inner"]
 
-    async def test_without_forwarding(self, launch) -> None:
+    async def test_group_without_forwarding_hides_outer_configurations(self, launch) -> None:
         done = await launch(
             SetLaunchConfiguration("x", "outer"),
             GroupAction(
@@ -154,14 +154,14 @@ class TestGroupAction:
 
 
 class TestOpaqueFunction:
-    async def test_arguments_and_what_it_returns(self, launch) -> None:
+    async def test_arguments_are_passed_and_returned_actions_run(self, launch) -> None:
         def function(context: LaunchContext, first: str, *, second: str) -> list[Action]:
             return [say(first, second, context.launch_configurations["x"])]
 
         done = await launch(OpaqueFunction(function=function, args=["1"], kwargs={"second": "2"}), x="3")
         assert done.messages == ["123"]
 
-    async def test_an_exception_names_the_users_line(self, launch) -> None:
+    async def test_exception_names_user_line(self, launch) -> None:
         def function(context: LaunchContext) -> None:
             raise ValueError("no such robot")  # the line
 
@@ -171,12 +171,12 @@ class TestOpaqueFunction:
         assert "Traceback" not in done.err
         assert not done.succeeded
 
-    async def test_what_is_no_action(self, launch) -> None:
+    async def test_non_action_result_is_rejected(self, launch) -> None:
         done = await launch(OpaqueFunction(function=lambda _: [3]))
         assert "expected launch actions, got 3 of type int" in done.err
 
 
-async def test_a_users_own_action(launch) -> None:
+async def test_custom_action_returns_actions(launch) -> None:
     class Twice(Action):
         def execute(self, context: LaunchContext) -> list[Action]:
             return [say("again"), say("again")]
@@ -185,7 +185,7 @@ async def test_a_users_own_action(launch) -> None:
 
 
 class TestTimerAction:
-    async def test_order(self, launch) -> None:
+    async def test_timers_run_in_order_of_period(self, launch) -> None:
         done = await launch(
             TimerAction(period=0.02, actions=[say("later")]),
             TimerAction(period=["0", ".01"], actions=[say("sooner")]),
@@ -193,14 +193,14 @@ class TestTimerAction:
         )
         assert done.messages == ["now", "sooner", "later"]
 
-    async def test_cancel(self, launch) -> None:
+    async def test_timer_can_be_canceled(self, launch) -> None:
         timer = TimerAction(period=10.0, actions=[say("never")])
         done = await launch(
             timer, TimerAction(period=0.01, actions=[OpaqueFunction(function=lambda _: timer.cancel())])
         )
         assert done.messages == []
 
-    async def test_a_wrong_period(self, launch) -> None:
+    async def test_invalid_period_is_rejected(self, launch) -> None:
         with pytest.raises(ValueError, match="soon") as raised:
             TimerAction(period="soon", actions=[])
         assert raised.value.diagnostics[0].message == "the period 'soon' of a timer is not a number"
@@ -209,7 +209,7 @@ class TestTimerAction:
 
 
 class TestEvents:
-    async def test_shutdown_handlers_and_reasons(self, launch) -> None:
+    async def test_shutdown_handlers_receive_reason(self, launch) -> None:
         done = await launch(
             RegisterEventHandler(OnShutdown(on_shutdown=[say(LocalSubstitution("event.reason"))])),
             Shutdown(reason=["enough ", "of it"]),
@@ -218,7 +218,7 @@ class TestEvents:
         assert done.messages == ["enough of it"]
         assert done.succeeded
 
-    async def test_emit_event(self, launch) -> None:
+    async def test_emit_event_triggers_handler(self, launch) -> None:
         handler = OnShutdown(on_shutdown=lambda event, context: say("function ", event.reason))
         done = await launch(
             RegisterEventHandler(handler),
@@ -227,12 +227,12 @@ class TestEvents:
         )
         assert done.messages == ["function r"]
 
-    async def test_unregister(self, launch) -> None:
+    async def test_unregistered_handler_is_not_called(self, launch) -> None:
         handler = OnShutdown(on_shutdown=say("never"))
         done = await launch(RegisterEventHandler(handler), UnregisterEventHandler(handler))
         assert done.messages == []
 
-    async def test_an_exception_in_a_handler(self, launch) -> None:
+    async def test_exception_in_handler_is_reported_without_traceback(self, launch) -> None:
         def fail(event: object, context: LaunchContext) -> None:
             raise KeyError("oh")
 
@@ -241,7 +241,7 @@ class TestEvents:
         assert "Traceback" not in done.err
         assert not done.succeeded
 
-    async def test_a_launch_with_nothing_in_it_ends(self, launch) -> None:
+    async def test_empty_launch_ends(self, launch) -> None:
         await asyncio.wait_for(launch(), 1.0)
 
 
@@ -260,7 +260,7 @@ def generate_launch_description():
 
 
 class TestIncludeLaunchDescription:
-    async def test_arguments_configurations_and_folders(self, launch, write: Write) -> None:
+    async def test_include_passes_arguments_and_shares_configurations(self, launch, write: Write) -> None:
         inner = write("sub/inner.launch.py", INNER.replace("{default}", ""))
         done = await launch(
             SetLaunchConfiguration("fast", "9"),
@@ -273,11 +273,13 @@ class TestIncludeLaunchDescription:
         assert done.messages == [f"inner 9 {inner.parent}", "yes9"]
 
     @pytest.mark.parametrize("source", [AnyLaunchDescriptionSource, str])
-    async def test_other_sources(self, launch, write: Write, source: Callable[[str], object]) -> None:
+    async def test_any_source_and_path_are_accepted(
+        self, launch, write: Write, source: Callable[[str], object]
+    ) -> None:
         inner = write("inner.launch.py", INNER.replace("{default}", ", default_value='1'"))
         assert (await launch(IncludeLaunchDescription(source(str(inner))))).messages[0].startswith("inner 1")
 
-    async def test_a_value_that_is_no_text_fails_when_the_include_runs(self, launch, write: Write) -> None:
+    async def test_non_text_argument_fails_only_when_include_runs(self, launch, write: Write) -> None:
         inner = write("inner.launch.py", INNER.replace("{default}", ""))
         pairs: Any = {"speed": None}.items()
         never = IncludeLaunchDescription(str(inner), launch_arguments=pairs, condition=IfCondition("false"))
@@ -286,7 +288,7 @@ class TestIncludeLaunchDescription:
         assert "error[LAUNCH114]: the value of argument 'speed' is None, which is not a string" in done.err
         assert not done.succeeded
 
-    async def test_a_missing_argument_is_told_before_anything_runs(self, launch, write: Write) -> None:
+    async def test_missing_argument_is_reported_before_actions_run(self, launch, write: Write) -> None:
         inner = write("inner.launch.py", INNER.replace("{default}", ""))
         done = await launch(IncludeLaunchDescription(str(inner), launch_arguments=[("sped", "1")]))
         text = f"the included launch file '{inner}' requires argument 'speed', which is not given"
@@ -309,7 +311,7 @@ class TestIncludeLaunchDescription:
             ),
         ],
     )
-    async def test_how_a_missing_argument_is_given_is_told_in_the_language_of_the_file(
+    async def test_missing_argument_hint_uses_language_of_file(
         self, launch, write: Write, name: str, text: str, hint: str
     ) -> None:
         write("inner.launch.py", INNER.replace("{default}", ""))
@@ -318,24 +320,24 @@ class TestIncludeLaunchDescription:
         assert f"hint: {hint}" in done.err
         assert f"--> {write(name, text)}" in done.err
 
-    async def test_a_missing_argument_of_a_description_that_is_in_no_file(self, launch) -> None:
+    async def test_missing_argument_of_inline_description_is_reported(self, launch) -> None:
         inner = LaunchDescriptionSource(LaunchDescription([DeclareLaunchArgument("speed")]))
         done = await launch(IncludeLaunchDescription(inner))
         assert "the included launch description requires argument 'speed', which is not given" in done.err
         assert "add ('speed', VALUE) to launch_arguments" in done.err
 
-    async def test_an_error_inside_names_the_inner_file(self, launch, write: Write) -> None:
+    async def test_error_in_included_file_names_that_file(self, launch, write: Write) -> None:
         inner = write("inner.launch.py", "def generate_launch_description():\n    return nothing\n")
         done = await launch(IncludeLaunchDescription(str(inner)))
         assert "raised NameError: name 'nothing' is not defined" in done.err
         assert f"{inner.name}:2:" in done.err
 
-    async def test_a_missing_file_names_the_including_line(self, launch, tmp_path: Path) -> None:
+    async def test_missing_included_file_names_including_line(self, launch, tmp_path: Path) -> None:
         done = await launch(IncludeLaunchDescription(str(tmp_path / "none.launch.py")))
         assert "error[LAUNCH101]" in done.err
         assert "test_actions.py" in done.err
 
-    async def test_the_folder_is_that_of_the_outer_file_again(self, launch, write: Write) -> None:
+    async def test_this_launch_file_dir_is_restored_after_include(self, launch, write: Write) -> None:
         write("sub/inner.launch.py", INNER.replace("{default}", ", default_value='1'"))
         outer = write(
             "outer.launch.py",
@@ -355,7 +357,7 @@ def generate_launch_description():
         assert done.messages == [f"inner 1 {outer.parent / 'sub'}", str(outer.parent)]
 
 
-def test_arguments_of_a_description(write: Write) -> None:
+def test_launch_arguments_of_description_are_listed(write: Write) -> None:
     inner = write("inner.launch.py", INNER.replace("{default}", ""))
     description = LaunchDescription(
         [
@@ -369,7 +371,7 @@ def test_arguments_of_a_description(write: Write) -> None:
     assert found == {"a": False, "b": True, "speed": False}
 
 
-def test_an_argument_that_the_including_file_gives_is_not_asked_of_the_user(write: Write) -> None:
+def test_argument_given_by_include_is_not_listed(write: Write) -> None:
     inner = write("inner.launch.py", INNER.replace("{default}", ""))
     description = LaunchDescription([IncludeLaunchDescription(str(inner), launch_arguments={"speed": "1"}.items())])
     assert description.get_launch_arguments() == []

@@ -23,17 +23,17 @@ def context() -> LaunchContext:
 @pytest.mark.parametrize(
     ("value", "truth"), [("true", True), ("TRUE", True), ("1", True), (" false ", False), ("0", False)]
 )
-def test_if_and_unless(context: LaunchContext, value: str, truth: bool) -> None:
+def test_if_and_unless_conditions_evaluate_text(context: LaunchContext, value: str, truth: bool) -> None:
     assert IfCondition(value).evaluate(context) is truth
     assert UnlessCondition(value).evaluate(context) is not truth
 
 
-def test_substitutions(context: LaunchContext) -> None:
+def test_conditions_evaluate_substitutions(context: LaunchContext) -> None:
     assert IfCondition(LaunchConfiguration("gui")).evaluate(context)
     assert not UnlessCondition([LaunchConfiguration("gui")]).evaluate(context)
 
 
-def test_no_truth_value(context: LaunchContext) -> None:
+def test_invalid_truth_value_is_rejected(context: LaunchContext) -> None:
     with pytest.raises(
         LinkwrightError, match="the condition evaluates to 'fast', but must be 'true', '1', 'false' or '0'"
     ) as caught:
@@ -44,7 +44,7 @@ def test_no_truth_value(context: LaunchContext) -> None:
     assert diagnostic.span.file == __file__
 
 
-def test_launch_configuration_equals(context: LaunchContext) -> None:
+def test_launch_configuration_equals_compares_value(context: LaunchContext) -> None:
     assert LaunchConfigurationEquals("mode", "fast").evaluate(context)
     assert not LaunchConfigurationEquals("mode", "slow").evaluate(context)
     assert not LaunchConfigurationEquals("none", "slow").evaluate(context)
@@ -53,9 +53,9 @@ def test_launch_configuration_equals(context: LaunchContext) -> None:
     assert LaunchConfigurationNotEquals("none", "fast").evaluate(context)
 
 
-def test_a_users_predicate(context: LaunchContext) -> None:
+def test_custom_predicate_is_called(context: LaunchContext) -> None:
     assert Condition(predicate=lambda context: "mode" in context.launch_configurations).evaluate(context)
 
 
-def test_a_condition_without_a_predicate_never_holds(context: LaunchContext) -> None:
+def test_condition_without_predicate_is_false(context: LaunchContext) -> None:
     assert Condition().evaluate(context) is False

@@ -23,7 +23,7 @@ class Between(DeclaredSubstitution, tag="between/in-between", shown="{kind}<{end
         return end + context.perform_substitution(self.text[0]) + end
 
 
-def test_the_constructor_is_that_of_the_declaration() -> None:
+def test_constructor_signature_follows_declaration() -> None:
     assert str(inspect.signature(Between)) == "(text, *, ends=None)"
     with pytest.raises(TypeError, match=r"Between.__init__\(\) missing 1 required positional argument: 'text'"):
         Between()  # type: ignore[call-arg]
@@ -33,27 +33,27 @@ def test_the_constructor_is_that_of_the_declaration() -> None:
         Between(3)  # type: ignore[arg-type]
 
 
-def test_arguments_are_properties_in_one_form() -> None:
+def test_arguments_are_normalized_properties() -> None:
     made = Between("a", ends=LaunchConfiguration("b"))
     assert [each.describe() for each in made.text] == ["'a'"]
     assert made.ends is not None
     assert Between("a").ends is None
 
 
-def test_both_tags_read_it(context: LaunchContext) -> None:
+def test_all_tag_names_are_parsed(context: LaunchContext) -> None:
     assert context.perform_substitution(parse_substitution("$(between a |)")[0]) == "|a|"
     assert context.perform_substitution(parse_substitution("$(in-between a)")[0]) == "a"
     with pytest.raises(LinkwrightError, match="between substitution expects 1 or 2 arguments"):
         parse_substitution("$(between)")
 
 
-def test_listings_show_it_as_it_says() -> None:
+def test_describe_uses_declared_format() -> None:
     assert Between(["a", "b"]).describe() == "Between<|'a' + 'b'>"
     assert EnvironmentVariable("HOME").describe() == "EnvVar('HOME')"
     assert PathJoinSubstitution(["a", ["b", "c"]]).describe() == "PathJoin('a', 'b' + 'c')"
 
 
-def test_a_class_of_a_user_may_have_a_constructor_of_its_own(context: LaunchContext) -> None:
+def test_subclass_can_define_its_own_constructor(context: LaunchContext) -> None:
     @expose_substitution("twice-between")
     class Twice(Between):
         def __init__(self, text: str) -> None:
@@ -67,7 +67,7 @@ def test_a_class_of_a_user_may_have_a_constructor_of_its_own(context: LaunchCont
     assert context.perform_substitution(parse_substitution("$(twice-between)")[0]) == "-xx-"
 
 
-def test_lists_of_texts() -> None:
+def test_text_lists_are_normalized() -> None:
     class Row(DeclaredSubstitution):
         parts: TextLists = TextLists()
 

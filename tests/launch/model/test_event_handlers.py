@@ -21,7 +21,7 @@ def exited(action: object) -> ProcessExited:
 
 
 @pytest.mark.parametrize("kind", [OnProcessExit, OnProcessStart, OnProcessIO])
-def test_a_target_must_be_a_process(kind: type) -> None:
+def test_target_action_must_be_a_process(kind: type) -> None:
     words = {"on_exit": LogInfo(msg="")} if kind is OnProcessExit else {}
     words = {"on_start": LogInfo(msg="")} if kind is OnProcessStart else words
     with pytest.raises(TypeError):
@@ -30,7 +30,7 @@ def test_a_target_must_be_a_process(kind: type) -> None:
         kind(target_action=NonCallableMock(), **words)
 
 
-def test_which_events_match() -> None:
+def test_handler_matches_event_type_and_target() -> None:
     process = NonCallableMock(spec=ExecuteProcess)
     handler = OnProcessExit(target_action=process, on_exit=Mock())
     assert handler.matches(exited(process))
@@ -44,7 +44,7 @@ def test_which_events_match() -> None:
     assert not complete.matches(ExecutionComplete(action=LogInfo(msg="")))
 
 
-def test_functions_and_actions() -> None:
+def test_functions_and_actions_are_handled() -> None:
     context = Mock(spec=LaunchContext)
     function = Mock()
     event = exited(None)
@@ -59,7 +59,7 @@ def test_functions_and_actions() -> None:
         OnProcessExit(on_exit="no action")  # type: ignore[arg-type]
 
 
-def test_once() -> None:
+def test_handle_once_unregisters_handler() -> None:
     context = Mock(spec=LaunchContext)
     handler = OnShutdown(on_shutdown=Mock(), handle_once=True)
     handler.handle(exited(None), context)
@@ -67,7 +67,7 @@ def test_once() -> None:
 
 
 @pytest.mark.parametrize(("number", "name"), [(0, "on_stdin"), (1, "on_stdout"), (2, "on_stderr")])
-def test_streams(number: int, name: str) -> None:
+def test_process_io_is_dispatched_by_stream(number: int, name: str) -> None:
     functions = {each: Mock() for each in ("on_stdin", "on_stdout", "on_stderr")}
     event = ProcessIO(action=None, text=b"x", fd=number, **ABOUT)  # type: ignore[arg-type]
     handler = OnProcessIO(**functions)
@@ -78,7 +78,7 @@ def test_streams(number: int, name: str) -> None:
         function.assert_not_called()
 
 
-def test_a_users_own_handler_in_a_bare_context() -> None:
+def test_custom_handler_runs_in_plain_context() -> None:
     class Mine(BaseEventHandler):
         def handle(self, event: object, context: LaunchContext) -> object:
             super().handle(event, context)

@@ -34,11 +34,11 @@ def installed(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Iterator[None]
 
 
 @pytest.mark.parametrize("name", [*replaced_programs()])
-def test_each_of_ours_can_be_imported(name: str) -> None:
+def test_builtin_replacements_can_be_imported(name: str) -> None:
     assert callable(replaced_programs()[name].load())
 
 
-def test_a_program_of_another_package_is_replaced(installed: None) -> None:
+def test_program_of_another_package_is_replaced(installed: None) -> None:
     assert replacing_node(["/opt/bin/sea", "sail", "3"], NOWHERE) == NodeCommand("my_sea", "boat", {"wind": 3.0})
     assert replacing_node(["ruby", "sea", "sail", "3"], NOWHERE) == NodeCommand("my_sea", "boat", {"wind": 3.0})
     assert replacing_node(["sea", "--version"], NOWHERE) is None
@@ -46,14 +46,14 @@ def test_a_program_of_another_package_is_replaced(installed: None) -> None:
     assert replacing_node([], NOWHERE) is None
 
 
-def test_an_installed_program_is_not_replaced(installed: None, tmp_path: Path) -> None:
+def test_installed_program_is_not_replaced(installed: None, tmp_path: Path) -> None:
     program = tmp_path / "sea"
     program.touch(mode=0o755)
     assert replacing_node(["sea", "sail", "3"], {"PATH": str(tmp_path)}) is None
     assert replacing_node([str(program), "sail", "3"], NOWHERE) is None
 
 
-def test_a_parser_that_cannot_be_imported_is_named_with_its_package(installed: None) -> None:
+def test_failed_import_names_the_package(installed: None) -> None:
     with pytest.raises(LinkwrightError, match="the node that replaces 'sunk' cannot be imported") as caught:
         replacing_node(["sunk"], NOWHERE)
     assert caught.value.diagnostics[0].code == "NODE002"

@@ -49,18 +49,18 @@ def text(substitution: Substitution, context: LaunchContext) -> str:
     return context.perform_substitution(substitution)
 
 
-def test_texts_are_joined(context: LaunchContext) -> None:
+def test_texts_and_substitutions_are_joined(context: LaunchContext) -> None:
     parts = ["xacro ", LaunchConfiguration("model"), TextSubstitution(text=".urdf"), Path("/x")]
     assert perform_substitutions(context, normalize_to_list_of_substitutions(parts)) == "xacro arm.urdf/x"
 
 
 @pytest.mark.parametrize("wrong", [3, None, [3], b"x"])
-def test_other_values_are_no_texts(wrong: object) -> None:
+def test_non_text_values_are_rejected(wrong: object) -> None:
     with pytest.raises(TypeError, match="expected a text"):
         normalize_to_list_of_substitutions(wrong)
 
 
-def test_launch_configuration(context: LaunchContext) -> None:
+def test_launch_configuration_returns_value_or_default(context: LaunchContext) -> None:
     assert text(LaunchConfiguration("model"), context) == "arm"
     assert text(LaunchConfiguration(["mo", "del"]), context) == "arm"
     assert text(LaunchConfiguration("none", default="d"), context) == "d"
@@ -68,7 +68,7 @@ def test_launch_configuration(context: LaunchContext) -> None:
     assert text(LaunchConfiguration("none", default=5), context) == "5"
 
 
-def test_an_unset_launch_configuration_names_the_nearest_and_the_line(context: LaunchContext) -> None:
+def test_unset_launch_configuration_suggests_name_and_line(context: LaunchContext) -> None:
     with pytest.raises(LinkwrightError, match="launch configuration 'modle' is not set") as caught:
         text(LaunchConfiguration("modle"), context)
     (diagnostic,) = caught.value.diagnostics
@@ -80,16 +80,16 @@ def test_an_unset_launch_configuration_names_the_nearest_and_the_line(context: L
     assert 'LaunchConfiguration("modle")' in diagnostic.source.line(diagnostic.span.line)
 
 
-def test_environment_variable(context: LaunchContext, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setenv("MBOT_COLOUR", "here")
-    assert text(EnvironmentVariable("MBOT_COLOUR"), context) == "here"
+def test_environment_variable_returns_value_or_default(context: LaunchContext, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setenv("MBOT_COLOR", "here")
+    assert text(EnvironmentVariable("MBOT_COLOR"), context) == "here"
     assert text(EnvironmentVariable("LINKWRIGHT_NONE", default_value="d"), context) == "d"
     with pytest.raises(LinkwrightError, match="environment variable 'MBOT_COLUOR' is not set") as caught:
         text(EnvironmentVariable("MBOT_COLUOR"), context)
-    assert caught.value.diagnostics[0].hint == "did you mean 'MBOT_COLOUR'?"
+    assert caught.value.diagnostics[0].hint == "did you mean 'MBOT_COLOR'?"
 
 
-def test_local_substitution(context: LaunchContext) -> None:
+def test_local_substitution_evaluates_attributes(context: LaunchContext) -> None:
     context.extend_locals({"event": ValueError("x")})
     assert text(LocalSubstitution("event.args"), context) == "('x',)"
     for expression in ("evnt", "event.argz"):
@@ -97,7 +97,7 @@ def test_local_substitution(context: LaunchContext) -> None:
             text(LocalSubstitution(expression), context)
 
 
-def test_this_launch_file(context: LaunchContext) -> None:
+def test_this_launch_file_returns_path_and_folder(context: LaunchContext) -> None:
     with pytest.raises(LinkwrightError, match="the launch description was not read from a file"):
         text(ThisLaunchFile(), context)
     context.extend_locals({"current_launch_file_path": "/a/b.launch.py"})
@@ -105,27 +105,27 @@ def test_this_launch_file(context: LaunchContext) -> None:
     assert text(ThisLaunchFileDir(), context) == "/a"
 
 
-def test_path_join(context: LaunchContext) -> None:
+def test_path_join_joins_parts(context: LaunchContext) -> None:
     joined = PathJoinSubstitution(["/a", ["b_", LaunchConfiguration("model")], "c"])
     assert text(joined, context) == "/a/b_arm/c"
     assert text(joined / "d", context) == "/a/b_arm/c/d"
 
 
-def test_find_executable(context: LaunchContext) -> None:
+def test_find_executable_returns_path_on_path_variable(context: LaunchContext) -> None:
     assert os.access(text(FindExecutable(name="sh"), context), os.X_OK)
     with pytest.raises(LinkwrightError, match="program 'no-such-program' is not on PATH"):
         text(FindExecutable(name="no-such-program"), context)
 
 
 @pytest.mark.parametrize("program", ["xacro", "gz", "ign", "gazebo", "gzserver"])
-def test_what_runs_in_this_process_is_found_though_it_is_not_installed(
+def test_builtin_programs_are_found_if_not_installed(
     context: LaunchContext, monkeypatch: pytest.MonkeyPatch, program: str
 ) -> None:
     monkeypatch.setenv("PATH", "/nowhere")
     assert text(FindExecutable(name=program), context) == program
 
 
-def test_file_content(context: LaunchContext, tmp_path: Path) -> None:
+def test_file_content_returns_text(context: LaunchContext, tmp_path: Path) -> None:
     (tmp_path / "x").write_text("inside")
     assert text(FileContent(str(tmp_path / "x")), context) == "inside"
     with pytest.raises(LinkwrightError, match="does not exist"):
@@ -140,15 +140,15 @@ def test_file_content(context: LaunchContext, tmp_path: Path) -> None:
         (["cos(0) + math.sin(0)"], "1.0"),
     ],
 )
-def test_python_expression(context: LaunchContext, expression: list[object], value: str) -> None:
+def test_python_expression_is_evaluated(context: LaunchContext, expression: list[object], value: str) -> None:
     assert text(PythonExpression(expression), context) == value
 
 
-def test_python_expression_with_a_module(context: LaunchContext) -> None:
+def test_python_expression_uses_given_module(context: LaunchContext) -> None:
     assert text(PythonExpression(["os.sep"], ["os"]), context) == os.sep
 
 
-def test_a_python_expression_without_quotes_gets_the_advice(context: LaunchContext) -> None:
+def test_unquoted_python_expression_suggests_quotes(context: LaunchContext) -> None:
     with pytest.raises(LinkwrightError, match="NameError") as caught:
         text(PythonExpression([LaunchConfiguration("model"), " == 'arm'"]), context)
     assert "put quotes around" in (caught.value.diagnostics[0].hint or "")
@@ -178,16 +178,18 @@ def test_a_python_expression_without_quotes_gets_the_advice(context: LaunchConte
         (IfElseSubstitution("false", if_value="yes"), ""),
     ],
 )
-def test_logic(context: LaunchContext, substitution: Substitution, value: str) -> None:
+def test_logic_substitutions_return_true_or_false(
+    context: LaunchContext, substitution: Substitution, value: str
+) -> None:
     assert text(substitution, context) == value
 
 
-def test_logic_needs_truth_values(context: LaunchContext) -> None:
+def test_logic_substitutions_reject_other_values(context: LaunchContext) -> None:
     with pytest.raises(LinkwrightError, match="NotSubstitution needs 'true' or 'false', not 'arm'"):
         text(NotSubstitution(LaunchConfiguration("model")), context)
 
 
-def test_packages(context: LaunchContext, tmp_path: Path) -> None:
+def test_package_substitutions_find_share_prefix_and_executable(context: LaunchContext, tmp_path: Path) -> None:
     share = tmp_path / "ros" / "share" / "arm"
     share.mkdir(parents=True)
     (share / "package.xml").write_text("<package><name>arm</name></package>")
@@ -221,11 +223,11 @@ def test_packages(context: LaunchContext, tmp_path: Path) -> None:
         (ThisLaunchFileDir(), "ThisLaunchFileDir()"),
     ],
 )
-def test_descriptions(substitution: Substitution, description: str) -> None:
+def test_substitutions_describe_themselves(substitution: Substitution, description: str) -> None:
     assert substitution.describe() == description
 
 
-def test_a_users_own_substitution(context: LaunchContext) -> None:
+def test_custom_substitution_is_performed_and_can_fail(context: LaunchContext) -> None:
     class Upper(Substitution):
         def __init__(self, inner: str) -> None:
             self.inner = inner  # as many do, without a call of our constructor
@@ -245,15 +247,15 @@ class TestCommand:
     def python(self, program: str) -> list[str]:
         return [sys.executable, ' -c "', program, '"']
 
-    def test_output(self, context: LaunchContext) -> None:
+    def test_command_returns_stdout(self, context: LaunchContext) -> None:
         assert text(Command(["echo ", LaunchConfiguration("model")]), context) == "arm\n"
 
-    def test_failure(self, context: LaunchContext) -> None:
+    def test_failing_command_is_reported_with_stderr(self, context: LaunchContext) -> None:
         with pytest.raises(LinkwrightError, match="failed with exit status 3:\nwhy") as caught:
             text(Command(self.python("import sys; print('why', file=sys.stderr); sys.exit(3)")), context)
         assert caught.value.diagnostics[0].code == "LAUNCH129"
 
-    def test_stderr(self, context: LaunchContext, capsys: pytest.CaptureFixture[str]) -> None:
+    def test_on_stderr_option_controls_stderr(self, context: LaunchContext, capsys: pytest.CaptureFixture[str]) -> None:
         words = self.python("import sys; print('out'); print('err', file=sys.stderr)")
         with pytest.raises(LinkwrightError, match="wrote to stderr:\nerr"):
             text(Command(words), context)
@@ -276,13 +278,13 @@ class TestCommand:
             ("xacro a.xacro b.xacro", "expects exactly one model file, but was given 2"),
         ],
     )
-    def test_impossible(self, context: LaunchContext, command: str, message: str) -> None:
+    def test_invalid_commands_are_rejected(self, context: LaunchContext, command: str, message: str) -> None:
         with pytest.raises(LinkwrightError, match=message) as caught:
             text(Command(command), context)
         assert caught.value.diagnostics[0].span is not None
 
     @pytest.mark.parametrize("program", ["xacro", "/opt/ros/bin/xacro", "ros2 run xacro xacro"])
-    def test_xacro_runs_inside(self, context: LaunchContext, tmp_path: Path, program: str) -> None:
+    def test_xacro_command_runs_in_process(self, context: LaunchContext, tmp_path: Path, program: str) -> None:
         model = tmp_path / "a.xacro"
         model.write_text(
             '<robot name="a" xmlns:xacro="http://www.ros.org/wiki/xacro">'
@@ -291,7 +293,7 @@ class TestCommand:
         expanded = text(Command([program, " --inorder ", str(model), " link:='two words'"]), context)
         assert '<link name="two words"/>' in expanded
 
-    def test_a_path_with_blanks_and_no_quotes_works_with_a_warning(
+    def test_unquoted_path_with_spaces_is_accepted_with_warning(
         self, context: LaunchContext, tmp_path: Path, capsys: pytest.CaptureFixture[str]
     ) -> None:
         model = tmp_path / "my robot" / "a.urdf"
@@ -304,9 +306,7 @@ class TestCommand:
         assert capsys.readouterr().err == ""
 
 
-def test_an_anonymous_name_has_host_process_and_a_number(
-    context: LaunchContext, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_anon_name_contains_host_pid_and_number(context: LaunchContext, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr("socket.gethostname", lambda: "my-lab.local")
     name = AnonName("robot:1").perform(context)
     assert re.fullmatch(rf"robot_1_my_lab_local_{os.getpid()}_\d+", name)

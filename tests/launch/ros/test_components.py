@@ -45,7 +45,7 @@ def talker(**options: Any) -> ComposableNode:
     return ComposableNode(package="composition", plugin="composition::Talker", **options)
 
 
-def asked(node: ComposableNode, *actions: Any, **configurations: str) -> Any:
+def load_request(node: ComposableNode, *actions: Any, **configurations: str) -> Any:
     context = LaunchContext()
     context.launch_configurations.update(configurations)
     for action in actions:
@@ -54,8 +54,8 @@ def asked(node: ComposableNode, *actions: Any, **configurations: str) -> Any:
 
 
 class TestRequests:
-    def test_names_and_rules(self) -> None:
-        request = asked(
+    def test_load_request_contains_names_and_remap_rules(self) -> None:
+        request = load_request(
             talker(name="tk", namespace="inner", remappings=[("chatter", "talk")]),
             PushRosNamespace("outer"),
             SetRemap("a", "b"),
@@ -64,9 +64,9 @@ class TestRequests:
         assert (request.node_name, request.node_namespace) == ("tk", "/outer/inner")
         assert list(request.remap_rules) == ["a:=b", "chatter:=talk"]
 
-    def test_parameters_in_their_order(self, write: Write) -> None:
+    def test_parameters_are_merged_in_order(self, write: Write) -> None:
         path = write("p.yaml", "/ns/tk: {ros__parameters: {c: 9}}\n/**: {ros__parameters: {c: 1, d: [1.5]}}\n")
-        request = asked(
+        request = load_request(
             talker(name="tk", namespace="ns", parameters=[{"b": {"x": LaunchConfiguration("v")}}, path]),
             SetParameter("a", "text"),
             SetParametersFromFile(str(path)),
@@ -79,18 +79,18 @@ class TestRequests:
         assert list(given[2][1].double_array_value) == [1.5]
         assert given[3][1].bool_value is True
 
-    def test_extra_arguments(self) -> None:
-        request = asked(talker(extra_arguments=[{"use_intra_process_comms": True}]))
+    def test_extra_arguments_are_passed(self) -> None:
+        request = load_request(talker(extra_arguments=[{"use_intra_process_comms": True}]))
         assert request.extra_arguments[0].name == "use_intra_process_comms"
         assert request.extra_arguments[0].value.bool_value is True
 
-    def test_a_condition(self) -> None:
-        assert asked(talker(condition=IfCondition("false"))) is None
+    def test_false_condition_skips_component(self) -> None:
+        assert load_request(talker(condition=IfCondition("false"))) is None
 
-    def test_a_wrong_pattern_in_a_file(self, write: Write) -> None:
+    def test_malformed_wildcard_in_parameter_file_is_rejected(self, write: Write) -> None:
         path = write("p.yaml", "/***: {ros__parameters: {a: 1}}")
         with pytest.raises(RuntimeError) as caught:
-            asked(talker(name="tk", parameters=[str(path)]))
+            load_request(talker(name="tk", parameters=[str(path)]))
         assert isinstance(caught.value, LinkwrightError)
         assert "'/***' is not a node name" in caught.value.diagnostics[0].message
 
@@ -104,11 +104,11 @@ class TestRequests:
             ("/other", {}, ""),  # the name that its code gives it is not known
         ],
     )
-    def test_a_file_with_nothing_for_the_node(
+    def test_parameter_file_without_section_for_node_is_reported(
         self, write: Write, capsys: pytest.CaptureFixture[str], section: str, names: dict[str, str], message: str
     ) -> None:
         path = write("p.yaml", f"{section}: {{ros__parameters: {{a: 1}}}}")
-        asked(talker(parameters=[str(path)], **names))
+        load_request(talker(parameters=[str(path)], **names))
         output = capsys.readouterr().err
         assert ("warning[LAUNCH149]" in output) is bool(message)
         assert message in output
@@ -116,7 +116,7 @@ class TestRequests:
 
 
 class TestContainers:
-    async def test_our_nodes_compose_in_the_launchers_process(self, launch) -> None:
+    async def test_builtin_components_run_in_launcher_process(self, launch) -> None:
         seen: dict[str, Any] = {}
 
         def look(context: LaunchContext) -> None:
@@ -156,7 +156,7 @@ class TestContainers:
         assert "translation: ('1.500000', '0.000000', '0.000000')" in done.err
         assert "[launch] [" not in done.err
 
-    async def test_loading_into_a_container_by_its_name(self, launch) -> None:
+    async def test_components_are_loaded_into_container_by_name(self, launch) -> None:
         listener = ComposableNode(package="composition", plugin="composition::Listener", name="ear")
         done = await launch(
             LoadComposableNodes(target_container="box", composable_node_descriptions=[listener]),
@@ -165,7 +165,7 @@ class TestContainers:
         )
         assert "Loaded node '/ear' in container '/box'" in done.err
 
-    async def test_the_scope_holds_for_the_nodes_though_they_are_loaded_later(self, launch) -> None:
+    async def test_launch_scope_applies_to_components_loaded_later(self, launch) -> None:
         group = GroupAction(
             [
                 SetLaunchConfiguration("name", "inside"),
@@ -176,7 +176,7 @@ class TestContainers:
         done = await launch(group, ends_when(printed("Loaded node")))
         assert "Loaded node '/scope/n/inside' in container '/scope/box'" in done.err
 
-    async def test_an_unknown_plugin_names_the_nearest_and_the_line(self, launch) -> None:
+    async def test_unknown_plugin_suggests_name_and_line(self, launch) -> None:
         wrong = ComposableNode(package="composition", plugin="composition::Talkr", name="tk")
         done = await launch(container(wrong, talker(name="other")), ends_when(printed("LAUNCH139", "Loaded node")))
         assert "error[LAUNCH139]: Failed to load node 'tk' of type 'composition::Talkr' in container '/box'" in done.err
@@ -185,18 +185,18 @@ class TestContainers:
         assert "Loaded node '/other' in container '/box'" in done.err
         assert not done.succeeded
 
-    async def test_a_launch_that_ends_waits_for_no_container(self, launch) -> None:
+    async def test_shutdown_abandons_wait_for_container(self, launch) -> None:
         done = await launch(
             LoadComposableNodes(target_container="/nobody", composable_node_descriptions=[talker()]),
             TimerAction(period=0.1, actions=[Shutdown()]),
         )
         assert "Abandoning wait for the '/nobody/_container/load_node' service, due to shutdown." in done.err
 
-    async def test_two_nodes_of_one_name_are_remarked(self, launch) -> None:
+    async def test_duplicate_node_names_are_reported(self, launch) -> None:
         done = await launch(container(talker(name="box")), ends_when(printed("there are now at least")))
         assert "there are now at least 2 nodes with the name /box created within this launch context" in done.err
 
-    async def test_services_of_the_container(self, launch) -> None:
+    async def test_container_lists_and_unloads_nodes(self, launch) -> None:
         answers: list[Any] = []
 
         def ask(context: LaunchContext) -> None:
@@ -230,7 +230,7 @@ class TestContainers:
         assert unloaded.success is True
         assert list(rest.full_node_names) == ["/b"]
 
-    async def test_a_composed_model_is_reloaded(self, launch, write: Write) -> None:
+    async def test_composed_model_is_reloaded(self, launch, write: Write) -> None:
         path = write("r.urdf", URDF)
         texts: list[str] = []
 
@@ -264,7 +264,7 @@ class TestContainers:
         assert '"base"' in texts[0]
         assert '"trunk"' in texts[1]
 
-    async def test_a_real_container_is_used_for_what_only_it_can_load(self, launch, write: Write) -> None:
+    async def test_installed_container_is_used_for_foreign_components(self, launch, write: Write) -> None:
         write("ros/share/rclcpp_components/package.xml", "<package><name>rclcpp_components</name></package>")
         real = write("ros/lib/rclcpp_components/component_container", "#!/bin/sh\necho real $@\n")
         real.chmod(0o755)

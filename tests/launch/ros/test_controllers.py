@@ -31,7 +31,7 @@ ARM = """arm:
     gpios: [{interfaces: [a, b]}]"""
 
 
-async def test_what_a_controller_says_is_said_by_the_node_that_runs_it(launch: Any, write: Callable[[str, str], Path]):
+async def test_controller_log_messages_have_manager_process_prefix(launch: Any, write: Callable[[str, str], Path]):
     parameters = [str(write("controllers.yaml", FILE)), {"robot_description": robot(joint("hip") + joint("knee"))}]
     done = await launch(
         Node(package="controller_manager", executable="ros2_control_node", parameters=parameters),
@@ -44,9 +44,7 @@ async def test_what_a_controller_says_is_said_by_the_node_that_runs_it(launch: A
     assert line.endswith("'open_lop_control' is not a parameter of this controller; did you mean 'open_loop_control'?")
 
 
-async def test_a_spawner_hands_on_the_parameter_files_that_its_action_has(
-    launch: Any, write: Callable[[str, str], Path]
-):
+async def test_spawner_passes_on_parameter_files(launch: Any, write: Callable[[str, str], Path]):
     """As in the first example of ros2_control_demos: the file has substitutions, and the manager was given none."""
     controller = (
         FILE[FILE.index("arm:\n  ros") :]

@@ -53,7 +53,7 @@ def arm(write: Write) -> Path:
 
 
 class TestSources:
-    def test_entry_points_of_setup_py(self, arm: Path) -> None:
+    def test_entry_points_of_setup_py_are_read(self, arm: Path) -> None:
         found = source_programs(arm)
         assert found.entry_points == {
             "wave": EntryPoint("arm.wave", "main"),
@@ -61,14 +61,14 @@ class TestSources:
             "shake": EntryPoint("arm.shake", "main"),
         }
 
-    def test_entry_points_of_setup_cfg_and_pyproject(self, write: Write) -> None:
+    def test_entry_points_of_setup_cfg_and_pyproject_are_read(self, write: Write) -> None:
         folder = write(
             "p/setup.cfg", "[options.entry_points]\nconsole_scripts =\n  a = p.a:main\n  b = p.b:main\n"
         ).parent
         write("p/pyproject.toml", '[project]\nname = "p"\n[project.scripts]\nc = "p.c:main"\n')
         assert source_programs(folder).names() == ["a", "b", "c"]
 
-    def test_entry_points_that_a_program_makes_are_asked_for(self, write: Write) -> None:
+    def test_computed_entry_points_are_found_by_running_setup_py(self, write: Write) -> None:
         text = (
             "from setuptools import setup, find_packages\n"
             "setup(name='p', packages=find_packages(), scripts=['bin/old'],\n"
@@ -78,11 +78,11 @@ class TestSources:
         write("p/bin/old", "#!/usr/bin/env python3\n")
         assert source_programs(folder).names() == ["old", "x", "y"]
 
-    def test_a_setup_py_that_fails_has_no_programs(self, write: Write) -> None:
+    def test_failing_setup_py_has_no_programs(self, write: Write) -> None:
         text = "from setuptools import setup\nraise SystemExit(1)\nsetup(entry_points={'console_scripts': LIST})\n"
         assert source_programs(write("p/setup.py", text).parent).names() == []
 
-    def test_programs_of_cmake(self, write: Write) -> None:
+    def test_cmake_programs_are_read(self, write: Write) -> None:
         folder = write(
             "p/CMakeLists.txt",
             "project(p)\nadd_executable(driver src/driver.cpp)\n"
@@ -97,7 +97,7 @@ class TestSources:
         assert found.scripts == {"look.py": folder / "scripts/look.py", "seer": folder / "scripts/see.py"}
         assert found.compiled == {"driver", "comp_node"}
 
-    def test_an_entry_point_runs_without_a_build(self, arm: Path, finder: PackageFinder) -> None:
+    def test_entry_point_runs_without_build(self, arm: Path, finder: PackageFinder) -> None:
         found = find_executable(finder, arm.name, "wave")
         assert found.origin is Origin.SOURCE
         assert found.path is not None
@@ -106,7 +106,7 @@ class TestSources:
         assert done.returncode == 3, done.stderr
         assert done.stdout == f"five fingers ['{found.path}', '--fast']\n"
 
-    def test_its_file_is_made_anew_only_if_it_changes(self, arm: Path, finder: PackageFinder) -> None:
+    def test_generated_script_is_rewritten_only_if_changed(self, arm: Path, finder: PackageFinder) -> None:
         path = find_executable(finder, arm.name, "nod").path
         assert path is not None
         made = path.stat().st_mtime_ns, path.stat().st_ino
@@ -116,12 +116,12 @@ class TestSources:
         assert find_executable(finder, arm.name, "nod").path == path
         assert subprocess.run([path], capture_output=True, text=True, check=True).stdout == "nod\n"
 
-    def test_a_module_that_is_not_there(self, arm: Path, finder: PackageFinder) -> None:
+    def test_missing_module_of_entry_point_is_reported(self, arm: Path, finder: PackageFinder) -> None:
         with pytest.raises(LinkwrightError, match=r"but module .arm\.shake. does not exist") as caught:
             find_executable(finder, arm.name, "shake")
         assert caught.value.diagnostics[0].code == "LAUNCH131"
 
-    def test_a_compiled_program_says_how_to_build_it(self, write: Write, finder: PackageFinder) -> None:
+    def test_unbuilt_compiled_program_has_build_hint(self, write: Write, finder: PackageFinder) -> None:
         write("ws/src/p/package.xml", "<package><name>p</name></package>")
         write("ws/src/p/CMakeLists.txt", "project(p)\nadd_executable(driver driver.cpp)\n")
         with pytest.raises(LookupError) as caught:
@@ -133,7 +133,7 @@ class TestSources:
         assert diagnostic.hint.startswith("build it with 'colcon build --packages-select p'")
 
     @pytest.mark.parametrize("cmake", [None, "project(p)\ninclude(cmake/programs.cmake)\n"])
-    def test_a_program_of_which_the_sources_tell_nothing(
+    def test_program_unknown_to_sources_is_unavailable(
         self, write: Write, finder: PackageFinder, cmake: str | None
     ) -> None:
         write("ws/src/p/package.xml", "<package><name>p</name></package>")
@@ -144,9 +144,7 @@ class TestSources:
         assert caught.value.diagnostics[0].message == "executable 'motion_control' of package 'p' is not available"
         assert is_unavailable(caught.value)
 
-    def test_a_name_that_is_nearly_that_of_another_program_is_misspelt(
-        self, write: Write, finder: PackageFinder
-    ) -> None:
+    def test_misspelled_program_is_reported(self, write: Write, finder: PackageFinder) -> None:
         write("ws/src/p/package.xml", "<package><name>p</name></package>")
         write(
             "ws/src/p/CMakeLists.txt", "project(p)\nadd_executable(driver driver.cpp)\ninclude(cmake/programs.cmake)\n"
@@ -155,7 +153,7 @@ class TestSources:
             find_executable(finder, "p", "drivr")
         assert not is_unavailable(caught.value)
 
-    def test_the_nearest_name_counts_compiled_programs_too(self, write: Write, finder: PackageFinder) -> None:
+    def test_suggestion_includes_compiled_programs(self, write: Write, finder: PackageFinder) -> None:
         write("ws/src/p/package.xml", "<package><name>p</name></package>")
         write("ws/src/p/CMakeLists.txt", "project(p)\nadd_executable(driver driver.cpp)\n")
         with pytest.raises(LinkwrightError) as caught:
@@ -164,7 +162,7 @@ class TestSources:
 
 
 class TestInstalled:
-    def test_a_built_one_comes_before_that_of_sources(self, write: Write) -> None:
+    def test_built_program_takes_precedence_over_source(self, write: Write) -> None:
         write("ws/install/.colcon_install_layout", "isolated")
         write("ws/install/arm/share/arm/package.xml", "<package><name>arm</name></package>")
         built = write("ws/install/arm/lib/arm/wave", "#!/bin/sh\necho built\n")
@@ -177,7 +175,7 @@ class TestInstalled:
         assert {name: each.path for name, each in executables_of(finder, "arm").items()} == {"wave": built}
         assert find_executable(finder, "arm", "wave").command == [str(built)]
 
-    def test_the_environment_of_a_workspace_that_nobody_sourced(self, write: Write) -> None:
+    def test_unsourced_workspace_environment_is_created(self, write: Write) -> None:
         write("ws/install/.colcon_install_layout", "isolated")
         share = write("ws/install/arm/share/arm/package.xml", "<package><name>arm</name></package>").parent
         write("ws/install/arm/share/arm/hook/pythonpath_develop.dsv", "prepend-non-duplicate;PYTHONPATH;/ws/build/arm")
@@ -192,9 +190,7 @@ class TestInstalled:
         sourced = workspace_environment(finder, {"AMENT_PREFIX_PATH": str(prefix)})
         assert str(modules) not in sourced.get("PYTHONPATH", "")
 
-    def test_a_launched_process_finds_the_packages_of_its_launcher(
-        self, arm: Path, monkeypatch: pytest.MonkeyPatch
-    ) -> None:
+    def test_launched_process_finds_packages_of_launcher(self, arm: Path, monkeypatch: pytest.MonkeyPatch) -> None:
         monkeypatch.setenv("LINKWRIGHT_START", str(arm))
         assert PackageFinder().find("arm") == arm
 
@@ -207,26 +203,26 @@ class TestInstalled:
             ("#!/no/such/python3", False),
         ],
     )
-    def test_scripts_for_a_python_like_ours_run_as_they_are(self, write: Write, line: str, needed: bool) -> None:
+    def test_scripts_with_suitable_interpreter_run_unchanged(self, write: Write, line: str, needed: bool) -> None:
         assert needs_our_interpreter(write("script", f"{line}\nprint()\n")) is needed
 
-    def test_a_script_for_another_python_runs_with_ours(self, write: Write, tmp_path: Path) -> None:
+    def test_script_for_older_python_uses_own_interpreter(self, write: Write, tmp_path: Path) -> None:
         other = write("python3", "#!/bin/sh\necho 3 4\n")
         other.chmod(0o755)
         assert needs_our_interpreter(write("script", f"#!{other}\nprint()\n"))
 
 
 class TestOurs:
-    def test_they_are_listed(self, finder: PackageFinder) -> None:
+    def test_builtin_packages_and_executables_are_listed(self, finder: PackageFinder) -> None:
         assert {"robot_state_publisher", "tf2_ros", "rviz2", "rclcpp_components"} <= builtin_packages()
         found = executables_of(finder, "robot_state_publisher")
         assert str(found["robot_state_publisher"]) == "built into Linkwright"
 
-    def test_they_run_as_processes(self, finder: PackageFinder) -> None:
+    def test_builtin_nodes_run_as_processes(self, finder: PackageFinder) -> None:
         found = find_executable(finder, "tf2_ros", "static_transform_publisher")
         assert found.command[1:] == ["-m", "linkwright.node_program", "tf2_ros", "static_transform_publisher"]
 
-    def test_the_substitution_gives_a_file(self, finder: PackageFinder) -> None:
+    def test_executable_in_package_returns_runnable_file(self, finder: PackageFinder) -> None:
         with use_finder(finder):
             path = ExecutableInPackage("static_transform_publisher", "tf2_ros").perform(LaunchContext())
         done = subprocess.run([path, "--nonsense"], capture_output=True, text=True, check=False)
@@ -234,9 +230,7 @@ class TestOurs:
         assert "error parsing command line arguments" in done.stderr
 
 
-async def test_a_script_that_cmake_would_install_imports_its_package(
-    launch, write: Write, finder: PackageFinder
-) -> None:
+async def test_script_installed_by_cmake_imports_its_package(launch, write: Write, finder: PackageFinder) -> None:
     write("ws/src/p/package.xml", "<package><name>p</name></package>")
     write(
         "ws/src/p/CMakeLists.txt",
@@ -252,7 +246,7 @@ async def test_a_script_that_cmake_would_install_imports_its_package(
     assert "list.sh x" in done.out
 
 
-async def test_a_node_of_a_source_package_is_started(launch, arm: Path, finder: PackageFinder) -> None:
+async def test_node_of_source_package_is_started(launch, arm: Path, finder: PackageFinder) -> None:
     done = await launch(Node(package=arm.name, executable="wave", output="screen"), finder=finder)
     assert "[wave-1] five fingers" in done.out
     assert "[ERROR] [wave-1]: process has died [pid " in done.err

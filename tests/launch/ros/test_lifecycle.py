@@ -52,7 +52,7 @@ def log_on_transition(text: str, **what: Any) -> RegisterEventHandler:
     return RegisterEventHandler(OnStateTransition(entities=[LogInfo(msg=text)], **what))
 
 
-async def test_a_wish_for_a_transition_and_the_news_of_it(launch) -> None:
+async def test_change_state_triggers_transition_and_event(launch) -> None:
     node = managed()
     wish = ChangeState(lifecycle_node_matcher=matches_action(node), transition_id=CONFIGURE)
     done = await launch(
@@ -67,14 +67,14 @@ async def test_a_wish_for_a_transition_and_the_news_of_it(launch) -> None:
     assert node.current_state == "PRIMARY_STATE_INACTIVE"
 
 
-async def test_autostart(launch) -> None:
+async def test_autostart_activates_node(launch) -> None:
     node = managed(autostart=True)
     active = log_on_transition("active", target_lifecycle_node=node, goal_state="active")
     done = await launch(node, active, ends_when(printed("[launch.user]: active")))
     assert done.messages == ["active"]
 
 
-async def test_a_row_of_transitions(launch) -> None:
+async def test_lifecycle_transition_runs_sequence(launch) -> None:
     nodes = [managed("one"), managed("two")]
     row = LifecycleTransition(lifecycle_node_names=["one", "/two"], transition_ids=[CONFIGURE, "3", DEACTIVATE])
     off = log_on_transition("off", start_state="deactivating", goal_state="inactive")
@@ -82,14 +82,14 @@ async def test_a_row_of_transitions(launch) -> None:
     assert done.messages == ["off", "off"]
 
 
-async def test_a_transition_that_fails_is_told(launch) -> None:
+async def test_failed_transition_is_reported(launch) -> None:
     node = managed(parameters=[{"fails": True}])
     wish = ChangeState(lifecycle_node_matcher=matches_node_name("one"), transition_id=CONFIGURE)
     done = await launch(node, EmitEvent(event=wish), ends_when(printed("Failed to make transition")))
     assert "Failed to make transition 'TRANSITION_CONFIGURE' for LifecycleNode '/one'" in done.err
 
 
-def test_matchers_go_by_full_names() -> None:
+def test_node_matchers_use_full_names() -> None:
     node = managed()
     node._perform_substitutions(LaunchContext())
     assert matches_node_name("one")(node)
@@ -98,7 +98,7 @@ def test_matchers_go_by_full_names() -> None:
     assert node.is_node_name_fully_specified()
 
 
-def test_names_are_required() -> None:
+def test_name_and_namespace_are_required() -> None:
     with pytest.raises(TypeError):
         LifecycleNode(package="a", executable="b", name="c")
     with pytest.raises(TypeError):
@@ -114,11 +114,11 @@ def test_names_are_required() -> None:
         lambda: LifecycleTransition(lifecycle_node_names=["a"], transition_ids=["x"]).execute(LaunchContext()),
     ],
 )
-def test_wrong_transitions(make: Any) -> None:
+def test_invalid_transitions_are_rejected(make: Any) -> None:
     with pytest.raises(ValueError, match=r"transition|lifecycle_node_names"):
         make()
 
 
-def test_a_target_must_be_a_lifecycle_node() -> None:
+def test_transition_target_must_be_lifecycle_node() -> None:
     with pytest.raises(RuntimeError, match="requires a 'LifecycleNode' action"):
         OnStateTransition(target_lifecycle_node=Node(executable="x"), entities=[])

@@ -43,15 +43,15 @@ def ros(tmp_path: Path) -> PackageFinder:
 
 
 class TestProcessNodes:
-    async def told(self, launch, ros: PackageFinder, *entities: Any) -> tuple[list[str], list[Any]]:
+    async def received_arguments(self, launch, ros: PackageFinder, *entities: Any) -> tuple[list[str], list[Any]]:
         done = await launch(*entities, finder=ros)
         assert done.succeeded, done.err
         (line,) = done.out.splitlines()
         words, files = json.loads(line.partition("] ")[2])
         return words, [yaml.safe_load(files[word]) for word in words if word in files]
 
-    async def test_command_line(self, launch, ros: PackageFinder) -> None:
-        words, files = await self.told(
+    async def test_command_line_contains_names_parameters_and_remappings(self, launch, ros: PackageFinder) -> None:
+        words, files = await self.received_arguments(
             launch,
             ros,
             SetParameter("global", 1),
@@ -80,25 +80,25 @@ class TestProcessNodes:
         assert words[14:] == ["-r", "/a:=/b", "-r", "chatter:=/talk"]
         assert files == [{"/robot/left/inner/teller": {"ros__parameters": {"own": 2}}}]
 
-    async def test_parameters_of_a_node_without_a_name_are_for_any(self, launch, ros: PackageFinder) -> None:
+    async def test_parameters_of_unnamed_node_use_wildcard_section(self, launch, ros: PackageFinder) -> None:
         node = Node(package="arm", executable="tell", output="screen", parameters=[{"a": 1}])
-        words, files = await self.told(launch, ros, node)
+        words, files = await self.received_arguments(launch, ros, node)
         assert words[:2] == ["--ros-args", "--params-file"]
         assert files == [{"/**": {"ros__parameters": {"a": 1}}}]
 
-    async def test_single_parameters_are_told_as_rules(self, launch, ros: PackageFinder) -> None:
+    async def test_parameter_descriptions_become_p_arguments(self, launch, ros: PackageFinder) -> None:
         parameters = [Parameter("a", "x: y"), Parameter("b", [1.0, 2.5]), Parameter("c", True), Parameter("d", "1")]
         node = Node(package="arm", executable="tell", output="screen", parameters=parameters)
-        words, _ = await self.told(launch, ros, node)
+        words, _ = await self.received_arguments(launch, ros, node)
         assert words[1::2] == ["-p"] * 4
         assert words[2::2] == ["a:='x: y'", "b:=[1.0, 2.5]", "c:=true", "d:='1'"]
 
-    async def test_ros_arguments_are_announced_even_if_there_are_none(self, launch, ros: PackageFinder) -> None:
-        words, _ = await self.told(launch, ros, Node(package="arm", executable="tell", output="screen"))
+    async def test_ros_args_is_passed_without_arguments(self, launch, ros: PackageFinder) -> None:
+        words, _ = await self.received_arguments(launch, ros, Node(package="arm", executable="tell", output="screen"))
         assert words == ["--ros-args"]
 
-    async def test_an_absolute_namespace(self, launch, ros: PackageFinder) -> None:
-        words, _ = await self.told(
+    async def test_absolute_namespace_overrides_pushed_namespace(self, launch, ros: PackageFinder) -> None:
+        words, _ = await self.received_arguments(
             launch,
             ros,
             PushRosNamespace("robot"),
@@ -108,7 +108,7 @@ class TestProcessNodes:
 
     async def test_parameter_files_are_passed_by_path(self, launch, ros: PackageFinder, write: Write) -> None:
         path = write("p.yaml", "/**: {ros__parameters: {a: 1}}")
-        words, _ = await self.told(
+        words, _ = await self.received_arguments(
             launch,
             ros,
             SetParametersFromFile(str(path)),
@@ -116,7 +116,7 @@ class TestProcessNodes:
         )
         assert words == ["--ros-args", "--params-file", str(path), "--params-file", str(path)]
 
-    async def test_a_parameter_file_that_is_missing_is_passed_over(
+    async def test_missing_parameter_file_is_skipped_with_warning(
         self, launch, ros: PackageFinder, write: Write
     ) -> None:
         path = write("p.yaml", "/**: {ros__parameters: {a: 1}}")
@@ -137,7 +137,7 @@ class TestProcessNodes:
             ("a: {ros__params: {b: 1}}", "error[GRAPH212]"),
         ],
     )
-    async def test_a_parameter_file_that_is_malformed_is_told_before_the_node_starts(
+    async def test_malformed_parameter_file_is_reported_before_start(
         self, launch, ros: PackageFinder, write: Write, text: str, message: str
     ) -> None:
         path = write("p.yaml", text)
@@ -157,7 +157,7 @@ class TestProcessNodes:
             ("other", {}, ""),
         ],
     )
-    async def test_a_parameter_file_with_nothing_for_the_node(
+    async def test_parameter_file_without_section_for_node_is_reported(
         self, launch, ros: PackageFinder, write: Write, section: str, node: dict[str, str], message: str
     ) -> None:
         path = write("p.yaml", f"{section}: {{ros__parameters: {{a: 1}}}}" + "}" * section.count("{"))
@@ -175,7 +175,7 @@ class TestProcessNodes:
             ("image_tools", "cam2image", "cam2image"),
         ],
     )
-    async def test_a_node_without_a_name_reads_the_section_of_its_own_name(
+    async def test_unnamed_node_reads_section_of_its_default_name(
         self, launch, write: Write, monkeypatch: pytest.MonkeyPatch, package: str, executable: str, name: str
     ) -> None:
         planned: list[HostedPlan] = []
@@ -188,12 +188,12 @@ class TestProcessNodes:
         assert done.err.count("warning[LAUNCH149]") == 1
         assert f"parameter file '{wrong}' has no section for node '/{name}'" in done.err
 
-    async def test_temporary_files_go_with_the_launch(self, launch, ros: PackageFinder) -> None:
+    async def test_temporary_files_are_removed_after_launch(self, launch, ros: PackageFinder) -> None:
         done = await launch(Node(package="arm", executable="tell", output="screen", parameters=[{"a": 1}]), finder=ros)
         (path,) = {word for word in done.out.replace('"', " ").split() if word.endswith(".yaml")}
         assert not Path(path).exists()  # noqa: ASYNC240
 
-    async def test_a_node_without_a_package(self, launch) -> None:
+    async def test_node_without_package_runs_executable(self, launch) -> None:
         done = await launch(Node(executable=sys.executable, arguments=["-c", "print('here')"], output="screen"))
         assert done.out.endswith("] here\n")
 
@@ -208,7 +208,7 @@ class TestProcessNodes:
             ("my_robot_description", "x", "has no executable 'x'", "add it to entry_points in setup.py"),
         ],
     )
-    async def test_unknown_executables(
+    async def test_unknown_executables_are_reported_with_hint(
         self, launch, ros: PackageFinder, package: str, executable: str, message: str, hint: str
     ) -> None:
         done = await launch(Node(package=package, executable=executable), finder=ros)
@@ -220,7 +220,7 @@ class TestProcessNodes:
 
 
 class TestHostedNodes:
-    async def test_events_names_and_logs(self, launch) -> None:
+    async def test_hosted_node_emits_events_and_logs_with_name(self, launch) -> None:
         node = Node(
             package="robot_state_publisher",
             executable="robot_state_publisher",
@@ -241,7 +241,7 @@ class TestHostedNodes:
         assert node.node_name == "/robot/rsp"
         assert done.succeeded
 
-    async def test_a_node_that_cannot_start(self, launch) -> None:
+    async def test_node_that_fails_to_start_is_reported(self, launch) -> None:
         done = await launch(
             Node(package="robot_state_publisher", executable="robot_state_publisher", on_exit=[LogInfo(msg="gone")]),
             LogInfo(msg="others go on"),
@@ -252,7 +252,7 @@ class TestHostedNodes:
         assert done.messages == ["others go on", "gone"]
         assert not done.succeeded
 
-    async def test_shutdown_process_ends_one(self, launch) -> None:
+    async def test_shutdown_process_ends_one_node(self, launch) -> None:
         node = Node(
             package="tf2_ros",
             executable="static_transform_publisher",
@@ -263,7 +263,7 @@ class TestHostedNodes:
         assert "[INFO] [static_transform_publisher-1]: has finished cleanly" in done.err
         assert done.succeeded
 
-    async def test_parameters_of_a_file_reach_it(self, launch, write: Write) -> None:
+    async def test_parameter_file_reaches_hosted_node(self, launch, write: Write) -> None:
         path = write("p.yaml", "robot_state_publisher: {ros__parameters: {publish_frequency: 30.0}}")
         seen: list[float] = []
 
@@ -281,7 +281,7 @@ class TestHostedNodes:
         )
         assert seen == [30.0]
 
-    async def test_positions_of_a_command_reach_the_library(self, launch, write: Write) -> None:
+    async def test_source_positions_of_xacro_command_are_kept(self, launch, write: Write) -> None:
         path = write("r.urdf", "\n\n" + URDF)
         lines: list[int] = []
 

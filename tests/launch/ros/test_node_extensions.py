@@ -29,7 +29,7 @@ class Remapping(NodeActionExtension):
 
 class Broken:
     def __init__(self) -> None:
-        raise RuntimeError("no licence")
+        raise RuntimeError("no license")
 
 
 @dataclass
@@ -62,14 +62,14 @@ def tell(tmp_path: Path, **options: Any) -> Node:
     return Node(executable=str(program), name="talker", namespace="ns", output="screen", **options)
 
 
-async def test_a_process_is_given_what_they_say(launch, install, tmp_path: Path) -> None:
+async def test_extension_changes_process_arguments(launch, install, tmp_path: Path) -> None:
     install(mine=Remapping)
     done = await launch(tell(tmp_path))
     words = json.loads(done.out.partition("] ")[2])
     assert words == ["--ros-args", "-r", "__node:=other", "-r", "__ns:=/ns", "-r", "chatter:=mine"]
 
 
-async def test_a_node_in_the_launchers_process_too(launch, install, tmp_path: Path) -> None:
+async def test_extension_changes_hosted_node(launch, install, tmp_path: Path) -> None:
     install(mine=Remapping)
     urdf = '<robot name="r"><link name="base"/></robot>'
     options: dict[str, Any] = {"parameters": [{"robot_description": urdf}], "namespace": "ns", "name": "given"}
@@ -79,14 +79,14 @@ async def test_a_node_in_the_launchers_process_too(launch, install, tmp_path: Pa
     assert "[ns.other]" in done.err
 
 
-async def test_one_that_cannot_be_loaded(launch, install, tmp_path: Path) -> None:
+async def test_extension_that_cannot_be_loaded_is_reported(launch, install, tmp_path: Path) -> None:
     install(broken=Broken)
     done = await launch(tell(tmp_path))
     assert not done.succeeded
-    assert "error[LAUNCH155]: the node extension 'broken' cannot be loaded: no licence" in done.err
+    assert "error[LAUNCH155]: the node extension 'broken' cannot be loaded: no license" in done.err
 
 
-async def test_without_any(launch, install, tmp_path: Path) -> None:
+async def test_node_without_extensions_has_default_arguments(launch, install, tmp_path: Path) -> None:
     install()
     done = await launch(tell(tmp_path))
     assert json.loads(done.out.partition("] ")[2]) == ["--ros-args", "-r", "__node:=talker", "-r", "__ns:=/ns"]

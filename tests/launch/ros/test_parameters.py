@@ -39,11 +39,11 @@ def message_of(error: BaseException) -> str:
 
 
 class TestParameters:
-    def test_python_values_stay_what_they_are(self, context: LaunchContext) -> None:
+    def test_python_values_keep_their_types(self, context: LaunchContext) -> None:
         given = {"a": 1, "b": 1.5, "c": True, "d": "true", "e": [1, 2], "f": ["x", "y"], "g": [1, 2.5], "h": ""}
         assert values(context, given) == {**given, "g": [1.0, 2.5]}
 
-    def test_substitutions_follow_yaml(self, context: LaunchContext) -> None:
+    def test_substitutions_are_parsed_as_yaml(self, context: LaunchContext) -> None:
         found = values(
             context,
             {
@@ -68,25 +68,27 @@ class TestParameters:
             ("list", list[int], [1, 2]),
         ],
     )
-    def test_typed_values(self, context: LaunchContext, name: str, kind: Any, value: Any) -> None:
+    def test_parameter_value_is_converted_to_type(
+        self, context: LaunchContext, name: str, kind: Any, value: Any
+    ) -> None:
         context.launch_configurations["list"] = "[1, 2]"
         found = values(context, {"p": ParameterValue(LaunchConfiguration(name), value_type=kind)})
         assert found == {"p": value}
         assert type(found["p"]) is type(value)
 
-    def test_a_value_of_another_type(self, context: LaunchContext) -> None:
+    def test_value_of_wrong_type_is_rejected(self, context: LaunchContext) -> None:
         with pytest.raises(ValueError) as caught:
             values(context, {"p": ParameterValue(LaunchConfiguration("word"), value_type=int)})
         assert "parameter 'p' is not of the requested type int" in message_of(caught.value)
 
-    def test_nested_dictionaries_and_substituted_names(self, context: LaunchContext) -> None:
+    def test_nested_dictionaries_and_substituted_names_are_flattened(self, context: LaunchContext) -> None:
         found = values(context, {"zeros": {"joint": 1.0, ("n", LaunchConfiguration("number")): 2.0}, "a.b": 1})
         assert found == {"zeros.joint": 1.0, "zeros.n3": 2.0, "a.b": 1}
 
-    def test_later_ones_win(self, context: LaunchContext) -> None:
+    def test_later_values_override_earlier(self, context: LaunchContext) -> None:
         assert values(context, {"a": 1, "b": 1}, {"a": 2}, Parameter("b", 3)) == {"a": 2, "b": 3}
 
-    def test_a_description_that_is_read_as_yaml_gives_one_error_with_the_fix(self, context: LaunchContext) -> None:
+    def test_untyped_description_is_one_error_with_fix(self, context: LaunchContext) -> None:
         with pytest.raises(LinkwrightError) as caught:
             values(context, {"robot_description": LaunchConfiguration("model")})
         (diagnostic,) = caught.value.diagnostics
@@ -96,7 +98,7 @@ class TestParameters:
         assert diagnostic.span is not None
         assert diagnostic.span.file == __file__
 
-    def test_a_description_without_colons_passes_unfolded(self, context: LaunchContext) -> None:
+    def test_description_without_colons_is_passed_unchanged(self, context: LaunchContext) -> None:
         text = '<robot name="r">\n  <link name="a"/>\n</robot>'
         context.launch_configurations["model"] = text
         assert values(context, {"robot_description": LaunchConfiguration("model")}) == {"robot_description": text}
@@ -110,13 +112,13 @@ class TestParameters:
             ("[[1], [2]]", "is a list of items of type list"),
         ],
     )
-    def test_what_no_parameter_can_be(self, context: LaunchContext, value: str, message: str) -> None:
+    def test_unsupported_yaml_values_are_rejected(self, context: LaunchContext, value: str, message: str) -> None:
         context.launch_configurations["odd"] = value
         with pytest.raises(TypeError) as caught:
             values(context, {"p": LaunchConfiguration("odd")})
         assert message in message_of(caught.value)
 
-    def test_nothing_is_an_empty_text(self, context: LaunchContext) -> None:
+    def test_empty_substitution_is_empty_string(self, context: LaunchContext) -> None:
         context.launch_configurations["nothing"] = ""
         assert values(context, {"p": LaunchConfiguration("nothing")}) == {"p": ""}
 
@@ -132,16 +134,16 @@ class TestParameters:
             ("/path.yaml", "'parameters' of a node must be a list"),
         ],
     )
-    def test_forms_that_are_refused_when_the_node_is_made(self, parameters: Any, message: str) -> None:
+    def test_invalid_parameter_forms_are_rejected_at_construction(self, parameters: Any, message: str) -> None:
         with pytest.raises(TypeError) as caught:
             normalize_parameters(parameters)
         assert message in message_of(caught.value)
 
-    def test_plain_texts_are_not_read_as_yaml(self, context: LaunchContext) -> None:
+    def test_plain_strings_are_not_parsed_as_yaml(self, context: LaunchContext) -> None:
         given = {"a": "1", "b": ["true", "2"], "c": "{x: y}"}
         assert values(context, given) == given
 
-    def test_evaluated_forms(self, context: LaunchContext) -> None:
+    def test_evaluated_parameters_keep_files_and_flatten_dictionaries(self, context: LaunchContext) -> None:
         given = normalize_parameters(["/a.yaml", {"n": {"x": 1}, "l": [1, 2.5]}, Path("/b.yaml")])
         assert evaluate_parameters(context, given) == (Path("/a.yaml"), {"n.x": 1, "l": (1.0, 2.5)}, Path("/b.yaml"))
 
@@ -171,13 +173,15 @@ listener:
             ("/other", {"everywhere": 1, "deep.x": 1}),
         ],
     )
-    def test_sections_by_name(self, context: LaunchContext, write: Write, node: str, expected: dict) -> None:
+    def test_parameter_file_sections_match_node_name(
+        self, context: LaunchContext, write: Write, node: str, expected: dict
+    ) -> None:
         path = write("p.yaml", self.FILE)
         assert values(context, str(path), node=node) == expected
         assert values(context, path, node=node) == expected
         assert values(context, ParameterFile(path), node=node) == expected
 
-    def test_substitutions_inside(self, context: LaunchContext, write: Write) -> None:
+    def test_substitutions_in_parameter_file_are_evaluated(self, context: LaunchContext, write: Write) -> None:
         path = write(
             "p.yaml",
             "/**: {ros__parameters: {a: $(var number), b: $(env LW_NONE x), c: '$(var n$(var word) d)', "
@@ -199,7 +203,9 @@ listener:
             ("/**: {ros__parameters: {a: $(var number}}", "has no closing parenthesis"),
         ],
     )
-    def test_faults(self, context: LaunchContext, write: Write, text: str, message: str) -> None:
+    def test_invalid_parameter_files_are_reported(
+        self, context: LaunchContext, write: Write, text: str, message: str
+    ) -> None:
         with pytest.raises(LinkwrightError) as caught:
             values(context, ParameterFile(write("p.yaml", text), allow_substs=True))
         (diagnostic,) = caught.value.diagnostics
@@ -207,11 +213,11 @@ listener:
         assert diagnostic.span is not None
         assert diagnostic.span.file.endswith("p.yaml")
 
-    def test_comments_are_left_alone(self, context: LaunchContext, write: Write) -> None:
+    def test_comments_in_parameter_file_are_kept(self, context: LaunchContext, write: Write) -> None:
         text = "/**:  # $(nothing of the kind)\n  ros__parameters:\n    a: '# $(var number)'  # $(var none)\n"
         assert values(context, ParameterFile(write("p.yaml", text), allow_substs=True)) == {"a": "# 3"}
 
-    def test_the_path_of_a_file_with_substitutions(self, context: LaunchContext, write: Write) -> None:
+    def test_file_with_substitutions_is_written_and_cleaned_up(self, context: LaunchContext, write: Write) -> None:
         file = ParameterFile(write("p.yaml", "/**: {ros__parameters: {a: $(var number)}}"), allow_substs=True)
         made = file.evaluate(context)
         assert file.param_file == made
@@ -219,12 +225,12 @@ listener:
         file.cleanup()
         assert not made.exists()
 
-    def test_a_missing_file(self, context: LaunchContext, tmp_path: Path) -> None:
+    def test_missing_parameter_file_raises_file_not_found(self, context: LaunchContext, tmp_path: Path) -> None:
         with pytest.raises(FileNotFoundError) as caught:
             values(context, str(tmp_path / "none.yaml"))
         assert "none.yaml' does not exist" in message_of(caught.value)
 
-    def test_an_empty_file(self, context: LaunchContext, write: Write) -> None:
+    def test_empty_parameter_file_is_accepted(self, context: LaunchContext, write: Write) -> None:
         assert values(context, str(write("p.yaml", ""))) == {}
 
 
@@ -237,7 +243,7 @@ listener:
         ("str", "1,a", ["1", "a"]),
     ],
 )
-def test_lists_of_a_type_in_markup(context: LaunchContext, kind: str, text: str, items: list[Any]) -> None:
+def test_typed_lists_are_parsed_in_xml_and_yaml(context: LaunchContext, kind: str, text: str, items: list[Any]) -> None:
     for named in (f"list_of_{kind}", f"list[{kind}]"):
         xml = f'<param name="p" value="{text}" value-sep="," type="{named}"/>'
         assert values(context, *parsed(f'<launch><node pkg="a" exec="b">{xml}</node></launch>')) == {"p": items}
@@ -255,7 +261,7 @@ def parsed(text: str) -> list[Any]:
     return node._Node__parameters
 
 
-def test_a_parameter_of_the_scope_may_have_a_default(context: LaunchContext) -> None:
+def test_parameter_substitution_accepts_default(context: LaunchContext) -> None:
     assert ParameterSubstitution("none", default="x").perform(context) == "x"
     assert ParameterSubstitution("none", default=[LaunchConfiguration("number"), "4"]).perform(context) == "34"
     assert ParameterSubstitution("none", default=5).perform(context) == "5"

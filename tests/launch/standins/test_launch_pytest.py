@@ -209,23 +209,23 @@ def outcomes(output):
 
 
 @pytest.mark.parametrize("options", [STRICT, ["-p", "launch_pytest.plugin"], ["-o", "asyncio_mode=auto"]])
-def test_a_launch_for_each_test(tmp_path, options):
+def test_function_scope_launches_once_per_test(tmp_path, options):
     output = run_pytest(tmp_path, HEAD + FUNCTION_SCOPE, *options)
     assert outcomes(output) == {"passed": 5}, output
 
 
-def test_a_launch_for_all_tests_of_a_module(tmp_path):
+def test_module_scope_launches_once(tmp_path):
     output = run_pytest(tmp_path, HEAD + MODULE_SCOPE)
     assert outcomes(output) == {"passed": 9}, output
     assert len(re.findall(r"^PASSED test_it.py::test_parts\S*\[shutdown_test\]", output, re.MULTILINE)) == 2
 
 
-def test_nodes_of_ours_are_processes(tmp_path):
+def test_own_nodes_run_as_processes(tmp_path):
     output = run_pytest(tmp_path, HEAD + NODE)
     assert outcomes(output) == {"passed": 1}, output
 
 
-def test_mistakes_are_told(tmp_path):
+def test_fixture_errors_are_reported(tmp_path):
     output = run_pytest(tmp_path, HEAD + MISTAKES)
     assert outcomes(output) == {"failed": 2, "errors": 4, "skipped": 1, "warning": 1}, output
     for text in (
@@ -239,11 +239,11 @@ def test_mistakes_are_told(tmp_path):
         assert text in output
 
 
-def test_the_second_part_is_skipped_where_the_first_fails(tmp_path):
+def test_shutdown_part_is_skipped_if_first_part_fails(tmp_path):
     assert outcomes(run_pytest(tmp_path, HEAD + FIRST_PART_FAILS)) == {"failed": 1, "skipped": 1}
 
 
-def test_pytest_without_launch_tests_imports_nothing_of_ours_but_the_plugin(tmp_path):
+def test_pytest_plugin_imports_nothing_without_launch_tests(tmp_path):
     text = """
     import sys
 
@@ -256,7 +256,7 @@ def test_pytest_without_launch_tests_imports_nothing_of_ours_but_the_plugin(tmp_
     assert "linkwright-pytest-1" in output
 
 
-def test_the_real_one_comes_first(tmp_path):
+def test_real_launch_pytest_takes_precedence(tmp_path):
     """A module of that name that is not ours is left to the plugin that it brings itself."""
     real = tmp_path / "launch_pytest"
     real.mkdir()

@@ -133,18 +133,18 @@ def run(tmp_path: Path):
     return run_file
 
 
-def test_tests_run_beside_the_launch_and_after_it(run) -> None:
+def test_active_and_post_shutdown_tests_run(run) -> None:
     done = run(TALKER, "speed:=2")
     assert done.returncode == 0, done.stderr
     assert re.findall(r"Ran (\d) tests?", done.stderr) == ["3", "1"]
 
 
-def test_arguments_are_listed(run) -> None:
+def test_show_args_lists_arguments(run) -> None:
     done = run(TALKER, "--show-args")
     assert (done.returncode, "'speed':" in done.stdout) == (0, True), done.stderr
 
 
-def test_each_parameter_is_a_launch_and_the_report_has_them_all(run, tmp_path: Path) -> None:
+def test_parametrized_launches_are_in_one_report(run, tmp_path: Path) -> None:
     done = run(PARAMETRIZED, "--junit-xml", "report.xml", "--package-name", "mine")
     assert done.returncode == 1, done.stderr
     report = ET.parse(tmp_path / "report.xml").getroot()
@@ -161,14 +161,14 @@ def test_each_parameter_is_a_launch_and_the_report_has_them_all(run, tmp_path: P
     assert "only zero" in failure.get("message", "")
 
 
-def test_a_launch_that_ends_before_its_tests_fails_them(run) -> None:
+def test_launch_that_ends_early_fails_its_tests(run) -> None:
     done = run(DIES)
     assert done.returncode == 1
     assert "Processes under test stopped before tests completed" in done.stdout
     assert re.search(r"Process 'ends-1' exited with 5\n#+ 'ends-1' output #+\ndone\n", done.stdout)
 
 
-def test_a_skipped_launch_skips_its_tests(run) -> None:
+def test_skipped_launch_skips_its_tests(run) -> None:
     done = run(SKIPPED)
     assert (done.returncode, "is skipped: not here" in done.stdout) == (0, True), done.stderr
 
@@ -181,7 +181,7 @@ def test_a_skipped_launch_skips_its_tests(run) -> None:
         ("\ndef test_plain():\n    pass\n\ndef generate_test_description():\n    pass\n", (), "1 passed"),
     ],
 )
-def test_a_marked_file_is_one_test_of_pytest(run, text: str, words: tuple[str, ...], outcome: str) -> None:
+def test_marked_file_is_one_pytest_test(run, text: str, words: tuple[str, ...], outcome: str) -> None:
     done = run(text, "pytest", *words)
     assert outcome in done.stdout, done.stdout + done.stderr
     assert ("only zero" in done.stdout) is ("failed" in outcome)
@@ -195,9 +195,7 @@ def test_a_marked_file_is_one_test_of_pytest(run, text: str, words: tuple[str, .
         ("def generate_test_description(speed):\n    pass\n", (), "has unexpected extra argument 'speed'"),
     ],
 )
-def test_what_is_wrong_with_a_file_or_its_arguments_is_told(
-    run, text: str, words: tuple[str, ...], message: str
-) -> None:
+def test_invalid_file_and_arguments_are_reported(run, text: str, words: tuple[str, ...], message: str) -> None:
     done = run(text, *words)
     assert (done.returncode, message in done.stderr) == (2, True), done.stderr
     assert "Traceback" not in done.stderr
@@ -216,11 +214,11 @@ def test_what_is_wrong_with_a_file_or_its_arguments_is_told(
         (["b", "a"], False, None),
     ],
 )
-def test_texts_are_found_in_order(expected, strict, found) -> None:
+def test_texts_are_matched_in_order(expected, strict, found) -> None:
     assert build_text_match(expected, strict=strict)("abc") == found
 
 
-def test_lines_are_found_in_order() -> None:
+def test_lines_are_matched_in_order() -> None:
     lines = ["one", "two", "three"]
     assert build_line_match(["ne", re.compile("th")])(lines) == (0, 3)
     assert build_line_match(["one", "three"], strict=True)(lines) is None
@@ -229,7 +227,7 @@ def test_lines_are_found_in_order() -> None:
         expect_output("a", lines=["a"], expected_text="a")
 
 
-def test_a_text_that_is_missing_is_told_with_the_lines_near_the_last_one() -> None:
+def test_missing_text_is_reported_with_nearby_lines() -> None:
     checker = SequentialTextChecker([f"line {number}\n" for number in range(9)])
     checker.assertInText("line 4")
     with pytest.raises(AssertionError) as caught:

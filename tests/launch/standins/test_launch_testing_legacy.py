@@ -37,27 +37,27 @@ def tests() -> Watched:
     return Watched()
 
 
-def test_the_launch_ends_with_0_once_all_tests_passed(tests) -> None:
+def test_launch_returns_0_if_all_tests_pass(tests) -> None:
     tests.service.add_fixture_action(tests.description, python(LASTS))
     tests.service.add_test_action(tests.description, python("pass"))
     tests.service.add_test_action(tests.description, OpaqueFunction(function=lambda _: None))
     assert tests.run() == 0
 
 
-def test_the_launch_ends_with_the_status_of_the_test_that_failed(tests) -> None:
+def test_launch_returns_status_of_failed_test(tests) -> None:
     tests.service.add_test_action(tests.description, python(LASTS))
     tests.service.add_test_action(tests.description, python("raise SystemExit(7)"))
     assert tests.run() == 7
 
 
-def test_a_fixture_that_ends_ends_the_launch(tests) -> None:
+def test_ended_fixture_fails_launch(tests) -> None:
     tests.service.add_test_action(tests.description, python(LASTS))
     tests.service.add_fixture_action(tests.description, python("pass"), exit_allowed=[3])
     assert tests.run() == 1
 
 
 @pytest.mark.parametrize(("expected", "status"), [(b"second", 0), (b"third", 1)])
-def test_output_is_compared(tests, expected, status) -> None:
+def test_process_output_is_compared_with_expected_lines(tests, expected, status) -> None:
     talker = python("print('pid 7'); print('the first'); print('the second')")
     tests.description.add_action(talker)
     wanted = output.create_output_lines_test([b"first", expected])
@@ -65,7 +65,7 @@ def test_output_is_compared(tests, expected, status) -> None:
     assert tests.run() == status
 
 
-def test_outputs_are_filtered_and_compared_with_files(tmp_path) -> None:
+def test_output_filters_and_expected_files_are_read(tmp_path) -> None:
     assert output.create_output_lines_filter()(b"pid 7\nthe first\n") == b"the first\n"
     (tmp_path / "lines.txt").write_bytes(b"first\n")
     (tmp_path / "patterns.regex").write_bytes(b"f.rst\n")

@@ -41,7 +41,7 @@ def started(monkeypatch: pytest.MonkeyPatch) -> list[dict[str, Any]]:
     return made
 
 
-def test_a_server_has_one_world(started: list[dict[str, Any]]) -> None:
+def test_gz_server_passes_world_file_or_string(started: list[dict[str, Any]]) -> None:
     for given in ({"world_sdf_file": "a.sdf"}, {"world_sdf_string": [TextSubstitution(text="<sdf/>")]}):
         GzServer(**given, use_composition=True).execute(LaunchContext())
     assert [words["parameters"] for words in started] == [
@@ -50,7 +50,7 @@ def test_a_server_has_one_world(started: list[dict[str, Any]]) -> None:
     ]
 
 
-def test_a_model_is_put_somewhere(started: list[dict[str, Any]]) -> None:
+def test_gz_spawn_model_passes_pose_and_topic(started: list[dict[str, Any]]) -> None:
     GzSpawnModel(topic="robot_description", entity_name="mbot", z=0.2, yaw="1.5").execute(LaunchContext())
     words = started[0]["arguments"]
     pairs = dict(zip(words[::2], words[1::2], strict=True))
@@ -59,7 +59,7 @@ def test_a_model_is_put_somewhere(started: list[dict[str, Any]]) -> None:
     assert "-file" not in pairs
 
 
-def test_a_bridge_has_parameters_of_its_own(started: list[dict[str, Any]]) -> None:
+def test_ros_gz_bridge_passes_extra_parameters(started: list[dict[str, Any]]) -> None:
     bridge = RosGzBridge(bridge_name="hands", config_file="b.yaml", extra_bridge_params=[{"lazy": True}])
     bridge.execute(LaunchContext())
     assert started[0]["name"] == "hands"
@@ -67,7 +67,7 @@ def test_a_bridge_has_parameters_of_its_own(started: list[dict[str, Any]]) -> No
     assert len(started[0]["parameters"]) == 2
 
 
-def test_tags(started: list[dict[str, Any]], write: Write) -> None:
+def test_gz_tags_create_actions(started: list[dict[str, Any]], write: Write) -> None:
     description = load_launch_file(write("a.launch.xml", TAGS))
     for entity in description.entities:
         entity.execute(LaunchContext())

@@ -35,7 +35,7 @@ MISSING = {
 
 
 @pytest.mark.parametrize("target", TARGETS, ids=lambda target: target.name)
-def test_each_package_of_the_course_has_a_wheel(target: Target) -> None:
+def test_all_packages_of_course_have_wheels(target: Target) -> None:
     packages = locked_packages()
     files = list(needed_files(target, ["learn"], packages))
     needed = {key.partition(" ")[0] for key in needed_packages(target, ["learn"], packages)}
@@ -45,13 +45,13 @@ def test_each_package_of_the_course_has_a_wheel(target: Target) -> None:
 
 
 @pytest.mark.parametrize("target", TARGETS, ids=lambda target: target.name)
-def test_the_parts_that_a_system_lacks_are_known(target: Target) -> None:
+def test_missing_parts_match_table_of_system(target: Target) -> None:
     missing = {part.packages[0] for part in missing_parts(target, ["learn"], locked_packages())}
     known = MISSING[target.system]
     assert missing == {name for name, pythons in known.items() if pythons == "all" or target.python in pythons}
 
 
-def test_each_package_that_only_some_systems_have_belongs_to_a_known_part() -> None:
+def test_packages_of_some_systems_belong_to_listed_parts() -> None:
     direct = {
         edge["key"].partition(" ")[0] for extra in locked_packages()["linkwright"]["extras"].values() for edge in extra
     }
@@ -60,14 +60,14 @@ def test_each_package_that_only_some_systems_have_belongs_to_a_known_part() -> N
     assert sometimes - OTHERWISE == {name for part in PARTS for name in part.packages}
 
 
-def test_the_terminal_of_windows_has_its_package() -> None:
+def test_windows_targets_need_pywinpty() -> None:
     assert all(
         ("pywinpty" in package_names(target, ["learn"], locked_packages())) == (target.system == "windows")
         for target in TARGETS
     )
 
 
-def test_the_table_is_that_of_the_lock() -> None:
+def test_package_table_matches_uv_lock() -> None:
     specification = importlib.util.spec_from_file_location("pack_wheels", REPOSITORY / "tools" / "pack_wheels.py")
     assert specification is not None
     assert specification.loader is not None

@@ -32,7 +32,7 @@ def wheels(folder: Path) -> set[str]:
     return {path.name for path in (folder / "wheels").iterdir()}
 
 
-def test_a_pack_has_each_wheel_once(pack: Path) -> None:
+def test_pack_contains_each_wheel_once(pack: Path) -> None:
     assert wheels(pack) == {
         "linkwright-1.0-py3-none-any.whl",
         "linkwright_core-1.0-py3-none-any.whl",
@@ -46,7 +46,7 @@ def test_a_pack_has_each_wheel_once(pack: Path) -> None:
     }
 
 
-def test_each_target_has_its_list_of_packages(pack: Path) -> None:
+def test_pack_has_requirements_of_each_target(pack: Path) -> None:
     lists = {path.stem: path.read_text() for path in (pack / "requirements").iterdir()}
     assert set(lists) == {
         "windows-py3.12",
@@ -60,7 +60,7 @@ def test_each_target_has_its_list_of_packages(pack: Path) -> None:
     assert "\nlinkwright[learn]==1.0 --hash=" in lists["windows-py3.12"]
 
 
-def test_a_pack_has_an_installer_for_each_system(pack: Path) -> None:
+def test_pack_has_installer_for_each_system(pack: Path) -> None:
     assert {"install.sh", "install.command", "install.bat", "install.py", "README.txt", "no-python.txt"} <= {
         path.name for path in pack.iterdir()
     }
@@ -72,13 +72,13 @@ def test_a_pack_has_an_installer_for_each_system(pack: Path) -> None:
     assert batch.count(b"\r\n") == batch.count(b"\n")
 
 
-def test_the_checksums_are_those_of_sha256sum(pack: Path) -> None:
+def test_checksums_match_sha256sum(pack: Path) -> None:
     if shutil.which("sha256sum") is None:
         pytest.skip("there is no sha256sum")
     subprocess.run(["sha256sum", "--check", "--quiet", "SHA256SUMS"], cwd=pack, check=True)
 
 
-def test_an_interrupted_pack_is_continued(pack: Path, index: FakeIndex, capsys: pytest.CaptureFixture[str]) -> None:
+def test_interrupted_pack_is_continued(pack: Path, index: FakeIndex, capsys: pytest.CaptureFixture[str]) -> None:
     (pack / "SHA256SUMS").unlink()
     (pack / "wheels" / "pure-1.0-py3-none-any.whl").write_bytes(b"half of it")
     assert main(["learn", "pack", "--check", str(pack)]) == 1
@@ -89,19 +89,19 @@ def test_an_interrupted_pack_is_continued(pack: Path, index: FakeIndex, capsys: 
     assert "Linux x86-64, Python 3.13: 0 of 4 wheels to download, 0 MB" in errors
 
 
-def test_a_smaller_pack_loses_the_wheels_that_it_does_not_need(pack: Path, index: FakeIndex) -> None:
+def test_smaller_pack_removes_unneeded_wheels(pack: Path, index: FakeIndex) -> None:
     assert index.pack(pack, *LINUX) == 0
     assert not any("win" in name for name in wheels(pack))
     assert [path.name for path in (pack / "requirements").iterdir()] == ["linux-x86_64-py3.13.txt"]
 
 
-def test_of_two_wheels_the_one_for_the_older_system_is_taken(index: FakeIndex, tmp_path: Path) -> None:
+def test_wheel_for_oldest_system_is_chosen(index: FakeIndex, tmp_path: Path) -> None:
     assert index.pack(tmp_path / "pack", "--systems", "macos-arm64", "--python", "3.13") == 0
     assert "native-1.0-cp313-cp313-macosx_11_0_arm64.whl" in wheels(tmp_path / "pack")
     assert "native-1.0-cp313-cp313-macosx_14_0_arm64.whl" not in wheels(tmp_path / "pack")
 
 
-def test_a_wheel_for_a_newer_system_does_not_fit(
+def test_wheel_for_newer_system_is_rejected(
     index: FakeIndex, tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
     assert index.pack(tmp_path / "pack", "--systems", "linux-aarch64", "--python", "3.13") == 1
@@ -111,7 +111,7 @@ def test_a_wheel_for_a_newer_system_does_not_fit(
     )
 
 
-def test_a_damaged_file_is_found(pack: Path, capsys: pytest.CaptureFixture[str]) -> None:
+def test_damaged_and_missing_wheels_are_reported(pack: Path, capsys: pytest.CaptureFixture[str]) -> None:
     assert main(["learn", "pack", "--check", str(pack)]) == 0
     file = pack / "wheels" / "pure-1.0-py3-none-any.whl"
     file.write_bytes(file.read_bytes()[:-1] + b"x")
@@ -123,7 +123,7 @@ def test_a_damaged_file_is_found(pack: Path, capsys: pytest.CaptureFixture[str])
     assert "error[LEARN305]: 'wheels/pip-9.0-py3-none-any.whl' cannot be read: No such file" in errors
 
 
-def test_a_package_that_a_list_lacks_is_found(pack: Path, capsys: pytest.CaptureFixture[str]) -> None:
+def test_package_missing_from_requirements_is_reported(pack: Path, capsys: pytest.CaptureFixture[str]) -> None:
     path = pack / "requirements" / "windows-py3.13.txt"
     before = path.read_text()
     path.write_text("".join(line for line in before.splitlines(keepends=True) if not line.startswith("pure")))
@@ -145,7 +145,7 @@ def test_a_package_that_a_list_lacks_is_found(pack: Path, capsys: pytest.Capture
         (["--docs", "."], "error[LEARN309]: '.' has no index.html"),
     ],
 )
-def test_unknown_names_are_errors(
+def test_unknown_options_are_errors(
     index: FakeIndex, tmp_path: Path, words: list[str], message: str, capsys: pytest.CaptureFixture[str],
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:  # fmt: skip
@@ -156,7 +156,7 @@ def test_unknown_names_are_errors(
     assert "hint" in errors
 
 
-def test_a_folder_with_other_files_is_left_alone(
+def test_folder_with_other_files_is_refused(
     index: FakeIndex, tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
     (tmp_path / "mine").mkdir()
@@ -168,7 +168,7 @@ def test_a_folder_with_other_files_is_left_alone(
     assert "is not a pack: No such file or directory" in capsys.readouterr().err
 
 
-def test_a_wheel_that_the_index_lacks_is_one_clear_error(
+def test_wheel_missing_from_index_is_one_error(
     index: FakeIndex, tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
     (index.folder / "pure-1.0-py3-none-any.whl").unlink()
@@ -179,7 +179,7 @@ def test_a_wheel_that_the_index_lacks_is_one_clear_error(
     assert "repeat the command to continue" in errors
 
 
-def test_a_wheel_with_other_bytes_is_not_taken(
+def test_wheel_with_wrong_hash_is_rejected(
     index: FakeIndex, tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
     write_wheel(index.folder, "pure", requires=["evil"])
@@ -187,7 +187,7 @@ def test_a_wheel_with_other_bytes_is_not_taken(
     assert "error[LEARN303]: pip cannot get " in capsys.readouterr().err
 
 
-def test_a_source_that_needs_a_compiler_cannot_be_packed(
+def test_source_that_needs_compiler_is_rejected(
     index: FakeIndex, tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
     source = write_source(index.folder, "source", tag="cp313-cp313-linux_x86_64")
@@ -196,7 +196,7 @@ def test_a_source_that_needs_a_compiler_cannot_be_packed(
     assert "the wheel that was built from 'source-1.0.tar.gz' works only on this system" in capsys.readouterr().err
 
 
-def test_both_wheels_of_linkwright_are_needed(
+def test_pack_requires_both_linkwright_wheels(
     index: FakeIndex, tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
     index.own.pop()
@@ -204,7 +204,7 @@ def test_both_wheels_of_linkwright_are_needed(
     assert "error[LEARN302]: a pack needs a wheel of linkwright and one of linkwright-core" in capsys.readouterr().err
 
 
-def test_a_wheel_that_names_a_checkout_is_not_packed(
+def test_wheel_that_depends_on_local_files_is_rejected(
     index: FakeIndex, tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
     write_wheel(index.own[1].parent, "linkwright", requires=["linkwright-core @ file:///home/me/core"])
@@ -213,7 +213,7 @@ def test_a_wheel_that_names_a_checkout_is_not_packed(
 
 
 @needs_limits
-def test_a_full_disk_is_one_clear_error(index: FakeIndex, tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+def test_full_disk_is_one_error(index: FakeIndex, tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     with full_disk(50):
         status = index.pack(tmp_path / "pack", *LINUX)
     errors = capsys.readouterr().err
@@ -222,7 +222,7 @@ def test_a_full_disk_is_one_clear_error(index: FakeIndex, tmp_path: Path, capsys
     assert "free disk space" in errors
 
 
-def test_the_documentation_is_copied(index: FakeIndex, tmp_path: Path) -> None:
+def test_documentation_is_copied_into_pack(index: FakeIndex, tmp_path: Path) -> None:
     (tmp_path / "site" / "zh").mkdir(parents=True)
     for name in ("index.html", "zh/index.html"):
         (tmp_path / "site" / name).write_text("page")
@@ -255,7 +255,7 @@ def install(pack: Path, home: Path, *words: str, **variables: str) -> subprocess
     return subprocess.run(command, env=environment, capture_output=True, text=True, encoding="utf-8", check=False)
 
 
-def test_the_installer_installs_and_tries_linkwright(installable: Path, tmp_path: Path) -> None:
+def test_installer_installs_and_runs_linkwright(installable: Path, tmp_path: Path) -> None:
     home = tmp_path / "home of a learner"
     done = install(installable, home)
     assert (done.returncode, done.stderr) == (0, "")
@@ -265,7 +265,7 @@ def test_the_installer_installs_and_tries_linkwright(installable: Path, tmp_path
     assert (again.returncode, again.stderr) == (0, "")
 
 
-def test_the_installer_refuses_a_damaged_wheel(installable: Path, tmp_path: Path) -> None:
+def test_installer_rejects_damaged_wheel(installable: Path, tmp_path: Path) -> None:
     write_wheel(installable / "wheels", "pure", requires=["other"])
     done = install(installable, tmp_path / "home")
     assert done.returncode == 1
@@ -273,7 +273,7 @@ def test_the_installer_refuses_a_damaged_wheel(installable: Path, tmp_path: Path
     assert "这一步失败了" in done.stderr
 
 
-def test_the_installer_leaves_a_folder_of_the_user_alone(installable: Path, tmp_path: Path) -> None:
+def test_installer_refuses_folder_that_is_not_an_environment(installable: Path, tmp_path: Path) -> None:
     (tmp_path / "home" / "linkwright").mkdir(parents=True)
     (tmp_path / "home" / "linkwright" / "homework.urdf").write_text("mine")
     done = install(installable, tmp_path / "home")
@@ -282,14 +282,14 @@ def test_the_installer_leaves_a_folder_of_the_user_alone(installable: Path, tmp_
     assert "不是 Python 环境" in done.stderr
 
 
-def test_the_installer_names_the_targets_of_the_pack(pack: Path, tmp_path: Path) -> None:
+def test_installer_names_targets_of_pack(pack: Path, tmp_path: Path) -> None:
     shutil.rmtree(pack / "requirements")
     done = install(pack, tmp_path / "home")
     assert done.returncode == 1
     assert "It has: windows, linux-x86_64; Python 3.12, 3.13." in done.stderr
 
 
-def test_without_a_python_the_installer_says_what_to_do(pack: Path, tmp_path: Path) -> None:
+def test_installer_gives_advice_without_python(pack: Path, tmp_path: Path) -> None:
     for name in ("install.sh",):
         script = (pack / name).read_text().replace("/usr/local/bin/", "/nowhere/")
         (pack / name).write_text(script)
@@ -303,7 +303,7 @@ def test_without_a_python_the_installer_says_what_to_do(pack: Path, tmp_path: Pa
     assert "没有合适的 Python" in done.stderr
 
 
-def test_an_archive_of_python_is_unpacked_for_computers_without_one(pack: Path, tmp_path: Path) -> None:
+def test_installer_unpacks_python_archive_if_python_is_missing(pack: Path, tmp_path: Path) -> None:
     if sys.platform != "linux":
         pytest.skip("for Linux")
     (tmp_path / "python" / "bin").mkdir(parents=True)
@@ -324,7 +324,7 @@ def test_an_archive_of_python_is_unpacked_for_computers_without_one(pack: Path, 
     assert done.stdout == f"started {pack}/install.py\n"
 
 
-def test_a_pack_has_its_settings_in_both_languages(pack: Path) -> None:
+def test_pack_json_has_version_systems_and_missing_parts(pack: Path) -> None:
     settings = json.loads((pack / "pack.json").read_text(encoding="utf-8"))
     assert settings["version"] == "1.0"
     assert settings["systems"] == ["windows", "linux-x86_64"]

@@ -148,10 +148,10 @@ for folder in TEMPORARY_FOLDERS:
 TRAPS = """
 import os
 os.symlink("/etc/passwd", "outside")
-os.symlink("../neighbour/secret", "neighbour")
+os.symlink("../neighbor/secret", "neighbor")
 os.symlink(".", "inside")
 os.mkdir("package")
-os.symlink("../package/../../neighbour", "package/further")
+os.symlink("../package/../../neighbor", "package/further")
 os.symlink("data", "package/link")
 os.mkfifo("pipe")
 import socket
@@ -166,7 +166,7 @@ os.chmod("program", 0o4777)
 
 TRESPASS = """
 import ctypes, json, os, signal, socket, sys
-neighbour, grader, port, server = sys.argv[1], int(sys.argv[2]), int(sys.argv[3]), sys.argv[4]
+neighbor, grader, port, server = sys.argv[1], int(sys.argv[2]), int(sys.argv[3]), sys.argv[4]
 libc = ctypes.CDLL(None, use_errno=True)
 done = {}
 
@@ -189,14 +189,14 @@ def write(path):
     with open(path, "w") as file:
         file.write("mine")
 
-attempt("read a neighbour's file", lambda: open(neighbour + "/secret").read())
-attempt("list a neighbour's folder", lambda: os.listdir(neighbour))
-attempt("read by /proc/self/root", lambda: open("/proc/self/root" + neighbour + "/secret").read())
-attempt("read by the grader's root", lambda: open(f"/proc/{grader}/root{neighbour}/secret").read())
-attempt("write into a neighbour's folder", lambda: write(neighbour + "/new"))
-attempt("change a neighbour's file", lambda: write(neighbour + "/secret"))
-attempt("truncate a neighbour's file", lambda: os.truncate(neighbour + "/secret", 0))
-attempt("link a neighbour's file", lambda: os.link(neighbour + "/secret", "stolen"))
+attempt("read a neighbor's file", lambda: open(neighbor + "/secret").read())
+attempt("list a neighbor's folder", lambda: os.listdir(neighbor))
+attempt("read by /proc/self/root", lambda: open("/proc/self/root" + neighbor + "/secret").read())
+attempt("read by the grader's root", lambda: open(f"/proc/{grader}/root{neighbor}/secret").read())
+attempt("write into a neighbor's folder", lambda: write(neighbor + "/new"))
+attempt("change a neighbor's file", lambda: write(neighbor + "/secret"))
+attempt("truncate a neighbor's file", lambda: os.truncate(neighbor + "/secret", 0))
+attempt("link a neighbor's file", lambda: os.link(neighbor + "/secret", "stolen"))
 attempt("write above its folder", lambda: write("../above"))
 attempt("write into /var/tmp", lambda: write("/var/tmp/linkwright-sandbox-test"))
 attempt("write into Python", lambda: write(os.path.dirname(os.__file__) + "/linkwright_sandbox_test.py"))

@@ -57,7 +57,7 @@ def occupied(folder: Path) -> int:
     return sum(path.lstat().st_blocks * 512 for path in folder.rglob("*"))
 
 
-def test_a_fork_bomb_is_ended_with_all_its_processes(situation: str, student: Path) -> None:
+def test_fork_bomb_is_killed_with_all_processes(situation: str, student: Path) -> None:
     outcome = attack(situation, student, attacks.FORK_BOMB)
     assert outcome.exceeded in {Exceeded.PROCESSES, Exceeded.CPU_SECONDS}
     assert outcome.seconds < LIMITS.seconds
@@ -68,65 +68,65 @@ def test_daemons_end_with_their_run(situation: str, student: Path) -> None:
     assert (outcome.status, outcome.exceeded) == (0, None)
 
 
-def test_an_endless_loop_ends_at_its_processor_time(situation: str, student: Path) -> None:
+def test_endless_loop_ends_at_processor_time_limit(situation: str, student: Path) -> None:
     outcome = attack(situation, student, attacks.ENDLESS_LOOP, limits=replace(LIMITS, cpu_seconds=0.5))
     assert outcome.exceeded is Exceeded.CPU_SECONDS
     assert outcome.stdout == b"begun\n"
     assert outcome.seconds < LIMITS.seconds
 
 
-def test_processor_time_is_that_of_all_processes_together(situation: str, student: Path) -> None:
+def test_processor_time_limit_counts_all_processes(situation: str, student: Path) -> None:
     outcome = attack(situation, student, attacks.MANY_LOOPS, limits=replace(LIMITS, cpu_seconds=1.0))
     assert outcome.exceeded is Exceeded.CPU_SECONDS
     assert 1.0 <= outcome.cpu_seconds < 3.0
 
 
-def test_a_program_that_waits_ends_at_its_wall_time(situation: str, student: Path) -> None:
+def test_waiting_program_ends_at_wall_time_limit(situation: str, student: Path) -> None:
     outcome = attack(situation, student, attacks.SLEEP, limits=replace(LIMITS, seconds=0.5))
     assert (outcome.status, outcome.exceeded) == (-9, Exceeded.SECONDS)
 
 
-def test_no_file_is_larger_than_the_limit(situation: str, student: Path) -> None:
+def test_file_size_is_limited(situation: str, student: Path) -> None:
     outcome = attack(situation, student, attacks.LARGE_FILE)
     assert outcome.exceeded is Exceeded.FILE_BYTES
     assert (student / "large").stat().st_size <= LIMITS.file_bytes
     assert b"sparse: File too large" in outcome.stdout
 
 
-def test_many_small_files_end_a_run(situation: str, student: Path) -> None:
+def test_many_small_files_end_run(situation: str, student: Path) -> None:
     outcome = attack(situation, student, attacks.MANY_SMALL_FILES)
     assert outcome.exceeded in {Exceeded.FILES, Exceeded.DISK_BYTES}
     assert len(list(student.rglob("*"))) < 50_000
 
 
-def test_folders_that_are_too_deep_end_a_run(situation: str, student: Path) -> None:
+def test_deeply_nested_folders_end_run(situation: str, student: Path) -> None:
     outcome = attack(situation, student, attacks.DEEP_FOLDERS)
     assert outcome.exceeded is Exceeded.FILES
 
 
-def test_deleted_files_count_as_written(situation: str, student: Path) -> None:
+def test_deleted_files_count_toward_disk_limit(situation: str, student: Path) -> None:
     outcome = attack(situation, student, attacks.DELETED_FILE)
     assert outcome.exceeded is Exceeded.DISK_BYTES
 
 
-def test_memory_of_all_processes_together_is_limited(situation: str, student: Path) -> None:
+def test_memory_limit_counts_all_processes(situation: str, student: Path) -> None:
     outcome = attack(situation, student, attacks.MEMORY)
     assert outcome.exceeded is Exceeded.MEMORY
 
 
 @pytest.mark.parametrize("program", [attacks.SHARED_MEMORY, attacks.NAMELESS_FILES_IN_MEMORY])
-def test_memory_outside_the_data_of_a_process_is_limited(situation: str, student: Path, program: str) -> None:
+def test_shared_and_file_memory_is_limited(situation: str, student: Path, program: str) -> None:
     outcome = attack(situation, student, program)
     assert outcome.exceeded is Exceeded.MEMORY
 
 
-def test_endless_output_ends_a_run_and_its_beginning_is_kept(situation: str, student: Path) -> None:
+def test_endless_output_ends_run_and_keeps_beginning(situation: str, student: Path) -> None:
     outcome = attack(situation, student, attacks.OUTPUT)
     assert outcome.exceeded is Exceeded.OUTPUT_BYTES
     assert len(outcome.stdout) + len(outcome.stderr) == LIMITS.output_bytes
 
 
-def test_temporary_folders_of_the_system_are_not_filled(situation: str, student: Path) -> None:
+def test_system_temporary_folders_are_not_filled(situation: str, student: Path) -> None:
     mark = uuid.uuid4().hex
     outcome = attack(situation, student, attacks.FILL_TEMPORARY, mark=mark)
     written = {folder: int(size) for folder, size in (line.split() for line in outcome.stdout.decode().splitlines())}
@@ -140,20 +140,20 @@ def test_temporary_folders_of_the_system_are_not_filled(situation: str, student:
         assert sum(written.values()) <= 2 * LIMITS.memory // 8
 
 
-def test_what_would_harm_a_reader_is_deleted_after_the_run(situation: str, student: Path) -> None:
+def test_dangerous_files_are_removed_after_run(situation: str, student: Path) -> None:
     (student / "data").write_text("mine")
-    (student.parent / "neighbour").mkdir()
+    (student.parent / "neighbor").mkdir()
     outcome = attack(situation, student, attacks.TRAPS)
     assert outcome.status == 0, outcome.stderr
-    assert outcome.removed == ("neighbour", "outside", "package/further", "pipe", "root")
+    assert outcome.removed == ("neighbor", "outside", "package/further", "pipe", "root")
     assert (student / "inside").is_symlink()
     assert (student / "closed" / "file").read_text() == ""
     assert (student / "program").stat().st_mode & 0o7777 == 0o777
     assert (student / "data").stat().st_uid == student.stat().st_uid
 
 
-def test_a_run_stays_in_its_sandbox(situation: str, student: Path) -> None:
-    neighbor = student.parent / "neighbour"
+def test_run_cannot_leave_sandbox(situation: str, student: Path) -> None:
+    neighbor = student.parent / "neighbor"
     neighbor.mkdir(mode=0o777)
     (neighbor / "secret").write_text("secret")
     for path, mode in ((neighbor, 0o777), (neighbor / "secret", 0o666), (student.parent, 0o777)):
@@ -172,18 +172,18 @@ def test_a_run_stays_in_its_sandbox(situation: str, student: Path) -> None:
     assert done <= _possible(outcome.protections)
     if Protection.WRITE in outcome.protections:
         assert (neighbor / "secret").read_text() == "secret"
-        assert sorted(path.name for path in student.parent.iterdir()) == ["neighbour", "server", "student"]
+        assert sorted(path.name for path in student.parent.iterdir()) == ["neighbor", "server", "student"]
 
 
 def _possible(protections: frozenset[Protection]) -> set[str]:
     """What a program may do that the protections do not forbid."""
     possible = {"write above its folder"}  # which may be a folder of the sandbox
     if Protection.READ not in protections:
-        possible |= {"read a neighbour's file", "list a neighbour's folder", "read by /proc/self/root"}
+        possible |= {"read a neighbor's file", "list a neighbor's folder", "read by /proc/self/root"}
         possible |= {"read by the grader's root"}
     if Protection.WRITE not in protections:
-        possible |= {"write into a neighbour's folder", "change a neighbour's file", "truncate a neighbour's file"}
-        possible |= {"write into /var/tmp", "link a neighbour's file"}
+        possible |= {"write into a neighbor's folder", "change a neighbor's file", "truncate a neighbor's file"}
+        possible |= {"write into /var/tmp", "link a neighbor's file"}
     if Protection.PROCESSES not in protections:
         possible |= {"read the grader's environment", "open the grader's memory", "trace the grader"}
         possible |= {"trace its parent", "signal the grader"}
@@ -192,7 +192,7 @@ def _possible(protections: frozenset[Protection]) -> set[str]:
     return possible
 
 
-def test_killing_everything_hurts_the_run_only(situation: str, student: Path) -> None:
+def test_kill_of_all_processes_affects_only_run(situation: str, student: Path) -> None:
     if Protection.PROCESSES not in expected_protections(situation):
         pytest.skip("it would kill this test")
     outcome = attack(situation, student, attacks.KILL_ALL)

@@ -38,7 +38,7 @@ def run_python(folder: Path, program: str, *words: str, limits: Limits = LIMITS,
     return run_in_sandbox([sys.executable, "-c", program, *words], folder=folder, limits=limits, **more)  # type: ignore[arg-type]
 
 
-def test_a_program_works_in_its_folder_and_its_status_and_output_come_back(student: Path) -> None:
+def test_run_returns_status_and_output_of_program(student: Path) -> None:
     (student / "input").write_text("2")
     program = """
 import os, sys
@@ -54,12 +54,12 @@ sys.exit(3)
     assert sorted(path.name for path in student.iterdir()) == ["input", "output"]
 
 
-def test_the_signal_that_ended_a_program_is_its_status(student: Path) -> None:
+def test_status_is_negative_signal_number(student: Path) -> None:
     outcome = run_python(student, "import os, signal; os.kill(os.getpid(), signal.SIGSEGV)")
     assert (outcome.status, outcome.exceeded) == (-signal.SIGSEGV, None)
 
 
-def test_a_run_does_not_get_the_environment_of_the_grader(student: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_run_does_not_inherit_environment_of_grader(student: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setenv("ACCESS_TOKEN", "secret")
     program = "import json, os; print(json.dumps(dict(os.environ)))"
     environment = json.loads(run_python(student, program, environment={"ROS_DOMAIN_ID": "7"}).stdout)
@@ -68,13 +68,13 @@ def test_a_run_does_not_get_the_environment_of_the_grader(student: Path, monkeyp
     assert Path(environment["TMPDIR"]).parent == student
 
 
-def test_temporary_files_end_with_the_run(student: Path) -> None:
+def test_temporary_files_are_removed_after_run(student: Path) -> None:
     outcome = run_python(student, "import tempfile; tempfile.mkstemp(); print(tempfile.mkdtemp())")
     assert Path(outcome.stdout.decode().strip()).parent.parent == student
     assert list(student.iterdir()) == []
 
 
-def test_more_files_can_be_made_readable_and_they_stay_as_they_are(student: Path) -> None:
+def test_readable_files_can_be_read_and_not_changed(student: Path) -> None:
     course = student.parent / "course"
     course.mkdir()
     (course / "world").write_text("flat")
@@ -94,7 +94,7 @@ except OSError:
 
 
 @pytest.mark.parametrize("umask", [0o022, 0o077])
-def test_a_grader_with_a_private_umask_and_private_programs_can_run_them(student: Path, umask: int) -> None:
+def test_private_umask_and_program_folder_are_supported(student: Path, umask: int) -> None:
     before = os.umask(umask)
     try:
         private = student.parent / "private"
@@ -109,7 +109,7 @@ def test_a_grader_with_a_private_umask_and_private_programs_can_run_them(student
     assert (student / "written").stat().st_mode & 0o777 == 0o644
 
 
-def test_a_readable_link_is_followed_to_files_elsewhere(student: Path) -> None:
+def test_readable_symlink_is_followed(student: Path) -> None:
     course, link = student.parent / "course", student.parent / "link"
     course.mkdir()
     (course / "world").write_text("flat")
@@ -118,19 +118,19 @@ def test_a_readable_link_is_followed_to_files_elsewhere(student: Path) -> None:
     assert outcome.stdout == b"flat\n"
 
 
-def test_modules_of_a_student_are_not_those_of_the_supervisor(student: Path) -> None:
+def test_supervisor_does_not_import_modules_of_student(student: Path) -> None:
     for name in ("json", "ctypes", "linkwright", "resource"):
         (student / f"{name}.py").write_text("raise SystemExit('imported the wrong module')")
     outcome = run_python(student, "print('fine')")
     assert outcome.stdout == b"fine\n"
 
 
-def test_a_program_that_does_not_exist_is_an_error(student: Path) -> None:
+def test_missing_program_is_an_error(student: Path) -> None:
     with pytest.raises(LinkwrightError, match="no-such-program: No such file"):
         run_in_sandbox(["no-such-program"], folder=student, limits=LIMITS)
 
 
-def test_a_run_keeps_within_its_processors(student: Path) -> None:
+def test_run_uses_only_given_processors(student: Path) -> None:
     if sys.platform != "linux":
         pytest.skip("only Linux has this")
     processor = min(os.sched_getaffinity(0))
@@ -140,7 +140,7 @@ def test_a_run_keeps_within_its_processors(student: Path) -> None:
 
 @on_linux
 @pytest.mark.parametrize("ending", [signal.SIGKILL, signal.SIGINT, signal.SIGTERM])
-def test_a_grader_that_ends_leaves_no_process(student: Path, ending: signal.Signals) -> None:
+def test_killed_grader_leaves_no_process(student: Path, ending: signal.Signals) -> None:
     mark = uuid.uuid4().hex
     arguments = [sys.executable, "-c", attacks.DAEMONS + attacks.SLEEP, mark]
     program = f"""
@@ -155,7 +155,7 @@ run_in_sandbox({arguments!r}, folder=Path.cwd(), limits=Limits())
 
 
 @on_linux
-def test_nodes_of_a_run_find_each_other_and_no_others(student: Path) -> None:
+def test_nodes_of_run_discover_only_each_other(student: Path) -> None:
     pytest.importorskip("cyclonedds")
     program = """
 import subprocess, sys
@@ -170,7 +170,7 @@ with subprocess.Popen([*command, "pub", *words, "data: hello", "--rate", "20"], 
     assert b"data: hello" in run_python(student, program).stdout
 
 
-def test_system_v_memory_which_would_outlive_the_run_is_refused(student: Path) -> None:
+def test_system_v_shared_memory_is_refused(student: Path) -> None:
     if sys.platform != "linux" or os.uname().machine not in {"x86_64", "aarch64"}:
         pytest.skip("no filter of system calls here")
     program = "import ctypes; print(ctypes.CDLL(None).shmget(0, 4096, 0o1600))"
@@ -178,7 +178,7 @@ def test_system_v_memory_which_would_outlive_the_run_is_refused(student: Path) -
 
 
 @pytest.mark.skipif(not Path("/bin/ps").exists(), reason="needs ps")
-def test_systems_without_the_abilities_of_linux_have_limits(student: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_limits_hold_on_systems_other_than_linux(student: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     start = "from {module} import main"
     monkeypatch.setattr(run, "_SUPERVISE", run._SUPERVISE.replace(start, f"sys.platform = 'darwin'; {start}"))
     outcome = run_python(student, attacks.ENDLESS_LOOP, limits=Limits(seconds=60, cpu_seconds=0.5))
@@ -187,7 +187,7 @@ def test_systems_without_the_abilities_of_linux_have_limits(student: Path, monke
     assert run_python(student, "print('fine')").stdout == b"fine\n"
 
 
-def test_each_limit_and_each_protection_has_a_sentence() -> None:
+def test_all_limits_and_protections_have_texts() -> None:
     assert set(PROTECTIONS) == set(Protection)
     sentences = [str(describe_exceeded(exceeded, LIMITS)) for exceeded in Exceeded]
     assert len(set(sentences)) == len(Exceeded)

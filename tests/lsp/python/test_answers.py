@@ -24,7 +24,7 @@ def edit(start: int, end: int, text: str) -> dict[str, Any]:
 
 
 @pytest.mark.parametrize("empty", [None, [], {"items": []}])
-def test_the_first_answer_that_is_not_empty_counts(empty: Any) -> None:
+def test_first_non_empty_answer_applies(empty: Any) -> None:
     answer = {"contents": "a node"}
     assert combined("textDocument/hover", [(OWN, empty), (TY, answer)], TEXT, {}) == answer
     assert combined("textDocument/hover", [(OWN, answer), (TY, {"contents": "b"})], TEXT, {}) == answer
@@ -33,7 +33,7 @@ def test_the_first_answer_that_is_not_empty_counts(empty: Any) -> None:
     assert is_enough("textDocument/hover", answer)
 
 
-def test_completions_are_those_of_all_servers_and_each_name_is_offered_once() -> None:
+def test_completions_of_all_servers_are_combined_without_duplicates() -> None:
     own = [edit(5, 8, "package="), edit(5, 8, "parameters=")]
     typed = {"isIncomplete": True, "items": [{"label": "package="}, {"label": "pacing"}]}
     found = complete((OWN, own), (TY, typed))
@@ -41,12 +41,12 @@ def test_completions_are_those_of_all_servers_and_each_name_is_offered_once() ->
     assert found["isIncomplete"]
 
 
-def test_in_a_string_that_linkwright_completes_there_are_no_others() -> None:
+def test_string_completed_by_linkwright_has_no_other_completions() -> None:
     own = {"isIncomplete": False, "items": [edit(11, 14, "turtle_bot")]}
     assert complete((OWN, own), (TY, [{"label": "turn"}]), character=13) == own
 
 
-def test_defaults_of_a_list_are_those_of_its_items_only() -> None:
+def test_list_defaults_apply_only_to_items_of_that_list() -> None:
     place = {"start": {"line": 0, "character": 5}, "end": {"line": 0, "character": 8}}
     own = {"itemDefaults": {"editRange": place, "insertTextFormat": 2}, "items": [{"label": "package="}]}
     found = complete((OWN, own), (TY, [{"label": "pacing"}]))
@@ -56,7 +56,7 @@ def test_defaults_of_a_list_are_those_of_its_items_only() -> None:
     ]
 
 
-def test_a_code_action_returns_to_its_server_with_its_own_data() -> None:
+def test_code_action_is_resolved_by_its_server_with_its_data() -> None:
     own, fix = {"title": "own", "data": 1}, {"title": "fix", "data": {"id": 2}}
     command = {"title": "run", "command": "ruff.applyAutofix"}
     found = combined(
@@ -67,6 +67,6 @@ def test_a_code_action_returns_to_its_server_with_its_own_data() -> None:
     assert [server_of_action(action) for action in found] == [None, (TY, {"title": "a"}), (RUFF, fix)]
 
 
-def test_without_an_answer_of_linkwright_other_actions_are_still_marked() -> None:
+def test_code_actions_are_marked_without_linkwright_answer() -> None:
     found = combined("textDocument/codeAction", [(RUFF, [{"title": "fix"}])], TEXT, {})
     assert server_of_action(found[0]) == (RUFF, {"title": "fix"})

@@ -23,9 +23,7 @@ def place(line: int, start: int, end: int) -> dict[str, Any]:
 
 
 @given(before=TEXTS, inserted=TEXTS, bounds=st.tuples(st.integers(0, 30), st.integers(0, 30)))
-def test_the_text_is_that_of_the_editor_whether_it_sends_ranges_or_all(
-    before: str, inserted: str, bounds: tuple[int, int]
-) -> None:
+def test_ranged_and_full_changes_give_editor_text(before: str, inserted: str, bounds: tuple[int, int]) -> None:
     start, end = sorted(min(bound, len(before)) for bound in bounds)
     after = before[:start] + inserted + before[end:]
     ranges = OpenText("file:///a.py", before, 1, "utf-16")
@@ -35,13 +33,13 @@ def test_the_text_is_that_of_the_editor_whether_it_sends_ranges_or_all(
     assert (ranges.text, ranges.version) == (whole.text, whole.version) == (after, 2)
 
 
-def test_several_changes_apply_one_after_the_other() -> None:
+def test_several_changes_apply_in_sequence() -> None:
     text = OpenText("file:///a.py", WORD, 1, "utf-16")
     text.change(2, [{"range": place(1, 0, 5), "text": "名"}, {"range": place(0, 4, 7), "text": "😀"}])
     assert text.text == "x = 😀\n名 = 1\n"
 
 
-def test_findings_move_with_the_text_until_their_server_has_checked_it() -> None:
+def test_findings_move_with_text_until_next_check() -> None:
     text = OpenText("file:///a.py", WORD, 1, "utf-16")
     text.set_findings("ty", [finding(WORD, 7, 12)])
     text.set_findings("ruff", [finding(WORD, 0, 1)])
@@ -54,7 +52,7 @@ def test_findings_move_with_the_text_until_their_server_has_checked_it() -> None
 
 
 @given(before=TEXTS, after=TEXTS, bounds=st.tuples(st.integers(0, 30), st.integers(0, 30)))
-def test_moved_findings_stay_in_the_text(before: str, after: str, bounds: tuple[int, int]) -> None:
+def test_moved_findings_stay_inside_text(before: str, after: str, bounds: tuple[int, int]) -> None:
     start, end = sorted(min(bound, len(before)) for bound in bounds)
     text = OpenText("file:///a.py", before, 1, "utf-16")
     text.set_findings("ty", [finding(before, start, end)])
@@ -65,7 +63,7 @@ def test_moved_findings_stay_in_the_text(before: str, after: str, bounds: tuple[
         assert text.written(moved["range"]) == before[start:end]
 
 
-def test_the_word_before_a_position_is_part_of_a_name() -> None:
+def test_word_before_position_is_part_of_name() -> None:
     text = OpenText("file:///a.py", "😀 node.create_pub\n", 1, "utf-16")
     assert text.word_before({"line": 0, "character": 11}) == "cre"
     assert text.word_before({"line": 0, "character": 8}) == ""

@@ -119,7 +119,7 @@ async def labels(editor: Editor, name: str, position: types.Position) -> list[st
     return [item.label for item in items]
 
 
-async def test_the_modules_of_ros_and_of_the_workspace_are_found(editor: Editor) -> None:
+async def test_ros_and_workspace_modules_are_found(editor: Editor) -> None:
     editor.open(TALKER, language="python")
     found = await editor.until(TALKER, "F401", "F401")
     assert {written(NODE, finding.range) for finding in found} == {"os", "LaunchNode"}
@@ -128,7 +128,7 @@ async def test_the_modules_of_ros_and_of_the_workspace_are_found(editor: Editor)
     assert "create_publisher" in await hover(editor, TALKER, place(NODE, "create_publisher", more=3))
 
 
-async def test_unsaved_text_reaches_the_servers(editor: Editor) -> None:
+async def test_unsaved_text_reaches_servers(editor: Editor) -> None:
     editor.open(TALKER, language="python")
     text = NODE.replace("import os\n", "").replace("LaunchNode", "_").replace("; ", "\n        ")
     text += "        self.get_logger().inf\n"
@@ -140,7 +140,7 @@ async def test_unsaved_text_reaches_the_servers(editor: Editor) -> None:
     await editor.until(TALKER, "F401")
 
 
-async def test_a_message_of_the_workspace_that_changes_is_known(editor: Editor, workspace: Path) -> None:
+async def test_changed_workspace_message_is_reloaded(editor: Editor, workspace: Path) -> None:
     editor.open(TALKER, language="python")
     text = NODE.replace("import os\n", "").replace("LaunchNode", "_").replace("; ", "\n        ")
     editor.change(TALKER, text.replace("number=1", "size=1"))
@@ -152,7 +152,7 @@ async def test_a_message_of_the_workspace_that_changes_is_known(editor: Editor, 
     await editor.until(TALKER, "F401")
 
 
-async def test_a_name_is_renamed_in_all_files_and_its_definition_is_found(editor: Editor, workspace: Path) -> None:
+async def test_name_is_renamed_in_all_files_and_definition_is_found(editor: Editor, workspace: Path) -> None:
     editor.open(TALKER, language="python")
     document, position = editor.document(TALKER), place(NODE, "half(", more=1)
     found = await editor.client.text_document_definition_async(types.DefinitionParams(document, position))
@@ -186,7 +186,7 @@ async def test_ruff_formats_and_fixes(editor: Editor) -> None:
     assert any("Remove unused import" in each.title for each in fixes)
 
 
-async def test_in_a_launch_file_the_names_are_those_of_linkwright_and_the_code_that_of_ty(editor: Editor) -> None:
+async def test_launch_file_combines_linkwright_and_ty_completions(editor: Editor) -> None:
     name = "src/my_package/launch/talker.launch.py"
     text = LAUNCH.replace("def gen", "launch = LaunchDescription([])\nlaunch.add_a\n\n\ndef gen")
     editor.open(name, text, language="python")
@@ -202,7 +202,7 @@ async def children_of(editor: Editor) -> dict[str, psutil.Process]:
     return {child.name(): child for child in server.children()}
 
 
-async def test_a_server_that_is_killed_comes_back_with_the_unsaved_text(editor: Editor) -> None:
+async def test_killed_server_restarts_with_unsaved_text(editor: Editor) -> None:
     editor.open(TALKER, language="python")
     await editor.until(TALKER, "F401", "F401")
     editor.change(TALKER, NODE + "        self.speed = half(self.limit)\n        self.speed.real.x\n")
@@ -216,7 +216,7 @@ async def test_a_server_that_is_killed_comes_back_with_the_unsaved_text(editor: 
 
 
 @pytest.mark.skipif(os.name == "nt", reason="Windows has no SIGKILL")
-async def test_the_servers_end_with_linkwright_even_if_it_is_killed(workspace: Path) -> None:
+async def test_servers_end_with_killed_linkwright(workspace: Path) -> None:
     opened: Any = connected(workspace, CAPABILITIES, None, "--stdio", "--python")
     editor = await opened.__aenter__()
     editor.open(TALKER, language="python")

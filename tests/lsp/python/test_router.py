@@ -109,7 +109,7 @@ class Connection:
         return [each["message"] for each in self.editor.until(is_published)["params"]["diagnostics"]]
 
 
-def is_told(message: Message) -> bool:
+def is_shown_message(message: Message) -> bool:
     text = "'ty' cannot be run, so Python files are edited without it"
     return message.get("method") == "window/showMessage" and message["params"]["message"] == text
 
@@ -132,7 +132,7 @@ def connect(tmp_path: Path) -> Iterator[Callable[..., Connection]]:
         connection.router.close()
 
 
-def test_the_servers_start_with_the_first_python_file(connect: Callable[..., Connection]) -> None:
+def test_servers_start_with_first_python_file(connect: Callable[..., Connection]) -> None:
     connection = connect(program("ty"), program("ruff"))
     capabilities = connection.editor.answer(1)["result"]["capabilities"]
     assert capabilities["completionProvider"]["triggerCharacters"] == ["<", "."]
@@ -146,23 +146,21 @@ def test_the_servers_start_with_the_first_python_file(connect: Callable[..., Con
     assert sorted(connection.findings(3)) == ["3", "3", "own"]
 
 
-def test_a_request_before_the_servers_run_waits_for_them(connect: Callable[..., Connection]) -> None:
+def test_early_request_waits_for_servers(connect: Callable[..., Connection]) -> None:
     connection = connect(program("ty"))
     connection.open()
     connection.hover(5)
     assert connection.editor.answer(5)["result"] == {"contents": "ty"}
 
 
-def test_an_answer_of_linkwright_comes_first_and_does_not_wait(connect: Callable[..., Connection]) -> None:
+def test_linkwright_answer_is_returned_immediately(connect: Callable[..., Connection]) -> None:
     connection = connect(program("ty"))
     connection.open()
     connection.hover(5, own={"contents": "own"}, hang=True)
     assert connection.editor.answer(5)["result"] == {"contents": "own"}
 
 
-def test_a_server_that_does_not_answer_is_left_out(
-    connect: Callable[..., Connection], monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_unresponsive_server_is_skipped(connect: Callable[..., Connection], monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(router_module, "_PATIENCE_SECONDS", 0.1)
     connection = connect(program("ty"))
     connection.open()
@@ -170,36 +168,36 @@ def test_a_server_that_does_not_answer_is_left_out(
     assert connection.editor.answer(5)["result"] is None
 
 
-def test_a_server_that_ends_is_started_again_until_the_user_is_told_once(connect: Callable[..., Connection]) -> None:
+def test_crashed_server_is_restarted_until_reported_once(connect: Callable[..., Connection]) -> None:
     connection = connect(program("ty"), program("ruff"))
     connection.open()
     assert connection.findings(2) == ["3", "3"]
     for identifier in (5, 6, 7):
         connection.hover(identifier, die="ty")
         connection.editor.answer(identifier)
-    connection.editor.until(is_told)
+    connection.editor.until(is_shown_message)
     assert connection.findings(1) == ["3"]
     connection.hover(8)
     assert connection.editor.answer(8)["result"] == {"contents": "ruff"}
-    assert sum(map(is_told, connection.editor.messages)) == 1
+    assert sum(map(is_shown_message, connection.editor.messages)) == 1
 
 
-def test_a_program_that_cannot_be_started_leaves_the_rest_as_it_is(connect: Callable[..., Connection]) -> None:
+def test_program_that_cannot_start_is_reported_and_others_work(connect: Callable[..., Connection]) -> None:
     connection = connect(Program("ty", ("/no/such/program",)), program("ruff"))
     connection.open()
     connection.hover(5)
     assert connection.editor.answer(5)["result"] == {"contents": "ruff"}
-    connection.editor.until(is_told)
+    connection.editor.until(is_shown_message)
 
 
-def test_requests_of_a_server_are_declined_and_its_messages_shown(connect: Callable[..., Connection]) -> None:
+def test_server_requests_are_declined_and_messages_shown(connect: Callable[..., Connection]) -> None:
     connection = connect(program("ty"))
     connection.open()
     shown = connection.editor.until(lambda message: message.get("method") == "window/showMessage")
     assert shown["params"]["message"] == "not supported"
 
 
-def test_a_file_that_is_closed_keeps_the_findings_of_linkwright(connect: Callable[..., Connection]) -> None:
+def test_closed_file_keeps_linkwright_findings(connect: Callable[..., Connection]) -> None:
     connection = connect(program("ty"))
     connection.open()
     connection.findings(1)
@@ -209,7 +207,7 @@ def test_a_file_that_is_closed_keeps_the_findings_of_linkwright(connect: Callabl
     assert connection.editor.answer(5)["result"] == {"contents": "own"}
 
 
-def test_the_end_of_the_editor_is_that_of_linkwright(connect: Callable[..., Connection]) -> None:
+def test_exit_ends_linkwright(connect: Callable[..., Connection]) -> None:
     connection = connect()
     connection.request(None, "exit", {})
     wait_until(lambda: connection.own.is_closed)

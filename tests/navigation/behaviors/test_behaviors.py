@@ -1,4 +1,4 @@
-"""Behaviours: how far they turn and drive, obstacles, and the time that is allowed."""
+"""Behaviors: how far they turn and drive, obstacles, and the time that is allowed."""
 
 from __future__ import annotations
 
@@ -33,7 +33,7 @@ def run(behavior, is_free=lambda poses: True, start=START):
 
 
 @pytest.mark.parametrize("angle", [1.57, -1.57, 2.5 * pi])
-def test_it_turns_as_far_as_it_is_told(angle):
+def test_spin_turns_by_requested_angle(angle):
     step, pose, _, speeds = run(Spin(angle, 0.0, SpinParameters(), START))
     assert step.outcome is Outcome.DONE
     assert step.traveled == pytest.approx(angle, abs=0.1)
@@ -42,14 +42,14 @@ def test_it_turns_as_far_as_it_is_told(angle):
 
 
 @pytest.mark.parametrize("distance", [0.5, -0.3])
-def test_it_drives_as_far_as_it_is_told(distance):
+def test_drive_straight_covers_requested_distance(distance):
     step, _, _, speeds = run(DriveStraight(distance, 0.1, 0.0, 2.0, START))
     assert step.outcome is Outcome.DONE
     assert step.traveled == pytest.approx(abs(distance), abs=0.011)
     assert {np.sign(speed.x) for speed in speeds} == {np.sign(distance)}
 
 
-def test_it_stops_before_an_obstacle():
+def test_drive_straight_stops_before_obstacle():
     start = (0.0, 0.0, 0.0)
     step, pose, _, _ = run(DriveStraight(2.0, 0.2, 0.0, 2.0, start), lambda poses: poses[:, 0].max() < 1.8, start)
     assert step.outcome is Outcome.COLLISION
@@ -57,19 +57,19 @@ def test_it_stops_before_an_obstacle():
     assert pose[0] < 1.8
 
 
-def test_it_takes_no_longer_than_is_allowed():
+def test_drive_straight_ends_after_time_allowance():
     step, _, elapsed, _ = run(DriveStraight(5.0, 0.1, 3.0, 2.0, START))
     assert step.outcome is Outcome.TIMEOUT
     assert 3.0 <= elapsed <= 3.11
 
 
-def test_waiting_ends():
+def test_wait_ends_after_its_duration():
     step, _, elapsed, _ = run(Wait(2.0))
     assert step.outcome is Outcome.DONE
     assert 2.0 - 1e-9 <= elapsed <= 2.11
 
 
-def test_who_drives_is_slowed_before_an_obstacle():
+def test_velocity_is_reduced_before_obstacle():
     velocity = Velocity(0.5, 0.0, 0.2)
     assert slow_near_obstacles((0.0, 0.0, 0.0), velocity, 1.0, lambda poses: True) == velocity
     half = slow_near_obstacles((0.0, 0.0, 0.0), velocity, 1.0, lambda poses: poses[:, 0].max() < 0.27)

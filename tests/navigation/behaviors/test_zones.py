@@ -27,14 +27,14 @@ def points(count, x, y=0.0):
     return np.tile([[x, y]], (count, 1))
 
 
-def test_a_zone_with_too_few_points_has_no_say():
+def test_zone_with_too_few_points_sets_no_limit():
     rule = ZoneRule(ZoneAction.STOP, min_points=4)
     assert rule.limit_velocity(AHEAD, points(3, 0.5), FORWARD) is None
     assert rule.limit_velocity(AHEAD, points(9, 0.7), FORWARD) is None
     assert rule.limit_velocity(AHEAD, points(4, 0.5), FORWARD) == Velocity(0.0, 0.0, 0.0)
 
 
-def test_a_zone_slows_down_by_its_ratio():
+def test_slowdown_zone_applies_ratio():
     allowed = ZoneRule(ZoneAction.SLOWDOWN, 1, slowdown_ratio=0.25).limit_velocity(AHEAD, points(1, 0.5), FORWARD)
     assert allowed == pytest.approx((0.1, 0.0, 0.05))
 
@@ -48,12 +48,12 @@ def test_a_zone_slows_down_by_its_ratio():
         (Velocity(0.1, 0.0, 0.1), (0.1, 0.0, 0.1)),
     ],
 )
-def test_a_limit_keeps_the_curve(velocity, left):
+def test_limit_zone_keeps_curvature(velocity, left):
     rule = ZoneRule(ZoneAction.LIMIT, 1, linear_limit=0.2, angular_limit=0.5)
     assert rule.limit_velocity(AHEAD, points(1, 0.5), velocity) == pytest.approx(left)
 
 
-def test_a_robot_that_approaches_keeps_its_time_to_what_is_ahead():
+def test_approach_zone_keeps_time_before_collision():
     rule = ZoneRule(ZoneAction.APPROACH, 1, time_before_collision=2.0, simulation_time_step=0.1)
     ahead = Velocity(0.5, 0.0, 0.0)
     # 0.7 m ahead: the rim of the body, 0.2 m, meets it after 0.5 m, which takes 1 s of the 2 s.
@@ -66,14 +66,14 @@ def test_a_robot_that_approaches_keeps_its_time_to_what_is_ahead():
     assert rule.limit_velocity(BODY, np.zeros((0, 2)), ahead) is None
 
 
-def test_a_robot_that_turns_on_the_spot_meets_what_its_corner_sweeps():
+def test_approach_zone_considers_area_swept_by_rotation():
     long = Polygon(np.array([[-0.1, -0.1], [0.5, -0.1], [0.5, 0.1], [-0.1, 0.1]]))
     rule = ZoneRule(ZoneAction.APPROACH, 1, time_before_collision=2.0, simulation_time_step=0.05)
     assert rule.limit_velocity(long, points(1, 0.0, 0.4), Velocity(0.0, 0.0, 1.0)) is not None
     assert rule.limit_velocity(long, points(1, 0.0, 0.4), Velocity(0.0, 0.0, -1.0)) is None
 
 
-def test_of_several_zones_the_one_counts_that_leaves_least():
+def test_most_restrictive_zone_applies():
     slow, slower = (
         ZoneRule(ZoneAction.SLOWDOWN, 1, slowdown_ratio=0.5),
         ZoneRule(ZoneAction.SLOWDOWN, 1, slowdown_ratio=0.1),
@@ -86,7 +86,7 @@ def test_of_several_zones_the_one_counts_that_leaves_least():
     assert limit_by_zones(FORWARD, [("off", ZoneRule(ZoneAction.NOTHING, 1), AHEAD, seen)]) == Verdict(FORWARD)
 
 
-def test_a_robot_that_stands_is_stopped_all_the_same():
+def test_stop_zone_is_reported_for_standing_robot():
     still = Velocity(0.0, 0.0, 0.0)
     verdict = limit_by_zones(still, [("stop", ZoneRule(ZoneAction.STOP, 1), AHEAD, points(1, 0.5))])
     assert verdict == Verdict(still, ZoneAction.STOP, "stop")
@@ -104,5 +104,5 @@ def test_a_robot_that_stands_is_stopped_all_the_same():
         (Velocity(0.2, 0.0, 0.0), (3 * pi / 4, -3 * pi / 4), False),
     ],
 )
-def test_a_shape_is_for_some_velocities(velocity, direction, covered):
+def test_speed_range_covers_velocities_and_directions(velocity, direction, covered):
     assert SpeedRange(AHEAD, (0.0, 0.5), (-1.0, 1.0), direction).covers(velocity) is covered

@@ -29,28 +29,28 @@ def empty(rows: int = 40, columns: int = 60, resolution: float = 0.1) -> Costmap
     return Costmap(Grid(cells=np.zeros((rows, columns), np.uint8), resolution=resolution, x=-3.0, y=-2.0))
 
 
-def test_a_costmap_has_unturned_bytes():
+def test_costmap_requires_uint8_cells_without_rotation():
     with pytest.raises(ValueError, match="int8"):
         Costmap(Grid(cells=np.zeros((2, 2), np.int8), resolution=0.1))
     with pytest.raises(ValueError, match="yaw 0, not"):
         Costmap(Grid(cells=np.zeros((2, 2), np.uint8), resolution=0.1, yaw=0.5))
 
 
-def test_costs_of_points_in_the_grid_and_outside():
+def test_cost_at_point_inside_and_outside_grid():
     costmap = empty()
     costmap.grid.cells[20, 30] = 77
     assert costmap.cost_at(np.array([[0.05, 0.05], [0.15, 0.05], [9.0, 0.0]])).tolist() == [77, 0, UNKNOWN]
     assert costmap.cost_at(np.array([-3.01, 0.0]), outside_cost=LETHAL) == LETHAL
 
 
-def test_the_rim_of_a_footprint_counts_and_what_is_below_it_does_not():
+def test_footprint_cost_uses_only_outline():
     costmap = empty()
     costmap.grid.cells[20, 30] = 200
     assert costmap.footprint_cost((0.05, 0.05, 0.0), SQUARE) == 0
     assert costmap.footprint_cost((0.25, 0.05, 0.0), SQUARE) == 200
 
 
-def test_many_poses_are_asked_at_once():
+def test_footprint_cost_accepts_arrays_of_poses():
     costmap = empty()
     costmap.grid.cells[20, 32] = LETHAL
     poses = np.array([[[0.0, 0.05, 0.0], [-0.03, 0.05, pi / 4]], [[1.0, 1.0, 0.0], [2.95, 0.0, 0.0]]])
@@ -58,12 +58,12 @@ def test_many_poses_are_asked_at_once():
     assert costs.tolist() == [[LETHAL, LETHAL], [0, LETHAL]]  # the last one leaves the grid
 
 
-def test_padding_moves_corners_outwards():
+def test_footprint_padding_moves_corners_outward():
     assert pad_footprint(SQUARE, 0.01) == pytest.approx(SQUARE * 1.05)
     assert pad_footprint(np.array([[0.0, 0.1]]), 0.02) == pytest.approx(np.array([[0.0, 0.12]]))
 
 
-def test_the_circles_in_and_around_a_footprint():
+def test_inscribed_and_circumscribed_radius_of_footprint():
     assert radii(SQUARE) == pytest.approx((0.2, 0.2 * sqrt(2)))
     inner, outer = radii(circle(0.3))
     assert outer == pytest.approx(0.3)
@@ -71,7 +71,7 @@ def test_the_circles_in_and_around_a_footprint():
 
 
 @given(x=st.floats(-0.5, 0.5), y=st.floats(-0.5, 0.5))
-def test_points_in_a_footprint(x, y):
+def test_within_polygon_finds_points_in_footprint(x, y):
     inside = bool(within_polygon(np.array([x, y]), circle(0.3)))
     if hypot(x, y) < radii(circle(0.3))[0]:
         assert inside
@@ -79,17 +79,17 @@ def test_points_in_a_footprint(x, y):
         assert not inside
 
 
-def test_a_footprint_is_placed():
+def test_place_footprint_applies_pose():
     assert place_footprint(np.array([[0.2, 0.1]]), 1.0, 2.0, pi / 2) == pytest.approx(np.array([[0.9, 2.2]]))
 
 
-def test_the_rim_has_no_gaps():
+def test_outline_has_no_gaps():
     rim = outline(SQUARE, 0.03)
     gaps = np.hypot(*(np.roll(rim, -1, axis=0) - rim).T)
     assert gaps.max() <= 0.03 + 1e-12
 
 
-def test_footprints_as_texts():
+def test_footprint_text_is_parsed_or_rejected():
     assert parse_footprint("[[0.2, 0.2], [-0.2, 0.2], [-0.2,-0.2], [0.2, -0.2] ]").tolist() == SQUARE.tolist()
     for text, why in (
         ("[]", "not a list"),

@@ -80,7 +80,7 @@ def inflated(*obstacles, **parameters) -> tuple[np.ndarray, float]:
     radius=st.floats(0.1, 1.2),
     factor=st.floats(0.5, 12.0),
 )
-def test_costs_fall_with_the_distance_as_nav2_says(obstacles, radius, factor):
+def test_inflation_costs_follow_formula_of_nav2(obstacles, radius, factor):
     cells, inscribed = inflated(*obstacles, inflation_radius=radius, cost_scaling_factor=factor)
     reach = np.ceil(radius / 0.1) * 0.1
     for row, column in np.ndindex(cells.shape):
@@ -96,7 +96,7 @@ def test_costs_fall_with_the_distance_as_nav2_says(obstacles, radius, factor):
         assert abs(int(cells[row, column]) - expected) <= (0 if expected in (FREE, LETHAL, INSCRIBED) else 1)
 
 
-def test_a_part_that_is_updated_is_as_if_all_of_it_were():
+def test_partial_update_matches_full_update():
     layer = StaticLayer(Interpretation())
     scene = costmap(layer, InflationLayer(Inflation(inflation_radius=0.5)))
     grid = occupancy()
@@ -110,7 +110,7 @@ def test_a_part_that_is_updated_is_as_if_all_of_it_were():
     assert np.array_equal(parts, eye.update())
 
 
-def test_what_nobody_has_seen_costs_only_where_a_robot_would_touch():
+def test_inflate_unknown_extends_inflation_into_unknown_cells():
     for inflate_unknown in (False, True):
         layer = StaticLayer(Interpretation(track_unknown_space=True))
         inflation = InflationLayer(Inflation(inflate_unknown=inflate_unknown, cost_scaling_factor=3.0))
@@ -129,13 +129,13 @@ def test_what_nobody_has_seen_costs_only_where_a_robot_would_touch():
 # --- rays and points --------------------------------------------------------------------------------------------------
 
 
-def test_an_obstacle_appears_and_goes_when_a_ray_passes():
+def test_obstacle_is_marked_and_cleared_by_passing_ray():
     eye = Eye()
     assert eye.see((2.55, 2.05))[20, 25] == LETHAL
     assert eye.see((2.95, 2.05))[20].tolist()[20:31] == [0] * 9 + [LETHAL, 0]
 
 
-def test_rays_clear_no_more_than_they_pass():
+def test_rays_clear_only_cells_they_pass():
     eye = Eye()
     cells = eye.see((2.55, 2.05), (2.55, 2.55), (1.05, 1.05), (2.05, 3.05))
     marked = np.argwhere(cells == LETHAL).tolist()
@@ -145,7 +145,7 @@ def test_rays_clear_no_more_than_they_pass():
     assert np.argwhere(eye.layer.layer_grid.cells != LETHAL).tolist() == [[20, each] for each in range(20, 25)]
 
 
-def test_what_is_too_far_is_not_marked_and_not_cleared():
+def test_maximum_ranges_limit_marking_and_clearing():
     eye = Eye(obstacle_max_range=1.0, raytrace_max_range=0.5)
     eye.layer.layer_grid.cells[:] = LETHAL
     eye.costmap.invalidate()
@@ -155,14 +155,14 @@ def test_what_is_too_far_is_not_marked_and_not_cleared():
     assert not eye.see((3.55, 2.05)).any()
 
 
-def test_what_is_too_near_is_not_marked_and_not_cleared():
+def test_minimum_ranges_limit_marking_and_clearing():
     eye = Eye(obstacle_min_range=0.3, raytrace_min_range=0.3)
     eye.layer.layer_grid.cells[20] = LETHAL
     cells = eye.see((2.25, 2.05), (3.05, 2.05))
     assert np.flatnonzero(cells[20, 20:] == FREE).tolist() == [3, 4, 5, 6, 7, 8, 9]
 
 
-def test_points_at_heights_that_do_not_count_neither_mark_nor_clear():
+def test_points_outside_height_range_neither_mark_nor_clear():
     eye = Eye(max_obstacle_height=1.0)
     eye.layer.layer_grid.cells[20, 22] = LETHAL
     eye.costmap.invalidate()
@@ -170,14 +170,14 @@ def test_points_at_heights_that_do_not_count_neither_mark_nor_clear():
     assert np.argwhere(cells).tolist() == [[20, 22]]
 
 
-def test_a_ray_that_leaves_the_costmap_clears_up_to_its_rim():
+def test_ray_that_leaves_costmap_clears_up_to_its_edge():
     eye = Eye(raytrace_max_range=9.0)
     eye.layer.layer_grid.cells[20] = LETHAL
     cells = eye.see((9.0, 2.05))
     assert np.flatnonzero(cells[20] == FREE).tolist() == list(range(20, 40))
 
 
-def test_points_count_as_long_as_they_persist():
+def test_observation_persistence_keeps_points():
     eye = Eye(observation_persistence=1.5, clearing=False)
     eye.see((2.55, 2.05))
     eye.see((3.05, 2.05))
@@ -188,7 +188,7 @@ def test_points_count_as_long_as_they_persist():
     assert eye.see()[20, [25, 30]].tolist() == [FREE, LETHAL]
 
 
-def test_a_sensor_that_is_silent_for_too_long_is_told():
+def test_silent_sensor_makes_costmap_outdated():
     eye = Eye(expected_update_rate=1.0)
     assert not eye.costmap.is_current(0)
     eye.see((2.55, 2.05))
@@ -196,7 +196,7 @@ def test_a_sensor_that_is_silent_for_too_long_is_told():
     assert not eye.costmap.is_current(eye.time_ns + 2 * SECOND)
 
 
-def test_there_is_nothing_where_the_robot_stands():
+def test_footprint_of_robot_is_cleared():
     buffer = ObservationBuffer(Source(max_obstacle_height=2.0))
     scene = costmap(ObstacleLayer([buffer], HeightRange()))
     buffer.add(np.array([2.05, 2.05, 0.3]), np.array([[2.15, 2.05, 0.3], [2.45, 2.05, 0.3]]), 0)
@@ -207,14 +207,14 @@ def test_there_is_nothing_where_the_robot_stands():
 # --- levels of height -------------------------------------------------------------------------------------------------
 
 
-def test_a_ray_above_an_obstacle_does_not_clear_it():
+def test_voxel_layer_keeps_obstacle_below_ray():
     eye = Eye(VoxelLayer, Voxels())
     assert eye.see((2.55, 2.05, 0.1), origin=(2.05, 2.05, 0.1))[20, 25] == LETHAL
     assert eye.see((2.95, 2.05, 0.5), origin=(2.05, 2.05, 0.5))[20, 25] == LETHAL
     assert eye.see((2.95, 2.05, 0.1), origin=(2.05, 2.05, 0.1))[20, 25] == FREE
 
 
-def test_a_ray_that_falls_clears_the_levels_that_it_passes():
+def test_descending_ray_clears_voxels_it_passes():
     eye = Eye(VoxelLayer, Voxels())
     eye.see((2.55, 2.05, 0.5), (2.85, 2.05, 0.5), origin=(2.05, 2.05, 0.5))
     cells = eye.see((3.05, 2.05, 0.2), origin=(2.05, 2.05, 0.8))
@@ -222,7 +222,7 @@ def test_a_ray_that_falls_clears_the_levels_that_it_passes():
     assert cells[20, 28] == LETHAL  # at 0.32 m
 
 
-def test_columns_of_which_too_little_is_seen_are_unknown():
+def test_voxel_columns_with_few_observations_are_unknown():
     eye = Eye(VoxelLayer, Voxels(unknown_threshold=8))
     eye.costmap = costmap(eye.layer, track_unknown=True)
     assert eye.see((2.55, 2.05, 0.1), origin=(2.05, 2.05, 0.1))[20, 22] == UNKNOWN
@@ -232,7 +232,7 @@ def test_columns_of_which_too_little_is_seen_are_unknown():
 # --- maps -------------------------------------------------------------------------------------------------------------
 
 
-def test_numbers_of_a_map_become_costs():
+def test_map_values_become_costs():
     def costs(**parameters):
         return Interpretation(**parameters).table()[np.array([0, 50, 99, 100, -1], np.int8).astype(np.uint8)].tolist()
 
@@ -241,7 +241,7 @@ def test_numbers_of_a_map_become_costs():
     assert costs(trinary=False) == [0, 127, 251, LETHAL, FREE]
 
 
-def test_a_map_lies_turned_in_the_frame_of_the_costmap():
+def test_rotated_map_is_placed_in_costmap_frame():
     layer = StaticLayer(Interpretation(), pose=lambda: (0.0, 4.0, -np.pi / 2))
     scene = costmap(layer)
     grid = occupancy()
@@ -252,7 +252,7 @@ def test_a_map_lies_turned_in_the_frame_of_the_costmap():
 
 
 @given(x=st.integers(-50, 50), y=st.integers(-50, 50))
-def test_a_map_lies_somewhere_else_than_the_costmap(x, y):
+def test_map_with_offset_is_placed_in_costmap(x, y):
     layer = StaticLayer(Interpretation())
     scene = costmap(layer)
     grid = occupancy(20, 30)
@@ -268,7 +268,7 @@ def test_a_map_lies_somewhere_else_than_the_costmap(x, y):
     assert np.array_equal(scene.costmap.grid.cells, expected)
 
 
-def test_a_part_of_a_map_changes():
+def test_map_update_changes_part_of_static_layer():
     layer = StaticLayer(Interpretation())
     scene = costmap(layer)
     assert not layer.update_map(0, 0, np.array([[100]], np.int8))
@@ -280,7 +280,7 @@ def test_a_part_of_a_map_changes():
     assert np.argwhere(scene.costmap.grid.cells).tolist() == [[3, 4]]
 
 
-def test_without_a_map_it_is_not_current():
+def test_costmap_without_map_is_not_current():
     layer = StaticLayer(Interpretation())
     scene = costmap(layer)
     scene.update(HERE, 0)
@@ -308,7 +308,7 @@ class Sonar:
         return self.costmap.costmap.grid.cells
 
 
-def test_what_a_sonar_measures_again_and_again_becomes_an_obstacle_and_goes():
+def test_repeated_sonar_readings_mark_and_clear_obstacle():
     sonar = Sonar()
     assert sonar.measure(1.0)[20, 20] == LETHAL
     assert not sonar.costmap.costmap.grid.cells[20, 10:18].any()
@@ -317,7 +317,7 @@ def test_what_a_sonar_measures_again_and_again_becomes_an_obstacle_and_goes():
     assert cells[20, 30] == LETHAL
 
 
-def test_a_sonar_says_nothing_of_what_it_does_not_see():
+def test_sonar_marks_only_cells_in_its_cone():
     sonar = Sonar()
     marked = np.argwhere(sonar.measure(1.0) == LETHAL)
     angles = np.arctan2(marked[:, 0] - 20, marked[:, 1] - 10)
@@ -326,13 +326,13 @@ def test_a_sonar_says_nothing_of_what_it_does_not_see():
     assert (sonar.layer.layer_grid.cells[:, :10] == 127).all()
 
 
-def test_a_sonar_that_meets_nothing_frees_its_view():
+def test_sonar_reading_without_echo_clears_cone():
     sonar = Sonar()
     sonar.measure(1.0)
     assert not (sonar.measure(2.0, free=True, times=1)[18:23, 15:28] == LETHAL).any()
 
 
-def test_a_sonar_that_is_silent_for_too_long_is_told():
+def test_silent_sonar_makes_costmap_outdated():
     sonar = Sonar(no_readings_timeout=1.0)
     assert not sonar.costmap.is_current(SECOND)
     sonar.measure(1.0)
@@ -340,7 +340,7 @@ def test_a_sonar_that_is_silent_for_too_long_is_told():
     assert not sonar.costmap.is_current(3 * SECOND)
 
 
-def test_likelihoods_are_forgotten():
+def test_clearing_resets_sonar_likelihoods():
     sonar = Sonar()
     sonar.measure(1.0)
     sonar.costmap.clear_around(HERE, 9.0)
@@ -353,7 +353,7 @@ def test_likelihoods_are_forgotten():
 
 
 @pytest.mark.parametrize(("connectivity", "left"), [(8, 5), (4, 3)])
-def test_small_groups_go(connectivity, left):
+def test_denoise_layer_removes_small_groups(connectivity, left):
     layer = StaticLayer(Interpretation())
     scene = costmap(layer, DenoiseLayer(2, connectivity))
     grid = occupancy()
@@ -368,7 +368,7 @@ def test_small_groups_go(connectivity, left):
 # --- windows that move, and clearing ----------------------------------------------------------------------------------
 
 
-def test_a_window_that_moves_keeps_what_was_seen():
+def test_rolling_window_keeps_observations():
     buffer = ObservationBuffer(Source(max_obstacle_height=2.0))
     layer = ObstacleLayer([buffer], HeightRange(), footprint_clearing=False)
     scene = costmap(layer, is_rolling=True, size=2.0)
@@ -386,7 +386,7 @@ def test_a_window_that_moves_keeps_what_was_seen():
     assert not scene.costmap.grid.cells.any()
 
 
-def test_clearing_around_the_robot_and_everywhere_else():
+def test_clear_around_clears_inside_or_outside_of_window():
     for kind, more in ((ObstacleLayer, ()), (VoxelLayer, (Voxels(),))):
         eye = Eye(kind, *more)
         eye.see((2.55, 2.05), (3.55, 2.05))
@@ -397,7 +397,7 @@ def test_clearing_around_the_robot_and_everywhere_else():
         assert not (eye.update() == LETHAL).any()
 
 
-def test_clearing_forgets_what_was_seen_and_keeps_the_map():
+def test_clearing_removes_observations_and_keeps_map():
     layer = StaticLayer(Interpretation())
     eye = Eye(layers=[])
     scene = LayeredCostmap(blank(), [layer, eye.layer], circle(RADIUS))

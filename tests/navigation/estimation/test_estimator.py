@@ -19,7 +19,7 @@ def advance(estimator, seconds):
     return estimator.filter
 
 
-def test_measurements_are_used_in_the_order_of_their_stamps():
+def test_measurements_are_processed_in_order_of_stamps():
     forwards, backwards = estimator(), estimator()
     measurements = [measured(0.1 * step, x=0.3 * step**2, vyaw=0.1 * step) for step in range(10)]
     for measurement in measurements:
@@ -29,7 +29,7 @@ def test_measurements_are_used_in_the_order_of_their_stamps():
     np.testing.assert_array_equal(advance(forwards, 1.0).state, advance(backwards, 1.0).state)
 
 
-def test_a_measurement_of_the_future_waits():
+def test_future_measurement_is_delayed():
     running = estimator()
     running.add(measured(0.0, x=1.0))
     running.add(measured(2.0, x=9.0))
@@ -37,7 +37,7 @@ def test_a_measurement_of_the_future_waits():
     assert advance(running, 2.0).state[State.X] > 1.0
 
 
-def test_the_state_is_predicted_only_where_sensors_are_silent_for_long():
+def test_state_is_predicted_only_after_sensor_timeout():
     running = estimator(sensor_timeout_ns=SECOND // 2)
     running.add(measured(0.0, vx=1.0))
     assert advance(running, 0.0).time_ns == 0
@@ -48,11 +48,11 @@ def test_the_state_is_predicted_only_where_sensors_are_silent_for_long():
     assert advance(always, 0.1).state[State.X] == pytest.approx(0.1)
 
 
-def test_nothing_is_predicted_before_the_first_measurement():
+def test_no_prediction_before_first_measurement():
     assert not advance(estimator(predict_to_now=True), 10.0).is_initialized
 
 
-def test_a_late_measurement_is_put_where_it_belongs():
+def test_late_measurement_is_processed_at_its_stamp():
     measurements = [measured(0.1 * step, x=np.sin(0.1 * step), vx=np.cos(0.1 * step)) for step in range(20)]
     in_order, late = estimator(history_ns=10 * SECOND), estimator(history_ns=10 * SECOND)
     for measurement in measurements:
@@ -67,7 +67,7 @@ def test_a_late_measurement_is_put_where_it_belongs():
     np.testing.assert_allclose(late.filter.covariance, in_order.filter.covariance, atol=1e-12)
 
 
-def test_a_measurement_from_before_the_history_goes_back_as_far_as_can_be():
+def test_measurement_older_than_history_is_applied_at_history_start():
     running = estimator(history_ns=SECOND)
     for step in range(50):
         running.add(measured(0.1 * step, x=0.0))
@@ -78,7 +78,7 @@ def test_a_measurement_from_before_the_history_goes_back_as_far_as_can_be():
     assert state.state[State.X] != 0.0
 
 
-def test_what_waits_is_forgotten():
+def test_clear_discards_queued_measurements():
     running = estimator()
     running.add(measured(0.0, x=1.0))
     running.clear()

@@ -34,13 +34,13 @@ def meridian_arc(latitude):
 
 
 @pytest.mark.parametrize("latitude", [10.0, 45.0, 79.0])
-def test_along_the_middle_of_a_zone_northing_is_the_meridian_shrunk(latitude):
+def test_northing_on_central_meridian_is_scaled_meridian_arc(latitude):
     easting, northing = utm_from_degrees(latitude, 9.0, UtmZone(32, True))
     assert easting == pytest.approx(500000.0, abs=1e-6)
     assert northing == pytest.approx(0.9996 * meridian_arc(latitude), abs=1e-5)
 
 
-def test_the_southern_half_counts_from_ten_thousand_kilometres():
+def test_southern_northing_has_false_northing():
     _, north = utm_from_degrees(30.0, 10.0, UtmZone(32, True))
     _, south = utm_from_degrees(-30.0, 10.0, UtmZone(32, False))
     assert south == pytest.approx(10000000.0 - north)
@@ -48,7 +48,7 @@ def test_the_southern_half_counts_from_ten_thousand_kilometres():
 
 @settings(max_examples=100)
 @given(latitudes, longitudes)
-def test_there_and_back(latitude, longitude):
+def test_utm_conversion_round_trip(latitude, longitude):
     zone = zone_from_degrees(latitude, longitude)
     back = degrees_from_utm(*utm_from_degrees(latitude, longitude, zone), zone)
     assert back[0] == pytest.approx(latitude, abs=1e-9)
@@ -57,7 +57,7 @@ def test_there_and_back(latitude, longitude):
 
 @settings(max_examples=50)
 @given(st.floats(-75.0, 75.0), st.floats(-2.9, 2.9))
-def test_the_projection_keeps_angles_and_turns_by_the_convergence(latitude, offset):
+def test_utm_projection_is_conformal_with_grid_convergence(latitude, offset):
     zone, step = UtmZone(31, True), 1e-5
     longitude = 3.0 + offset
     (x, y), (xn, yn) = utm_from_degrees(latitude, longitude, zone), utm_from_degrees(latitude + step, longitude, zone)
@@ -72,7 +72,7 @@ def test_the_projection_keeps_angles_and_turns_by_the_convergence(latitude, offs
     ("latitude", "longitude", "number"),
     [(0.0, -180.0, 1), (0.0, 179.9, 60), (48.0, 9.0, 32), (60.0, 5.0, 32), (78.0, 10.0, 33), (78.0, 8.0, 31)],
 )
-def test_zones(latitude, longitude, number):
+def test_utm_zone_of_degrees(latitude, longitude, number):
     assert zone_from_degrees(latitude, longitude) == UtmZone(number, True)
 
 
@@ -80,13 +80,13 @@ def test_zones(latitude, longitude, number):
 @given(
     st.floats(-85.0, 85.0), longitudes, st.floats(-3000.0, 3000.0), st.floats(-3000.0, 3000.0), st.floats(-50.0, 50.0)
 )
-def test_a_plane_that_touches_the_earth(latitude, longitude, x, y, z):
+def test_tangent_plane_round_trip(latitude, longitude, x, y, z):
     plane = TangentPlane(latitude, longitude, 100.0)
     assert plane.point_from_geodetic(*plane.geodetic_from_point((x, y, z))) == pytest.approx((x, y, z), abs=1e-5)
     assert plane.point_from_geodetic(latitude, longitude, 107.0) == pytest.approx((0.0, 0.0, 7.0), abs=1e-6)
 
 
-def test_the_earth_bends_away_from_the_plane():
+def test_tangent_plane_accounts_for_earth_curvature():
     plane = TangentPlane(0.0, 0.0, 0.0)
     point = plane.point_from_geodetic(0.0, 0.1, 0.0)
     east = 6378137.0 * radians(0.1)

@@ -34,7 +34,7 @@ def diagonal(**values):
 
 
 @FILTERS
-def test_the_first_measurement_is_taken_as_it_is(kind):
+def test_first_measurement_initializes_state(kind):
     kalman = kind()
     assert kalman.process(measured(5.0, 0.3, x=2.0, yaw=1.0))
     assert kalman.is_initialized
@@ -45,7 +45,7 @@ def test_the_first_measurement_is_taken_as_it_is(kind):
 
 
 @FILTERS
-def test_one_correction_is_the_weighted_mean(kind):
+def test_correction_is_weighted_mean(kind):
     kalman = kind(Settings(initial_covariance=diagonal(x=0.3)))
     kalman.is_initialized = True
     kalman.state[State.X] = 1.0
@@ -91,7 +91,7 @@ def batch_solution(settings, measurements, steps):
 
 
 @FILTERS
-def test_a_filter_agrees_with_least_squares_over_all_measurements(kind):
+def test_filter_matches_batch_least_squares(kind):
     noise = diagonal(x=0.02, vx=0.1, ax=0.3, y=0.03, vy=0.2, ay=0.1)
     start = diagonal(x=1.0, vx=2.0, ax=1.0, y=1.0, vy=1.0, ay=0.5)
     # Sigma points near the state lose digits to rounding; far ones do not, and the motion is linear here.
@@ -118,7 +118,7 @@ def test_a_filter_agrees_with_least_squares_over_all_measurements(kind):
 
 
 @FILTERS
-def test_constant_velocity_is_found_from_positions(kind):
+def test_velocity_is_estimated_from_positions(kind):
     kalman = kind(Settings(initial_covariance=np.eye(SIZE)))
     for step in range(200):
         kalman.process(measured(0.1 * step, 1e-4, x=0.5 * 0.1 * step, y=0.0, z=0.0, roll=0.0, pitch=0.0, yaw=0.0))
@@ -127,7 +127,7 @@ def test_constant_velocity_is_found_from_positions(kind):
 
 
 @FILTERS
-def test_a_constant_turn_is_followed(kind):
+def test_constant_turn_is_tracked(kind):
     # The less sure a heading is, the shorter is the mean way of all headings: it is sure here.
     kalman = kind(Settings(noise=np.eye(SIZE) * 1e-6))
     for step in range(1, 301):
@@ -139,7 +139,7 @@ def test_a_constant_turn_is_followed(kind):
 
 
 @FILTERS
-def test_a_biased_gyroscope_is_held_by_a_compass(kind):
+def test_compass_bounds_drift_of_biased_gyroscope(kind):
     bias = 0.05
     kalman = kind()
     for step in range(200):
@@ -153,7 +153,7 @@ def test_a_biased_gyroscope_is_held_by_a_compass(kind):
 
 
 @FILTERS
-def test_angles_are_compared_around_the_circle(kind):
+def test_yaw_correction_wraps_around_pi(kind):
     kalman = kind(Settings(initial_covariance=diagonal(yaw=0.1)))
     kalman.is_initialized = True
     kalman.state[State.YAW] = pi - 0.1
@@ -161,7 +161,7 @@ def test_angles_are_compared_around_the_circle(kind):
     assert abs(kalman.state[State.YAW]) == pytest.approx(pi)
 
 
-def test_outliers_are_left_out():
+def test_outliers_are_rejected():
     kalman = ExtendedKalmanFilter(Settings(initial_covariance=diagonal(x=0.03)))
     kalman.is_initialized = True
     deviation = sqrt(0.03 + 0.01)
@@ -171,7 +171,7 @@ def test_outliers_are_left_out():
     assert kalman.state[State.X] > 0.0
 
 
-def test_what_is_no_number_is_left_out_and_the_rest_counts():
+def test_nonfinite_values_are_ignored_and_others_are_used():
     kalman = ExtendedKalmanFilter(Settings(initial_covariance=diagonal(x=1.0, y=1.0)))
     kalman.is_initialized = True
     assert kalman.correct(measured(0.0, 1.0, x=nan, y=1.0))
@@ -181,7 +181,7 @@ def test_what_is_no_number_is_left_out_and_the_rest_counts():
     assert kalman.state[:2] == pytest.approx([0.0, 0.5])
 
 
-def test_exact_and_negative_variances_are_taken_for_small_ones():
+def test_zero_and_negative_variances_are_replaced():
     kalman = ExtendedKalmanFilter(Settings(initial_covariance=diagonal(x=1.0, y=1.0)))
     kalman.is_initialized = True
     assert kalman.correct(measured(0.0, 0.0, x=1.0))
@@ -190,7 +190,7 @@ def test_exact_and_negative_variances_are_taken_for_small_ones():
     assert kalman.state[State.Y] == pytest.approx(0.5)
 
 
-def test_a_measurement_of_the_past_corrects_without_going_back():
+def test_past_measurement_corrects_without_moving_time_back():
     kalman = ExtendedKalmanFilter()
     kalman.process(measured(2.0, x=0.0))
     kalman.process(measured(1.0, x=1.0))
@@ -198,7 +198,7 @@ def test_a_measurement_of_the_past_corrects_without_going_back():
     assert 0.0 < kalman.state[State.X] < 1.0
 
 
-def test_noise_of_the_pose_that_grows_with_the_velocity():
+def test_dynamic_process_noise_grows_with_velocity():
     kalman = ExtendedKalmanFilter(Settings(uses_dynamic_noise=True, initial_covariance=np.zeros((SIZE, SIZE))))
     kalman.is_initialized = True
     kalman.predict(SECOND)
@@ -211,7 +211,7 @@ def test_noise_of_the_pose_that_grows_with_the_velocity():
     assert kalman.covariance[State.X, State.X] == pytest.approx(0.05 * 4.0)
 
 
-def test_commands_accelerate_within_limits_and_end_after_their_time():
+def test_commands_accelerate_within_limits_and_time_out():
     ones, limits = (1.0,) * 6, (0.5,) * 6
     used = (True, False, False, False, False, True)
     kalman = ExtendedKalmanFilter(Settings(control=Control(used, SECOND, limits, ones, limits, ones)))
@@ -226,7 +226,7 @@ def test_commands_accelerate_within_limits_and_end_after_their_time():
 
 
 @FILTERS
-def test_a_filter_begins_anew_where_it_was_told_to(kind):
+def test_reset_restores_initial_state(kind):
     start = np.arange(SIZE) / 100.0
     kalman = kind(Settings(initial_state=start))
     kalman.process(measured(0.0, x=3.0))

@@ -28,18 +28,18 @@ def moving(**values):
     return state
 
 
-def test_constant_velocity_is_a_line():
+def test_constant_velocity_moves_along_line():
     later = predict_state(moving(x=1.0, yaw=pi / 2, vx=2.0, vy=1.0), 0.5)
     assert later[:3] == pytest.approx([0.5, 1.0, 0.0])
 
 
-def test_constant_acceleration():
+def test_constant_acceleration_changes_position_and_velocity():
     later = predict_state(moving(vx=1.0, ax=2.0), 3.0)
     assert later[State.X] == pytest.approx(1.0 * 3.0 + 0.5 * 2.0 * 9.0)
     assert later[State.VX] == pytest.approx(7.0)
 
 
-def test_a_constant_turn_comes_near_the_circle_as_steps_get_small():
+def test_constant_turn_converges_to_circle_with_small_steps():
     def end(steps):
         state = moving(vx=1.0, vyaw=0.5)
         for _ in range(steps):
@@ -53,12 +53,12 @@ def test_a_constant_turn_comes_near_the_circle_as_steps_get_small():
     assert errors[2] < 1e-3
 
 
-def test_angles_stay_between_minus_pi_and_pi():
+def test_angles_are_wrapped_to_pi():
     assert predict_state(moving(yaw=3.0, vyaw=1.0), 1.0)[State.YAW] == pytest.approx(4.0 - 2.0 * pi)
     assert wrap_angle(-pi - 0.1) == pytest.approx(pi - 0.1)
 
 
-def test_rates_of_a_rolled_body_turn_its_pitch():
+def test_yaw_rate_of_rolled_body_changes_pitch():
     later = predict_state(moving(roll=pi / 2, vyaw=1.0), 0.1)
     assert later[State.PITCH] == pytest.approx(-0.1)
     assert later[State.YAW] == pytest.approx(0.0)
@@ -66,7 +66,7 @@ def test_rates_of_a_rolled_body_turn_its_pitch():
 
 @settings(max_examples=40)
 @given(states)
-def test_rotations_are_those_of_fixed_axes(state):
+def test_rotation_matches_fixed_axis_rotations(state):
     roll, pitch, yaw = state[3:6]
     about_x = np.array([[1, 0, 0], [0, cos(roll), -sin(roll)], [0, sin(roll), cos(roll)]])
     about_y = np.array([[cos(pitch), 0, sin(pitch)], [0, 1, 0], [-sin(pitch), 0, cos(pitch)]])
@@ -76,7 +76,7 @@ def test_rotations_are_those_of_fixed_axes(state):
 
 @settings(max_examples=40)
 @given(states, st.floats(0.001, 0.2))
-def test_derivatives_are_those_of_small_differences(state, seconds):
+def test_jacobian_matches_finite_differences(state, seconds):
     step = 1e-6
     columns = []
     for index in range(SIZE):

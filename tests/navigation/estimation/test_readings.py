@@ -32,7 +32,7 @@ def names_of(used):
     return {State(index).name for index, each in enumerate(used) if each}
 
 
-def test_a_pose_is_taken_to_our_world_with_its_covariance():
+def test_pose_and_covariance_are_transformed_to_world():
     reader = PoseReader(only("X", "YAW"))
     reading = reader.read(pose(1.0, 2.0, rpy=(0, 0, 0.3)), SIX, pose(10.0, rpy=(0, 0, pi / 2)), 0)
     assert reading.values[POSITION] == pytest.approx([8.0, 1.0, 0.0])
@@ -41,7 +41,7 @@ def test_a_pose_is_taken_to_our_world_with_its_covariance():
     assert np.diag(reading.covariance)[:6] == pytest.approx([2.0, 1.0, 3.0, 5.0, 4.0, 6.0])
 
 
-def test_relative_poses_count_from_the_first_one():
+def test_relative_poses_start_at_first_pose():
     reader = PoseReader(ALL, relative=True)
     first = reader.read(pose(5.0, 1.0, rpy=(0, 0, pi / 2)), SIX, IDENTITY, 0)
     assert first.values == pytest.approx(np.zeros(SIZE))
@@ -51,7 +51,7 @@ def test_relative_poses_count_from_the_first_one():
     assert reader.read(pose(9.0), SIX, IDENTITY, 0).values == pytest.approx(np.zeros(SIZE))
 
 
-def test_a_differential_sensor_gives_velocities():
+def test_differential_poses_give_velocities():
     reader = PoseReader(only("X", "Y", "YAW"), differential=True)
     assert reader.read(pose(1.0, rpy=(0, 0, pi / 2)), SIX, IDENTITY, 0) is None
     reading = reader.read(pose(1.0, 1.0, rpy=(0, 0, pi / 2 + 0.1)), SIX, IDENTITY, SECOND // 2)
@@ -62,7 +62,7 @@ def test_a_differential_sensor_gives_velocities():
     assert reader.read(pose(), SIX, IDENTITY, SECOND // 2) is None
 
 
-def test_on_a_plane_the_rest_is_zero_and_sure():
+def test_two_d_mode_fixes_remaining_states_to_zero():
     reading = PoseReader(only("X"), two_d=True).read(pose(1.0, 2.0, 3.0, (0.1, 0.2, 0.3)), SIX, IDENTITY, 0)
     assert names_of(reading.used) == {"X", "Z", "ROLL", "PITCH", "VZ", "VROLL", "VPITCH", "AZ"}
     assert reading.values[State.Z] == reading.values[State.ROLL] == 0.0
@@ -70,7 +70,7 @@ def test_on_a_plane_the_rest_is_zero_and_sure():
 
 
 @pytest.mark.parametrize("mounting", [(pi, 0, 0), (0, 0, pi / 2), (0.2, -0.7, 2.0)])
-def test_an_imu_mounted_in_any_way_tells_the_attitude_of_the_body(mounting):
+def test_orientation_of_rotated_imu_gives_body_attitude(mounting):
     body, turned = quaternion_from_rpy((0.1, 0.2, 0.3)), quaternion_from_rpy(mounting)
     imu = quaternion_multiply(body, turned)
     reading = PoseReader(only("ROLL", "PITCH", "YAW")).read_orientation(imu, SIX, (0.5, 0, 0, *turned), 0)
@@ -78,14 +78,14 @@ def test_an_imu_mounted_in_any_way_tells_the_attitude_of_the_body(mounting):
     assert reading.values[POSITION] == pytest.approx([0.0, 0.0, 0.0])
 
 
-def test_a_turned_imu_that_gives_roll_gives_pitch_of_the_body():
+def test_roll_of_rotated_imu_is_pitch_of_body():
     mounting = pose(rpy=(0, 0, pi / 2))
     reading = PoseReader(only("ROLL")).read_orientation(mounting[3:], SIX, mounting, 0)
     assert names_of(reading.used) == {"PITCH"}
     assert reading.covariance[State.PITCH, State.PITCH] == pytest.approx(4.0)
 
 
-def test_a_sensor_away_from_the_origin_moves_when_the_body_turns():
+def test_twist_is_corrected_for_lever_arm_of_sensor():
     mounting, rates = pose(1.0, rpy=(0, 0, pi / 2)), np.array([0.0, 0.0, 2.0])
     # The sensor is carried to the left at 2 m/s, which is its own x.
     reading = read_twist(np.array([2.0, 0.0, 0.0]), rates, SIX, mounting, rates, ALL, two_d=False)
@@ -95,20 +95,20 @@ def test_a_sensor_away_from_the_origin_moves_when_the_body_turns():
     assert names_of(reading.used) == {"VX", "VY", "VZ", "VROLL", "VPITCH", "VYAW"}
 
 
-def test_a_resting_accelerometer_measures_nothing_but_gravity():
+def test_gravity_is_subtracted_from_resting_accelerometer():
     tilted = quaternion_from_rpy((0.3, -0.4, 1.0))
     upwards = compose((0.0, 0.0, 0.0, *_inverse(tilted)), (0.0, 0.0, GRAVITY, 0.0, 0.0, 0.0, 1.0))[:3]
     assert subtract_gravity(np.array(upwards), tilted) == pytest.approx([0.0, 0.0, 0.0], abs=1e-12)
 
 
-def test_acceleration_is_turned_into_the_body():
+def test_acceleration_is_rotated_into_body_frame():
     mounting = pose(rpy=(0, 0, pi / 2))
     reading = read_acceleration(np.array([1.0, 0.0, 0.0]), np.eye(3), mounting, only("AX"), two_d=False)
     assert reading.values[12:] == pytest.approx([0.0, 1.0, 0.0])
     assert names_of(reading.used) == {"AY"}
 
 
-def test_what_is_no_number_is_left_out_and_the_rest_counts():
+def test_nonfinite_values_are_ignored_and_others_are_used():
     reading = PoseReader(only("X", "Y", "YAW")).read((1.0, nan, nan, nan, 0.0, 0.0, 1.0), SIX, IDENTITY, 0)
     assert names_of(reading.used) == {"X"}
     assert reading.values[State.X] == 1.0
@@ -123,7 +123,7 @@ def test_what_is_no_number_is_left_out_and_the_rest_counts():
     assert names_of(slanting.used) == {"AZ"}
 
 
-def test_a_relative_sensor_that_begins_without_numbers_counts_from_the_first_that_it_has():
+def test_relative_poses_start_at_first_finite_pose():
     reader = PoseReader(only("X"), relative=True)
     assert reader.read((nan, nan, nan, nan, nan, nan, nan), SIX, IDENTITY, 0) is None
     assert reader.read(pose(5.0), SIX, IDENTITY, 1).values[State.X] == 0.0

@@ -10,7 +10,7 @@ from linkwright.navigation.grids.grid import Grid
 from linkwright.navigation.grids.occupancy import BadGridError, grid_from_message, occupancy_message
 
 
-def test_a_grid_becomes_a_message_and_back() -> None:
+def test_grid_message_round_trip() -> None:
     grid = Grid(cells=np.array([[0, 100, -1], [5, 6, 7]], np.int8), resolution=0.05, x=-1.0, y=2.0, yaw=pi / 2)
     message = occupancy_message(grid, "map", Time(sec=3))
     assert (message.info.width, message.info.height) == (3, 2)
@@ -27,7 +27,7 @@ def test_a_grid_becomes_a_message_and_back() -> None:
 @pytest.mark.parametrize(
     ("change", "text"), [("width", "width = 4, height = 2, data size = 6"), ("size", "resolution = 0")]
 )
-def test_a_message_that_is_no_grid_is_refused(change: str, text: str) -> None:
+def test_malformed_grid_message_is_rejected(change: str, text: str) -> None:
     message = occupancy_message(Grid(cells=np.zeros((2, 3), np.int8), resolution=0.05), "map", Time())
     if change == "width":
         message.info.width = 4

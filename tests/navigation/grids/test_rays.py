@@ -14,21 +14,21 @@ from linkwright.navigation.grids.rays import cast_rays, cells_on_lines
 _CELL = st.tuples(st.integers(-40, 40), st.integers(-40, 40))
 
 
-def test_lines_are_those_of_bresenham() -> None:
+def test_cells_on_lines_match_bresenham() -> None:
     cells, line = cells_on_lines(np.array([0, 0]), np.array([[2, 4], [-3, 0], [0, 0]]))
     assert cells[line == 0].tolist() == [[0, 0], [1, 1], [1, 2], [2, 3], [2, 4]]
     assert cells[line == 1].tolist() == [[0, 0], [-1, 0], [-2, 0], [-3, 0]]
     assert cells[line == 2].tolist() == [[0, 0]]
 
 
-def test_no_lines_have_no_cells() -> None:
+def test_cells_on_lines_accepts_no_lines() -> None:
     cells, line = cells_on_lines(np.array([0, 0]), np.empty((0, 2), np.int64))
     assert cells.shape == (0, 2)
     assert line.shape == (0,)
 
 
 @given(st.lists(st.tuples(_CELL, _CELL), min_size=1, max_size=6))
-def test_lines_are_connected_and_keep_within_half_a_cell(lines: list[tuple[tuple[int, int], tuple[int, int]]]) -> None:
+def test_lines_are_connected_and_stay_within_half_a_cell(lines: list[tuple[tuple[int, int], tuple[int, int]]]) -> None:
     starts, ends = np.array([a for a, _ in lines]), np.array([b for _, b in lines])
     cells, line = cells_on_lines(starts, ends)
     for number, (start, end) in enumerate(zip(starts, ends, strict=True)):
@@ -42,7 +42,7 @@ def test_lines_are_connected_and_keep_within_half_a_cell(lines: list[tuple[tuple
             assert np.abs(own - exact).max() <= 0.5 + 1e-9
 
 
-def test_rays_end_at_walls_and_at_the_limit() -> None:
+def test_rays_end_at_walls_and_maximum_range() -> None:
     walls = np.zeros((100, 100), bool)
     walls[:, 80] = True
     field = Grid(cells=distance_field(walls, 0.05), resolution=0.05)
@@ -53,7 +53,7 @@ def test_rays_end_at_walls_and_at_the_limit() -> None:
     assert cast_rays(field, np.array([1.0, 2.5]), np.array([0.0]), 2.0)[0] == 2.0
 
 
-def test_rays_of_a_turned_grid_are_turned() -> None:
+def test_rays_are_cast_in_rotated_grid() -> None:
     walls = np.zeros((100, 100), bool)
     walls[:, 80] = True
     field = Grid(cells=distance_field(walls, 0.05), resolution=0.05, x=1.0, y=-2.0, yaw=pi / 2)
@@ -62,7 +62,7 @@ def test_rays_of_a_turned_grid_are_turned() -> None:
 
 
 @given(st.integers(0, 2**32 - 1))
-def test_no_ray_goes_through_a_wall(seed: int) -> None:
+def test_rays_do_not_pass_through_walls(seed: int) -> None:
     random = np.random.default_rng(seed)
     walls = np.zeros((60, 60), bool)
     walls[[0, -1], :] = walls[:, [0, -1]] = True
@@ -79,7 +79,7 @@ def test_no_ray_goes_through_a_wall(seed: int) -> None:
     assert (measured <= exact + 0.1 / np.abs(along).max(axis=1)).all()
 
 
-def test_rays_are_counted_where_they_end_and_where_they_pass() -> None:
+def test_ray_counts_counts_hits_and_passes() -> None:
     hit, passed = ray_counts(
         (1, 5), np.array([0, 0]), np.array([[0, 3], [0, 4], [0, 9]]), np.array([True, False, True])
     )
@@ -87,7 +87,7 @@ def test_rays_are_counted_where_they_end_and_where_they_pass() -> None:
     assert passed.tolist() == [[3, 3, 3, 2, 2]]
 
 
-def test_distances_are_metres_to_the_nearest_marked_cell() -> None:
+def test_distance_field_has_meters_to_nearest_marked_cell() -> None:
     marked = np.zeros((3, 4), bool)
     assert np.isposinf(distance_field(marked, 0.1)).all()
     marked[0, 0] = True

@@ -16,7 +16,7 @@ def _nowhere(count: int) -> Poses:
     raise AssertionError(count)
 
 
-def test_particles_begin_with_the_mean_and_covariance_that_are_given() -> None:
+def test_particles_have_given_mean_and_covariance() -> None:
     particles = ParticleFilter(FilterSettings(max_particles=20_000))
     covariance = np.array([[0.25, 0.1, 0.0], [0.1, 0.16, 0.0], [0.0, 0.0, 0.04]])
     particles.draw_around((1.0, -2.0, 3.0), covariance)
@@ -28,7 +28,7 @@ def test_particles_begin_with_the_mean_and_covariance_that_are_given() -> None:
     assert estimate.covariance[2, 2] == pytest.approx(0.04, abs=0.005)
 
 
-def test_as_many_particles_are_kept_as_their_bins_ask_for() -> None:
+def test_particle_count_follows_number_of_occupied_bins() -> None:
     settings = FilterSettings(min_particles=100, max_particles=5000)
     particles = ParticleFilter(settings)
     bins = 40
@@ -42,7 +42,7 @@ def test_as_many_particles_are_kept_as_their_bins_ask_for() -> None:
     assert len(particles.particles) == 101
 
 
-def test_particles_are_drawn_by_their_weights() -> None:
+def test_resampling_follows_weights() -> None:
     particles = ParticleFilter(FilterSettings())
     particles.set_particles(np.array([(0.25, 0.25, 0.01), (3.25, 0.25, 0.01), (6.25, 0.25, 0.01)]))
     particles.update_weights(np.array([1.0, 0.0, 3.0]))
@@ -52,7 +52,7 @@ def test_particles_are_drawn_by_their_weights() -> None:
     assert counts[1] / counts.sum() == pytest.approx(0.75, abs=0.05)
 
 
-def test_the_estimate_is_the_mean_of_the_likeliest_cluster() -> None:
+def test_estimate_is_mean_of_likeliest_cluster() -> None:
     particles = ParticleFilter(FilterSettings())
     here = np.random.default_rng(0).normal((2.0, 1.0, pi), (0.2, 0.2, 0.2), (600, 3))  # across the turn's end
     here[:, 2] = (here[:, 2] + pi) % (2 * pi) - pi
@@ -67,7 +67,7 @@ def test_the_estimate_is_the_mean_of_the_likeliest_cluster() -> None:
     assert particles.has_converged()
 
 
-def test_particles_come_from_anywhere_when_scans_fit_less_than_before() -> None:
+def test_random_particles_are_added_when_likelihood_drops() -> None:
     particles = ParticleFilter(FilterSettings(recovery_alpha_slow=0.001, recovery_alpha_fast=0.5))
     particles.set_particles(np.tile((1.0, 1.0, 0.0), (1000, 1)))
     asked: list[int] = []
@@ -83,13 +83,13 @@ def test_particles_come_from_anywhere_when_scans_fit_less_than_before() -> None:
     assert asked[0] / 2000 == pytest.approx(1 - 4.5 / 7.993, abs=0.05)
 
 
-def test_likelihoods_of_nothing_leave_all_alike() -> None:
+def test_zero_likelihoods_give_uniform_weights() -> None:
     particles = ParticleFilter(FilterSettings())
     particles.update_weights(np.zeros(2000))
     assert particles.weights == pytest.approx(1.0 / 2000)
 
 
-def test_a_pose_that_is_half_a_metre_wrong_is_put_right_while_driving() -> None:
+def test_pose_error_of_half_a_meter_is_corrected_while_driving() -> None:
     """In a room, scans exact, odometry too: off by 0.5 m and 0.3 rad at first."""
     likelihoods = room()
     particles = ParticleFilter(FilterSettings())
@@ -109,7 +109,7 @@ def test_a_pose_that_is_half_a_metre_wrong_is_put_right_while_driving() -> None:
     assert abs(yaw - true[2]) < 0.1
 
 
-def test_twice_the_same_gives_the_same() -> None:
+def test_same_seed_gives_same_particles() -> None:
     def run() -> list[list[float]]:
         particles = ParticleFilter(FilterSettings(), seed=7)
         particles.draw_around((2.0, 1.5, 0.0), np.eye(3) * 0.1)

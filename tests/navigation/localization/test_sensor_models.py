@@ -23,7 +23,7 @@ _QUIET = Noise(0.0, 0.0, 0.0, 0.0, 0.0)
 
 
 def room(yaw: float = 0.0) -> MapLikelihoods:
-    """A room of 6 by 4 metres with walls, its corner at (0, 0)."""
+    """A room of 6 by 4 meters with walls, its corner at (0, 0)."""
     cells = np.full((80, 120), FREE, np.int8)
     cells[[0, -1]] = cells[:, [0, -1]] = OCCUPIED
     return MapLikelihoods(Grid(cells=cells, resolution=0.05, yaw=yaw), LaserSettings())
@@ -41,7 +41,7 @@ def beams_in_room(x: float, y: float, yaw: float, count: int = 36) -> Beams:
 
 
 @pytest.mark.parametrize("model", MODELS)
-def test_the_true_pose_is_the_likeliest(model: str) -> None:
+def test_true_pose_is_likeliest(model: str) -> None:
     offsets = np.array([(x, y, yaw) for x in (-0.4, 0, 0.4) for y in (-0.4, 0, 0.4) for yaw in (-0.3, 0, 0.3)])
     poses = np.array((2.0, 1.5, 0.4)) + offsets
     likelihoods = room().likelihoods(model, poses, beams_in_room(2.0, 1.5, 0.4))
@@ -50,13 +50,13 @@ def test_the_true_pose_is_the_likeliest(model: str) -> None:
 
 
 @pytest.mark.parametrize("model", MODELS)
-def test_it_is_so_on_a_turned_map(model: str) -> None:
+def test_true_pose_is_likeliest_on_rotated_map(model: str) -> None:
     turned = room(yaw=pi / 2)
     poses = np.array([(-1.5, 2.0, 0.4 + pi / 2), (-1.5, 2.0, 0.4), (-2.5, 2.0, 0.4 + pi / 2)])
     assert turned.likelihoods(model, poses, beams_in_room(2.0, 1.5, 0.4)).argmax() == 0
 
 
-def test_likelihoods_are_those_of_the_formula() -> None:
+def test_likelihood_matches_likelihood_field_formula() -> None:
     settings = LaserSettings(z_hit=0.6, z_rand=0.4, sigma_hit=0.1)
     cells = np.full((20, 40), FREE, np.int8)
     cells[:, 30] = OCCUPIED
@@ -69,7 +69,7 @@ def test_likelihoods_are_those_of_the_formula() -> None:
     assert product[1] / product[0] == pytest.approx(chances[1] / chances[0], rel=1e-5)
 
 
-def test_beams_that_met_nothing_say_nothing_and_those_that_leave_the_map_are_far() -> None:
+def test_beams_without_hit_are_neutral_and_beams_off_map_do_not_match() -> None:
     beams = Beams((0.0, 0.0), np.array([[12.0, 0.0]]), np.array([12.0]), 12.0)
     assert room().likelihoods("likelihood_field", np.array([[2.0, 2.0, 0.0]]), beams).tolist() == [1.0]
     assert room().matching_share((2.0, 2.0, 0.0), beams) is None
@@ -105,20 +105,20 @@ def _scan(ranges: list[float]) -> object:
     )
 
 
-def test_beams_are_those_of_the_scan_in_the_frame_of_the_robot() -> None:
+def test_beams_of_scan_are_in_robot_frame() -> None:
     pose: Transform = (0.5, 0.0, 0.3, *quaternion_from_rpy((0.0, 0.0, pi / 2)))
     beams = beams_of_scan(_scan([1.0, 2.0, 3.0]), pose, 60)
     assert beams.end_points == pytest.approx(np.array([[1.5, 0.0], [0.5, 2.0], [-2.5, 0.0]]))
     assert beams.angles == pytest.approx([0.0, pi / 2, pi])
 
 
-def test_a_laser_that_hangs_upside_down_sees_the_other_way_round() -> None:
+def test_beams_of_upside_down_laser_are_mirrored() -> None:
     upside_down: Transform = (0.0, 0.0, 0.3, *quaternion_from_rpy((pi, 0.0, 0.0)))
     beams = beams_of_scan(_scan([1.0, 2.0, 3.0]), upside_down, 60)
     assert beams.end_points == pytest.approx(np.array([[0.0, 1.0], [2.0, 0.0], [0.0, -3.0]]), abs=1e-12)
 
 
-def test_beams_that_are_none_or_too_short_or_too_long() -> None:
+def test_invalid_and_out_of_range_beams_are_clamped_or_omitted() -> None:
     nan, inf = float("nan"), float("inf")
     assert beams_of_scan(_scan([nan, 0.05, inf]), IDENTITY, 60).ranges.tolist() == [5.0, 5.0]
     assert beams_of_scan(_scan([1.0, 3.0, 4.5]), IDENTITY, 60, 2.0, 4.0).ranges.tolist() == [4.0, 3.0, 4.0]
@@ -127,13 +127,13 @@ def test_beams_that_are_none_or_too_short_or_too_long() -> None:
 
 
 @pytest.mark.parametrize("model", [move_differentially, move_omnidirectionally])
-def test_without_noise_particles_move_as_odometry_says(model: MotionModel) -> None:
+def test_particles_follow_odometry_without_noise(model: MotionModel) -> None:
     particles = np.array([[0.0, 0.0, 0.0], [5.0, 5.0, pi / 2]])
     model(particles, (1.0, 1.0, 0.0), (2.0, 1.5, 0.5), _QUIET, np.random.default_rng(0))
     assert particles == pytest.approx(np.array([[1.0, 0.5, 0.5], [4.5, 6.0, pi / 2 + 0.5]]))
 
 
-def test_driving_back_is_no_half_turn() -> None:
+def test_reversing_is_not_a_half_turn() -> None:
     random = np.random.default_rng(0)
     particles = np.zeros((4000, 3))
     move_differentially(particles, (0.0, 0.0, 0.0), (-1.0, 0.0, 0.0), Noise(0.2, 0.0, 0.0, 0.0), random)
@@ -149,7 +149,7 @@ def test_driving_back_is_no_half_turn() -> None:
         (move_omnidirectionally, Noise(0.0, 0.04, 0.0, 0.0), 2, 0.2),
     ],
 )
-def test_noise_is_as_large_as_said(model: MotionModel, noise: Noise, column: int, sigma: float) -> None:
+def test_motion_noise_matches_its_parameters(model: MotionModel, noise: Noise, column: int, sigma: float) -> None:
     particles = np.zeros((20_000, 3))
     model(particles, (0.0, 0.0, 0.0), (1.0, 0.0, 0.0), noise, np.random.default_rng(0))
     assert particles[:, column].std() == pytest.approx(sigma, rel=0.03)

@@ -21,7 +21,7 @@ from linkwright.navigation.maps.pixels import cells_of_image, pixels_of_cells
 _CELLS = arrays(np.int8, st.tuples(st.integers(1, 6), st.integers(1, 6)), elements=st.integers(-1, 100))
 
 
-def _said(mode: MapMode, *, negate: bool = False, occupied: float = 0.65, free: float = 0.196) -> MapYaml:
+def _map_yaml(mode: MapMode, *, negate: bool = False, occupied: float = 0.65, free: float = 0.196) -> MapYaml:
     return MapYaml(
         image=Path("x"),
         resolution=0.05,
@@ -47,26 +47,26 @@ def _row(*values: float) -> MapImage:
         (MapMode.RAW, True, (0, 1, 100, 101, 255), (0, 1, 100, -1, -1)),
     ],
 )
-def test_pixels_mean_what_they_mean_in_nav2(
+def test_pixel_values_match_nav2_in_each_mode(
     mode: MapMode, negate: bool, pixels: tuple[float, ...], cells: tuple[int, ...]
 ) -> None:
-    assert cells_of_image(_row(*pixels), _said(mode, negate=negate)).tolist() == [list(cells)]
+    assert cells_of_image(_row(*pixels), _map_yaml(mode, negate=negate)).tolist() == [list(cells)]
 
 
-def test_opacity_is_a_fourth_colour_with_trinary_and_unknown_with_scale() -> None:
+def test_alpha_is_averaged_in_trinary_and_unknown_in_scale_mode() -> None:
     image = MapImage(np.array([[0.0, 0.0, 1.0]]), np.array([[1.0, 0.0, 0.0]]))
     # (0 + 0 + 0 + 1) / 4 is a darkness of 0.75
-    assert cells_of_image(image, _said(MapMode.TRINARY)).tolist() == [[100, 100, -1]]
-    assert cells_of_image(image, _said(MapMode.TRINARY, occupied=0.8)).tolist() == [[-1, 100, -1]]
-    assert cells_of_image(image, _said(MapMode.SCALE)).tolist() == [[100, -1, -1]]
+    assert cells_of_image(image, _map_yaml(MapMode.TRINARY)).tolist() == [[100, 100, -1]]
+    assert cells_of_image(image, _map_yaml(MapMode.TRINARY, occupied=0.8)).tolist() == [[-1, 100, -1]]
+    assert cells_of_image(image, _map_yaml(MapMode.SCALE)).tolist() == [[100, -1, -1]]
 
 
-def test_equal_thresholds_leave_no_scale() -> None:
-    logged = _said(MapMode.SCALE, occupied=0.5, free=0.5)
+def test_equal_thresholds_give_no_intermediate_values() -> None:
+    logged = _map_yaml(MapMode.SCALE, occupied=0.5, free=0.5)
     assert cells_of_image(MapImage(np.array([[0.0, 0.5, 1.0]])), logged).tolist() == [[100, 0, 0]]
 
 
-def test_cells_become_the_pixels_of_nav2() -> None:
+def test_written_pixels_match_nav2() -> None:
     cells = np.array([[0, 25, 26, 64, 65, 100, -1]], np.int8)
     assert pixels_of_cells(cells, MapMode.TRINARY, 0.65, 0.25).tolist() == [[254, 254, 205, 205, 0, 0, 205]]
     assert pixels_of_cells(cells, MapMode.RAW, 0.65, 0.25).tolist() == [[0, 25, 26, 64, 65, 100, 255]]
@@ -74,9 +74,7 @@ def test_cells_become_the_pixels_of_nav2() -> None:
 
 
 @given(_CELLS, st.sampled_from(["pgm", "png", "bmp"]))
-def test_raw_maps_come_back_as_they_were(
-    tmp_path_factory: pytest.TempPathFactory, cells: NDArray[np.int8], kind: str
-) -> None:
+def test_raw_map_round_trip(tmp_path_factory: pytest.TempPathFactory, cells: NDArray[np.int8], kind: str) -> None:
     folder = tmp_path_factory.mktemp("maps")
     grid = Grid(cells=cells, resolution=0.025, x=-12.345, y=3.0, yaw=0.5)
     image, text = save_map(grid, MapSaveSettings(name=str(folder / "a"), image_format=kind, mode=MapMode.RAW))
@@ -87,9 +85,7 @@ def test_raw_maps_come_back_as_they_were(
 
 
 @given(_CELLS)
-def test_trinary_maps_come_back_as_free_occupied_and_unknown(
-    tmp_path_factory: pytest.TempPathFactory, cells: NDArray[np.int8]
-) -> None:
+def test_trinary_map_round_trip(tmp_path_factory: pytest.TempPathFactory, cells: NDArray[np.int8]) -> None:
     name = str(tmp_path_factory.mktemp("maps") / "a")
     _, text = save_map(Grid(cells=cells, resolution=0.05), MapSaveSettings(name=name, free_thresh=0.196))
     known = np.where(cells >= 65, 100, np.where((cells >= 0) & (cells <= 20), 0, -1))
@@ -97,7 +93,7 @@ def test_trinary_maps_come_back_as_free_occupied_and_unknown(
 
 
 @given(_CELLS)
-def test_scaled_maps_keep_what_is_unknown_by_opacity(
+def test_scale_map_round_trip_keeps_unknown_cells(
     tmp_path_factory: pytest.TempPathFactory, cells: NDArray[np.int8]
 ) -> None:
     name = str(tmp_path_factory.mktemp("maps") / "a")
@@ -108,7 +104,7 @@ def test_scaled_maps_keep_what_is_unknown_by_opacity(
     assert (again[cells >= 66] == 100).all()
 
 
-def test_nav2_s_own_words_for_a_map(tmp_path: Path) -> None:
+def test_written_map_files_match_nav2_byte_for_byte(tmp_path: Path) -> None:
     save_map(
         Grid(cells=np.zeros((1, 2), np.int8), resolution=0.05, x=-10.0), MapSaveSettings(name=str(tmp_path / "map"))
     )
@@ -119,7 +115,7 @@ def test_nav2_s_own_words_for_a_map(tmp_path: Path) -> None:
     )
 
 
-def test_who_saves_is_told_what_will_be_read_otherwise(tmp_path: Path) -> None:
+def test_saving_warns_about_lossy_thresholds_and_unknown_formats(tmp_path: Path) -> None:
     messages: list[str] = []
     grid = Grid(cells=np.array([[0, -1]], np.int8), resolution=0.05)
     save_map(grid, MapSaveSettings(name=str(tmp_path / "a")), messages.append)
@@ -145,7 +141,7 @@ def test_who_saves_is_told_what_will_be_read_otherwise(tmp_path: Path) -> None:
         (b"", "cannot be read"),
     ],
 )
-def test_broken_images_are_told(tmp_path: Path, data: bytes, reason: str) -> None:
+def test_malformed_images_are_reported(tmp_path: Path, data: bytes, reason: str) -> None:
     path = tmp_path / "a.pgm"
     path.write_bytes(data)
     with pytest.raises(LinkwrightError, match=reason) as raised:
@@ -161,7 +157,7 @@ def test_broken_images_are_told(tmp_path: Path, data: bytes, reason: str) -> Non
         b"P5 3 1 65535\n\x00\x00\x7f\x7f\xff\xff",
     ],
 )
-def test_every_kind_of_pgm_is_read(tmp_path: Path, data: bytes) -> None:
+def test_all_pgm_variants_are_read(tmp_path: Path, data: bytes) -> None:
     path = tmp_path / "a.pgm"
     path.write_bytes(data)
     assert np.round(read_image(path).shade * 255.0).tolist() == [[0, 127, 255]]
@@ -171,13 +167,13 @@ def test_every_kind_of_pgm_is_read(tmp_path: Path, data: bytes) -> None:
     ("occupied", "free", "message"),
     [(1.5, 0.2, "1.0 or less"), (0.5, -0.1, "0.0 or greater"), (0.2, 0.3, "smaller than threshold_occupied")],
 )
-def test_thresholds_must_make_sense(tmp_path: Path, occupied: float, free: float, message: str) -> None:
+def test_invalid_thresholds_are_rejected(tmp_path: Path, occupied: float, free: float, message: str) -> None:
     saved = MapSaveSettings(name=str(tmp_path / "a"), occupied_thresh=occupied, free_thresh=free)
     with pytest.raises(LinkwrightError, match=message):
         save_map(Grid(cells=np.zeros((1, 1), np.int8), resolution=0.05), saved)
 
 
-def test_a_folder_that_is_not_there_is_told(tmp_path: Path) -> None:
+def test_missing_folder_is_reported(tmp_path: Path) -> None:
     saved = MapSaveSettings(name=str(tmp_path / "no" / "a"))
     with pytest.raises(LinkwrightError) as raised:
         save_map(Grid(cells=np.zeros((1, 1), np.int8), resolution=0.05), saved)

@@ -25,7 +25,7 @@ def _file(folder: Path, text: str) -> Path:
     return path
 
 
-def test_a_map_is_read(tmp_path: Path) -> None:
+def test_map_yaml_is_read(tmp_path: Path) -> None:
     result = read_map_yaml(_file(tmp_path, _GOOD))
     assert result.image == tmp_path / "house.pgm"
     assert (result.resolution, result.origin, result.negate) == (0.05, (-1.5, 2.0, 0.0), False)
@@ -33,11 +33,11 @@ def test_a_map_is_read(tmp_path: Path) -> None:
 
 
 @pytest.mark.parametrize(("text", "value"), [("1", True), ("true", True), ("false", False), ("No", False), ("2", True)])
-def test_negate_is_a_number_or_a_word(tmp_path: Path, text: str, value: bool) -> None:
+def test_negate_accepts_numbers_and_booleans(tmp_path: Path, text: str, value: bool) -> None:
     assert read_map_yaml(_file(tmp_path, _GOOD.replace("negate: 0", f"negate: {text}"))).negate is value
 
 
-def test_without_a_mode_it_is_trinary_and_other_keys_do_not_matter(tmp_path: Path) -> None:
+def test_mode_defaults_to_trinary_and_other_keys_are_ignored(tmp_path: Path) -> None:
     text = _GOOD.replace("mode: trinary", "comment: {who: me}").replace("house.pgm", "/maps/house.png")
     shown = read_map_yaml(_file(tmp_path, text))
     assert shown.mode is MapMode.TRINARY
@@ -60,7 +60,7 @@ def test_without_a_mode_it_is_trinary_and_other_keys_do_not_matter(tmp_path: Pat
         ("mode: trinary", "mode: trinity", 2, 7, "'mode' must be one of trinary, scale, raw"),
     ],
 )
-def test_mistakes_are_told_with_their_place(
+def test_mistakes_are_reported_with_location(
     tmp_path: Path, old: str, new: str, line: int, column: int, message: str
 ) -> None:
     with pytest.raises(LinkwrightError) as raised:
@@ -72,20 +72,20 @@ def test_mistakes_are_told_with_their_place(
     assert (finding.span.line, finding.span.column) == (line, column)
 
 
-def test_what_is_no_yaml_is_told_with_its_place(tmp_path: Path) -> None:
+def test_malformed_yaml_is_reported_with_location(tmp_path: Path) -> None:
     with pytest.raises(LinkwrightError, match="not valid YAML") as raised:
         read_map_yaml(_file(tmp_path, _GOOD.replace("trinary", "[")))
     assert raised.value.diagnostics[0].span is not None
 
 
 @pytest.mark.parametrize("text", ["", "- a\n- b\n", "just words", "[" * 200])
-def test_what_is_no_map_at_all_is_refused(tmp_path: Path, text: str) -> None:
+def test_yaml_that_is_not_a_map_is_rejected(tmp_path: Path, text: str) -> None:
     with pytest.raises(LinkwrightError) as raised:
         read_map_yaml(_file(tmp_path, text))
     assert raised.value.diagnostics[0].code == "NAV202"
 
 
-def test_a_file_that_is_not_there_is_named_and_those_beside_it(tmp_path: Path) -> None:
+def test_missing_file_error_suggests_files_in_folder(tmp_path: Path) -> None:
     _file(tmp_path, _GOOD)
     with pytest.raises(LinkwrightError) as raised:
         read_map_yaml(tmp_path / "hose.yaml")

@@ -62,15 +62,15 @@ class Drift:
     Args:
         test: the world.
         scale: of the way.
-        yaw_per_metre: by which it turns besides, radians.
+        yaw_per_meter: by which it turns besides, radians.
         yaw_scale: of turns.
         noise: standard deviations of random errors, a part of way and turn.
     """
 
     def __init__(
-        self, test: SteppedSimulation, scale: float, yaw_per_metre: float, yaw_scale: float = 1.0, noise: float = 0.0
+        self, test: SteppedSimulation, scale: float, yaw_per_meter: float, yaw_scale: float = 1.0, noise: float = 0.0
     ) -> None:
-        self._scale, self._yaw_per_metre, self._yaw_scale, self._noise = scale, yaw_per_metre, yaw_scale, noise
+        self._scale, self._yaw_per_meter, self._yaw_scale, self._noise = scale, yaw_per_meter, yaw_scale, noise
         self._rng = np.random.default_rng(11)
         self._before: np.ndarray | None = None
         self.pose = np.zeros(3)
@@ -94,7 +94,7 @@ class Drift:
             step = relative_pose(self._before, pose)
             length = hypot(step[0], step[1])
             step *= (self._scale, self._scale, self._yaw_scale)
-            step[2] += self._yaw_per_metre * length
+            step[2] += self._yaw_per_meter * length
             # A random walk: what a second of driving adds does not depend on how often it is told.
             spread = self._noise * np.sqrt((length + abs(step[2])) * 0.1)
             step += self._rng.normal(0, 1, 3) * spread
@@ -120,7 +120,7 @@ def faces(models: tuple[str, ...] = ("walls",), height: float = 0.2) -> np.ndarr
 
 
 def distances(faces: np.ndarray, points: np.ndarray) -> np.ndarray:
-    """How far points (n, 2) are from the nearest face, of shape (n,), metres."""
+    """How far points (n, 2) are from the nearest face, of shape (n,), meters."""
     start, along = faces[:, 0], faces[:, 1] - faces[:, 0]
     away = points[:, None] - start
     part = np.clip((away * along).sum(axis=2) / (along**2).sum(axis=1), 0, 1)
@@ -150,6 +150,6 @@ def occupied_of(grid: Grid) -> np.ndarray:
 
 
 def gaps(grid: Grid, points: np.ndarray) -> np.ndarray:
-    """How far each point (n, 2) is from the nearest occupied cell, of shape (n,), metres."""
+    """How far each point (n, 2) is from the nearest occupied cell, of shape (n,), meters."""
     occupied = occupied_of(grid)
     return np.array([np.hypot(*(occupied - point).T).min() for point in points])

@@ -57,7 +57,7 @@ class House:
         self.amcl.close()
         self.server.close()
 
-    def tell(self, x: float, y: float, yaw: float) -> None:
+    def send_pose_estimate(self, x: float, y: float, yaw: float) -> None:
         """2D Pose Estimate."""
         message = get_message(POSE)()
         message.header.frame_id = "map"
@@ -72,7 +72,7 @@ class House:
         self.test.settle()
 
     def error(self) -> tuple[float, float]:
-        """How far, in metres and radians, the transforms have the robot from where it is."""
+        """How far, in meters and radians, the transforms have the robot from where it is."""
         true = self.test.robot_pose()
         found, _ = self.buffer.lookup("map", "base_footprint", 0)
         turn = rpy_from_quaternion(found[3:])[2] - rpy_from_quaternion(true[3:])[2]
@@ -127,7 +127,7 @@ def begin() -> Iterator[Begin]:
         running[1].__exit__(None, None, None)
 
 
-def test_the_map_is_that_of_the_house() -> None:
+def test_map_matches_house() -> None:
     grid = load_map(MAP)
     here = grid.cells_of(np.array([(0.0, 0.0), (4.9, 2.0), (4.95, 2.0), (20.0, 0.0)]))
     assert grid.contains(here).tolist() == [True, True, True, False]
@@ -135,7 +135,7 @@ def test_the_map_is_that_of_the_house() -> None:
     assert 100 in (grid.cells[tuple(here[1])], grid.cells[tuple(here[2])])
 
 
-def test_it_tracks_a_drive_through_the_house(begin: Begin) -> None:
+def test_amcl_tracks_drive_through_house(begin: Begin) -> None:
     house = begin(set_initial_pose=True)
     house.drive(TOUR)
     assert max(house.errors) < 0.2
@@ -144,13 +144,13 @@ def test_it_tracks_a_drive_through_the_house(begin: Begin) -> None:
     assert house.logged(LogLevel.WARN) == house.logged(LogLevel.ERROR) == []
 
 
-def test_a_pose_that_is_wrong_is_put_right(begin: Begin) -> None:
+def test_wrong_pose_estimate_is_corrected_while_driving(begin: Begin) -> None:
     house = begin((-2.0, 0.0, 0.5))
     house.test.advance(1.0)
     with pytest.raises(TransformException):
         house.error()
     assert "Please set the initial pose" in house.logged(LogLevel.WARN)[0]
-    house.tell(-1.6, 0.3, 0.2)  # 0.5 m and 0.3 rad off
+    house.send_pose_estimate(-1.6, 0.3, 0.2)  # 0.5 m and 0.3 rad off
     house.test.advance(0.5)
     house.drive([(-2.2, -0.4), (-2.2, -2.0), (-0.2, -2.4)])
     away, turn = house.error()
@@ -164,7 +164,7 @@ def _call(house: House, service: str, kind: str = "std_srvs/srv/Empty", **fields
     return house.test.call(service, get_service(kind).Request(**fields))
 
 
-def test_it_finds_the_robot_anywhere(begin: Begin) -> None:
+def test_global_localization_finds_robot(begin: Begin) -> None:
     house = begin((-2.0, 0.0, 0.5), max_particles=5000)
     _call(house, "/reinitialize_global_localization")
     house.drive([(-2.2, -2.4), (-0.2, -2.4), (0.4, -1.7), (2.4, -1.7), (3.2, -0.6), (2.2, -1.7)])
@@ -173,7 +173,7 @@ def test_it_finds_the_robot_anywhere(begin: Begin) -> None:
     assert turn < 0.1
 
 
-def test_a_robot_that_was_carried_away_is_found_again(begin: Begin) -> None:
+def test_kidnapped_robot_is_relocalized(begin: Begin) -> None:
     house = begin(
         set_initial_pose=True,
         recovery_alpha_slow=0.001,
@@ -199,29 +199,29 @@ def test_a_robot_that_was_carried_away_is_found_again(begin: Begin) -> None:
     assert house.error()[0] < 0.15
 
 
-def test_scans_that_fit_nowhere_near_are_told(begin: Begin) -> None:
+def test_scans_that_do_not_match_map_are_reported(begin: Begin) -> None:
     house = begin((-2.0, 0.0, 0.0))
-    house.tell(3.0, 2.0, 2.0)
+    house.send_pose_estimate(3.0, 2.0, 2.0)
     house.test.advance(0.5)
     house.drive([(-2.2, -0.4), (-2.2, -2.0), (-0.2, -2.4), (0.0, 0.0)])
     assert house.error()[0] > 0.5
     assert any("of the beams end near an obstacle of the map" in text for text in house.logged(LogLevel.WARN))
 
 
-def test_it_says_what_it_waits_for(begin: Begin) -> None:
+def test_wait_for_map_is_reported(begin: Begin) -> None:
     house = begin(map_topic="nowhere", set_initial_pose=True)
     assert house.logged(LogLevel.WARN) == ["Waiting for map.... No node publishes on '/nowhere'."]
     assert len(house.poses) == 0
 
 
-def test_without_transforms_it_says_which_is_missing(begin: Begin) -> None:
+def test_missing_transform_is_reported(begin: Begin) -> None:
     house = begin(odom_frame_id="odometry", set_initial_pose=True)
     house.test.advance(3.0)
     assert "Couldn't determine robot's pose associated with laser scan" in house.logged(LogLevel.ERROR)[0]
     assert "odometry" in house.logged(LogLevel.ERROR)[0]
 
 
-def test_poses_particles_and_transforms_are_those_of_nav2(begin: Begin) -> None:
+def test_poses_particles_and_transforms_match_nav2(begin: Begin) -> None:
     house = begin(set_initial_pose=True, transform_tolerance=0.5)
     clouds = house.test.record("/particle_cloud", get_message("nav2_msgs/msg/ParticleCloud"))
     before = len(house.poses)
@@ -239,7 +239,7 @@ def test_poses_particles_and_transforms_are_those_of_nav2(begin: Begin) -> None:
     assert 0.2e9 < stamp_ns - now_ns <= 0.5e9
 
 
-def test_poses_in_other_frames_or_of_no_numbers_are_refused(begin: Begin) -> None:
+def test_pose_estimates_in_wrong_frame_or_not_finite_are_rejected(begin: Begin) -> None:
     house = begin()
     request = get_service("nav2_msgs/srv/SetInitialPose").Request()
     for frame, x in (("", 1.0), ("odom", 1.0), ("map", float("nan")), ("map", 1.5)):
@@ -258,7 +258,7 @@ def test_poses_in_other_frames_or_of_no_numbers_are_refused(begin: Begin) -> Non
     ("name", "value"),
     [("laser_model_type", "likelihod_field"), ("max_beams", 0), ("min_particles", 9000), ("alpha1", -1.0)],
 )
-def test_parameters_that_mean_nothing_are_refused(begin: Begin, name: str, value: object) -> None:
+def test_invalid_parameters_are_rejected(begin: Begin, name: str, value: object) -> None:
     house = begin(**{name: value})
     assert any(f"parameter '{name}' of 'amcl' cannot be" in text for text in house.logged(LogLevel.ERROR))
     node: Any = house.amcl.node

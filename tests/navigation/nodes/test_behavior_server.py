@@ -1,4 +1,4 @@
-"""behavior_server: behaviours as actions, with obstacles, time and cancellation."""
+"""behavior_server: behaviors as actions, with obstacles, time and cancellation."""
 
 from __future__ import annotations
 
@@ -30,9 +30,9 @@ class CostmapScene(DrivingScene):
         raw, polygon = get_message("nav2_msgs/msg/Costmap"), get_message("geometry_msgs/msg/PolygonStamped")
         self._raw = self.node.create_publisher(raw, "/local_costmap/costmap_raw", DESCRIPTION_QOS)
         self._footprint = self.node.create_publisher(polygon, "/local_costmap/published_footprint", 10)
-        self.node.create_timer(0.2, self.tell_costmap)
+        self.node.create_timer(0.2, self.publish_costmap)
 
-    def tell_costmap(self):
+    def publish_costmap(self):
         if not self.sees:
             return
         self._raw.publish(raw_message(self.costmap, "odom", self.stamp()))
@@ -54,7 +54,7 @@ async def scene(graph, clock):
     server.close()
 
 
-async def test_it_spins(scene):
+async def test_spin_turns_by_requested_angle(scene):
     goal = Asked(scene, "Spin", "spin")
     await goal.send(target_yaw=pi / 2, time_allowance=Duration(seconds=10.0).to_msg())
     assert await goal.ends(10.0) == GoalStatus.SUCCEEDED
@@ -67,7 +67,7 @@ async def test_it_spins(scene):
 @pytest.mark.parametrize(
     ("name", "kind", "sign"), [("backup", "BackUp", -1), ("drive_on_heading", "DriveOnHeading", 1)]
 )
-async def test_it_drives_straight(scene, name, kind, sign):
+async def test_straight_drives_cover_requested_distance(scene, name, kind, sign):
     goal = Asked(scene, kind, name)
     before = scene.pose
     await goal.send(target=get_message("geometry_msgs/msg/Point")(x=0.3), speed=0.2)
@@ -77,7 +77,7 @@ async def test_it_drives_straight(scene, name, kind, sign):
     assert scene.velocity == ZERO_VELOCITY
 
 
-async def test_it_does_not_back_into_an_obstacle(scene, log):
+async def test_backup_stops_before_obstacle(scene, log):
     scene.costmap.grid.cells[:, :30] = LETHAL  # up to x = 1.5 m
     await scene.run(0.5)
     goal = Asked(scene, "BackUp", "backup")
@@ -88,7 +88,7 @@ async def test_it_does_not_back_into_an_obstacle(scene, log):
     assert any("there is an obstacle ahead" in record.text for record in log)
 
 
-async def test_it_takes_no_longer_than_is_allowed(scene):
+async def test_drive_on_heading_ends_after_time_allowance(scene):
     goal = Asked(scene, "DriveOnHeading", "drive_on_heading")
     target = get_message("geometry_msgs/msg/Point")(x=1.5)
     await goal.send(target=target, speed=0.05, time_allowance=Duration(seconds=2.0).to_msg())
@@ -96,7 +96,7 @@ async def test_it_takes_no_longer_than_is_allowed(scene):
     assert scene.velocity == ZERO_VELOCITY
 
 
-async def test_a_costmap_that_falls_silent_stops_the_robot(scene, log):
+async def test_silent_costmap_stops_robot(scene, log):
     goal = Asked(scene, "DriveOnHeading", "drive_on_heading")
     await goal.send(target=get_message("geometry_msgs/msg/Point")(x=2.0), speed=0.02)
     scene.sees = False
@@ -105,7 +105,7 @@ async def test_a_costmap_that_falls_silent_stops_the_robot(scene, log):
     assert any("the costmap is no longer published" in record.text for record in log)
 
 
-async def test_it_waits_and_can_be_canceled(scene):
+async def test_wait_ends_or_is_canceled(scene):
     goal = Asked(scene, "Wait", "wait")
     await goal.send(time=Duration(seconds=2.0).to_msg())
     assert await goal.ends(5.0) == GoalStatus.SUCCEEDED
@@ -115,7 +115,7 @@ async def test_it_waits_and_can_be_canceled(scene):
     assert await goal.ends(2.0) == GoalStatus.CANCELED
 
 
-async def test_who_drives_with_assistance_is_stopped_before_a_wall(scene):
+async def test_assisted_teleop_stops_before_wall(scene):
     scene.costmap.grid.cells[:, 70:] = LETHAL  # from x = 3.5 m on
     scene.pose = (2.5, 2.5, 0.0)
     await scene.run(0.5)
@@ -132,7 +132,7 @@ async def test_who_drives_with_assistance_is_stopped_before_a_wall(scene):
     assert scene.velocity == ZERO_VELOCITY
 
 
-async def test_targets_beside_the_robot_are_refused(scene):
+async def test_backup_target_beside_robot_is_rejected(scene):
     goal = Asked(scene, "BackUp", "backup")
     await goal.send(target=get_message("geometry_msgs/msg/Point")(x=0.3, y=0.1), speed=0.2)
     assert await goal.ends(1.0) == GoalStatus.ABORTED

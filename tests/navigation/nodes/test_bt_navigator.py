@@ -65,7 +65,7 @@ async def scene(graph, clock):
         node.close()
 
 
-async def test_it_goes_to_a_pose_and_tells_how_far_it_is(scene):
+async def test_navigate_to_pose_reaches_goal_with_feedback(scene):
     goal = Asked(scene, "NavigateToPose", "navigate_to_pose")
     await goal.send(pose=pose_stamped(3.0, 1.0))
     assert await goal.ends(60.0) == GoalStatus.SUCCEEDED
@@ -79,7 +79,7 @@ async def test_it_goes_to_a_pose_and_tells_how_far_it_is(scene):
     assert scene.planner.plans > 3, "a path each second"
 
 
-async def test_a_goal_pose_of_rviz_moves_the_robot(scene):
+async def test_goal_pose_topic_of_rviz_moves_robot(scene):
     publisher = scene.node.create_publisher("geometry_msgs/msg/PoseStamped", "/goal_pose", 10)
     publisher.publish(pose_stamped(2.0, 1.0))
     for _ in range(60):
@@ -87,7 +87,7 @@ async def test_a_goal_pose_of_rviz_moves_the_robot(scene):
     assert scene.distance_to(2.0, 1.0) < 0.26
 
 
-async def test_it_goes_through_poses(scene):
+async def test_navigate_through_poses_visits_all_poses(scene):
     goal = Asked(scene, "NavigateThroughPoses", "navigate_through_poses")
     await goal.send(poses=[pose_stamped(2.0, 1.0), pose_stamped(2.0, 2.0), pose_stamped(3.0, 2.0)])
     assert await goal.ends(90.0) == GoalStatus.SUCCEEDED
@@ -95,7 +95,7 @@ async def test_it_goes_through_poses(scene):
     assert {each.number_of_poses_remaining for each in goal.feedback} >= {1, 2, 3}
 
 
-async def test_canceling_stops_the_robot(scene):
+async def test_canceling_stops_robot(scene):
     goal = Asked(scene, "NavigateToPose", "navigate_to_pose")
     await goal.send(pose=pose_stamped(3.5, 1.0))
     await scene.run(3.0)
@@ -106,7 +106,7 @@ async def test_canceling_stops_the_robot(scene):
     assert scene.velocity == ZERO_VELOCITY
 
 
-async def test_another_goal_takes_over(scene):
+async def test_new_goal_preempts_running_goal(scene):
     first, second = (Asked(scene, "NavigateToPose", "navigate_to_pose") for _ in range(2))
     await first.send(pose=pose_stamped(3.5, 1.0))
     await scene.run(2.0)
@@ -116,7 +116,7 @@ async def test_another_goal_takes_over(scene):
     assert scene.distance_to(1.0, 2.0) < 0.26
 
 
-async def test_it_recovers_in_the_order_of_nav2(scene, log):
+async def test_recoveries_run_in_order_of_nav2(scene, log):
     scene.planner.failures = 8
     goal = Asked(scene, "NavigateToPose", "navigate_to_pose")
     await goal.send(pose=pose_stamped(2.0, 1.0))
@@ -127,7 +127,7 @@ async def test_it_recovers_in_the_order_of_nav2(scene, log):
     assert goal.feedback[-1].number_of_recoveries >= 4
 
 
-async def test_it_gives_up_after_six_recoveries(scene, log):
+async def test_goal_aborts_after_six_recoveries(scene, log):
     scene.planner.failures = 1000
     goal = Asked(scene, "NavigateToPose", "navigate_to_pose")
     await goal.send(pose=pose_stamped(2.0, 1.0))
@@ -135,7 +135,7 @@ async def test_it_gives_up_after_six_recoveries(scene, log):
     assert any(record.text.startswith("Goal failed: the planner found no path") for record in log)
 
 
-async def test_a_goal_in_a_wall_is_refused_with_a_reason(scene, log):
+async def test_goal_in_wall_aborts_with_reason(scene, log):
     costmap = Costmap(Grid(cells=np.zeros((100, 100), np.uint8), resolution=0.05))
     costmap.grid.cells[:, 40:44] = LETHAL
     publisher = scene.node.create_publisher("nav2_msgs/msg/Costmap", "/global_costmap/costmap_raw", DESCRIPTION_QOS)
@@ -148,7 +148,7 @@ async def test_a_goal_in_a_wall_is_refused_with_a_reason(scene, log):
     assert scene.velocity == ZERO_VELOCITY
 
 
-async def test_a_goal_without_a_frame_ends_with_a_reason_and_without_recoveries(scene, log):
+async def test_goal_without_frame_aborts_without_recoveries(scene, log):
     scene.planner.failures = 1000  # no planner transforms a pose without a frame
     goal = Asked(scene, "NavigateToPose", "navigate_to_pose")
     await goal.send(pose=pose_stamped(2.0, 1.0, frame=""))
@@ -157,20 +157,20 @@ async def test_a_goal_without_a_frame_ends_with_a_reason_and_without_recoveries(
     assert all(each.number_of_recoveries == 0 for each in goal.feedback)
 
 
-async def test_no_poses_are_no_goal(scene):
+async def test_empty_pose_list_is_rejected(scene):
     goal = Asked(scene, "NavigateThroughPoses", "navigate_through_poses")
     await goal.send(poses=[])
     assert not goal.handle.accepted
 
 
-async def test_trees_of_users_are_not_read(scene, log):
+async def test_custom_behavior_tree_is_ignored_with_warning(scene, log):
     goal = Asked(scene, "NavigateToPose", "navigate_to_pose")
     await goal.send(pose=pose_stamped(1.2, 1.0), behavior_tree="/tmp/mine.xml")
     assert await goal.ends(30.0) == GoalStatus.SUCCEEDED
     assert any("behavior trees are not supported" in record.text for record in log)
 
 
-async def test_waypoints_are_followed_and_missed_ones_told(scene):
+async def test_waypoints_are_followed_and_missed_ones_are_reported(scene):
     goal = Asked(scene, "FollowWaypoints", "follow_waypoints")
     costmap = Costmap(Grid(cells=np.zeros((100, 100), np.uint8), resolution=0.05))
     costmap.grid.cells[60:] = LETHAL  # above y = 3 m

@@ -62,13 +62,13 @@ def monitor(graph, scene):
         each.close()
 
 
-async def test_velocities_pass_where_the_way_is_free(scene, monitor):
+async def test_velocity_passes_in_free_space(scene, monitor):
     monitor(**STOP)
     await scene.run(1.0)
     assert scene.velocity.x == pytest.approx(0.4)
 
 
-async def test_the_robot_stops_for_something_in_the_zone_and_goes_on_when_it_is_gone(scene, monitor, log):
+async def test_robot_stops_for_obstacle_in_zone_and_resumes(scene, monitor, log):
     node = monitor(**STOP, state_topic="state")
     states = []
     scene.node.create_subscription("nav2_msgs/msg/CollisionMonitorState", "state", states.append, 10)
@@ -84,7 +84,7 @@ async def test_the_robot_stops_for_something_in_the_zone_and_goes_on_when_it_is_
     assert node.lifecycle_state == ACTIVE
 
 
-async def test_a_robot_that_stays_stopped_is_left_to_others(scene, monitor):
+async def test_publishing_ends_after_stop_pub_timeout(scene, monitor):
     monitor(**STOP, stop_pub_timeout=1.0)
     scene.seen = ((0, 0.5),)
     await scene.run(3.0)
@@ -93,7 +93,7 @@ async def test_a_robot_that_stays_stopped_is_left_to_others(scene, monitor):
     assert scene.speeds == []
 
 
-async def test_a_silent_sensor_stops_the_robot(scene, monitor):
+async def test_silent_sensor_stops_robot(scene, monitor):
     monitor(**STOP, source_timeout=1.0)
     await scene.run(1.0)
     assert scene.velocity.x == pytest.approx(0.4)
@@ -102,21 +102,21 @@ async def test_a_silent_sensor_stops_the_robot(scene, monitor):
     assert scene.velocity == ZERO_VELOCITY
 
 
-async def test_a_sensor_without_a_timeout_may_be_silent(scene, monitor):
+async def test_sensor_with_zero_timeout_may_be_silent(scene, monitor):
     monitor(**STOP, **{"scan.source_timeout": 0.0})
     scene.sees = False
     await scene.run(1.0)
     assert scene.velocity.x == pytest.approx(0.4)
 
 
-async def test_the_robot_slows_down(scene, monitor):
+async def test_slowdown_zone_reduces_velocity(scene, monitor):
     monitor(**{**STOP, "stop.action_type": "slowdown", "stop.slowdown_ratio": 0.3})
     scene.seen = ((0, 0.5),)
     await scene.run(1.0)
     assert scene.velocity.x == pytest.approx(0.12)
 
 
-async def test_humbles_corners_and_number_of_points_are_read(scene, monitor):
+async def test_points_and_max_points_of_humble_are_read(scene, monitor):
     humble = {**STOP, "stop.points": [0.6, 0.3, 0.6, -0.3, 0.0, -0.3, 0.0, 0.3], "stop.max_points": 1}
     monitor(**humble)
     scene.seen = ((0, 0.5),)
@@ -127,7 +127,7 @@ async def test_humbles_corners_and_number_of_points_are_read(scene, monitor):
     assert scene.velocity == ZERO_VELOCITY
 
 
-async def test_what_was_seen_stands_still_while_the_robot_moves_on(scene, monitor):
+async def test_old_observations_stay_fixed_in_odometry_frame(scene, monitor):
     monitor(**STOP)
     scene.seen = ((0, 0.9),)
     await scene.run(0.5)
@@ -138,11 +138,11 @@ async def test_what_was_seen_stands_still_while_the_robot_moves_on(scene, monito
     assert scene.velocity == ZERO_VELOCITY
 
 
-async def test_a_robot_slows_down_towards_a_wall_with_the_footprint_of_its_costmap(scene, monitor):
+async def test_approach_with_costmap_footprint_slows_down_before_wall(scene, monitor):
     polygon, point = get_message("geometry_msgs/msg/PolygonStamped"), get_message("geometry_msgs/msg/Point32")
     footprints = scene.node.create_publisher(polygon, "/local_costmap/published_footprint", 10)
 
-    def tell():
+    def publish_reading():
         x, y, _ = scene.pose
         corners = [(x + a, y + b) for a, b in ((0.2, 0.2), (0.2, -0.2), (-0.2, -0.2), (-0.2, 0.2))]
         message = polygon()
@@ -150,7 +150,7 @@ async def test_a_robot_slows_down_towards_a_wall_with_the_footprint_of_its_costm
         message.polygon.points = [point(x=float(a), y=float(b)) for a, b in corners]
         footprints.publish(message)
 
-    scene.node.create_timer(0.1, tell)
+    scene.node.create_timer(0.1, publish_reading)
     approach = {"polygons": ["body"], "body.type": "polygon", "body.action_type": "approach", "body.min_points": 1}
     monitor(**approach, **{"body.time_before_collision": 2.0})
     scene.wall = scene.pose[0] + 1.5
@@ -161,7 +161,7 @@ async def test_a_robot_slows_down_towards_a_wall_with_the_footprint_of_its_costm
     assert 0 < speeds[-1] < 0.2
 
 
-async def test_the_zone_of_a_speed_is_used_at_it(scene, monitor):
+async def test_velocity_polygon_follows_speed(scene, monitor):
     zone = {
         "polygons": ["v"],
         "v.type": "velocity_polygon",
@@ -182,7 +182,7 @@ async def test_the_zone_of_a_speed_is_used_at_it(scene, monitor):
     assert scene.velocity.x == pytest.approx(0.2)
 
 
-async def test_a_zone_can_be_switched_off(scene, monitor):
+async def test_zone_can_be_disabled_by_parameter(scene, monitor):
     node = monitor(**STOP)
     scene.seen = ((0, 0.5),)
     await scene.run(1.0)
@@ -192,19 +192,19 @@ async def test_a_zone_can_be_switched_off(scene, monitor):
     assert scene.velocity.x == pytest.approx(0.4)
 
 
-async def test_clouds_count_between_two_heights(scene, monitor):
+async def test_point_cloud_is_filtered_by_height(scene, monitor):
     cloud, field = get_message("sensor_msgs/msg/PointCloud2"), get_message("sensor_msgs/msg/PointField")
     clouds = scene.node.create_publisher(cloud, "/points", 5)
     height = [0.01]
 
-    def tell():
+    def publish_reading():
         points = np.array([[0.5, 0.0, height[0]], [np.nan, 0.0, 0.2]], np.float32)
         message = cloud(height=1, width=2, point_step=12, row_step=24, data=points.tobytes())
         message.fields = [field(name=name, offset=4 * i, datatype=7, count=1) for i, name in enumerate("xyz")]
         message.header.frame_id, message.header.stamp = "base_link", scene.stamp()
         clouds.publish(message)
 
-    scene.node.create_timer(0.1, tell)
+    scene.node.create_timer(0.1, publish_reading)
     monitor(**STOP, **{"scan.type": "pointcloud", "scan.topic": "points"})
     await scene.run(1.0)
     assert scene.velocity.x == pytest.approx(0.4)
@@ -214,16 +214,16 @@ async def test_clouds_count_between_two_heights(scene, monitor):
 
 
 @pytest.mark.parametrize(("distance", "passes"), [(0.5, False), (2.0, True), (9.0, True)])
-async def test_a_single_distance_is_an_arc(scene, monitor, distance, passes):
+async def test_range_message_is_arc_of_points(scene, monitor, distance, passes):
     kind = get_message("sensor_msgs/msg/Range")
     ranges = scene.node.create_publisher(kind, "/sonar", 5)
 
-    def tell():
+    def publish_reading():
         message = kind(field_of_view=0.5, min_range=0.1, max_range=4.0, range=distance)
         message.header.frame_id, message.header.stamp = "base_link", scene.stamp()
         ranges.publish(message)
 
-    scene.node.create_timer(0.1, tell)
+    scene.node.create_timer(0.1, publish_reading)
     monitor(**STOP, **{"scan.type": "range", "scan.topic": "sonar"})
     await scene.run(1.0)
     assert (scene.velocity != ZERO_VELOCITY) is passes
@@ -239,7 +239,7 @@ async def test_a_single_distance_is_an_arc(scene, monitor, distance, passes):
         ("scan.type", "sonar"),
     ],
 )
-async def test_a_parameter_that_cannot_be_is_said_and_nothing_passes(scene, monitor, log, name, value):
+async def test_invalid_parameter_is_reported_and_node_stays_unconfigured(scene, monitor, log, name, value):
     node = monitor(**{**STOP, name: value})
     await scene.run(0.5)
     assert node.lifecycle_state == UNCONFIGURED
@@ -248,6 +248,6 @@ async def test_a_parameter_that_cannot_be_is_said_and_nothing_passes(scene, moni
     assert scene.speeds == []
 
 
-def test_a_name_of_a_topic_that_is_none_ends_it(graph):
+def test_topic_name_of_wrong_type_is_an_error(graph):
     with pytest.raises(LinkwrightError):
         CollisionMonitor(graph, NodeOptions(parameters={**SCAN, "cmd_vel_out_topic": 5}))

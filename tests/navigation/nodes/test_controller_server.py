@@ -66,7 +66,7 @@ async def start(graph, clock):
 
 
 @pytest.mark.parametrize("parameters", [{}, DWB], ids=["pure pursuit", "dwb"])
-async def test_a_path_is_driven_to_its_end(start, parameters):
+async def test_path_is_followed_to_end(start, parameters):
     scene, goal, _ = await start(**parameters)
     await goal.send(path=path_message(PATH))
     assert await goal.ends(60.0) == GoalStatus.SUCCEEDED
@@ -77,7 +77,7 @@ async def test_a_path_is_driven_to_its_end(start, parameters):
     assert max(each.speed for each in goal.feedback) > 0.15
 
 
-async def test_canceling_stops_the_robot(start):
+async def test_canceling_stops_robot(start):
     scene, goal, _ = await start()
     await goal.send(path=path_message(PATH))
     await scene.run(2.0)
@@ -87,7 +87,7 @@ async def test_canceling_stops_the_robot(start):
     assert scene.velocity == ZERO_VELOCITY
 
 
-async def test_another_path_takes_over_while_the_robot_drives(start, log):
+async def test_new_path_preempts_running_path(start, log):
     scene, goal, _ = await start()
     await goal.send(path=path_message(PATH))
     await scene.run(2.0)
@@ -101,7 +101,7 @@ async def test_another_path_takes_over_while_the_robot_drives(start, log):
     assert [record.text for record in log if record.text in beginnings] == beginnings
 
 
-async def test_an_obstacle_on_the_path_stops_the_robot(start, log):
+async def test_obstacle_on_path_stops_robot(start, log):
     scene, goal, _ = await start()
     await goal.send(path=path_message(line((1.0, 1.0), (4.5, 1.0))))
     scene.seen = tuple((degree % 360, 0.8) for degree in range(-20, 21))
@@ -110,7 +110,7 @@ async def test_an_obstacle_on_the_path_stops_the_robot(start, log):
     assert any("there is an obstacle ahead" in record.text for record in log)
 
 
-async def test_a_robot_that_is_held_makes_no_progress(start, log):
+async def test_held_robot_fails_to_make_progress(start, log):
     scene, goal, _ = await start(**{"progress_checker.movement_time_allowance": 3.0})
     await goal.send(path=path_message(PATH))
     scene.held = True
@@ -118,7 +118,7 @@ async def test_a_robot_that_is_held_makes_no_progress(start, log):
     assert any("Failed to make progress" in record.text for record in log)
 
 
-async def test_lost_transforms_stop_the_robot(start, log):
+async def test_lost_transforms_stop_robot(start, log):
     scene, goal, _ = await start()
     await goal.send(path=path_message(PATH))
     await scene.run(1.0)
@@ -135,7 +135,7 @@ async def test_lost_transforms_stop_the_robot(start, log):
     assert any("s old; the goal is aborted" in record.text for record in log)
 
 
-async def test_a_silent_laser_stops_the_robot(start, log):
+async def test_silent_laser_stops_robot(start, log):
     scene, goal, _ = await start()
     await goal.send(path=path_message(line((1.0, 1.0), (4.5, 1.0))))
     await scene.run(0.5)
@@ -147,7 +147,7 @@ async def test_a_silent_laser_stops_the_robot(start, log):
     assert any("the costmap is not current" in record.text for record in log)
 
 
-async def test_a_server_that_is_deactivated_stops_the_robot(start):
+async def test_deactivation_stops_robot(start):
     scene, goal, server = await start()
     await goal.send(path=path_message(PATH))
     await scene.run(1.0)
@@ -159,7 +159,7 @@ async def test_a_server_that_is_deactivated_stops_the_robot(start):
     assert not goal.handle.accepted
 
 
-async def test_a_speed_limit_is_kept(start):
+async def test_speed_limit_is_respected(start):
     scene, goal, _ = await start()
     limit = get_message("nav2_msgs/msg/SpeedLimit")(percentage=True, speed_limit=20.0)
     publisher = scene.node.create_publisher(type(limit), "/speed_limit", 10)
@@ -169,7 +169,7 @@ async def test_a_speed_limit_is_kept(start):
     assert 0.05 < max(speed.x for speed in scene.speeds) <= 0.1 + 1e-9
 
 
-async def test_an_empty_path_and_an_unknown_controller_are_refused(start, log):
+async def test_empty_path_and_unknown_controller_are_rejected(start, log):
     _, goal, _ = await start()
     await goal.send(path=path_message([]))
     assert await goal.ends(1.0) == GoalStatus.ABORTED
@@ -180,6 +180,6 @@ async def test_an_empty_path_and_an_unknown_controller_are_refused(start, log):
     assert "there is no controller 'Fast'; available: FollowPath" in logged
 
 
-async def test_what_has_no_effect_is_named(start, log):
+async def test_parameters_without_effect_are_reported(start, log):
     await start(**DWB)
     assert any("these parameters have no effect: critics" in record.text for record in log)

@@ -76,7 +76,7 @@ async def call(scene, service, kind, **fields):
     return future.result()
 
 
-async def test_a_map_becomes_costs_as_large_as_the_map(scene, start):
+async def test_global_costmap_has_size_of_map(scene, start):
     node = start()
     assert node.get_fully_qualified_name() == "/global_costmap/global_costmap"
     scene.tell_map(walls())
@@ -90,7 +90,7 @@ async def test_a_map_becomes_costs_as_large_as_the_map(scene, start):
     assert node.is_current
 
 
-async def test_transforms_are_heard_where_its_server_hears_them(graph, scene):
+async def test_costmap_inherits_tf_remappings_of_server(graph, scene):
     """The launch files of nav2 make the topics of transforms relative, for robots in namespaces."""
     options = NodeOptions(remappings=[("/tf", "tf"), ("/tf_static", "tf_static")])
     node = make_costmap(scene.node, graph, options, "global_costmap")
@@ -100,7 +100,7 @@ async def test_transforms_are_heard_where_its_server_hears_them(graph, scene):
     node.destroy_node()
 
 
-async def test_it_waits_for_the_place_of_the_robot_and_for_the_map(scene, start):
+async def test_costmap_waits_for_transform_and_map(scene, start):
     node = start()
     await scene.run(0.5)
     assert not node.is_current
@@ -112,7 +112,7 @@ async def test_it_waits_for_the_place_of_the_robot_and_for_the_map(scene, start)
     assert node.is_current
 
 
-async def test_what_the_laser_sees_comes_and_goes(scene, start):
+async def test_laser_obstacles_are_marked_and_cleared(scene, start):
     node = start()
     scene.tell_map(walls())
     scene.tell_pose()
@@ -125,7 +125,7 @@ async def test_what_the_laser_sees_comes_and_goes(scene, start):
     assert node.costmap.cost_at(np.array([2.0, 1.0])) == FREE
 
 
-async def test_a_scan_waits_until_its_place_is_known(scene, start):
+async def test_scan_waits_for_its_transform(scene, start):
     node = start()
     scene.tell_map(walls())
     scene.tell_pose(x=0.5)
@@ -140,7 +140,7 @@ async def test_a_scan_waits_until_its_place_is_known(scene, start):
     assert 1.5 < (found[0, 1] + 20) * 0.05 < 2.0
 
 
-async def test_a_local_costmap_moves_with_the_robot(scene, start):
+async def test_local_costmap_moves_with_robot(scene, start):
     node = start("local_costmap", LOCAL)
     scene.tell_pose()
     scene.tell_scan((0, 0.8))
@@ -154,7 +154,7 @@ async def test_a_local_costmap_moves_with_the_robot(scene, start):
     assert node.costmap.cost_at(np.array([1.8, 1.0])) == LETHAL
 
 
-async def test_what_a_sonar_measures(scene, start):
+async def test_sonar_readings_mark_obstacle(scene, start):
     node = start(
         plugins=["sonar"],
         **{"sonar.plugin": "nav2_costmap_2d::RangeSensorLayer", "sonar.topics": ["sonar"]},
@@ -171,7 +171,7 @@ async def test_what_a_sonar_measures(scene, start):
     assert node.costmap.cost_at(np.array([1.5, 1.0])) == FREE
 
 
-async def test_others_hear_of_it(scene, start):
+async def test_costmap_topics_are_published(scene, start):
     maps, parts, raw, outlines = [], [], [], []
     for kind, topic, heard in (
         ("nav_msgs/msg/OccupancyGrid", "costmap", maps),
@@ -200,7 +200,7 @@ async def test_others_hear_of_it(scene, start):
     assert cells[20 - part.y, 40 - part.x] == 100 or cells[19 - part.y, 39 - part.x] == 100
 
 
-async def test_it_can_be_cleared(scene, start):
+async def test_clear_services_clear_costmap(scene, start):
     node = start()
     scene.tell_map(walls())
     scene.tell_pose()
@@ -222,13 +222,13 @@ async def test_it_can_be_cleared(scene, start):
     assert answer.map.metadata.size_x == 80
 
 
-async def test_a_footprint_instead_of_a_radius(scene, start):
+async def test_footprint_parameter_replaces_radius(scene, start):
     node = start(footprint="[[0.3, 0.1], [0.3, -0.1], [-0.3, -0.1], [-0.3, 0.1]]", footprint_padding=0.0)
     assert node.footprint.tolist() == [[0.3, 0.1], [0.3, -0.1], [-0.3, -0.1], [-0.3, 0.1]]
     assert node.layered.inscribed_radius == pytest.approx(0.1)
 
 
-async def test_parameters_that_change_are_obeyed(scene, start):
+async def test_changed_parameters_take_effect(scene, start):
     node = start()
     scene.tell_map(walls())
     scene.tell_pose()
@@ -244,7 +244,7 @@ async def test_parameters_that_change_are_obeyed(scene, start):
     assert node.layered.circumscribed_radius == pytest.approx(0.41, abs=0.01)
 
 
-async def test_what_is_not_had_is_left_out_with_a_line(scene, start, log):
+async def test_unsupported_layers_and_filters_are_reported_and_ignored(scene, start, log):
     start(
         plugins=["static_layer", "sonar"],
         filters=["keepout_filter"],
@@ -270,7 +270,7 @@ async def test_what_is_not_had_is_left_out_with_a_line(scene, start, log):
         ({"obstacle_layer.scan.data_type": "Image"}, "choose from LaserScan, PointCloud2"),
     ],
 )
-async def test_what_cannot_be_is_told(scene, start, log, given, why):
+async def test_invalid_parameters_are_reported(scene, start, log, given, why):
     node = start(**given)
     assert not node.is_active
     assert [each for each in log if why in each.text]

@@ -80,7 +80,7 @@ def planar(message):
     return message.pose.pose.position.x, message.pose.pose.position.y, yaw
 
 
-async def test_odometry_and_gyroscope_make_one_estimate_and_one_transform(test):
+async def test_odometry_and_gyroscope_are_fused(test):
     start(test, odom0="wheels", odom0_config=config(VX, VY), imu0="imu", imu0_config=config(VYAW), frequency=30.0)
     filtered, tf = test.record("/odometry/filtered"), test.record("/tf")
     for _ in range(200):
@@ -101,7 +101,7 @@ async def test_odometry_and_gyroscope_make_one_estimate_and_one_transform(test):
     assert transform.header.stamp == filtered.last.header.stamp
 
 
-async def test_without_measurements_nothing_is_published_and_then_the_state_goes_on(test):
+async def test_publishing_starts_with_first_measurement_and_continues(test):
     start(test, odom0="wheels", odom0_config=config(VX))
     filtered = test.record("/odometry/filtered")
     await test.advance(1.0)
@@ -112,7 +112,7 @@ async def test_without_measurements_nothing_is_published_and_then_the_state_goes
     assert filtered.last.pose.covariance[0] > filtered[0].pose.covariance[0]
 
 
-async def test_an_outlier_is_rejected(test):
+async def test_outlier_is_rejected(test):
     parameters = {"odom0": "wheels", "odom0_config": config(X, Y, YAW), "odom0_pose_rejection_threshold": 4.0}
     start(test, **parameters)
     filtered = test.record("/odometry/filtered")
@@ -122,7 +122,7 @@ async def test_an_outlier_is_rejected(test):
     assert max(abs(planar(message)[0]) for message in filtered) < 1e-6
 
 
-async def test_an_imu_mounted_turned_and_away_from_the_middle(test):
+async def test_imu_with_rotation_and_offset_is_transformed(test):
     start(test, imu0="imu", imu0_config=config(YAW, VYAW, AX), publish_acceleration=True)
     filtered, acceleration = test.record("/odometry/filtered"), test.record("/accel/filtered")
     place(test, "base_link", "imu_link", x=0.3, yaw=pi / 2, static=True)
@@ -135,7 +135,7 @@ async def test_an_imu_mounted_turned_and_away_from_the_middle(test):
     assert acceleration.last.header.frame_id == "base_link"
 
 
-async def test_gravity_is_removed_where_it_is_said(test):
+async def test_gravity_is_removed_if_configured(test):
     flags = {"imu0": "imu", "imu0_config": config(AX, 14), "two_d_mode": False, "publish_acceleration": True}
     start(test, **flags, imu0_remove_gravitational_acceleration=True)
     acceleration = test.record("/accel/filtered")
@@ -146,7 +146,7 @@ async def test_gravity_is_removed_where_it_is_said(test):
     assert (linear.x, linear.z) == pytest.approx((0.2, 0.0), abs=1e-6)
 
 
-async def test_a_frame_that_is_not_there_is_told(test):
+async def test_missing_frame_is_reported(test):
     start(test, imu0="imu", imu0_config=config(VYAW))
     filtered = test.record("/odometry/filtered")
     for _ in range(3):
@@ -157,7 +157,7 @@ async def test_a_frame_that_is_not_there_is_told(test):
     assert text.startswith('Could not obtain transform: "base_link"')
 
 
-async def test_in_the_world_of_the_map_the_frame_of_odometry_is_placed(test):
+async def test_map_world_frame_publishes_odom_transform(test):
     start(test, pose0="fix", pose0_config=config(X, Y, YAW), world_frame="map", transform_time_offset=0.5)
     tf = test.record("/tf", TFMessage)
     place(test, "odom", "base_link", x=2.0)
@@ -171,7 +171,7 @@ async def test_in_the_world_of_the_map_the_frame_of_odometry_is_placed(test):
     assert transform.header.stamp.nanoseconds == round((START + 0.5) * 1e9)
 
 
-async def test_differential_and_relative_poses(test):
+async def test_differential_and_relative_poses_are_fused(test):
     start(test, odom0="wheels", odom0_config=config(X, Y, YAW), odom0_differential=True)
     start(test, odom0="wheels", odom0_config=config(X, Y, YAW), odom0_relative=True, publish_tf=False)
     filtered = test.record("/odometry/filtered")
@@ -183,7 +183,7 @@ async def test_differential_and_relative_poses(test):
     assert planar(filtered[-1]) == pytest.approx((1.45, 0.0, 0.0), abs=0.01)
 
 
-async def test_a_pose_is_set_by_topic_and_service(test):
+async def test_pose_is_set_by_topic_and_service(test):
     start(test, odom0="wheels", odom0_config=config(VX))
     filtered = test.record("/odometry/filtered")
     test.publish("/wheels", odometry(test))
@@ -202,7 +202,7 @@ async def test_a_pose_is_set_by_topic_and_service(test):
     assert planar(filtered.last)[0] == pytest.approx(5.0)
 
 
-async def test_toggle_and_enable(test):
+async def test_toggle_and_enable_services_control_filter(test):
     start(test, odom0="wheels", odom0_config=config(X), disabled_at_startup=True)
     filtered = test.record("/odometry/filtered")
     test.publish("/wheels", odometry(test, x=1.0))
@@ -220,7 +220,7 @@ async def test_toggle_and_enable(test):
     assert planar(filtered.last)[0] == pytest.approx(1.0)
 
 
-async def test_where_simulated_time_jumps_back_the_filter_begins_anew(test):
+async def test_filter_resets_when_simulated_time_jumps_back(test):
     clock = get_message("rosgraph_msgs/msg/Clock")
 
     async def run(first, last, x):
@@ -240,7 +240,7 @@ async def test_where_simulated_time_jumps_back_the_filter_begins_anew(test):
     assert logged(test, "WARN") == ["Time has jumped: the filter restarts."]
 
 
-async def test_an_old_message_is_left_aside(test):
+async def test_old_message_is_ignored(test):
     start(test, odom0="wheels", odom0_config=config(X))
     filtered = test.record("/odometry/filtered")
     test.publish("/wheels", odometry(test, x=1.0))
@@ -251,7 +251,7 @@ async def test_an_old_message_is_left_aside(test):
     assert len(logged(test, "WARN")) == 1
 
 
-async def test_commands_move_the_estimate(test):
+async def test_velocity_commands_move_estimate(test):
     flags = [True, False, False, False, False, True]
     limits = [1.0, 0.0, 0.0, 0.0, 0.0, 1.0]
     start(
@@ -272,7 +272,7 @@ async def test_commands_move_the_estimate(test):
     assert 0.5 < filtered.last.twist.twist.linear.x <= 1.0
 
 
-async def test_the_unscented_filter_is_a_node_too(test):
+async def test_ukf_node_publishes_estimate(test):
     running = start(test, UkfNode, odom0="wheels", odom0_config=config(X, VX))
     filtered = test.record("/odometry/filtered")
     for step in range(50):
@@ -298,20 +298,22 @@ async def test_the_unscented_filter_is_a_node_too(test):
         ({"world_frame": "earth"}, "parameter 'world_frame' of 'ekf_filter_node' cannot be 'earth'"),
     ],
 )
-async def test_parameters_that_mean_nothing(test, parameters, text):
+async def test_invalid_parameters_are_rejected(test, parameters, text):
     with pytest.raises(LinkwrightError) as caught:
         start(test, **parameters)
     assert text in str(caught.value)
 
 
-async def test_parameters_of_sensors_that_are_not_there_are_named(test):
+async def test_unknown_sensor_parameters_are_reported(test):
     start(test, odom0="wheels", odom0_config=config(X), odom0_diferential=True, odom2_config=config(X))
-    (misspelt,) = logged(test, "WARN")
-    assert misspelt.startswith("'odom0_diferential' is not a parameter of this node; did you mean 'odom0_differential'")
+    (misspelled,) = logged(test, "WARN")
+    assert misspelled.startswith(
+        "'odom0_diferential' is not a parameter of this node; did you mean 'odom0_differential'"
+    )
     assert "parameters that this node does not have are ignored: odom2_config" in logged(test, "INFO")
 
 
-async def test_a_sensor_that_gives_nothing_is_named(test):
+async def test_sensor_without_enabled_values_is_reported(test):
     start(test, odom0="wheels")
     assert logged(test, "WARN") == [
         "wheels is listed as an input topic (odom0), but odom0_config enables none of its values"

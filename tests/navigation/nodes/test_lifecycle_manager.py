@@ -148,7 +148,7 @@ async def test_nodes_are_configured_and_activated_in_order(stack: Stack) -> None
     ]
 
 
-async def test_diagnostics_tell_how_the_nodes_are(stack: Stack) -> None:
+async def test_diagnostics_report_state_of_managed_nodes(stack: Stack) -> None:
     name = "lifecycle_manager: Nav2 Health"
     stack.add("a")
     await stack.manage("a", until="Creating and initializing", autostart=False)
@@ -161,20 +161,20 @@ async def test_diagnostics_tell_how_the_nodes_are(stack: Stack) -> None:
     assert await stack.health() == (name, 1, "Managed nodes have been shut down")
 
 
-async def test_an_error_is_in_the_diagnostics(stack: Stack) -> None:
+async def test_diagnostics_report_transition_error(stack: Stack) -> None:
     stack.add("broken")
     await stack.manage("broken", until="Aborting bringup")
     assert (await stack.health())[1:] == (2, "An error has occurred during a node state transition")
 
 
-async def test_it_waits_for_nodes_that_come_later(stack: Stack) -> None:
+async def test_manager_waits_for_late_nodes(stack: Stack) -> None:
     await stack.manage("a", until="Waiting for service /a/change_state...")
     assert not await stack.is_active()
     stack.add("a")
     await stack.until("Managed nodes are active")
 
 
-async def test_commands_lead_up_in_order_and_down_in_reverse(stack: Stack) -> None:
+async def test_commands_transition_up_in_order_and_down_in_reverse(stack: Stack) -> None:
     stack.add("a", "b")
     await stack.manage("a", "b", until="initializing", autostart=False)
     for number, state in (
@@ -194,7 +194,7 @@ async def test_commands_lead_up_in_order_and_down_in_reverse(stack: Stack) -> No
     assert stack.errors() == []
 
 
-async def test_a_node_that_cannot_be_configured_ends_the_bringup(stack: Stack) -> None:
+async def test_failed_configuration_aborts_bringup(stack: Stack) -> None:
     stack.add("a", "broken")
     await stack.manage("a", "broken", until="Aborting bringup")
     assert stack.states() == {"a": "inactive", "broken": "unconfigured"}
@@ -206,7 +206,7 @@ async def test_a_node_that_cannot_be_configured_ends_the_bringup(stack: Stack) -
     assert not await stack.command(PAUSE)
 
 
-async def test_when_a_node_dies_the_others_are_brought_down_and_all_up_when_it_is_back(stack: Stack) -> None:
+async def test_crash_resets_other_nodes_and_respawn_restores_all(stack: Stack) -> None:
     stack.add("a", "b", "c")
     await stack.manage("a", "b", "c", until="Managed nodes are active")
     stack.kill("b")
@@ -224,7 +224,7 @@ async def test_when_a_node_dies_the_others_are_brought_down_and_all_up_when_it_i
     await eventually(lambda: stack.states() == {"a": "active", "b": "active", "c": "active"})
 
 
-async def test_a_node_that_ends_by_itself_is_missed_at_once(stack: Stack) -> None:
+async def test_clean_exit_of_node_is_noticed_at_once(stack: Stack) -> None:
     stack.add("a", "b")
     await stack.manage("a", "b", until="Managed nodes are active", attempt_respawn_reconnection=False)
     stack.servers.pop("a").close()
@@ -233,7 +233,7 @@ async def test_a_node_that_ends_by_itself_is_missed_at_once(stack: Stack) -> Non
     assert stack.states() == {"b": "unconfigured"}
 
 
-async def test_it_gives_up_on_a_node_that_does_not_come_back(stack: Stack) -> None:
+async def test_manager_gives_up_on_crashed_node_after_timeout(stack: Stack) -> None:
     stack.add("a", "b")
     await stack.manage("a", "b", until="Managed nodes are active")
     stack.kill("a")
@@ -241,7 +241,7 @@ async def test_it_gives_up_on_a_node_that_does_not_come_back(stack: Stack) -> No
     assert stack.states() == {"b": "unconfigured"}
 
 
-async def test_without_bonds_nobody_is_missed(stack: Stack) -> None:
+async def test_crash_is_not_noticed_without_bonds(stack: Stack) -> None:
     stack.add("a")
     await stack.manage("a", until="Managed nodes are active", bond_timeout=0.0)
     stack.kill("a")
@@ -250,14 +250,16 @@ async def test_without_bonds_nobody_is_missed(stack: Stack) -> None:
     assert stack.errors() == []
 
 
-async def test_a_node_without_a_bond_is_no_server_of_nav2(stack: Stack) -> None:
+async def test_node_without_bond_aborts_bringup(stack: Stack) -> None:
     stack.servers["a"] = _Server(stack.graph, NodeOptions(name="a", parameters={"bond_heartbeat_period": 0.0}))
     await stack.manage("a", until="Aborting bringup")
     assert "Server a was unable to be reached after 4.00s by bond" in stack.errors()[0]
 
 
 @pytest.mark.parametrize("names", [None, [], ["a", "a"]])
-def test_names_must_be_given(start: Callable[[dict[str, object]], object], names: list[str] | None) -> None:
+def test_node_names_parameter_is_required(
+    start: Callable[[dict[str, object]], object], names: list[str] | None
+) -> None:
     with pytest.raises(LinkwrightError, match="node_names"):
         start({} if names is None else {"node_names": names})
 

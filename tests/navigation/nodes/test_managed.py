@@ -51,7 +51,7 @@ def _started(graph: Graph, **parameters: object) -> tuple[_Server, _Node]:
     return server, node
 
 
-async def test_it_lives_as_others_drive_it(graph: Graph) -> None:
+async def test_managed_node_follows_transitions(graph: Graph) -> None:
     server, node = _started(graph)
     node.trigger_configure()
     assert graph.topics()["/kept"]
@@ -64,7 +64,7 @@ async def test_it_lives_as_others_drive_it(graph: Graph) -> None:
     server.close()
 
 
-async def test_it_starts_itself_where_it_is_told_to_and_stops_when_it_ends(graph: Graph) -> None:
+async def test_autostart_node_activates_and_cleans_up_on_close(graph: Graph) -> None:
     server, node = _started(graph, autostart_node=True)
     assert node.lifecycle_state == ACTIVE
     server.close()
@@ -72,7 +72,7 @@ async def test_it_starts_itself_where_it_is_told_to_and_stops_when_it_ends(graph
 
 
 @pytest.mark.parametrize(("fails", "left"), [("configure", UNCONFIGURED), ("activate", INACTIVE)])
-async def test_a_mistake_is_told_and_the_transition_fails(
+async def test_error_in_transition_is_reported_and_transition_fails(
     graph: Graph, log: list[LogRecord], fails: str, left: object
 ) -> None:
     server, node = _started(graph, fails=fails)
@@ -86,7 +86,7 @@ async def test_a_mistake_is_told_and_the_transition_fails(
     server.close()
 
 
-async def test_unknown_parameters_are_named_when_it_is_configured(graph: Graph, log: list[LogRecord]) -> None:
+async def test_unknown_parameters_are_reported_on_configure(graph: Graph, log: list[LogRecord]) -> None:
     server, node = _started(graph, failz="x")
     node.trigger_configure()
     assert any("'failz' is not a parameter of this node" in record.text for record in log)
@@ -110,7 +110,7 @@ class _Pair:
         return Bond(self.nodes[1], "server")
 
 
-async def test_a_bond_forms_and_breaks_at_once_when_the_other_side_leaves(graph: Graph, clock: JumpClock) -> None:
+async def test_bond_forms_and_breaks_when_other_side_leaves(graph: Graph, clock: JumpClock) -> None:
     pair = _Pair(graph)
     await clock.advance(60.0)
     assert pair.events == []  # it waits for the other side
@@ -123,7 +123,7 @@ async def test_a_bond_forms_and_breaks_at_once_when_the_other_side_leaves(graph:
     pair.manager.end()
 
 
-async def test_a_bond_breaks_after_four_seconds_of_silence(graph: Graph, clock: JumpClock) -> None:
+async def test_bond_breaks_after_four_seconds_of_silence(graph: Graph, clock: JumpClock) -> None:
     pair = _Pair(graph)
     server = pair.server()
     await clock.advance(0.2)
@@ -136,7 +136,7 @@ async def test_a_bond_breaks_after_four_seconds_of_silence(graph: Graph, clock: 
     pair.manager.end()
 
 
-async def test_who_ends_a_bond_is_not_told_that_it_broke(graph: Graph, clock: JumpClock) -> None:
+async def test_ending_own_bond_gives_no_break_event(graph: Graph, clock: JumpClock) -> None:
     pair = _Pair(graph)
     server = pair.server()
     await clock.advance(0.2)

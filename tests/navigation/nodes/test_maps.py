@@ -40,7 +40,7 @@ def _errors(log: list[LogRecord]) -> list[str]:
     return [record.text for record in log if record.level >= LogLevel.ERROR]
 
 
-async def test_the_map_is_there_for_all_who_come_once_the_server_is_active(graph: Graph, tmp_path: Path) -> None:
+async def test_active_map_server_latches_map(graph: Graph, tmp_path: Path) -> None:
     server = MapServer(graph, NodeOptions(parameters={"yaml_filename": _files(tmp_path), "frame_id": "world"}))
     node: Any = server.node
     node.trigger_configure()
@@ -57,7 +57,7 @@ async def test_the_map_is_there_for_all_who_come_once_the_server_is_active(graph
     server.close()
 
 
-async def test_another_map_can_be_loaded(graph: Graph, log: list[LogRecord], tmp_path: Path) -> None:
+async def test_load_map_service_replaces_map(graph: Graph, log: list[LogRecord], tmp_path: Path) -> None:
     parameters = {"yaml_filename": _files(tmp_path), "topic_name": "floor", "autostart_node": True}
     server = MapServer(graph, NodeOptions(parameters=parameters))
     maps: list[Any] = []
@@ -80,9 +80,7 @@ async def test_another_map_can_be_loaded(graph: Graph, log: list[LogRecord], tmp
     server.close()
 
 
-async def test_without_a_file_it_waits_for_one_and_with_a_wrong_one_it_is_not_configured(
-    graph: Graph, log: list[LogRecord]
-) -> None:
+async def test_map_server_starts_without_file_but_not_with_missing_file(graph: Graph, log: list[LogRecord]) -> None:
     server = MapServer(graph, NodeOptions(parameters={"autostart_node": True}))
     node: Any = server.node
     assert node.is_active
@@ -109,7 +107,7 @@ async def _saved(graph: Graph, *words: str) -> int:
     return status
 
 
-async def test_a_map_is_saved_from_its_topic(graph: Graph, log: list[LogRecord], tmp_path: Path) -> None:
+async def test_map_saver_saves_map_of_topic(graph: Graph, log: list[LogRecord], tmp_path: Path) -> None:
     _publish(graph, "/floor")
     words = ("-t", "floor", "-f", str(tmp_path / "a"), "--occ", "0.65", "--free", "0.196", "--mode", "trinary")
     assert await _saved(graph, *words, "--ros-args", "-p", "save_map_timeout:=5.0") == 0
@@ -117,7 +115,7 @@ async def test_a_map_is_saved_from_its_topic(graph: Graph, log: list[LogRecord],
     assert [record.text for record in log if record.level is LogLevel.INFO][-1] == "Map saved successfully"
 
 
-async def test_where_no_map_comes_it_says_so_and_fails(
+async def test_map_saver_fails_after_timeout_without_map(
     graph: Graph, clock: JumpClock, log: list[LogRecord], tmp_path: Path
 ) -> None:
     saver = MapSaver(graph, NodeOptions(arguments=["-f", str(tmp_path / "a")]))
@@ -137,14 +135,14 @@ async def test_where_no_map_comes_it_says_so_and_fails(
         (["--occ", "much"], "Wrong argument: --occ should be followed by a number, not 'much'"),
     ],
 )
-async def test_words_that_it_does_not_know_end_it(
+async def test_map_saver_rejects_unknown_arguments(
     graph: Graph, log: list[LogRecord], words: list[str], text: str
 ) -> None:
     assert await _saved(graph, *words) == 255
     assert _errors(log) == [text]
 
 
-async def test_it_says_how_it_is_used(graph: Graph) -> None:
+async def test_map_saver_help_is_printed(graph: Graph) -> None:
     lines: list[str] = []
     saver = MapSaver(graph, NodeOptions(arguments=["--help"], output=lines.append))
     assert await saver.finished == 0
@@ -152,13 +150,13 @@ async def test_it_says_how_it_is_used(graph: Graph) -> None:
     saver.close()
 
 
-async def test_a_map_that_cannot_be_written_fails(graph: Graph, log: list[LogRecord], tmp_path: Path) -> None:
+async def test_map_saver_fails_if_file_is_not_writable(graph: Graph, log: list[LogRecord], tmp_path: Path) -> None:
     _publish(graph)
     assert await _saved(graph, "-f", str(tmp_path / "no" / "a")) == 1
     assert _errors(log)[0].startswith("Failed to save the map: error[NAV206]")
 
 
-async def test_a_map_is_saved_by_a_service(graph: Graph, tmp_path: Path) -> None:
+async def test_save_map_service_saves_map(graph: Graph, tmp_path: Path) -> None:
     _publish(graph)
     server = MapSaverServer(graph, NodeOptions(parameters={"autostart_node": True}))
     answer = await _call(

@@ -39,7 +39,7 @@ def turn(message, yaw):
 
 
 async def fix(test, east=0.0, north=0.0, altitude=200.0, frame="gps"):
-    """What a receiver says that is some metres away from where it began, on the grid."""
+    """What a receiver says that is some meters away from where it began, on the grid."""
     zone = zone_from_degrees(*HERE)
     x, y = utm_from_degrees(*HERE, zone)
     message = headed(test, "sensor_msgs/msg/NavSatFix", frame)
@@ -71,7 +71,7 @@ def point(message):
     return position.x, position.y, position.z
 
 
-async def test_fixes_become_odometry_of_a_robot_that_began_to_the_north(test):
+async def test_fixes_become_odometry_of_robot_that_faced_north(test):
     start(test, broadcast_cartesian_transform=True)
     gps, tf = test.record("/odometry/gps"), test.record("/tf_static", TFMessage)
     await odometry(test)
@@ -89,7 +89,7 @@ async def test_fixes_become_odometry_of_a_robot_that_began_to_the_north(test):
     assert (transform.header.frame_id, transform.child_frame_id) == ("odom", "utm")
 
 
-async def test_the_receiver_is_not_in_the_middle_of_the_robot(test):
+async def test_gps_receiver_offset_is_applied(test):
     start(test, zero_altitude=True)
     gps = test.record("/odometry/gps")
     pose = np.array([[1.0, 0.0, 0.5, 0.0, 0.0, 0.0, 1.0]])
@@ -105,7 +105,7 @@ async def test_the_receiver_is_not_in_the_middle_of_the_robot(test):
     assert point(gps.last) == pytest.approx((0.0, 0.0, 0.0), abs=1e-6)
 
 
-async def test_odometry_becomes_fixes(test):
+async def test_odometry_is_published_as_fixes(test):
     start(test, use_odometry_yaw=True)
     filtered = test.record("/gps/filtered")
     await odometry(test, x=5.0, yaw=pi / 2)
@@ -119,7 +119,7 @@ async def test_odometry_becomes_fixes(test):
     assert (east - x, north - y, filtered.last.altitude) == pytest.approx((0.0, 100.0, 200.0), abs=1e-4)
 
 
-async def test_a_datum_and_the_services(test):
+async def test_datum_is_used_by_conversion_services(test):
     start(test, wait_for_datum=True, datum=[*HERE, 0.0])
     ask = get_service("robot_localization/srv/FromLL").Request()
     zone = zone_from_degrees(*HERE)
@@ -144,7 +144,7 @@ async def test_a_datum_and_the_services(test):
     assert not (await test.call("/setUTMZone", zone_request(utm_zone="99"))).status
 
 
-async def test_the_plane_that_touches_the_earth(test):
+async def test_local_cartesian_mode_uses_tangent_plane(test):
     start(test, wait_for_datum=True, datum=[*HERE, pi / 2], use_local_cartesian=True)
     ask = get_service("robot_localization/srv/FromLL").Request()
     place = ask.ll_point
@@ -153,7 +153,7 @@ async def test_the_plane_that_touches_the_earth(test):
     assert (there.x, there.y, there.z) == pytest.approx((50.0, -3.0, 2.0), abs=1e-5)
 
 
-async def test_without_all_that_is_needed_nothing_is_published(test):
+async def test_nothing_is_published_without_all_inputs(test):
     start(test)
     gps = test.record("/odometry/gps")
     for _ in range(3):
@@ -174,7 +174,7 @@ async def test_without_all_that_is_needed_nothing_is_published(test):
         ({"frequency": 0.0}, "parameter 'frequency' of 'navsat_transform_node' cannot be '0.0'"),
     ],
 )
-async def test_values_that_mean_nothing(test, parameters, text):
+async def test_invalid_parameters_are_rejected(test, parameters, text):
     with pytest.raises(LinkwrightError) as caught:
         start(test, **parameters)
     assert text in str(caught.value)

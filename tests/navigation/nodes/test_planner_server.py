@@ -97,7 +97,7 @@ def to_pose(scene, goal, **more):
     return Goal(scene, "ComputePathToPose", "compute_path_to_pose", {"goal": goal, **more})
 
 
-async def test_a_path_to_a_pose(scene, server):
+async def test_compute_path_to_pose_returns_and_publishes_path(scene, server):
     await server()
     plans = []
     scene.node.create_subscription(get_message("nav_msgs/msg/Path"), "/plan", plans.append, 1)
@@ -112,14 +112,14 @@ async def test_a_path_to_a_pose(scene, server):
     assert length == pytest.approx(hypot(2.0, 1.0), rel=0.05)
 
 
-async def test_a_goal_without_a_frame_is_not_transformed(scene, server, log):
+async def test_goal_without_frame_is_aborted(scene, server, log):
     await server()
     status, result = await to_pose(scene, pose(3.0, 2.0, frame="")).ended()
     assert (status, len(result.path.poses)) == (ABORTED, 0)
     assert any("Failed to transform from  to map" in record.text for record in log)
 
 
-async def test_it_may_begin_elsewhere_and_end_in_another_frame(scene, server):
+async def test_start_pose_and_goal_frame_are_respected(scene, server):
     await server()
     start = pose(0.5, 2.5)
     status, result = await to_pose(scene, pose(1.5, 0.0, frame="base_link"), start=start, use_start=True).ended()
@@ -128,7 +128,7 @@ async def test_it_may_begin_elsewhere_and_end_in_another_frame(scene, server):
     assert found[[0, -1], :2] == pytest.approx(np.array([[0.5, 2.5], [2.5, 1.0]]))
 
 
-async def test_a_path_through_poses(scene, server):
+async def test_compute_path_through_poses_visits_all_poses(scene, server):
     await server()
     goals = [pose(1.0, 2.0), pose(3.0, 2.0), pose(3.0, 1.0, 2.0)]
     goal = Goal(scene, "ComputePathThroughPoses", "compute_path_through_poses", {"goals": goals})
@@ -156,7 +156,7 @@ def divided():
         (pose(0.0, 0.0, frame="moon"), "TF_ERROR", "Unable to transform poses to global frame"),
     ],
 )
-async def test_why_there_is_no_plan(jazzy, scene, server, goal, code, why):
+async def test_planning_failure_has_error_code_and_message(jazzy, scene, server, goal, code, why):
     await server(grid=divided())
     status, result = await to_pose(scene, goal).ended()
     assert status == ABORTED
@@ -165,7 +165,7 @@ async def test_why_there_is_no_plan(jazzy, scene, server, goal, code, why):
     assert not len(result.path.poses)
 
 
-async def test_the_log_says_why_too(scene, server, logged):
+async def test_planning_failure_is_logged(scene, server, logged):
     await server(grid=divided())
     status, _ = await to_pose(scene, pose(2.1, 1.5)).ended()
     assert status == ABORTED
@@ -175,7 +175,7 @@ async def test_the_log_says_why_too(scene, server, logged):
     )
 
 
-async def test_without_a_map_there_is_no_plan(jazzy, scene, graph):
+async def test_planning_without_map_fails(jazzy, scene, graph):
     node = PlannerServer(graph, NodeOptions(parameters={"autostart_node": True}))
     scene.tell_pose()
     await scene.run(0.5)
@@ -188,7 +188,7 @@ async def test_without_a_map_there_is_no_plan(jazzy, scene, graph):
     node.close()
 
 
-async def test_a_plan_waits_for_the_costmap_and_can_be_canceled(scene, graph):
+async def test_planning_waits_for_costmap_and_can_be_canceled(scene, graph):
     node = PlannerServer(graph, NodeOptions(parameters={"autostart_node": True, "costmap_update_timeout": 60.0}))
     scene.tell_pose()
     await scene.run(0.5)
@@ -201,7 +201,7 @@ async def test_a_plan_waits_for_the_costmap_and_can_be_canceled(scene, graph):
     node.close()
 
 
-async def test_a_new_goal_takes_the_place_of_the_one_before(scene, graph):
+async def test_new_goal_preempts_running_goal(scene, graph):
     node = PlannerServer(graph, NodeOptions(parameters={"autostart_node": True, "costmap_update_timeout": 60.0}))
     scene.tell_pose()
     await scene.run(0.5)
@@ -235,7 +235,7 @@ async def test_planners_are_chosen_by_name(jazzy, scene, server, log):
     assert (result.error_code, result.error_msg) == (result.INVALID_PLANNER, "Planner id Far is invalid")
 
 
-async def test_a_server_that_is_not_active_takes_no_goals(scene, graph):
+async def test_inactive_server_rejects_goals(scene, graph):
     node = PlannerServer(graph, NodeOptions())
     node.node.trigger_configure()
     goal = await to_pose(scene, pose(2.0, 1.0)).accepted()
@@ -244,7 +244,7 @@ async def test_a_server_that_is_not_active_takes_no_goals(scene, graph):
 
 
 @pytest.mark.parametrize("kind", [PlannerServer, SmootherServer])
-async def test_parameters_of_nav2_bringup_load_without_a_warning(graph, log, kind):
+async def test_nav2_bringup_parameters_load_without_warning(graph, log, kind):
     file = SHARE / "nav2_bringup" / "params" / "nav2_params.yaml"
     options = NodeOptions(arguments=["--ros-args", "--params-file", str(file)], parameters={"autostart_node": True})
     node = kind(graph, options)
@@ -253,7 +253,7 @@ async def test_parameters_of_nav2_bringup_load_without_a_warning(graph, log, kin
     node.close()
 
 
-async def test_in_a_container_the_costmap_has_the_parameters_of_its_process(scene, graph):
+async def test_costmap_in_container_has_parameters_of_process(scene, graph):
     rules = ParameterRules()
     rules.set("/global_costmap/global_costmap", "robot_radius", 0.33)
     container = ComponentContainer(graph, NodeOptions(parameters_of_others=rules))
@@ -270,7 +270,7 @@ async def test_in_a_container_the_costmap_has_the_parameters_of_its_process(scen
     container.close()
 
 
-async def test_whether_a_path_is_still_free(scene, server):
+async def test_is_path_valid_checks_costmap(scene, server):
     await server(costmap={"map_topic": "/map"})
     service = get_service("nav2_msgs/srv/IsPathValid")
     client = scene.node.create_client(service, "is_path_valid")
@@ -300,7 +300,7 @@ def smooth(scene, poses, **more):
 CORNER = [(1.0 + 0.05 * step, 1.0, 0.0) for step in range(20)] + [(2.0, 1.0 + 0.05 * step, 1.0) for step in range(20)]
 
 
-async def test_a_path_is_smoothed(scene, server):
+async def test_path_is_smoothed(scene, server):
     await server(SmootherServer)
     await server()
     await scene.run(0.5)
@@ -313,7 +313,7 @@ async def test_a_path_is_smoothed(scene, server):
     assert np.abs(np.diff(found[:-1, 2])).max() < 1.0
 
 
-async def test_what_cannot_be_smoothed(jazzy, scene, server):
+async def test_smoothing_failures_have_error_code_and_message(jazzy, scene, server):
     await server(SmootherServer)
     _, result = await smooth(scene, CORNER).ended()
     assert (result.error_code, result.error_msg) == (result.FAILED_TO_SMOOTH_PATH, "Costmap is not available")

@@ -46,7 +46,7 @@ class Robot:
         batch = TransformBatch(("base_footprint",), ("laser",), 0, np.array([pose]))
         self._static.publish(TFMessage(batch=batch))
 
-    def tell_odometry(self, odometry: np.ndarray) -> None:
+    def publish_odometry(self, odometry: np.ndarray) -> None:
         pose = (odometry[0], odometry[1], 0.0, *quaternion_from_rpy((0.0, 0.0, float(odometry[2]))))
         stamp_ns = self.test.clock.now_ns()
         self.send(TransformBatch(("odom",), ("base_footprint",), stamp_ns, np.array([pose])))
@@ -71,7 +71,7 @@ class Robot:
     def go(self, path: np.ndarray, odometry: np.ndarray, seconds: float = 0.5) -> None:
         """Be at each pose for a moment."""
         for pose, text in zip(path, odometry, strict=True):
-            self.tell_odometry(text)
+            self.publish_odometry(text)
             self.scans.publish(self.scan(pose))
             self.test.advance(seconds)
 
@@ -117,7 +117,7 @@ def is_a_map(message: Any) -> bool:
 
 
 @pytest.mark.parametrize("kind", [AsyncSlamToolbox, SyncSlamToolbox])
-def test_map_pose_and_transform_are_there_and_right(test, kind):
+def test_map_pose_and_transform_are_published_and_accurate(test, kind):
     start(test, kind)
     maps, sizes, poses, tf = (test.record(topic) for topic in ("/map", "/map_metadata", "/pose", "/tf"))
     robot, odometry = Robot(test), drifting(relative_pose(PATH[0], PATH), 1.04, 0.05)
@@ -139,7 +139,7 @@ def test_map_pose_and_transform_are_there_and_right(test, kind):
     assert 0 < covariance[5, 5] < 0.01
 
 
-def test_a_laser_may_look_backwards_and_upside_down(test):
+def test_laser_may_be_mounted_backward_and_upside_down(test):
     start(test)
     maps, tf = test.record("/map"), test.record("/tf")
     robot = Robot(test, (0.15, 0.0, 0.3, pi, 0.0, 2.0))
@@ -151,11 +151,11 @@ def test_a_laser_may_look_backwards_and_upside_down(test):
     assert is_a_map(maps.last)
 
 
-def test_scans_that_measure_nothing_make_no_map_and_move_nothing(test):
+def test_scans_without_valid_ranges_give_no_map(test):
     start(test)
     maps, tf, robot = test.record("/map"), test.record("/tf"), Robot(test)
     for number, value in enumerate((inf, nan, 0.0, inf, -1.0)):
-        robot.tell_odometry(np.array((0.6 * number, 0.0, 0.0)))
+        robot.publish_odometry(np.array((0.6 * number, 0.0, 0.0)))
         message = robot.scan(PATH[0])
         message.ranges = np.full(180, value, dtype=np.float32)
         robot.scans.publish(message)
@@ -166,7 +166,7 @@ def test_scans_that_measure_nothing_make_no_map_and_move_nothing(test):
     assert response.result == response.RESULT_NO_MAP_RECEIEVD
 
 
-def test_without_transforms_scans_are_dropped_and_the_log_says_why(test):
+def test_scans_without_transforms_are_dropped_with_warning(test):
     node = start(test)
     robot, maps = Robot(test), test.record("/map")
     for _ in range(8):
@@ -179,31 +179,31 @@ def test_without_transforms_scans_are_dropped_and_the_log_says_why(test):
     node.close()
 
 
-def test_a_scan_that_comes_before_its_transform_waits_for_it(test):
+def test_scan_waits_for_its_transform(test):
     start(test)
     robot, poses = Robot(test), test.record("/pose")
-    robot.tell_odometry(np.zeros(3))
+    robot.publish_odometry(np.zeros(3))
     test.advance(0.1)
     robot.scans.publish(robot.scan(PATH[0]))
     test.advance(0.05)
     assert len(poses) == 0
-    robot.tell_odometry(np.zeros(3))
+    robot.publish_odometry(np.zeros(3))
     test.advance(0.1)
     assert len(poses) == 1
 
 
-def test_scans_of_a_fast_laser_are_dropped_unless_the_robot_moved(test):
+def test_scans_are_dropped_unless_robot_moved(test):
     node = start(test)
     robot, poses = Robot(test), test.record("/pose")
     for number in range(200):
-        robot.tell_odometry(np.array((0.005 * number, 0.0, 0.0)))
+        robot.publish_odometry(np.array((0.005 * number, 0.0, 0.0)))
         robot.scans.publish(robot.scan(PATH[0] + np.array((0.005 * number, 0.0, 0.0))))
         test.advance(0.01)
     assert 3 <= len(poses) <= 4
     assert not node._work[0].queue
 
 
-def test_throttled_scans_are_not_looked_at(test):
+def test_throttled_scans_are_skipped(test):
     start(test, throttle_scans=3, minimum_travel_distance=0.1)
     robot, poses = Robot(test), test.record("/pose")
     robot.go(PATH[:9], relative_pose(PATH[0], PATH[:9]))
@@ -223,7 +223,7 @@ def test_measuring_can_be_paused(test):
     assert len(poses) > count
 
 
-def test_the_map_is_saved_and_asked_for(test, tmp_path):
+def test_map_is_saved_and_returned_by_services(test, tmp_path):
     start(test)
     robot, maps = Robot(test), test.record("/map")
     robot.go(PATH[:6], relative_pose(PATH[0], PATH[:6]))
@@ -237,7 +237,7 @@ def test_the_map_is_saved_and_asked_for(test, tmp_path):
     assert ((saved.cells == OCCUPIED) == (grid_from_message(answer).cells == OCCUPIED)).all()
 
 
-def test_a_new_map_begins_where_that_is_asked_for(test):
+def test_reset_service_starts_new_map(test):
     start(test)
     robot, tf = Robot(test), test.record("/tf")
     odometry = drifting(relative_pose(PATH[0], PATH), 1.04, 0.05)
@@ -259,7 +259,7 @@ def serialized(test: SteppedGraph, path: Path, node: Any) -> str:
     return name
 
 
-def test_a_robot_is_found_in_a_saved_map(test, tmp_path):
+def test_robot_is_localized_in_saved_map(test, tmp_path):
     name = serialized(test, tmp_path, start(test))
     start(test, LocalizationSlamToolbox, map_file_name=name, map_start_pose=[1.9, 0.2, 0.1])
     maps, poses = test.record("/map"), test.record("/pose")
@@ -282,7 +282,7 @@ def test_a_robot_is_found_in_a_saved_map(test, tmp_path):
     assert [at.x, at.y] == pytest.approx(relative_pose(PATH[0], pose)[:2], abs=0.05)
 
 
-def test_mapping_goes_on_with_a_saved_map(test, tmp_path):
+def test_mapping_continues_in_saved_map(test, tmp_path):
     name = serialized(test, tmp_path, start(test))
     node = start(test, MapAndLocalizationSlamToolbox)
     request = get_service("slam_toolbox/srv/DeserializePoseGraph").Request
@@ -308,7 +308,7 @@ def test_mapping_goes_on_with_a_saved_map(test, tmp_path):
     assert len(node._work[0].mapper.scans) == count
 
 
-def test_a_file_that_is_no_graph_is_refused_with_a_reason(test, tmp_path):
+def test_invalid_pose_graph_file_is_rejected_with_reason(test, tmp_path):
     (tmp_path / "other.posegraph").write_bytes(b"22 serialization::archive 17 0 0")
     (tmp_path / "broken.posegraph").write_bytes(b"nothing of the kind")
     for name, reason in (
@@ -331,13 +331,13 @@ def test_a_file_that_is_no_graph_is_refused_with_a_reason(test, tmp_path):
     assert "match_type is not set" in errors[-1]
 
 
-def test_who_localises_without_a_map_is_told_so(test):
+def test_localization_without_map_is_reported(test):
     start(test, LocalizationSlamToolbox)
     Robot(test).go(PATH[:3], relative_pose(PATH[0], PATH[:3]))
     assert any("map_file_name" in line for line in logged(test, "ERROR"))
 
 
-def test_in_jazzy_the_node_is_managed(test, monkeypatch):
+def test_node_is_managed_in_jazzy(test, monkeypatch):
     monkeypatch.setenv("ROS_DISTRO", "jazzy")
     running = start(test)
     robot, maps = Robot(test), test.record("/map")
@@ -359,7 +359,7 @@ def test_in_jazzy_the_node_is_managed(test, monkeypatch):
     running.close()
 
 
-def test_what_a_file_has_that_changes_nothing_is_known_and_what_is_misspelt_is_told(test):
+def test_parameters_without_effect_and_misspelled_ones_are_reported(test):
     start(test, solver_plugin="solver_plugins::SpaSolver", ceres_loss_function="None", resolutoin=0.1, resolution=-1.0)
     assert any("solver_plugins::SpaSolver" in line for line in logged(test, "INFO"))
     warnings = logged(test, "WARN")
@@ -368,7 +368,7 @@ def test_what_a_file_has_that_changes_nothing_is_known_and_what_is_misspelt_is_t
     assert not any("ceres" in line for line in (*warnings, *logged(test, "INFO")))
 
 
-def test_the_graph_is_shown(test):
+def test_pose_graph_markers_are_published(test):
     start(test)
     markers = test.record("/slam_toolbox/graph_visualization")
     Robot(test).go(PATH[:12], relative_pose(PATH[0], PATH[:12]))
@@ -377,7 +377,7 @@ def test_the_graph_is_shown(test):
     assert others.action == others.DELETE
 
 
-def test_where_time_jumps_back_the_map_begins_anew(test):
+def test_map_restarts_when_time_jumps_back(test):
     clock = test.create_node("clock").create_publisher(get_message("rosgraph_msgs/msg/Clock"), "/clock", 10)
     node = start(test, use_sim_time=True)
     robot, poses = Robot(test), test.record("/pose")
@@ -405,7 +405,7 @@ def test_where_time_jumps_back_the_map_begins_anew(test):
     assert poses.last.header.stamp.sec == 2
 
 
-def test_the_synchronous_node_forgets_what_waits(test):
+def test_clear_queue_service_empties_scan_queue(test):
     node = start(test, SyncSlamToolbox)
     robot = Robot(test)
     robot.go(PATH[:4], relative_pose(PATH[0], PATH[:4]))
@@ -414,7 +414,7 @@ def test_the_synchronous_node_forgets_what_waits(test):
     assert not node._work[0].queue
 
 
-def test_a_launch_file_of_jazzy_starts_it_by_a_parameter(test, monkeypatch):
+def test_autostart_node_parameter_activates_node_in_jazzy(test, monkeypatch):
     monkeypatch.setenv("ROS_DISTRO", "jazzy")
     start(test, autostart_node=True)
     maps = test.record("/map")

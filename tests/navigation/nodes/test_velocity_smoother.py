@@ -20,14 +20,14 @@ LIMITS = [AxisLimits(-0.5, 0.5, 2.5, -2.0), AxisLimits(-1.0, 1.0, 0.0, 0.0), Axi
 
 
 @given(wanted=st.tuples(*[velocities] * 3), now=st.tuples(*[st.floats(-0.5, 0.5)] * 3), scaled=st.booleans())
-def test_no_axis_leaves_its_limits(wanted, now, scaled):
+def test_velocity_and_acceleration_limits_hold_on_each_axis(wanted, now, scaled):
     after = smooth_velocities(LIMITS, now, wanted, 0.05, keep_direction=scaled)
     for limits, before, velocity, goal in zip(LIMITS, now, after, wanted, strict=True):
         assert abs(velocity - before) <= limits.max_change(before, limits.clamped(goal), 0.05) + 1e-12
         assert min(before, limits.min_velocity) - 1e-12 <= velocity <= max(before, limits.max_velocity) + 1e-12
 
 
-def test_the_direction_stays_where_it_is_asked_for():
+def test_keep_direction_scales_all_axes():
     limits = [AxisLimits(-1, 1, 1.0, -1.0), AxisLimits(-1, 1, 4.0, -4.0)]
     assert smooth_velocities(limits, (0, 0), (1.0, 1.0), 0.1, keep_direction=True) == pytest.approx([0.1, 0.1])
     assert smooth_velocities(limits, (0, 0), (1.0, 1.0), 0.1, keep_direction=False) == pytest.approx([0.1, 0.4])
@@ -67,14 +67,14 @@ async def line(stage):
         line.node.close()
 
 
-async def test_a_step_becomes_a_ramp_within_the_limits(line, stage):
+async def test_step_command_becomes_ramp_within_limits(line, stage):
     one = line()
     await one.send(0.8)
     await stage.clock.advance(0.3)
     assert one.speeds() == [0.125, 0.25, 0.375, 0.5, 0.5, 0.5]
 
 
-async def test_a_command_that_is_not_repeated_ends(line, stage, logged):
+async def test_command_ends_after_velocity_timeout(line, stage, logged):
     one = line(velocity_timeout=0.2)
     await one.send(0.25)
     await stage.clock.advance(2.0)
@@ -84,7 +84,7 @@ async def test_a_command_that_is_not_repeated_ends(line, stage, logged):
     ]
 
 
-async def test_after_a_stop_nothing_is_said_of_commands_that_end(line, stage, logged):
+async def test_timeout_after_stop_command_is_not_logged(line, stage, logged):
     one = line(velocity_timeout=0.2)
     await one.send(0.25)
     await stage.clock.advance(0.1)
@@ -93,7 +93,7 @@ async def test_after_a_stop_nothing_is_said_of_commands_that_end(line, stage, lo
     assert not [each for each in logged("INFO") if "velocity_timeout" in each]
 
 
-async def test_it_stops_when_who_commanded_is_lost_and_says_so(line, stage, logged):
+async def test_lost_command_publisher_stops_robot_and_is_reported(line, stage, logged):
     one = line(velocity_timeout=10.0, enable_stamped_cmd_vel=False)
     driver = RemotePublisher(RemoteTransport(stage.graph), "/cmd_vel")
     message = TWIST()
@@ -112,14 +112,14 @@ async def test_it_stops_when_who_commanded_is_lost_and_says_so(line, stage, logg
     ]
 
 
-async def test_slow_velocities_are_none(line, stage):
+async def test_velocities_within_deadband_are_zero(line, stage):
     one = line(deadband_velocity=[0.2, 0.0, 0.0])
     await one.send(0.3)
     await stage.clock.advance(0.15)
     assert one.speeds() == [0.0, 0.25, 0.3]
 
 
-async def test_closed_loop_goes_on_from_what_is_measured(line, stage):
+async def test_closed_loop_starts_from_measured_velocity(line, stage):
     one = line(feedback="CLOSED_LOOP")
     message = ODOMETRY()
     message.twist.twist.linear.x = 0.2
@@ -139,7 +139,7 @@ async def test_six_axes_may_be_limited(line, stage):
 
 
 @pytest.mark.parametrize("kind", [TWIST, STAMPED])
-async def test_either_type_goes_through_and_nothing_is_said_of_the_other(line, stage, logged, kind):
+async def test_twist_and_twist_stamped_pass_without_warning(line, stage, logged, kind):
     one = line(kind=kind)
     await one.send(0.5)
     await stage.clock.advance(0.06)
@@ -147,7 +147,7 @@ async def test_either_type_goes_through_and_nothing_is_said_of_the_other(line, s
     assert logged("WARN") == []
 
 
-async def test_numbers_that_are_none_are_left_out(line, stage, logged):
+async def test_nan_commands_are_ignored_with_error(line, stage, logged):
     one = line()
     await one.send(float("nan"))
     await stage.clock.advance(0.5)
@@ -155,7 +155,7 @@ async def test_numbers_that_are_none_are_left_out(line, stage, logged):
     assert "NaNs" in logged("ERROR")[0]
 
 
-async def test_it_is_a_managed_node(line, stage):
+async def test_velocity_smoother_is_a_managed_node(line, stage):
     one = line(autostart_node=False)
     await one.send(0.5)
     await stage.clock.advance(0.5)
@@ -184,12 +184,12 @@ async def test_it_is_a_managed_node(line, stage):
         ({"smoothing_frequency": 0.0}, "smoothing_frequency must be more than 0"),
     ],
 )
-async def test_what_is_wrong_is_told(line, logged, wrong, text):
+async def test_invalid_parameters_are_reported(line, logged, wrong, text):
     line(autostart_node=False, **wrong).node.node.trigger_configure()
     assert text in logged("ERROR")[0]
 
 
-async def test_parameters_change_while_it_runs(line, stage):
+async def test_parameters_can_change_at_runtime(line, stage):
     one = line()
     assert await stage.set(one.node, max_velocity=[0.25, 0.0, 1.0]) == [(True, "")]
     await one.send(0.5)

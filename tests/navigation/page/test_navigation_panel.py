@@ -81,7 +81,7 @@ class Nav2:
 
 
 @asynccontextmanager
-async def watched():
+async def navigation_page():
     """nav2, and a page that shows the panel."""
     async with world() as w:
         nav2 = Nav2(w.graph)
@@ -91,14 +91,14 @@ async def watched():
             yield w, nav2, client
 
 
-async def test_states_of_managers_are_told():
-    async with watched() as (_, nav2, client):
+async def test_manager_states_are_shown():
+    async with navigation_page() as (_, nav2, client):
         await client.until("navigation_state", navigation="active", localization="active")
         nav2.active = False
         await client.until("navigation_state", navigation="inactive", localization="inactive")
 
 
-async def test_without_nav2_nothing_is_known_and_commands_say_so():
+async def test_panel_without_nav2_shows_unknown_and_rejects_commands():
     async with world() as w, page(w.viewer) as client:
         await client.opened()
         await client.send("watch_navigation", open=True)
@@ -110,8 +110,8 @@ async def test_without_nav2_nothing_is_known_and_commands_say_so():
         )
 
 
-async def test_progress_of_the_goal_is_told_and_forgotten_with_the_next_goal():
-    async with watched() as (_, nav2, client):
+async def test_goal_progress_is_shown_until_next_goal():
+    async with navigation_page() as (_, nav2, client):
         await client.until("navigation_state", navigation="active")
         nav2.goal(2)
         nav2.progress(3.456)
@@ -125,7 +125,7 @@ async def test_progress_of_the_goal_is_told_and_forgotten_with_the_next_goal():
         await client.until("navigation_state", goal="succeeded")
 
 
-async def test_a_failed_goal_is_told_with_the_error_of_its_node_until_the_next_goal():
+async def test_goal_failure_is_shown_with_error_until_next_goal():
     async with world() as w:
         nav2 = Nav2(w.graph)
         async with page(w.viewer) as client:
@@ -140,7 +140,7 @@ async def test_a_failed_goal_is_told_with_the_error_of_its_node_until_the_next_g
             await client.until("goal_outcome", failed=False, reason="")
 
 
-async def test_a_goal_that_failed_before_the_page_came_is_no_news():
+async def test_goal_failure_before_page_opened_is_not_shown():
     async with world() as w:
         nav2 = Nav2(w.graph)
         nav2.goal(6)
@@ -151,8 +151,8 @@ async def test_a_goal_that_failed_before_the_page_came_is_no_news():
             assert not any(each["failed"] for each in messages if each["type"] == "goal_outcome")
 
 
-async def test_buttons_command_both_managers_in_the_order_of_nav2():
-    async with watched() as (_, nav2, client):
+async def test_buttons_command_both_managers_in_order_of_nav2():
+    async with navigation_page() as (_, nav2, client):
         await client.until("navigation_state", navigation="active")
         await client.send("command_navigation", command="pause")
         await client.until("navigation_state", navigation="inactive", busy=False)
@@ -173,8 +173,8 @@ async def test_buttons_command_both_managers_in_the_order_of_nav2():
         )
 
 
-async def test_a_goal_is_cancelled_alone_and_by_a_reset():
-    async with watched() as (_, nav2, client):
+async def test_goal_is_canceled_by_cancel_and_reset():
+    async with navigation_page() as (_, nav2, client):
         nav2.goal(2)
         await client.until("navigation_state", goal="active", navigation="active")
         await client.send("command_navigation", command="cancel")
@@ -187,15 +187,15 @@ async def test_a_goal_is_cancelled_alone_and_by_a_reset():
         assert (nav2.cancelled, nav2.commands) == (2, [("navigation", RESET), ("localization", RESET)])
 
 
-async def test_nobody_is_asked_once_no_page_shows_the_panel():
-    async with watched() as (w, _, client):
+async def test_closed_panel_has_no_subscriptions():
+    async with navigation_page() as (w, _, client):
         await client.until("navigation_state", navigation="active")
         await client.send("watch_navigation", open=False)
         await client.drain()
         assert w.viewer.context.node.count_subscribers("/navigate_to_pose/_action/feedback") == 0
 
 
-def test_the_panel_of_a_file_is_known_and_kept():
+def test_panel_of_rviz_file_is_recognized_and_kept():
     config = RvizConfig.parse(FILE)
     assert config.warnings == []
     assert config.panels.shown == ["displays", "navigation"]
@@ -206,7 +206,7 @@ def test_the_panel_of_a_file_is_known_and_kept():
     assert config.text() == FILE
 
 
-def test_a_file_that_gets_the_panel_names_the_class_of_nav2():
+def test_added_panel_is_saved_with_nav2_class():
     config = RvizConfig.parse(FILE.replace("  - Class: nav2_rviz_plugins/Navigation 2\n    Name: Navigation 2\n", ""))
     config.panels.show(["displays", "navigation"])
     assert "Class: nav2_rviz_plugins/Navigation 2" in config.text()

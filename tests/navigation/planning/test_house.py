@@ -16,7 +16,7 @@ from tests.places import GAZEBO_PACKAGE
 
 ROBOT = 0.22
 WALLS = np.array((4.9, 3.9))
-"""Metres from the origin to the inner sides of the outer walls, along x and y."""
+"""Meters from the origin to the inner sides of the outer walls, along x and y."""
 PLACES = {
     "living room": (0.0, 0.0),
     "bedroom": (-1.9, 1.6),
@@ -48,14 +48,14 @@ def free_or_outside(grid: Grid) -> np.ndarray:
     return (grid.cells == FREE) | (np.abs(centers) > WALLS).any(axis=-1)
 
 
-def test_every_room_is_reached_and_nothing_that_was_not_seen():
+def test_planner_reaches_all_rooms_and_no_unseen_cells():
     grid = house()
     there = reached(grid)
     assert all(there[tuple(grid.cells_of(np.array(place)))] for place in PLACES.values())
     assert free_or_outside(grid)[there].all()
 
 
-def test_no_way_leads_round_the_house_where_doors_are_shut():
+def test_closed_doors_separate_rooms():
     grid = house()
     for door in DOORS:
         row, column = grid.cells_of(np.array(door))

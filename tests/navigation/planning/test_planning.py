@@ -94,7 +94,7 @@ def rooms(seed: int, size: int = 60) -> np.ndarray:
 # --- potentials -------------------------------------------------------------------------------------------------------
 
 
-def test_in_the_open_it_is_the_distance():
+def test_potential_in_open_space_is_distance():
     least = run_to_end(compute_potential(np.full((81, 81), NEUTRAL), (40, 40)))
     rows, columns = np.ogrid[:81, :81]
     truth = NEUTRAL * np.hypot(rows - 40, columns - 40)
@@ -104,7 +104,7 @@ def test_in_the_open_it_is_the_distance():
 
 
 @pytest.mark.parametrize("seed", range(12))
-def test_it_is_what_the_cheapest_ways_along_cells_cost(seed):
+def test_potential_matches_dijkstra(seed):
     price = crossing_prices(inflated(rooms(seed)).grid.cells)
     least, truth = run_to_end(compute_potential(price, (2, 2))), dijkstra(price, (2, 2))
     reached = np.isfinite(least)
@@ -117,7 +117,7 @@ def test_it_is_what_the_cheapest_ways_along_cells_cost(seed):
 
 @settings(max_examples=20, deadline=None)
 @given(obstacles=st.integers(0, 10_000).map(lambda seed: np.random.default_rng(seed).random((25, 25)) < 0.35))
-def test_it_reaches_what_is_connected_and_no_more(obstacles):
+def test_potential_reaches_exactly_connected_cells(obstacles):
     obstacles[12, 12] = False
     least = run_to_end(compute_potential(np.where(obstacles, np.inf, NEUTRAL), (12, 12)))
     groups, _ = load_scipy("ndimage").label(~obstacles)
@@ -125,7 +125,7 @@ def test_it_reaches_what_is_connected_and_no_more(obstacles):
 
 
 @pytest.mark.parametrize("seed", range(6))
-def test_looking_only_towards_the_goal_gives_the_same_cost(seed):
+def test_heuristic_search_gives_same_cost(seed):
     price = crossing_prices(inflated(rooms(seed)).grid.cells)
     whole = run_to_end(compute_potential(price, (2, 2)))
     for heuristic in (False, True):
@@ -137,7 +137,7 @@ def test_looking_only_towards_the_goal_gives_the_same_cost(seed):
 # --- plans ------------------------------------------------------------------------------------------------------------
 
 
-def test_in_the_open_a_plan_is_straight():
+def test_plan_in_open_space_is_straight():
     path = planned(costmap(np.zeros((80, 80))), (0.55, 0.55), (7.05, 4.75, 1.0))
     assert path[0, :2].tolist() == [0.55, 0.55]
     assert path[-1].tolist() == [7.05, 4.75, 1.0]
@@ -146,7 +146,7 @@ def test_in_the_open_a_plan_is_straight():
 
 
 @pytest.mark.parametrize("seed", range(25))
-def test_plans_touch_nothing_and_are_about_as_cheap_as_possible(seed):
+def test_plans_avoid_obstacles_at_near_optimal_cost(seed):
     scene = inflated(rooms(seed))
     price = crossing_prices(scene.grid.cells)
     if not np.isfinite(price[[2, 57], [2, 57]]).all():
@@ -164,7 +164,7 @@ def test_plans_touch_nothing_and_are_about_as_cheap_as_possible(seed):
     assert (price[cells[:, 0], cells[:, 1]] * steps).sum() <= 1.06 * truth + 2 * NEUTRAL
 
 
-def test_through_a_maze():
+def test_plan_passes_through_maze():
     scene = drawn(
         "###########",
         "#.........#",
@@ -184,20 +184,20 @@ def test_through_a_maze():
     assert length(path) > 2.5
 
 
-def test_no_plan_slips_through_between_corners():
+def test_plan_does_not_pass_between_diagonal_corners():
     scene = drawn("...#..", "...#..", "...#..", "..#...", "..#...", "..#...")
     with pytest.raises(PlanError, match=r"Failed to create plan with tolerance of: 0\.000000"):
         planned(scene, (0.05, 0.05), (0.55, 0.55), tolerance=0.0)
 
 
-def test_over_what_nobody_has_seen_only_if_that_is_allowed():
+def test_unknown_cells_are_crossed_only_if_allowed():
     scene = drawn("..??..", "..??..", "..??..")
     assert length(planned(scene, (0.05, 0.15), (0.55, 0.15))) == pytest.approx(0.5, rel=0.05)
     with pytest.raises(PlanError):
         planned(scene, (0.05, 0.15), (0.55, 0.15), allow_unknown=False, tolerance=0.0)
 
 
-def test_what_is_known_is_preferred_to_what_is_not():
+def test_known_cells_are_preferred_to_unknown_cells():
     scene = costmap(np.zeros((40, 40)))
     scene.grid.cells[5:35, 15:25] = UNKNOWN
     path = planned(scene, (0.55, 0.95), (3.55, 0.95))
@@ -206,7 +206,7 @@ def test_what_is_known_is_preferred_to_what_is_not():
 
 @settings(max_examples=40, deadline=None)
 @given(obstacles=st.integers(0, 10_000).map(lambda seed: np.random.default_rng(seed).random((25, 25)) < 0.3))
-def test_no_plan_touches_an_obstacle(obstacles):
+def test_plan_never_touches_obstacle(obstacles):
     obstacles[[1, 23], [1, 23]] = False
     scene = costmap(np.where(obstacles, LETHAL, 0))
     try:
@@ -225,7 +225,7 @@ def problem(scene, start, goal, **more) -> Problem:
     return caught.value.problem
 
 
-def test_a_goal_near_a_wall_is_moved_away_from_it():
+def test_goal_near_wall_is_moved_within_tolerance():
     obstacles = np.zeros((40, 40), np.bool_)
     obstacles[:, 20] = True
     scene = inflated(obstacles)
@@ -235,7 +235,7 @@ def test_a_goal_near_a_wall_is_moved_away_from_it():
     assert problem(scene, (0.55, 2.05), (1.85, 2.05), tolerance=0.0) is Problem.GOAL_OCCUPIED
 
 
-def test_a_goal_inside_a_wall_is_refused():
+def test_goal_inside_wall_is_rejected():
     obstacles = np.zeros((40, 40), np.bool_)
     obstacles[:, 18:23] = True
     scene = inflated(obstacles)
@@ -244,19 +244,19 @@ def test_a_goal_inside_a_wall_is_refused():
     assert problem(scene, (0.55, 2.05), (2.05, 2.05)) is Problem.GOAL_OCCUPIED
 
 
-def test_a_goal_behind_a_wall_is_not_exchanged_for_one_before_it():
+def test_goal_behind_wall_is_not_replaced_by_one_before_it():
     obstacles = np.zeros((40, 40), np.bool_)
     obstacles[:, 20] = True
     assert problem(inflated(obstacles), (0.55, 2.05), (2.35, 2.05), tolerance=1.0) is Problem.NO_VALID_PATH
 
 
-def test_what_is_outside_of_the_map():
+def test_start_and_goal_outside_map_are_rejected():
     scene = costmap(np.zeros((10, 10)))
     assert problem(scene, (-0.1, 0.5), (0.5, 0.5)) is Problem.START_OUTSIDE_MAP
     assert problem(scene, (0.5, 0.5), (0.5, 1.5)) is Problem.GOAL_OUTSIDE_MAP
 
 
-def test_a_start_in_an_obstacle_is_refused_and_one_near_it_is_left_the_shortest_way():
+def test_start_in_obstacle_is_rejected_and_start_near_it_is_left():
     obstacles = np.zeros((40, 40), np.bool_)
     obstacles[20] = True
     scene = inflated(obstacles)
@@ -284,14 +284,14 @@ def bend(points: np.ndarray) -> float:
     return float(np.abs(turns).max())
 
 
-def test_a_corner_becomes_round_and_the_ends_stay():
+def test_smoothing_rounds_corner_and_keeps_ends():
     found, complete = smooth_path(corner(), Smoothing())
     assert complete
     assert bend(found) < 0.5 * bend(corner())
     assert found[[0, -1]] == pytest.approx(corner()[[0, -1]])
 
 
-def test_it_is_what_relaxation_comes_to():
+def test_smoothing_matches_relaxation():
     found, _ = smooth_path(corner(), Smoothing(do_refinement=False))
     relaxed, given = corner(), corner()
     for _ in range(500):
@@ -300,7 +300,7 @@ def test_it_is_what_relaxation_comes_to():
     assert found == pytest.approx(relaxed, abs=1e-9)
 
 
-def test_it_keeps_clear_of_obstacles():
+def test_smoothing_avoids_obstacles():
     scene = costmap(np.zeros((25, 25)))
     scene.grid.cells[1:10, 10:20] = LETHAL  # within the corner
     found, complete = smooth_path(corner(), Smoothing(), scene)
@@ -308,7 +308,7 @@ def test_it_keeps_clear_of_obstacles():
     assert (scene.cost_at(found) == 0).all()
 
 
-def test_where_the_robot_turns_back_it_stays():
+def test_smoothing_keeps_cusps():
     there = np.column_stack((np.arange(0.0, 1.0, 0.1), np.zeros(10)))
     back = np.column_stack((np.arange(0.8, 0.0, -0.1), np.linspace(0.02, 0.3, 8)))
     points = np.concatenate((there, back))

@@ -71,13 +71,13 @@ def along(corners, step=0.1, turn=0.1):
     return np.array(poses)
 
 
-def drifting(poses, scale=1.02, yaw_per_metre=0.03, noise=0.0, rng=None):
+def drifting(poses, scale=1.02, yaw_per_meter=0.03, noise=0.0, rng=None):
     """What odometry says of poses: too long a way, and a turn with it; noise is a part of each step."""
     result = [poses[0]]
     for before, after in pairwise(poses):
         step = relative_pose(before, after)
         length = hypot(step[0], step[1])
-        wrong = np.array((scale * step[0], scale * step[1], step[2] + yaw_per_metre * length))
+        wrong = np.array((scale * step[0], scale * step[1], step[2] + yaw_per_meter * length))
         if rng is not None:
             wrong += rng.normal(0, noise, 3) * (length + abs(step[2]))
         result.append(compose(result[-1], wrong))

@@ -38,10 +38,10 @@ def furthest(errors):
     return float(np.hypot(errors[:, 0], errors[:, 1]).max())
 
 
-@pytest.mark.parametrize("yaw_per_metre", [0.0, 0.03, 0.08])
-def test_a_flat_is_mapped_whatever_odometry_says(yaw_per_metre):
+@pytest.mark.parametrize("yaw_per_meter", [0.0, 0.03, 0.08])
+def test_apartment_is_mapped_despite_odometry_drift(yaw_per_meter):
     path = AROUND_IT
-    odometry = drifting(path, 1.03, yaw_per_metre, 0.02, np.random.default_rng(1))
+    odometry = drifting(path, 1.03, yaw_per_meter, 0.02, np.random.default_rng(1))
     mapper, outcomes, taken = mapped(house(), path, odometry)
     errors = relative_pose(taken, mapper.graph.poses)
     assert furthest(errors) < 0.02
@@ -50,7 +50,7 @@ def test_a_flat_is_mapped_whatever_odometry_says(yaw_per_metre):
     assert outcomes[-1].pose == pytest.approx(mapper.graph.poses[-1])
 
 
-def test_a_loop_is_closed_where_odometry_slipped_in_a_corridor_without_marks():
+def test_loop_is_closed_after_odometry_slip_in_corridor():
     walls = np.array([wall for each in (box(0, 0, 18, 12), box(0, 0, 13, 7)) for wall in each], dtype=float)
     path = along([(-7, -4.8), (7.6, -4.8), (7.7, 4.8), (-7.7, 4.8), (-7.7, -4.8), (-4, -4.8)], step=0.2, turn=0.2)
     odometry = [path[0]]
@@ -73,7 +73,7 @@ def test_a_loop_is_closed_where_odometry_slipped_in_a_corridor_without_marks():
     assert furthest((without[-1].pose - taken[-1])[None]) > 0.8
 
 
-def test_scans_are_taken_after_a_way_or_a_turn_and_not_too_often():
+def test_scans_are_processed_after_travel_or_rotation():
     mapper = Mapper(MapperSettings(), OccupancyMap(0.05))
     here = np.zeros(3)
     assert mapper.should_process(here, 0)
@@ -86,7 +86,7 @@ def test_scans_are_taken_after_a_way_or_a_turn_and_not_too_often():
     assert mapper.should_process(np.array([0.0, 0.0, -0.6]), second)
 
 
-def test_in_an_empty_world_odometry_is_believed_and_nothing_is_drawn():
+def test_empty_world_follows_odometry_and_has_no_map():
     empty = PlanarScan(np.zeros((0, 2)), np.zeros((0, 2)), np.zeros(2), 0)
     mapper = Mapper(MapperSettings(), OccupancyMap(0.05))
     poses = np.array([[0.5 * each, 0.1 * each, 0.2 * each] for each in range(30)])
@@ -98,14 +98,14 @@ def test_in_an_empty_world_odometry_is_believed_and_nothing_is_drawn():
     assert outcome.link_count == outcome.loop_count == 0
 
 
-def test_without_scan_matching_the_map_is_where_odometry_is():
+def test_poses_follow_odometry_without_scan_matching():
     path = along([(-4, -3), (4, -3), (4, 3)])
     odometry = drifting(path, 1.05, 0.02)
     mapper, _, _ = mapped(house(), path, odometry, MapperSettings(use_scan_matching=False))
     assert mapper.graph.poses[-1] == pytest.approx(mapper.odometry[-1])
 
 
-def test_a_robot_finds_itself_in_a_map_that_stays():
+def test_robot_is_localized_in_fixed_map():
     mapper, _, _ = mapped(house(), AROUND_IT, AROUND_IT)
     count, walls = len(mapper.scans), house()
     mapper.begin_session(np.array([3.2, -2.2, 1.3]))
@@ -120,7 +120,7 @@ def test_a_robot_finds_itself_in_a_map_that_stays():
     assert len(mapper.scans) == count
 
 
-def test_another_session_goes_on_with_the_map():
+def test_second_session_continues_map():
     walls = house()
     mapper, _, _ = mapped(walls, along(AROUND[:3]), along(AROUND[:3]))
     count = len(mapper.scans)

@@ -33,7 +33,7 @@ def reference():
 @pytest.mark.parametrize(
     "away", [(0, 0, 0), (0.2, -0.2, 0.3), (-0.24, 0.1, -0.3), (0.05, 0.24, 0.1), (0.0, -0.1, -0.34)]
 )
-def test_a_scan_is_found_to_millimetres(reference, away):
+def test_scan_is_matched_within_millimeters(reference, away):
     true = np.array([-1.8, -2.9, 0.4])
     scan = scan_at(WALLS, true, rng=np.random.default_rng(5))
     found = run_to_end(match_scan(reference, scan, true + away, Search()))
@@ -47,14 +47,14 @@ def test_a_scan_is_found_to_millimetres(reference, away):
     assert deviations.max() < 0.02
 
 
-def test_the_search_for_a_loop_finds_a_robot_that_is_metres_off(reference):
+def test_loop_search_corrects_error_of_meters(reference):
     true = np.array([-1.8, -2.9, 0.4])
     scan = scan_at(WALLS, true, rng=np.random.default_rng(6))
     found = run_to_end(match_scan(reference, scan, true + np.array([1.9, 1.2, -0.3]), EVERYWHERE))
     assert relative_pose(true, found.pose) == pytest.approx([0, 0, 0], abs=0.006)
 
 
-def test_branch_and_bound_finds_what_trying_everything_finds(reference):
+def test_branch_and_bound_matches_exhaustive_search(reference):
     scan = scan_at(WALLS, np.array([-2.0, -3.1, 0.2]), count=60)
     search = Search(dimension=0.6, resolution=0.05, smear_deviation=0.1, angle_offset=0.2, angle_resolution=0.02)
     guess = np.array([-1.9, -3.0, 0.1])
@@ -77,7 +77,7 @@ def test_branch_and_bound_finds_what_trying_everything_finds(reference):
     assert np.abs(relative_pose(np.array([-2.0, -3.1, 0.2]), pose))[:2].max() < 0.05
 
 
-def test_along_a_corridor_a_scan_tells_nothing_and_odometry_stays():
+def test_match_in_corridor_keeps_odometry_along_it():
     walls = np.array([[(-50, -1), (50, -1)], [(-50, 1), (50, 1)]], dtype=float)
     rng = np.random.default_rng(2)
     poses = np.array([[0.2 * each, 0.0, 0.0] for each in range(5)])
@@ -89,14 +89,14 @@ def test_along_a_corridor_a_scan_tells_nothing_and_odometry_stays():
     assert found.information[0, 0] < 1e-2 * found.information[1, 1]
 
 
-def test_with_nothing_to_see_nothing_is_matched(reference):
+def test_empty_scan_is_not_matched(reference):
     nothing = PlanarScan(np.zeros((3, 2)), np.zeros((0, 2)), np.zeros(2), 0)
     assert run_to_end(match_scan(reference, nothing, np.zeros(3), Search())) is None
     empty = Reference([nothing], np.zeros((1, 3)))
     assert run_to_end(match_scan(empty, scan_at(WALLS, np.array([-4.0, -3.0, 0.0])), np.zeros(3), Search())) is None
 
 
-def test_the_other_side_of_a_thin_wall_does_not_pull():
+def test_other_side_of_thin_wall_does_not_shift_match():
     thin, rest = box(0, 1.05, 6, 0.1), box(0, 1, 8, 7)
     walls = np.array([*thin, *rest], dtype=float)
     seen = np.array([[-0.5, 2.0, 0.0], [0.5, 2.0, 0.0]])  # from above the wall
@@ -106,7 +106,7 @@ def test_the_other_side_of_a_thin_wall_does_not_pull():
     assert found.pose == pytest.approx([0, 0, 0], abs=0.01)
 
 
-def test_a_turned_scan_is_found_where_larger_turns_are_tried(reference):
+def test_rotated_scan_is_found_with_larger_angle_search(reference):
     search = Search(dimension=0.1, angle_offset=0.01, smear_deviation=0.02)
     true = np.array([-1.8, -2.9, 0.0])
     far = PlanarScan(
@@ -116,7 +116,7 @@ def test_a_turned_scan_is_found_where_larger_turns_are_tried(reference):
     assert run_to_end(match_scan(reference, scan_at(WALLS, true), true, search, expand=True)).response > 0.5
 
 
-def test_scans_of_one_room_do_not_contradict_each_other_and_those_of_two_do():
+def test_contradiction_share_separates_scans_of_different_rooms():
     here, there = np.array([-4.0, -3.0, 0.3]), np.array([-3.2, -2.8, 1.0])
     first, second = scan_at(WALLS, here), scan_at(WALLS, there)
     assert contradiction_share(first, here, second, there) < 0.05

@@ -15,7 +15,7 @@ def ray(*points, passed=()):
     return PlanarScan(np.array(points).reshape(-1, 2), np.array(passed).reshape(-1, 2), np.zeros(2), 0)
 
 
-def test_a_cell_is_known_where_enough_rays_came_to_it():
+def test_cell_is_known_after_minimum_number_of_rays():
     occupancy = OccupancyMap(1.0)
     pose = np.array([0.5, 0.5, 0.0])
     for number in range(3):
@@ -26,7 +26,7 @@ def test_a_cell_is_known_where_enough_rays_came_to_it():
     assert (grid.x, grid.y, grid.resolution) == (0.0, 0.0, 1.0)
 
 
-def test_a_cell_that_most_rays_pass_is_free():
+def test_cell_that_most_rays_pass_is_free():
     occupancy = OccupancyMap(1.0)
     pose = np.array([0.5, 0.5, 0.0])
     for number in range(9):
@@ -37,14 +37,14 @@ def test_a_cell_that_most_rays_pass_is_free():
     assert occupancy.grid().cells.tolist() == [[FREE, OCCUPIED, FREE, OCCUPIED]]
 
 
-def test_a_ray_that_was_cut_off_frees_its_way_and_ends_on_nothing():
+def test_truncated_ray_frees_cells_and_marks_no_end():
     occupancy = OccupancyMap(1.0, min_pass_through=0)
     occupancy.draw(0, ray(passed=(0.0, -3.0)), np.array([0.5, 0.5, 0.0]))
     assert occupancy.grid().cells.tolist() == [[FREE]] * 4
     assert occupancy.grid().y == -3.0
 
 
-def test_a_scan_that_is_drawn_anew_leaves_no_trace_of_where_it_was():
+def test_redrawn_scan_leaves_no_trace_at_old_pose():
     rng = np.random.default_rng(0)
     walls, moved = house(), OccupancyMap(0.05)
     poses = np.array([[-4.0, -3.0, 0.1], [4.0, -3.0, 1.0], [4.0, 3.0, 2.0]])
@@ -64,7 +64,7 @@ def test_a_scan_that_is_drawn_anew_leaves_no_trace_of_where_it_was():
     assert moved.drawn_pose(0) is None
 
 
-def test_the_map_of_a_flat_is_that_flat():
+def test_map_matches_apartment():
     walls, occupancy = house(), OccupancyMap(0.05)
     poses = [(-4, -3), (0, -3), (4, -3), (4, 0), (4, 3), (0, 3), (-4, 3), (-4, 0), (-3.2, -3.4), (3.4, 3.4)]
     for number, (x, y) in enumerate(poses):

@@ -40,7 +40,7 @@ def errors(graph):
     return (weighted_residuals(graph, graph.poses) ** 2).sum(axis=1)
 
 
-def test_a_chain_without_a_loop_stays_as_it_is():
+def test_chain_without_loop_is_unchanged():
     _, graph = square(noise=0.02)
     before = graph.poses.copy()
     run_to_end(graph.solve())
@@ -48,7 +48,7 @@ def test_a_chain_without_a_loop_stays_as_it_is():
     assert errors(graph) == pytest.approx(np.zeros(len(before) - 1), abs=1e-6)
 
 
-def test_along_a_line_a_loop_is_shared_out_by_the_information():
+def test_loop_error_is_distributed_by_information():
     """Three steps of 1 m with information 1, 2 and 4, and a measurement of 3.7 m: each gives as its variance says."""
     graph = PoseGraph()
     graph.add_node(np.zeros(3))
@@ -63,7 +63,7 @@ def test_along_a_line_a_loop_is_shared_out_by_the_information():
     assert graph.poses[:, 1:] == pytest.approx(np.zeros((4, 2)), abs=1e-6)
 
 
-def test_a_closed_loop_is_what_a_batch_of_least_squares_gives():
+def test_closed_loop_matches_batch_least_squares():
     _, graph = square(noise=0.03, seed=4, side=3)
     last = len(graph.poses) - 1
     graph.add_edge(0, last, np.zeros(3), np.diag([1e4, 1e4, 1e4]))
@@ -80,7 +80,7 @@ def test_a_closed_loop_is_what_a_batch_of_least_squares_gives():
     assert away == pytest.approx(np.zeros(away.shape), abs=1e-4)
 
 
-def test_a_loop_brings_a_drifting_square_back():
+def test_loop_closure_corrects_drifting_square():
     true, graph = square(noise=0.01, seed=2)
     last = len(true) - 1
     before = np.hypot(*(graph.poses - true)[:, :2].T).max()
@@ -91,7 +91,7 @@ def test_a_loop_brings_a_drifting_square_back():
     assert after < before / 2
 
 
-def test_a_wrong_edge_among_right_ones_is_overruled():
+def test_wrong_edge_among_right_ones_is_rejected():
     true, graph = square(noise=0.005, seed=3)
     last = len(true) - 1
     for first, second in ((0, last), (1, last - 1), (3, last), (0, 41), (2, last)):

@@ -57,12 +57,12 @@ JSON = st.recursive(
 
 
 @given(MESSAGES)
-def test_what_a_page_may_send_is_read(message):
+def test_page_messages_round_trip(message):
     assert decode(json.dumps(to_builtins(message))) == message
 
 
 @given(MESSAGES, st.data())
-def test_a_field_more_or_less_or_of_another_kind_is_refused(message, data):
+def test_missing_extra_or_mistyped_field_is_rejected(message, data):
     fields = to_builtins(message)
     name = data.draw(st.sampled_from(sorted(fields)))
     with pytest.raises(BadMessageError):
@@ -74,7 +74,7 @@ def test_a_field_more_or_less_or_of_another_kind_is_refused(message, data):
 
 
 @given(JSON, JSON)
-def test_anything_else_is_refused_and_nothing_worse(first, second):
+def test_arbitrary_json_is_rejected(first, second):
     for data in (first, {"type": first}, {"type": "set_joint", "name": first, "position": second, "x": 1}):
         with pytest.raises(BadMessageError):
             decode(json.dumps(data))
@@ -98,7 +98,7 @@ def test_anything_else_is_refused_and_nothing_worse(first, second):
         '{"type": ["set_joint"]}',
     ],
 )
-def test_bad_messages_are_refused(text):
+def test_malformed_messages_are_rejected(text):
     with pytest.raises(BadMessageError):
         decode(text)
 
@@ -111,25 +111,25 @@ def test_bad_messages_are_refused(text):
         r'{"type": "view_changed", "view": {"cls": "a", "name": "b", "values": {"\ud800": 1}}}',
     ],
 )
-def test_halves_of_characters_are_refused(text):
+def test_lone_surrogates_are_rejected(text):
     with pytest.raises(BadMessageError):
         decode(text)
     assert decode(r'{"type": "set_property", "id": "\ud83e\udd16", "value": true}').id == "\U0001f916"
 
 
-def test_halves_of_characters_are_not_sent():
+def test_lone_surrogates_are_not_sent():
     folder = Folder("/h\u00f6me", None, ["caf\udce9"], [])
     assert json.loads(encode(folder).encode())["folders"] == ["caf?"]
     frame = pack_data("display-1", PolygonLine(np.zeros((1, 3), np.float32)), frame="caf\udce9")
     assert b'"frame":"caf?"' in frame
 
 
-def test_whole_numbers_are_floats_where_floats_are_meant():
+def test_integers_are_converted_to_float_fields():
     position = decode('{"type": "set_joint", "name": "a", "position": 1}').position
     assert (position, type(position)) == (1.0, float)
 
 
-def test_phrases_are_said_in_the_language_of_the_page():
+def test_phrases_are_translated_to_page_language():
     frame = phrase("Frame [{frame}] does not exist", frame="base")
     row = StatusRow("Fixed Frame", "warn", phrase("No tf data.  Actual error: {missing}", missing=frame))
     message = DisplayStatus("global", "warn", [row])
@@ -146,7 +146,7 @@ def test_phrases_are_said_in_the_language_of_the_page():
     assert json.loads(encode(odd, "zh"))["status"] == [{"name": "caf?", "level": "warn", "text": in_chinese}]
 
 
-def test_messages_of_the_server_are_plain_json():
+def test_server_messages_are_plain_json():
     row = Property("a/b", "b", "float", 0.5, children=[Property("a/b/c", "c", "group")])
     message = DisplayProperties("a", [row])
     assert json.loads(encode(message)) == to_builtins(message)
@@ -156,7 +156,7 @@ def test_messages_of_the_server_are_plain_json():
     }
 
 
-def test_keys_tell_what_makes_what_needless():
+def test_redundancy_key_identifies_replaceable_messages():
     assert redundancy_key(PropertyChanged("a/b", 1)) != redundancy_key(PropertyChanged("a/c", 1))
     assert redundancy_key(PropertyChanged("a/b", 1)) == redundancy_key(PropertyChanged("a/b", 2))
     assert redundancy_key(RobotScene("a", 1, "", [])) != redundancy_key(RobotScene("b", 1, "", []))

@@ -15,13 +15,13 @@ from tests.repository_tools import load_tool
 protocol_types = load_tool("protocol_types")
 
 
-def test_the_types_of_the_page_are_those_of_the_server():
+def test_page_types_match_server_types():
     script = REPOSITORY / "tools" / "protocol_types.py"
     done = subprocess.run([sys.executable, str(script), "--check"], capture_output=True, text=True, check=False)
     assert done.returncode == 0, done.stderr
 
 
-def test_types_that_no_module_declares_are_found_and_removed(tmp_path, monkeypatch, capsys):
+def test_stale_type_files_are_found_and_removed(tmp_path, monkeypatch, capsys):
     monkeypatch.setattr(protocol_types, "FOLDER", tmp_path)
     assert protocol_types.main([]) == 0
     assert protocol_types.main(["--check"]) == 0
@@ -37,7 +37,7 @@ def test_types_that_no_module_declares_are_found_and_removed(tmp_path, monkeypat
     assert not (tmp_path / "gone.ts").exists()
 
 
-def test_a_file_of_types_imports_what_others_declare():
+def test_type_file_imports_types_of_other_files():
     files = protocol_types.generate()
     assert 'import type { LinkInertia } from "./description";' in files["robot.ts"]
     assert "  inertia: LinkInertia | null;" in files["robot.ts"]
@@ -46,7 +46,7 @@ def test_a_file_of_types_imports_what_others_declare():
     assert max(text.count("\n") for name, text in files.items() if name != "index.ts") < 400
 
 
-def test_records_are_compared_and_printed_as_dataclasses_are():
+def test_records_compare_and_print_like_dataclasses():
     row = StatusRow("Topic", "ok", "OK")
     assert row == StatusRow("Topic", "ok", "OK")
     assert row != StatusRow("Topic", "warn", "OK")
@@ -57,7 +57,7 @@ def test_records_are_compared_and_printed_as_dataclasses_are():
         hash(row)
 
 
-def test_a_binary_frame_is_as_described():
+def test_transform_frame_has_documented_layout():
     poses = np.array([[1, 2, 3, 0, 0, 0, 1], [np.nan] * 7])
     frame = pack_transforms(7, 1.5, poses, np.array([0.0, 2.5]))
     assert struct.unpack_from("<IIIId", frame) == (1, 7, 2, 0, 1.5)
@@ -69,6 +69,6 @@ def test_a_binary_frame_is_as_described():
 
 
 @pytest.mark.parametrize(("poses", "ages"), [((2, 6), (2,)), ((2, 7), (3,)), ((14,), (2,))])
-def test_shapes_that_do_not_agree_are_named(poses, ages):
+def test_mismatched_array_shapes_are_reported(poses, ages):
     with pytest.raises(ValueError, match=r"\(N, 7\)"):
         pack_transforms(1, 0.0, np.zeros(poses), np.zeros(ages))

@@ -14,7 +14,7 @@ from tests.browser.mesh_writers import dae, png
 from tests.panels.export.robots import GRIPPER, Glb, snapshot
 
 
-def test_links_are_nodes_where_their_joints_put_them():
+def test_glb_links_are_nodes_at_joint_poses():
     glb = Glb(export_snapshot(snapshot(GRIPPER), "glb"))
     assert glb.nodes[glb.root]["name"] == "gripper"
     np.testing.assert_allclose(glb.links["base"], np.eye(4), atol=1e-7)
@@ -25,7 +25,7 @@ def test_links_are_nodes_where_their_joints_put_them():
     assert extras == {"turn", "open", "open_too"}
 
 
-def test_shapes_have_their_size_and_colour():
+def test_glb_shapes_have_size_and_color():
     drawn = {each.link: each for each in Glb(export_snapshot(snapshot(GRIPPER), "glb")).drawn}
     assert (drawn["base"].color, drawn["base"].opacity) == ("#0080ff", 0.75)
     np.testing.assert_allclose(drawn["base"].bounds, ((-0.5, -1, -0.25), (0.5, 1, 0.25)), atol=1e-6)
@@ -34,14 +34,14 @@ def test_shapes_have_their_size_and_colour():
     np.testing.assert_allclose(drawn["right"].bounds, ((0.55, -0.1, 1.05), (0.75, 0.1, 1.45)), atol=1e-6)
 
 
-def test_the_joints_are_as_they_stand():
+def test_glb_uses_current_joint_positions():
     shown = snapshot(GRIPPER)
     glb = Glb(export_snapshot(replace(shown, positions={**shown.positions, "turn": np.pi / 2}), "glb"))
     # About the link's y axis, which is the base's -x
     np.testing.assert_allclose(glb.links["left"][:3, 3], (-0.45, 1, 0.25), atol=1e-6)
 
 
-def test_every_triangle_faces_outwards():
+def test_glb_triangles_face_outward():
     glb = Glb(export_snapshot(snapshot(GRIPPER), "glb"))
     for solid in glb.document["meshes"]:
         (primitive,) = solid["primitives"]
@@ -53,7 +53,7 @@ def test_every_triangle_faces_outwards():
         np.testing.assert_allclose(np.linalg.norm(normals, axis=1), 1, atol=1e-5)
 
 
-def test_meshes_are_as_large_and_as_coloured_as_the_page_draws_them(tmp_path):
+def test_glb_meshes_match_size_and_color_of_page(tmp_path):
     drawn = {each.link: each for each in Glb(export_snapshot(snapshot(robot_of(golden_links(tmp_path))), "glb")).drawn}
     wrong = {}
     for name, (_, _, _, _, (least, most), color, opacity) in GOLDEN.items():
@@ -78,7 +78,7 @@ def textured_dae() -> str:
     return text.replace("<library_effects>", image)
 
 
-def test_a_texture_of_the_description_is_in_the_file(tmp_path):
+def test_glb_contains_texture(tmp_path):
     skin = png(255, 255, 0)
     (tmp_path / "skin.png").write_bytes(skin)
     texture = f'<material name="skin"><texture filename="{(tmp_path / "skin.png").as_uri()}"/></material>'
@@ -89,7 +89,7 @@ def test_a_texture_of_the_description_is_in_the_file(tmp_path):
     assert glb.image() == skin
 
 
-def test_a_mesh_that_cannot_be_read_is_named(tmp_path):
+def test_unreadable_mesh_is_named(tmp_path):
     path = tmp_path / "broken.dae"
     path.write_text("no mesh")
     with pytest.raises(LinkwrightError) as caught:
@@ -100,7 +100,7 @@ def test_a_mesh_that_cannot_be_read_is_named(tmp_path):
     assert "broken.dae" in diagnostic.message
 
 
-def test_a_mesh_that_is_missing_is_told_and_left_out():
+def test_missing_mesh_is_reported_and_omitted():
     shown = snapshot(
         robot_of(link("arm", '<visual><geometry><mesh filename="file:///no/where.stl"/></geometry></visual>'))
     )

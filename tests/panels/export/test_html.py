@@ -40,7 +40,7 @@ def page(text: str) -> str:
     return export_snapshot(snapshot(text), "html").decode()
 
 
-def test_the_page_has_everything_a_server_would_tell():
+def test_html_contains_all_server_messages():
     logged = recorded(page(GRIPPER))
     types = [message["type"] for message in logged["messages"]]
     for needed in ("hello", "tree", "robot_scene", "view_classes", "view_state", "joints", "joint_positions"):
@@ -59,7 +59,7 @@ def test_the_page_has_everything_a_server_would_tell():
     assert logged["spacing"] == pytest.approx(1.0, abs=0.1)  # from the arm to a finger
 
 
-def test_only_the_one_script_may_run_and_nothing_may_be_fetched():
+def test_content_security_policy_allows_only_own_script():
     text = page(GRIPPER)
     (policy,) = re.findall(r'http-equiv="Content-Security-Policy" content="([^"]*)"', text)
     script = text.rpartition("<script>")[2].partition("</script>")[0]
@@ -71,14 +71,14 @@ def test_only_the_one_script_may_run_and_nothing_may_be_fetched():
     assert not re.search(r'(?:src|href)="', text)
 
 
-def test_the_script_may_be_packed_as_the_build_leaves_it(tmp_path):
+def test_compressed_export_script_is_supported(tmp_path):
     script = tmp_path / "page" / "export" / "export.js"
     script.with_name("export.js.gz").write_bytes(gzip.compress(b'console.log("packed")'))
     script.unlink()
     assert '<script>console.log("packed")</script>' in page(GRIPPER)
 
 
-def test_names_cannot_break_out_of_the_page():
+def test_robot_names_are_escaped():
     name = "</script><script>alert(1)</script>"
     text = page(f'<robot name="{name.replace("<", "&lt;")}"><link name="&lt;!--"/></robot>')
     assert "<script>alert" not in text
@@ -86,7 +86,7 @@ def test_names_cannot_break_out_of_the_page():
     assert (scene["name"], scene["links"][0]["name"]) == (name, "<!--")
 
 
-def test_meshes_and_what_they_name_are_inside(tmp_path):
+def test_meshes_and_referenced_files_are_embedded(tmp_path):
     (tmp_path / "a.dae").write_bytes(dae())
     (tmp_path / "b.obj").write_bytes(obj("b.mtl", "paint"))
     (tmp_path / "b.mtl").write_text("newmtl paint\nKd 1 0 0\nmap_Kd -s 1 1 wood.png\n")
@@ -101,7 +101,7 @@ def test_meshes_and_what_they_name_are_inside(tmp_path):
     assert files["d.stl"] == stl_binary()
 
 
-def test_a_mesh_cannot_take_in_files_from_elsewhere(tmp_path):
+def test_meshes_cannot_embed_files_from_other_folders(tmp_path):
     (tmp_path / "secret.png").write_bytes(png(9, 9, 9))
     folder = tmp_path / "meshes"
     folder.mkdir()
@@ -112,7 +112,7 @@ def test_a_mesh_cannot_take_in_files_from_elsewhere(tmp_path):
     assert {path.rpartition("/")[2] for path in logged["files"]} == {"b.obj", "b.mtl"}
 
 
-def test_nothing_tells_of_the_machine_it_was_made_on(tmp_path):
+def test_html_contains_no_local_paths(tmp_path):
     (tmp_path / "d.stl").write_bytes(stl_binary())
     text = page(robot_of(link("d", mesh(tmp_path / "d.stl", ""))))
     assert str(tmp_path) not in text
@@ -123,11 +123,11 @@ def test_nothing_tells_of_the_machine_it_was_made_on(tmp_path):
 
 
 @pytest.mark.parametrize(("name", "known"), [("a.html", True), ("b.GLB", True), ("c.gltf", False), ("html", False)])
-def test_the_format_is_known_by_the_ending(name, known):
+def test_export_format_is_recognized_by_suffix(name, known):
     assert (format_of(name) is not None) is known
 
 
-async def test_what_else_is_shown_goes_along():
+async def test_html_contains_markers():
     """Markers and the like, as they are now."""
     config = RvizConfig.for_model("base")
     config.insert(config.new_display("rviz_default_plugins/Marker", "Marker"))

@@ -29,13 +29,13 @@ def joint_state():
         ("velocity[wrist]", None),
     ],
 )
-def test_a_path_leads_to_a_number_or_to_nothing(path, value):
+def test_field_path_returns_number_or_none(path, value):
     found = FieldPath(path)
     found.check(JOINT_STATE)
     assert found.value(joint_state()) == value
 
 
-def test_a_path_leads_through_nested_messages():
+def test_field_path_reads_nested_messages():
     message = ODOMETRY()
     message.twist.twist.linear.x = 0.25
     message.pose.covariance[35] = 3.0
@@ -45,7 +45,7 @@ def test_a_path_leads_through_nested_messages():
         assert found.value(message) == value
 
 
-def test_messages_in_arrays_are_named_by_themselves():
+def test_array_elements_are_selected_by_frame_id():
     message = TF(transforms=[get_message("geometry_msgs/msg/TransformStamped")() for _ in range(2)])
     message.transforms[1].child_frame_id = "base_link"
     message.transforms[1].transform.translation.x = 4.0
@@ -54,7 +54,7 @@ def test_messages_in_arrays_are_named_by_themselves():
     assert found.value(message) == 4.0
 
 
-def test_names_of_a_trajectory_count_for_its_points():
+def test_trajectory_points_are_selected_by_joint_name():
     point = get_message("trajectory_msgs/msg/JointTrajectoryPoint")(positions=[1.0, 2.0])
     message = get_message("trajectory_msgs/msg/JointTrajectory")(joint_names=["a", "b"], points=[point])
     assert FieldPath("points[0].positions[b]").value(message) == 2.0
@@ -69,7 +69,7 @@ def test_booleans_and_bytes_are_numbers():
 
 
 @pytest.mark.parametrize("text", ["", ".x", "x.", "x..y", "x[", "x[]", "x[1]y", "1x", "x y"])
-def test_what_is_no_path(text):
+def test_malformed_field_path_is_rejected(text):
     with pytest.raises(FieldPathError, match="is not a field"):
         FieldPath(text)
 
@@ -85,17 +85,17 @@ def test_what_is_no_path(text):
         ("position[0].x", "has no fields"),
     ],
 )
-def test_what_leads_to_no_number(path, message):
+def test_field_path_to_non_number_is_rejected(path, message):
     with pytest.raises(FieldPathError, match=r".*" + message.replace("[", r"\[")):
         FieldPath(path).check(JOINT_STATE)
 
 
-def test_fixed_arrays_have_an_end():
+def test_field_path_beyond_fixed_array_is_rejected():
     with pytest.raises(FieldPathError, match="has 36 elements"):
         FieldPath("pose.covariance[36]").check(ODOMETRY)
 
 
-def test_without_a_message_arrays_are_offered_with_their_first_element():
+def test_plot_fields_of_type_include_first_array_elements():
     assert [field.path for field in plot_fields(JOINT_STATE)] == [
         "header.stamp",
         "position[0]",
@@ -104,7 +104,7 @@ def test_without_a_message_arrays_are_offered_with_their_first_element():
     ]
 
 
-def test_a_message_tells_the_elements_and_their_names():
+def test_plot_fields_of_message_include_named_elements():
     fields = plot_fields(JOINT_STATE, joint_state())
     assert [field.path for field in fields] == ["header.stamp", "position[elbow]", "position[wrist]", "velocity[0]"]
     assert [field.kind for field in fields] == ["seconds", "double", "double", "double"]
@@ -113,13 +113,13 @@ def test_a_message_tells_the_elements_and_their_names():
         assert FieldPath(field.path).value(joint_state()) is not None
 
 
-def test_names_that_do_not_tell_elements_apart_are_not_used():
+def test_duplicate_names_are_not_used_in_plot_fields():
     message = JOINT_STATE(name=["a", "a", "5"], position=[1.0, 2.0, 3.0])
     paths = [field.path for field in plot_fields(JOINT_STATE, message)]
     assert "position[2]" in paths
 
 
-def test_large_messages_offer_a_limited_choice():
+def test_plot_fields_of_large_message_are_limited():
     image = get_message("sensor_msgs/msg/Image")(data=bytes(10_000))
     paths = [field.path for field in plot_fields(type(image), image)]
     assert paths[:3] == ["header.stamp", "height", "width"]

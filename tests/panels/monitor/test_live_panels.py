@@ -61,7 +61,7 @@ async def samples(client: Client) -> dict[int, np.ndarray]:
 # --- topics --------------------------------------------------------------------------------------------------------
 
 
-async def test_topics_are_listed_and_the_list_follows_the_graph():
+async def test_topic_list_follows_graph():
     async with opened() as (made, client):
         await client.send("watch_topics", listed=True, measured=[], opened=[])
         await client.until("topic_list")
@@ -77,14 +77,14 @@ async def test_topics_are_listed_and_the_list_follows_the_graph():
         assert names == sorted(names)
 
 
-async def test_the_list_comes_at_once():
+async def test_topic_list_is_sent_immediately():
     async with opened() as (_, client):
         await client.send("watch_topics", listed=True, measured=[], opened=[])
         listed = await client.until("topic_list")
         assert "/tf" in [each["name"] for each in listed["topics"]]
 
 
-async def test_a_topic_is_subscribed_to_only_while_a_page_watches_it():
+async def test_topic_is_subscribed_only_while_page_watches():
     async with opened() as (made, client):
         publisher = made.graph.create_node("talker").create_publisher(FLOAT, "/speed", 10)
         assert subscriptions(made, "/speed") == 0
@@ -106,7 +106,7 @@ async def test_a_topic_is_subscribed_to_only_while_a_page_watches_it():
         await eventually(lambda: subscriptions(made, "/speed") == 0)
 
 
-async def test_a_page_that_goes_leaves_no_subscription():
+async def test_closed_page_leaves_no_subscriptions():
     async with world() as made:
         made.graph.create_node("talker").create_publisher(FLOAT, "/speed", 10)
         before = {name: subscriptions(made, name) for name in ("/rosout", "/parameter_events", "/speed")}
@@ -132,7 +132,7 @@ async def test_a_page_that_goes_leaves_no_subscription():
         assert not made.graph._watchers
 
 
-async def test_two_pages_share_a_subscription():
+async def test_two_pages_share_subscription():
     async with opened() as (made, one), page(made.viewer) as two:
         made.graph.create_node("talker").create_publisher(FLOAT, "/speed", 10).publish(FLOAT())
         for client in (one, two):
@@ -146,7 +146,7 @@ async def test_two_pages_share_a_subscription():
         assert subscriptions(made, "/speed") == 1
 
 
-async def test_what_was_published_once_is_shown():
+async def test_latched_message_is_shown():
     async with opened() as (made, client):
         lasting = QoSProfile(depth=1, durability=DurabilityPolicy.TRANSIENT_LOCAL)
         made.graph.create_node("talker").create_publisher(FLOAT, "/map_scale", lasting).publish(FLOAT(data=0.05))
@@ -155,7 +155,7 @@ async def test_what_was_published_once_is_shown():
         assert message["fields"][0]["value"] == "0.05"
 
 
-async def test_a_publisher_that_offers_less_is_heard_as_well():
+async def test_best_effort_publisher_is_received():
     async with opened() as (made, client):
         node = made.graph.create_node("talker")
         node.create_publisher(FLOAT, "/speed", 10)
@@ -167,7 +167,7 @@ async def test_a_publisher_that_offers_less_is_heard_as_well():
         assert (await client.until("topic_message"))["fields"][0]["value"] == "7.0"
 
 
-async def test_unknown_and_mixed_types_say_so():
+async def test_unknown_and_mixed_topic_types_are_reported():
     async with opened() as (made, client):
         node = made.graph.create_node("talker")
         node.create_publisher(FLOAT, "/mixed", 10)
@@ -184,7 +184,7 @@ async def test_unknown_and_mixed_types_say_so():
 # --- plots ---------------------------------------------------------------------------------------------------------
 
 
-async def test_samples_carry_both_times_and_all_values():
+async def test_samples_contain_both_times_and_all_values():
     async with opened() as (made, client):
         publisher = made.graph.create_node("talker").create_publisher(JOINT_STATE, "/joint_states", 10)
         series = [
@@ -203,7 +203,7 @@ async def test_samples_carry_both_times_and_all_values():
 
 
 @skipping
-async def test_a_fast_topic_comes_in_few_frames_and_in_full():
+async def test_fast_topic_is_sent_completely_in_few_frames():
     async with opened() as (made, client):
         publisher = made.graph.create_node("talker").create_publisher(FLOAT, "/fast", 1000)
         await client.send("watch_series", series=[{"id": 5, "topic": "/fast", "path": "data"}])
@@ -222,7 +222,7 @@ async def test_a_fast_topic_comes_in_few_frames_and_in_full():
         assert np.concatenate(frames, axis=1)[2].tolist() == [float(each) for each in range(sent)]
 
 
-async def test_wrong_paths_are_told():
+async def test_invalid_field_paths_are_reported():
     async with opened() as (made, client):
         made.graph.create_node("talker").create_publisher(FLOAT, "/speed", 10)
         series = [{"id": 1, "topic": "/speed", "path": "dat"}, {"id": 2, "topic": "/speed", "path": "..."}]
@@ -232,7 +232,7 @@ async def test_wrong_paths_are_told():
         assert "is not a field" in second["error"]
 
 
-async def test_a_topic_that_comes_later_is_plotted():
+async def test_topic_appearing_later_is_plotted():
     async with opened() as (made, client):
         series = [{"id": 1, "topic": "/later", "path": "data"}, {"id": 2, "topic": "/later", "path": "wrong"}]
         await client.send("watch_series", series=series)
@@ -243,7 +243,7 @@ async def test_a_topic_that_comes_later_is_plotted():
         assert (await samples(client))[1][2].tolist() == [3.0]
 
 
-async def test_fields_are_offered_and_again_with_the_names_of_a_message():
+async def test_topic_fields_are_sent_again_with_element_names():
     async with opened() as (made, client):
         publisher = made.graph.create_node("talker").create_publisher(JOINT_STATE, "/joint_states", 10)
         await client.send("ask_fields", topic="/joint_states")
@@ -259,7 +259,7 @@ async def test_fields_are_offered_and_again_with_the_names_of_a_message():
 # --- the node graph ------------------------------------------------------------------------------------------------
 
 
-async def test_the_node_graph_follows_changes():
+async def test_node_graph_follows_changes():
     async with opened() as (made, client):
         await client.send("watch_node_graph", watched=True)
         first = await client.until("node_graph")
@@ -290,7 +290,7 @@ def tuned(made: World):
     return node
 
 
-async def test_parameters_are_shown_with_what_is_known_of_them():
+async def test_parameters_are_shown_with_descriptors():
     async with opened() as (made, client):
         tuned(made)
         await client.send("watch_parameters", listed=True, node="/tuned")
@@ -315,7 +315,7 @@ async def test_parameters_are_shown_with_what_is_known_of_them():
         assert rows["big"]["values"] == [str(2**60)]
 
 
-async def test_a_node_whose_name_is_none_has_no_parameters():
+async def test_invalid_node_name_has_no_parameters():
     async with opened() as (made, client):
         tuned(made)
         await client.send("watch_parameters", listed=True, node="no name")
@@ -330,7 +330,7 @@ async def test_a_node_whose_name_is_none_has_no_parameters():
         assert "failed" not in made.logged()
 
 
-async def test_parameters_are_set_and_refused_with_the_reason():
+async def test_parameters_are_set_or_rejected_with_reason():
     async with opened() as (made, client):
         node = tuned(made)
         await client.send("watch_parameters", listed=False, node="/tuned")
@@ -354,7 +354,7 @@ async def test_parameters_are_set_and_refused_with_the_reason():
         assert "64 bits" in (await put("big", "integer", str(2**64)))["reason"]
 
 
-async def test_changes_by_others_are_followed():
+async def test_parameter_changes_by_other_nodes_are_shown():
     async with opened() as (made, client):
         node = tuned(made)
         await client.send("watch_parameters", listed=False, node="/tuned")
@@ -370,7 +370,7 @@ async def test_changes_by_others_are_followed():
             changed = await client.until("node_parameters")
 
 
-async def test_parameters_are_dumped_as_a_file():
+async def test_parameters_are_dumped_as_yaml():
     async with opened() as (made, client):
         tuned(made)
         await client.send("watch_parameters", listed=False, node="/tuned")
@@ -384,7 +384,7 @@ async def test_parameters_are_dumped_as_a_file():
 # --- the log -------------------------------------------------------------------------------------------------------
 
 
-async def test_the_log_is_followed_and_begins_with_the_past():
+async def test_log_begins_with_past_messages():
     async with opened() as (made, client):
         node = made.graph.create_node("talker")
         node.get_logger().warning("before")
@@ -399,7 +399,7 @@ async def test_the_log_is_followed_and_begins_with_the_past():
         assert abs(line["time"] - time.time()) < 5
 
 
-async def test_the_log_has_what_was_said_while_it_was_not_shown():
+async def test_log_contains_messages_logged_while_hidden():
     async with opened() as (made, client):
         log = made.graph.create_node("talker").get_logger()
         node = made.viewer.context.node
@@ -416,7 +416,7 @@ async def test_the_log_has_what_was_said_while_it_was_not_shown():
 
 
 @skipping
-async def test_a_flood_is_cut_and_counted():
+async def test_log_flood_is_truncated_and_counted():
     async with opened() as (made, client):
         made.graph.create_node("first").get_logger().info("of the past")
         await client.send("watch_log", watched=True)
@@ -441,7 +441,7 @@ async def drive(client: Client, x: float, turn: float = 0.0) -> None:
 
 
 @pytest.mark.parametrize("kind", [TWIST, TWIST_STAMPED])
-async def test_the_pad_publishes_what_listeners_take(kind):
+async def test_teleop_pad_publishes_type_of_subscription(kind):
     async with opened() as (made, client):
         taken = []
         made.graph.create_node("base").create_subscription(kind, "/cmd_vel", taken.append, 10)
@@ -460,7 +460,7 @@ async def test_the_pad_publishes_what_listeners_take(kind):
 
 
 @skipping
-async def test_the_robot_stops_when_a_page_falls_silent_and_when_it_goes():
+async def test_teleop_stops_robot_when_page_is_silent_or_closed():
     async with world() as made:
         taken = []
         node = made.graph.create_node("base")
@@ -480,7 +480,7 @@ async def test_the_robot_stops_when_a_page_falls_silent_and_when_it_goes():
 
 
 @skipping
-async def test_a_page_that_holds_on_keeps_the_robot_moving_and_releases_it_with_zero():
+async def test_teleop_keeps_robot_moving_and_ends_with_zero():
     async with opened() as (made, client):
         taken = []
         node = made.graph.create_node("base")
@@ -494,7 +494,7 @@ async def test_a_page_that_holds_on_keeps_the_robot_moving_and_releases_it_with_
         assert taken == [1.0] * 12 + [0.0]
 
 
-async def test_topics_of_other_types_are_left_alone():
+async def test_teleop_ignores_topics_of_other_types():
     async with opened() as (made, client):
         made.graph.create_node("base").create_publisher(FLOAT, "/cmd_vel", 10)
         await client.send("aim_teleop", target={"topic": "/cmd_vel", "kind": "auto", "frame_id": ""})
@@ -504,7 +504,7 @@ async def test_topics_of_other_types_are_left_alone():
         assert "not a valid topic name" in (await client.until("teleop_state"))["error"]
 
 
-async def test_a_listener_that_comes_later_decides_the_type():
+async def test_teleop_type_follows_later_subscription():
     async with opened() as (made, client):
         await client.send("aim_teleop", target={"topic": "/cmd_vel", "kind": "auto", "frame_id": ""})
         assert (await client.until("teleop_state"))["kind"] == "Twist"

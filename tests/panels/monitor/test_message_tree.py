@@ -10,7 +10,7 @@ def row(rows: list[MessageField], *path: str) -> MessageField:
     return row(found.children, *path[1:]) if path[1:] else found
 
 
-def test_fields_are_told_with_type_and_value():
+def test_message_tree_has_types_and_values():
     message = get_message("sensor_msgs/msg/JointState")(name=["a"], position=[0.5])
     message.header.frame_id = "base"
     tree = message_tree(message)
@@ -21,20 +21,20 @@ def test_fields_are_told_with_type_and_value():
     assert row(tree, "position", "[0]") == MessageField("[0]", "double", "0.5")
 
 
-def test_long_arrays_are_cut():
+def test_long_arrays_are_truncated():
     image = get_message("sensor_msgs/msg/Image")(data=bytes(range(200)))
     data = row(message_tree(image), "data")
     assert data.value == "[0, 1, 2, 3, 4, 5, 6, 7, ...]"
     assert (len(data.children), data.omitted) == (64, 136)
 
 
-def test_long_texts_are_cut():
+def test_long_strings_are_truncated():
     (data,) = message_tree(get_message("std_msgs/msg/String")(data="x" * 5000))
     assert len(data.value) < 500
     assert data.value.endswith("...")
 
 
-def test_a_huge_message_stays_small():
+def test_tree_of_large_message_is_limited():
     marker = get_message("visualization_msgs/msg/Marker")
     point = get_message("geometry_msgs/msg/Point")
     message = get_message("visualization_msgs/msg/MarkerArray")(
@@ -47,7 +47,7 @@ def test_a_huge_message_stays_small():
     assert count(message_tree(message)) <= 1600
 
 
-def test_values_of_all_kinds_are_texts():
+def test_all_value_types_are_formatted():
     status = get_message("diagnostic_msgs/msg/DiagnosticStatus")(level=b"\x02")
     assert row(message_tree(status), "level").value == "0x02"
     assert message_tree(get_message("std_msgs/msg/Bool")(data=True))[0].value == "true"

@@ -24,7 +24,7 @@ async def plotted(client, values: list[float]) -> None:
 
 
 @skipping
-async def test_plots_go_back_with_all_else_and_are_whole_in_the_present_again():
+async def test_plots_follow_time_back_and_are_complete_in_live_mode():
     async with world(config(), history=KEPT) as made, page(made.viewer) as client:
         publisher = made.graph.create_node("talker").create_publisher(FLOAT, "/speed", 10)
         await client.send("watch_series", series=SERIES, seconds=30)
@@ -48,7 +48,7 @@ async def test_plots_go_back_with_all_else_and_are_whole_in_the_present_again():
 
 
 @skipping
-async def test_a_series_that_is_added_begins_with_what_was_kept():
+async def test_added_series_begins_with_stored_samples():
     async with world(config(), history=KEPT) as made, page(made.viewer) as client:
         publisher = made.graph.create_node("talker").create_publisher(FLOAT, "/speed", 10)
         await client.send("watch_series", series=SERIES, seconds=30)
@@ -62,7 +62,7 @@ async def test_a_series_that_is_added_begins_with_what_was_kept():
 
 
 @skipping
-async def test_plots_of_a_recording_show_what_came_before_its_time(tmp_path):
+async def test_plots_of_recording_show_samples_before_playback_time(tmp_path):
     async with shown(tmp_path) as made, page(made.viewer) as client:
         await client.until("playhead", playing=True)
         await client.send("play", playing=False)

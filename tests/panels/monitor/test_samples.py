@@ -12,7 +12,7 @@ from linkwright.page.protocol.monitor import SAMPLES_KIND, pack_samples
 from linkwright.panels.monitor.plots import MAX_SENT, SampleQueue, thin_out
 
 
-def test_samples_are_taken_once_and_in_order():
+def test_samples_are_taken_once_in_order():
     queue = SampleQueue()
     queue.add(1.0, math.nan, 5.0)
     queue.add(2.0, 1.5, 6.0)
@@ -24,7 +24,7 @@ def test_samples_are_taken_once_and_in_order():
     assert queue.take().shape == (3, 0)
 
 
-def test_a_queue_that_nobody_empties_stays_short_and_keeps_the_extremes():
+def test_unread_sample_queue_is_limited_and_keeps_extremes():
     queue = SampleQueue()
     for number in range(100_000):
         queue.add(number, number, 1e6 if number == 31_415 else float(number % 100))
@@ -36,7 +36,7 @@ def test_a_queue_that_nobody_empties_stays_short_and_keeps_the_extremes():
 
 
 @given(st.lists(st.floats(allow_infinity=False, width=32), min_size=1, max_size=400), st.sampled_from([2, 4, 10, 64]))
-def test_thinning_keeps_least_and_greatest(values, most):
+def test_thinning_keeps_minimum_and_maximum(values, most):
     samples = np.array([np.arange(len(values)), np.arange(len(values)), values], dtype=np.float64)
     kept = thin_out(samples, most)
     assert kept.shape[1] <= max(most, min(len(values), most))
@@ -46,7 +46,7 @@ def test_thinning_keeps_least_and_greatest(values, most):
         assert np.nanmax(kept[2]) == np.nanmax(samples[2])
 
 
-def test_a_frame_of_samples():
+def test_sample_frame_is_packed():
     frame = pack_samples([(7, np.array([[1.0], [math.nan], [3.0]])), (9, np.zeros((3, 2)))])
     assert struct.unpack_from("<IIII", frame) == (SAMPLES_KIND, 2, 0, 0)
     assert struct.unpack_from("<II", frame, 16) == (7, 1)
@@ -57,6 +57,6 @@ def test_a_frame_of_samples():
 
 
 @pytest.mark.parametrize("count", [MAX_SENT, MAX_SENT - 1])
-def test_what_fits_is_left_alone(count):
+def test_thinning_returns_small_input_unchanged(count):
     samples = np.random.default_rng(1).random((3, count))
     assert thin_out(samples, MAX_SENT) is samples

@@ -91,7 +91,7 @@ def leader_of(scene: World, number: int = 1) -> int:
     return found._pty._process.pid  # type: ignore[attr-defined,no-any-return]
 
 
-async def test_a_page_runs_commands_in_the_folder(tmp_path: Path) -> None:
+async def test_terminal_runs_commands_in_folder(tmp_path: Path) -> None:
     async with enabled(tmp_path) as scene, page(scene.viewer) as client:
         assert (await client.until("terminals"))["folder"] == str(tmp_path)
         reader = await open_terminal(client)
@@ -99,7 +99,7 @@ async def test_a_page_runs_commands_in_the_folder(tmp_path: Path) -> None:
         await reader.until(f"{real(tmp_path)}\r\nWort 小车\r\nxterm-256color truecolor\r\n")
 
 
-async def test_without_permission_every_request_is_refused(tmp_path: Path) -> None:
+async def test_requests_without_permission_are_rejected(tmp_path: Path) -> None:
     async with world() as scene, page(scene.viewer) as client:
         await client.send("open_terminal", **SIZE)
         refused = await client.until("terminals")
@@ -110,13 +110,13 @@ async def test_without_permission_every_request_is_refused(tmp_path: Path) -> No
         assert scene.viewer.add_feature(TerminalFeature)._terminals == {}
 
 
-async def test_a_page_that_opens_without_permission_hears_nothing_of_terminals() -> None:
+async def test_page_without_permission_receives_no_terminal_messages() -> None:
     async with world() as scene, page(scene.viewer) as client:
         await client.until("frame_table")
         assert not any(isinstance(each, dict) and each["type"] == "terminals" for each in client.messages)
 
 
-async def test_pages_of_other_machines_are_refused(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+async def test_pages_on_other_machines_are_rejected(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(server, "is_local_connection", lambda _: False)
     async with enabled(tmp_path) as scene, page(scene.viewer) as client:
         await client.until("terminals")
@@ -125,7 +125,7 @@ async def test_pages_of_other_machines_are_refused(tmp_path: Path, monkeypatch: 
         assert scene.viewer.add_feature(TerminalFeature)._terminals == {}
 
 
-async def test_pages_of_other_users_are_refused(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+async def test_pages_of_other_users_are_rejected(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(server, "may_be_own_user", lambda _: False)
     async with enabled(tmp_path) as scene, page(scene.viewer) as client:
         await client.until("terminals")
@@ -137,7 +137,7 @@ async def test_pages_of_other_users_are_refused(tmp_path: Path, monkeypatch: pyt
 
 
 @pytest.mark.parametrize("query", ["", "?token=wrong"])
-async def test_without_the_token_there_is_no_socket(tmp_path: Path, query: str) -> None:
+async def test_websocket_requires_token(tmp_path: Path, query: str) -> None:
     async with enabled(tmp_path) as scene, aiohttp.ClientSession() as browser:
         plain = scene.viewer.url.partition("?")[0]
         with pytest.raises(aiohttp.WSServerHandshakeError) as refused:
@@ -145,7 +145,7 @@ async def test_without_the_token_there_is_no_socket(tmp_path: Path, query: str) 
         assert refused.value.status == 401
 
 
-async def test_a_page_of_another_origin_gets_no_socket(tmp_path: Path) -> None:
+async def test_websocket_rejects_other_origins(tmp_path: Path) -> None:
     async with enabled(tmp_path) as scene, aiohttp.ClientSession() as browser:
         address = scene.viewer.url.replace("/?", "/ws?")
         with pytest.raises(aiohttp.WSServerHandshakeError) as refused:
@@ -154,7 +154,7 @@ async def test_a_page_of_another_origin_gets_no_socket(tmp_path: Path) -> None:
 
 
 @pytest.mark.parametrize("host", ["0.0.0.0", "::"])
-async def test_a_server_that_others_can_reach_does_not_open_with_a_terminal(host: str) -> None:
+async def test_terminal_requires_loopback_address(host: str) -> None:
     page_server = PageServer(host, 0, only_loopback=True)
     with pytest.raises(LinkwrightError) as refused:
         await page_server.open()
@@ -171,7 +171,7 @@ async def test_a_server_that_others_can_reach_does_not_open_with_a_terminal(host
     await local.close()
 
 
-async def test_the_end_of_the_shell_is_shown_and_it_starts_again(tmp_path: Path) -> None:
+async def test_exited_shell_is_shown_and_restarted(tmp_path: Path) -> None:
     async with enabled(tmp_path) as scene, page(scene.viewer) as client:
         reader = await open_terminal(client)
         await reader.type("echo first; exit 4\r")
@@ -182,7 +182,7 @@ async def test_the_end_of_the_shell_is_shown_and_it_starts_again(tmp_path: Path)
         await reader.until("30 100")
 
 
-async def test_another_page_takes_a_terminal_with_its_last_output(tmp_path: Path) -> None:
+async def test_another_page_attaches_with_last_output(tmp_path: Path) -> None:
     async with enabled(tmp_path) as scene, page(scene.viewer) as first:
         reader = await open_terminal(first)
         await reader.type("echo remem'ber'\r")
@@ -202,7 +202,7 @@ async def test_another_page_takes_a_terminal_with_its_last_output(tmp_path: Path
             assert "nothing" not in other.text
 
 
-async def test_a_reloaded_page_shows_its_terminal_again(tmp_path: Path) -> None:
+async def test_reloaded_page_shows_terminal_again(tmp_path: Path) -> None:
     async with enabled(tmp_path) as scene:
         async with page(scene.viewer) as client:
             reader = await open_terminal(client)
@@ -216,7 +216,7 @@ async def test_a_reloaded_page_shows_its_terminal_again(tmp_path: Path) -> None:
             await reader.until("<42>")
 
 
-async def test_endless_output_waits_for_the_page_and_then_continues(tmp_path: Path) -> None:
+async def test_endless_output_waits_for_acknowledgment(tmp_path: Path) -> None:
     async with enabled(tmp_path) as scene, page(scene.viewer) as client:
         reader = await open_terminal(client)
         reader.acknowledges = False
@@ -235,7 +235,7 @@ async def test_endless_output_waits_for_the_page_and_then_continues(tmp_path: Pa
         await reader.until("done\r\n")
 
 
-async def test_programs_continue_while_no_page_shows_them(tmp_path: Path) -> None:
+async def test_programs_continue_without_page(tmp_path: Path) -> None:
     async with enabled(tmp_path) as scene:
         async with page(scene.viewer) as client:
             reader = await open_terminal(client)
@@ -248,7 +248,7 @@ async def test_programs_continue_while_no_page_shows_them(tmp_path: Path) -> Non
             assert "\r\n1\r\n" not in reader.text
 
 
-async def test_closing_a_terminal_ends_its_programs(tmp_path: Path) -> None:
+async def test_closing_terminal_ends_its_programs(tmp_path: Path) -> None:
     async with enabled(tmp_path) as scene, page(scene.viewer) as client:
         reader = await open_terminal(client)
         await reader.type("sleep 1000 & sleep 1000 & echo do'ne'\r")
@@ -260,7 +260,7 @@ async def test_closing_a_terminal_ends_its_programs(tmp_path: Path) -> None:
         await asyncio.to_thread(wait_until, lambda: not list(session_processes(leader)), SECONDS)
 
 
-async def test_closing_the_server_ends_all_programs(tmp_path: Path) -> None:
+async def test_closing_server_ends_all_programs(tmp_path: Path) -> None:
     async with enabled(tmp_path) as scene, page(scene.viewer) as client:
         reader = await open_terminal(client)
         await reader.type("trap '' HUP; (trap '' HUP; sleep 1000) & echo do'ne'\r")
@@ -270,7 +270,7 @@ async def test_closing_the_server_ends_all_programs(tmp_path: Path) -> None:
     assert list(session_processes(leader)) == []
 
 
-async def test_too_many_terminals_are_refused(tmp_path: Path) -> None:
+async def test_number_of_terminals_is_limited(tmp_path: Path) -> None:
     async with enabled(tmp_path, ("/bin/sleep", "1000")) as scene, page(scene.viewer) as client:
         for _ in range(MAX_TERMINALS + 1):
             await client.send("open_terminal", **SIZE)
@@ -280,14 +280,14 @@ async def test_too_many_terminals_are_refused(tmp_path: Path) -> None:
         assert len(refused["terminals"]) == MAX_TERMINALS
 
 
-async def test_a_shell_that_cannot_start_is_explained(tmp_path: Path) -> None:
+async def test_shell_start_failure_is_reported(tmp_path: Path) -> None:
     async with enabled(tmp_path / "gone") as scene, page(scene.viewer) as client:
         await client.until("terminals")
         await client.send("open_terminal", **SIZE)
         assert "No such file" in (await client.until("terminals"))["why_not"]
 
 
-async def test_a_missing_package_is_named(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+async def test_missing_package_is_named(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     def fail(*_: object) -> None:
         raise ModuleNotFoundError("no winpty", name="winpty")
 
@@ -298,7 +298,7 @@ async def test_a_missing_package_is_named(tmp_path: Path, monkeypatch: pytest.Mo
         assert "[learn]" in (await client.until("terminals"))["why_not"]
 
 
-async def test_input_for_a_program_that_does_not_read_is_bounded(tmp_path: Path) -> None:
+async def test_unread_input_is_limited(tmp_path: Path) -> None:
     script = "stty raw -echo; echo ready; exec sleep 1000"
     async with enabled(tmp_path, ("/bin/sh", "-c", script)) as scene, page(scene.viewer) as client:
         reader = await open_terminal(client)
@@ -309,7 +309,7 @@ async def test_input_for_a_program_that_does_not_read_is_bounded(tmp_path: Path)
         assert scene.viewer.add_feature(TerminalFeature)._terminals[1]._pty.unwritten_size <= 1024 * 1024
 
 
-async def test_binary_input_reaches_the_program_as_bytes(tmp_path: Path) -> None:
+async def test_binary_input_reaches_program_as_bytes(tmp_path: Path) -> None:
     script = "stty raw -echo; echo ready; head -c 2 | od -An -tu1"
     async with enabled(tmp_path, ("/bin/sh", "-c", script)) as scene, page(scene.viewer) as client:
         reader = await open_terminal(client)
@@ -318,7 +318,7 @@ async def test_binary_input_reaches_the_program_as_bytes(tmp_path: Path) -> None
         await reader.until("255 128")
 
 
-async def test_a_character_in_two_blocks_arrives_whole(tmp_path: Path) -> None:
+async def test_split_utf8_character_arrives_complete(tmp_path: Path) -> None:
     script = r"stty raw; printf '\346'; read -r a; printf '\234\272<'"
     async with enabled(tmp_path, ("/bin/sh", "-c", script)) as scene, page(scene.viewer) as client:
         reader = await open_terminal(client)
@@ -326,9 +326,7 @@ async def test_a_character_in_two_blocks_arrives_whole(tmp_path: Path) -> None:
         await reader.until("机<")
 
 
-async def test_the_terminal_has_the_commands_of_linkwright_shell(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
+async def test_terminal_has_commands_of_linkwright_shell(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setenv("SHELL", "/bin/sh")
     async with world() as scene, page(scene.viewer) as client:
         scene.viewer.add_feature(TerminalFeature).enable(tmp_path)

@@ -13,25 +13,25 @@ def history(*parts: str) -> str:
     return made.text()
 
 
-def test_short_output_is_shown_as_it_was() -> None:
+def test_short_output_is_returned_unchanged() -> None:
     assert history() == ""
     assert history("\x1b[31mred\x1b[0m\r\n", "$ ") == "\x1b[31mred\x1b[0m\r\n$ "
 
 
-def test_only_the_last_lines_are_shown() -> None:
+def test_history_returns_last_lines() -> None:
     lines = [f"{number}\r\n" for number in range(3 * LINES)]
     shown = history(*lines, "$ ").splitlines()
     assert len(shown) == LINES
     assert (shown[0], shown[-1]) == (str(2 * LINES + 1), "$ ")
 
 
-def test_a_mode_that_was_set_long_ago_is_still_set() -> None:
+def test_terminal_modes_survive_long_output() -> None:
     text = history("\x1b[?1049h\x1b[?2004;25h\x1b[?25l", *(f"{number}\r\n" for number in range(2 * LINES)))
     assert text.startswith("\x1b[?1049h\x1b[?2004h\x1b[?25l")
     assert history("\x1b[?1049h", "\x1bc", "x\n" * 2 * LINES).startswith("x")
 
 
-def test_endless_output_without_lines_takes_a_bounded_memory() -> None:
+def test_output_without_newlines_uses_limited_memory() -> None:
     made = TerminalHistory()
     made.add("\x1b[?1000h")
     for _ in range(400):
@@ -41,14 +41,14 @@ def test_endless_output_without_lines_takes_a_bounded_memory() -> None:
     assert len(made.text()) <= 512 * 1024 + 100
 
 
-def test_modes_are_found_in_discarded_output() -> None:
+def test_terminal_modes_are_found_in_dropped_output() -> None:
     made = TerminalHistory()
     made.add("\x1b[?1h\n")
     made.add(("y" * 1000 + "\n") * 2000)
     assert made.text().startswith("\x1b[?1hy")
 
 
-def test_a_shell_without_a_locale_gets_utf8() -> None:
+def test_shell_environment_gets_utf8_locale() -> None:
     assert terminal_environment({})["LC_CTYPE"] in ("C.UTF-8", "UTF-8")
     assert "LC_CTYPE" not in terminal_environment({"LANG": "zh_CN.UTF-8"})
     assert "LC_CTYPE" not in terminal_environment({"LC_ALL": "C"})

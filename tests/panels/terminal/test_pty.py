@@ -82,7 +82,7 @@ async def running(script: str, folder: Path, **options: bool) -> AsyncIterator[R
         await asyncio.to_thread(program.pty.wait_ended, 0.1)
 
 
-async def test_a_program_runs_in_the_folder_with_a_terminal_of_its_own(tmp_path: Path) -> None:
+async def test_program_runs_in_folder_with_own_terminal(tmp_path: Path) -> None:
     async with running("pwd -P; test -t 0 && tty </dev/tty; stty size; exit 3", tmp_path) as program:
         assert await program.end() == 3
         folder, tty, size = program.output.decode().split("\r\n")[:3]
@@ -91,13 +91,13 @@ async def test_a_program_runs_in_the_folder_with_a_terminal_of_its_own(tmp_path:
         assert size == "24 80"
 
 
-async def test_all_output_arrives_before_the_end(tmp_path: Path) -> None:
+async def test_all_output_arrives_before_end(tmp_path: Path) -> None:
     async with running("seq 100000; exit 7", tmp_path) as program:
         assert await program.end() == 7
         assert program.output == b"".join(b"%d\r\n" % number for number in range(1, 100001))
 
 
-async def test_bytes_that_are_not_text_pass_both_ways(tmp_path: Path) -> None:
+async def test_binary_data_passes_in_both_directions(tmp_path: Path) -> None:
     async with running("stty raw -echo; echo ready; head -c 256 | od -An -v -tu1", tmp_path) as program:
         await program.prints("ready")
         program.pty.write(bytes(range(256)))
@@ -106,14 +106,14 @@ async def test_bytes_that_are_not_text_pass_both_ways(tmp_path: Path) -> None:
         assert numbers[1:] == [str(number) for number in range(256)]
 
 
-async def test_backspace_erases_a_chinese_character(tmp_path: Path) -> None:
+async def test_backspace_erases_chinese_character(tmp_path: Path) -> None:
     async with running("echo ready; cat", tmp_path) as program:
         await program.prints("ready")
         program.pty.write("机器人\x7f车\r".encode())
         await program.prints("\r\n机器车\r\n")
 
 
-async def test_a_new_size_reaches_the_program(tmp_path: Path) -> None:
+async def test_program_receives_new_size(tmp_path: Path) -> None:
     async with running("trap 'stty size; exit' WINCH; echo ready; while :; do sleep 0.05; done", tmp_path) as program:
         await program.prints("ready")
         program.pty.resize(TerminalSize(132, 43))
@@ -121,7 +121,7 @@ async def test_a_new_size_reaches_the_program(tmp_path: Path) -> None:
 
 
 @pytest.mark.parametrize(("key", "number"), [(b"\x03", signal.SIGINT), (b"\x1c", signal.SIGQUIT)])
-async def test_keys_send_signals_even_if_the_server_ignores_them(tmp_path: Path, key: bytes, number: int) -> None:
+async def test_control_keys_send_signals_ignored_by_server(tmp_path: Path, key: bytes, number: int) -> None:
     previous = signal.signal(number, signal.SIG_IGN)
     try:
         async with running("ulimit -c 0; echo ready; exec sleep 100", tmp_path) as program:
@@ -132,7 +132,7 @@ async def test_keys_send_signals_even_if_the_server_ignores_them(tmp_path: Path,
         signal.signal(number, previous)
 
 
-async def test_output_is_read_only_on_request_and_a_program_waits(tmp_path: Path) -> None:
+async def test_output_is_read_only_on_request(tmp_path: Path) -> None:
     async with running("yes; echo never", tmp_path, reads=False) as program:
         for count in range(1, 4):
             before = len(program.output)
@@ -144,7 +144,7 @@ async def test_output_is_read_only_on_request_and_a_program_waits(tmp_path: Path
         assert len(program.output) == size
 
 
-async def test_input_waits_for_a_program_that_does_not_read(tmp_path: Path) -> None:
+async def test_input_is_buffered_until_program_reads(tmp_path: Path) -> None:
     async with running("stty raw -echo; echo ready; read -r go </dev/null; kill -STOP $$; wc -c", tmp_path) as program:
         await program.prints("ready")
         program.pty.write(b"x" * 500_000)
@@ -152,14 +152,14 @@ async def test_input_waits_for_a_program_that_does_not_read(tmp_path: Path) -> N
         os.kill(program.leader, signal.SIGCONT)
 
 
-async def test_what_a_shell_left_behind_ends_with_it(tmp_path: Path) -> None:
+async def test_background_processes_end_with_shell(tmp_path: Path) -> None:
     script = "(trap '' HUP; sleep 1000) & sleep 1000 & echo ready; exit 5"
     async with running(script, tmp_path) as program:
         assert await program.end() == 5
         assert list(session_processes(program.leader)) == []
 
 
-async def test_hanging_up_ends_all_processes_even_those_that_ignore_it(tmp_path: Path) -> None:
+async def test_hang_up_ends_processes_that_ignore_sighup(tmp_path: Path) -> None:
     script = "trap '' HUP TERM INT; (trap '' HUP; sleep 1000) & sleep 1000 & echo ready; while :; do sleep 1; done"
     async with running(script, tmp_path) as program:
         await program.prints("ready")
@@ -171,7 +171,7 @@ async def test_hanging_up_ends_all_processes_even_those_that_ignore_it(tmp_path:
         assert program.status is None
 
 
-async def test_a_stopped_program_ends_too(tmp_path: Path) -> None:
+async def test_hang_up_ends_stopped_program(tmp_path: Path) -> None:
     async with running("echo ready; kill -STOP $$", tmp_path) as program:
         await program.prints("ready")
         leader = program.leader
@@ -180,7 +180,7 @@ async def test_a_stopped_program_ends_too(tmp_path: Path) -> None:
         assert list(session_processes(leader)) == []
 
 
-async def test_a_program_that_does_not_exist_is_an_error(tmp_path: Path) -> None:
+async def test_missing_program_is_an_error(tmp_path: Path) -> None:
     program = TerminalProgram(("/bin/sh",), tmp_path / "none", os.environ)
     with pytest.raises(FileNotFoundError):
         open_pty(program, TerminalSize(80, 24), lambda _: None, lambda _: None)

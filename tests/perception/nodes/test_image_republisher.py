@@ -44,7 +44,7 @@ async def send(test, topic, message):
     await test.settle()
 
 
-async def test_raw_becomes_compressed_and_raw_again(test):
+async def test_raw_image_survives_compressed_round_trip(test):
     start(test, "raw", "compressed", remappings=[("in", "/camera/image_raw"), ("out", "/small")])
     start(test, "compressed", "raw", remappings=[("in/compressed", "/small/compressed"), ("out", "/back")])
     back, small = test.record("/back"), test.record("/small/compressed")
@@ -57,7 +57,7 @@ async def test_raw_becomes_compressed_and_raw_again(test):
     assert back.last.header.frame_id == "camera"
 
 
-async def test_depths_in_metres_go_through(test):
+async def test_depths_in_meters_survive_compressed_depth(test):
     start(test, "raw", "compressedDepth")
     start(test, "compressedDepth", "raw", remappings=[("in", "/out"), ("out", "/back")])
     back = test.record("/back")
@@ -68,7 +68,7 @@ async def test_depths_in_metres_go_through(test):
     assert read_depths(back.last)[0] == pytest.approx([0.5, 1.0, 2.0, 5.0, np.nan, np.nan], rel=0.01, nan_ok=True)
 
 
-async def test_depths_in_millimetres_go_through_unchanged(test):
+async def test_depths_in_millimeters_are_unchanged_by_compressed_depth(test):
     start(test, "raw", "compressedDepth")
     start(test, "compressedDepth", "raw", remappings=[("in", "/out"), ("out", "/back")])
     back = test.record("/back")
@@ -78,7 +78,7 @@ async def test_depths_in_millimetres_go_through_unchanged(test):
     assert np.frombuffer(bytes(back.last.data), "<u2").tolist() == [0, 1, 499, 65535]
 
 
-async def test_without_an_output_transport_there_are_all(test):
+async def test_all_output_transports_are_published_by_default(test):
     start(test, in_transport="raw")
     kinds = dict(test.graph.get_topic_names_and_types())
     assert {"/out", "/out/compressed", "/out/compressedDepth"} <= set(kinds)
@@ -89,7 +89,7 @@ async def test_without_an_output_transport_there_are_all(test):
     assert out.last is message
 
 
-async def test_what_cannot_be_packed_or_unpacked_is_told(test):
+async def test_encoding_and_decoding_errors_are_reported(test):
     start(test, "compressed", "raw")
     test.record("/out")
     broken = get_message("sensor_msgs/msg/CompressedImage")()
@@ -107,7 +107,7 @@ async def test_what_cannot_be_packed_or_unpacked_is_told(test):
         (["raw", "raw", "raw"], "unexpected argument 'raw'"),
     ],
 )
-async def test_transports_that_there_are_not(test, words, text):
+async def test_unknown_transports_are_rejected(test, words, text):
     with pytest.raises(LinkwrightError) as caught:
         start(test, *words)
     assert text in str(caught.value)

@@ -61,7 +61,7 @@ async def test_madgwick_publishes_orientation_and_transform(test):
     assert transform.transform.rotation.w == pytest.approx(data.last.orientation.w)
 
 
-async def test_offset_and_gravity_and_reverse(test):
+async def test_madgwick_applies_offset_gravity_removal_and_reverse_tf(test):
     parameters = {"use_mag": False, "yaw_offset": pi / 2, "declination": 0.1, "remove_gravity_vector": True}
     start(test, MadgwickNode, **parameters, reverse_tf=True, publish_debug_topics=True)
     data, tf, rpy = test.record("/imu/data"), test.record("/tf"), test.record("/imu/rpy/filtered")
@@ -75,7 +75,7 @@ async def test_offset_and_gravity_and_reverse(test):
     assert rpy.last.vector.z == pytest.approx(pi / 2 - 0.1)
 
 
-async def test_without_memory_each_measurement_is_a_first_one(test):
+async def test_stateless_madgwick_restarts_at_each_measurement(test):
     start(test, MadgwickNode, use_mag=False, stateless=True, publish_tf=False)
     data = test.record("/imu/data")
     for roll in (0.1, 0.5, -0.4):
@@ -84,7 +84,7 @@ async def test_without_memory_each_measurement_is_a_first_one(test):
         assert angles(data.last)[0] == pytest.approx(roll, abs=1e-6)
 
 
-async def test_the_complementary_filter_follows_the_gyroscope(test):
+async def test_complementary_filter_follows_gyroscope(test):
     start(test, ComplementaryNode, do_bias_estimation=False)
     data = test.record("/imu/data")
     for _ in range(101):
@@ -93,7 +93,7 @@ async def test_the_complementary_filter_follows_the_gyroscope(test):
     assert test.graph.count_publishers("/tf") == 0
 
 
-async def test_a_falling_imu_tells_nothing(test):
+async def test_falling_imu_publishes_nothing(test):
     start(test, ComplementaryNode)
     data = test.record("/imu/data")
     for _ in range(3):
@@ -111,7 +111,7 @@ async def test_a_falling_imu_tells_nothing(test):
         (ComplementaryNode, {"gain_acc": 2.0}, "'gain_acc' of 'complementary_filter_gain_node' cannot be '2.0'"),
     ],
 )
-async def test_values_that_mean_nothing(test, kind, parameters, text):
+async def test_invalid_parameters_are_rejected(test, kind, parameters, text):
     with pytest.raises(LinkwrightError) as caught:
         start(test, kind, **parameters)
     assert text in str(caught.value)

@@ -53,7 +53,7 @@ def scan(test, *ranges, frame="laser"):
     return message
 
 
-async def test_a_chain_filters_one_after_another_and_leaves_what_it_got(test):
+async def test_filter_chain_applies_in_order_and_keeps_input(test):
     start(test, filter1=RANGE, filter2=BOUNDS)
     filtered = test.record("/scan_filtered")
     given = scan(test, 1.0, 2.0, 9.0, 3.0, 4.0)
@@ -67,7 +67,7 @@ async def test_a_chain_filters_one_after_another_and_leaves_what_it_got(test):
     assert list(given.ranges) == [1.0, 2.0, 9.0, 3.0, 4.0]
 
 
-async def test_without_filters_the_scan_passes(test):
+async def test_empty_chain_passes_scan(test):
     start(test)
     filtered = test.record("/scan_filtered")
     test.publish("/scan", scan(test, 1.0))
@@ -77,7 +77,7 @@ async def test_without_filters_the_scan_passes(test):
     assert list(filtered.last.ranges) == [1.0]
 
 
-async def test_a_box_waits_for_the_place_of_the_laser(test):
+async def test_box_filter_waits_for_transform_of_laser(test):
     start(test, filter1=BOX)
     filtered = test.record("/scan_filtered")
     for _ in range(2):
@@ -104,14 +104,14 @@ async def test_a_box_waits_for_the_place_of_the_laser(test):
         ({**RANGE, "params": {"lower_threshold": "near"}}, "'filter1.params.lower_threshold' cannot be 'near'"),
     ],
 )
-async def test_a_chain_that_means_nothing(test, parameters, text):
+async def test_invalid_filter_chain_is_rejected(test, parameters, text):
     with pytest.raises(LinkwrightError) as caught:
         start(test, filter1=parameters)
     assert text in str(caught.value)
     assert test.graph.node_names() == []
 
 
-async def test_unknown_parameters_and_filters_behind_a_gap_are_named(test):
+async def test_unknown_parameters_and_filters_after_gap_are_reported(test):
     start(test, filter1={**RANGE, "params": {"uper_threshold": 1.0}}, filter3=BOUNDS)
     *gaps, first = logged(test, "WARN")
     assert first.startswith(
@@ -120,7 +120,7 @@ async def test_unknown_parameters_and_filters_behind_a_gap_are_named(test):
     assert gaps == ["'filter3' is not used: the chain ends before 'filter2'"]
 
 
-async def test_a_lazy_chain_listens_only_while_somebody_listens_to_it(test):
+async def test_lazy_chain_subscribes_only_while_subscribed(test):
     running = start(test, filter1=RANGE, lazy_subscription=True)
     assert test.graph.count_subscribers("/scan") == 0
     listener = test.graph.create_node("listener")

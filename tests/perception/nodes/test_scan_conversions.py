@@ -63,7 +63,7 @@ def camera(test):
     return message
 
 
-async def test_a_depth_image_becomes_a_scan(test):
+async def test_depth_image_becomes_scan(test):
     start(test, DepthImageToLaserScan, range_min=0.1, output_frame="laser")
     scan = test.record("/scan")
     await send(test, "/depth", depth_image(test, np.full((3, 5), 2.0)))
@@ -88,7 +88,7 @@ async def test_a_depth_image_becomes_a_scan(test):
     assert logged(test, "ERROR")[-1].endswith("Depth image has unsupported encoding: rgb8")
 
 
-async def test_nothing_is_subscribed_while_nobody_listens(test):
+async def test_conversion_subscribes_only_while_subscribed(test):
     running = start(test, DepthImageToLaserScan)
     await test.settle()
     assert test.graph.count_subscribers("/depth") == 0
@@ -119,7 +119,7 @@ def place(test, parent, child, rpy):
     test.publish("/tf_static", TFMessage(batch=batch), STATIC_TF_PUBLISHER_QOS)
 
 
-async def test_a_cloud_becomes_a_scan_of_the_target_frame(test):
+async def test_cloud_becomes_scan_in_target_frame(test):
     parameters = {"angle_increment": pi / 2, "min_height": 0.0, "max_height": 1.0, "range_max": 10.0}
     start(test, PointCloudToLaserScan, target_frame="base_link", **parameters)
     scan = test.record("/scan")
@@ -133,7 +133,7 @@ async def test_a_cloud_becomes_a_scan_of_the_target_frame(test):
     assert scan.last.header.frame_id == "base_link"
 
 
-async def test_rays_without_points_may_be_beyond_the_range(test):
+async def test_rays_without_points_exceed_range_with_inf_epsilon(test):
     start(test, PointCloudToLaserScan, angle_increment=pi / 2, range_max=10.0, use_inf=False, inf_epsilon=2.0)
     scan = test.record("/scan")
     await send(test, "/cloud_in", cloud(test, np.zeros((0, 3))))
@@ -141,7 +141,7 @@ async def test_rays_without_points_may_be_beyond_the_range(test):
     assert list(scan.last.ranges) == [12.0] * 4
 
 
-async def test_a_scan_becomes_a_cloud(test):
+async def test_scan_becomes_cloud(test):
     start(test, LaserScanToPointCloud, target_frame="base_link")
     clouds = test.record("/cloud")
     place(test, "base_link", "laser", (0.0, 0.0, pi / 2))
@@ -159,7 +159,7 @@ async def test_a_scan_becomes_a_cloud(test):
     assert values["index"].tolist() == [0, 2]
 
 
-async def test_values_that_mean_nothing(test):
+async def test_invalid_parameters_are_rejected(test):
     with pytest.raises(LinkwrightError, match="'angle_increment' of 'pointcloud_to_laserscan' cannot be '0"):
         start(test, PointCloudToLaserScan, angle_increment=0.0)
     with pytest.raises(LinkwrightError, match="parameter 'scan_height' of 'depthimage_to_laserscan' cannot be '0'"):

@@ -11,7 +11,7 @@ from tests.perception.scans.test_scan_filters import ranges, scan
 CAMERA = Pinhole(focal_length=4.0, center_column=2.0, center_row=1.5)
 
 
-def test_a_wall_across_the_view_is_a_wall_in_the_scan():
+def test_flat_depth_image_becomes_straight_wall():
     made, rays = scan_from_depths(np.full((3, 5), 2.0), CAMERA, 1, 0.1, 10.0)
     assert (rays.angle_min, rays.angle_max) == (pytest.approx(-atan(0.5)), pytest.approx(atan(0.5)))
     assert rays.angle_increment == pytest.approx(atan(0.5) / 2)
@@ -19,7 +19,7 @@ def test_a_wall_across_the_view_is_a_wall_in_the_scan():
     assert made[[0, 2, 4]] == pytest.approx([hypot(2.0, 0.5), 2.0, hypot(2.0, 1.0)])
 
 
-def test_the_left_of_the_image_is_the_end_of_the_scan_and_the_nearest_row_counts():
+def test_left_of_image_is_end_of_scan_and_nearest_row_is_used():
     depths = np.full((3, 5), 9.0)
     depths[0, 0], depths[1, 0], depths[1, 4] = 1.0, 2.0, 3.0
     made, _ = scan_from_depths(depths, CAMERA, 2, 0.1, 20.0)
@@ -27,7 +27,7 @@ def test_the_left_of_the_image_is_the_end_of_the_scan_and_the_nearest_row_counts
     assert made[0] == pytest.approx(hypot(3.0, 1.5))
 
 
-def test_what_a_depth_image_does_not_know():
+def test_invalid_depths_become_nan_or_inf_ranges():
     depths = np.array([[nan, inf, 50.0, 0.2, 2.0]] * 3)
     made, _ = scan_from_depths(depths, CAMERA, 1, 0.45, 10.0)
     assert np.isnan(made[-1])
@@ -35,12 +35,12 @@ def test_what_a_depth_image_does_not_know():
     assert np.isfinite(made).tolist() == [True, False, False, False, False]
 
 
-def test_more_rows_than_there_are_is_an_error():
+def test_scan_height_above_image_height_is_an_error():
     with pytest.raises(ValueError, match="scan_height \\( 4 pixels\\) is too large for the image height"):
         scan_from_depths(np.ones((3, 5)), CAMERA, 4, 0.1, 10.0)
 
 
-def test_the_nearest_point_of_each_ray_within_the_heights():
+def test_nearest_point_within_heights_is_used_for_each_ray():
     rays = Rays(-pi, pi, pi / 2, 0.5, 10.0)
     points = np.array(
         [
@@ -54,14 +54,14 @@ def test_the_nearest_point_of_each_ray_within_the_heights():
     assert list(made) == ranges([inf, hypot(3.0, 0.1), hypot(1.0, 0.1), inf])
 
 
-def test_a_point_at_the_very_end_of_the_scan_has_no_ray():
+def test_point_at_maximum_angle_is_ignored():
     assert list(scan_from_points(np.array([[-1.0, 0.0, 0.0]]), Rays(-pi, pi, pi, 0.0, 9.0), 0.0, 1.0, 7.0)) == [
         7.0,
         7.0,
     ]
 
 
-def test_a_scan_becomes_points_and_back():
+def test_scan_to_points_round_trip():
     given = scan(1.0, 2.0, nan, 20.0, 3.0, angle_min=-0.2)
     points, places = points_from_scan(given)
     assert places.tolist() == [0, 1, 4]

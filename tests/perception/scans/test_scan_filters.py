@@ -55,13 +55,13 @@ def applied(each, given, lookup=nowhere):
     return list(each.apply(given, lookup).ranges)
 
 
-def test_ranges_beyond_thresholds_are_replaced():
+def test_range_filter_replaces_ranges_beyond_thresholds():
     assert applied(RangeFilter(1.0, 5.0), scan(0.5, 1.0, 3.0, 5.0, inf, nan)) == ranges([nan, nan, 3.0, nan, nan, nan])
     replacing = RangeFilter(use_message_range_limits=True, lower_replacement_value=-inf, upper_replacement_value=inf)
     assert applied(replacing, scan(0.05, 3.0, 11.0)) == ranges([-inf, 3.0, inf])
 
 
-def test_rays_that_shine_too_little_or_too_much():
+def test_intensity_filter_removes_ranges_outside_limits():
     given = scan(1.0, 2.0, 3.0, intensities=(5.0, 50.0, 500.0))
     assert applied(IntensityFilter(10.0, 100.0), given) == ranges([nan, 2.0, nan])
     given = scan(1.0, 2.0, 3.0, intensities=(5.0, 50.0, 500.0))
@@ -69,17 +69,17 @@ def test_rays_that_shine_too_little_or_too_much():
     assert applied(IntensityFilter(10.0, 100.0), scan(1.0, 2.0)) == ranges([1.0, 2.0])
 
 
-def test_gaps_have_the_mean_of_both_sides():
+def test_interpolation_filter_fills_gaps_with_mean():
     assert applied(InterpolationFilter(), scan(2.0, inf, nan, 4.0)) == ranges([2.0, 3.0, 3.0, 4.0])
     assert applied(InterpolationFilter(), scan(inf, 4.01, 0.0)) == ranges([7.0, 4.01, 7.0])
 
 
-def test_masked_rays_of_a_frame():
+def test_mask_filter_removes_rays_of_its_frame():
     each = MaskFilter({"laser": [0, 2, 99], "other": [1]})
     assert applied(each, scan(1.0, 2.0, 3.0)) == ranges([nan, 2.0, nan])
 
 
-def test_the_median_and_the_mean_of_the_last_scans():
+def test_array_filter_applies_median_and_mean_of_last_scans():
     median = {"filter1": {"type": "filters/MultiChannelMedianFilterFloat", "params": {"number_of_observations": 3}}}
     mean = {"filter1": {"type": "filters/MultiChannelMeanFilterFloat", "params": {"number_of_observations": 2}}}
     each = ArrayFilter(median, mean)
@@ -95,7 +95,7 @@ def test_the_median_and_the_mean_of_the_last_scans():
         ArrayFilter({"filter1": {"type": "Magic"}})
 
 
-def test_rays_between_two_angles_are_left():
+def test_angular_bounds_filter_crops_scan():
     given = scan(0.0, 1.0, 2.0, 3.0, 4.0, intensities=range(5), time_increment=0.5)
     made = AngularBoundsFilter(0.05, 0.35).apply(given, nowhere)
     assert list(made.ranges) == ranges([1.0, 2.0, 3.0])
@@ -104,14 +104,14 @@ def test_rays_between_two_angles_are_left():
     assert AngularBoundsFilter(2.0, 3.0).apply(scan(1.0), nowhere) is None
 
 
-def test_rays_between_two_angles_are_taken_away():
+def test_angular_bounds_in_place_filter_removes_rays():
     given = scan(1.0, 2.0, 3.0, intensities=(7.0, 8.0, 9.0))
     made = AngularBoundsInPlaceFilter(0.05, 0.15).apply(given, nowhere)
     assert list(made.ranges) == ranges([1.0, 11.0, 3.0])
     assert list(made.intensities) == ranges([7.0, 0.0, 9.0])
 
 
-def test_a_sector_may_go_over_the_back():
+def test_sector_filter_may_cross_pi():
     behind = SectorFilter(angle_min=2.5, angle_max=-2.5, range_min=0.2, range_max=2.0)
     given = scan(1.0, 1.0, 3.0, 1.0, angle_min=-3.0, increment=1.9)  # -3.0, -1.1, 0.8, 2.7
     assert applied(behind, given) == ranges([11.0, 1.0, 3.0, 11.0])
@@ -121,12 +121,12 @@ def test_a_sector_may_go_over_the_back():
 
 
 def turned(target, source, time_ns):
-    """The laser looks to the left of the body, half a metre ahead of its middle."""
+    """The laser looks to the left of the body, half a meter ahead of its middle."""
     assert (target, source, time_ns) == ("base_link", "laser", 5_000_000_000)
     return (0.5, 0.0, 0.3, *quaternion_from_rpy((0.0, 0.0, pi / 2)))
 
 
-def test_a_box_of_another_frame():
+def test_box_filter_transforms_points_to_its_frame():
     box = BoxFilter("base_link", min_x=0.0, max_x=1.0, min_y=0.0, max_y=2.0, min_z=0.0, max_z=1.0)
     assert applied(box, scan(1.0, 3.0, nan, increment=0.0), turned) == ranges([nan, 3.0, nan])
     box.invert = True
@@ -134,7 +134,7 @@ def test_a_box_of_another_frame():
     assert box.apply(scan(1.0), nowhere) is None
 
 
-def test_the_footprint_and_a_polygon():
+def test_footprint_and_polygon_filters_remove_inner_points():
     assert applied(FootprintFilter(0.6), scan(0.5, 0.7, increment=0.0), turned) == ranges([nan, 0.7])
     triangle = PolygonFilter("[[0.0, 0.0], [1.0, 0.0], [0.5, 1.0]]")
     assert applied(triangle, scan(0.5, 1.5, increment=0.0), turned) == ranges([nan, 1.5])
@@ -145,7 +145,7 @@ def test_the_footprint_and_a_polygon():
         PolygonFilter("[[0.0, 0.0]]")
 
 
-def test_a_point_between_an_edge_and_a_wall_is_a_shadow():
+def test_shadows_filter_removes_points_between_edge_and_wall():
     each = ScanShadowsFilter(min_angle=10.0, max_angle=170.0, window=1, neighbors=1)
     near, wall = [1.0] * 5, [3.0] * 5
     made = applied(each, scan(*near, 2.0, *wall, increment=0.01))
@@ -158,7 +158,7 @@ def test_a_point_between_an_edge_and_a_wall_is_a_shadow():
         ScanShadowsFilter(95.0, 170.0, 1)
 
 
-def test_speckles_are_points_without_others_beside_them():
+def test_speckle_filter_removes_points_without_near_ranges():
     given = scan(1.0, 1.02, 1.5, 1.9, 1.05, 1.06, 5.0, 1.0)
     assert applied(SpeckleFilter(), given) == ranges([1.0, 1.02, nan, nan, 1.05, 1.06, 5.0, nan])
     assert SpeckleFilter().apply(scan(1.0, 1.0, 1.0), nowhere) is None
@@ -166,7 +166,7 @@ def test_speckles_are_points_without_others_beside_them():
         SpeckleFilter(filter_type=3)
 
 
-def test_speckles_by_how_many_points_are_near():
+def test_speckle_filter_by_radius_counts_near_points():
     each = SpeckleFilter(filter_type=1, max_range_difference=0.2, filter_window=2)
     given = scan(1.0, 1.0, 1.0, 1.9, 1.0, nan, nan, 1.5, nan, nan, increment=0.05)
     made = applied(each, given)
@@ -176,7 +176,7 @@ def test_speckles_by_how_many_points_are_near():
 
 @settings(max_examples=60)
 @given(st.lists(st.sampled_from([0.5, 1.0, 1.05, 1.5, 3.0, inf, nan]), min_size=5, max_size=12), st.integers(1, 3))
-def test_speckles_as_a_loop_over_windows_finds_them(values, window):
+def test_speckle_filter_matches_reference_loop(values, window):
     made = applied(SpeckleFilter(filter_window=window), scan(*values))
     kept = [value > 2.0 for value in values]
     for start in range(len(values) - window + 1):

@@ -1,4 +1,4 @@
-"""Points of clouds, scans and depth images, and their colours."""
+"""Points of clouds, scans and depth images, and their colors."""
 
 from __future__ import annotations
 
@@ -74,7 +74,7 @@ def test_coordinates_and_channels_are_read():
     }
 
 
-def test_coordinates_may_stand_anywhere_in_a_point():
+def test_coordinate_fields_may_have_any_offset():
     array = np.zeros(2, np.dtype([("z", "f4"), ("pad", "u1"), ("x", "f4"), ("y", "f4")]))
     array["x"], array["y"], array["z"] = [1, 2], [3, 4], [5, 6]
     assert points_of_cloud(cloud(array)).positions.tolist() == [[1, 3, 5], [2, 4, 6]]
@@ -97,11 +97,11 @@ def test_points_without_finite_coordinates_are_left_out(bad):
     assert points.channels["intensity"].tolist() == [1, 3]
 
 
-def test_a_cloud_of_no_points_is_fine():
+def test_empty_cloud_is_accepted():
     assert len(points_of_cloud(cloud(xyz([])))) == 0
 
 
-def test_a_size_that_does_not_match_is_refused_in_rvizs_words():
+def test_size_mismatch_is_rejected_with_message_of_rviz():
     message = cloud(xyz([(1, 2, 3)]))
     message.width = 2
     with pytest.raises(BadCloudError) as refused:
@@ -111,7 +111,7 @@ def test_a_size_that_does_not_match_is_refused_in_rvizs_words():
     )
 
 
-def test_a_field_outside_of_the_point_is_refused():
+def test_field_outside_of_point_is_rejected():
     message = cloud(xyz([(1, 2, 3)]))
     message.fields[2].offset = 9
     with pytest.raises(BadCloudError, match="Field 'z' ends at byte 13, but a point has only 12 bytes"):
@@ -119,7 +119,7 @@ def test_a_field_outside_of_the_point_is_refused():
 
 
 @pytest.mark.parametrize("change", ["no z", "z is a double", "z has a type that is none"])
-def test_without_coordinates_in_float32_there_is_no_position_transformer(change):
+def test_position_transformer_requires_float32_coordinates(change):
     message = cloud(xyz([(1, 2, 3)], ("w", "f4")))
     if change == "no z":
         message.fields = message.fields[:2]
@@ -129,10 +129,10 @@ def test_without_coordinates_in_float32_there_is_no_position_transformer(change)
         points_of_cloud(message)
 
 
-# --- colours ---------------------------------------------------------------------------------------------------------
+# --- colors ---------------------------------------------------------------------------------------------------------
 
 
-def test_the_rainbow_goes_from_red_to_magenta():
+def test_rainbow_goes_from_red_to_magenta():
     array = xyz([(0, 0, 0)] * 6, ("intensity", "f4"))
     array["intensity"] = [0, 1, 2, 3, 4, 5]
     points = points_of_cloud(cloud(array))
@@ -141,7 +141,7 @@ def test_the_rainbow_goes_from_red_to_magenta():
     assert colors(points, inverted=True) == [MAGENTA, BLUE, cyan, GREEN, yellow, RED]
 
 
-def test_the_bounds_are_computed_or_given():
+def test_intensity_bounds_are_computed_or_given():
     points = Points(np.zeros((3, 3), np.float32), {"intensity": np.array([10.0, 20.0, 30.0])})
     _, bounds = colored(points, ColorSettings())
     assert bounds == (10.0, 30.0)
@@ -149,13 +149,13 @@ def test_the_bounds_are_computed_or_given():
     assert colored(points, ColorSettings(intensities=(0.0, 1.0)))[1] is None
 
 
-def test_two_colours_are_mixed():
+def test_intensity_interpolates_between_two_colors():
     points = Points(np.zeros((3, 3), np.float32), {"intensity": np.array([0.0, 1.0, 2.0])})
     mixed = colors(points, rainbow=False, darkest=(0, 0, 100), brightest=(200, 0, 100))
     assert mixed == [(0, 0, 100, 255), (100, 0, 100, 255), (200, 0, 100, 255)]
 
 
-def test_equal_and_missing_intensities_colour_evenly():
+def test_equal_and_missing_intensities_give_one_color():
     points = Points(np.zeros((2, 3), np.float32), {"intensity": np.array([5.0, 5.0])})
     assert colors(points) == [RED, RED]
     assert colors(points, channel="other") == [(255, 255, 255, 255)] * 2
@@ -163,7 +163,7 @@ def test_equal_and_missing_intensities_colour_evenly():
     assert colors(other) == [RED, MAGENTA]
 
 
-def test_intensities_that_are_no_numbers_do_not_count():
+def test_nonfinite_intensities_are_ignored():
     values = np.array([np.nan, 0.0, np.inf, 2.0])
     points = Points(np.zeros((4, 3), np.float32), {"intensity": values})
     found, bounds = colored(points, ColorSettings())
@@ -171,7 +171,7 @@ def test_intensities_that_are_no_numbers_do_not_count():
     assert [tuple(row) for row in found.tolist()] == [RED, RED, MAGENTA, MAGENTA]
 
 
-def test_axis_colour_looks_at_the_fixed_frame_or_at_the_clouds_own():
+def test_axis_color_uses_fixed_frame_or_cloud_frame():
     points = Points(np.array([[0, 0, 0], [1, 0, 0]], np.float32))
     upright = np.array([0, 0, 10, 0, -math.sqrt(0.5), 0, math.sqrt(0.5)])  # x points up
     found, bounds = colored(points, ColorSettings("AxisColor"), upright)
@@ -181,7 +181,7 @@ def test_axis_colour_looks_at_the_fixed_frame_or_at_the_clouds_own():
     assert colors(points, upright, transformer="AxisColor", in_fixed_frame=False, axis=0) == [RED, MAGENTA]
 
 
-def test_packed_colours_are_unpacked():
+def test_packed_rgb_is_unpacked():
     array = xyz([(0, 0, 0)], ("rgb", "f4"))
     array["rgb"] = np.array([0x40102030], "<u4").view("<f4")
     points = points_of_cloud(cloud(array))
@@ -192,7 +192,7 @@ def test_packed_colours_are_unpacked():
     assert colors(points_of_cloud(cloud(with_alpha)), transformer="RGB8") == [(0x10, 0x20, 0x30, 0x40)]
 
 
-def test_colours_of_floats_are_taken():
+def test_float_colors_are_converted():
     array = xyz([(0, 0, 0)], ("r", "f4"), ("g", "f4"), ("b", "f4"))
     array["r"], array["g"], array["b"] = 1.0, 0.5, 7.0
     points = points_of_cloud(cloud(array))
@@ -200,13 +200,13 @@ def test_colours_of_floats_are_taken():
     assert colors(points, transformer="RGBF32") == [(255, 127, 255, 255)]
 
 
-def test_what_a_cloud_does_not_have_is_not_offered():
+def test_transformers_without_fields_are_not_offered():
     points = points_of_cloud(cloud(xyz([(0, 0, 0)])))
     assert supported_transformers(points) == ("Intensity", "AxisColor", "FlatColor")
     assert colors(points, transformer="FlatColor") == []
 
 
-def test_a_large_cloud_is_left_to_numpy():
+def test_coloring_effort_is_independent_of_cloud_size():
     rng = np.random.default_rng(1)
 
     def work(count):
@@ -237,28 +237,28 @@ def scan(ranges, intensities=(), **fields):
     return message
 
 
-def test_rays_that_hit_become_points():
+def test_scan_ranges_become_points():
     points = ScanProjector().points(scan([1.0, 2.0, 3.0], [5.0, 6.0, 7.0]))
     np.testing.assert_allclose(points.positions, [[1, 0, 0], [0, 2, 0], [-3, 0, 0]], atol=1e-6)
     assert points.channels["intensity"].tolist() == [5, 6, 7]
     assert points.channels["index"].tolist() == [0, 1, 2]
 
 
-def test_rays_without_an_echo_are_left_out():
+def test_invalid_scan_ranges_are_omitted():
     points = ScanProjector().points(scan([1.0, math.inf, math.nan, 0.05, 10.0, 9.9], [1.0, 2.0, 3.0, 4.0, 5.0, 6.0]))
     assert points.channels["index"].tolist() == [0, 5]
     assert points.channels["intensity"].tolist() == [1, 6]
 
 
-def test_intensities_of_another_number_are_passed_over():
+def test_intensities_of_wrong_length_are_ignored():
     assert "intensity" not in ScanProjector().points(scan([1.0, 2.0], [1.0])).channels
 
 
-def test_angles_that_are_no_numbers_give_no_points():
+def test_nan_scan_angles_give_no_points():
     assert len(ScanProjector().points(scan([1.0, 2.0], angle_min=math.nan))) == 0
 
 
-def test_another_shape_of_scan_has_other_rays():
+def test_scan_projector_follows_changed_angles():
     projector = ScanProjector()
     projector.points(scan([1.0, 1.0]))
     points = projector.points(scan([1.0, 1.0], angle_min=math.pi))
@@ -282,26 +282,26 @@ def camera(width: int = 2, height: int = 1, focal: float = 2.0) -> DepthCamera:
     return DepthCamera.of(info, width, height)
 
 
-def test_depths_become_points_along_the_cameras_rays():
+def test_depths_become_points_along_camera_rays():
     points = DepthCloudBuilder().points(depth_image([[2.0, 4.0]]), camera(), None)
     assert points.positions.tolist() == [[0, 0, 2], [2, 0, 4]]
     assert points.channels["rgb"].tolist() == [0xFFFFFF, 0xFFFFFF]
     assert camera().pixel == 0.5
 
 
-def test_millimetres_become_metres_and_zero_is_no_depth():
+def test_millimeters_become_meters_and_zero_depth_is_omitted():
     points = DepthCloudBuilder().points(depth_image([[0, 1500]], "16UC1"), camera(), None)
     np.testing.assert_allclose(points.positions, [[0.75, 0, 1.5]])
     assert len(DepthCloudBuilder().points(depth_image([[math.nan, math.inf]]), camera(), None)) == 0
 
 
-def test_points_get_the_colours_of_the_image():
+def test_depth_points_have_colors_of_image():
     color = DecodedImage(np.array([[[1, 2, 3], [4, 5, 6]]], np.uint8))
     points = DepthCloudBuilder().points(depth_image([[math.nan, 1.0]]), camera(), color)
     assert points.channels["rgb"].tolist() == [0x040506]
 
 
-def test_images_that_do_not_fit_are_refused():
+def test_mismatched_images_are_rejected():
     builder = DepthCloudBuilder()
     with pytest.raises(BadCloudError, match=r"\(2x1\) does not match color image resolution \(1x1\)"):
         builder.points(depth_image([[1.0, 1.0]]), camera(), DecodedImage(np.zeros((1, 1), np.uint8)))
@@ -317,7 +317,7 @@ def test_images_that_do_not_fit_are_refused():
         DepthCamera.of(CameraInfo(width=2, height=1), 2, 1)
 
 
-def test_covered_points_stay_for_a_while_in_half_their_colour():
+def test_occluded_points_remain_for_a_while_at_half_color():
     builder = DepthCloudBuilder()
     color = DecodedImage(np.full((1, 1, 3), 200, np.uint8))
     view = camera(1)
@@ -334,15 +334,15 @@ def test_covered_points_stay_for_a_while_in_half_their_colour():
     assert depths(2.0, 20.0) == [2.0]
 
 
-def test_each_ray_is_placed_where_the_scanner_was_when_it_was_sent():
+def test_deskew_places_rays_at_their_emission_pose():
     points = Points(np.array([[1, 0, 0]] * 3, np.float32), {"index": np.arange(3)})
     first = np.array([0.0, 0, 0, 0, 0, 0, 1])
-    last = np.array([2.0, 0, 0, 0, 0, 1, 0])  # two metres on, and half a turn
+    last = np.array([2.0, 0, 0, 0, 0, 1, 0])  # two meters on, and half a turn
     moved = deskew(points, np.array([0.0, 0.5, 1.0]), first, last).positions
     np.testing.assert_allclose(moved, [[1, 0, 0], [1, 1, 0], [1, 0, 0]], atol=1e-6)
 
 
-def test_the_shorter_way_round_is_taken():
+def test_deskew_interpolates_along_shorter_rotation():
     points = Points(np.array([[1, 0, 0]], np.float32))
     same = np.array([0.0, 0, 0, 0, 0, 0, 1])
     moved = deskew(points, np.array([0.5]), same, -same).positions

@@ -22,7 +22,7 @@ from linkwright.rviz.config.schema import PropertySpec, topic_spec
         ("Group", "Group"),
     ],
 )
-def test_classes_have_the_names_of_today(written, modern):
+def test_rviz_1_classes_have_modern_names(written, modern):
     assert modern_class(written) == modern
 
 
@@ -31,7 +31,7 @@ def store(cls: str, text: str, *specs: PropertySpec) -> tuple[PropertyStore, yam
     return PropertyStore("d", section, lambda: specs, lambda _: None, former=former_keys(cls)), section
 
 
-def test_a_topic_of_rviz_1_has_its_quality_of_service_beside_it():
+def test_rviz_1_topic_reads_qos_from_sibling_keys():
     properties, section = store("rviz/LaserScan", "Queue Size: 7\nTopic: /scan\nUnreliable: true\n", topic_spec())
     assert properties.text("Topic") == "/scan"
     assert properties.number("Topic", "Depth") == 7
@@ -42,7 +42,7 @@ def test_a_topic_of_rviz_1_has_its_quality_of_service_beside_it():
     assert yaml.safe_load(yaml_tree.write(section)) == {"Queue Size": 9, "Topic": "/other", "Unreliable": False}
 
 
-def test_what_rviz_1_did_not_have_is_kept_as_today():
+def test_properties_unknown_to_rviz_1_are_written_in_modern_form():
     properties, section = store("rviz/LaserScan", "Topic: /scan\n", topic_spec())
     properties.set(("Topic", "Durability Policy"), "Transient Local")
     assert yaml.safe_load(yaml_tree.write(section)) == {
@@ -65,7 +65,7 @@ def test_what_rviz_1_did_not_have_is_kept_as_today():
         ),
     ],
 )
-def test_keys_of_rviz_1_are_read_and_written(cls, text, spec, value):
+def test_rviz_1_keys_are_read_and_written(cls, text, spec, value):
     properties, section = store(cls, text, spec)
     assert properties.text(spec.name) == value
     key = text.partition(":")[0]
@@ -76,12 +76,12 @@ def test_keys_of_rviz_1_are_read_and_written(cls, text, spec, value):
     assert section.scalar(key).text == before
 
 
-def test_keys_of_rviz_1_mean_nothing_in_a_file_of_today():
+def test_rviz_1_keys_are_ignored_in_modern_file():
     properties, _ = store("rviz_default_plugins/LaserScan", "Queue Size: 7\nTopic: /scan\n", topic_spec())
     assert properties.number("Topic", "Depth") == 5
 
 
-def test_standard_deviations_are_covariances():
+def test_standard_deviations_are_converted_to_covariances():
     spec = PropertySpec("Covariance x", "float", 0.25)
     properties, section = store("rviz/SetInitialPose", "X std deviation: 0.3\n", spec)
     assert properties.number("Covariance x") == pytest.approx(0.09)
@@ -89,7 +89,7 @@ def test_standard_deviations_are_covariances():
     assert float(section.scalar("X std deviation").text) == pytest.approx(0.4)
 
 
-def test_what_was_recalled_is_as_it_was():
+def test_undo_restores_rviz_1_keys():
     text = "Queue Size: 7\nTopic: /scan\n"
     properties, section = store("rviz/LaserScan", text, topic_spec())
     for path, value, keys in (

@@ -41,7 +41,7 @@ def store(section, reported):
     return PropertyStore("display-1", section, lambda: SCHEMA, reported.append, frames=lambda: ["map", "odom"])
 
 
-def test_values_come_from_the_file_then_from_the_defaults(store):
+def test_values_come_from_file_or_defaults(store):
     assert store.get("Alpha") == 0.25
     assert store.get("Line Style", "Line Width") == 0.2
     assert store.get("Links", "a/b%", "Alpha") == 1.0
@@ -49,7 +49,7 @@ def test_values_come_from_the_file_then_from_the_defaults(store):
         store.get("Beta")
 
 
-def test_ids_are_unique_whatever_the_names_hold(store):
+def test_property_ids_are_unique_for_any_name(store):
     identity = store.identity(("Links", "a/b%", "Alpha"))
     assert identity == "display-1/Links/a%2Fb%25/Alpha"
     assert store.find(identity) == ("Links", "a/b%", "Alpha")
@@ -57,11 +57,11 @@ def test_ids_are_unique_whatever_the_names_hold(store):
 
 
 @pytest.mark.parametrize("identity", ["display-1", "display-2/Alpha", "display-1/", "display-1/Alpha/x", "", "/"])
-def test_ids_of_nothing_are_not_found(store, identity):
+def test_unknown_ids_are_not_found(store, identity):
     assert store.find(identity) is None
 
 
-def test_what_is_set_is_in_the_file_and_nothing_else(store, section):
+def test_only_changed_values_are_written(store, section):
     assert store.set(("Alpha",), 2) == 1.0
     store.set(("Links", "a/b%"), False)
     store.set(("Reference Frame",), "map")  # as it is by default: not worth a line
@@ -73,7 +73,7 @@ def test_what_is_set_is_in_the_file_and_nothing_else(store, section):
     }
 
 
-def test_rows_that_do_not_apply_are_left_out(store):
+def test_conditional_rows_are_omitted(store):
     def widths():
         return [row.name for row in store.rows()[1].children]
 
@@ -84,20 +84,20 @@ def test_rows_that_do_not_apply_are_left_out(store):
     assert widths() == []
 
 
-def test_frames_are_offered(store):
+def test_frame_property_offers_frames(store):
     assert store.rows()[3].options == ["map", "odom"]
     (change,) = store.frame_changes()
     assert (change.id, change.value, change.options) == ("display-1/Reference Frame", "map", ["map", "odom"])
 
 
-def test_bad_values_are_reported_once(reported):
+def test_invalid_value_is_reported_once(reported):
     store = PropertyStore("x", yaml_tree.parse("Alpha: lots\n", "f.rviz"), lambda: SCHEMA, reported.append)
     assert store.get("Alpha") == store.get("Alpha") == 0.5
     (diagnostic,) = reported
     assert (diagnostic.code, str(diagnostic.span)) == ("RVIZ201", "f.rviz:1:8")
 
 
-def test_a_base_is_made_only_when_a_value_is_set():
+def test_base_section_is_created_on_first_value():
     document = yaml_tree.parse("a: 1\n", "x")
     store = PropertyStore("x", document, lambda: SCHEMA, print, base=("Manager", "Options"))
     assert store.get("Alpha") == 0.5
@@ -118,7 +118,7 @@ def test_a_base_is_made_only_when_a_value_is_set():
         "a: 1\nManager:\n  Options: {}\n",
     ],
 )
-def test_a_base_that_was_made_goes_with_the_value_that_is_taken_back(text):
+def test_created_base_section_is_removed_by_undo(text):
     document = yaml_tree.parse(text, "x")
     store = PropertyStore("x", document, lambda: SCHEMA, print, base=("Manager", "Options"))
     with store.recording() as before:
@@ -135,7 +135,7 @@ def test_a_base_that_was_made_goes_with_the_value_that_is_taken_back(text):
 @pytest.mark.parametrize(
     ("text", "value", "message"), [("off", True, 1), ("NO", True, 1), ("0", False, 0), ("yes", True, 0)]
 )
-def test_a_box_says_no_only_in_the_ways_that_rviz_knows(reported, text, value, message):
+def test_bool_property_parses_values_like_rviz(reported, text, value, message):
     spec = PropertySpec("Selectable", "bool", default=False)
     section = yaml_tree.parse(f"Selectable: {text}\n", "f.rviz")
     assert PropertyStore("x", section, lambda: (spec,), reported.append).get("Selectable") is value
@@ -144,7 +144,7 @@ def test_a_box_says_no_only_in_the_ways_that_rviz_knows(reported, text, value, m
         assert reported[0].message == f"'Selectable': true or false is expected, not '{text}'; True is used instead"
 
 
-def test_the_properties_of_many_links_are_read_in_time_that_grows_with_their_number():
+def test_reading_link_properties_is_linear_in_links():
     def work(count):
         links = tuple(PropertySpec(f"link_{number}", "bool", True) for number in range(count))
         schema = (PropertySpec("Links", "group", children=links),)

@@ -12,7 +12,7 @@ from tests.rviz.visualization.test_managers import own_page
 from tests.viewer.configured import edit, opened
 
 
-def kept() -> list[Path]:
+def recovery_files() -> list[Path]:
     folder = recovery_folder()
     return sorted(folder.iterdir()) if folder.exists() else []
 
@@ -22,14 +22,14 @@ async def change(client, alpha: float = 0.25) -> None:
     await client.until("configuration", unsaved=True)
 
 
-async def test_what_is_unsaved_is_kept_beside_the_file_and_told_of_next_time(tmp_path):
+async def test_unsaved_changes_are_recovered_on_next_start(tmp_path):
     path = tmp_path / "a.rviz"
     async with opened(path=path) as (made, client):
         text = path.read_text()
         await change(client)
         (notice,) = made.viewer.keep_unsaved()
         edited = made.viewer.config.text()
-    (recovered,) = kept()
+    (recovered,) = recovery_files()
     assert (notice.code, path.read_text(), recovered.read_text()) == ("RVIZ301", text, edited)
     assert f"'{path}'" in notice.message
     assert f"'{recovered}'" in notice.message
@@ -41,40 +41,40 @@ async def test_what_is_unsaved_is_kept_beside_the_file_and_told_of_next_time(tmp
     assert find_unsaved(RvizConfig.default()) == []
 
 
-async def test_saving_removes_it(tmp_path):
+async def test_saving_removes_recovery_file(tmp_path):
     path = tmp_path / "a.rviz"
     async with opened(path=path) as (made, client):
         await change(client)
         made.viewer.keep_unsaved()
-        assert len(kept()) == 1
+        assert len(recovery_files()) == 1
         await client.send("save_configuration", path=None, replace=False)
         await client.until("configuration_saved")
-        assert kept() == []
+        assert recovery_files() == []
         assert (await client.until("configuration", unsaved=False))["recent"] == [str(path)]
         assert made.viewer.keep_unsaved() == []
 
 
-async def test_what_was_recovered_goes_when_it_is_saved_elsewhere(tmp_path):
+async def test_saving_recovered_file_elsewhere_removes_recovery_file(tmp_path):
     path = tmp_path / "a.rviz"
     async with opened(path=path) as (made, client):
         await change(client)
         made.viewer.keep_unsaved()
-        (recovered,) = kept()
+        (recovered,) = recovery_files()
         await client.send("open_configuration", path=str(recovered), discard=True)
         await client.until("configuration", path=str(recovered))
         assert made.viewer.keep_unsaved() == []
         await client.send("add_display", cls="rviz_default_plugins/Axes", name="More", group=None, topic=None)
         await client.until("configuration", unsaved=True)
         made.viewer.keep_unsaved()
-        assert kept() == [recovered]
+        assert recovery_files() == [recovered]
         assert "Name: More" in recovered.read_text()
         await client.send("save_configuration", path=str(path), replace=True)
         await client.until("configuration_saved")
         assert "Name: More" in path.read_text()
-        assert kept() == []
+        assert recovery_files() == []
 
 
-async def test_without_edits_nothing_is_written(tmp_path):
+async def test_no_recovery_file_without_edits(tmp_path):
     path = tmp_path / "a.rviz"
     async with opened(path=path) as (made, client):
         assert made.viewer.keep_unsaved() == []
@@ -91,27 +91,31 @@ async def test_without_edits_nothing_is_written(tmp_path):
     assert not recovery_folder().exists()
 
 
-async def test_displays_of_no_file_are_kept_too(tmp_path):
+async def test_untitled_displays_are_kept_for_recovery(tmp_path):
     async with opened() as (made, client):
         await change(client)
         (notice,) = made.viewer.keep_unsaved()
-    assert [path.name for path in kept()] == ["untitled.rviz"]
+    assert [path.name for path in recovery_files()] == ["untitled.rviz"]
     assert notice.message.startswith("unsaved displays are stored in")
 
 
-async def test_those_of_a_single_page_are_kept_beside_the_shared_ones(tmp_path):
+async def test_displays_of_own_page_have_separate_recovery_file(tmp_path):
     async with opened(path=tmp_path / "a.rviz") as (made, client), own_page(made) as own:
         first = await own.opened()
         await change(client)
         await own.set(f"{first['tree']['displays'][0]['id']}/Alpha", 0.125)
         await own.until("configuration", unsaved=True)
         assert [each.code for each in made.viewer.keep_unsaved()] == ["RVIZ301", "RVIZ301"]
-    shared, single = kept() if len(kept()[0].stem) < len(kept()[1].stem) else reversed(kept())
+    shared, single = (
+        recovery_files()
+        if len(recovery_files()[0].stem) < len(recovery_files()[1].stem)
+        else reversed(recovery_files())
+    )
     assert "Alpha: 0.25" in shared.read_text()
     assert "Alpha: 0.125" in single.read_text()
 
 
-def test_each_file_has_one_of_its_own(tmp_path, monkeypatch):
+def test_configurations_have_separate_recovery_files(tmp_path, monkeypatch):
     text = RvizConfig.default().text()
     files = [tmp_path / "a" / "x.rviz", tmp_path / "b" / "x.rviz"]
     for file in files:
@@ -125,7 +129,7 @@ def test_each_file_has_one_of_its_own(tmp_path, monkeypatch):
     assert recovery_file(RvizConfig.parse(text, "from my computer.rviz")).name.startswith("from my computer-")
 
 
-async def test_a_folder_that_cannot_be_written_is_told_of(tmp_path, monkeypatch):
+async def test_unwritable_recovery_folder_is_reported(tmp_path, monkeypatch):
     blocked = tmp_path / "blocked"
     blocked.write_text("no folder")
     path = tmp_path / "a.rviz"
@@ -137,7 +141,7 @@ async def test_a_folder_that_cannot_be_written_is_told_of(tmp_path, monkeypatch)
 
 
 @pytest.mark.parametrize("name", ["ü x.rviz", "a.b.rviz"])
-def test_the_name_tells_what_it_is_of(tmp_path, name):
+def test_recovery_file_name_contains_configuration_name(tmp_path, name):
     file = tmp_path / name
     file.write_text(RvizConfig.default().text())
     found = recovery_file(RvizConfig.load(file))
@@ -146,10 +150,10 @@ def test_the_name_tells_what_it_is_of(tmp_path, name):
 
 
 @pytest.mark.parametrize("name", ["../../x", "/etc/x.rviz", "a\0b", "..", "", "x" * 5000, "C:\\x:y?.rviz", "\n"])
-def test_a_name_that_a_page_gave_leads_nowhere_else(name):
+def test_recovery_file_stays_in_its_folder_for_any_name(name):
     path = recovery_file(RvizConfig.parse(RvizConfig.default().text(), name))
     assert path.parent == recovery_folder()
     path.parent.mkdir(parents=True)
     path.write_text("")
-    assert kept() == [path]
+    assert recovery_files() == [path]
     assert not path.name.startswith(".")

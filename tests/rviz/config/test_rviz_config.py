@@ -42,7 +42,7 @@ Window Geometry:
 """
 
 
-def test_the_default_is_rviz_default():
+def test_default_configuration_matches_rviz():
     config = RvizConfig.default()
     assert [(display.cls, display.enabled) for display in config.displays] == [("rviz_default_plugins/Grid", True)]
     assert config.options.text("Fixed Frame") == "map"
@@ -51,7 +51,7 @@ def test_the_default_is_rviz_default():
     assert config.views.current.values["Distance"] == 10.0
 
 
-def test_a_model_gets_grid_robot_and_tf():
+def test_configuration_for_model_has_grid_robot_model_and_tf():
     config = RvizConfig.for_model("base_link")
     assert [display.name for display in config.displays] == ["Grid", "RobotModel", "TF"]
     assert all(display.enabled for display in config.displays)
@@ -69,7 +69,7 @@ def test_a_model_gets_grid_robot_and_tf():
         (ModelSize(20.0, 4.0), 10.0, 10.0, 40.0),
     ],
 )
-def test_grid_and_axes_are_as_large_as_the_model_asks_for(size, cell, marker_scale, distance):
+def test_grid_and_axes_scale_with_model_size(size, cell, marker_scale, distance):
     config = RvizConfig.for_model("base_link", size=size)
     again = RvizConfig.parse(config.text())
     grid, _, tf = again.displays
@@ -83,7 +83,7 @@ def sized(config, diagonal, ground=0.0):
     return {(display.name, *path): value for display, path, value in config.take_sizes(diagonal, ground)}
 
 
-def test_grid_and_axes_are_mended_once_the_meshes_are_known():
+def test_grid_and_axes_are_resized_for_mesh_size():
     size = ModelSize(0.5, 0.2)
     found = {("Grid", "Cell Size"): 100.0, ("TF", "Marker Scale"): 12.0}
     assert sized(RvizConfig.for_model("base_link", size=size), 100.0) == found
@@ -96,11 +96,11 @@ def test_grid_and_axes_are_mended_once_the_meshes_are_known():
 
 
 @pytest.mark.parametrize("diagonal", [0.0, -1.0, float("nan"), float("inf")])
-def test_a_model_without_a_size_mends_nothing(diagonal):
+def test_model_without_size_resizes_nothing(diagonal):
     assert sized(RvizConfig.for_model("base_link"), diagonal) == {}
 
 
-def test_the_grid_is_where_the_robot_stands():
+def test_grid_is_at_lowest_point_of_robot():
     found = sized(RvizConfig.for_model("base_link", size=ModelSize(0.5, 0.2)), 1.0, -0.12345)
     assert found == {("Grid", "Cell Size"): 1.0, ("TF", "Marker Scale"): 0.5, ("Grid", "Offset", "Z"): -0.1235}
     config = RvizConfig.for_model("base_link")
@@ -110,7 +110,7 @@ def test_the_grid_is_where_the_robot_stands():
     assert sized(RvizConfig.default(), 1.0, -0.5) == {}
 
 
-def test_what_somebody_has_changed_is_not_mended():
+def test_changed_values_are_not_resized():
     config = RvizConfig.for_model("base_link", size=ModelSize(0.5, 0.2))
     config.displays[0].section.put(("Cell Size",), "3")
     assert set(sized(config, 100.0)) == {("TF", "Marker Scale")}
@@ -118,19 +118,19 @@ def test_what_somebody_has_changed_is_not_mended():
     assert sized(RvizConfig.parse(RvizConfig.for_model("base_link").text()), 100.0) == {}
 
 
-def test_the_frames_of_a_model_are_off_where_they_would_cover_it():
+def test_tf_display_is_disabled_if_frames_would_hide_model():
     assert [display.checked for display in RvizConfig.for_model("base_link").displays] == [True, True, True]
     config = RvizConfig.for_model("base_link", frames=False)
     assert [display.checked for display in RvizConfig.parse(config.text()).displays] == [True, True, False]
 
 
-def test_a_model_is_lit_by_a_studio_and_a_file_by_the_camera_as_in_rviz():
+def test_model_has_automatic_light_and_file_has_camera_light():
     assert RvizConfig.parse(RvizConfig.for_model("base_link").text()).options.text("Light") == "Automatic"
     assert RvizConfig.default().options.text("Light") == "Camera"
     assert "Light" not in RvizConfig.default().text()
 
 
-def test_a_model_is_shown_whole_until_somebody_says_where_the_camera_is():
+def test_whole_robot_is_shown_until_camera_is_set():
     config = RvizConfig.for_model("base_link")
     assert config.shows_whole_robot
     assert config.copy().shows_whole_robot
@@ -146,7 +146,7 @@ def test_a_model_is_shown_whole_until_somebody_says_where_the_camera_is():
     assert config.views.current.values["Distance"] == 7.0
 
 
-def test_groups_hold_displays_and_old_classes_are_understood():
+def test_groups_and_rviz_1_classes_are_read():
     config = RvizConfig.parse(NESTED)
     assert [(display.cls, display.name, display.checked, display.enabled) for display in config.walk()] == [
         ("rviz_default_plugins/Grid", "Grid", True, True),
@@ -166,7 +166,7 @@ def test_options_are_clamped_as_rviz_does():
     assert config.options.text("Background Color") == "#0102ff"
 
 
-def test_changed_values_are_written_and_everything_else_is_kept():
+def test_changed_values_are_written_and_other_values_are_kept():
     config = RvizConfig.parse(NESTED)
     before = yaml.safe_load(NESTED)
     config.options.set(("Frame Rate",), 20)
@@ -179,7 +179,7 @@ def test_changed_values_are_written_and_everything_else_is_kept():
     assert "QMainWindow State: 000000ff00000000fd" in config.text()
 
 
-def test_a_value_that_cannot_be_used_is_reported_with_its_line():
+def test_invalid_value_is_reported_with_line():
     config = RvizConfig.parse("Visualization Manager:\n  Global Options:\n    Frame Rate: often\n")
     assert config.options.number("Frame Rate") == 30
     (warning,) = config.warnings
@@ -188,7 +188,7 @@ def test_a_value_that_cannot_be_used_is_reported_with_its_line():
 
 
 @pytest.mark.parametrize("path", FILES, ids=lambda path: path.name)
-def test_files_are_written_back_with_equal_data(path: Path, tmp_path):
+def test_saved_files_have_equal_data(path: Path, tmp_path):
     config = RvizConfig.load(path)
     assert config.displays
     config.views.current = config.views.current
@@ -208,7 +208,7 @@ COMMENTED = "# mine\nPanels: []\nVisualization Manager:\n  Global Options: &o {F
 
 
 @pytest.mark.parametrize("content", [COMMENTED, COMMENTED.replace("\n", "\r\n"), "\ufeff" + COMMENTED])
-def test_a_file_in_which_nothing_was_changed_is_written_back_to_the_letter(tmp_path, content):
+def test_unchanged_file_is_written_back_byte_for_byte(tmp_path, content):
     path = tmp_path / "a.rviz"
     path.write_bytes(content.encode())
     config = RvizConfig.load(path)
@@ -218,7 +218,7 @@ def test_a_file_in_which_nothing_was_changed_is_written_back_to_the_letter(tmp_p
     assert (tmp_path / "b.rviz").read_bytes() == content.encode()
 
 
-def test_line_ends_and_the_byte_order_mark_survive_an_edit(tmp_path):
+def test_line_endings_and_byte_order_mark_survive_edit(tmp_path):
     path = tmp_path / "a.rviz"
     path.write_bytes(b"\xef\xbb\xbf" + COMMENTED.replace("\n", "\r\n").encode())
     config = RvizConfig.load(path)
@@ -232,7 +232,7 @@ def test_line_ends_and_the_byte_order_mark_survive_an_edit(tmp_path):
     assert manager == {"Global Options": {"Fixed Frame": "odom"}, "Other": {"Fixed Frame": "map"}}
 
 
-def test_a_configuration_without_displays_is_one(tmp_path):
+def test_configuration_without_displays_is_valid(tmp_path):
     config = RvizConfig.parse("Panels: []\n")
     assert (config.displays, config.text()) == ([], "Panels: []\n")
     config.insert(config.new_display("rviz_default_plugins/Grid", "Grid"))
@@ -244,7 +244,7 @@ def test_a_configuration_without_displays_is_one(tmp_path):
     }
 
 
-def test_displays_come_go_and_move():
+def test_displays_are_added_removed_and_moved():
     config = RvizConfig.parse(NESTED)
     before, text = config.arrangement(), config.text()
     grid, sensors = config.displays
@@ -280,7 +280,7 @@ def test_displays_come_go_and_move():
         "Visualization Manager:\n  Displays:\n    - Class: rviz_common/Group\n      Displays: ~\n",
     ],
 )
-def test_a_first_display_that_is_taken_back_leaves_the_file_as_it_was(text):
+def test_undo_of_first_display_restores_file(text):
     config = RvizConfig.parse(text)
     before, count = config.arrangement(), len(list(config.walk()))
     config.insert(config.new_display("rviz_default_plugins/Axes", "Axes"), config.displays[0] if count else None)
@@ -311,19 +311,19 @@ def test_a_first_display_that_is_taken_back_leaves_the_file_as_it_was(text):
         ("Name: x", False),
     ],
 )
-def test_boxes_are_read_as_rviz_reads_them(lines, on):
+def test_enabled_values_are_parsed_like_rviz(lines, on):
     config = RvizConfig.parse(f"Visualization Manager:\n  Displays:\n    - {{Class: rviz/Grid, {lines}}}\n")
     assert config.displays[0].checked is on
 
 
-def test_what_is_no_display_keeps_its_place():
+def test_entry_that_is_not_a_display_keeps_its_position():
     config = RvizConfig.parse(NESTED)
     config.remove(config.displays[0])
     items = yaml.safe_load(config.text())["Visualization Manager"]["Displays"]
     assert [item["Name"] for item in items] == ["Sensors", "broken"]
 
 
-def test_saving_replaces_the_file_whole_and_keeps_what_it_is(tmp_path):
+def test_saving_is_atomic_and_keeps_symlink_and_permissions(tmp_path):
     real, link = tmp_path / "real.rviz", tmp_path / "link.rviz"
     real.write_text(NESTED, encoding="utf-8")
     real.chmod(0o640)
@@ -341,7 +341,7 @@ def test_saving_replaces_the_file_whole_and_keeps_what_it_is(tmp_path):
     assert sorted(path.name for path in tmp_path.iterdir()) == ["link.rviz", "real.rviz"]
 
 
-def test_save_writes_to_where_it_came_from(tmp_path):
+def test_save_writes_to_loaded_path(tmp_path):
     path = tmp_path / "a.rviz"
     path.write_text(NESTED, encoding="utf-8")
     config = RvizConfig.load(path)
@@ -364,7 +364,7 @@ def test_save_writes_to_where_it_came_from(tmp_path):
         (b"robot_state_publisher:\n  ros__parameters: {}\n", "RVIZ103"),
     ],
 )
-def test_files_that_cannot_be_read_are_named(tmp_path, content, code):
+def test_unreadable_files_are_reported(tmp_path, content, code):
     path = tmp_path / "x.rviz"
     if content is not None:
         path.write_bytes(content)
@@ -375,7 +375,7 @@ def test_files_that_cannot_be_read_are_named(tmp_path, content, code):
     assert str(path) in diagnostic.message or diagnostic.span.file == str(path)
 
 
-def test_the_first_byte_may_be_a_byte_order_mark(tmp_path):
+def test_file_may_begin_with_byte_order_mark(tmp_path):
     path = tmp_path / "x.rviz"
     path.write_bytes(b"\xef\xbb\xbf" + NESTED.encode())
     assert RvizConfig.load(path).displays

@@ -12,7 +12,7 @@ ALPHA = PropertySpec("Alpha", "float", 1.0, minimum=0.0, maximum=1.0)
 LENGTH = PropertySpec("Length", "float", 0.0)
 COUNT = PropertySpec("Count", "int", 10, minimum=1)
 STYLE = PropertySpec("Style", "enum", "Lines", options=("Lines", "Billboards"))
-COLOUR = PropertySpec("Color", "color", "#a0a0a4")
+COLOR = PropertySpec("Color", "color", "#a0a0a4")
 FRAME = PropertySpec("Frame", "frame", "map")
 BOX = PropertySpec("Box", "bool", True)
 TEXT = PropertySpec("Text", "string", "")
@@ -29,14 +29,14 @@ TEXT = PropertySpec("Text", "string", "")
         (COUNT, 3.0, 3),
         (COUNT, 0, 1),
         (STYLE, "Billboards", "Billboards"),
-        (COLOUR, "#A0b1C2", "#a0b1c2"),
+        (COLOR, "#A0b1C2", "#a0b1c2"),
         (FRAME, " /odom ", "odom"),
         (FRAME, "<Fixed Frame>", "<Fixed Frame>"),
         (BOX, False, False),
         (TEXT, "", ""),
     ],
 )
-def test_values_of_the_kind_are_taken_and_clamped(spec, value, taken):
+def test_valid_values_are_accepted_and_clamped(spec, value, taken):
     got = accept(spec, value)
     assert got == taken
     assert type(got) is type(taken)
@@ -56,8 +56,8 @@ def test_values_of_the_kind_are_taken_and_clamped(spec, value, taken):
         (COUNT, 1e300),
         (STYLE, "lines"),
         (STYLE, 0),
-        (COLOUR, "red"),
-        (COLOUR, "#12345"),
+        (COLOR, "red"),
+        (COLOR, "#12345"),
         (FRAME, " "),
         (FRAME, "/"),
         (BOX, 1),
@@ -67,7 +67,7 @@ def test_values_of_the_kind_are_taken_and_clamped(spec, value, taken):
         (PropertySpec("Group", "group"), "x"),
     ],
 )
-def test_other_values_are_refused(spec, value):
+def test_invalid_values_are_rejected(spec, value):
     with pytest.raises(ValueError, match="expected"):
         accept(spec, value)
 
@@ -78,12 +78,12 @@ def test_other_values_are_refused(spec, value):
         (ALPHA, "0.029999999329447746", 0.029999999329447746),
         (ALPHA, "1e-3", 0.001),
         (COUNT, "12", 12),
-        (COLOUR, "160; 160; 164", "#a0a0a4"),
-        (COLOUR, "0;0;999", "#0000ff"),
-        (COLOUR, "-1; 2 ;3; 128", "#000203"),
-        (COLOUR, "#ff0000", "#ff0000"),
-        (COLOUR, "#F0a", "#ff00aa"),
-        (COLOUR, "SkyBlue", "#87ceeb"),
+        (COLOR, "160; 160; 164", "#a0a0a4"),
+        (COLOR, "0;0;999", "#0000ff"),
+        (COLOR, "-1; 2 ;3; 128", "#000203"),
+        (COLOR, "#ff0000", "#ff0000"),
+        (COLOR, "#F0a", "#ff00aa"),
+        (COLOR, "SkyBlue", "#87ceeb"),
         (BOX, "True", True),
         (BOX, "0", False),
         (BOX, "", False),
@@ -97,7 +97,7 @@ def test_other_values_are_refused(spec, value):
         (FRAME, "/base_footprint", "base_footprint"),
     ],
 )
-def test_spellings_of_files_are_read(spec, text, value):
+def test_spellings_in_files_are_parsed(spec, text, value):
     assert from_text(spec, text) == value
 
 
@@ -110,24 +110,24 @@ SPELLINGS_OF_NOTHING = [
     (COUNT, "inf"),
     (BOX, "maybe"),
     (BOX, "off"),
-    (COLOUR, "1; 2"),
-    (COLOUR, "255, 0, 0"),
-    (COLOUR, "reddish"),
+    (COLOR, "1; 2"),
+    (COLOR, "255, 0, 0"),
+    (COLOR, "reddish"),
 ]
 
 
 @pytest.mark.parametrize(("spec", "text"), SPELLINGS_OF_NOTHING)
-def test_spellings_that_mean_nothing_are_named(spec, text):
+def test_invalid_spellings_are_rejected(spec, text):
     with pytest.raises(ValueError, match="expected"):
         from_text(spec, text)
 
 
 @given(st.floats(allow_nan=False, allow_infinity=False))
-def test_floats_survive_the_file(value):
+def test_floats_survive_round_trip(value):
     spec = PropertySpec("x", "float", 0.0)
     assert from_text(spec, to_text(spec, value)) == value
 
 
 @given(st.from_regex(r"#[0-9a-f]{6}", fullmatch=True))
-def test_colours_survive_the_file(color):
-    assert from_text(COLOUR, to_text(COLOUR, color)) == color
+def test_colors_survive_round_trip(color):
+    assert from_text(COLOR, to_text(COLOR, color)) == color

@@ -36,15 +36,15 @@ def test_spelling_and_order_survive():
         "a: {b: 1, c: [2, 3]}\n",
     ],
 )
-def test_the_layout_is_that_of_the_source(text):
+def test_layout_of_source_is_kept(text):
     assert yaml_tree.write(yaml_tree.parse(text, "x")) == text
 
 
-def test_of_two_documents_the_first_counts():
+def test_only_first_document_is_read():
     assert yaml_tree.parse("a: 1\n---\nb: 2\n", "x").keys() == ["a"]
 
 
-def test_an_alias_is_a_copy_of_what_it_stands_for():
+def test_alias_is_a_copy_of_its_anchor():
     section = yaml_tree.parse("a: &x {b: 1}\nc: *x\nd: *x\n", "x")
     section.put(("c", "b"), "2")
     assert yaml.safe_load(yaml_tree.write(section)) == {"a": {"b": 1}, "c": {"b": 2}, "d": {"b": 1}}
@@ -63,14 +63,14 @@ def test_an_alias_is_a_copy_of_what_it_stands_for():
         ),
     ],
 )
-def test_aliases_without_end_are_refused(text, word, monkeypatch):
+def test_alias_bombs_and_loops_are_rejected(text, word, monkeypatch):
     monkeypatch.setattr(yaml_tree, "MAXIMUM_NODES", 50_000)  # a twentieth: so many are made before it is refused
     with pytest.raises(LinkwrightError) as caught:
         yaml_tree.parse(text, "x")
     assert (caught.value.diagnostics[0].code, word in caught.value.diagnostics[0].message) == ("RVIZ102", True)
 
 
-def test_a_new_key_goes_where_the_alphabet_says_if_the_others_do():
+def test_new_key_is_inserted_alphabetically_if_others_are_sorted():
     ordered = yaml_tree.parse("Alpha: 1\nName: x\n", "x")
     ordered.put(("Class",), "y", string=True)
     assert ordered.keys() == ["Alpha", "Class", "Name"]
@@ -79,24 +79,24 @@ def test_a_new_key_goes_where_the_alphabet_says_if_the_others_do():
     assert mixed.keys() == ["Name", "Alpha", "Class"]
 
 
-def test_a_path_that_ends_at_a_mapping_means_its_value():
+def test_path_to_mapping_means_its_value_key():
     section = yaml_tree.parse("Line Style:\n  Line Width: 0.5\n  Value: Lines\n", "x")
     assert section.scalar("Line Style").text == "Lines"
     assert section.scalar("Line Style", "Line Width").text == "0.5"
     assert section.scalar("Line Style", "Value", "deeper") is None
 
 
-def test_null_and_missing_are_nothing():
+def test_null_and_missing_scalars_are_none():
     section = yaml_tree.parse("a: ~\nb:\nc: {d: 1}\n", "x")
     assert section.scalar("a") is section.scalar("b") is section.scalar("c") is section.scalar("z") is None
 
 
-def test_scalars_know_their_place():
+def test_scalars_have_source_spans():
     scalar = yaml_tree.parse("a:\n  b: word\n", "f.rviz").scalar("a", "b")
     assert (str(scalar.span), scalar.span.end_column) == ("f.rviz:2:6", 10)
 
 
-def test_put_replaces_and_makes_what_is_missing():
+def test_put_replaces_values_and_creates_missing_keys():
     section = yaml_tree.parse("Topic: /old\nLinks:\n  {}\nname: x\n", "x")
     section.put(("name",), "12", string=True)
     section.put(("Topic", "Depth"), "5")
@@ -120,7 +120,7 @@ def test_put_replaces_and_makes_what_is_missing():
         ("", "RVIZ103", 1, "is empty"),
     ],
 )
-def test_what_is_no_mapping_is_refused_with_its_place(text, code, line, word):
+def test_document_that_is_not_a_mapping_is_rejected_with_line(text, code, line, word):
     with pytest.raises(LinkwrightError) as caught:
         yaml_tree.parse(text, "x.rviz")
     (diagnostic,) = caught.value.diagnostics
@@ -129,7 +129,7 @@ def test_what_is_no_mapping_is_refused_with_its_place(text, code, line, word):
     assert word in diagnostic.message
 
 
-def test_tabs_get_a_hint():
+def test_tab_indentation_error_has_hint():
     with pytest.raises(LinkwrightError) as caught:
         yaml_tree.parse("a:\n\tb: 1\n", "x")
     assert "tabs" in caught.value.diagnostics[0].hint
@@ -138,12 +138,12 @@ def test_tabs_get_a_hint():
 @pytest.mark.parametrize(
     "text", ["[" * 100_000, "{a: " * 5000, "- " * 3000, "\n".join(" " * n + "a:" for n in range(400))]
 )
-def test_deep_nesting_is_refused_and_does_no_harm(text):
+def test_deep_nesting_is_rejected(text):
     with pytest.raises(LinkwrightError) as caught:
         yaml_tree.parse(text, "x")
     assert caught.value.diagnostics[0].code == "RVIZ102"
 
 
-def test_objects_of_python_are_kept_as_text_and_never_made():
+def test_python_object_tags_are_kept_as_text():
     text = "a: !!python/object/apply:os.system [exit 1]\n"
     assert "python/object/apply:os.system" in yaml_tree.write(yaml_tree.parse(text, "x"))

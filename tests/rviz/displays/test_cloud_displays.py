@@ -40,7 +40,7 @@ def config(cls: str = "PointCloud2", **properties: str) -> RvizConfig:
     return RvizConfig.parse(FILE.format(cls=cls, extra=extra))
 
 
-def coloured_cloud(count: int = 2):
+def colored_cloud(count: int = 2):
     array = xyz([(i, 0, 0) for i in range(count)], ("intensity", "f4"), ("rgb", "u4"))
     array["intensity"], array["rgb"] = np.arange(count), 0x102030
     return cloud(array)
@@ -52,14 +52,14 @@ def shown(display) -> list[list[float]]:
 
 def colors(display) -> list[list[int]]:
     (content,) = contents(display)
-    return content.fields["colours"].reshape(-1, 4).tolist()
+    return content.fields["colors"].reshape(-1, 4).tolist()
 
 
 def store_rows(display) -> dict[str, dict]:
     return {row.name: row for row in display.properties.rows()}
 
 
-async def test_a_cloud_is_sent_with_the_pose_of_its_frame():
+async def test_cloud_is_sent_with_pose_of_its_frame():
     async with world(config()) as w:
         publisher = w.graph.create_node("lidar").create_publisher(PointCloud2, "/points", 5)
         w.move({("base", "lidar"): (1, 2, 3, 0, 0, 0, 1)}, static=True)
@@ -76,10 +76,10 @@ async def test_a_cloud_is_sent_with_the_pose_of_its_frame():
         }
 
 
-async def test_a_cloud_with_colours_is_shown_with_them():
+async def test_cloud_with_rgb_field_is_shown_in_color():
     async with world(config()) as w:
         publisher = w.graph.create_node("lidar").create_publisher(PointCloud2, "/points", 5)
-        publisher.publish(coloured_cloud())
+        publisher.publish(colored_cloud())
         await w.settle()
         display = w.display("PointCloud2")
         assert display.properties.text("Color Transformer") == "RGB8"
@@ -87,7 +87,7 @@ async def test_a_cloud_with_colours_is_shown_with_them():
         assert w.viewer.config.text() == config().text()  # nobody asked for that: the file is as it was
 
 
-async def test_only_what_the_cloud_offers_can_be_chosen():
+async def test_color_transformers_are_limited_to_fields_of_cloud():
     async with world(config()) as w, page(w.viewer) as client:
         publisher = w.graph.create_node("lidar").create_publisher(PointCloud2, "/points", 5)
         publisher.publish(cloud(xyz([(0, 0, 0)], ("intensity", "f4"))))
@@ -98,7 +98,7 @@ async def test_only_what_the_cloud_offers_can_be_chosen():
         assert rows["Channel Name"]["options"] == ["x", "y", "z", "intensity"]
 
 
-async def test_rows_come_and_go_with_the_transformer():
+async def test_property_rows_follow_color_transformer():
     async with world(config(Color_Transformer="Intensity")) as w:
         display = w.display("PointCloud2")
         names = set(store_rows(display))
@@ -115,10 +115,10 @@ async def test_rows_come_and_go_with_the_transformer():
         assert names.isdisjoint({"Channel Name", "Min Color", "Min Intensity"})
 
 
-async def test_another_colour_is_seen_without_another_message():
+async def test_color_change_redraws_last_message():
     async with world(config(Color_Transformer="Intensity")) as w:
         publisher = w.graph.create_node("lidar").create_publisher(PointCloud2, "/points", 5)
-        publisher.publish(coloured_cloud())
+        publisher.publish(colored_cloud())
         await w.settle()
         display = w.display("PointCloud2")
         assert colors(display) == [[255, 0, 0, 255], [255, 0, 255, 255]]
@@ -128,38 +128,38 @@ async def test_another_colour_is_seen_without_another_message():
         assert colors(display) == []
 
 
-async def test_bounds_that_were_computed_are_where_the_users_begin():
+async def test_computed_bounds_initialize_manual_bounds():
     async with world(config(Color_Transformer="Intensity")) as w:
         publisher = w.graph.create_node("lidar").create_publisher(PointCloud2, "/points", 5)
-        publisher.publish(coloured_cloud(6))
+        publisher.publish(colored_cloud(6))
         await w.settle()
         display = w.display("PointCloud2")
         display.set_property(("Autocompute Intensity Bounds",), False)
         assert (display.properties.number("Min Intensity"), display.properties.number("Max Intensity")) == (0.0, 5.0)
 
 
-async def test_malformed_messages_are_said_and_what_was_shown_stays():
+async def test_malformed_message_is_reported_and_last_cloud_remains():
     async with world(config()) as w:
         publisher = w.graph.create_node("lidar").create_publisher(PointCloud2, "/points", 5)
-        publisher.publish(coloured_cloud())
-        broken = coloured_cloud()
+        publisher.publish(colored_cloud())
+        broken = colored_cloud()
         broken.width = 7
         publisher.publish(broken)
         await w.settle()
         level, text = w.status("PointCloud2")["Message"]
         assert (level, text[:20]) == ("error", "Data size (40 bytes)")
         assert len(shown(w.display("PointCloud2"))[0]) == 2
-        publisher.publish(coloured_cloud(3))
+        publisher.publish(colored_cloud(3))
         await w.settle()
         assert "Message" not in w.status("PointCloud2")
 
 
-async def test_points_stay_for_the_decay_time():
+async def test_points_remain_for_decay_time():
     async with world(config(Decay_Time="0.3")) as w:
         publisher = w.graph.create_node("lidar").create_publisher(PointCloud2, "/points", 5)
         display = w.display("PointCloud2")
-        publisher.publish(coloured_cloud(1))
-        publisher.publish(coloured_cloud(2))
+        publisher.publish(colored_cloud(1))
+        publisher.publish(colored_cloud(2))
         await w.settle()
         assert [len(each) for each in shown(display)] == [1, 2]
         assert w.status("PointCloud2")["Points"][1].startswith("Showing [")
@@ -168,26 +168,26 @@ async def test_points_stay_for_the_decay_time():
         await eventually(lambda: w.status("PointCloud2")["Points"] == none)
 
 
-async def test_without_a_decay_time_the_newest_message_stays():
+async def test_zero_decay_time_keeps_only_newest_message():
     async with world(config(Decay_Time="60")) as w, page(w.viewer) as client:
         await client.opened()
         publisher = w.graph.create_node("lidar").create_publisher(PointCloud2, "/points", 5)
         display = w.display("PointCloud2")
         for count in (1, 2, 3):
-            publisher.publish(coloured_cloud(count))
+            publisher.publish(colored_cloud(count))
         await w.settle()
         display.set_property(("Decay Time",), 0)
         assert [len(each) for each in shown(display)] == [3]
-        publisher.publish(coloured_cloud(4))
+        publisher.publish(colored_cloud(4))
         await w.settle()
         assert [len(each) for each in shown(display)] == [4]
 
 
-async def test_a_page_learns_the_fields_of_a_point():
+async def test_page_receives_fields_of_selected_point():
     async with world(config()) as w, page(w.viewer) as client:
         await client.opened()
         publisher = w.graph.create_node("lidar").create_publisher(PointCloud2, "/points", 5)
-        publisher.publish(coloured_cloud())
+        publisher.publish(colored_cloud())
         await w.settle()
         identity = w.display("PointCloud2").id
         await client.send("ask_point", display=identity, key="", index=7)
@@ -196,7 +196,7 @@ async def test_a_page_learns_the_fields_of_a_point():
         assert (answer["index"], answer["fields"]) == (1, {"intensity": 1.0, "rgb": "#10203000"})
 
 
-async def test_a_scan_is_shown():
+async def test_laser_scan_is_shown():
     async with world(config("LaserScan")) as w:
         publisher = w.graph.create_node("laser").create_publisher(LaserScan, "/points", 5)
         message = scan([1.0, 2.0], [1.0, 2.0])
@@ -221,7 +221,7 @@ async def test_a_scan_is_shown():
         ([math.nan, 2.0], None),
     ],
 )
-async def test_a_scan_of_which_no_ray_counts_says_why_but_for_a_wide_open_space(ranges, expected):
+async def test_scan_without_valid_rays_is_reported_unless_all_out_of_range(ranges, expected):
     async with world(config("LaserScan")) as w:
         publisher = w.graph.create_node("laser").create_publisher(LaserScan, "/points", 5)
         message = scan(ranges)
@@ -236,17 +236,17 @@ async def test_a_scan_of_which_no_ray_counts_says_why_but_for_a_wide_open_space(
         assert "Values" not in w.status("LaserScan")
 
 
-async def test_a_cloud_of_nothing_but_nan_says_so():
+async def test_cloud_of_nan_points_is_reported():
     async with world(config()) as w:
         publisher = w.graph.create_node("lidar").create_publisher(PointCloud2, "/points", 5)
-        message = coloured_cloud()
+        message = colored_cloud()
         message.data = b"\xff" * len(message.data)
         publisher.publish(message)
         await w.settle()
         assert w.status("PointCloud2")["Values"] == ("warn", "All 2 points are NaN or infinite")
 
 
-async def test_a_scanner_that_moves_draws_no_skewed_image():
+async def test_scan_of_moving_scanner_is_deskewed():
     async with world(config("LaserScan")) as w:
         node = w.graph.create_node("laser")
         publisher = node.create_publisher(LaserScan, "/points", 5)
@@ -276,7 +276,7 @@ async def test_a_scanner_that_moves_draws_no_skewed_image():
         ("Temperature", "temperature", 100.0, [255, 0, 0, 255]),
     ],
 )
-async def test_a_number_is_a_coloured_point(cls, field, value, color):
+async def test_scalar_message_is_a_colored_point(cls, field, value, color):
     async with world(config(cls)) as w:
         message_type = get_message(f"sensor_msgs/msg/{cls}")
         publisher = w.graph.create_node("sensor").create_publisher(message_type, "/points", 5)
@@ -292,7 +292,7 @@ async def test_a_number_is_a_coloured_point(cls, field, value, color):
         assert names.isdisjoint({"Color Transformer", "Channel Name", "Autocompute Intensity Bounds"})
 
 
-async def test_hidden_properties_of_a_file_count():
+async def test_hidden_properties_of_file_are_applied():
     async with world(config("Temperature", Color_Transformer="FlatColor")) as w:
         display = w.display("Temperature")
         assert display.properties.text("Color Transformer") == "FlatColor"
@@ -311,7 +311,7 @@ def placed(message, frame: str = "base"):
     return message
 
 
-async def test_a_depth_image_is_a_cloud_once_its_camera_is_known():
+async def test_depth_image_is_shown_once_camera_info_arrives():
     topics = {"Depth_Map_Topic": "/depth/image", "Size_(m)": "0.5"}
     async with world(config("DepthCloud", **topics)) as w:
         node = w.graph.create_node("camera")
@@ -334,7 +334,7 @@ async def test_a_depth_image_is_a_cloud_once_its_camera_is_known():
         assert contents(display)[0].fields["pixel"] == 0.0
 
 
-async def test_a_depth_image_waits_for_its_colours():
+async def test_depth_image_waits_for_color_image():
     topics = {"Depth_Map_Topic": "/depth/image", "Color_Image_Topic": "/color/image"}
     async with world(config("DepthCloud", **topics)) as w:
         node = w.graph.create_node("camera")
@@ -353,7 +353,7 @@ async def test_a_depth_image_waits_for_its_colours():
         assert w.status("DepthCloud")["Message"] == ("warn", text)
 
 
-async def test_a_depth_image_of_another_size_than_its_camera_is_said():
+async def test_depth_image_and_camera_info_size_mismatch_is_reported():
     async with world(config("DepthCloud", Depth_Map_Topic="/depth/image")) as w:
         node = w.graph.create_node("camera")
         node.create_publisher(CameraInfo, "/depth/camera_info", 5).publish(camera_info(5, 5))
@@ -370,7 +370,7 @@ def legacy_cloud(*points: tuple[float, float, float], intensity: list[float]) ->
     return message
 
 
-async def test_a_cloud_of_the_old_message_is_shown_as_the_new_one():
+async def test_legacy_point_cloud_is_shown():
     async with world(config("PointCloud", Color_Transformer="Intensity", Channel_Name="intensity")) as w:
         publisher = w.graph.create_node("lidar").create_publisher(PointCloud, "/points", 5)
         publisher.publish(
@@ -383,7 +383,7 @@ async def test_a_cloud_of_the_old_message_is_shown_as_the_new_one():
         assert first != second
 
 
-async def test_a_channel_of_another_length_is_told():
+async def test_channel_of_wrong_length_is_reported():
     async with world(config("PointCloud")) as w:
         publisher = w.graph.create_node("lidar").create_publisher(PointCloud, "/points", 5)
         publisher.publish(legacy_cloud((1.0, 0.0, 0.0), intensity=[1.0, 2.0]))
@@ -394,7 +394,7 @@ async def test_a_channel_of_another_length_is_told():
         )
 
 
-async def test_depth_topics_are_offered_by_their_names_unless_that_is_switched_off():
+async def test_depth_topics_are_filtered_by_name_unless_disabled():
     async with world(config("DepthCloud")) as w:
         display = w.display("DepthCloud")
         rows = store_rows(display)

@@ -66,7 +66,7 @@ async def shown(cls: str, message, extra: str = "") -> dict:
 
 
 @pytest.mark.parametrize(("cls", "wrap"), [("Detection3DArray", array), ("Detection3D", lambda each: each)])
-async def test_detections_are_boxes_with_the_class_and_score_of_the_likeliest(cls, wrap):
+async def test_detections_are_boxes_with_likeliest_class_and_score(cls, wrap):
     fields = await shown(cls, wrap(detection(result("ball", 0.25), result("person", 0.75))))
     assert fields["poses"].tolist() == [1, 0, 0, 0, 0, 0, 1]
     assert fields["sizes"].tolist() == [0.5, 1, 2]
@@ -74,24 +74,24 @@ async def test_detections_are_boxes_with_the_class_and_score_of_the_likeliest(cl
     assert (fields["names"], fields["scores"].tolist(), fields["frame"]) == (["person"], [0.75], "tip")
 
 
-async def test_a_detection_without_results_is_a_box_without_class():
+async def test_detection_without_results_is_box_without_class():
     fields = await shown("Detection3DArray", array(detection()))
     assert (fields["names"], fields["scores"].tolist(), fields["colors"].tolist()) == ([""], [-1], [255, 22, 80])
 
 
-async def test_boxes_without_header_are_in_the_fixed_frame():
+async def test_boxes_without_header_are_in_fixed_frame():
     fields = await shown("BoundingBox3D", box(3.0))
     assert (fields["frame"], fields["poses"].tolist()) == ("base", [3, 0, 0, 0, 0, 0, 1])
 
 
-async def test_an_array_of_boxes_has_no_classes():
+async def test_bounding_box_array_has_no_classes():
     message = get_message("vision_msgs/msg/BoundingBox3DArray")(boxes=[box(1.0), box(2.0)])
     message.header.frame_id = "tip"
     fields = await shown("BoundingBox3DArray", message)
     assert (fields["sizes"].shape, fields["names"]) == ((6,), ["", ""])
 
 
-async def test_boxes_that_are_no_numbers_are_refused():
+async def test_nonfinite_boxes_are_rejected():
     async with world(config(f"{PLUGINS}/BoundingBox3D")) as w:
         publish(w, "/topic", box(float("nan")))
         await w.settle()
@@ -99,16 +99,16 @@ async def test_boxes_that_are_no_numbers_are_refused():
         assert "invalid floating point" in " ".join(text for _, text in w.status("BoundingBox3D").values())
 
 
-async def test_colours_of_classes_come_from_a_file(tmp_path):
-    path = tmp_path / "colours.yaml"
+async def test_class_colors_are_read_from_file(tmp_path):
+    path = tmp_path / "colors.yaml"
     path.write_text("Ball: {r: 1, g: 2, b: 3}\n")
     fields = await shown("Detection3DArray", array(detection(result("ball", 1.0))), f", ConfigPath: {path}")
     assert fields["colors"].tolist() == [1, 2, 3]
 
 
 @pytest.mark.parametrize("text", ["- 1", "ball: red", "ball: {r: 1, g: 2}", "ball: {r: 256, g: 0, b: 0}", "{"])
-async def test_a_file_without_colours_is_told_of(tmp_path, text):
-    path = tmp_path / "colours.yaml"
+async def test_file_without_colors_is_reported(tmp_path, text):
+    path = tmp_path / "colors.yaml"
     path.write_text(text)
     async with world(config(f"{PLUGINS}/Detection3DArray", f", ConfigPath: {path}")) as w:
         level, status = w.status("Detection3DArray")["ConfigPath"]
@@ -118,13 +118,13 @@ async def test_a_file_without_colours_is_told_of(tmp_path, text):
         read_class_colors(str(tmp_path / "none.yaml"))
 
 
-def test_a_class_has_the_same_colour_everywhere():
+def test_class_color_is_stable():
     assert class_color("ball", {}) == class_color("ball", {})
     assert class_color("Person", {}) == (0, 0, 255)
     assert len({class_color(name, {}) for name in ("ball", "crate", "cone", "can")}) > 2
 
 
-def test_a_class_named_for_a_colour_has_it_unless_the_file_says_another():
+def test_class_named_after_color_has_it_unless_overridden():
     assert class_color("red", {}) == class_color("Red_cube", {}) == RGB_BY_COLOR_WORD["red"]
     assert class_color("ball-gray", {}) == RGB_BY_COLOR_WORD["grey"]
     assert class_color("infrared lamp", {}) != RGB_BY_COLOR_WORD["red"]
@@ -149,7 +149,7 @@ def found(seconds: int, *results):
     return made
 
 
-async def test_an_image_is_shown_with_what_was_found_in_it(monkeypatch):
+async def test_image_is_shown_with_matching_detections(monkeypatch):
     monkeypatch.setattr("linkwright.rviz.displays.detection_image._PATIENCE", 1e9)
     async with world(config("linkwright/Detections", ", Detections Topic: {Value: /found}")) as w:
         node = w.graph.create_node("camera")
@@ -177,7 +177,7 @@ async def test_an_image_is_shown_with_what_was_found_in_it(monkeypatch):
         assert np.array_equal(boxes.fields["colors"], class_color("ball", {}))
 
 
-async def test_images_are_shown_as_they_come_when_nothing_detects(monkeypatch):
+async def test_images_are_shown_without_waiting_if_detector_is_silent(monkeypatch):
     monkeypatch.setattr("linkwright.rviz.displays.detection_image._PATIENCE", -1.0)
     async with world(config("linkwright/Detections", ", Detections Topic: {Value: /found}")) as w:
         publish(w, "/found", found(1, result("ball", 0.5)))
@@ -189,7 +189,7 @@ async def test_images_are_shown_as_they_come_when_nothing_detects(monkeypatch):
 # --- the threshold -----------------------------------------------------------------------------------------------
 
 
-async def threshold_told(w) -> tuple[str, str]:
+async def threshold_status(w) -> tuple[str, str]:
     """What the display says of its threshold, once it does."""
     await eventually(lambda: "Threshold" in w.status("Detections"))
     return w.status("Detections")["Threshold"]
@@ -204,12 +204,12 @@ def detecting(w, **parameters):
 
 
 @pytest.mark.parametrize("name", ["threshold", "confidence_threshold", "detection__threshold"])
-async def test_the_threshold_is_that_of_the_node_that_detects(name):
+async def test_threshold_sets_parameter_of_detector_node(name):
     async with world(config("linkwright/Detections", ", Detections Topic: {Value: /found}")) as w:
         node = detecting(w, **{name: 0.5})
         w.display("Detections").set_property(("Threshold",), 0.7)
         shown = name.replace("__", ".")
-        assert await threshold_told(w) == ("ok", f"Parameter '{shown}' of /yolo/yolo_node")
+        assert await threshold_status(w) == ("ok", f"Parameter '{shown}' of /yolo/yolo_node")
         assert node.get_parameter(shown).value == pytest.approx(0.7)
 
 
@@ -217,19 +217,19 @@ async def test_the_threshold_is_that_of_the_node_that_detects(name):
     ("parameters", "level", "words"),
     [({}, "ok", "has no parameter 'threshold'"), ({"threshold": "much"}, "warn", "rejects 'threshold'")],
 )
-async def test_other_nodes_detections_are_filtered_in_the_page_and_that_is_told(parameters, level, words):
+async def test_threshold_filters_in_page_without_detector_parameter(parameters, level, words):
     async with world(config("linkwright/Detections", ", Detections Topic: {Value: /found}")) as w:
         detecting(w, **parameters)
         w.display("Detections").set_property(("Threshold",), 0.7)
-        answer, text = await threshold_told(w)
+        answer, text = await threshold_status(w)
         assert (answer, words in text) == (level, True)
 
 
-async def test_a_threshold_that_the_node_refuses_and_one_without_a_node():
+async def test_rejected_threshold_and_missing_node_are_reported():
     async with world(config("linkwright/Detections", ", Detections Topic: {Value: /found}")) as w:
         display = w.display("Detections")
         display.set_property(("Threshold",), 0.7)
-        assert "0 nodes publish /found" in (await threshold_told(w))[1]
+        assert "0 nodes publish /found" in (await threshold_status(w))[1]
         node = detecting(w, threshold=0.5)
         node.add_on_set_parameters_callback(lambda _: SetParametersResult(False, "never"))
         display.set_property(("Threshold",), 0.6)
@@ -237,13 +237,13 @@ async def test_a_threshold_that_the_node_refuses_and_one_without_a_node():
         assert node.get_parameter("threshold").value == 0.5
 
 
-async def test_of_many_thresholds_the_last_one_counts():
+async def test_last_of_many_thresholds_is_set():
     async with world(config("linkwright/Detections", ", Detections Topic: {Value: /found}")) as w:
         node = detecting(w, threshold=0.5)
         values: list[float] = []
         node.add_post_set_parameters_callback(lambda given: values.append(given[0].value))
         for value in (0.1, 0.2, 0.3, 0.9):
             w.display("Detections").set_property(("Threshold",), value)
-        assert (await threshold_told(w))[0] == "ok"
+        assert (await threshold_status(w))[0] == "ok"
         assert values[-1] == pytest.approx(0.9)
         assert len(values) < 4

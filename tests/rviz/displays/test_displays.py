@@ -6,7 +6,7 @@ import sys
 import pytest
 
 from linkwright.rviz import RvizConfig
-from linkwright.rviz.displays.catalogue import display_classes, has_display
+from linkwright.rviz.displays.catalog import display_classes, has_display
 from tests.viewer.scene import ARM, IDENTITY, page, rows_by_id, world
 
 
@@ -35,13 +35,13 @@ async def rows_with(client, identity: str) -> dict[str, dict]:
 # --- which there are -----------------------------------------------------------------------------------------------
 
 
-def test_each_class_of_display_has_the_name_under_which_it_is_found():
+def test_display_classes_are_found_by_unique_names():
     for cls in display_classes():
         assert has_display(cls.CLASS)
     assert len({cls.CLASS for cls in display_classes()}) == len(display_classes())
 
 
-def test_displays_of_data_are_imported_when_there_are_some():
+def test_data_displays_are_imported_lazily():
     """The program answers a browser sooner without them."""
     code = "import sys, linkwright.viewer.viewer; print(*sys.modules)"
     done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
@@ -53,7 +53,7 @@ def test_displays_of_data_are_imported_when_there_are_some():
 # --- Grid ----------------------------------------------------------------------------------------------------------
 
 
-async def test_grid_has_the_properties_of_rviz_with_their_defaults():
+async def test_grid_properties_and_defaults_match_rviz():
     async with world(config(GRID)) as made:
         (grid,) = (await opened(made))["tree"]["displays"]
     assert (grid["id"], grid["name"], grid["enabled"], grid["supported"]) == ("display-1", "Grid", True, True)
@@ -74,7 +74,7 @@ async def test_grid_has_the_properties_of_rviz_with_their_defaults():
     assert grid["status"] == [{"name": "Transform", "level": "ok", "text": "Transform OK"}]
 
 
-async def test_line_width_is_there_for_billboards_only():
+async def test_line_width_is_shown_only_for_billboards():
     async with world(config(GRID)) as made, page(made.viewer) as client:
         opening = await client.opened()
         assert "display-1/Line Style/Line Width" not in rows_by_id(opening["tree"]["displays"][0]["properties"])
@@ -83,7 +83,7 @@ async def test_line_width_is_there_for_billboards_only():
         assert rows["display-1/Line Style/Line Width"]["value"] == 0.03
 
 
-async def test_a_grid_in_an_unknown_frame_says_so():
+async def test_grid_in_unknown_frame_is_reported():
     async with world(config(GRID)) as made, page(made.viewer) as client:
         await client.opened()
         await client.set("display-1/Reference Frame", "/tip")
@@ -101,7 +101,7 @@ def tf(more: str = "") -> str:
     return f"    - {{Class: rviz_default_plugins/TF, Enabled: true{more}}}\n"
 
 
-async def test_tf_lists_the_frames_it_hears_of():
+async def test_tf_display_lists_frames():
     async with world(config(tf(", Frames: {All Enabled: false, tip: {Value: false}, gone: {Value: false}}"))) as made:
         made.move_arm()
         await made.settle()
@@ -119,7 +119,7 @@ async def test_tf_lists_the_frames_it_hears_of():
     ]
 
 
-async def test_tf_boxes_are_kept_in_the_file():
+async def test_tf_frame_checkboxes_are_saved():
     async with world(config(tf())) as made, page(made.viewer) as client:
         made.move_arm()
         await rows_with(client, "display-1/Frames/mark")
@@ -133,7 +133,7 @@ async def test_tf_boxes_are_kept_in_the_file():
         assert section.section("Frames", "base").keys() == ["Value"]
 
 
-async def test_a_frame_that_is_off_takes_the_box_over_all_along():
+async def test_disabled_frame_unchecks_all_enabled():
     async with world(config(tf())) as made, page(made.viewer) as client:
         made.move_arm()
         properties = (await client.until("display_properties", display="display-1"))["properties"]
@@ -146,7 +146,7 @@ async def test_a_frame_that_is_off_takes_the_box_over_all_along():
         assert made.display("TF").properties.get("Frames", "base") is True
 
 
-async def test_tf_frames_that_cannot_be_placed_are_warned_of():
+async def test_tf_frames_without_transform_are_reported():
     async with world(config(tf(), fixed_frame="map")) as made:
         made.move_arm()
         await made.settle()
@@ -178,7 +178,7 @@ async def test_tf_filters_choose_frames():
         assert status["status"][0] == {"name": "Filter (whitelist)", "level": "error", "text": text}
 
 
-async def test_a_filter_that_takes_too_long_is_not_used_and_says_so():
+async def test_slow_tf_filter_is_disabled_and_reported():
     long = "a" * 200 + "!"
     async with world(config(tf(", Filter (whitelist): (a|aa)+$"))) as made:
         made.move({("base", long): IDENTITY})
@@ -191,7 +191,7 @@ async def test_a_filter_that_takes_too_long_is_not_used_and_says_so():
         assert set(made.status("TF")) == {"base"}
 
 
-async def test_a_chain_of_frames_may_be_long():
+async def test_long_frame_chain_is_shown():
     poses = {(f"f{number}", f"f{number + 1}"): IDENTITY for number in range(400)}
     async with world(config(tf(), fixed_frame="f0")) as made:
         made.move(poses)
@@ -209,7 +209,7 @@ async def test_a_chain_of_frames_may_be_long():
 # --- others --------------------------------------------------------------------------------------------------------
 
 
-async def test_displays_of_other_classes_are_shown_and_kept():
+async def test_unsupported_displays_are_listed_and_kept():
     text = "    - {Class: my_plugins/Radar, Enabled: true, Name: Radar, Size (m): 0.05}\n"
     async with world(config(text)) as made:
         (radar,) = (await opened(made))["tree"]["displays"]
@@ -219,7 +219,7 @@ async def test_displays_of_other_classes_are_shown_and_kept():
 
 
 @pytest.mark.parametrize("cls", ["Grid", "TF", "RobotModel", "LaserScan"])
-async def test_a_display_that_is_off_has_no_status_and_comes_back(cls):
+async def test_disabled_display_has_no_status_until_enabled(cls):
     async with world(config(f"    - {{Class: rviz_default_plugins/{cls}, Value: true}}\n")) as made:
         made.describe(ARM)
         made.move_arm()

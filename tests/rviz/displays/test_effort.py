@@ -44,7 +44,7 @@ async def described(w):
     return w.graph.create_node("talker").create_publisher(JointState, "/joint_states", 10)
 
 
-async def test_properties_are_those_of_rviz():
+async def test_effort_properties_match_rviz():
     async with world(config()) as w:
         await described(w)
         rows = {row.name: row for row in w.display("Effort").row().properties}
@@ -63,7 +63,7 @@ async def test_properties_are_those_of_rviz():
         assert w.status("Effort")["URDF"] == ("ok", "Robot model parsed Ok")
 
 
-async def test_a_ring_stands_across_the_axis_of_its_joint():
+async def test_effort_ring_is_perpendicular_to_joint_axis():
     async with world(config()) as w:
         out = await described(w)
         out.publish(state(lift=-5.0, spin=1.0, slide=2.0))
@@ -86,7 +86,7 @@ async def test_a_ring_stands_across_the_axis_of_its_joint():
         (state(lift=math.nan), "lift", "Invalid effort: nan"),
     ],
 )
-async def test_what_is_wrong_is_told(message, row, text):
+async def test_invalid_joint_states_are_reported(message, row, text):
     async with world(config()) as w:
         out = await described(w)
         out.publish(message)
@@ -95,7 +95,7 @@ async def test_what_is_wrong_is_told(message, row, text):
         assert (level, text in status) == ("error", True)
 
 
-async def test_without_a_robot_there_are_no_rings():
+async def test_no_rings_without_robot_description():
     async with world(config()) as w:
         out = w.graph.create_node("talker").create_publisher(JointState, "/joint_states", 10)
         out.publish(state(lift=1.0))
@@ -106,7 +106,7 @@ async def test_without_a_robot_there_are_no_rings():
         assert w.status("Effort")["URDF"] == ("error", "Unable to parse robot model description!")
 
 
-async def test_a_frame_without_a_place_is_waited_for():
+async def test_message_waits_for_transform_of_frame():
     async with world(config(", TF Prefix: one")) as w:
         out = await described(w)
         out.publish(state(lift=1.0))

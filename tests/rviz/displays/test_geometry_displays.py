@@ -100,7 +100,7 @@ DEFAULTS = {
 
 
 @pytest.mark.parametrize("cls", DEFAULTS)
-async def test_properties_and_defaults_are_those_of_rviz(cls):
+async def test_properties_and_defaults_match_rviz(cls):
     async with world(config(cls)) as w:
         assert rows(w, cls) == {"Topic": "/topic", **DEFAULTS[cls]}
         (topic,) = (row for row in w.display(cls).row().properties if row.name == "Topic")
@@ -108,7 +108,7 @@ async def test_properties_and_defaults_are_those_of_rviz(cls):
         assert [row.name for row in topic.children] == names
 
 
-async def test_the_sizes_of_a_shape_are_those_that_matter():
+async def test_only_properties_of_selected_shape_are_shown():
     async with world(config("Pose", ", Shape: Axes")) as w:
         assert rows(w, "Pose") == {"Topic": "/topic", "Shape": "Axes", "Axes Length": 1.0, "Axes Radius": 0.1}
     async with world(config("Odometry")) as w:
@@ -123,7 +123,7 @@ async def test_the_sizes_of_a_shape_are_those_that_matter():
         assert "Radius" not in rows(w, "Path")
 
 
-async def test_covariances_have_the_properties_of_rviz():
+async def test_covariance_properties_match_rviz():
     async with world(config("PoseWithCovariance")) as w:
         (covariance,) = (row for row in w.display("PoseWithCovariance").row().properties if row.name == "Covariance")
         position, orientation = covariance.children
@@ -138,7 +138,7 @@ async def test_covariances_have_the_properties_of_rviz():
         }
 
 
-async def test_a_pose_is_sent_with_the_place_of_its_frame():
+async def test_pose_is_sent_with_pose_of_its_frame():
     async with world(config("Pose")) as w:
         w.move({("base", "tip"): (1, 2, 3, 0, 0, 0, 1)}, static=True)
         publisher(w, "Pose").publish(message("geometry_msgs/msg/PoseStamped", pose=pose(4)))
@@ -150,7 +150,7 @@ async def test_a_pose_is_sent_with_the_place_of_its_frame():
         assert w.status("Pose")["Transform"] == ("ok", "Transform OK")
 
 
-async def test_a_pose_with_covariance_brings_it():
+async def test_pose_with_covariance_sends_covariance():
     async with world(config("PoseWithCovariance")) as w:
         w.move_arm()
         made = message("geometry_msgs/msg/PoseWithCovarianceStamped")
@@ -162,7 +162,7 @@ async def test_a_pose_with_covariance_brings_it():
         assert content.fields["covariances"].tolist() == list(range(36))
 
 
-async def test_all_poses_of_an_array_are_sent():
+async def test_all_poses_of_array_are_sent():
     async with world(config("PoseArray")) as w:
         w.move_arm()
         publisher(w, "PoseArray").publish(message("geometry_msgs/msg/PoseArray", poses=[pose(1), pose(2)]))
@@ -171,7 +171,7 @@ async def test_all_poses_of_an_array_are_sent():
         assert content.fields["poses"].reshape(-1, 7)[:, 0].tolist() == [1, 2]
 
 
-async def test_particles_of_nav2_bring_how_likely_they_are():
+async def test_nav2_particle_cloud_sends_weights():
     parsed = config("PoseArray").text().replace("rviz_default_plugins/PoseArray", "nav2_rviz_plugins/ParticleCloud")
     async with world(RvizConfig.parse(parsed)) as w:
         assert rows(w, "ParticleCloud") == {
@@ -197,7 +197,7 @@ async def test_particles_of_nav2_bring_how_likely_they_are():
         assert w.status("ParticleCloud")["Message"] == INVALID
 
 
-async def test_odometry_drops_a_mark_when_the_robot_went_far_or_turned():
+async def test_odometry_adds_arrow_after_distance_or_rotation():
     async with world(config("Odometry")) as w:
         w.move_arm()
         out = publisher(w, "Odometry")
@@ -212,7 +212,7 @@ async def test_odometry_drops_a_mark_when_the_robot_went_far_or_turned():
         np.testing.assert_allclose(marks, [0, 0.12, 0.3, 0.3])
 
 
-async def test_as_many_marks_are_kept_as_asked_for():
+async def test_odometry_keep_limits_number_of_arrows():
     async with world(config("Odometry", ", Keep: 2")) as w:
         w.move_arm()
         out = publisher(w, "Odometry")
@@ -230,7 +230,7 @@ async def test_as_many_marks_are_kept_as_asked_for():
         assert [content.fields["poses"][0] for content in contents(display)] == [6, 7, 8]
 
 
-async def test_odometry_refuses_a_quaternion_that_is_no_rotation():
+async def test_odometry_rejects_invalid_quaternion():
     async with world(config("Odometry")) as w:
         w.move_arm()
         out = publisher(w, "Odometry")
@@ -244,7 +244,7 @@ async def test_odometry_refuses_a_quaternion_that_is_no_rotation():
         assert "Message" not in w.status("Odometry")
 
 
-async def test_the_last_paths_are_shown():
+async def test_path_buffer_length_keeps_last_paths():
     async with world(config("Path", ", Buffer Length: 2")) as w:
         w.move_arm()
         out = publisher(w, "Path")
@@ -256,7 +256,7 @@ async def test_the_last_paths_are_shown():
         assert sorted(map(len, paths)) == [3, 4]
 
 
-async def test_a_polygon_is_sent_as_its_corners():
+async def test_polygon_is_sent_as_corners():
     async with world(config("Polygon")) as w:
         w.move_arm()
         made = message("geometry_msgs/msg/PolygonStamped")
@@ -279,7 +279,7 @@ async def test_a_polygon_is_sent_as_its_corners():
         (math.nan, 0.3, 0.3, 0.0),
     ],
 )
-async def test_a_range_is_as_long_as_it_is_valid(measured, least, most, shown):
+async def test_range_length_is_zero_if_invalid(measured, least, most, shown):
     async with world(config("Range")) as w:
         w.move_arm()
         made = message("sensor_msgs/msg/Range", range=measured, min_range=least, max_range=most, field_of_view=0.2)
@@ -298,7 +298,7 @@ async def test_a_range_is_as_long_as_it_is_valid(measured, least, most, shown):
         ("Wrench", "wrench", "force", "torque"),
     ],
 )
-async def test_two_vectors_are_sent(cls, part, linear, angular):
+async def test_linear_and_angular_vectors_are_sent(cls, part, linear, angular):
     async with world(config(cls)) as w:
         w.move_arm()
         made = message(w.display(cls).MESSAGE)
@@ -322,7 +322,7 @@ async def test_two_vectors_are_sent(cls, part, linear, angular):
 
 
 @pytest.mark.parametrize("cls", ["Pose", "PoseArray", "PoseWithCovariance", "Odometry", "Path", "Polygon"])
-async def test_numbers_that_are_none_are_refused(cls):
+async def test_nonfinite_values_are_rejected(cls):
     async with world(config(cls)) as w:
         w.move_arm()
         made = message(w.display(cls).MESSAGE)

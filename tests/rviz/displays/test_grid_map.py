@@ -49,16 +49,16 @@ async def shown(extra: str = ""):
         publisher = w.graph.create_node("mapper").create_publisher(GridMap, "/grid_map", 10)
         await w.settle()
 
-        async def say(message: Any) -> dict[str, Any] | None:
+        async def publish_and_settle(message: Any) -> dict[str, Any] | None:
             publisher.publish(message)
             await w.settle()
             found = contents(w.display("GridMap"))
             return found[-1].fields if found else None
 
-        yield w, say
+        yield w, publish_and_settle
 
 
-async def test_properties_are_those_of_rviz():
+async def test_grid_map_properties_match_rviz():
     async with shown() as (w, _):
         rows = {row.name: row.value for row in w.display("GridMap").row().properties}
         assert rows == {
@@ -78,11 +78,11 @@ async def test_properties_are_those_of_rviz():
         assert {"Use ColorMap", "Min Color"} <= {row.name for row in w.display("GridMap").row().properties}
 
 
-async def test_the_first_cell_has_the_largest_x_and_y():
-    async with shown() as (w, say):
+async def test_first_cell_has_largest_x_and_y():
+    async with shown() as (w, publish_and_settle):
         made = grid(0.5, elevation=[[1, 2, 3], [4, 5, 6]])
         made.info.pose.position.x = 10.0
-        content = await say(made)
+        content = await publish_and_settle(made)
         assert (content["rows"], content["columns"]) == (2, 3)
         points = content["points"].reshape(2, 3, 3)
         np.testing.assert_allclose(points[0, 0], [10.25, 0.5, 1])
@@ -90,28 +90,28 @@ async def test_the_first_cell_has_the_largest_x_and_y():
         assert w.status("GridMap")["Transform"] == ("ok", "Transform OK")
 
 
-async def test_a_buffer_that_begins_elsewhere_is_turned_back():
-    async with shown() as (_, say):
+async def test_circular_buffer_start_index_is_applied():
+    async with shown() as (_, publish_and_settle):
         made = grid(elevation=[[4, 3], [2, 1]])
         made.outer_start_index = made.inner_start_index = 1
-        content = await say(made)
+        content = await publish_and_settle(made)
         assert content["points"].reshape(-1, 3)[:, 2].tolist() == [1, 2, 3, 4]
 
 
-async def test_cells_without_a_number_are_not_there():
-    async with shown() as (_, say):
+async def test_nan_cells_are_not_drawn():
+    async with shown() as (_, publish_and_settle):
         made = grid(elevation=[[1, NAN], [2, 3]], certain=[[1, 1], [1, NAN]])
-        content = await say(made)
+        content = await publish_and_settle(made)
         assert content["colors"].reshape(-1, 4)[:, 3].tolist() == [255, 0, 255, 255]
         assert np.isfinite(content["points"]).all()
         made.basic_layers = ["certain"]
-        content = await say(made)
+        content = await publish_and_settle(made)
         assert content["colors"].reshape(-1, 4)[:, 3].tolist() == [255, 0, 255, 0]
 
 
-async def test_colours_of_a_rainbow_between_two_and_one_for_all():
-    async with shown() as (w, say):
-        content = await say(grid(elevation=[[0, 10]], other=[[5, 0]]))
+async def test_rainbow_two_color_and_flat_color_modes():
+    async with shown() as (w, publish_and_settle):
+        content = await publish_and_settle(grid(elevation=[[0, 10]], other=[[5, 0]]))
         first, last = content["colors"].reshape(-1, 4)[:, :3].tolist()
         assert (first, last) == ([204, 0, 255], [255, 0, 0])
         display = w.display("GridMap")
@@ -135,16 +135,16 @@ async def test_colours_of_a_rainbow_between_two_and_one_for_all():
         assert contents(display)[-1].fields["filled"] is False
 
 
-async def test_a_layer_may_have_colours_in_it():
+async def test_color_layer_is_unpacked():
     packed = np.array([0x00FF8000, 0x000000FF], dtype=np.uint32).view(np.float32).tolist()
-    async with shown(", Color Transformer: ColorLayer, Color Layer: color") as (_, say):
-        content = await say(grid(elevation=[[0, 0]], color=[packed]))
+    async with shown(", Color Transformer: ColorLayer, Color Layer: color") as (_, publish_and_settle):
+        content = await publish_and_settle(grid(elevation=[[0, 0]], color=[packed]))
         assert content["colors"].reshape(-1, 4)[:, :3].tolist() == [[255, 128, 0], [0, 0, 255]]
 
 
-async def test_a_large_map_is_thinned_and_said_so():
-    async with shown() as (w, say):
-        content = await say(grid(elevation=np.zeros((900, 900)).tolist()))
+async def test_large_map_is_subsampled_with_warning():
+    async with shown() as (w, publish_and_settle):
+        content = await publish_and_settle(grid(elevation=np.zeros((900, 900)).tolist()))
         assert (content["rows"], content["columns"]) == (450, 450)
         assert w.status("GridMap")["Size"] == ("warn", "The map is large: 1 in 2 rows and columns is drawn")
 
@@ -160,18 +160,18 @@ async def test_a_large_map_is_thinned_and_said_so():
         ({"length_y": 9.0}, "Layer 'elevation' has 4 numbers for 2 x 9 cells"),
     ],
 )
-async def test_a_map_that_cannot_be_drawn_is_said(broken, text):
-    async with shown() as (w, say):
+async def test_invalid_grid_map_is_reported(broken, text):
+    async with shown() as (w, publish_and_settle):
         made = grid(elevation=[[1, 2], [3, 4]])
         for name, value in broken.items():
             setattr(made if name == "layers" else made.info, name, value)
-        assert await say(made) is None
+        assert await publish_and_settle(made) is None
         assert w.status("GridMap")["Message"] == ("error", text)
-        assert await say(grid(elevation=[[1, 2], [3, 4]])) is not None
+        assert await publish_and_settle(grid(elevation=[[1, 2], [3, 4]])) is not None
         assert "Message" not in w.status("GridMap")
 
 
-async def test_a_file_of_the_demos_is_saved_as_it_was():
+async def test_grid_map_demo_file_is_saved_unchanged():
     text = config(", Unreliable: false, Use Rainbow: true, Min Intensity: 0, Color: 200; 200; 200").text()
     async with world(RvizConfig.parse(text)) as w:
         assert w.viewer.displays[0].row().supported

@@ -54,7 +54,7 @@ def names(display) -> set[str]:
     return {row.name for row in display.properties.rows()}
 
 
-async def test_an_image_is_sent():
+async def test_image_is_sent():
     async with world(config("Image")) as w:
         publisher = w.graph.create_node("camera").create_publisher(Image, "/camera/image", 5)
         publisher.publish(small_image(1, 2, 3))
@@ -67,7 +67,7 @@ async def test_an_image_is_sent():
         assert w.status("Image") == {"Topic": ("ok", "1 messages received")}
 
 
-async def test_no_more_pixels_are_sent_than_the_panel_has():
+async def test_image_is_reduced_to_panel_size():
     async with world(config("Image")) as w:
         display = w.display("Image")
 
@@ -85,7 +85,7 @@ async def test_no_more_pixels_are_sent_than_the_panel_has():
         assert await sizes() == [(64, 48)]
 
 
-async def test_nothing_is_sent_while_no_panel_is_seen():
+async def test_nothing_is_sent_while_panel_is_hidden():
     async with world(config("Image")) as w:
         display = w.display("Image")
         display.receive(ImageSize(display.id, 0, 0))
@@ -98,7 +98,7 @@ async def test_nothing_is_sent_while_no_panel_is_seen():
         assert content.fields["data"].tolist() == [1, 2, 3]
 
 
-async def test_while_no_panel_is_seen_nobody_listens_after_one_image():
+async def test_hidden_panel_unsubscribes_after_one_image():
     async with world(config("Image")) as w:
         display = w.display("Image")
         publisher = w.graph.create_node("camera").create_publisher(Image, "/camera/image", 5)
@@ -122,7 +122,7 @@ async def test_while_no_panel_is_seen_nobody_listens_after_one_image():
         assert publisher.get_subscription_count() == 0
 
 
-async def test_the_panel_of_a_page_that_is_gone_is_not_seen():
+async def test_panel_of_closed_page_is_ignored():
     async with world(config("Image")) as w:
         publisher = w.graph.create_node("camera").create_publisher(Image, "/camera/image", 5)
         publisher.publish(small_image(1, 2, 3))
@@ -133,24 +133,24 @@ async def test_the_panel_of_a_page_that_is_gone_is_not_seen():
         await eventually(lambda: publisher.get_subscription_count() == 0)
 
 
-async def test_of_all_panels_the_largest_counts(monkeypatch):
+async def test_largest_panel_determines_image_size(monkeypatch):
     async with world(config("Image")) as w, page(w.viewer) as first:
         display = w.display("Image")
         messages: list[ImageSize] = []
         monkeypatch.setattr(display, "receive", messages.append)
 
-        async def heard(width: int, height: int) -> None:
+        async def wait_for_size(width: int, height: int) -> None:
             await eventually(lambda: messages and messages[-1] == ImageSize(display.id, width, height))
 
         await first.send("image_size", display=display.id, width=30, height=18)
-        await heard(30, 18)
+        await wait_for_size(30, 18)
         async with page(w.viewer) as second:
             await second.send("image_size", display=display.id, width=20, height=50)
-            await heard(30, 50)
-        await heard(30, 18)
+            await wait_for_size(30, 50)
+        await wait_for_size(30, 18)
 
 
-async def test_an_encoding_that_is_not_known_is_said():
+async def test_unsupported_encoding_is_reported():
     async with world(config("Image")) as w:
         publisher = w.graph.create_node("camera").create_publisher(Image, "/camera/image", 5)
         publisher.publish(image("64FC1", 1, 1, bytes(8)))
@@ -161,7 +161,7 @@ async def test_an_encoding_that_is_not_known_is_said():
         assert "Image" not in w.status("Image")
 
 
-async def test_the_range_is_asked_for_when_images_have_one():
+async def test_range_properties_are_shown_for_16_bit_images():
     async with world(config("Image")) as w:
         display = w.display("Image")
         assert names(display) == {"Topic"}
@@ -176,7 +176,7 @@ async def test_the_range_is_asked_for_when_images_have_one():
         assert contents(display)[0].fields["data"].tolist() == [0, 127]
 
 
-async def test_a_compressed_image_goes_to_the_page_as_it_is():
+async def test_compressed_image_is_sent_unchanged():
     async with world(config("Image", "/camera/image/compressed")) as w:
         publisher = w.graph.create_node("camera").create_publisher(CompressedImage, "/camera/image/compressed", 5)
         data = b"\xff\xd8\xff\xe0" + bytes(30)
@@ -196,7 +196,7 @@ async def test_a_compressed_image_goes_to_the_page_as_it_is():
 
 
 @pytest.mark.parametrize("comes_first", ["publisher", "display"])
-async def test_compressed_images_may_be_on_a_topic_of_any_name(comes_first):
+async def test_compressed_images_are_accepted_on_any_topic(comes_first):
     data = b"\xff\xd8\xff\xe0\xff\xd9"
     async with world(config("Image", "" if comes_first == "publisher" else "/front/jpeg")) as w:
         publisher = w.graph.create_node("camera").create_publisher(CompressedImage, "/front/jpeg", 5)
@@ -210,7 +210,7 @@ async def test_compressed_images_may_be_on_a_topic_of_any_name(comes_first):
         assert w.status("Image")["Topic"] == ("ok", "1 messages received")
 
 
-async def test_depths_may_be_on_a_topic_of_any_name():
+async def test_compressed_depths_are_accepted_on_any_topic():
     async with world(config("Image", "/front/depths")) as w:
         publisher = w.graph.create_node("camera").create_publisher(CompressedImage, "/front/depths", 5)
         await eventually(lambda: publisher.get_subscription_count() == 1)
@@ -229,7 +229,7 @@ def info(width: int = 4, height: int = 2, **fields):
     return message
 
 
-async def test_a_camera_waits_for_its_camera_info():
+async def test_camera_display_waits_for_camera_info():
     async with world(config("Camera")) as w:
         node = w.graph.create_node("camera")
         images = node.create_publisher(Image, "/camera/image", 5)
@@ -248,15 +248,15 @@ async def test_a_camera_waits_for_its_camera_info():
             "height": 2.0,
             "focal_x": 100.0,
             "focal_y": 50.0,
-            "centre_x": 2.0,
-            "centre_y": 1.0,
+            "center_x": 2.0,
+            "center_y": 1.0,
             "offset_x": 0.1,
             "offset_y": 0.0,
         }
         assert w.status("Camera")["Camera Info"] == ("ok", "OK")
 
 
-async def test_malformed_camera_infos_are_said():
+async def test_malformed_camera_info_is_reported():
     async with world(config("Camera")) as w:
         node = w.graph.create_node("camera")
         images = node.create_publisher(Image, "/camera/image", 5)
@@ -282,7 +282,7 @@ async def test_malformed_camera_infos_are_said():
         assert w.status("Camera")["Camera Info"][1].startswith("Could not determine width/height of image")
 
 
-async def test_each_other_display_can_be_hidden_from_the_camera():
+async def test_other_displays_can_be_hidden_from_camera():
     async with world(config("Camera")) as w, page(w.viewer) as client:
         await client.opened()
         display = w.display("Camera")

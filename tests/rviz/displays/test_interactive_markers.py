@@ -91,7 +91,7 @@ async def connected(world) -> None:
     await world.settle()
 
 
-async def test_markers_of_a_server_come_move_and_go():
+async def test_interactive_markers_are_added_moved_and_removed():
     async with world(RvizConfig.parse(FILE)) as w:
         server = Server(w.graph, marker("one", x=1))
         await connected(w)
@@ -122,7 +122,7 @@ async def test_updates_wait_while_time_is_paused():
         assert sorted(shown(w)) == ["interactive_marker two"]
 
 
-async def test_a_lost_update_begins_anew():
+async def test_lost_update_requests_markers_again():
     async with world(RvizConfig.parse(FILE)) as w:
         server = Server(w.graph, marker("one"))
         await connected(w)
@@ -135,7 +135,7 @@ async def test_a_lost_update_begins_anew():
         assert sorted(shown(w)) == ["interactive_marker three"]
 
 
-async def test_what_the_user_does_is_told_to_the_server():
+async def test_feedback_of_user_is_published_to_server():
     async with world(RvizConfig.parse(FILE)) as w:
         server = Server(w.graph, marker("one", frame="base"))
         await connected(w)
@@ -155,7 +155,7 @@ async def test_what_the_user_does_is_told_to_the_server():
         assert (second.event_type, second.menu_entry_id) == (Feedback.MENU_SELECT, 4)
 
 
-async def test_without_a_server_the_display_says_so_and_waits():
+async def test_display_waits_for_missing_server_with_warning():
     async with world(RvizConfig.parse(FILE)) as w:
         missing = ("warn", "Service is not available: /handles/get_interactive_markers")
         await eventually(lambda: status(w).get("Interactive Marker Client") == missing)
@@ -163,12 +163,12 @@ async def test_without_a_server_the_display_says_so_and_waits():
         await connected(w)
 
 
-async def test_an_empty_namespace_is_told():
+async def test_empty_namespace_is_reported():
     async with world(RvizConfig.parse(FILE.replace("/handles", '""'))) as w:
         assert status(w)["Interactive Marker Client"] == ("error", "Error connecting: empty namespace")
 
 
-async def test_a_marker_whose_frame_is_unknown_appears_when_it_is_known():
+async def test_marker_appears_once_its_frame_is_known():
     async with world(RvizConfig.parse(FILE)) as w:
         Server(w.graph, marker("one", frame="tip"))
         await connected(w)
@@ -180,7 +180,7 @@ async def test_a_marker_whose_frame_is_unknown_appears_when_it_is_known():
         assert "one" not in status(w)
 
 
-async def test_a_disabled_display_leaves_the_server():
+async def test_disabled_display_unsubscribes_from_server():
     async with world(RvizConfig.parse(FILE)) as w:
         server = Server(w.graph, marker("one"))
         await connected(w)
@@ -198,7 +198,7 @@ def read(message: InteractiveMarker, transparent: bool = True):
     )
 
 
-def test_a_control_that_moves_along_an_axis_has_two_arrows_of_its_colour():
+def test_move_axis_control_has_two_arrows_in_color_of_axis():
     control = Control(name="x", interaction_mode=Control.MOVE_AXIS)
     (control,) = read(marker("one", control)).controls
     first, second = control.markers
@@ -212,7 +212,7 @@ def test_a_control_that_moves_along_an_axis_has_two_arrows_of_its_colour():
     ("mode", "shades"),
     [(Control.MOVE_PLANE, []), (Control.ROTATE_AXIS, [0.6, 1.0]), (Control.MOVE_ROTATE, [0.6, 1.0])],
 )
-def test_a_control_that_turns_has_a_ring(mode, shades):
+def test_rotation_control_has_ring(mode, shades):
     control = Control(name="z", interaction_mode=mode)
     control.orientation.w = control.orientation.y = 2**-0.5
     (control,) = read(marker("one", control), transparent=False).controls
@@ -226,7 +226,7 @@ def test_a_control_that_turns_has_a_ring(mode, shades):
     assert len(ring.colors) in (0, 72)
 
 
-def test_a_menu_without_markers_is_a_text_that_faces_the_viewer():
+def test_menu_control_without_markers_is_view_facing_text():
     control = Control(name="m", interaction_mode=Control.MENU, description="Options")
     message = marker("one", control)
     message.menu_entries = [MenuEntry(id=1, title="Go"), MenuEntry(id=2, parent_id=1, title="Home")]
@@ -236,12 +236,12 @@ def test_a_menu_without_markers_is_a_text_that_faces_the_viewer():
     assert [(each.id, each.parent, each.title) for each in shape.menu] == [(1, 0, "Go"), (2, 1, "Home")]
 
 
-def test_controls_of_one_name_are_told_apart():
+def test_controls_with_same_name_get_unique_names():
     names = [control.name for control in read(marker("one", *(Control(name="a") for _ in range(3)))).controls]
     assert names == ["a", "a_u0", "a_u1"]
 
 
-def test_a_marker_in_a_frame_of_its_own_is_brought_to_the_control():
+def test_marker_of_control_is_transformed_to_control_frame():
     box = Marker(type=Marker.CUBE)
     box.header.frame_id = "tip"
     box.color.a = 1.0
@@ -250,6 +250,6 @@ def test_a_marker_in_a_frame_of_its_own_is_brought_to_the_control():
     assert control.markers[0].scale == [1, 1, 1]
 
 
-def test_numbers_that_are_none_are_told():
+def test_nonfinite_values_are_rejected():
     with pytest.raises(BadMarkerError, match="invalid floats"):
         read(marker("one", x=float("nan")))

@@ -91,7 +91,7 @@ async def drive(w: World, tf_delay: float) -> None:
 
 @skipping
 @pytest.mark.parametrize("tf_delay", [0.03, 0.2])
-async def test_sensors_whose_transforms_come_late_are_green_from_the_first_message_on(tf_delay, monkeypatch):
+async def test_displays_with_late_transforms_have_ok_status(tf_delay, monkeypatch):
     async with world(RvizConfig.parse(FILE)) as w:
         facts = {cls: levels_of(w.display(cls), monkeypatch) for cls in SENSORS}
         await drive(w, tf_delay)

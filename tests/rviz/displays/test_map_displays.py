@@ -56,7 +56,7 @@ def cells(display) -> list[list[int]]:
     return fields["cells"].view(np.int8).reshape(fields["height"], fields["width"]).tolist()
 
 
-async def test_a_map_is_sent_and_follows_its_frame():
+async def test_map_is_sent_and_follows_its_frame():
     async with world(config()) as w, page(w.viewer) as client:
         await client.opened()
         publisher = w.graph.create_node("map").create_publisher(OccupancyGrid, "/map", 1)
@@ -77,7 +77,7 @@ async def test_a_map_is_sent_and_follows_its_frame():
         }
 
 
-async def test_what_the_map_is_stands_in_rows_that_are_not_for_editing():
+async def test_map_metadata_is_shown_in_read_only_rows():
     async with world(config()) as w:
         publisher = w.graph.create_node("map").create_publisher(OccupancyGrid, "/map", 1)
         publisher.publish(grid())
@@ -93,7 +93,7 @@ async def test_what_the_map_is_stands_in_rows_that_are_not_for_editing():
         assert "Resolution" not in w.viewer.manager.config.text()
 
 
-async def test_updates_change_a_part_of_the_map():
+async def test_map_updates_change_part_of_map():
     async with world(config()) as w:
         node = w.graph.create_node("map")
         publisher = node.create_publisher(OccupancyGrid, "/map", 1)
@@ -116,7 +116,7 @@ async def test_updates_change_a_part_of_the_map():
 
 
 @skipping
-async def test_updates_wait_while_time_is_paused():
+async def test_map_updates_wait_while_time_is_paused():
     async with world(config()) as w:
         node = w.graph.create_node("map")
         maps, updates = (
@@ -133,7 +133,7 @@ async def test_updates_wait_while_time_is_paused():
         await eventually(lambda: cells(w.display("Map")) == [[99, 0, 0], [0, 0, 0]])
 
 
-async def test_an_updated_map_survives_another_fixed_frame():
+async def test_updated_map_survives_fixed_frame_change():
     async with world(config()) as w:
         node = w.graph.create_node("map")
         w.move({("base", "other"): (1, 0, 0, 0, 0, 0, 1)}, static=True)
@@ -146,7 +146,7 @@ async def test_an_updated_map_survives_another_fixed_frame():
         assert cells(w.display("Map"))[0] == [99, 1, 2]
 
 
-async def test_maps_that_are_none_are_said_in_rvizs_words():
+async def test_invalid_maps_are_reported_with_messages_of_rviz():
     async with world(config()) as w:
         publisher = w.graph.create_node("map").create_publisher(OccupancyGrid, "/map", 1)
 
@@ -164,7 +164,7 @@ async def test_maps_that_are_none_are_said_in_rvizs_words():
         assert await status(bad) == ("error", "Message contained invalid floating point values (nans or infs)")
 
 
-async def test_the_topic_of_updates_goes_with_the_maps():
+async def test_update_topic_follows_map_topic():
     async with world(config()) as w:
         display = w.display("Map")
         display.set_property(("Topic",), "/other")
@@ -177,7 +177,7 @@ async def test_the_topic_of_updates_goes_with_the_maps():
         await eventually(lambda: cells(display)[0][0] == 55)
 
 
-async def test_a_file_that_names_no_topic_of_updates_gets_none():
+async def test_default_update_topic_is_not_written_to_file():
     async with world(config()) as w, page(w.viewer) as client:
         await client.opened()
         manager, display = w.viewer.manager, w.display("Map")
@@ -195,7 +195,7 @@ async def test_a_file_that_names_no_topic_of_updates_gets_none():
         assert manager.config.text() == text
 
 
-async def test_a_map_with_its_timestamp_stays_where_it_was():
+async def test_use_timestamp_keeps_map_at_its_stamp():
     async with world(config()) as w:
         node = w.graph.create_node("map")
         publisher = node.create_publisher(
@@ -210,7 +210,7 @@ async def test_a_map_with_its_timestamp_stays_where_it_was():
         assert contents(display)[0].pose == [1, 2, 0, 0, 0, 0, 1]
 
 
-async def test_a_map_without_a_frame_is_in_map():
+async def test_map_without_frame_is_in_map_frame():
     async with world(config()) as w:
         publisher = w.graph.create_node("map").create_publisher(OccupancyGrid, "/map", 1)
         publisher.publish(grid(frame=""))
@@ -230,7 +230,7 @@ def cell_grid(*positions: float, width: float = 0.5, height: float = 0.25):
     return message
 
 
-async def test_cells_are_sent():
+async def test_grid_cells_are_sent():
     async with world(config("GridCells")) as w:
         publisher = w.graph.create_node("map").create_publisher(GridCells, "/map", 1)
         publisher.publish(cell_grid(1.0, 2.0))
@@ -241,7 +241,7 @@ async def test_cells_are_sent():
         assert (fields["kind"], fields["width"], fields["height"]) == ("cell_grid", 0.5, 0.25)
 
 
-async def test_cells_that_cannot_be_shown_are_said_in_rvizs_words():
+async def test_invalid_grid_cells_are_reported_with_messages_of_rviz():
     async with world(config("GridCells")) as w:
         publisher = w.graph.create_node("map").create_publisher(GridCells, "/map", 1)
 

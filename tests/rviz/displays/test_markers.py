@@ -80,7 +80,7 @@ def status(display) -> dict[str, tuple[str, str]]:
     return {row.name: (row.level, row.text) for row in display.status}
 
 
-async def test_a_marker_is_placed_where_its_frame_was():
+async def test_marker_stays_where_its_frame_was():
     async with world(RvizConfig.parse(FILE.format(cls="Marker"))) as w:
         publisher, page, _ = publisher_and_watcher(w)
         w.move({("base", "tip"): (1, 2, 3, 0, 0, 2**-0.5, 2**-0.5)}, static=True)
@@ -92,7 +92,7 @@ async def test_a_marker_is_placed_where_its_frame_was():
         np.testing.assert_allclose(shown["pose"], [1, 3, 3, 0, 0, 2**-0.5, 2**-0.5], atol=1e-6)
 
 
-async def test_a_marker_locked_to_its_frame_follows_it():
+async def test_frame_locked_marker_follows_its_frame():
     async with world(RvizConfig.parse(FILE.format(cls="Marker"))) as w:
         publisher, page, _ = publisher_and_watcher(w)
         w.move({("base", "tip"): (1, 0, 0, 0, 0, 0, 1)}, static=True)
@@ -103,7 +103,7 @@ async def test_a_marker_locked_to_its_frame_follows_it():
         assert page.markers["a/0"]["pose"] == [1, 0, 0, 0, 0, 0, 1]
 
 
-async def test_a_marker_appears_once_its_frame_is_known():
+async def test_marker_appears_once_its_frame_is_known():
     async with world(RvizConfig.parse(FILE.format(cls="Marker"))) as w:
         publisher, page, display = publisher_and_watcher(w)
         publisher.publish(marker(frame="tip"))
@@ -120,7 +120,7 @@ async def test_a_marker_appears_once_its_frame_is_known():
         assert "a/0" not in status(display)
 
 
-async def test_so_many_markers_wait_for_their_frames_as_the_filter_size_says():
+async def test_filter_size_limits_markers_waiting_for_frames():
     async with world(RvizConfig.parse(FILE.format(cls="Marker"))) as w:
         publisher, page, display = publisher_and_watcher(w)
         display.set_property(("Topic", "Filter size"), 2)
@@ -136,7 +136,7 @@ async def test_so_many_markers_wait_for_their_frames_as_the_filter_size_says():
         assert sorted(page.markers) == ["a/0", "a/1", "a/4"]
 
 
-async def test_deleting_one_of_a_namespace_and_all():
+async def test_markers_are_deleted_individually_and_all():
     async with world(RvizConfig.parse(FILE.format(cls="MarkerArray"))) as w:
         publisher, page, _ = publisher_and_watcher(w, MarkerArray)
         publisher.publish(MarkerArray(markers=[marker(n, ns=ns) for ns in "ab" for n in range(3)]))
@@ -157,7 +157,7 @@ async def test_deleting_one_of_a_namespace_and_all():
         assert list(page.markers) == ["a/9"]
 
 
-async def test_a_lifetime_ends():
+async def test_marker_disappears_after_lifetime():
     async with world(RvizConfig.parse(FILE.format(cls="Marker"))) as w:
         publisher, page, _ = publisher_and_watcher(w)
         mortal = marker(1)
@@ -175,7 +175,7 @@ async def test_a_lifetime_ends():
         await eventually(lambda: left() == ["a/2"])
 
 
-async def test_namespaces_have_boxes_that_the_file_may_have_cleared():
+async def test_namespace_checkboxes_follow_file():
     async with world(RvizConfig.parse(FILE.format(cls="Marker"))) as w:
         publisher, _, display = publisher_and_watcher(w)
         publisher.publish(marker(ns="seen"))
@@ -188,7 +188,7 @@ async def test_namespaces_have_boxes_that_the_file_may_have_cleared():
         assert {child.value for child in row.children} == {False}
 
 
-async def test_two_markers_with_one_name_in_a_message_are_told():
+async def test_duplicate_markers_in_message_are_reported():
     async with world(RvizConfig.parse(FILE.format(cls="MarkerArray"))) as w:
         publisher, page, display = publisher_and_watcher(w, MarkerArray)
         publisher.publish(MarkerArray(markers=[marker(1, x=1), marker(1, x=2)]))
@@ -201,7 +201,7 @@ async def test_two_markers_with_one_name_in_a_message_are_told():
         assert page.markers["a/1"]["pose"][0] == 2
 
 
-async def test_a_page_that_opens_later_is_sent_all_markers():
+async def test_late_page_receives_all_markers():
     async with world(RvizConfig.parse(FILE.format(cls="Marker"))) as w:
         publisher, page, display = publisher_and_watcher(w)
         for number in range(3):
@@ -214,7 +214,7 @@ async def test_a_page_that_opens_later_is_sent_all_markers():
         assert late.look() is None
 
 
-def test_a_page_that_missed_more_than_is_remembered_is_sent_everything(monkeypatch):
+def test_page_receives_all_markers_after_missing_too_many_changes(monkeypatch):
     monkeypatch.setattr("linkwright.rviz.markers.shapes._MOST_GONE", 2)
     store = MarkerStore("d")
     page = Watcher(store)
@@ -256,7 +256,7 @@ SQUARE = [(0, 0, 0), (1, 0, 0), (1, 1, 0)]
         ),
     ],
 )
-def test_what_cannot_be_drawn_is_told_in_the_words_of_rviz(message, text):
+def test_invalid_marker_is_rejected_with_message_of_rviz(message, text):
     with pytest.raises(BadMarkerError) as raised:
         read_marker(message, index())
     assert text in str(raised.value)
@@ -273,17 +273,17 @@ def test_what_cannot_be_drawn_is_told_in_the_words_of_rviz(message, text):
         ),
     ],
 )
-def test_what_may_not_have_been_meant_is_pointed_out(message, warning):
+def test_suspicious_marker_has_warning(message, warning):
     assert read_marker(message, index()).warning == warning
 
 
-def test_an_orientation_that_nobody_set_is_none():
+def test_zero_quaternion_is_identity():
     message = marker()
     message.pose.orientation.w = 0.0
     assert read_marker(message, index()).shape.pose == [0, 0, 0, 0, 0, 0, 1]
 
 
-def test_every_type_has_its_shape():
+def test_all_marker_types_have_shapes():
     kinds = []
     for kind in range(13):
         points = [(0, 0, 0), (1, 0, 0), (1, 1, 0), (0, 0, 0), (1, 0, 0), (1, 1, 0)] if kind > 3 else []
@@ -292,7 +292,7 @@ def test_every_type_has_its_shape():
     assert len(set(kinds)) == 12
 
 
-def test_a_mesh_may_come_with_the_message():
+def test_mesh_may_be_embedded_in_message():
     message = marker(kind=Marker.MESH_RESOURCE, mesh_use_embedded_materials=True)
     message.mesh_file.filename = "part.STL"
     message.mesh_file.data = b"solid"

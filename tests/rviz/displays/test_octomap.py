@@ -34,7 +34,7 @@ OCCUPIED, FREE, INNER = 2, 1, 3
 
 
 def octomap(last: list[int], frame: str = "base") -> Any:
-    """A map of half a metre with the eight smallest cells at the corner of the middle, in the first octant."""
+    """A map of half a meter with the eight smallest cells at the corner of the middle, in the first octant."""
     inner = [struct.pack("<H", INNER << 14), *[struct.pack("<H", INNER)] * 14]
     leaves = struct.pack("<H", sum(state << 2 * child for child, state in enumerate(last)))
     made = Octomap(binary=True, id="OcTree", resolution=0.5, data=signed(b"".join([*inner, leaves])))
@@ -42,7 +42,7 @@ def octomap(last: list[int], frame: str = "base") -> Any:
     return made
 
 
-async def test_cells_are_drawn_as_properties_ask():
+async def test_octomap_cells_follow_properties():
     async with world(RvizConfig.parse(FILE)) as w:
         w.move_arm()
         publisher = w.graph.create_node("mapper").create_publisher(Octomap, "/octomap", 10)
@@ -67,7 +67,7 @@ async def test_cells_are_drawn_as_properties_ask():
         assert (marker["scale"], marker["points"].tolist()) == ([1, 1, 1], [0.5, 0.5, 0.5])
 
 
-async def test_bad_maps_and_frames_are_said():
+async def test_invalid_octomaps_and_frames_are_reported():
     async with world(RvizConfig.parse(FILE)) as w:
         w.move_arm()
         publisher = w.graph.create_node("mapper").create_publisher(Octomap, "/octomap", 10)
@@ -83,7 +83,7 @@ async def test_bad_maps_and_frames_are_said():
         assert status["Transform"] == ("error", "No transform from [nowhere] to [base]")
 
 
-async def test_a_file_is_saved_as_it_was():
+async def test_octomap_file_is_saved_unchanged():
     async with world(RvizConfig.parse(FILE)) as w:
         assert w.viewer.displays[0].row().supported
         assert w.viewer.config.warnings == []

@@ -27,14 +27,14 @@ async def opened(made):
         return await client.opened()
 
 
-async def test_without_a_description_it_waits():
+async def test_robot_model_waits_for_description():
     async with world(config()) as made:
         opening = await opened(made)
     assert opening["robot_scene"]["links"] == []
     assert made.status("RobotModel") == {"Topic": ("warn", "No messages received")}
 
 
-async def test_a_description_is_a_scene_with_rows_and_status():
+async def test_description_becomes_scene_with_rows_and_status():
     async with world(config()) as made:
         made.describe(ARM)
         await made.settle()
@@ -55,7 +55,7 @@ async def test_a_description_is_a_scene_with_rows_and_status():
         assert {text for _, text in made.status("RobotModel").values()} == {"OK", "URDF parsed OK", "Transform OK"}
 
 
-async def test_properties_are_those_of_rviz():
+async def test_robot_model_properties_match_rviz():
     async with world(config()) as made:
         made.describe(ARM)
         await made.settle()
@@ -95,7 +95,7 @@ async def test_properties_are_those_of_rviz():
     assert rows["display-1/Links/tip/Alpha"]["maximum"] == 1.0
 
 
-async def test_a_file_says_how_links_look():
+async def test_link_properties_are_read_from_file():
     async with world(config(", Alpha: 0.8, Links: {tip: {Alpha: 0.25, Value: false}}")) as made:
         made.describe(ARM)
         await made.settle()
@@ -106,7 +106,7 @@ async def test_a_file_says_how_links_look():
     assert rows["display-1/Links/base"]["value"] is True
 
 
-async def test_the_box_over_all_links_sets_them_all():
+async def test_all_links_enabled_sets_all_links():
     async with world(config()) as made:
         made.describe(ARM)
         await made.settle()
@@ -118,7 +118,7 @@ async def test_the_box_over_all_links_sets_them_all():
             assert made.viewer.config.displays[0].section.scalar("Links", "tip").text == "false"
 
 
-async def test_a_joint_sets_the_links_below_it_and_follows_them():
+async def test_joint_checkbox_sets_links_below_and_follows_them():
     async with world(config(", Links: {Link Tree Style: Tree of links and joints}")) as made:
         made.describe(
             ARM.replace(
@@ -148,7 +148,7 @@ async def test_a_joint_sets_the_links_below_it_and_follows_them():
 
 
 @pytest.mark.parametrize("box", ["Joints/turn", "Links/All Links Enabled", "Links/base"])
-async def test_undo_takes_back_all_that_a_box_set(box):
+async def test_undo_reverts_all_links_set_by_checkbox(box):
     async with world(config(", Links: {tip: {Value: false}}")) as made:
         made.describe(ARM)
         await made.settle()
@@ -172,7 +172,7 @@ async def test_undo_takes_back_all_that_a_box_set(box):
             assert made.viewer.config.text() == text
 
 
-async def test_boxes_of_the_file_are_left_to_the_user():
+async def test_link_checkboxes_do_not_change_file_on_load():
     text = ", Links: {All Links Enabled: true, tip: {Value: false}}"
     async with world(config(text)) as made:
         before = made.viewer.config.text()
@@ -184,7 +184,7 @@ async def test_boxes_of_the_file_are_left_to_the_user():
         assert made.viewer.config.text() == before
 
 
-async def test_joints_and_masses_are_drawn_from_the_description():
+async def test_joint_and_mass_properties_come_from_description():
     heavy = '<inertial><mass value="2"/><inertia ixx="1" iyy="1" izz="1" ixy="0" ixz="0" iyz="0"/></inertial>'
     limited = '<axis xyz="0 0 1"/><origin xyz="0 0 1"/><limit lower="-1" upper="2" effort="1" velocity="1"/>'
     async with world(config()) as made:
@@ -211,7 +211,7 @@ async def test_joints_and_masses_are_drawn_from_the_description():
     assert mark["inertia"]["box"] == pytest.approx([3**0.5] * 3)
 
 
-async def test_a_new_description_replaces_the_robot_and_its_frames():
+async def test_new_description_replaces_robot_and_frames():
     async with world(config()) as made, page(made.viewer) as client:
         made.describe(ARM)
         made.move_arm()
@@ -226,7 +226,7 @@ async def test_a_new_description_replaces_the_robot_and_its_frames():
         assert sorted(tables[-1]["names"]) == ["base", "tip"]
 
 
-async def test_a_new_description_waits_while_time_is_paused():
+async def test_new_description_waits_while_time_is_paused():
     async with world(config()) as made:
         made.describe(ARM)
         await made.settle()
@@ -238,7 +238,7 @@ async def test_a_new_description_waits_while_time_is_paused():
         assert "point" in made.display("RobotModel").robot.links
 
 
-async def test_the_same_description_again_changes_nothing():
+async def test_repeated_description_changes_nothing():
     async with world(config()) as made:
         made.describe(ARM)
         await made.settle()
@@ -256,7 +256,7 @@ async def test_the_same_description_again_changes_nothing():
         ('<robot name="r"/>', {"URDF": ("error", "URDF failed Model parse")}),
     ],
 )
-async def test_a_bad_description_leaves_the_last_robot_standing(text, rows):
+async def test_invalid_description_keeps_last_robot(text, rows):
     async with world(config()) as made:
         made.describe(ARM)
         await made.settle()
@@ -271,7 +271,7 @@ async def test_a_bad_description_leaves_the_last_robot_standing(text, rows):
         assert made.status("RobotModel")["URDF"] == ("ok", "URDF parsed OK")
 
 
-async def test_a_prefix_stands_before_the_frames():
+async def test_tf_prefix_is_prepended_to_frames():
     async with world(config(", TF Prefix: one")) as made:
         made.describe(ARM)
         await made.settle()
@@ -286,7 +286,7 @@ async def test_a_prefix_stands_before_the_frames():
 @pytest.mark.parametrize(
     "topic", ["Value: /robot_description, Durability Policy: Volatile", "Value: robot_description"]
 )
-async def test_a_description_published_before_is_seen_whatever_the_file_says(topic):
+async def test_latched_description_is_received_with_any_topic_settings(topic):
     made = World(config(f", Description Topic: {{{topic}}}"))
     made.describe(ARM)
     await made.settle()
@@ -297,7 +297,7 @@ async def test_a_description_published_before_is_seen_whatever_the_file_says(top
     await made.graph.close()
 
 
-async def test_another_topic_is_followed():
+async def test_changed_description_topic_is_subscribed():
     async with world(config()) as made, page(made.viewer) as client:
         await client.opened()
         await client.set("display-1/Description Topic", "/other")
@@ -312,7 +312,7 @@ async def test_another_topic_is_followed():
             assert status.startswith("Error subscribing: ")
 
 
-async def test_a_description_may_come_from_a_xacro_file(tmp_path):
+async def test_description_may_come_from_xacro_file(tmp_path):
     path = write(
         tmp_path / "r.xacro",
         '<robot name="r" xmlns:xacro="http://www.ros.org/wiki/xacro">\n  <link name="${\'ba\' + \'se\'}"/>\n</robot>\n',
@@ -338,7 +338,7 @@ async def test_a_description_may_come_from_a_xacro_file(tmp_path):
         assert "Description File" not in rows
 
 
-async def test_a_missing_mesh_is_told_in_its_row_and_in_the_terminal_once(tmp_path: Path):
+async def test_missing_mesh_is_reported_in_status_and_once_in_log(tmp_path: Path):
     share = package(tmp_path / "robot", "robot")
     async with world(config(), packages={"robot": share}) as made:
         made.describe(MESHED)
@@ -356,7 +356,7 @@ async def test_a_missing_mesh_is_told_in_its_row_and_in_the_terminal_once(tmp_pa
         assert made.status("RobotModel")["base"] == ("ok", "Transform OK")
 
 
-async def test_pages_tell_which_meshes_they_cannot_read(tmp_path):
+async def test_mesh_errors_of_pages_are_shown_in_status(tmp_path):
     share = package(tmp_path / "robot", "robot")
     write(share / "meshes" / "arm.stl")
     async with world(config(), packages={"robot": share}) as made:
@@ -365,17 +365,17 @@ async def test_pages_tell_which_meshes_they_cannot_read(tmp_path):
         async with page(made.viewer) as client:
             url = (await client.opened())["robot_scene"]["links"][0]["visuals"][0]["url"]
 
-            async def tell(error, address=url, link="base"):
+            async def report_mesh_error(error, address=url, link="base"):
                 await client.send("mesh_status", display="display-1", link=link, url=address, error=error)
 
-            await tell("not an STL file")
+            await report_mesh_error("not an STL file")
             status = await client.until("display_status")
             row = next(row for row in status["status"] if row["name"] == "base")
             assert row == {"name": "base", "level": "error", "text": "Could not load mesh 'arm.stl': not an STL file"}
-            await tell("not an STL file")
-            await tell("stale", address="/mesh/other")
-            await tell("stale", link="tip")
-            await tell(None)
+            await report_mesh_error("not an STL file")
+            await report_mesh_error("stale", address="/mesh/other")
+            await report_mesh_error("stale", link="tip")
+            await report_mesh_error(None)
             status = await client.until("display_status")
             assert next(row for row in status["status"] if row["name"] == "base")["level"] == "ok"
             assert made.logged().count("not an STL file") == 1
@@ -389,7 +389,7 @@ def published(made: World, node: str, text: str):
     return publisher
 
 
-async def test_whose_description_is_shown_is_told_where_two_nodes_publish_one():
+async def test_status_names_publisher_of_shown_description():
     other = ARM.replace('name="arm"', 'name="other"')
     async with world(config()) as made:
         first = published(made, "first", ARM)
@@ -409,7 +409,7 @@ async def test_whose_description_is_shown_is_told_where_two_nodes_publish_one():
             node.destroy_node()
 
 
-async def test_a_description_changes_hands_with_a_word_after_this_process_has_joined_a_network():
+async def test_description_publisher_change_is_reported_after_gid_change():
     """Then publishers have other GIDs than when their first messages came."""
     async with world(config()) as made:
         first = made.graph.create_node("first")
@@ -427,7 +427,7 @@ async def test_a_description_changes_hands_with_a_word_after_this_process_has_jo
         second.destroy_node()
 
 
-async def test_a_description_of_a_node_that_left_at_once_is_told_of():
+async def test_description_from_vanished_node_is_reported():
     async with world(config()) as made:
         published(made, "first", ARM)
         await made.settle()
@@ -439,7 +439,7 @@ async def test_a_description_of_a_node_that_left_at_once_is_told_of():
         assert (level, "of an unknown node is shown; /first also publish" in text) == ("warn", True)
 
 
-async def test_a_description_of_a_node_that_was_started_again_takes_its_place_without_a_word():
+async def test_description_from_restarted_node_replaces_without_warning():
     async with world(config()) as made:
         first = published(made, "first", ARM)
         await made.settle()

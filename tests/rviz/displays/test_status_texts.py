@@ -16,7 +16,7 @@ _TEXT_OF = {"set_status_row": 2, "refuse": 0, "_refuse": 1, "StatusRow": 2}
 
 
 def _is_plain(text: ast.expr) -> bool:
-    """Whether the source has a text here that is no phrase; the catalogues are checked for phrases."""
+    """Whether the source has a text here that is no phrase; the catalogs are checked for phrases."""
     if isinstance(text, ast.IfExp):
         return _is_plain(text.body) or _is_plain(text.orelse)
     if isinstance(text, ast.BoolOp):
@@ -37,13 +37,13 @@ def _statuses(folder: Path) -> list[tuple[str, ast.expr]]:
     return found
 
 
-def test_every_status_is_a_phrase_and_so_in_the_catalogues():
+def test_all_statuses_are_translatable_phrases():
     statuses = [status for room in ("displays", "frames", "visualization") for status in _statuses(RVIZ / room)]
     assert len(statuses) > 100
     assert [place for place, text in statuses if _is_plain(text)] == []
 
 
-async def test_each_page_reads_statuses_in_its_language():
+async def test_statuses_are_sent_in_language_of_page():
     silent = {
         "zh": "没有收到消息：没有节点发布这个话题",
         "en": "No messages received: the topic has no publisher",
@@ -63,7 +63,7 @@ async def test_each_page_reads_statuses_in_its_language():
                 assert [(row["name"], row["text"]) for row in message["status"]] == [("Topic", wrong[language])]
 
 
-async def test_findings_are_told_in_the_language_of_each_page_too():
+async def test_findings_are_sent_in_language_of_page():
     async with world(config()) as w, page(w.viewer, "&language=zh") as chinese, page(w.viewer) as other:
         await chinese.opened()
         await other.opened()

@@ -57,7 +57,7 @@ def points(world) -> list[list[float]]:
     return [(each.fields["positions"] @ rotation_matrix(each.pose[3:]).T + each.pose[:3]).tolist() for each in shown]
 
 
-async def test_a_point_is_drawn_where_it_was_in_the_fixed_frame():
+async def test_point_is_drawn_at_its_pose_in_fixed_frame():
     async with world(config()) as w:
         publisher = w.graph.create_node("clicks").create_publisher(PointStamped, "/clicked_point", 5)
         assert w.status("PointStamped") == {"Topic": ("warn", "No messages received: the topic has no publisher")}
@@ -71,7 +71,7 @@ async def test_a_point_is_drawn_where_it_was_in_the_fixed_frame():
         }
 
 
-async def test_a_message_waits_for_its_transform():
+async def test_message_waits_for_its_transform():
     async with world(config()) as w:
         publisher = w.graph.create_node("clicks").create_publisher(PointStamped, "/clicked_point", 5)
         publisher.publish(point(1.0, "tip"))
@@ -86,7 +86,7 @@ async def test_a_message_waits_for_its_transform():
 
 
 @skipping
-async def test_transforms_that_come_a_little_later_than_messages_are_no_error():
+async def test_slightly_late_transforms_are_not_an_error():
     """Drivers publish their data before tf has the pose of that moment: that is how it is, not a fault."""
     async with world(config()) as w:
         publisher = w.graph.create_node("clicks").create_publisher(PointStamped, "/clicked_point", 5)
@@ -104,7 +104,7 @@ async def test_transforms_that_come_a_little_later_than_messages_are_no_error():
 
 
 @skipping
-async def test_transforms_that_do_not_come_are_an_error():
+async def test_missing_transforms_are_an_error():
     async with world(config()) as w:
         publisher = w.graph.create_node("clicks").create_publisher(PointStamped, "/clicked_point", 5)
         w.move({("base", "tip"): (0, 0, 0, 0, 0, 0, 1)})
@@ -122,7 +122,7 @@ async def test_transforms_that_do_not_come_are_an_error():
         assert w.status("PointStamped")["Transform"] == ("ok", "Transform OK")
 
 
-async def test_another_fixed_frame_places_the_last_message_anew():
+async def test_fixed_frame_change_transforms_last_message_again():
     async with world(config()) as w:
         publisher = w.graph.create_node("clicks").create_publisher(PointStamped, "/clicked_point", 5)
         w.move({("base", "tip"): (1, 0, 0, 0, 0, 0, 1)}, static=True)
@@ -135,7 +135,7 @@ async def test_another_fixed_frame_places_the_last_message_anew():
 
 
 @pytest.mark.parametrize(("length", "expected"), [(1, [[3, 0, 0]]), (3, [[1, 0, 0], [2, 0, 0], [3, 0, 0]])])
-async def test_the_history_is_as_long_as_asked_for(length, expected):
+async def test_history_length_limits_number_of_points(length, expected):
     async with world(config(f"      History Length: {length}\n")) as w:
         publisher = w.graph.create_node("clicks").create_publisher(PointStamped, "/clicked_point", 5)
         for x in (1.0, 2.0, 3.0):
@@ -144,7 +144,7 @@ async def test_the_history_is_as_long_as_asked_for(length, expected):
         assert points(w) == expected
 
 
-async def test_a_point_that_is_none_is_told():
+async def test_nan_point_is_reported():
     async with world(config()) as w:
         publisher = w.graph.create_node("clicks").create_publisher(PointStamped, "/clicked_point", 5)
         publisher.publish(point(float("nan")))
@@ -153,7 +153,7 @@ async def test_a_point_that_is_none_is_told():
         assert w.display("PointStamped").data() == []
 
 
-async def test_a_disabled_display_leaves_the_topic():
+async def test_disabled_display_unsubscribes_from_topic():
     async with world(config()) as w:
         publisher = w.graph.create_node("clicks").create_publisher(PointStamped, "/clicked_point", 5)
         display = w.display("PointStamped")
@@ -165,7 +165,7 @@ async def test_a_disabled_display_leaves_the_topic():
         assert publisher.get_subscription_count() == 1
 
 
-async def test_quality_of_service_that_does_not_fit_is_told():
+async def test_incompatible_qos_is_reported():
     async with world(config()) as w:
         best_effort = QoSProfile(5, reliability=ReliabilityPolicy.BEST_EFFORT)
         w.graph.create_node("clicks").create_publisher(PointStamped, "/clicked_point", best_effort)
@@ -175,7 +175,7 @@ async def test_quality_of_service_that_does_not_fit_is_told():
         assert "RELIABILITY" in text
 
 
-async def test_the_file_says_how_to_listen():
+async def test_qos_is_read_from_file():
     text = FILE + "\n"
     text = text.replace(
         "        Value: /clicked_point\n", "        Durability Policy: Transient Local\n        Value: /p\n"
@@ -188,7 +188,7 @@ async def test_the_file_says_how_to_listen():
         assert points(w) == [[4, 0, 0]]
 
 
-async def test_a_message_that_a_display_fails_at_is_told_and_is_not_in_the_way(monkeypatch):
+async def test_failing_message_is_reported_and_next_one_is_shown(monkeypatch):
     def fail(self, message, pose):
         if message.point.x < 0:
             raise ZeroDivisionError("no such point")
@@ -213,7 +213,7 @@ async def test_a_message_that_a_display_fails_at_is_told_and_is_not_in_the_way(m
         assert points(w) == [[3.0, 0.0, 0.0]]
 
 
-async def test_the_last_count_of_messages_is_told_when_no_more_come(monkeypatch):
+async def test_final_message_count_is_shown(monkeypatch):
     monkeypatch.setattr("linkwright.rviz.displays.base.topic_display._COUNT_PERIOD", 0.05)
     async with world(config()) as w:
         publisher = w.graph.create_node("clicks").create_publisher(PointStamped, "/clicked_point", 10)
@@ -227,7 +227,7 @@ async def test_the_last_count_of_messages_is_told_when_no_more_come(monkeypatch)
         await eventually(lambda: status() == ("ok", "4 messages received"))
 
 
-async def test_a_silent_topic_says_who_is_silent_and_where_such_messages_are(monkeypatch):
+async def test_silent_topic_status_names_publishers_and_alternatives(monkeypatch):
     monkeypatch.setattr("linkwright.rviz.displays.base.topic_display._COUNT_PERIOD", 0.05)
     async with world(config()) as w:
 
@@ -246,7 +246,7 @@ async def test_a_silent_topic_says_who_is_silent_and_where_such_messages_are(mon
         await eventually(lambda: status() == "no message arrived yet from clicks", what=status)
 
 
-async def test_a_topic_of_another_type_is_told(monkeypatch):
+async def test_topic_type_mismatch_is_reported(monkeypatch):
     monkeypatch.setattr("linkwright.rviz.displays.base.topic_display._COUNT_PERIOD", 0.05)
     async with world(RvizConfig.parse(FILE.replace("/clicked_point", "/words"))) as w:
         w.graph.create_node("speaker").create_publisher(get_message("std_msgs/msg/String"), "/words", 1)
@@ -258,7 +258,7 @@ async def test_a_topic_of_another_type_is_told(monkeypatch):
 
 
 @skipping
-async def test_stamps_of_another_clock_are_told_of():
+async def test_stamps_of_another_clock_are_reported():
     async with world(config()) as w:
         publisher = w.graph.create_node("clicks").create_publisher(PointStamped, "/clicked_point", 5)
         w.move({("base", "tip"): (0, 0, 0, 0, 0, 0, 1)})
@@ -277,7 +277,7 @@ async def test_stamps_of_another_clock_are_told_of():
         (QoSProfile(depth=5, durability=DurabilityPolicy.VOLATILE), "Choose Volatile for Durability Policy"),
     ],
 )
-async def test_a_publisher_that_offers_less_is_told_of_with_the_row_to_change(policy, remedy):
+async def test_qos_mismatch_status_names_property_to_change(policy, remedy):
     wanted = {"Reliability Policy": "Reliable", "Durability Policy": "Transient Local"}
     async with world(config()) as w:
         display = w.display("PointStamped")
@@ -290,7 +290,7 @@ async def test_a_publisher_that_offers_less_is_told_of_with_the_row_to_change(po
         assert (level, f"{remedy} below Topic" in text) == ("warn", True), text
 
 
-async def test_many_displays_that_wait_describe_no_endpoints_but_publishers(monkeypatch):
+async def test_waiting_displays_query_only_publisher_endpoints(monkeypatch):
     described: list[str] = []
     info = Endpoint.info
     monkeypatch.setattr(Endpoint, "info", lambda self: (described.append(self.kind), info(self))[1])
@@ -310,7 +310,7 @@ async def test_many_displays_that_wait_describe_no_endpoints_but_publishers(monk
         await eventually(lambda: "there is" not in shown[7].status[0].text)
 
 
-async def test_a_path_is_no_warning_before_the_first_plan_once_somebody_plans():
+async def test_path_display_has_no_warning_once_planner_publishes():
     path = RvizConfig.parse(FILE.replace("PointStamped", "Path").replace("/clicked_point", "/plan"))
     async with world(path) as w:
         assert w.status("Path")["Topic"][0] == "warn", "the topic has no publisher"

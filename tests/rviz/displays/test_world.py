@@ -82,7 +82,7 @@ def positions(made) -> list[list[float]]:
     return sent(made, "world_poses").fields["poses"].reshape(-1, 7)[:, :3].round(6).tolist()
 
 
-async def test_links_are_sent_with_their_shapes_in_their_frames_and_where_they_stand():
+async def test_world_links_are_sent_with_shapes_and_poses():
     async with world(config("world")) as made:
         await Simulation(made).describe(WORLD)
         ground, base, tip = sent(made, "world_scene").fields["links"]
@@ -99,7 +99,7 @@ async def test_links_are_sent_with_their_shapes_in_their_frames_and_where_they_s
         assert made.status("World")["World"] == ("ok", "2 models, 3 links")
 
 
-async def test_links_move_by_their_names_and_stay_when_the_world_is_described_anew():
+async def test_link_poses_follow_names_and_survive_new_description():
     async with world(config("world")) as made:
         simulation = Simulation(made)
         await simulation.describe(WORLD)
@@ -112,7 +112,7 @@ async def test_links_move_by_their_names_and_stay_when_the_world_is_described_an
         assert sent(made, "world_poses").fields["revision"] == sent(made, "world_scene").fields["revision"] == 2
 
 
-async def test_what_nothing_moves_goes_where_a_new_description_has_it():
+async def test_static_models_follow_new_description():
     async with world(config("world")) as made:
         simulation = Simulation(made)
         await simulation.describe(WORLD)
@@ -124,7 +124,7 @@ async def test_what_nothing_moves_goes_where_a_new_description_has_it():
         await eventually(lambda: positions(made) == [[0, 0, -1], [0, 0, 0.5], [0, 1, 0]])
 
 
-async def test_without_a_frame_world_the_world_is_placed_by_a_frame_of_its_robot():
+async def test_world_is_placed_by_robot_frame_without_world_frame():
     async with world(config("odom")) as made:
         simulation = Simulation(made)
         await simulation.describe(WORLD)
@@ -142,7 +142,7 @@ async def test_without_a_frame_world_the_world_is_placed_by_a_frame_of_its_robot
         )
 
 
-async def test_a_world_without_transforms_is_at_its_own_frame_and_nothing_warns():
+async def test_world_without_transforms_has_own_frame_and_no_warning():
     async with world(config("world")) as made, page(made.viewer) as opened:
         await Simulation(made).describe(WORLD)
         await opened.until("display_status", display="global", level="ok")
@@ -152,7 +152,7 @@ async def test_a_world_without_transforms_is_at_its_own_frame_and_nothing_warns(
         await eventually(lambda: (frame := own("world")) is not None and frame.parent == "odom")
 
 
-async def test_with_the_fixed_frame_world_the_frames_of_tf_are_placed_in_the_world_that_stands_still():
+async def test_tf_frames_are_placed_in_world_as_fixed_frame():
     async with world(config("world")) as made, page(made.viewer):
         simulation = Simulation(made)
         await simulation.describe(WORLD)
@@ -176,7 +176,7 @@ async def test_with_the_fixed_frame_world_the_frames_of_tf_are_placed_in_the_wor
         assert transforms.placed_frame("world") is None
 
 
-async def test_a_frame_world_of_tf_is_the_world():
+async def test_world_frame_of_tf_places_world():
     async with world(config("map")) as made:
         made.move({("map", "world"): (1, 0, 0, *IDENTITY[3:])}, static=True)
         await Simulation(made).describe(WORLD)
@@ -184,7 +184,7 @@ async def test_a_frame_world_of_tf_is_the_world():
         assert sent(made, "world_poses").pose is None
 
 
-async def test_what_nothing_moves_is_sent_once():
+async def test_static_poses_are_sent_once():
     async with world(config("world")) as made:
         simulation = Simulation(made)
         await simulation.describe(WORLD)
@@ -207,7 +207,7 @@ LOST = "<link name='l'><pose relative_to='x'/></link>"
         (f"<sdf version='1.6'><model name='m'>{LOST}</model></sdf>", "'x' cannot be determined"),
     ],
 )
-async def test_a_text_that_says_no_world_is_told_of_and_the_world_before_stays(text, message):
+async def test_invalid_description_is_reported_and_last_world_remains(text, message):
     async with world(config("world")) as made:
         simulation = Simulation(made)
         await simulation.describe(WORLD)
@@ -217,7 +217,7 @@ async def test_a_text_that_says_no_world_is_told_of_and_the_world_before_stays(t
         assert links_of(made) == 3
 
 
-async def test_files_of_a_model_are_served_with_its_textures_and_those_that_are_missing_told_of(tmp_path):
+async def test_model_files_are_served_and_missing_ones_reported(tmp_path):
     model = tmp_path / "crate"
     for name in ("model.config", "meshes/crate.stl", "materials/textures/wood.png", "secret.txt"):
         (model / name).parent.mkdir(parents=True, exist_ok=True)
@@ -241,7 +241,7 @@ async def test_files_of_a_model_are_served_with_its_textures_and_those_that_are_
         assert "crate::link: Could not load 'file:///nowhere.stl'" in status
 
 
-async def test_the_heights_of_a_ground_are_sent_as_the_simulation_has_them_and_not_too_many(tmp_path):
+async def test_heightmap_heights_are_sent_and_limited(tmp_path):
     steps = np.tile(np.linspace(0, 65535, 600).astype(np.uint16), (2, 1))
     Image.fromarray(steps).save(tmp_path / "hill.png")
     ground = "<heightmap><uri>{}</uri><size>10 10 2</size></heightmap>"
@@ -258,7 +258,7 @@ async def test_the_heights_of_a_ground_are_sent_as_the_simulation_has_them_and_n
         assert "file:///nowhere.png" in made.status("World")["Files"][1]
 
 
-async def test_how_a_surface_reflects_is_sent_where_its_material_says_so(tmp_path):
+async def test_pbr_surface_is_sent_with_material(tmp_path):
     Image.new("RGB", (2, 2)).save(tmp_path / "bumps.png")
     bumps = (tmp_path / "bumps.png").as_uri()
     ball = "<geometry><sphere><radius>1</radius></sphere></geometry>"
@@ -280,7 +280,7 @@ async def test_how_a_surface_reflects_is_sent_where_its_material_says_so(tmp_pat
         assert surface["normal_map"] == shining["texture"] == plain["texture"]
 
 
-async def test_materials_of_gazebo_are_known_by_their_names():
+async def test_gazebo_material_scripts_are_recognized():
     script = "<material><script><name>Gazebo/Red</name></script></material>"
     visual = f"<visual name='v'><geometry><sphere><radius>1</radius></sphere></geometry>{script}</visual>"
     text = f"<sdf version='1.9'><model name='ball'><link name='l'>{visual}</link></model></sdf>"
@@ -304,7 +304,7 @@ LIGHTS = """\
 """
 
 
-async def test_the_lights_of_a_world_are_sent_with_where_they_are_and_how_they_shine():
+async def test_world_lights_are_sent_with_pose_and_properties():
     async with world(config("world")) as made:
         await Simulation(made).describe(LIGHTS, links=1)
         scene = sent(made, "world_scene").fields
@@ -357,16 +357,16 @@ SEEING = """
 </world>"""
 
 
-def listened(made) -> set[str]:
+def subscribed_topics(made) -> set[str]:
     names = ("/world_rays", "/world_rays/others")
     return {name for name in names if made.graph.create_node("asking").count_subscribers(name)}
 
 
-async def test_the_rays_of_lidars_are_listened_to_while_they_are_drawn():
+async def test_lidar_scans_are_subscribed_while_rays_are_drawn():
     async with world(config("world")) as made:
         simulation = Simulation(made)
         await simulation.describe(WORLD)
-        assert listened(made) == set()
+        assert subscribed_topics(made) == set()
         await simulation.describe(WORLD.replace("</world>", SEEING), links=4)
         laser, spare = sent(made, "world_scene").fields["lidars"]
         assert (laser["name"], laser["link"], laser["visualized"]) == ("scout::head::laser", "scout::head", True)
@@ -374,7 +374,7 @@ async def test_the_rays_of_lidars_are_listened_to_while_they_are_drawn():
         assert (laser["vertical"]["count"], laser["vertical"]["step"]) == (16, pytest.approx(0.04))
         assert (laser["horizontal"]["count"], laser["horizontal"]["step"]) == (44, pytest.approx(0.046))
         assert (spare["visualized"], spare["farthest"]) == (False, 30.0)
-        assert listened(made) == {"/world_rays"}
+        assert subscribed_topics(made) == {"/world_rays"}
         rays = made.graph.create_node("rays").create_publisher(SCAN, "/world_rays", SENSOR_DATA_QOS)
         ranges = np.arange(32_000, dtype=np.float32)
         rays.publish(SCAN(header=Header(frame_id="scout::head::laser"), ranges=ranges))
@@ -393,13 +393,13 @@ async def test_the_rays_of_lidars_are_listened_to_while_they_are_drawn():
         assert sent(made, "world_rays") is None
 
         made.display("World").set_property(("Lidar Rays",), "All")
-        assert listened(made) == {"/world_rays", "/world_rays/others"}
+        assert subscribed_topics(made) == {"/world_rays", "/world_rays/others"}
         made.display("World").set_property(("Lidar Rays",), "None")
-        assert listened(made) == set()
+        assert subscribed_topics(made) == set()
         assert sent(made, "world_rays") is None
 
 
-async def test_cameras_are_sent_with_what_they_see():
+async def test_cameras_are_sent_with_field_of_view():
     async with world(config("world")) as made:
         await Simulation(made).describe(WORLD.replace("</world>", SEEING), links=4)
         (camera,) = sent(made, "world_scene").fields["cameras"]

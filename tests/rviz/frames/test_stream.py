@@ -107,7 +107,7 @@ def streaming(test):
 
 
 @streaming
-async def test_the_table_comes_before_the_transforms_and_then_the_displays_hear(rig):
+async def test_frame_table_precedes_transforms_and_frame_event(rig):
     rig.move(1.0)
     await rig.settle()
     table, transforms, frames = rig.said
@@ -120,7 +120,7 @@ async def test_the_table_comes_before_the_transforms_and_then_the_displays_hear(
 
 
 @streaming
-async def test_after_quiet_a_change_goes_out_at_once(rig):
+async def test_change_after_pause_is_sent_at_once(rig):
     rig.move(1.0)
     await asyncio.sleep(0.1)
     rig.said.clear()
@@ -130,7 +130,7 @@ async def test_after_quiet_a_change_goes_out_at_once(rig):
 
 
 @streaming
-async def test_no_more_than_the_frame_rate_and_the_last_change_is_never_lost(rig):
+async def test_updates_are_limited_to_frame_rate_and_last_change_is_sent(rig):
     for x in range(500):
         rig.move(float(x))
         await asyncio.sleep(0.001)
@@ -140,7 +140,7 @@ async def test_no_more_than_the_frame_rate_and_the_last_change_is_never_lost(rig
 
 
 @streaming
-async def test_what_comes_at_the_frame_rate_hardly_waits_though_updates_were_due_at_other_moments(rig):
+async def test_changes_at_frame_rate_are_sent_without_delay(rig):
     rig.move(-2.0)
     await rig.settle()
     rig.move(-1.0)
@@ -156,7 +156,7 @@ async def test_what_comes_at_the_frame_rate_hardly_waits_though_updates_were_due
 
 
 @streaming
-async def test_the_fixed_frame_may_be_one_that_a_display_places(rig):
+async def test_fixed_frame_may_be_placed_by_display(rig):
     rig.stream.fixed_frame = "world"
     rig.move(1.0)
     await rig.settle()
@@ -182,7 +182,7 @@ async def test_equal_transforms_are_not_sent_again(rig):
 
 
 @streaming
-async def test_frames_that_are_heard_of_no_more_age_on_the_page(rig):
+async def test_silent_frames_age(rig):
     rig.stream.fade_time = 0.6
     rig.send({("base", "fix"): IDENTITY}, static=True)
     rig.move(1.0)
@@ -201,7 +201,7 @@ async def test_frames_that_are_heard_of_no_more_age_on_the_page(rig):
 
 
 @streaming
-async def test_ages_are_nothing_where_no_display_shows_them(rig):
+async def test_ages_are_not_sent_without_fade_time(rig):
     rig.stream.fade_time = None
     rig.move(1.0)
     await asyncio.sleep(0.6)
@@ -209,7 +209,7 @@ async def test_ages_are_nothing_where_no_display_shows_them(rig):
 
 
 @streaming
-async def test_nobody_watching_costs_nothing_until_a_page_opens(rig):
+async def test_nothing_is_sent_without_pages(rig):
     rig.watched = False
     rig.move(1.0)
     await rig.settle()
@@ -221,7 +221,7 @@ async def test_nobody_watching_costs_nothing_until_a_page_opens(rig):
 
 
 @streaming
-async def test_another_fixed_frame_shows_everything_from_there(rig):
+async def test_fixed_frame_change_sends_all_transforms(rig):
     rig.move(1.0)
     await rig.settle()
     rig.said.clear()
@@ -234,7 +234,7 @@ async def test_another_fixed_frame_shows_everything_from_there(rig):
 
 
 @streaming
-async def test_an_unknown_fixed_frame_places_nothing(rig):
+async def test_unknown_fixed_frame_gives_nan_poses(rig):
     rig.stream.fixed_frame = "map"
     rig.move(1.0)
     await rig.settle()
@@ -245,7 +245,7 @@ async def test_an_unknown_fixed_frame_places_nothing(rig):
 
 
 @streaming
-async def test_a_robot_of_one_link_has_its_frame_though_tf_does_not_know_it(rig):
+async def test_frame_of_single_link_robot_is_sent_without_tf(rig):
     rig.own_frames = frozenset({"base"})
     rig.stream.on_robot_changed(set())
     await rig.settle()
@@ -260,7 +260,7 @@ async def test_a_robot_of_one_link_has_its_frame_though_tf_does_not_know_it(rig)
 
 
 @streaming
-async def test_frames_of_a_robot_that_went_are_gone(rig):
+async def test_frames_of_removed_robot_are_removed(rig):
     rig.send({("base", "tip"): IDENTITY, ("base", "old"): IDENTITY})
     await rig.settle()
     rig.said.clear()
@@ -273,7 +273,7 @@ async def test_frames_of_a_robot_that_went_are_gone(rig):
 
 
 @streaming
-async def test_the_stamp_is_that_of_the_newest_transform(rig):
+async def test_stamp_is_that_of_newest_transform(rig):
     rig.move(1.0, stamp_ns=2_500_000_000)
     rig.send({("base", "b"): IDENTITY}, stamp_ns=1_000_000_000)
     await eventually(rig.sent)

@@ -11,9 +11,9 @@ class Value:
         self.now = 0.0
         self.told = 0
         self.number = 0
-        self.history = History(self._tell, lambda: self.now)
+        self.history = History(self._on_change, lambda: self.now)
 
-    def _tell(self) -> None:
+    def _on_change(self) -> None:
         self.told += 1
 
     def set(self, number: int, subject: str | None = "number") -> None:
@@ -28,7 +28,7 @@ class Value:
         return before
 
 
-def test_edits_are_taken_back_and_done_again():
+def test_edits_are_undone_and_redone():
     value = Value()
     for number in (1, 2, 3):
         value.set(number, None)
@@ -49,7 +49,7 @@ def test_edits_are_taken_back_and_done_again():
     assert (value.number, value.history.undo_name) == (0, None)
 
 
-def test_a_drag_is_one_edit():
+def test_edits_of_one_drag_are_merged():
     value = Value()
     for number in (1, 2, 3):
         value.now += MERGE_INTERVAL / 2
@@ -64,7 +64,7 @@ def test_a_drag_is_one_edit():
     assert value.number == 3
 
 
-def test_edits_of_different_things_are_different_edits():
+def test_edits_of_different_values_are_not_merged():
     value = Value()
     value.set(1, "a")
     value.set(2, "b")
@@ -72,7 +72,7 @@ def test_edits_of_different_things_are_different_edits():
     assert value.number == 1
 
 
-def test_what_was_saved_is_known_through_undo_and_redo():
+def test_saved_state_is_tracked_through_undo_and_redo():
     value = Value()
     value.set(1)
     value.history.mark_saved()
@@ -90,7 +90,7 @@ def test_what_was_saved_is_known_through_undo_and_redo():
     assert not value.history.has_unsaved_edits
 
 
-def test_what_undo_does_not_know_counts_as_unsaved_too():
+def test_permanent_edit_counts_as_unsaved():
     value = Value()
     value.history.add_permanent_edit()
     assert value.history.has_unsaved_edits
@@ -101,7 +101,7 @@ def test_what_undo_does_not_know_counts_as_unsaved_too():
     assert not value.history.has_unsaved_edits
 
 
-def test_history_does_not_grow_without_end():
+def test_history_length_is_limited():
     value = Value()
     for number in range(MAX_EDITS + 10):
         value.set(number, None)

@@ -14,7 +14,7 @@ from tests.viewer.scene import ARM, page, world
 String = get_message("std_msgs/msg/String")
 
 
-async def test_groups_are_rows_that_hold_rows():
+async def test_groups_contain_display_rows():
     async with opened() as (_, client):
         displays = client.first["tree"]["displays"]
         assert [(display["name"], display["group"]) for display in displays] == [
@@ -26,7 +26,7 @@ async def test_groups_are_rows_that_hold_rows():
         assert [display["supported"] for display in displays] == [True, True, True, False]
 
 
-async def test_a_group_that_is_switched_off_switches_off_what_it_holds():
+async def test_disabled_group_disables_its_displays():
     async with opened() as (made, client):
         publisher = made.graph.create_node("clicks").create_publisher(PointStamped, "/clicked_point", 5)
         assert publisher.get_subscription_count() == 1
@@ -42,7 +42,7 @@ async def test_a_group_that_is_switched_off_switches_off_what_it_holds():
 
 
 @pytest.mark.parametrize("box", ["", "Enabled: true", "Value: true", "Enabled: true, Value: false", "Enabled: no"])
-async def test_a_box_that_is_set_back_leaves_the_file_as_it_was(box):
+async def test_undo_of_checkbox_restores_file(box):
     text = f"Visualization Manager:\n  Displays:\n    - {{Class: rviz_default_plugins/Axes, {box}}}\n"
     async with world(RvizConfig.parse(text)) as made:
         manager = made.viewer.manager
@@ -68,7 +68,7 @@ FRAMES = """Visualization Manager:
 """
 
 
-async def test_frames_fade_in_the_shortest_time_of_the_displays_that_show_them():
+async def test_fade_time_is_shortest_of_tf_displays():
     async with world(RvizConfig.parse(FRAMES)) as made:
         manager = made.viewer.manager
         stream, tree = manager._stream, manager.tree
@@ -92,7 +92,7 @@ async def test_frames_fade_in_the_shortest_time_of_the_displays_that_show_them()
 # --- which displays there are --------------------------------------------------------------------------------------
 
 
-async def test_what_can_be_added_is_told():
+async def test_display_choices_are_sent():
     async with opened() as (_, client):
         await client.send("ask_display_choices")
         message = (await client.until("display_choices"))["classes"]
@@ -102,7 +102,7 @@ async def test_what_can_be_added_is_told():
         assert list(classes)[-1] == "rviz_common/Group"
 
 
-async def test_a_display_is_added_and_taken_away_again():
+async def test_display_is_added_and_undone():
     async with opened() as (made, client):
         await client.send("add_display", cls="rviz_default_plugins/Axes", name="Axes", group="display-2", topic=None)
         tree = await client.until("tree")
@@ -130,7 +130,7 @@ async def test_a_display_is_added_and_taken_away_again():
         ]
 
 
-async def test_a_display_for_a_topic_takes_what_its_publishers_offer():
+async def test_display_for_topic_uses_qos_of_publishers():
     async with opened() as (made, client):
         qos = QoSProfile(depth=1, reliability=ReliabilityPolicy.BEST_EFFORT)
         publisher = made.graph.create_node("sensor").create_publisher(PointStamped, "/found", qos)
@@ -143,7 +143,7 @@ async def test_a_display_for_a_topic_takes_what_its_publishers_offer():
         assert entries(made)[-1]["Topic"] == {"Reliability Policy": "Best Effort", "Value": "/found"}
 
 
-async def test_a_robot_is_added_by_the_topic_of_its_description():
+async def test_robot_model_is_added_by_description_topic():
     async with opened() as (made, client):
         qos = QoSProfile(depth=1, durability=DurabilityPolicy.TRANSIENT_LOCAL)
         node = made.graph.create_node("robot_state_publisher")
@@ -159,7 +159,7 @@ async def test_a_robot_is_added_by_the_topic_of_its_description():
         assert publisher.get_subscription_count() == 1
 
 
-async def test_removed_displays_leave_their_topics_and_come_back_the_same():
+async def test_removed_displays_unsubscribe_and_undo_restores_them():
     async with opened() as (made, client):
         publisher = made.graph.create_node("clicks").create_publisher(PointStamped, "/clicked_point", 5)
         await client.set("display-3/Alpha", 0.25)
@@ -177,7 +177,7 @@ async def test_removed_displays_leave_their_topics_and_come_back_the_same():
         assert made.viewer.config.text() == TEXT
 
 
-async def test_a_removed_robot_is_forgotten_and_comes_back():
+async def test_removed_robot_model_is_restored_by_undo():
     async with world(RvizConfig.for_model("base")) as made, page(made.viewer) as client:
         await client.opened()
         made.describe(ARM)
@@ -190,7 +190,7 @@ async def test_a_removed_robot_is_forgotten_and_comes_back():
         assert len(made.display("RobotModel").scene.links) == 3
 
 
-async def test_displays_are_duplicated_with_all_they_have():
+async def test_displays_are_duplicated_with_contents():
     async with opened() as (made, client):
         await client.send("duplicate_displays", displays=["display-2", "display-3", "display-4"])
         tree = await client.until("tree")
@@ -252,7 +252,7 @@ async def test_displays_are_moved(displays, group, before, expected):
         assert made.viewer.config.text() == TEXT
 
 
-async def test_a_display_that_moves_out_of_a_group_that_is_off_comes_on():
+async def test_display_moved_out_of_disabled_group_is_enabled():
     async with opened(
         TEXT.replace("      Enabled: true\n      Name: Marks", "      Enabled: false\n      Name: Marks")
     ) as (
@@ -267,7 +267,7 @@ async def test_a_display_that_moves_out_of_a_group_that_is_off_comes_on():
         assert publisher.get_subscription_count() == 0
 
 
-async def test_a_group_cannot_hold_itself_and_a_grid_holds_nothing():
+async def test_invalid_group_moves_are_refused():
     async with opened() as (made, client):
         for group in ("display-2", "display-1"):
             await client.send("move_displays", displays=["display-2"], group=group, before=None)
@@ -278,7 +278,7 @@ async def test_a_group_cannot_hold_itself_and_a_grid_holds_nothing():
         assert names(made) == ["Grid", "Marks", "Clicks", "Radar"]
 
 
-async def test_displays_are_put_into_a_new_group():
+async def test_displays_are_grouped():
     async with opened() as (made, client):
         await client.send("group_displays", displays=["display-1", "display-3", "display-4"], name="All")
         tree = await client.until("tree")
@@ -293,7 +293,7 @@ async def test_displays_are_put_into_a_new_group():
         assert made.viewer.config.text() == TEXT
 
 
-async def test_groups_are_nested_only_so_deep_that_the_file_can_be_read_again():
+async def test_group_nesting_depth_is_limited():
     async with opened() as (made, client):
         for depth in range(display_tree.MAXIMUM_NESTING):
             await edit(client, "group_displays", displays=["display-1"], name=f"Group {depth}")
@@ -307,7 +307,7 @@ async def test_groups_are_nested_only_so_deep_that_the_file_can_be_read_again():
         assert len(RvizConfig.parse(made.viewer.config.text()).displays) == 3
 
 
-async def test_there_are_only_so_many_displays(monkeypatch):
+async def test_number_of_displays_is_limited(monkeypatch):
     monkeypatch.setattr(display_tree, "MAXIMUM_DISPLAYS", 6)
     async with opened() as (made, client):
         await edit(client, "duplicate_displays", displays=["display-2"])  # a group and what it holds
@@ -324,7 +324,7 @@ async def test_there_are_only_so_many_displays(monkeypatch):
 # --- undo of properties --------------------------------------------------------------------------------------------
 
 
-async def test_a_drag_is_taken_back_in_one_step_and_the_key_goes_again():
+async def test_drag_is_undone_in_one_step():
     async with opened() as (made, client):
         for alpha in (0.1, 0.2, 0.3):
             await client.set("display-1/Alpha", alpha)
@@ -346,7 +346,7 @@ async def rows_of(client, made, identity: str) -> list[dict]:
     return next(message["properties"] for message in reversed(messages) if message["display"] == identity)
 
 
-async def test_the_box_over_all_links_is_taken_back_with_what_it_did():
+async def test_all_links_checkbox_is_undone_with_its_effects():
     config = RvizConfig.for_model("base")
     async with world(config) as made, page(made.viewer) as client:
         await client.opened()
@@ -365,7 +365,7 @@ async def test_the_box_over_all_links_is_taken_back_with_what_it_did():
         assert not robot.properties.flag("Links", "base")
 
 
-async def test_the_fixed_frame_is_taken_back_too():
+async def test_fixed_frame_change_is_undone():
     async with opened() as (made, client):
         await client.set("global/Fixed Frame", "odom")
         await client.until("configuration")

@@ -29,7 +29,7 @@ async def test_pages_share_displays():
         assert len((await first.until("tree"))["displays"]) == 4
 
 
-async def test_a_page_may_have_displays_of_its_own(monkeypatch):
+async def test_page_may_have_own_displays(monkeypatch):
     monkeypatch.setattr(manager, "LINGERING", 0.05)
     async with opened() as (made, shared):
         publisher = made.graph.create_node("clicks").create_publisher(PointStamped, "/clicked_point", 5)
@@ -57,7 +57,7 @@ async def test_a_page_may_have_displays_of_its_own(monkeypatch):
             assert [each["id"] for each in opening["tree"]["displays"]] != ids
 
 
-async def test_only_some_displays_wait_for_their_pages(monkeypatch):
+async def test_number_of_lingering_own_displays_is_limited(monkeypatch):
     monkeypatch.setattr(manager, "MOST_LINGERING", 2)
     async with opened() as (made, _):
         publisher = made.graph.create_node("clicks").create_publisher(PointStamped, "/clicked_point", 5)
@@ -70,7 +70,7 @@ async def test_only_some_displays_wait_for_their_pages(monkeypatch):
             assert opening["tree"]["displays"][0]["id"] == "display-21"  # the fifth of four displays each, after four
 
 
-async def test_a_key_that_is_none_shares():
+async def test_page_with_invalid_key_shares_displays():
     async with opened() as (made, _):
         for key in ("short", "../../../etc/passwd", "x" * 100):
             async with own_page(made, key) as client:

@@ -18,7 +18,7 @@ SIZES = {"box": (1, 2, 3), "cylinder": (0.1, 2), "sphere": (0.3,), "wall": (4, 0
 
 
 @pytest.mark.parametrize("kind", SIZES)
-def test_a_shape_is_what_it_was_when_it_is_read_again(kind):
+def test_added_shape_is_read_back(kind):
     before = world_text(PLAIN)
     text, name = add_shape(before, kind, POSE, SIZES[kind])
     thing = text.entities[name]
@@ -33,7 +33,7 @@ def test_a_shape_is_what_it_was_when_it_is_read_again(kind):
     assert change(text, [Change(name, static=False)]).entities[name].shape.size == SIZES[kind]
 
 
-def test_a_new_shape_weighs_a_kilogram_and_has_the_inertia_of_a_solid():
+def test_added_shape_weighs_one_kilogram_with_solid_inertia():
     text, name = add_shape(inside(), "cylinder", POSE, (0.5, 2.0))
     inertial = text.entities[name].model.links[0].inertial
     assert inertial.mass == 1.0
@@ -41,7 +41,7 @@ def test_a_new_shape_weighs_a_kilogram_and_has_the_inertia_of_a_solid():
     assert inertial.inertia.ixx == pytest.approx((3 * 0.25 + 4) / 12, rel=1e-5)
 
 
-def test_a_ramp_has_the_mass_of_a_wedge():
+def test_added_ramp_has_mass_properties_of_wedge():
     size, count = (2.0, 1.0, 0.5), 400
     step = size[0] / count
     heights = (np.arange(count) + 0.5) / count * size[2]
@@ -55,7 +55,7 @@ def test_a_ramp_has_the_mass_of_a_wedge():
     assert whole.inertia == pytest.approx(wanted.inertia, rel=1e-3, abs=1e-6)
 
 
-def test_new_things_come_behind_the_last_and_are_set_in_as_the_others_are():
+def test_added_elements_follow_last_with_same_indentation():
     text, _ = add_light(world_text(PLAIN), "point", POSE)
     assert text.text.startswith(PLAIN[: PLAIN.index("  </world>")])
     assert '    <light name="point_light" type="point">\n      <pose>1 2 3 0 0 0.5</pose>\n' in text.text
@@ -67,7 +67,7 @@ def test_new_things_come_behind_the_last_and_are_set_in_as_the_others_are():
 
 
 @pytest.mark.parametrize("kind", ["point", "directional", "spot"])
-def test_lights_are_of_their_kind(kind):
+def test_added_light_has_its_type(kind):
     text, name = add_light(inside(), kind, POSE)
     light = text.entities[name].light
     assert (name, light.type) == (f"{kind}_light", kind)
@@ -75,7 +75,7 @@ def test_lights_are_of_their_kind(kind):
     assert not simulators_refuse(text)
 
 
-def test_a_model_is_included_by_its_address_with_a_free_name(tmp_path):
+def test_added_include_gets_unique_name(tmp_path):
     folder = tmp_path / "crate"
     folder.mkdir()
     (folder / "model.sdf").write_text("<sdf version='1.6'><model name='box'><link name='l'/></model></sdf>")
@@ -93,12 +93,12 @@ def test_a_model_is_included_by_its_address_with_a_free_name(tmp_path):
 
 
 @pytest.mark.parametrize("pose", [(1, 2, 3), (1, 2, 3, 4, 5, float("inf")), ()])
-def test_what_is_no_pose_is_refused(pose):
+def test_invalid_pose_is_rejected(pose):
     with pytest.raises(EditError, match="a pose must have six finite numbers"):
         add_shape(inside(), "box", pose)
 
 
-def test_a_world_with_values_in_attributes_is_not_edited(tmp_path):
+def test_world_with_attribute_values_is_rejected(tmp_path):
     text = '<gazebo version="1.0"><world name="w"><model name="m"><origin pose="1 2 3 0 0 0"/></model></world></gazebo>'
     with pytest.raises(EditError, match="with 'linkwright convert' first"):
         world_text(text)

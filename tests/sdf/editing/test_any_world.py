@@ -56,7 +56,7 @@ def close(some, others, tolerance: float = 1e-6) -> bool:
 
 @settings(max_examples=40)
 @given(worlds(), POSES, st.sampled_from(["a", "b&c", "d"]))
-def test_what_is_moved_is_there_and_all_else_where_it_was(text, pose, name):
+def test_moved_entity_has_new_pose_and_others_stay(text, pose, name):
     before = world_text(text)
     after = change(before, [Change(name, pose=pose)])
     wanted = world_text(
@@ -75,7 +75,7 @@ def test_what_is_moved_is_there_and_all_else_where_it_was(text, pose, name):
 
 @settings(max_examples=40)
 @given(worlds(), SIZES, st.booleans())
-def test_sizes_and_names_and_back_again_give_the_same_text(text, size, twice):
+def test_inverse_size_and_name_changes_restore_text(text, size, twice):
     before = world_text(text)
     old = before.entities["a"].shape.size
     names = ["a", "d"] if twice else ["a"]
@@ -91,7 +91,7 @@ def test_sizes_and_names_and_back_again_give_the_same_text(text, size, twice):
 
 @settings(max_examples=40)
 @given(worlds(), st.tuples(NUMBERS, NUMBERS, NUMBERS))
-def test_copies_deleted_give_the_same_text(text, offset):
+def test_deleting_copies_restores_text(text, offset):
     before = world_text(text)
     copied, names = copy(before, ["a", "b&c", "d"], offset)
     assert names == ["a_2", "b&c_2", "d_2"]
@@ -105,7 +105,7 @@ def test_copies_deleted_give_the_same_text(text, offset):
 
 @settings(max_examples=40)
 @given(worlds())
-def test_groups_taken_apart_are_where_they_were(text):
+def test_ungrouping_restores_poses(text):
     before = world_text(text)
     grouped = group(before, ["a", "d"], "g")
     assert set(grouped.entities) == {"g", "b&c"}

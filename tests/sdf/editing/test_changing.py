@@ -23,7 +23,7 @@ def changed(text: str, *changes: Change) -> list[str]:
     return difference(before.text, change(before, changes).text)
 
 
-def test_what_stands_in_a_world_is_told():
+def test_world_entities_are_listed():
     things = world_text(PLAIN).entities
     assert list(things) == ["ground_plane", "box", "lamp"]
     assert [thing.kind for thing in things.values()] == ["model", "model", "light"]
@@ -34,14 +34,14 @@ def test_what_stands_in_a_world_is_told():
     assert things["lamp"].world_pose[:3] == (0, 0, 3)
 
 
-def test_of_a_pose_only_the_numbers_change_that_are_others():
+def test_pose_change_replaces_only_changed_numbers():
     assert changed(PLAIN, Change("box", pose=(2.0, 1.5, 0.25, 0, 0, pi / 2))) == [
         "- <pose>2 0 0.250 0 0 0</pose>",
         "+ <pose>2 1.5 0.250 0 0 1.570796327</pose>",
     ]
 
 
-def test_a_pose_that_is_not_there_is_written_where_poses_are():
+def test_missing_pose_is_inserted():
     assert changed(PLAIN, Change("ground_plane", pose=(0, 0, -1, 0, 0, 0))) == [
         "- <include><uri>model://ground_plane</uri></include>",
         "+ <include><uri>model://ground_plane</uri><pose>0 0 -1 0 0 0</pose></include>",
@@ -65,7 +65,7 @@ def test_a_pose_that_is_not_there_is_written_where_poses_are():
         ),
     ],
 )
-def test_a_pose_keeps_its_form(written, result):
+def test_pose_notation_is_kept(written, result):
     text = inside(f'<model name="m">{written}<link name="l"/></model>')
     moved = change(text, [Change("m", pose=(4, 2, 3, 0, 0, pi / 4))])
     assert result in moved.text
@@ -73,7 +73,7 @@ def test_a_pose_keeps_its_form(written, result):
     assert (*place[:3], *rotate(place[3:], (1, 0, 0))) == pytest.approx((4, 2, 3, cos(pi / 4), sin(pi / 4), 0))
 
 
-def test_a_thing_ends_where_it_shall_in_whatever_frame_its_pose_is():
+def test_world_pose_is_converted_to_pose_frame():
     text = inside(
         '<frame name="f"><pose>1 0 0 0 0 1.5707963267948966</pose></frame>',
         '<model name="m"><pose relative_to="f">1 0 0 0 0 0</pose><link name="l"/></model>',
@@ -95,13 +95,13 @@ def test_a_thing_ends_where_it_shall_in_whatever_frame_its_pose_is():
         assert thing.world_pose == pytest.approx(moved.entities[name].world_pose, abs=1e-8)
 
 
-def test_a_frame_that_is_not_there_is_told():
+def test_unknown_pose_frame_is_reported():
     text = inside('<model name="m"><pose relative_to="none">1 0 0 0 0 0</pose><link name="l"/></model>')
     with pytest.raises(EditError, match="'m' is relative to 'none', which cannot be placed"):
         change(text, [Change("m", pose=(0, 0, 0, 0, 0, 0))])
 
 
-def test_a_size_is_that_of_collision_visual_and_inertia():
+def test_resizing_changes_collision_visual_and_inertia():
     assert [line for line in changed(PLAIN, Change("box", size=(0.5, 0.5, 1.0))) if line[0] == "+"] == [
         "+ <mass>4</mass>",
         "+ <inertia><ixx>0.416667</ixx><iyy>0.416667</iyy><izz>0.166667</izz></inertia>",
@@ -110,19 +110,19 @@ def test_a_size_is_that_of_collision_visual_and_inertia():
 
 
 @pytest.mark.parametrize("size", [(1, 1), (1, 1, 0), (1, 1, -1), (1, 1, float("nan")), ()])
-def test_what_is_no_size_is_refused(size):
+def test_invalid_size_is_rejected(size):
     with pytest.raises(EditError, match="is not a valid size for a box"):
         change(world_text(PLAIN), [Change("box", size=size)])
 
 
-def test_what_is_no_simple_shape_has_neither_size_nor_colour():
+def test_included_model_has_no_size_or_color():
     with pytest.raises(EditError, match="'ground_plane' cannot be resized"):
         change(world_text(PLAIN), [Change("ground_plane", size=(1, 1, 1))])
-    with pytest.raises(EditError, match="the colour of 'ground_plane' cannot be changed"):
+    with pytest.raises(EditError, match="the color of 'ground_plane' cannot be changed"):
         change(world_text(PLAIN), [Change("ground_plane", color=(1, 1, 1, 1))])
 
 
-def test_a_colour_takes_the_place_of_a_script():
+def test_color_replaces_material_script():
     text = PLAIN.replace(
         "<material><ambient>0.9 0.4 0.1 1</ambient><diffuse>0.9 0.4 0.1 1</diffuse></material>",
         "<material><script><uri>file://media/gazebo.material</uri><name>Gazebo/Red</name></script></material>",
@@ -134,7 +134,7 @@ def test_a_colour_takes_the_place_of_a_script():
     assert changed(PLAIN, Change("lamp", color=(1, 0, 0, 1)))[-1] == "+ <diffuse>1 0 0 1</diffuse>"
 
 
-def test_what_moves_no_more_says_so_and_what_moves_again_has_a_mass():
+def test_static_flag_is_set_and_cleared():
     still = change(world_text(PLAIN), [Change("box", static=True), Change("ground_plane", static=False)])
     assert still.entities["box"].is_static
     assert not still.entities["ground_plane"].is_static
@@ -148,7 +148,7 @@ def test_what_moves_no_more_says_so_and_what_moves_again_has_a_mass():
         change(world_text(PLAIN), [Change("lamp", static=True)])
 
 
-def test_what_refers_to_a_thing_knows_its_new_name():
+def test_renaming_updates_references():
     text = inside(
         '<model name="a"><link name="l"/></model><model name="ab"><link name="l"/></model>',
         '<model name="b"><pose relative_to="a::l">0 0 1 0 0 0</pose><link name="l"/></model>',
@@ -178,18 +178,18 @@ def test_what_refers_to_a_thing_knows_its_new_name():
         ("__x__", "SDF reserves it"),
     ],
 )
-def test_some_names_cannot_be_given(name, why):
+def test_invalid_names_are_rejected(name, why):
     with pytest.raises(EditError, match=why):
         change(world_text(PLAIN), [Change("box", new_name=name)])
 
 
-def test_an_include_has_its_name_and_all_else_as_it_is_written():
+def test_include_is_renamed_without_other_changes():
     after = change(world_text(PLAIN), [Change("ground_plane", new_name="floor", static=True)])
     assert "<include><uri>model://ground_plane</uri><name>floor</name></include>" in after.text
     assert list(after.entities) == ["floor", "box", "lamp"]
 
 
-def test_copies_have_free_names_and_stand_beside():
+def test_copies_get_unique_names_and_offset():
     text, names = copy(world_text(PLAIN), ["box", "lamp", "ground_plane"], (1, 0, 0))
     assert names == ["box_2", "lamp_2", "ground_plane_2"]
     assert text.entities["box_2"].world_pose == pytest.approx((3, 0, 0.25, 0, 0, 0, 1))
@@ -200,13 +200,13 @@ def test_copies_have_free_names_and_stand_beside():
     assert delete(again, ["box_2", "box_3", "box_4", "lamp_2", "ground_plane_2"]).text == PLAIN
 
 
-def test_what_is_deleted_is_gone_with_its_lines_and_nothing_else():
+def test_deleting_removes_only_lines_of_entity():
     assert delete(world_text(PLAIN), ["box"]).text == PLAIN.replace(BOX, "")
     with pytest.raises(EditError, match="there is no model or light 'crate' in the world's file"):
         delete(world_text(PLAIN), ["crate"])
 
 
-def test_what_something_refers_to_stays_unless_that_goes_too():
+def test_referenced_entity_is_deleted_only_with_its_references():
     text = inside(
         '<model name="a"><link name="l"/></model>',
         '<model name="b"><pose relative_to="a">0 0 1 0 0 0</pose><link name="l"/></model>',
@@ -216,13 +216,13 @@ def test_what_something_refers_to_stays_unless_that_goes_too():
     assert not delete(text, ["b", "a"]).entities
 
 
-def test_line_ends_stay():
+def test_line_endings_are_preserved():
     text = world_text(PLAIN.replace("\n", "\r\n"))
     after, _ = copy(change(text, [Change("lamp", color=(1, 1, 1, 1)), Change("box", static=True)]), ["box"], (1, 0, 0))
     assert "\n" not in after.text.replace("\r\n", "")
 
 
-def test_a_file_that_no_simulator_writes_is_edited_all_the_same():
+def test_xml_with_entities_can_be_edited():
     text = (
         "<?xml version='1.0'?><!DOCTYPE sdf [<!ENTITY size '1 1 1'>]>\n<sdf version='1.6'><world name='w'>"
         "<model name='m'><link name='l'><collision name='c'><geometry><box><size>&size;</size></box></geometry>"
@@ -235,7 +235,7 @@ def test_a_file_that_no_simulator_writes_is_edited_all_the_same():
     assert change(world_text(entity), [Change("m", static=True)]).entities["m"].is_static
 
 
-def test_a_thing_that_comes_from_an_entity_is_told():
+def test_element_from_xml_entity_is_rejected():
     text = (
         "<?xml version='1.0'?><!DOCTYPE sdf [<!ENTITY m \"<model name='m'><link name='l'/></model>\">]>\n"
         "<sdf version='1.6'><world name='w'>&m;</world></sdf>"
@@ -246,6 +246,6 @@ def test_a_thing_that_comes_from_an_entity_is_told():
         delete(world_text(text), ["m"])
 
 
-def test_a_file_without_a_world_is_told():
+def test_file_without_world_is_rejected():
     with pytest.raises(EditError, match="there is no world in"):
         world_text("<sdf version='1.6'><model name='m'><link name='l'/></model></sdf>")

@@ -17,7 +17,7 @@ def links(world: WorldText) -> dict[str, tuple[float, ...]]:
     return {placed_link.name: placed_link.pose for placed_link in placed_links(world.world)}
 
 
-def test_a_group_is_a_model_of_models_that_stand_where_they_stood():
+def test_group_is_a_model_and_members_keep_poses():
     before = world_text(TWO)
     after = group(before, ["crate", "box"], "pile")
     assert after.entities["pile"].member_names == ("box", "crate")
@@ -29,14 +29,14 @@ def test_a_group_is_a_model_of_models_that_stand_where_they_stood():
     assert now["pile::crate::link"] == pytest.approx(there["crate::link"])
 
 
-def test_a_group_taken_apart_is_what_it_was():
+def test_ungrouping_restores_text():
     before = PLAIN.replace(BOX, BOX + OTHER).replace("0.250", "0.25")
     text, names = ungroup(group(world_text(before), ["box", "crate"], "pile"), "pile")
     assert names == ["box", "crate"]
     assert text.text == before
 
 
-def test_groups_in_groups_and_turned_ones():
+def test_nested_and_rotated_groups_keep_link_poses():
     text, _ = add_shape(group(world_text(TWO), ["box", "crate"], "pile"), "box", (0, 0, 1, 0.1, 0.2, 0.3))
     text = change(text, [Change("pile", pose=(1, 1, 1, 0.5, 0.6, 0.7))])
     text = group(text, ["pile", "box"], "heap")
@@ -50,7 +50,7 @@ def test_groups_in_groups_and_turned_ones():
     assert now["crate::link"] == pytest.approx(there["heap::pile::crate::link"], abs=1e-8)
 
 
-def test_what_stands_relative_to_something_stays_where_it_is():
+def test_relative_poses_are_preserved():
     text = inside(
         '<frame name="f"><pose>1 0 0 0 0 1.5</pose></frame>\n',
         '<model name="a"><pose relative_to="f">1 0 0 0 0 0</pose><link name="l"/></model>\n',
@@ -70,7 +70,7 @@ def test_what_stands_relative_to_something_stays_where_it_is():
         assert pose == pytest.approx(there[name], abs=1e-8)
 
 
-def test_included_models_can_be_grouped_and_static_ones_are_static():
+def test_included_models_can_be_grouped_and_static_group_is_static():
     text = world_text(PLAIN.replace(BOX, ""))
     text, wall = add_shape(text, "wall", (1, 0, 0.5, 0, 0, 0))
     grouped = group(text, ["ground_plane", wall], "floor")
@@ -91,12 +91,12 @@ def test_included_models_can_be_grouped_and_static_ones_are_static():
         (["box", "none"], "there is no model or light 'none' in the world's file"),
     ],
 )
-def test_what_cannot_be_a_group_is_told(names, why):
+def test_invalid_group_is_rejected(names, why):
     with pytest.raises(EditError, match=why):
         group(world_text(TWO), names, "g")
 
 
-def test_what_is_no_group_is_not_taken_apart():
+def test_ungrouping_other_models_is_rejected():
     with pytest.raises(EditError, match="'box' cannot be ungrouped: it contains more than models"):
         ungroup(world_text(PLAIN), "box")
     with pytest.raises(EditError, match="'ground_plane' is not a group"):

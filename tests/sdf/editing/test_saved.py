@@ -30,13 +30,13 @@ def links(world):
     return {placed_link.name: placed_link.pose for placed_link in placed_links(world.world)}
 
 
-def test_things_are_where_the_state_says():
+def test_entities_have_poses_of_state():
     assert list(SAVED.entities) == ["m", "n", "lamp", "new"]
     assert SAVED.entities["m"].world_pose[:3] == (1, 0, 0)
     assert SAVED.entities["lamp"].world_pose[:3] == (0, 0, 3)
 
 
-def test_what_is_moved_is_moved_in_both_places_with_its_links():
+def test_moving_changes_pose_in_model_and_state():
     moved = change(
         SAVED, [Change("m", pose=(1, 1, 0, 0, 0, 1.5707963267948966)), Change("lamp", pose=(0, 0, 5, 0, 0, 0))]
     )
@@ -49,7 +49,7 @@ def test_what_is_moved_is_moved_in_both_places_with_its_links():
     assert inserted.entities["new"].world_pose[:3] == (0, 3, 0)
 
 
-def test_names_change_and_go_in_the_state_too():
+def test_renaming_and_deleting_change_state():
     assert change(SAVED, [Change("m", new_name="k")]).entities["k"].world_pose[:3] == (1, 0, 0)
     gone = delete(SAVED, ["m", "lamp", "new"])
     assert list(gone.entities) == ["n"]
@@ -57,14 +57,14 @@ def test_names_change_and_go_in_the_state_too():
     assert gone.state.first("light") is None
 
 
-def test_new_things_have_no_name_that_the_state_deletes():
+def test_added_entity_avoids_names_deleted_in_state():
     text = SAVED.text.replace("<name>old</name>", "<name>box</name>")
     world, name = add_shape(SAVED.with_text(text), "box", (0, 0, 1, 0, 0, 0))
     assert name == "box_2"
     assert world.entities["box_2"].world_pose[:3] == (0, 0, 1)
 
 
-def test_copies_and_groups_begin_where_the_state_had_them():
+def test_copies_and_groups_start_at_poses_of_state():
     copied, names = copy(SAVED, ["n"], (0, 1, 0))
     assert copied.entities[names[0]].world_pose[:3] == (5, 1, 0)
     grouped = group(SAVED, ["m", "n"], "g")

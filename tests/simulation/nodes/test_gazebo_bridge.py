@@ -25,7 +25,7 @@ from tests.remote_publishers import RemotePublisher, RemoteTransport
 SCAN = "/scan@sensor_msgs/msg/LaserScan[gz.msgs.LaserScan"
 
 
-def heard(stage, kind, topic):
+def record_messages(stage, kind, topic):
     messages = []
     stage.node.create_subscription(get_message(kind), topic, messages.append, 10)
     return messages
@@ -49,17 +49,17 @@ def publisher(stage, kind, topic):
         ),
     ],
 )
-def test_arguments(word, topic):
+def test_bridge_argument_is_parsed(word, topic):
     assert parse_bridge_argument(word) == topic
 
 
 @pytest.mark.parametrize("word", ["", "/scan", "/scan@", "/scan@sensor_msgs/msg/LaserScan", "@a@b", "/scan@a["])
-def test_an_argument_that_is_none(word):
+def test_malformed_bridge_argument_is_rejected(word):
     with pytest.raises(LinkwrightError, match="does not describe a topic to bridge"):
         parse_bridge_argument(word)
 
 
-def test_the_file_of_our_own_package():
+def test_shipped_bridge_file_is_read():
     topics = {each.gz_topic: each for each in read_bridge_file(str(GAZEBO_PACKAGE / "config" / "bridge.yaml"))}
     assert topics["kinect/image"].ros_topic == "kinect/image_raw"
     assert topics["cmd_vel"].direction == "ROS_TO_GZ"
@@ -76,7 +76,7 @@ def test_the_file_of_our_own_package():
         ("- [", "is not YAML"),
     ],
 )
-def test_a_file_that_does_not_say_it(text, message, tmp_path: Path):
+def test_malformed_bridge_file_is_rejected(text, message, tmp_path: Path):
     path = tmp_path / "bridge.yaml"
     path.write_text(text, encoding="utf-8")
     with pytest.raises(LinkwrightError, match=message):
@@ -85,15 +85,15 @@ def test_a_file_that_does_not_say_it(text, message, tmp_path: Path):
         read_bridge_file(str(tmp_path / "nothing.yaml"))
 
 
-async def test_what_has_one_name_is_there_already(stage):
-    scans = heard(stage, "sensor_msgs/msg/LaserScan", "/scan")
+async def test_topic_of_same_name_is_not_duplicated(stage):
+    scans = record_messages(stage, "sensor_msgs/msg/LaserScan", "/scan")
     ParameterBridge(stage.graph, NodeOptions(arguments=[SCAN]))
     publisher(stage, "sensor_msgs/msg/LaserScan", "/scan").publish(get_message("sensor_msgs/msg/LaserScan")())
     await stage.graph.settle()
     assert len(scans) == 1
 
 
-async def test_topics_are_there_before_the_simulation_has_them(stage):
+async def test_topics_exist_before_simulation(stage):
     words = (SCAN, "/odom@nav_msgs/msg/Odometry[gz.msgs.Odometry", "/cmd_vel@geometry_msgs/msg/Twist]gz.msgs.Twist")
     ParameterBridge(stage.graph, NodeOptions(arguments=[*words, "/both@std_msgs/msg/String@gz.msgs.StringMsg"]))
     topics = dict(stage.graph.get_topic_names_and_types())
@@ -103,16 +103,16 @@ async def test_topics_are_there_before_the_simulation_has_them(stage):
 
 
 @pytest.mark.parametrize("types", ["", "@gz.msgs.WorldControl@gz.msgs.Boolean"])
-async def test_a_service_among_the_topics_is_told_of_and_the_topics_are_bridged(stage, logged, types):
+async def test_service_is_reported_and_topics_are_bridged(stage, logged, types):
     words = [f"/world/empty/control@ros_gz_interfaces/srv/ControlWorld{types}", SCAN]
     ParameterBridge(stage.graph, NodeOptions(arguments=words))
     assert "/scan" in stage.graph.topics()
     assert logged("WARN") == ["/world/empty/control is not bridged: services of gz are not supported"]
 
 
-async def test_a_remapped_name_is_bridged(stage):
+async def test_remapped_topic_is_bridged(stage):
     kind = "nav_msgs/msg/Odometry"
-    moved = heard(stage, kind, "/odom")
+    moved = record_messages(stage, kind, "/odom")
     word = f"/model/mbot/odometry@{kind}[gz.msgs.Odometry"
     ParameterBridge(stage.graph, NodeOptions(arguments=[word], remappings=[("/model/mbot/odometry", "/odom")]))
     publisher(stage, kind, "/model/mbot/odometry").publish(get_message(kind)(child_frame_id="base"))
@@ -120,9 +120,9 @@ async def test_a_remapped_name_is_bridged(stage):
     assert [message.child_frame_id for message in moved] == ["base"]
 
 
-async def test_messages_go_both_ways_and_not_round(stage):
+async def test_bidirectional_bridge_does_not_loop(stage):
     kind = "std_msgs/msg/String"
-    ros, gz = heard(stage, kind, "/ros"), heard(stage, kind, "/gz")
+    ros, gz = record_messages(stage, kind, "/ros"), record_messages(stage, kind, "/gz")
     word = f"/gz@{kind}@gz.msgs.StringMsg"
     ParameterBridge(stage.graph, NodeOptions(arguments=[word], remappings=[("/gz", "/ros")]))
     to_ros, to_gz = publisher(stage, kind, "/gz"), publisher(stage, kind, "/ros")
@@ -135,8 +135,8 @@ async def test_messages_go_both_ways_and_not_round(stage):
     assert sorted(message.data for message in gz) == expected
 
 
-async def test_a_twist_with_a_header_becomes_one_without(stage, tmp_path: Path):
-    twists = heard(stage, "geometry_msgs/msg/Twist", hidden_gz_topic("/cmd_vel"))
+async def test_twist_stamped_is_converted_to_twist(stage, tmp_path: Path):
+    twists = record_messages(stage, "geometry_msgs/msg/Twist", hidden_gz_topic("/cmd_vel"))
     path = tmp_path / "bridge.yaml"
     path.write_text(
         "- topic_name: cmd_vel\n  ros_type_name: geometry_msgs/msg/TwistStamped\n"
@@ -152,9 +152,9 @@ async def test_a_twist_with_a_header_becomes_one_without(stage, tmp_path: Path):
     assert stage.graph.topics()["/cmd_vel"] == ["geometry_msgs/msg/TwistStamped"]
 
 
-async def test_a_type_that_is_not_known_is_named_and_the_rest_is_bridged(stage, logged):
+async def test_unknown_type_is_reported_and_other_topics_are_bridged(stage, logged):
     kind = "std_msgs/msg/String"
-    ros = heard(stage, kind, "/ros")
+    ros = record_messages(stage, kind, "/ros")
     words = ["/a@strange_msgs/msg/Thing[gz.msgs.Thing", f"/gz@{kind}[gz.msgs.StringMsg"]
     ParameterBridge(stage.graph, NodeOptions(arguments=words, remappings=[("/gz", "/ros")]))
     publisher(stage, kind, "/gz").publish(get_message(kind)(data="hello"))
@@ -163,9 +163,9 @@ async def test_a_type_that_is_not_known_is_named_and_the_rest_is_bridged(stage, 
     assert [message.data for message in ros] == ["hello"]
 
 
-async def test_images(stage):
+async def test_image_bridge_forwards_images(stage):
     kind = "sensor_msgs/msg/Image"
-    images = heard(stage, kind, "/camera/color")
+    images = record_messages(stage, kind, "/camera/color")
     bridge = ImageBridge(stage.graph, NodeOptions(arguments=["/camera"], remappings=[("/camera", "/camera/color")]))
     publisher(stage, kind, "/camera").publish(get_message(kind)(width=4))
     await stage.graph.settle()
@@ -173,7 +173,7 @@ async def test_images(stage):
     bridge.close()
 
 
-async def test_a_lazy_bridge_listens_only_while_somebody_hears_it(stage, tmp_path: Path):
+async def test_lazy_bridge_subscribes_only_while_it_has_subscribers(stage, tmp_path: Path):
     kind = "std_msgs/msg/String"
     path = tmp_path / "bridge.yaml"
     path.write_text(
@@ -195,7 +195,7 @@ async def test_a_lazy_bridge_listens_only_while_somebody_hears_it(stage, tmp_pat
     assert source.get_subscription_count() == 0
 
 
-async def test_parameters_override_the_quality_of_service(stage):
+async def test_parameters_override_qos(stage):
     kind = "tf2_msgs/msg/TFMessage"
     word = f"/model/robot/pose_static@{kind}[gz.msgs.Pose_V"
     overrides = {"qos_overrides": {"/tf_static": {"publisher": {"durability": "transient_local"}}}}
@@ -212,11 +212,11 @@ async def test_parameters_override_the_quality_of_service(stage):
     assert len(late) == 1
 
 
-async def test_poses_become_what_is_asked_for(stage, logged):
+async def test_poses_are_converted_to_requested_type(stage, logged):
     transform = get_message("geometry_msgs/msg/TransformStamped")()
     transform.header.frame_id, transform.transform.translation.x = "robot", 2.0
     kinds = ("Pose", "PoseStamped", "Transform", "PoseArray")
-    results = {kind: heard(stage, f"geometry_msgs/msg/{kind}", f"/{kind}") for kind in kinds}
+    results = {kind: record_messages(stage, f"geometry_msgs/msg/{kind}", f"/{kind}") for kind in kinds}
     words = [f"/one@geometry_msgs/msg/{kind}[gz.msgs.Pose" for kind in kinds[:3]]
     for kind, word in zip(kinds[:3], words, strict=True):
         name = f"bridge_{kind.lower()}"
@@ -238,9 +238,9 @@ async def test_poses_become_what_is_asked_for(stage, logged):
     ]
 
 
-async def test_names_of_gz_may_be_in_the_namespace_of_the_bridge(stage):
+async def test_gz_topic_names_can_be_expanded_with_namespace(stage):
     kind = "std_msgs/msg/String"
-    ros = heard(stage, kind, "/ros")
+    ros = record_messages(stage, kind, "/ros")
     options = NodeOptions(
         arguments=[f"chatter@{kind}[gz.msgs.StringMsg"],
         namespace="/demo",
@@ -254,14 +254,14 @@ async def test_names_of_gz_may_be_in_the_namespace_of_the_bridge(stage):
 
 
 @pytest.mark.parametrize(("encoding", "pixel"), [("rgb8", [200, 100, 50]), ("bgr8", [50, 100, 200]), ("mono8", [120])])
-async def test_images_are_there_as_jpeg_while_somebody_listens(stage, encoding, pixel):
+async def test_compressed_images_are_published_while_subscribed(stage, encoding, pixel):
     images = pytest.importorskip("PIL.Image")
     kind = "sensor_msgs/msg/Image"
     ImageBridge(stage.graph, NodeOptions(arguments=["/camera"]))
     camera = publisher(stage, kind, "/camera")
     await stage.graph.settle()
     assert camera.get_subscription_count() == 0
-    compressed = heard(stage, "sensor_msgs/msg/CompressedImage", "/camera/compressed")
+    compressed = record_messages(stage, "sensor_msgs/msg/CompressedImage", "/camera/compressed")
     await stage.graph.settle()
     step = 8 * len(pixel)
     camera.publish(get_message(kind)(width=8, height=8, encoding=encoding, step=step, data=pixel * 64))
@@ -280,7 +280,7 @@ async def test_images_are_there_as_jpeg_while_somebody_listens(stage, encoding, 
     ("more", "message"),
     [("publisher_queue: many", "'publisher_queue' is not an integer of 0 or more"), ("lazy: 3", "'lazy' is neither")],
 )
-def test_settings_of_a_topic_that_are_none(more, message, tmp_path: Path):
+def test_invalid_topic_settings_are_rejected(more, message, tmp_path: Path):
     path = tmp_path / "bridge.yaml"
     path.write_text(f"- topic_name: a\n  ros_type_name: b/msg/C\n  gz_type_name: c\n  {more}\n", encoding="utf-8")
     with pytest.raises(LinkwrightError, match=message):
@@ -288,10 +288,10 @@ def test_settings_of_a_topic_that_are_none(more, message, tmp_path: Path):
 
 
 @pytest.mark.parametrize("ros_type", ["geometry_msgs/msg/Twist", "geometry_msgs/msg/TwistStamped"])
-async def test_the_drive_behind_a_bridge_is_stopped_when_who_drives_is_lost(stage, ros_type):
+async def test_lost_publisher_stops_drive_behind_bridge(stage, ros_type):
     word = f"/cmd_vel@{ros_type}]gz.msgs.Twist"
     bridge = ParameterBridge(stage.graph, NodeOptions(arguments=[word, "--ros-args", "-r", "/cmd_vel:=/drive"]))
-    driven = heard(stage, "geometry_msgs/msg/Twist", "/cmd_vel")
+    driven = record_messages(stage, "geometry_msgs/msg/Twist", "/cmd_vel")
     driver = RemotePublisher(RemoteTransport(stage.graph), "/drive", msg_type=ros_type)
     message = get_message(ros_type)()
     getattr(message, "twist", message).linear.x = 0.3

@@ -22,7 +22,7 @@ FACTORY = "-s libgazebo_ros_init.so -s libgazebo_ros_factory.so"
         ("/usr/bin/gazebo -e bullet --seed=7 a.world", {"world": "a.world", "seed": 7, "gui": True}),
     ],
 )
-def test_classic(line, parameters):
+def test_classic_command_line_is_parsed(line, parameters):
     command = simulator_command(shlex.split(line))
     assert command is not None
     assert (command.package, command.executable) == ("gazebo_ros", "gzserver")
@@ -42,21 +42,21 @@ def test_classic(line, parameters):
         ("gz sim --gui-config g.config --physics-engine p a.sdf", {"pause": True, "gui": True, "world": "a.sdf"}),
     ],
 )
-def test_gz(line, parameters):
+def test_gz_command_line_is_parsed(line, parameters):
     command = simulator_command(shlex.split(line))
     assert command is not None
     assert (command.package, command.executable) == ("ros_gz_sim", "gzserver")
     assert command.parameters == parameters
 
 
-def test_windows_alone():
+def test_gui_only_commands_start_gzclient():
     for line in ("gzclient --verbose", "gz sim -g", "ign gazebo -g -v 4"):
         command = simulator_command(line.split())
         assert command is not None
         assert command.executable == "gzclient"
 
 
-def test_arguments_of_ros_are_kept():
+def test_ros_arguments_are_kept():
     command = simulator_command(["gzserver", "a.world", "--ros-args", "--params-file", "f.yaml"])
     assert command is not None
     assert list(command.ros_arguments) == ["--ros-args", "--params-file", "f.yaml"]
@@ -64,5 +64,5 @@ def test_arguments_of_ros_are_kept():
 
 
 @pytest.mark.parametrize("line", ["gz topic -l", "ign service", "ros2 run a b", "gz", "python3 gzserver"])
-def test_other_programs(line):
+def test_other_commands_are_not_recognized(line):
     assert simulator_command(line.split()) is None

@@ -78,7 +78,7 @@ def create(stage: Stage, *words: str, **parameters: Any) -> Create:
     return Create(stage.graph, NodeOptions(arguments=list(words), parameters=parameters))
 
 
-async def test_what_is_published_is_spawned_where_it_is_wanted(stage, logged):
+async def test_published_description_is_spawned_at_pose(stage, logged):
     simulator = Simulator(stage)
     place = ("-x", "1.5", "-y", "-2", "-z", "0.1", "-Y", str(math.pi / 2))
     node = spawn_entity(stage, "-topic", "robot_description", "-entity", "mbot", *place)
@@ -94,7 +94,7 @@ async def test_what_is_published_is_spawned_where_it_is_wanted(stage, logged):
     assert logged("INFO")[-1] == "Spawn status: spawned mbot"
 
 
-async def test_a_description_that_was_published_before_is_heard(stage):
+async def test_latched_description_is_spawned(stage):
     simulator = Simulator(stage)
     await stage.describe(ROBOT)
     node = create(stage, "-name", "mbot", "-topic", "robot_description", "-z=0.5")
@@ -103,7 +103,7 @@ async def test_a_description_that_was_published_before_is_heard(stage):
     assert node.finished.result() == 0
 
 
-async def test_only_the_first_description_counts(stage):
+async def test_only_first_description_is_spawned(stage):
     await stage.describe(ROBOT)
     node = spawn_entity(stage, "-topic", "robot_description", "-entity", "mbot")
     await stage.graph.settle()
@@ -114,7 +114,7 @@ async def test_only_the_first_description_counts(stage):
     assert node.finished.result() == 0
 
 
-async def test_it_waits_for_the_simulator_and_gives_up_in_the_end(stage, logged):
+async def test_spawn_entity_waits_for_service_until_timeout(stage, logged):
     await stage.describe(ROBOT)
     node = spawn_entity(stage, "-topic", "robot_description", "-entity", "mbot", "-timeout", "7")
     await stage.clock.advance(6.9)
@@ -125,7 +125,7 @@ async def test_it_waits_for_the_simulator_and_gives_up_in_the_end(stage, logged)
     assert logged("ERROR") == ["Service /spawn_entity unavailable. Was the simulation started?"]
 
 
-async def test_what_the_simulator_refuses_ends_with_status_1(stage, logged):
+async def test_rejected_spawn_exits_with_status_1(stage, logged):
     simulator = Simulator(stage)
     simulator.refuses = True
     await stage.describe(ROBOT)
@@ -135,7 +135,7 @@ async def test_what_the_simulator_refuses_ends_with_status_1(stage, logged):
     assert logged("ERROR") == ["Spawning 'mbot' failed: Entity already exists"]
 
 
-async def test_namespaces(stage):
+async def test_robot_and_gazebo_namespaces_are_applied(stage):
     simulator = Simulator(stage, "/sim")
     await stage.describe(ROBOT)
     words = ("-topic", "/robot_description", "-entity", "a", "-gazebo_namespace", "/sim")
@@ -145,7 +145,9 @@ async def test_namespaces(stage):
     assert [request.robot_namespace for request in simulator.spawned] == ["/one", "two"]
 
 
-async def test_files_models_and_standard_input(stage, tmp_path: Path, monkeypatch: pytest.MonkeyPatch):
+async def test_entities_are_spawned_from_file_database_and_stdin(
+    stage, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+):
     simulator = Simulator(stage)
     model = tmp_path / "models" / "box"
     model.mkdir(parents=True)
@@ -172,7 +174,7 @@ async def test_files_models_and_standard_input(stage, tmp_path: Path, monkeypatc
     }
 
 
-async def test_the_physics_is_started_where_that_is_asked_for(stage):
+async def test_unpause_option_unpauses_physics(stage):
     simulator = Simulator(stage)
     await stage.describe(ROBOT)
     node = spawn_entity(stage, "-topic", "robot_description", "-entity", "mbot", "-unpause")
@@ -181,7 +183,7 @@ async def test_the_physics_is_started_where_that_is_asked_for(stage):
     assert node.finished.result() == 0
 
 
-async def test_it_waits_for_another_entity(stage):
+async def test_wait_option_waits_for_other_entity(stage):
     simulator = Simulator(stage)
     await stage.describe(ROBOT)
     node = spawn_entity(stage, "-topic", "robot_description", "-entity", "mbot", "-wait", "table")
@@ -193,7 +195,7 @@ async def test_it_waits_for_another_entity(stage):
     assert node.finished.result() == 0
 
 
-async def test_an_entity_that_is_bound_goes_with_the_node(stage):
+async def test_bound_entity_is_deleted_with_node(stage):
     simulator = Simulator(stage)
     await stage.describe(ROBOT)
     node = spawn_entity(stage, "-topic", "robot_description", "-entity", "mbot", "-b")
@@ -204,7 +206,7 @@ async def test_an_entity_that_is_bound_goes_with_the_node(stage):
     assert simulator.deleted == ["mbot"]
 
 
-async def test_create_finds_a_free_name(stage):
+async def test_create_allow_renaming_finds_free_name(stage):
     simulator = Simulator(stage)
     simulator.names = ["mbot", "mbot_0"]
     create(stage, "-string", ROBOT, "-name", "mbot", "-allow_renaming", "true")
@@ -214,7 +216,7 @@ async def test_create_finds_a_free_name(stage):
     assert sorted(request.name for request in simulator.spawned) == ["mbot", "mbot_1", "other"]
 
 
-async def test_create_takes_its_options_as_parameters_too_and_passes_over_what_it_does_not_know(stage):
+async def test_create_accepts_parameters_and_ignores_unknown_options(stage):
     simulator = Simulator(stage)
     create(stage, "-wonder", "1", name="mbot", string=ROBOT, x=1.0, Y=0.0)
     await stage.graph.settle()
@@ -231,7 +233,7 @@ async def test_create_takes_its_options_as_parameters_too_and_passes_over_what_i
         (["-entity", "a", "-topic", "t", "-wonder"], "unrecognized arguments: -wonder"),
     ],
 )
-def test_a_command_line_that_is_none(words, message):
+def test_invalid_spawn_arguments_are_rejected(words, message):
     with pytest.raises(LinkwrightError) as caught:
         parse_arguments(words)
     (finding,) = caught.value.diagnostics
@@ -248,14 +250,14 @@ def test_a_command_line_that_is_none(words, message):
         (["-file", "model://nothing", "-name", "a"], "NODE811"),
     ],
 )
-async def test_create_says_what_is_wrong(stage, words, code):
+async def test_create_reports_errors(stage, words, code):
     with pytest.raises(LinkwrightError) as caught:
         create(stage, *words)
     assert caught.value.diagnostics[0].code == code
 
 
 @pytest.mark.parametrize(("name", "status"), [("ground", 0), ("nothing", 1)])
-async def test_remove_and_delete_entity_take_a_model_out_and_end(stage, name, status):
+async def test_remove_and_delete_entity_delete_model_and_exit(stage, name, status):
     simulator = Simulator(stage)
     remove = Remove(stage.graph, NodeOptions(parameters={"entity_name": name, "world": "any"}))
     delete = DeleteEntity(stage.graph, NodeOptions(arguments=["--name", name]))
@@ -264,7 +266,7 @@ async def test_remove_and_delete_entity_take_a_model_out_and_end(stage, name, st
     assert simulator.deleted == [name, name]
 
 
-async def test_set_entity_pose_puts_a_model_elsewhere_and_ends(stage):
+async def test_set_entity_pose_moves_model_and_exits(stage):
     simulator = Simulator(stage)
     words = ["--name", "ground", "--pos", "-1", "2", "3", "--euler", "0", "0", str(math.pi)]
     turned = SetEntityPose(stage.graph, NodeOptions(arguments=words))
@@ -289,7 +291,7 @@ async def test_set_entity_pose_puts_a_model_elsewhere_and_ends(stage):
         (SetEntityPose, ["--name", "a", "--type", "5"]),
     ],
 )
-async def test_programs_that_are_not_told_what_to_do_say_so(stage, node, words):
+async def test_missing_or_invalid_arguments_are_reported(stage, node, words):
     with pytest.raises(LinkwrightError) as error:
         node(stage.graph, NodeOptions(arguments=words))
     assert error.value.diagnostics[0].code == "NODE812"

@@ -10,7 +10,7 @@ import pytest
 from linkwright.packages import PackageFinder
 from linkwright.sdf.editing import Change, EditError, change
 from linkwright.sdf.resources import model_file
-from linkwright.simulation.page.modelling.edited_world import EditedWorld
+from linkwright.simulation.page.modeling.edited_world import EditedWorld
 from tests.sdf.editing.texts import PLAIN
 
 NOWHERE = PackageFinder(start=Path("/nonexistent"), environment={})
@@ -32,7 +32,7 @@ def edited(path: Path, name: str = "机器人 é") -> EditedWorld:
     ],
 )
 @pytest.mark.parametrize("newline", ["\n", "\r\n"])
-def test_encoding_mark_and_line_ends_are_those_of_the_file(tmp_path, mark, encoding, declared, newline):
+def test_save_keeps_encoding_bom_and_line_ends(tmp_path, mark, encoding, declared, newline):
     text = PLAIN.replace("<!-- the box -->", "<!-- ü -->").replace("\n", newline)
     if declared:
         text = text.replace('version="1.0"', f'version="1.0" encoding="{declared}"')
@@ -47,7 +47,7 @@ def test_encoding_mark_and_line_ends_are_those_of_the_file(tmp_path, mark, encod
     assert "机器人 é" in EditedWorld.of_file(path, NOWHERE).world.entities
 
 
-def test_a_change_that_changes_nothing_is_no_step(tmp_path):
+def test_change_without_effect_adds_no_undo_step(tmp_path):
     path = tmp_path / "w.world"
     path.write_text(PLAIN)
     world = EditedWorld.of_file(path, NOWHERE)
@@ -58,7 +58,7 @@ def test_a_change_that_changes_nothing_is_no_step(tmp_path):
     assert world.world.text == PLAIN
 
 
-def test_a_new_change_forgets_what_was_taken_back(tmp_path):
+def test_new_change_clears_redo(tmp_path):
     path = tmp_path / "w.world"
     path.write_text(PLAIN)
     world = edited(path, "a")
@@ -68,7 +68,7 @@ def test_a_new_change_forgets_what_was_taken_back(tmp_path):
     assert (world.can_undo, world.can_redo) == (True, False)
 
 
-def test_no_other_file_is_written_over(tmp_path):
+def test_save_does_not_overwrite_other_files(tmp_path):
     path, other = tmp_path / "w.world", tmp_path / "other.world"
     path.write_text(PLAIN)
     other.write_text("mine")
@@ -88,7 +88,7 @@ def test_no_other_file_is_written_over(tmp_path):
     assert path.exists()
 
 
-def test_a_world_that_xacro_makes_is_saved_as_what_came_of_it(tmp_path):
+def test_xacro_world_is_saved_expanded_to_new_file(tmp_path):
     path = tmp_path / "w.world.xacro"
     source = PLAIN.replace("-- dashes", "dashes").replace("<sdf ", '<sdf xmlns:xacro="http://www.ros.org/wiki/xacro" ')
     path.write_text(source.replace(">2 0 0.250", ">${1 + 1} 0 0.250"))
@@ -104,7 +104,7 @@ def test_a_world_that_xacro_makes_is_saved_as_what_came_of_it(tmp_path):
     assert EditedWorld.of_file(world.file, NOWHERE).world.entities["机器人 é"].world_pose[0] == 2
 
 
-def test_worlds_that_come_with_the_program_are_not_written(tmp_path):
+def test_shipped_worlds_are_not_overwritten(tmp_path):
     import linkwright
 
     shipped = Path(linkwright.__file__).parent / "w.world"
@@ -114,7 +114,7 @@ def test_worlds_that_come_with_the_program_are_not_written(tmp_path):
         EditedWorld.of_file(path, NOWHERE)
 
 
-def test_what_is_not_saved_is_kept(tmp_path):
+def test_unsaved_changes_are_stored(tmp_path):
     path, folder = tmp_path / "w.world", tmp_path / "state" / "unsaved"
     path.write_bytes(codecs.BOM_UTF8 + PLAIN.encode())
     result = [edited(path, name).store_unsaved(folder) for name in ("a", "b")]

@@ -73,18 +73,18 @@ async def simulated():
             yield simulation, client
 
 
-async def test_pages_hear_of_no_simulation_where_there_is_none():
+async def test_simulation_is_absent_without_simulator():
     async with world() as made, page(made.viewer) as client:
         assert (await client.opened())["simulation_status"]["present"] is False
 
 
-async def test_what_serves_a_simulation_is_made_when_its_topic_comes_or_a_page_asks():
+async def test_simulation_features_are_created_on_demand():
     def kinds(viewer) -> set[str]:
         return {type(feature).__name__ for feature in viewer._features}
 
     async with world() as made, page(made.viewer) as client:
-        assert not (await client.opened())["modelling_state"]["available"]
-        needless = {"SimulationFeature", "ModellingFeature", "RecordingFeature", "ComparisonFeature", "PointsFeature"}
+        assert not (await client.opened())["modeling_state"]["available"]
+        needless = {"SimulationFeature", "ModelingFeature", "RecordingFeature", "ComparisonFeature", "PointsFeature"}
         assert not needless & kinds(made.viewer)
         Simulation(made).state.publish(STATE(state=1))
         await client.until("simulation_status", present=True)
@@ -94,7 +94,7 @@ async def test_what_serves_a_simulation_is_made_when_its_topic_comes_or_a_page_a
         assert needless & kinds(made.viewer) == {"SimulationFeature", "RecordingFeature"}
 
 
-async def test_pages_hear_whether_time_passes_and_how_fast():
+async def test_status_reports_pause_and_real_time_factor():
     async with simulated() as (simulation, client):
         simulation.state.publish(STATE(state=2))
         await client.until("simulation_status", paused=True)
@@ -104,7 +104,7 @@ async def test_pages_hear_whether_time_passes_and_how_fast():
         await client.until("simulation_status", paused=True, time=12.5, real_time_factor=0.5)
 
 
-async def test_pages_hear_whether_there_is_something_to_drive():
+async def test_status_reports_drivable_robot():
     async with simulated() as (simulation, client):
         simulation.node.create_subscription("geometry_msgs/msg/TwistStamped", "robot/cmd_vel", lambda _: None, 10)
         await client.until("simulation_status", drivable=True)
@@ -112,7 +112,7 @@ async def test_pages_hear_whether_there_is_something_to_drive():
         await client.until("simulation_status", present=False, drivable=False)
 
 
-async def test_a_simulation_that_goes_is_gone_for_pages_too():
+async def test_status_reports_end_of_simulation():
     async with simulated() as (simulation, client):
         simulation.node.destroy_node()
         await client.until("simulation_status", present=False)
@@ -127,14 +127,14 @@ async def test_a_simulation_that_goes_is_gone_for_pages_too():
         ("step", "/step_simulation"),
     ],
 )
-async def test_buttons_call_services(action, service):
+async def test_simulation_buttons_call_services(action, service):
     async with simulated() as (simulation, client):
         await client.send("control_simulation", action=action)
         request = await simulation.request(service)
         assert getattr(request, "steps", 1) == 1
 
 
-async def test_models_are_put_into_the_world_by_a_path(tmp_path):
+async def test_models_are_spawned_from_path(tmp_path):
     robot = tmp_path / "box.urdf"
     robot.write_text("<robot name='box'><link name='base'/></robot>")
     model = tmp_path / "ball.sdf"
@@ -153,7 +153,7 @@ async def test_models_are_put_into_the_world_by_a_path(tmp_path):
         assert "none.urdf" in (await client.until("simulation_notice"))["text"]
 
 
-async def test_a_second_model_of_a_name_is_given_another_which_is_told(tmp_path):
+async def test_duplicate_model_is_renamed_with_notice(tmp_path):
     robot = tmp_path / "robot.urdf"
     robot.write_text("<robot name='ground'><link name='base'/></robot>")
     async with simulated() as (simulation, client):
@@ -163,13 +163,13 @@ async def test_a_second_model_of_a_name_is_given_another_which_is_told(tmp_path)
         assert "the new one is named 'ground_3'" in (await client.until("simulation_notice"))["text"]
 
 
-async def test_what_the_simulation_refuses_is_told():
+async def test_rejected_request_is_reported():
     async with simulated() as (_, client):
         await client.send("delete_model", model="nobody")
         assert (await client.until("simulation_notice"))["text"] == "there is no model 'nobody'"
 
 
-async def test_a_service_that_is_not_there_is_told():
+async def test_missing_service_is_reported():
     async with world() as made:
         node = made.graph.create_node("gazebo")
         node.create_publisher(STATE, "/simulation_state", 1).publish(STATE(state=1))
@@ -179,7 +179,7 @@ async def test_a_service_that_is_not_there_is_told():
             assert (await client.until("simulation_notice"))["text"] == "there is no service '/pause_physics'"
 
 
-async def test_a_model_is_dragged_from_where_it_was():
+async def test_model_is_dragged_relative_to_its_pose():
     async with simulated() as (simulation, client):
         await client.send("drag_model", model="crate", begins=True, offset=[0, 0, 0])
         await simulation.request("/set_entity_state")
@@ -191,14 +191,14 @@ async def test_a_model_is_dragged_from_where_it_was():
         assert [name for name, _ in simulation.asked].count("/get_entity_state") == 1
 
 
-async def test_a_model_that_cannot_be_moved_is_told_by_its_name():
+async def test_immovable_model_is_reported_by_name():
     async with simulated() as (_, client):
         await client.send("drag_model", model="ground", begins=True, offset=[0, 0, 0])
         notice = await client.until("simulation_notice")
         assert notice["text"] == "'ground' cannot be moved: it is fixed to the world, or no longer exists"
 
 
-async def test_a_link_is_pushed_at_a_point_for_a_moment():
+async def test_push_applies_wrench_at_point():
     async with simulated() as (simulation, client):
         await client.send("push_link", link="crate::link", point=[0, 0, 1], force=[5, 0, 0])
         request = await simulation.request("/apply_link_wrench")

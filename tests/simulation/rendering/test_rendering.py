@@ -1,4 +1,4 @@
-"""Pictures, whichever way they are made: colours, distances, and where in the picture things are."""
+"""Pictures, whichever way they are made: colors, distances, and where in the picture things are."""
 
 from __future__ import annotations
 
@@ -51,7 +51,7 @@ def make(request: pytest.FixtureRequest):
         each.close()
 
 
-def test_walls_are_as_far_as_they_are(make):
+def test_depth_of_walls_is_exact(make):
     simulation = simulated(block("wall", "3.5 0 0 0 0 0", "1 20 20"), block("box", "2 0.5 0 0 0 0", "0.5 0.5 0.5"))
     depth = make(simulation).render(optics_of(CAMERA), IDENTITY, Channels.DEPTH).depth
     assert depth.shape == (120, 160)
@@ -60,7 +60,7 @@ def test_walls_are_as_far_as_they_are(make):
     assert np.abs(depth[:, 100:] - 3.0).max() < 1e-3
 
 
-def test_distances_are_the_same_with_colours_and_without(make):
+def test_depth_is_same_with_and_without_color(make):
     simulation = simulated(FLOOR, block("box", "2 0.5 0 0 0 0", "0.5 0.5 0.5", color="1 0 0 1"))
     renderer, optics, pose = make(simulation), optics_of(CAMERA), (0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0)
     both = renderer.render(optics, pose, Channels.DEPTH | Channels.COLOR)
@@ -71,7 +71,7 @@ def test_distances_are_the_same_with_colours_and_without(make):
     assert (again.color == both.color).all()
 
 
-def test_the_floor_goes_on_to_the_horizon(make):
+def test_floor_extends_to_horizon(make):
     pose = (0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0)
     optics = optics_of(CAMERA)
     depth = make(simulated(FLOOR)).render(optics, pose, Channels.DEPTH).depth
@@ -81,7 +81,7 @@ def test_the_floor_goes_on_to_the_horizon(make):
     assert np.isinf(depth[:59]).all()
 
 
-def test_the_floor_is_where_it_is_whatever_shines_on_it(make):
+def test_floor_depth_does_not_depend_on_light(make):
     pose, optics = (0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0), optics_of(CAMERA)
     lamp = '<light name="lamp" type="point"><pose>3 0 2 0 0 0</pose><diffuse>1 1 1 1</diffuse></light>'
     under_the_sun = make(simulated(FLOOR)).render(optics, pose, Channels.DEPTH | Channels.GEOMS)
@@ -90,19 +90,19 @@ def test_the_floor_is_where_it_is_whatever_shines_on_it(make):
     assert (under_a_lamp.geoms[65:] == under_the_sun.geoms[65:]).all()
 
 
-def test_a_floor_is_not_seen_from_below(make):
+def test_floor_is_invisible_from_below(make):
     rendered = make(simulated(FLOOR)).render(optics_of(CAMERA), (0.0, 0.0, -1.0, 0.0, 0.0, 0.0, 1.0), Channels.DEPTH)
     assert np.isinf(rendered.depth).all()
 
 
 @pytest.mark.parametrize("place", ["2 2.2 0", "2 -2.2 0", "2 0 1.7", "2 0 -1.7"])
-def test_what_reaches_into_the_image_is_seen(make, place):
+def test_partly_visible_object_is_rendered(make, place):
     simulation = simulated(block("thing", f"{place} 0 0 0", "0.9 0.9 0.9"))
     geoms = make(simulation).render(optics_of(CAMERA), IDENTITY, Channels.GEOMS).geoms
     assert (geoms >= 0).any()
 
 
-def test_what_is_too_near_or_too_far_is_not_seen(make):
+def test_objects_outside_clip_range_are_not_rendered(make):
     simulation = simulated(block("near", "0.3 0.1 0 0 0 0", "0.1 0.1 0.1"), block("far", "60 0 0 0 0 0", "1 90 90"))
     optics = replace(optics_of(CAMERA), near=0.5)
     rendered = make(simulation).render(optics, IDENTITY, Channels.DEPTH | Channels.COLOR)
@@ -110,7 +110,7 @@ def test_what_is_too_near_or_too_far_is_not_seen(make):
     assert (rendered.color == round(0.7 * 255)).all()
 
 
-def test_colours_are_those_of_the_things(make):
+def test_colors_match_objects(make):
     simulation = simulated(
         block("left", "2 1 0 0 0 0", "0.1 1 1", color="1 0 0 1"),
         block("right", "2 -1 0 0 0 0", "0.1 1 1", color="0 1 0 1"),
@@ -132,7 +132,7 @@ PANEL = """<model name="panel"><static>true</static><pose>2 0 0 0 0 0</pose><lin
 
 
 @pytest.mark.parametrize("kind", ["albedo", "emissive"])
-def test_meshes_wear_the_images_of_their_materials(make, tmp_path, kind, request):
+def test_meshes_are_textured(make, tmp_path, kind, request):
     (tmp_path / "quad.obj").write_text(QUAD)
     image = Image.new("RGB", (64, 64), (255, 0, 0))
     image.paste((0, 0, 255), (32, 0, 64, 64))  # its right half, which is the left one as seen from here
@@ -142,7 +142,7 @@ def test_meshes_wear_the_images_of_their_materials(make, tmp_path, kind, request
     color = make(simulation).render(optics_of(CAMERA), IDENTITY, Channels.COLOR).color.astype(int)
     left, right = color[60, 60], color[60, 100]
     assert left[1] == right[1] == 0
-    if request.node.callspec.params["make"] in ("embree", "mujoco"):  # rays: one colour a shape
+    if request.node.callspec.params["make"] in ("embree", "mujoco"):  # rays: one color a shape
         assert left[0] == left[2] > 50
         return
     assert left[2] > 50
@@ -153,7 +153,7 @@ def test_meshes_wear_the_images_of_their_materials(make, tmp_path, kind, request
         assert left[2] >= 250
 
 
-def test_an_image_that_is_not_there_is_told_once(tmp_path):
+def test_missing_texture_is_reported_once(tmp_path):
     (tmp_path / "quad.obj").write_text(QUAD)
     panel = PANEL.format(folder=tmp_path, kind="albedo", image="none.png")
     simulation = simulated(panel, panel.replace('name="panel"', 'name="other"'))
@@ -163,7 +163,7 @@ def test_an_image_that_is_not_there_is_told_once(tmp_path):
 
 
 QUARTERS = ((255, 0, 0), (0, 255, 0), (0, 0, 255), (255, 255, 0))
-"""The colours of an image: above left and right, below left and right."""
+"""The colors of an image: above left and right, below left and right."""
 WEARING = """<model name="thing"><static>true</static><pose>2 0 0 0 0 0</pose><link name="link"><visual name="v">
 <geometry>{shape}</geometry><material><pbr><metal><albedo_map>file://{image}</albedo_map></metal></pbr></material></visual></link></model>"""
 
@@ -177,7 +177,7 @@ WEARING = """<model name="thing"><static>true</static><pose>2 0 0 0 0 0</pose><l
         ("<sphere><radius>0.6</radius></sphere>", 1.4, None),
     ],
 )
-def test_simple_shapes_wear_images(make, tmp_path, shape, distance, order, request):
+def test_primitive_shapes_are_textured(make, tmp_path, shape, distance, order, request):
     image = Image.new("RGB", (64, 64))
     for place, quarter in enumerate(QUARTERS):
         column, row = 32 * (place % 2), 32 * (place // 2)
@@ -188,7 +188,7 @@ def test_simple_shapes_wear_images(make, tmp_path, shape, distance, order, reque
     assert not simulation.scene.diagnostics
     rendered = make(simulation).render(optics_of(CAMERA), IDENTITY, Channels.COLOR | Channels.DEPTH)
     assert rendered.depth[60, 80] == pytest.approx(distance, abs=2e-3)
-    if request.node.callspec.params["make"] in ("embree", "mujoco"):  # rays: one colour a shape
+    if request.node.callspec.params["make"] in ("embree", "mujoco"):  # rays: one color a shape
         red, green, blue = rendered.color[60, 80].astype(int)
         assert red == green > 0
         assert blue == pytest.approx(red / 2, abs=2)
@@ -202,14 +202,14 @@ def test_simple_shapes_wear_images(make, tmp_path, shape, distance, order, reque
         assert corners == [known[each] for each in order]
 
 
-def test_a_box_whose_image_is_missing_has_its_own_colour_and_that_is_told(tmp_path):
+def test_box_with_missing_texture_is_reported(tmp_path):
     simulation = simulated(WEARING.format(shape="<box><size>1 1 1</size></box>", image=tmp_path / "none.png"))
     assert [each.code for each in simulation.scene.diagnostics] == ["SIM112"]
     assert simulation.model.nmesh == 0
 
 
 @pytest.mark.parametrize("point", [(2.0, 0.5, 0.3), (2.0, -1.2, -0.6), (3.0, 2.0, 1.5)])
-def test_things_are_where_a_pinhole_has_them(make, point):
+def test_positions_match_pinhole_model(make, point):
     x, y, z = point
     size = 0.2
     simulation = simulated(block("thing", f"{x} {y} {z} 0 0 0", f"0.001 {size} {size}"))
@@ -225,7 +225,7 @@ def test_things_are_where_a_pinhole_has_them(make, point):
     assert rows.max() + 1 == pytest.approx(60 - focal * (z - size / 2) / near, abs=0.5 + 1e-6)
 
 
-def test_a_lens_puts_things_where_its_formula_does(make):
+def test_positions_match_lens_distortion_model(make):
     size, x, y, z = 0.2, 2.0, 1.2, 0.8
     simulation = simulated(block("thing", f"{x} {y} {z} 0 0 0", f"0.001 {size} {size}"))
     optics = optics_of(Camera(horizontal_fov=pi / 2, image=ImageFormat(160, 120), distortion=LENS))
@@ -236,7 +236,7 @@ def test_a_lens_puts_things_where_its_formula_does(make):
     assert rows.mean() + 0.5 == pytest.approx(middle[1], abs=0.5)
 
 
-def test_every_shape_is_seen_where_it_ends(make):
+def test_shapes_have_correct_extent(make):
     shapes = (
         "<sphere><radius>0.5</radius></sphere>",
         "<cylinder><radius>0.5</radius><length>1</length></cylinder>",
@@ -254,7 +254,7 @@ def test_every_shape_is_seen_where_it_ends(make):
         assert np.isinf(depth[0, 0]), shape
 
 
-def test_models_that_come_and_move_are_seen(make):
+def test_spawned_and_moved_models_are_rendered(make):
     simulation = simulated(FLOOR)
     renderer, optics = make(simulation), optics_of(CAMERA)
     high = (0.0, 0.0, 5.0, 0.0, 0.0, 0.0, 1.0)
@@ -267,7 +267,7 @@ def test_models_that_come_and_move_are_seen(make):
     assert np.isinf(renderer.render(optics, high, Channels.DEPTH).depth[60, 80])
 
 
-def test_a_camera_sees_out_of_its_own_housing(make):
+def test_camera_does_not_see_its_own_housing(make):
     housing = "<geometry><box><size>0.06 0.06 0.06</size></box></geometry>"
     eye = f'<model name="eye"><link name="link"><visual name="v">{housing}</visual></link></model>'
     simulation = simulated(block("wall", "3 0 0 0 0 0", "1 20 20"), eye)
@@ -275,7 +275,7 @@ def test_a_camera_sees_out_of_its_own_housing(make):
     assert np.abs(depth - 2.5).max() < 1e-3
 
 
-def test_all_ways_make_the_same_image(make):
+def test_renderers_produce_same_image(make):
     wall = block("wall", "4 0 1 0 0 0", "0.1 3 2", color="0 0 1 1")
     simulation = simulated(FLOOR, block("box", "2 0.4 0.3 0 0 0.5", "0.5 0.5 0.6"), wall)
     pose, optics = (0.0, 0.0, 0.5, 0.0, 0.0, 0.0, 1.0), optics_of(CAMERA)
@@ -320,7 +320,7 @@ def drawn(request: pytest.FixtureRequest):
 
 
 @pytest.mark.parametrize("light", ["", '<light name="lamp" type="point"><pose>0 1 1 0 0 0</pose></light>'])
-def test_round_shapes_look_as_those_of_mujoco(drawn, monkeypatch, light):
+def test_round_shapes_match_mujoco(drawn, monkeypatch, light):
     simulation = simulated(ROUND, light)
     ours, few = drawn(simulation)
     monkeypatch.setattr(opengl, "_BUILT_IN", 0)
@@ -334,7 +334,7 @@ def test_round_shapes_look_as_those_of_mujoco(drawn, monkeypatch, light):
     assert few < many if not light else few != many  # squares of MuJoCo's, triangles of ours
 
 
-def test_a_lamp_lights_what_is_near(make):
+def test_point_light_lights_nearby_objects(make):
     lamp = (
         '<light name="lamp" type="point"><pose>1.5 1 0 0 0 0</pose><attenuation><range>9</range></attenuation></light>'
     )
@@ -343,12 +343,12 @@ def test_a_lamp_lights_what_is_near(make):
     assert color[60, 40, 0] > color[60, 120, 0] + 20
 
 
-def test_a_distorted_point_comes_back():
+def test_undistort_inverts_distort():
     points = np.linspace(-0.6, 0.6, 13), np.linspace(-0.4, 0.5, 13)
     assert undistorted(LENS, *distort(LENS, *points)) == pytest.approx(np.array(points), abs=1e-9)
 
 
-def test_focal_lengths_may_be_given_instead_of_an_angle():
+def test_intrinsics_replace_field_of_view():
     optics = optics_of(Camera(image=ImageFormat(640, 480), intrinsics=Intrinsics(500.0, 520.0, 310.0, 250.0)))
     assert (optics.fx, optics.fy, optics.cx, optics.cy) == (500.0, 520.0, 310.0, 250.0)
     assert not optics.is_pinhole
@@ -363,7 +363,7 @@ def floating(name: str, pose: str, size: float = 0.5) -> str:
     )
 
 
-def test_what_rests_and_moves_again_is_where_it_is(make):
+def test_resting_and_moving_models_are_rendered_at_current_pose(make):
     simulation = simulated(floating("one", "2 0 0 0 0 0"), floating("two", "3 1 0 0 0 0"))
     renderer, optics = make(simulation), optics_of(CAMERA)
 
@@ -385,7 +385,7 @@ def test_what_rests_and_moves_again_is_where_it_is(make):
     assert (known == new).all()
 
 
-def test_a_box_that_rests_around_a_camera_hides_nothing_from_it(make):
+def test_resting_housing_does_not_hide_camera_view(make):
     simulation = simulated(floating("housing", "0 0 0 0 0 0", 0.06), block("wall", "3.5 0 0 0 0 0", "1 20 20"))
     renderer, optics = make(simulation), optics_of(CAMERA)
     beside = (-2.0, 0.0, 0.0, 0.0, 0.0, 0.0, 1.0)

@@ -114,7 +114,7 @@ class Arm:
         return Asked(self, ACTION, "/arm/follow_joint_trajectory", goal)  # type: ignore[arg-type]  # it has a node
 
 
-async def test_a_controller_can_start_before_the_first_update(tmp_path):
+async def test_controller_can_start_before_first_update(tmp_path):
     async with served(model(parameters("position", tmp_path))) as (server, graph, log):
         await Arm(server, graph).begin("position", wait=0.0)
         assert server.simulation.time == 0
@@ -125,7 +125,7 @@ STATE = "control_msgs/msg/JointTrajectoryControllerState"
 
 
 @pytest.mark.parametrize("kind", ["position", "velocity", "effort"])
-async def test_an_arm_follows_a_trajectory_against_gravity(kind, tmp_path):
+async def test_arm_follows_trajectory_against_gravity(kind, tmp_path):
     async with served(model(parameters(kind, tmp_path))) as (server, graph, _):
         arm = Arm(server, graph)
         await arm.begin(kind)
@@ -143,7 +143,7 @@ async def test_an_arm_follows_a_trajectory_against_gravity(kind, tmp_path):
         assert arm.positions() == pytest.approx([-0.6, 0.9], abs=0.02)
 
 
-async def test_a_goal_that_is_canceled_stops_the_arm(tmp_path):
+async def test_canceled_goal_stops_arm(tmp_path):
     async with served(model(parameters("position", tmp_path))) as (server, graph, _):
         arm = Arm(server, graph)
         await arm.begin("position")
@@ -158,7 +158,7 @@ async def test_a_goal_that_is_canceled_stops_the_arm(tmp_path):
         assert held == pytest.approx([-0.3, 0.45], abs=0.05)
 
 
-async def test_the_same_trajectory_gives_the_same_bits(tmp_path):
+async def test_trajectory_is_bitwise_reproducible(tmp_path):
     async def run() -> list[float]:
         async with served(model(parameters("effort", tmp_path))) as (server, graph, _):
             arm = Arm(server, graph)

@@ -166,7 +166,7 @@ async def driven(robot: Robot, folder: Path) -> AsyncIterator[Drive]:
 
 
 @ALL
-async def test_five_metres_straight(robot, tmp_path):
+async def test_odometry_matches_truth_over_five_meters(robot, tmp_path):
     async with driven(robot, tmp_path) as drive:
         await drive.drive(5.0, 1.0)
         await drive.advance(1.0)
@@ -176,7 +176,7 @@ async def test_five_metres_straight(robot, tmp_path):
 
 
 @pytest.mark.parametrize("robot", [DIFFERENTIAL, ACKERMANN], ids=["differential", "ackermann"])
-async def test_an_arc(robot, tmp_path):
+async def test_odometry_matches_truth_on_arc(robot, tmp_path):
     async with driven(robot, tmp_path) as drive:
         await drive.drive(6.0, 0.4, 0.3)
         await drive.advance(1.0)
@@ -186,7 +186,7 @@ async def test_an_arc(robot, tmp_path):
 
 
 @ALL
-async def test_a_robot_stops_when_commands_stop(robot, tmp_path):
+async def test_robot_stops_when_commands_stop(robot, tmp_path):
     async with driven(robot, tmp_path) as drive:
         await drive.drive(1.0, 0.5)
         await drive.advance(0.09)
@@ -198,7 +198,7 @@ async def test_a_robot_stops_when_commands_stop(robot, tmp_path):
         assert drive.truth.x == pytest.approx(stopped.x, abs=1e-3)
 
 
-async def test_the_wheels_of_a_robot_cost_one_new_model_together(tmp_path):
+async def test_wheels_of_robot_require_one_model_compilation(tmp_path):
     """MuJoCo's model is made anew for motors; many robots would begin slowly if each wheel were to need one."""
     async with driven(DIFFERENTIAL, tmp_path) as drive:
         assert drive.server.simulation.revision <= 1

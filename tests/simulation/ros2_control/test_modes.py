@@ -18,7 +18,7 @@ POSITIONS = (
 
 
 @pytest.fixture
-def written(tmp_path):
+def write_parameters(tmp_path):
     """A file of parameters with a text."""
 
     def write(text: str):
@@ -38,9 +38,9 @@ def angle(server) -> float:
     [("", 0.5), ("<command_interface name='velocity'/>", 0.03)],  # the rotor of a motor turns with the joint
     ids=["effort", "effort and velocity"],
 )
-async def test_a_joint_that_takes_efforts_is_held_while_no_controller_has_it_and_free_then(written, more, way):
+async def test_unclaimed_effort_joint_is_held_and_released_by_controller(write_parameters, more, way):
     text = description(wheel("left_joint", "effort").replace("<state", f"{more}<state", 1))
-    async with served(controlled(written(EFFORTS))) as (server, graph, _):
+    async with served(controlled(write_parameters(EFFORTS))) as (server, graph, _):
         world = Controlled(server, graph)
         await world.describe(text)
         server.simulation.push("mbot::left_wheel", (0.0, 0.0, 0.0), (0.0, 0.01, 0.0), by="test")
@@ -58,8 +58,8 @@ async def test_a_joint_that_takes_efforts_is_held_while_no_controller_has_it_and
 
 
 @pytest.mark.parametrize(("kind", "way"), [("effort", 0.5), ("velocity", 0.01)])
-async def test_with_hold_joints_false_it_turns_as_it_will(written, kind, way):
-    text = controlled(written(EFFORTS), more="<hold_joints>false</hold_joints>")
+async def test_unclaimed_joint_turns_freely_with_hold_joints_false(write_parameters, kind, way):
+    text = controlled(write_parameters(EFFORTS), more="<hold_joints>false</hold_joints>")
     async with served(text) as (server, graph, _):
         world = Controlled(server, graph)
         await world.describe(description(wheel("left_joint", kind)))
@@ -68,9 +68,9 @@ async def test_with_hold_joints_false_it_turns_as_it_will(written, kind, way):
         assert angle(server) > way
 
 
-async def test_with_a_gain_a_position_is_approached_by_a_part_of_what_is_missing(written):
+async def test_position_proportional_gain_approaches_gradually(write_parameters):
     more = "<position_proportional_gain>0.1</position_proportional_gain>"
-    async with served(controlled(written(POSITIONS), "gz", more)) as (server, graph, _):
+    async with served(controlled(write_parameters(POSITIONS), "gz", more)) as (server, graph, _):
         world = Controlled(server, graph)
         await world.describe(description(wheel("left_joint", "position")))
         await world.start("arm")

@@ -36,7 +36,7 @@ def in_file(kind: str) -> str:
 
 @pytest.mark.parametrize("written", ["description", "file"])
 @pytest.mark.parametrize("kind", KINDS)
-async def test_a_pid_controller_brings_a_joint_to_its_command_and_ends_with_the_controller(tmp_path, kind, written):
+async def test_pid_moves_joint_to_command_and_stops_with_controller(tmp_path, kind, written):
     result = written == "description"
     path = parameter_file(tmp_path / "controllers.yaml", kind, "" if result else in_file(kind))
     async with served(controlled(path)) as (server, graph, log):
@@ -57,7 +57,7 @@ async def test_a_pid_controller_brings_a_joint_to_its_command_and_ends_with_the_
         assert server.simulation.joint_state("mbot::left_joint")[1] == pytest.approx(0.0, abs=0.05)
 
 
-async def test_a_gain_that_is_no_number_is_told(tmp_path):
+async def test_gain_that_is_not_a_number_is_reported(tmp_path):
     path = parameter_file(tmp_path / "controllers.yaml", "position")
     async with served(controlled(path)) as (server, graph, log):
         await Controlled(server, graph).describe(in_description("position", kp="stiff"))

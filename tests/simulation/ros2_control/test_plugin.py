@@ -97,7 +97,7 @@ def file(tmp_path):
 
 
 @pytest.mark.parametrize("which", PLUGINS)
-async def test_wheels_turn_as_they_are_told_and_stop_with_their_controller(file, which):
+async def test_wheels_follow_commands_and_stop_with_controller(file, which):
     async with served(GROUND, controlled(file, which)) as (server, graph, log):
         world = Controlled(server, graph)
         states = Recording(graph, server.node, "/joint_states")
@@ -115,7 +115,7 @@ async def test_wheels_turn_as_they_are_told_and_stop_with_their_controller(file,
         assert not [each.text for each in log if each.level.name in ("WARN", "ERROR")]
 
 
-async def test_servos_of_all_joints_come_with_one_new_model_and_each_holds_its_joint(file):
+async def test_servos_of_all_joints_require_one_model_compilation(file):
     async with served(controlled(file), options=None) as (server, graph, _):
         world = Controlled(server, graph)
         before = server.simulation.revision
@@ -127,7 +127,7 @@ async def test_servos_of_all_joints_come_with_one_new_model_and_each_holds_its_j
         assert positions == pytest.approx([0.5, -0.4], abs=0.01)
 
 
-async def test_positions_are_held_from_their_initial_values_on(file, tmp_path):
+async def test_positions_are_held_from_initial_values(file, tmp_path):
     positions = tmp_path / "positions.yaml"
     positions.write_text(
         "controller_manager: {ros__parameters: {arm: {type: position_controllers/JointGroupPositionController}}}\n"
@@ -144,7 +144,7 @@ async def test_positions_are_held_from_their_initial_values_on(file, tmp_path):
         assert server.simulation.joint_state("mbot::left_joint")[0] == pytest.approx(-0.25, abs=0.01)
 
 
-async def test_efforts_push_and_are_measured(file, tmp_path):
+async def test_efforts_are_applied_and_measured(file, tmp_path):
     efforts = tmp_path / "efforts.yaml"
     efforts.write_text(
         "controller_manager: {ros__parameters: {arm: {type: effort_controllers/JointGroupEffortController},"
@@ -162,7 +162,7 @@ async def test_efforts_push_and_are_measured(file, tmp_path):
         assert server.simulation.joint_state("mbot::left_joint")[1] > 0.05
 
 
-async def test_an_imu_is_hardware_too(file):
+async def test_imu_provides_state_interfaces(file):
     states = "<state_interface name='orientation.w'/><state_interface name='linear_acceleration.z'/>"
     sensor = f"<sensor name='imu'>{states}</sensor>"
     async with served(GROUND, controlled(file, inside=IMU)) as (server, graph, _):
@@ -176,7 +176,7 @@ async def test_an_imu_is_hardware_too(file):
         assert list(values.values) == pytest.approx([1.0, 9.8], abs=0.05)
 
 
-async def test_namespaces_and_names(file):
+async def test_namespace_name_and_remappings_of_manager(file):
     file.write_text(FILE.replace("\ncontroller_manager:", "\n/r1/manager:").replace("\nwheels:", "\n/r1/wheels:"))
     more = (
         "<controller_manager_name>manager</controller_manager_name>"
@@ -189,7 +189,7 @@ async def test_namespaces_and_names(file):
         assert "/r1/wheels" in graph.node_names()
 
 
-async def test_what_is_not_in_the_model_is_told(file):
+async def test_joints_and_sensors_missing_in_model_are_reported(file):
     text = wheel("left_joint") + wheel("third_joint") + "<sensor name='ft'><state_interface name='force.x'/></sensor>"
     async with served(GROUND, controlled(file)) as (server, graph, log):
         world = Controlled(server, graph)
@@ -205,7 +205,7 @@ async def test_what_is_not_in_the_model_is_told(file):
         ]
 
 
-async def test_a_reset_goes_on_with_what_is_active(file):
+async def test_reset_keeps_controllers_active(file):
     async with served(GROUND, controlled(file)) as (server, graph, _):
         world = Controlled(server, graph)
         states = Recording(graph, server.node, "/joint_states")
@@ -220,7 +220,7 @@ async def test_a_reset_goes_on_with_what_is_active(file):
         assert not any(isnan(each) for each in states.last.effort)
 
 
-async def test_the_manager_goes_with_its_robot(file):
+async def test_manager_is_removed_with_robot(file):
     async with served(GROUND, controlled(file)) as (server, graph, _):
         world = Controlled(server, graph)
         await world.describe(description(wheel("left_joint") + wheel("right_joint")))
@@ -230,7 +230,7 @@ async def test_the_manager_goes_with_its_robot(file):
         assert graph.node_names() == ["/audience", "/gazebo"]
 
 
-async def test_controllers_go_on_when_the_model_is_changed(file):
+async def test_controllers_stay_active_when_model_is_replaced(file):
     text = controlled(file)
     async with served(GROUND, text) as (server, graph, _):
         world = Controlled(server, graph)
@@ -246,7 +246,7 @@ async def test_controllers_go_on_when_the_model_is_changed(file):
         assert server.simulation.joint_state("mbot::left_joint")[1] == pytest.approx(2.0, abs=0.05)
 
 
-async def test_a_robot_that_comes_anew_has_no_controllers_yet(file):
+async def test_respawned_robot_has_no_controllers(file):
     text = controlled(file)
     async with served(GROUND, text) as (server, graph, _):
         world = Controlled(server, graph)
@@ -258,7 +258,7 @@ async def test_a_robot_that_comes_anew_has_no_controllers_yet(file):
         assert (await world.ask("list_controllers")).controller == []
 
 
-async def test_a_vendors_copy_of_the_plugin_is_told_of_once(file):
+async def test_vendor_copy_of_plugin_is_reported_once(file):
     two = controlled(file, "copy", "<controller_manager_name>other</controller_manager_name>")
     async with served(GROUND, controlled(file, "copy"), two.replace('"mbot"', '"two"')) as (_, __, log):
         logged = [each.text for each in log if "is simulated as" in each.text]

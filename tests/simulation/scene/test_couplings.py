@@ -32,7 +32,7 @@ def gears(ratio: float, axis: str = "1 0 0", first: bool = False) -> str:
 
 @pytest.mark.parametrize("first", [True, False])
 @pytest.mark.parametrize(("axis", "turns"), [("1 0 0", 1.5), ("-1 0 0", -1.5)])
-def test_the_child_of_a_gearbox_turns_minus_its_ratio_times_as_far(axis, turns, first):
+def test_gearbox_child_turns_by_negative_ratio(axis, turns, first):
     simulation = simulated(gears(-1.5, axis, first))
     simulation.push_joint("m::a_axle", 1.0)
     simulation.advance(SECOND)
@@ -41,7 +41,7 @@ def test_the_child_of_a_gearbox_turns_minus_its_ratio_times_as_far(axis, turns, 
     assert simulation.joint_state("m::b_axle")[0] == pytest.approx(turns * turned, abs=1e-3)
 
 
-def test_a_screw_moves_by_its_pitch_each_time_it_has_turned_round():
+def test_screw_joint_moves_by_pitch_per_revolution():
     screw = (
         f'<model name="m"><link name="nut">{BODY}</link><joint name="screw" type="screw"><parent>world</parent>'
         "<child>nut</child><screw_thread_pitch>0.01</screw_thread_pitch><axis><xyz>0 0 1</xyz></axis></joint></model>"
@@ -54,7 +54,7 @@ def test_a_screw_moves_by_its_pitch_each_time_it_has_turned_round():
     assert simulation.link_pose("m::nut")[2] == pytest.approx(0.01 * turned / tau, abs=1e-4)
 
 
-def test_a_kinematic_model_stays_where_it_is_put_and_pushes_what_is_in_its_way():
+def test_kinematic_model_keeps_pose_and_pushes_others():
     shape = '<collision name="c"><geometry><box><size>1 1 1</size></box></geometry></collision>'
     lift = f'<model name="lift"><pose>0 0 0.5 0 0 0</pose><link name="l"><kinematic>1</kinematic>{shape}</link></model>'
     simulation = simulated(lift, box("crate", pose="0 0 1.5 0 0 0"))

@@ -25,7 +25,7 @@ GZ = '<plugin filename="gz-sim-physics-system" name="gz::sim::systems::Physics"/
 SECOND = 1_000_000_000
 
 
-def test_an_actor_is_where_its_path_is_at_the_time_of_the_world():
+def test_actor_follows_trajectory_in_simulated_time():
     simulation = simulated(GROUND, ACTOR)
     assert simulation.link_pose("walker::head")[:3] == pytest.approx((2, 0, 1))
     simulation.advance(SECOND)
@@ -36,24 +36,24 @@ def test_an_actor_is_where_its_path_is_at_the_time_of_the_world():
     assert simulation.link_pose("walker::head")[:3] == pytest.approx((2, 0, 1))
 
 
-def test_in_worlds_for_gz_a_path_is_in_the_frame_of_the_actor():
+def test_actor_trajectory_is_relative_to_actor_in_gz_worlds():
     simulation = simulated(GROUND, GZ, ACTOR)
     assert simulation.link_pose("walker::head")[:3] == pytest.approx((2, 1, 1))
 
 
-def test_an_actor_without_a_path_stands_where_it_stands():
+def test_actor_without_trajectory_keeps_its_pose():
     simulation = simulated(GROUND, f'<actor name="walker"><pose>0 1 0 0 0 0</pose>{LINK}<script/></actor>')
     simulation.advance(SECOND // 100)
     assert simulation.link_pose("walker::head")[:3] == pytest.approx((0, 1, 1))
 
 
-def test_an_actor_goes_through_what_stands_in_its_way():
+def test_actor_does_not_collide():
     simulation = simulated(GROUND, box("crate", pose="4 0 0.5 0 0 0"), ACTOR)
     simulation.advance(2 * SECOND)
     assert simulation.link_pose("crate::link")[:2] == pytest.approx((4, 0), abs=1e-4)
 
 
-def test_rays_that_see_visuals_meet_an_actor_where_it_is():
+def test_rays_against_visuals_hit_actor():
     simulation = simulated(GROUND, ACTOR)
     simulation.advance(SECOND)
     simulation.refresh()
@@ -64,13 +64,13 @@ def test_rays_that_see_visuals_meet_an_actor_where_it_is():
     assert distances[0] == pytest.approx(3.5)
 
 
-def test_figures_of_one_name_are_all_there():
+def test_figures_with_duplicate_names_are_renamed():
     road = '<road name="ground"><point>0 0 0</point><point>1 0 0</point></road>'
     simulation = simulated(GROUND, ACTOR, road, road)
     assert [figure.model.name for figure in simulation.scene.figures] == ["walker", "ground~", "ground~~"]
 
 
-def test_a_road_is_a_strip_along_its_points_that_nothing_touches():
+def test_road_is_strip_without_collision():
     road = '<road name="r"><width>2</width><point>0 0 0.02</point><point>4 0 0.02</point><point>4 3 0.02</point></road>'
     simulation = simulated(GROUND, road)
     body = simulation.model.body("r::link")
@@ -103,13 +103,13 @@ DAE = """<?xml version="1.0"?>
         ("x " * 16, (0, 0, 0)),
     ],
 )
-def test_a_skin_stands_where_its_skeleton_begins(tmp_path: Path, matrix, begins):
+def test_skin_is_placed_at_skeleton_origin(tmp_path: Path, matrix, begins):
     file = tmp_path / "walk.dae"
     file.write_text(DAE.format(matrix=matrix))
     assert skeleton_origin(file) == pytest.approx(begins)
 
 
-def test_a_plain_figure_stands_for_a_skin_that_is_not_there():
+def test_missing_skin_is_replaced_by_plain_figure():
     skin = "<skin><filename>walk.dae</filename></skin>"
     simulation = simulated(GROUND, ACTOR.replace(LINK, skin).replace("0 0 0 0 0 0</pose></w", "0 1 0 0 0 0</pose></w"))
     assert [diagnostic.code for diagnostic in simulation.scene.diagnostics] == ["SIM112"]
@@ -117,7 +117,7 @@ def test_a_plain_figure_stands_for_a_skin_that_is_not_there():
     assert simulation.model.body(figure.links[0].name).geomnum == len(figure.model.links[0].visuals) > 1
 
 
-def test_what_is_not_simulated_is_named_once():
+def test_unsimulated_elements_are_reported_once():
     more = (
         '<model name="m"><static>true</static><link name="l"><projector name="p"/><projector name="q"/></link></model>'
     )

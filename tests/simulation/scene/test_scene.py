@@ -61,7 +61,7 @@ def mesh_model(path, *, static: bool = True, pose: str = "0 0 0 0 0 0", scale: s
     )
 
 
-def test_a_room_of_a_mesh_has_room_inside(room):
+def test_static_concave_mesh_is_hollow(room):
     simulation = simulated(GROUND, mesh_model(room), box("box", "0 0 0.1 0 0 0", "0.2 0.2 0.2"))
     simulation.push("box::link", (15.0, 0.0, 0.0))
     simulation.advance(3 * NANOSECONDS_PER_SECOND)
@@ -71,14 +71,14 @@ def test_a_room_of_a_mesh_has_room_inside(room):
     assert z > 0.05
 
 
-def test_a_mesh_that_moves_is_its_hull(room):
+def test_moving_mesh_collides_as_convex_hull(room):
     simulation = simulated(GROUND, mesh_model(room, static=False, pose="0 0 1 0 0 0", scale="0.1 0.1 0.1"))
     assert sum(geom.type == mujoco.mjtGeom.mjGEOM_MESH for geom in simulation.scene.spec.geoms) == 2
     simulation.advance(NANOSECONDS_PER_SECOND)
     assert simulation.model_pose("mesh")[2] == pytest.approx(0.0, abs=2e-3)
 
 
-def test_a_mesh_that_is_not_there_is_told_once(tmp_path):
+def test_missing_mesh_is_reported_once(tmp_path):
     simulation = simulated(GROUND, mesh_model(tmp_path / "none.stl"))
     (found,) = simulation.scene.diagnostics
     assert found.code == "SIM112"
@@ -87,7 +87,7 @@ def test_a_mesh_that_is_not_there_is_told_once(tmp_path):
     simulation.advance(NANOSECONDS_PER_SECOND // 10)
 
 
-def test_a_mesh_of_too_many_triangles_is_left_out(room, monkeypatch):
+def test_mesh_with_too_many_triangles_is_omitted(room, monkeypatch):
     monkeypatch.setattr("linkwright.simulation.scene.meshes._MAX_TRIANGLES", 7)
     simulation = simulated(GROUND, mesh_model(room))
     (found,) = simulation.scene.diagnostics
@@ -96,7 +96,7 @@ def test_a_mesh_of_too_many_triangles_is_left_out(room, monkeypatch):
     simulation.advance(NANOSECONDS_PER_SECOND // 10)
 
 
-def test_heights_of_an_image_bear(tmp_path):
+def test_heightmap_supports_models(tmp_path):
     path = tmp_path / "heights.png"
     values = np.zeros((33, 33), dtype=np.uint8)
     values[:, 16:] = 255  # the half where x is positive is high
@@ -114,7 +114,7 @@ def test_heights_of_an_image_bear(tmp_path):
     assert read_heights(path).values.max() == 1.0
 
 
-def test_an_image_that_is_none_is_told(tmp_path):
+def test_unreadable_heightmap_image_is_reported(tmp_path):
     path = tmp_path / "heights.png"
     path.write_text("no image")
     library = MeshLibrary(finder())
@@ -127,7 +127,7 @@ def test_an_image_that_is_none_is_told(tmp_path):
     assert found.code == "SIM113"
 
 
-def test_a_polygon_is_raised():
+def test_polyline_is_extruded():
     shape = (
         "<geometry><polyline><point>-1 -1</point><point>1 -1</point><point>1 1</point><point>0 0</point>"
         "<point>-1 1</point><height>0.5</height></polyline></geometry>"
@@ -143,7 +143,7 @@ def test_a_polygon_is_raised():
     assert simulation.model_pose("in")[2] == pytest.approx(0.05, abs=1e-3)
 
 
-def test_a_mass_can_be_worked_out():
+def test_auto_inertial_computes_mass():
     model = """<model name="m"><link name="l"><inertial auto="true"><density>500</density></inertial>
     <collision name="c"><pose>0 0 1 0 0 0</pose><geometry><box><size>1 2 3</size></box></geometry></collision>
     </link></model>"""
@@ -153,7 +153,7 @@ def test_a_mass_can_be_worked_out():
     assert sorted(body.inertia) == pytest.approx([250 * 5, 250 * 10, 250 * 13])
 
 
-def test_mass_that_no_body_has_is_told():
+def test_invalid_mass_and_inertia_are_reported():
     model = """<model name="m"><link name="l"><inertial><mass>-1</mass><inertia><ixx>-1</ixx></inertia></inertial>
     </link></model>"""
     simulation = simulated(model)
@@ -166,7 +166,7 @@ def moments(ixx: float, iyy: float, izz: float) -> Simulation:
     return simulated(f'<model name="m"><link name="l"><inertial><mass>1</mass>{inertia}</inertial></link></model>')
 
 
-def test_inertia_that_breaks_the_triangle_rule_is_told():
+def test_inertia_violating_triangle_inequality_is_reported():
     simulation = moments(1.0, 1.0, 9.0)
     (found,) = simulation.scene.diagnostics
     assert (found.code, "the mean of its moments is used" in found.message) == ("SIM111", True)
@@ -190,7 +190,7 @@ def arm(second: str) -> str:
     </model>"""
 
 
-def test_a_joint_follows_another():
+def test_mimic_joint_follows_other_joint():
     mimic = '<mimic joint="a"><multiplier>-2</multiplier><offset>0.5</offset><reference>0</reference></mimic>'
     simulation = simulated(arm(mimic))
     simulation.push("arm::one", (0.0, 0.0, 0.0), (0.0, 0.0, 0.1))
@@ -200,7 +200,7 @@ def test_a_joint_follows_another():
     assert follower == pytest.approx(0.5 - 2 * leader, abs=0.02)
 
 
-def test_links_of_one_model_pass_through_each_other_unless_they_say_otherwise():
+def test_links_of_model_collide_only_with_self_collide():
     shape = "<collision name='c'><geometry><box><size>0.2 0.2 0.2</size></box></geometry></collision>"
     text = f"""<model name="m"><self_collide>{{}}</self_collide><link name="a">{shape}</link>
     <link name="b"><pose>0 0 0.15 0 0 0</pose>{shape}</link></model>"""
@@ -213,7 +213,7 @@ def test_links_of_one_model_pass_through_each_other_unless_they_say_otherwise():
     assert apart["true"] > 0.17
 
 
-def test_a_wheel_that_is_a_mesh_rolls_in_one_point(tmp_path):
+def test_mesh_wheel_has_single_contact_point(tmp_path):
     turns = np.linspace(0, 2 * np.pi, 25)[:-1]
     rim = [(0.1 * np.cos(turn), y, 0.1 * np.sin(turn)) for turn in turns for y in (-0.02, 0.02)]
     facets = "".join(quad(rim[i], rim[i + 1], rim[(i + 3) % 48], rim[(i + 2) % 48]) for i in range(0, 48, 2))
@@ -233,7 +233,7 @@ def test_a_wheel_that_is_a_mesh_rolls_in_one_point(tmp_path):
 
 
 @pytest.mark.parametrize(("order", "mark"), [("<", b"II*\0"), (">", b"MM\0*")])
-def test_an_elevation_model_may_have_heights_of_64_bits(tmp_path, order, mark):
+def test_elevation_model_supports_64_bit_heights(tmp_path, order, mark):
     heights = np.array([[10.0, 20.0, 30.0], [30.0, 50.0, 10.0]])
     tags = {256: 3, 257: 2, 258: 64, 259: 1, 273: 8, 277: 1, 279: 48, 339: 3}
     entries = b"".join(struct.pack(f"{order}HHII", tag, 4, 1, value) for tag, value in tags.items())
@@ -244,14 +244,14 @@ def test_an_elevation_model_may_have_heights_of_64_bits(tmp_path, order, mark):
 
 
 @pytest.mark.parametrize("text", [b"II*\0", b"MM\0*" + bytes(20), b"II*\0\x08\0\0\0\x01\0" + bytes(12)])
-def test_an_image_that_is_none_is_told_of(tmp_path, text):
+def test_malformed_elevation_model_is_rejected(tmp_path, text):
     path = tmp_path / "hill.tif"
     path.write_bytes(text)
     with pytest.raises(LinkwrightError, match="cannot read the image"):
         read_heights(path)
 
 
-def test_parts_of_a_mesh_that_are_one_triangle_or_none_do_not_lose_the_model(tmp_path):
+def test_degenerate_mesh_parts_do_not_omit_model(tmp_path):
     corners = "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\nv 1 0 1\nv 0 1 1\n"
     parts = "usemtl a\nf 1 2 3\nusemtl b\nf 4 5 6\nf 4 6 5\nf 1 2 5\nusemtl c\nf 1 2 2\n"
     (tmp_path / "parts.obj").write_text(f"mtllib parts.mtl\n{corners}{parts}")
@@ -265,7 +265,7 @@ def test_parts_of_a_mesh_that_are_one_triangle_or_none_do_not_lose_the_model(tmp
     assert sorted(seen) == [[0, 1, 0], [1, 0, 0]]
 
 
-def test_meshes_with_the_same_image_share_a_texture(tmp_path):
+def test_meshes_with_same_image_share_texture(tmp_path):
     Image.new("RGB", (4, 4), "red").save(tmp_path / "i.png")
     (tmp_path / "m.mtl").write_text("newmtl m\nmap_Kd i.png\n")
     shapes = []

@@ -16,11 +16,11 @@ from tests.simulation.worlds import GROUND, box, model, simulated
 GAUSSIAN = '<noise type="gaussian"><mean>0</mean><stddev>0.01</stddev></noise>'
 
 
-def look(simulation: Simulation, said, *, visuals: bool = False, seed: int = 0) -> LidarSensor:
+def lidar_sensor(simulation: Simulation, said, *, visuals: bool = False, seed: int = 0) -> LidarSensor:
     return LidarSensor(on_carrier(simulation), said, sees_visuals=visuals, generator=np.random.default_rng(seed))
 
 
-def in_room(angle: float) -> float:
+def distance_in_room(angle: float) -> float:
     """How far the walls of `room` are from the origin in a direction."""
     x, y = cos(angle), sin(angle)
     across = 3 / x if x > 0 else -2 / x if x < 0 else float("inf")
@@ -29,43 +29,46 @@ def in_room(angle: float) -> float:
 
 
 @pytest.mark.parametrize("visuals", [False, True])
-def test_every_ray_in_a_room_is_exact(visuals: bool):
-    scan = look(simulated(room(), carrier()), flat(720, -3.0, 3.0), visuals=visuals).measure()
-    expected = [in_room(angle) for angle in np.linspace(-3.0, 3.0, 720)]
+def test_ranges_in_room_are_exact(visuals: bool):
+    scan = lidar_sensor(simulated(room(), carrier()), flat(720, -3.0, 3.0), visuals=visuals).measure()
+    expected = [distance_in_room(angle) for angle in np.linspace(-3.0, 3.0, 720)]
     assert np.abs(scan.ranges[0] - expected).max() < 1e-6
 
 
-def test_rays_turn_with_the_link_that_carries_them():
-    scan = look(simulated(room(), carrier(f"1 0 0 0 0 {pi / 2}")), flat(1, 0.0, 0.0)).measure()
+def test_rays_rotate_with_link():
+    scan = lidar_sensor(simulated(room(), carrier(f"1 0 0 0 0 {pi / 2}")), flat(1, 0.0, 0.0)).measure()
     assert scan.ranges == pytest.approx(np.array([[4.0]]), abs=1e-9)
 
 
-def test_rings_look_up_and_down():
+def test_vertical_rings_are_angled_up_and_down():
     element = lidar(
         "<scan><horizontal><samples>1</samples></horizontal><vertical><samples>3</samples>"
         f"<min_angle>{-pi / 4}</min_angle><max_angle>{pi / 4}</max_angle></vertical></scan>"
         "<range><min>0.1</min><max>30</max></range>"
     )
-    scan = look(simulated(GROUND, room(), carrier("0 0 1 0 0 0")), element).measure()
+    scan = lidar_sensor(simulated(GROUND, room(), carrier("0 0 1 0 0 0")), element).measure()
     assert scan.ranges[:, 0] == pytest.approx([sqrt(2), 3.0, 3 * sqrt(2)], abs=1e-9)
 
 
-def test_what_is_out_of_range_is_infinite_as_rep_117_says():
+def test_out_of_range_values_are_infinite_as_in_rep_117():
     world = block("far", "9 0 0 0 0 0", "1 1 1"), block("near", "0 0.55 0 0 0 0", "1 1 1")
-    scan = look(simulated(*world, carrier()), flat(3, 0.0, pi, far=8.0)).measure()
+    scan = lidar_sensor(simulated(*world, carrier()), flat(3, 0.0, pi, far=8.0)).measure()
     assert list(scan.ranges[0]) == [np.inf, -np.inf, np.inf]
 
 
-def test_what_shines_back_is_told():
+def test_retro_reflectivity_sets_intensity():
     simulation = simulated(block("shiny", "3 0 0 0 0 0", "1 1 1", retro=200.0), carrier())
-    scan = look(simulation, flat(2, 0.0, pi)).measure()
+    scan = lidar_sensor(simulation, flat(2, 0.0, pi)).measure()
     assert list(scan.intensities[0]) == [200.0, 0.0]
 
 
-def test_one_sees_what_touches_and_another_what_is_drawn():
+def test_lidar_detects_collisions_or_visuals():
     invisible = box("invisible", "3 0 0 0 0 0")
     for visuals, expected in ((False, 2.5), (True, np.inf)):
-        assert look(simulated(invisible, carrier()), flat(1, 0, 0), visuals=visuals).measure().ranges[0, 0] == expected
+        assert (
+            lidar_sensor(simulated(invisible, carrier()), flat(1, 0, 0), visuals=visuals).measure().ranges[0, 0]
+            == expected
+        )
 
 
 ROBOT = """
@@ -77,7 +80,7 @@ ROBOT = """
 
 
 @pytest.mark.parametrize(("near", "expected"), [(0.1, 0.3), (0.35, 3.0)])
-def test_a_lidar_sees_its_robot_beyond_the_least_range_and_never_its_own_link(near: float, expected: float):
+def test_lidar_sees_its_robot_but_not_its_own_link(near: float, expected: float):
     simulation = simulated(room(), ROBOT)
     sensor = LidarSensor(
         Mount(simulation, "robot::laser"),
@@ -88,13 +91,13 @@ def test_a_lidar_sees_its_robot_beyond_the_least_range_and_never_its_own_link(ne
     assert sensor.measure().ranges[0, 0] == pytest.approx(expected, abs=1e-9)
 
 
-def test_noise_is_that_of_the_seed_and_stays_in_range():
+def test_noise_depends_on_seed_and_stays_in_range():
     simulation = simulated(room(), carrier())
     parameters = flat(2000, -1.0, 1.0, GAUSSIAN, far=3.4)
-    one, same, other = (look(simulation, parameters, seed=seed).measure().ranges[0] for seed in (1, 1, 2))
+    one, same, other = (lidar_sensor(simulation, parameters, seed=seed).measure().ranges[0] for seed in (1, 1, 2))
     assert (one == same).all()
     assert not (one == other).all()
-    exact = look(simulation, flat(2000, -1.0, 1.0, far=3.4)).measure().ranges[0]
+    exact = lidar_sensor(simulation, flat(2000, -1.0, 1.0, far=3.4)).measure().ranges[0]
     finite = np.isfinite(exact)
     assert (np.isfinite(one) == finite).all()
     assert one[finite].max() <= 3.4
@@ -102,15 +105,15 @@ def test_noise_is_that_of_the_seed_and_stays_in_range():
     assert np.std(one[inside] - exact[inside]) == pytest.approx(0.01, rel=0.1)
 
 
-def test_models_that_come_are_seen():
+def test_spawned_models_are_detected():
     simulation = simulated(room(), carrier())
-    sensor = look(simulation, flat(1, 0, 0))
+    sensor = lidar_sensor(simulation, flat(1, 0, 0))
     assert sensor.measure().ranges[0, 0] == pytest.approx(3.0)
     simulation.spawn(model(box("box", "0 0 0 0 0 0")), "box", (2.0, 0.0, 0.0, 0.0, 0.0, 0.0, 1.0))
     assert sensor.measure().ranges[0, 0] == pytest.approx(1.5)
 
 
-def test_the_angles_are_those_of_gazebo():
+def test_ray_angles_match_gazebo():
     parameters = flat(360, 0.0, 6.28)
     angles = parameters.horizontal
     assert (angles.count, angles.step) == (360, pytest.approx(6.28 / 359))

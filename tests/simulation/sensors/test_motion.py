@@ -33,7 +33,7 @@ def imu(simulation: Simulation, link: str, text: str = "", *, seed: int = 0, ini
     return ImuSensor(Mount(simulation, link), shown, generator=np.random.default_rng(seed), initial_reference=initial)
 
 
-def test_an_imu_at_rest_feels_the_reaction_to_gravity():
+def test_imu_at_rest_measures_gravity_reaction():
     simulation = simulated(GROUND, mbot(), gravity="0 0 -9.8")
     sensor = imu(simulation, "mbot::base_link")
     simulation.advance(NANOSECONDS_PER_SECOND)
@@ -43,13 +43,13 @@ def test_an_imu_at_rest_feels_the_reaction_to_gravity():
     assert measured.orientation == pytest.approx([0, 0, 0, 1], abs=1e-4)
 
 
-def test_an_imu_that_falls_feels_nothing():
+def test_falling_imu_measures_no_acceleration():
     simulation = simulated(box("box", "0 0 9 0.3 0.2 0.1"))
     simulation.advance(NANOSECONDS_PER_SECOND // 10)
     assert imu(simulation, "box::link").measure().linear_acceleration == pytest.approx([0, 0, 0], abs=1e-9)
 
 
-def test_an_imu_in_a_turn_feels_the_acceleration_towards_the_centre():
+def test_imu_on_curve_measures_centripetal_acceleration():
     simulation = simulated(GROUND, mbot())
     motors = [simulation.add_velocity_motor(f"mbot::{side}_joint", 20.0, 5.0) for side in ("left", "right")]
     forwards, turning = 0.3, 0.5
@@ -66,13 +66,13 @@ def test_an_imu_in_a_turn_feels_the_acceleration_towards_the_centre():
     assert felt[0] - measured.linear_acceleration[0] == pytest.approx(-0.1 * turning**2, abs=1e-3)
 
 
-def test_orientation_is_against_the_world_or_the_start():
+def test_imu_orientation_is_relative_to_world_or_start():
     simulation = simulated(box("box", f"0 0 9 0 0 {pi / 2}"))
     assert imu(simulation, "box::link").measure().orientation == pytest.approx([0, 0, 0.5**0.5, 0.5**0.5])
     assert imu(simulation, "box::link", initial=True).measure().orientation == pytest.approx([0, 0, 0, 1])
 
 
-def test_noise_of_an_imu_has_its_deviation_and_bias():
+def test_imu_noise_has_configured_deviation_and_bias():
     text = (
         '<angular_velocity><x><noise type="gaussian"><stddev>0.2</stddev></noise></x></angular_velocity>'
         '<linear_acceleration><z><noise type="gaussian"><bias_mean>5</bias_mean></noise></z></linear_acceleration>'
@@ -85,7 +85,7 @@ def test_noise_of_an_imu_has_its_deviation_and_bias():
     assert abs(unit.measure().linear_acceleration[2] - 9.81) == pytest.approx(5.0)
 
 
-def test_a_bias_wanders_within_its_deviation():
+def test_dynamic_bias_stays_within_its_deviation():
     text = (
         '<angular_velocity><x><noise type="gaussian"><dynamic_bias_stddev>0.5</dynamic_bias_stddev>'
         "<dynamic_bias_correlation_time>0.02</dynamic_bias_correlation_time></noise></x></angular_velocity>"
@@ -99,7 +99,7 @@ def test_a_bias_wanders_within_its_deviation():
     assert 0 < np.std(seen) < 0.5
 
 
-def test_contacts_carry_the_weight_of_what_stands():
+def test_contact_force_equals_weight():
     simulation = simulated(GROUND, box("box", "0 0 0.5 0 0 0", mass=2.0))
     sensor = ContactSensor(Mount(simulation, "box::link"), ["collision"])
     simulation.advance(NANOSECONDS_PER_SECOND)
@@ -112,7 +112,7 @@ def test_contacts_carry_the_weight_of_what_stands():
     assert (contact.depths >= 0).all()
 
 
-def test_nothing_touches_what_flies_and_other_collisions_do_not_count():
+def test_contact_sensor_ignores_flying_links_and_other_collisions():
     simulation = simulated(GROUND, box("box", "0 0 5 0 0 0"), box("low", "9 0 0.5 0 0 0"))
     simulation.advance(NANOSECONDS_PER_SECOND // 10)
     assert ContactSensor(Mount(simulation, "box::link")).measure() == []
@@ -128,7 +128,7 @@ ARM = """
 
 
 @pytest.mark.parametrize(("direction", "sign"), [("parent_to_child", 1), ("child_to_parent", -1)])
-def test_a_joint_carries_what_hangs_on_it(direction: str, sign: int):
+def test_force_torque_sensor_measures_suspended_weight(direction: str, sign: int):
     simulation = simulated(ARM)
     simulation.advance(NANOSECONDS_PER_SECOND // 100)
     element = ForceTorque(measure_direction=direction)
@@ -137,7 +137,7 @@ def test_a_joint_carries_what_hangs_on_it(direction: str, sign: int):
     assert sign * torque == pytest.approx([0, -2 * 9.81, 0], abs=1e-6)
 
 
-def test_places_on_earth_are_those_of_wgs_84():
+def test_geodetic_positions_match_wgs_84():
     globe = Globe(SphericalCoordinates(latitude_deg=0.0, longitude_deg=0.0))
     assert globe.geodetic(np.zeros(3)) == pytest.approx((0.0, 0.0, 0.0), abs=1e-9)
     # A degree at the equator is 110 574.3 m to the north and 111 319.5 m to the east; over 10 m the arc is straight.
@@ -147,7 +147,7 @@ def test_places_on_earth_are_those_of_wgs_84():
     assert high.geodetic(np.zeros(3)) == pytest.approx((47.5, 8.5, 430.0), abs=1e-8)
 
 
-def test_a_world_may_be_turned_on_the_earth():
+def test_heading_rotates_world_on_earth():
     globe = Globe(SphericalCoordinates(latitude_deg=10.0, heading_deg=90.0))
     assert globe.east_north_up(np.array([1.0, 0.0, 0.0])) == pytest.approx([0, 1, 0])
     latitude, longitude, _ = globe.geodetic(np.array([100.0, 0.0, 0.0]))
@@ -155,7 +155,7 @@ def test_a_world_may_be_turned_on_the_earth():
     assert longitude == pytest.approx(0.0)
 
 
-def test_a_receiver_tells_how_fast_it_goes():
+def test_navsat_measures_altitude_and_velocity():
     simulation = simulated(box("box", "0 0 500 0 0 0"))
     simulation.advance(NANOSECONDS_PER_SECOND)
     fix = NavsatSensor(Mount(simulation, "box::link"), None, SphericalCoordinates(elevation=100.0), CHANCE).measure()
@@ -164,18 +164,18 @@ def test_a_receiver_tells_how_fast_it_goes():
 
 
 @pytest.mark.parametrize(("altitude", "pressure"), [(0.0, 101325.0), (1000.0, 89876.3), (11000.0, 22699.9)])
-def test_the_pressure_of_the_air_is_that_of_the_standard_atmosphere(altitude: float, pressure: float):
+def test_air_pressure_matches_standard_atmosphere(altitude: float, pressure: float):
     assert standard_pressure(altitude) == pytest.approx(pressure, rel=1e-5)
 
 
-def test_an_altimeter_counts_from_where_it_began():
+def test_altimeter_is_relative_to_start():
     simulation = simulated(box("box", "0 0 500 0 0 0"))
     altimeter = AltimeterSensor(Mount(simulation, "box::link"), None, CHANCE)
     simulation.advance(NANOSECONDS_PER_SECOND)
     assert altimeter.measure() == pytest.approx((-9.81 / 2, -9.81), abs=0.01)
 
 
-def test_a_magnetometer_turns_in_the_field():
+def test_magnetometer_measures_field_in_its_axes():
     simulation = simulated(box("box", f"0 0 9 0 0 {pi / 2}"))
     field = MagnetometerSensor(Mount(simulation, "box::link"), None, CHANCE, (1.0, 2.0, 3.0)).measure()
     assert field == pytest.approx([2.0, -1.0, 3.0])

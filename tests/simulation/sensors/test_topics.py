@@ -52,7 +52,7 @@ async def served(*parts: str):
     await graph.close()
 
 
-async def heard(server: SimulationServer, graph: Graph, *topics: str, duration: int = SECOND // 10) -> list:
+async def last_messages(server: SimulationServer, graph: Graph, *topics: str, duration: int = SECOND // 10) -> list:
     """The last messages of topics after some time."""
     recordings = [Recording(graph, server.node, topic) for topic in topics]
     server.advance(duration)
@@ -60,11 +60,11 @@ async def heard(server: SimulationServer, graph: Graph, *topics: str, duration: 
     return [recording.last for recording in recordings]
 
 
-async def test_a_laser_of_gazebo_classic_is_a_scan():
+async def test_classic_ray_sensor_publishes_scan():
     ros = "<ros><remapping>~/out:=scan</remapping></ros><output_type>sensor_msgs/LaserScan</output_type>"
     text = carrier(sensor("ray", f"<ray>{RAYS}</ray>" + plugin("libgazebo_ros_ray_sensor.so", ros)))
     async with served(WALL, text) as (server, graph, log):
-        (scan,) = await heard(server, graph, "/scan")
+        (scan,) = await last_messages(server, graph, "/scan")
         assert (scan.header.stamp.sec, scan.header.stamp.nanosec) == (0, SECOND // 10)
         assert scan.header.frame_id == "head"
         assert list(scan.ranges) == [inf, 2.0, inf]
@@ -75,7 +75,7 @@ async def test_a_laser_of_gazebo_classic_is_a_scan():
         assert not log
 
 
-async def test_a_laser_says_nothing_while_nobody_listens():
+async def test_ray_sensor_does_not_publish_without_subscribers():
     text = carrier(sensor("ray", f"<ray>{RAYS}</ray>" + plugin("libgazebo_ros_ray_sensor.so")))
     async with served(WALL, text) as (server, graph, _):
         server.advance(SECOND)
@@ -86,7 +86,7 @@ async def test_a_laser_says_nothing_while_nobody_listens():
 
 
 @pytest.mark.parametrize(("message", "topic"), [("true", "/world_rays"), ("false", "/world_rays/others")])
-async def test_the_rays_of_a_lidar_are_told_to_who_draws_them_of_the_same_measurement(message: str, topic: str):
+async def test_displayed_rays_and_scan_share_one_measurement(message: str, topic: str):
     two_rows = RAYS.replace(
         "</horizontal>",
         "</horizontal><vertical><samples>2</samples><min_angle>0</min_angle><max_angle>0</max_angle></vertical>",
@@ -99,27 +99,27 @@ async def test_the_rays_of_a_lidar_are_told_to_who_draws_them_of_the_same_measur
         lidar.lidar.measure = lambda: measured.append(None) or measure()
         server.advance(SECOND)
         assert not measured
-        rays, other = await heard(server, graph, topic, "/scan")
+        rays, other = await last_messages(server, graph, topic, "/scan")
         assert len(measured) == 1
         assert rays.header.frame_id == "robot::head::eye"
         assert list(rays.ranges) == [inf, 2.0, inf] * 2
         assert list(other.ranges) == [inf, 2.0, inf]
 
 
-async def test_a_lidar_that_nobody_listens_to_measures_while_its_rays_are_drawn():
+async def test_lidar_measures_while_only_its_rays_are_displayed():
     text = carrier(sensor("ray", f"<ray>{RAYS}</ray>" + plugin("libgazebo_ros_ray_sensor.so")))
     async with served(WALL, text) as (server, graph, _):
-        (rays,) = await heard(server, graph, "/world_rays/others")
+        (rays,) = await last_messages(server, graph, "/world_rays/others")
         assert list(rays.ranges) == [inf, 2.0, inf]
 
 
 @pytest.mark.parametrize("kind", ["PointCloud2", "PointCloud", "Range"])
-async def test_the_other_types_of_a_lasers_output(kind: str):
+async def test_ray_sensor_output_types(kind: str):
     element = plugin(
         "libgazebo_ros_ray_sensor.so", f"<output_type>sensor_msgs/{kind}</output_type><frame_name>l</frame_name>"
     )
     async with served(WALL, carrier(sensor("ray", f"<ray>{RAYS}</ray>" + element))) as (server, graph, _):
-        (message,) = await heard(server, graph, "/driver/out")
+        (message,) = await last_messages(server, graph, "/driver/out")
         assert message.header.frame_id == "l"
         if kind == "Range":
             assert (message.range, message.field_of_view) == (2.0, pytest.approx(pi))
@@ -130,17 +130,17 @@ async def test_the_other_types_of_a_lasers_output(kind: str):
             assert np.frombuffer(bytes(message.data), np.float32) == pytest.approx([2.0, 0.0, 0.0, 0.0], abs=1e-6)
 
 
-async def test_a_type_of_output_that_is_none_is_told_of():
+async def test_invalid_output_type_is_reported():
     element = plugin("libgazebo_ros_ray_sensor.so", "<output_type>sensor_msgs/Imu</output_type>")
     async with served(carrier(sensor("ray", f"<ray>{RAYS}</ray>" + element))) as (server, _, log):
         assert server.plugins("robot") == ()
         assert "is not an output type" in str(log[0].text)
 
 
-async def test_a_laser_of_ros_1_has_its_topic_and_frame():
+async def test_ros_1_laser_has_its_topic_and_frame():
     element = plugin("libgazebo_ros_laser.so", "<topicName>/laser</topicName><frameName>hokuyo</frameName>")
     async with served(WALL, carrier(sensor("ray", f"<ray>{RAYS}</ray>" + element))) as (server, graph, log):
-        (scan,) = await heard(server, graph, "/laser")
+        (scan,) = await last_messages(server, graph, "/laser")
         assert (scan.header.frame_id, scan.ranges[1]) == ("hokuyo", 2.0)
         assert not log
 
@@ -149,10 +149,10 @@ async def test_a_laser_of_ros_1_has_its_topic_and_frame():
     "library",
     ["block_laser", "range", "velodyne_laser"],
 )
-async def test_other_lasers_of_ros_1_have_the_messages_that_they_had(library: str):
+async def test_ros_1_laser_plugins_publish_their_message_types(library: str):
     element = plugin(f"libgazebo_ros_{library}.so", "<topicName>/told</topicName><frameName>hokuyo</frameName>")
     async with served(WALL, carrier(sensor("ray", f"<ray>{RAYS}</ray>" + element))) as (server, graph, log):
-        (message,) = await heard(server, graph, "/told")
+        (message,) = await last_messages(server, graph, "/told")
         assert message.header.frame_id == "hokuyo"
         if library == "range":
             assert (message.range, message.radiation_type) == (2.0, message.ULTRASOUND)
@@ -184,10 +184,10 @@ LASERS = RAYS.replace(
 )
 
 
-async def test_points_of_a_velodyne_tell_which_laser_measured_them():
+async def test_velodyne_points_have_ring():
     element = plugin("libgazebo_ros_velodyne_laser.so", "<topicName>/told</topicName>")
     async with served(WALL, carrier(sensor("ray", f"<ray>{LASERS}</ray>" + element))) as (server, graph, log):
-        (message,) = await heard(server, graph, "/told")
+        (message,) = await last_messages(server, graph, "/told")
         rows = rows_of(message)
         assert (message.height, message.width, message.is_dense) == (1, 2, True)
         assert rows["ring"].tolist() == [0, 1]
@@ -196,11 +196,11 @@ async def test_points_of_a_velodyne_tell_which_laser_measured_them():
         assert not log
 
 
-async def test_an_organized_cloud_of_a_velodyne_has_a_row_for_each_firing():
+async def test_organized_velodyne_cloud_has_row_per_firing():
     more = "<topicName>/told</topicName><organize_cloud>true</organize_cloud><max_range>5</max_range>"
     element = plugin("libgazebo_ros_velodyne_laser.so", more)
     async with served(WALL, carrier(sensor("ray", f"<ray>{LASERS}</ray>" + element))) as (server, graph, log):
-        (message,) = await heard(server, graph, "/told")
+        (message,) = await last_messages(server, graph, "/told")
         rows = rows_of(message).reshape(message.height, message.width)
         assert (message.height, message.width, message.is_dense) == (3, 2, False)
         assert rows["ring"].tolist() == [[0, 1]] * 3
@@ -208,10 +208,10 @@ async def test_an_organized_cloud_of_a_velodyne_has_a_row_for_each_firing():
         assert not log
 
 
-async def test_a_lidar_of_gz_has_points_beside_its_scan():
+async def test_gz_lidar_publishes_points_beside_scan():
     text = carrier(sensor("gpu_lidar", f"<topic>lidar</topic><lidar>{RAYS}</lidar>"))
     async with served(WALL, text) as (server, graph, log):
-        scan, cloud = await heard(server, graph, "/lidar", "/lidar/points")
+        scan, cloud = await last_messages(server, graph, "/lidar", "/lidar/points")
         assert scan.header.frame_id == "robot/head/eye"
         assert list(scan.ranges) == [inf, 2.0, inf]
         assert (cloud.width, cloud.height, cloud.is_dense) == (3, 1, False)
@@ -220,9 +220,9 @@ async def test_a_lidar_of_gz_has_points_beside_its_scan():
         assert not log
 
 
-async def test_a_sensor_of_gz_without_a_topic_has_the_name_of_gz():
+async def test_gz_sensor_without_topic_has_default_gz_name():
     async with served(WALL, carrier(sensor("gpu_lidar", f"<lidar>{RAYS}</lidar>"))) as (server, graph, _):
-        (scan,) = await heard(server, graph, "/world/test/model/robot/link/head/sensor/eye/scan")
+        (scan,) = await last_messages(server, graph, "/world/test/model/robot/link/head/sensor/eye/scan")
         assert scan.ranges[1] == 2.0
 
 
@@ -234,7 +234,7 @@ async def test_a_sensor_of_gz_without_a_topic_has_the_name_of_gz():
         ("ignition-gazebo-imu-system", "<topic>imu</topic>", "/imu"),
     ],
 )
-async def test_imus_tell_gravity_and_their_noise(library: str | None, text: str, topic: str):
+async def test_imu_plugins_publish_gravity_and_noise(library: str | None, text: str, topic: str):
     noise = '<angular_velocity><z><noise type="gaussian"><stddev>0.1</stddev></noise></z></angular_velocity>'
     shown = sensor("imu", f"{text}<imu>{noise}</imu>" + (plugin(library) if library else ""), rate=100)
     async with served(GROUND, box("one", "0 0 0.5 0 0 0").replace("</link>", shown + "</link>")) as (
@@ -242,7 +242,7 @@ async def test_imus_tell_gravity_and_their_noise(library: str | None, text: str,
         graph,
         log,
     ):
-        (message,) = await heard(server, graph, topic, duration=SECOND)
+        (message,) = await last_messages(server, graph, topic, duration=SECOND)
         assert message.linear_acceleration.z == pytest.approx(9.81, abs=1e-3)
         assert message.angular_velocity_covariance[8] == pytest.approx(0.01)
         assert message.angular_velocity.z != 0
@@ -251,7 +251,7 @@ async def test_imus_tell_gravity_and_their_noise(library: str | None, text: str,
         assert not log
 
 
-async def test_an_imu_of_ros_1_names_its_link():
+async def test_ros_1_imu_plugin_names_its_link():
     element = plugin(
         "libgazebo_ros_imu.so", "<bodyName>link</bodyName><topicName>/imu</topicName><updateRate>10</updateRate>"
     )
@@ -260,12 +260,12 @@ async def test_an_imu_of_ros_1_names_its_link():
         graph,
         log,
     ):
-        (message,) = await heard(server, graph, "/imu", duration=SECOND)
+        (message,) = await last_messages(server, graph, "/imu", duration=SECOND)
         assert message.linear_acceleration.z == pytest.approx(9.81, abs=1e-3)
         assert not log
 
 
-async def test_contacts_of_gz_are_told_while_something_touches():
+async def test_gz_contacts_are_published_while_touching():
     element = sensor("contact", "<contact><collision>collision</collision><topic>/touched</topic></contact>", rate=100)
     text = box("crate", "0 0 0.7 0 0 0", "1 1 1", 2.0).replace("</link>", f"{element}</link>")
     async with served(GROUND, text) as (server, graph, log):
@@ -285,7 +285,7 @@ async def test_contacts_of_gz_are_told_while_something_touches():
         assert not log
 
 
-async def test_heights_and_pressures_of_gz():
+async def test_gz_altimeter_and_air_pressure_are_published():
     noise = (
         '<air_pressure><reference_altitude>100</reference_altitude><pressure><noise type="gaussian"><stddev>2</stddev>'
     )
@@ -295,7 +295,7 @@ async def test_heights_and_pressures_of_gz():
     )
     text = box("crate", "0 0 50 0 0 0", "1 1 1", 2.0).replace("</link>", "".join(sensors) + "</link>")
     async with served(text) as (server, graph, log):
-        height, air = await heard(server, graph, "/height", "/air", duration=SECOND)
+        height, air = await last_messages(server, graph, "/height", "/air", duration=SECOND)
         assert (height.vertical_position, height.vertical_velocity) == pytest.approx((-4.905, -9.81), abs=0.01)
         assert (height.vertical_reference, height.header.frame_id) == (50.0, "crate/link/eye")
         assert air.fluid_pressure == pytest.approx(99606.0, abs=20.0)
@@ -303,7 +303,7 @@ async def test_heights_and_pressures_of_gz():
         assert not log
 
 
-async def test_a_bumper_tells_what_it_touches():
+async def test_bumper_publishes_contacts():
     element = sensor(
         "contact", "<contact><collision>collision</collision></contact>" + plugin("libgazebo_ros_bumper.so")
     )
@@ -312,7 +312,7 @@ async def test_a_bumper_tells_what_it_touches():
         graph,
         log,
     ):
-        (message,) = await heard(server, graph, "/bumper_states", duration=SECOND)
+        (message,) = await last_messages(server, graph, "/bumper_states", duration=SECOND)
         (state,) = message.states
         assert message.header.frame_id == "world"
         assert state.collision2_name == "ground::link::collision"
@@ -330,18 +330,18 @@ EARTH = (
 @pytest.mark.parametrize(("kind", "library", "topic"), [
     ("gps", "libgazebo_ros_gps_sensor.so", "/driver/out"), ("navsat", None, "/gps/fix"),
 ])  # fmt: skip
-async def test_receivers_tell_where_they_are(kind: str, library: str | None, topic: str):
+async def test_navsat_sensors_publish_position(kind: str, library: str | None, topic: str):
     element = sensor(kind, plugin(library) if library else "<topic>/gps/fix</topic>")
     async with served(EARTH, carrier(element)) as (server, graph, log):
-        (fix,) = await heard(server, graph, topic)
+        (fix,) = await last_messages(server, graph, topic)
         assert (fix.latitude, fix.longitude, fix.altitude) == pytest.approx((47.5, 8.5, 430.0))
         assert not log
 
 
-async def test_a_magnetometer_feels_the_field_in_its_axes():
+async def test_magnetometer_publishes_field_in_its_axes():
     element = sensor("magnetometer", f"<pose>0 0 0 0 0 {pi / 2}</pose><topic>mag</topic>")
     async with served("<magnetic_field>1 2 3</magnetic_field>", carrier(element)) as (server, graph, _):
-        (message,) = await heard(server, graph, "/mag")
+        (message,) = await last_messages(server, graph, "/mag")
         field = message.magnetic_field
         assert (field.x, field.y, field.z) == pytest.approx((2.0, -1.0, 3.0))
 
@@ -355,11 +355,11 @@ ARM = """
 </model>"""
 
 
-async def test_forces_in_a_joint_are_told():
+async def test_force_torque_sensors_publish_wrench():
     classic = plugin("libgazebo_ros_ft_sensor.so", "<joint_name>wrist</joint_name><update_rate>10</update_rate>")
     gz = sensor("force_torque", "<topic>ft</topic>", name="ft")
     async with served(ARM.format(inside=gz, more=classic)) as (server, graph, log):
-        one, other = await heard(server, graph, "/wrench", "/ft")
+        one, other = await last_messages(server, graph, "/wrench", "/ft")
         assert (one.header.frame_id, other.header.frame_id) == ("bob", "arm/wrist/ft")
         for message in (one, other):
             assert message.wrench.force.z == pytest.approx(-2 * 9.81, abs=1e-3)
@@ -372,11 +372,11 @@ def pixels_of(message) -> np.ndarray:
     return np.frombuffer(bytes(message.data), np.uint8).reshape(message.height, message.width, channels)
 
 
-async def test_a_camera_of_gazebo_classic_has_an_image_and_its_figures():
+async def test_classic_camera_publishes_image_and_camera_info():
     expected = "<camera_name>front</camera_name><frame_name>optical</frame_name><hack_baseline>0.07</hack_baseline>"
     text = carrier(sensor("camera", EYE + plugin("libgazebo_ros_camera.so", expected)))
     async with served(WALL, text) as (server, graph, log):
-        image, info = await heard(server, graph, "/front/image_raw", "/front/camera_info")
+        image, info = await last_messages(server, graph, "/front/image_raw", "/front/camera_info")
         assert (image.width, image.height, image.encoding, image.step) == (64, 48, "rgb8", 192)
         assert image.header.frame_id == info.header.frame_id == "optical"
         red = pixels_of(image)[24, 32]
@@ -393,19 +393,19 @@ async def test_a_camera_of_gazebo_classic_has_an_image_and_its_figures():
     ("written", "encoding", "step"),
     [("L8", "mono8", 64), ("B8G8R8", "bgr8", 192), ("R16G16B16", "rgb16", 384), ("BAYER_RGGB8", "bayer_rggb8", 64)],
 )
-async def test_formats_are_encodings(written: str, encoding: str, step: int):
+async def test_image_format_sets_encoding(written: str, encoding: str, step: int):
     eye = EYE.replace("</height>", f"</height><format>{written}</format>")
     async with served(WALL, carrier(sensor("camera", eye + plugin("libgazebo_ros_camera.so")))) as (server, graph, _):
-        (image,) = await heard(server, graph, "/eye/image_raw")
+        (image,) = await last_messages(server, graph, "/eye/image_raw")
         assert (image.encoding, image.step, len(image.data)) == (encoding, step, 48 * step)
 
 
 @pytest.mark.parametrize("library", ["libgazebo_ros_camera.so", "libgazebo_ros_openni_kinect.so"])
-async def test_a_depth_camera_measures_along_its_axis(library: str):
+async def test_depth_camera_measures_along_optical_axis(library: str):
     element = plugin(library, "<camera_name>depth</camera_name><max_depth>3</max_depth>")
     near = block("near", "0.35 0.2 0 0 0 0", "0.1 0.1 0.1")
     async with served(WALL, near, carrier(sensor("depth", EYE + element))) as (server, graph, _):
-        depth, cloud = await heard(server, graph, "/depth/depth/image_raw", "/depth/points")
+        depth, cloud = await last_messages(server, graph, "/depth/depth/image_raw", "/depth/points")
         meters = np.frombuffer(bytes(depth.data), np.float32).reshape(48, 64)
         assert (depth.encoding, depth.step) == ("32FC1", 256)
         assert meters[24, 60] == pytest.approx(2.0, abs=1e-3)
@@ -418,7 +418,7 @@ async def test_a_depth_camera_measures_along_its_axis(library: str):
         assert green == blue == 0
 
 
-async def test_a_camera_that_is_triggered_waits_for_it():
+async def test_triggered_camera_waits_for_trigger():
     element = plugin("libgazebo_ros_camera.so", "<triggered>true</triggered>")
     async with served(WALL, carrier(sensor("camera", EYE + element))) as (server, graph, _):
         recording = Recording(graph, server.node, "/eye/image_raw")
@@ -433,26 +433,26 @@ async def test_a_camera_that_is_triggered_waits_for_it():
         assert len(recording) == 1
 
 
-async def test_several_cameras_have_a_topic_each():
+async def test_multicamera_has_topic_per_camera():
     eyes = EYE.replace("<camera>", '<camera name="left">') + EYE.replace("<camera>", '<camera name="right">')
     element = plugin("libgazebo_ros_camera.so", "<camera_name>stereo</camera_name>")
     async with served(WALL, carrier(sensor("multicamera", eyes + element))) as (server, graph, _):
-        left, right = await heard(server, graph, "/stereo/left/image_raw", "/stereo/right/camera_info")
+        left, right = await last_messages(server, graph, "/stereo/left/image_raw", "/stereo/right/camera_info")
         assert (left.width, right.width) == (64, 64)
 
 
-async def test_cameras_of_gz_have_their_figures_beside_the_image():
+async def test_gz_camera_publishes_camera_info_beside_image():
     eye = EYE.replace("</camera>", "<optical_frame_id>optical</optical_frame_id></camera>")
     async with served(WALL, carrier(sensor("camera", f"<topic>front/image</topic>{eye}"))) as (server, graph, _):
-        image, info = await heard(server, graph, "/front/image", "/front/camera_info")
+        image, info = await last_messages(server, graph, "/front/image", "/front/camera_info")
         assert image.header.frame_id == info.header.frame_id == "optical"
         assert list(info.k)[2] == 32.0
 
 
-async def test_an_rgbd_camera_of_gz_has_points_with_x_forwards():
+async def test_gz_rgbd_camera_points_have_x_forward():
     text = carrier(sensor("rgbd_camera", f"<topic>rgbd</topic>{EYE}"))
     async with served(WALL, text) as (server, graph, log):
-        image, depth, cloud, info = await heard(
+        image, depth, cloud, info = await last_messages(
             server, graph, "/rgbd/image", "/rgbd/depth_image", "/rgbd/points", "/rgbd/camera_info"
         )
         assert (image.encoding, depth.encoding, info.width) == ("rgb8", "32FC1", 64)
@@ -468,21 +468,21 @@ def labeled(name: str, pose: str, label: int) -> str:
     return block(name, pose, "0.1 0.4 0.4").replace("</visual>", LABEL.format(label) + "</visual>")
 
 
-async def test_labels_are_seen_and_all_else_is_background():
+async def test_segmentation_camera_shows_labels_and_background():
     world = labeled("cup", "2 0.5 0 0 0 0", 7), labeled("other", "2 -0.5 0 0 0 0", 7), WALL
     text = carrier(sensor("segmentation_camera", f"<topic>seg</topic>{EYE}"))
     async with served(*world, text) as (server, graph, _):
-        maps, colored = await heard(server, graph, "/seg/labels_map", "/seg/colored_map")
+        maps, colored = await last_messages(server, graph, "/seg/labels_map", "/seg/colored_map")
         assert set(pixels_of(maps).reshape(-1).tolist()) == {0, 7}
         assert pixels_of(colored)[24, 24].any()
         assert not pixels_of(colored)[0, 0].any()
 
 
-async def test_boxes_are_around_what_is_labelled():
+async def test_bounding_boxes_enclose_labeled_models():
     world = labeled("cup", "1.55 0.5 0 0 0 0", 7), labeled("ball", "1.55 -0.5 0 0 0 0", 9), WALL
     text = carrier(sensor("boundingbox_camera", f"<topic>boxes</topic>{EYE}"))
     async with served(*world, text) as (server, graph, _):
-        boxes, image = await heard(server, graph, "/boxes", "/boxes_image")
+        boxes, image = await last_messages(server, graph, "/boxes", "/boxes_image")
         found = {detection.results[0].hypothesis.class_id: detection.bbox for detection in boxes.detections}
         assert sorted(found) == ["7", "9"]
         # 1.5 m away and 0.4 m wide, at a focal length of 32 pixels: 8.5 pixels, 10.7 from the middle of the picture.
@@ -492,13 +492,13 @@ async def test_boxes_are_around_what_is_labelled():
         assert ((pixels_of(image) == (0, 255, 0)).all(axis=-1)).sum() > 20
 
 
-async def test_noise_on_colours_is_the_same_for_the_same_seed():
+async def test_image_noise_is_reproducible_for_same_seed():
     noise = "<noise><type>gaussian</type><mean>0</mean><stddev>0.02</stddev></noise>"
     text = carrier(sensor("camera", EYE.replace("</camera>", noise + "</camera>") + plugin("libgazebo_ros_camera.so")))
     seen = []
     for _ in range(2):
         async with served(WALL, text) as (server, graph, _log):
-            (image,) = await heard(server, graph, "/eye/image_raw")
+            (image,) = await last_messages(server, graph, "/eye/image_raw")
             seen.append(pixels_of(image).astype(float))
     assert (seen[0] == seen[1]).all()
     assert np.std(seen[0][:, :, 0]) == pytest.approx(0.02 * 255, rel=0.2)
@@ -514,7 +514,7 @@ PLACES = {
 }
 
 
-async def test_a_logical_camera_names_the_models_in_its_view():
+async def test_logical_camera_lists_models_in_view():
     view = "<near>0.5</near><far>4</far><horizontal_fov>1.0</horizontal_fov><aspect_ratio>2</aspect_ratio>"
     looks = f"<pose>0 0 1 0 0 {pi / 2}</pose><topic>seen</topic><logical_camera>{view}</logical_camera>"
     boxes = [
@@ -522,7 +522,7 @@ async def test_a_logical_camera_names_the_models_in_its_view():
         for name, place in PLACES.items()
     ]
     async with served(carrier(sensor("logical_camera", looks)), *boxes) as (server, graph, log):
-        (image,) = await heard(server, graph, "/seen")
+        (image,) = await last_messages(server, graph, "/seen")
         (seen,) = image.model
         assert seen.name == "ahead"
         assert (seen.pose.position.x, seen.pose.position.y) == pytest.approx((2.0, -0.5))

@@ -18,12 +18,12 @@ UNDERSTOOD = [
     ("前进", "forward", {}),
     ("前 进", "forward", {}),
     ("向前", "forward", {}),
-    ("drive forward half a metre", "forward_by", {"distance": 0.5}),
+    ("drive forward half a meter", "forward_by", {"distance": 0.5}),
     ("forward two feet", "forward_by", {"distance": 0.6096}),
     ("前进半米", "forward_by", {"distance": 0.5}),
     ("前进 一 点 五 米", "forward_by", {"distance": 1.5}),
     ("后退", "backward", {}),
-    ("go back one metre", "backward_by", {"distance": 1.0}),
+    ("go back one meter", "backward_by", {"distance": 1.0}),
     ("left", "left", {}),
     ("左转", "left", {}),
     ("turn left ninety degrees", "left_by", {"angle": pi / 2}),
@@ -38,7 +38,7 @@ UNDERSTOOD = [
     ("加速", "faster", {}),
     ("slow down", "slower", {}),
     ("减速", "slower", {}),
-    ("drive at half a metre per second", "speed", {"speed": 0.5}),
+    ("drive at half a meter per second", "speed", {"speed": 0.5}),
     ("速度每秒半米", "speed", {"speed": 0.5}),
     ("go home", "go_to_place", {"place": "home"}),
     ("回家", "go_to_place", {"place": "home"}),
@@ -57,7 +57,7 @@ NOTHING = [
     "[unk] forward",
     "forward please",
     "turn left ninety",
-    "turn left ninety metres",
+    "turn left ninety meters",
     "前进九十度",
     "go to the moon",
 ]
@@ -71,35 +71,33 @@ def commands() -> CommandSet:
 
 
 @pytest.mark.parametrize(("text", "intent", "values"), UNDERSTOOD)
-def test_what_a_text_means(commands: CommandSet, text: str, intent: str, values: dict[str, object]) -> None:
+def test_text_matches_command(commands: CommandSet, text: str, intent: str, values: dict[str, object]) -> None:
     found = commands.match_command(text)
     assert found is not None
     assert (found.command.intent, found.values) == (intent, pytest.approx(values) if "angle" in values else values)
 
 
 @pytest.mark.parametrize("text", NOTHING)
-def test_what_means_nothing(commands: CommandSet, text: str) -> None:
+def test_unknown_text_matches_no_command(commands: CommandSet, text: str) -> None:
     assert commands.match_command(text) is None
 
 
 @pytest.mark.parametrize("language", ["en", "zh"])
-def test_all_that_engines_are_told_is_understood_and_no_more_than_they_take(
-    commands: CommandSet, language: str
-) -> None:
+def test_engine_phrases_match_commands_and_stay_below_limit(commands: CommandSet, language: str) -> None:
     phrases = commands.phrases(language)
     assert [text for text in phrases if commands.match_command(text) is None and commands.answer(text) is None] == []
     assert len(phrases) == len(set(phrases)) < 500
     assert {"en": "turn left ninety degrees", "zh": "左转九十度"}[language] in phrases
 
 
-def test_a_stop_is_heard_whatever_is_said_around_it(commands: CommandSet) -> None:
+def test_stop_is_recognized_within_other_words(commands: CommandSet) -> None:
     assert commands.is_stop("[unk] stop")
     assert commands.is_stop("快 停 下")
     assert not commands.is_stop("stopping place")
     assert not commands.is_stop("forward")
 
 
-def test_answers(commands: CommandSet) -> None:
+def test_yes_and_no_answers_are_recognized(commands: CommandSet) -> None:
     assert [commands.answer(text) for text in ("yes", "是的", "no", "取消", "forward")] == [
         True,
         True,
@@ -113,13 +111,13 @@ def read(text: str) -> CommandSet:
     return parse_commands(SourceText("commands.yaml", text))
 
 
-def test_amounts_are_numbers_or_slots() -> None:
+def test_action_values_are_numbers_or_slots() -> None:
     phrases = '["go {distance}", "{distance} ahead"]'
     found = read(COMMANDS.format(phrases=phrases, action='drive: {x: 0.5, distance: "{distance}"}'))
     assert found.commands[0].action == Drive(x=0.5, distance=Slot("distance"))
 
 
-def test_messages_are_filled_in_with_what_was_said() -> None:
+def test_message_template_is_filled_with_slot_values() -> None:
     text = 'publish: {topic: /n, type: std_msgs/msg/String, message: {data: "{number} times"}}'
     action = read(COMMANDS.format(phrases='"ring {number}"', action=text)).commands[0].action
     assert isinstance(action, Publish)
@@ -127,7 +125,7 @@ def test_messages_are_filled_in_with_what_was_said() -> None:
     assert fill_template({"a": ["{number}", 1]}, {"number": 3.0}) == {"a": [3.0, 1]}
 
 
-def test_the_phrase_that_says_more_of_itself_is_meant() -> None:
+def test_more_specific_phrase_takes_precedence() -> None:
     text = "places: {hall: {x: 1, y: 2, names: [hall, big hall]}}\ncommands:\n"
     text += "  a: {phrases: 'go {place}', go_to: '{place}'}\n"
     found = read(text + "  b: {phrases: go big hall, stop: true}\n")
@@ -165,7 +163,7 @@ def test_the_phrase_that_says_more_of_itself_is_meant() -> None:
             63,
             "every phrase",
         ),
-        ("commands:\n  a: {phrases: 'go {metres}', drive: {x: 1}}\n", "VOICE303", 2, 16, "no slot 'metres'"),
+        ("commands:\n  a: {phrases: 'go {meters}', drive: {x: 1}}\n", "VOICE303", 2, 16, "no slot 'meters'"),
         ("commands:\n  a: {phrases: 'go [ahead', drive: {x: 1}}\n", "VOICE303", 2, 16, "not closed"),
         ("commands:\n  a: {phrases: '{distance}', drive: {x: 1}}\n", "VOICE303", 2, 16, "outside the slots"),
         ("commands:\n  a: {phrases: go, stop: true}\n  b: {phrases: Go, drive: {x: 1}}\n", "VOICE304", 3, 16, "'a'"),
@@ -175,7 +173,7 @@ def test_the_phrase_that_says_more_of_itself_is_meant() -> None:
             *("VOICE305", 2, 77, "text"),
         ),
         (
-            "said: {angle: [two metres]}\ncommands:\n  a: {phrases: go, stop: true}\n",
+            "said: {angle: [two meters]}\ncommands:\n  a: {phrases: go, stop: true}\n",
             "VOICE302",
             1,
             16,
@@ -187,7 +185,9 @@ def test_the_phrase_that_says_more_of_itself_is_meant() -> None:
         ),
     ],
 )
-def test_what_is_wrong_is_told_with_its_place(text: str, code: str, line: int, column: int, message: str) -> None:
+def test_error_in_command_file_is_reported_with_position(
+    text: str, code: str, line: int, column: int, message: str
+) -> None:
     with pytest.raises(LinkwrightError) as caught:
         read(text)
     (diagnostic,) = caught.value.diagnostics
@@ -196,7 +196,7 @@ def test_what_is_wrong_is_told_with_its_place(text: str, code: str, line: int, c
     assert message in str(diagnostic.message)
 
 
-def test_a_file_that_is_not_there(tmp_path: Path) -> None:
+def test_missing_command_file_is_reported(tmp_path: Path) -> None:
     with pytest.raises(LinkwrightError) as caught:
         read_command_file(tmp_path / "commands.yaml")
     assert caught.value.diagnostics[0].code == "VOICE301"

@@ -73,20 +73,20 @@ QUANTITIES = [
     ("angle", "两圈", 4 * pi),
     ("angle", "两圈半", 5 * pi),
     ("angle", "one point five radians", 1.5),
-    ("distance", "half a metre", 0.5),
+    ("distance", "half a meter", 0.5),
     ("distance", "one and a half meters", 1.5),
-    ("distance", "a metre and a half", 1.5),
+    ("distance", "a meter and a half", 1.5),
     ("distance", "two feet", 0.6096),
-    ("distance", "fifty centimetres", 0.5),
+    ("distance", "fifty centimeters", 0.5),
     ("distance", "1.5 m", 1.5),
     ("distance", "半米", 0.5),
     ("distance", "一点五米", 1.5),
     ("distance", "一米半", 1.5),
     ("distance", "三十厘米", 0.3),
-    ("speed", "half a metre per second", 0.5),
+    ("speed", "half a meter per second", 0.5),
     ("speed", "每秒半米", 0.5),
     ("speed", "零点三米每秒", 0.3),
-    ("speed", "thirty six kilometres per hour", 10.0),
+    ("speed", "thirty six kilometers per hour", 10.0),
     ("duration", "two and a half seconds", 2.5),
     ("duration", "三秒钟", 3.0),
     ("duration", "一分钟", 60.0),
@@ -95,17 +95,17 @@ QUANTITIES = [
 
 
 @pytest.mark.parametrize(("text", "value"), NUMBERS.items())
-def test_numbers(text: str, value: float) -> None:
+def test_spoken_number_is_parsed(text: str, value: float) -> None:
     assert parse_number(words_of(text)) == value
 
 
 @pytest.mark.parametrize("text", NO_NUMBERS)
-def test_what_is_no_number(text: str) -> None:
+def test_text_that_is_not_a_number_is_rejected(text: str) -> None:
     assert parse_number(words_of(text)) is None
 
 
 @pytest.mark.parametrize(("slot", "text", "value"), QUANTITIES)
-def test_quantities(slot: str, text: str, value: float) -> None:
+def test_spoken_quantity_is_parsed(slot: str, text: str, value: float) -> None:
     assert parse_quantity(slot, words_of(text)) == pytest.approx(value)
 
 
@@ -116,15 +116,15 @@ def test_quantities(slot: str, text: str, value: float) -> None:
         ("distance", "degrees"),
         ("distance", "ninety degrees"),
         ("angle", "半"),
-        ("distance", "half a metre and a half"),
+        ("distance", "half a meter and a half"),
     ],
 )
-def test_what_is_no_quantity(slot: str, text: str) -> None:
+def test_text_that_is_not_a_quantity_is_rejected(slot: str, text: str) -> None:
     assert parse_quantity(slot, words_of(text)) is None
 
 
 @pytest.mark.parametrize("slot", GRAMMAR_VALUES)
-def test_what_engines_are_told_is_understood(slot: str) -> None:
+def test_grammar_values_are_parsed(slot: str) -> None:
     assert [
         text
         for texts in GRAMMAR_VALUES[slot].values()

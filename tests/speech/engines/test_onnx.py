@@ -54,11 +54,11 @@ def sound(level, seconds=0.5):
     return (whole + np.random.default_rng(5).normal(0, 5, len(whole))).astype(np.int16)
 
 
-def heard(engine, samples):
+def results_of(engine, samples):
     return [each for at in range(0, len(samples), 1_600) for each in engine.hear(samples[at : at + 1_600])]
 
 
-def refused(path):
+def rejection(path):
     with pytest.raises(LinkwrightError) as caught:
         OnnxEngine(EngineOptions(("stop",), "en", path))
     (diagnostic,) = caught.value.diagnostics
@@ -66,28 +66,28 @@ def refused(path):
 
 
 @pytest.mark.parametrize("names", [NAMES, {"0": "background", "2": "stop", "1": "go forward"}, ", ".join(NAMES)])
-def test_the_class_of_an_utterance_is_a_phrase(names, tmp_path):
+def test_utterance_class_is_returned_as_phrase(names, tmp_path):
     engine = OnnxEngine(EngineOptions(("Go forward", "stop"), "en", network(tmp_path / "net.onnx", names)))
-    (first,) = heard(engine, sound(12_000))
+    (first,) = results_of(engine, sound(12_000))
     assert (first.text, first.final) == ("Go forward", True)
     assert first.confidence > 0.9
     assert 0.7 < first.start < 1.1
     assert 1.3 < first.end < 1.8
-    (second,) = heard(engine, sound(30_000, 0.8))
+    (second,) = results_of(engine, sound(30_000, 0.8))
     assert second.text == "stop"
     assert second.start > 3.0
 
 
-def test_what_is_uncertain_or_none_of_the_phrases_is_empty(tmp_path):
+def test_uncertain_or_unlisted_class_gives_empty_text(tmp_path):
     engine = OnnxEngine(EngineOptions(("stop",), "en", network(tmp_path / "net.onnx")))
-    assert [each.text for each in heard(engine, sound(12_000))] == [""]  # a class, and no phrase
-    assert [each.text for each in heard(engine, sound(1_500))] == [""]  # no class for sure
-    assert heard(engine, np.zeros(3 * RATE, np.int16)) == []
+    assert [each.text for each in results_of(engine, sound(12_000))] == [""]  # a class, and no phrase
+    assert [each.text for each in results_of(engine, sound(1_500))] == [""]  # no class for sure
+    assert results_of(engine, np.zeros(3 * RATE, np.int16)) == []
 
 
-def test_the_end_of_a_button_press_ends_the_utterance(tmp_path):
+def test_finish_ends_utterance(tmp_path):
     engine = OnnxEngine(EngineOptions(("stop",), "en", network(tmp_path / "net.onnx")))
-    assert heard(engine, sound(30_000, 0.8)[: round(1.8 * RATE)]) == []
+    assert results_of(engine, sound(30_000, 0.8)[: round(1.8 * RATE)]) == []
     assert [each.text for each in engine.finish()] == ["stop"]
     assert list(engine.finish()) == []
 
@@ -103,19 +103,19 @@ def test_the_end_of_a_button_press_ends_the_utterance(tmp_path):
         {"kind": TensorProto.DOUBLE},
     ],
 )
-def test_other_networks_are_told(changes, tmp_path):
-    assert refused(network(tmp_path / "net.onnx", **changes)).code == "VOICE104"
+def test_unsuitable_network_is_rejected(changes, tmp_path):
+    assert rejection(network(tmp_path / "net.onnx", **changes)).code == "VOICE104"
 
 
-def test_what_is_no_network(tmp_path):
+def test_malformed_or_missing_network_is_rejected(tmp_path):
     (tmp_path / "net.onnx").write_bytes(b"nothing")
-    assert refused(tmp_path / "net.onnx").code == "VOICE104"
-    assert refused(tmp_path / "nowhere.onnx").code == "VOICE104"
-    assert "model" in str(refused(None).hint)
+    assert rejection(tmp_path / "net.onnx").code == "VOICE104"
+    assert rejection(tmp_path / "nowhere.onnx").code == "VOICE104"
+    assert "model" in str(rejection(None).hint)
 
 
-def test_without_onnxruntime(tmp_path, monkeypatch):
+def test_missing_onnxruntime_is_reported(tmp_path, monkeypatch):
     monkeypatch.setitem(sys.modules, "onnxruntime", None)
-    diagnostic = refused(network(tmp_path / "net.onnx"))
+    diagnostic = rejection(network(tmp_path / "net.onnx"))
     assert diagnostic.code == "VOICE102"
     assert diagnostic.hint == install_hint("vision")

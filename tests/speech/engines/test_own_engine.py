@@ -52,7 +52,7 @@ def engine(request, monkeypatch):
     return make_engine("whisper", EngineOptions(("turn left", "stop"), "en"))
 
 
-def test_it_hears_utterances(engine):
+def test_engine_recognizes_utterances(engine):
     WhisperModel.texts[:] = [" Turn left.", " Nothing of that kind.", " Stop!"]
     WhisperModel.sounds.clear()
     heard = []
@@ -66,7 +66,7 @@ def test_it_hears_utterances(engine):
     assert all(np.abs(sound).max() > 0.1 for sound in WhisperModel.sounds)
 
 
-def test_it_hears_what_was_said_until_the_button_is_let_go(engine):
+def test_finish_ends_utterance(engine):
     WhisperModel.texts[:] = ["stop"]
     assert list(engine.hear(say(WORDS["stop"], silence=0.3)[:-3200])) == []
     assert [each.text for each in engine.finish()] == ["stop"]

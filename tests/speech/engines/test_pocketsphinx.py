@@ -102,18 +102,18 @@ def fake_decoder(monkeypatch):
     monkeypatch.setattr(Decoder, "made", [])
 
 
-def refused(*given):
+def rejection(*given):
     with pytest.raises(LinkwrightError) as caught:
         PocketsphinxEngine(EngineOptions(*given))
     (diagnostic,) = caught.value.diagnostics
     return diagnostic
 
 
-def test_both_engines_are_found_by_name():
+def test_vosk_and_pocketsphinx_are_registered():
     assert {"vosk", "pocketsphinx"} <= set(engine_names())
 
 
-def test_an_utterance_in_blocks_of_another_length(fake_decoder):
+def test_utterance_is_recognized_in_blocks_of_any_length(fake_decoder):
     engine = PocketsphinxEngine(EngineOptions(("go to the kitchen", "Stop")))
     assert "public <said> = go to the kitchen | stop;" in Decoder.made[0].grammar
     sound = np.concatenate([QUIET, QUIET, *[SPEECH] * 5, QUIET, QUIET])
@@ -124,7 +124,7 @@ def test_an_utterance_in_blocks_of_another_length(fake_decoder):
 
 
 @pytest.mark.parametrize(("fit", "confidence"), [(-4.0, 0.982), (-8.0, 0.5), (-11.0, 0.047), (-900.0, 0.0)])
-def test_words_that_do_not_fit_the_sounds_are_not_certain(fake_decoder, monkeypatch, fit, confidence):
+def test_acoustic_fit_sets_confidence(fake_decoder, monkeypatch, fit, confidence):
     monkeypatch.setattr(Decoder, "fit", fit)
     engine = PocketsphinxEngine(EngineOptions(("go to",)))
     (heard,) = [*engine.hear(SPEECH), *engine.finish()]
@@ -132,13 +132,13 @@ def test_words_that_do_not_fit_the_sounds_are_not_certain(fake_decoder, monkeypa
     assert heard.confidence == pytest.approx(confidence, abs=1e-3)
 
 
-def test_other_words_are_none_of_the_phrases(fake_decoder):
+def test_unknown_words_give_empty_text(fake_decoder):
     engine = PocketsphinxEngine(EngineOptions(("stop",)))
     (heard,) = engine.hear(np.concatenate([SPEECH, SPEECH, QUIET]))
     assert (heard.text, heard.final) == ("", True)
 
 
-def test_the_end_of_a_button_press_ends_the_utterance(fake_decoder):
+def test_finish_ends_utterance(fake_decoder):
     engine = PocketsphinxEngine(EngineOptions(("go", "stop")))
     assert [each.text for each in engine.hear(np.concatenate([SPEECH, SPEECH[:100]]))] == ["go"]
     (heard,) = engine.finish()
@@ -148,14 +148,14 @@ def test_the_end_of_a_button_press_ends_the_utterance(fake_decoder):
     engine.close()
 
 
-def test_quiet_and_noise_are_no_phrase_for_the_real_library():
+def test_silence_and_noise_are_not_recognized_by_real_library():
     engine = PocketsphinxEngine(EngineOptions(("forward", "turn left", "stop")))
     noise = np.random.default_rng(1).normal(0, 30, 16_000).astype(np.int16)
     assert [each for each in engine.hear(np.concatenate([np.zeros(16_000, np.int16), noise])) if each.text] == []
     assert [each for each in engine.finish() if each.text] == []
 
 
-def test_the_button_may_be_let_go_at_the_end_of_a_frame_of_the_real_library():
+def test_finish_at_frame_end_works_with_real_library():
     engine = PocketsphinxEngine(EngineOptions(("forward", "stop")))
     sound = say(WORDS["forward"], silence=0.6)
     loud = 480 * (int(np.flatnonzero(np.abs(sound.astype(int)) > 500)[-1]) // 480)
@@ -165,22 +165,22 @@ def test_the_button_may_be_let_go_at_the_end_of_a_frame_of_the_real_library():
     assert 0.0 <= heard.confidence <= 1.0
 
 
-def test_words_that_the_real_dictionary_lacks_are_named():
-    diagnostic = refused(("go forward", "engage the frobnicator", "前进"))
+def test_words_missing_from_real_dictionary_are_reported():
+    diagnostic = rejection(("go forward", "engage the frobnicator", "前进"))
     assert diagnostic.code == "VOICE103"
     assert "'frobnicator', '前进'" in str(diagnostic.message)
 
 
-def test_only_english_comes_with_it():
-    assert refused(("前进",), "zh").code == "VOICE105"
+def test_unsupported_language_is_rejected():
+    assert rejection(("前进",), "zh").code == "VOICE105"
 
 
-def test_a_folder_without_a_model(tmp_path):
-    assert refused(("stop",), "en", tmp_path).code == "VOICE104"
+def test_folder_without_model_is_rejected(tmp_path):
+    assert rejection(("stop",), "en", tmp_path).code == "VOICE104"
     (tmp_path / "mdef").write_text("nothing")
     (tmp_path / "words.dict").write_text("stop S T AA P\n")
-    assert refused(("stop",), "en", tmp_path).code == "VOICE104"
-    assert refused(("stop",), "en", tmp_path / "nowhere").code == "VOICE104"
+    assert rejection(("stop",), "en", tmp_path).code == "VOICE104"
+    assert rejection(("stop",), "en", tmp_path / "nowhere").code == "VOICE104"
 
 
 @pytest.mark.parametrize(
@@ -188,26 +188,26 @@ def test_a_folder_without_a_model(tmp_path):
     [("mdef", b"nothing"), ("mdef", b"BMDF\x01\0\0\0" + 40 * b"\xff"), ("means", b"")],
     ids=["text", "numbers", "empty"],
 )
-def test_a_damaged_model_is_an_error_and_not_the_end_of_the_process(tmp_path, damaged, content):
+def test_damaged_model_is_reported_without_crash(tmp_path, damaged, content):
     model = Path(pocketsphinx.get_model_path()) / "en-us"
     folder = tmp_path / "model"
     shutil.copytree(model / "en-us", folder)
     shutil.copy(model / "cmudict-en-us.dict", folder)
     (folder / damaged).write_bytes(content)
-    diagnostic = refused(("stop",), "en", folder)
+    diagnostic = rejection(("stop",), "en", folder)
     assert diagnostic.code == "VOICE104"
     assert str(folder) in str(diagnostic.message)
 
 
-def test_a_model_of_the_user_is_taken(tmp_path):
+def test_user_model_is_loaded(tmp_path):
     model = Path(pocketsphinx.get_model_path()) / "en-us"
     shutil.copytree(model / "en-us", tmp_path / "model")
     (tmp_path / "model" / "words.dict").write_text("stop S T AA P\n")
     PocketsphinxEngine(EngineOptions(("stop",), "en", tmp_path / "model")).close()
 
 
-def test_without_the_library(monkeypatch):
+def test_missing_pocketsphinx_is_reported(monkeypatch):
     monkeypatch.setitem(sys.modules, "pocketsphinx", None)
-    diagnostic = refused(("stop",))
+    diagnostic = rejection(("stop",))
     assert diagnostic.code == "VOICE102"
     assert diagnostic.hint == install_hint("voice")

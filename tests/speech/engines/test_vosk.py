@@ -37,20 +37,20 @@ def engine(model, phrases=ENGLISH, language="en"):
     return VoskEngine(EngineOptions(phrases, language, model))
 
 
-def heard_by(engine, *script):
+def results_for(engine, *script):
     """What is heard in as many blocks as the script has items."""
     fake_vosk.SCRIPT[:] = script
     return [each for _ in script for each in engine.hear(BLOCK)]
 
 
-def refused(*given, **more):
+def rejection(*given, **more):
     with pytest.raises(LinkwrightError) as caught:
         engine(*given, **more)
     (diagnostic,) = caught.value.diagnostics
     return diagnostic
 
 
-def test_the_grammar_is_the_phrases_and_all_other_speech(model, vosk):
+def test_grammar_has_phrases_and_unknown_token(model, vosk):
     engine(model)
     (recognizer,) = vosk.MADE
     assert recognizer.grammar == [*ENGLISH, "[unk]"]
@@ -58,14 +58,14 @@ def test_the_grammar_is_the_phrases_and_all_other_speech(model, vosk):
     assert vosk.LEVELS == [-1]  # quiet
 
 
-def test_a_phrase_with_its_least_certain_word_and_its_times(model):
+def test_phrase_has_lowest_word_confidence_and_times(model):
     made = engine(model)
-    heard = heard_by(made, "", "", "", "", "", "", "", [("turn", 0.8), ("left", 0.95)])
+    heard = results_for(made, "", "", "", "", "", "", "", [("turn", 0.8), ("left", 0.95)])
     assert heard == [Heard("turn left", 0.8, True, pytest.approx(0.2), pytest.approx(0.8))]
 
 
-def test_silence_is_nothing(model):
-    assert heard_by(engine(model), "", [], "") == []
+def test_silence_gives_no_result(model):
+    assert results_for(engine(model), "", [], "") == []
 
 
 @pytest.mark.parametrize(
@@ -81,61 +81,61 @@ def test_silence_is_nothing(model):
         ([("left", 1.0), ("turn", 1.0)], ""),
     ],
 )
-def test_other_speech_is_heard_as_none_of_the_phrases(words, nearest, model):
-    (heard,) = heard_by(engine(model), "", words)
+def test_unknown_speech_gives_empty_text_and_nearest_phrase(words, nearest, model):
+    (heard,) = results_for(engine(model), "", words)
     assert (heard.text, heard.final, heard.nearest) == ("", True, nearest)
 
 
-def test_phrases_one_after_another(model):
-    heard = heard_by(engine(model), [("turn", 1.0), ("left", 0.9), ("now", 0.7), ("stop", 1.0)])
+def test_consecutive_phrases_are_separated(model):
+    heard = results_for(engine(model), [("turn", 1.0), ("left", 0.9), ("now", 0.7), ("stop", 1.0)])
     assert [(each.text, each.confidence) for each in heard] == [("turn left now", 0.7), ("stop", 1.0)]
 
 
-def test_partials_come_when_they_change_and_are_phrases(model):
+def test_partials_are_reported_on_change_if_they_are_phrases(model):
     made = engine(model)
-    heard = heard_by(made, "", "turn", "turn left", "turn left", "turn left now")
+    heard = results_for(made, "", "turn", "turn left", "turn left", "turn left now")
     assert [(each.text, each.final) for each in heard] == [("turn left", False), ("turn left now", False)]
     assert heard[0].start == pytest.approx(0.2)
     assert heard[0].end == pytest.approx(0.3)
-    assert [each.text for each in heard_by(made, [("stop", 1.0)], "stop")] == ["stop", "stop"]
+    assert [each.text for each in results_for(made, [("stop", 1.0)], "stop")] == ["stop", "stop"]
 
 
-def test_stop_in_the_middle_of_other_speech_is_a_partial(model):
-    heard = heard_by(engine(model), "[unk]", "[unk] stop", [("[unk]", 1.0), ("stop", 1.0)])
+def test_stop_within_other_speech_is_reported_as_partial(model):
+    heard = results_for(engine(model), "[unk]", "[unk] stop", [("[unk]", 1.0), ("stop", 1.0)])
     assert [(each.text, each.final) for each in heard] == [("stop", False), ("", True)]
 
 
-def test_the_end_of_a_button_press_ends_the_utterance(model):
+def test_finish_ends_utterance(model):
     made = engine(model)
-    heard_by(made, "forward")
+    results_for(made, "forward")
     assert [(each.text, each.final) for each in made.finish()] == [("forward", True)]
     assert list(made.finish()) == []
     assert list(made.hear(np.zeros(0, np.int16))) == []
 
 
-def test_chinese_is_put_in_the_words_of_the_model(model, vosk, monkeypatch):
+def test_chinese_phrases_are_segmented_into_model_words(model, vosk, monkeypatch):
     monkeypatch.setattr(vosk, "WORDS", {"前进", "向", "左", "转", "左转", "停"})
     made = engine(model, ("前进", "向左", "向左转", "停"), "zh")
     assert vosk.MADE[0].grammar == ["前进", "向 左", "向 左转", "停", "[unk]"]
-    heard = heard_by(made, [("向", 1.0), ("左", 1.0)], [("向", 1.0), ("左转", 1.0)])
+    heard = results_for(made, [("向", 1.0), ("左", 1.0)], [("向", 1.0), ("左转", 1.0)])
     assert [each.text for each in heard] == ["向左", "向左转"]
 
 
-def test_capitals_are_no_other_words(model):
+def test_phrase_matching_ignores_case(model):
     made = engine(model, ("Turn Left",))
-    assert [each.text for each in heard_by(made, [("turn", 1.0), ("left", 1.0)])] == ["Turn Left"]
+    assert [each.text for each in results_for(made, [("turn", 1.0), ("left", 1.0)])] == ["Turn Left"]
 
 
-def test_words_that_the_model_lacks_are_named_at_once(model, vosk, monkeypatch):
-    diagnostic = refused(model, ("forward", "engage hyperdrive", "stop", "hyperdrive off"))
+def test_words_missing_from_model_are_reported_together(model, vosk, monkeypatch):
+    diagnostic = rejection(model, ("forward", "engage hyperdrive", "stop", "hyperdrive off"))
     assert diagnostic.code == "VOICE103"
     assert "'engage', 'hyperdrive', 'off'" in str(diagnostic.message)
     monkeypatch.setattr(vosk, "WORDS", {"向"})
-    assert "'向龘'" in str(refused(model, ("向龘",), "zh").message)
+    assert "'向龘'" in str(rejection(model, ("向龘",), "zh").message)
 
 
-def test_the_models_of_the_table_are_used(tmp_path, monkeypatch):
-    diagnostic = refused(None, language="zh-CN")
+def test_default_model_of_language_is_used(tmp_path, monkeypatch):
+    diagnostic = rejection(None, language="zh-CN")
     assert diagnostic.code == "MODEL102"
     assert "linkwright models get vosk-zh" in str(diagnostic.hint)
     folder = tmp_path / "data" / "linkwright" / "models" / "vosk-model-small-en-us-0.15" / "am"
@@ -144,24 +144,24 @@ def test_the_models_of_the_table_are_used(tmp_path, monkeypatch):
     assert engine(None, language="en-US")
 
 
-def test_a_language_without_a_model(model):
-    diagnostic = refused(None, language="de")
+def test_language_without_default_model_is_rejected(model):
+    diagnostic = rejection(None, language="de")
     assert diagnostic.code == "VOICE105"
     assert engine(model, language="de")
 
 
 @pytest.mark.parametrize("content", [None, b"broken"])
-def test_a_folder_without_a_model(content, tmp_path):
+def test_folder_without_model_is_rejected(content, tmp_path):
     if content is not None:
         (tmp_path / "am").mkdir()
         (tmp_path / "am" / "final.mdl").write_bytes(content)
-    diagnostic = refused(tmp_path)
+    diagnostic = rejection(tmp_path)
     assert diagnostic.code == "VOICE104"
     assert str(tmp_path) in str(diagnostic.message)
 
 
-def test_without_vosk(model, monkeypatch):
+def test_missing_vosk_is_reported(model, monkeypatch):
     monkeypatch.setitem(sys.modules, "vosk", None)
-    diagnostic = refused(model)
+    diagnostic = rejection(model)
     assert diagnostic.code == "VOICE102"
     assert diagnostic.hint == install_hint("voice")

@@ -45,7 +45,7 @@ def samples(messages):
     return np.concatenate([np.frombuffer(bytes(message), "<i2") for message in messages])
 
 
-async def test_a_file_in_the_time_of_the_clock(test, wav):
+async def test_file_is_published_at_clock_rate(test, wav):
     start(test, file=wav)
     await test.advance(1.0)  # nobody listens
     info, plain, stamped = (test.record(f"/{name}") for name in ("audio_info", "audio", "audio_stamped"))
@@ -58,21 +58,21 @@ async def test_a_file_in_the_time_of_the_clock(test, wav):
     assert (info.last.channels, info.last.sample_rate, info.last.sample_format) == (1, 16_000, "S16LE")
 
 
-async def test_a_file_over_and_over(test, wav):
+async def test_file_is_repeated_with_loop(test, wav):
     start(test, RobotAudioCapture, file=wav, loop=True, chunk=2_000)
     heard = test.record("/audio/audio")
     await test.advance(0.6)
     assert np.array_equal(samples([each.data for each in heard])[:8_000], np.concatenate((TONE, TONE)))
 
 
-async def test_topics_are_in_the_nodes_namespace(test, wav):
+async def test_topics_are_in_node_namespace(test, wav):
     start(test, RobotAudioCapture, namespace="/ears", file=wav)
     heard = test.record("/ears/audio_stamped")
     await test.advance(0.2)
     assert len(heard) == 2
 
 
-async def test_other_forms_are_told_not_to_be_published(test, wav):
+async def test_unsupported_audio_parameters_are_reported(test, wav):
     start(test, file=wav, format="mp3", sample_rate=44_100)
     await test.settle()
     warned = [each.text for each in test.log if each.level is LogLevel.WARN]
@@ -82,7 +82,7 @@ async def test_other_forms_are_told_not_to_be_published(test, wav):
     ]
 
 
-async def test_the_microphone(test, sounddevice):
+async def test_microphone_is_published(test, sounddevice):
     node = start(test)
     heard = test.record("/audio_stamped")
     await test.settle()
@@ -95,7 +95,7 @@ async def test_the_microphone(test, sounddevice):
     node.close()
 
 
-async def test_a_microphone_of_another_rate_is_resampled(test, sounddevice, monkeypatch):
+async def test_microphone_with_other_rate_is_resampled(test, sounddevice, monkeypatch):
     monkeypatch.setattr(sounddevice, "RATES", {48_000})
     node = start(test, device="microphone")
     heard = test.record("/audio")
@@ -114,13 +114,13 @@ async def test_a_microphone_of_another_rate_is_resampled(test, sounddevice, monk
     ("parameters", "code"),
     [({"file": "nowhere.wav"}, "VOICE401"), ({"chunk": 0}, "VOICE414"), ({"device": "trumpet"}, "VOICE413")],
 )
-async def test_what_is_wrong_is_told(parameters, code, test, sounddevice):
+async def test_invalid_parameters_are_rejected(parameters, code, test, sounddevice):
     with pytest.raises(LinkwrightError) as caught:
         start(test, **parameters)
     assert caught.value.diagnostics[0].code == code
 
 
-async def test_without_portaudio_the_browsers_microphone_is_named(test, tmp_path, monkeypatch):
+async def test_missing_portaudio_suggests_browser_microphone(test, tmp_path, monkeypatch):
     (tmp_path / "sounddevice.py").write_text("raise OSError('PortAudio library not found')\n")
     monkeypatch.syspath_prepend(tmp_path)
     monkeypatch.delitem(sys.modules, "sounddevice", raising=False)

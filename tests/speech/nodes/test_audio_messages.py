@@ -27,7 +27,7 @@ WHOLE = [f"{kind}{bits}{order}" for kind in "SU" for bits in (16, 24, 32) for or
 
 
 @pytest.mark.parametrize("name", ["S8", "U8", "F32LE", "F32BE", "F64LE", "F64BE", *WHOLE])
-def test_every_sample_format(name):
+def test_sample_formats_are_converted(name):
     samples = AudioReader(AudioFormat(sample_format=name)).read(coded(TONE, name))
     assert samples.dtype == np.int16
     assert np.abs(samples - TONE * 32_768).max() <= (256 if name.endswith("8") else 1)
@@ -40,7 +40,7 @@ def test_channels_are_averaged():
 
 
 @pytest.mark.parametrize("rate", [8_000, 44_100, 48_000])
-def test_rates_are_brought_to_that_of_the_engines(rate):
+def test_sample_rates_are_converted_to_engine_rate(rate):
     tone = np.sin(np.arange(rate) * 2 * np.pi * 440 / rate) * 0.5
     samples = AudioReader(AudioFormat(rate=rate)).read(coded(tone, "S16LE"))
     expected = np.sin(np.arange(len(samples)) * 2 * np.pi * 440 / 16_000) * 0.5 * 32_768
@@ -49,7 +49,7 @@ def test_rates_are_brought_to_that_of_the_engines(rate):
 
 
 @pytest.mark.parametrize("channels", [1, 2])
-def test_messages_may_cut_samples_anywhere(channels):
+def test_samples_can_be_split_between_messages(channels):
     data = coded(np.column_stack((TONE,) * channels).reshape(-1), "S16LE")
     reader = AudioReader(AudioFormat(channels=channels))
     pieces = [reader.read(data[at : at + 33]) for at in range(0, len(data), 33)]
@@ -57,7 +57,7 @@ def test_messages_may_cut_samples_anywhere(channels):
     assert np.abs(np.concatenate(pieces) - TONE * 32_768).max() <= 1
 
 
-def test_messages_as_they_are_published():
+def test_published_audio_messages_are_read():
     data = coded(TONE, "S16LE")
     reader = AudioReader(AudioFormat.of(audio_info(AudioFormat())))
     stamped = audio_stamped(data, Time(sec=3))
@@ -77,7 +77,7 @@ def test_messages_as_they_are_published():
         ({"sample_rate": 7}, "7 Hz"),
     ],
 )
-def test_what_is_not_read_is_told(changed, word):
+def test_unsupported_audio_format_is_rejected(changed, word):
     info = get_message("audio_common_msgs/msg/AudioInfo")()
     for name, value in {"channels": 1, "sample_rate": 16_000, "sample_format": "S16LE", **changed}.items():
         setattr(info, name, value)

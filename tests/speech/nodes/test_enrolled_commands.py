@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from linkwright.speech.enrolled.enrolment import enrol
+from linkwright.speech.enrolled.enrollment import enroll
 from linkwright.speech.enrolled.words import Words
 from linkwright.speech.nodes.audio_messages import audio_stamped
 from linkwright.speech.sound.samples import BLOCK, RATE
@@ -23,7 +23,7 @@ def words_file(tmp_path_factory):
     for name, phones in WORDS.items():
         for number in range(3):
             samples = say(phones, speed=0.95 + 0.05 * number, pitch=115 + 5 * number, seed=number)
-            assert enrol(words, name, samples) == ()
+            assert enroll(words, name, samples) == ()
     path = tmp_path_factory.mktemp("voice") / "words.json"
     words.write(path)
     return path
@@ -46,14 +46,14 @@ async def play(robot, samples):
         await robot.stage.graph.settle()
 
 
-async def obeyed(robot, *commands):
+async def wait_for_commands(robot, *commands):
     """Wait until these are all that was done; the engine hears in a thread of its own."""
     await eventually(lambda: len(robot.said["command"]) >= len(commands), what=lambda: robot.said)
     assert robot.said["command"] == list(commands)
     await robot.stage.graph.settle()
 
 
-def spoken(name):
+def spoken_word(name):
     return say(WORDS[name], speed=1.04, pitch=122, level=2000, silence=AFTER, seed=21)
 
 
@@ -66,24 +66,24 @@ def spoken(name):
         ("turn right", (0.0, 0.0, -0.6)),
     ],
 )
-async def test_an_enrolled_word_drives_the_robot(robot, name, speed):
-    await play(robot, spoken(name))
+async def test_enrolled_word_drives_robot(robot, name, speed):
+    await play(robot, spoken_word(name))
     await eventually(lambda: robot.velocities)
     assert robot.speed == speed
     assert robot.said["text"] == [name]
 
 
-async def test_stop_is_done_300_ms_after_the_word(robot):
-    await play(robot, spoken("forward"))
-    await obeyed(robot, "forward")
-    sound = spoken("stop")
+async def test_stop_is_executed_within_300_ms_of_word(robot):
+    await play(robot, spoken_word("forward"))
+    await wait_for_commands(robot, "forward")
+    sound = spoken_word("stop")
     end = len(sound) - int(AFTER * RATE)
     await play(robot, sound[: end + int(0.3 * RATE)])  # no more is heard: it is known by then
-    await obeyed(robot, "forward", "stop")
+    await wait_for_commands(robot, "forward", "stop")
     assert robot.speed == (0.0, 0.0, 0.0)
 
 
-async def test_noise_and_other_words_drive_nothing(robot):
+async def test_noise_and_unknown_words_do_not_drive_robot(robot):
     noise = 300 * np.random.default_rng(22).normal(size=2 * RATE)
     await play(robot, np.concatenate((noise.astype(np.int16), np.zeros(RATE, np.int16))))
     for phones in ("mumi", "se.pifu", "moramifu"):
@@ -91,6 +91,6 @@ async def test_noise_and_other_words_drive_nothing(robot):
         await play(robot, say(phones, silence=AFTER, seed=23))
         await eventually(lambda count=before: len(robot.said["text"]) > count, what=lambda: robot.said)
     # What is heard in order is done in order: so this is the first command of all.
-    await play(robot, spoken("back"))
-    await obeyed(robot, "backward")
+    await play(robot, spoken_word("back"))
+    await wait_for_commands(robot, "backward")
     assert set(robot.said["text"]) == {"", "back"}

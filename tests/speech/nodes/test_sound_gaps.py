@@ -22,14 +22,14 @@ def missing(stamps):
     return [gaps.measure_gap(stamp, BLOCK) for stamp in stamps]
 
 
-def test_stamps_count_samples_while_blocks_come_early_and_late():
+def test_stamps_count_samples_despite_jitter():
     late = np.random.default_rng(1).uniform(0, 0.08, 200)
     stamps = stamped(10.0 + 0.1 * np.arange(200) + late)
     assert np.max(np.abs(np.diff(stamps) - LENGTH)) <= 0.01 * LENGTH
     assert not any(missing(stamps))
 
 
-def test_what_waited_while_the_source_stood_still_is_no_gap():
+def test_stalled_source_is_not_a_gap():
     arrivals = [10.0 + 0.1 * max(each, 40) if each >= 10 else 10.0 + 0.1 * each for each in range(100)]
     assert not any(missing(stamped(arrivals)))
 
@@ -39,13 +39,13 @@ def test_stamps_follow_the_clock():
     assert abs(stamps[-1] - (10.0 + 0.1005 * 1999 - 0.1) * SECOND) < 0.01 * SECOND
 
 
-def test_lost_blocks_are_told_where_they_were():
+def test_lost_blocks_are_reported_as_gap():
     stamps = stamped(10.0 + 0.1 * np.arange(20))
     found = missing(stamps[:10] + stamps[12:])
     assert np.allclose(found, [0.0] * 10 + [0.2] + [0.0] * 7, atol=0.005)
 
 
-def test_a_stream_that_begins_anew_has_no_gap_before_it():
+def test_restarted_stream_has_no_gap():
     stamps = SampleStamps()
     first = [stamps.stamp(BLOCK, round((10.0 + 0.1 * each) * SECOND)) for each in range(10)]
     stamps.restart()
@@ -56,7 +56,7 @@ def test_a_stream_that_begins_anew_has_no_gap_before_it():
     assert gaps.measure_gap(15 * SECOND, BLOCK) == 0.0
 
 
-def test_what_the_source_itself_lost_is_told_however_much_it_is():
+def test_loss_reported_by_source_is_a_gap():
     stamps, gaps, found = SampleStamps(), SoundGaps(), []
     for each in range(100):
         lost = 0.4 if each >= 10 and each % 10 == 0 else 0.0
@@ -65,7 +65,7 @@ def test_what_the_source_itself_lost_is_told_however_much_it_is():
     assert np.allclose([each for each in found if each], 0.4, atol=0.005)
 
 
-def test_small_losses_are_told_together_and_hide_no_large_one():
+def test_small_losses_are_accumulated_and_hide_no_large_one():
     stamps, gaps = SampleStamps(), SoundGaps()
     losses = {10: 0.01, 11: 0.04, 12: 0.03, 13: 0.5, 20: 0.02}
     result = [stamps.stamp(BLOCK, round((10.0 + 0.1 * each) * SECOND), losses.get(each, 0.0)) for each in range(30)]
@@ -74,20 +74,20 @@ def test_small_losses_are_told_together_and_hide_no_large_one():
     assert np.allclose([found[12], found[13]], [0.08, 0.5], atol=0.005)
 
 
-def test_of_who_stamps_blocks_as_they_come_small_jumps_are_no_gaps():
+def test_small_jumps_of_arrival_stamps_are_not_gaps():
     gaps = SoundGaps()
     late = [0, 0, 0, 0, 0.03, 0, 0.04, 0, 0, 0, 0, 0.03, 0, 0.04, 0]
     assert not any(gaps.measure_gap(round((10.0 + 0.1 * each + by) * SECOND), BLOCK) for each, by in enumerate(late))
 
 
-def test_stamps_do_not_run_ahead_of_the_clock_whatever_the_source_says_it_lost():
+def test_stamps_do_not_run_ahead_of_clock_for_any_reported_loss():
     stamps = SampleStamps()
     for each in range(20):
         now = round((10.0 + 0.1 * each) * SECOND)
         assert stamps.stamp(BLOCK, now, 1000.0) <= now + 2 * SECOND
 
 
-def test_after_the_next_press_of_a_button_gaps_are_told_at_once():
+def test_gap_is_reported_immediately_after_restart():
     gaps = SoundGaps()
     assert not any(gaps.measure_gap(round((10.0 + 0.1 * each) * SECOND), BLOCK) for each in range(5))
     gaps.restart()
@@ -95,12 +95,12 @@ def test_after_the_next_press_of_a_button_gaps_are_told_at_once():
     assert gaps.measure_gap(20 * SECOND + 3 * LENGTH, BLOCK) == 0.2
 
 
-def test_of_who_stamps_what_comes_when_it_comes_nothing_is_told():
+def test_arrival_stamps_with_jitter_have_no_gaps():
     late = np.random.default_rng(2).uniform(0, 0.2, 200)
     assert not any(missing([round((10.0 + 0.1 * each + late[each]) * SECOND) for each in range(200)]))
 
 
-def test_the_clock_may_jump_back_and_stand_still():
+def test_clock_jumps_and_stalls_are_not_gaps():
     stamps = stamped([10.0 + 0.1 * each for each in range(20)] + [11.9] * 40 + [3.0 + 0.1 * each for each in range(20)])
     assert not any(missing(stamps))
     assert stamped([0.0, 0.0]) == [0, LENGTH - LENGTH // 100]

@@ -37,7 +37,7 @@ def commands(tmp_path, text):
         ("turn right", (0.0, 0.0, -0.6)),
     ],
 )
-async def test_it_drives(stage, talk, text, speed):
+async def test_command_drives_robot(stage, talk, text, speed):
     robot = talk()
     assert await robot.type(text) == text
     assert robot.speed == speed
@@ -47,7 +47,7 @@ async def test_it_drives(stage, talk, text, speed):
     assert robot.said["text"] == [text]
 
 
-async def test_commands_replace_each_other_and_stop_ends_them(stage, talk):
+async def test_new_command_replaces_previous_and_stop_ends_it(stage, talk):
     robot = talk()
     await robot.type("forward")
     await robot.type("left")
@@ -60,7 +60,7 @@ async def test_commands_replace_each_other_and_stop_ends_them(stage, talk):
     assert robot.said["command"] == ["forward", "left", "stop"]
 
 
-async def test_nobody_says_anything_and_it_stops(stage, talk):
+async def test_silence_timeout_stops_robot(stage, talk):
     robot = talk(silence_timeout=3.0)
     await robot.type("forward")
     await stage.clock.advance(2.9)
@@ -71,7 +71,7 @@ async def test_nobody_says_anything_and_it_stops(stage, talk):
 
 
 def travelled(robot):
-    """Metres and radians that the velocities make, each for the 50 ms between them."""
+    """Meters and radians that the velocities make, each for the 50 ms between them."""
     return sum(velocity.linear.x for velocity in robot.velocities) * 0.05, sum(
         velocity.angular.z for velocity in robot.velocities
     ) * 0.05
@@ -80,13 +80,13 @@ def travelled(robot):
 @pytest.mark.parametrize(
     ("text", "distance", "angle"),
     [
-        ("drive forward half a metre", 0.5, 0.0),
+        ("drive forward half a meter", 0.5, 0.0),
         ("后退 一米", -1.0, 0.0),
         ("左转九十度", 0.0, pi / 2),
         ("转两圈", 0.0, 4 * pi),
     ],
 )
-async def test_ways_without_odometry_are_speed_times_time(stage, talk, text, distance, angle):
+async def test_distance_without_odometry_is_speed_times_time(stage, talk, text, distance, angle):
     robot = talk()
     await robot.type(text)
     await stage.clock.advance(40.0)
@@ -110,7 +110,7 @@ class Slipping:
         self.publisher.publish(message)
 
 
-async def test_a_way_is_measured_by_odometry(stage, talk):
+async def test_distance_is_measured_by_odometry(stage, talk):
     robot = talk()
     body = Slipping(stage, robot)
     await stage.clock.advance(0.1)
@@ -120,17 +120,17 @@ async def test_a_way_is_measured_by_odometry(stage, talk):
     assert body.x == pytest.approx(1.5, abs=0.02)
 
 
-async def test_who_is_stuck_stops_and_says_so(stage, talk):
+async def test_stuck_robot_stops_and_reports(stage, talk):
     robot = talk()
     Slipping(stage, robot, part=0.0)
     await stage.clock.advance(0.1)
-    await robot.type("forward one metre")
+    await robot.type("forward one meter")
     await stage.clock.advance(30.0)
     assert robot.speed == (0.0, 0.0, 0.0)
     assert robot.said["response"][-1] == "I am stuck, so I am stopping"
 
 
-async def test_faster_slower_and_a_speed(talk):
+async def test_speed_commands_change_speed(talk):
     robot = talk()
     await robot.type("加速")
     await robot.type("forward")
@@ -138,7 +138,7 @@ async def test_faster_slower_and_a_speed(talk):
     await robot.type("slower")
     await robot.type("forward")
     assert robot.speed[0] == pytest.approx(0.2)
-    await robot.type("drive at half a metre per second")
+    await robot.type("drive at half a meter per second")
     await robot.type("forward")
     assert robot.speed[0] == pytest.approx(0.5)
     for _ in range(20):
@@ -147,7 +147,7 @@ async def test_faster_slower_and_a_speed(talk):
     assert robot.speed[0] == pytest.approx(0.8), "four times as fast, and no faster"
 
 
-async def test_it_stands_still_when_it_ends(stage, talk):
+async def test_closing_node_stops_robot(stage, talk):
     robot = talk()
     await robot.type("forward")
     robot.running.close()
@@ -158,7 +158,7 @@ async def test_it_stands_still_when_it_ends(stage, talk):
 # --- sound -----------------------------------------------------------------------------------------------------------
 
 
-async def test_the_engine_is_told_what_can_be_said(engine, talk, tmp_path):
+async def test_engine_gets_phrases_and_options(engine, talk, tmp_path):
     robot = talk(engine="told", language="zh", words_file="/words.json", model=str(tmp_path))
     await eventually(lambda: engine.made)
     (options,) = engine.made
@@ -167,7 +167,7 @@ async def test_the_engine_is_told_what_can_be_said(engine, talk, tmp_path):
     assert robot.said["text"] == []
 
 
-async def test_sound_counts_while_the_button_is_held(engine, talk):
+async def test_sound_is_used_only_while_button_is_held(engine, talk):
     robot = talk(engine="told")
     await robot.say()
     await robot.hold(True)
@@ -179,13 +179,13 @@ async def test_sound_counts_while_the_button_is_held(engine, talk):
     await eventually(lambda: engine.finished)
 
 
-async def test_listening_may_be_open(engine, talk):
+async def test_open_listening_needs_no_button(engine, talk):
     robot = talk(engine="told", open_listening=True)
     await robot.say(final("forward"))
     assert robot.said["command"] == ["forward"]
 
 
-async def test_what_is_uncertain_is_not_done(engine, talk):
+async def test_uncertain_command_is_not_executed(engine, talk):
     robot = talk(engine="told", open_listening=True, confidence=0.7)
     await robot.say(final("forward", 0.6))
     await robot.say(final("", 0.9))
@@ -194,7 +194,7 @@ async def test_what_is_uncertain_is_not_done(engine, talk):
 
 
 @pytest.mark.parametrize("asked_for", [0.5, 0.8])
-async def test_who_held_the_button_is_told_what_was_heard_with_too_little_certainty(engine, talk, asked_for):
+async def test_uncertain_command_during_press_is_answered(engine, talk, asked_for):
     robot = talk(engine="told", confidence=asked_for, language="zh")
     await robot.hold(True)
     engine.says_at_end.append(final("前进", 0.6 * asked_for))
@@ -205,14 +205,14 @@ async def test_who_held_the_button_is_told_what_was_heard_with_too_little_certai
     assert robot.said["command"] == []
 
 
-async def test_of_what_is_hardly_a_word_nothing_is_said(engine, talk):
+async def test_very_uncertain_result_is_not_answered(engine, talk):
     robot = talk(engine="told")
     await robot.hold(True)
     await robot.say(final("forward", 0.2), final("", 0.4))
     assert robot.said["response"] == []
 
 
-async def test_who_listens_to_all_does_not_answer_what_is_uncertain_without_the_button(engine, talk):
+async def test_open_listening_answers_uncertain_command_only_with_button(engine, talk):
     robot = talk(engine="told", open_listening=True)
     await robot.say(final("forward", 0.4))
     assert robot.said["response"] == []
@@ -221,7 +221,7 @@ async def test_who_listens_to_all_does_not_answer_what_is_uncertain_without_the_
     assert robot.said["response"] == ["I am not sure that I heard 'forward', please repeat"]
 
 
-async def test_what_has_a_gap_is_asked_for_again_and_stop_is_done(engine, talk):
+async def test_command_with_gap_is_asked_again_but_stop_is_executed(engine, talk):
     robot = talk(engine="told")
     await robot.hold(True)
     for each in range(5):
@@ -239,7 +239,7 @@ async def test_what_has_a_gap_is_asked_for_again_and_stop_is_done(engine, talk):
     assert robot.speed == (0.0, 0.0, 0.0)
 
 
-async def test_with_a_small_gap_it_is_done_if_it_is_certain_and_asked_for_again_if_nothing_was_understood(engine, talk):
+async def test_certain_command_with_small_gap_is_executed(engine, talk):
     robot = talk(engine="told")
     await robot.hold(True)
     for each in range(5):
@@ -249,7 +249,7 @@ async def test_with_a_small_gap_it_is_done_if_it_is_certain_and_asked_for_again_
     assert robot.said["response"][-1] == "I did not hear all of that, please repeat"
 
 
-async def test_the_next_press_of_the_button_has_no_gap_before_it(engine, talk):
+async def test_next_press_has_no_gap(engine, talk):
     robot = talk(engine="told")
     await robot.hold(True)
     for each in range(5):
@@ -260,7 +260,7 @@ async def test_the_next_press_of_the_button_has_no_gap_before_it(engine, talk):
     assert robot.said["command"] == ["forward"]
 
 
-async def test_stop_is_done_from_what_is_heard_so_far_and_once(engine, talk):
+async def test_partial_stop_is_executed_once(engine, talk):
     robot = talk(engine="told", open_listening=True)
     await robot.say(final("forward"))
     await robot.say(partial("[unk] stop", start=2.0))
@@ -269,7 +269,7 @@ async def test_stop_is_done_from_what_is_heard_so_far_and_once(engine, talk):
     assert robot.said["command"] == ["forward", "stop"]
 
 
-async def test_a_stop_counts_again_when_the_robot_moves_again(engine, talk):
+async def test_stop_is_executed_again_after_new_motion(engine, talk):
     robot = talk(engine="told", open_listening=True)
     for _ in range(2):
         await robot.type("forward")
@@ -277,7 +277,7 @@ async def test_a_stop_counts_again_when_the_robot_moves_again(engine, talk):
         assert robot.speed == (0.0, 0.0, 0.0)
 
 
-async def test_after_a_stop_nothing_else_of_the_utterance_is_done(engine, talk):
+async def test_rest_of_utterance_after_stop_is_ignored(engine, talk):
     robot = talk(engine="told", open_listening=True)
     await robot.say(final("left"))
     await robot.say(partial("stop"), final("forward"))
@@ -287,15 +287,15 @@ async def test_after_a_stop_nothing_else_of_the_utterance_is_done(engine, talk):
     assert robot.said["command"] == ["left", "stop", "stop", "go_to_object object=stop_sign"]
 
 
-async def test_it_is_told_why_an_engine_hears_nothing(engine, talk, logged):
-    engine.trouble.append(Diagnostic("VOICE201", phrase("nothing is enrolled"), hint=phrase("enrol something")))
+async def test_engine_problem_is_logged(engine, talk, logged):
+    engine.trouble.append(Diagnostic("VOICE201", phrase("nothing is enrolled"), hint=phrase("enroll something")))
     robot = talk(engine="told")
     await eventually(lambda: logged("WARN"))
-    assert logged("WARN") == ["nothing is enrolled", "enrol something"]
+    assert logged("WARN") == ["nothing is enrolled", "enroll something"]
     assert not robot.running.finished.done()
 
 
-async def test_a_stop_that_is_uncertain_stops_a_robot_that_moves_and_tells_nobody_else(engine, talk):
+async def test_uncertain_stop_stops_moving_robot(engine, talk):
     robot = talk(engine="told", open_listening=True)
     await robot.say(final("stop", 0.1))
     assert robot.said["command"] == []
@@ -304,7 +304,7 @@ async def test_a_stop_that_is_uncertain_stops_a_robot_that_moves_and_tells_nobod
     assert robot.speed == (0.0, 0.0, 0.0)
 
 
-async def test_it_stops_when_the_microphone_is_gone(engine, stage, talk):
+async def test_lost_audio_source_stops_robot(engine, stage, talk):
     robot = talk(engine="told", open_listening=True)
     await robot.say(final("forward"))
     robot.mouth.destroy_node()
@@ -313,14 +313,14 @@ async def test_it_stops_when_the_microphone_is_gone(engine, stage, talk):
     assert robot.said["response"][-1] == "the audio source is gone, so I am stopping"
 
 
-async def test_an_engine_that_is_not_there_ends_the_node(engine, talk, logged):
+async def test_unknown_engine_ends_node(engine, talk, logged):
     robot = talk(engine="tolt")
     await eventually(robot.running.finished.done)
     assert robot.running.finished.result() == 1
     assert logged("FATAL") == ["there is no speech engine 'tolt'", "did you mean 'told'?"]
 
 
-async def test_an_engine_that_fails_stops_the_robot_and_ends_the_node(engine, talk, logged):
+async def test_failing_engine_stops_robot_and_ends_node(engine, talk, logged):
     robot = talk(engine="told", open_listening=True)
     await robot.say(final("forward"))
     robot.sound.publish(audio_stamped(b"\xff\x7f", robot.stage.node.get_clock().now().to_msg()))
@@ -343,7 +343,7 @@ commands:
 
 
 @pytest.mark.parametrize(("answer", "count"), [("yes", 1), ("no", 0), ("forward", 0), (None, 0)])
-async def test_a_question_is_answered_first(stage, talk, tmp_path, answer, count):
+async def test_confirmation_is_required_before_command(stage, talk, tmp_path, answer, count):
     robot = talk(commands_file=commands(tmp_path, QUESTION))
     reset = []
     stage.node.create_subscription(STRING, "/reset", reset.append, 10)
@@ -358,12 +358,12 @@ async def test_a_question_is_answered_first(stage, talk, tmp_path, answer, count
     assert len(reset) == count
 
 
-async def test_answers_are_in_the_language_of_the_node_until_somebody_speaks(talk):
+async def test_first_response_is_in_node_language(talk):
     robot = talk(language="zh")
     assert await robot.type("唱歌") == "我没听懂“唱歌”"
 
 
-async def test_answers_are_in_the_language_that_was_spoken_last(talk, tmp_path):
+async def test_response_is_in_language_of_last_command(talk, tmp_path):
     text = """
 commands:
   stop: {phrases: {en: stop, zh: 停}, stop: true, response: {en: stopped, zh: 停下了}}
@@ -411,7 +411,7 @@ class Navigator:
         return CancelResponse.ACCEPT
 
 
-async def test_it_goes_to_places_and_says_when_it_is_there(stage, talk, tmp_path):
+async def test_go_to_place_sends_goal_and_reports_arrival(stage, talk, tmp_path):
     navigator = Navigator(stage)
     robot = talk(commands_file=commands(tmp_path, PLACES))
     await stage.graph.settle()
@@ -427,7 +427,7 @@ async def test_it_goes_to_places_and_says_when_it_is_there(stage, talk, tmp_path
 
 
 @pytest.mark.parametrize("text", ["stop", "forward"])
-async def test_goals_are_canceled(stage, talk, tmp_path, text):
+async def test_stop_or_other_command_cancels_goal(stage, talk, tmp_path, text):
     navigator = Navigator(stage)
     robot = talk(commands_file=commands(tmp_path, PLACES))
     await stage.graph.settle()
@@ -436,12 +436,12 @@ async def test_goals_are_canceled(stage, talk, tmp_path, text):
     assert navigator.canceled >= 1
 
 
-async def test_without_a_server_it_says_so(talk, tmp_path):
+async def test_missing_action_server_is_reported(talk, tmp_path):
     robot = talk(commands_file=commands(tmp_path, PLACES))
     assert await robot.type("go to the kitchen") == "I cannot do it: no node serves 'navigate_to_pose'"
 
 
-async def test_what_a_service_answers_is_said(stage, talk):
+async def test_service_response_is_spoken(stage, talk):
     kind = get_service("std_srvs/srv/Trigger")
     stage.node.create_service(
         kind, "/vision/describe/en", lambda request, response: kind.Response(success=True, message="a red ball")
@@ -456,7 +456,7 @@ def clients(stage):
     return [endpoint.name for endpoint in stage.graph.endpoints() if endpoint.kind is EndpointKind.CLIENT]
 
 
-async def test_a_service_that_only_some_commands_need_is_not_waited_for(stage, talk):
+async def test_missing_service_does_not_delay_other_commands(stage, talk):
     robot = talk()
     await stage.graph.settle()
     assert [client for client in clients(stage) if "/_action/" not in client] == []
@@ -470,7 +470,7 @@ async def test_a_service_that_only_some_commands_need_is_not_waited_for(stage, t
     assert "/vision/describe/en" not in clients(stage)
 
 
-async def test_a_service_of_another_type_is_not_called(stage, talk):
+async def test_service_of_other_type_is_not_called(stage, talk):
     stage.node.create_service("std_srvs/srv/Empty", "/vision/describe/en", lambda request, response: response)
     assert await talk().type("what do you see") == "I cannot do it: no node serves '/vision/describe/en'"
 
@@ -506,7 +506,7 @@ class Launched:
         self.signals.append(15)
 
 
-async def test_a_launch_file_is_started_without_a_shell_and_ended_by_stop(talk, tmp_path, monkeypatch):
+async def test_launch_file_is_started_without_shell_and_ended_by_stop(talk, tmp_path, monkeypatch):
     Launched.started.clear()
     monkeypatch.setattr("linkwright.speech.nodes.requests.subprocess.Popen", Launched)
     robot = talk(commands_file=commands(tmp_path, LAUNCH))
@@ -518,7 +518,7 @@ async def test_a_launch_file_is_started_without_a_shell_and_ended_by_stop(talk, 
     assert len(process.signals) == 1
 
 
-async def test_who_drives_to_objects_is_told_where_and_to_stop(stage, talk):
+async def test_go_to_object_publishes_target_and_stop(stage, talk):
     heard = []
     stage.node.create_subscription(STRING, "/vision/go_to/en", lambda message: heard.append(message.data), 10)
     stage.node.create_subscription(STRING, "/vision/go_to/zh", lambda message: heard.append(("zh", message.data)), 10)
@@ -532,7 +532,7 @@ async def test_who_drives_to_objects_is_told_where_and_to_stop(stage, talk):
     assert heard == ["stop", "red ball", "stop", ("zh", "red ball")]
 
 
-async def test_a_file_of_commands_that_is_wrong_ends_it(talk, tmp_path, logged):
+async def test_invalid_command_file_ends_node(talk, tmp_path, logged):
     with pytest.raises(LinkwrightError) as caught:
         talk(commands_file=commands(tmp_path, "commands: {a: {phrases: b}}"))
     assert caught.value.diagnostics[0].code == "VOICE302"

@@ -63,7 +63,7 @@ def publishers(made: World) -> list[int]:
 
 
 @pytest.mark.parametrize(("topic", "present"), [("/voice/command", True), ("/voice/response", False)])
-async def test_only_a_node_that_understands_commands_can_be_talked_to(topic, present):
+async def test_voice_requires_node_that_understands_commands(topic, present):
     async with world() as made:
         made.graph.create_node("other").create_publisher("std_msgs/msg/String", topic, 10)
         async with page(made.viewer) as client:
@@ -71,7 +71,7 @@ async def test_only_a_node_that_understands_commands_can_be_talked_to(topic, pre
             assert (await client.until("voice_node"))["present"] is present
 
 
-async def test_sound_is_published_while_the_button_is_held():
+async def test_sound_is_published_while_button_is_held():
     async with heard() as (made, client, ears):
         await client.send("talk", mode="ready")
         await client.socket.send_bytes(frame(BLOCK))
@@ -85,7 +85,7 @@ async def test_sound_is_published_while_the_button_is_held():
         assert ears.blocks == [BLOCK.tolist(), BLOCK[:30].tolist()]
 
 
-async def test_stamps_jump_over_what_the_browser_lost():
+async def test_stamps_skip_samples_lost_by_browser():
     async with heard() as (_, client, ears):
         await client.send("talk", mode="held")
         for lost in (0, 0, 4000, 0):
@@ -94,7 +94,7 @@ async def test_stamps_jump_over_what_the_browser_lost():
         assert np.diff(ears.stamps) == pytest.approx([0.1, 0.35, 0.1], abs=0.002)
 
 
-async def test_the_topics_of_sound_are_there_while_a_microphone_is_open():
+async def test_sound_topics_exist_while_microphone_is_open():
     async with heard() as (made, client, _):
         await client.send("watch_voice", watched=True)
         await client.until("voice_state", talking="nobody")
@@ -115,7 +115,7 @@ async def test_the_topics_of_sound_are_there_while_a_microphone_is_open():
         await eventually(lambda: publishers(made) == [0, 0, 0, 0])
 
 
-async def test_a_page_that_goes_lets_go_of_the_button():
+async def test_closed_page_releases_button():
     async with world() as made:
         ears = Ears(made)
         async with page(made.viewer) as client:
@@ -126,7 +126,7 @@ async def test_a_page_that_goes_lets_go_of_the_button():
         assert publishers(made) == [0, 0, 0, 0]
 
 
-async def test_who_listens_only_after_the_button_was_pressed_is_told_too():
+async def test_late_subscriber_gets_button_state():
     async with heard() as (made, client, ears):
         await client.send("talk", mode="held")
         await eventually(lambda: ears.held == [True])
@@ -137,7 +137,7 @@ async def test_who_listens_only_after_the_button_was_pressed_is_told_too():
         assert ears.held == [True, True, False]
 
 
-async def test_of_two_pages_the_one_talks_that_holds_the_button():
+async def test_page_that_holds_button_talks():
     async with heard() as (made, first, ears), page(made.viewer) as second:
         for client in (first, second):
             await client.send("watch_voice", watched=True)
@@ -158,7 +158,7 @@ async def test_of_two_pages_the_one_talks_that_holds_the_button():
         assert ears.held == [True, False]
 
 
-async def test_the_second_to_hold_a_button_waits_for_the_first():
+async def test_second_page_waits_for_button():
     async with heard() as (made, first, ears), page(made.viewer) as second:
         await second.send("watch_voice", watched=True)
         await first.send("talk", mode="held")
@@ -172,7 +172,7 @@ async def test_the_second_to_hold_a_button_waits_for_the_first():
         assert ears.blocks == []
 
 
-async def test_a_page_that_floods_is_cut_until_it_begins_anew(monkeypatch):
+async def test_flooding_page_is_cut_off_until_next_press(monkeypatch):
     monkeypatch.setattr(floor, "_LEAD", 0.05)
     async with heard() as (_, client, ears):
         await client.send("watch_voice", watched=True)
@@ -186,7 +186,7 @@ async def test_a_page_that_floods_is_cut_until_it_begins_anew(monkeypatch):
         await client.until("voice_state", talking="you", cut=False)
 
 
-def test_as_much_sound_may_come_as_time_passes():
+def test_sound_budget_grows_with_time():
     now = 0.0
     budget = floor.SoundBudget(lambda: now)
     for _ in range(10_000):
@@ -196,7 +196,7 @@ def test_as_much_sound_may_come_as_time_passes():
     assert not budget.spend(0.2, 0.0)
 
 
-async def test_a_page_that_says_more_was_lost_than_time_has_passed_is_cut_and_its_stamps_do_not_run_ahead():
+async def test_page_reporting_impossible_loss_is_cut_off():
     async with heard() as (_, client, ears):
         await client.send("watch_voice", watched=True)
         await client.send("talk", mode="held")
@@ -208,7 +208,7 @@ async def test_a_page_that_says_more_was_lost_than_time_has_passed_is_cut_and_it
         assert max(ears.stamps) - ears.stamps[0] < 3.0
 
 
-async def test_a_page_that_says_that_hours_were_lost_is_closed():
+async def test_page_reporting_excessive_loss_is_closed():
     async with heard() as (_, client, ears):
         await client.send("talk", mode="held")
         await client.socket.send_bytes(frame(BLOCK, lost=MOST_LOST_SAMPLES + 1))
@@ -218,7 +218,7 @@ async def test_a_page_that_says_that_hours_were_lost_is_closed():
         assert ears.stamps == []
 
 
-async def test_pages_hear_the_conversation():
+async def test_pages_receive_conversation():
     async with heard() as (made, client, ears):
         await client.send("watch_voice", watched=True)
         await client.until("voice_state")
@@ -230,7 +230,7 @@ async def test_pages_hear_the_conversation():
         await eventually(lambda: made.graph.count_subscribers("/voice/text") == 0)
 
 
-async def test_commands_are_sent_as_text_and_pages_know_whether_anybody_takes_them():
+async def test_text_commands_are_published_and_subscribers_counted():
     async with heard() as (made, client, ears):
         await client.send("watch_voice", watched=True)
         await client.until("voice_state", sound_listeners=1, text_listeners=1)
@@ -242,7 +242,7 @@ async def test_commands_are_sent_as_text_and_pages_know_whether_anybody_takes_th
         await eventually(lambda: made.graph.count_publishers("/voice/text_input") == 0)
 
 
-async def test_pages_know_whether_enrolling_is_proposed_until_who_proposed_it_is_gone():
+async def test_enrolling_proposal_is_withdrawn_with_its_node():
     async with heard() as (_, client, ears):
         await client.send("watch_voice", watched=True)
         await client.until("voice_state", proposes_enrolling=False)
@@ -265,5 +265,5 @@ async def test_pages_know_whether_enrolling_is_proposed_until_who_proposed_it_is
         frame(BLOCK, lost=2**32 - 1),
     ],
 )
-def test_other_binary_frames_are_no_sound(bad):
+def test_other_binary_frames_are_not_sound(bad):
     assert unpack_sound(bad) is None

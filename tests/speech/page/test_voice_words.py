@@ -1,4 +1,4 @@
-"""Words that pages enrol, in the user's file."""
+"""Words that pages enroll, in the user's file."""
 
 from __future__ import annotations
 
@@ -44,7 +44,7 @@ async def record(client: Client, name: str, samples: np.ndarray, *, has_gaps: bo
     return await client.until("take_judged", name=name)
 
 
-async def test_a_word_is_enrolled_by_saying_it():
+async def test_word_is_enrolled_from_recordings():
     async with opened() as (client, other):
         for count in (1, 2, 3):
             judged = await record(client, "stop", say(WORDS["stop"], seed=count))
@@ -56,14 +56,14 @@ async def test_a_word_is_enrolled_by_saying_it():
         assert Words.read(words_path()).names == ("stop",)
 
 
-async def test_a_recording_of_which_the_page_lost_some_is_not_taken():
+async def test_recording_with_gaps_is_rejected():
     async with opened() as (client, _):
         judged = await record(client, "stop", say(WORDS["stop"]), has_gaps=True)
         assert judged["code"] == "VOICE212"
         assert not Words.read(words_path()).names
 
 
-async def test_what_cannot_serve_is_not_taken():
+async def test_silent_recording_is_rejected():
     async with opened() as (client, _):
         judged = await record(client, "stop", np.zeros(16_000, np.int16))
         assert (judged["code"], judged["peak"]) == ("VOICE205", 0.0)
@@ -71,7 +71,7 @@ async def test_what_cannot_serve_is_not_taken():
         assert Words.read(words_path()).names == ()
 
 
-async def test_words_are_renamed_and_removed_and_keep_their_place():
+async def test_words_are_renamed_and_removed_in_order():
     async with opened() as (client, _):
         for name in ("stop", "back", "forward"):
             await record(client, name, say(WORDS[name]))
@@ -88,7 +88,7 @@ async def test_words_are_renamed_and_removed_and_keep_their_place():
         assert [word["name"] for word in message["words"]] == ["停止", "forward"]
 
 
-async def test_the_file_goes_from_one_user_to_another():
+async def test_words_file_is_exported_and_imported():
     async with opened() as (client, _):
         await record(client, "stop", say(WORDS["stop"]))
         await client.send("ask_words_file")
@@ -104,7 +104,7 @@ async def test_the_file_goes_from_one_user_to_another():
         assert Words.read(words_path()).names == ("stop",)
 
 
-async def test_a_damaged_file_is_left_alone_and_told_of():
+async def test_damaged_words_file_is_reported_and_kept():
     async with opened() as (client, other):
         words_path().parent.mkdir(parents=True)
         words_path().write_text("{")
@@ -117,7 +117,7 @@ async def test_a_damaged_file_is_left_alone_and_told_of():
 
 
 @pytest.mark.parametrize("language", ["en", "zh"])
-def test_the_words_that_the_page_offers_are_commands(language):
+def test_words_suggested_by_page_are_commands(language):
     (offered,) = re.findall(r"suggestions: \[(.*?)\]", (STRINGS / language / "voice.ts").read_text(encoding="utf-8"))
     commands = read_command_file(DEFAULT_FILE)
     for phrase in re.findall(r'"(.*?)"', offered):

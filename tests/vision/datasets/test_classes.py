@@ -15,11 +15,11 @@ from tests.vision.datasets.places import yard
     [("ball", "ball"), ("red_ball", "ball"), ("ball_2", "ball"), ("Blue-Ball (3)", "ball"), ("box12", "box"),
      ("traffic_cone_clone_1", "traffic_cone"), ("red", "red"), ("7", "7"), ("stop_sign", "stop_sign")],
 )  # fmt: skip
-def test_a_class_is_a_name_without_numbers_and_colours(name, expected):
+def test_default_class_omits_numbers_and_colors(name, expected):
     assert default_class(name) == expected
 
 
-def test_what_stands_around_is_no_thing(tmp_path):
+def test_walls_and_ground_are_not_objects(tmp_path):
     simulation = loaded(yard(tmp_path))
     rules = default_rules([simulation])
     assert list(rules.patterns) == ["ball", "crate", "drums"]
@@ -32,7 +32,7 @@ def test_what_stands_around_is_no_thing(tmp_path):
     ]
 
 
-def test_visuals_that_touch_each_other_are_one_thing(tmp_path):
+def test_touching_visuals_are_one_object(tmp_path):
     simulation = loaded(yard(tmp_path))
     objects = find_objects(simulation, ClassRules({"drum": ("drums::*",), "ball": ("*ball*",)}))
     assert [(scene_object.name, scene_object.label, len(scene_object.geoms)) for scene_object in objects] == [
@@ -43,7 +43,7 @@ def test_visuals_that_touch_each_other_are_one_thing(tmp_path):
     ]
 
 
-def test_classes_of_a_file_keep_their_order(tmp_path):
+def test_classes_of_file_keep_order(tmp_path):
     path = tmp_path / "classes.yaml"
     path.write_text('mbot:\nball: [football, "*_ball"]\ncone: traffic_cone\n')
     rules = read_classes(path)
@@ -56,7 +56,7 @@ def test_classes_of_a_file_keep_their_order(tmp_path):
     [("", 1), ("- ball\n", 1), ("ball: []\n", 1), ("ball: {a: b}\n", 1), ("ball:\nball:\n", 2), ("a: [b\n", 2),
      ("? [a]\n: b\n", 1), ("a:\n  - [b]\n", 2)],
 )  # fmt: skip
-def test_a_wrong_file_of_classes_is_told_with_its_place(tmp_path, text, line):
+def test_malformed_classes_file_is_reported_with_location(tmp_path, text, line):
     path = tmp_path / "classes.yaml"
     path.write_text(text)
     with pytest.raises(LinkwrightError) as caught:
@@ -66,6 +66,6 @@ def test_a_wrong_file_of_classes_is_told_with_its_place(tmp_path, text, line):
     assert (finding.span.line if finding.span else None) == line
 
 
-def test_a_file_of_classes_that_is_not_there_is_told(tmp_path):
+def test_missing_classes_file_is_reported(tmp_path):
     with pytest.raises(LinkwrightError, match="does not exist"):
         read_classes(tmp_path / "none.yaml")

@@ -34,7 +34,7 @@ def make(source, path, images, **options):
     return make_dataset(source.worlds, path, images, **given)
 
 
-def test_a_world_and_a_folder_are_enough(tmp_path):
+def test_dataset_requires_only_world_and_folder(tmp_path):
     made = make_dataset(yard(tmp_path), str(tmp_path / "made"), 2)
     assert (made.added, made.folder.count) == (2, 2)
     assert {"annotations", "labels"} <= {path.name for path in (tmp_path / "made").iterdir()}
@@ -57,7 +57,7 @@ LIT = """<scene><ambient>0.2 0.2 0.2 1</ambient><background>0 1 1 1</background>
   <direction>0 0.3 -1</direction></light>"""
 
 
-def test_lights_and_background_of_the_world_are_kept_where_that_is_asked_for(tmp_path):
+def test_world_lights_are_kept_on_request(tmp_path):
     path = tmp_path / "lit.world"
     path.write_text(world_text(LIT, GROUND, BALL.format(name="ball", pose="1 0 0.2 0 0 0")))
     made = {}
@@ -66,7 +66,7 @@ def test_lights_and_background_of_the_world_are_kept_where_that_is_asked_for(tmp
             (str(path),),
             (),
             None,
-            replace(OPTIONS, distractors=0, form="png", fixed_properties=("colours", "lens", *kept)),
+            replace(OPTIONS, distractors=0, form="png", fixed_properties=("colors", "lens", *kept)),
         )
         studio = Studio(source)
         try:
@@ -82,7 +82,7 @@ def test_lights_and_background_of_the_world_are_kept_where_that_is_asked_for(tmp
     assert not (made[()] == [0, 255, 255]).all(axis=1).any()
 
 
-def test_all_forms_say_the_same(source, tmp_path):
+def test_all_label_formats_agree(source, tmp_path):
     folder = tmp_path / "set"
     make(source, folder, 20)
     assert yaml.safe_load((folder / "data.yaml").read_text()) == {
@@ -119,7 +119,7 @@ def test_all_forms_say_the_same(source, tmp_path):
     assert (folder / "contact_sheet.jpg").stat().st_size > 0
 
 
-def test_the_same_seed_gives_the_same_bytes(source, tmp_path):
+def test_same_seed_gives_identical_files(source, tmp_path):
     make(source, tmp_path / "a", 4)
     make(source, tmp_path / "b", 4)
     assert files(tmp_path / "a") == files(tmp_path / "b")
@@ -128,7 +128,7 @@ def test_the_same_seed_gives_the_same_bytes(source, tmp_path):
 
 
 @pytest.mark.parametrize("way", ["OpenGL", "Embree", "MuJoCo"])
-def test_a_image_does_not_depend_on_those_before(source, monkeypatch, way):
+def test_image_does_not_depend_on_previous_images(source, monkeypatch, way):
     if way != "OpenGL":  # as on macOS and Windows
         monkeypatch.setenv("MUJOCO_GL", "disable")
     if way == "MuJoCo":
@@ -146,13 +146,13 @@ def test_a_image_does_not_depend_on_those_before(source, monkeypatch, way):
         second.close()
 
 
-def test_processes_make_the_same(source, tmp_path):
+def test_worker_processes_give_identical_files(source, tmp_path):
     make(source, tmp_path / "a", 52)
     make(source, tmp_path / "b", 52, workers=2)
     assert files(tmp_path / "a") == files(tmp_path / "b")
 
 
-def test_splits_have_their_shares():
+def test_splits_have_requested_shares():
     options = replace(OPTIONS, splits=(0.5, 0.3, 0.2))
     found = [split_of(index, options) for index in range(200)]
     assert [found.count(split) for split in SPLITS] == [100, 60, 40]
@@ -160,7 +160,7 @@ def test_splits_have_their_shares():
     assert {split_of(index, replace(OPTIONS, splits=(1.0, 0.0, 0.0))) for index in range(50)} == {"train"}
 
 
-def test_images_are_added(source, tmp_path):
+def test_append_adds_images(source, tmp_path):
     folder = tmp_path / "set"
     make(source, folder, 3)
     made = make(source, folder, 4, append=True)
@@ -173,7 +173,7 @@ def test_images_are_added(source, tmp_path):
     } == {name: data for name, data in files(folder).items() if name.startswith(("images", "labels"))}
 
 
-def test_what_is_there_is_not_written_over(source, tmp_path):
+def test_other_files_are_not_overwritten(source, tmp_path):
     folder = tmp_path / "set"
     folder.mkdir()
     (folder / "diary.txt").write_text("dear diary")
@@ -187,7 +187,7 @@ def test_what_is_there_is_not_written_over(source, tmp_path):
     assert files(folder) == {"diary.txt": b"dear diary"}
 
 
-def test_a_dataset_is_replaced_if_that_is_asked_for(source, tmp_path):
+def test_dataset_is_replaced_only_on_request(source, tmp_path):
     folder = tmp_path / "set"
     make(source, folder, 3)
     with pytest.raises(LinkwrightError) as caught:
@@ -199,7 +199,7 @@ def test_a_dataset_is_replaced_if_that_is_asked_for(source, tmp_path):
     assert (folder / "notes.txt").read_text() == "kept"
 
 
-def test_other_classes_cannot_be_added(source, tmp_path):
+def test_append_with_other_classes_is_rejected(source, tmp_path):
     folder = tmp_path / "set"
     make(source, folder, 1)
     (tmp_path / "classes.yaml").write_text("ball: '*ball*'\n")
@@ -208,7 +208,7 @@ def test_other_classes_cannot_be_added(source, tmp_path):
     assert code_of(caught) == "VISION206"
 
 
-def test_nothing_is_added_to_a_dataset_with_a_card_of_another_form(source, tmp_path):
+def test_append_to_dataset_of_other_version_is_rejected(source, tmp_path):
     folder = tmp_path / "set"
     make(source, folder, 1)
     card = folder / "dataset.json"
@@ -218,7 +218,7 @@ def test_nothing_is_added_to_a_dataset_with_a_card_of_another_form(source, tmp_p
     assert code_of(caught) == "VISION206"
 
 
-def test_an_interrupted_dataset_is_complete(source, tmp_path):
+def test_interrupted_dataset_is_consistent(source, tmp_path):
     folder = tmp_path / "set"
 
     def stop(done):
@@ -233,7 +233,7 @@ def test_an_interrupted_dataset_is_complete(source, tmp_path):
     assert make(source, folder, 2, append=True).folder.count == 5
 
 
-def test_a_world_without_things_is_told(tmp_path):
+def test_world_without_objects_is_an_error(tmp_path):
     path = tmp_path / "empty.world"
     path.write_text(world_text(GROUND, WALL))
     with pytest.raises(LinkwrightError) as caught:
@@ -241,7 +241,7 @@ def test_a_world_without_things_is_told(tmp_path):
     assert code_of(caught) == "VISION202"
 
 
-def test_things_of_one_world_are_in_the_others(source, tmp_path):
+def test_objects_of_one_world_are_added_to_others(source, tmp_path):
     path = tmp_path / "wall.world"
     path.write_text(world_text(GROUND, WALL, BALL.format(name="green_ball", pose="0 0 0.2 0 0 0")))
     studio = Studio(replace(source, worlds=(*source.worlds, str(path))))
@@ -253,7 +253,7 @@ def test_things_of_one_world_are_in_the_others(source, tmp_path):
         studio.close()
 
 
-def test_what_is_added_must_be_seen(source, tmp_path):
+def test_added_object_without_visuals_is_an_error(source, tmp_path):
     path = tmp_path / "bare.urdf"
     path.write_text('<robot name="bare"><link name="base"/></robot>')
     with pytest.raises(LinkwrightError) as caught:

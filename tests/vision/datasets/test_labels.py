@@ -45,7 +45,7 @@ def alone(shot, prop):
     return Shot(shot.optics, shot.pose, (prop,), ())
 
 
-def test_runs_are_the_mask():
+def test_run_lengths_match_mask():
     masks = np.random.default_rng(0).random((20, 7, 5)) < 0.5
     for mask in (*masks, np.zeros((7, 5), bool), np.ones((7, 5), bool)):
         counts = run_lengths_of(mask)
@@ -54,14 +54,14 @@ def test_runs_are_the_mask():
         assert (color_mask(counts, 7, 5) == mask).all()
 
 
-def test_the_box_of_a_mask():
+def test_box_of_mask_is_computed():
     mask = np.zeros((6, 8), bool)
     assert box_of(mask) is None
     mask[2, 3] = mask[4, 1] = True
     assert box_of(mask) == (1, 2, 4, 5)
 
 
-def test_whole_boxes_of_balls_are_those_of_their_outlines(stage):
+def test_full_boxes_of_balls_match_projected_outlines(stage):
     """The outline of a ball is the cone of rays that touch it: its ends are known to the last digit."""
     compared = 0
     for shot in shots(stage, 12):
@@ -102,7 +102,7 @@ def outline(across, ahead, radius):
     return np.tan(middle - half), np.tan(middle + half)
 
 
-def test_labels_are_those_of_another_renderer(stage):
+def test_labels_match_mujoco_renderer(stage):
     other = make_renderer(stage.simulation, "mujoco")
     compared = 0
     for shot in shots(stage, 8):
@@ -116,7 +116,7 @@ def test_labels_are_those_of_another_renderer(stage):
     assert compared >= 10
 
 
-def test_visible_and_whole_fit_together(stage):
+def test_visible_box_and_full_box_are_consistent(stage):
     for shot in shots(stage, 8):
         labels, geoms = labeled(stage, shot)
         for label in labels:
@@ -137,7 +137,7 @@ def test_visible_and_whole_fit_together(stage):
             assert label.is_truncated != inside
 
 
-def test_what_nothing_hides_is_visible(stage):
+def test_unoccluded_objects_are_fully_visible(stage):
     for shot in shots(stage, 4):
         for prop in shot.placed_props:
             for geoms in stage.structures.values():
@@ -151,7 +151,7 @@ def test_what_nothing_hides_is_visible(stage):
             break
 
 
-def test_things_do_not_reach_into_each_other(stage):
+def test_placed_objects_do_not_overlap(stage):
     for shot in shots(stage, 12):
         places = [
             (stage.simulation.data.geom_xpos[prop.geoms, :2].mean(axis=0), prop.radius)
@@ -164,7 +164,7 @@ def test_things_do_not_reach_into_each_other(stage):
 
 
 @pytest.mark.parametrize(("height", "focal", "ignored"), [(0.7, 414.0, True), (1.0, 180.0, False)])
-def test_a_sign_counts_where_its_plate_is_seen(tmp_path, height, focal, ignored):
+def test_sign_is_ignored_unless_its_plate_is_visible(tmp_path, height, focal, ignored):
     path = tmp_path / "signs.world"
     path.write_text(world_text(SIGN))
     simulation = loaded(path)
@@ -182,7 +182,7 @@ def test_a_sign_counts_where_its_plate_is_seen(tmp_path, height, focal, ignored)
     assert label.is_ignored == ignored
 
 
-def test_shapes_without_a_label_are_far_from_balls_and_drums(stage):
+def test_distractors_do_not_resemble_balls_and_drums(stage):
     model, kinds = stage.simulation.model, load_mujoco().mjtGeom
     for number in range(20):
         for geom in stage.distractors:
@@ -193,7 +193,7 @@ def test_shapes_without_a_label_are_far_from_balls_and_drums(stage):
                 assert model.geom_size[geom, 1] >= 1.5 * model.geom_size[geom, 0]
 
 
-def test_few_things_are_put_behind_walls(stage):
+def test_few_objects_are_placed_behind_walls(stage):
     """The wall of the yard is 6 m long, 3 m ahead of its middle."""
     behind = objects = 0
     for shot in shots(stage, 40):

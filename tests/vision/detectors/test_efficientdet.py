@@ -85,7 +85,7 @@ def refused(path, **options):
     return raised.value.diagnostics[0].code
 
 
-def test_boxes_by_what_they_are_and_names_from_the_file(litert, file):
+def test_boxes_and_names_are_read_from_model(litert, file):
     detector = make_detector(str(file), DetectorOptions())
     assert detector.names == ("person", "bicycle", "car")
     found = detector.detect(np.zeros((100, 200, 3), np.uint8), Limits())
@@ -96,12 +96,12 @@ def test_boxes_by_what_they_are_and_names_from_the_file(litert, file):
     assert len(detector.detect(np.zeros((0, 0, 3), np.uint8), Limits())) == 0
 
 
-def test_a_file_of_labels_goes_before(litert, file, tmp_path):
+def test_labels_file_overrides_names_of_model(litert, file, tmp_path):
     (tmp_path / "labels.txt").write_text("a\nb\nc\n")
     assert make_detector(str(file), DetectorOptions(labels=tmp_path / "labels.txt")).names == ("a", "b", "c")
 
 
-def test_what_is_wrong_with_a_file(litert, file):
+def test_malformed_model_files_are_rejected(litert, file):
     file.write_bytes(b"TFL3 without names")
     assert refused(file) == "VISION108"
     file.write_bytes(b"no network")
@@ -116,18 +116,18 @@ def test_what_is_wrong_with_a_file(litert, file):
         ({"operations": OPERATIONS[:1]}, "VISION106"),
     ],
 )
-def test_networks_of_other_kinds(litert, file, changes, code):
+def test_unsupported_networks_are_rejected(litert, file, changes, code):
     for name, value in changes.items():
         setattr(litert, name, value)
     assert refused(file) == code
 
 
-def test_without_litert(monkeypatch, file):
+def test_missing_litert_is_an_error(monkeypatch, file):
     monkeypatch.setitem(sys.modules, "ai_edge_litert", None)
     load_litert.cache_clear()
     assert refused(file) == "VISION101"
 
 
-def test_one_that_has_not_been_fetched(monkeypatch, tmp_path):
+def test_model_not_downloaded_is_an_error(monkeypatch, tmp_path):
     monkeypatch.setenv("XDG_DATA_HOME", str(tmp_path))
     assert refused("efficientdet-lite0") == "MODEL102"

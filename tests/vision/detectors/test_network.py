@@ -92,7 +92,7 @@ def check(found, kept, image, scale, left, top, tolerance=1e-3):
     assert len(set(map(found.name, range(len(found))))) > 1
 
 
-def test_columns_as_of_v8(tmp_path, image):
+def test_yolov8_columns_are_decoded(tmp_path, image):
     path = columns(tmp_path / "v8.onnx", metadata=NAMES)
     output, *place = by_hand(path, image, 96, 128)
     assert output.shape == (1, 7, 252)
@@ -102,7 +102,7 @@ def test_columns_as_of_v8(tmp_path, image):
     check(detector.detect(image, LIMITS), slowly(output[0].T, 3, LIMITS), image, *place)
 
 
-def test_rows_with_objectness_as_of_classic_yolov5(tmp_path, image):
+def test_yolov5_rows_with_objectness_are_decoded(tmp_path, image):
     limits = Limits(threshold=0.3, iou=0.45)
     path = columns(tmp_path / "v5.onnx", transposed=True, objectness=True, metadata={"names": "['ball', 'box', 'cat']"})
     output, *place = by_hand(path, image, 96, 128)
@@ -110,7 +110,7 @@ def test_rows_with_objectness_as_of_classic_yolov5(tmp_path, image):
     check(opened(path).detect(image, limits), slowly(output[0], 3, limits, True), image, *place)
 
 
-def test_one_class_of_classic_yolov5_is_not_taken_for_final_boxes(tmp_path, image):
+def test_yolov5_with_one_class_is_not_mistaken_for_final_boxes(tmp_path, image):
     limits = Limits(threshold=0.3, iou=0.45)
     path = columns(tmp_path / "v5.onnx", 1, transposed=True, objectness=True, metadata={"names": "['ball']"})
     output, *_ = by_hand(path, image, 96, 128)
@@ -120,7 +120,7 @@ def test_one_class_of_classic_yolov5_is_not_taken_for_final_boxes(tmp_path, imag
 
 
 @pytest.mark.parametrize("message", [{"end2end": "True"}, {"args": "{'batch': 1, 'nms': True}"}, {}])
-def test_final_boxes(tmp_path, image, message):
+def test_final_boxes_are_decoded(tmp_path, image, message):
     rows = np.zeros((1, 300, 6), np.float32)
     rows[0, 0] = [10, 20, 40, 60, 0.9, 2]
     rows[0, 1] = [11, 20, 40, 60, 0.8, 2]
@@ -134,7 +134,7 @@ def test_final_boxes(tmp_path, image, message):
     assert found.boxes[2].tolist() == [0, 0, 200, 120]
 
 
-def test_an_input_of_any_size_is_as_small_as_the_image_lets_it_be(tmp_path, image):
+def test_dynamic_input_has_smallest_size_for_image(tmp_path, image):
     path = columns(tmp_path / "any.onnx", size=None, metadata=NAMES)
     output, *place = by_hand(path, image, 128, 160, padded=32)
     assert output.shape[2] == 12 * 20 + 6 * 10 + 3 * 5  # 96 x 160
@@ -142,14 +142,14 @@ def test_an_input_of_any_size_is_as_small_as_the_image_lets_it_be(tmp_path, imag
     check(found, slowly(output[0].T, 3, LIMITS), image, *place)
 
 
-def test_half_precision(tmp_path, image):
+def test_half_precision_network_is_decoded(tmp_path, image):
     path = columns(tmp_path / "half.onnx", metadata=NAMES, half=True)
     output, *place = by_hand(path, image, 96, 128)
     check(opened(path).detect(image, LIMITS), slowly(output[0].T, 3, LIMITS), image, *place, tolerance=1e-2)
 
 
 @pytest.mark.parametrize("task", ["segment", ""])
-def test_masks_are_left_out_and_that_is_said(tmp_path, image, task):
+def test_masks_are_ignored_with_note(tmp_path, image, task):
     facts = {**NAMES, "task": task}
     path = columns(tmp_path / "seg.onnx", metadata=facts, masks=32)
     output, *place = by_hand(path, image, 96, 128)
@@ -158,7 +158,7 @@ def test_masks_are_left_out_and_that_is_said(tmp_path, image, task):
     assert [str(note) for note in detector.notes] == ["only the boxes of 'seg.onnx' are used; its masks are ignored"]
 
 
-def test_key_points_are_left_out_and_that_is_said(tmp_path, image):
+def test_keypoints_are_ignored_with_note(tmp_path, image):
     facts = {"names": "{0: 'person'}", "task": "pose", "kpt_shape": "[17, 3]"}
     path = columns(tmp_path / "pose.onnx", 1, metadata=facts, more=51)
     output, *_ = by_hand(path, image, 96, 128)
@@ -167,7 +167,7 @@ def test_key_points_are_left_out_and_that_is_said(tmp_path, image):
     assert "keypoints are ignored" in str(detector.notes[0])
 
 
-def test_only_classes_that_are_wanted_and_no_more_than_that(tmp_path, image):
+def test_limits_select_classes_and_number_of_detections(tmp_path, image):
     path = columns(tmp_path / "v8.onnx", metadata=NAMES)
     detector = opened(path)
     found = detector.detect(image, Limits(0.6, 0.45, classes=frozenset({"cat"})))
@@ -176,7 +176,7 @@ def test_only_classes_that_are_wanted_and_no_more_than_that(tmp_path, image):
     assert len(detector.detect(image, Limits(0.9999))) == 0
 
 
-def test_labels_of_a_file_go_before_those_of_the_network(tmp_path, image):
+def test_labels_file_overrides_names_of_network(tmp_path, image):
     path = columns(tmp_path / "v8.onnx", metadata=NAMES)
     for name, text in {
         "labels.txt": "one\ntwo\n\nthree\n",
@@ -194,7 +194,7 @@ def test_classes_without_names_are_numbered(tmp_path):
     assert "pass a labels file" in str(detector.notes[0])
 
 
-def test_a_device_that_is_not_there_is_told_of(tmp_path):
+def test_missing_gpu_is_noted(tmp_path):
     path = columns(tmp_path / "v8.onnx", metadata=NAMES)
     if "CUDAExecutionProvider" in onnxruntime.get_available_providers():
         pytest.skip("there is a GPU")
@@ -203,7 +203,7 @@ def test_a_device_that_is_not_there_is_told_of(tmp_path):
     ]
 
 
-def test_a_gpu_whose_libraries_are_missing_leaves_the_processor_and_a_note(tmp_path, monkeypatch):
+def test_missing_cuda_libraries_fall_back_to_cpu_with_note(tmp_path, monkeypatch):
     """As onnxruntime-gpu does without CUDA: it knows the provider, and makes a session without it."""
     path = columns(tmp_path / "v8.onnx", metadata=NAMES)
     monkeypatch.setattr(sessions, "has_cuda", lambda: True)
@@ -213,7 +213,7 @@ def test_a_gpu_whose_libraries_are_missing_leaves_the_processor_and_a_note(tmp_p
     ]
 
 
-def test_a_size_that_the_network_does_not_take_is_told_of(tmp_path):
+def test_fixed_input_size_is_noted(tmp_path):
     path = columns(tmp_path / "v8.onnx", metadata=NAMES)
     assert "is always 128 x 96 pixels" in str(opened(path, size=(320, 320)).notes[0])
 
@@ -225,7 +225,7 @@ def refused(path, **options):
     return finding.code, str(finding.message), str(finding.hint)
 
 
-def test_a_corrupt_file(tmp_path):
+def test_corrupt_file_is_rejected(tmp_path):
     path = columns(tmp_path / "v8.onnx", metadata=NAMES)
     path.write_bytes(path.read_bytes()[:-100])
     code, message, _ = refused(path)
@@ -245,7 +245,7 @@ def test_a_corrupt_file(tmp_path):
         (bytes(1000), "it is not an ONNX file, or it is incomplete"),
     ],
 )
-def test_files_that_are_no_networks_are_told_apart(tmp_path, content, reason):
+def test_files_that_are_not_networks_are_rejected_with_reason(tmp_path, content, reason):
     path = tmp_path / "best.onnx"
     path.write_bytes(content)
     code, message, _ = refused(path)
@@ -254,7 +254,7 @@ def test_files_that_are_no_networks_are_told_apart(tmp_path, content, reason):
 
 
 @pytest.mark.parametrize("change", ["ir", "opset"])
-def test_a_file_for_a_newer_onnxruntime(tmp_path, change):
+def test_file_for_newer_onnxruntime_is_rejected(tmp_path, change):
     path = columns(tmp_path / "new.onnx", metadata=NAMES)
     model = onnx.load(path)
     if change == "ir":
@@ -268,7 +268,7 @@ def test_a_file_for_a_newer_onnxruntime(tmp_path, change):
 
 
 @pytest.mark.parametrize("size_threshold", [0, 64])
-def test_weights_in_a_second_file_that_is_not_there(tmp_path, size_threshold):
+def test_missing_external_weights_are_reported(tmp_path, size_threshold):
     path = columns(tmp_path / "two.onnx", metadata=NAMES)
     onnx.save(onnx.load(path), path, save_as_external_data=True, location="weights.bin", size_threshold=size_threshold)
     (tmp_path / "weights.bin").unlink()
@@ -277,32 +277,32 @@ def test_weights_in_a_second_file_that_is_not_there(tmp_path, size_threshold):
 
 
 @pytest.mark.parametrize("device", ["gpu", "tpu", "cuda:x"])
-def test_a_device_that_does_not_exist(tmp_path, device):
+def test_unknown_device_is_rejected(tmp_path, device):
     code, message, hint = refused(columns(tmp_path / "v8.onnx", metadata=NAMES), device=device)
     assert (code, f"'{device}'" in message, "cuda:0" in hint) == ("VISION109", True, True)
 
 
-def test_sizes_that_no_memory_is_enough_for(tmp_path):
+def test_excessive_sizes_are_rejected_or_ignored(tmp_path):
     path = columns(tmp_path / "any.onnx", size=None, metadata={**NAMES, "imgsz": "[1000000, 1000000]", "stride": "1e9"})
     assert opened(path).names == ("ball", "box", "cat"), "what metadata say beyond reason counts as not said"
     assert refused(path, size=(10**6, 64))[0] == "VISION109"
 
 
 @pytest.mark.parametrize("number", [np.nan, np.inf])
-def test_boxes_that_are_no_numbers(tmp_path, image, number):
+def test_nonfinite_boxes_are_rejected(tmp_path, image, number):
     path = constant(tmp_path / "broken.onnx", np.full((1, 7, 252), number, np.float32), NAMES)
     with pytest.raises(LinkwrightError, match="not numbers") as raised:
         opened(path).detect(image, LIMITS)
     assert raised.value.diagnostics[0].code == "VISION106"
 
 
-def test_names_in_metadata_that_cannot_be_read_are_told_of(tmp_path):
+def test_malformed_metadata_names_are_noted(tmp_path):
     detector = opened(columns(tmp_path / "v8.onnx", metadata={"names": "{0: 'a', 2: 'b', 3: 'c'}"}))
     assert detector.names == ("0", "1", "2")
     assert "cannot be read" in str(detector.notes[0])
 
 
-def test_where_in_labels_the_mistake_is(tmp_path):
+def test_labels_yaml_error_has_line_and_column(tmp_path):
     labels = tmp_path / "labels.yaml"
     labels.write_text("names:\n  0: ball\n  1: [box\n")
     _, message, hint = refused(columns(tmp_path / "v8.onnx"), labels=labels)
@@ -310,15 +310,15 @@ def test_where_in_labels_the_mistake_is(tmp_path):
     assert "one name per line" in hint
 
 
-def test_a_file_that_is_not_there_and_names_that_are_wrong(tmp_path):
+def test_missing_file_and_unknown_detector_name_are_rejected(tmp_path):
     code, _, hint = refused(tmp_path / "no.onnx")
-    assert (code, "colours" in hint) == ("VISION102", True)
-    assert refused("colour")[2] == "did you mean 'colours'?"
-    assert set(detector_names()) >= {"apriltag", "aruco", "colours", "line", "qr"}
+    assert (code, "colors" in hint) == ("VISION102", True)
+    assert refused("color")[2] == "did you mean 'colors'?"
+    assert set(detector_names()) >= {"apriltag", "aruco", "colors", "line", "qr"}
 
 
 @pytest.mark.parametrize("ending", ["pt", "engine", "torchscript"])
-def test_networks_in_other_forms(tmp_path, ending):
+def test_unsupported_network_formats_are_rejected(tmp_path, ending):
     path = tmp_path / f"yolov8n.{ending}"
     path.write_bytes(b"x")
     code, _, hint = refused(path)
@@ -336,21 +336,21 @@ def test_networks_in_other_forms(tmp_path, ending):
         ((1, 3, 96, 128), ("images", "sizes"), "does not accept an image"),
     ],
 )
-def test_inputs_that_are_no_image(tmp_path, shape, names, words):
+def test_inputs_that_are_not_images_are_rejected(tmp_path, shape, names, words):
     path = constant(tmp_path / "other.onnx", np.zeros((1, 7, 252), np.float32), NAMES, shape, names)
     code, message, _ = refused(path)
     assert (code, words in message) == ("VISION105", True)
 
 
 @pytest.mark.parametrize(("task", "shape"), [("classify", (1, 1000)), ("obb", (1, 8, 252))])
-def test_tasks_without_upright_boxes(tmp_path, task, shape):
+def test_tasks_without_upright_boxes_are_rejected(tmp_path, task, shape):
     path = constant(tmp_path / "other.onnx", np.zeros(shape, np.float32), {**NAMES, "task": task})
     code, message, _ = refused(path)
     assert (code, f"'{task}'" in message) == ("VISION106", True)
 
 
 @pytest.mark.parametrize("shape", [(1, 1000), (1, 3, 252), (1, 3, 96, 128), (2, 7, 252)])
-def test_outputs_that_are_no_boxes(tmp_path, shape):
+def test_outputs_that_are_not_boxes_are_rejected(tmp_path, shape):
     path = constant(tmp_path / "other.onnx", np.zeros(shape, np.float32))
     code, message, _ = refused(path)
     assert (code, str(list(shape)) in message) == ("VISION106", True)
@@ -358,14 +358,14 @@ def test_outputs_that_are_no_boxes(tmp_path, shape):
 
 @pytest.mark.parametrize("metadata", [None, NAMES])
 @pytest.mark.parametrize("rows", [252, 300, 3000], ids=["YOLOX", "RT-DETR", "another"])
-def test_rows_that_look_like_those_of_yolov5_and_are_none(tmp_path, rows, metadata):
+def test_yolox_rows_are_not_mistaken_for_yolov5(tmp_path, rows, metadata):
     path = constant(tmp_path / "other.onnx", np.full((1, rows, 8), 0.9, np.float32), metadata)
     code, message, hint = refused(path)
     assert (code, f"[1, {rows}, 8]" in message) == ("VISION106", True)
     assert "YOLOX" in hint
 
 
-def test_names_that_do_not_fit(tmp_path):
+def test_wrong_number_of_names_is_rejected(tmp_path):
     path = columns(tmp_path / "v8.onnx", 5, metadata=NAMES)
     code, message, _ = refused(path)
     assert (code, message) == ("VISION107", "the network in 'v8.onnx' has 5 classes, but its metadata has 3 names")
@@ -376,7 +376,7 @@ def test_names_that_do_not_fit(tmp_path):
     assert refused(columns(tmp_path / "v8.onnx"), labels=labels)[0] == "VISION107"
 
 
-def test_right_labels_mend_wrong_names(tmp_path):
+def test_labels_file_replaces_wrong_metadata_names(tmp_path):
     path = columns(tmp_path / "v8.onnx", 5, metadata=NAMES)
     labels = tmp_path / "labels.txt"
     labels.write_text("one\ntwo\nthree\nfour\nfive\n")
@@ -393,7 +393,7 @@ def test_right_labels_mend_wrong_names(tmp_path):
         ("gone.txt", None),
     ],
 )
-def test_labels_that_cannot_be_read(tmp_path, name, content):
+def test_unreadable_labels_are_rejected(tmp_path, name, content):
     labels = tmp_path / name
     if content is not None:
         labels.write_bytes(content if isinstance(content, bytes) else content.encode())
@@ -401,7 +401,7 @@ def test_labels_that_cannot_be_read(tmp_path, name, content):
     assert (code, name in message) == ("VISION108", True)
 
 
-def test_names_in_metadata_are_not_run(tmp_path, capsys):
+def test_metadata_names_are_not_executed(tmp_path, capsys):
     detector = opened(columns(tmp_path / "v8.onnx", metadata={"names": "{0: print('run')}"}))
     assert detector.names == ("0", "1", "2")
     assert capsys.readouterr().out == ""

@@ -31,7 +31,7 @@ box = st.tuples(st.tuples(corner, corner, corner, corner), st.integers(1, 8), st
 
 
 @given(st.lists(box, max_size=25), st.sampled_from([0.0, 0.25, 0.5, 1.0]), st.integers(1, 30))
-def test_the_same_boxes_stay_inside_out_ones_too(rows, iou, most):
+def test_suppression_matches_slow_reference(rows, iou, most):
     boxes = np.array([row[0] for row in rows], np.float32).reshape(-1, 4)
     scores = np.array([row[1] / 8 for row in rows], np.float32)
     classes = np.array([row[2] for row in rows], np.int32)

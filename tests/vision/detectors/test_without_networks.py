@@ -1,4 +1,4 @@
-"""Colours, markers, codes and lines: found in drawn images."""
+"""Colors, markers, codes and lines: found in drawn images."""
 
 from __future__ import annotations
 
@@ -32,27 +32,27 @@ def names(found):
     return [found.name(index) for index in range(len(found))]
 
 
-def test_balls_and_boxes_of_different_colours():
+def test_color_detector_finds_balls_and_boxes():
     image = blank()
     cv2.circle(image, (80, 100), 30, (200, 20, 30), cv2.FILLED)
     image[40:80, 200:260] = (20, 60, 200)
     image[150:152, 10:14] = (20, 200, 40)
-    found = detector("colours").detect(image, LIMITS)
+    found = detector("colors").detect(image, LIMITS)
     assert names(found) == ["blue", "red"]
     assert found.boxes[0].tolist() == [200, 40, 260, 80]
     assert found.boxes[1] == pytest.approx([50, 70, 111, 131], abs=1)
     assert found.scores == pytest.approx([1.0, 0.785], abs=0.05)
 
 
-def test_colours_of_ones_own_and_only_those_that_are_wanted():
+def test_custom_colors_and_class_selection_are_applied():
     image = blank()
     image[40:80, 200:260] = (20, 60, 200)
     image[40:80, 20:60] = (200, 20, 30)
-    own = detector("colours", colours={"sky": [100, 100, 50, 130, 255, 255], "rose": [170, 100, 50, 5, 255, 255]})
+    own = detector("colors", colors={"sky": [100, 100, 50, 130, 255, 255], "rose": [170, 100, 50, 5, 255, 255]})
     assert sorted(names(own.detect(image, LIMITS))) == ["rose", "sky"]
     assert names(own.detect(image, Limits(classes=frozenset({"sky"})))) == ["sky"]
     assert names(own.detect(image, Limits(max_detections=1))) == ["sky"]
-    assert len(detector("colours", least_area=1e6).detect(image, LIMITS)) == 0
+    assert len(detector("colors", least_area=1e6).detect(image, LIMITS)) == 0
 
 
 @pytest.mark.parametrize(
@@ -63,7 +63,7 @@ def test_colours_of_ones_own_and_only_those_that_are_wanted():
         ("apriltag", None, cv2.aruco.DICT_APRILTAG_36h11, 3),
     ],
 )
-def test_markers_are_named_by_their_numbers(name, dictionary, kind, number):
+def test_marker_detections_are_named_by_id(name, dictionary, kind, number):
     image = np.full((240, 320, 3), 255, np.uint8)
     marker = cv2.aruco.generateImageMarker(cv2.aruco.getPredefinedDictionary(kind), number, 80)
     image[60:140, 100:180] = marker[..., np.newaxis]
@@ -74,7 +74,7 @@ def test_markers_are_named_by_their_numbers(name, dictionary, kind, number):
     assert found.corners[0] == pytest.approx(np.array([[100, 60], [180, 60], [180, 140], [100, 140]]), abs=1)
 
 
-def test_qr_codes_are_named_by_their_texts():
+def test_qr_code_detections_are_named_by_text():
     code = cv2.QRCodeEncoder.create().encode("kitchen")
     large = cv2.resize(code, None, fx=5, fy=5, interpolation=cv2.INTER_NEAREST)
     image = np.full((300, 400, 3), 255, np.uint8)
@@ -88,7 +88,7 @@ def test_qr_codes_are_named_by_their_texts():
 
 
 @pytest.mark.parametrize("turned", [0.0, 0.3], ids=["from the front", "from the side"])
-def test_a_qr_code_is_read_that_is_small_in_the_image(turned):
+def test_small_qr_code_is_read(turned):
     code = cv2.copyMakeBorder(cv2.QRCodeEncoder.create().encode("kitchen"), *(4,) * 4, cv2.BORDER_CONSTANT, value=255)
     side = code.shape[0]
     corners = np.array([(0, 0), (side, 0), (side, side), (0, side)], np.float32)
@@ -105,7 +105,7 @@ def test_a_qr_code_is_read_that_is_small_in_the_image(turned):
     assert found.boxes[0] == pytest.approx([118, 98, 182, 162], abs=4)
 
 
-def test_images_in_which_a_code_is_only_half_there_are_no_error():
+def test_partial_qr_codes_are_not_an_error():
     code = cv2.resize(cv2.QRCodeEncoder.create().encode("kitchen"), None, fx=6, fy=6, interpolation=cv2.INTER_NEAREST)
     numbers = np.random.default_rng(4)
     look = detector("qr")
@@ -121,7 +121,7 @@ def test_images_in_which_a_code_is_only_half_there_are_no_error():
         assert set(names(found)) <= {"kitchen"}
 
 
-def test_a_line_on_the_floor():
+def test_line_on_floor_is_detected():
     image = blank()
     cv2.line(image, (200, 239), (200, 100), (20, 20, 20), 21)
     image[:100] = 0  # above the part that is looked at
@@ -131,13 +131,13 @@ def test_a_line_on_the_floor():
     assert (left + right) / 2 == pytest.approx(200.5, abs=1)
     assert (top, bottom) == (180, 240)
     assert found.scores[0] == 1.0
-    whole = detector("line", part=1.0, colour=[0, 0, 100, 179, 60, 200]).detect(image, LIMITS)
+    whole = detector("line", part=1.0, color=[0, 0, 100, 179, 60, 200]).detect(image, LIMITS)
     assert whole.boxes[0][1] == 100
 
 
-@pytest.mark.parametrize("name", ["colours", "aruco", "apriltag", "qr", "line"])
+@pytest.mark.parametrize("name", ["colors", "aruco", "apriltag", "qr", "line"])
 @pytest.mark.parametrize("shape", [(240, 320), (1, 1), (3, 400), (0, 0)])
-def test_images_without_anything(name, shape):
+def test_empty_images_have_no_detections(name, shape):
     image = np.full((*shape, 3), 200, np.uint8)
     assert len(detector(name).detect(image, LIMITS)) == 0
 
@@ -145,16 +145,16 @@ def test_images_without_anything(name, shape):
 @pytest.mark.parametrize(
     ("name", "settings", "words"),
     [
-        ("colours", {"colours": {}}, "'colours'"),
-        ("colours", {"colours": {"red": [1, 2, 3]}}, "'colours.red'"),
-        ("colours", {"colours": {"red": [200, 0, 0, 10, 255, 255]}}, "'colours.red'"),
-        ("colours", {"least_area": "much"}, "'least_area'"),
+        ("colors", {"colors": {}}, "'colors'"),
+        ("colors", {"colors": {"red": [1, 2, 3]}}, "'colors.red'"),
+        ("colors", {"colors": {"red": [200, 0, 0, 10, 255, 255]}}, "'colors.red'"),
+        ("colors", {"least_area": "much"}, "'least_area'"),
         ("aruco", {"dictionary": "4X4_5"}, "'dictionary'"),
         ("line", {"part": 2.0}, "'part'"),
-        ("line", {"colour": "black"}, "'colour'"),
+        ("line", {"color": "black"}, "'color'"),
     ],
 )
-def test_settings_that_mean_nothing(name, settings, words):
+def test_invalid_settings_are_rejected(name, settings, words):
     with pytest.raises(LinkwrightError) as raised:
         detector(name, **settings)
     (finding,) = raised.value.diagnostics
@@ -162,7 +162,7 @@ def test_settings_that_mean_nothing(name, settings, words):
     assert words in str(finding.message)
 
 
-def test_what_was_found_is_drawn_and_the_image_is_left_as_it_is():
+def test_detections_are_drawn_on_copy_of_image():
     image = blank()
     boxes = np.array([[50, 60, 150, 160], [200, 5, 400, 90]], np.float32)
     found = Detections(boxes, np.array([0.9, 0.6], np.float32), np.array([0, 1], np.int32), ("ball", "box"))
@@ -182,7 +182,7 @@ def test_what_was_found_is_drawn_and_the_image_is_left_as_it_is():
     assert class_color("red") == class_color("red cube") == RGB_BY_COLOR_WORD["red"]
 
 
-WITHOUT = ("colours", "aruco", "apriltag", "qr", "line")
+WITHOUT = ("colors", "aruco", "apriltag", "qr", "line")
 
 
 @pytest.mark.parametrize("name", WITHOUT)
@@ -194,7 +194,7 @@ WITHOUT = ("colours", "aruco", "apriltag", "qr", "line")
         ("'device'", {"device": "gpu"}),
     ],
 )
-def test_what_only_networks_have_is_refused(name, setting, options):
+def test_network_options_are_rejected(name, setting, options):
     with pytest.raises(LinkwrightError) as caught:
         make_detector(name, DetectorOptions(**options))
     (found,) = caught.value.diagnostics
@@ -204,7 +204,7 @@ def test_what_only_networks_have_is_refused(name, setting, options):
 
 
 @pytest.mark.parametrize("name", WITHOUT)
-def test_a_gpu_is_of_no_use_to_them_and_they_say_so(name):
+def test_unused_gpu_is_noted(name):
     (note,) = make_detector(name, DetectorOptions(device="cuda:0")).notes
     assert "'cuda:0'" in str(note)
     assert make_detector(name, DetectorOptions()).notes == ()

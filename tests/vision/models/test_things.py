@@ -66,7 +66,7 @@ def look(playground, eye, model):
 
 
 @pytest.mark.parametrize(("eye", "model", "name"), LOOKS, ids=[look[1] for look in LOOKS])
-def test_it_finds_what_stands_before_it(playground, things, eye, model, name):
+def test_network_finds_object_in_front_of_camera(playground, things, eye, model, name):
     image, box = look(playground, eye, model)
     found = things.detect(image, Limits())
     shares = intersection_over_union(box, found.boxes)[0]
@@ -74,13 +74,13 @@ def test_it_finds_what_stands_before_it(playground, things, eye, model, name):
     assert max(right, default=0.0) > 0.5
 
 
-def test_it_finds_nothing_on_an_empty_floor(things):
+def test_network_finds_nothing_on_empty_floor(things):
     floor = np.full((HEIGHT, WIDTH, 3), 150, np.uint8)
     floor[: HEIGHT // 2] = (184, 204, 224)
     assert len(things.detect(floor, Limits())) == 0
 
 
-def test_it_is_small_and_says_what_it_knows(things):
+def test_network_is_small_and_has_all_classes(things):
     assert FILE.stat().st_size < 5_000_000
     assert {"ball", "box", "cone", "cylinder", "person", "stop_sign", "table", "yield_sign", "mbot"} == set(
         things.names
@@ -88,7 +88,7 @@ def test_it_is_small_and_says_what_it_knows(things):
     assert things.notes == ()
 
 
-def test_its_card_is_of_this_file_and_says_where_it_fails():
+def test_model_card_matches_file_and_names_failures():
     from hashlib import sha256
 
     card = FILE.with_suffix(".md").read_text(encoding="utf-8")

@@ -1,4 +1,4 @@
-"""A detector for tests that needs no network and no library: everything of one colour in an image, in one box."""
+"""A detector for tests that needs no network and no library: everything of one color in an image, in one box."""
 
 from __future__ import annotations
 
@@ -14,8 +14,8 @@ from linkwright.vision.places.object_colors import COLORS, classify_colors
 _LEAST_PIXELS = 60
 
 
-class ColourDetector:
-    """A node that finds one object: all pixels of a colour.
+class ColorDetector:
+    """A node that finds one object: all pixels of a color.
 
     Args:
         graph: where it lives.
@@ -25,7 +25,7 @@ class ColourDetector:
 
     def __init__(self, graph: Graph, color: str = "red", name: str = "ball") -> None:
         self._color, self._name = COLORS.index(color), name
-        self.node = graph.create_node("colour_detector")
+        self.node = graph.create_node("color_detector")
         self._array = get_message("vision_msgs/msg/Detection2DArray")
         self._publisher = self.node.create_publisher(self._array, "/yolo/detections", 10)
         self._ranges = RangeFinder()

@@ -17,7 +17,7 @@ from linkwright.vision.nodes.object_seeker import ObjectSeeker
 from linkwright.vision.nodes.tracking_node import TrackingNode
 from linkwright.vision.places.camera import make_camera_model
 from tests.places import GAZEBO_PACKAGE
-from tests.vision.nodes.color_detector import ColourDetector, detection
+from tests.vision.nodes.color_detector import ColorDetector, detection
 
 if TYPE_CHECKING:
     from typing_extensions import Self
@@ -40,7 +40,7 @@ class SeekingRobot(SteppedSimulation):
 
     Args:
         folder: for the model of the ball.
-        ball: where it lies, metres.
+        ball: where it lies, meters.
         images: whether a camera sees it; else its boxes are worked out, which is much quicker.
         laser: whether there is one.
         seeker: parameters of the seeker.
@@ -88,7 +88,7 @@ class SeekingRobot(SteppedSimulation):
         self.commands = self.record("/cmd_vel")
         self.places = self.record("/yolo/detections_3d")
         if self._images:
-            ColourDetector(self.graph)
+            ColorDetector(self.graph)
         else:
             self.detector = self.node.create_timer(_IMAGE_PERIOD, self._detect)
             self._detections = self.node.create_publisher(
@@ -130,7 +130,7 @@ class SeekingRobot(SteppedSimulation):
         return False
 
     def distance(self) -> float:
-        """Between the middles of the robot and of the ball, metres."""
+        """Between the middles of the robot and of the ball, meters."""
         x, y, *_ = self.robot_pose()
         ball = self.simulation.model_pose("ball")
         return math.dist((x, y), ball[:2])

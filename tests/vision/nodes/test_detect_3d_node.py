@@ -1,4 +1,4 @@
-"""detect_3d_node: boxes in images become boxes in metres."""
+"""detect_3d_node: boxes in images become boxes in meters."""
 
 from __future__ import annotations
 
@@ -26,7 +26,7 @@ def start(test, kind=Detect3DNode, **parameters):
     found = test.record("/detections_3d")
     markers = test.record("/markers")
     test.settle()
-    # A camera that looks forward, half a metre above the ground.
+    # A camera that looks forward, half a meter above the ground.
     batch = TransformBatch(("base_link",), ("camera",), 0, np.array([[0.1, 0.0, 0.5, -0.5, 0.5, -0.5, 0.5]]))
     test.publish("/tf_static", TFMessage(batch=batch), STATIC_TF_PUBLISHER_QOS)
     test.settle()
@@ -74,7 +74,7 @@ def warnings(test):
 @pytest.mark.parametrize(
     ("encoding", "factor", "divisor"), [("32FC1", 1.0, 1000), ("16UC1", 1000.0, 1000), ("16UC1", 5000.0, 5000)]
 )
-def test_a_depth_image_gives_places_in_the_target_frame(test, encoding, factor, divisor):
+def test_depth_image_gives_positions_in_target_frame(test, encoding, factor, divisor):
     _, found, markers = start(test, depth_image_units_divisor=divisor)
     camera(test, "/depth_info")
     depth(test, WALL * factor, encoding)
@@ -94,7 +94,7 @@ def test_a_depth_image_gives_places_in_the_target_frame(test, encoding, factor, 
     assert (label.type, label.text) == (label.TEXT_VIEW_FACING, "ball 7 2.0 m")
 
 
-def test_a_depth_image_of_half_the_size(test):
+def test_depth_image_may_have_half_size(test):
     _, found, _ = start(test)
     camera(test, "/camera_info")
     camera(test, "/depth_info", 320, 240)
@@ -103,7 +103,7 @@ def test_a_depth_image_of_half_the_size(test):
     assert found.last.detections[0].bbox.center.position.x == pytest.approx(2.1, abs=0.02)
 
 
-def test_without_depth_things_are_where_they_stand_on_the_ground(test):
+def test_objects_are_placed_on_ground_without_depth(test):
     _, found, _ = start(test, ground_frame="base_link")
     camera(test, "/camera_info")
     boxes(test, (295.0, 320.0, 345.0, 365.0), (300.0, 100.0, 340.0, 140.0))
@@ -114,7 +114,7 @@ def test_without_depth_things_are_where_they_stand_on_the_ground(test):
     assert warnings(test) == []
 
 
-def test_where_there_is_no_depth_in_the_box_the_ground_counts(test):
+def test_ground_is_used_for_box_without_depths(test):
     _, found, _ = start(test, ground_frame="base_link")
     camera(test, "/camera_info")
     depth(test, np.full((480, 640), np.nan))
@@ -122,14 +122,14 @@ def test_where_there_is_no_depth_in_the_box_the_ground_counts(test):
     assert found.last.detections[0].bbox.center.position.x == pytest.approx(2.1, abs=0.02)
 
 
-def test_nothing_is_found_and_it_is_said(test):
+def test_empty_detections_are_published_and_delete_markers(test):
     _, found, markers = start(test)
     boxes(test)
     assert found.last.detections == []
     assert [each.action for each in markers.last.markers] == [markers.last.markers[0].DELETEALL]
 
 
-def test_what_is_missing_is_named(test):
+def test_missing_inputs_are_reported(test):
     _, found, _ = start(test)
     boxes(test, BOX)
     assert warnings(test) == ["the positions of detections are unknown: no camera_info has arrived"]
@@ -151,13 +151,13 @@ def test_what_is_missing_is_named(test):
     assert all(message.detections == [] for message in found)
 
 
-def test_a_lens_that_is_not_known_is_said(test):
+def test_unsupported_distortion_model_is_reported(test):
     start(test)
     camera(test, "/camera_info", distortion_model="equidistant", d=[0.1, 0.0, 0.0, 0.0])
     assert "equidistant" in warnings(test)[-1]
 
 
-def test_as_yolo_ros_with_its_messages_and_parameters(test):
+def test_yolo_ros_messages_and_parameters_are_supported(test):
     parameters = {"maximum_detection_threshold": 0.3, "depth_image_reliability": 2, "depth_info_reliability": 2}
     _, found, markers = start(test, YoloDetect3DNode, **parameters)
     camera(test, "/depth_info")

@@ -90,8 +90,8 @@ def classes(message):
 
 
 @pytest.mark.parametrize("encoding", ["rgb8", "bgr8"])
-async def test_detections_have_names_centres_sizes_and_the_header_of_the_image(test, start, encoding):
-    await start(model="colours")
+async def test_detections_have_class_center_size_and_image_header(test, start, encoding):
+    await start(model="colors")
     recording = test.record("/yolo/detections")
     await test.settle()
     message = await seen(test, recording, "/yolo/image_raw", image(encoding))
@@ -104,15 +104,15 @@ async def test_detections_have_names_centres_sizes_and_the_header_of_the_image(t
     assert blue.header == message.header
 
 
-async def test_compressed_images(test, start):
-    await start(model="colours", input_image_topic="/camera/image_raw/compressed")
+async def test_compressed_images_are_detected(test, start):
+    await start(model="colors", input_image_topic="/camera/image_raw/compressed")
     recording = test.record("/yolo/detections")
     await test.settle()
     message = await seen(test, recording, "/camera/image_raw/compressed", compressed())
     assert classes(message) == ["blue", "red"]
 
 
-async def test_a_network(test, start, tmp_path):
+async def test_onnx_network_is_used(test, start, tmp_path):
     names = {"names": "{0: 'ball', 1: 'box', 2: 'cat'}"}
     await start(model=str(columns(tmp_path / "v8.onnx", metadata=names)), threshold=0.6, max_det=5)
     recording = test.record("/yolo/detections")
@@ -122,8 +122,8 @@ async def test_a_network(test, start, tmp_path):
     assert set(classes(message)) <= {"ball", "box", "cat"}
 
 
-async def test_the_image_with_boxes_is_made_when_somebody_wants_it(test, start):
-    await start(model="colours")
+async def test_debug_image_is_published_if_subscribed(test, start):
+    await start(model="colors")
     recording = test.record("/yolo/debug_image")
     await test.settle()
     message = await seen(test, recording, "/yolo/image_raw", image())
@@ -132,8 +132,8 @@ async def test_the_image_with_boxes_is_made_when_somebody_wants_it(test, start):
     assert (np.frombuffer(bytes(message.data), np.uint8) != scene().reshape(-1)).any()
 
 
-async def test_images_are_taken_only_while_somebody_listens(test, start):
-    await start(model="colours")
+async def test_images_are_subscribed_only_while_outputs_are_subscribed(test, start):
+    await start(model="colors")
     await test.settle()
     assert test.graph.count_subscribers("/yolo/image_raw") == 0
     test.record("/yolo/detections")
@@ -141,8 +141,8 @@ async def test_images_are_taken_only_while_somebody_listens(test, start):
     assert test.graph.count_subscribers("/yolo/image_raw") == 1
 
 
-async def test_limits_change_while_it_runs(test, start):
-    node = (await start(model="colours")).node
+async def test_limits_can_change_at_runtime(test, start):
+    node = (await start(model="colors")).node
     recording = test.record("/yolo/detections")
     await test.settle()
     for name, value, expected in [
@@ -164,15 +164,15 @@ async def test_limits_change_while_it_runs(test, start):
         ("model", "aruco", ""),
     ],
 )
-async def test_values_that_cannot_be_are_refused(test, start, name, value, words):
-    node = (await start(model="colours")).node
+async def test_invalid_parameter_values_are_rejected(test, start, name, value, words):
+    node = (await start(model="colors")).node
     (result,) = node.set_parameters([Parameter(name, value=value)])
     assert not result.successful
     assert words in result.reason
 
 
 async def test_services_enable_and_set_classes(test, start):
-    await start(model="colours")
+    await start(model="colors")
     recording = test.record("/yolo/detections")
     await test.settle()
     switch, choose = get_service("std_srvs/srv/SetBool"), get_service("yolo_msgs/srv/SetClasses")
@@ -189,8 +189,8 @@ async def test_services_enable_and_set_classes(test, start):
     assert (message.header.stamp.sec, len(recording) - before) == (9, 1)
 
 
-async def test_no_more_images_a_second_than_wanted(test, start):
-    await start(model="colours", max_rate=10.0)
+async def test_max_rate_limits_images_per_second(test, start):
+    await start(model="colors", max_rate=10.0)
     recording = test.record("/yolo/detections")
     await test.settle()
     await seen(test, recording, "/yolo/image_raw", image(seconds=1))
@@ -202,8 +202,8 @@ async def test_no_more_images_a_second_than_wanted(test, start):
     assert (message.header.stamp.sec, len(recording)) == (3, 2)
 
 
-async def test_a_broken_image_is_told_of_and_the_next_one_looked_at(test, start):
-    await start(model="colours")
+async def test_malformed_image_is_reported_and_next_one_is_processed(test, start):
+    await start(model="colors")
     recording = test.record("/yolo/detections")
     await test.settle()
     broken = image()
@@ -214,15 +214,15 @@ async def test_a_broken_image_is_told_of_and_the_next_one_looked_at(test, start)
     assert classes(await seen(test, recording, "/yolo/image_raw", image())) == ["blue", "red"]
 
 
-async def test_colours_of_ones_own(test, start):
-    await start(model="colours", colours={"sky": [95, 110, 50, 130, 255, 255]}, least_area=10.0)
+async def test_custom_colors_are_detected(test, start):
+    await start(model="colors", colors={"sky": [95, 110, 50, 130, 255, 255]}, least_area=10.0)
     recording = test.record("/yolo/detections")
     await test.settle()
     assert classes(await seen(test, recording, "/yolo/image_raw", image())) == ["sky"]
 
 
-async def test_as_yolo_ros_with_its_messages_and_its_older_topic(test, start):
-    await start(YoloRosNode, model="colours", remappings=[("image_raw", "/camera/rgb/image_raw")])
+async def test_yolo_ros_messages_and_older_topic_are_supported(test, start):
+    await start(YoloRosNode, model="colors", remappings=[("image_raw", "/camera/rgb/image_raw")])
     recording, debug_images = test.record("/yolo/detections"), test.record("/yolo/dbg_image")
     await test.settle()
     message = await seen(test, recording, "/camera/rgb/image_raw", image())
@@ -237,20 +237,20 @@ async def test_as_yolo_ros_with_its_messages_and_its_older_topic(test, start):
     [
         (
             Yolov5RosNode,
-            {"weights": "colours", "confidence_threshold": 0.5, "input_image_topic": "/image", "output_topic": "/out"},
+            {"weights": "colors", "confidence_threshold": 0.5, "input_image_topic": "/image", "output_topic": "/out"},
             "/image",
             "/out",
         ),
-        (Yolov5Ros2Node, {"model": "colours", "image_topic": "/camera/image_raw"}, "/camera/image_raw", "/yolo_result"),
+        (Yolov5Ros2Node, {"model": "colors", "image_topic": "/camera/image_raw"}, "/camera/image_raw", "/yolo_result"),
         (
             DarknetRosNode,
-            {"network": {"weights": "colours"}, "detection": {"threshold": 0.5, "nms_threshold": 0.4}},
+            {"network": {"weights": "colors"}, "detection": {"threshold": 0.5, "nms_threshold": 0.4}},
             "/detector_node/images",
             "/detector_node/detections",
         ),
     ],
 )
-async def test_as_other_packages_name_things(test, start, kind, parameters, topic, output):
+async def test_topics_and_parameters_of_other_packages_are_supported(test, start, kind, parameters, topic, output):
     await start(kind, namespace="/", **parameters)
     recording = test.record(output)
     await test.settle()
@@ -261,16 +261,16 @@ async def test_as_other_packages_name_things(test, start, kind, parameters, topi
 @pytest.mark.parametrize(
     ("parameters", "code"),
     [
-        ({"model": "colours", "image_transport": "theora"}, "NODE433"),
-        ({"model": "colours", "image_reliability": 9}, "NODE433"),
-        ({"model": "colours", "max_det": 0}, "NODE433"),
-        ({"model": "colours", "threshold": 2.0}, "GRAPH204"),
-        ({"model": "colours", "max_rate": -5.0}, "GRAPH204"),
+        ({"model": "colors", "image_transport": "theora"}, "NODE433"),
+        ({"model": "colors", "image_reliability": 9}, "NODE433"),
+        ({"model": "colors", "max_det": 0}, "NODE433"),
+        ({"model": "colors", "threshold": 2.0}, "GRAPH204"),
+        ({"model": "colors", "max_rate": -5.0}, "GRAPH204"),
         ({"model": "things", "imgsz_height": -3, "imgsz_width": 320}, "GRAPH204"),
         ({"model": "things", "imgsz_width": 320}, "VISION109"),
     ],
 )
-async def test_parameters_that_it_cannot_start_with(test, start, parameters, code):
+async def test_invalid_start_parameters_are_rejected(test, start, parameters, code):
     with pytest.raises(LinkwrightError) as caught:
         await start(**parameters)
     assert [diagnostic.code for diagnostic in caught.value.diagnostics] == [code]
@@ -283,12 +283,10 @@ async def test_parameters_that_it_cannot_start_with(test, start, parameters, cod
         ({"model": "yolov8n.pt"}, "'yolov8n.pt' is not an ONNX file"),
         ({"model": "aruco", "dictionary": "5X"}, "'dictionary' of the detector cannot be '5X'"),
         ({"model": "things", "device": "gpu"}, "'device' of the detector cannot be 'gpu'"),
-        ({"model": "colours", "classes": ["blu"]}, "parameter 'classes' of 'yolo_node' cannot be 'blu'"),
+        ({"model": "colors", "classes": ["blu"]}, "parameter 'classes' of 'yolo_node' cannot be 'blu'"),
     ],
 )
-async def test_detectors_that_cannot_be_loaded_end_the_node_with_one_error_and_what_to_do(
-    test, start, parameters, words
-):
+async def test_unloadable_detector_ends_node_with_one_error_and_hint(test, start, parameters, words):
     running = await start(**parameters)
     assert running.finished.result() == 1
     logged = [record.text for record in test.log if record.level is LogLevel.FATAL]
@@ -308,8 +306,8 @@ def warnings(test):
     return lambda: [record.text for record in test.log if record.level is LogLevel.WARN]
 
 
-async def test_a_topic_that_nobody_publishes_is_told_once_with_those_that_have_images(test, start, warnings):
-    await start(model="colours")
+async def test_unpublished_topic_is_reported_once_with_image_topics(test, start, warnings):
+    await start(model="colors")
     test.record("/yolo/detections")
     test.record("/yolo/debug_image")
     test.node.create_publisher(get_message(IMAGE), "/camera/image_raw", 1)
@@ -320,8 +318,8 @@ async def test_a_topic_that_nobody_publishes_is_told_once_with_those_that_have_i
     ]
 
 
-async def test_a_topic_of_another_type_is_told(test, start, warnings):
-    await start(DarknetRosNode, namespace="/", network={"weights": "colours"}, remappings=[("~/images", "/camera")])
+async def test_topic_type_mismatch_is_reported(test, start, warnings):
+    await start(DarknetRosNode, namespace="/", network={"weights": "colors"}, remappings=[("~/images", "/camera")])
     test.record("/detector_node/detections")
     test.node.create_publisher(get_message(COMPRESSED), "/camera", 1)
     test.node.create_publisher(get_message(IMAGE), "/kinect/image_raw", 1)
@@ -332,8 +330,8 @@ async def test_a_topic_of_another_type_is_told(test, start, warnings):
     ]
 
 
-async def test_qos_that_does_not_fit_is_told(test, start, warnings):
-    await start(model="colours", image_reliability=1)
+async def test_incompatible_qos_is_reported(test, start, warnings):
+    await start(model="colors", image_reliability=1)
     test.record("/yolo/detections")
     offered = QoSProfile(depth=1, reliability=ReliabilityPolicy.BEST_EFFORT)
     test.node.create_publisher(get_message(IMAGE), "/yolo/image_raw", offered)
@@ -347,8 +345,8 @@ async def test_qos_that_does_not_fit_is_told(test, start, warnings):
     ]
 
 
-async def test_a_camera_that_stops_and_goes_on_is_told_of_and_the_next_time_later(test, start, warnings):
-    await start(model="colours")
+async def test_stopped_camera_is_reported_and_later_each_time(test, start, warnings):
+    await start(model="colors")
     recording = test.record("/yolo/detections")
     await test.settle()
     stopped = "no image has arrived on '/yolo/image_raw' for {} s".format
@@ -366,8 +364,8 @@ async def test_a_camera_that_stops_and_goes_on_is_told_of_and_the_next_time_late
     assert warnings() == [stopped(5), stopped(10)]
 
 
-async def test_where_nobody_wants_detections_nothing_is_missed(test, start, warnings):
-    await start(model="colours")
+async def test_missing_images_are_not_reported_without_subscribers(test, start, warnings):
+    await start(model="colors")
     await test.advance(30.0)
     assert warnings() == []
 
@@ -395,8 +393,8 @@ def slow(monkeypatch):
     made.proceed.set()
 
 
-async def test_the_node_answers_while_its_detector_is_loaded(test, start, slow):
-    running = await start(model="colours", loads=False)
+async def test_node_answers_services_while_detector_loads(test, start, slow):
+    running = await start(model="colors", loads=False)
     recording = test.record("/yolo/detections")
     await eventually(slow.begun.is_set)
     switch = get_service("std_srvs/srv/SetBool")
@@ -413,8 +411,8 @@ async def test_the_node_answers_while_its_detector_is_loaded(test, start, slow):
     assert classes(await seen(test, recording, "/yolo/image_raw", image())) == ["blue", "red"]
 
 
-async def test_classes_that_are_chosen_while_the_detector_is_loaded_count_when_it_is_there(test, start, slow):
-    await start(model="colours", loads=False)
+async def test_classes_set_during_loading_apply_after_loading(test, start, slow):
+    await start(model="colors", loads=False)
     recording = test.record("/yolo/detections")
     await eventually(slow.begun.is_set)
     choose = get_service("yolo_msgs/srv/SetClasses")
@@ -429,7 +427,7 @@ async def test_classes_that_are_chosen_while_the_detector_is_loaded_count_when_i
     assert classes(await seen(test, recording, "/yolo/image_raw", image())) == ["red"]
 
 
-async def test_a_node_that_ends_while_its_detector_is_loaded_waits_for_it_and_says_nothing(test, start, monkeypatch):
+async def test_closing_node_waits_silently_for_loading_detector(test, start, monkeypatch):
     main, begun = threading.current_thread(), threading.Event()
 
     def load(model, options):
@@ -438,7 +436,7 @@ async def test_a_node_that_ends_while_its_detector_is_loaded_waits_for_it_and_sa
         raise LinkwrightError(Diagnostic("VISION102", phrase("gone")))
 
     monkeypatch.setattr(detector, "make_detector", load)
-    running = await start(model="colours", loads=False)
+    running = await start(model="colors", loads=False)
     await eventually(begun.is_set)
     running.close()
     await test.settle()
@@ -457,7 +455,7 @@ class Odd(Detector):
         raise KeyError("odd")
 
 
-async def test_what_a_detector_of_others_raises_is_told_of(test, start, monkeypatch):
+async def test_exception_of_third_party_detector_is_reported(test, start, monkeypatch):
     monkeypatch.setattr(detector, "make_detector", lambda model, options: Odd())
     await start(model="odd")
     test.record("/yolo/detections")

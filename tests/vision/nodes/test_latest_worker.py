@@ -8,7 +8,7 @@ from linkwright.vision.nodes.latest_worker import LatestWorker
 from tests.waiting import SECONDS, wait_until
 
 
-def test_what_comes_while_it_works_waits_and_only_the_latest_of_it():
+def test_busy_worker_keeps_only_latest_item():
     done: list[int] = []
     begun, proceed = threading.Event(), threading.Event()
 
@@ -28,7 +28,7 @@ def test_what_comes_while_it_works_waits_and_only_the_latest_of_it():
     assert done == [0, 49]
 
 
-def test_at_its_end_the_work_at_hand_is_waited_for_and_the_rest_left():
+def test_close_waits_for_current_item_and_drops_rest():
     done: list[int] = []
     begun, proceed = threading.Event(), threading.Event()
 

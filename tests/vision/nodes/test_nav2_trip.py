@@ -43,7 +43,7 @@ class Navigator:
 
 
 @pytest.mark.parametrize(("reached", "message"), [(True, "I am at the ball."), (False, "An obstacle is between")])
-def test_nav2_goes_there(tmp_path, reached, message):
+def test_seeker_sends_nav2_to_object(tmp_path, reached, message):
     with SeekingRobot(tmp_path, (2.0, 0.0), seeker={"use_nav2": True}) as test:
         navigator = Navigator(test)
         test.tell("/vision/go_to", "ball")
@@ -62,7 +62,7 @@ def test_nav2_goes_there(tmp_path, reached, message):
         assert len(test.commands) == commands
 
 
-def test_a_stop_cancels_the_goal(tmp_path):
+def test_stop_cancels_nav2_goal(tmp_path):
     with SeekingRobot(tmp_path, (2.0, 0.0), seeker={"use_nav2": True}) as test:
         navigator = Navigator(test)
         test.tell("/vision/go_to", "ball")
@@ -73,7 +73,7 @@ def test_a_stop_cancels_the_goal(tmp_path):
         assert test.spoken()[-1] == "I am stopping."
 
 
-def test_without_nav2_it_drives_itself(tmp_path):
+def test_seeker_drives_itself_without_nav2(tmp_path):
     with SeekingRobot(tmp_path, (1.5, 0.0), seeker={"use_nav2": True}) as test:
         test.tell("/vision/go_to", "ball")
         assert test.advance_until_said("I am at the ball")

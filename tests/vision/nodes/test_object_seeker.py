@@ -13,7 +13,7 @@ TRIGGER = get_service("std_srvs/srv/Trigger")
 
 
 @pytest.mark.parametrize("ball", [(2.0, 0.5), (-1.5, 1.0), (0.3, -1.8)])
-def test_it_goes_to_the_ball(tmp_path, ball):
+def test_seeker_goes_to_ball(tmp_path, ball):
     with SeekingRobot(tmp_path, ball) as test:
         test.tell("/vision/go_to", "ball")
         assert test.advance_until_said("I am at the ball")
@@ -33,7 +33,7 @@ def test_it_goes_to_the_ball(tmp_path, ball):
 
 
 @pytest.mark.slow
-def test_it_goes_to_the_red_ball_that_its_camera_sees(tmp_path):
+def test_seeker_goes_to_red_ball_seen_by_camera(tmp_path):
     with SeekingRobot(tmp_path, (1.6, -0.9), images=True, laser=True) as test:
         test.tell("/vision/go_to", "红色的球")
         assert test.advance_until_said("我到红色的球这里了")
@@ -44,7 +44,7 @@ def test_it_goes_to_the_red_ball_that_its_camera_sees(tmp_path):
 
 
 @pytest.mark.parametrize("language", ["en", "zh"])
-def test_it_answers_in_the_language_that_it_is_asked_in(tmp_path, language):
+def test_answers_are_in_language_of_request(tmp_path, language):
     with SeekingRobot(tmp_path, (1.0, 0.0), seeker={"language": language}) as test:
         for topic, thing in (
             ("go_to/zh", "ball"),
@@ -63,7 +63,7 @@ def test_it_answers_in_the_language_that_it_is_asked_in(tmp_path, language):
         assert test.spoken() == [*asked, *asked, usual, "我在找球。", "我停下了。"]
 
 
-def test_it_follows_a_ball_that_is_moved_until_it_is_told_to_stop(tmp_path):
+def test_seeker_follows_moving_ball_until_stopped(tmp_path):
     with SeekingRobot(tmp_path, (1.5, 0.0)) as test:
         test.tell("/vision/follow", "ball")
         test.advance(5.0)
@@ -83,7 +83,7 @@ def test_it_follows_a_ball_that_is_moved_until_it_is_told_to_stop(tmp_path):
         assert test.commands.last.linear.x == 0.0
 
 
-def test_what_is_not_there_is_not_found(tmp_path):
+def test_missing_object_is_not_found(tmp_path):
     with SeekingRobot(tmp_path, (2.0, 0.0)) as test:
         test.tell("/vision/go_to", "crate")
         assert test.advance_until_said("I cannot find the crate")
@@ -91,7 +91,7 @@ def test_what_is_not_there_is_not_found(tmp_path):
         assert (x, y) == pytest.approx((0.0, 0.0), abs=0.02)
 
 
-def test_what_is_lost_is_looked_for_and_given_up(tmp_path):
+def test_lost_object_is_searched_and_given_up(tmp_path):
     with SeekingRobot(tmp_path, (4.0, 0.0)) as test:
         test.tell("/vision/go_to", "ball")
         test.advance(2.0)
@@ -101,7 +101,7 @@ def test_what_is_lost_is_looked_for_and_given_up(tmp_path):
         assert test.commands.last.angular.z == 0.0
 
 
-def test_a_detector_that_ends_stops_it(tmp_path):
+def test_end_of_detector_stops_robot(tmp_path):
     with SeekingRobot(tmp_path, (4.0, 0.0)) as test:
         test.tell("/vision/go_to", "ball")
         test.advance(2.0)
@@ -111,7 +111,7 @@ def test_a_detector_that_ends_stops_it(tmp_path):
         assert test.distance() > 2.0
 
 
-def test_a_laser_sees_what_stands_in_the_way(tmp_path):
+def test_laser_stops_robot_before_obstacle(tmp_path):
     with SeekingRobot(tmp_path, (3.0, 0.0), laser=True, seeker={"blocked_time": 2.0}) as test:
         box = tmp_path / "box.sdf"
         box.write_text(
@@ -125,7 +125,7 @@ def test_a_laser_sees_what_stands_in_the_way(tmp_path):
         assert 0.8 < x < 1.2
 
 
-def test_a_request_that_names_nothing_moves_nothing(tmp_path):
+def test_request_without_object_moves_nothing(tmp_path):
     with SeekingRobot(tmp_path, (2.0, 0.0)) as test:
         test.tell("/vision/go_to", " the ")
         test.tell_to_stop()

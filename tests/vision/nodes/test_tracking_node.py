@@ -21,7 +21,7 @@ def image(test, number, *objects):
     test.settle()
 
 
-def test_things_get_ids_and_keep_what_was_said_of_them():
+def test_tracked_objects_have_ids_and_keep_detection_fields():
     with SteppedGraph() as test:
         TrackingNode(test.graph, NodeOptions(namespace="/yolo"))
         tracked = test.record("/yolo/tracking")
@@ -37,7 +37,7 @@ def test_things_get_ids_and_keep_what_was_said_of_them():
         assert tracked.last.detections == []
 
 
-def test_parameters_are_those_of_bytetrack():
+def test_parameters_match_bytetrack():
     with SteppedGraph() as test:
         options = NodeOptions(parameters={"min_hits": 1, "track_high_thresh": 0.5, "new_track_thresh": 0.95})
         TrackingNode(test.graph, options)
@@ -51,12 +51,12 @@ def test_parameters_are_those_of_bytetrack():
 
 
 @pytest.mark.parametrize("given", [{"match_thresh": 1.5}, {"track_buffer": 0}, {"track_low_thresh": "low"}])
-def test_values_that_mean_nothing_are_refused(given):
+def test_invalid_parameters_are_rejected(given):
     with SteppedGraph() as test, pytest.raises(LinkwrightError):
         TrackingNode(test.graph, NodeOptions(parameters=given))
 
 
-def test_as_yolo_ros_with_its_messages_and_parameters():
+def test_yolo_ros_messages_and_parameters_are_supported():
     with SteppedGraph() as test:
         parameters = {"tracker": "bytetrack.yaml", "image_reliability": 1, "min_hits": 1}
         YoloTrackingNode(test.graph, NodeOptions(namespace="/yolo", parameters=parameters))

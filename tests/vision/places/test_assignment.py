@@ -19,7 +19,7 @@ def least(costs, most):
 
 
 @pytest.mark.parametrize("seed", range(40))
-def test_it_costs_least(seed):
+def test_assignment_has_minimum_cost(seed):
     numbers = np.random.default_rng(seed)
     costs = numbers.random(numbers.integers(1, 5, 2))
     costs[numbers.random(costs.shape) < 0.2] = np.inf
@@ -30,7 +30,7 @@ def test_it_costs_least(seed):
     assert sum(costs[pair] for pair in pairs) + 0.8 * alone == pytest.approx(least(costs, 0.8))
 
 
-def test_nobody_and_nothing():
+def test_empty_or_impossible_assignment_is_empty():
     assert assign(np.zeros((0, 3)), 1.0) == []
     assert assign(np.zeros((3, 0)), 1.0) == []
     assert assign(np.full((2, 2), np.inf), 1.0) == []

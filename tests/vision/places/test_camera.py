@@ -19,7 +19,7 @@ P = [400.0, 0.0, 319.5, 0.0, 0.0, 400.0, 239.5, 0.0, 0.0, 0.0, 1.0, 0.0]
         [0.3, -0.1, 0.0005, 0.0004, 0.02, 0.35, -0.05, 0.01],
     ],
 )
-def test_pixels_and_rays_agree(lens):
+def test_pixel_and_ray_conversion_round_trip(lens):
     camera = make_camera_model(
         640, 480, K, lens, distortion_model="rational_polynomial" if len(lens) > 5 else "plumb_bob"
     )
@@ -29,12 +29,12 @@ def test_pixels_and_rays_agree(lens):
     assert camera.pixels(rays * 3.0) == pytest.approx(pixels, abs=1e-3)
 
 
-def test_the_rectified_camera_counts_where_k_says_nothing():
+def test_projection_matrix_is_used_if_k_is_zero():
     camera = make_camera_model(640, 480, [0.0] * 9, [], P)
     assert camera.rays(np.array([[720.0, 240.0]])) == pytest.approx(np.array([[1.0, 0.0, 1.0]]))
 
 
-def test_a_camera_that_says_too_little_is_refused():
+def test_incomplete_camera_info_is_rejected():
     with pytest.raises(ValueError, match="no focal length"):
         make_camera_model(640, 480, [0.0] * 9)
     with pytest.raises(ValueError, match="0 x 480"):

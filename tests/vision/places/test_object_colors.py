@@ -1,4 +1,4 @@
-"""Colours in words."""
+"""Colors in words."""
 
 from __future__ import annotations
 
@@ -24,7 +24,7 @@ SAMPLES = {
 
 
 @pytest.mark.parametrize("name", COLORS)
-def test_colours_have_the_names_that_people_give_them(name):
+def test_colors_have_common_names(name):
     pixels = np.array(SAMPLES[name], np.uint8)
     assert [COLORS[named_color] for named_color in classify_colors(pixels)] == [name] * len(pixels)
 
@@ -39,18 +39,18 @@ def disc(color, ground=(180, 180, 180), shade=1.0):
 
 
 @pytest.mark.parametrize("shade", [1.0, 0.4])
-def test_a_ball_with_a_shadow_on_grey_ground(shade):
+def test_color_of_shaded_ball_on_gray_ground_is_found(shade):
     assert object_color(*disc((200, 20, 20), shade=shade)) == "red"
     assert object_color(*disc((30, 60, 180), shade=shade)) == "blue"
 
 
-def test_a_white_ball_with_black_spots_is_white():
+def test_white_ball_with_black_spots_is_white():
     image, box = disc((245, 245, 245))
     image[50:60, 70:80] = 5
     assert object_color(image, box) == "white"
 
 
-def test_what_cannot_be_said():
+def test_ambiguous_color_is_none():
     image, box = disc((200, 20, 20))
     assert object_color(image, box + 500) is None
     stripes = np.zeros((60, 60, 3), np.uint8)

@@ -43,14 +43,14 @@ from linkwright.vision.places.object_requests import (
         ("茶壶", "茶壶", None),
     ],
 )
-def test_what_somebody_asks_for(text, noun, color):
+def test_request_is_parsed_to_noun_and_color(text, noun, color):
     found = parse_request(text)
     assert (found.noun, found.color) == (noun, color)
     assert found.language == ("en" if text.isascii() else "zh")
 
 
 @pytest.mark.parametrize("text", ["", "  ", "the", "。"])
-def test_nothing_is_asked_for(text):
+def test_request_without_object_is_none(text):
     assert parse_request(text) is None
 
 
@@ -72,30 +72,30 @@ def test_nothing_is_asked_for(text):
         ("stop sign", "stop_sign", "red", True),
     ],
 )
-def test_whether_this_is_it(asked, name, color, is_it):
+def test_request_matches_detection(asked, name, color, is_it):
     assert parse_request(asked).matches(name, color) is is_it
 
 
-def test_a_patch_of_a_colour_is_a_ball_if_it_is_as_wide_as_high():
+def test_color_patch_matches_ball_if_aspect_ratio_is_square():
     assert parse_request("red ball").matches("red", None, 1.1)
     assert not parse_request("red ball").matches("red", None, 0.4)
     assert parse_request("red ball").matches("ball", "red", 0.4), "a class counts whatever part of the thing is seen"
     assert parse_request("red").matches("red", None, 0.4)
 
 
-def test_a_round_patch_of_any_colour_is_a_ball_and_a_square_one_is_none():
+def test_round_patch_of_any_color_is_ball_and_square_one_is_not():
     assert parse_request("ball").matches("orange", None, 1.0, 0.79)
     assert not parse_request("ball").matches("orange", None, 1.0, 0.99)
     assert not parse_request("ball").matches("orange", None, 0.5, 0.79)
     assert not parse_request("crate").matches("orange", None, 1.0, 0.79)
 
 
-def test_what_is_said_of_it_has_no_verb():
+def test_request_text_omits_verb():
     assert parse_request("go to the ball").text == "ball"
     assert parse_request("去红色的球那里").text == "红色的球"
 
 
-def test_an_answer_names_the_thing_in_its_own_language():
+def test_answer_names_object_in_requested_language():
     assert answer_phrase(Answer.SEARCHING, parse_request("red ball"), "en") == "I am looking for the red ball."
     assert answer_phrase(Answer.SEARCHING, parse_request("traffic_cone"), "zh") == "我在找锥桶。"
     assert answer_phrase(Answer.ARRIVED, parse_request("red ball"), "zh") == "我到红色的球这里了。"
@@ -103,7 +103,7 @@ def test_an_answer_names_the_thing_in_its_own_language():
     assert answer_phrase(Answer.LOST, parse_request("红球"), "en") == "I have lost the red ball."
 
 
-def test_what_is_seen_in_a_sentence():
+def test_sightings_are_described_in_sentence():
     seen = [
         Sighting("crate", None, 3.0, 2.0),
         Sighting("crate", None, 3.2, 2.2),
@@ -124,7 +124,7 @@ def test_what_is_seen_in_a_sentence():
     assert describe_sightings(people, "en") == "I see 12 people."
 
 
-def test_names():
+def test_name_with_color_is_translated():
     assert name_with_color("traffic cone", "orange", "zh") == "橙色的锥桶"
     assert name_with_color("red_ball", "blue", "en") == "red ball"
     assert name_with_color("teapot", None, "zh") == "teapot"

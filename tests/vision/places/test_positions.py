@@ -29,27 +29,27 @@ def ball(center, radius, behind=4.0, camera=CAMERA):
 
 
 @pytest.mark.parametrize("center", [(0.0, 0.0, 1.5), (0.5, 0.2, 2.0), (-0.9, -0.3, 3.0)])
-def test_a_ball_before_a_wall(center):
+def test_position_of_ball_before_wall_is_found(center):
     depths, box = ball(center, 0.15)
     place = position_from_depth(box, depths, CAMERA)
     assert place.center == pytest.approx(center, abs=0.04)
     assert (place.width, place.height, place.depth) == pytest.approx((0.3, 0.3, 0.3), abs=0.04)
 
 
-def test_a_depth_image_of_another_size():
+def test_depth_image_may_have_other_size():
     depths, box = ball((0.3, 0.1, 2.0), 0.2, camera=SMALL)
     place = position_from_depth(box, depths, CAMERA)
     assert place.center == pytest.approx((0.3, 0.1, 2.0), abs=0.05)
 
 
-def test_depths_that_are_not_known_do_not_count():
+def test_invalid_depths_are_ignored():
     depths, box = ball((0.0, 0.0, 1.5), 0.15)
     holes = np.random.default_rng(1).random(depths.shape) < 0.5
     depths[holes] = np.random.default_rng(2).choice([np.nan, np.inf, 0.0], holes.sum())
     assert position_from_depth(box, depths, CAMERA).center == pytest.approx((0.0, 0.0, 1.5), abs=0.04)
 
 
-def test_a_box_without_depths_has_no_place():
+def test_box_without_depths_has_no_position():
     depths, box = ball((0.0, 0.0, 1.5), 0.15)
     assert position_from_depth(box, np.full_like(depths, np.nan), CAMERA) is None
     assert position_from_depth(box, depths, CAMERA, max_depth=1.0) is None
@@ -57,7 +57,7 @@ def test_a_box_without_depths_has_no_place():
     assert position_from_depth(np.array([630.0, 100.0, 690.0, 140.0]), depths, CAMERA) is None
 
 
-def test_the_nearest_surface_counts_though_more_is_behind():
+def test_nearest_surface_determines_position():
     depths = np.full((480, 640), 5.0)
     depths[200:280, 310:330] = 1.0
     place = position_from_depth(np.array([290.0, 200.0, 350.0, 280.0]), depths, CAMERA)
@@ -65,7 +65,7 @@ def test_the_nearest_surface_counts_though_more_is_behind():
     assert place.depth < 0.01, "what is flat is not as deep as wide"
 
 
-def test_a_few_near_depths_are_no_thing():
+def test_few_near_depths_are_ignored_as_noise():
     depths = np.full((480, 640), 2.0)
     depths[200:280:7, 300:340:7] = 0.3
     assert position_from_depth(np.array([290.0, 190.0, 350.0, 290.0]), depths, CAMERA).center[2] == pytest.approx(
@@ -83,7 +83,7 @@ def drum(x, z, radius, height, above):
 
 
 @pytest.mark.parametrize(("x", "z"), [(0.0, 2.0), (0.8, 3.0), (-0.5, 1.6)])
-def test_what_stands_on_the_ground(x, z):
+def test_position_of_drum_on_ground_is_found(x, z):
     box = drum(x, z, 0.15, 0.6, 0.5)
     place = position_on_ground(box, CAMERA, UP, 0.5)
     assert (place.center[0], place.center[2]) == pytest.approx((x, z), abs=0.06)
@@ -91,21 +91,21 @@ def test_what_stands_on_the_ground(x, z):
     assert place.center[1] == pytest.approx(0.2, abs=0.06), "in the middle of its height"
 
 
-def test_a_ball_on_the_ground_touches_it_below_its_middle():
+def test_position_of_ball_on_ground_is_found():
     _, box = ball((0.4, 0.05, 2.0), 0.15)
     place = position_on_ground(box, CAMERA, UP, 0.2)
     assert place.center == pytest.approx((0.4, 0.05, 2.0), abs=0.06)
     assert place.width == pytest.approx(0.3, abs=0.03)
 
 
-def test_a_camera_that_looks_down():
+def test_position_on_ground_with_tilted_camera():
     tilt = np.radians(20.0)
     up = np.array([0.0, -np.cos(tilt), -np.sin(tilt)])
     place = position_on_ground(np.array([300.0, 200.0, 340.0, 240.0]), CAMERA, up, 1.0)
     assert place.center[2] == pytest.approx(1.0 / np.sin(tilt), rel=0.05)
 
 
-def test_what_does_not_stand_on_ground_that_is_seen_has_no_place():
+def test_object_without_visible_ground_contact_has_no_position():
     assert position_on_ground(np.array([300.0, 100.0, 340.0, 200.0]), CAMERA, UP, 0.5) is None, "above the horizon"
     assert position_on_ground(np.array([300.0, 100.0, 340.0, 480.0]), CAMERA, UP, 0.5) is None, "cut by the edge"
     assert position_on_ground(np.array([300.0, 200.0, 340.0, 260.0]), CAMERA, UP, 0.5, max_distance=3.0) is None

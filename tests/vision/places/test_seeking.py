@@ -56,7 +56,7 @@ class Robot:
 
 
 @pytest.mark.parametrize("thing", [(2.0, 0.0), (1.0, -1.5), (-2.0, 0.5), (0.3, 0.0)])
-def test_it_turns_until_it_sees_the_thing_and_goes_there(thing):
+def test_seeker_turns_until_object_is_seen_and_goes_there(thing):
     seeker = Seeker()
     robot = Robot(seeker, thing)
     seeker.begin()
@@ -66,7 +66,7 @@ def test_it_turns_until_it_sees_the_thing_and_goes_there(thing):
     assert surface == pytest.approx(0.5, abs=0.05) or (surface < 0.5 and robot.way == 0.0)
 
 
-def test_what_is_nowhere_is_not_found_after_one_turn():
+def test_missing_object_is_not_found_after_one_turn():
     seeker = Seeker()
     robot = Robot(seeker)
     seeker.begin()
@@ -75,7 +75,7 @@ def test_what_is_nowhere_is_not_found_after_one_turn():
     assert robot.way == 0.0
 
 
-def test_what_is_lost_stops_it_and_is_looked_for():
+def test_lost_object_stops_robot_and_is_searched():
     seeker = Seeker()
     robot = Robot(seeker, (8.0, 0.0))
     seeker.begin()
@@ -87,7 +87,7 @@ def test_what_is_lost_stops_it_and_is_looked_for():
     assert robot.advance(30) == [Answer.LOST]
 
 
-def test_what_is_hidden_for_a_moment_is_no_loss():
+def test_briefly_hidden_object_is_not_lost():
     seeker = Seeker()
     robot = Robot(seeker, (3.0, 0.0))
     seeker.begin()
@@ -98,7 +98,7 @@ def test_what_is_hidden_for_a_moment_is_no_loss():
     assert events + robot.advance(20) == [Answer.FOUND, Answer.ARRIVED]
 
 
-def test_a_detector_that_says_nothing_stops_it():
+def test_silent_detector_stops_robot():
     seeker = Seeker()
     robot = Robot(seeker, (3.0, 0.0))
     seeker.begin()
@@ -110,7 +110,7 @@ def test_a_detector_that_says_nothing_stops_it():
     assert robot.way == way
 
 
-def test_it_waits_before_an_obstacle_and_gives_up():
+def test_robot_waits_before_obstacle_and_gives_up():
     seeker = Seeker()
     robot = Robot(seeker, (3.0, 0.0))
     seeker.begin()
@@ -126,7 +126,7 @@ def test_it_waits_before_an_obstacle_and_gives_up():
     assert robot.advance(7) == [Answer.BLOCKED]
 
 
-def test_the_thing_itself_is_no_obstacle():
+def test_target_object_is_not_an_obstacle():
     seeker = Seeker(SeekSettings(distance=0.3))
     robot = Robot(seeker, (2.0, 0.0))
     seeker.begin()
@@ -137,7 +137,7 @@ def test_the_thing_itself_is_no_obstacle():
     assert 1.85 - robot.x == pytest.approx(0.3, abs=0.05)
 
 
-def test_it_follows_a_thing_that_moves_until_it_is_told_to_stop():
+def test_seeker_follows_moving_object_until_stopped():
     seeker = Seeker()
     robot = Robot(seeker, (1.0, 0.0))
     seeker.begin(follow=True)

@@ -13,7 +13,7 @@ PERIOD = 1 / 30
 
 
 def found(*objects):
-    """Detections of (centre x, centre y, size, score, class)."""
+    """Detections of (center x, center y, size, score, class)."""
     if not objects:
         return Detections.empty(NAMES)
     boxes = [[x - size / 2, y - size / 2, x + size / 2, y + size / 2] for x, y, size, *_ in objects]
@@ -22,7 +22,7 @@ def found(*objects):
     return Detections(np.array(boxes, np.float32), np.array(scores, np.float32), np.array(classes, np.int32), NAMES)
 
 
-def test_a_thing_that_moves_keeps_its_id_which_it_gets_when_seen_twice():
+def test_moving_object_keeps_id_from_second_detection():
     tracker = Tracker()
     ids = [tracker.update(found((100 + 4 * step, 200, 40)), step * PERIOD)[0] for step in range(60)]
     assert ids[0] == 0
@@ -30,7 +30,7 @@ def test_a_thing_that_moves_keeps_its_id_which_it_gets_when_seen_twice():
 
 
 @pytest.mark.parametrize("seed", range(5))
-def test_two_that_cross_keep_their_ids_with_noise(seed):
+def test_crossing_objects_keep_ids(seed):
     numbers = np.random.default_rng(seed)
     tracker = Tracker()
     met = {"right": set(), "left": set()}
@@ -47,7 +47,7 @@ def test_two_that_cross_keep_their_ids_with_noise(seed):
     assert met["right"] != met["left"]
 
 
-def test_who_is_away_for_a_moment_comes_back_and_after_long_is_another():
+def test_briefly_missing_object_keeps_id_and_long_missing_gets_new():
     tracker = Tracker()
     ids = []
     for step in range(200):
@@ -58,7 +58,7 @@ def test_who_is_away_for_a_moment_comes_back_and_after_long_is_another():
     assert ids[28:32] == [1, 1, 1, 1]
 
 
-def test_a_detection_of_low_score_keeps_a_track_and_begins_none():
+def test_low_score_detection_keeps_track_and_starts_none():
     tracker = Tracker(TrackerSettings(high_threshold=0.5, low_threshold=0.1, new_track_score=0.6))
     for step in range(5):
         tracker.update(found((100, 100, 40)), step * PERIOD)
@@ -67,14 +67,14 @@ def test_a_detection_of_low_score_keeps_a_track_and_begins_none():
     assert tracker.update(found((100, 100, 40, 0.05)), 2.0) == [0]
 
 
-def test_a_flash_gets_no_id_and_classes_do_not_mix():
+def test_single_detection_gets_no_id_and_classes_are_separate():
     tracker = Tracker()
     assert tracker.update(found((100, 100, 40)), 0.0) == [0]
     assert tracker.update(found((100, 100, 40, 0.9, 1)), PERIOD) == [0]
     assert tracker.update(found((100, 100, 40, 0.9, 1)), 2 * PERIOD) == [1]
 
 
-def test_time_that_jumps_back_begins_anew_and_ids_go_on():
+def test_time_jump_back_restarts_tracks_with_new_ids():
     tracker = Tracker()
     for step in range(3):
         tracker.update(found((100, 100, 40)), 10 + step * PERIOD)
@@ -82,13 +82,13 @@ def test_time_that_jumps_back_begins_anew_and_ids_go_on():
     assert tracker.update(found((100, 100, 40)), PERIOD) == [2]
 
 
-def test_images_that_come_seldom():
+def test_low_frame_rate_keeps_ids():
     tracker = Tracker()
     ids = [tracker.update(found((100 + 10 * step, 200, 60)), step * 0.2)[0] for step in range(20)]
     assert set(ids[1:]) == {1}
 
 
-def test_thirty_things_cross_a_image():
+def test_thirty_crossing_objects_keep_ids():
     numbers = np.random.default_rng(7)
     start, speed = numbers.uniform(0, 2000, (30, 2)), numbers.uniform(-60, 60, (30, 2))
     tracker, switches, before = Tracker(), 0, None

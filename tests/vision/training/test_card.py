@@ -22,7 +22,7 @@ def figures(classes):
     )
 
 
-def test_a_card_says_what_was_done_how_well_it_is_and_where_it_fails():
+def test_card_has_facts_metrics_and_failures():
     text = make_card("eye", {"command": "`a | b`"}, [EvaluationReport("Rooms", figures([None, 0]))])
     assert text.startswith("# eye\n")
     assert "| command | `a \\| b` |" in text
@@ -31,13 +31,13 @@ def test_a_card_says_what_was_done_how_well_it_is_and_where_it_fails():
     assert "- Rooms: it takes 100% of box for ball." in text
 
 
-def test_a_card_of_a_network_without_faults_says_so():
+def test_card_of_perfect_network_has_no_failures():
     text = make_card("eye", {}, [EvaluationReport("Rooms", figures([0, 1]))])
     assert "| all | 2 | 1.000 | 1.000 | | |" in text
     assert text.endswith("## Where it fails\n\nNothing stands out in these images.\n")
 
 
-def test_confusion_has_a_row_for_what_is_there_and_a_column_for_what_was_said():
+def test_confusion_table_has_row_per_label_and_column_per_detection():
     assert confusion_table(figures([None, 0])) == [
         "| label \\ detection | ball | box | nothing |",
         "| --- | ---: | ---: | ---: |",
@@ -61,7 +61,7 @@ def write_card(folder, *worlds, more=()):
     return folder
 
 
-def test_a_card_says_which_worlds_judge_and_which_of_them_taught_too(tmp_path):
+def test_card_names_evaluation_worlds_also_used_for_training(tmp_path):
     training_folder = write_card(tmp_path / "lesson", "playground", "house")
     assert describe_origin(write_card(tmp_path / "unseen", "maze", "line_track"), training_folder) == (
         "Worlds: line_track, maze. Options: seed 3, most 10. It was trained on none of them."
@@ -74,7 +74,7 @@ def test_a_card_says_which_worlds_judge_and_which_of_them_taught_too(tmp_path):
     assert describe_origin(write_card(tmp_path / "unseen", "maze"), tmp_path).endswith(" Options: seed 3, most 10.")
 
 
-def test_a_card_says_how_the_dataset_was_made(tmp_path):
+def test_card_describes_generation_of_dataset(tmp_path):
     write_card(tmp_path, "playground", more=[{"seed": 3, "most": 10}, {"seed": 4, "most": 10}])
     assert dataset_facts(tmp_path) == {
         "worlds": f"playground (sha256 {sum_of('playground')[:12]})",
@@ -84,7 +84,7 @@ def test_a_card_says_how_the_dataset_was_made(tmp_path):
 
 
 @pytest.mark.parametrize("content", [None, "", "{}", '{"made": [1]}', '{"made": [{"worlds": [{}]}]}'])
-def test_of_datasets_that_others_made_it_says_nothing(tmp_path, content):
+def test_foreign_dataset_has_no_facts(tmp_path, content):
     if content is not None:
         (tmp_path / "dataset.json").write_text(content)
     assert dataset_facts(tmp_path) == {}

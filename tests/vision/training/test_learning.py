@@ -56,7 +56,7 @@ def weights(training_loop: TrainingLoop) -> np.ndarray:
     return np.concatenate([parameter.detach().numpy().ravel() for parameter in training_loop.network.parameters()])
 
 
-def test_a_network_overfits_eight_images(shapes, tmp_path):
+def test_network_overfits_eight_images(shapes, tmp_path):
     training_loop = course_of(options(shapes, tmp_path, epochs=300, whole_epochs=300, rate=1.5e-3))
     epochs = []
     training_loop.run(epochs.append)
@@ -69,7 +69,7 @@ def test_a_network_overfits_eight_images(shapes, tmp_path):
     assert training_loop.evaluate_averaged().map50 >= 0.9
 
 
-def test_the_same_seed_gives_the_same_weights_and_another_one_others(shapes, tmp_path):
+def test_same_seed_gives_same_weights(shapes, tmp_path):
     same = [course_of(options(shapes, tmp_path, seed=seed)) for seed in (3, 3, 4)]
     for training_loop in same:
         training_loop.run(lambda _: None)
@@ -77,7 +77,7 @@ def test_the_same_seed_gives_the_same_weights_and_another_one_others(shapes, tmp
     assert (weights(same[0]) != weights(same[2])).any()
 
 
-def test_with_16_bits_it_learns_the_same_but_for_rounding(shapes, tmp_path):
+def test_bfloat16_training_matches_float32_within_rounding(shapes, tmp_path):
     losses = []
     for precision in ("float32", "bfloat16"):
         training_loop, received = (
@@ -92,7 +92,7 @@ def test_with_16_bits_it_learns_the_same_but_for_rounding(shapes, tmp_path):
     assert rounded == pytest.approx(exact, rel=0.2)
 
 
-def test_what_is_resumed_ends_as_if_it_had_not_been_interrupted(shapes, tmp_path):
+def test_resumed_training_matches_uninterrupted_training(shapes, tmp_path):
     whole = course_of(options(shapes, tmp_path / "whole"))
     whole.run(lambda _: None)
     begun = course_of(options(shapes, tmp_path / "begun"))
@@ -111,7 +111,7 @@ def test_what_is_resumed_ends_as_if_it_had_not_been_interrupted(shapes, tmp_path
 
 
 @pytest.mark.parametrize("content", [b"", b"none", None])
-def test_a_checkpoint_that_is_none_is_said(shapes, tmp_path, content):
+def test_malformed_checkpoint_is_reported(shapes, tmp_path, content):
     if content is not None:
         (tmp_path / "last.pt").write_bytes(content)
     with pytest.raises(LinkwrightError) as caught:
@@ -119,14 +119,14 @@ def test_a_checkpoint_that_is_none_is_said(shapes, tmp_path, content):
     assert caught.value.diagnostics[0].code == "VISION306"
 
 
-def test_a_checkpoint_of_another_network_is_said(shapes, tmp_path):
+def test_checkpoint_of_another_network_is_rejected(shapes, tmp_path):
     course_of(options(shapes, tmp_path)).save(tmp_path / "last.pt")
     with pytest.raises(LinkwrightError) as caught:
         course_of(options(shapes, tmp_path, channels=8)).load(tmp_path / "last.pt")
     assert "other classes or sizes" in str(caught.value.diagnostics[0].message)
 
 
-def test_the_exported_network_says_what_the_network_says():
+def test_exported_network_matches_trained_network():
     torch.manual_seed(2)
     network = Network(Shape(3, 4)).eval()
     with torch.no_grad():  # the file's weights have 16 bits; with such ones here, too, only the export is compared
@@ -148,7 +148,7 @@ def test_the_exported_network_says_what_the_network_says():
 
 @pytest.fixture
 def exported(tmp_path):
-    """A network of three classes whose normalisations are not those of the beginning, and its file."""
+    """A network of three classes whose normalizations are not those of the beginning, and its file."""
     torch.manual_seed(3)
     network = Network(Shape(3, 4))
     with torch.no_grad():
@@ -160,21 +160,21 @@ def exported(tmp_path):
     return network, file
 
 
-def said_by(network, image):
+def output_of(network, image):
     with torch.no_grad():
         boxes, logits = network.eval()(image)
     return boxes[0], logits[0]
 
 
-def test_a_network_that_begins_with_a_file_says_what_the_file_says(exported):
+def test_loaded_weights_match_exported_network(exported):
     other, file = exported
     network, image = Network(Shape(3, 4)), torch.rand(1, 3, 64, 64)
     load_weights(network, ("disc", "square", "bar"), file, [torch.rand(8, 3, 64, 64)])
-    for found, wanted in zip(said_by(network, image), said_by(other, image), strict=True):
+    for found, wanted in zip(output_of(network, image), output_of(other, image), strict=True):
         assert torch.allclose(found, wanted, rtol=0.02, atol=0.1)  # the file's weights have 16 bits
 
 
-def test_as_it_learns_it_says_nearly_the_same_because_its_statistics_are_measured(exported):
+def test_loaded_network_has_measured_batch_statistics(exported):
     _, file = exported
     network, images = Network(Shape(3, 4)), torch.rand(16, 3, 64, 64)
     load_weights(network, ("disc", "square", "bar"), file, [images])
@@ -184,11 +184,11 @@ def test_as_it_learns_it_says_nearly_the_same_because_its_statistics_are_measure
     assert (found - wanted).abs().mean() < 0.2 * wanted.std()
 
 
-def test_classes_of_a_file_keep_their_weights_by_their_names_and_others_start_at_random(exported):
+def test_loaded_class_weights_are_matched_by_name(exported):
     other, file = exported
     network, image = Network(Shape(2, 4)), torch.rand(1, 3, 64, 64)
     load_weights(network, ("ring", "square"), file, [torch.rand(8, 3, 64, 64)])
-    (boxes, logits), (wanted_boxes, wanted) = said_by(network, image), said_by(other, image)
+    (boxes, logits), (wanted_boxes, wanted) = output_of(network, image), output_of(other, image)
     assert torch.allclose(boxes, wanted_boxes, rtol=0.02, atol=0.1)
     assert torch.allclose(logits[:, 1], wanted[:, 1], rtol=0.02, atol=0.1)
     assert network.heads[0].scores[-1].bias[0].item() == pytest.approx(-np.log(99))
@@ -203,7 +203,7 @@ def test_classes_of_a_file_keep_their_weights_by_their_names_and_others_start_at
         ("exported", 8, "its first layer has 4 channels, but this network has 8"),
     ],
 )
-def test_weights_that_cannot_be_begun_with_are_said(exported, tmp_path, content, channels, reason):
+def test_incompatible_weights_are_rejected(exported, tmp_path, content, channels, reason):
     file = exported[1] if content == "exported" else tmp_path / "other.onnx"
     if isinstance(content, bytes):
         file.write_bytes(content)
@@ -213,7 +213,7 @@ def test_weights_that_cannot_be_begun_with_are_said(exported, tmp_path, content,
     assert reason in str(caught.value.diagnostics[0].message)
 
 
-def test_a_training_begins_with_weights_of_an_earlier_one_and_its_card_says_so(shapes, tmp_path, capsys):
+def test_training_starts_from_weights_file_and_card_names_it(shapes, tmp_path, capsys):
     words = ["vision", "train", str(shapes), "--size", "96x96", "--channels", "4", "--threads", "1", "--epochs", "1"]
     assert main([*words, "-o", str(tmp_path / "first"), "--name", "first"]) == 0
     begun = tmp_path / "first" / "first.onnx"
@@ -229,15 +229,15 @@ def test_a_training_begins_with_weights_of_an_earlier_one_and_its_card_says_so(s
     assert "| started from | first.onnx, sha256 " in (tmp_path / "second" / "detector.md").read_text(encoding="utf-8")
 
 
-def test_boxes_that_do_not_touch_are_told_apart_by_the_generalised_overlap():
+def test_generalized_iou_orders_disjoint_boxes():
     first = torch.tensor([[0.0, 0.0, 10.0, 10.0]] * 3)
     second = torch.tensor([[0.0, 0.0, 10.0, 10.0], [20.0, 0.0, 30.0, 10.0], [90.0, 0.0, 100.0, 10.0]])
-    plain, generalised = pairwise_iou(first, second)
+    plain, generalized = pairwise_iou(first, second)
     assert plain.tolist() == pytest.approx([1, 0, 0])
-    assert generalised.tolist() == pytest.approx([1, -1 / 3, -0.8])
+    assert generalized.tolist() == pytest.approx([1, -1 / 3, -0.8])
 
 
-def test_cells_answer_for_the_thing_they_are_in_and_may_say_what_they_like_of_what_is_ignored():
+def test_cells_are_assigned_to_objects_and_ignored_regions():
     middles, _ = cells(64, 64)
     boxes = torch.cat((middles - 12, middles + 12), 1)[None]
     logits = torch.zeros(1, len(middles), 2)
@@ -252,7 +252,7 @@ def test_cells_answer_for_the_thing_they_are_in_and_may_say_what_they_like_of_wh
     assert (wanted.is_ignored[0] == hidden).all()
 
 
-def test_a_batch_without_anything_in_it_has_a_loss():
+def test_batch_without_objects_has_loss():
     network = Network(Shape(2, 4))
     boxes, logits = network(torch.rand(2, 3, 64, 64))
     total, parts = loss(boxes, logits, cells(64, 64)[0], torch.full((2, 1, 5), -1.0))
@@ -261,7 +261,7 @@ def test_a_batch_without_anything_in_it_has_a_loss():
     assert torch.isfinite(total)
 
 
-def test_the_command_trains_judges_and_writes_a_card(shapes, tmp_path, capsys, monkeypatch):
+def test_train_command_trains_evaluates_and_writes_card(shapes, tmp_path, capsys, monkeypatch):
     words = ["vision", "train", str(shapes), "-o", str(tmp_path), "--name", "eye", "--epochs", "2", "--size", "96x96"]
     words += ["--channels", "4", "--threads", "1", "--held-out", str(shapes)]
     monkeypatch.setattr(sys, "argv", ["linkwright", *words])
@@ -278,7 +278,7 @@ def test_the_command_trains_judges_and_writes_a_card(shapes, tmp_path, capsys, m
     assert capsys.readouterr().err.startswith("epoch 3 of 3")
 
 
-def test_what_was_learnt_until_ctrl_c_is_kept(shapes, tmp_path):
+def test_training_until_ctrl_c_is_kept(shapes, tmp_path):
     def stop_after_two(epoch):
         if epoch.number == 2:
             raise KeyboardInterrupt
@@ -291,7 +291,7 @@ def test_what_was_learnt_until_ctrl_c_is_kept(shapes, tmp_path):
 
 
 @pytest.mark.parametrize("shape", [(8, 16, 3, 3), (48, 16, 1, 1)])
-def test_steps_of_kernels_are_as_long_in_all_directions(shape):
+def test_orthogonalized_gradient_has_equal_singular_values(shape):
     torch.manual_seed(0)
     gradient = torch.randn(shape) * torch.logspace(-3, 0, shape[0])[:, None, None, None]
     spread = torch.linalg.svdvals(gradient.flatten(1))

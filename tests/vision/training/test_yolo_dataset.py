@@ -32,7 +32,7 @@ def problem(function, *words):
     return caught.value.diagnostics[0]
 
 
-def test_a_dataset_is_read(shapes):
+def test_dataset_is_read(shapes):
     dataset = open_dataset(shapes)
     assert dataset.names == NAMES
     images = dataset.read("train")
@@ -43,7 +43,7 @@ def test_a_dataset_is_read(shapes):
     assert (images[0].boxes <= 1).all()
 
 
-def test_the_boxes_are_where_the_colours_are(shapes):
+def test_boxes_match_colored_shapes(shapes):
     for each in open_dataset(shapes).read("train"):
         left, top, right, bottom = np.rint(each.boxes[0] * 96).astype(int)
         red = read_image(each)[..., 0] > 200
@@ -51,7 +51,7 @@ def test_the_boxes_are_where_the_colours_are(shapes):
         assert (np.flatnonzero(red.any(1))[[0, -1]] == (top, bottom - 1)).all()
 
 
-def test_what_coco_says_of_a_crowd_is_ignored(shapes):
+def test_coco_crowd_annotations_are_ignored(shapes):
     (shapes / "annotations").mkdir()
     content = {
         "images": [{"id": 7, "file_name": "001.png", "width": 96, "height": 48}],
@@ -68,12 +68,12 @@ def test_what_coco_says_of_a_crowd_is_ignored(shapes):
     assert image.boxes[2].tolist() == [0.25, 0.25, 0.75, 0.75]
 
 
-def test_a_image_without_labels_has_nothing_in_it(shapes):
+def test_image_without_labels_has_no_boxes(shapes):
     (shapes / "labels" / "train" / "002.txt").unlink()
     assert open_dataset(shapes).read("train")[2].boxes.shape == (0, 4)
 
 
-def test_the_yaml_file_itself_may_be_named(shapes):
+def test_yaml_file_is_accepted_as_dataset_path(shapes):
     assert open_dataset(shapes / "data.yaml").names == NAMES
 
 
@@ -90,25 +90,25 @@ def test_the_yaml_file_itself_may_be_named(shapes):
         ("names: [a\n", "is not a dataset"),
     ],
 )
-def test_what_is_no_dataset_is_said(tmp_path, content, message):
+def test_malformed_dataset_is_reported(tmp_path, content, message):
     (tmp_path / "data.yaml").write_text(content)
     found = problem(open_dataset, tmp_path)
     assert found.code == "VISION302"
     assert message in str(found.message)
 
 
-def test_folders_that_are_not_there_or_empty_are_no_datasets(tmp_path):
+def test_missing_and_empty_folders_are_rejected(tmp_path):
     assert "does not exist" in str(problem(open_dataset, tmp_path / "none").message)
     assert "it contains no YAML file" in str(problem(open_dataset, tmp_path).message)
 
 
-def test_a_part_that_is_not_there_is_said(shapes):
+def test_missing_split_is_reported(shapes):
     found = problem(open_dataset(shapes).read, "test")
     assert found.code == "VISION303"
     assert "'train' and 'val'" in str(found.hint)
 
 
-def test_a_part_without_images_is_said(shapes):
+def test_split_without_images_is_reported(shapes):
     for path in (shapes / "images" / "train").iterdir():
         path.unlink()
     assert problem(open_dataset(shapes).read, "train").code == "VISION303"
@@ -125,7 +125,7 @@ def test_a_part_without_images_is_said(shapes):
         ("0 nan 0.5 0.1 0.1", "fractions of the image"),
     ],
 )
-def test_a_label_that_cannot_be_is_said_with_its_place(shapes, line, message):
+def test_invalid_label_is_reported_with_location(shapes, line, message):
     text = shapes / "labels" / "train" / "001.txt"
     text.write_text(f"0 0.5 0.5 0.1 0.1\n{line}\n")
     found = problem(open_dataset(shapes).read, "train")
@@ -135,14 +135,14 @@ def test_a_label_that_cannot_be_is_said_with_its_place(shapes, line, message):
     assert found.span.line == 2
 
 
-def test_a_image_that_is_none_is_said(shapes):
+def test_unreadable_image_is_reported(shapes):
     dataset = open_dataset(shapes)
     (shapes / "images" / "train" / "001.png").write_bytes(b"none")
     found = problem(read_labeled_images, dataset.read("train"), 96, 96)
     assert (found.code, "001.png" in str(found.message)) == ("VISION305", True)
 
 
-def test_images_of_another_shape_are_fitted_in_with_grey(shapes):
+def test_images_are_letterboxed_with_gray(shapes):
     images = open_dataset(shapes).read("train")
     labeled_images = read_labeled_images(images, 160, 96)
     assert labeled_images.images.shape == (3, 96, 160, 3)
@@ -150,7 +150,7 @@ def test_images_of_another_shape_are_fitted_in_with_grey(shapes):
     assert np.allclose(labeled_images.objects[0][:, 1:], images[0].boxes * 96 + (32, 0, 32, 0), atol=1e-4)
 
 
-def test_boxes_stay_with_what_they_are_around(shapes):
+def test_augmentation_keeps_boxes_around_objects(shapes):
     labeled_images = read_labeled_images(open_dataset(shapes).read("train"), 96, 96)
     seen = 0
     for seed in range(40):
@@ -166,14 +166,14 @@ def test_boxes_stay_with_what_they_are_around(shapes):
     assert seen > 10
 
 
-def test_the_same_dice_change_a_image_in_the_same_way(shapes):
+def test_augmentation_is_deterministic_for_seed(shapes):
     labeled_images = read_labeled_images(open_dataset(shapes).read("train"), 96, 96)
     one, other = (augment(labeled_images, 0, VIEW, np.random.default_rng(5)) for _ in range(2))
     assert (one[0] == other[0]).all()
     assert (one[1] == other[1]).all()
 
 
-def test_the_last_epochs_are_of_whole_images(shapes):
+def test_last_epochs_use_whole_images(shapes):
     options = Options(shapes, shapes, epochs=5, whole_epochs=2, width=96, height=96)
     assert [options.view(epoch).size for epoch in range(5)] == [(64, 64)] * 3 + [(96, 96)] * 2
     assert options.view(4).scales[0] > options.view(0).scales[0]
@@ -186,7 +186,7 @@ def test_the_last_epochs_are_of_whole_images(shapes):
     assert np.median(sides) == pytest.approx(1, abs=0.12)  # seen whole, and as large as they are
 
 
-def test_images_of_rare_classes_are_seen_more_often():
+def test_images_of_rare_classes_are_sampled_more_often():
     def image(*classes):
         return np.array([[each, 0, 0, 9, 9] for each in classes], np.float32).reshape(-1, 5)
 

@@ -22,12 +22,12 @@ def router(start_router, monkeypatch, router_port) -> None:
     monkeypatch.setenv(OVERRIDES, f'mode="client";connect/endpoints=["tcp/localhost:{router_port}"]')
 
 
-def known(process):
+def remote_node_names(process):
     """The nodes that a process was told of, without asking for any."""
     return sorted(node.name for node in process.transport.remote_nodes())
 
 
-def followed(process, session):
+def liveliness_listeners(process, session):
     """How many listeners a process has for what a session does."""
     return sum(session in key for key in tuple(process.transport._zenoh_engine._interests._declared))
 
@@ -37,7 +37,7 @@ def sessions_here(process):
     return len(process.transport._departures.live_sessions)
 
 
-def test_what_own_endpoints_need_is_known_and_nothing_else(processes):
+def test_client_discovers_only_what_its_endpoints_need(processes):
     talker, other = processes("talker"), processes("other")
     publisher = talker.node.create_publisher(String, "chatter", 10)
     got: list[str] = []
@@ -54,11 +54,11 @@ def test_what_own_endpoints_need_is_known_and_nothing_else(processes):
         got.clear()
     ears[0].node.destroy_subscription(subscriptions[0])
     talker.spin_until(lambda: publisher.get_subscription_count() == 1)
-    assert [known(each) for each in (talker, other, *ears)] == [[], [], [], []]
+    assert [remote_node_names(each) for each in (talker, other, *ears)] == [[], [], [], []]
     assert other.transport.remote_endpoints() == []
 
 
-def test_the_first_question_is_answered_whole(processes, monkeypatch):
+def test_first_graph_query_is_answered_completely(processes, monkeypatch):
     monkeypatch.setattr(transport, "_ANSWERED_WITHIN", 60.0)  # on a machine that is busy, too
     monkeypatch.setattr(transport, "_QUIET", 1.0)
     talker, asks = processes("talker"), processes("asks")
@@ -75,7 +75,7 @@ def test_the_first_question_is_answered_whole(processes, monkeypatch):
     assert sorted(asks.node.get_node_names()) == ["asks", "talker"]
 
 
-def test_a_subscription_that_is_made_again_counts_right(processes):
+def test_recreated_subscription_counts_publishers_correctly(processes):
     """What was heard of for its sake is forgotten with it."""
     talker, ear = processes("talker"), processes("ear")
     first = talker.node.create_publisher(String, "chatter", 10)
@@ -89,7 +89,7 @@ def test_a_subscription_that_is_made_again_counts_right(processes):
     ear.spin_until(lambda: again.get_publisher_count() == 2)
 
 
-def test_news_that_was_overtaken_is_not_believed_and_a_token_that_came_back_is(processes, monkeypatch):
+def test_outdated_liveliness_news_is_ignored_and_returned_token_kept(processes, monkeypatch):
     """Zenoh tells of what it knows already in a task of its own, after news that it is gone."""
     talker, ear = processes("talker"), processes("ear")
     publisher = talker.node.create_publisher(String, "chatter", 10)
@@ -109,7 +109,7 @@ def test_news_that_was_overtaken_is_not_believed_and_a_token_that_came_back_is(p
     ear.spin_until(lambda: subscription.get_publisher_count() == 2)
 
 
-def test_services_are_ready_and_gone(processes):
+def test_services_become_ready_and_unavailable(processes):
     server, asks = processes("server"), processes("asks")
 
     def add(request, response):
@@ -126,14 +126,14 @@ def test_services_are_ready_and_gone(processes):
     asks.spin_until(lambda: not client.service_is_ready())
 
 
-def test_who_has_the_name_of_a_node_of_ours_is_told_of(processes):
+def test_duplicate_node_name_is_reported(processes):
     ours = processes("robot")
     processes("robot")
     ours.spin_until(lambda: any("exact name '/robot'" in text for text in ours.warnings()))
 
 
 @pytest.mark.parametrize("its_process_goes_on", [False, True])
-def test_a_publisher_that_was_killed_is_lost_and_one_that_left_is_not(processes, programs, its_process_goes_on):
+def test_killed_publisher_is_lost_and_closed_one_is_not(processes, programs, its_process_goes_on):
     ours = processes("ours")
     lost: list[str] = []
     subscription = ours.node.create_subscription(Int32, "flood", print, 10)
@@ -154,7 +154,7 @@ def test_a_publisher_that_was_killed_is_lost_and_one_that_left_is_not(processes,
     assert lost == ["victim"]
 
 
-def test_sessions_that_have_gone_are_followed_no_more(processes):
+def test_ended_sessions_are_no_longer_watched(processes):
     """A robot that runs for months hears many come and go."""
     ours = processes("ours")
     subscription = ours.node.create_subscription(Int32, "flood", print, 10)
@@ -163,6 +163,6 @@ def test_sessions_that_have_gone_are_followed_no_more(processes):
         other = processes(name)
         other.node.create_publisher(Int32, "flood", 10)
         session = other.transport._zenoh_engine._session_id
-        ours.spin_until(lambda session=session: followed(ours, session) == 2)
+        ours.spin_until(lambda session=session: liveliness_listeners(ours, session) == 2)
         other.close()
-        ours.spin_until(lambda session=session: followed(ours, session) == 0)
+        ours.spin_until(lambda session=session: liveliness_listeners(ours, session) == 0)

@@ -51,7 +51,7 @@ class Scene:
 
 @pytest.mark.parametrize("leaves", [False, True], ids=["killed", "left"])
 @pytest.mark.parametrize("knows_node", [False, True], ids=["of the publisher alone", "of its node"])
-def test_the_end_of_its_session_is_enough(leaves, knows_node):
+def test_publisher_of_ended_session_is_lost_unless_session_left(leaves, knows_node):
     """Which a client is told of before the node: it may be killed in between."""
     scene = Scene()
     scene.departures.session_started(SESSION)
@@ -65,7 +65,7 @@ def test_the_end_of_its_session_is_enough(leaves, knows_node):
     assert scene.names_lost() == ([] if leaves else ["/chatter"])
 
 
-def test_a_publisher_whose_session_and_node_stay_was_withdrawn():
+def test_publisher_with_remaining_session_and_node_is_not_lost():
     scene = Scene()
     scene.departures.session_started(SESSION)
     scene.remote.add(NODE.key, NODE)
@@ -74,7 +74,7 @@ def test_a_publisher_whose_session_and_node_stay_was_withdrawn():
 
 
 @pytest.mark.parametrize("first", [NODE, PUBLISHER], ids=["node", "publisher"])
-def test_in_a_session_of_others_it_is_lost_when_its_node_went_first(first):
+def test_publisher_in_foreign_session_is_lost_if_node_left_first(first):
     scene = Scene()
     scene.remote.add(NODE.key, NODE)
     scene.went(first)
@@ -83,7 +83,7 @@ def test_in_a_session_of_others_it_is_lost_when_its_node_went_first(first):
     assert scene.names_lost() == (["/chatter"] if first is NODE else [])
 
 
-def test_of_a_session_of_which_nothing_else_is_known_it_counts_as_one_that_left():
+def test_publisher_of_unknown_session_is_not_lost():
     scene = Scene()
     scene.went(PUBLISHER)
     assert scene.names_lost() == []

@@ -16,7 +16,7 @@ TOKENS = [
 ]
 
 
-def test_robots_that_come_and_go_leave_nothing(monkeypatch):
+def test_departed_sessions_leave_no_data(monkeypatch):
     now = 100.0
     monkeypatch.setattr("linkwright.wire.zenoh.remote.time.monotonic", lambda: now)
     remote = RemoteGraph()

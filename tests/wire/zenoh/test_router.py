@@ -24,7 +24,7 @@ def by_router_alone(monkeypatch, router_port) -> None:
     monkeypatch.setenv(OVERRIDES, settings)
 
 
-def test_processes_find_each_other_by_a_router_and_go_on_without_it(processes, start_router, by_router_alone):
+def test_processes_discover_by_router_and_continue_without_it(processes, start_router, by_router_alone):
     router = start_router()
     a, b = processes("a"), processes("b")
     got: list[str] = []
@@ -39,7 +39,7 @@ def test_processes_find_each_other_by_a_router_and_go_on_without_it(processes, s
     b.spin_until(lambda: got == ["with", "without"])
 
 
-def test_all_is_there_again_when_a_router_was_killed_and_comes_back(processes, start_router, monkeypatch, router_port):
+def test_graph_is_restored_after_router_restart(processes, start_router, monkeypatch, router_port):
     """Clients have no link but that to their router: they lose the graph with it, and then get it back."""
     monkeypatch.setenv(OVERRIDES, f'mode="client";connect/endpoints=["tcp/localhost:{router_port}"]')
     router = start_router()
@@ -92,7 +92,7 @@ def test_all_is_there_again_when_a_router_was_killed_and_comes_back(processes, s
     assert described == ["robot"]
 
 
-def test_who_waits_for_a_router_finds_one_that_comes_late(processes, start_router, by_router_alone, monkeypatch):
+def test_late_router_is_found(processes, start_router, by_router_alone, monkeypatch):
     monkeypatch.setenv(ATTEMPTS, "0")
     a, b = processes("a", join_now=False), processes("b", join_now=False)
     start_router()
@@ -101,7 +101,7 @@ def test_who_waits_for_a_router_finds_one_that_comes_late(processes, start_route
     assert not a.warnings()
 
 
-def test_that_there_is_no_router_is_told_to_who_asks(processes, by_router_alone, monkeypatch):
+def test_missing_router_is_reported(processes, by_router_alone, monkeypatch):
     monkeypatch.setenv(ATTEMPTS, "1")
     us = processes("ours")
     us.spin_until(us.warnings)
@@ -111,7 +111,7 @@ def test_that_there_is_no_router_is_told_to_who_asks(processes, by_router_alone,
 
 
 @pytest.mark.parametrize("verb", [["topic", "list"], ["topic", "echo", "/chatter", "std_msgs/msg/String"], ["doctor"]])
-def test_a_verb_that_reaches_nobody_fails_and_says_why_once(monkeypatch, router_port, verb):
+def test_verb_without_router_fails_with_one_error(monkeypatch, router_port, verb):
     settings = f'mode="client";connect/endpoints=["tcp/localhost:{router_port}"];connect/timeout_ms=0'
     monkeypatch.setenv(OVERRIDES, settings)
     result = subprocess.run(
@@ -123,7 +123,7 @@ def test_a_verb_that_reaches_nobody_fails_and_says_why_once(monkeypatch, router_
     assert result.stderr.count("DDS112") == 1
 
 
-def test_a_second_router_says_why_it_cannot_be_one(start_router, router_port):
+def test_second_router_reports_port_conflict(start_router, router_port):
     start_router()
     settings = f'listen/endpoints=["tcp/localhost:{router_port}"]'
     second = subprocess.run(
@@ -138,7 +138,7 @@ def test_a_second_router_says_why_it_cannot_be_one(start_router, router_port):
     ("settings", "message"),
     [("mode", "'mode' in ZENOH_CONFIG_OVERRIDE is not a Zenoh setting"), ("mode=17", "Zenoh refuses 'mode=17'")],
 )
-def test_a_setting_that_is_refused_is_told_with_its_name(monkeypatch, settings, message):
+def test_rejected_setting_is_reported_by_name(monkeypatch, settings, message):
     result = subprocess.run(
         ROUTER, check=False, env={**os.environ, OVERRIDES: settings}, capture_output=True, text=True, timeout=60
     )

@@ -36,7 +36,7 @@ def peer(programs, router_port, monkeypatch):
     )
 
 
-def meanwhile(us, question):
+def ask_while_spinning(us, question):
     """The answer to something asked of the peer, for which our callbacks have to run."""
     answers = []
     thread = threading.Thread(target=lambda: answers.append(question()))
@@ -46,7 +46,7 @@ def meanwhile(us, question):
     return answers[0]
 
 
-def test_messages_go_both_ways(processes, peer):
+def test_messages_work_in_both_directions(processes, peer):
     us = processes("ours")
     got = []
     us.node.create_subscription(String, "from_sdk", lambda message: got.append(message.data), EVERYTHING)
@@ -62,7 +62,7 @@ def test_messages_go_both_ways(processes, peer):
     assert them.ask_until(lambda heard: len(heard) == 1000, "heard") == [str(number) for number in range(1000)]
 
 
-def test_each_knows_what_the_other_has(processes, peer):
+def test_sdk_and_linkwright_discover_endpoints(processes, peer):
     us = processes("ours")
     them = peer()
     us.spin_until(lambda: "sdk" in us.node.get_node_names())
@@ -74,7 +74,7 @@ def test_each_knows_what_the_other_has(processes, peer):
     assert not us.node.count_publishers("/from_sdk")
 
 
-def test_a_thousand_calls_of_several_clients_there_are_answered_each_with_its_own(processes, peer):
+def test_thousand_calls_of_sdk_clients_get_their_own_responses(processes, peer):
     us = processes("ours")
     served = []
 
@@ -85,12 +85,12 @@ def test_a_thousand_calls_of_several_clients_there_are_answered_each_with_its_ow
 
     us.node.create_service(SetBool, "flip", flip)
     them = peer()
-    message = meanwhile(us, lambda: them.ask("call", CLIENTS, CALLS // CLIENTS))
+    message = ask_while_spinning(us, lambda: them.ask("call", CLIENTS, CALLS // CLIENTS))
     assert message == [[f"{number % 2 == 0} flipped" for number in range(CALLS // CLIENTS)]] * CLIENTS
     assert len(served) == CALLS
 
 
-def test_a_thousand_calls_of_several_clients_of_ours_are_answered_each_with_its_own(processes, peer):
+def test_thousand_calls_of_linkwright_clients_get_their_own_responses(processes, peer):
     us = processes("ours")
     clients = [us.node.create_client(SetBool, "flip_sdk") for _ in range(CLIENTS)]
     them = peer()

@@ -21,7 +21,7 @@ AT_ONCE = 3
 """Of each client; together fewer than the queue of a service holds."""
 
 
-def test_a_thousand_calls_of_three_clients_are_all_answered_and_none_goes_to_another(processes):
+def test_thousand_calls_of_three_clients_get_their_own_responses(processes):
     server, clients = processes("server"), [processes(f"client_{number}") for number in range(3)]
 
     def add(request, response):
@@ -66,7 +66,7 @@ def test_a_thousand_calls_of_three_clients_are_all_answered_and_none_goes_to_ano
     assert wrong == []
 
 
-def test_a_request_that_comes_to_nothing_is_told_once(processes):
+def test_failed_request_is_reported_once(processes):
     a, b = processes("a"), processes("b")
     service = b.node.create_service(SetBool, "flip", flip)
     client = a.node.create_client(SetBool, "flip")
@@ -102,7 +102,7 @@ class Declared:
         pass
 
 
-def test_a_request_that_was_on_its_way_when_the_service_closed_ends(processes):
+def test_request_in_transit_ends_when_service_closes(processes):
     """Undeclaring does not wait for it: its client waited for ten minutes."""
     node = processes("ours", join_now=False).node
     service = node.create_service(SetBool, "flip", flip)
@@ -114,7 +114,7 @@ def test_a_request_that_was_on_its_way_when_the_service_closed_ends(processes):
     assert query.dropped
 
 
-def test_a_request_that_does_not_say_whose_it_is_is_refused(processes):
+def test_request_without_attachment_is_rejected(processes):
     us = processes("ours")
     asked = []
     us.node.create_service(SetBool, "flip", lambda request, response: asked.append(request) or response)

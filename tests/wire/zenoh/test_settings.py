@@ -18,13 +18,13 @@ def dropping(settings):
     return json.loads(configuration(settings).get_json(DROPPING))
 
 
-def test_sessions_wait_for_a_busy_machine_before_they_drop_and_routers_do_not():
+def test_sessions_wait_longer_before_drop_than_routers():
     assert dropping(read_settings({})) == {"wait_before_drop": 50_000, "max_wait_before_drop_fragments": 200_000}
     assert dropping(read_router_settings({})) == {"wait_before_drop": 1_000, "max_wait_before_drop_fragments": 50_000}
 
 
 @pytest.mark.parametrize("wait", [0, 1_000_000])
-def test_how_long_they_wait_can_be_said(wait):
+def test_wait_before_drop_can_be_configured(wait):
     settings = read_settings({OVERRIDES: f"{DROPPING}/wait_before_drop={wait}"})
     assert dropping(settings)["wait_before_drop"] == wait
 
@@ -36,7 +36,7 @@ def test_how_long_they_wait_can_be_said(wait):
         ('mode="client";connect/endpoints=["tcp/127.0.0.1:{free}"]', "Unable to connect", ": start a router there"),
     ],
 )
-def test_why_a_session_cannot_be_opened_is_told_with_what_helps(router_port, override, message, advice):
+def test_failed_session_opening_is_reported_with_advice(router_port, override, message, advice):
     with socket.socket() as taken:
         taken.bind(("127.0.0.1", 0))
         taken.listen()
@@ -62,7 +62,7 @@ class StandsStill:
         self.closed.set()
 
 
-def test_the_end_of_a_process_does_not_wait_for_a_line_that_is_full(monkeypatch):
+def test_process_exit_does_not_wait_for_blocked_session(monkeypatch):
     monkeypatch.setattr("linkwright.wire.zenoh.session._CLOSING_LIMIT", 0.01)
     session = StandsStill()
     begun = time.monotonic()
@@ -73,7 +73,7 @@ def test_the_end_of_a_process_does_not_wait_for_a_line_that_is_full(monkeypatch)
     assert session.closed.wait(60)
 
 
-def test_a_session_is_closed_when_the_end_of_a_process_goes_on():
+def test_session_is_closed_at_process_exit():
     session = StandsStill()
     session.free.set()
     close_session(session)

@@ -38,24 +38,24 @@ HASH = "RIHS01_df668c740482bbd48fb39d76a70dfd4bd59db1288021743503259e948f6b1a18"
         ),
     ],
 )
-def test_quality_of_service_is_written_as_rmw_zenoh_does(profile, text):
+def test_qos_text_matches_rmw_zenoh(profile, text):
     assert qos_text.write(profile) == text
     assert qos_text.read(text) == resolved(profile)
 
 
-def test_a_publisher_that_keeps_everything_says_so():
+def test_qos_text_of_keep_all_history():
     text = qos_text.write(QoSProfile(history=HistoryPolicy.KEEP_ALL))
     assert text == "::2,10:,:,:,,"
     assert qos_text.read(text).history is HistoryPolicy.KEEP_ALL
 
 
 @pytest.mark.parametrize("text", ["", "::", "a::,10:,:,:,,", "::,10:,:,:,,:", "9::,10:,:,:,,"])
-def test_what_is_no_quality_of_service_is_refused(text):
+def test_malformed_qos_text_is_rejected(text):
     with pytest.raises(ValueError):
         qos_text.read(text)
 
 
-def test_tokens_are_written_as_rmw_zenoh_does():
+def test_tokens_match_rmw_zenoh():
     node = NodeIdentity("talker", "/")
     assert Token(2, SESSION, "0", "0", node).key == f"@ros2_lv/2/{SESSION}/0/0/NN/%/%/talker"
     far = NodeIdentity("talker", "/far/away", "/safe")
@@ -78,7 +78,7 @@ def test_tokens_are_written_as_rmw_zenoh_does():
     assert tokens.read(token.key) == token
 
 
-def test_newer_distributions_add_chunks_that_do_not_matter():
+def test_additional_token_chunks_are_ignored():
     key = f"@ros2_lv/2/{SESSION}/0/11/MS/%/%/talker/%chatter/std_msgs::msg::dds_::String_/{HASH}/::,7:,:,:,,"
     assert tokens.read(key + "/backends:cpu:") == tokens.read(key)
 
@@ -94,17 +94,17 @@ def test_newer_distributions_add_chunks_that_do_not_matter():
         f"@ros2_lv/2/a/0/1/MP/%/%/talker/%chatter/t/{HASH}/nonsense",
     ],
 )
-def test_what_is_no_token_of_ros_is_left_alone(key):
+def test_keys_that_are_not_ros_tokens_are_ignored(key):
     assert tokens.read(key) is None
 
 
 @given(st.text(max_size=60))
-def test_no_text_breaks_the_reader_of_tokens(text):
+def test_arbitrary_text_does_not_break_token_parser(text):
     tokens.read(text)
     tokens.read("@ros2_lv/2/a/0/1/MP/%/%/talker/%chatter/t/h/" + text)
 
 
-def test_a_gid_is_the_hash_of_the_token_as_it_stands():
+def test_gid_is_hash_of_token():
     import xxhash
 
     token = Token(0, SESSION, "0", "0", NodeIdentity("talker", "/"))
@@ -112,12 +112,12 @@ def test_a_gid_is_the_hash_of_the_token_as_it_stands():
     assert token.gid == number.to_bytes(16, "little")  # the low half, then the high one, as rmw_zenoh_cpp has them
 
 
-def test_an_attachment_has_33_bytes():
+def test_attachment_has_33_bytes():
     data = attachment.write(1, 2, bytes(range(16)))
     assert data == b"\1" + bytes(7) + b"\2" + bytes(7) + b"\x10" + bytes(range(16))
     assert attachment.read(data) == (1, 2, bytes(range(16)))
 
 
 @pytest.mark.parametrize("data", [None, b"", bytes(33), bytes(32), attachment.write(1, 2, bytes(16)) + b"\0"])
-def test_what_is_no_attachment_is_told(data):
+def test_malformed_attachment_is_not_read(data):
     assert attachment.read(data) is None

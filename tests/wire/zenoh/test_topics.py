@@ -27,7 +27,7 @@ from tests.wire.programs import linkwright
 from tests.wire.test_topics import LASTING
 
 
-def test_the_quality_of_service_of_others_is_known_and_keeps_nobody_apart(processes):
+def test_qos_of_remote_endpoints_is_available_and_always_matches(processes):
     a, b = processes("a"), processes("b")
     offered = QoSProfile(
         7,
@@ -49,7 +49,7 @@ def test_the_quality_of_service_of_others_is_known_and_keeps_nobody_apart(proces
     assert not [text for text in (*a.warnings(), *b.warnings()) if "incompatible" in text]
 
 
-def test_closing_a_publisher_that_keeps_messages_waits_for_no_callback(processes):
+def test_closing_latched_publisher_does_not_wait_for_callbacks(processes):
     """A callback in a thread of Zenoh that needs Python's lock is not waited for by who has that lock: it took 10 s."""
     node = processes("ours", join_now=False).node
     result = threading.Event()
@@ -79,7 +79,7 @@ def test_closing_a_publisher_that_keeps_messages_waits_for_no_callback(processes
         listener.undeclare()
 
 
-def test_nodes_and_topics_of_others_come_and_go(processes):
+def test_remote_nodes_and_topics_appear_and_disappear(processes):
     a, b = processes("a"), processes("b")
     b.node.create_publisher(String, "/far/chatter", 10)
     a.spin_until(lambda: "b" in a.node.get_node_names())
@@ -91,7 +91,7 @@ def test_nodes_and_topics_of_others_come_and_go(processes):
     assert a.node.count_publishers("/far/chatter") == 0
 
 
-def test_discovery_does_not_settle_before_somebody_is_linked(processes, monkeypatch):
+def test_discovery_does_not_settle_before_first_link(processes, monkeypatch):
     monkeypatch.setattr(transport, "_ALONE_AFTER", float("inf"))
     a = processes("a")
     assert not a.transport.wait_for_discovery(2 * transport.SETTLED_AFTER)
@@ -100,7 +100,7 @@ def test_discovery_does_not_settle_before_somebody_is_linked(processes, monkeypa
     assert "b" in a.node.get_node_names()
 
 
-def test_domains_keep_apart(processes, monkeypatch, domain):
+def test_domains_are_isolated(processes, monkeypatch, domain):
     a = processes("a")
     monkeypatch.setenv("ROS_DOMAIN_ID", str(domain + 100))
     b = processes("b")
@@ -112,7 +112,7 @@ def test_domains_keep_apart(processes, monkeypatch, domain):
     assert c.transport.wait_for_discovery(60)
 
 
-def test_humble_has_no_hashes(processes, monkeypatch):
+def test_humble_has_no_type_hashes(processes, monkeypatch):
     monkeypatch.setenv("ROS_DISTRO", "humble")
     a, b = processes("a"), processes("b")
     got: list[str] = []
@@ -127,7 +127,7 @@ def test_humble_has_no_hashes(processes, monkeypatch):
         b.spin_until(lambda: probe.matching_status.matching)
 
 
-def test_a_sample_that_does_not_say_whose_it_is_is_dropped_and_told_once(processes):
+def test_sample_without_attachment_is_dropped_and_reported_once(processes):
     us = processes("ours")
     got: list[str] = []
     us.node.create_subscription(String, "chatter", lambda message: got.append(message.data), 10)
@@ -143,7 +143,7 @@ def test_a_sample_that_does_not_say_whose_it_is_is_dropped_and_told_once(process
     assert "it lacks the sender" in text
 
 
-def test_bytes_of_a_type_that_is_not_known_here_are_passed_on(processes):
+def test_raw_subscription_accepts_unknown_type(processes):
     us = processes("ours")
     got: list[bytes] = []
     us.node.create_subscription("strange_msgs/msg/Odd", "odd", got.append, 10, raw=True)
@@ -157,7 +157,7 @@ def test_bytes_of_a_type_that_is_not_known_here_are_passed_on(processes):
     assert got == [b"\0\1\0\0abcd"]
 
 
-def test_a_publisher_that_left_is_not_lost_and_one_that_was_killed_is(processes, programs):
+def test_closed_publisher_is_not_lost_and_killed_one_is(processes, programs):
     us = processes("ours")
     lost: list[EndpointInfo] = []
     us.node.create_subscription(String, "/other", lambda _: None, 10).watch_lost(lost.append)
@@ -190,7 +190,7 @@ def generate_launch_description():
 """
 
 
-def test_what_a_launch_says_is_heard_by_a_verb(tmp_path):
+def test_verb_receives_messages_of_launched_node(tmp_path):
     """Launch files are told that this is Humble, where types have no hash on the wire; nobody said so to the verb."""
     (tmp_path / "talk.launch.py").write_text(LAUNCH_FILE)
     words = [sys.executable, "-m", "linkwright", "launch", str(tmp_path / "talk.launch.py")]

@@ -37,7 +37,7 @@ class SortColors(Node):
             rclpy.spin_once(self, timeout_sec=0.02)
 
     def blocks(self):
-        """Return the places of the blocks with their colours."""
+        """Return the places of the blocks with their colors."""
         places = []
         for channel, color in enumerate(TILES):
             own = self.pixels[..., channel]

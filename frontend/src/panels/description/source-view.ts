@@ -14,7 +14,7 @@ export interface Highlight {
   readonly look: "focus" | "problem";
 }
 
-/** A text with line numbers and syntax colours; only the visible lines are drawn. */
+/** A text with line numbers and syntax colors; only the visible lines are drawn. */
 export class SourceView {
   readonly element: HTMLElement;
   private readonly rows = new VirtualRows("source-lines", ROW_PX, (index) => this.row(index));

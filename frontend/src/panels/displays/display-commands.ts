@@ -46,7 +46,7 @@ export class DisplayCommands {
     return this.all().map(({ id }) => id);
   }
 
-  /** Moves the display past its neighbour above or below, within its group. */
+  /** Moves the display past its neighbor above or below, within its group. */
   move(up: boolean): void {
     const display = this.selected();
     if (!display) return;

@@ -2,7 +2,7 @@ import { button, coalesced, h } from "../../dom";
 import { icon } from "../../icons";
 import type { EditablePart } from "../../protocol";
 import type { HandleFrame } from "../../state/editing/editing";
-import { ANGLE_STEPS } from "../../state/modelling/snapping";
+import { ANGLE_STEPS } from "../../state/modeling/snapping";
 import type { Session } from "../../state/session";
 import { strings } from "../../strings";
 import { formatNumber, parseNumber } from "../../tree/numbers";
@@ -194,13 +194,13 @@ export class EditingPanel implements Panel {
     const frame = choice<HandleFrame>(words.frameHint, [["parent", words.parentFrame], ["own", words.ownFrame]], (value) => (editing.frame = value));
     const steps = (values: readonly number[], unit: string): (readonly [string, string])[] => values.map((value) => [String(value), `${value}${unit}`]);
     const { snapping } = editing;
-    const length = choice(strings.modelling.lengthStep, steps(LENGTH_STEPS_M, " m"), (value) => (snapping.metres = Number(value)));
-    const angle = choice(strings.modelling.angleStep, steps(ANGLE_STEPS, "°"), (value) => (snapping.degrees = Number(value)));
+    const length = choice(strings.modeling.lengthStep, steps(LENGTH_STEPS_M, " m"), (value) => (snapping.meters = Number(value)));
+    const angle = choice(strings.modeling.angleStep, steps(ANGLE_STEPS, "°"), (value) => (snapping.degrees = Number(value)));
     const snap = button(words.snap, () => (snapping.enabled = !snapping.enabled), "tool bare", icon("magnet"));
     const show = (): void => {
       snap.setAttribute("aria-pressed", String(snapping.enabled));
       snap.classList.toggle("active", snapping.enabled);
-      length.value = String(snapping.metres);
+      length.value = String(snapping.meters);
       angle.value = String(snapping.degrees);
       frame.value = editing.frame;
     };

@@ -134,7 +134,7 @@ export class JointRow {
 
   private get unitName(): string {
     const words = strings.joints;
-    if (this.joint.kind === "prismatic") return words.metres;
+    if (this.joint.kind === "prismatic") return words.meters;
     return this.angles.current === "deg" ? words.degrees : words.radians;
   }
 

@@ -57,7 +57,7 @@ export class NodeGraphDrawing {
     this.place();
   }
 
-  /** Marks a vertex, its neighbours and the edges between them; null marks nothing. */
+  /** Marks a vertex, its neighbors and the edges between them; null marks nothing. */
   mark(id: string | null): void {
     this.marked = id;
     const { edges } = this.graph;

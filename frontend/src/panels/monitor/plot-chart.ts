@@ -10,7 +10,7 @@ const Y_AXIS_PX = 58;
 /** Seconds; greater times are calendar times, smaller ones seconds since the start of a simulation. */
 const MIN_CALENDAR_TIME = 1e8;
 
-/** Returns the colour of a plot's series, as a CSS variable. */
+/** Returns the color of a plot's series, as a CSS variable. */
 export function seriesColor(index: number): string {
   return `var(--plot-${(index % COLORS) + 1})`;
 }
@@ -146,7 +146,7 @@ export class PlotChart {
   }
 }
 
-/** Returns the minimum and maximum of a table, with a margin; equal values are centred. */
+/** Returns the minimum and maximum of a table, with a margin; equal values are centered. */
 function rangeOf([, ...columns]: ReturnType<typeof plotTable>): [number, number] {
   let [low, high] = [Infinity, -Infinity];
   for (const column of columns) {

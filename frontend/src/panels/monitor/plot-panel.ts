@@ -48,7 +48,7 @@ export class PlotPanel implements Panel {
     state.changed.on(() => this.show());
     const draw = coalesced(() => this.draw());
     state.moved.on(draw);
-    // The colours on the canvas must follow the theme even while no values arrive.
+    // The colors on the canvas must follow the theme even while no values arrive.
     new MutationObserver(draw).observe(document.documentElement, { attributeFilter: ["data-theme"] });
     this.show();
   }

@@ -6,7 +6,7 @@ export interface SceneBelow {
   covered: () => number;
   /** The rightmost pixel column that robots cover, from the left edge. */
   readonly robotsReach: number;
-  /** Moves the focal point to the centre of the uncovered part. */
+  /** Moves the focal point to the center of the uncovered part. */
   makeRoom(): void;
   /** Moves the visible content below an element of this height (pixels) that covers the upper edge. */
   makeRoomAbove(height: number): void;

@@ -1,7 +1,7 @@
 import { h } from "../../dom";
 import type { Session } from "../../state/session";
 import { strings } from "../../strings";
-import type { WorldCommands } from "../modelling/world-commands";
+import type { WorldCommands } from "../modeling/world-commands";
 import type { Panel } from "../panel";
 import { talkButton } from "../voice/talk-button";
 import { VoiceNotice } from "../voice/voice-notice";
@@ -42,7 +42,7 @@ export class ScenePanel implements Panel {
     const card = new SelectionCard(session, this.column, () => session.editing.editRequested.emit());
     const inspect = new InspectMenu(session, this.column.changed);
     const sign = new OrientationSign(session);
-    const simulation = new SimulationBar(session.simulation, session.modelling, commands);
+    const simulation = new SimulationBar(session.simulation, session.modeling, commands);
     const form = new ArgumentFormCard(session.connection);
     this.notices.append(simulation.element, notice.element, banner.element, form.element);
     const notices = [

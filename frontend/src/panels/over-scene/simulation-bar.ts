@@ -1,10 +1,10 @@
 import { button, h } from "../../dom";
 import { icon } from "../../icons";
-import type { Modelling } from "../../state/modelling/modelling";
+import type { Modeling } from "../../state/modeling/modeling";
 import type { SimulationState } from "../../state/simulation";
 import { strings } from "../../strings";
-import { ModellingBar } from "../modelling/modelling-bar";
-import type { WorldCommands } from "../modelling/world-commands";
+import { ModelingBar } from "../modeling/modeling-bar";
+import type { WorldCommands } from "../modeling/world-commands";
 import { SpawnDialog } from "./spawn-dialog";
 
 const NOTICE_MS = 8000;
@@ -23,7 +23,7 @@ export class SimulationBar {
 
   constructor(
     private readonly simulation: SimulationState,
-    private readonly modelling: Modelling,
+    private readonly modeling: Modeling,
     commands: WorldCommands,
   ) {
     const words = strings.simulation;
@@ -31,11 +31,11 @@ export class SimulationBar {
     this.step = button(words.step, () => simulation.control("step"), "scene-tool small", icon("step"));
     const reset = button(words.reset, () => simulation.control("reset"), "scene-tool small", icon("reset"));
     const add = button(words.spawn, () => this.askSpawn(simulation.freePlace()), "scene-tool small", icon("plus"));
-    this.modelButton = button(strings.modelling.begin, () => modelling.setActive(!modelling.active), "scene-tool small", icon("build"));
+    this.modelButton = button(strings.modeling.begin, () => modeling.setActive(!modeling.active), "scene-tool small", icon("build"));
     const bar = h("div", { class: "simulation-tools", role: "toolbar", aria: { label: words.label } }, this.play, this.step, reset, add, this.modelButton, this.factor, this.time);
-    this.element = h("div", { class: "simulation-bar" }, bar, new ModellingBar(modelling, commands).element, this.notice);
+    this.element = h("div", { class: "simulation-bar" }, bar, new ModelingBar(modeling, commands).element, this.notice);
     simulation.changed.on(() => this.show());
-    modelling.changed.on(() => this.show());
+    modeling.changed.on(() => this.show());
     simulation.refused.on((text) => this.showNotice(text));
     simulation.spawnRequested.on((position) => this.askSpawn(position));
     this.show();
@@ -52,14 +52,14 @@ export class SimulationBar {
       this.play.replaceChildren(icon(paused ? "play" : "pause"));
     }
     this.step.disabled = !paused;
-    this.showModelling();
+    this.showModeling();
     this.factor.textContent = factor === null ? "–" : `${factor.toFixed(2)}×`;
     this.time.textContent = time === null ? "–" : `${time.toFixed(1)} s`;
   }
 
-  private showModelling(): void {
-    const { available, active } = this.modelling;
-    const label = active ? strings.modelling.end : strings.modelling.begin;
+  private showModeling(): void {
+    const { available, active } = this.modeling;
+    const label = active ? strings.modeling.end : strings.modeling.begin;
     this.modelButton.hidden = !available;
     this.modelButton.title = label;
     this.modelButton.setAttribute("aria-label", label);
@@ -75,6 +75,6 @@ export class SimulationBar {
   }
 
   private askSpawn(position: readonly number[]): void {
-    this.spawnDialog = new SpawnDialog(this.simulation, this.modelling, position, () => (this.spawnDialog = null));
+    this.spawnDialog = new SpawnDialog(this.simulation, this.modeling, position, () => (this.spawnDialog = null));
   }
 }

@@ -1,7 +1,7 @@
 import { h } from "../../dom";
 import { icon } from "../../icons";
 import type { ModelChoice } from "../../protocol";
-import type { Modelling } from "../../state/modelling/modelling";
+import type { Modeling } from "../../state/modeling/modeling";
 import type { SimulationState } from "../../state/simulation";
 import { strings } from "../../strings";
 import { Dialog } from "../../widgets/dialog";
@@ -19,7 +19,7 @@ export class SpawnDialog {
 
   constructor(
     private readonly simulation: SimulationState,
-    modelling: Modelling,
+    modeling: Modeling,
     position: readonly number[],
     closed: () => void,
   ) {
@@ -40,7 +40,7 @@ export class SpawnDialog {
     const choices = [{ label: strings.shell.cancel }, { label: words.spawn, main: true, run: () => this.run() }];
     this.dialog = new Dialog(words.spawnTitle, rows, choices, "spawn-dialog");
     const forget = [
-      modelling.modelsArrived.on((models) => {
+      modeling.modelsArrived.on((models) => {
         this.models = models;
         this.fill();
       }),
@@ -53,7 +53,7 @@ export class SpawnDialog {
     });
     this.dialog.open(this.address);
     this.onAddressChanged();
-    modelling.requestModels();
+    modeling.requestModels();
   }
 
   /** Removes the message about the previous address. */

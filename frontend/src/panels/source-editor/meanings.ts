@@ -47,7 +47,7 @@ class HintWidget extends WidgetType {
   }
 }
 
-/** A colour before the text that writes it; a click changes it. */
+/** A color before the text that writes it; a click changes it. */
 class ColorWidget extends WidgetType {
   constructor(
     private readonly written: WrittenColor,
@@ -76,7 +76,7 @@ class ColorWidget extends WidgetType {
   }
 }
 
-/** Requests values, names and colours of the visible text, and shows them. */
+/** Requests values, names and colors of the visible text, and shows them. */
 class Meanings {
   decorations: DecorationSet = Decoration.none;
   colors: readonly WrittenColor[] = [];
@@ -103,7 +103,7 @@ class Meanings {
     clearTimeout(this.timer);
   }
 
-  /** Opens the browser's choice of colours for a colour of the text. */
+  /** Opens the browser's choice of colors for a color of the text. */
   choose(written: WrittenColor, anchor: DOMRect): void {
     const field = h("input", { class: "cm-color-field", aria: { label: strings.sourceEditor.chooseColor } });
     field.type = "color";
@@ -179,13 +179,13 @@ function meaningsPlugin(): ViewPlugin<Meanings, { client: LSPClient; uri: string
   return plugin;
 }
 
-/** Returns what shows values of expressions, names by their meaning, and colours in a text. */
+/** Returns what shows values of expressions, names by their meaning, and colors in a text. */
 export function meanings(client: LSPClient, uri: string): Extension {
-  // The meaning of a name counts more than its syntax: the colour of the inner element is seen.
+  // The meaning of a name counts more than its syntax: the color of the inner element is seen.
   return Prec.highest(meaningsPlugin().of({ client, uri }));
 }
 
-/** Returns what lets the user choose the colour on the line of a position; null if there is none. */
+/** Returns what lets the user choose the color on the line of a position; null if there is none. */
 export function colorChoice(view: EditorView, position: number): (() => void) | null {
   const found = view.plugin(meaningsPlugin());
   const line = view.state.doc.lineAt(position).number - 1;

@@ -2,7 +2,7 @@ import { button, h } from "../../dom";
 import { icon } from "../../icons";
 import { strings } from "../../strings";
 
-/** A line of a file in a list; `name` is the emphasised part of its text. */
+/** A line of a file in a list; `name` is the emphasized part of its text. */
 export interface ListedPlace {
   readonly line: number;
   readonly before: string;

@@ -3,7 +3,7 @@ import { positionIn } from "./server-places";
 
 const TOKEN_FIELDS = 5;
 
-/** A colour whose parts are between 0 and 1. */
+/** A color whose parts are between 0 and 1. */
 export interface Color {
   readonly red: number;
   readonly green: number;
@@ -38,12 +38,12 @@ export function tokenRanges(doc: Text, data: readonly number[], { tokenTypes, to
   return ranges;
 }
 
-/** Returns a colour as `#rrggbb`, without its alpha. */
+/** Returns a color as `#rrggbb`, without its alpha. */
 export function hexOf({ red, green, blue }: Color): string {
   return `#${[red, green, blue].map((part) => Math.round(Math.min(Math.max(part, 0), 1) * 255).toString(16).padStart(2, "0")).join("")}`;
 }
 
-/** Returns the colour of `#rrggbb`, opaque. */
+/** Returns the color of `#rrggbb`, opaque. */
 export function colorOf(hex: string): Color {
   const [red = 0, green = 0, blue = 0] = [1, 3, 5].map((at) => Math.round((parseInt(hex.slice(at, at + 2), 16) / 255) * 1000) / 1000);
   return { red, green, blue, alpha: 1 };

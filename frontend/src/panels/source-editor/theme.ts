@@ -3,7 +3,7 @@ import type { Extension } from "@codemirror/state";
 import { EditorView } from "@codemirror/view";
 import { tags } from "@lezer/highlight";
 
-/** The page's colours; they are variables, so that the editor follows the theme by itself. */
+/** The page's colors; they are variables, so that the editor follows the theme by itself. */
 const colors = EditorView.theme({
   // Not `&` alone: the box of the tooltips, which is in the page's body, has the class of the theme, too.
   "&.cm-editor": { height: "100%", background: "var(--bg-field)", color: "var(--text)", fontSize: "12px" },

@@ -1,7 +1,7 @@
 import type { ITheme } from "@xterm/xterm";
 import type { Theme } from "../../state/theme";
 
-/** The colours that programs name, which the page's sheet does not contain. */
+/** The colors that programs name, which the page's sheet does not contain. */
 const NAMED: Readonly<Record<Theme, ITheme>> = {
   dark: {
     black: "#2a2f37",
@@ -41,7 +41,7 @@ const NAMED: Readonly<Record<Theme, ITheme>> = {
   },
 };
 
-/** Returns the colours of terminals for a theme of the page. */
+/** Returns the colors of terminals for a theme of the page. */
 export function terminalColors(theme: Theme): ITheme {
   const styles = getComputedStyle(document.documentElement);
   const color = (name: string): string => styles.getPropertyValue(name).trim();

@@ -13,12 +13,12 @@ import { TERMINAL_KEYS } from "./terminal-keys";
 /** Messages with output that are processed before they are acknowledged; the server waits at a few times as many. */
 const ACKNOWLEDGED_TOGETHER = 4;
 const SCROLLBACK_LINES = 5000;
-/** Contrast of text, as WCAG AA requires it, whatever colours a program combines. */
+/** Contrast of text, as WCAG AA requires it, whatever colors a program combines. */
 const CONTRAST = 4.5;
 /** Clears the screen and all modes, in the order of the output. */
 const FULL_RESET = "\x1bc";
 
-/** One terminal on the page: its text, its keys, and the acknowledgement of its output. */
+/** One terminal on the page: its text, its keys, and the acknowledgment of its output. */
 export class TerminalScreen {
   readonly element = h("div", { class: "terminal-screen" });
   readonly xterm: Terminal;

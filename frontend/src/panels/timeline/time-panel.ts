@@ -41,9 +41,9 @@ export class TimePanel implements Panel {
       "div",
       { class: "panel time-panel" },
       this.pause,
-      labelled(words.sync, this.mode),
-      labelled(words.source, this.source),
-      ...this.figures.map(({ name, output }) => labelled(words[name], output, name)),
+      labeled(words.sync, this.mode),
+      labeled(words.source, this.source),
+      ...this.figures.map(({ name, output }) => labeled(words[name], output, name)),
       h("span", { class: "spacer" }),
       button(words.resetHint, () => time.reset(), "tool", icon("reset"), words.reset),
       button(strings.close, close, "tool bare strip-close", icon("close")),
@@ -81,6 +81,6 @@ export class TimePanel implements Panel {
   }
 }
 
-function labelled(text: string, element: HTMLElement, name = ""): HTMLElement {
-  return h("label", { class: `labelled-row ${name}` }, h("span", {}, text), element);
+function labeled(text: string, element: HTMLElement, name = ""): HTMLElement {
+  return h("label", { class: `labeled-row ${name}` }, h("span", {}, text), element);
 }

@@ -19,7 +19,7 @@ export class TransformationPanel implements Panel {
       "div",
       { class: "panel transformation-panel" },
       h("p", { class: "hint" }, strings.transformation.hint),
-      h("label", { class: "labelled-row" }, choice, h("span", {}, strings.transformation.tf), h("span", { class: "row-badge" }, TF)),
+      h("label", { class: "labeled-row" }, choice, h("span", {}, strings.transformation.tf), h("span", { class: "row-badge" }, TF)),
     );
   }
 }

@@ -2,19 +2,19 @@ import { h } from "../../dom";
 import { icon } from "../../icons";
 import type { VoiceState } from "../../state/voice/voice";
 import type { WordsState } from "../../state/voice/words";
-import { enrolHereButton, proposesEnrolling } from "./enrol-here";
+import { enrollHereButton, proposesEnrolling } from "./enroll-here";
 import { activity, obstacle } from "./voice-words";
 
 const SHOWN_MS = 7000;
 
 /**
- * The notice over the scene that shows whether the page listens, the words recognised so far, the result, or the
+ * The notice over the scene that shows whether the page listens, the words recognized so far, the result, or the
  * obstacle.
  */
 export class VoiceNotice {
   readonly element = h("div", { class: "voice-notice", role: "status" });
   private readonly text = h("span");
-  private readonly enrol: HTMLButtonElement;
+  private readonly enroll: HTMLButtonElement;
   private timer = 0;
   private shown = "";
 
@@ -22,8 +22,8 @@ export class VoiceNotice {
     private readonly voice: VoiceState,
     private readonly words: WordsState,
   ) {
-    this.enrol = enrolHereButton(words);
-    this.element.append(icon("microphone"), this.text, this.enrol);
+    this.enroll = enrollHereButton(words);
+    this.element.append(icon("microphone"), this.text, this.enroll);
     this.element.hidden = true;
     voice.changed.on(() => this.show());
     voice.conversed.on(() => this.show());
@@ -43,7 +43,7 @@ export class VoiceNotice {
     this.text.textContent = text;
     this.element.classList.toggle("wrong", wrong !== null);
     this.element.classList.toggle("talking", busy && wrong === null);
-    this.enrol.hidden = !proposes;
+    this.enroll.hidden = !proposes;
     this.element.hidden = text === "";
     clearTimeout(this.timer);
     if (!busy && !proposes) this.timer = window.setTimeout(() => (this.element.hidden = true), SHOWN_MS);

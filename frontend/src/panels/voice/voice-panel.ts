@@ -7,7 +7,7 @@ import { strings } from "../../strings";
 import { choice, textField, tickBox } from "../../widgets/controls";
 import { onVisibilityChange } from "../../widgets/visibility";
 import type { Panel } from "../panel";
-import { enrolHereButton, proposesEnrolling } from "./enrol-here";
+import { enrollHereButton, proposesEnrolling } from "./enroll-here";
 import { LevelMeter } from "./level-meter";
 import { talkButton } from "./talk-button";
 import { activity, obstacle } from "./voice-words";
@@ -41,7 +41,7 @@ export class VoicePanel implements Panel {
     this.speak = tickBox(words.speak, words.speakHint, (on) => speaker.configure({ on }));
     this.voices = choice(words.voice, [], (chosen) => speaker.configure({ voice: chosen }));
     const box = (this.box = new WordsBox(enrolled, voice));
-    this.proposal = h("div", { class: "voice-proposal", role: "status" }, h("span", {}, words.words.proposal), enrolHereButton(enrolled));
+    this.proposal = h("div", { class: "voice-proposal", role: "status" }, h("span", {}, words.words.proposal), enrollHereButton(enrolled));
     const clear = button(words.clearHint, () => voice.clear(), "tool bare", icon("clear"));
     this.element = h(
       "div",
@@ -71,9 +71,9 @@ export class VoicePanel implements Panel {
     this.showHistory();
   }
 
-  /** Starts enrolment at the user's place. */
-  enrolHere(): void {
-    this.box.enrolHere();
+  /** Starts enrollment at the user's place. */
+  enrollHere(): void {
+    this.box.enrollHere();
   }
 
   private commandForm(): HTMLElement {

@@ -12,7 +12,7 @@ import { obstacle } from "./voice-words";
 /** A recording whose peak is below this counts as quiet: -24 dB. */
 const QUIET = 0.06;
 
-/** The words that the user enrols: each is spoken three times, with a button held down. */
+/** The words that the user enrolls: each is spoken three times, with a button held down. */
 export class WordsBox {
   readonly element: HTMLDetailsElement;
   private readonly list = h("div", { class: "word-list", role: "list" });
@@ -52,7 +52,7 @@ export class WordsBox {
       picker.value = "";
       void chosen?.text().then((text) => words.importFile(text));
     });
-    const done = button(texts.endHereHint, () => words.enrolHere(false), "tool framed", texts.endHere);
+    const done = button(texts.endHereHint, () => words.enrollHere(false), "tool framed", texts.endHere);
     this.here = h("div", { class: "word-here" }, this.hereDone, this.hereNote, done);
     this.element = h(
       "details",
@@ -84,11 +84,11 @@ export class WordsBox {
     this.words.watch(seen && this.element.open);
   }
 
-  /** Starts enrolment at the user's place. The panel must be in front. */
-  enrolHere(): void {
+  /** Starts enrollment at the user's place. The panel must be in front. */
+  enrollHere(): void {
     this.element.open = true;
     this.focusDue = true;
-    this.words.enrolHere(true);
+    this.words.enrollHere(true);
     this.here.scrollIntoView({ block: "nearest" });
   }
 
@@ -169,14 +169,14 @@ export class WordsBox {
     const last = judged.get(name);
     const line = find(".word-judged");
     const saying = isHearing ? texts.saying : strings.voice.opening;
-    const text = recording === name ? saying : last ? judgement(last) : "";
+    const text = recording === name ? saying : last ? judgment(last) : "";
     if (line && line.textContent !== text) line.textContent = text;
     line?.classList.toggle("wrong", recording !== name && last !== undefined && last.code !== null);
   }
 }
 
 /** Returns the verdict on a take in words. */
-function judgement({ code, text, peak, seconds }: TakeJudged): string {
+function judgment({ code, text, peak, seconds }: TakeJudged): string {
   const texts = strings.voice.words;
   const known: Readonly<Record<string, string>> = texts.codes;
   const level = peak > 0 ? Math.round(20 * Math.log10(peak)) : -96;

@@ -12,7 +12,7 @@ const EDGES = new EdgesGeometry(new BoxGeometry(1, 1, 1)).getAttribute("position
 /** The minimum and maximum height of a line of text, m; between them it is a third of the box. */
 const TEXT_HEIGHTS = [0.05, 0.5] as const;
 
-/** The displays of vision_msgs_rviz_plugins: boxes or their edges only, in the colours of their classes. */
+/** The displays of vision_msgs_rviz_plugins: boxes or their edges only, in the colors of their classes. */
 export class BoxesDrawing extends ContentDrawing<"solid_boxes"> {
   private readonly boxes = new CopyBatch(this.root, cubeGeometry());
   private readonly edges = new WideLines();
@@ -43,7 +43,7 @@ export class BoxesDrawing extends ContentDrawing<"solid_boxes"> {
     const { rows } = this.context.display;
     const onlyEdges = rows.bool(false, "Only Edge");
     const alpha = rows.number(1, "Alpha");
-    // Boxes without classes arrive in white and get the display's colour.
+    // Boxes without classes arrive in white and get the display's color.
     const own = rows.text("", "Color") === "" ? null : colorOf(rows, "#ffff00", "Color");
     const [placed] = this.placed();
     const content = placed?.content;

@@ -63,7 +63,7 @@ export class CloudDrawing implements Drawing {
       this.clouds.set(data.key, cloud);
       this.root.add(cloud.batch.root);
     }
-    cloud.batch.setPoints(content.positions, content.colours, content.translucent);
+    cloud.batch.setPoints(content.positions, content.colors, content.translucent);
     this.fields.forget(data.key);
     if (this.selected.size > 0) this.mark();
   }
@@ -89,7 +89,7 @@ export class CloudDrawing implements Drawing {
   pick(ray: Raycaster): Hit | null {
     const [origin, direction] = [new Vector3(), new Vector3()];
     const inverse = new Matrix4();
-    // Half the height of the visible area, m: at a distance of one metre, or at any distance for an orthographic
+    // Half the height of the visible area, m: at a distance of one meter, or at any distance for an orthographic
     // camera.
     const { elements } = this.context.camera().projectionMatrix;
     const pointer = POINTER_RADIUS / elements[5];

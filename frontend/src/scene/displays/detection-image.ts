@@ -101,7 +101,7 @@ function drawBox(context: CanvasRenderingContext2D, { boxes, colors }: ImageBoxe
     const top = y - height / 2 < line ? -height / 2 : -height / 2 - line;
     context.fillStyle = color;
     context.fillRect(-width / 2, top, context.measureText(text).width + line / 2, line);
-    // Choose the text colour for contrast: dark on light colours, light on dark ones.
+    // Choose the text color for contrast: dark on light colors, light on dark ones.
     context.fillStyle = 0.3 * red + 0.59 * green + 0.11 * blue > 110 ? "#101010" : "#ffffff";
     context.textBaseline = "middle";
     context.fillText(text, -width / 2 + line / 4, top + line / 2);

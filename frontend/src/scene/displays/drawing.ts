@@ -28,7 +28,7 @@ export interface DrawingContext {
 export interface DrawnScene {
   readonly renderer: WebGLRenderer;
   readonly scene: Scene;
-  /** The background colour of the scene. */
+  /** The background color of the scene. */
   readonly background: string;
   /** Runs `draw` while only the accepted displays are visible. */
   withOnly(accepts: (display: DisplayState) => boolean, draw: () => void): void;
@@ -74,7 +74,7 @@ export interface Drawing {
   pointer?(event: ScenePointer): boolean;
   /** Called when the Interact tool is activated or deactivated, or an object is held with it. */
   interactionChanged?(interaction: Interaction): void;
-  /** Returns what is drawn, for tests: counts, bounds, colours. */
+  /** Returns what is drawn, for tests: counts, bounds, colors. */
   inspect?(): object;
   dispose(): void;
 }

@@ -81,7 +81,7 @@ function ring(pose: Matrix4, radius: number, direction: number): Float32Array {
   return strip;
 }
 
-/** Returns RViz's colour of an effort: from violet for 0 via blue, green and yellow to red for 1. */
+/** Returns RViz's color of an effort: from violet for 0 via blue, green and yellow to red for 1. */
 export function rainbow(value: number): [number, number, number] {
   const hue = Math.min(1, Math.max(0, value)) * 5 + 1;
   const sector = Math.floor(hue);

@@ -1,20 +1,20 @@
 /** How a frame that was not updated for a while is drawn. */
 export interface Fade {
-  /** 0: its own colours, 1: grey. */
-  grey: number;
+  /** 0: its own colors, 1: gray. */
+  gray: number;
   /** 1: opaque, 0: invisible. */
   alpha: number;
 }
 
-const FRESH: Fade = { grey: 0, alpha: 1 };
+const FRESH: Fade = { gray: 0, alpha: 1 };
 
 /**
- * Returns RViz's fading for an age, s: unchanged for a third of the timeout, turning grey for a third, fading out for a
+ * Returns RViz's fading for an age, s: unchanged for a third of the timeout, turning gray for a third, fading out for a
  * third.
  */
 export function fadeForAge(age: number, timeout: number): Fade {
   const third = timeout / 3;
   if (!(age > third)) return FRESH;
-  if (age <= 2 * third) return { grey: (age - third) / third, alpha: 1 };
-  return { grey: 1, alpha: Math.max(0, (timeout - age) / third) };
+  if (age <= 2 * third) return { gray: (age - third) / third, alpha: 1 };
+  return { gray: 1, alpha: Math.max(0, (timeout - age) / third) };
 }

@@ -1,7 +1,7 @@
 import { Matrix4, Vector3 } from "three";
 import { poseAt } from "./styles";
 
-/** An arrow of three lines, one metre long: start to tip, tip to one barb, tip to the other barb. */
+/** An arrow of three lines, one meter long: start to tip, tip to one barb, tip to the other barb. */
 const FLAT_ARROW = [
   [0, 0],
   [1, 0],

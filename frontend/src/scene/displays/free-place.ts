@@ -10,12 +10,12 @@ const MAX_STEPS = 20;
 const SIDES = [[1, 0], [0, 1], [-1, 0], [0, -1]] as const;
 
 /**
- * Returns a place on the ground of a world with room for an object of one metre: the given place or, along an axis, the
- * nearest free one at an integer number of metres from it; next to all existing objects if none is free.
+ * Returns a place on the ground of a world with room for an object of one meter: the given place or, along an axis, the
+ * nearest free one at an integer number of meters from it; next to all existing objects if none is free.
  *
  * @param boxes - the boxes around the existing objects, in the fixed frame, m.
  * @param world - the pose of the world in the fixed frame.
- * @param near - the centre of the robots, in the fixed frame, m; null for the origin of the world.
+ * @param near - the center of the robots, in the fixed frame, m; null for the origin of the world.
  */
 export function freePlace(boxes: readonly Box3[], world: Matrix4, near: Vector3 | null = null): number[] {
   const toWorld = world.clone().invert();

@@ -7,7 +7,7 @@ export interface GridShape {
 }
 
 /**
- * Returns both ends (x y z, x y z) of every line of a grid centred on the origin, as in RViz's Grid: `normalCells` + 1
+ * Returns both ends (x y z, x y z) of every line of a grid centered on the origin, as in RViz's Grid: `normalCells` + 1
  * layers of `cells` x `cells` cells, connected by lines along the normal.
  */
 export function gridLines({ cells, normalCells, cellSize, plane }: GridShape): Float32Array {
@@ -57,7 +57,7 @@ export function splitLines(lines: Float32Array, pieces: number): Float32Array {
 }
 
 /**
- * Returns the colours (r g b a) of line ends around the origin, which fade out with the distance, as the ground has no
+ * Returns the colors (r g b a) of line ends around the origin, which fade out with the distance, as the ground has no
  * edge.
  */
 export function fadedColors(ends: Float32Array): Float32Array {

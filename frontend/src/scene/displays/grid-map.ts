@@ -5,7 +5,7 @@ import { concatenated, ThinLines } from "../objects/thin-lines";
 import { ContentDrawing } from "./content-drawing";
 import type { DrawingContext } from "./drawing";
 
-/** grid_map_rviz_plugin/GridMap: a surface through the centres of the cells, and lines between them. */
+/** grid_map_rviz_plugin/GridMap: a surface through the centers of the cells, and lines between them. */
 export class GridMapDrawing extends ContentDrawing<"grid_surface"> {
   private readonly lines = new ThinLines();
   private readonly surfaces = new Map<GridSurface, Mesh<BufferGeometry, MeshLambertMaterial>>();

@@ -5,7 +5,7 @@ import type { CovarianceStyle } from "../objects/covariance-batch";
 
 /** Reads properties that several displays share into the parameters of drawing objects. */
 
-/** Returns a colour property as 0xrrggbb. */
+/** Returns a color property as 0xrrggbb. */
 export function colorOf(rows: PropertyRows, fallback: string, ...path: string[]): number {
   return new Color(rows.text(fallback, ...path)).getHex();
 }

@@ -68,7 +68,7 @@ export class TfDrawing implements Drawing {
     for (const [row, fade] of visible) {
       if (!framePose(frames, row, pose)) continue;
       if (showAxes) {
-        axes.add(pose.clone().multiply(size), fade.grey, fade.alpha);
+        axes.add(pose.clone().multiply(size), fade.gray, fade.alpha);
         this.withAxes.push(frames.names[row] ?? "");
       }
       if (!showNames) continue;
@@ -77,7 +77,7 @@ export class TfDrawing implements Drawing {
         frames.names[row] ?? "",
         at.setFromMatrixPosition(pose),
         NAME_HEIGHT * scale,
-        fade.grey,
+        fade.gray,
         fade.alpha,
       );
     }
@@ -139,7 +139,7 @@ export class TfDrawing implements Drawing {
     const [from, along] = [new Vector3(), new Vector3()];
     const pose = new Matrix4();
     arrows.begin(visible.length);
-    for (const [row, { grey, alpha }] of visible) {
+    for (const [row, { gray, alpha }] of visible) {
       const parent = frames.parents[row] ?? -1;
       if (!frames.has(parent)) continue;
       from.fromArray(frames.poses, row * 7);
@@ -153,7 +153,7 @@ export class TfDrawing implements Drawing {
         headLength,
         headDiameter: HEAD_DIAMETER * scale,
       };
-      arrows.add(alongX(from, along, pose), shape, { color: SHAFT_COLOR, headColor: HEAD_COLOR, alpha, grey });
+      arrows.add(alongX(from, along, pose), shape, { color: SHAFT_COLOR, headColor: HEAD_COLOR, alpha, gray });
     }
     arrows.end();
   }
@@ -181,8 +181,8 @@ export class TfDrawing implements Drawing {
     const steps: number[] = [];
     ages.forEach((age, row) => {
       if (age <= timeout / 3) return;
-      const { grey, alpha } = fadeForAge(age, timeout);
-      steps.push(row, Math.round((grey - alpha) * FADE_STEPS));
+      const { gray, alpha } = fadeForAge(age, timeout);
+      steps.push(row, Math.round((gray - alpha) * FADE_STEPS));
     });
     return steps.join();
   }

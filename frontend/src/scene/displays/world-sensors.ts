@@ -6,12 +6,12 @@ import { ThinLines } from "../objects/thin-lines";
 type Color = readonly [number, number, number, number];
 
 /**
- * Colours (r g b a, 0 to 1) of rays: at the sensor, where rays are dense; at a hit; at the end of a ray without a hit.
+ * Colors (r g b a, 0 to 1) of rays: at the sensor, where rays are dense; at a hit; at the end of a ray without a hit.
  */
 const BEGIN: Color = [0.25, 0.6, 1, 0.12];
 const HIT: Color = [0.25, 0.6, 1, 0.6];
 const MISS: Color = [0.25, 0.6, 1, 0.1];
-/** The colours of a camera's frustum: of its edges near the camera, and of those far away. */
+/** The colors of a camera's frustum: of its edges near the camera, and of those far away. */
 const FRUSTUM: Color = [1, 0.75, 0.3, 0.9];
 const FRUSTUM_FAR: Color = [1, 0.75, 0.3, 0.35];
 /** The distance beyond which the frustum's edges are drawn fainter, m. */
@@ -102,7 +102,7 @@ function isChosen(choice: string, { visualized }: LidarScene | CameraScene): boo
   return choice === "All" || (choice === "Visualized" && visualized);
 }
 
-/** Returns segments and colours of rays, from the minimum range to the hit, or to the maximum range. */
+/** Returns segments and colors of rays, from the minimum range to the hit, or to the maximum range. */
 function raysOf({ horizontal, vertical, nearest, farthest }: LidarScene, ranges: Float32Array): [Float32Array, Float32Array] {
   const segments = new Float32Array(ranges.length * 6);
   const colors = new Float32Array(ranges.length * 8);
@@ -123,7 +123,7 @@ function raysOf({ horizontal, vertical, nearest, farthest }: LidarScene, ranges:
 }
 
 /**
- * Returns segments and colours of a camera's frustum: the near and far planes, and the edges from the optical centre.
+ * Returns segments and colors of a camera's frustum: the near and far planes, and the edges from the optical center.
  */
 function frustumOf({ left, right, up, down, near, far }: CameraScene): [Float32Array, Float32Array] {
   const segments: number[] = [];

@@ -2,10 +2,10 @@ import { BufferGeometry, Line, LineBasicMaterial, Matrix4, Quaternion, Vector3 }
 import type { EditablePart } from "../../protocol";
 import type { Draft, EditingState } from "../../state/editing/editing";
 import { nearestRpy, quaternionOf } from "../../state/editing/rotation";
-import { snap } from "../../state/modelling/snapping";
+import { snap } from "../../state/modeling/snapping";
 import type { Session } from "../../state/session";
 import { RobotModelDrawing } from "../displays/robot-model";
-import { Gizmo } from "../modelling/gizmo";
+import { Gizmo } from "../modeling/gizmo";
 import { spanOf } from "../initial-view";
 import { framePose, poseMatrix } from "../pose";
 import type { Stage } from "../stage";
@@ -18,7 +18,7 @@ import type { ToolEvent } from "../tools/tool";
 const LENGTH_ROUNDING = 1e-4;
 const ANGLE_ROUNDING = Math.PI / 18000;
 const AXIS_ROUNDING = 1e-4;
-/** The minimum distance between the centre of the handles and an edge of the canvas, pixels. */
+/** The minimum distance between the center of the handles and an edge of the canvas, pixels. */
 const MIN_MARGIN = 40;
 const AXIS_COLOR = 0xff9d3c;
 const ONE = new Vector3(1, 1, 1);

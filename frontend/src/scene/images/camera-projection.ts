@@ -17,11 +17,11 @@ export function imageZoom(
 
 /** Returns the projection of a pinhole camera whose image covers `zoom` of the window; `far` is the far plane, m. */
 export function projection(camera: CameraModel, zoom: readonly [number, number], far: number): Matrix4 {
-  const { width, height, focal_x, focal_y, centre_x, centre_y } = camera;
+  const { width, height, focal_x, focal_y, center_x, center_y } = camera;
   const x = ((2 * focal_x) / width) * zoom[0];
   const y = ((2 * focal_y) / height) * zoom[1];
-  const shiftX = 2 * (0.5 - centre_x / width) * zoom[0];
-  const shiftY = 2 * (centre_y / height - 0.5) * zoom[1];
+  const shiftX = 2 * (0.5 - center_x / width) * zoom[0];
+  const shiftY = 2 * (center_y / height - 0.5) * zoom[1];
   const end = Math.max(far, NEAR * 2);
   const depth = -(end + NEAR) / (end - NEAR);
   const shift = (-2 * end * NEAR) / (end - NEAR);

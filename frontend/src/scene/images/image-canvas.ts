@@ -62,7 +62,7 @@ export class ImageCanvas {
     this.canvas.width = this.canvas.height = 0;
   }
 
-  /** Returns the colour of a pixel, for tests. */
+  /** Returns the color of a pixel, for tests. */
   colorAt(x: number, y: number): number[] {
     return this.isEmpty ? [] : [...this.context.getImageData(x, y, 1, 1).data];
   }

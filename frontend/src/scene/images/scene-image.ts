@@ -39,7 +39,7 @@ export class SceneImage {
   }
 }
 
-/** Returns an image with rows from the top and colours not premultiplied by alpha, as canvases expect. */
+/** Returns an image with rows from the top and colors not premultiplied by alpha, as canvases expect. */
 function toImageData(bytes: Uint8Array, width: number, height: number): ImageData {
   const image = new ImageData(width, height);
   const { data } = image;

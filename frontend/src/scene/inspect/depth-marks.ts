@@ -16,7 +16,7 @@ const MAX_NAMES = 60;
 /** Hues advance by the golden ratio, so that consecutive levels differ. */
 const HUE_STEP = 0.618;
 
-/** The frames of links, each with a ball in the colour of its level in the tree; deeper ones are smaller. */
+/** The frames of links, each with a ball in the color of its level in the tree; deeper ones are smaller. */
 export class DepthMarks {
   private readonly axes: CopyBatch;
   private readonly balls: CopyBatch;
@@ -61,7 +61,7 @@ export class DepthMarks {
   }
 }
 
-/** Returns the colour of a level of the tree, 0xrrggbb. */
+/** Returns the color of a level of the tree, 0xrrggbb. */
 function levelColor(depth: number): number {
   return new Color().setHSL((0.58 + depth * HUE_STEP) % 1, 0.85, 0.6).getHex();
 }

@@ -29,14 +29,14 @@ export interface MassMarkChoice {
   ellipsoids: boolean;
 }
 
-/** Centres of mass as balls in black and white, and inertias as boxes and ellipsoids; implausible ones are red. */
+/** Centers of mass as balls in black and white, and inertias as boxes and ellipsoids; implausible ones are red. */
 export class MassMarks {
   private readonly balls: CopyBatch;
   private readonly boxes: CopyBatch;
   private readonly ellipsoids: CopyBatch;
   private readonly edges: VertexStream;
   private readonly labels = new LabelBatch();
-  /** The centres of mass of whole robots, in the fixed frame. */
+  /** The centers of mass of whole robots, in the fixed frame. */
   private totals: Vector3[] = [];
 
   constructor(parent: Object3D) {
@@ -130,15 +130,15 @@ function turned(x: number, y: number, z: number, w: number): Matrix4 {
   return new Matrix4().makeRotationFromQuaternion(new Quaternion(x, y, z, w));
 }
 
-/** Paints a ball with the symbol of a centre of mass: quarters in black and white. */
+/** Paints a ball with the symbol of a center of mass: quarters in black and white. */
 function paintQuarters(ball: BufferGeometry): BufferGeometry {
   const flat = ball.toNonIndexed();
   const [positions, colors] = [flat.getAttribute("position"), flat.getAttribute("color")];
   for (let i = 0; i < positions.count; i += 3) {
     const middle = [0, 1, 2].map((axis) => [0, 1, 2].reduce((sum, j) => sum + positions.getComponent(i + j, axis), 0));
     const dark = middle.filter((part) => part < 0).length % 2 === 1;
-    const grey = dark ? 0.12 : 1;
-    for (let j = 0; j < 3; j++) colors.setXYZ(i + j, grey, grey, grey);
+    const gray = dark ? 0.12 : 1;
+    for (let j = 0; j < 3; j++) colors.setXYZ(i + j, gray, gray, gray);
   }
   const index = Uint32Array.from({ length: positions.count }, (_, i) => i);
   return flat.setIndex(new BufferAttribute(index, 1));

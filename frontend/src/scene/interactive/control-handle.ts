@@ -17,7 +17,7 @@ import { isSolid, SolidMarkers, surfacesOf } from "../markers/solid-markers";
 import type { MeshLibrary } from "../meshes/mesh-library";
 import { poseMatrix } from "../pose";
 
-/** The factor and offset by which the colours of a control under the pointer are brightened. */
+/** The factor and offset by which the colors of a control under the pointer are brightened. */
 const BRIGHTNESS_FACTOR = 1.4;
 const BRIGHTNESS_OFFSET = 0.15;
 

@@ -23,7 +23,7 @@ export interface DragEvent {
 }
 
 const PIXELS_PER_TURN = 300;
-/** Metres along the line of sight for each pixel and for each metre between the camera and the marker. */
+/** Meters along the line of sight for each pixel and for each meter between the camera and the marker. */
 const DEPTH_PER_PIXEL = 0.002;
 /**
  * The minimum sine of the angle between a ray and a plane; at smaller angles the pointer gives no reliable position.

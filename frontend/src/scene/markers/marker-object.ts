@@ -89,7 +89,7 @@ class TrianglesMarker implements MarkerObject {
       for (let i = 3; i < colors.length; i += 4) clear ||= (colors[i] ?? 1) < OPAQUE_FROM;
     }
     const look = { side: DoubleSide, transparent: clear, depthWrite: !clear, vertexColors: colors !== null };
-    // As in RViz, triangles with individual colours are not lit.
+    // As in RViz, triangles with individual colors are not lit.
     const material = colors ? new MeshBasicMaterial(look) : new MeshLambertMaterial({ ...look, opacity: alpha });
     if (!colors && texture === null) material.color.setRGB(color[0] ?? 0, color[1] ?? 0, color[2] ?? 0);
     this.root = new Mesh(geometry, material);
@@ -194,7 +194,7 @@ class MeshMarker implements MarkerObject {
   }
 
   /**
-   * Returns a material by RViz's rule: the marker's colour tints the mesh's own materials, and is ignored for them if
+   * Returns a material by RViz's rule: the marker's color tints the mesh's own materials, and is ignored for them if
    * it is all zero.
    */
   private paint(own: OwnMaterial | null): Material {
@@ -215,7 +215,7 @@ class MeshMarker implements MarkerObject {
   }
 }
 
-/** Returns red, green, blue and alpha of each vertex, if the marker has a colour for each vertex or each triangle. */
+/** Returns red, green, blue and alpha of each vertex, if the marker has a color for each vertex or each triangle. */
 function vertexColors({ points, colors, color }: MarkerShape): Float32Array | null {
   const corners = points.length / 3;
   const given = colors.length / 4;

@@ -3,14 +3,14 @@ import { CanvasTexture, LinearFilter, NoColorSpace, Sprite, SpriteMaterial } fro
 const FONT_PX = 48;
 const LINE_PX = 58;
 const PADDING_PX = 6;
-/** The outline around letters, in a contrasting colour so that they are legible on any background. */
+/** The outline around letters, in a contrasting color so that they are legible on any background. */
 const OUTLINE_PX = 6;
 const OUTLINES = { dark: "rgba(12, 14, 18, 0.8)", light: "rgba(255, 255, 255, 0.85)" };
 const LIGHT = 0.4;
 /** Pixels; larger textures would exceed the limit of GPUs. */
 const MAX_TEXTURE_PX = 4096;
 
-/** Returns a text that faces the camera, centred at the origin; `height` is the height of a line, m. */
+/** Returns a text that faces the camera, centered at the origin; `height` is the height of a line, m. */
 export function textSprite(text: string, height: number, color: readonly number[]): Sprite {
   const [r = 1, g = 1, b = 1, a = 1] = color;
   const lines = text.split("\n");

@@ -38,8 +38,8 @@ export interface MeshTemplate {
   problem: string | null;
 }
 
-/** The grey that Assimp, and therefore RViz, gives a mesh without a colour. */
-export const UNCOLOURED_GREY = 0.6;
+/** The gray that Assimp, and therefore RViz, gives a mesh without a color. */
+export const UNCOLORED_GRAY = 0.6;
 
 /** The parts of a loaded mesh. */
 export interface Flattened {
@@ -92,7 +92,7 @@ function ownMaterial(material: Material): OwnMaterial {
   const map = texture?.image ? texture : null;
   if (map) map.colorSpace = NoColorSpace;
   return {
-    color: color ? [color.r, color.g, color.b] : [UNCOLOURED_GREY, UNCOLOURED_GREY, UNCOLOURED_GREY],
+    color: color ? [color.r, color.g, color.b] : [UNCOLORED_GRAY, UNCOLORED_GRAY, UNCOLORED_GRAY],
     opacity: material.opacity,
     map,
     vertexColors: material.vertexColors,

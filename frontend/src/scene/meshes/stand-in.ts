@@ -22,7 +22,7 @@ export interface StandIn {
   readonly normals: Float32Array;
   /** The levels from the finest, which has all triangles, to the coarsest. */
   readonly levels: readonly StandInLevel[];
-  /** The bounding sphere: x y z of its centre, radius. */
+  /** The bounding sphere: x y z of its center, radius. */
   readonly sphere: readonly [number, number, number, number];
 }
 

@@ -14,7 +14,7 @@ const NORMAL_BYTES = 12;
 const MAX_PREFIX = 5;
 
 /**
- * Reads STL, text or binary. As in RViz, it has no colours: the link's material applies. Normals are computed, because
+ * Reads STL, text or binary. As in RViz, it has no colors: the link's material applies. Normals are computed, because
  * exporters often leave them at zero.
  *
  * @throws MeshError if the file is not STL, or is damaged or truncated.

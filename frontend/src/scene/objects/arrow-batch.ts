@@ -10,13 +10,13 @@ export interface ArrowShape {
   headDiameter: number;
 }
 
-/** Colours as 0xrrggbb; the head has the shaft's colour unless `headColor` is given. */
+/** Colors as 0xrrggbb; the head has the shaft's color unless `headColor` is given. */
 export interface ArrowLook {
   color: number;
   headColor?: number;
   alpha?: number;
-  /** 0: its own colour, 1: grey. */
-  grey?: number;
+  /** 0: its own color, 1: gray. */
+  gray?: number;
 }
 
 const ALONG_X = new Vector3(1, 0, 0);
@@ -51,14 +51,14 @@ export class ArrowBatch {
   /** Adds an arrow from the origin of `pose` along its x axis. */
   add(pose: Matrix4, shape: ArrowShape, look: ArrowLook): void {
     const { shaftLength, shaftDiameter, headLength, headDiameter } = shape;
-    const { color, headColor = color, alpha = 1, grey = 0 } = look;
+    const { color, headColor = color, alpha = 1, gray = 0 } = look;
     if (shaftLength > 0) {
       this.withShaft.push(this.size);
       this.step.makeScale(shaftLength, shaftDiameter, shaftDiameter);
-      this.shafts.add(this.matrix.multiplyMatrices(pose, this.step), grey, alpha, color);
+      this.shafts.add(this.matrix.multiplyMatrices(pose, this.step), gray, alpha, color);
     }
     this.step.makeScale(headLength, headDiameter, headDiameter).setPosition(shaftLength, 0, 0);
-    this.heads.add(this.matrix.multiplyMatrices(pose, this.step), grey, alpha, headColor);
+    this.heads.add(this.matrix.multiplyMatrices(pose, this.step), gray, alpha, headColor);
   }
 
   end(): void {

@@ -33,8 +33,8 @@ export class AxesBatch {
     this.copies.begin(expected);
   }
 
-  add(pose: Matrix4, grey = 0, alpha = 1): void {
-    this.copies.add(pose, grey, alpha);
+  add(pose: Matrix4, gray = 0, alpha = 1): void {
+    this.copies.add(pose, gray, alpha);
   }
 
   end(): void {

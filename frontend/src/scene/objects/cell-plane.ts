@@ -38,10 +38,10 @@ const FRAGMENT = /* glsl */ `
 
 /** How cells are drawn. */
 export interface CellLook {
-  /** The colours of the byte values: 256 times red, green, blue and alpha. */
+  /** The colors of the byte values: 256 times red, green, blue and alpha. */
   palette: Uint8Array;
   alpha: number;
-  /** Whether some colours of the palette are transparent. */
+  /** Whether some colors of the palette are transparent. */
   seeThrough: boolean;
   /** Whether the plane is drawn before everything else, which then covers it regardless of depth. */
   behind: boolean;
@@ -49,7 +49,7 @@ export interface CellLook {
   order: number;
 }
 
-/** A plane of square cells along x and y from the origin; a palette maps the byte of each cell to a colour. */
+/** A plane of square cells along x and y from the origin; a palette maps the byte of each cell to a color. */
 export class CellPlane {
   readonly root = new Group();
   private parts: Mesh<PlaneGeometry, ShaderMaterial>[] = [];

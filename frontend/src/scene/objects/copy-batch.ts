@@ -41,10 +41,10 @@ export interface CopyHit {
 }
 
 /**
- * Many copies of one shape in one draw call, each with its own matrix, colour, grey and alpha.
+ * Many copies of one shape in one draw call, each with its own matrix, color, gray and alpha.
  *
  * Call `begin(most)`, then `add` for each copy, then `end`; this replaces the earlier copies. The shape must have an
- * index, normals and colours (`paint` of geometries.ts), which are multiplied by each copy's colour.
+ * index, normals and colors (`paint` of geometries.ts), which are multiplied by each copy's color.
  *
  * The vertices of all copies are in one buffer, and each finds its matrix in a texture. GPU instancing would be
  * simpler, but software renderers take some 50 microseconds for each instance: 500 frames would be drawn at 6 frames a
@@ -105,11 +105,11 @@ export class CopyBatch {
   }
 
   /**
-   * Adds a copy. `matrix` is in the parent's frame; `grey` is 0 for the copy's own colour, 1 for grey; `color` is
+   * Adds a copy. `matrix` is in the parent's frame; `gray` is 0 for the copy's own color, 1 for gray; `color` is
    * 0xrrggbb.
    */
-  add(matrix: Matrix4, grey = 0, alpha = 1, color = WHITE): void {
-    writeSlot(this.allSlots, this.count, matrix, color, grey, alpha);
+  add(matrix: Matrix4, gray = 0, alpha = 1, color = WHITE): void {
+    writeSlot(this.allSlots, this.count, matrix, color, gray, alpha);
     this.seeThrough ||= alpha < 1;
     this.count += 1;
   }

@@ -3,13 +3,13 @@ import { CopyBatch } from "./copy-batch";
 import { principalAxes } from "./eigen";
 import { sphereGeometry, cylinderGeometry, coneGeometry } from "./geometries";
 
-/** RViz's CovarianceProperty; null for a part that is not drawn. Colours as 0xrrggbb. */
+/** RViz's CovarianceProperty; null for a part that is not drawn. Colors as 0xrrggbb. */
 export interface CovarianceStyle {
   position: { color: number; alpha: number; scale: number } | null;
   orientation: {
     /** Whether deviations are about the axes of the pose instead of those of its frame. */
     local: boolean;
-    /** The colours of the rotations about x, y and z. */
+    /** The colors of the rotations about x, y and z. */
     colors: readonly [number, number, number];
     alpha: number;
     offset: number;
@@ -143,7 +143,7 @@ function deviationsOf(rows: Matrix3Rows): { deviations: number[]; axes: Matrix4 
   return { deviations: values.map((value) => Math.sqrt(Math.max(0, value))), axes };
 }
 
-/** Returns the width of an angle at a distance of one metre. */
+/** Returns the width of an angle at a distance of one meter. */
 function widthOfAngle(radians: number): number {
   return 2 * Math.tan(Math.min(radians / 2, MAX_RADIANS));
 }

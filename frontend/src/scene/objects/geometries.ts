@@ -46,7 +46,7 @@ export function axesGeometry(length: number, radius: number, segments: number): 
 }
 
 /**
- * Returns a white rod of one metre from the origin along x, with a diameter of one metre. It is closed at one end only,
+ * Returns a white rod of one meter from the origin along x, with a diameter of one meter. It is closed at one end only,
  * because the other is hidden.
  */
 export function rodGeometry(segments: number, closedAt: "origin" | "end" = "end"): BufferGeometry {
@@ -58,17 +58,17 @@ export function rodGeometry(segments: number, closedAt: "origin" | "end" = "end"
   return paint(mergeGeometries([tube, disc]), 1, 1, 1);
 }
 
-/** Returns a white cone with its base, one metre in diameter, at the origin, and its tip one metre along x. */
+/** Returns a white cone with its base, one meter in diameter, at the origin, and its tip one meter along x. */
 export function coneGeometry(segments: number): BufferGeometry {
   return paint(new ConeGeometry(0.5, 1, segments).rotateZ(-Math.PI / 2).translate(0.5, 0, 0), 1, 1, 1);
 }
 
-/** Returns a white sphere with a diameter of one metre. */
+/** Returns a white sphere with a diameter of one meter. */
 export function sphereGeometry(segments: number): BufferGeometry {
   return paint(new SphereGeometry(0.5, segments, Math.ceil(segments / 2)).rotateX(Math.PI / 2), 1, 1, 1);
 }
 
-/** Returns a closed white cylinder along z, one metre long and one metre in diameter. */
+/** Returns a closed white cylinder along z, one meter long and one meter in diameter. */
 export function cylinderGeometry(segments: number): BufferGeometry {
   return paint(new CylinderGeometry(0.5, 0.5, 1, segments).rotateX(Math.PI / 2), 1, 1, 1);
 }
@@ -78,7 +78,7 @@ export function cubeGeometry(): BufferGeometry {
   return paint(new BoxGeometry(1, 1, 1), 1, 1, 1);
 }
 
-/** Gives all vertices the same colour, 0 to 1. */
+/** Gives all vertices the same color, 0 to 1. */
 export function paint(geometry: BufferGeometry, r: number, g: number, b: number): BufferGeometry {
   const count = geometry.getAttribute("position").count;
   const colors = new Float32Array(count * 3);

@@ -43,12 +43,12 @@ const CORNERS = [
   [0, 1],
 ] as const;
 
-/** Any number of short texts that face the camera, sized in metres, in one draw call and drawn over everything. */
+/** Any number of short texts that face the camera, sized in meters, in one draw call and drawn over everything. */
 export class LabelBatch {
   readonly root: Mesh<BufferGeometry, ShaderMaterial>;
   private readonly atlas = new GlyphAtlas();
   /**
-   * For each text and each glyph: x from the centre, width, and u, v, width, height in the atlas, for a line height of
+   * For each text and each glyph: x from the center, width, and u, v, width, height in the atlas, for a line height of
    * 1.
    */
   private readonly layouts = new Map<string, Float32Array>();
@@ -78,8 +78,8 @@ export class LabelBatch {
     if (this.data.length < characters * FLOATS_PER_GLYPH) this.allocate(Math.max(64, Math.ceil(characters * 1.5)));
   }
 
-  /** Adds a text centred below `anchor`; `height` is the height of a line, m. */
-  add(text: string, anchor: Vector3, height: number, grey: number, alpha: number): void {
+  /** Adds a text centered below `anchor`; `height` is the height of a line, m. */
+  add(text: string, anchor: Vector3, height: number, gray: number, alpha: number): void {
     const { data } = this;
     const layout = this.layout(text);
     let at = this.glyphs * FLOATS_PER_GLYPH;
@@ -93,7 +93,7 @@ export class LabelBatch {
         data[at + 4] = (top - 1) * height;
         data[at + 5] = u + right * uWidth;
         data[at + 6] = v + top * vHeight;
-        data[at + 7] = grey;
+        data[at + 7] = gray;
         data[at + 8] = alpha;
         at += STRIDE;
       }

@@ -22,7 +22,7 @@ const CORNERS = [-1, -1, 1, -1, 1, 1, -1, 1] as const;
 export class PointBatch {
   readonly root = new Group();
   positions: Float32Array = new Float32Array(0);
-  /** Red, green, blue and alpha of each point; empty if all have the colour of the look. */
+  /** Red, green, blue and alpha of each point; empty if all have the color of the look. */
   colors: Uint8Array = new Uint8Array(0);
   private object: Points<BufferGeometry, ShaderMaterial> | Mesh<BufferGeometry, ShaderMaterial> | null = null;
   private variant = "";
@@ -34,7 +34,7 @@ export class PointBatch {
     return this.positions.length / 3;
   }
 
-  /** Sets the points, x y z of each in m; `translucent` if some colours have less than full alpha. */
+  /** Sets the points, x y z of each in m; `translucent` if some colors have less than full alpha. */
   setPoints(positions: Float32Array, colors: Uint8Array, translucent: boolean): void {
     this.positions = positions;
     this.colors = colors;

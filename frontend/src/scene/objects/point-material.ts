@@ -12,7 +12,7 @@ export interface PointLook {
   pixels: number;
   /** Size per depth along z of the points' frame, m per m; 0 to use `size`. */
   perDepth: number;
-  /** The colour of points without colours of their own. */
+  /** The color of points without colors of their own. */
   color: string;
   alpha: number;
 }
@@ -20,7 +20,7 @@ export interface PointLook {
 /** A variant of the shader, which is compiled once for all batches that use it. */
 export interface PointVariant {
   style: PointStyle;
-  /** Whether points have colours of their own. */
+  /** Whether points have colors of their own. */
   tinted: boolean;
   /** Whether each point is a quad; otherwise it is a point of the graphics library, whose size is limited. */
   quads: boolean;
@@ -67,7 +67,7 @@ const VERTEX = /* glsl */ `
       middle = eye.xyz;
     #endif
     gl_Position = projectionMatrix * eye;
-    // Pixels of a metre there, along x and y of the screen.
+    // Pixels of a meter there, along x and y of the screen.
     vec2 scale = vec2(projectionMatrix[0][0], projectionMatrix[1][1]) * 0.5 * viewport / gl_Position.w;
     #if defined(FIXED)
       halfSide = vec2(pixels * 0.5) / scale;

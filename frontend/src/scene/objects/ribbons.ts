@@ -5,7 +5,7 @@ export interface Ribbons {
   directions: Float32Array;
   /** The side of each vertex, -0.5 or 0.5. */
   sides: Float32Array;
-  /** r g b a for each vertex; null without colours. */
+  /** r g b a for each vertex; null without colors. */
   colors: Float32Array | null;
   indices: Uint32Array;
 }

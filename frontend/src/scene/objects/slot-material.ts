@@ -1,7 +1,7 @@
 import { DataTexture, DoubleSide, FloatType, RGBAFormat, ShaderMaterial, type Matrix4, type Texture } from "three";
 import { SURFACE_LIGHT } from "../light";
 
-/** Texels of a slot: three rows of the matrix, then one with grey, alpha and colour. */
+/** Texels of a slot: three rows of the matrix, then one with gray, alpha and color. */
 export const TEXELS_PER_SLOT = 4;
 const SLOTS_PER_ROW = 64;
 
@@ -73,20 +73,20 @@ export function slotTexture(slots: number): DataTexture {
   return new DataTexture(new Float32Array(width * height * 4), width, height, RGBAFormat, FloatType);
 }
 
-/** Writes an affine matrix and a colour 0xrrggbb into a slot; `data` is that of a texture, or has the same layout. */
-export function writeSlot(data: Float32Array, slot: number, matrix: Matrix4, color: number, grey = 0, alpha = 1): void {
+/** Writes an affine matrix and a color 0xrrggbb into a slot; `data` is that of a texture, or has the same layout. */
+export function writeSlot(data: Float32Array, slot: number, matrix: Matrix4, color: number, gray = 0, alpha = 1): void {
   const at = slot * TEXELS_PER_SLOT * 4;
   const m = matrix.elements;
   for (let row = 0; row < 3; row++) {
     for (let column = 0; column < 4; column++) data[at + row * 4 + column] = m[column * 4 + row] ?? 0;
   }
-  data[at + 12] = grey;
+  data[at + 12] = gray;
   data[at + 13] = alpha;
   data[at + 14] = color;
 }
 
 /**
- * Returns a material for copies that read their matrix, colour, grey and alpha from a texture. Light is computed like
+ * Returns a material for copies that read their matrix, color, gray and alpha from a texture. Light is computed like
  * that of other objects, but at the vertices: the difference does not show on small objects, and software renderers are
  * faster.
  */

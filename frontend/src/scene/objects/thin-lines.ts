@@ -44,7 +44,7 @@ export class ThinLines {
 
   /**
    * Sets lines through the points of each strip; `colors` has r g b a of each point, 0 to 1, multiplied by the style's
-   * colour.
+   * color.
    */
   setStrips(strips: readonly Float32Array[], colors: readonly Float32Array[] | null = null): void {
     this.setSegments(

@@ -39,7 +39,7 @@ const FRAGMENT = /* glsl */ `
 `;
 
 /**
- * Lines with a width in metres that face the camera: RViz's billboard lines. They are unlit and need one draw call,
+ * Lines with a width in meters that face the camera: RViz's billboard lines. They are unlit and need one draw call,
  * without GPU instancing, see `CopyBatch`.
  */
 export class WideLines {
@@ -63,7 +63,7 @@ export class WideLines {
 
   /**
    * Sets lines through the points of each strip; `colors` has r g b a of each point, 0 to 1, multiplied by the style's
-   * colour.
+   * color.
    */
   setStrips(strips: readonly Float32Array[], colors: readonly Float32Array[] | null = null): void {
     const result = ribbons(strips, colors);
@@ -88,7 +88,7 @@ export class WideLines {
     this.updateMaterial();
   }
 
-  /** Expands `box` by the centre lines, in the parent's frame. */
+  /** Expands `box` by the center lines, in the parent's frame. */
   expandBox(box: Box3): void {
     if (this.root.visible) box.expandByObject(this.root);
   }

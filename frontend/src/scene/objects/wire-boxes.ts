@@ -15,7 +15,7 @@ export class WireBoxes {
     this.root.renderOrder = 9;
   }
 
-  /** Sets the cubes: x y z of the centre of each, and the length of their sides, m. */
+  /** Sets the cubes: x y z of the center of each, and the length of their sides, m. */
   set(middles: readonly number[], side: number): void {
     const corners = new Float32Array((middles.length / 3) * EDGES.length);
     for (let i = 0; i < corners.length; i++) {

@@ -24,7 +24,7 @@ export function extrudedPolygons(outlines: readonly (readonly number[])[], heigh
 }
 
 /**
- * Returns the parts of a mesh with a name, or all parts for null; `offset` moves the mesh if its centre is to be the
+ * Returns the parts of a mesh with a name, or all parts for null; `offset` moves the mesh if its center is to be the
  * origin.
  */
 export function submesh(parts: readonly MeshPart[], wanted: Submesh | null): { parts: readonly MeshPart[]; offset: Vector3 } {
@@ -48,7 +48,7 @@ export function submesh(parts: readonly MeshPart[], wanted: Submesh | null): { p
  *
  * @param heights - heights relative to the maximum, row by row from the smallest y, each from the smallest x.
  * @param columns - the number of heights in a row.
- * @param size - x, y, z of the ground, the offset of its centre, and the side length that a texture covers, m.
+ * @param size - x, y, z of the ground, the offset of its center, and the side length that a texture covers, m.
  */
 export function heightmapGeometry(heights: Float32Array, columns: number, size: readonly number[]): BufferGeometry {
   const [x = 1, y = 1, z = 1, dx = 0, dy = 0, dz = 0, tile = 1] = size;

@@ -18,7 +18,7 @@ export interface LinkStyle {
   trail: boolean;
   /** Whether to draw collisions over pale visuals, even if the display does not show them. */
   contrast: boolean;
-  /** Replaces the colours of the description. */
+  /** Replaces the colors of the description. */
   override: LinkOverride | null;
 }
 
@@ -30,7 +30,7 @@ export interface Displacement {
   readonly shape?: { readonly link: string; readonly kind: "visual" | "collision"; readonly among: number; readonly from: Matrix4; readonly to: Matrix4 };
 }
 
-/** In contrast mode: the factor for the visuals' alpha, and the colour and alpha of collisions. */
+/** In contrast mode: the factor for the visuals' alpha, and the color and alpha of collisions. */
 const PALE_FACTOR = 0.3;
 const COLLISION: LinkOverride = { color: [1, 0.55, 0.1] };
 const COLLISION_ALPHA = 0.55;

@@ -25,7 +25,7 @@ export interface MovingView {
   readonly height: number;
 }
 
-/** A piece of a mesh with its matrix and its colour 0xrrggbb. */
+/** A piece of a mesh with its matrix and its color 0xrrggbb. */
 export interface MovingPiece {
   readonly standIn: StandIn;
   readonly matrix: Matrix4;

@@ -8,7 +8,7 @@ import { quoted } from "../meshes/mesh-error";
 import type { MeshLibrary } from "../meshes/mesh-library";
 import type { StandIn } from "../meshes/stand-in";
 import type { StandIns } from "../meshes/stand-ins";
-import { UNCOLOURED_GREY, type MeshTemplate, type OwnMaterial } from "../meshes/mesh-template";
+import { UNCOLORED_GRAY, type MeshTemplate, type OwnMaterial } from "../meshes/mesh-template";
 import { extrudedPolygons, heightmapGeometry, submesh } from "../objects/world-geometries";
 import { poseMatrix } from "../pose";
 import { capsuleGeometry, unitBox, unitCone, unitCylinder, unitPlane, unitSphere } from "../objects/geometries";
@@ -28,7 +28,7 @@ export interface Solid {
   readonly kind: SolidKind;
   /** The matrix from the unit shape to the link. */
   readonly matrix: Matrix4;
-  /** The colour, 0xrrggbb. */
+  /** The color, 0xrrggbb. */
   readonly color: number;
 }
 
@@ -37,7 +37,7 @@ export interface ShapePiece {
   readonly standIn: StandIn;
   /** The matrix from the mesh to the link. */
   readonly matrix: Matrix4;
-  /** The colour, 0xrrggbb. */
+  /** The color, 0xrrggbb. */
   readonly color: number;
 }
 
@@ -123,7 +123,7 @@ export class ShapeDrawing {
    * Applies materials; `alpha` includes that of the robot and the link, and `isLost` means RViz's white of links without
    * a transform.
    *
-   * @param override - replaces all colours and textures.
+   * @param override - replaces all colors and textures.
    */
   paint(pool: MaterialPool, alpha: number, isLost: boolean, override: LinkOverride | null = null): void {
     for (const { mesh, own } of this.parts) {
@@ -182,7 +182,7 @@ export class ShapeDrawing {
     this.batched = { ...this.batched, matrix: new Matrix4().multiplyMatrices(this.root.matrix, part.mesh.matrix) };
   }
 
-  /** Returns what is drawn, for tests: bounds in the fixed frame, and colour, opacity and texture of each material. */
+  /** Returns what is drawn, for tests: bounds in the fixed frame, and color, opacity and texture of each material. */
   inspect(): InspectedShape {
     const box = new Box3();
     for (const { mesh } of this.parts) {
@@ -291,7 +291,7 @@ export class ShapeDrawing {
 
   /**
    * Returns a look by RViz's rule: a part with a material of its own keeps it, and any other takes the URDF's. Without
-   * one, a primitive or STL is RViz's red, and another mesh the grey that RViz's mesh reader sets. Only the URDF sets
+   * one, a primitive or STL is RViz's red, and another mesh the gray that RViz's mesh reader sets. Only the URDF sets
    * the opacity of a part: RViz does not read it from mesh files, where exporters often write it wrongly.
    */
   private look(own: OwnMaterial | null, alpha: number, override: LinkOverride | null): Look {
@@ -303,15 +303,15 @@ export class ShapeDrawing {
       const { color, map, vertexColors, surface } = own;
       return { color, map, vertexColors, surface: surface ?? null, alpha: alpha * (this.shape.color?.[3] ?? 1), doubleSided };
     }
-    const grey = doubleSided && !this.shape.format?.startsWith("stl");
-    const bare: readonly number[] = grey ? [UNCOLOURED_GREY, UNCOLOURED_GREY, UNCOLOURED_GREY] : RVIZ_RED;
-    // A texture replaces the colour.
+    const gray = doubleSided && !this.shape.format?.startsWith("stl");
+    const bare: readonly number[] = gray ? [UNCOLORED_GRAY, UNCOLORED_GRAY, UNCOLORED_GRAY] : RVIZ_RED;
+    // A texture replaces the color.
     const [r = 0, g = 0, b = 0, a = 1] = this.texture ? [1, 1, 1, 1] : (this.shape.color ?? bare);
     return { color: [r, g, b], map: this.texture, vertexColors: false, alpha: alpha * a, doubleSided, behind, surface: this.surface };
   }
 }
 
-/** Whether a surface has a plain opaque colour and the camera's light only. */
+/** Whether a surface has a plain opaque color and the camera's light only. */
 function isPlain(material: Material): material is MeshLambertMaterial {
   if (!(material instanceof MeshLambertMaterial) || material.side !== DoubleSide) return false;
   return material.map === null && !material.vertexColors && !material.transparent;

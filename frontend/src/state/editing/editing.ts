@@ -2,7 +2,7 @@ import type { Connection } from "../../connection/connection";
 import type { DiagnosticItem, EditablePart, EditableParts, EditPreview } from "../../protocol";
 import { Signal } from "../../signal";
 import type { TextStorage } from "../../storage";
-import { Snapping } from "../modelling/snapping";
+import { Snapping } from "../modeling/snapping";
 
 /**
  * The requested values of the edited part: position in m or components of an axis, and angles in rad, empty for an

@@ -11,7 +11,7 @@ export interface Link {
   to: string;
 }
 
-/** A box with the position of its centre. */
+/** A box with the position of its center. */
 export interface PlacedBox extends Box {
   x: number;
   y: number;
@@ -54,7 +54,7 @@ interface Vertex {
  *
  * This is Sugiyama's method: links that would close a cycle are reversed temporarily, each box is placed behind those
  * that link to it, long links get a dummy in each layer that they pass, layers are ordered by the mean position of the
- * neighbours, and vertical positions are as close to those of the neighbours as the order permits. Boxes without links
+ * neighbors, and vertical positions are as close to those of the neighbors as the order permits. Boxes without links
  * are placed in rows below.
  */
 export function layOutLayers(boxes: readonly Box[], links: readonly Link[]): Layout {
@@ -160,7 +160,7 @@ function connectLayers(
 }
 
 /**
- * Orders each layer by the mean position of the neighbours, in both directions, and keeps the order with the fewest
+ * Orders each layer by the mean position of the neighbors, in both directions, and keeps the order with the fewest
  * crossings.
  */
 function orderLayers(layers: Vertex[][]): void {
@@ -205,7 +205,7 @@ function crossings(layers: readonly (readonly Vertex[])[]): number {
   return count;
 }
 
-/** Computes vertical positions, each as close to the mean of its neighbours as the order and the gaps permit. */
+/** Computes vertical positions, each as close to the mean of its neighbors as the order and the gaps permit. */
 function placeVertically(layers: readonly (readonly Vertex[])[]): void {
   for (const layer of layers) {
     let y = 0;

@@ -1,5 +1,5 @@
 /**
- * Returns the non-decreasing values closest to the given ones (least squares): neighbours in the wrong order are
+ * Returns the non-decreasing values closest to the given ones (least squares): neighbors in the wrong order are
  * averaged.
  */
 export function isotonic(values: readonly number[]): number[] {

@@ -9,7 +9,7 @@ const SAVED_KEY = "linkwright.log-levels";
 export const LEVELS = [10, 20, 30, 40, 50] as const;
 export type Level = (typeof LEVELS)[number];
 
-/** Returns the level whose colour and name a record has: rcl_interfaces/msg/Log permits values in between. */
+/** Returns the level whose color and name a record has: rcl_interfaces/msg/Log permits values in between. */
 export function levelOf(line: Pick<LogLine, "level">): Level {
   return LEVELS.findLast((level) => line.level >= level) ?? 10;
 }

@@ -67,7 +67,7 @@ export function isStill(each: Motion): boolean {
   return each.x === 0 && each.y === 0 && each.z === 0 && each.turn === 0;
 }
 
-/** Returns the deflection of a stick, -1 to 1, without the dead zone around its centre. */
+/** Returns the deflection of a stick, -1 to 1, without the dead zone around its center. */
 export function stickDeflection(value: number, play = 0.12): number {
   const beyond = Math.abs(value) - play;
   return beyond <= 0 ? 0 : clampToUnit((Math.sign(value) * beyond) / (1 - play));

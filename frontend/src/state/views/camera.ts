@@ -10,7 +10,7 @@ export interface Camera {
   readonly right: Vector;
   readonly up: Vector;
   readonly back: Vector;
-  /** Pixels per metre of an orthographic camera; null for a perspective camera. */
+  /** Pixels per meter of an orthographic camera; null for a perspective camera. */
   readonly scale: number | null;
   /** The point about which the camera orbits, if there is one. */
   readonly focal: Vector | null;
@@ -61,8 +61,8 @@ export function rayThrough(camera: Camera, x: number, y: number, { width, height
     const [right, up] = [(x - width / 2) / camera.scale, (height / 2 - y) / camera.scale];
     return { origin: add(add(camera.position, camera.right, right), camera.up, up), direction: back };
   }
-  const metres = (2 * Math.tan(FIELD_OF_VIEW / 2)) / height; // a pixel, 1 m from the camera
-  const towards = add(add(back, camera.right, (x - width / 2) * metres), camera.up, (height / 2 - y) * metres);
+  const meters = (2 * Math.tan(FIELD_OF_VIEW / 2)) / height; // a pixel, 1 m from the camera
+  const towards = add(add(back, camera.right, (x - width / 2) * meters), camera.up, (height / 2 - y) * meters);
   return { origin: camera.position, direction: unit(towards) };
 }
 

@@ -11,11 +11,11 @@ const NEAR_CLIP = "Near Clip Distance";
 
 /** The framing of a box from the direction of a camera. */
 export interface Framing {
-  /** The centre of the box. */
+  /** The center of the box. */
   readonly middle: Vector;
-  /** The distance from the centre to a perspective camera, m; 0 for a single point. */
+  /** The distance from the center to a perspective camera, m; 0 for a single point. */
   readonly distance: number;
-  /** Pixels per metre of an orthographic camera; 0 for a single point. */
+  /** Pixels per meter of an orthographic camera; 0 for a single point. */
   readonly scale: number;
   /** The values that keep the near clip plane in front of the whole box. */
   readonly clip: ViewValues;
@@ -29,12 +29,12 @@ export function framing(camera: Camera, values: ViewValues, span: Span, { width,
   const { right, up, back } = camera;
   const middle = scale(add(span.min, span.max), 0.5);
   const tangent = Math.tan(FIELD_OF_VIEW / 2) / MARGIN;
-  let [distance, metres, front] = [0, 0, 0];
+  let [distance, meters, front] = [0, 0, 0];
   for (const point of span.points ?? corners(span)) {
     const corner = subtract(point, middle);
     const [across, along] = [Math.abs(dot(corner, right)), Math.abs(dot(corner, up))];
     distance = Math.max(distance, dot(corner, back) + Math.max(along, (across * height) / width) / tangent);
-    metres = Math.max(metres, (2 * across) / width, (2 * along) / height);
+    meters = Math.max(meters, (2 * across) / width, (2 * along) / height);
     front = Math.max(front, dot(corner, back));
   }
   const room = CLIP_SHARE * (distance - front);
@@ -42,7 +42,7 @@ export function framing(camera: Camera, values: ViewValues, span: Span, { width,
   return {
     middle,
     distance,
-    scale: metres > 0 ? 1 / (metres * MARGIN) : 0,
+    scale: meters > 0 ? 1 / (meters * MARGIN) : 0,
     clip: isClipped ? { [NEAR_CLIP]: Math.max(MIN_CLIP, room) } : {},
   };
 }

@@ -19,9 +19,9 @@ import {
 type FpsMotion = Extract<Motion, "rotate3d" | "moveXY" | "moveZ">;
 
 const START: Vector = [5, 5, 10];
-const METRES_PER_PIXEL = 0.01;
-const METRES_PER_PIXEL_AHEAD = 0.1;
-const METRES_PER_WHEEL_UNIT = 0.01;
+const METERS_PER_PIXEL = 0.01;
+const METERS_PER_PIXEL_AHEAD = 0.1;
+const METERS_PER_WHEEL_UNIT = 0.01;
 /** A direction whose z component exceeds this counts as vertical: its yaw is defined by the up direction. */
 const VERTICAL = 0.99999;
 
@@ -52,14 +52,14 @@ export class FpsController implements ViewController {
           Pitch: clampPitch(number(values, "Pitch", 0) + dy * RADIANS_PER_PIXEL),
         };
       case "moveXY":
-        return this.fly(values, [dx * METRES_PER_PIXEL, -dy * METRES_PER_PIXEL, 0]);
+        return this.fly(values, [dx * METERS_PER_PIXEL, -dy * METERS_PER_PIXEL, 0]);
       case "moveZ":
-        return this.fly(values, [0, 0, dy * METRES_PER_PIXEL_AHEAD]);
+        return this.fly(values, [0, 0, dy * METERS_PER_PIXEL_AHEAD]);
     }
   }
 
   wheel(values: ViewValues, delta: number): ViewValues {
-    return this.fly(values, [0, 0, -delta * METRES_PER_WHEEL_UNIT]);
+    return this.fly(values, [0, 0, -delta * METERS_PER_WHEEL_UNIT]);
   }
 
   lookAt(values: ViewValues, point: Vector): ViewValues {

@@ -112,9 +112,9 @@ export class OrbitController implements ViewController {
   protected pan(values: ViewValues, { dx, dy, height, left, middle }: Drag): ViewValues {
     if (!left && !middle) return {};
     const { distance, focal } = orbitOf(values);
-    const metresPerPixel = (2 * distance * Math.tan(FIELD_OF_VIEW / 2)) / Math.max(1, height);
+    const metersPerPixel = (2 * distance * Math.tan(FIELD_OF_VIEW / 2)) / Math.max(1, height);
     const { right, up } = this.camera(values);
-    return vectorValues("Focal Point", add(add(focal, right, -dx * metresPerPixel), up, dy * metresPerPixel));
+    return vectorValues("Focal Point", add(add(focal, right, -dx * metersPerPixel), up, dy * metersPerPixel));
   }
 
   /** Moves the camera and the focal point along the line of sight. */

@@ -38,7 +38,7 @@ export interface Look {
 export interface ViewController {
   /** Whether the view rotates with the target's yaw, too. */
   readonly followsYaw: boolean;
-  /** The colour of the disc at the focal point. */
+  /** The color of the disc at the focal point. */
   readonly focalColor: number;
   camera(values: ViewValues): Camera;
   /** Returns the values of RViz's Zero button. */

@@ -9,7 +9,7 @@ import { Speaker } from "./speaker";
 const OPEN_AFTER_USE_MS = 60_000;
 const MAX_HISTORY = 100;
 /**
- * The maximum seconds missing in a word. Of synthetic words enrolled with 0.03 s missing, all were recognised; with 0.1
+ * The maximum seconds missing in a word. Of synthetic words enrolled with 0.03 s missing, all were recognized; with 0.1
  * s, half.
  */
 const MAX_LOST_SECONDS = 0.03;
@@ -42,7 +42,7 @@ export class VoiceState {
   readonly conversed = new Signal();
   /** The lines of the conversation, oldest first. */
   readonly history: ConversationLine[] = [];
-  /** The text recognised so far of the current utterance. */
+  /** The text recognized so far of the current utterance. */
   partial = "";
   /** The server's state; null while it is not requested. */
   serverState: ServerState | null = null;

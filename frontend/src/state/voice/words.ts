@@ -6,13 +6,13 @@ import type { VoiceState } from "./voice";
 /** ms for which a recording continues after the button was released, because the end of a word is soft. */
 const EXTRA_MS = 300;
 
-/** The words that the user enrols. */
+/** The words that the user enrolls. */
 export class WordsState {
   readonly changed = new Signal();
   /** The text of the words file arrived. */
   readonly fileArrived = new Signal<string>();
-  /** The user asked to enrol the words at their current place. */
-  readonly enrolRequested = new Signal();
+  /** The user asked to enroll the words at their current place. */
+  readonly enrollRequested = new Signal();
   words: readonly EnrolledWord[] = [];
   /** The number of recordings needed for each word. */
   enough = 3;
@@ -22,7 +22,7 @@ export class WordsState {
   readonly judged = new Map<string, TakeJudged>();
   /** The word being recorded. */
   recording: string | null = null;
-  /** The number of recordings of each word at the user's current place; null while the user does not enrol there. */
+  /** The number of recordings of each word at the user's current place; null while the user does not enroll there. */
   takesHere: Map<string, number> | null = null;
   /** Words that were added but have no recording yet. */
   private readonly newWords = new Set<string>();
@@ -58,8 +58,8 @@ export class WordsState {
     return this.all.filter(({ name }) => (this.takesHere?.get(name) ?? 0) < this.enough);
   }
 
-  /** Starts or ends enrolment at the user's current place. */
-  enrolHere(begun: boolean): void {
+  /** Starts or ends enrollment at the user's current place. */
+  enrollHere(begun: boolean): void {
     this.takesHere = begun ? new Map<string, number>() : null;
     this.changed.emit();
   }
@@ -82,7 +82,7 @@ export class WordsState {
   async startTake(name: string): Promise<void> {
     if (this.recording !== null) return;
     this.recording = name;
-    this.judged.delete(name); // later judgements are about this recording
+    this.judged.delete(name); // later judgments are about this recording
     this.changed.emit();
     const begun = await this.voice.record(() => {
       if (this.recording === name) this.connection.send({ type: "begin_take", name });

@@ -6,7 +6,7 @@ import { editing } from "./editing";
 import { sourceEditor } from "./source-editor";
 import { learning } from "./learning";
 import { meshes } from "./meshes";
-import { modelling } from "./modelling";
+import { modeling } from "./modeling";
 import { monitor } from "./monitor";
 import { plural } from "./plural";
 import { recording } from "./recording";
@@ -30,7 +30,7 @@ export const en = {
     views: "Views",
     joints: "Joints",
     diagnostics: "Diagnostics",
-    world: modelling.panel,
+    world: modeling.panel,
     comparison: comparison.panel,
     voice: voice.panel,
     editing: editing.panel,
@@ -49,7 +49,7 @@ export const en = {
   comparison,
   editing,
   sourceEditor,
-  modelling,
+  modeling,
   voice,
   terminal,
   learning,
@@ -63,7 +63,7 @@ export const en = {
     notDrawn: "not drawn",
     notDrawnHelp: "Linkwright keeps this display in the file, but cannot draw it.",
     enabledHelp: "Enable or disable this display.",
-    pickColor: "Pick a colour",
+    pickColor: "Pick a color",
     frames: "Known frames",
     noNames: "No names are known.",
   },
@@ -81,7 +81,7 @@ export const en = {
     centerHint: "Move all joints to their zero positions",
     radians: "rad",
     degrees: "deg",
-    metres: "m",
+    meters: "m",
     unitHint: "Unit of revolute joints",
     filter: "Filter joints",
     follows: (joint: string): string => `follows ${joint}`,

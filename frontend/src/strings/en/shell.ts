@@ -59,7 +59,7 @@ export const shell = {
   saveTitle: "Save the configuration as",
   language: "中文",
   languageHint: "Show this page in Chinese",
-  theme: "Colours",
+  theme: "Colors",
   themes: { system: "As the system", dark: "Dark", light: "Light" },
   displays: "Displays",
   sharedDisplays: "Shared with all pages",

@@ -17,7 +17,7 @@ export const sourceEditor = {
   actions: "Actions",
   actionsHint: "Fixes and refactorings at the cursor (Ctrl+.)",
   fix: "Fix…",
-  chooseColor: "Choose the colour…",
+  chooseColor: "Choose the color…",
   noActions: "There is no fix or refactoring here.",
   acted: (title: string, count: number): string => (count === 0 ? `Nothing to change: ${title}` : `${title}: changed ${plural(count, "file")}, not saved yet`),
   noDefinition: "There is no definition of this.",

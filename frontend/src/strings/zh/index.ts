@@ -7,7 +7,7 @@ import { editing } from "./editing";
 import { sourceEditor } from "./source-editor";
 import { learning } from "./learning";
 import { meshes } from "./meshes";
-import { modelling } from "./modelling";
+import { modeling } from "./modeling";
 import { monitor } from "./monitor";
 import { recording } from "./recording";
 import { sharing } from "./sharing";
@@ -22,7 +22,7 @@ import { voice } from "./voice";
 /** 简体中文 */
 export const zh: Strings = {
   panels: { ...description.panels,
-    ...tools.panels, ...monitor.panels, displays: "显示", scene: "三维视图", views: "视角", joints: "关节", diagnostics: "诊断", world: modelling.panel, comparison: comparison.panel, voice: voice.panel, editing: editing.panel, terminal: terminal.panel, program: terminal.program, lesson: learning.lesson, checks: learning.checks },
+    ...tools.panels, ...monitor.panels, displays: "显示", scene: "三维视图", views: "视角", joints: "关节", diagnostics: "诊断", world: modeling.panel, comparison: comparison.panel, voice: voice.panel, editing: editing.panel, terminal: terminal.panel, program: terminal.program, lesson: learning.lesson, checks: learning.checks },
   shell,
   sharing,
   simulation,
@@ -33,7 +33,7 @@ export const zh: Strings = {
   comparison,
   editing,
   sourceEditor,
-  modelling,
+  modeling,
   voice,
   terminal,
   learning,
@@ -65,7 +65,7 @@ export const zh: Strings = {
     centerHint: "把每个关节移到零位",
     radians: "弧度",
     degrees: "度",
-    metres: "米",
+    meters: "米",
     unitHint: "转动关节的单位",
     filter: "筛选关节",
     follows: (joint) => `跟随 ${joint}`,

@@ -29,7 +29,7 @@ def configure(parser: argparse.ArgumentParser) -> None:
         "-m",
         "--model",
         metavar="FILE|NAME",
-        help="an ONNX file, or the name of a detector: things (default), colours, aruco, apriltag, qr, line",
+        help="an ONNX file, or the name of a detector: things (default), colors, aruco, apriltag, qr, line",
     )
     parser.add_argument(
         "--labels", metavar="FILE", type=Path, help="a file with the names of the network's classes, one per line"

@@ -72,8 +72,8 @@ class ArgumentSet:
 def argument_sets(path: str | Path, finder: PackageFinder | None = None) -> tuple[ArgumentSet, ...]:
     """Return the sets of values that launch files, tests and build files pass to a description.
 
-    The search covers the files of the description's package and of neighbouring packages that depend on it. If these
-    packages have no argument sets, the search continues in the other neighbouring packages. No file is executed.
+    The search covers the files of the description's package and of neighboring packages that depend on it. If these
+    packages have no argument sets, the search continues in the other neighboring packages. No file is executed.
 
     Args:
         path: the file of the description.

@@ -87,11 +87,11 @@ class CallingFiles:
     def _known_packages(self, folder: Path, folders: tuple[Path, ...]) -> dict[str, Path]:
         """Return the folders of the packages in the workspace and in additional folders, by name."""
         return {
-            **self._neighbouring_packages(folder),
+            **self._neighboring_packages(folder),
             **{package[0]: folder for folder in folders if (package := enclosing_package(folder))},
         }
 
-    def _neighbouring_packages(self, folder: Path) -> dict[str, Path]:
+    def _neighboring_packages(self, folder: Path) -> dict[str, Path]:
         """Return the folders of packages next to a package or below the same ``src``, by name."""
         source_folder = next((parent for parent in folder.parents if parent.name == "src"), folder.parent)
         if source_folder not in self._packages:

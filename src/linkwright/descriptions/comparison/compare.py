@@ -76,7 +76,7 @@ class Side:
 def compare(old: Side, new: Side) -> Comparison:
     """Return the differences between two descriptions.
 
-    Links and joints are matched by name. An object with a new name is recognised if everything else is equal. Poses are
+    Links and joints are matched by name. An object with a new name is recognized if everything else is equal. Poses are
     compared as poses, not as text, with the tolerances in `linkwright.descriptions.comparison.facts`. Elements outside
     the robot model (``<gazebo>``, ``<ros2_control>``, sensors) are compared as XML, ignoring white space, comments and
     the order of attributes.

@@ -13,7 +13,7 @@ from linkwright.urdf.model import Collision
 from linkwright.xmltree import Element
 
 LENGTH_TOLERANCE = 1e-6
-"""The difference in metres up to which lengths are equal."""
+"""The difference in meters up to which lengths are equal."""
 ROTATION_TOLERANCE = 1e-6
 """The angle in radians up to which rotations, and directions of axes, are equal."""
 RELATIVE_TOLERANCE = 1e-6

@@ -23,7 +23,7 @@ class EditRequest:
         part: the edited part: the origin of a joint, visual, collision or inertial, or the axis of a joint.
         name: the name of the joint, or of the link that contains any other part.
         index: the index of the visual or collision in the link, starting at 0.
-        xyz: the requested position in metres, in the frame of the parent link or of the link. For the part ``axis``,
+        xyz: the requested position in meters, in the frame of the parent link or of the link. For the part ``axis``,
             the requested axis in the joint frame. None leaves the current value.
         rpy: the requested roll, pitch and yaw in rad. None leaves the current values.
         together: whether other parts that depend on the same text may change, too.

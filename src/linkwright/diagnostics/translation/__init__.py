@@ -1,7 +1,7 @@
 """The translation of diagnostics to the user's language.
 
-The package chooses the language, and contains the catalogues of texts. Messages are written in English where they are
-reported. A catalogue maps their English templates to another language; a template that is not in it stays English.
+The package chooses the language, and contains the catalogs of texts. Messages are written in English where they are
+reported. A catalog maps their English templates to another language; a template that is not in it stays English.
 Codes, positions and names from the user's input never change.
 """
 

@@ -1,4 +1,4 @@
-"""The catalogues of translations, and the choice of the language."""
+"""The catalogs of translations, and the choice of the language."""
 
 from __future__ import annotations
 
@@ -60,7 +60,7 @@ def language_of(locale: str) -> str | None:
     """Return the language of messages for a locale such as ``zh_CN.UTF-8``.
 
     The result is None if there are no messages in the locale's language. Any Chinese locale selects simplified Chinese,
-    because there is no other catalogue for Chinese.
+    because there is no other catalog for Chinese.
     """
     name = locale.strip().replace("-", "_").partition(".")[0].partition("_")[0].casefold()
     return name if name in LANGUAGES else None
@@ -68,9 +68,9 @@ def language_of(locale: str) -> str | None:
 
 @cache
 def wording(language: str) -> NullTranslations:
-    """Return the catalogue of a language.
+    """Return the catalog of a language.
 
-    The catalogue is read only once. It is empty if there is no compiled catalogue, as in a fresh checkout.
+    The catalog is read only once. It is empty if there is no compiled catalog, as in a fresh checkout.
     """
     from gettext import GNUTranslations, NullTranslations  # imported here, because English does not need it
 
@@ -112,11 +112,11 @@ def translate(diagnostic: Diagnostic, lang: str) -> Diagnostic:
     """
     if lang == "en":
         return diagnostic
-    catalogue = wording(lang)
+    catalog = wording(lang)
     return diagnostic.with_changes(
-        message=_translate_text(diagnostic.message, catalogue),
-        notes=tuple(Note(_translate_text(note.message, catalogue), note.span) for note in diagnostic.notes),
-        hint=_translate_text(diagnostic.hint, catalogue) if diagnostic.hint else diagnostic.hint,
+        message=_translate_text(diagnostic.message, catalog),
+        notes=tuple(Note(_translate_text(note.message, catalog), note.span) for note in diagnostic.notes),
+        hint=_translate_text(diagnostic.hint, catalog) if diagnostic.hint else diagnostic.hint,
     )
 
 

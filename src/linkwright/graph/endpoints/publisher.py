@@ -125,7 +125,7 @@ class Publisher(TopicEndpoint[M]):
     def wait_for_all_acked(self, timeout: Duration | None = None) -> bool:
         """Block until all reliable subscriptions have acknowledged the published messages.
 
-        Subscriptions of this process need no acknowledgement, because they receive messages immediately.
+        Subscriptions of this process need no acknowledgment, because they receive messages immediately.
 
         Args:
             timeout: the maximum wait; negative or None for no limit.

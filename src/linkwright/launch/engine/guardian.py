@@ -33,7 +33,7 @@ class Guardian:
     def start_and_mark(self, environment: dict[str, str]) -> dict[str, str]:
         """Start the guardian if needed, and return an environment with the mark of the launch.
 
-        The guardian recognises the processes of the launch by this mark.
+        The guardian recognizes the processes of the launch by this mark.
         """
         self._start()
         return {**environment, _MARK_VARIABLE: self._mark_value}

@@ -15,7 +15,7 @@ _MARK_ATTRIBUTE = "is_unavailable"
 def mark_unavailable(error: LinkwrightError) -> LinkwrightError:
     """Mark an error as caused by missing third-party software, and return it.
 
-    Callers do not mark errors about misspelt names.
+    Callers do not mark errors about misspelled names.
     """
     vars(error)[_MARK_ATTRIBUTE] = True
     return error

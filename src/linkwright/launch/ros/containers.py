@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from typing import TYPE_CHECKING, Any
 
-from linkwright.diagnostics import Diagnostic, LinkwrightError, foreign, is_misspelt, phrase
+from linkwright.diagnostics import Diagnostic, LinkwrightError, foreign, is_misspelled, phrase
 from linkwright.launch.errors.locations import error_at, with_location
 from linkwright.launch.errors.unavailable import mark_unavailable
 from linkwright.launch.model import events
@@ -235,7 +235,7 @@ def _is_third_party(finder: PackageFinder, package: str, plugin: str) -> bool:
     own_components = [f"{owner}/{name}" for owner, name in COMPONENTS]
     component = f"{package}/{plugin}"
     was_built = share is not None and is_installed(share) and not is_substitute(share)
-    return not (was_built or component in own_components or is_misspelt(component, own_components))
+    return not (was_built or component in own_components or is_misspelled(component, own_components))
 
 
 def _parse_descriptions(entity: Entity, parser: Parser, *, optional: bool = False) -> list[ComposableNode]:

@@ -20,7 +20,7 @@ from linkwright.diagnostics import (
     did_you_mean,
     display_path,
     foreign,
-    is_misspelt,
+    is_misspelled,
     joined,
     phrase,
 )
@@ -249,7 +249,7 @@ def _missing_package_error(
     diagnostic = Diagnostic("LAUNCH131", message, notes=error.diagnostics[0].notes, hint=hint)
     launch_error = as_ros_error(KeyError(message), diagnostic)
     return (
-        launch_error if is_misspelt(package, (*own_packages, *workspace_packages)) else mark_unavailable(launch_error)
+        launch_error if is_misspelled(package, (*own_packages, *workspace_packages)) else mark_unavailable(launch_error)
     )
 
 
@@ -279,7 +279,7 @@ def _missing_executable_error(
     if hint is None:
         hint = phrase("the package has {names}", names=joined(present)) if present else _NO_EXECUTABLES
     error = _lookup_error(message, notes, hint)
-    return mark_unavailable(error) if runs_without_ros and not is_misspelt(name, present) else error
+    return mark_unavailable(error) if runs_without_ros and not is_misspelled(name, present) else error
 
 
 def _missing_in_sources_error(package: str, name: str, share: Path) -> LinkwrightError:
@@ -298,7 +298,7 @@ def _missing_in_sources_error(package: str, name: str, share: Path) -> Linkwrigh
             package=package,
         )
         return mark_unavailable(_lookup_error(message, (), build_hint))
-    if not programs.is_complete and not is_misspelt(name, programs.names()):
+    if not programs.is_complete and not is_misspelled(name, programs.names()):
         return mark_unavailable(_unknown_program_error(package, name, share))
     notes = (Note(phrase("searched the entry points and installed programs of {share}", share=display_path(share))),)
     hint = did_you_mean(name, programs.names())

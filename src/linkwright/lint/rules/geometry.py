@@ -90,17 +90,17 @@ class NonPositiveSize(Rule):
                     ),
                     shape_element(shape),
                     name,
-                    hint=phrase("give a positive size in metres"),
+                    hint=phrase("give a positive size in meters"),
                     severity=Severity.INFO if is_marker else None,
                 )
 
 
 class HugeSize(Rule):
-    """A shape of more than a hundred metres.
+    """A shape of more than a hundred meters.
 
     ## Why
 
-    URDF uses metres. In a file exported from CAD, a size of 400 usually means 400 mm. A robot of a single link with
+    URDF uses meters. In a file exported from CAD, a size of 400 usually means 400 mm. A robot of a single link with
     mass zero is scenery, such as a ground, and may be of any size.
 
     ## Example
@@ -137,12 +137,12 @@ class HugeSize(Rule):
                     ),
                     shape_element(shape),
                     name,
-                    hint=phrase("lengths are in metres; if this is in millimetres, write {size:g}", size=size / 1000),
+                    hint=phrase("lengths are in meters; if this is in millimeters, write {size:g}", size=size / 1000),
                 )
 
 
 class TinySize(Rule):
-    """A shape of less than a tenth of a millimetre in every direction.
+    """A shape of less than a tenth of a millimeter in every direction.
 
     ## Why
 
@@ -183,7 +183,7 @@ class TinySize(Rule):
                     ),
                     shape_element(shape),
                     sizes[0][0],
-                    hint=phrase("lengths are in metres; remove the shape if none is intended"),
+                    hint=phrase("lengths are in meters; remove the shape if none is intended"),
                 )
 
 
@@ -237,11 +237,11 @@ class SeveralShapes(Rule):
 
 
 class ShapeTooFar(Rule):
-    """A shape or a centre of mass more than twenty metres from its link's frame.
+    """A shape or a center of mass more than twenty meters from its link's frame.
 
     ## Why
 
-    URDF uses metres. A position of several hundred is usually in millimetres.
+    URDF uses meters. A position of several hundred is usually in millimeters.
 
     ## Example
 
@@ -281,5 +281,5 @@ class ShapeTooFar(Rule):
                         ),
                         item.element.first("origin") or item.element,
                         "xyz",
-                        hint=phrase("lengths are in metres; if this is in millimetres, write '{small}'", small=scaled),
+                        hint=phrase("lengths are in meters; if this is in millimeters, write '{small}'", small=scaled),
                     )

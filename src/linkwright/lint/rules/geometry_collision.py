@@ -10,7 +10,7 @@ from linkwright.lint.extents import MARKER
 from linkwright.lint.option import Option
 from linkwright.lint.rule import Rule
 from linkwright.lint.rules.geometry import is_scenery
-from linkwright.lint.rules.meshes import MeshInMillimetres
+from linkwright.lint.rules.meshes import MeshInMillimeters
 from linkwright.lint.subject import Subject
 from linkwright.lint.walk import SURROUNDINGS
 from linkwright.loading.lean_typing import TYPE_CHECKING
@@ -34,7 +34,7 @@ class MissingCollision(Rule):
     In planners and simulators, everything passes through such a part. Links that fixed joints connect count as one
     part, so a camera on an arm does not need its own collision shape. The rule only applies if at least half of the
     moving parts have a collision shape. A part between two parts with collision shapes is not reported: the hip of a
-    leg often has none, because it is always close to its neighbours.
+    leg often has none, because it is always close to its neighbors.
 
     ## Example
 
@@ -180,7 +180,7 @@ def _origin_hint(link: Link, visual_box: Bounds) -> Phrase:
     if link.visuals[0].origin.xyz != link.collisions[0].origin.xyz:
         return phrase("give visuals and collisions the same <origin>")
     center = " ".join(f"{coordinate:.3g}" for coordinate in visual_box.center)
-    return phrase("the centre of the visuals is at {center} in the link frame", center=center)
+    return phrase("the center of the visuals is at {center} in the link frame", center=center)
 
 
 class CollisionSize(Rule):
@@ -188,7 +188,7 @@ class CollisionSize(Rule):
 
     ## Why
 
-    The visual or the collision lacks a `scale`, or a digit of a size is missing. The robot stops metres before a wall,
+    The visual or the collision lacks a `scale`, or a digit of a size is missing. The robot stops meters before a wall,
     or runs half into it.
 
     ## Example
@@ -256,9 +256,9 @@ def _links_with_both_shapes(subject: Subject) -> Iterator[Link]:
 def _comparable_links(subject: Subject) -> Iterator[tuple[Link, Bounds, Bounds]]:
     """Yield each link with comparable shapes, and the boxes of its visuals and collisions.
 
-    Links with tiny or unreadable shapes, or with meshes that are probably in millimetres, are left out.
+    Links with tiny or unreadable shapes, or with meshes that are probably in millimeters, are left out.
     """
-    largest = math.inf if is_scenery(subject) else MeshInMillimetres().option(subject, "largest", float)
+    largest = math.inf if is_scenery(subject) else MeshInMillimeters().option(subject, "largest", float)
     for link in _links_with_both_shapes(subject):
         visual_box, collision_box = _bounds(subject, link.visuals), _bounds(subject, link.collisions)
         if visual_box is None or collision_box is None or min(visual_box.diagonal, collision_box.diagonal) < MARKER:

@@ -23,7 +23,7 @@ class PlaceholderInertia(Rule):
     If all links have a tensor of ones, it is a placeholder from a tutorial. For a link of a few hundred grams, such a
     tensor is thousands of times too large, and the robot moves far too sluggishly. The inertia depends on size and
     mass, so it cannot be the same for all links. The rule only applies if at least half of the links share such a
-    tensor. Other rules then report neither the size of the tensor nor the centre of mass. If a comment on the line or
+    tensor. Other rules then report neither the size of the tensor nor the center of mass. If a comment on the line or
     above it explains the value, the finding is informational.
 
     ## Example

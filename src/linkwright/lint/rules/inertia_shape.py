@@ -47,7 +47,7 @@ class DensityTooHigh(Rule):
     ## Why
 
     Osmium, the densest material, has 22 600 kg/m3. If a link is denser, its mass is in grams, or its shapes are in a
-    unit other than metres. A mesh counts with the volume of its bounding box, so real parts are not reported. If links
+    unit other than meters. A mesh counts with the volume of its bounding box, so real parts are not reported. If links
     that are fixed to the link have shapes but no mass, the mass is compared with the box around the whole body.
 
     The finding is only informational in three cases. A comment on the line or above it explains the value, as for
@@ -128,8 +128,8 @@ class DensityTooLow(Rule):
 
     ## Why
 
-    Air has a density of 1.2 kg/m3. If a solid is lighter, its mass is in tonnes, or its shapes are in millimetres or
-    centimetres. Links that fixed joints connect are evaluated as one body, by their collision shapes if they have any.
+    Air has a density of 1.2 kg/m3. If a solid is lighter, its mass is in tonnes, or its shapes are in millimeters or
+    centimeters. Links that fixed joints connect are evaluated as one body, by their collision shapes if they have any.
 
     ## Example
 
@@ -181,12 +181,12 @@ class DensityTooLow(Rule):
 
 
 class CenterOutside(Rule):
-    """A centre of mass far outside the link's shapes.
+    """A center of mass far outside the link's shapes.
 
     ## Why
 
-    The centre of mass is within the hull of a body. A centre outside makes the robot tip over or swing for no visible
-    reason. Often the `<origin>` of `<inertial>` is in millimetres, or in the frame of another link.
+    The center of mass is within the hull of a body. A center outside makes the robot tip over or swing for no visible
+    reason. Often the `<origin>` of `<inertial>` is in millimeters, or in the frame of another link.
 
     ## Example
 
@@ -220,18 +220,18 @@ class CenterOutside(Rule):
             distance = bounds.distance(center)
             if distance > max(margin * bounds.diagonal, _LENGTH_TOLERANCE):
                 x, y, z = center
-                fits_in_millimetres = bounds.distance((x / 1000, y / 1000, z / 1000)) == 0
+                fits_in_millimeters = bounds.distance((x / 1000, y / 1000, z / 1000)) == 0
                 yield self.report(
                     phrase(
-                        "the centre of mass of link '{name}' is {length} outside its shapes",
+                        "the center of mass of link '{name}' is {length} outside its shapes",
                         name=link.name,
                         length=_length_text(distance),
                     ),
                     child_or_inertial(inertial, "origin"),
                     "xyz",
                     notes=[_extent_note(bounds)],
-                    hint=phrase("write the origin in metres; this looks like millimetres")
-                    if fits_in_millimetres and distance > 1
+                    hint=phrase("write the origin in meters; this looks like millimeters")
+                    if fits_in_millimeters and distance > 1
                     else _COMPUTE,
                 )
 
@@ -241,8 +241,8 @@ class InertialOriginMissing(Rule):
 
     ## Why
 
-    Without `<origin>`, the centre of mass is at the origin of the link frame, which is at the joint. For an arm that
-    extends from the joint, the centre of mass is then at one end of the arm. Usually, the author moved the shape and
+    Without `<origin>`, the center of mass is at the origin of the link frame, which is at the joint. For an arm that
+    extends from the joint, the center of mass is then at one end of the arm. Usually, the author moved the shape and
     forgot the mass.
 
     ## Example
@@ -295,7 +295,7 @@ class InertiaTooLarge(Rule):
     ## Why
 
     A body with all of its mass in the farthest corner of its shapes would have the largest possible moment. A larger
-    moment is in other units, such as kg mm2 or g mm2 of CAD programs, or refers to a point other than the centre of
+    moment is in other units, such as kg mm2 or g mm2 of CAD programs, or refers to a point other than the center of
     mass, or is invented. The robot then rotates far too sluggishly. Other rules report tensors that are impossible for
     any body.
 
@@ -435,7 +435,7 @@ def _is_at_the_joint(subject: Subject, link: Link, inertial: Inertial) -> bool:
 def _is_origin_off_center(bounds: Bounds) -> bool:
     """Return whether the origin is near a side of a box or outside it.
 
-    This is the case if its distance from the centre along an axis exceeds 0.45 of the edge.
+    This is the case if its distance from the center along an axis exceeds 0.45 of the edge.
     """
     axes = zip(bounds.center, bounds.size, strict=True)
     return any(abs(center) - 0.45 * size > _LENGTH_TOLERANCE for center, size in axes)
@@ -445,7 +445,7 @@ _COMPUTE = phrase("run `linkwright inertia` to compute it from the link's shapes
 
 
 def _largest_uniform_moment(bounds: Bounds, mass: float) -> float:
-    """Return the largest moment of a solid box of this mass about its centre, in kg m2."""
+    """Return the largest moment of a solid box of this mass about its center, in kg m2."""
     squares = sorted(edge**2 for edge in bounds.size)
     return mass * (squares[1] + squares[2]) / 12
 
@@ -471,14 +471,14 @@ def _extent_note(bounds: Bounds) -> Note:
     return Note(phrase("the shapes reach from {low} to {high} in the link frame", low=low, high=high))
 
 
-def _length_text(metres: float) -> Phrase:
-    return phrase("{length:.3g} m", length=metres) if metres >= 1 else phrase("{length:.3g} cm", length=metres * 100)
+def _length_text(meters: float) -> Phrase:
+    return phrase("{length:.3g} m", length=meters) if meters >= 1 else phrase("{length:.3g} cm", length=meters * 100)
 
 
-def _volume_text(cubic_metres: float) -> Phrase:
-    if cubic_metres >= 0.1:
-        return phrase("{volume:.3g} m3", volume=cubic_metres)
-    return phrase("{volume:.3g} cm3", volume=cubic_metres * 1e6)
+def _volume_text(cubic_meters: float) -> Phrase:
+    if cubic_meters >= 0.1:
+        return phrase("{volume:.3g} m3", volume=cubic_meters)
+    return phrase("{volume:.3g} cm3", volume=cubic_meters * 1e6)
 
 
 def _grouped_digits(number: float) -> str:

@@ -178,7 +178,7 @@ class IndefiniteInertia(_TensorRule):
 
     ## Use instead
 
-    Write the tensor about the centre of mass, with all components from one source. `linkwright inertia FILE` computes
+    Write the tensor about the center of mass, with all components from one source. `linkwright inertia FILE` computes
     such a tensor.
     """
 
@@ -192,7 +192,7 @@ class IndefiniteInertia(_TensorRule):
             phrase("the inertia tensor of link '{name}' is not positive definite", name=name),
             child_or_inertial(inertial, "inertia"),
             notes=[_principal_moments_note(inertial)],
-            hint=phrase("check the signs of the products, and that all components are about the centre of mass"),
+            hint=phrase("check the signs of the products, and that all components are about the center of mass"),
         )
 
 

@@ -15,7 +15,7 @@ from linkwright.urdf import Joint
 from linkwright.urdf.values import plain
 
 _TILT_TOLERANCE = 1e-6
-"""The tilt in rad below which an axis is not reported, because it is only rounded: a micrometre per metre."""
+"""The tilt in rad below which an axis is not reported, because it is only rounded: a micrometre per meter."""
 _MOVING_TYPES = ("revolute", "continuous", "prismatic", "planar")
 _LENGTH_TOLERANCE = 1e-3
 
@@ -77,7 +77,7 @@ class AxisNotUnit(Rule):
 
     ## Why
 
-    The axis is a direction, which urdfdom passes on unchanged. Some consumers normalise the axis. Others use its length
+    The axis is a direction, which urdfdom passes on unchanged. Some consumers normalize the axis. Others use its length
     as a factor: code that rotates by `angle * axis` then rotates by a wrong angle.
 
     ## Example
@@ -92,7 +92,7 @@ class AxisNotUnit(Rule):
     <axis xyz="0.707107 0.707107 0"/>
     ```
 
-    `linkwright check --fix` normalises the axis.
+    `linkwright check --fix` normalizes the axis.
     """
 
     code = "LW221"

@@ -268,7 +268,7 @@ class MimicOtherKind(Rule):
 
     ## Why
 
-    Without a multiplier, one radian becomes one metre. For a rack that follows its pinion, the multiplier is the
+    Without a multiplier, one radian becomes one meter. For a rack that follows its pinion, the multiplier is the
     pinion's radius.
 
     ## Example
@@ -298,7 +298,7 @@ class MimicOtherKind(Rule):
                 and joint.mimic is not None
                 and abs(joint.mimic.multiplier) == 1
             ):
-                units = phrase("radian per metre") if is_revolute_follower else phrase("metre per radian")
+                units = phrase("radian per meter") if is_revolute_follower else phrase("meter per radian")
                 yield self.report(
                     phrase(
                         "{type} joint '{name}' mimics {leader_type} joint '{leader_name}' at one {units}",

@@ -17,11 +17,11 @@ from linkwright.xmltree import Element
 
 
 class OriginFar(Rule):
-    """A joint whose origin is so far away that it can only be in millimetres.
+    """A joint whose origin is so far away that it can only be in millimeters.
 
     ## Why
 
-    Lengths are in metres. If an elbow is 400 m from its shoulder, the arm was exported in millimetres, and RViz shows
+    Lengths are in meters. If an elbow is 400 m from its shoulder, the arm was exported in millimeters, and RViz shows
     nothing at the expected position. The position of a robot in its `world` is not checked.
 
     ## Example
@@ -43,7 +43,7 @@ class OriginFar(Rule):
     options = (Option("farthest", 20.0, "the largest distance, in m, that is considered plausible"),)
 
     def check(self, subject: Subject) -> Iterable[Diagnostic]:
-        """Report every joint whose origin is implausibly far away in metres."""
+        """Report every joint whose origin is implausibly far away in meters."""
         max_distance = self.option(subject, "farthest", float)
         for joint, _, origin in joint_children(subject, "origin"):
             xyz = values(origin, "xyz")
@@ -51,7 +51,7 @@ class OriginFar(Rule):
                 continue
             distance = sqrt(sum(coordinate * coordinate for coordinate in xyz))
             if distance > max_distance:
-                metres = " ".join(format_number(part / 1000) for part in xyz)
+                meters = " ".join(format_number(part / 1000) for part in xyz)
                 yield self.report(
                     phrase(
                         "joint '{name}' is {distance} m from the frame of '{parent}'",
@@ -61,7 +61,7 @@ class OriginFar(Rule):
                     ),
                     origin,
                     "xyz",
-                    hint=phrase("write {metres} if the value is in millimetres", metres=metres),
+                    hint=phrase("write {meters} if the value is in millimeters", meters=meters),
                 )
 
 
@@ -116,7 +116,7 @@ class AngleRounded(Rule):
 
     ## Why
 
-    `1.57` is off by 0.046 degrees, which is half a millimetre at the end of an arm of 70 cm. Frames that should be
+    `1.57` is off by 0.046 degrees, which is half a millimeter at the end of an arm of 70 cm. Frames that should be
     parallel are slightly tilted. The error seldom matters, so the rule is off by default.
 
     ## Example

@@ -112,12 +112,12 @@ class LimitPracticallyUnbounded(Rule):
                 )
 
 
-class LimitInMillimetres(Rule):
-    """A prismatic joint with a limit so large that it can only be in millimetres.
+class LimitInMillimeters(Rule):
+    """A prismatic joint with a limit so large that it can only be in millimeters.
 
     ## Why
 
-    Lengths are in metres. A travel of 120 m is usually 120 mm, copied from a data sheet. Limits such as -100 and 100
+    Lengths are in meters. A travel of 120 m is usually 120 mm, copied from a data sheet. Limits such as -100 and 100
     are not reported, because they mean that there are no limits.
 
     ## Example
@@ -135,12 +135,12 @@ class LimitInMillimetres(Rule):
     """
 
     code = "LW213"
-    name = "limit-in-millimetres"
+    name = "limit-in-millimeters"
     holds_for_parts = True
     options = (Option("longest", 20.0, "the largest travel to either side, in m, that is considered plausible"),)
 
     def check(self, subject: Subject) -> Iterable[Diagnostic]:
-        """Report every limit of a prismatic joint that is implausible in metres."""
+        """Report every limit of a prismatic joint that is implausible in meters."""
         max_position = self.option(subject, "longest", float)
         for joint, limit in limits(subject, "prismatic"):
             range_bounds = bounds(limit)
@@ -163,6 +163,6 @@ class LimitInMillimetres(Rule):
                         limit,
                         name,
                         hint=phrase(
-                            "write {metres} if the value is in millimetres", metres=format_number(position / 1000)
+                            "write {meters} if the value is in millimeters", meters=format_number(position / 1000)
                         ),
                     )

@@ -122,7 +122,7 @@ class LaunchFunctionMissing(LaunchRule):
         functions = re.findall(r"^def\s+(\w+)", file.source.text, re.MULTILINE)
         similar_name = next(iter(nearest(FUNCTION, functions, 1)), None)
         hint = (
-            phrase("the name of the function '{similar_name}' looks misspelt", similar_name=similar_name)
+            phrase("the name of the function '{similar_name}' looks misspelled", similar_name=similar_name)
             if similar_name
             else phrase("define {function}(), which returns a LaunchDescription", function=FUNCTION)
         )

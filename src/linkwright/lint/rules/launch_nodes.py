@@ -52,7 +52,7 @@ _PYTHON_PACKAGES = frozenset({"launch", "launch_ros", "ament_index_python", "lau
 
 
 class LaunchedPackageUnknown(Rule):
-    """A launch file starts a node of a package whose name looks misspelt.
+    """A launch file starts a node of a package whose name looks misspelled.
 
     ## Why
 
@@ -264,7 +264,7 @@ def _is_known(name: str, package: PackageContext, subject: Subject) -> bool:
 
 
 def _intended_package(name: str, package: PackageContext, subject: Subject) -> str | None:
-    """Return the known package whose name was probably misspelt, or None.
+    """Return the known package whose name was probably misspelled, or None.
 
     The result is None if a package with the given name exists.
     """
@@ -275,7 +275,7 @@ def _intended_package(name: str, package: PackageContext, subject: Subject) -> s
 
 
 def _is_typo(name: str, similar_name: str) -> bool:
-    """Return whether one of two similar names is probably misspelt.
+    """Return whether one of two similar names is probably misspelled.
 
     Names with fewer than five letters are never considered similar.
     """

@@ -19,7 +19,7 @@ from linkwright.diagnostics import (
     phrase,
     quoted,
 )
-from linkwright.diagnostics.misspellings import find_misspelt
+from linkwright.diagnostics.misspellings import find_misspelled
 from linkwright.lint.fix import Edit, Fix
 from linkwright.lint.rule import Rule, Scope
 from linkwright.lint.rules.launch_files import LaunchRule
@@ -157,7 +157,7 @@ class LaunchArgumentUndeclared(LaunchRule):
     name = "launch-argument-undeclared"
 
     def check_launch(self, file: LaunchFile) -> Iterator[Diagnostic]:
-        """Yield a finding for each misspelt launch configuration in a launch file."""
+        """Yield a finding for each misspelled launch configuration in a launch file."""
         python = file.python
         if python is None:
             return
@@ -231,7 +231,7 @@ class FixedFrameUnknown(PackageRule):
                 or any(_matches_pattern(frame, pattern) for pattern in patterns)
             ):
                 continue
-            similar_name = find_misspelt(frame, names)
+            similar_name = find_misspelled(frame, names)
             if similar_name is not None:
                 message = phrase(
                     "no robot in this package has a link '{frame}', the fixed frame of '{file}'", frame=frame, file=file

@@ -1,4 +1,4 @@
-"""Rules about materials: their colours and names."""
+"""Rules about materials: their colors and names."""
 
 from __future__ import annotations
 
@@ -19,12 +19,12 @@ from linkwright.xmltree import Element
 
 _INVISIBLE_NAME = lazy_pattern(r"invisib|transparen|hidden|unseen|clear|none|null|empty|dummy", re.IGNORECASE)
 
-_MAX_COLOUR_DIFFERENCE = 0.1001
-"""The largest difference of a channel from 0 to 1 at which colours look alike, with room for rounding."""
+_MAX_COLOR_DIFFERENCE = 0.1001
+"""The largest difference of a channel from 0 to 1 at which colors look alike, with room for rounding."""
 
 
 def definitions(subject: Subject) -> Iterator[Material]:
-    """Yield every material with a colour or texture, first at robot level, then in visuals."""
+    """Yield every material with a color or texture, first at robot level, then in visuals."""
     elements = [*subject.elements("material")]
     for link in subject.elements("link"):
         for visual in link.elements("visual"):
@@ -44,13 +44,13 @@ def visuals(subject: Subject) -> Iterator[tuple[Link, Visual]]:
 
 
 class RedefinedMaterial(Rule):
-    """A material that is defined again with a different colour.
+    """A material that is defined again with a different color.
 
     ## Why
 
     The first definition of a name in the file applies to all uses of the name, even to a visual that defines another
-    colour. Therefore, the second colour is never shown, and users complain that RViz shows the wrong colour. If the two
-    colours look the same, the finding is only informational.
+    color. Therefore, the second color is never shown, and users complain that RViz shows the wrong color. If the two
+    colors look the same, the finding is only informational.
 
     ## Example
 
@@ -64,7 +64,7 @@ class RedefinedMaterial(Rule):
 
     ## Use instead
 
-    Give each colour its own name, such as `dark_grey`.
+    Give each color its own name, such as `dark_gray`.
     """
 
     code = "LW501"
@@ -98,17 +98,17 @@ class RedefinedMaterial(Rule):
                 "name",
                 notes=[
                     Note(
-                        phrase("the first definition, '{colour}', is used", colour=_appearance_text(first_definition)),
+                        phrase("the first definition, '{color}', is used", color=_appearance_text(first_definition)),
                         first_definition.element.span(),
                     )
                 ],
-                hint=phrase("give this material another name, or leave its colour out"),
+                hint=phrase("give this material another name, or leave its color out"),
                 severity=Severity.INFO if _looks_alike(first_definition, material) else None,
             )
 
 
 class InvisibleMaterial(Rule):
-    """A colour with an alpha of zero.
+    """A color with an alpha of zero.
 
     ## Why
 
@@ -159,11 +159,11 @@ class InvisibleMaterial(Rule):
 
 
 class EmptyReference(Rule):
-    """A material with an empty name and no colour.
+    """A material with an empty name and no color.
 
     ## Why
 
-    The material refers to nothing, so each tool shows the part in its default colour.
+    The material refers to nothing, so each tool shows the part in its default color.
 
     ## Example
 
@@ -189,7 +189,7 @@ class EmptyReference(Rule):
                 if element.first("color") is None and element.first("texture") is None:
                     yield self.report(
                         phrase(
-                            "a material of link '{link}' has neither a name nor a colour",
+                            "a material of link '{link}' has neither a name nor a color",
                             link=link.attributes.get("name", ""),
                         ),
                         element,
@@ -204,7 +204,7 @@ class UnusedMaterial(Rule):
 
     ## Why
 
-    Often, a robot only uses some colours of a palette, which is harmless. However, if the material was intended for one
+    Often, a robot only uses some colors of a palette, which is harmless. However, if the material was intended for one
     part, this part probably names the wrong material.
 
     ## Example
@@ -249,7 +249,7 @@ class NoMaterial(Rule):
 
     ## Why
 
-    Such a shape has no colour, and each tool chooses a different one: RViz white or red, Gazebo grey.
+    Such a shape has no color, and each tool chooses a different one: RViz white or red, Gazebo gray.
 
     ## Example
 
@@ -277,8 +277,8 @@ class NoMaterial(Rule):
     def check(self, subject: Subject) -> Iterable[Diagnostic]:
         for link, visual in visuals(subject):
             geometry = visual.geometry
-            has_no_colour = not isinstance(geometry, Mesh) or geometry.filename.lower().endswith(".stl")
-            if has_no_colour and material_element(visual) is None:
+            has_no_color = not isinstance(geometry, Mesh) or geometry.filename.lower().endswith(".stl")
+            if has_no_color and material_element(visual) is None:
                 yield self.report(
                     phrase("a visual of link '{name}' has no material", name=link.name),
                     visual.element,
@@ -291,7 +291,7 @@ class MaterialNamesDifferInCase(Rule):
 
     ## Why
 
-    `Grey` and `grey` are two different materials in URDF. If both exist, probably only one was intended.
+    `Gray` and `gray` are two different materials in URDF. If both exist, probably only one was intended.
 
     ## Example
 
@@ -335,15 +335,15 @@ class MaterialNamesDifferInCase(Rule):
 
 
 def _difference(first: Material, second: Material) -> Phrase:
-    return phrase("colour") if first.rgba != second.rgba else phrase("texture")
+    return phrase("color") if first.rgba != second.rgba else phrase("texture")
 
 
 def _looks_alike(first: Material, second: Material) -> bool:
-    """Return whether two colours can only be distinguished side by side."""
+    """Return whether two colors can only be distinguished side by side."""
     if first.rgba is None or second.rgba is None or first.texture != second.texture:
         return False
     return all(
-        abs(first_channel - second_channel) <= _MAX_COLOUR_DIFFERENCE
+        abs(first_channel - second_channel) <= _MAX_COLOR_DIFFERENCE
         for first_channel, second_channel in zip(first.rgba, second.rgba, strict=True)
     )
 

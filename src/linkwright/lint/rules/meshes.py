@@ -75,7 +75,7 @@ class ZeroScale(Rule):
                     use.element,
                     "scale",
                     hint=phrase(
-                        "give three factors, such as '1 1 1', or '0.001 0.001 0.001' for a mesh in millimetres"
+                        "give three factors, such as '1 1 1', or '0.001 0.001 0.001' for a mesh in millimeters"
                     ),
                 )
 
@@ -170,12 +170,12 @@ class UnevenScale(Rule):
                 )
 
 
-class MeshInMillimetres(Rule):
+class MeshInMillimeters(Rule):
     """A mesh that is larger than a house after scaling.
 
     ## Why
 
-    STL and OBJ have no unit, and CAD programs write millimetres. URDF interprets the numbers as metres, so the part is
+    STL and OBJ have no unit, and CAD programs write millimeters. URDF interprets the numbers as meters, so the part is
     a thousand times too large. The camera of RViz is then inside the part and shows nothing. A robot of a single link
     with mass zero is scenery, such as a terrain, and may have any size.
 
@@ -193,7 +193,7 @@ class MeshInMillimetres(Rule):
     """
 
     code = "LW433"
-    name = "mesh-in-millimetres"
+    name = "mesh-in-millimeters"
     options = (Option("largest", 50.0, "largest edge of the box around a mesh, in m"),)
 
     def check(self, subject: Subject) -> Iterable[Diagnostic]:
@@ -212,17 +212,17 @@ class MeshInMillimetres(Rule):
                     ),
                     use.element,
                     "filename",
-                    hint=phrase('write scale="{scale}" if the file is in millimetres', scale=scale),
+                    hint=phrase('write scale="{scale}" if the file is in millimeters', scale=scale),
                     fix=_scale_fix(use, scale),
                 )
 
 
 class MeshTooSmall(Rule):
-    """A mesh that is smaller than a millimetre after scaling.
+    """A mesh that is smaller than a millimeter after scaling.
 
     ## Why
 
-    The mesh is in metres, but was scaled by a thousandth as if it were in millimetres, so it is almost invisible.
+    The mesh is in meters, but was scaled by a thousandth as if it were in millimeters, so it is almost invisible.
 
     ## Example
 
@@ -260,7 +260,7 @@ class MeshTooSmall(Rule):
                     ),
                     use.element,
                     "scale" if "scale" in use.element.attributes else "filename",
-                    hint=phrase("leave 'scale' out: the file is in metres already")
+                    hint=phrase("leave 'scale' out: the file is in meters already")
                     if is_scaled_down
                     else phrase('write scale="{scale}"', scale=scale),
                     fix=_scale_fix(use, scale),

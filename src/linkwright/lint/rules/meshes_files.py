@@ -89,9 +89,9 @@ class UnknownPackage(Rule):
 
     ## Why
 
-    Without the package, the mesh is missing. Either the name of the package is misspelt, or its workspace is missing or
+    Without the package, the mesh is missing. Either the name of the package is misspelled, or its workspace is missing or
     not sourced, or a folder such as `meshes` is written in place of the package's name. If the `package.xml` of this or
-    a neighbouring package declares the package, it is only missing on this machine, and the finding is informational.
+    a neighboring package declares the package, it is only missing on this machine, and the finding is informational.
 
     ## Example
 

@@ -301,7 +301,7 @@ class NameSuffixDoubled(Rule):
 
     ## Why
 
-    A macro appends `_link` to a parameter that already ends with `_link`. The name works, but is easily misspelt.
+    A macro appends `_link` to a parameter that already ends with `_link`. The name works, but is easily misspelled.
 
     ## Example
 

@@ -1,6 +1,6 @@
 """Rules about wheels: whether their names, positions and axes agree.
 
-A wheel is recognised by its name alone: the name of the joint or of its child link contains the word "wheel", and no
+A wheel is recognized by its name alone: the name of the joint or of its child link contains the word "wheel", and no
 word for a steering or suspension joint. All positions are in the frame of ``base_link`` (or of the root), with every
 joint at zero. In this frame, x points forward and y to the left (REP 103).
 """
@@ -142,7 +142,7 @@ class WheelHasLimits(Rule):
     ## Why
 
     A revolute joint stops at its limits, so the wheel turns once and stops. A `continuous` joint rotates without
-    limits, as a wheel does. Steering joints may have limits and are not reported. A steering joint is recognised by its
+    limits, as a wheel does. Steering joints may have limits and are not reported. A steering joint is recognized by its
     axis: the axis differs from that of the wheel's cylinder or, if the wheel has no cylinder, does not point to the
     side. A part that carries wheels, such as the arm of a rover, is not a wheel.
 

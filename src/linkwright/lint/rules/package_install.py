@@ -42,7 +42,7 @@ class PatternMatchesNothing(PackageRule):
     ## Why
 
     `glob` does not report that it finds nothing, so the intended files are missing after the build. A launch file or an
-    include then fails with "no such file". A misspelt folder is the usual cause. If another pattern finds files in the
+    include then fails with "no such file". A misspelled folder is the usual cause. If another pattern finds files in the
     same folder, the finding is informational.
 
     ## Example

@@ -1,6 +1,6 @@
-"""Rules about static stability: wheels on the ground, and the centre of mass above them.
+"""Rules about static stability: wheels on the ground, and the center of mass above them.
 
-The robot is at rest, with all joints at zero. Wheels and casters are recognised by their names, and their contacts with
+The robot is at rest, with all joints at zero. Wheels and casters are recognized by their names, and their contacts with
 the ground are computed from their cylinders and spheres. If a wheel or caster has only a mesh, nothing is reported.
 """
 
@@ -141,7 +141,7 @@ def _lifted_wheels(subject: Subject) -> set[str]:
 
 
 class CenterBeyondWheels(Rule):
-    """A centre of mass that is not above the area between the wheels and casters.
+    """A center of mass that is not above the area between the wheels and casters.
 
     ## Why
 
@@ -178,7 +178,7 @@ class CenterBeyondWheels(Rule):
             )
             yield self.report(
                 phrase(
-                    "the centre of mass of the robot is {distance:.3g} cm beyond its wheels, so the robot tips over",
+                    "the center of mass of the robot is {distance:.3g} cm beyond its wheels, so the robot tips over",
                     distance=distance * 100,
                 ),
                 heaviest_link.element,
@@ -198,7 +198,7 @@ class CenterBeyondWheels(Rule):
 
 
 def _depth(shape: object, upward: float) -> float | None:
-    """Return the extent of a wheel's shape below its centre in m, or None for other shapes.
+    """Return the extent of a wheel's shape below its center in m, or None for other shapes.
 
     `upward` is the upward component of the shape's z axis.
     """
@@ -210,7 +210,7 @@ def _depth(shape: object, upward: float) -> float | None:
 
 
 def _center_of_mass(robot: Robot, frames: Mapping[str, Placement]) -> Point | None:
-    """Return x and y in m of a robot's centre of mass in the base frame, or None if massless."""
+    """Return x and y in m of a robot's center of mass in the base frame, or None if massless."""
     base = frames.get("base_link", frames[robot.root])
     total = x = y = 0.0
     for name, link in robot.links.items():

@@ -12,12 +12,12 @@ from linkwright.lint.unknown_names import (
     attribute_name_span,
     intended_attribute,
     is_expected_attribute,
-    is_misspelt,
+    is_misspelled,
     reader_hints,
 )
 
 
-class MisspeltAttribute(Rule):
+class MisspelledAttribute(Rule):
     """An attribute whose name is almost that of a URDF attribute.
 
     ## Why
@@ -39,11 +39,11 @@ class MisspeltAttribute(Rule):
     """
 
     code = "LW106"
-    name = "misspelt-attribute"
+    name = "misspelled-attribute"
     holds_for_parts = True
 
     def check(self, subject: Subject) -> Iterable[Diagnostic]:
-        """Report every unread attribute that is probably a misspelt URDF attribute."""
+        """Report every unread attribute that is probably a misspelled URDF attribute."""
         hints = reader_hints(subject)
         for schema_element, attribute in subject.structure.unknown_attributes:
             intended = intended_attribute(schema_element, attribute)
@@ -56,7 +56,7 @@ class MisspeltAttribute(Rule):
                 span=span,
                 hint=phrase("did you mean {names}?", names=quoted(intended)),
                 fix=rename_attribute(schema_element.element, attribute, intended, safe=False)
-                if is_misspelt(attribute, intended)
+                if is_misspelled(attribute, intended)
                 else None,
             )
 
@@ -86,7 +86,7 @@ class UnknownAttribute(Rule):
     severity = Severity.INFO
 
     def check(self, subject: Subject) -> Iterable[Diagnostic]:
-        """Report every unread attribute that `MisspeltAttribute` does not report."""
+        """Report every unread attribute that `MisspelledAttribute` does not report."""
         hints = reader_hints(subject)
         for schema_element, attribute in subject.structure.unknown_attributes:
             if not is_expected_attribute(attribute):

@@ -1,4 +1,4 @@
-"""Rules about elements that URDF readers ignore: misspelt, misplaced or unknown ones."""
+"""Rules about elements that URDF readers ignore: misspelled, misplaced or unknown ones."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ from linkwright.lint.unknown_names import (
     PARENT_TAGS,
     intended_element,
     is_expected_element,
-    is_misspelt,
+    is_misspelled,
     location_phrase,
     reader_hints,
 )
@@ -23,7 +23,7 @@ from linkwright.urdf import schema
 from linkwright.xmltree import Element
 
 
-class MisspeltElement(Rule):
+class MisspelledElement(Rule):
     """An element whose name is almost that of a URDF element.
 
     ## Why
@@ -46,7 +46,7 @@ class MisspeltElement(Rule):
     """
 
     code = "LW104"
-    name = "misspelt-element"
+    name = "misspelled-element"
     holds_for_parts = True
 
     def check(self, subject: Subject) -> Iterable[Diagnostic]:
@@ -60,7 +60,7 @@ class MisspeltElement(Rule):
                 phrase("<{tag}> in {parent} is not read", tag=child.tag, parent=location_phrase(schema_element)),
                 child,
                 hint=phrase("did you mean <{tag}>?", tag=intended),
-                fix=rename_element(child, intended, safe=False) if is_misspelt(child.tag, intended) else None,
+                fix=rename_element(child, intended, safe=False) if is_misspelled(child.tag, intended) else None,
             )
 
 
@@ -188,7 +188,7 @@ class MaterialInCollision(Rule):
 
     ## Why
 
-    Collision shapes have no colour, so the material is not read. A material that is defined only in a collision cannot
+    Collision shapes have no color, so the material is not read. A material that is defined only in a collision cannot
     be used elsewhere. Some macros write the same content for visuals and collisions, which is harmless, so the rule is
     off by default.
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterable, Iterator
 
 from linkwright.diagnostics import Diagnostic, phrase, quoted
-from linkwright.diagnostics.misspellings import find_misspelt
+from linkwright.diagnostics.misspellings import find_misspelled
 from linkwright.lint.extension_names import ATTRIBUTES, CHILDREN
 from linkwright.lint.fix import rename_attribute, rename_element
 from linkwright.lint.rule import Rule
@@ -14,8 +14,8 @@ from linkwright.lint.unknown_names import attribute_name_span
 from linkwright.xmltree import Element
 
 
-class MisspeltExtension(Rule):
-    """A misspelt element or attribute inside `<gazebo>`, `<transmission>` or `<ros2_control>`.
+class MisspelledExtension(Rule):
+    """A misspelled element or attribute inside `<gazebo>`, `<transmission>` or `<ros2_control>`.
 
     ## Why
 
@@ -38,7 +38,7 @@ class MisspeltExtension(Rule):
     """
 
     code = "LW109"
-    name = "misspelt-extension"
+    name = "misspelled-extension"
     holds_for_parts = True
 
     def check(self, subject: Subject) -> Iterable[Diagnostic]:
@@ -59,7 +59,7 @@ class MisspeltExtension(Rule):
                     pending.append((child, f"{path}/{child.tag}"))
 
     def _element_findings(self, child: Element, parent: Element, allowed_tags: tuple[str, ...]) -> Iterator[Diagnostic]:
-        intended_tag = find_misspelt(child.tag, allowed_tags)
+        intended_tag = find_misspelled(child.tag, allowed_tags)
         if intended_tag:
             yield self.report(
                 phrase(
@@ -77,7 +77,7 @@ class MisspeltExtension(Rule):
         for attribute in element.attributes:
             if attribute in allowed:
                 continue
-            intended = find_misspelt(attribute, [name for name in allowed if name not in element.attributes])
+            intended = find_misspelled(attribute, [name for name in allowed if name not in element.attributes])
             if intended:
                 yield self.report(
                     phrase("'{attribute}' in <{tag}> is not read", attribute=attribute, tag=element.tag),

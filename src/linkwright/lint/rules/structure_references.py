@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterable, Iterator
 
 from linkwright.diagnostics import Diagnostic, Note, Severity, did_you_mean, phrase, quoted
-from linkwright.diagnostics.misspellings import find_misspelt
+from linkwright.diagnostics.misspellings import find_misspelled
 from linkwright.lint.extension_names import INTERFACES, JOINT_ELEMENTS, LINK_ELEMENTS
 from linkwright.lint.fix import replace_value
 from linkwright.lint.rule import Rule
@@ -16,7 +16,7 @@ from linkwright.xmltree.patches import element_range
 
 _NUMBER = lazy_pattern(r"\d+")
 _IMPORTANT_ELEMENTS = frozenset({"sensor", "plugin", "preserveFixedJoint", "disableFixedJointLumping"})
-"""Elements whose absence affects a user, unlike the absence of a colour."""
+"""Elements whose absence affects a user, unlike the absence of a color."""
 _PLACEHOLDER_CHARACTERS = frozenset("${}")
 """Characters of a name with a placeholder that a program did not fill in."""
 
@@ -68,7 +68,7 @@ class GazeboReferenceUnknown(Rule):
 
     Gazebo silently drops the content of the element, so a wheel has no friction, or a camera has no sensor. The finding
     is only informational if the reference probably belongs to a part that this robot does not have: no name is
-    similar, only colours and surfaces are lost, and most references of the description are valid.
+    similar, only colors and surfaces are lost, and most references of the description are valid.
 
     ## Example
 
@@ -99,7 +99,7 @@ class GazeboReferenceUnknown(Rule):
             kind = _intended_kind(element, name)
             candidates = {"link": links, "joint": joints}.get(kind, links | joints)
             plausible_names = _without_siblings(name, candidates)
-            intended = find_misspelt(name, plausible_names)
+            intended = find_misspelled(name, plausible_names)
             suggestion = did_you_mean(name, plausible_names)
             yield self.report(
                 phrase("<gazebo> refers to '{name}', which is neither a link nor a joint", name=name),
@@ -184,7 +184,7 @@ class ControlJointUnknown(Rule):
         for _, joint in _control_joints(subject):
             name = joint.attributes.get("name")
             if name and name not in joint_names:
-                intended = find_misspelt(name, joint_names)
+                intended = find_misspelled(name, joint_names)
                 yield self.report(
                     phrase("<ros2_control> names the joint '{name}', which the robot does not have", name=name),
                     joint,
@@ -195,7 +195,7 @@ class ControlJointUnknown(Rule):
                 )
 
 
-class ControlInterfaceMisspelt(Rule):
+class ControlInterfaceMisspelled(Rule):
     """An interface in `<ros2_control>` whose name is almost that of a standard interface.
 
     ## Why
@@ -217,7 +217,7 @@ class ControlInterfaceMisspelt(Rule):
     """
 
     code = "LW123"
-    name = "control-interface-misspelt"
+    name = "control-interface-misspelled"
     holds_for_parts = True
 
     def check(self, subject: Subject) -> Iterable[Diagnostic]:
@@ -227,7 +227,7 @@ class ControlInterfaceMisspelt(Rule):
                 if interface.tag not in ("command_interface", "state_interface"):
                     continue
                 name = interface.attributes.get("name", "")
-                intended = find_misspelt(name, INTERFACES) if name.isalpha() and name not in INTERFACES else None
+                intended = find_misspelled(name, INTERFACES) if name.isalpha() and name not in INTERFACES else None
                 if intended is not None:
                     yield self.report(
                         phrase("no controller requests an interface '{name}'", name=name),
@@ -271,8 +271,8 @@ class ControlPluginMissing(Rule):
         """Report every ros2_control without a plugin."""
         for system in subject.elements("ros2_control"):
             hardware = system.first("hardware")
-            if hardware is None and any(find_misspelt(child.tag, ["hardware"]) for child in system.elements()):
-                continue  # a misspelt <hardware>, which another rule reports
+            if hardware is None and any(find_misspelled(child.tag, ["hardware"]) for child in system.elements()):
+                continue  # a misspelled <hardware>, which another rule reports
             plugin = hardware.first("plugin") if hardware is not None else None
             if plugin is None and ("<hardware" if hardware is None else "<plugin") in _source_text(system):
                 continue  # the file has this element in a branch that xacro left out

@@ -14,7 +14,7 @@ from math import isclose, pi
 from pathlib import Path
 
 from linkwright.diagnostics import Diagnostic, Phrase, Severity, phrase
-from linkwright.diagnostics.misspellings import find_misspelt
+from linkwright.diagnostics.misspellings import find_misspelled
 from linkwright.lint.fix import remove_element
 from linkwright.lint.rules.xacro_rule import XacroRule
 from linkwright.loading.deferred import lazy_pattern
@@ -345,7 +345,7 @@ def _belongs_to_table(definition: Definition, file: FileFacts, used_names: froze
     The properties of a table are in one file, and their names differ only in the last word.
     """
     table, _, _ = definition.name.rpartition("_")
-    if "_" not in table or find_misspelt(definition.name, used_names) is not None:
+    if "_" not in table or find_misspelled(definition.name, used_names) is not None:
         return False
     siblings = {definition.name for definition in file.properties if definition.name.rpartition("_")[0] == table} - {
         definition.name
@@ -374,7 +374,7 @@ def _is_first(definition: Definition, file: FileFacts) -> bool:
 
 
 def _hint(name: str, used_names: frozenset[str], form: str = "${...}") -> Phrase:
-    intended = find_misspelt(name, used_names)
+    intended = find_misspelled(name, used_names)
     if intended is not None:
         return phrase("rename it to '{close}', which is used, or remove it", close=intended)
     return phrase("use it with {form}, or remove it", form=form)

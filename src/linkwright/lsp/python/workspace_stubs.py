@@ -6,7 +6,7 @@ from collections.abc import Sequence
 from pathlib import Path
 
 from linkwright.files.scratch_folders import ScratchFolder
-from linkwright.messages import catalogue
+from linkwright.messages import catalog
 from linkwright.messages.definitions.interfaces import KINDS
 from linkwright.messages.definitions.library import Library
 from linkwright.messages.stub_files import package_stubs
@@ -57,6 +57,6 @@ class WorkspaceStubs:
         with use_finder(finder):
             for package, share in finder.packages().items():
                 names = [f"{package}/{kind}/{name}" for kind in KINDS for name in interface_files(share, kind)]
-                if names and package not in catalogue.packages():
+                if names and package not in catalog.packages():
                     found |= package_stubs(package, names, library)
         return found

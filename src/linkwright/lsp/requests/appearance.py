@@ -1,4 +1,4 @@
-"""The appearance of a text: semantic highlighting and colours."""
+"""The appearance of a text: semantic highlighting and colors."""
 
 from __future__ import annotations
 
@@ -43,7 +43,7 @@ def semantic_tokens(positions: TextPositions, highlights: Iterable[Highlight]) -
 
 
 def colors(positions: TextPositions) -> list[types.ColorInformation]:
-    """Return the colours in a text."""
+    """Return the colors in a text."""
     return [
         types.ColorInformation(positions.range(color.start, color.end), types.Color(*color.rgba))
         for color in colors_in(positions.text)
@@ -51,7 +51,7 @@ def colors(positions: TextPositions) -> list[types.ColorInformation]:
 
 
 def color_edits(positions: TextPositions, range_: types.Range, color: types.Color) -> list[types.ColorPresentation]:
-    """Return the edit that replaces the colour in a range, with alpha if it is needed."""
+    """Return the edit that replaces the color in a range, with alpha if it is needed."""
     old_text = positions.text[positions.offset(range_.start) : positions.offset(range_.end)]
     with_alpha = len(old_text.split()) == 4 or color.alpha != 1
     text = format_color((color.red, color.green, color.blue, color.alpha), with_alpha=with_alpha)

@@ -26,7 +26,7 @@ from linkwright.diagnostics import (
     quoted,
     term,
 )
-from linkwright.messages import catalogue
+from linkwright.messages import catalog
 from linkwright.messages.definitions.interfaces import (
     KINDS,
     Action,
@@ -126,9 +126,9 @@ class Library:
         """
         type_names = {
             f"{owner}/{name}"
-            for owner in catalogue.packages()
+            for owner in catalog.packages()
             if package is None or owner == package
-            for name in catalogue.texts(owner)
+            for name in catalog.texts(owner)
             if name.startswith(kind + "/")
         }
         for owner, share in self._workspace_packages(package):
@@ -182,7 +182,7 @@ class Library:
 
     def _shipped_source(self, base: str) -> SourceText | None:
         package, _, rest = base.partition("/")
-        text = catalogue.texts(package).get(rest)
+        text = catalog.texts(package).get(rest)
         return None if text is None else SourceText(f"<{base}>", text)
 
     def _workspace_source(self, base: str) -> SourceText | None:
@@ -194,7 +194,7 @@ class Library:
     def has_message(self, type_name: str) -> bool:
         """Return whether a message with a full name exists, even if its file has mistakes."""
         package, _, rest = type_name.partition("/")
-        if rest in catalogue.texts(package) or type_name in self._embedded_sources:
+        if rest in catalog.texts(package) or type_name in self._embedded_sources:
             return True
         share = self._finder().find(package)
         return share is not None and interface_file(share, *rest.split("/")) is not None
@@ -259,7 +259,7 @@ class Library:
                 if len(interface_names) > 8:
                     hint = phrase("{list}, ...", list=hint)
         else:
-            packages = {*catalogue.packages(), *self._finder().packages()}
+            packages = {*catalog.packages(), *self._finder().packages()}
             if name.package in packages:
                 notes.append(
                     Note(phrase("the package '{package}' has no {kind}", package=name.package, kind=kind_text))

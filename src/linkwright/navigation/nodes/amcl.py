@@ -366,7 +366,7 @@ class AmclNode(ManagedNode):
         self._filter.set_particles(self._map.random_poses(self._settings.filter.max_particles, self._filter.random))
         self._reset()
         self._pose = self._pose or (0.0, 0.0, 0.0)
-        self.get_logger().info("Global initialisation done!")
+        self.get_logger().info("Global initialization done!")
         return response
 
     def _on_no_motion(self, _request: Any, response: Any) -> Any:

@@ -1,4 +1,4 @@
-"""Licences by SPDX identifier, and their texts for the ``LICENSE`` of a new package."""
+"""Licenses by SPDX identifier, and their texts for the ``LICENSE`` of a new package."""
 
 from __future__ import annotations
 

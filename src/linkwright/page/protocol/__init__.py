@@ -3,7 +3,7 @@
 Control messages are JSON objects with a ``type``. The TypeScript types in ``frontend/src/protocol/`` are generated from
 this package by ``tools/protocol_types.py``. Transforms and the content of displays are sent as binary frames, packed
 by `pack_transforms` and `pack_data`. A frame that is too large for its connection is sent in chunks, packed by
-`pack_chunk`. Lengths are in metres, angles in radians, quaternions are x, y, z, w, and colours are from 0 to 1.
+`pack_chunk`. Lengths are in meters, angles in radians, quaternions are x, y, z, w, and colors are from 0 to 1.
 
 The page opens one WebSocket at ``/ws`` (same origin, with the token in the query). `Hello` is sent first, then `Tree`,
 the `RobotScene` of every RobotModel, `ViewState`, `Joints`, `JointPositions`, `Diagnostics`, `FrameTable` and the last

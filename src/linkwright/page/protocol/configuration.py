@@ -27,7 +27,7 @@ class TopicOffer(Record):
 class Property(Record):
     """A row of a property tree, as RViz shows it.
 
-    `id` is unique in the page and stable for the lifetime of a display. Colours are ``#rrggbb``. A `group` has no
+    `id` is unique in the page and stable for the lifetime of a display. Colors are ``#rrggbb``. A `group` has no
     value. A row of any other kind may also have children (``Line Style`` > ``Line Width``).
 
     A row with `details` has the name of a frame, link or joint. The page adds read-only rows below it, such as
@@ -86,7 +86,7 @@ class Display(Record):
     `supported` is false for a class that this program does not draw. Such a display stays in the file and is listed as
     unsupported. Rows of particular classes:
 
-    - RobotModel: a shape is drawn with the alpha of its colour, times ``Alpha``, times the link's ``Alpha`` below
+    - RobotModel: a shape is drawn with the alpha of its color, times ``Alpha``, times the link's ``Alpha`` below
       ``Links``. The row of a link with shapes is a ``bool`` (draw the shapes); the row of any other link is a
       ``group``.
     - TF: a frame is drawn if it has a row below ``Frames`` and the row is on. Frames excluded by the filters have no

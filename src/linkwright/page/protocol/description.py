@@ -76,7 +76,7 @@ class Written(Record):
 
 
 class LinkInertia(Record):
-    """The mass of a link in kg, its centre of mass in its frame in m, and its equivalent box.
+    """The mass of a link in kg, its center of mass in its frame in m, and its equivalent box.
 
     `box` has the edge lengths in m of the uniform box with the same inertia, and `quaternion` is the orientation of
     the box in the link. `box` is empty if no body can have this inertia.

@@ -6,7 +6,7 @@ from linkwright.page.protocol.message import Bytes, DataContent, Floats
 
 
 class PointMarks(DataContent):
-    """The points of PointStamped in the frame of the content, metres, shape (N, 3)."""
+    """The points of PointStamped in the frame of the content, meters, shape (N, 3)."""
 
     positions: Floats
 
@@ -30,13 +30,13 @@ class ParticleMarks(DataContent):
 
 
 class PolygonLine(DataContent):
-    """The corners of Polygon in the frame of the content, metres, shape (N, 3)."""
+    """The corners of Polygon in the frame of the content, meters, shape (N, 3)."""
 
     points: Floats
 
 
 class GridSurface(DataContent):
-    """The surface of GridMap: the centres of the cells in the frame of the content, row by row.
+    """The surface of GridMap: the centers of the cells in the frame of the content, row by row.
 
     `points` has shape (rows * columns, 3). `colors` has shape (rows * columns, 4): red, green, blue, and 0 for a
     missing cell. If `filled` is false, only lines are drawn.
@@ -50,7 +50,7 @@ class GridSurface(DataContent):
 
 
 class RangeCone(DataContent):
-    """The cone of Range, along x in the frame of the content, metres and radians.
+    """The cone of Range, along x in the frame of the content, meters and radians.
 
     There is no cone if `range` is 0.
     """

@@ -11,15 +11,15 @@ class CameraModel(Record):
     """The pinhole camera of an image, from the projection matrix of its CameraInfo.
 
     Sizes, focal lengths and the principal point are in pixels. `offset_x` and `offset_y` are the camera's distance from
-    the frame of the image, in metres to the right and down.
+    the frame of the image, in meters to the right and down.
     """
 
     width: float
     height: float
     focal_x: float
     focal_y: float
-    centre_x: float
-    centre_y: float
+    center_x: float
+    center_y: float
     offset_x: float
     offset_y: float
 
@@ -56,7 +56,7 @@ class ImageSize(PageMessage):
 class OccupancyMap(DataContent):
     """The cells of Map as bytes of int8 values, row by row from the corner at the origin.
 
-    `origin` is the pose of this corner in the frame of the message: x y z (metres) qx qy qz qw.
+    `origin` is the pose of this corner in the frame of the message: x y z (meters) qx qy qz qw.
     """
 
     width: int

@@ -27,7 +27,7 @@ MarkerKind = Literal[
 class MarkerMesh(Record):
     """The file of a mesh marker: an address, or the bytes contained in the message.
 
-    `embedded` is whether the materials in the mesh file are used, tinted by the colour of the marker.
+    `embedded` is whether the materials in the mesh file are used, tinted by the color of the marker.
     """
 
     format: str
@@ -117,7 +117,7 @@ class MarkerMenuEntry(Record):
 class InteractiveMarkerShape(DataContent, tag="interactive_marker"):
     """An interactive marker in the frame of the content.
 
-    `pose` is x y z qx qy qz qw, and `scale` is in metres.
+    `pose` is x y z qx qy qz qw, and `scale` is in meters.
     """
 
     name: str

@@ -217,7 +217,7 @@ class ProgramIsLate(ServerMessage):
 
 
 class Received(PageMessage):
-    """The acknowledgement of messages: the number of messages that the page has received.
+    """The acknowledgment of messages: the number of messages that the page has received.
 
     It is sent after the first message and after each large message.
     """

@@ -34,7 +34,7 @@ class NavigationState(ServerMessage):
         localization: the state of lifecycle_manager_localization.
         goal: the state of the last goal of ``navigate_to_pose``.
         eta: the remaining time in seconds. This value and the next three are None if there is no feedback.
-        distance: the remaining distance, metres.
+        distance: the remaining distance, meters.
         taken: the elapsed time, seconds.
         recoveries: the number of recoveries so far.
         busy: whether a command is being carried out.

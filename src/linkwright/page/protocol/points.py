@@ -8,26 +8,26 @@ from linkwright.page.protocol.message import Bytes, DataContent, Floats, PageMes
 
 
 class CloudPoints(DataContent):
-    """The points of PointCloud2 and similar messages, metres, shape (N, 3).
+    """The points of PointCloud2 and similar messages, meters, shape (N, 3).
 
     They are in the frame of the message.
 
-    `colours` has the RGBA colour of each point, shape (N, 4), or is empty if all points have the colour of the
-    display. `translucent` is whether any alpha is less than 255. `pixel` is the width of a point in m per metre of its
+    `colors` has the RGBA color of each point, shape (N, 4), or is empty if all points have the color of the
+    display. `translucent` is whether any alpha is less than 255. `pixel` is the width of a point in m per meter of its
     depth, or 0 if points have the size of the display. For a slow connection, only every `step`-th point is sent.
     """
 
     positions: Floats
-    colours: Bytes
+    colors: Bytes
     translucent: bool = False
     pixel: float = 0.0
     step: int = 1
 
 
 class CellGrid(DataContent):
-    """The cells of GridCells in the frame of the message, in metres.
+    """The cells of GridCells in the frame of the message, in meters.
 
-    `positions` are the centres, shape (N, 3). `width` and `height` are the side lengths.
+    `positions` are the centers, shape (N, 3). `width` and `height` are the side lengths.
     """
 
     positions: Floats
@@ -49,7 +49,7 @@ class AskPoint(PageMessage):
 class PointFields(ServerMessage):
     """The channels of a point by name, in the order of the message.
 
-    A packed colour is ``#rrggbbaa``. A number that is not finite is sent as text.
+    A packed color is ``#rrggbbaa``. A number that is not finite is sent as text.
     """
 
     display: str

@@ -98,12 +98,12 @@ class Shape(Record):
 
     `size` is x, y, z for a box; radius, length for a cylinder or capsule (along z); radius for a sphere; scale x, y, z
     for a mesh. `url` and `format` (the file extension, lower case) are set for a mesh. `color` is None if the URDF
-    gives no colour. A mesh then has the materials in its file, and any other shape is red as in RViz. If `repaints` is
-    true, colour and texture replace the materials of a mesh.
+    gives no color. A mesh then has the materials in its file, and any other shape is red as in RViz. If `repaints` is
+    true, color and texture replace the materials of a mesh.
 
     In worlds, `size` is the radii of an ellipsoid; radius, length of a cone (tip up); x, y of a plane; the height of a
     polyline. The `outlines` of a polyline (x, y, x, y, ...) cut holes into each other. For a heightmap, `size` is x, y,
-    z, the offset of its centre, and the edge length of its texture. `heights` are fractions of z, shape (rows,
+    z, the offset of its center, and the edge length of its texture. `heights` are fractions of z, shape (rows,
     columns), in rows along x from the minimum x and y.
     """
 

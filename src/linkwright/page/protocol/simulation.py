@@ -1,11 +1,11 @@
-"""Simulated worlds: the state and control of a simulation, and modelling.
+"""Simulated worlds: the state and control of a simulation, and modeling.
 
-Units are metres, seconds and newtons. Modelling means that users edit the models and lights of a world's file in a
+Units are meters, seconds and newtons. Modeling means that users edit the models and lights of a world's file in a
 page.
 
-Poses are x, y, z in metres and roll, pitch, yaw in radians, in the world frame. Sizes of shapes are in metres: x, y, z
-of a box, wall or ramp; radius and length of a cylinder; the radius of a sphere. The frame of a shape is at its centre,
-and a ramp rises along x. Colours are red, green, blue, alpha from 0 to 1.
+Poses are x, y, z in meters and roll, pitch, yaw in radians, in the world frame. Sizes of shapes are in meters: x, y, z
+of a box, wall or ramp; radius and length of a cylinder; the radius of a sphere. The frame of a shape is at its center,
+and a ramp rises along x. Colors are red, green, blue, alpha from 0 to 1.
 """
 
 from __future__ import annotations
@@ -23,7 +23,7 @@ NewKind = Literal[
 class WorldEntity(Record):
     """A model or light of the world.
 
-    `shape`, `size` and `colour` are set for a model that consists of one simple shape. For others they are None or
+    `shape`, `size` and `color` are set for a model that consists of one simple shape. For others they are None or
     empty. `address` is set for a model from an ``<include>``. `parts` are the names of the models that are grouped in
     this model.
     """
@@ -34,12 +34,12 @@ class WorldEntity(Record):
     static: bool
     shape: WorldShape | None
     size: list[float]
-    colour: list[float] | None
+    color: list[float] | None
     address: str | None
     parts: list[str]
 
 
-class ModellingState(ServerMessage):
+class ModelingState(ServerMessage):
     """Whether the world can be edited and is being edited, and its models and lights.
 
     `file` is None for a world without a separate file. It is saved to a file that the user names. While no
@@ -55,7 +55,7 @@ class ModellingState(ServerMessage):
     entities: list[WorldEntity]
 
 
-NO_WORLD = ModellingState(
+NO_WORLD = ModelingState(
     available=False, active=False, file=None, unsaved=False, can_undo=False, can_redo=False, entities=[]
 )
 
@@ -81,10 +81,10 @@ class EntityChange(Record):
     size: list[float] | None
     new_name: str | None
     static: bool | None
-    colour: list[float] | None
+    color: list[float] | None
 
 
-class SetModelling(PageMessage):
+class SetModeling(PageMessage):
     """Whether the user edits the world. During editing, the simulation is paused at its start."""
 
     active: bool

@@ -121,7 +121,7 @@ class ResizeTerminal(PageMessage):
 
 
 class AcknowledgeTerminal(PageMessage):
-    """The acknowledgement of the output up to the message with this number."""
+    """The acknowledgment of the output up to the message with this number."""
 
     terminal: int
     number: int

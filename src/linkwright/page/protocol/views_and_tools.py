@@ -167,7 +167,7 @@ class RemoveTool(PageMessage):
 class PoseChosen(PageMessage):
     """A pose that the user has set with a tool such as 2D Goal Pose.
 
-    The pose is in the Fixed Frame, in metres and radians about z.
+    The pose is in the Fixed Frame, in meters and radians about z.
     """
 
     tool: str
@@ -177,7 +177,7 @@ class PoseChosen(PageMessage):
 
 
 class PointChosen(PageMessage):
-    """A point that the user has selected with a Publish Point tool, in the Fixed Frame, metres."""
+    """A point that the user has selected with a Publish Point tool, in the Fixed Frame, meters."""
 
     tool: str
     x: float

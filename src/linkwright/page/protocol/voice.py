@@ -100,7 +100,7 @@ class VoiceState(ServerMessage):
         sound_listeners: the number of subscribers to sound.
         text_listeners: the number of subscribers to commands as text.
         cut: whether the page has to start again, because it sent sound faster than real time or reported too much loss.
-        proposes_enrolling: whether the robot recognized no word of a command and proposes to enrol words.
+        proposes_enrolling: whether the robot recognized no word of a command and proposes to enroll words.
     """
 
     talking: Talking

@@ -1,4 +1,4 @@
-"""Words that the user enrols in the Voice panel.
+"""Words that the user enrolls in the Voice panel.
 
 Each word is recorded three times and stored in a file of the user.
 """

@@ -80,7 +80,7 @@ class CameraScene(Record):
 
 
 class FogScene(Record):
-    """The fog of a world: its colour (red, green, blue) and its range.
+    """The fog of a world: its color (red, green, blue) and its range.
 
     The range is from `start` to `end` in m, or given by a `density` in 1/m.
     """
@@ -94,7 +94,7 @@ class FogScene(Record):
 class WorldScene(DataContent):
     """The drawable content of a World display. `revision` is the number of descriptions so far.
 
-    `ambient` and `background` are colours: red, green, blue. `shadows` is whether lights cast shadows. `daylight` is
+    `ambient` and `background` are colors: red, green, blue. `shadows` is whether lights cast shadows. `daylight` is
     the brightness of the sky, from 0 at night to 1, or None if there is no sky. `robots` are the names of the models
     that count as robots. `camera` is the initial camera pose in the world's file, x y z qx qy qz qw in the world frame,
     looking along x, or None if the file sets none.

@@ -17,7 +17,7 @@ from numpy.typing import NDArray
 from linkwright._version import __version__
 from linkwright.diagnostics import Diagnostic, LinkwrightError, Phrase, display_path, missing_extra, phrase
 from linkwright.geometry.mesh_files import BadMeshError
-from linkwright.geometry.mesh_parts import UNCOLOURED, FileMaterial, MeshPart, read_parts
+from linkwright.geometry.mesh_parts import UNCOLORED, FileMaterial, MeshPart, read_parts
 from linkwright.geometry.single import normalized
 from linkwright.geometry.surfaces import box, capsule, cylinder, sphere
 from linkwright.nodes.robot_state_publisher import JointMotion
@@ -132,7 +132,7 @@ _Y_UP = [-sqrt(0.5), 0.0, 0.0, sqrt(0.5)]
 def glb_of(snapshot: Snapshot) -> bytes:
     """Return the visuals of a robot in its current pose, as a .glb file.
 
-    The colours of the page are converted to the linear values of glTF.
+    The colors of the page are converted to the linear values of glTF.
 
     Raises:
         LinkwrightError: VIEW204, a mesh cannot be read; INR104 or VIEW205, a library for it is not installed.
@@ -230,7 +230,7 @@ class _RobotWriter:
                 link, urlsplit(url).path, phrase("it does not exist or cannot be read")
             ) from None
         try:
-            return read_parts(path, resolver=_NeighbourFiles(self._files, url))
+            return read_parts(path, resolver=_NeighborFiles(self._files, url))
         except BadMeshError as error:
             raise _unreadable_mesh_error(link, display_path(path), error.reason) from None
 
@@ -284,7 +284,7 @@ class _RobotWriter:
         return self._materials[appearance]
 
 
-class _NeighbourFiles:
+class _NeighborFiles:
     """The files next to a mesh, for trimesh, with the same restrictions as for pages."""
 
     def __init__(self, files: FileSet, url: str) -> None:
@@ -314,8 +314,8 @@ def _appearance(shape: Shape, part: MeshPart, texture: bytes | None) -> _Appeara
     alpha = shape.color[3] if shape.color else 1.0
     material = part.file_material
     if material is None:
-        is_grey = is_mesh and not (shape.format or "").startswith("stl")
-        default_color = (UNCOLOURED,) * 3 if is_grey else _DEFAULT_COLOR
+        is_gray = is_mesh and not (shape.format or "").startswith("stl")
+        default_color = (UNCOLORED,) * 3 if is_gray else _DEFAULT_COLOR
         red, green, blue = (1.0, 1.0, 1.0) if texture else tuple(shape.color[:3]) if shape.color else default_color
         material = FileMaterial((red, green, blue), texture)
     image = material.image if part.triangles.coordinates is not None else None
@@ -339,7 +339,7 @@ def _as_png(path: Path) -> bytes:
 
 
 def _linear_colors(colors: Any) -> Any:
-    """Convert sRGB colours to the linear values of glTF, with unchanged alpha."""
+    """Convert sRGB colors to the linear values of glTF, with unchanged alpha."""
     srgb = np.asarray(colors, dtype=np.float64)
     linear = np.where(srgb <= 0.04045, srgb / 12.92, ((srgb + 0.055) / 1.055) ** 2.4)
     linear[..., 3] = srgb[..., 3]

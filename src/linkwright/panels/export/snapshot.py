@@ -42,7 +42,7 @@ if TYPE_CHECKING:
 
 
 Pose = NDArray[np.float64]
-"""A pose: x, y, z in metres, qx, qy, qz, qw, shape (7,)."""
+"""A pose: x, y, z in meters, qx, qy, qz, qw, shape (7,)."""
 
 
 def current_positions(robot: Robot, poses: Mapping[str, Pose]) -> dict[str, float]:

@@ -15,7 +15,7 @@ _UTF8_LOCALE = "UTF-8" if sys.platform == "darwin" else "C.UTF-8"
 def terminal_environment(base: Mapping[str, str]) -> dict[str, str]:
     """Return the environment variables for a program in a terminal of the page.
 
-    The terminal understands the sequences of xterm, shows all colours, and uses UTF-8. Where no locale is set, as in
+    The terminal understands the sequences of xterm, shows all colors, and uses UTF-8. Where no locale is set, as in
     containers, the variables select UTF-8, so that shells accept Chinese.
 
     Args:

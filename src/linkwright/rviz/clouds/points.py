@@ -167,11 +167,11 @@ def decimated(cloud: CloudPoints, max_bytes: int) -> CloudPoints:
 
     At least one point is returned.
     """
-    total_bytes = cloud.positions.nbytes + cloud.colours.nbytes
+    total_bytes = cloud.positions.nbytes + cloud.colors.nbytes
     step = -(-total_bytes // max(1, max_bytes))
     if step <= 1:
         return cloud
-    return replace(cloud, positions=cloud.positions[::step], colours=cloud.colours[::step], step=step)
+    return replace(cloud, positions=cloud.positions[::step], colors=cloud.colors[::step], step=step)
 
 
 class ScanProjector:

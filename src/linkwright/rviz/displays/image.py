@@ -435,8 +435,8 @@ class CameraDisplay(ImageTopicDisplay):
             height=float(height),
             focal_x=float(p[0]),
             focal_y=float(p[5]),
-            centre_x=float(p[2]),
-            centre_y=float(p[6]),
+            center_x=float(p[2]),
+            center_y=float(p[6]),
             offset_x=float(-p[3] / p[0]),
             offset_y=float(-p[7] / p[5]),
         )

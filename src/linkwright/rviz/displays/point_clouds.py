@@ -180,7 +180,7 @@ class CloudDisplay(TopicDisplay):
             self._computed_bounds[AUTO_INTENSITY if settings.transformer == "Intensity" else AUTO_VALUES] = bounds
         content = CloudPoints(
             positions=cloud.points.positions,
-            colours=colors,
+            colors=colors,
             translucent=settings.transformer == "RGB8" and bool((colors[:, 3] < 255).any()),
             pixel=self.pixel_size(),
         )

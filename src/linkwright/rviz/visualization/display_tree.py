@@ -11,7 +11,7 @@ from linkwright.page.protocol.configuration import EditKind, EditName
 from linkwright.rviz.config.rviz_config import Arrangement, DisplayConfig, RvizConfig
 from linkwright.rviz.config.yaml_tree import SavedEntry
 from linkwright.rviz.displays.base.display import DisplayHost, ViewerDisplay
-from linkwright.rviz.displays.catalogue import make_display
+from linkwright.rviz.displays.catalog import make_display
 
 MERGE_INTERVAL = 1.0
 """Edits of the same subject are merged if they follow within this time, in s, so that a drag is one edit."""

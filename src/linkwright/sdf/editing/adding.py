@@ -24,9 +24,9 @@ LightKind = Literal["point", "directional", "spot"]
 
 @dataclass(frozen=True, slots=True)
 class NewShape:
-    """The defaults of a new shape: its size in m, its colour and its mass in kg.
+    """The defaults of a new shape: its size in m, its color and its mass in kg.
 
-    The colour is red, green and blue from 0 to 1. A mass of None makes the shape static.
+    The color is red, green and blue from 0 to 1. A mass of None makes the shape static.
     """
 
     size: tuple[float, ...]
@@ -80,7 +80,7 @@ def add_shape(
     Args:
         world: the world.
         kind: the kind of shape; walls and ramps are static, the others have a mass of 1 kg.
-        pose: the pose of the shape's centre in the world: x, y, z in m, roll, pitch, yaw in rad.
+        pose: the pose of the shape's center in the world: x, y, z in m, roll, pitch, yaw in rad.
         size: the size as in `SimpleShape`; empty for the default size.
 
     Returns:

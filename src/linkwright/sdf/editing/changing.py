@@ -51,7 +51,7 @@ class Change:
         size: the size of a model that consists of one simple shape, as in `SimpleShape`.
         new_name: the new name.
         static: whether the model is fixed and never moves.
-        color: the colour of a simple shape or a light: red, green, blue and alpha, from 0 to 1.
+        color: the color of a simple shape or a light: red, green, blue and alpha, from 0 to 1.
     """
 
     name: str
@@ -310,11 +310,11 @@ def _copy_values(owner: Element, new: Element) -> list[Replacement]:
 
 def _color_edits(entity: Entity, color: Sequence[float]) -> list[Replacement]:
     if len(color) != 4 or not all(isfinite(value) and 0 <= value <= 1 for value in color):
-        raise EditError(phrase("a colour must have four numbers from 0 to 1: red green blue alpha"))
+        raise EditError(phrase("a color must have four numbers from 0 to 1: red green blue alpha"))
     if entity.kind == "light" and not isinstance(entity.written, Include):
         return writing.child_edits(entity.element, "diffuse", color)
     if entity.shape is None or not isinstance(entity.written, Model):
-        raise EditError(phrase("the colour of '{name}' cannot be changed: it is not a simple shape", name=entity.name))
+        raise EditError(phrase("the color of '{name}' cannot be changed: it is not a simple shape", name=entity.name))
     edits: list[Replacement] = []
     for visual in entity.written.links[0].visuals:
         assert visual.element is not None, "it was read from the text"
@@ -324,7 +324,7 @@ def _color_edits(entity: Entity, color: Sequence[float]) -> list[Replacement]:
             parts = (new_element("ambient", text), new_element("diffuse", text))
             edits.append(writing.insertion_edit(visual.element, [new_element("material", *parts)]))
             continue
-        script = material.first("script")  # the script would override the colours
+        script = material.first("script")  # the script would override the colors
         missing = [tag for tag in ("ambient", "diffuse") if material.first(tag) is None]
         for tag in ("ambient", "diffuse"):
             if tag not in missing:

@@ -26,7 +26,7 @@ from linkwright.xmltree.patches import Replacement, apply, escaped, indentation,
 
 _INDENT_STEP = "  "
 _POSITION_DIGITS = 3
-"""Decimal digits of a group's position in metres."""
+"""Decimal digits of a group's position in meters."""
 _LINE_START = re.compile(r"(?<=\n)(?=[^\r\n])")
 _CDATA = re.compile(r"<!\[CDATA\[.*?\]\]>", re.DOTALL)
 

@@ -30,17 +30,17 @@ ShapeKind = Literal["box", "cylinder", "sphere", "wall", "ramp"]
 COUNTS = {"box": 3, "cylinder": 2, "sphere": 1, "wall": 3, "ramp": 3}
 """The number of dimensions of each kind of shape: x, y, z; radius and length; or radius."""
 DIGITS = 9
-"""Decimals of a written length in metres, or angle in radians."""
+"""Decimals of a written length in meters, or angle in radians."""
 
 
 @dataclass(frozen=True, slots=True)
 class SimpleShape:
-    """The kind, size and colour of a model of one simple shape.
+    """The kind, size and color of a model of one simple shape.
 
     Attributes:
         kind: the kind of shape; a wall is a box, and a ramp is a wedge.
         size: in meters: x, y, z of a box, wall or ramp; radius and length of a cylinder; the radius of a sphere.
-        color: red, green, blue, alpha from 0 to 1; None if the model does not specify a colour.
+        color: red, green, blue, alpha from 0 to 1; None if the model does not specify a color.
     """
 
     kind: ShapeKind
@@ -104,7 +104,7 @@ def _display_color(material: Material | None) -> Color | None:
 
 
 def is_size(kind: str, size: tuple[float, ...]) -> bool:
-    """Return whether dimensions in metres are valid for a kind of shape."""
+    """Return whether dimensions in meters are valid for a kind of shape."""
     return len(size) == COUNTS[kind] and all(isfinite(value) and 1e-6 <= value <= 1e6 for value in size)
 
 

@@ -3,16 +3,16 @@
 from linkwright.page.protocol.simulation import NO_SIMULATION, NO_WORLD
 from linkwright.panels.page_feature import OnDemand, messages
 
-_MODELLING = "linkwright.page.protocol.simulation"
+_MODELING = "linkwright.page.protocol.simulation"
 _SIMULATION = "linkwright.page.protocol.simulation"
 
 ON_DEMAND = (
     OnDemand(
-        "linkwright.simulation.page.modelling.feature:ModellingFeature",
+        "linkwright.simulation.page.modeling.feature:ModelingFeature",
         (
-            *messages(_MODELLING, "AddEntity", "AskModels", "ChangeEntities", "CopyEntities", "DeleteEntities"),
+            *messages(_MODELING, "AddEntity", "AskModels", "ChangeEntities", "CopyEntities", "DeleteEntities"),
             *messages(
-                _MODELLING, "GroupEntities", "RedoWorld", "SaveWorld", "SetModelling", "UndoWorld", "UngroupEntity"
+                _MODELING, "GroupEntities", "RedoWorld", "SaveWorld", "SetModeling", "UndoWorld", "UngroupEntity"
             ),
         ),
         ("/world_description",),

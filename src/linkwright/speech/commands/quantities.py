@@ -14,9 +14,9 @@ def _parse_units(table: Mapping[str, float]) -> dict[Words, float]:
 
 
 _DISTANCE_UNITS = {
-    "metre|metres|meter|meters|m|米|公尺": 1.0,
-    "centimetre|centimetres|centimeter|centimeters|cm|厘米|公分": 0.01,
-    "millimetre|millimetres|millimeter|millimeters|mm|毫米": 0.001,
+    "meter|meters|meter|meters|m|米|公尺": 1.0,
+    "centimeter|centimeters|centimeter|centimeters|cm|厘米|公分": 0.01,
+    "millimeter|millimeters|millimeter|millimeters|mm|毫米": 0.001,
     "foot|feet|ft|英尺": 0.3048,
     "inch|inches|英寸": 0.0254,
     "yard|yards|码": 0.9144,
@@ -26,7 +26,7 @@ _SPEED_UNITS = {
     for names, factor in _DISTANCE_UNITS.items()
     for name in names.split("|")
     for suffix in (("per second", "a second") if name.isascii() else ("每秒",))
-} | {"kilometres per hour|kilometers per hour|kilometres an hour|kilometers an hour|公里每小时": 1 / 3.6}
+} | {"kilometers per hour|kilometers per hour|kilometers an hour|kilometers an hour|公里每小时": 1 / 3.6}
 UNITS: Mapping[str, Mapping[Words, float]] = {
     "distance": _parse_units(_DISTANCE_UNITS),
     "angle": _parse_units(
@@ -44,8 +44,8 @@ UNITS: Mapping[str, Mapping[Words, float]] = {
 GRAMMAR_VALUES: Mapping[str, Mapping[str, tuple[str, ...]]] = {
     "distance": {
         "en": (
-            *("ten centimetres", "twenty centimetres", "half a metre", "one metre", "a metre", "one and a half metres"),
-            *("two metres", "three metres", "four metres", "five metres", "one foot", "two feet", "three feet"),
+            *("ten centimeters", "twenty centimeters", "half a meter", "one meter", "a meter", "one and a half meters"),
+            *("two meters", "three meters", "four meters", "five meters", "one foot", "two feet", "three feet"),
         ),
         "zh": ("十厘米", "二十厘米", "半米", "一米", "一米半", "一点五米", "两米", "三米", "四米", "五米"),
     },
@@ -61,7 +61,7 @@ GRAMMAR_VALUES: Mapping[str, Mapping[str, tuple[str, ...]]] = {
         ),
     },
     "speed": {
-        "en": ("ten centimetres per second", "twenty centimetres per second", "half a metre per second"),
+        "en": ("ten centimeters per second", "twenty centimeters per second", "half a meter per second"),
         "zh": ("每秒十厘米", "每秒二十厘米", "每秒半米"),
     },
     "duration": {

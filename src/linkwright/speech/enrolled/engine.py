@@ -174,7 +174,7 @@ class EnrolledEngine(SpeechEngine):
 
     def _report_nothing_enrolled(self) -> None:
         message = phrase("none of the phrases is enrolled in '{path}'", path=display_path(self._path))
-        hint = phrase("enrol words on the page, or with 'linkwright voice enrol'")
+        hint = phrase("enroll words on the page, or with 'linkwright voice enroll'")
         self._problem = Diagnostic("VOICE201", message, severity=Severity.WARNING, hint=hint)
 
 

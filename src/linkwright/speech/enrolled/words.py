@@ -65,7 +65,7 @@ class Words:
     """The words of a user, in the order in which they were enrolled.
 
     >>> words = Words()
-    >>> for samples in recordings: findings = enrol(words, "stop", samples)  # see `enrolment`
+    >>> for samples in recordings: findings = enroll(words, "stop", samples)  # see `enrollment`
     >>> words.write(words_path())
     """
 
@@ -209,5 +209,5 @@ def _read_take(take: Any, name: str, path_text: str) -> Take:
 
 def _damaged_error(path_text: str, reason: Phrase, location: Span | None = None) -> LinkwrightError:
     message = phrase("'{path}' cannot be read as a file of enrolled words: {reason}", path=path_text, reason=reason)
-    hint = phrase("replace it with a backup, or remove it and enrol the words again")
+    hint = phrase("replace it with a backup, or remove it and enroll the words again")
     return LinkwrightError(Diagnostic("VOICE203", message, location, hint=hint))

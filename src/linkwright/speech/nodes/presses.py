@@ -36,15 +36,15 @@ class ButtonPresses:
     """The presses whose sound the engine still processes, even if the next press has begun.
 
     Args:
-        can_enrol: whether pages can enrol words, so that the user can enrol words that were not understood.
+        can_enroll: whether pages can enroll words, so that the user can enroll words that were not understood.
 
     Attributes:
         proposes_enrolling: whether the answer to the last press proposed enrolling. The next press, or a command,
             withdraws the proposal.
     """
 
-    def __init__(self, *, can_enrol: bool = False) -> None:
-        self._can_enrol = can_enrol
+    def __init__(self, *, can_enroll: bool = False) -> None:
+        self._can_enroll = can_enroll
         self.proposes_enrolling = False
         self._missed_presses = 0
         self._presses: deque[_Press] = deque()
@@ -81,9 +81,9 @@ class ButtonPresses:
         if press.has_gaps:
             return PLEASE_REPEAT
         self._missed_presses += 1
-        self.proposes_enrolling = self._can_enrol and self._missed_presses % _MISSES_BEFORE_PROPOSAL == 0
+        self.proposes_enrolling = self._can_enroll and self._missed_presses % _MISSES_BEFORE_PROPOSAL == 0
         if self.proposes_enrolling:
-            return phrase("I do not recognize your words: enrol them in the Voice panel, in the room where you speak")
+            return phrase("I do not recognize your words: enroll them in the Voice panel, in the room where you speak")
         if press.unknown.nearest:
             return phrase(
                 "I heard something that is not a command; the most similar one is '{phrase}'",

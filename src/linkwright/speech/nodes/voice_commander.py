@@ -147,7 +147,7 @@ class VoiceCommander(SingleNode):
         self._silence_timer = node.create_timer(silence_timeout, self._on_silence, clock=clock, autostart=False)
         # Pages write enrolled words to the default file only. A node that always listens does not answer speech that
         # is not a command.
-        self._presses = ButtonPresses(can_enrol=engine == "enrolled" and not words and not self._create_interfaces)
+        self._presses = ButtonPresses(can_enroll=engine == "enrolled" and not words and not self._create_interfaces)
         self._proposal_publisher: Publisher[Any] = node.create_publisher(_BOOL, "voice/propose_enrolling", _QUEUE_DEPTH)
         if engine:
             model_path = words if engine == "enrolled" and words else model

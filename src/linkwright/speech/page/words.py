@@ -1,4 +1,4 @@
-"""The enrolment of words on a page, with its recordings added to the user's file of words."""
+"""The enrollment of words on a page, with its recordings added to the user's file of words."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ from linkwright.page.protocol.voice_words import (
     VoiceWordsFile,
     WatchWords,
 )
-from linkwright.speech.enrolled.enrolment import enrol
+from linkwright.speech.enrolled.enrollment import enroll
 from linkwright.speech.enrolled.words import RECOMMENDED_TAKES, Words, name_problem, words_path
 from linkwright.speech.sound.samples import RATE, Samples
 
@@ -105,7 +105,7 @@ class WordBook:
             return
         samples = recording.samples
         findings: list[Diagnostic] = []
-        if self._change_words(page, lambda words: findings.extend(enrol(words, recording.name, samples, has_gaps))):
+        if self._change_words(page, lambda words: findings.extend(enroll(words, recording.name, samples, has_gaps))):
             finding = next(iter(translated(findings)), None)
             peak = float(np.max(np.abs(samples.astype(np.int32)), initial=0)) / 32768
             self._take_count += 1

@@ -20,7 +20,7 @@ class Options:
         copies: the minimum number of objects of each class.
         distractors: the number of objects without a label in each world.
         max_objects: the maximum number of objects placed in an image.
-        fixed_properties: what is not randomized: any of ``lights``, ``colours`` (with patterns) and ``lens`` (with
+        fixed_properties: what is not randomized: any of ``lights``, ``colors`` (with patterns) and ``lens`` (with
             sensor).
         min_size: the minimum length in pixels of a box's shorter side; smaller objects are ignored. For an object's
         largest geom, half of this length is enough.

@@ -123,7 +123,7 @@ class Studio:
         shot = arrange(stage, options, generator)
         if "lights" not in options.fixed_properties:
             set_lights(stage, generator)
-        if "colours" not in options.fixed_properties:
+        if "colors" not in options.fixed_properties:
             paint_surfaces(stage, shot, generator)
         image = stage.renderer.render(shot.optics, shot.pose, Channels.COLOR | Channels.GEOMS)
         assert image.color is not None

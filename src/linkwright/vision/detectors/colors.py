@@ -1,4 +1,4 @@
-"""The detector ``colours``, which finds patches of one color by hue, saturation and value."""
+"""The detector ``colors``, which finds patches of one color by hue, saturation and value."""
 
 from __future__ import annotations
 
@@ -27,13 +27,13 @@ COLORS: Mapping[str, tuple[int, ...]] = {
 """The default colors: minimum hue, saturation and value, then the maximum of each, as in `parse_hsv_range`."""
 
 
-class ColourDetector(Detector):
+class ColorDetector(Detector):
     """A detector of patches of a color.
 
     The score is the fraction of the box that the color fills, such as 0.79 for a ball.
 
     Settings:
-        ``colours``
+        ``colors``
             a mapping from names to six numbers; see `parse_hsv_range`. If the minimum hue exceeds the maximum, as for
             red, the range wraps around through 0. The default is `COLORS`.
         ``least_area``
@@ -46,10 +46,10 @@ class ColourDetector(Detector):
     def __init__(self, options: DetectorOptions) -> None:
         load_opencv()
         self._notes = refuse_network_options(options)
-        color_settings = options.settings.get("colours", COLORS)
+        color_settings = options.settings.get("colors", COLORS)
         if not isinstance(color_settings, Mapping) or not color_settings:
-            raise setting_error("colours", color_settings)
-        self._ranges = {str(name): parse_hsv_range(f"colours.{name}", value) for name, value in color_settings.items()}
+            raise setting_error("colors", color_settings)
+        self._ranges = {str(name): parse_hsv_range(f"colors.{name}", value) for name, value in color_settings.items()}
         self._min_area = read_number(options.settings, "least_area", 150.0, 1.0, 1e9)
 
     @property

@@ -26,7 +26,7 @@ class LineDetector(Detector):
     from -1 to 1, and positive if the line is to the right. The score is the fraction of searched rows with the line.
 
     Settings:
-        ``colour``
+        ``color``
             the color of the line as six numbers, see `parse_hsv_range`; dark by default.
         ``part``
             the fraction of the image that is searched, from the bottom; 0.25 by default.
@@ -40,7 +40,7 @@ class LineDetector(Detector):
     def __init__(self, options: DetectorOptions) -> None:
         load_opencv()
         self._notes = refuse_network_options(options)
-        self._color = parse_hsv_range("colour", options.settings.get("colour", _DARK_RANGE))
+        self._color = parse_hsv_range("color", options.settings.get("color", _DARK_RANGE))
         self._searched_share = read_number(options.settings, "part", 0.25, 0.01, 1.0)
         self._min_area = read_number(options.settings, "least_area", 150.0, 1.0, 1e9)
 

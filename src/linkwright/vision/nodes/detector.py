@@ -8,7 +8,7 @@ differences between the packages are in `dialects`.
 Parameters, by the names of yolo_ros:
 
 ``model``
-    an ONNX file, or the name of a detector: ``colours``, ``aruco``, ``apriltag``, ``qr``, ``line``, or a detector
+    an ONNX file, or the name of a detector: ``colors``, ``aruco``, ``apriltag``, ``qr``, ``line``, or a detector
     that a package provides.
 ``labels``
     a file with the names of the classes, which replace the names in the network's file.
@@ -21,7 +21,7 @@ Parameters, by the names of yolo_ros:
     can be set at run time. ``classes`` are names; an empty list means all classes.
 ``input_image_topic``, ``image_transport``, ``image_reliability``
     the source of images: a topic of Image, or one that ends in ``/compressed``; 1 reliable, 2 best effort.
-``colours.NAME``, ``dictionary``, ``least_area``, ``part``, ``colour``
+``colors.NAME``, ``dictionary``, ``least_area``, ``part``, ``color``
     settings of the detectors without networks.
 """
 
@@ -74,8 +74,8 @@ _RATE_DESCRIPTOR = ParameterDescriptor(floating_point_range=[Range(0.0, 1000.0)]
 _SIDE_DESCRIPTOR = ParameterDescriptor(integer_range=[Range(0, MAX_SIZE)], read_only=True)
 _READ_ONLY = ParameterDescriptor(read_only=True)
 _ANY_TYPE = ParameterDescriptor(dynamic_typing=True)
-_DETECTOR_SETTINGS = ("dictionary", "least_area", "part", "colour")
-_COLORS_PARAMETER = "colours"
+_DETECTOR_SETTINGS = ("dictionary", "least_area", "part", "color")
+_COLORS_PARAMETER = "colors"
 _CLASSES_PARAMETER = "classes"
 _MIN_PERIOD_SHARE = 0.9
 """The fraction of a period after which the next image is accepted, so that a slightly early image is not skipped."""

@@ -284,7 +284,7 @@ class Engine(AnyEngine):
         self._control.wake()
 
     def _on_waiting(self, topic: OutgoingTopic) -> None:
-        """Record a topic whose messages wait for acknowledgements.
+        """Record a topic whose messages wait for acknowledgments.
 
         Any thread may call this method.
         """
@@ -293,9 +293,9 @@ class Engine(AnyEngine):
             self._control.wake()
 
     def _write_waiting(self) -> None:
-        """Write the samples that waited for acknowledgements and can now be written."""
+        """Write the samples that waited for acknowledgments and can now be written."""
         for topic in tuple(self._waiting):
-            del self._waiting[topic]  # removed first: an acknowledgement that arrives now adds it again
+            del self._waiting[topic]  # removed first: an acknowledgment that arrives now adds it again
             if topic.write_queued():
                 self._waiting[topic] = None
 

@@ -4,7 +4,7 @@ Cyclone sends all packets of a sample at once. A reader of Fast DDS receives int
 an image are lost. A reliable reader requests the lost packets again, which costs milliseconds for every three packets,
 and a best-effort reader drops the image. Therefore, this module sends the packets first, one by one, with the GUID and
 the sequence number of Cyclone's writer. Then Cyclone writes the sample, and its packets are duplicates for a reader
-that already has them. Cyclone still handles discovery, acknowledgements and retransmission
+that already has them. Cyclone still handles discovery, acknowledgments and retransmission
 (`docs/decisions/0104-large-messages-packet-by-packet.md`).
 """
 

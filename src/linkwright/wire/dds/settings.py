@@ -178,7 +178,7 @@ _RELIABLE_TRAFFIC = (
 )
 """Settings of reliable writers.
 
-More than Cyclone's half megabyte may wait for acknowledgement, because a single image is larger. While acknowledgements
+More than Cyclone's half megabyte may wait for acknowledgment, because a single image is larger. While acknowledgments
 are missing, they are requested every 10 ms instead of every 100 ms. Retransmissions are limited to portions that fit
 into Linux's default receive buffer.
 """

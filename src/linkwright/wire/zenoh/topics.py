@@ -200,7 +200,7 @@ class IncomingTopic:
 def _is_acknowledged(_seconds: float | None) -> bool:
     """Return True, because a message counts as sent when it was passed to Zenoh.
 
-    Zenoh has reliable connections and no acknowledgements.
+    Zenoh has reliable connections and no acknowledgments.
     """
     return True
 

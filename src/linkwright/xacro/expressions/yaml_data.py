@@ -1,7 +1,7 @@
 """YAML files as values of expressions.
 
 PyYAML's safe loader reads the files, so the language is YAML 1.1: ``yes`` is True, ``012`` is ten, ``1e3`` is a
-string. Six tags convert an expression with a unit to metres or radians. PyYAML is imported when the first file is
+string. Six tags convert an expression with a unit to meters or radians. PyYAML is imported when the first file is
 read.
 """
 
@@ -22,7 +22,7 @@ UNITS = {
     "!foot": 0.3048,
     "!inches": 0.0254,
 }
-"""The size of each unit in metres or radians, by YAML tag."""
+"""The size of each unit in meters or radians, by YAML tag."""
 
 
 class YamlMapping(dict[Any, Any]):

@@ -62,7 +62,7 @@ def primitive(kind: int, *dimensions: float) -> Any:
 
 
 def thing(name: str, *primitives: Any, frame: str = "base", at: Any = None, operation: bytes = b"\x00") -> Any:
-    """A CollisionObject; a box of one metre where it says nothing."""
+    """A CollisionObject; a box of one meter where it says nothing."""
     made = CollisionObject(id=name, operation=operation, pose=at or pose())
     made.header.frame_id = frame
     if operation in (b"\x00", b"\x02"):
@@ -81,7 +81,7 @@ def attached(link: str, held: Any) -> Any:
 
 
 def trajectory(*angles: float, seconds: float = 0.1) -> Any:
-    """A DisplayTrajectory of the shoulder; the wrist is out by half a metre from the start."""
+    """A DisplayTrajectory of the shoulder; the wrist is out by half a meter from the start."""
     part = RobotTrajectory()
     part.joint_trajectory.joint_names = ["shoulder"]
     for number, angle in enumerate(angles, start=1):

@@ -31,12 +31,12 @@ async def shown(cls: str, message_type: str, topic: str, extra: str = ""):
         publisher = w.graph.create_node("talker").create_publisher(message_type, topic, 10)
         await w.settle()
 
-        async def say(message) -> dict[str, dict]:
+        async def publish_and_settle(message) -> dict[str, dict]:
             publisher.publish(message)
             await w.settle()
             return shown_markers(w.viewer.displays[0])
 
-        yield w, say
+        yield w, publish_and_settle
 
 
 def moving(extra: str = ""):
@@ -51,11 +51,11 @@ def robot() -> PosableRobot:
     ("text", "seconds"),
     [("3x", 0.2), ("0.05 s", 0.05), ("0.05s", 0.05), ("0.1", 0.1), ("REALTIME", 0.6), ("0x", 0.2), ("soon", 0.2)],
 )
-def test_how_long_a_state_is_shown(text, seconds):
+def test_state_display_time_is_parsed(text, seconds):
     assert display_seconds(text, 0.6) == pytest.approx(seconds)
 
 
-def test_a_motion_begins_with_its_start_and_keeps_what_does_not_move():
+def test_motion_starts_at_start_state_and_keeps_other_joints():
     motion = read_motion(robot(), trajectory(0.5, 1.0))
     assert [state.values for state in motion.states] == [
         {"shoulder": 0.0, "wrist": 0.5},
@@ -66,7 +66,7 @@ def test_a_motion_begins_with_its_start_and_keeps_what_does_not_move():
     assert motion.joints == {"shoulder"}
 
 
-def test_motions_that_cannot_be_shown_are_refused():
+def test_invalid_motions_are_rejected():
     with pytest.raises(UnusableStateError, match="no states"):
         read_motion(robot(), trajectory())
     with pytest.raises(UnusableStateError, match="position of joint 'shoulder' must be finite, but is nan"):
@@ -77,7 +77,7 @@ def test_motions_that_cannot_be_shown_are_refused():
         read_motion(robot(), short)
 
 
-async def test_properties_are_those_of_rviz():
+async def test_trajectory_properties_match_rviz():
     async with moving() as (w, _):
         rows = {row.name: row for row in w.display("Trajectory").row().properties}
         assert {name: row.value for name, row in rows.items() if name != "Links"} == {
@@ -96,8 +96,8 @@ async def test_properties_are_those_of_rviz():
         }
 
 
-async def test_the_robot_goes_through_the_states_and_is_gone_at_the_end():
-    async with moving(FAST) as (w, say):
+async def test_trajectory_is_played_and_robot_disappears_at_end():
+    async with moving(FAST) as (w, publish_and_settle):
         places = []
         display = w.display("Trajectory")
         put = display.put
@@ -108,14 +108,14 @@ async def test_the_robot_goes_through_the_states_and_is_gone_at_the_end():
             put(group, shapes)
 
         display.put = watched
-        await say(trajectory(math.pi / 6, math.pi / 2))
+        await publish_and_settle(trajectory(math.pi / 6, math.pi / 2))
         await eventually(lambda: not shown_markers(display))
         assert places == [0.0, 0.75, 1.5]
 
 
-async def test_a_motion_is_repeated_when_it_is_to_be():
-    async with moving(FAST + ", Loop Animation: true") as (w, say):
-        await say(trajectory(0.1))
+async def test_loop_animation_repeats_motion():
+    async with moving(FAST + ", Loop Animation: true") as (w, publish_and_settle):
+        await publish_and_settle(trajectory(0.1))
         player = w.display("Trajectory")._player
         times = []
         step = player._step
@@ -129,9 +129,9 @@ async def test_a_motion_is_repeated_when_it_is_to_be():
         assert set(times) == {0, 1}
 
 
-async def test_color_and_trail():
-    async with moving(SLOW + ", Show Trail: true, Color Enabled: true") as (w, say):
-        drawn = await say(trajectory(0.1, 0.2, 0.3))
+async def test_color_and_trail_are_shown():
+    async with moving(SLOW + ", Show Trail: true, Color Enabled: true") as (w, publish_and_settle):
+        drawn = await publish_and_settle(trajectory(0.1, 0.2, 0.3))
         hands = sorted(name for name in drawn if name.endswith("/hand"))
         assert hands == [
             "Planned Path 0/hand",
@@ -150,67 +150,70 @@ async def test_color_and_trail():
         assert gray == [0.5, 0.5, 0.5, 0.5]
 
 
-async def test_a_new_motion_waits_unless_it_is_to_interrupt():
-    async with moving(SLOW) as (w, say):
+async def test_new_motion_waits_unless_interrupt_display_is_set():
+    async with moving(SLOW) as (w, publish_and_settle):
         display = w.display("Trajectory")
-        await say(trajectory(0.1))
-        await say(trajectory(0.2, 0.3))
+        await publish_and_settle(trajectory(0.1))
+        await publish_and_settle(trajectory(0.2, 0.3))
         assert len(display._player.motion.states) == 2
         display.set_property(("Interrupt Display",), True)
-        await say(trajectory(0.2, 0.3))
+        await publish_and_settle(trajectory(0.2, 0.3))
         assert len(display._player.motion.states) == 3
 
 
-async def test_bad_motions_are_said():
-    async with moving(", Interrupt Display: true") as (w, say):
-        await say(trajectory(math.inf))
+async def test_invalid_motions_are_reported():
+    async with moving(", Interrupt Display: true") as (w, publish_and_settle):
+        await publish_and_settle(trajectory(math.inf))
         assert w.status("Trajectory")["State"] == (
             "error",
             "The position of joint 'shoulder' must be finite, but is inf",
         )
         strange = trajectory(0.1)
         strange.trajectory[0].joint_trajectory.joint_names = ["elbow"]
-        await say(strange)
+        await publish_and_settle(strange)
         assert w.status("Trajectory")["Joints"] == ("warn", "The robot has no joint 'elbow'")
-        await say(trajectory(0.1))
+        await publish_and_settle(trajectory(0.1))
         assert "Joints" not in w.status("Trajectory")
 
 
-async def test_a_state_with_links_in_colours_of_their_own():
-    async with shown("RobotState", "moveit_msgs/msg/DisplayRobotState", "/display_robot_state") as (w, say):
+async def test_robot_state_highlights_links():
+    async with shown("RobotState", "moveit_msgs/msg/DisplayRobotState", "/display_robot_state") as (
+        w,
+        publish_and_settle,
+    ):
         red = ObjectColor(id="hand")
         red.color.r = red.color.a = 1.0
         nobody = ObjectColor(id="foot")
         message = DisplayRobotState(state=state(shoulder=math.pi / 2), highlight_links=[red, nobody])
         message.state.attached_collision_objects = [attached("hand", thing("cup", frame="hand"))]
-        drawn = await say(message)
+        drawn = await publish_and_settle(message)
         assert drawn["Robot State/hand"]["color"] == [1, 0, 0, 1]
         assert drawn["Robot State/base"]["color"] == [0.5, 0.5, 0.5, 1]
         assert drawn["Robot State holds/cup"]["pose"][:3] == pytest.approx([1, 0, 0])
         assert w.status("RobotState")["Highlights"] == ("warn", "The robot has no link 'foot'")
         display = w.display("RobotState")
         display.set_property(("Show Highlights",), False)
-        assert shown_markers(display)["Robot State/hand"]["color"] == [1, 0, 0, 1]  # RViz's red of no colour
+        assert shown_markers(display)["Robot State/hand"]["color"] == [1, 0, 0, 1]  # RViz's red of no color
         display.set_property(("Visual Enabled",), False)
         assert list(shown_markers(display)) == ["Robot State holds/cup"]
-        assert await say(DisplayRobotState(hide=True)) == {}
-        await say(DisplayRobotState(state=state(shoulder=math.nan)))
+        assert await publish_and_settle(DisplayRobotState(hide=True)) == {}
+        await publish_and_settle(DisplayRobotState(state=state(shoulder=math.nan)))
         assert w.status("RobotState")["State"] == (
             "error",
             "The position of joint 'shoulder' must be finite, but is nan",
         )
 
 
-async def test_motion_planning_shows_the_scene_the_motion_and_its_ends():
+async def test_motion_planning_shows_scene_trajectory_and_queries():
     extra = ", Scene Geometry: {Scene Display Time: 0.0001}, Planned Path: {State Display Time: 1000s}"
     kind, topic = "moveit_msgs/msg/DisplayTrajectory", PATH
-    async with shown("MotionPlanning", kind, topic, extra) as (w, say):
+    async with shown("MotionPlanning", kind, topic, extra) as (w, publish_and_settle):
         display = w.display("MotionPlanning")
         node = w.graph.create_node("move_group")
         scenes = node.create_publisher("moveit_msgs/msg/PlanningScene", "/monitored_planning_scene", 10)
         scenes.publish(scene(thing("shelf"), robot=state(shoulder=0.0)))
         await eventually(lambda: "Scene Robot/hand" in shown_markers(display))
-        drawn = await say(trajectory(math.pi / 2))
+        drawn = await publish_and_settle(trajectory(math.pi / 2))
         assert {"Scene Geometry/shelf", "Planned Path/base", "Goal State/hand"} <= set(drawn)
         assert not [name for name in drawn if name.startswith("Start State") or name == "Goal State/base"]
         assert drawn["Goal State/hand"]["pose"][:3] == pytest.approx([1.5, 0, 0])

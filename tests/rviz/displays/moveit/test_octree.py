@@ -26,7 +26,7 @@ def read(data: bytes, *, binary: bool = True, kind: str = "OcTree", resolution: 
     return read_octree(data=data, binary=binary, kind=kind, resolution=resolution)
 
 
-def test_the_smallest_cells_have_the_resolution_and_lie_beside_the_middle():
+def test_smallest_cells_have_resolution_and_are_next_to_origin():
     # Child 7 of the root, then child 0 of all below: the corner of the first octant that is nearest to the origin.
     data = node(c7=INNER) + node(c0=INNER) * 14 + node(c0=OCCUPIED, c1=FREE)
     cells = read(data)
@@ -35,13 +35,13 @@ def test_the_smallest_cells_have_the_resolution_and_lie_beside_the_middle():
     assert by_place == pytest.approx({(0.25, 0.25, 0.25): 0.971, (0.75, 0.25, 0.25): 0.1192})
 
 
-def test_a_leaf_high_in_the_tree_is_a_large_cell():
+def test_leaf_near_root_is_a_large_cell():
     cells = read(node(c0=OCCUPIED))
     assert cells.sizes.tolist() == [0.5 * 2**15]
     assert cells.centers.tolist() == [[-0.5 * 2**14] * 3]
 
 
-def test_the_full_form_has_a_probability_for_each_leaf():
+def test_full_octree_has_probability_of_each_leaf():
     inner, leaf = struct.pack("<fB", 0.0, 0b0000_0011), struct.pack("<fB", 0.0, 0)
     sure = struct.pack("<fB", 2.0, 0)
     cells = read(inner + leaf + sure, binary=False)
@@ -49,12 +49,12 @@ def test_the_full_form_has_a_probability_for_each_leaf():
     assert cells.centers[:, 0].tolist() == [-0.5 * 2**14, 0.5 * 2**14]
 
 
-def test_a_tree_with_colours_is_read_too():
+def test_color_octree_is_read():
     cells = read(struct.pack("<fBBBB", 1.0, 255, 0, 0, 0), binary=False, kind="ColorOcTree")
     assert cells.sizes.tolist() == [0.5 * 2**16]
 
 
-def test_no_data_is_an_empty_tree():
+def test_empty_data_is_an_empty_tree():
     assert len(read(b"").sizes) == 0
 
 
@@ -70,13 +70,13 @@ def test_no_data_is_an_empty_tree():
         (b"\x00", {"resolution": float("nan")}, "Invalid resolution"),
     ],
 )
-def test_what_is_no_tree_is_said(data, options, text):
+def test_malformed_octree_is_rejected_with_reason(data, options, text):
     with pytest.raises(BadOctreeError, match=text):
         read(data, **options)
 
 
 @given(st.binary(max_size=200), st.booleans())
-def test_any_bytes_are_read_or_refused(data, binary):
+def test_arbitrary_bytes_are_read_or_rejected(data, binary):
     try:
         cells = read(data, binary=binary)
     except BadOctreeError:
@@ -85,7 +85,7 @@ def test_any_bytes_are_read_or_refused(data, binary):
     assert (cells.sizes > 0).all()
 
 
-def test_a_cell_that_others_hide_is_not_drawn():
+def test_hidden_cells_are_not_drawn():
     solid = node(**{f"c{child}": OCCUPIED for child in range(8)})
     whole = node(**{f"c{child}": INNER for child in range(8)})
     data = node(c7=INNER) + node(c0=INNER) * 12 + whole + (whole + solid * 8) * 8
@@ -100,7 +100,7 @@ def test_a_cell_that_others_hide_is_not_drawn():
     assert low.tolist() != high.tolist()
 
 
-def test_colours_may_tell_how_probable_a_cell_is():
+def test_colors_can_show_cell_probability():
     cells = read(node(c0=OCCUPIED))
     (marker,) = octomap_markers(cells, "map", frame="base", base=HERE, alpha=1.0, by_probability=True)
     assert marker.colors[0].tolist() == pytest.approx([0.029, 0.971, 0, 1])

@@ -42,7 +42,7 @@ class Talker:
         self.node = w.graph.create_node("move_group")
         self.publisher = self.node.create_publisher("moveit_msgs/msg/PlanningScene", topic, 10)
 
-    async def say(self, message) -> dict[str, dict]:
+    async def publish_scene(self, message) -> dict[str, dict]:
         """Publish a scene, and give what is drawn then."""
         self.publisher.publish(message)
         await self.w.settle()
@@ -52,7 +52,7 @@ class Talker:
 
 
 @asynccontextmanager
-async def scened(extra: str = FAST, cls: str = "PlanningScene", text: str = ARM):
+async def planning_scene_world(extra: str = FAST, cls: str = "PlanningScene", text: str = ARM):
     async with world(config(cls, extra)) as w:
         if text:
             w.describe(text)
@@ -61,8 +61,8 @@ async def scened(extra: str = FAST, cls: str = "PlanningScene", text: str = ARM)
         yield w, talker
 
 
-async def test_properties_are_those_of_rviz():
-    async with scened("") as (w, _):
+async def test_planning_scene_properties_match_rviz():
+    async with planning_scene_world("") as (w, _):
         rows = {row.name: row for row in w.display("PlanningScene").row().properties}
         assert {name: row.value for name, row in rows.items() if row.kind != "group"} == {
             "Move Group Namespace": "",
@@ -88,9 +88,9 @@ async def test_properties_are_those_of_rviz():
         }
 
 
-async def test_the_robot_stands_as_the_scene_says_and_not_as_tf_has_it():
-    async with scened() as (_, talker):
-        shown = await talker.say(scene(robot=state(shoulder=math.pi / 2, wrist=0.5)))
+async def test_robot_state_of_scene_overrides_tf():
+    async with planning_scene_world() as (_, talker):
+        shown = await talker.publish_scene(scene(robot=state(shoulder=math.pi / 2, wrist=0.5)))
         hand = shown["Scene Robot/hand"]
         assert hand["frame"] == "base"
         np.testing.assert_allclose(hand["pose"][:3], [1.5, 0, 0], atol=1e-9)
@@ -99,7 +99,7 @@ async def test_the_robot_stands_as_the_scene_says_and_not_as_tf_has_it():
 
 
 async def test_primitives_planes_and_meshes_are_drawn():
-    async with scened() as (w, talker):
+    async with planning_scene_world() as (w, talker):
         many = thing(
             "many",
             primitive(SolidPrimitive.BOX, 1, 2, 3),
@@ -116,7 +116,7 @@ async def test_primitives_planes_and_meshes_are_drawn():
         mesh.triangles = [get_message("shape_msgs/msg/MeshTriangle")(vertex_indices=[0, 1, 2])]
         many.meshes = [mesh]
         many.planes = [get_message("shape_msgs/msg/Plane")(coef=[0.0, 0.0, 2.0, -2.0])]
-        shown = await talker.say(scene(many))
+        shown = await talker.publish_scene(scene(many))
         kinds = {name: each["shape"] for name, each in shown.items()}
         assert kinds == {
             "Scene Geometry/many": "cube",
@@ -137,57 +137,60 @@ async def test_primitives_planes_and_meshes_are_drawn():
         assert w.status("PlanningScene")["Transform"] == ("ok", "Transform OK")
 
 
-async def test_objects_come_move_grow_and_go():
-    async with scened() as (w, talker):
-        assert list(await talker.say(scene(thing("a"), thing("b")))) == ["Scene Geometry/a", "Scene Geometry/b"]
-        moved = await talker.say(scene(thing("a", at=pose(z=2.0), operation=MOVE), diff=True))
+async def test_objects_are_added_moved_appended_and_removed():
+    async with planning_scene_world() as (w, talker):
+        assert list(await talker.publish_scene(scene(thing("a"), thing("b")))) == [
+            "Scene Geometry/a",
+            "Scene Geometry/b",
+        ]
+        moved = await talker.publish_scene(scene(thing("a", at=pose(z=2.0), operation=MOVE), diff=True))
         assert moved["Scene Geometry/a"]["pose"][:3] == [0, 0, 2]
-        grown = await talker.say(scene(thing("b", primitive(2, 1), operation=APPEND), diff=True))
+        grown = await talker.publish_scene(scene(thing("b", primitive(2, 1), operation=APPEND), diff=True))
         assert "Scene Geometry/b primitive 1" in grown
-        left = await talker.say(scene(thing("b", operation=REMOVE), diff=True))
+        left = await talker.publish_scene(scene(thing("b", operation=REMOVE), diff=True))
         assert list(left) == ["Scene Geometry/a"]
-        await talker.say(scene(thing("nobody", operation=MOVE), diff=True))
+        await talker.publish_scene(scene(thing("nobody", operation=MOVE), diff=True))
         assert w.status("PlanningScene")["nobody"] == (
             "error",
             "Object 'nobody' cannot be moved, because it does not exist",
         )
-        assert await talker.say(scene(thing("", operation=REMOVE), diff=True)) == {}
-        assert list(await talker.say(scene(thing("c")))) == ["Scene Geometry/c"]
+        assert await talker.publish_scene(scene(thing("", operation=REMOVE), diff=True)) == {}
+        assert list(await talker.publish_scene(scene(thing("c")))) == ["Scene Geometry/c"]
         assert "nobody" not in w.status("PlanningScene")
 
 
-async def test_what_the_robot_holds_moves_with_its_link():
-    async with scened() as (_, talker):
+async def test_attached_object_moves_with_its_link():
+    async with planning_scene_world() as (_, talker):
         robot = state(shoulder=0.0, wrist=0.0)
         robot.attached_collision_objects = [attached("hand", thing("cup", frame="hand", at=pose(x=0.1)))]
-        shown = await talker.say(scene(thing("cup"), robot=robot))
+        shown = await talker.publish_scene(scene(thing("cup"), robot=robot))
         assert shown["Scene Robot holds/cup"]["pose"][:3] == pytest.approx([0.1, 0, 1])
         assert shown["Scene Robot holds/cup"]["color"] == pytest.approx([150 / 255, 50 / 255, 150 / 255, 1])
         assert "Scene Geometry/cup" not in shown
-        shown = await talker.say(scene(robot=state(shoulder=0.0, wrist=1.0), diff=True))
+        shown = await talker.publish_scene(scene(robot=state(shoulder=0.0, wrist=1.0), diff=True))
         assert shown["Scene Robot holds/cup"]["pose"][:3] == pytest.approx([0.1, 0, 2])
         let_go = state()
         let_go.attached_collision_objects = [attached("hand", thing("cup", operation=REMOVE))]
-        assert "Scene Robot holds/cup" not in await talker.say(scene(robot=let_go, diff=True))
+        assert "Scene Robot holds/cup" not in await talker.publish_scene(scene(robot=let_go, diff=True))
 
 
-async def test_objects_have_the_colours_that_the_scene_gives_them():
-    async with scened() as (_, talker):
+async def test_objects_have_colors_of_scene():
+    async with planning_scene_world() as (_, talker):
         color = ObjectColor(id="a")
         color.color.b, color.color.a = 1.0, 0.25
-        shown = await talker.say(scene(thing("a"), thing("b"), object_colors=[color]))
+        shown = await talker.publish_scene(scene(thing("a"), thing("b"), object_colors=[color]))
         assert shown["Scene Geometry/a"]["color"] == [0, 0, 1, 0.25]
         assert shown["Scene Geometry/b"]["color"][3] == 0.9
 
 
-async def test_cells_of_the_octomap_are_boxes_of_those_that_are_asked_for():
-    async with scened() as (w, talker):
+async def test_octomap_cells_follow_render_properties():
+    async with planning_scene_world() as (w, talker):
         message = scene()
         octomap = message.world.octomap
         octomap.header.frame_id, octomap.origin = "base", pose(z=1.0)
         octomap.octomap.id, octomap.octomap.binary, octomap.octomap.resolution = "OcTree", True, 0.1
         octomap.octomap.data = signed(struct.pack("<H", 0b10_01_00_00_00_00_00_00))
-        shown = await talker.say(message)
+        shown = await talker.publish_scene(message)
         (name,) = shown
         assert (shown[name]["shape"], len(shown[name]["points"]) // 3) == ("cube_list", 1)
         assert shown[name]["pose"][:3] == [0, 0, 1]
@@ -198,16 +201,16 @@ async def test_cells_of_the_octomap_are_boxes_of_those_that_are_asked_for():
         display.set_property(("Scene Geometry", "Show Scene Geometry"), False)
         assert shown_markers(display) == {}
         octomap.octomap.data = [1]
-        await talker.say(message)
+        await talker.publish_scene(message)
         assert w.status("PlanningScene")["<octomap>"] == (
             "error",
             "The data of the octomap ends too early, after 1 bytes",
         )
 
 
-async def test_properties_change_the_look_at_once():
-    async with scened() as (w, talker):
-        await talker.say(scene(thing("a"), robot=state(shoulder=0.0)))
+async def test_changed_properties_take_effect_at_once():
+    async with planning_scene_world() as (w, talker):
+        await talker.publish_scene(scene(thing("a"), robot=state(shoulder=0.0)))
         display = w.display("PlanningScene")
         display.set_property(("Scene Geometry", "Scene Color"), "#ff0000")
         display.set_property(("Scene Robot", "Robot Alpha"), 0.5)
@@ -224,7 +227,7 @@ async def test_properties_change_the_look_at_once():
         assert [name for name in shown_markers(display) if name.startswith("Scene Robot")] == []
 
 
-async def test_the_whole_scene_is_asked_for_when_move_group_appears():
+async def test_full_scene_is_requested_when_move_group_appears():
     async with world(config("PlanningScene", FAST)) as w:
         w.describe(ARM)
         await w.settle()
@@ -246,7 +249,7 @@ async def test_the_whole_scene_is_asked_for_when_move_group_appears():
         assert rows["Scene Geometry"].children[0].value == "kitchen"
 
 
-async def test_a_namespace_has_a_service_and_a_description_of_its_own():
+async def test_move_group_namespace_selects_service_and_description():
     extra = ", Move Group Namespace: left, Planning Scene Topic: /left/scene"
     async with world(config("PlanningScene", extra)) as w:
         node = w.graph.create_node("left")
@@ -263,8 +266,8 @@ async def test_a_namespace_has_a_service_and_a_description_of_its_own():
         assert w.status("PlanningScene")["URDF"] == ("ok", "URDF parsed OK")
 
 
-async def test_bad_scenes_are_said_and_the_next_good_one_is_drawn():
-    async with scened() as (w, talker):
+async def test_invalid_scenes_are_reported_and_next_valid_one_is_drawn():
+    async with planning_scene_world() as (w, talker):
         nan = thing("nan", at=pose(x=math.nan))
         short = thing("short", primitive(SolidPrimitive.BOX, 1, 1))
         kind = thing("kind", primitive(9, 1, 1, 1))
@@ -278,7 +281,7 @@ async def test_bad_scenes_are_said_and_the_next_good_one_is_drawn():
         robot = state(shoulder=0.0, elbow=1.0)
         robot.attached_collision_objects = [attached("foot", thing("ball", frame="foot")), attached("hand", thing("e"))]
         robot.attached_collision_objects[1].object.primitives = []
-        shown = await talker.say(scene(nan, short, kind, poses, mesh, plane, thing("good"), robot=robot))
+        shown = await talker.publish_scene(scene(nan, short, kind, poses, mesh, plane, thing("good"), robot=robot))
         assert [name for name in shown if name.startswith("Scene Geometry")] == ["Scene Geometry/good"]
         status = w.status("PlanningScene")
         assert status["nan"] == ("error", "Contains invalid floating point values (nans or infs)")
@@ -293,21 +296,21 @@ async def test_bad_scenes_are_said_and_the_next_good_one_is_drawn():
         assert status["ball"] == ("error", "The robot has no link 'foot' for the attached object 'ball'")
         assert status["e"] == ("error", "The attached object 'e' has no shapes")
         assert status["Joints"] == ("warn", "The robot has no joint 'elbow'")
-        await talker.say(scene(thing("good", frame="nowhere"), robot=state(shoulder=math.inf)))
+        await talker.publish_scene(scene(thing("good", frame="nowhere"), robot=state(shoulder=math.inf)))
         status = w.status("PlanningScene")
         assert status["State"] == ("error", "The position of joint 'shoulder' must be finite, but is inf")
         assert status["Transform"] == ("error", "No transform from [nowhere] to [base]")
         uneven = state(shoulder=0.0)
         uneven.joint_state.position = []
-        await talker.say(scene(robot=uneven))
+        await talker.publish_scene(scene(robot=uneven))
         assert w.status("PlanningScene")["State"] == ("error", "The state has 1 joints, but 0 positions")
-        await talker.say(scene(thing("good"), robot=state(shoulder=0.5)))
+        await talker.publish_scene(scene(thing("good"), robot=state(shoulder=0.5)))
         assert set(w.status("PlanningScene")) == {"Topic", "URDF", "Transform"}
 
 
-async def test_without_a_description_objects_are_drawn_and_the_robot_once_it_comes():
-    async with scened(text="") as (w, talker):
-        shown = await talker.say(scene(thing("a"), robot=state(shoulder=1.0)))
+async def test_objects_are_drawn_before_robot_description_arrives():
+    async with planning_scene_world(text="") as (w, talker):
+        shown = await talker.publish_scene(scene(thing("a"), robot=state(shoulder=1.0)))
         assert list(shown) == ["Scene Geometry/a"]
         assert w.status("PlanningScene")["URDF"] == (
             "warn",
@@ -321,8 +324,8 @@ async def test_without_a_description_objects_are_drawn_and_the_robot_once_it_com
         assert "Scene Robot/hand" in shown_markers(w.display("PlanningScene"))
 
 
-async def test_the_root_is_where_a_virtual_joint_has_it():
-    async with scened() as (w, talker):
+async def test_virtual_joint_places_root_link():
+    async with planning_scene_world() as (w, talker):
         w.move({("map", "base"): (1, 0, 0, 0, 0, 0, 1)}, static=True)
         robot = state(shoulder=0.0)
         robot.multi_dof_joint_state.header.frame_id = "map"
@@ -330,21 +333,21 @@ async def test_the_root_is_where_a_virtual_joint_has_it():
         transform = get_message("geometry_msgs/msg/Transform")()
         transform.translation.y = 3.0
         robot.multi_dof_joint_state.transforms = [transform]
-        shown = await talker.say(scene(robot=robot))
+        shown = await talker.publish_scene(scene(robot=robot))
         assert (shown["Scene Robot/base"]["frame"], shown["Scene Robot/base"]["pose"][:3]) == ("map", [0, 3, 0])
 
 
-async def test_a_page_is_sent_only_what_is_another_now():
-    async with scened() as (w, talker):
-        await talker.say(scene(thing("a"), thing("b"), robot=state(shoulder=0.0)))
+async def test_page_receives_only_changed_objects():
+    async with planning_scene_world() as (w, talker):
+        await talker.publish_scene(scene(thing("a"), thing("b"), robot=state(shoulder=0.0)))
         (store,) = w.display("PlanningScene").data()
         _, seen = store.since(0)
-        await talker.say(scene(thing("a"), thing("b"), robot=state(shoulder=0.0)))
+        await talker.publish_scene(scene(thing("a"), thing("b"), robot=state(shoulder=0.0)))
         assert store.since(seen)[0] is None
 
 
 @pytest.mark.parametrize("cls", ["PlanningScene", "Trajectory", "RobotState", "MotionPlanning"])
-async def test_a_file_is_saved_as_it_was(cls):
+async def test_planning_scene_file_is_saved_unchanged(cls):
     text = yaml.safe_dump(
         {
             "Visualization Manager": {
@@ -374,8 +377,8 @@ async def test_a_file_is_saved_as_it_was(cls):
         assert w.viewer.config.text() == text
 
 
-async def test_a_link_that_is_switched_off_is_written_as_rviz_does():
-    async with scened() as (w, _):
+async def test_disabled_link_is_written_like_rviz():
+    async with planning_scene_world() as (w, _):
         w.display("PlanningScene").set_property(("Scene Robot", "Links", "hand"), False)
         (entry,) = yaml.safe_load(w.viewer.config.text())["Visualization Manager"]["Displays"]
         assert entry["Scene Robot"] == {"Links": {"hand": {"Value": False}}}

@@ -155,7 +155,7 @@ class Reader:
         return complete
 
     def on_heartbeat(self, heartbeat: Heartbeat) -> list[Packet]:
-        """Handle a heartbeat, and return its acknowledgement with the numbers of missing samples."""
+        """Handle a heartbeat, and return its acknowledgment with the numbers of missing samples."""
         writer_state = self._writers.get(heartbeat.writer)
         if writer_state is None:
             return []
@@ -214,7 +214,7 @@ class Reader:
         return incomplete_sample.add(sample.first, sample.payload)
 
     def _request_heartbeat(self, writer: bytes, writer_state: _Writer, now: float) -> Packet:
-        """Return an acknowledgement of no samples (base 0), which requests a heartbeat.
+        """Return an acknowledgment of no samples (base 0), which requests a heartbeat.
 
         Fast DDS answers base 0, but not base 1, with a heartbeat.
         """

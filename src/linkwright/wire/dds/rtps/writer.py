@@ -28,7 +28,7 @@ _FIRST_REPEAT, _LAST_REPEAT = 0.1, 2.0
 
 _MAX_SAMPLES = 1000
 _MAX_BYTES = 64 << 20
-"""The maximum number and size of samples that wait for acknowledgement.
+"""The maximum number and size of samples that wait for acknowledgment.
 
 When a limit is exceeded, the oldest samples are dropped.
 """

@@ -1,0 +1,110 @@
+import { h } from "../../dom";
+import { icon, type IconName } from "../../icons";
+import type { WorldEntity } from "../../protocol";
+import type { Modeling } from "../../state/modeling/modeling";
+import type { Shape } from "../../state/modeling/shapes";
+import { strings } from "../../strings";
+import { VirtualRows } from "../../widgets/virtual-rows";
+
+const ROW_HEIGHT = 23;
+const ICONS: Readonly<Record<Shape, IconName>> = {
+  box: "shapeBox",
+  cylinder: "shapeCylinder",
+  sphere: "shapeSphere",
+  wall: "shapeWall",
+  ramp: "shapeRamp",
+};
+
+/** The list of all entities in the world, by name; several can be selected, as in the scene. */
+export class EntityList {
+  readonly element: HTMLElement;
+  private readonly rows: VirtualRows;
+  private entities: readonly WorldEntity[] = [];
+  /** The row from which arrow keys continue, and the row where a range begins. */
+  private current = 0;
+  private anchor = 0;
+
+  constructor(private readonly modeling: Modeling) {
+    this.rows = new VirtualRows("entity-list", ROW_HEIGHT, (index) => this.row(index));
+    this.element = this.rows.element;
+    this.element.setAttribute("role", "listbox");
+    this.element.setAttribute("aria-multiselectable", "true");
+    this.element.setAttribute("aria-label", strings.modeling.entities);
+    this.element.addEventListener("keydown", (event) => this.onKeyDown(event));
+    this.element.addEventListener("mousedown", (event) => this.onMouseDown(event));
+    modeling.changed.on(() => this.show());
+    modeling.selectionChanged.on(() => this.reveal());
+    this.show();
+  }
+
+  private show(): void {
+    this.entities = this.modeling.entities;
+    this.rows.refresh(this.entities.length);
+    this.mark();
+  }
+
+  private reveal(): void {
+    const last = this.modeling.selected.at(-1);
+    const index = this.entities.findIndex(({ name }) => name === last);
+    if (index >= 0 && index !== this.current) {
+      this.current = this.anchor = index;
+      this.rows.reveal(index);
+    }
+    this.rows.refresh();
+    this.mark();
+  }
+
+  private row(index: number): HTMLElement {
+    const entity = this.entities[index];
+    const name = entity?.name ?? "";
+    const selected = this.modeling.selected.includes(name);
+    const row = h(
+      "div",
+      { class: selected ? "entity-row selected" : "entity-row", role: "option", title: name, aria: { selected: String(selected) } },
+      icon(entity ? iconOf(entity) : "unknown"),
+      h("span", {}, name),
+    );
+    row.id = `entity-${index}`;
+    row.addEventListener("click", (event) => this.selectRow(index, event.shiftKey, event.ctrlKey || event.metaKey));
+    return row;
+  }
+
+  /** Stops the browser from selecting text on Shift, which would start at the field edited last. */
+  private onMouseDown(event: MouseEvent): void {
+    if (!event.shiftKey) return;
+    event.preventDefault();
+    this.element.focus({ preventScroll: true });
+  }
+
+  private selectRow(index: number, range: boolean, toggle: boolean): void {
+    const entity = this.entities[index];
+    if (!entity) return;
+    this.current = index;
+    if (!range) this.anchor = index;
+    const [from, to] = [Math.min(this.anchor, index), Math.max(this.anchor, index)];
+    if (toggle) this.modeling.select([entity.name], "toggle");
+    else this.modeling.select(range ? this.entities.slice(from, to + 1).map(({ name }) => name) : [entity.name]);
+    this.mark();
+  }
+
+  private mark(): void {
+    if (this.entities.length > 0) this.element.setAttribute("aria-activedescendant", `entity-${this.current}`);
+    else this.element.removeAttribute("aria-activedescendant");
+  }
+
+  private onKeyDown(event: KeyboardEvent): void {
+    const last = this.entities.length - 1;
+    const to = { ArrowDown: this.current + 1, ArrowUp: this.current - 1, Home: 0, End: last }[event.key];
+    if (to === undefined || last < 0) return;
+    event.preventDefault();
+    const index = Math.max(0, Math.min(last, to));
+    this.selectRow(index, event.shiftKey, false);
+    this.rows.reveal(index);
+  }
+}
+
+function iconOf({ kind, shape, parts, address }: WorldEntity): IconName {
+  if (kind === "light") return "bulb";
+  if (shape) return ICONS[shape];
+  return parts.length > 0 ? "group" : address === null ? "cube" : "library";
+}

@@ -1,0 +1,92 @@
+import { h } from "../../dom";
+import { icon } from "../../icons";
+import type { ModelChoice } from "../../protocol";
+import type { Modeling } from "../../state/modeling/modeling";
+import { strings } from "../../strings";
+import { Dialog } from "../../widgets/dialog";
+
+/** Lets the user choose among the models on the search path; the next click in the scene places the model. */
+export class ModelDialog {
+  private readonly dialog: Dialog;
+  private readonly search = h("input", { class: "field" });
+  private readonly list = h("div", { class: "choices", role: "listbox", aria: { label: strings.modeling.models } });
+  private models: readonly ModelChoice[] | null = null;
+  private shown: readonly ModelChoice[] = [];
+  private chosen: ModelChoice | null = null;
+
+  constructor(private readonly modeling: Modeling) {
+    const words = strings.modeling;
+    this.search.type = "search";
+    this.search.placeholder = words.search;
+    this.search.setAttribute("aria-label", words.search);
+    this.search.addEventListener("input", () => this.fill());
+    for (const each of [this.search, this.list]) each.addEventListener("keydown", (event) => this.onKeyDown(event));
+    this.dialog = new Dialog(
+      words.models,
+      [h("div", { class: "search-box" }, icon("search"), this.search), this.list],
+      [{ label: strings.shell.cancel }, { label: words.choose, main: true, run: () => this.accept() }],
+      "add-dialog",
+    );
+    const forget = modeling.modelsArrived.on((models) => {
+      this.models = models;
+      this.fill();
+    });
+    this.dialog.element.addEventListener("close", () => forget());
+  }
+
+  open(): void {
+    this.dialog.open(this.search);
+    this.fill();
+    this.modeling.requestModels();
+  }
+
+  private fill(): void {
+    const words = strings.modeling;
+    const query = this.search.value.trim().toLowerCase();
+    this.shown = (this.models ?? []).filter(({ name, address }) => `${name} ${address}`.toLowerCase().includes(query));
+    this.list.replaceChildren(...this.shown.map((model) => this.row(model)));
+    if (this.models && this.shown.length === 0) {
+      this.list.append(h("p", { class: "empty" }, this.models.length === 0 ? words.noModels : words.notFound));
+    }
+    this.choose(this.shown.find(({ address }) => address === this.chosen?.address) ?? this.shown[0] ?? null);
+  }
+
+  private row(model: ModelChoice): HTMLElement {
+    const { name, address } = model;
+    const parts = [icon("library"), h("strong", {}, name), h("span", { class: "about" }, address)];
+    const row = h("div", { class: "choice-row", role: "option", tabIndex: -1, onClick: () => this.choose(model) }, ...parts);
+    row.addEventListener("dblclick", () => {
+      if (this.accept()) this.dialog.close();
+    });
+    return row;
+  }
+
+  private choose(model: ModelChoice | null): void {
+    this.chosen = model;
+    this.dialog.ready = model !== null;
+    [...this.list.querySelectorAll<HTMLElement>("[role=option]")].forEach((row, index) => {
+      const on = this.shown[index] === model;
+      row.setAttribute("aria-selected", String(on));
+      row.tabIndex = on ? 0 : -1;
+    });
+  }
+
+  private onKeyDown(event: KeyboardEvent): void {
+    if (event.key === "Enter" && event.target !== this.search && this.accept()) this.dialog.close();
+    const step = event.key === "ArrowDown" ? 1 : event.key === "ArrowUp" ? -1 : 0;
+    const at = this.shown.findIndex((model) => model === this.chosen) + step;
+    const next = this.shown[at];
+    if (step === 0 || !next) return;
+    event.preventDefault();
+    this.choose(next);
+    const row = this.list.querySelectorAll<HTMLElement>("[role=option]")[at];
+    row?.scrollIntoView({ block: "nearest" });
+    if (event.target !== this.search) row?.focus();
+  }
+
+  private accept(): boolean {
+    if (!this.chosen) return false;
+    this.modeling.place({ kind: "model", address: this.chosen.address });
+    return true;
+  }
+}

@@ -1,0 +1,85 @@
+import { button, h } from "../../dom";
+import { icon, type IconName } from "../../icons";
+import type { AngleUnits } from "../../state/angle-unit";
+import type { Modeling } from "../../state/modeling/modeling";
+import { ANGLE_STEPS, LENGTH_STEPS } from "../../state/modeling/snapping";
+import { strings } from "../../strings";
+import { TreeView } from "../../tree/tree-view";
+import { choice } from "../../widgets/controls";
+import { keyText, type Shortcut } from "../../widgets/shortcuts";
+import { UnitSwitch } from "../../widgets/unit-switch";
+import type { Panel } from "../panel";
+import { shortPath } from "../place";
+import { entityItems } from "./entity-items";
+import { EntityList } from "./entity-list";
+import { WORLD_KEYS, type WorldCommands } from "./world-commands";
+
+/** The models and lights of the world being edited, and the properties of the selection. */
+export class WorldPanel implements Panel {
+  readonly id = "world";
+  readonly icon = "build";
+  readonly element: HTMLElement;
+  private readonly inactiveView: HTMLElement;
+  private readonly activeView: HTMLElement;
+  private readonly file = h("span", { class: "world-file" });
+  private readonly mark = h("span", { class: "world-unsaved", title: strings.modeling.unsaved, role: "img", aria: { label: strings.modeling.unsaved } }, "●");
+  private readonly empty = h("p", { class: "hint empty" }, strings.modeling.empty);
+  private readonly actions: readonly (readonly [HTMLButtonElement, () => boolean])[];
+
+  constructor(
+    private readonly modeling: Modeling,
+    angles: AngleUnits,
+    commands: WorldCommands,
+  ) {
+    const words = strings.modeling;
+    const begin = button(words.begin, () => modeling.setActive(true), "tool framed", words.start);
+    this.inactiveView = h("div", { class: "world-off" }, h("p", { class: "hint" }, words.off), begin);
+    const any = (): boolean => modeling.selected.length > 0;
+    this.actions = [
+      [action(words.duplicate, WORLD_KEYS.duplicate, "duplicate", () => modeling.duplicate()), any],
+      [action(words.remove, WORLD_KEYS.remove, "remove", () => modeling.remove()), any],
+      [action(words.group, WORLD_KEYS.group, "group", () => modeling.group()), () => modeling.canGroup],
+      [action(words.ungroup, WORLD_KEYS.ungroup, "ungroup", () => modeling.ungroup()), () => modeling.canUngroup],
+    ];
+    const toolbar = h("div", { class: "toolbar", role: "toolbar", aria: { label: words.panel } }, ...this.actions.map(([made]) => made));
+    const saveAs = action(words.saveAs, WORLD_KEYS.saveAs, "download", () => commands.saveAs());
+    const head = h("div", { class: "world-head" }, icon("file"), this.file, this.mark, h("span", { class: "spacer" }), saveAs);
+    const tree = new TreeView(words.properties, () => entityItems(modeling, angles), () => []);
+    this.activeView = h("div", { class: "world-work" }, head, toolbar, this.empty, new EntityList(modeling).element, tree.element, this.grid(angles));
+    this.element = h("div", { class: "panel world-panel" }, this.inactiveView, this.activeView);
+    modeling.changed.on(() => this.show());
+    modeling.selectionChanged.on(() => this.show());
+    for (const signal of [modeling.changed, modeling.selectionChanged, angles.changed]) signal.on(tree.refresh);
+    this.show();
+  }
+
+  private show(): void {
+    const { active, file, unsaved, entities } = this.modeling;
+    this.inactiveView.hidden = active;
+    this.activeView.hidden = !active;
+    this.file.textContent = file === null ? strings.modeling.untitled : shortPath(file);
+    this.file.title = file ?? "";
+    this.mark.hidden = !unsaved;
+    this.empty.hidden = entities.length > 0;
+    for (const [made, possible] of this.actions) made.disabled = !possible();
+  }
+
+  private grid(angles: AngleUnits): HTMLElement {
+    const words = strings.modeling;
+    const { snapping } = this.modeling;
+    const steps = (values: readonly number[], unit: string): (readonly [string, string])[] => values.map((value) => [String(value), `${value}${unit}`]);
+    const length = choice(words.lengthStep, steps(LENGTH_STEPS, " m"), (value) => (snapping.meters = Number(value)));
+    const angle = choice(words.angleStep, steps(ANGLE_STEPS, "°"), (value) => (snapping.degrees = Number(value)));
+    const show = (): void => {
+      length.value = String(snapping.meters);
+      angle.value = String(snapping.degrees);
+    };
+    snapping.changed.on(show);
+    show();
+    return h("div", { class: "world-grid" }, icon("magnet"), length, angle, h("span", { class: "spacer" }), new UnitSwitch(angles).element);
+  }
+}
+
+function action(label: string, keys: Shortcut, name: IconName, run: () => void): HTMLButtonElement {
+  return button(`${label} (${keyText(keys)})`, run, "tool bare", icon(name));
+}

@@ -1,0 +1,54 @@
+import { Group, Matrix4, Mesh, MeshBasicMaterial, OctahedronGeometry, type Raycaster } from "three";
+import type { Modeling } from "../../state/modeling/modeling";
+import { entityMatrix } from "./entity-pose";
+
+/** The radius of a mark, m. */
+const RADIUS = 0.12;
+const [COLOR, SELECTED] = [0xffd54a, 0x5db0ff];
+
+/** Marks at the lights of the world, which would otherwise be invisible and could not be clicked. */
+export class LightMarks {
+  /** The group of the marks, in the world's frame. */
+  readonly root = new Group();
+  private readonly shape = new OctahedronGeometry(RADIUS);
+  private readonly marks = new Map<string, Mesh<OctahedronGeometry, MeshBasicMaterial>>();
+
+  constructor(private readonly modeling: Modeling) {
+    this.root.matrixAutoUpdate = false;
+  }
+
+  /** Updates the marks of all lights; `moved` has the displacements of lights being dragged. */
+  update(world: Matrix4, moved: ReadonlyMap<string, Matrix4>): void {
+    const { active, entities, selected } = this.modeling;
+    const lights = active ? entities.filter(({ kind }) => kind === "light") : [];
+    for (const [name, mark] of this.marks) {
+      if (lights.some((light) => light.name === name)) continue;
+      mark.removeFromParent();
+      mark.material.dispose();
+      this.marks.delete(name);
+    }
+    for (const { name, pose } of lights) {
+      const mark = this.marks.get(name) ?? this.make(name);
+      mark.matrix.copy(entityMatrix(pose));
+      mark.matrix.premultiply(moved.get(name) ?? new Matrix4());
+      mark.material.color.setHex(selected.includes(name) ? SELECTED : COLOR);
+    }
+    this.root.matrix.copy(world);
+    this.root.updateMatrixWorld(true);
+  }
+
+  /** Returns the light that a ray hits, and its distance, m. */
+  pick(ray: Raycaster): { name: string; distance: number } | null {
+    const [hit] = ray.intersectObjects([...this.marks.values()], false);
+    return hit ? { name: hit.object.name, distance: hit.distance } : null;
+  }
+
+  private make(name: string): Mesh<OctahedronGeometry, MeshBasicMaterial> {
+    const mark = new Mesh(this.shape, new MeshBasicMaterial({ color: COLOR }));
+    mark.name = name;
+    mark.matrixAutoUpdate = false;
+    this.marks.set(name, mark);
+    this.root.add(mark);
+    return mark;
+  }
+}

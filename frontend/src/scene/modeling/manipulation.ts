@@ -1,0 +1,106 @@
+import { Matrix4, Vector3 } from "three";
+import type { WorldEntity } from "../../protocol";
+import type { Modeling } from "../../state/modeling/modeling";
+import { resizeChange, scaledSize, stretchFactors, type Change } from "../../state/modeling/shapes";
+import type { Stage } from "../stage";
+import type { ToolEvent } from "../tools/tool";
+import { Gizmo } from "./gizmo";
+import { entityMatrix, entityPose } from "./entity-pose";
+import { worldFrame } from "./world-frame";
+
+/** m or rad; a smaller difference does not count as a change. */
+const MIN_CHANGE = 1e-8;
+
+/** Shows entities displaced in the world, by the matrices that premultiply their poses. */
+export type Displace = (moved: ReadonlyMap<string, Matrix4>) => void;
+
+/** The gizmo on the selection: dragging shows the change immediately, and releasing applies it to the world. */
+export class Manipulation {
+  private readonly gizmo: Gizmo;
+  private changes: readonly Change[] = [];
+
+  constructor(
+    private readonly stage: Stage,
+    private readonly modeling: Modeling,
+    private readonly displace: Displace,
+  ) {
+    this.gizmo = new Gizmo(stage);
+  }
+
+  /** Moves the gizmo to the selection. */
+  update(): void {
+    const { modeling } = this;
+    if (this.gizmo.isHeld) return;
+    const entity = modeling.active && modeling.placing === null ? modeling.selectedEntities.at(-1) : undefined;
+    const shown = entity && (modeling.gizmo !== "scale" || modeling.canScale);
+    this.gizmo.show(shown ? worldFrame(this.stage).multiply(entityMatrix(entity.pose)) : null, modeling.gizmo);
+  }
+
+  /** Handles an event; returns false if it is left to others. */
+  pointer(event: ToolEvent): boolean {
+    const { gizmo } = this;
+    if (gizmo.isHeld) {
+      if (event.type === "move") this.move(event);
+      else if (event.type === "up" && event.button === "left") return this.release(event);
+      return true;
+    }
+    if (event.type === "down" && event.button === "left") return gizmo.grab(event);
+    if (event.type !== "move" || event.left || event.middle || event.right || !gizmo.hover(event)) return false;
+    this.stage.viewport.canvas.style.cursor = "grab";
+    return true;
+  }
+
+  /** Cancels the drag; returns false if none is in progress. */
+  cancel(): boolean {
+    if (!this.gizmo.isHeld) return false;
+    this.gizmo.cancel();
+    this.changes = [];
+    this.displace(new Map());
+    this.update();
+    return true;
+  }
+
+  private move(event: ToolEvent): void {
+    const { modeling, gizmo } = this;
+    const steps = modeling.snapping.steps(event.ctrl);
+    gizmo.drag(event, steps);
+    const entities = modeling.selectedEntities;
+    const main = entities.at(-1);
+    if (!main) return;
+    if (modeling.gizmo === "scale") this.scale(main, steps.length);
+    else this.moveAll(entities, main);
+  }
+
+  /** Ends the drag; returns false for a mere click, which is meant for what is behind the handle. */
+  private release(event: ToolEvent): boolean {
+    const { changes } = this;
+    this.gizmo.release(event);
+    this.changes = [];
+    this.modeling.change(changes);
+    this.update();
+    return changes.length > 0;
+  }
+
+  /** Moves all selected entities together with the one that has the gizmo. */
+  private moveAll(entities: readonly WorldEntity[], main: WorldEntity): void {
+    const to = worldFrame(this.stage).invert().multiply(this.gizmo.pose);
+    const by = to.multiply(entityMatrix(main.pose).invert());
+    const moved = entities.map(({ name, pose }) => ({ name, pose: entityPose(by.clone().multiply(entityMatrix(pose))) }));
+    this.changes = same(moved.flatMap(({ pose }) => pose), entities.flatMap(({ pose }) => pose)) ? [] : moved;
+    this.displace(new Map(entities.map(({ name }) => [name, by])));
+  }
+
+  private scale(entity: WorldEntity, step: number): void {
+    const { name, shape, size, pose } = entity;
+    if (shape === null) return;
+    const next = scaledSize(shape, size, this.gizmo.scale, step);
+    const change = resizeChange(entity, next);
+    const stretched = new Matrix4().scale(new Vector3(...stretchFactors(shape, size, next)));
+    this.changes = same(size, next) ? [] : [change];
+    this.displace(new Map([[name, entityMatrix(change.pose ?? pose).multiply(stretched).multiply(entityMatrix(pose).invert())]]));
+  }
+}
+
+function same(some: readonly number[], others: readonly number[]): boolean {
+  return some.every((value, i) => Math.abs(value - (others[i] ?? NaN)) < MIN_CHANGE);
+}

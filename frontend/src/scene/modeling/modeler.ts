@@ -1,0 +1,154 @@
+import type { Matrix4 } from "three";
+import type { Session } from "../../state/session";
+import { strings } from "../../strings";
+import { WorldDrawing } from "../displays/world";
+import { modelOf } from "../displays/world-models";
+import type { Stage } from "../stage";
+import type { ToolEvent } from "../tools/tool";
+import { HANDLING_TOOLS } from "../world-handling";
+import { LightMarks } from "./light-marks";
+import { Manipulation } from "./manipulation";
+import { Placer } from "./placer";
+import { worldFrame } from "./world-frame";
+
+/** Handles the mouse while the world is modeled: selects, moves and adds models and lights. */
+export class Modeler {
+  private readonly manipulation: Manipulation;
+  private readonly placer: Placer;
+  private readonly lights: LightMarks;
+  private moved: ReadonlyMap<string, Matrix4> = new Map();
+  private wasActive = false;
+
+  constructor(
+    private readonly stage: Stage,
+    private readonly session: Session,
+  ) {
+    const { modeling, simulation, frames, data } = session;
+    this.lights = new LightMarks(modeling);
+    stage.overlays.add(this.lights.root);
+    this.manipulation = new Manipulation(stage, modeling, (moved) => this.displace(moved));
+    this.placer = new Placer(stage, modeling);
+    modeling.changed.on(() => this.follow());
+    modeling.selectionChanged.on(() => this.select());
+    modeling.toolChanged.on(() => {
+      this.manipulation.update();
+      this.hint();
+    });
+    modeling.dropped.on(() => this.drop());
+    simulation.refused.on(() => this.displace(new Map()));
+    for (const signal of [frames.posesChanged, frames.tableChanged]) {
+      signal.on(() => {
+        if (modeling.active) this.update();
+      });
+    }
+    // A new model is drawn later than it is announced.
+    data.received.on(({ content }) => {
+      if (modeling.active && content.kind === "world_scene") this.select();
+    });
+    this.follow();
+    this.drop();
+  }
+
+  /** Handles an event and returns the event for the active tool; null if the tool is to get none. */
+  pointer(event: ToolEvent): ToolEvent | null {
+    const { modeling, tools } = this.session;
+    if (!modeling.active || (tools.current && !HANDLING_TOOLS.includes(tools.current.cls))) return event;
+    if (this.manipulation.pointer(event)) return null;
+    const { placing } = modeling;
+    if (this.placer.pointer(event)) return null;
+    if (event.type !== "up" || !event.click) return event;
+    if (event.button === "left" && !placing) this.click(event);
+    else if (event.button === "right") this.openMenu(event);
+    return { ...event, click: false };
+  }
+
+  /** Handles Esc: cancels the drag or the placing in progress, or else clears the selection. */
+  escape(): void {
+    const { modeling } = this.session;
+    if (this.manipulation.cancel()) return;
+    if (modeling.placing) modeling.place(null);
+    else modeling.select([]);
+  }
+
+  private click({ x, y, shift, ctrl }: ToolEvent): void {
+    const { modeling } = this.session;
+    const name = this.entityAt(x, y);
+    if (name !== null) modeling.select([name], shift || ctrl ? "toggle" : "replace");
+    else if (!shift && !ctrl) modeling.select([]);
+  }
+
+  /** Returns the entity of the world's file under the pointer; the ground does not hide entities. */
+  private entityAt(x: number, y: number): string | null {
+    const { picker } = this.stage;
+    const ray = picker.rayAt(x, y);
+    const light = this.lights.pick(ray);
+    const found = picker.alongRay(ray);
+    if (light && (!found || light.distance < found.hit.distance)) return light.name;
+    if (!(found?.drawing instanceof WorldDrawing)) return null;
+    const name = modelOf(found.hit.key);
+    return this.session.modeling.find(name) && !found.drawing.isFlat(found.hit.key) ? name : null;
+  }
+
+  private hint(): void {
+    const { modeling, tools } = this.session;
+    const words = strings.modeling;
+    if (modeling.placing) tools.hint = modeling.placing.kind === "wall" ? words.wallHint : words.placeHint;
+  }
+
+  private openMenu(event: ToolEvent): void {
+    const { modeling, sceneMenu } = this.session;
+    const words = strings.modeling;
+    const name = this.entityAt(event.x, event.y);
+    if (name === null) return;
+    if (!modeling.selected.includes(name)) modeling.select([name]);
+    const choices = [
+      { label: words.duplicate, run: () => modeling.duplicate() },
+      { label: words.remove, run: () => modeling.remove() },
+      ...(modeling.canGroup ? [{ label: words.group, run: () => modeling.group() }] : []),
+      ...(modeling.canUngroup ? [{ label: words.ungroup, run: () => modeling.ungroup() }] : []),
+    ];
+    sceneMenu.emit({ x: event.x, y: event.y, choices });
+  }
+
+  private drop(): void {
+    const drop = this.session.modeling.takeDrop();
+    if (!drop) return;
+    const { placing, at } = drop;
+    const { canvas, size } = this.stage.viewport;
+    const box = canvas.getBoundingClientRect();
+    if (at) this.placer.drop(placing, at.x - box.left, at.y - box.top);
+    else this.placer.drop(placing, size.width / 2, size.height / 2);
+  }
+
+  private follow(): void {
+    const { modeling, tools } = this.session;
+    if (modeling.active !== this.wasActive) {
+      this.wasActive = modeling.active;
+      if (modeling.active) tools.choose(tools.default);
+      else this.displace(new Map());
+    }
+    this.moved = new Map();
+    this.update();
+  }
+
+  private displace(moved: ReadonlyMap<string, Matrix4>): void {
+    this.moved = moved;
+    this.stage.world?.drawing.displace(moved);
+    this.lights.update(worldFrame(this.stage), moved);
+  }
+
+  private update(): void {
+    this.manipulation.update();
+    this.lights.update(worldFrame(this.stage), this.moved);
+    this.stage.loop.invalidate();
+  }
+
+  /** Outlines the selected models in the scene. */
+  private select(): void {
+    const { stage, session } = this;
+    const { world } = stage;
+    const links = world ? session.modeling.selected.flatMap((name) => world.drawing.linksOf(name)) : [];
+    session.selection.pick(world ? links.map((key) => ({ display: world.id, key })) : [], "replace");
+    this.update();
+  }
+}

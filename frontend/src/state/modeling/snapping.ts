@@ -1,0 +1,73 @@
+import { Signal } from "../../signal";
+import type { TextStorage } from "../../storage";
+
+const KEY = "linkwright.snapping";
+const DEGREE = Math.PI / 180;
+
+/** The steps to choose from, m and degrees. */
+export const LENGTH_STEPS = [0.01, 0.05, 0.1, 0.25, 0.5, 1] as const;
+export const ANGLE_STEPS = [1, 5, 15, 30, 45, 90] as const;
+
+/** Rounds to the nearest multiple of a step, without floating-point noise. */
+export function snap(value: number, step: number): number {
+  return step > 0 ? Number((Math.round(value / step) * step).toPrecision(12)) : value;
+}
+
+/** The grid for moving, rotating and scaling, stored by the browser. */
+export class Snapping {
+  readonly changed = new Signal();
+  private on: boolean;
+  private length: number;
+  private angle = 15;
+
+  /** `key` is the storage key, `usual` the default. */
+  constructor(
+    private readonly storage: TextStorage,
+    private readonly key = KEY,
+    usual = { on: true, length: 0.1 },
+  ) {
+    [this.on, this.length] = [usual.on, usual.length];
+    const [on, length, angle] = (storage.getItem(key) ?? "").split(" ");
+    if (!(Number(length) > 0 && Number(angle) > 0)) return;
+    [this.on, this.length, this.angle] = [on === "on", Number(length), Number(angle)];
+  }
+
+  get enabled(): boolean {
+    return this.on;
+  }
+
+  set enabled(on: boolean) {
+    this.on = on;
+    this.store();
+  }
+
+  /** The step of the grid, m. */
+  get meters(): number {
+    return this.length;
+  }
+
+  set meters(length: number) {
+    this.length = length;
+    this.store();
+  }
+
+  get degrees(): number {
+    return this.angle;
+  }
+
+  set degrees(angle: number) {
+    this.angle = angle;
+    this.store();
+  }
+
+  /** Returns the current steps, m and rad, 0 without a grid; `inverted` while Ctrl is held. */
+  steps(inverted: boolean): { length: number; angle: number } {
+    const on = this.on !== inverted;
+    return { length: on ? this.length : 0, angle: on ? this.angle * DEGREE : 0 };
+  }
+
+  private store(): void {
+    this.storage.setItem(this.key, `${this.on ? "on" : "off"} ${this.length} ${this.angle}`);
+    this.changed.emit();
+  }
+}

@@ -1,0 +1,84 @@
+"""Compressed files of recordings, with the folder that says so and without it."""
+
+from __future__ import annotations
+
+import shutil
+from pathlib import Path
+
+import pytest
+from rosbags.rosbag2 import CompressionFormat, CompressionMode, StoragePlugin, Writer
+
+from linkwright.bag import BagReader, is_recording
+from linkwright.cli import main
+from linkwright.diagnostics import LinkwrightError
+from linkwright.messages import String, serialize, type_hash
+from linkwright.messages.schema_text import schema_of
+
+START = 1_700_000_000_000_000_000
+STRING = "std_msgs/msg/String"
+MODES = [CompressionMode.FILE, CompressionMode.MESSAGE]
+PLUGINS = [StoragePlugin.MCAP, StoragePlugin.SQLITE3]
+
+
+def recorded(folder: Path, plugin: StoragePlugin, mode: CompressionMode, length: int = 20) -> Path:
+    """A folder as `ros2 bag record --compression-mode` makes it, with messages of ``/a`` and ``/b`` in turns."""
+    writer = Writer(folder, version=8, storage_plugin=plugin)
+    writer.set_compression(mode, CompressionFormat.ZSTD)
+    with writer:
+        topics = [
+            writer.add_connection(name, STRING, msgdef=schema_of(STRING), rihs01=type_hash(STRING))
+            for name in ("/a", "/b")
+        ]
+        for number in range(length):
+            writer.write(topics[number % 2], START + number, serialize(String(data=f"number {number}" * 100)))
+    return folder
+
+
+@pytest.mark.parametrize("mode", MODES)
+@pytest.mark.parametrize("plugin", PLUGINS)
+def test_compressed_file_without_folder_has_same_messages(
+    tmp_path: Path, plugin: StoragePlugin, mode: CompressionMode
+) -> None:
+    folder = recorded(tmp_path / "bag", plugin, mode)
+    (file,) = (path for path in folder.iterdir() if path.name != "metadata.yaml")
+    alone = tmp_path / file.name
+    shutil.copy(file, alone)
+    assert is_recording(alone)
+    with BagReader(folder) as whole, BagReader(alone) as single:
+        assert list(single.messages()) == list(whole.messages())
+        assert single.storage == whole.storage == plugin.name.lower()
+        for at in (START - 1, START, START + 7, START + 30):
+            assert single.state_at(["/a", "/b"], at) == whole.state_at(["/a", "/b"], at)
+    (folder / "metadata.yaml").unlink()
+    assert is_recording(folder)
+    with BagReader(folder) as bag:
+        assert len(list(bag.messages())) == 20
+
+
+def test_truncated_compressed_mcap_gives_complete_messages(tmp_path: Path) -> None:
+    folder = recorded(tmp_path / "bag", StoragePlugin.MCAP, CompressionMode.FILE, length=20_000)
+    (file,) = folder.glob("*.mcap.zstd")
+    cut = tmp_path / "cut.mcap.zstd"
+    cut.write_bytes(file.read_bytes()[: file.stat().st_size // 2])
+    with BagReader(cut) as bag:
+        assert [finding.code for finding in bag.findings] == ["BAG109"]
+        assert 0 < len(list(bag.messages())) < 20_000
+
+
+def test_damaged_compressed_files_are_reported(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    plain = tmp_path / "plain.mcap.zstd"
+    plain.write_text("not compressed")
+    with pytest.raises(LinkwrightError, match="it does not begin with a zstd header"):
+        BagReader(plain)
+    (file,) = recorded(tmp_path / "bag", StoragePlugin.SQLITE3, CompressionMode.FILE, 20_000).glob("*.zstd")
+    cut = tmp_path / "cut.db3.zstd"
+    cut.write_bytes(file.read_bytes()[: file.stat().st_size // 2])
+    assert main(["bag", "info", str(cut)]) == 1
+    assert "its content is damaged or truncated" in capsys.readouterr().err
+
+
+def test_missing_files_listed_in_metadata_are_named(tmp_path: Path) -> None:
+    folder = recorded(tmp_path / "bag", StoragePlugin.SQLITE3, CompressionMode.MESSAGE)
+    (folder / "bag.db3").unlink()
+    with pytest.raises(LinkwrightError, match=r"files that its metadata.yaml lists are missing: bag\.db3$"):
+        BagReader(folder)

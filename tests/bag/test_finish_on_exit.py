@@ -1,0 +1,70 @@
+"""The end of a recording that another thread writes, because the process is about to be ended."""
+
+from __future__ import annotations
+
+import threading
+from pathlib import Path
+
+import pytest
+
+from linkwright.bag import BagReader, BagWriter
+from linkwright.files.unfinished import finish_all
+from linkwright.messages import String, serialize
+from tests.waiting import SECONDS, wait_until
+
+FORMS = {
+    "mcap": ("bag", {}),
+    "compressed": ("bag", {"compression": "storage"}),
+    "sqlite3": ("bag", {"storage": "sqlite3"}),
+    "file": ("bag.mcap", {"single_file": True}),
+}
+
+
+@pytest.fixture(params=FORMS)
+def writer(request: pytest.FixtureRequest, tmp_path: Path) -> BagWriter:
+    name, options = FORMS[request.param]
+    made = BagWriter(tmp_path / name, **options)
+    made.add_topic("/chatter", "std_msgs/msg/String")
+    return made
+
+
+def numbers(path: Path) -> list[int]:
+    """The times of the messages of a recording that is whole."""
+    with BagReader(path) as bag:
+        found = [stamp for _, stamp, _ in bag.messages()]
+        assert not bag.findings
+    return found
+
+
+def test_finish_all_completes_recording_while_thread_writes(writer: BagWriter) -> None:
+    written = 0
+    over = threading.Event()
+
+    def write() -> None:
+        nonlocal written
+        while not over.is_set():
+            writer.write("/chatter", written + 1, serialize(String(data="word " * 50)))
+            writer.flush()
+            written += 1
+
+    thread = threading.Thread(target=write)
+    thread.start()
+    try:
+        wait_until(lambda: written > 100 or not thread.is_alive())
+        finish_all()
+    finally:
+        over.set()
+        thread.join(SECONDS)
+    found = numbers(writer.path)
+    assert found == list(range(1, len(found) + 1))
+    assert len(found) >= 100
+    writer.close()
+    assert numbers(writer.path) == found
+
+
+def test_finish_all_leaves_closed_recording_unchanged(writer: BagWriter) -> None:
+    writer.write("/chatter", 1, serialize(String(data="word")))
+    writer.close()
+    before = {each: each.stat().st_mtime_ns for each in (writer.path, *writer.path.glob("*"))}
+    finish_all()
+    assert {each: each.stat().st_mtime_ns for each in before} == before

@@ -1,0 +1,139 @@
+"""Many nodes, many messages, many threads at once."""
+
+import asyncio
+import threading
+import time
+
+import pytest
+
+from linkwright.graph import Graph, JumpClock
+from linkwright.graph.executors import MultiThreadedExecutor
+from linkwright.messages import String, get_service
+
+Trigger = get_service("std_srvs/srv/Trigger")
+NODES = 500
+
+
+async def test_five_hundred_nodes_exchange_messages():
+    clock = JumpClock()
+    graph = Graph(clock=clock, on_log=print)
+    heard = [0] * NODES
+    for number in range(NODES):
+        node = graph.create_node(f"node_{number}", namespace=f"robot_{number % 10}")
+
+        def hear(_message, number=number):
+            heard[number] += 1
+
+        node.create_subscription(String, "/all", hear, 10)
+        node.create_subscription(String, "ours", hear, 10)
+        publisher = node.create_publisher(String, "ours", 10)
+        node.create_timer(1.0, lambda publisher=publisher: publisher.publish(String()))
+    everybody = graph.create_node("everybody").create_publisher(String, "/all", 10)
+    assert len(graph.node_names()) == NODES + 1
+    everybody.publish(String())
+    await graph.settle()
+    assert heard == [1] * NODES
+    await clock.advance(1.0)
+    # Ten topics of fifty nodes; queues of ten keep the first of what their own fifty publish until they are read.
+    assert min(heard) > 10
+    before = len(graph.endpoints())
+    graph.nodes()[0].destroy()
+    assert len(graph.endpoints()) < before
+    await graph.close()
+    assert graph.endpoints() == []
+
+
+def test_graph_can_change_while_other_threads_use_it():
+    """Nodes come and go in some threads while others publish, ask and look."""
+    graph = Graph(threads=True, on_log=lambda _record: None)
+    steady = graph.create_node("steady")
+    received = []
+    steady.create_subscription(String, "topic", received.append, 100)
+    steady.create_service(Trigger, "trigger", lambda _request, response: response)
+    executor = MultiThreadedExecutor(2)
+    executor.add_node(steady)
+    spinner = threading.Thread(target=executor.spin)
+    spinner.start()
+    failures = []
+    stop = time.monotonic() + 1.0
+
+    def guarded(work):
+        def run(number):
+            try:
+                while time.monotonic() < stop:
+                    work(number)
+            except Exception as error:  # noqa: BLE001  # any at all is what is looked for
+                failures.append(error)
+
+        return run
+
+    def come_and_go(number):
+        node = graph.create_node(f"guest_{number}")
+        publisher = node.create_publisher(String, "topic", 10)
+        for _ in range(10):
+            publisher.publish(String())
+        node.create_subscription(String, "topic", lambda _message: None, 10)
+        node.create_client(Trigger, "trigger").call_async(Trigger.Request())
+        node.create_timer(0.001, lambda: None)
+        executor.add_node(node)
+        executor.remove_node(node)
+        node.destroy_node()
+
+    def look(_number):
+        graph.get_topic_names_and_types()
+        graph.get_node_names_and_namespaces()
+
+    threads = [
+        threading.Thread(target=guarded(work), args=(number,))
+        for number, work in enumerate((come_and_go,) * 3 + (look,))
+    ]
+    for thread in threads:
+        thread.start()
+    for thread in threads:
+        thread.join(60.0)
+    executor.shutdown()
+    spinner.join(60.0)
+    assert failures == []
+    assert received
+    assert graph.node_names() == ["/steady"]
+    graph.close_threadsafe()
+    assert graph.endpoints() == []
+
+
+async def test_thread_loses_no_reliable_messages_to_event_loop():
+    """A hundred thousand messages into a queue that holds them."""
+    graph = Graph(on_log=print)
+    node = graph.create_node("node")
+    numbers, done = [], asyncio.Event()
+
+    def hear(message):
+        numbers.append(int(message.data))
+        if len(numbers) == 100_000:
+            done.set()
+
+    node.create_subscription(String, "topic", hear, 100_000)
+    publisher = node.create_publisher(String, "topic", 10)
+
+    def talk():
+        for number in range(100_000):
+            publisher.publish(String(data=str(number)))
+
+    thread = threading.Thread(target=talk)
+    thread.start()
+    await asyncio.wait_for(done.wait(), 60.0)
+    thread.join()
+    assert numbers == list(range(100_000))
+    await graph.close()
+
+
+async def test_failed_node_creation_leaves_nothing_in_graph(graph, monkeypatch):
+    from linkwright.graph.simulated_time import SimulatedTime
+
+    def refuse(*_arguments):
+        raise ValueError("no")
+
+    monkeypatch.setattr(SimulatedTime, "__init__", refuse)
+    with pytest.raises(ValueError, match="no"):
+        graph.create_node("node")
+    assert graph.node_names() == []
+    assert graph.endpoints() == []

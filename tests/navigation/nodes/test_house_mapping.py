@@ -1,0 +1,67 @@
+"""Our house, mapped by driving through it with bad odometry."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from linkwright.geometry.single import rpy_from_quaternion
+from linkwright.messages import get_service
+from linkwright.navigation.grids.occupancy import grid_from_message
+from linkwright.navigation.nodes.slam_toolbox.nodes import AsyncSlamToolbox
+from linkwright.navigation.slam.poses import compose, relative_pose
+from linkwright.nodes import NodeOptions
+from tests.navigation.nodes.house import (
+    TOUR,
+    Drift,
+    distances,
+    drive,
+    faces,
+    gaps,
+    occupied_of,
+    seen_points,
+    simulation,
+)
+
+CELL = 0.05
+
+
+@pytest.mark.slow
+def test_house_walls_are_mapped_within_5_cm_and_loop_is_closed(monkeypatch):
+    monkeypatch.delenv("ROS_DISTRO", raising=False)
+    walls, solid = faces(), faces(("walls", "furniture"))
+    with simulation() as test:
+        drift = Drift(test, scale=1.03, yaw_per_meter=0.03, noise=0.05)
+        options = NodeOptions(parameters={"use_sim_time": True}, remappings=[("/tf", "/drifting_tf")])
+        mapper = AsyncSlamToolbox(test.graph, options)
+        transforms = test.record("/drifting_tf")
+        drive(test, TOUR)
+        grid = grid_from_message(
+            test.call("/slam_toolbox/dynamic_map", get_service("nav_msgs/srv/GetMap").Request()).map
+        )
+        here = test.robot_pose()
+        true = np.array((here[0], here[1], rpy_from_quaternion(here[3:])[2]))
+        correction = [
+            transform
+            for message in transforms
+            for transform in message.transforms
+            if transform.header.frame_id == "map"
+        ][-1]
+        mapper.close()
+    # The loop: odometry ends a meter from where the robot is, and the map does not.
+    at, turned = correction.transform.translation, correction.transform.rotation
+    yaw = rpy_from_quaternion((turned.x, turned.y, turned.z, turned.w))[2]
+    assert np.hypot(*relative_pose(true, drift.pose)[:2]) > 0.8
+    error = relative_pose(true, compose(np.array((at.x, at.y, yaw)), drift.pose))
+    assert np.hypot(error[0], error[1]) < 0.05
+    assert abs(error[2]) < 0.02
+    # The walls: what is occupied near them lies on them, and what can be seen of them is there.
+    occupied = occupied_of(grid)
+    near = occupied[distances(walls, occupied) < 0.2]
+    assert len(near) > 900
+    assert distances(solid, near).max() < CELL + 1e-4
+    seen = seen_points(walls, grid)
+    assert len(seen) > 800
+    missing = gaps(grid, seen)
+    assert np.quantile(missing, 0.99) < CELL
+    assert missing.max() < 3 * CELL  # at the edge of what can be seen

@@ -1,0 +1,42 @@
+"""Inputs that the fuzzers found, or that came up while hunting: whatever was wrong with them stays mended.
+
+Each file of ``inputs/`` is named ``KIND--what-was-wrong.ending``; the kind says how it is read, and what must hold is
+what the fuzzers check (see ``fuzz/targets.py``): no error but ours, and an output that can be read again.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from pathlib import Path
+
+import pytest
+from fuzz import targets
+from fuzz.documents import HEAD, Files
+
+from tests.work import ends
+
+INPUTS = sorted((Path(__file__).parent / "inputs").iterdir())
+
+CHECKS: dict[str, Callable[[str], None]] = {
+    "expression": targets.check_expression,
+    "rviz": targets.check_rviz,
+    "urdf": targets.check_urdf,
+    "xacro": lambda text: targets.check_expansion(Files(text, f"{HEAD}/>", "a: 1")),
+    "xml": targets.check_xml,
+    "yaml": lambda text: targets.check_expansion(
+        Files(f"""{HEAD}><a v="${{xacro.load_yaml('data.yaml')}}"/></robot>""", f"{HEAD}/>", text)
+    ),
+}
+
+
+@pytest.mark.parametrize("path", INPUTS, ids=lambda path: path.name)
+def test_fuzzer_finding_stays_fixed(path: Path) -> None:
+    check = CHECKS[path.name.partition("--")[0]]
+    with ends():
+        check(path.read_bytes().decode("utf-8", "surrogatepass"))
+
+
+@pytest.mark.parametrize("name", [name for name in targets.TARGETS if targets.hard_seeds(name)])
+def test_slow_and_large_inputs_are_read_or_rejected(name: str) -> None:
+    for text in targets.hard_seeds(name):
+        targets.TARGETS[name](text.encode())

@@ -1,0 +1,34 @@
+"""The number of files through which the data passes: a reader must open each of them."""
+
+from __future__ import annotations
+
+import json
+import subprocess
+import sys
+from collections import Counter
+from functools import cache
+from pathlib import Path
+
+import pytest
+
+from tests.places import REPOSITORY
+
+MOST = {"opening": 160, "slider": 21}
+"""The most files of Linkwright whose functions run: from `view` to an open page, from a slider to the page's frames."""
+
+
+@cache
+def _files() -> dict[str, list[str]]:
+    done = subprocess.run(
+        [sys.executable, "-m", "tests.viewer.ways"], capture_output=True, text=True, cwd=REPOSITORY, check=True
+    )
+    files: dict[str, list[str]] = json.loads(done.stdout)
+    return files
+
+
+@pytest.mark.parametrize("way", MOST)
+def test_data_path_uses_few_files(way: str):
+    files = _files()[way]
+    rooms = Counter(Path(file).parts[0] for file in files)
+    listed = "\n".join(files)
+    assert len(files) <= MOST[way], f"{len(files)} files in {dict(rooms.most_common())}:\n{listed}"

@@ -1,0 +1,122 @@
+"""Transports that only look: for verbs that ask what there is and speak to nobody."""
+
+from __future__ import annotations
+
+import subprocess
+import sys
+import textwrap
+
+import pytest
+
+from linkwright.graph import Graph
+from linkwright.messages import String
+from linkwright.wire.dds import join
+from linkwright.wire.dds import transport as module
+from tests.waiting import SECONDS, wait_until
+
+pytest.importorskip("cyclonedds", reason="there is no DDS here")
+
+on_linux = pytest.mark.skipif(not sys.platform.startswith("linux"), reason="the system does not tell who is there")
+
+
+@pytest.fixture
+def observer():
+    graph = Graph(threads=True)
+    transport = join(graph, discovers_only=True)
+    assert transport is not None
+    assert transport.wait_until_ready(SECONDS)
+    yield graph, transport
+    graph.close_threadsafe()
+
+
+@pytest.fixture
+def never_settled(monkeypatch):
+    """Nobody concludes from silence that all have answered."""
+    monkeypatch.setattr(module, "SETTLED_AFTER", float("inf"))
+
+
+def test_discovers_only_transport_sees_others_and_is_not_seen(observer, processes):
+    graph, _ = observer
+    node = graph.create_node("looks")
+    node.create_publisher(String, "unheard", 10)
+    others = processes("others")
+    others.node.create_subscription(String, "chatter", print, 10)
+    assert others.transport.wait_until_ready(SECONDS)
+    wait_until(lambda: graph.count_subscribers("/chatter") == 1)
+    seen_by = processes("third")
+    seen_by.spin_until(lambda: seen_by.node.count_subscribers("chatter") == 1)
+    assert sorted(name for name, _ in seen_by.node.get_node_names_and_namespaces()) == ["others", "third"]
+    assert seen_by.node.count_publishers("unheard") == 0
+
+
+@on_linux
+def test_wait_for_discovery_ends_without_peers(observer, never_settled):
+    _, transport = observer
+    assert transport.wait_for_discovery(SECONDS)
+
+
+@on_linux
+def test_wait_for_discovery_ends_when_all_processes_are_discovered(programs, never_settled):
+    programs("our_program", "one")
+    programs("our_program", "two")
+    graph = Graph(threads=True)
+    transport = join(graph, discovers_only=True)
+    assert transport is not None
+    assert transport.wait_for_discovery(SECONDS)
+    assert {node.name for node in transport.remote_nodes()} == {"one", "two"}
+    assert graph.count_publishers("/chatter") == 0
+    graph.close_threadsafe()
+
+
+@on_linux
+def test_unanswered_process_is_waited_for(observer, monkeypatch):
+    _, transport = observer
+    here = 1
+    monkeypatch.setattr(module, "other_processes", lambda _domain: here)
+    assert not transport._knows_all_processes()
+    here = 0
+    assert transport._knows_all_processes()
+
+
+def test_process_count_is_inconclusive_with_several_participants(observer, processes, monkeypatch):
+    _, transport = observer
+    monkeypatch.setattr(module, "other_processes", lambda _domain: 0)
+    assert transport._knows_all_processes()
+    processes("beside")
+    wait_until(transport.remote_nodes)
+    assert not transport._knows_all_processes()
+
+
+@pytest.mark.parametrize("range_name", ["SUBNET", "LOCALHOST"])
+def test_process_count_is_inconclusive_beyond_own_machine(range_name, monkeypatch):
+    monkeypatch.setenv("ROS_AUTOMATIC_DISCOVERY_RANGE", range_name)
+    monkeypatch.setattr(module, "other_processes", lambda _domain: 0)
+    graph = Graph(threads=True)
+    transport = join(graph, discovers_only=True)
+    assert transport is not None
+    assert not transport._knows_all_processes()
+    graph.close_threadsafe()
+
+
+def test_numpy_and_unused_cyclonedds_modules_are_not_imported():
+    code = """
+        import sys
+        from linkwright.graph import Graph
+        from linkwright.wire.dds import join
+
+        graph = Graph(threads=True)
+        graph.create_node("looks")
+        transport = join(graph, discovers_only=True)
+        assert transport.wait_until_ready(60)
+        graph.close_threadsafe()
+        costly = ("numpy", "cyclonedds.pub", "cyclonedds.qos", "cyclonedds.idl._xt_builder", "urllib.request")
+        print([name for name in costly if name in sys.modules])
+        import cyclonedds
+        from cyclonedds import core
+        from cyclonedds.pub import DataWriter
+        print(cyclonedds.pub.DataWriter is DataWriter, cyclonedds.core is core, hasattr(cyclonedds, "nothing"))
+    """
+    done = subprocess.run(
+        [sys.executable, "-c", textwrap.dedent(code)], capture_output=True, text=True, check=False, timeout=SECONDS
+    )
+    assert (done.stdout, done.stderr) == ("[]\nTrue True False\n", "")

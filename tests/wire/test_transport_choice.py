@@ -1,0 +1,99 @@
+"""Which transport a process has."""
+
+from __future__ import annotations
+
+import importlib.util
+
+import pytest
+
+from linkwright.diagnostics import LinkwrightError, install_hint
+from linkwright.graph import Graph
+from linkwright.wire.dds import DdsTransport
+from linkwright.wire.joining import available, check_settings, join, middleware, unavailable_reason
+from linkwright.wire.unsupported_settings import CYCLONE, ZENOH
+from linkwright.wire.zenoh import ZenohTransport
+
+PLACES = ("linkwright.wire.joining", "linkwright.wire.dds.joining", "linkwright.wire.zenoh.joining")
+ASKED = {"RMW_IMPLEMENTATION": ZENOH}
+
+
+@pytest.fixture
+def installed(monkeypatch):
+    """Has only some packages be installed."""
+
+    def only(*names: str) -> None:
+        def find_spec(name: str) -> object:
+            return importlib.util.find_spec("linkwright") if name in names else None
+
+        for place in PLACES:
+            monkeypatch.setattr(f"{place}.find_spec", find_spec)
+
+    return only
+
+
+@pytest.mark.parametrize(
+    ("packages", "variables", "chosen", "is_there"),
+    [
+        (["cyclonedds", "zenoh", "xxhash"], {}, CYCLONE, True),
+        (["cyclonedds", "zenoh", "xxhash"], ASKED, ZENOH, True),
+        (["zenoh", "xxhash"], {}, ZENOH, True),
+        (["zenoh", "xxhash"], {"RMW_IMPLEMENTATION": "rmw_fastrtps_cpp"}, CYCLONE, False),
+        (["cyclonedds"], ASKED, ZENOH, False),
+        (["zenoh"], ASKED, ZENOH, False),
+        ([], {}, CYCLONE, False),
+        (["cyclonedds", "zenoh", "xxhash"], {**ASKED, "LINKWRIGHT_DDS": "0"}, ZENOH, False),
+    ],
+)
+def test_rmw_implementation_selects_transport_before_installed_packages(
+    installed, packages, variables, chosen, is_there
+):
+    installed(*packages)
+    assert middleware(variables) == chosen
+    assert available(variables) is is_there
+
+
+def test_missing_packages_are_reported(installed):
+    installed()
+    assert f"neither DDS nor Zenoh is installed: {install_hint('zenoh')}, or with 'dds'" in unavailable_reason({})
+    assert "the package 'eclipse-zenoh' is not installed" in unavailable_reason(ASKED)
+    assert "the package 'cyclonedds' is not installed" in unavailable_reason({"RMW_IMPLEMENTATION": CYCLONE})
+
+
+def test_process_without_transport_logs_and_continues(installed):
+    installed()
+    log = []
+    graph = Graph(threads=True, on_log=log.append)
+    try:
+        assert join(graph, environment={}) is None
+        assert join(graph, environment={"LINKWRIGHT_DDS": "0"}) is None
+        (record,) = log
+        assert record.text.startswith(
+            "This process does not communicate with other processes: neither DDS nor Zenoh is installed"
+        )
+        assert graph.create_node("alone").get_node_names() == ["alone"]
+    finally:
+        graph.close_threadsafe()
+
+
+@pytest.mark.skipif(importlib.util.find_spec("cyclonedds") is None, reason="there is no DDS here")
+def test_settings_of_chosen_transport_are_checked():
+    wrong = {"ZENOH_CONFIG_OVERRIDE": "mode"}
+    check_settings(wrong)
+    with pytest.raises(LinkwrightError, match="is not a Zenoh setting"):
+        check_settings({**ASKED, **wrong})
+    for variables in ({}, ASKED):
+        with pytest.raises(LinkwrightError, match="is not a DDS domain"):
+            check_settings({**variables, "ROS_DOMAIN_ID": "233"})
+
+
+@pytest.mark.parametrize(("variables", "kind"), [({}, DdsTransport), (ASKED, ZenohTransport)])
+def test_graph_joins_with_chosen_transport(variables, kind, domain):
+    pytest.importorskip("cyclonedds" if kind is DdsTransport else "zenoh", reason="it is not installed here")
+    graph = Graph(threads=True)
+    try:
+        transport = join(graph, environment={**variables, "ROS_DOMAIN_ID": str(domain)})
+        assert isinstance(transport, kind)
+        assert transport.domain_id == domain
+        assert transport.wait_until_ready(60)
+    finally:
+        graph.close_threadsafe()

@@ -1,0 +1,162 @@
+"""Hosts beyond one machine, as `docs/beyond-one-machine.md` joins them, with the files that stand there."""
+
+from __future__ import annotations
+
+import os
+import re
+import subprocess
+import sys
+from collections.abc import Iterator
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+from tests.docs.pages import DOCS
+from tests.wire.programs import Program
+from tests.wire.zenoh.hosts import CLOUD, CLOUD_ADDRESS, DESK, DESKS_CLOUD_ADDRESS, GATEWAY, ROBOT, Hosts, why_not
+
+NAME = "cloud.example.com"
+COUNT = 400
+
+pytestmark = pytest.mark.slow
+
+
+class Site:
+    """A robot behind a gateway, a cloud and a desk, each with its program; certificates and files in a folder."""
+
+    def __init__(self, folder: Path) -> None:
+        page = (DOCS / "beyond-one-machine.md").read_text(encoding="utf-8")
+        certificates = next(iter(re.findall(r"```bash\n(openssl .*?)```", page, re.DOTALL)))
+        names = f"DNS:{NAME},IP:{CLOUD_ADDRESS},IP:{DESKS_CLOUD_ADDRESS}"
+        certificates = certificates.replace(f"DNS:{NAME}", names)
+        subprocess.run(["bash", "-ec", certificates], cwd=folder, check=True, capture_output=True)
+        for name, text in re.findall(r"```json5\n// (\S+)\n(.*?)```", page, re.DOTALL):
+            address = DESKS_CLOUD_ADDRESS if name == "desk.json5" else CLOUD_ADDRESS
+            (folder / name).write_text(text.replace(NAME, address))
+        self._folder = folder
+        self.hosts = Hosts()
+        self._started: list[Program | subprocess.Popen[str]] = []
+
+    def router(self, host: str, file: str) -> None:
+        """Start a router; it listens when this returns."""
+        command = [sys.executable, "-m", "linkwright.node_program", "rmw_zenoh_cpp", "rmw_zenohd"]
+        router = subprocess.Popen(
+            [*self.hosts.within(host), *command],
+            cwd=self._folder,
+            env={**os.environ, "ZENOH_ROUTER_CONFIG_URI": file},
+            stdout=subprocess.PIPE,
+            stderr=subprocess.STDOUT,
+            text=True,
+        )
+        self._started.append(router)
+        assert router.stdout is not None
+        assert "Zenoh router at" in router.stdout.readline()
+
+    def program(self, host: str, name: str, **environment: str) -> Program:
+        """Start a program with a graph."""
+        program = Program("far_program", name, within=self.hosts.within(host), folder=self._folder, **environment)
+        self._started.append(program)
+        return program
+
+    def close(self) -> None:
+        """End all, and take the hosts away."""
+        for each in self._started:
+            if isinstance(each, Program):
+                each.end()
+            else:
+                each.kill()
+                each.communicate()
+        self.hosts.close()
+
+
+@pytest.fixture
+def site(tmp_path, monkeypatch) -> Iterator[Site]:
+    reason = why_not()
+    if reason:
+        pytest.skip(reason)
+    monkeypatch.delenv("ZENOH_CONFIG_OVERRIDE")
+    made = Site(tmp_path)
+    try:
+        made.router(CLOUD, "cloud.json5")
+        made.router(ROBOT, "robot.json5")
+        yield made
+    finally:
+        made.close()
+
+
+@pytest.fixture
+def robot(site) -> Program:
+    return site.program(ROBOT, "robot")
+
+
+@pytest.fixture
+def desk(site, robot) -> Program:
+    desk: Program = site.program(DESK, "desk", ZENOH_SESSION_CONFIG_URI="desk.json5")
+    desk.ask_until(lambda nodes: "robot" in nodes, "nodes")
+    robot.ask_until(lambda nodes: "desk" in nodes, "nodes")
+    return desk
+
+
+def start_publishing(robot: Program, desk: Program, topic: str, qos: str, **saying: Any) -> None:
+    """Have the robot say numbers that the desk takes down."""
+    robot.ask("offer", topic, qos)
+    desk.ask("hear", topic, qos)
+    robot.ask_until(bool, "listeners", topic)
+    robot.ask("say", topic, saying["count"], saying["rate"], saying["size"])
+
+
+def test_reliable_topics_survive_link_failure_and_packet_loss(site, robot, desk):
+    topics = {"/robot1/everything": "everything", "/robot1/lasting": "lasting"}
+    for topic, qos in topics.items():
+        start_publishing(robot, desk, topic, qos, count=COUNT, rate=40.0, size=100)
+    desk.ask_until(lambda heard: len(heard) > COUNT // 10, "heard", "/robot1/everything")
+    site.hosts.link(is_up=False)
+    answer = robot.ask_until(lambda answer: answer > COUNT // 2, "said", "/robot1/lasting")
+    assert len(desk.ask("heard", "/robot1/lasting")) < answer
+    site.hosts.link(is_up=True)
+    lossy = ("-m", "statistic", "--mode", "random", "--probability", "0.05", "-j", "DROP")
+    site.hosts.run(GATEWAY, "iptables", "-A", "FORWARD", *lossy)
+    for topic in topics:
+        heard = desk.ask_until(lambda heard: len(heard) >= COUNT, "heard", topic, seconds=180)
+        assert heard == list(range(COUNT))
+
+
+def test_latched_topic_catches_up_after_reconnect(site, robot, desk):
+    start_publishing(robot, desk, "/robot1/lasting", "lasting", count=COUNT, rate=40.0, size=100)
+    desk.ask_until(lambda heard: len(heard) > COUNT // 10, "heard", "/robot1/lasting")
+    site.hosts.run(GATEWAY, "ip", "link", "set", f"to{CLOUD}", "down")  # which has it forget whom it translates for
+    robot.ask_until(lambda text: text > COUNT // 2, "said", "/robot1/lasting")
+    site.hosts.run(GATEWAY, "ip", "link", "set", f"to{CLOUD}", "up")
+    heard = desk.ask_until(lambda heard: len(set(heard)) >= COUNT, "heard", "/robot1/lasting", seconds=180)
+    assert sorted(set(heard)) == list(range(COUNT))
+
+
+def test_desk_receives_only_subscribed_and_publishes_only_allowed_topics(site, robot, desk):
+    for topic in ("/robot1/cmd_vel", "/robot1/secret"):
+        desk.ask("offer", topic, "everything")
+        robot.ask("hear", topic, "everything")
+    desk.ask_until(bool, "listeners", "/robot1/cmd_vel")
+    for topic in ("/robot1/secret", "/robot1/cmd_vel"):
+        desk.ask("say", topic, 20, 100.0, 10)
+    robot.ask_until(lambda heard: len(heard) == 20, "heard", "/robot1/cmd_vel")
+    assert robot.ask("heard", "/robot1/secret") == []
+
+    image = 200_000
+    robot.ask("offer", "/robot1/camera", "last")
+    robot.ask("say", "/robot1/camera", 1_000_000, 20.0, image)
+    before = site.hosts.received(DESK, CLOUD)
+    first = robot.ask_until(lambda text: text > 20, "said", "/robot1/camera")
+    unheard = site.hosts.received(DESK, CLOUD) - before
+    assert unheard < image * first / 20, "images came though nobody listens"
+    desk.ask("hear", "/robot1/camera", "last")
+    heard = len(desk.ask_until(lambda heard: len(heard) > 5, "heard", "/robot1/camera"))
+    assert site.hosts.received(DESK, CLOUD) - before > image * heard
+
+
+def test_host_without_valid_certificate_is_rejected(site, robot, tmp_path):
+    stranger = "openssl req -x509 -newkey rsa:2048 -nodes -keyout desk-key.pem -out desk.pem -days 1 -subj /CN=desk"
+    subprocess.run(stranger.split(), cwd=tmp_path, check=True, capture_output=True)
+    outsider = site.program(DESK, "outsider", ZENOH_SESSION_CONFIG_URI="desk.json5")
+    assert outsider.ask("nodes") == ["outsider"]
+    assert "outsider" not in robot.ask("nodes")

@@ -1,0 +1,265 @@
+"""Keep the catalogs of other languages and the source together.
+
+Usage: python tools/catalogs.py [update | check | compile]
+
+``update`` writes the texts of the source, and the titles of the pages of `linkwright explain`, into the catalogs: new
+texts have no translation yet, and texts that the source no longer has are removed. ``check`` prints which texts lack a
+translation, are stale or have other placeholders, and which files ``update`` would change; then it exits with 1.
+``compile`` writes the files that the program reads, where they are older than the catalogs.
+"""
+
+from __future__ import annotations
+
+import ast
+import os
+import re
+import sys
+from collections.abc import Iterator
+from dataclasses import dataclass, field
+from datetime import datetime, timezone
+from functools import partial
+from inspect import cleandoc
+from io import BytesIO
+from pathlib import Path
+from string import Formatter
+
+from babel.messages.catalog import Catalog, Message
+from babel.messages.mofile import write_mo
+from babel.messages.pofile import read_po, write_po
+
+PACKAGE = Path(__file__).resolve().parent.parent / "src" / "linkwright"
+FOLDER = PACKAGE / "diagnostics" / "translation"
+
+LOOKED_UP = ("term", "foreign")
+"""Contexts of texts that the program gets from tables, files and other programs: the source does not tell them all."""
+
+TITLES = "rule"
+"""Context of the titles of pages: of rules, the first lines of their docstrings; of other codes, headings of files."""
+
+_PAGE = re.compile(r"^## [A-Z]+[0-9]{3}: (.+)$", re.MULTILINE)
+_HEADER = "# What Linkwright says, in {}.\n# Entries are kept by `python tools/catalogs.py update`."
+_DATED = ('"POT-', '"PO-Rev', '"Last-', '"Language-Team', '"Generated', '"Report', '"Project', "# FIRST", "#,")
+_NO_DATE = datetime(1970, 1, 1, tzinfo=timezone.utc)
+
+
+@dataclass
+class Template:
+    """A template of the source.
+
+    Attributes:
+        template: in English; with `several`, the singular.
+        several: the plural, or None.
+        filled: whether it has arguments; without, its braces are braces.
+        places: where it stands, as ``file:line``.
+    """
+
+    template: str
+    several: str | None
+    filled: bool
+    places: list[str] = field(default_factory=list)
+
+    @property
+    def rooms(self) -> list[str]:
+        """The rooms that have it."""
+        return sorted({place.partition("/")[0] for place in self.places})
+
+
+class Source:
+    """The texts of the modules below a folder.
+
+    Attributes:
+        templates: by their English texts.
+        titles: of the pages that `linkwright explain` prints -> where each stands.
+        problems: calls that cannot be translated, each as a line.
+    """
+
+    def __init__(self, package: Path = PACKAGE) -> None:
+        self.templates: dict[str, Template] = {}
+        self.titles: dict[str, str] = {}
+        self.problems: list[str] = []
+        for path in sorted(package.rglob("*.py")):
+            name = path.relative_to(package).as_posix()
+            tree = ast.parse(path.read_text(encoding="utf-8"))
+            for node in ast.walk(tree):
+                if name.startswith("lint/rules/") and isinstance(node, ast.ClassDef):
+                    self._rule(node, f"{name}:{node.lineno}")
+                if name.startswith("cli/"):
+                    self._help(node, f"{name}:{getattr(node, 'lineno', 0)}")
+                if isinstance(node, ast.Call) and isinstance(node.func, ast.Name):
+                    self._call(node, node.func.id, f"{name}:{node.lineno}")
+        for path in sorted(package.glob("lint/pages/*.md")):
+            for title in _PAGE.findall(path.read_text(encoding="utf-8")):
+                self.titles.setdefault(title.strip(), path.relative_to(package).as_posix())
+
+    def _rule(self, node: ast.ClassDef, place: str) -> None:
+        """The title of a rule: a class that gives a code."""
+        given = {ast.unparse(each.targets[0]) for each in node.body if isinstance(each, ast.Assign)}
+        if "code" in given:
+            title = cleandoc(ast.get_docstring(node) or "").partition("\n")[0]
+            self.titles.setdefault(title.rstrip("."), place)
+
+    def _help(self, node: ast.AST, place: str) -> None:
+        """The help texts of commands: what their table says of them, and what parsers are given."""
+        named = isinstance(node, ast.Assign) and ast.unparse(node.targets[0])
+        if named in ("COMMANDS", "GROUPS") and isinstance(node.value, ast.Dict):
+            texts = [text for table in ast.walk(node.value) if isinstance(table, ast.Dict) for text in table.values]
+        elif named and named.endswith("_HELP"):
+            texts = [node.value]
+        elif isinstance(node, ast.keyword) and node.arg and node.arg.endswith(("help", "title", "description")):
+            texts = [node.value]
+            if isinstance(node.value, (ast.JoinedStr, ast.BinOp, ast.IfExp)):
+                self.problems.append(f"{place}: the help text is no literal")
+        else:
+            return
+        for text in texts:
+            if isinstance(text, ast.Constant) and isinstance(text.value, str):
+                self.templates.setdefault(text.value, Template(text.value, None, False)).places.append(place)
+
+    def _call(self, node: ast.Call, called: str, place: str) -> None:
+        if called == "phrase":
+            texts, given = node.args[:1], set()
+        elif called == "counted":
+            texts, given = node.args[:2], {"count"}
+        else:
+            return
+        templates = [text.value for text in texts if isinstance(text, ast.Constant) and isinstance(text.value, str)]
+        if not templates or len(templates) < len(texts):
+            self.problems.append(f"{place}: the template is no literal")
+            return
+        given |= {keyword.arg for keyword in node.keywords}
+        for template in templates:
+            wanted = placeholders(template) if given else set()
+            if None not in given and (not wanted <= given or (called == "phrase" and given > wanted)):
+                self.problems.append(f"{place}: the placeholders of '{template}' are not its arguments")
+        several = templates[1] if len(templates) > 1 else None
+        found = self.templates.setdefault(templates[0], Template(templates[0], several, bool(given)))
+        if several != found.several:
+            self.problems.append(f"{place}: '{found.template}' occurs with and without a plural")
+        found.places.append(place)
+
+
+def placeholders(template: str) -> set[str]:
+    """The placeholders of a template, each with its format.
+
+    Raises:
+        ValueError: its braces do not match.
+    """
+    return {name for _, name, _, _ in Formatter().parse(template) if name is not None}
+
+
+def problems_of(catalog: Catalog, source: Source) -> Iterator[str]:
+    """What is missing, stale or filled in otherwise in the catalog of a language."""
+    yield from source.problems
+    for message in catalog:
+        if not message.id:
+            continue
+        english = message.id if isinstance(message.id, str) else message.id[0]
+        if not message.string or not all(_translations(message)):
+            yield f"'{english}' is not translated"
+        elif message.context == TITLES:
+            if english not in source.titles:
+                yield f"no page has the title '{english}'"
+        elif message.context not in LOOKED_UP:
+            if english not in source.templates:
+                yield f"nothing says '{english}'"
+            elif source.templates[english].filled and any(map(partial(_differ, message.id), _translations(message))):
+                yield f"the translation of '{english}' has other placeholders"
+    for english, template in source.templates.items():
+        if catalog.get(english) is None:
+            yield f"{template.places[0]}: '{english}' is not in the catalog"
+    for title, place in source.titles.items():
+        if catalog.get(title, TITLES) is None:
+            yield f"{place}: the title '{title}' is not in the catalog"
+
+
+def _translations(message: Message) -> tuple[str, ...]:
+    return (message.string,) if isinstance(message.string, str) else tuple(message.string)
+
+
+def _differ(english: str | tuple[str, str], translation: str) -> bool:
+    """Whether a translation is filled in otherwise; with a plural the number may be said or left out."""
+    several = english if isinstance(english, str) else english[1]
+    free = set() if isinstance(english, str) else {("count", "")}
+    return _formats(several) - free != _formats(translation) - free
+
+
+def _formats(template: str) -> set[tuple[str, str | None]]:
+    return {(name, spec) for _, name, spec, _ in Formatter().parse(template) if name is not None}
+
+
+def updated(catalog: Catalog, source: Source) -> Catalog:
+    """The catalog with what the source says, in the order of rooms and templates, then titles, then the rest."""
+    new = Catalog(catalog.locale, "linkwright", _HEADER.format(catalog.locale.english_name), fuzzy=False)
+    for template in sorted(source.templates.values(), key=lambda each: (each.rooms, each.template)):
+        identity = (template.template, template.several) if template.several else template.template
+        before = catalog.get(template.template)
+        string = before.string if before is not None else ""
+        if template.several and isinstance(string, str):
+            string = (string,) * catalog.num_plurals
+        elif not template.several and not isinstance(string, str):
+            string = string[0]
+        new.add(identity, string, locations=[(room, None) for room in template.rooms])
+    for title in sorted(source.titles):
+        before = catalog.get(title, TITLES)
+        new.add(title, before.string if before is not None else "", context=TITLES)
+    kept = [message for message in catalog if message.context in LOOKED_UP]
+    for message in sorted(kept, key=lambda each: (each.context, each.id)):
+        new.add(message.id, message.string, context=message.context)
+    return new
+
+
+def read(path: Path) -> Catalog:
+    """The catalog in a file."""
+    with path.open("rb") as file:
+        return read_po(file, locale=path.stem, domain="linkwright")
+
+
+def as_text(catalog: Catalog) -> str:
+    """What a catalog's file holds: a line for each text, without dates, so that only texts make a difference."""
+    text = BytesIO()
+    write_po(text, catalog, width=0, include_lineno=False)
+    head, _, entries = text.getvalue().decode("utf-8").partition("\n\n")
+    kept = [line for line in head.splitlines() if not line.startswith(_DATED)]
+    return "\n".join(kept) + "\n\n" + entries
+
+
+def compile_catalogs() -> None:
+    """Write ``.mo`` files beside the catalogs that are newer, the same bytes whenever that is."""
+    for path in sorted(FOLDER.glob("*.po")):
+        target = path.with_suffix(".mo")
+        if not target.exists() or target.stat().st_mtime_ns < path.stat().st_mtime_ns:
+            # Whole or not at all, and where no build looks for files: tests and builds run side by side.
+            part = FOLDER / "__pycache__" / f"{target.name}.{os.getpid()}"
+            part.parent.mkdir(exist_ok=True)
+            catalog = read(path)
+            catalog.creation_date = _NO_DATE
+            with part.open("wb") as file:
+                write_mo(file, catalog)
+            part.replace(target)
+
+
+def main(words: list[str]) -> int:
+    """Do what is asked for; returns the exit status."""
+    if words == ["compile"]:
+        compile_catalogs()
+        return 0
+    if words not in (["update"], ["check"]):
+        print(__doc__, file=sys.stderr)
+        return 2
+    source = Source()
+    found = list(source.problems)
+    for path in sorted(FOLDER.glob("*.po")):
+        kept = as_text(updated(read(path), source))
+        if words == ["update"]:
+            path.write_text(kept, encoding="utf-8")
+        problems = list(problems_of(read(path), source))
+        if not problems and path.read_text(encoding="utf-8") != kept:
+            problems.append("its entries stand otherwise than `python tools/catalogs.py update` puts them: run it")
+        found += [f"{path.name}: {problem}" for problem in problems]
+    for problem in dict.fromkeys(found):
+        print(problem, file=sys.stderr)
+    return int(bool(found))
+
+
+if __name__ == "__main__":
+    raise SystemExit(main(sys.argv[1:]))
