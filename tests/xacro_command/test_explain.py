@@ -15,7 +15,7 @@ def robot(write):
     write(
         "wheel.xacro",
         """<xacro:property name="width" value="0.02"/>
-<xacro:macro name="wheel" params="side y tint:=gray *place">
+<xacro:macro name="wheel" params="side y tint:=grey *place">
   <link name="${side}_wheel">
     <cylinder radius="${radius}" length="${width}" fixed="1"/><material name="${tint}"/>
     <note>the ${side} one</note>

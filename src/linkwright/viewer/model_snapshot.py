@@ -14,6 +14,7 @@ from linkwright.nodes.robot_state_publisher import RobotTransforms
 from linkwright.packages import PackageFinder
 from linkwright.panels.comparison.feature import add_old_robot
 from linkwright.panels.export.snapshot import Snapshot, snapshot_of
+from linkwright.process.nanoseconds import NANOSECONDS_PER_SECOND
 from linkwright.rviz.config.rviz_config import RvizConfig
 from linkwright.rviz.robot import has_visuals, size_of
 from linkwright.urdf import Robot
@@ -22,7 +23,7 @@ from linkwright.viewer.viewer import Viewer
 if TYPE_CHECKING:
     from linkwright.descriptions.pairs import Pair
 
-_TIME_NS = 1_000_000_000
+_TIME_NS = NANOSECONDS_PER_SECOND
 """The time of a snapshot, in nanoseconds. No real time, so that the bytes of an export depend only on its files."""
 
 
