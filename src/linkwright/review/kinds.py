@@ -21,6 +21,7 @@ from linkwright.review.parameter_files import compare_parameter_files
 from linkwright.review.worlds import compare_worlds
 
 _YAML_SUFFIXES = (".yaml", ".yml")
+_TEST_FOLDERS = frozenset({"test", "tests"})
 
 
 @dataclass(frozen=True)
@@ -110,8 +111,9 @@ def rule_of(path: str) -> KindRule | None:
         path: the path relative to the root of the repository.
     """
     name = PurePosixPath(path).name.lower()
-    if name.startswith("test_") and name.endswith(".py"):
+    is_test = name.startswith("test_") and name.endswith(".py")
+    if is_test and not _TEST_FOLDERS.isdisjoint(PurePosixPath(path).parts):
         return None  # a test with launch_testing
-    if is_launch_file_name(name) and name.endswith(_YAML_SUFFIXES):
-        return next(rule for rule in _RULES if rule.kind is SubjectKind.PARAMETERS)
+    if is_launch_file_name(name):
+        return next(rule for rule in _RULES if rule.kind is SubjectKind.LAUNCH_FILE)
     return next((rule for rule in _RULES if name.endswith(rule.suffixes)), None)
