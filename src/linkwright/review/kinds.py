@@ -104,6 +104,23 @@ _RULES = (
 )
 
 
+LAUNCH_HELPER = KindRule(
+    SubjectKind.LAUNCH_FILE,
+    compare_launch_files,
+    (".py",),
+    phrase("functions for launch files added"),
+    phrase("functions for launch files removed"),
+    phrase("launch files that import the module do not find it"),
+)
+"""The rule for modules that make actions for launch files."""
+
+
+def may_help_launch_files(path: str) -> bool:
+    """Return whether the path of a file can be that of a module with functions for launch files."""
+    pure_path = PurePosixPath(path)
+    return pure_path.suffix == ".py" and pure_path.name != "setup.py" and _TEST_FOLDERS.isdisjoint(pure_path.parts)
+
+
 def rule_of(path: str) -> KindRule | None:
     """Return the rule for a file, or None for a file that is not compared.
 

@@ -6,7 +6,7 @@ import re
 
 from linkwright.diagnostics import Phrase, phrase
 from linkwright.review.launch_outlines import NAMESPACE, NAMESPACE_OF_INCLUDED, REMAPPING, Entry, LaunchOutline
-from linkwright.review.launch_titles import spawned_controllers
+from linkwright.review.launch_titles import TRANSFORM_PUBLISHERS, served_names
 from linkwright.review.list_changes import list_items
 
 _USER_INTERFACE = re.compile(r"rviz2?/|rqt|joint_state_publisher_gui/|plotjuggler/")
@@ -34,17 +34,14 @@ def removal_reason(entry: Entry, outline: LaunchOutline) -> Phrase | None:
         return _remapping_reason(entry.name, entry.settings.get("to"), None, outline, outline)
     if entry.kind != "node" or offers_nothing(entry):
         return None
-    controllers = spawned_controllers(entry) if "/spawner" in entry.name else []
-    if controllers:
-        return phrase("the topics and services of {controllers} are missing", controllers=", ".join(controllers))
+    names = served_names(entry)
+    if entry.name.startswith(TRANSFORM_PUBLISHERS):
+        if not names:
+            return phrase("programs that look up the frame of the node do not find it")
+        return phrase("programs that look up the frame '{name}' do not find it", name=names[0])
+    if names:
+        return phrase("the topics and services of {controllers} are missing", controllers=", ".join(names))
     return phrase("the topics and services of the node are missing")
-
-
-def addition_reason(entry: Entry, outline: LaunchOutline) -> Phrase | None:
-    """Return why it is breaking that an action is added, or None if it is not."""
-    if entry.kind == "remapping":
-        return _remapping_reason(entry.name, None, entry.settings.get("to"), outline, outline)
-    return None
 
 
 def offers_nothing(entry: Entry) -> bool:

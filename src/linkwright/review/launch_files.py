@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections import Counter
+from collections.abc import Iterator, Sequence
 from difflib import SequenceMatcher
 from functools import partial
 from pathlib import Path
@@ -11,13 +12,20 @@ from linkwright.diagnostics import Phrase, SourceText, foreign, phrase
 from linkwright.packages.readers.python_values import PythonFile
 from linkwright.review.changes import Location
 from linkwright.review.file_pair import FilePair, UnreadableFileError
-from linkwright.review.launch_effects import addition_reason, removal_reason, setting_reason
+from linkwright.review.launch_effects import removal_reason, setting_reason
 from linkwright.review.launch_helpers import HelperFunctions
 from linkwright.review.launch_markup import read_markup_outline, xml_tags, yaml_tags
-from linkwright.review.launch_outlines import CONDITION, NAMESPACE, NAMESPACE_OF_INCLUDED, Entry, LaunchOutline
+from linkwright.review.launch_outlines import (
+    CONDITION,
+    NAMESPACE,
+    NAMESPACE_OF_INCLUDED,
+    CodePart,
+    Entry,
+    LaunchOutline,
+)
 from linkwright.review.launch_python import ACTIONS, read_python_outline
 from linkwright.review.launch_titles import added_entry, joined_titles, title
-from linkwright.review.list_changes import change_text
+from linkwright.review.list_changes import change_text, excerpts
 from linkwright.xacro.cache import read_document
 
 _SETTINGS_OF_GROUPS = (CONDITION, NAMESPACE, NAMESPACE_OF_INCLUDED)
@@ -41,15 +49,14 @@ def compare_launch_files(pair: FilePair) -> None:
             if None in (old_entry, new_entry) and lone and lone.is_same_name("to", None, lone.settings.get("to")):
                 continue
             if old_entry is None and new_entry is not None:
-                pair.add(added_entry(new_entry), pair.location(new_entry.span), addition_reason(new_entry, new))
+                pair.add(added_entry(new_entry), pair.location(new_entry.span))
             elif new_entry is None and old_entry is not None:
                 text = phrase("{entry} removed", entry=title(old_entry))
                 pair.add(text, pair.location(old_entry.span, is_old=True), removal_reason(old_entry, old))
             elif old_entry is not None and new_entry is not None:
                 settings.compare(old_entry, new_entry)
     settings.add_those_of_groups()
-    if old.code != new.code:
-        pair.add(phrase("other code changed"), None)
+    _compare_code(pair, old.code, new.code)
 
 
 def read_outline(path: Path, root: Path) -> LaunchOutline:
@@ -76,6 +83,32 @@ def read_outline(path: Path, root: Path) -> LaunchOutline:
         message = phrase("line {line} is not valid Python: {reason}", line=line, reason=reason)
         raise UnreadableFileError(message) from None
     return read_python_outline(python, HelperFunctions(root, ACTIONS))
+
+
+def _compare_code(pair: FilePair, old: Sequence[CodePart], new: Sequence[CodePart]) -> None:
+    """Compare what is not an action: one changed statement as it is written, others in one sentence."""
+    if [part.text for part in old] == [part.text for part in new]:
+        return
+    gone, come = _without_common(old, new), _without_common(new, old)
+    location = pair.location(come[0].span) if come else None
+    if gone and not come:
+        location = pair.location(gone[0].span, is_old=True)
+    if len(gone) == 1 and len(come) == 1:
+        before, after = excerpts(gone[0].source, come[0].source)
+        pair.add(phrase("other code: {old} -> {new}", old=before, new=after), location)
+    else:
+        pair.add(phrase("other code changed"), location)
+
+
+def _without_common(parts: Sequence[CodePart], others: Sequence[CodePart]) -> list[CodePart]:
+    remaining = Counter(part.text for part in others)
+    lone = []
+    for part in parts:
+        if remaining[part.text]:
+            remaining[part.text] -= 1
+        else:
+            lone.append(part)
+    return lone
 
 
 def _by_name(entries: list[Entry]) -> dict[tuple[str, str], list[Entry]]:

@@ -34,6 +34,13 @@ class Function:
     is_method: bool = False
 
 
+def makes_actions(path: Path) -> bool:
+    """Return whether a file in Python imports the actions of launch files, so that it can make them for others."""
+    file = _read(path)
+    imports = (node for node in ast.walk(file.tree) if isinstance(node, ast.ImportFrom)) if file else ()
+    return any(not node.level and _LAUNCH.match(node.module or "") for node in imports)
+
+
 class HelperFunctions:
     """The functions of a repository that launch files call.
 
@@ -82,11 +89,22 @@ class HelperFunctions:
         file, node = definition
         if isinstance(node, ast.FunctionDef):
             return Function(file, node) if self._makes(node) and not method else None
-        methods = {item.name: item for item in node.body if isinstance(item, ast.FunctionDef)}
-        found = methods.get(method)
-        if found is None or not self._makes(found):
-            return None
-        return Function(file, found, "staticmethod" not in map(ast.unparse, found.decorator_list))
+        return self._method(file, node, method, 0)
+
+    def _method(self, file: PythonFile, owner: ast.ClassDef, name: str, depth: int) -> Function | None:
+        """Return a method of a class or of its base classes, or None if it does not make actions."""
+        methods = {item.name: item for item in owner.body if isinstance(item, ast.FunctionDef)}
+        found = methods.get(name)
+        if found is not None:
+            is_method = "staticmethod" not in map(ast.unparse, found.decorator_list)
+            return Function(file, found, is_method) if self._makes(found) else None
+        for base in owner.bases if depth < _MAX_DEPTH else ():
+            definition = self._definition(file, base.id, 0) if isinstance(base, ast.Name) else None
+            if definition is not None and isinstance(definition[1], ast.ClassDef):
+                inherited = self._method(definition[0], definition[1], name, depth + 1)
+                if inherited is not None:
+                    return inherited
+        return None
 
     def _makes(self, function: ast.FunctionDef) -> bool:
         """Return whether a function makes actions."""

@@ -16,6 +16,7 @@ from linkwright.review.launch_outlines import (
     NAMESPACE_OF_INCLUDED,
     PARAMETER,
     REMAPPING,
+    CodePart,
     Entry,
     LaunchOutline,
     Scope,
@@ -53,9 +54,9 @@ class LaunchTag:
 
 def read_markup_outline(root: LaunchTag) -> LaunchOutline:
     """Return the outline of a launch file in XML or YAML."""
-    rest: list[str] = []
+    rest: list[CodePart] = []
     entries = list(_entries(root, Scope(), rest))
-    return LaunchOutline(entries, "\n".join(rest))
+    return LaunchOutline(entries, rest)
 
 
 def xml_tags(element: Element) -> LaunchTag:
@@ -130,7 +131,7 @@ def _items(node: yaml.Node | None) -> Iterator[tuple[str, yaml.Node]]:
 # --- entries ---------------------------------------------------------------------------------------------------------
 
 
-def _entries(parent: LaunchTag, scope: Scope, rest: list[str]) -> Iterator[Entry]:
+def _entries(parent: LaunchTag, scope: Scope, rest: list[CodePart]) -> Iterator[Entry]:
     for tag in parent.children:
         attributes = tag.attributes
         if tag.name in _PUSHES:
@@ -149,7 +150,10 @@ def _entries(parent: LaunchTag, scope: Scope, rest: list[str]) -> Iterator[Entry
                     inner = scope.under(_condition(tag))
                     yield from _entries(LaunchTag("", {}, tag.span, children=inner_tags), inner, rest)
             else:
-                rest.append(f"{tag.name} {sorted(attributes.items())} {tag.text}")
+                text = " ".join(
+                    [tag.name, *(f"{name}={value}" for name, value in sorted(attributes.items())), tag.text]
+                )
+                rest.append(CodePart(text, text, tag.span))
                 yield from _entries(tag, scope.under(_condition(tag)), rest)
 
 

@@ -47,16 +47,31 @@ class Entry:
 
 
 @dataclass(frozen=True)
+class CodePart:
+    """A statement or element of a launch file that makes no action.
+
+    Attributes:
+        text: a form without names of variables, comments and layout.
+        source: the statement as it is written.
+        span: where it is.
+    """
+
+    text: str
+    source: str
+    span: Span
+
+
+@dataclass(frozen=True)
 class LaunchOutline:
     """The outline of a launch file.
 
     Attributes:
         entries: the entries in the order of the text.
-        code: the rest of the file in a form without names of variables, comments and layout.
+        code: the rest of the file.
     """
 
     entries: list[Entry]
-    code: str = ""
+    code: list[CodePart]
 
     def resolved(self, text: str) -> str:
         """Return a text with the defaults of arguments in place of ``$(var NAME)``."""

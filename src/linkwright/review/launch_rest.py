@@ -4,23 +4,47 @@ from __future__ import annotations
 
 import ast
 from collections.abc import Collection
+from copy import copy
 
 from linkwright.packages.readers.python_values import PythonFile, called_name
+from linkwright.review.launch_outlines import CodePart
 from linkwright.review.launch_text import shortened_text
 
 _TRANSPARENT = frozenset({"add_action", "add_entity", "GroupAction", "LaunchDescription"})
 """The calls that only put actions together."""
+_BODIES = ("body", "orelse", "finalbody", "handlers", "cases")
+"""The fields of statements with other statements."""
 _UNCOMPARED_FIELDS = frozenset({"ctx", "returns", "annotation", "type_comment", "type_params", "kind"})
 
 
-def rest_of(python: PythonFile, covered: Collection[int]) -> str:
-    """Return the code besides the actions, without names of variables, imports, comments and layout.
+def rest_of(python: PythonFile, covered: Collection[int]) -> list[CodePart]:
+    """Return the statements besides the actions, without names of variables, imports, comments and layout.
 
     Args:
         python: the file.
         covered: the identities of the calls that make actions.
     """
-    return _Rest(python, covered).text(python.tree)
+    rest = _Rest(python, covered)
+    parts = (
+        CodePart(rest.statement_text(node), " ".join(ast.unparse(_header(node)).split()), python.span(node))
+        for node in sorted(_statements(python.tree), key=lambda node: (node.lineno, node.col_offset))
+    )
+    return [part for part in parts if part.text]
+
+
+def _statements(tree: ast.AST) -> list[ast.stmt]:
+    return [node for node in ast.walk(tree) if isinstance(node, ast.stmt)]
+
+
+def _header(node: ast.stmt) -> ast.stmt:
+    """Return a statement with ``...`` in place of the statements in it."""
+    if not any(getattr(node, name, None) for name in _BODIES):
+        return node
+    header = copy(node)
+    for name in _BODIES:
+        if getattr(node, name, None):
+            setattr(header, name, [ast.Expr(ast.Constant(...))] if name == "body" else [])
+    return header
 
 
 class _Rest:
@@ -36,6 +60,12 @@ class _Rest:
             self._texts[id(node)] = ""  # a name that is defined by itself
             known = self._texts[id(node)] = shortened_text(self._text(node))
         return known
+
+    def statement_text(self, node: ast.stmt) -> str:
+        """Return a statement without the statements in it; empty if it only makes actions."""
+        if not any(hasattr(node, name) for name in _BODIES):
+            return self.text(node)
+        return self._other(node)
 
     def _text(self, node: ast.AST) -> str:
         if isinstance(node, (ast.Import, ast.ImportFrom)) or id(node) in self._covered:
@@ -81,7 +111,7 @@ class _Rest:
     def _other(self, node: ast.AST) -> str:
         words = []
         for name, value in ast.iter_fields(node):
-            if name in _UNCOMPARED_FIELDS:
+            if name in _UNCOMPARED_FIELDS or name in _BODIES:
                 continue
             if isinstance(value, ast.AST):
                 text = self.text(value)

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import re
 from collections.abc import Sequence
+from itertools import takewhile
 
 from linkwright.diagnostics import Phrase, joined, phrase
 from linkwright.review.launch_outlines import Entry
@@ -11,6 +12,10 @@ from linkwright.review.list_changes import list_items
 
 _MAX_TITLES = 3
 _MAX_NAME = 160
+TRANSFORM_PUBLISHERS = ("tf2_ros/static_transform_publisher", "tf/static_transform_publisher")
+_CHILD = re.compile(r"--child-frame-id[ ,]+([^ ,\]]+)")
+_TRANSFORM_WORDS = (8, 9)
+"""The numbers of words of a transform: six or seven numbers and two frames."""
 _SPAWNER = re.compile(r"controller_manager/(spawner|spawner\.py|unspawner|unspawner\.py)")
 
 
@@ -39,27 +44,27 @@ def title(entry: Entry) -> Phrase:
 
 
 def _node_title(entry: Entry, name: str) -> Phrase:
-    """Return the name of a node, and of the controllers that a spawner starts."""
-    if not _SPAWNER.fullmatch(entry.name):
+    """Return the name of a node, and of the controllers or the frame that it serves."""
+    names = served_names(entry)
+    if not names:
         return phrase("node '{name}'", name=name)
-    controllers = spawned_controllers(entry)
-    if not controllers:
-        return phrase("node '{name}'", name=name)
-    return phrase(
-        "node '{name}' of {controllers}", name=name, controllers=", ".join(f"'{each}'" for each in controllers)
-    )
+    return phrase("node '{name}' of {controllers}", name=name, controllers=", ".join(f"'{each}'" for each in names))
 
 
-def spawned_controllers(entry: Entry) -> list[str]:
-    """Return the names of the controllers that a spawner starts, which come before its options."""
+def served_names(entry: Entry) -> list[str]:
+    """Return the controllers that a spawner starts, or the frame that a static transform places; empty if unknown."""
     text = entry.settings.get("arguments", "")
     words = list_items(text) if text.startswith("[") else text.split()
-    names = []
-    for word in words:
-        if word.startswith("-"):
-            break
-        names.append(word)
-    return names
+    if _SPAWNER.fullmatch(entry.name):
+        return list(takewhile(lambda word: not word.startswith("-"), words))
+    if not entry.name.startswith(TRANSFORM_PUBLISHERS):
+        return []
+    child = _CHILD.search(text)
+    if child is not None:
+        return [child[1]]
+    parts = {"tf2_ros": len(words), "tf": len(words) - 1}  # the publisher of ROS 1 has a period at the end
+    count = parts[entry.name.partition("/")[0]]
+    return [words[count - 1]] if count in _TRANSFORM_WORDS else []
 
 
 def joined_titles(entries: Sequence[Entry]) -> Phrase:

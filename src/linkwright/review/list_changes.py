@@ -49,11 +49,12 @@ def excerpts(old: str, new: str) -> tuple[str, str]:
 
 
 def _excerpt(text: str, start: int, end: int) -> str:
-    """Return a part of a text with some characters around it, from the start of a word to the end of a word."""
-    first = max(0, text.rfind(" ", 0, max(0, start - _CONTEXT)) + 1)
-    last = text.find(" ", end + _CONTEXT)
-    last = len(text) if last < 0 else last
-    last = min(last, first + _LONG_VALUE)
+    """Return a part of a text with some characters around it, from the start of a word if one is near."""
+    first = max(0, start - _CONTEXT)
+    first = text.rfind(" ", max(0, first - _CONTEXT), first) + 1 or first
+    last = min(len(text), end + _CONTEXT, first + _LONG_VALUE)
+    near = text.find(" ", last, last + _CONTEXT)
+    last = near if near >= 0 else last
     return f"{'... ' if first else ''}{text[first:last]}{' ...' if last < len(text) else ''}"
 
 
