@@ -28,7 +28,7 @@ def generate_launch_description():
         ]),
         Node(package="arm", executable="teleop", remappings=[("joy", "arm/joy")]),
         Node(package="ros_gz_sim", executable="create", name="create"),
-        Node(package="controller_manager", executable="spawner", arguments=["arm_controller", "--inactive"]),
+        Node(package="controller_manager", executable="spawner", arguments=["arm_controller", "-v"]),
         Node(package="tf2_ros", executable="static_transform_publisher",
              arguments=["--frame-id", "base", "--child-frame-id", "lidar"]),
     ])
@@ -83,8 +83,8 @@ def changes_of(repository, compare):
     ("old", "new", "expected", "is_breaking"),
     [
         ('"front")), actions', '"back")), actions',
-         "remapping of 'scan' for all nodes, parameter 'use_sim_time' of all nodes, node 'lidar/driver' and 1 more: "
-         "condition if $(var front) -> if $(var back)", False),
+         ("remapping of 'scan' for all nodes, parameter 'use_sim_time' of all nodes, node 'lidar/driver' and 1 more: "
+          "condition if $(var front) -> if $(var back)"), False),
         ('PushRosNamespace("front")', 'PushRosNamespace("back")',
          "node 'lidar/driver', node 'lidar/filter': namespace front -> back", True),
         ('"scan_front"', '"scan_back"', "remapping of 'scan' for all nodes: to scan_front -> scan_back", True),
@@ -99,11 +99,12 @@ def changes_of(repository, compare):
         ('("joy", "arm/joy")', '', "node 'arm/teleop': remapping joy arm/joy -> -", True),
         ('        Node(package="ros_gz_sim", executable="create", name="create"),\n', "",
          "node 'ros_gz_sim/create' removed", False),
-        ('        Node(package="controller_manager", executable="spawner", arguments=["arm_controller", "--inactive"]),\n',
+        ('        Node(package="controller_manager", executable="spawner", arguments=["arm_controller", "-v"]),\n',
          "", "node 'controller_manager/spawner' of 'arm_controller' removed", True),
         ('"--child-frame-id", "lidar"', '"--child-frame-id", "laser"',
-         "node 'tf2_ros/static_transform_publisher' of 'laser': "
-         "arguments [--frame-id, base, --child-frame-id, lidar] -> [--frame-id, base, --child-frame-id, laser]", False),
+         ("node 'tf2_ros/static_transform_publisher' of 'laser': "
+          "arguments [--frame-id, base, --child-frame-id, lidar] -> [--frame-id, base, --child-frame-id, laser]"),
+         False),
     ],
 )  # fmt: skip
 def test_actions_in_python_are_compared(changes_of, old, new, expected, is_breaking):

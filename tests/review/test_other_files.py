@@ -102,7 +102,10 @@ SPAWNER = '["arm", "--controller-ros-args", "-r /arm/cmd:=/cmd"]'
             [(', remappings=[("/arm/cmd", "/cmd")]', ""), ('["arm"]', SPAWNER)],
             [
                 "node 'controller_manager/ros2_control_node': remapping /arm/cmd /cmd -> -",
-                "node 'controller_manager/spawner' of 'arm': arguments [arm] -> [arm, --controller-ros-args, -r /arm/cmd:=/cmd]",
+                (
+                    "node 'controller_manager/spawner' of 'arm': "
+                    "arguments [arm] -> [arm, --controller-ros-args, -r /arm/cmd:=/cmd]"
+                ),
             ],
         ),
     ],
@@ -163,7 +166,7 @@ WORLD = """<sdf version="1.9">
         ("    <include><uri>model://tree", "    <include><uri>model://bush</uri></include>\n    <include><uri>model://tree",
          ["world yard include model://bush added"], False),
         ("<topic>/a", "<topic>/b", ["world yard plugin p topic: /a -> /b"], True),
-        ('name="yard"', 'name="park"', ["world park added", "world yard removed"], True),
+        ('name="yard"', 'name="park"', ["world yard renamed to 'park'"], True),
     ],
 )  # fmt: skip
 def test_world_changes_are_reported(repository, compare, old, new, expected, is_breaking):

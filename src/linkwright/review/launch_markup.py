@@ -8,7 +8,7 @@ from pathlib import Path
 
 import yaml
 
-from linkwright.diagnostics import SourceText, Span, foreign
+from linkwright.diagnostics import SourceText, Span, phrase
 from linkwright.review.file_pair import UnreadableFileError
 from linkwright.review.launch_outlines import (
     CONDITION,
@@ -21,6 +21,7 @@ from linkwright.review.launch_outlines import (
     LaunchOutline,
     Scope,
 )
+from linkwright.review.yaml_values import composed
 from linkwright.xmltree import Element
 
 _NODE_TAGS = ("node", "lifecycle_node", "composable_node", "node_container")
@@ -75,10 +76,7 @@ def yaml_tags(path: Path) -> LaunchTag:
         ValueError: the file is not text in UTF-8.
     """
     source = SourceText(str(path), path.read_text("utf-8"))
-    try:
-        node = yaml.compose(source.text, Loader=yaml.SafeLoader)
-    except (yaml.YAMLError, RecursionError) as error:
-        raise UnreadableFileError(foreign(" ".join(str(error).split()))) from None
+    node = composed(source.text)
     root = LaunchTag("launch", {}, source.span(0, 1))
     reader = _YamlReader(source)
     for name, value in _items(node):
@@ -107,7 +105,7 @@ class _YamlReader:
     def _tag(self, name: str, node: yaml.Node) -> LaunchTag:
         self._count += 1
         if self._count > _MAX_NODES:
-            raise UnreadableFileError(foreign(f"more than {_MAX_NODES} actions"))
+            raise UnreadableFileError(phrase("it has more than {count} actions", count=_MAX_NODES))
         tag = LaunchTag(name, {}, self._source.span(node.start_mark.index, node.start_mark.index + 1))
         if isinstance(node, yaml.SequenceNode):
             self.add(tag, node)
