@@ -42,7 +42,7 @@ class Bridge:
 
 
 def read_bridges(text: str) -> list[Bridge] | None:
-    """Return the bridges of a document in YAML, or None if it is no configuration of bridges.
+    """Return the bridges of a document in YAML, or None if it does not configure bridges.
 
     Raises:
         UnreadableFileError: the text is not YAML.

@@ -11,6 +11,7 @@ from linkwright.review.breaking import plugin_name_reason
 from linkwright.review.file_pair import FilePair
 from linkwright.review.names_in_plugins import path_of_renamed
 from linkwright.review.plugins import added_topics, contents_text, missing_topics_reason
+from linkwright.review.scene_images import world_images
 from linkwright.sdf.text import parse_as_gazebo
 from linkwright.xmltree import Element
 from linkwright.xmltree.reader import read_bytes
@@ -30,6 +31,8 @@ def compare_worlds(pair: FilePair) -> None:
         place = difference.new_place or difference.old_place
         location = None if place is None else pair.location(place.span, is_old=difference.new_place is None)
         pair.add(_sentence(difference), location, _breaking_reason(difference, added))
+    if differences and pair.with_images:
+        pair.images += world_images(pair)
 
 
 def _elements(file: Path) -> list[Element]:

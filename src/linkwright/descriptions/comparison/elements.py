@@ -135,7 +135,7 @@ class ElementComparison:
 
 
 def _comparable(attribute: str, text: str) -> str:
-    """Return the comparable form of a text; names and versions that look like numbers are no numbers."""
+    """Return the comparable form of a text; names and versions are not read as numbers."""
     return " ".join(text.split()) if attribute in _NO_NUMBERS else comparable_text(text)
 
 
