@@ -260,3 +260,35 @@ def test_module_with_functions_for_launch_files_is_compared(repository, compare)
     result = compare(repository)
     assert sentences(subject(result, "arm/arm/mixin.py")) == ["argument 'frame': default base -> world"]
     assert result.other_files == []
+
+
+LOOPS = """from launch import LaunchDescription
+from launch.actions import DeclareLaunchArgument
+from launch_ros.actions import Node
+
+PARAMETERS = [{"name": "rate", "default": "10"}, {"name": "port", "default": "tty0"}]
+
+
+def declare(parameters):
+    return [DeclareLaunchArgument(each["name"], default_value=each["default"]) for each in parameters]
+
+
+def generate_launch_description():
+    ld = LaunchDescription(declare(PARAMETERS))
+    for side in ["left", "right"]:
+        ld.add_action(Node(package="arm", executable="driver", namespace=side))
+    return ld
+"""
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "expected"),
+    [
+        ('"tty0"', '"tty1"', "argument 'port': default tty0 -> tty1"),
+        (', {"name": "port", "default": "tty0"}', "", "argument 'port' removed"),
+        ('["left", "right"]', '["left", "rear"]', "node 'arm/driver': namespace right -> rear"),
+        ('["left", "right"]', '["left"]', "node 'arm/driver' removed"),
+    ],
+)
+def test_actions_of_loops_over_lists_are_compared(changes_of, old, new, expected):
+    assert changes_of("arm.launch.py", LOOPS, old, new)[0] == [expected]

@@ -30,6 +30,9 @@ from linkwright.xacro.cache import read_document
 
 _SETTINGS_OF_GROUPS = (CONDITION, NAMESPACE, NAMESPACE_OF_INCLUDED)
 """The settings that a group gives to all its actions."""
+_MAX_STATEMENTS = 3
+"""The number of changed statements up to which each is shown."""
+_MIN_SIMILARITY = 0.5
 _Group = tuple[str, "str | None", "str | None", bool]
 """A setting, its old and its new value, and whether the change is breaking."""
 
@@ -93,11 +96,17 @@ def _compare_code(pair: FilePair, old: Sequence[CodePart], new: Sequence[CodePar
     location = pair.location(come[0].span) if come else None
     if gone and not come:
         location = pair.location(gone[0].span, is_old=True)
-    if len(gone) == 1 and len(come) == 1:
-        before, after = excerpts(gone[0].source, come[0].source)
-        pair.add(phrase("other code: {old} -> {new}", old=before, new=after), location)
+    if 1 <= len(gone) == len(come) <= _MAX_STATEMENTS and all(map(_are_versions, gone, come)):
+        for old_part, new_part in zip(gone, come, strict=True):
+            before, after = excerpts(old_part.source, new_part.source)
+            pair.add(phrase("other code: {old} -> {new}", old=before, new=after), pair.location(new_part.span))
     else:
         pair.add(phrase("other code changed"), location)
+
+
+def _are_versions(old: CodePart, new: CodePart) -> bool:
+    """Return whether two statements are probably versions of the same one."""
+    return SequenceMatcher(None, old.source, new.source, autojunk=False).ratio() >= _MIN_SIMILARITY
 
 
 def _without_common(parts: Sequence[CodePart], others: Sequence[CodePart]) -> list[CodePart]:

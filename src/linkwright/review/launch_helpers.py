@@ -15,6 +15,8 @@ from linkwright.packages.readers.python_values import PythonFile, called_name
 _MAX_DEPTH = 5
 """The number of files through which a name may be imported."""
 _MAX_BYTES = 1 << 20
+_MAX_PASSES = 5000
+"""The number of passes of loops in a launch file that are read one by one."""
 _LAUNCH = re.compile(r"launch(_\w+)?(\.|$)")
 """The modules whose actions are known, or are the rest of a file."""
 
@@ -54,6 +56,14 @@ class HelperFunctions:
         self._makes_action = makes_action
         self._local_names: dict[int, frozenset[str]] = {}
         self._found: dict[tuple[int, str], Function | None] = {}
+        self._passes = _MAX_PASSES
+
+    def take_passes(self, count: int) -> bool:
+        """Return whether a loop may be read for each of its items; loops in loops could have billions of passes."""
+        if count > self._passes:
+            return False
+        self._passes -= count
+        return True
 
     def local_names(self, python: PythonFile) -> frozenset[str]:
         """Return the functions of a file that its other code calls, and that make actions."""
@@ -133,8 +143,12 @@ class HelperFunctions:
         level = len(module) - len(module.lstrip("."))
         parts = tuple(part for part in module.split(".") if part)
         if level:
-            folder = importer.parents[level - 1]
-            yield from (folder.joinpath(*parts).with_suffix(".py"), folder.joinpath(*parts, "__init__.py"))
+            folder = importer.parents[min(level, len(importer.parents)) - 1]
+            paths = [
+                folder.joinpath(*parts, "__init__.py"),
+                *([folder.joinpath(*parts).with_suffix(".py")] if parts else []),
+            ]
+            yield from (path for path in paths if path.is_relative_to(self._root))
             return
         for path in _python_files(self._root):
             names = (*path.parts[:-1], path.stem) if path.stem != "__init__" else path.parts[:-1]

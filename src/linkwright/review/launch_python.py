@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import ast
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 
 from linkwright.packages.readers.python_values import PythonFile, called_name
@@ -17,7 +17,7 @@ from linkwright.review.launch_outlines import (
     Scope,
 )
 from linkwright.review.launch_rest import rest_of
-from linkwright.review.launch_text import ExpressionTexts
+from linkwright.review.launch_text import BoundExpression, ExpressionTexts
 
 _NODES = ("Node", "LifecycleNode", "ComposableNode", "ComposableNodeContainer")
 _PROCESSES = ("ExecuteProcess", "ExecuteLocal")
@@ -35,6 +35,8 @@ _INNER_ACTIONS = frozenset({"composable_node_descriptions", "on_exit"})
 _NOT_COMPARED = frozenset({"package", "executable", "plugin", "output", "emulate_tty", "description", "cmd"})
 """The arguments that name an action, and those that do not change what other programs see."""
 _MAX_HELPER_DEPTH = 3
+_Place = tuple[int, tuple[int, ...]]
+"""The identity of a call, and the numbers of the passes of the loops around it."""
 
 
 def read_python_outline(python: PythonFile, helpers: HelperFunctions) -> LaunchOutline:
@@ -60,7 +62,8 @@ class _Reader:
         texts: the texts of expressions.
         extra: the keyword arguments that the caller of a function passes on with ``**``, as texts.
         depth: the number of functions that call the function that is read.
-        scopes: the scope of each call that makes an action, by the identity of its syntax tree.
+        scopes: each call that makes an action, with its scope and its texts, by the identity of its syntax tree and
+            the passes of the loops around it.
         covered: the calls that entries describe, which do not belong to the rest of the file.
     """
 
@@ -69,12 +72,15 @@ class _Reader:
     texts: ExpressionTexts
     extra: Mapping[str, str] = field(default_factory=dict)
     depth: int = 0
-    scopes: dict[int, tuple[ast.Call, Scope]] = field(default_factory=dict)
+    scopes: dict[_Place, tuple[ast.Call, Scope, ExpressionTexts]] = field(default_factory=dict)
     covered: set[int] = field(default_factory=set)
-    _seen: set[tuple[int, Scope]] = field(default_factory=set)
+    _loops: tuple[int, ...] = ()
+    _outside: list[tuple[int, int, ExpressionTexts, tuple[int, ...]]] = field(default_factory=list)
+    _seen: set[tuple[int, tuple[int, ...], Scope]] = field(default_factory=set)
 
     def entries(self) -> Iterator[Entry]:
-        for call, scope in list(self.scopes.values()):
+        for call, scope, texts in list(self.scopes.values()):
+            self.texts = texts
             function = called_name(call).rpartition(".")[2]
             if function in ACTIONS:
                 self.covered.add(id(call))
@@ -91,24 +97,55 @@ class _Reader:
         """Find the actions below a node, which is in a scope."""
         if isinstance(node, ast.Name):
             value = self.python.assigned_expression(node.id)
-            if value is None:
-                return
-            node = value
-        if (id(node), scope) in self._seen:
+            if value is not None:
+                self._visit_value(value, scope)
             return
-        self._seen.add((id(node), scope))
+        if (id(node), self._loops, scope) in self._seen:
+            return
+        self._seen.add((id(node), self._loops, scope))
         if isinstance(node, ast.Call):
             self._visit_call(node, scope)
         elif isinstance(node, (ast.List, ast.Tuple)):
             for item in node.elts:
                 scope = scope.pushed(self._pushed(item))
                 self.visit(item, scope)
+        elif isinstance(node, ast.For) and isinstance(node.target, ast.Name):
+            self._visit_loop(node.target.id, node.iter, node.body, scope)
+        elif isinstance(node, (ast.ListComp, ast.GeneratorExp)) and isinstance(node.generators[0].target, ast.Name):
+            self._visit_loop(node.generators[0].target.id, node.generators[0].iter, [node.elt], scope)
         elif isinstance(node, ast.FunctionDef):
             if node.name not in self.helpers.local_names(self.python):
                 self._visit_body(node, scope)
         else:
             for child in ast.iter_child_nodes(node):
                 self.visit(child, scope)
+
+    def _visit_value(self, value: ast.expr, scope: Scope) -> None:
+        """Find the actions of the value of a name, which may be assigned outside of the loops that use it."""
+        texts, loops = self.texts, self._loops
+        outside = next((each for each in self._outside if not each[0] <= value.lineno <= each[1]), None)
+        if outside is not None:
+            _, _, self.texts, self._loops = outside
+        self.visit(value, scope)
+        self.texts, self._loops = texts, loops
+
+    def _visit_loop(self, name: str, iterable: ast.expr, body: Sequence[ast.stmt | ast.expr], scope: Scope) -> None:
+        """Find the actions of a loop, for each item if the list is written in the file."""
+        items = self.texts.items(iterable)
+        if items is None or not self.helpers.take_passes(len(items)):
+            for statement in body:
+                self.visit(statement, scope)
+            return
+        self.covered.add(id(iterable))
+        texts, loops = self.texts, self._loops
+        lines = [line for node in body for line in (node.lineno, node.end_lineno or node.lineno)]
+        self._outside.append((min(lines), max(lines), texts, loops))
+        for number, item in enumerate(items):
+            self.texts, self._loops = texts.with_value(name, item), (*loops, number)
+            for statement in body:
+                self.visit(statement, scope)
+        self.texts, self._loops = texts, loops
+        self._outside.pop()
 
     def _visit_body(self, function: ast.FunctionDef, scope: Scope) -> None:
         for statement in function.body:
@@ -136,9 +173,10 @@ class _Reader:
 
     def _add(self, call: ast.Call, scope: Scope) -> None:
         """Add an action with the innermost scope in which it is named."""
-        known = self.scopes.get(id(call))
+        place = id(call), self._loops
+        known = self.scopes.get(place)
         if known is None or known[1].depth < scope.depth:
-            self.scopes[id(call)] = call, scope
+            self.scopes[place] = call, scope, self.texts
 
     def _foreign_actions(self, call: ast.Call) -> Iterator[ast.Call]:
         """Yield the actions in a list that functions of other packages make, which are not read."""
@@ -172,8 +210,8 @@ class _Reader:
         function = self.helpers.find(self.python, call)
         if function is None:
             return
-        bindings, extra = self._arguments(call, function)
-        texts = ExpressionTexts(function.python, bindings)
+        bindings, values, extra = self._arguments(call, function)
+        texts = ExpressionTexts(function.python, bindings, values)
         reader = _Reader(function.python, self.helpers, texts, extra, self.depth + 1)
         if function.python is self.python:
             reader.covered = self.covered
@@ -183,8 +221,10 @@ class _Reader:
         for entry in reader.entries():
             yield replace(entry, span=span, settings=scope.settings(entry.kind, entry.settings))
 
-    def _arguments(self, call: ast.Call, function: Function) -> tuple[dict[str, str], dict[str, str]]:
-        """Return the texts of the parameters of a function, and those of its ``**`` parameter."""
+    def _arguments(
+        self, call: ast.Call, function: Function
+    ) -> tuple[dict[str, str], dict[str, BoundExpression], dict[str, str]]:
+        """Return the texts and expressions of a function's parameters, and the texts of its ``**`` parameter."""
         arguments = function.node.args
         names = [argument.arg for argument in (*arguments.posonlyargs, *arguments.args)]
         defaults = dict(zip(names[len(names) - len(arguments.defaults) :], arguments.defaults, strict=True))
@@ -194,7 +234,8 @@ class _Reader:
         bindings = {name: outer_texts.text(value) for name, value in defaults.items()}
         if function.is_method:
             names = names[1:]
-        bindings |= {name: self.texts.text(value) for name, value in zip(names, call.args, strict=False)}
+        given = dict(zip(names, call.args, strict=False))
+        bindings |= {name: self.texts.text(value) for name, value in given.items()}
         extra: dict[str, str] = {}
         known = {*names, *(argument.arg for argument in arguments.kwonlyargs)}
         for keyword in call.keywords:
@@ -204,7 +245,9 @@ class _Reader:
                 (bindings if keyword.arg in known else extra)[keyword.arg] = self.texts.condition(keyword.value)
             else:
                 (bindings if keyword.arg in known else extra)[keyword.arg] = self.texts.text(keyword.value)
-        return bindings, extra
+        given |= {keyword.arg: keyword.value for keyword in call.keywords if keyword.arg in known}
+        values = {name: self.texts.value(value) for name, value in given.items()}
+        return bindings, values, extra
 
     # --- actions -----------------------------------------------------------------------------------------------------
 

@@ -5,6 +5,7 @@ from __future__ import annotations
 import ast
 import hashlib
 from collections.abc import Callable, Iterator, Mapping
+from dataclasses import dataclass
 
 from linkwright.packages.readers.python_values import PythonFile, argument_of, called_name
 
@@ -17,18 +18,56 @@ _COMPARISONS = {"LaunchConfigurationEquals": "==", "LaunchConfigurationNotEquals
 _ARGUMENT_CONDITIONS = {"IfCondition": "if", "UnlessCondition": "unless"}
 
 
+@dataclass(frozen=True)
+class BoundExpression:
+    """An expression that a name stands for.
+
+    Attributes:
+        texts: the texts of the expressions where it is written.
+        node: the expression.
+    """
+
+    texts: ExpressionTexts
+    node: ast.expr
+
+
 class ExpressionTexts:
     """The texts of expressions of a file.
 
     Args:
         python: the file.
         bindings: the texts of the parameters of the function that is read, by name.
+        values: the expressions of parameters and of variables of loops, by name.
     """
 
-    def __init__(self, python: PythonFile, bindings: Mapping[str, str] | None = None) -> None:
+    def __init__(
+        self,
+        python: PythonFile,
+        bindings: Mapping[str, str] | None = None,
+        values: Mapping[str, BoundExpression] | None = None,
+    ) -> None:
         self._python = python
         self._bindings = bindings or {}
+        self._values = values or {}
         self._texts: dict[int, str] = {}
+
+    def with_value(self, name: str, value: BoundExpression) -> ExpressionTexts:
+        """Return the texts with an expression for a variable of a loop."""
+        bindings = {**self._bindings, name: value.texts.text(value.node)}
+        return ExpressionTexts(self._python, bindings, {**self._values, name: value})
+
+    def value(self, node: ast.expr) -> BoundExpression:
+        """Return the expression that is assigned or passed to a name, and any other expression unchanged."""
+        node = self._python.resolved(node)
+        bound = self._values.get(node.id) if isinstance(node, ast.Name) else None
+        return bound or BoundExpression(self, node)
+
+    def items(self, node: ast.expr) -> list[BoundExpression] | None:
+        """Return the items of a list, or None if it is not written in the file."""
+        value = self.value(node)
+        if not isinstance(value.node, (ast.List, ast.Tuple)):
+            return None
+        return [value.texts.value(item) for item in value.node.elts]
 
     def text(self, node: ast.expr | None, depth: int = 0) -> str:
         """Return an expression as text, with the values of names that are assigned once."""
@@ -99,7 +138,8 @@ class ExpressionTexts:
             value = self._python.resolved(node)
             return node.id if value is node or isinstance(value, ast.Name) else part(value)
         if isinstance(node, ast.Constant):
-            return str(node.value)
+            text = str(node.value)
+            return " ".join(text.split()) if "\n" in text else text
         if isinstance(node, (ast.List, ast.Tuple)):
             return f"[{', '.join(map(part, node.elts))}]"
         if isinstance(node, ast.Dict):
@@ -114,6 +154,14 @@ class ExpressionTexts:
             return f"{part(node.left)}/{part(node.right)}"
         if isinstance(node, ast.JoinedStr):
             return "".join(part(item.value if isinstance(item, ast.FormattedValue) else item) for item in node.values)
+        if isinstance(node, ast.Subscript):
+            owner = self.value(node.value)
+            if isinstance(owner.node, ast.Dict):
+                pairs = zip(owner.node.keys, owner.node.values, strict=True)
+                found = [value for key, value in pairs if key is not None and ast.dump(key) == ast.dump(node.slice)]
+                if found:
+                    return owner.texts.text(found[-1], depth + 1)
+            return f"{part(node.value)}[{part(node.slice)}]"
         if isinstance(node, ast.Attribute):
             return f"{part(node.value)}.{node.attr}"
         return " ".join(ast.unparse(node).split())
