@@ -106,7 +106,7 @@ class ExpressionTexts:
             return [(keyword.arg or "", self.text(keyword.value)) for keyword in node.keywords]
         if isinstance(node, ast.Dict):
             return list(self._items(node, ""))
-        if not isinstance(node, (ast.List, ast.Tuple)):
+        if not isinstance(node, (ast.List, ast.Tuple, ast.Set)):
             return None
         pairs = [self._python.resolved(item) for item in node.elts]
         if not all(isinstance(pair, (ast.Tuple, ast.List)) and len(pair.elts) == 2 for pair in pairs):
@@ -140,7 +140,7 @@ class ExpressionTexts:
         if isinstance(node, ast.Constant):
             text = str(node.value)
             return " ".join(text.split()) if "\n" in text else text
-        if isinstance(node, (ast.List, ast.Tuple)):
+        if isinstance(node, (ast.List, ast.Tuple, ast.Set)):
             return f"[{', '.join(map(part, node.elts))}]"
         if isinstance(node, ast.Dict):
             pairs = zip(node.keys, node.values, strict=True)

@@ -12,6 +12,8 @@ from linkwright.review.yaml_values import YamlValue
 
 _FRAMES = re.compile(r"(^|[._])frame_id$")
 """The parameters with frames that any node offers to other programs."""
+_USED_FRAMES = re.compile(r"(^|[._])(base|odom|map|global|world|target|reference)_frame_id$")
+"""The parameters with frames that localization and navigation only use. Controllers publish them."""
 _JOINTS = re.compile(r"(^|[._])(joints?|joint_names?|wheel_names)$")
 """The parameters with joints that a controller offers. Other nodes only use them."""
 _CONTROLLER_TYPE = re.compile(r"(?:[^.]+\.)?controller_manager\.ros__parameters\.(?P<controller>[^.]+)\.type")
@@ -48,7 +50,10 @@ class NameRules:
         if controller is not None:
             return phrase("the topics and actions of the controller '{name}' are others", name=controller["controller"])
         gone = _items(old) - _items(new)
-        if gone and (_FRAMES.search(parameter) or (_JOINTS.search(parameter) and self._is_controllers(parameter))):
+        is_offered = _FRAMES.search(parameter) is not None and not _USED_FRAMES.search(parameter)
+        if self._is_controllers(parameter):
+            is_offered = _FRAMES.search(parameter) is not None or _JOINTS.search(parameter) is not None
+        if gone and is_offered:
             return phrase("programs that use the name '{name}' do not find it", name=", ".join(sorted(gone)))
         return None
 
