@@ -292,3 +292,45 @@ def generate_launch_description():
 )
 def test_actions_of_loops_over_lists_are_compared(changes_of, old, new, expected):
     assert changes_of("arm.launch.py", LOOPS, old, new)[0] == [expected]
+
+
+def test_name_that_is_assigned_again_has_the_value_before_the_action(changes_of):
+    text = LOOPS.replace("    ld = Launch", "    side = 'a'\n    side = side + '_arm'\n    ld = Launch")
+    text = text.replace('    for side in ["left", "right"]:\n        ld', "    ld")
+    found, _ = changes_of("arm.launch.py", text, "side = 'a'", "side = 'b'")
+    assert found[0] == "node 'arm/driver': namespace a + _arm -> b + _arm"
+
+
+def test_name_with_values_in_branches_stays_a_name(changes_of):
+    text = LOOPS.replace(
+        'for side in ["left", "right"]:', "side = 'a'\n    if PARAMETERS:\n        side = 'b'\n    if 1:"
+    )
+    found, _ = changes_of("arm.launch.py", text, "side = 'a'", "side = 'c'")
+    assert found == ["other code: side = 'a' -> side = 'c'"]
+
+
+def test_command_of_a_process_is_a_change(changes_of):
+    text = """from launch.actions import ExecuteProcess
+def generate_launch_description():
+    return LaunchDescription([ExecuteProcess(cmd=["gz", "sim", "-r", "house.sdf"], output="screen")])
+"""
+    found, _ = changes_of("arm.launch.py", text, "house", "yard")
+    assert found == ["process 'gz': command [gz, sim, -r, house.sdf] -> [gz, sim, -r, yard.sdf]"]
+
+
+@pytest.mark.parametrize(("old", "new"), [("/tf", "tf"), ("tf", "/tf")])
+def test_relative_name_is_that_of_the_empty_namespace(changes_of, old, new):
+    text = PYTHON.replace('("joy", "arm/joy")', f'("joy", "{old}")')
+    assert changes_of("arm.launch.py", text, f'"{old}")', f'"{new}")')[1] == []
+
+
+def test_controllers_of_a_spawner_come_after_its_options(changes_of):
+    arguments = (
+        '"--controller-manager-timeout", "60", "--inactive", "arm_controller", "--controller-ros-args", "-r a:=b"'
+    )
+    text = PYTHON.replace('"arm_controller", "-v"', arguments)
+    start = text.index('        Node(package="controller_manager"')
+    line = text[start : text.index("\n", start) + 1]
+    assert changes_of("arm.launch.py", text, line, "")[0] == [
+        "node 'controller_manager/spawner' of 'arm_controller' removed"
+    ]

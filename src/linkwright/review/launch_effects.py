@@ -101,7 +101,7 @@ def _remapping_reason(
     """Return why it is breaking that a name is remapped otherwise, or None if the name is the same."""
     old_name = old_outline.resolved(source if old is None else old)
     new_name = new_outline.resolved(source if new is None else new)
-    if old_name == new_name:
+    if old_name.lstrip("/") == new_name.lstrip("/"):  # the same name in the empty namespace
         return None
     return phrase("programs that use the name '{name}' do not find it", name=old_name)
 

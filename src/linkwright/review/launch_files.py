@@ -4,17 +4,18 @@ from __future__ import annotations
 
 from collections import Counter
 from collections.abc import Iterator, Sequence
+from dataclasses import replace
 from difflib import SequenceMatcher
 from functools import partial
 from pathlib import Path
 
 from linkwright.diagnostics import Phrase, SourceText, foreign, phrase
-from linkwright.packages.readers.python_values import PythonFile
 from linkwright.review.changes import Location
 from linkwright.review.file_pair import FilePair, UnreadableFileError
 from linkwright.review.launch_effects import removal_reason, setting_reason
 from linkwright.review.launch_helpers import HelperFunctions
 from linkwright.review.launch_markup import read_markup_outline, xml_tags, yaml_tags
+from linkwright.review.launch_names import LaunchPythonFile
 from linkwright.review.launch_outlines import (
     CONDITION,
     NAMESPACE,
@@ -80,7 +81,7 @@ def read_outline(path: Path, root: Path) -> LaunchOutline:
     if path.suffix != ".py":
         return read_markup_outline(xml_tags(read_document(str(path)).root))
     try:
-        python = PythonFile(SourceText(str(path), path.read_text("utf-8")))
+        python = LaunchPythonFile(SourceText(str(path), path.read_text("utf-8")))
     except SyntaxError as error:
         line, reason = error.lineno or 1, foreign(error.msg)
         message = phrase("line {line} is not valid Python: {reason}", line=line, reason=reason)
@@ -105,8 +106,11 @@ def _compare_code(pair: FilePair, old: Sequence[CodePart], new: Sequence[CodePar
 
 
 def _are_versions(old: CodePart, new: CodePart) -> bool:
-    """Return whether two statements are probably versions of the same one."""
-    return SequenceMatcher(None, old.source, new.source, autojunk=False).ratio() >= _MIN_SIMILARITY
+    """Return whether two statements are probably versions of the same one, and differ as they are written."""
+    return (
+        old.source != new.source
+        and SequenceMatcher(None, old.source, new.source, autojunk=False).ratio() >= _MIN_SIMILARITY
+    )
 
 
 def _without_common(parts: Sequence[CodePart], others: Sequence[CodePart]) -> list[CodePart]:
@@ -123,7 +127,7 @@ def _without_common(parts: Sequence[CodePart], others: Sequence[CodePart]) -> li
 def _by_name(entries: list[Entry]) -> dict[tuple[str, str], list[Entry]]:
     groups: dict[tuple[str, str], list[Entry]] = {}
     for entry in entries:
-        groups.setdefault((entry.kind, entry.name), []).append(entry)
+        groups.setdefault((entry.kind, "" if entry.kind == "process" else entry.name), []).append(entry)
     return groups
 
 
@@ -143,7 +147,9 @@ def _matched(old: list[Entry], new: list[Entry]) -> Iterator[tuple[Entry | None,
         key=lambda item: (-item[0], item[1], item[2]),
     )
     old_left, new_left = set(range(len(old_rest))), set(range(len(new_rest)))
-    for _, i, k in candidates:
+    for similarity, i, k in candidates:
+        if new_rest[k].kind == "process" and similarity < _MIN_SIMILARITY:
+            continue
         if i in old_left and k in new_left:
             old_left.remove(i)
             new_left.remove(k)
@@ -154,7 +160,11 @@ def _matched(old: list[Entry], new: list[Entry]) -> Iterator[tuple[Entry | None,
 
 
 def _are_equal(old: Entry, new: Entry) -> bool:
-    return old.settings == new.settings
+    return old.settings == new.settings and _command(old) == _command(new)
+
+
+def _command(entry: Entry) -> list[str]:
+    return [entry.name] if entry.kind == "process" else []
 
 
 def _have_same_node_name(old: Entry, new: Entry) -> bool:
@@ -162,9 +172,10 @@ def _have_same_node_name(old: Entry, new: Entry) -> bool:
 
 
 def _similarity(old: Entry, new: Entry) -> float:
-    """Return how much of the settings is equal, from 0 to 1."""
+    """Return how much of the settings, and of the commands of processes, is equal, from 0 to 1."""
     old_words, new_words = (
-        " ".join(f"{name}={value}" for name, value in entry.settings.items()).split() for entry in (old, new)
+        " ".join([*(f"{name}={value}" for name, value in entry.settings.items()), *_command(entry)]).split()
+        for entry in (old, new)
     )
     return SequenceMatcher(None, old_words, new_words, autojunk=False).ratio()
 
@@ -180,6 +191,9 @@ class _SettingChanges:
     def compare(self, old: Entry, new: Entry) -> None:
         """Add the changed settings of an entry."""
         location = self._pair.location(new.span)
+        if old.name != new.name:
+            program = replace(new, name=new.name.lstrip("[").partition(",")[0].partition(" ")[0])
+            self._add([program], "command", old.name, new.name, location, None)
         for name in dict.fromkeys([*new.settings, *old.settings]):
             old_value, new_value = old.settings.get(name), new.settings.get(name)
             if old_value == new_value or new.is_same_name(name, old_value, new_value):

@@ -11,6 +11,7 @@ from pathlib import Path
 
 from linkwright.diagnostics import SourceText
 from linkwright.packages.readers.python_values import PythonFile, called_name
+from linkwright.review.launch_names import LaunchPythonFile
 
 _MAX_DEPTH = 5
 """The number of files through which a name may be imported."""
@@ -186,6 +187,6 @@ def _read(path: Path) -> PythonFile | None:
     try:
         if path.stat().st_size > _MAX_BYTES:
             return None
-        return PythonFile(SourceText(str(path), path.read_text("utf-8")))
+        return LaunchPythonFile(SourceText(str(path), path.read_text("utf-8")))
     except (OSError, ValueError, SyntaxError):
         return None

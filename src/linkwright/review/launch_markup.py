@@ -64,7 +64,8 @@ def xml_tags(element: Element) -> LaunchTag:
     """Return an element of XML with the elements in it."""
     children = [xml_tags(child) for child in element.elements()]
     span = element.span() or Span("", 1, 1, 1, 1)
-    return LaunchTag(element.tag, dict(element.attributes), span, " ".join(element.text().split()), children)
+    attributes = {name: " ".join(value.split()) for name, value in element.attributes.items()}
+    return LaunchTag(element.tag, attributes, span, " ".join(element.text().split()), children)
 
 
 def yaml_tags(path: Path) -> LaunchTag:

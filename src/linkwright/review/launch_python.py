@@ -32,6 +32,8 @@ _ADDITIONS = ("add_action", "add_entity")
 _OUTSIDE = Scope()
 _INNER_ACTIONS = frozenset({"composable_node_descriptions", "on_exit"})
 """The arguments of actions that contain other actions, which are entries themselves."""
+_ALIASES = {"node_executable": "executable", "node_name": "name", "node_namespace": "namespace"}
+"""The names of arguments of nodes before ROS 2 Foxy."""
 _NOT_COMPARED = frozenset({"package", "executable", "plugin", "output", "emulate_tty", "description", "cmd"})
 """The arguments that name an action, and those that do not change what other programs see."""
 _MAX_HELPER_DEPTH = 3
@@ -96,8 +98,8 @@ class _Reader:
     def visit(self, node: ast.AST, scope: Scope = _OUTSIDE) -> None:
         """Find the actions below a node, which is in a scope."""
         if isinstance(node, ast.Name):
-            value = self.python.assigned_expression(node.id)
-            if value is not None:
+            value = self.python.resolved(node)
+            if value is not node:
                 self._visit_value(value, scope)
             return
         if (id(node), self._loops, scope) in self._seen:
@@ -253,7 +255,7 @@ class _Reader:
 
     def _action(self, call: ast.Call, function: str, scope: Scope) -> Entry:
         text = self.texts.text
-        keywords = {keyword.arg: keyword.value for keyword in call.keywords if keyword.arg is not None}
+        keywords = {_ALIASES.get(each.arg, each.arg): each.value for each in call.keywords if each.arg is not None}
         extra = self.extra if any(keyword.arg is None for keyword in call.keywords) else {}
         first = call.args[0] if call.args else next(iter(call.keywords), None)
         first_text = text(first.value if isinstance(first, ast.keyword) else first)

@@ -3,8 +3,7 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Sequence
-from itertools import takewhile
+from collections.abc import Iterator, Sequence
 
 from linkwright.diagnostics import Phrase, joined, phrase
 from linkwright.review.launch_outlines import Entry
@@ -16,6 +15,11 @@ TRANSFORM_PUBLISHERS = ("tf2_ros/static_transform_publisher", "tf/static_transfo
 _CHILD = re.compile(r"--child-frame-id[ ,]+([^ ,\]]+)")
 _TRANSFORM_WORDS = (8, 9)
 """The numbers of words of a transform: six or seven numbers and two frames."""
+_FLAGS = frozenset(
+    {"--load-only", "--stopped", "--inactive", "--unload-on-kill", "-u", "--activate-as-group", "--switch-asap", "-h"}
+)
+"""The options of a spawner without a value."""
+_END_OF_OPTIONS = ("--ros-args",)
 _SPAWNER = re.compile(r"controller_manager/(spawner|spawner\.py|unspawner|unspawner\.py)")
 
 
@@ -56,7 +60,7 @@ def served_names(entry: Entry) -> list[str]:
     text = entry.settings.get("arguments", "")
     words = list_items(text) if text.startswith("[") else text.split()
     if _SPAWNER.fullmatch(entry.name):
-        return list(takewhile(lambda word: not word.startswith("-"), words))
+        return list(_controllers(words))
     if not entry.name.startswith(TRANSFORM_PUBLISHERS):
         return []
     child = _CHILD.search(text)
@@ -65,6 +69,17 @@ def served_names(entry: Entry) -> list[str]:
     parts = {"tf2_ros": len(words), "tf": len(words) - 1}  # the publisher of ROS 1 has a period at the end
     count = parts[entry.name.partition("/")[0]]
     return [words[count - 1]] if count in _TRANSFORM_WORDS else []
+
+
+def _controllers(words: Sequence[str]) -> Iterator[str]:
+    """Yield the words of a spawner's command line that are neither options nor their values."""
+    is_value = False
+    for word in words:
+        if word in _END_OF_OPTIONS:
+            return
+        if not word.startswith("-") and not is_value:
+            yield word
+        is_value = word.startswith("-") and word not in _FLAGS
 
 
 def joined_titles(entries: Sequence[Entry]) -> Phrase:
