@@ -78,3 +78,25 @@ def test_reason_of_a_remapping_is_the_name_that_others_use(repository, compare):
     repository.write({PATH: WORLD.replace("drive/cmd<", "cmd<")})
     ((_, change),) = compare(repository).breaking_changes
     assert str(change.reason) == "programs that use the name 'drive/cmd' do not find it"
+
+
+def test_equal_changes_of_several_elements_are_one(repository, compare):
+    joints = "".join(
+        f'<joint name="servo_{n}" type="revolute"><axis><limit><upper>0.5</upper></limit></axis></joint>'
+        for n in range(4)
+    )
+    text = f'<sdf version="1.9"><model name="plane">{joints}</model></sdf>'
+    repository.commit({PATH: text})
+    repository.write({PATH: text.replace("0.5", "0.7")})
+    assert sentences(subject(compare(repository), PATH)) == [
+        "model plane joint servo_0, servo_1, servo_2, ... (4) axis limit upper: 0.5 -> 0.7"
+    ]
+
+
+def test_added_element_is_shown_with_its_attributes(repository, compare):
+    repository.commit({PATH: WORLD})
+    plugin = '<plugin name="Entity context menu" filename="Menu"/>'
+    repository.write({PATH: WORLD.replace("    <physics", f"    {plugin}\n    <physics")})
+    assert sentences(subject(compare(repository), PATH)) == [
+        "world yard plugin Entity context menu filename=Menu added"
+    ]

@@ -9,6 +9,7 @@ from linkwright.descriptions.comparison import Difference, ElementComparison
 from linkwright.diagnostics import Phrase, phrase
 from linkwright.review.breaking import plugin_name_reason
 from linkwright.review.file_pair import FilePair
+from linkwright.review.merged_paths import MergedPaths
 from linkwright.review.names_in_plugins import path_of_renamed
 from linkwright.review.plugins import added_topics, contents_text, missing_topics_reason
 from linkwright.review.scene_images import world_images
@@ -27,10 +28,20 @@ def compare_worlds(pair: FilePair) -> None:
         return
     differences = list(ElementComparison().child_differences(*elements))
     added = added_topics(differences)
+    merged = MergedPaths()
+    firsts: list[tuple[Difference, Phrase | None]] = []
     for difference in differences:
+        reason = _breaking_reason(difference, added)
+        path = f"{difference.name} {difference.property}".strip()
+        content = "" if difference.element is None else _content(difference.element)
+        kind = difference.kind, difference.old, difference.new, content, None if reason is None else str(reason)
+        is_merged = path_of_renamed(difference, path) is None
+        if merged.add(path, kind if is_merged else id(difference)) == len(firsts):
+            firsts.append((difference, reason))
+    for path, (difference, reason) in zip(merged.paths, firsts, strict=True):
         place = difference.new_place or difference.old_place
         location = None if place is None else pair.location(place.span, is_old=difference.new_place is None)
-        pair.add(_sentence(difference), location, _breaking_reason(difference, added))
+        pair.add(_sentence(difference, path), location, reason)
     if differences and pair.with_images:
         pair.images += world_images(pair)
 
@@ -40,14 +51,24 @@ def _elements(file: Path) -> list[Element]:
     return list(document.root.elements())
 
 
-def _sentence(difference: Difference) -> Phrase:
-    name = f"{difference.name} {difference.property}".strip()
+def _content(element: Element) -> str:
+    """Return the attributes and the text of an element, without its name."""
+    words = [f"{name}={value}" for name, value in element.attributes.items() if name != "name"]
+    return " ".join([*words, *element.text().split()])
+
+
+def _sentence(difference: Difference, name: str) -> Phrase:
+    """Return a difference in one line.
+
+    Args:
+        difference: the difference.
+        name: the path of the element, with the names of others that have the same difference.
+    """
     old_path = path_of_renamed(difference, name)
     if old_path is not None:
         return phrase("{element} renamed to '{new}'", element=old_path, new=difference.new or "")
     if difference.kind == "added" or (difference.old is None and difference.kind == "changed"):
-        words = (difference.new or "").split()
-        content = " ".join(word for word in words if not word.startswith(("<", "name=")))
+        content = (difference.new or "") if difference.element is None else _content(difference.element)
         text = phrase("{element} added", element=f"{name} {content}".strip())
     elif difference.kind == "removed" or difference.new is None:
         text = phrase("{element} removed", element=name)
