@@ -20,7 +20,7 @@ _ARGUMENT_CONDITIONS = {"IfCondition": "if", "UnlessCondition": "unless"}
 
 @dataclass(frozen=True)
 class BoundExpression:
-    """An expression that a name stands for.
+    """An expression that a name has as its value.
 
     Attributes:
         texts: the texts of the expressions where it is written.
