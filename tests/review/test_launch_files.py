@@ -334,3 +334,22 @@ def test_controllers_of_a_spawner_come_after_its_options(changes_of):
     assert changes_of("arm.launch.py", text, line, "")[0] == [
         "node 'controller_manager/spawner' of 'arm_controller' removed"
     ]
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "expected"),
+    [
+        ("GZ_SIM_RESOURCE_PATH", "GZ_MODEL_PATH",
+         "environment variable 'GZ_SIM_RESOURCE_PATH' replaced by environment variable 'GZ_MODEL_PATH'"),
+        ('"ros_gz_sim", executable', '"gz_sim", executable',
+         "node 'ros_gz_sim/create' replaced by node 'gz_sim/create'"),
+    ],
+)  # fmt: skip
+def test_action_under_a_new_name_is_replaced(changes_of, old, new, expected):
+    assert changes_of("arm.launch.py", PYTHON, old, new) == ([expected], [])
+
+
+def test_program_of_the_same_package_is_not_a_replacement(changes_of):
+    found, found_breaking = changes_of("arm.launch.py", PYTHON, 'executable="teleop"', 'executable="keyboard"')
+    assert found == ["node 'arm/keyboard' added", "node 'arm/teleop' removed"]
+    assert found_breaking == found[1:]

@@ -47,20 +47,49 @@ def compare_launch_files(pair: FilePair) -> None:
     old, new = outlines
     old_groups, new_groups = _by_name(old.entries), _by_name(new.entries)
     settings = _SettingChanges(pair, old, new)
+    gone: list[Entry] = []
+    come: list[Entry] = []
     for key in dict.fromkeys([*new_groups, *old_groups]):
         for old_entry, new_entry in _matched(old_groups.get(key, []), new_groups.get(key, [])):
-            lone = old_entry or new_entry
-            if None in (old_entry, new_entry) and lone and lone.is_same_name("to", None, lone.settings.get("to")):
-                continue
-            if old_entry is None and new_entry is not None:
-                pair.add(added_entry(new_entry), pair.location(new_entry.span))
-            elif new_entry is None and old_entry is not None:
-                text = phrase("{entry} removed", entry=title(old_entry))
-                pair.add(text, pair.location(old_entry.span, is_old=True), removal_reason(old_entry, old))
-            elif old_entry is not None and new_entry is not None:
+            if old_entry is not None and new_entry is not None:
                 settings.compare(old_entry, new_entry)
+            elif old_entry is not None:
+                gone.append(old_entry)
+            elif new_entry is not None:
+                come.append(new_entry)
     settings.add_those_of_groups()
+    _add_lone_entries(pair, gone, come, old)
     _compare_code(pair, old.code, new.code)
+
+
+def _add_lone_entries(pair: FilePair, gone: Sequence[Entry], come: Sequence[Entry], old: LaunchOutline) -> None:
+    """Add the actions that only one version has. An action with another name and the same settings is replaced."""
+    gone, come = ([each for each in entries if not _keeps_name(each)] for entries in (gone, come))
+    replaced: set[int] = set()
+    for entry in come:
+        former = next((each for each in gone if id(each) not in replaced and _is_replaced(each, entry)), None)
+        if former is None:
+            pair.add(added_entry(entry), pair.location(entry.span))
+        else:
+            replaced.add(id(former))
+            text = phrase("{old} replaced by {new}", old=title(former), new=title(entry))
+            pair.add(text, pair.location(entry.span))
+    for entry in gone:
+        if id(entry) not in replaced:
+            text = phrase("{entry} removed", entry=title(entry))
+            pair.add(text, pair.location(entry.span, is_old=True), removal_reason(entry, old))
+
+
+def _keeps_name(entry: Entry) -> bool:
+    return entry.is_same_name("to", None, entry.settings.get("to"))
+
+
+def _is_replaced(old: Entry, new: Entry) -> bool:
+    """Return whether an action is another one under a new name: a variable, or a program or file of a new package."""
+    if old.kind != new.kind or old.settings != new.settings or not (old.settings or old.kind == "include"):
+        return False
+    has_same_end = old.name.rpartition("/")[2] == new.name.rpartition("/")[2]
+    return old.kind == "environment" or (old.kind in ("node", "include") and has_same_end)
 
 
 def read_outline(path: Path, root: Path) -> LaunchOutline:
