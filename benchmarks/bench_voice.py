@@ -26,7 +26,7 @@ from linkwright.speech.enrolled.enrollment import enroll
 from linkwright.speech.enrolled.words import Words
 from linkwright.speech.sound.samples import BLOCK, RATE, Samples
 
-ENROLLLLED = ((0.95, 0.95), (1.0, 1.0), (1.06, 1.05))
+ENROLLED = ((0.95, 0.95), (1.0, 1.0), (1.06, 1.05))
 SAID = ((0.85, 1.1), (0.93, 0.85), (1.1, 1.15), (1.18, 0.92))
 """Speeds and pitches, relative to the speaker's own."""
 
@@ -71,7 +71,7 @@ def engine(speaker: voices.Speaker, folder: Path) -> EnrolledEngine:
     """One that knows the commands as this speaker says them."""
     words, rng = Words(), np.random.default_rng(1)
     for name in voices.COMMANDS[speaker.language]:
-        for speed, pitch in ENROLLLLED:
+        for speed, pitch in ENROLLED:
             said = voices.clip(voices.say(speaker, name, speed=speed, pitch=pitch), rng, level=3000.0)
             for finding in enroll(words, name, said):
                 print(f"{speaker.voice}, '{name}': {finding.message}")

@@ -78,6 +78,6 @@ def _npm_component(name: str, package: dict[str, str]) -> dict[str, Any]:
         "version": package["version"],
         "description": "bundled in the page",
         "hashes": [{"alg": algorithm.upper().replace("SHA", "SHA-"), "content": base64.b64decode(digest).hex()}],
-        "licenses": [{"license": {"id": package["license"], "acknowledgement": "declared"}}],
+        "licenses": [{"license": {"id": package["license"], "acknowledgement": "declared"}}],  # codespell:ignore
         "purl": f"pkg:npm/{name.replace('@', '%40')}@{package['version']}",
     }

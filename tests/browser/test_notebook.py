@@ -100,3 +100,9 @@ def test_show_raises_if_description_is_invalid():
     with pytest.raises(LinkwrightError) as raised:
         show("<robot name='a'><joint/></robot>")
     assert raised.value.diagnostics
+
+
+def test_a_notebook_holds_the_page_once_and_a_terminal_prints_one_line():
+    cell = show(ARM)
+    assert len(cell._repr_html_()) > 100_000
+    assert len(repr(cell)) < 200

@@ -35,7 +35,7 @@ def test_outputs_on_page_are_current(
 ) -> None:
     shown = blocks(PAGES[language])
     robot: list[Block] = [block for block in shown if block.title.endswith(".urdf")]
-    review, check = (block.text for block in shown if block.language == "text")
+    review, check, _ = (block.text for block in shown if block.language == "text")
     repository = Repository(tmp_path / "robots")
     write(next(block for block in shown if block.title.endswith("package.xml")), repository.root)
     write(robot[0], repository.root)
@@ -46,6 +46,22 @@ def test_outputs_on_page_are_current(
     assert capsys.readouterr().out == review
     assert main(["check", "--strict", "--changed", "main", "src", "--lang", language]) == 1
     assert capsys.readouterr().err == check
+
+
+@pytest.mark.parametrize("language", PAGES)
+def test_output_of_a_scenario_is_current(
+    language: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    shown = blocks(PAGES[language])
+    (scenario,) = (block for block in shown if block.language == "python")
+    *_, output = (block.text for block in shown if block.language == "text")
+    repository = Repository(tmp_path / "robots")
+    write(scenario, repository.root)
+    repository.commit({})
+    repository.write({scenario.title: scenario.text.replace("TURN = 0.3", "TURN = 0.4")})
+    monkeypatch.chdir(repository.root)
+    assert main(["review", "HEAD", "--scenario", scenario.title, "--lang", language]) == 0
+    assert capsys.readouterr().out.partition("\n\n")[0] == output.strip()
 
 
 @pytest.mark.parametrize("name", [".github/workflows/review.yml", ".gitea/workflows/review.yml"])

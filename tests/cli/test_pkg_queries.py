@@ -50,7 +50,7 @@ def test_pkg_executables_lists_one_package_or_all(capsys: pytest.CaptureFixture[
 def test_pkg_xml_prints_manifest_or_tag(capsys: pytest.CaptureFixture[str]) -> None:
     assert output_of(capsys, "xml", "arm") == MANIFEST
     assert output_of(capsys, "xml", "arm", "-t", "depend") == "xacro\nurdf\n"
-    error = output_of(capsys, "xml", "arm", "-t", "license", status=1)
-    assert "package.xml of 'arm' has no element <license>" in error
+    error = output_of(capsys, "xml", "arm", "-t", "licens", status=1)
+    assert "package.xml of 'arm' has no element <licens>" in error
     assert "did you mean 'license'?" in error
     assert "choose from depend" in output_of(capsys, "xml", "arm", "-t", "zzzzzz", status=1)

@@ -84,7 +84,7 @@ def start(command: list[str]) -> subprocess.Popen[str]:
 
 
 @pytest.mark.usefixtures("talker")
-class TestAgainstATalker:
+class TestTalkerGraph:
     def test_node_and_topic_list_show_talker(self):
         assert linkwright("node", "list") == "/talker\n"
         assert "/chatter [std_msgs/msg/String]\n" in linkwright("topic", "list", "-t")

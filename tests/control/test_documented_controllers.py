@@ -36,9 +36,16 @@ DOCUMENTED = [
 ]
 
 
+def shown(text: str, language: str, part: str) -> str:
+    """Return the code block of a page in a language that contains a text."""
+    found: list[str] = re.findall(rf"```{language}\n(.*?)```", text, re.DOTALL)
+    (block,) = (block for block in found if part in block)
+    return block
+
+
 def example(page: Path) -> Any:
     """The controller of a page."""
-    *_, code = re.findall(r"```python\n(.*?)```", page.read_text("utf-8"), re.DOTALL)
+    code = shown(page.read_text("utf-8"), "python", "class Swing(")
     module = ModuleType("my_controllers.swing")
     exec(compile(code, str(page), "exec", dont_inherit=True), module.__dict__)
     return module.__dict__["Swing"]
@@ -62,8 +69,8 @@ async def test_documented_example_swings_joint(stand, page):
 def installed(tmp_path, monkeypatch):
     """The package of the page's example, installed as the page says."""
     text = PAGES[0].read_text("utf-8")
-    *_, code = re.findall(r"```python\n(.*?)```", text, re.DOTALL)
-    (declared,) = re.findall(r"```toml\n(.*?)```", text, re.DOTALL)
+    code = shown(text, "python", "class Swing(")
+    declared = shown(text, "toml", '"linkwright.controllers"')
     package, facts = tmp_path / "my_controllers", tmp_path / "my_controllers-1.0.dist-info"
     package.mkdir()
     facts.mkdir()

@@ -58,7 +58,7 @@ def test_robot_equals_itself():
         ('<mass value="2"/>', '<mass value="2.0000001"/>'),
     ],
 )
-def test_equivalent_notation_is_no_difference(written, instead):
+def test_equivalent_notation_is_equal(written, instead):
     assert found(ROBOT, ROBOT.replace(written, instead)) == []
 
 
@@ -143,6 +143,174 @@ def test_changed_link_with_new_name_is_not_a_rename():
     new = ROBOT.replace('"arm"', '"boom"').replace("a.stl", "b.stl")
     kinds = {(each[1], each[2]) for each in found(ROBOT, new) if each[0] == "link"}
     assert kinds == {("boom", "added"), ("arm", "removed")}
+
+
+def renamed(old: str, new: str) -> dict[str, str]:
+    """Return the new names of renamed links and joints, by old name."""
+    return {
+        str(difference.old): difference.name
+        for difference in compared(old, new).differences
+        if difference.kind == "renamed"
+    }
+
+
+def body(name: str, shape: str = "", mass: float = 0.0) -> str:
+    inertia = f'<inertia ixx="{mass}" iyy="{mass}" izz="{mass}" ixy="0" ixz="0" iyz="0"/>'
+    inertial = f'<inertial><mass value="{mass}"/>{inertia}</inertial>'
+    visual = f"<visual><geometry>{shape}</geometry></visual>" if shape else ""
+    return f'<link name="{name}">{inertial if mass else ""}{visual}</link>'
+
+
+def below(parent: str, child: str, name: str = "", xyz: str = "0 0 0", kind: str = "fixed") -> str:
+    axes = '<limit effort="1" velocity="1"/>' if kind == "prismatic" else ""
+    return (
+        f'<joint name="{name or child + "_joint"}" type="{kind}"><origin xyz="{xyz}"/><parent link="{parent}"/>'
+        f'<child link="{child}"/>{axes}</joint>'
+    )
+
+
+def robot_of(*parts: str) -> str:
+    return f'<robot name="r">{body("base")}{"".join(parts)}</robot>'
+
+
+MESH, OTHER_MESH, BOX = '<mesh filename="a.stl"/>', '<mesh filename="b.stl"/>', '<box size="1 2 3"/>'
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "expected"),
+    [
+        pytest.param(
+            (body("camera"), below("base", "camera")),
+            (body("camera_link"), below("base", "camera_link", xyz="0 0 1")),
+            {"camera": "camera_link", "camera_joint": "camera_link_joint"},
+            id="frame whose name has the same words",
+        ),
+        pytest.param(
+            (body("arm", MESH), below("base", "arm")),
+            (body("boom", MESH), below("base", "boom", xyz="0 0 1")),
+            {"arm": "boom", "arm_joint": "boom_joint"},
+            id="same mesh below the same link",
+        ),
+        pytest.param(
+            (body("mount"), below("base", "mount"), body("arm", MESH), below("mount", "arm")),
+            (body("riser"), below("base", "riser", xyz="0 0 1"), body("arm", MESH), below("riser", "arm", "arm_joint")),
+            {"mount": "riser", "mount_joint": "riser_joint"},
+            id="same parent and same children",
+        ),
+        pytest.param(
+            (body("arm", MESH, 1), below("base", "arm", "shoulder")),
+            (body("boom", MESH, 2), below("base", "boom", "shoulder", "0 0 1")),
+            {"arm": "boom"},
+            id="same joint, and another mass",
+        ),
+        pytest.param(
+            (body("pole"), below("base", "pole"), body("arm", MESH, 2), below("pole", "arm")),
+            (body("pole"), below("base", "pole"), body("boom", MESH, 2), below("base", "boom")),
+            {"arm": "boom"},
+            id="same mesh and inertial below another link",
+        ),
+        pytest.param(
+            (body("arm", MESH), below("base", "arm"), body("tip"), below("arm", "tip")),
+            (body("boom", MESH), below("base", "boom", xyz="0 0 1"), body("tip_frame"),
+             below("boom", "tip_frame", xyz="1 0 0")),
+            {"arm": "boom", "arm_joint": "boom_joint", "tip": "tip_frame", "tip_joint": "tip_frame_joint"},
+            id="a chain, from its start on",
+        ),
+        pytest.param(
+            (body("left_wheel", MESH), below("base", "left_wheel"),
+             body("right_wheel", MESH), below("base", "right_wheel")),
+            (body("wheel_left", MESH), below("base", "wheel_left", xyz="0 1 0"),
+             body("wheel_right", MESH), below("base", "wheel_right", xyz="0 -1 0")),
+            {"left_wheel": "wheel_left", "right_wheel": "wheel_right", "left_wheel_joint": "wheel_left_joint",
+             "right_wheel_joint": "wheel_right_joint"},
+            id="equal parts with words for their sides",
+        ),
+    ],
+)  # fmt: skip
+def test_renamed_parts_that_moved_are_recognized(old, new, expected):
+    assert renamed(robot_of(*old), robot_of(*new)) == expected
+
+
+@pytest.mark.parametrize(
+    ("old", "new"),
+    [
+        pytest.param(
+            (body("imu"), below("base", "imu")),
+            (body("gps"), below("base", "gps", xyz="0 0 1")),
+            id="frames of other words",
+        ),
+        pytest.param(
+            (body("world"), below("world", "base")),
+            (body("foot"), below("foot", "base")),
+            id="the world",
+        ),
+        pytest.param(
+            (body("foot"), below("foot", "pole"), body("pole"), below("pole", "base")),
+            (body("mast"), below("mast", "tower", xyz="1 0 0"), body("tower"), below("tower", "base", xyz="0 0 1")),
+            id="a root without the same children",
+        ),
+        pytest.param(
+            (body("arm", MESH), below("base", "arm")),
+            (body("boom", OTHER_MESH), below("base", "boom", xyz="0 0 1")),
+            id="another mesh",
+        ),
+        pytest.param(
+            (body("a_box", BOX, 1), below("base", "a_box")),
+            (body("crate", BOX, 1), below("base", "crate", xyz="0 0 1")),
+            id="a plain shape",
+        ),
+        pytest.param(
+            (body("arm", MESH), below("base", "arm")),
+            (body("boom", MESH), below("base", "boom", kind="floating")),
+            id="another type of joint",
+        ),
+        pytest.param(
+            (body("camera_left", MESH, 1), below("base", "camera_left")),
+            (body("camera_right", MESH, 1), below("base", "camera_right", xyz="0 0 1")),
+            id="the other side",
+        ),
+        pytest.param(
+            (body("leg1", MESH, 1), below("base", "leg1")),
+            (body("leg2", MESH, 1), below("base", "leg2", xyz="0 0 1")),
+            id="another number",
+        ),
+        pytest.param(
+            (body("arm", MESH), below("base", "arm")),
+            (body("boom", MESH), below("base", "boom", xyz="0 0 1"),
+             body("jib", MESH), below("base", "jib", xyz="0 1 0")),
+            id="two new candidates",
+        ),
+        pytest.param(
+            (body("arm", MESH), below("base", "arm"), body("leg", MESH), below("base", "leg")),
+            (body("boom", MESH), below("base", "boom", xyz="0 0 1")),
+            id="two old candidates",
+        ),
+    ],
+)  # fmt: skip
+def test_other_parts_in_the_place_of_removed_ones_are_not_renamed(old, new):
+    assert renamed(robot_of(*old), robot_of(*new)) == {}
+
+
+def test_renamed_joint_between_the_same_links_is_recognized():
+    new = ROBOT.replace('"wrist"', '"flange"').replace(
+        '<parent link="arm"/>', '<origin xyz="1 0 0"/><parent link="arm"/>'
+    )
+    assert [each[:4] for each in found(ROBOT, new)] == [
+        ("joint", "flange", "renamed", "name"),
+        ("joint", "flange", "changed", "origin xyz"),
+    ]
+
+
+def test_many_equal_parts_are_not_renamed():
+    def many(prefix: str) -> str:
+        return robot_of(
+            *(
+                body(f"{prefix}{number}", MESH) + below("base", f"{prefix}{number}", xyz=f"0 {len(prefix)} {number}")
+                for number in range(400)
+            )
+        )
+
+    assert renamed(many("a_"), many("wheel_b_")) == {}
 
 
 def test_locations_are_attributes_in_both_files():

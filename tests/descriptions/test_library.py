@@ -53,7 +53,7 @@ class TestLoad:
             load("<robot>")
 
 
-class TestAsUrdfdom:
+class TestTinyxmlTolerance:
     """Differences between tinyxml2 and the XML standard."""
 
     def test_whitespace_before_xml_declaration_is_accepted(self):

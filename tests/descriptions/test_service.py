@@ -20,7 +20,7 @@ def link_names(path: Path, **options) -> list[str]:
     return list(robot.links)
 
 
-class TestWhatIsXacro:
+class TestXacroDetection:
     def test_plain_urdf_is_not_expanded(self, tmp_path):
         (tmp_path / "r.urdf").write_text(PLAIN)
         found = examine(tmp_path / "r.urdf")
@@ -93,7 +93,7 @@ class TestOverlay:
         assert provenance.attributes[0].values[0].value == "'arm'"
 
 
-class TestWhatUrdfdomReadsAllTheSame:
+class TestUrdfdomTolerance:
     @pytest.mark.parametrize(
         ("written", "code"),
         [

@@ -25,7 +25,9 @@ def test_both_languages_show_same_files(page: Path) -> None:
 
 @pytest.mark.slow
 def test_drive_and_world_guides_complete_urdf_without_masses(follow: Callable[..., Path]) -> None:
-    follow(DOCS / "howto-drive.md", {PUBLISH: Known(shows="publishing #1")})
+    page = DOCS / "howto-drive.md"
+    shown = next(block.text.splitlines()[0] for block in blocks(page) if block.language == "text")
+    follow(page, {"linkwright drive cart.urdf": Known(shows=shown), PUBLISH: Known(shows="publishing #1")})
     home = follow(DOCS / "howto-world.md", {})
     cart = (home / "cart.urdf").read_text(encoding="utf-8")
     assert cart.count("<mass ") == 4

@@ -20,6 +20,7 @@ from tests.viewer.scene import page, world
 
 PAGES = (DOCS / "own-displays.md", DOCS / "zh" / "own-displays.md")
 CLASS = "street_displays/TrackedObjects"
+POINTS_CLASS = "street_displays/ObjectPoints"
 CONFIG = f"""\
 Visualization Manager:
   Global Options: {{Fixed Frame: base}}
@@ -45,7 +46,7 @@ def street(request, tmp_path, monkeypatch):
     project = read_toml(made["street_displays/pyproject.toml"])["project"]
     facts = tmp_path / "street_displays" / "street_displays-1.0.dist-info"
     facts.mkdir()
-    points = project["entry-points"]["linkwright.displays"]
+    points = {**project["entry-points"]["linkwright.displays"], POINTS_CLASS: "object_points:ObjectPoints"}
     lines = ["[linkwright.displays]", *(f"{name} = {value}" for name, value in points.items()), ""]
     (facts / "entry_points.txt").write_text("\n".join(lines))
     monkeypatch.syspath_prepend(str(tmp_path / "street_displays"))
@@ -55,6 +56,7 @@ def street(request, tmp_path, monkeypatch):
     yield
     monkeypatch.undo()
     sys.modules.pop("street_displays", None)
+    sys.modules.pop("object_points", None)
     extensions._all_groups.cache_clear()
     catalog._display_class.cache_clear()
 
@@ -131,3 +133,16 @@ async def test_configuration_with_example_display_is_saved_unchanged(street):
     async with world(RvizConfig.parse(CONFIG)) as w:
         assert w.viewer.displays[0].SUPPORTED
         assert w.viewer.config.text() == CONFIG
+
+
+async def test_the_objects_are_drawn_as_points_with_a_channel(street):
+    async with world(RvizConfig.parse(CONFIG.replace(CLASS, POINTS_CLASS))) as w:
+        publisher = w.graph.create_node("perception").create_publisher("street_msgs/msg/TrackedObjects", "/objects", 10)
+        w.move({("base", "street"): (0, 0, 1, 0, 0, 0, 1)}, static=True)
+        await w.settle()
+        publisher.publish(seen(car(1, 5.0), car(2, -5.0)))
+        await w.settle()
+        (display,) = w.viewer.displays
+        assert display.row().drawing == "rviz_default_plugins/PointCloud2"
+        assert display.fields_of("", 0) == {"speed": 3.0}
+        assert w.status("ObjectPoints")["Points"][0] == "ok"

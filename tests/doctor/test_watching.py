@@ -149,7 +149,7 @@ async def test_bridged_transforms_have_one_sender_and_no_delay(joined: Graph) ->
     assert {stamp.behind_ns for stamp in watched.result().stamps} == {0}
 
 
-async def test_simulator_stamps_have_no_delay_and_world_poses_are_no_frames(joined: Graph) -> None:
+async def test_simulator_stamps_have_no_delay_and_world_poses_are_not_frames(joined: Graph) -> None:
     """It makes the time that it stamps by, and tells where models are on a topic of transforms that are no frames."""
     simulator = joined.create_node("gazebo")
     clock = simulator.create_publisher("rosgraph_msgs/msg/Clock", "/clock", 10)

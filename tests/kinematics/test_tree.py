@@ -177,7 +177,7 @@ class TestMimic:
             np.testing.assert_allclose(np.arccos(frames[2, 0, 0]), 0.5)
 
 
-class TestStill:
+class TestJointsWithoutPosition:
     """Joints that do not move."""
 
     @pytest.mark.parametrize("kind", ["fixed", "floating", "planar"])

@@ -76,7 +76,7 @@ def test_arguments_of_included_file_are_completed(at, pairs):
 def test_values_of_included_argument_are_its_choices(at):
     assert at(INCLUDE.format("{'color': '|'}.items()")).labels() == ["red", "blue"]
     assert at(INCLUDE.format("[('color', '|')]")).labels() == ["red", "blue"]
-    assert at(INCLUDE.format("{'col|our': 'red'}.items()")).targets() == ["parts.launch.py:color"]
+    assert at(INCLUDE.format("{'col|or': 'red'}.items()")).targets() == ["parts.launch.py:color"]
 
 
 def test_next_statement_ends_unclosed_brackets():

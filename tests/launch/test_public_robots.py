@@ -68,7 +68,7 @@ def _modules_of_this_test_alone() -> Any:
     importlib.invalidate_caches()
 
 
-class TestModulesOfTheWorkspace:
+class TestWorkspaceModules:
     USES = """
     from {module} import greet
     def generate_launch_description():
@@ -123,7 +123,7 @@ class TestModulesOfTheWorkspace:
             assert hint in (diagnostic.hint or "")
 
 
-class TestNamesThatRosHasByTheWay:
+class TestSubmoduleImports:
     async def test_submodules_are_available_after_importing_launch(self, file: Any, messages: Any) -> None:
         text = """
         def said(context):
@@ -399,7 +399,7 @@ def test_launch_utils_create_controller_spawners() -> None:
         launch_utils.generate_controllers_spawner_launch_description_from_dict({"a": 5})
 
 
-class TestApiOfTheVerb:
+class TestLaunchVerbApi:
     def test_launch_file_paths_of_package_are_found(self, write: Any, file: Any, tmp_path: Path) -> None:
         from ros2launch.api import MultipleLaunchFilesError, get_launch_file_paths, get_share_file_path_from_package
 

@@ -6,7 +6,6 @@ import json
 import shutil
 from collections.abc import AsyncIterator
 from contextlib import asynccontextmanager
-from functools import partial
 from pathlib import Path
 from typing import Any
 
@@ -15,7 +14,8 @@ import pytest
 from linkwright.learning.judging.exercise import find_exercise
 from linkwright.learning.page.exercise_guide import ExerciseGuide
 from linkwright.learning.page.feature import CourseFeature
-from linkwright.messages import String, get_service
+from linkwright.messages import String
+from tests.learning.simulator import FakeSimulator
 from tests.viewer.scene import page, world
 
 STATE = {
@@ -80,15 +80,12 @@ async def test_judge_failure_is_reported_and_world_pauses_while_judging(tmp_path
     program = tmp_path / "mine.py"
     program.touch()
     monkeypatch.setattr("linkwright.learning.page.exercise_guide.sys.executable", "/bin/false")
-    calls = []
     async with exercise_page(program) as (scene, client):
-        simulator = scene.graph.create_node("gazebo")
-        for name in ("/pause_physics", "/unpause_physics"):
-            note = partial(lambda name, _, response: (calls.append(name), response)[1], name)
-            simulator.create_service(get_service("std_srvs/srv/Empty"), name, note)
+        simulator = FakeSimulator(scene.graph)
+        await scene.settle()
         await client.send("check_step")
         while not (message := (await client.until("course_problem"))["message"]):
             pass
         assert message.startswith("the program cannot be judged")
         await scene.settle()
-    assert calls == ["/pause_physics", "/unpause_physics"]
+    assert simulator.calls == ["pause", "resume"]

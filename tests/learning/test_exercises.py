@@ -1,7 +1,12 @@
 """Exercises: their judges are fair, their solutions score as they should, and results repeat."""
 
 import json
+import os
+import signal
+import subprocess
+import sys
 from functools import cache
+from pathlib import Path
 from statistics import mean
 from types import SimpleNamespace
 
@@ -14,6 +19,8 @@ from linkwright.learning.judging.running import RunResult, judge_program
 from linkwright.learning.judging.world import create_judge, write_world
 from linkwright.learning.local_text import LocalText
 from linkwright.testing import SteppedSimulation
+from tests.domains import own_domain
+from tests.waiting import wait_until
 
 pytestmark = pytest.mark.extra("sim")
 
@@ -98,6 +105,108 @@ def test_program_has_no_access_to_simulator(tmp_path):
     assert result.error is None
     with SteppedSimulation(services=False) as test, pytest.raises(LookupError):
         test.call("/get_entity_state", None)
+
+
+def test_an_exercise_uses_its_own_robot_in_a_workspace_with_a_package_of_the_same_name(tmp_path, monkeypatch):
+    package = tmp_path / "src" / "my_robot_description"
+    (package / "urdf" / "base").mkdir(parents=True)
+    (package / "package.xml").write_text(
+        "<package format='3'><name>my_robot_description</name></package>", encoding="utf-8"
+    )
+    own_base = "<robot><joint/></robot>"
+    (package / "urdf" / "base" / "mbot_base_gazebo.xacro").write_text(own_base, encoding="utf-8")
+    monkeypatch.chdir(tmp_path)
+    exercise = find_exercise(FAST)
+    (result,) = judge_program(exercise, exercise.template, [0])
+    assert result.error is None
+
+
+MEDDLER = """
+import rclpy
+from geometry_msgs.msg import Twist
+from rclpy.node import Node
+
+rclpy.init()
+node = Node("race", namespace="{namespace}")
+publisher = node.create_publisher(Twist, "{topic}", 10)
+node.create_timer(0.1, lambda: publisher.publish(Twist()))
+rclpy.spin(node)
+"""
+
+
+@pytest.mark.parametrize(("namespace", "topic"), [("", "/rival/cmd_vel"), ("rival", "cmd_vel")])
+def test_a_program_that_commands_the_rival_gets_no_points(tmp_path, namespace, topic):
+    program = tmp_path / "program.py"
+    program.write_text(MEDDLER.format(namespace=namespace, topic=topic), encoding="utf-8")
+    (result,) = judge_program(find_exercise("race"), program, [0])
+    assert result.score == 0.0
+    assert result.data["time"] < 1.0
+    assert "on a topic of the other robot" in result.data["reasons"][-1]["en"]
+
+
+def test_a_rival_that_fails_does_not_fail_the_program(tmp_path):
+    rival = tmp_path / "rival.py"
+    rival.write_text("import rclpy\nrclpy.init()\nunknown\n", encoding="utf-8")
+    exercise = find_exercise("race")
+    (result,) = judge_program(exercise, exercise.solution("reference"), [0], rival=rival)
+    assert result.error is None
+    assert result.data["is_solved"]
+    assert "the program of the other robot ended" in [reason["en"] for reason in result.data["reasons"]]
+
+
+def test_a_program_with_absolute_names_drives_the_rival(tmp_path):
+    rival = tmp_path / "rival.py"
+    text = find_exercise("race").solution("simple").read_text(encoding="utf-8")
+    rival.write_text(text.replace("'cmd_vel'", "'/cmd_vel'").replace("'scan'", "'/scan'"), encoding="utf-8")
+    exercise = find_exercise("race")
+    (result,) = judge_program(exercise, exercise.template, [0], rival=rival)
+    assert result.data["progress"] == pytest.approx(0.0, abs=0.1)
+    assert result.data["figure"] < -4.0
+
+
+def test_the_rival_option_is_checked(tmp_path, monkeypatch, capsys):
+    monkeypatch.chdir(tmp_path)
+    Path("mine.py").touch()
+    assert main(["learn", "judge", FAST, "mine.py", "--rival", "mine.py"]) != 0
+    assert "LEARN145" in capsys.readouterr().err
+    assert main(["learn", "judge", "race", "mine.py", "--rival", "missing.py"]) != 0
+    assert "LEARN142" in capsys.readouterr().err
+
+
+@pytest.mark.slow
+def test_the_rival_drives_in_real_time(tmp_path):
+    rival = tmp_path / "rival.py"
+    rival.write_text(
+        "import pathlib, rclpy\nfrom rclpy.node import Node\nfrom sensor_msgs.msg import LaserScan\nrclpy.init()\n"
+        f"seen = pathlib.Path({str(tmp_path / 'seen')!r})\nnode = Node('n')\n"
+        "node.create_subscription(LaserScan, '/scan', lambda _: seen.write_text(node.get_namespace()), 10)\n"
+        "rclpy.spin(node)\n",
+        encoding="utf-8",
+    )
+    words = ["learn", "world", "race", "--headless", "--seconds", "60", "--rival", str(rival)]
+    environment = {**os.environ, "ROS_DOMAIN_ID": str(own_domain())}
+    program = tmp_path / "mine.py"
+    program.write_text(
+        "import pathlib, rclpy, time\nfrom geometry_msgs.msg import Twist\nrclpy.init()\n"
+        "node = rclpy.create_node('m')\n"
+        "publisher = node.create_publisher(Twist, 'cmd_vel', 10)\n"
+        "while not publisher.get_subscription_count():\n    time.sleep(0.1)\n"
+        "time.sleep(1.0)\n"
+        f"assert not pathlib.Path({str(tmp_path / 'seen')!r}).exists()\n"
+        f"while not pathlib.Path({str(tmp_path / 'seen')!r}).exists():\n"
+        "    publisher.publish(Twist())\n    time.sleep(0.1)\n",
+        encoding="utf-8",
+    )
+    command = [sys.executable, "-m", "linkwright"]
+    with subprocess.Popen([*command, *words], cwd=tmp_path, env=environment) as process:
+        try:
+            started = subprocess.run([*command, "shell", "--", sys.executable, program], env=environment, check=False)
+            assert started.returncode == 0
+            wait_until((tmp_path / "seen").exists, pause=0.1)
+        finally:
+            process.send_signal(signal.SIGINT)
+    assert (tmp_path / "seen").read_text(encoding="utf-8") == "/rival"
+    assert process.returncode == 130
 
 
 def test_judge_command_prints_table_or_json(tmp_path, monkeypatch, capsys):

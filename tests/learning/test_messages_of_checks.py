@@ -52,6 +52,19 @@ def test_missing_file_message_names_similar_file(package):
         package.file("worlds/world.world")
 
 
+@pytest.mark.parametrize(
+    ("file", "text", "message"),
+    [
+        ("setup.py", "from setuptools import setup\nsetup(name='p',\n", r"setup\.py, line 2: .*never closed"),
+        ("package.xml", "<package format='3'><name>p</name></export></package>", r"package\.xml, line 1, .*XML201"),
+    ],
+)
+def test_a_package_that_cannot_be_built_is_refused(package, file, text, message):
+    (package.folder / file).write_text(text)
+    with pytest.raises(NotYet, match=message):
+        Work(package.workspace, lesson=package.workspace).package("p")
+
+
 def test_misplaced_link_is_reported(package):
     (package.folder / "r.urdf").write_text('<robot name="r"><link name="a"><link name="b"/></link></robot>')
     with pytest.raises(NotYet, match=r"no link is called 'b'; r\.urdf, line 1: it is inside <link>"):

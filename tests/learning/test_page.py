@@ -18,6 +18,7 @@ from linkwright.learning.course import find_course
 from linkwright.learning.page.course_guide import CourseGuide
 from linkwright.learning.page.feature import CourseFeature
 from linkwright.learning.page.step_html import step_html
+from linkwright.page.program_pages import ProgramPages
 from tests.viewer.scene import page, world
 
 ROBOT = find_course("example") / "01-one-link/solution/one-link/robot.urdf"
@@ -31,9 +32,11 @@ class Shown:
         self.paths: list[Path | None] = []
 
 
-def show_course(scene: Any, room: Classroom, on_changed: Callable[[Path | None], object]) -> None:
+def show_course(
+    scene: Any, room: Classroom, on_changed: Callable[[Path | None], object], programs: ProgramPages | None = None
+) -> None:
     context = scene.viewer.context
-    guide = CourseGuide(room, context.pages.publish, context.node.get_logger(), on_changed)
+    guide = CourseGuide(room, context.pages.publish, context.node.get_logger(), on_changed, programs or ProgramPages())
     scene.viewer.add_feature(CourseFeature).show(guide)
 
 
@@ -98,6 +101,37 @@ async def test_newest_check_result_is_shown(tmp_path):
         (tmp_path / "ws" / "robot.urdf").write_text(WRONG)
         shutil.copy(ROBOT, tmp_path / "ws")
         await until_passed(client)
+
+
+SLOW_CHECK = """
+import time
+from linkwright.learning import check
+
+@check("one-link", en="It takes time.", zh="需要时间。")
+def takes_time(work):
+    time.sleep(0.0 if work.folder.joinpath("quick").exists() else 2.0)
+"""
+
+
+@pytest.mark.parametrize(("is_quick", "expected"), [(False, [True, False]), (True, [])])
+async def test_slow_checks_pause_worlds_and_quick_checks_do_not(tmp_path, monkeypatch, is_quick, expected):
+    course, workspace, paused = tmp_path / "course", tmp_path / "ws", []
+    shutil.copytree(find_course("example"), course)
+    (course / "01-one-link" / "checks.py").write_text(SLOW_CHECK, encoding="utf-8")
+    workspace.mkdir()
+    if is_quick:
+        (workspace / "quick").touch()
+    monkeypatch.setattr("linkwright.learning.page.course_guide._QUICK_S", 60.0 if is_quick else 0.2)
+    programs = ProgramPages()
+    monkeypatch.setattr(programs, "pause_worlds", lambda: paused.append(True))
+    monkeypatch.setattr(programs, "resume_worlds", lambda: paused.append(False))
+    async with world() as scene:
+        show_course(scene, open_classroom(workspace, str(course)), lambda _: None, programs)
+        async with page(scene.viewer) as client:
+            while not (await results(client))["checks"]:
+                pass
+        while_open = list(paused)
+    assert [value for value in while_open if value or expected] == expected
 
 
 async def test_hints_are_shown_in_order_and_solution_keeps_replaced_file(tmp_path):

@@ -118,3 +118,28 @@ def test_failing_plugin_rule_is_reported_and_other_rules_run(installed, robot, f
     if fault != "yield None":
         assert failed.span.file.endswith("team_rules.py")
         assert (RULES + BROKEN.format(fault=fault)).splitlines()[failed.span.line - 1].strip() == fault
+
+
+OF_PACKAGES = """
+
+from linkwright.lint import Scope
+
+
+class NoReadme(Rule):
+    '''A package without a README.'''
+
+    code = "TEAM004"
+    name = "no-readme"
+    scope = Scope.PACKAGE
+
+    def check(self, subject):
+        if "README.md" not in subject.package.files:
+            yield self.report("there is no README.md", subject.package.manifest.root)
+"""
+
+
+def test_a_rule_about_packages_runs_only_for_a_description_in_a_package(installed, robot):
+    installed(RULES + OF_PACKAGES)
+    assert [finding.code for finding in check(robot)] == ["TEAM001"]
+    (robot.parent / "package.xml").write_text("<package format='3'><name>robot</name></package>")
+    assert {"TEAM001", "TEAM004"} <= {finding.code for finding in check(robot)}

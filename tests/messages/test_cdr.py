@@ -118,7 +118,7 @@ def test_length_beyond_data_allocates_no_memory(name):
     assert most < 2_000_000
 
 
-class TestRefused:
+class TestRejectedBytes:
     def refused(self, data, cls):
         with pytest.raises(MessageDataError) as caught:
             deserialize(data, cls)

@@ -383,7 +383,7 @@ class TestIdl:
             self.parsed(" ".join(words))
 
 
-class TestDefinitionsThatDataBringAlong:
+class TestEmbeddedDefinitions:
     def test_embedded_definition_includes_nested_messages(self):
         text = (
             "Inner[] inner\nstd_msgs/Header header\n"

@@ -18,7 +18,7 @@ from linkwright.page.page_server import PageServer
 from linkwright.page.program_pages import Embedder
 from linkwright.panels.terminal.feature import TerminalFeature
 from tests.viewer.scene import World, page
-from tests.waiting import SECONDS
+from tests.waiting import SECONDS, eventually
 
 FRAMES = "frame-src http://127.0.0.1:* http://localhost:*"
 
@@ -76,6 +76,42 @@ async def test_program_page_is_shown_until_program_ends(tmp_path):
         assert "frame-ancestors 'none'" in await policy(made.viewer._server)
         await server.close()
         assert (await client.until("program_pages"))["pages"] == []
+
+
+async def test_a_program_pauses_its_world_until_it_may_resume(tmp_path):
+    asked = []
+
+    def pause(must_pause: bool) -> bool:
+        asked.append(must_pause)
+        return must_pause
+
+    async with classroom(tmp_path) as made, page(made.viewer), program() as server, program() as other:
+        programs = made.viewer._server.program_pages
+        assert await server.embed(environment(made), "a world")
+        server.on_pause(pause)
+        assert await other.embed(environment(made), "a page without a world")
+        programs.pause_worlds()
+        await eventually(lambda: programs.is_world_paused)
+        assert asked == [True]
+        programs.resume_worlds()
+        assert not programs.is_world_paused
+        await eventually(lambda: asked == [True, False])
+        programs.resume_worlds()
+        programs.pause_worlds()
+        await eventually(lambda: programs.is_world_paused)
+        await server.close()
+        await eventually(lambda: not programs.is_world_paused)
+
+
+async def test_a_world_resumes_when_the_page_that_paused_it_is_gone(tmp_path):
+    asked = []
+    async with program() as server:
+        async with classroom(tmp_path) as made, page(made.viewer):
+            assert await server.embed(environment(made), "a world")
+            server.on_pause(lambda must_pause: asked.append(must_pause) or must_pause)
+            made.viewer._server.program_pages.pause_worlds()
+            await eventually(lambda: asked == [True])
+        await eventually(lambda: asked == [True, False])
 
 
 async def test_terminal_has_variable_with_page_address(tmp_path):

@@ -5,8 +5,9 @@ from __future__ import annotations
 import pytest
 
 from linkwright.cli import main
-from linkwright.review import open_versions
+from linkwright.review import Review, open_versions
 from linkwright.review.behavior import compare_behavior
+from linkwright.review.reports import as_data, as_html, as_markdown
 from tests.review.conftest import sentences
 
 SCENARIO = """import random
@@ -31,15 +32,25 @@ def text_with(**values: str) -> str:
 
 
 @pytest.fixture
-def compared(package):
-    def run(old: dict[str, str], new: dict[str, str], seeds: int | None = None):
-        package.commit({"tests/drive.py": text_with(**old)})
-        package.commit({"tests/drive.py": text_with(**new)})
+def compare_scenario(package):
+    """Run the scenario of the last two commits."""
+
+    def run(seeds: int | None = None):
         versions = open_versions(package.root, "HEAD~1..HEAD")
         try:
             return compare_behavior(versions, "tests/drive.py", seeds)
         finally:
             versions.close()
+
+    return run
+
+
+@pytest.fixture
+def compared(package, compare_scenario):
+    def run(old: dict[str, str], new: dict[str, str], seeds: int | None = None):
+        package.commit({"tests/drive.py": text_with(**old)})
+        package.commit({"tests/drive.py": text_with(**new)})
+        return compare_scenario(seeds)
 
     return run
 
@@ -81,6 +92,64 @@ def test_changed_texts_are_counted_over_seeds(compared):
 def test_scenario_that_cannot_run_is_a_problem(compared):
     (problem,) = compared({}, {"FAILS": "}"}).problems
     assert str(problem.text).startswith("the scenario cannot run in the new version: ")
+
+
+PATHS = """from linkwright.sweep import Uniform, scenario
+
+
+@scenario(speed=[1.0, 2.0], gain=Uniform(0.5, 1.0), seeds=3)
+def drive(speed, gain, seed):
+    track = [(0.1 * step, 0.1 * step * speed, OFFSET * step * speed * (1 + seed)) for step in range(41)]
+    return {"track": track, "still": [(0.0, 0.0, 0.0), (1.0, gain, 0.0)]}
+"""
+
+
+def test_paths_are_compared_for_each_listed_parameter(package, compare_scenario):
+    package.commit({"tests/drive.py": PATHS.replace("OFFSET", "0.0")})
+    package.commit({"tests/drive.py": PATHS.replace("OFFSET", "0.01")})
+    found = compare_scenario()
+    assert sentences(found) == [
+        "track, speed=2.0: paths up to 2.4 m apart (seed 2, after 4 s), median of 3 runs 1.6 m",
+        "track, speed=1.0: paths up to 1.2 m apart (seed 2, after 4 s), median of 3 runs 0.8 m",
+    ]
+    assert [comparison.parameters for comparison in found.paths] == ["speed=2.0", "speed=1.0"]
+
+
+def test_paths_are_in_all_reports_with_the_same_bytes_twice(package, compare_scenario):
+    package.commit({"tests/drive.py": PATHS.replace("OFFSET", "0.0")})
+    package.commit({"tests/drive.py": PATHS.replace("OFFSET", "0.01")})
+    reviews = [Review("a", "b", [compare_scenario()]) for _ in range(2)]
+    first, second = (as_html(review) for review in reviews)
+    assert first == second
+    assert first.count("<figure class='plot'>") == 2
+    assert "paths up to 2.4 m apart" in as_markdown(reviews[0])
+    (data, _) = as_data(reviews[0])["subjects"][0]["paths"]
+    assert (data["name"], data["parameters"]) == ("track", "speed=2.0")
+    assert [(run["seed"], run["distance"], run["time"]) for run in data["runs"]] == [
+        ("0", 0.8, 4.0),
+        ("1", 1.6, 4.0),
+        ("2", 2.4, 4.0),
+    ]
+    assert data["runs"][0]["new"][-1] == [4.0, 8.0, 0.8]
+
+
+def test_path_of_a_simulated_robot_is_recorded(package, compare_scenario):
+    text = """from linkwright.sweep import scenario
+from linkwright.testing import SteppedSimulation
+
+
+@scenario()
+def drive():
+    with SteppedSimulation("empty", "package://my_robot_description/urdf/mbot_gazebo.xacro") as test:
+        test.drive(0.5, TURN)
+        test.advance(1.0)
+        return {}
+"""
+    package.commit({"tests/drive.py": text.replace("TURN", "0.0")})
+    package.commit({"tests/drive.py": text.replace("TURN", "0.8")})
+    (sentence,) = sentences(compare_scenario())
+    assert sentence.startswith("robot: paths up to 0.")
+    assert sentence.endswith(" m apart (seed 0, after 1 s)")
 
 
 def test_scenarios_run_only_on_request(package, tmp_path, monkeypatch, capsys):

@@ -120,3 +120,61 @@ def test_newest_commit_that_cannot_be_expanded_is_an_error(bisect):
     status, _, errors = bisect("--new", "HEAD~3", "--", "lower")
     assert status == 1
     assert "missing" in errors
+
+
+def test_renamed_link_is_found_with_its_motion(history, capsys, bisect):
+    probe = ARM.replace('"probe', '"probe_link').replace('xyz="0 0 0.2"', 'xyz="0 0 0.4"')
+    history.commit({"arm_description/urdf/robot.urdf.xacro": probe}, "Renamed")
+    _, output, _ = bisect("tool:=probe", "--", "probe_link")
+    assert output.splitlines()[0].endswith("Ann: Renamed")
+    assert "moved by 0.1 m" in output
+
+
+def test_new_root_link_moves_no_other(history, bisect):
+    foot = """<link name="foot"/><joint name="foot_joint" type="fixed"><parent link="foot"/><child link="base_link"/>
+    <origin xyz="0 0 0.3"/></joint><link name="base_link"/>"""
+    text = ARM.replace('<link name="base_link"/>', foot)
+    history.commit({"arm_description/urdf/robot.urdf.xacro": text}, "Lifted")
+    assert bisect("--", "lower")[1].splitlines()[0].endswith("Ann: Commit 4")
+
+
+def test_an_oldest_commit_of_another_branch_is_refused_with_the_common_commit(bisect, history):
+    common = history.git("rev-parse", "HEAD~4")
+    history.git("switch", "--quiet", "--create", "side", common)
+    history.commit({"README.md": "Side."}, "Side")
+    history.git("switch", "--quiet", "main")
+    status, output, errors = bisect("--old", "side", "--", "middle_joint")
+    assert (status, output) == (1, "")
+    assert "error[REV114]: commit 'side' is not in the history of 'HEAD'" in errors
+    assert f"`--old {common[:9]} --new HEAD`" in errors
+
+
+def test_swapped_ends_are_named(bisect):
+    status, _, errors = bisect("--old", "HEAD", "--new", "HEAD~2", "--", "middle_joint")
+    assert status == 1
+    assert "'HEAD~2' is the older one: `--old HEAD~2 --new HEAD`" in errors
+
+
+def test_commits_without_a_common_history_are_refused(bisect, history):
+    history.git("switch", "--quiet", "--orphan", "island")
+    history.commit({"arm_description/urdf/robot.urdf.xacro": ARM, SEGMENT: MACRO}, "Island")
+    history.git("switch", "--quiet", "main")
+    assert "error[REV114]" in bisect("--old", "island", "--", "middle_joint")[2]
+
+
+def test_the_first_commit_of_a_file_is_that_of_the_newest_commit(bisect, history):
+    history.git("switch", "--quiet", "--create", "side", "HEAD~2")
+    history.commit({SEGMENT: MACRO.replace("length:=0.5", "length:=0.9")}, "Longer")
+    history.git("switch", "--quiet", "main")
+    assert bisect("--new", "side", "--", "middle_joint")[1].splitlines()[0].endswith("Ann: Longer")
+
+
+def test_file_with_letters_of_other_languages_is_followed_across_a_new_name(package, monkeypatch, capsys):
+    monkeypatch.chdir(package.root)
+    package.commit({PATH: None, "arm_description/urdf/grün ärm.urdf.xacro": ARM}, "Renamed")
+    package.commit({PATH: ARM, "arm_description/urdf/grün ärm.urdf.xacro": None}, "Renamed again")
+    package.commit({SEGMENT: MACRO.replace("length:=0.5", "length:=0.6")}, "Longer")
+    package.commit({PATH: None, "arm_description/urdf/臂.urdf.xacro": ARM}, "Renamed at last")
+    package.commit({"README.md": "Later"}, "Later")
+    assert main(["bisect", "arm_description/urdf/臂.urdf.xacro", "--", "middle_joint"]) == 0
+    assert capsys.readouterr().out.splitlines()[0].endswith("Ann: Longer")

@@ -91,7 +91,7 @@ CAMERA = """<link name="camera"/>
         ('name="lower"', 'name="forearm"', "link 'lower' renamed to 'forearm'"),
         ('  <xacro:segment name="lower" parent="middle"/>\n', "", "joint 'lower_joint' removed"),
         ('<link name="base_link"/>', FOOTPRINT,
-         "root link 'base_link' -> 'base_footprint'"),
+         "root link 'base_link' -> 'base_footprint' (both robots are compared in the frame of 'base_link')"),
     ],
 )  # fmt: skip
 def test_renamed_and_removed_elements_are_breaking(package, compare, old, new, sentence):
@@ -99,6 +99,47 @@ def test_renamed_and_removed_elements_are_breaking(package, compare, old, new, s
     result = compare(package)
     assert sentence in breaking(result)
     assert all(change.reason for _, change in result.breaking_changes)
+
+
+def test_renamed_link_that_moved_has_the_distance(package, compare):
+    camera = """<link name="camera"><visual><geometry><mesh filename="package://arm_description/c.stl"/></geometry></visual></link>
+  <joint name="camera_joint" type="fixed"><parent link="lower"/><child link="camera"/></joint></robot>"""
+    package.commit({PATH: ARM.replace("</robot>", camera)})
+    moved = camera.replace('"camera', '"head').replace("<parent", '<origin xyz="0 0 0.3"/><parent')
+    package.write({PATH: ARM.replace("</robot>", moved)})
+    result = compare(package)
+    assert sentences(subject(result, PATH)) == [
+        "link 'camera' renamed to 'head' (moved by 0.3 m)",
+        "joint 'camera_joint' renamed to 'head_joint'",
+        "joint 'head_joint': origin xyz 0 0 0 -> 0 0 0.3 m (moved by 0.3 m)",
+    ]
+    assert breaking(result) == ["link 'camera' renamed to 'head' (moved by 0.3 m)"]
+
+
+def test_renamed_moving_joint_that_moved_is_breaking(package, compare):
+    text = MACRO.replace('"${name}_joint"', "\"${name + '_axis' if name == 'lower' else name + '_joint'}\"")
+    package.write({"arm_description/urdf/segment.xacro": text.replace("length:=0.5", "length:=0.6")})
+    assert breaking(compare(package)) == ["joint 'lower_joint' renamed to 'lower_axis'"]
+
+
+LIFTED = """<link name="foot"/><joint name="foot_joint" type="fixed"><parent link="foot"/><child link="base_link"/>
+    <origin xyz="0 0.1 0.3" rpy="0 0 1"/></joint><link name="base_link"/>"""
+
+
+def test_added_root_link_changes_no_figure_of_the_rest(package, compare):
+    package.write({PATH: ARM.replace('<link name="base_link"/>', LIFTED)})
+    found = subject(compare(package), PATH)
+    assert {str(figure.name) for figure in found.figures} == {"links", "joints"}
+
+
+def test_removed_root_link_changes_no_figure_of_the_rest(package, compare):
+    package.commit({PATH: ARM.replace('<link name="base_link"/>', LIFTED)})
+    package.write({PATH: ARM})
+    found = subject(compare(package), PATH)
+    assert {str(figure.name) for figure in found.figures} == {"links", "joints"}
+    assert sentences(found)[0] == (
+        "root link 'foot' -> 'base_link' (both robots are compared in the frame of 'base_link')"
+    )
 
 
 @pytest.mark.parametrize(

@@ -45,6 +45,12 @@ def orange(image: bytes) -> int:
     return int(np.count_nonzero((red > 200) & (green > 60) & (green < 140) & (blue < 60)))
 
 
+def share_of_differing_pixels(first: bytes, second: bytes) -> float:
+    pil = pytest.importorskip("PIL.Image")
+    pixels, others = (np.asarray(pil.open(io.BytesIO(image)).convert("RGB")) for image in (first, second))
+    return float((pixels != others).any(axis=-1).mean())
+
+
 def test_moved_link_is_outlined_in_both_versions(images_of):
     result, images = images_of({SEGMENT: MACRO.replace("length:=0.5", "length:=0.6")})
     assert [view.name for view in images] == ["iso", "front", "left", "top"]
@@ -74,6 +80,21 @@ def test_new_root_link_has_no_images(images_of):
     lifted = """<link name="foot"/><joint name="foot_joint" type="fixed"><parent link="foot"/><child link="base_link"/>
     <origin xyz="0 0 0.3"/></joint><link name="base_link"/>"""
     assert images_of({PATH: ARM.replace('<link name="base_link"/>', lifted)})[1] == []
+
+
+@pytest.mark.parametrize("is_added", [True, False])
+def test_robots_with_other_root_links_are_in_the_same_place(images_of, package, is_added):
+    foot = """<link name="foot"/><joint name="foot_joint" type="fixed"><parent link="foot"/><child link="base_link"/>
+    <origin xyz="0.2 0 0.3" rpy="0 0 0.5"/></joint><link name="base_link"/>"""
+    with_foot = ARM.replace('<link name="base_link"/>', foot)
+    package.commit({PATH: ARM if is_added else with_foot})
+    ball = """<link name="ball"><visual><geometry><sphere radius="0.01"/></geometry></visual></link>
+  <joint name="ball_joint" type="fixed"><parent link="base_link"/><child link="ball"/><origin xyz="0 0.1 1"/>
+  </joint></robot>"""
+    _, images = images_of({PATH: (with_foot if is_added else ARM).replace("</robot>", ball)})
+    assert [orange(view.old) for view in images] == [0, 0, 0, 0]
+    for view in images:
+        assert 0.0 < share_of_differing_pixels(view.old, view.new) < 0.05
 
 
 def test_joint_limits_that_exclude_zero_move_link(images_of):

@@ -2,11 +2,14 @@
 
 from __future__ import annotations
 
+import json
 import os
 import subprocess
+import sys
 
 import pytest
 
+from linkwright.cli import main
 from linkwright.diagnostics import LinkwrightError
 from linkwright.review import open_versions
 from tests.repositories import ARM, MACRO, Repository
@@ -129,6 +132,47 @@ def test_symlink_loops_do_not_stop_review(package, compare):
     (package.root / "arm_description/urdf/b.xacro").symlink_to("a.xacro")
     package.commit({"arm_description/urdf/segment.xacro": heavier(3)})
     assert masses(compare(package, "HEAD~1..HEAD")) == ["link 'upper': inertial mass 2 -> 3 kg"]
+
+
+@pytest.mark.skipif(sys.platform != "linux", reason="file names of any bytes")
+def test_files_whose_names_are_not_utf8_are_reviewed(package, compare, tmp_path):
+    name = os.fsdecode(b"arm_description/urdf/gr\xfcn.urdf")
+    package.commit({name: "<robot name='g'><link name='a'/></robot>"})
+    package.commit({name: "<robot name='h'><link name='a'/></robot>"})
+    assert sentences(subject(compare(package, "HEAD~1..HEAD"), name)) == ["robot 'h': name g -> h"]
+    reports = {name: tmp_path / f"report.{name}" for name in ("markdown", "html", "json", "sarif")}
+    options = [f"--{name}={path}" for name, path in reports.items()]
+    assert main(["review", "--repository", str(package.root), "HEAD~1..HEAD", *options]) == 0
+    assert json.loads(reports["json"].read_text("utf-8"))["subjects"][0]["path"] == name
+    assert "gr\\udcfcn.urdf" in reports["markdown"].read_text("utf-8")
+    assert "gr\\udcfcn.urdf" in reports["html"].read_text("utf-8")
+
+
+def test_names_that_are_not_utf8_can_be_printed(package):
+    environment = {**os.environ, "PYTHONUTF8": "1", "PYTHONIOENCODING": ""}
+    program = (
+        "import sys; from linkwright.process.standard_streams import accept_any_text; "
+        "sys.stdout.reconfigure(errors='strict'); accept_any_text(); print('gr\\udcfcn')"
+    )
+    result = subprocess.run([sys.executable, "-c", program], env=environment, capture_output=True, check=True)
+    assert result.stdout.strip() == b"gr\\udcfcn"
+
+
+@pytest.mark.skipif(sys.platform != "linux", reason="file names of any bytes")
+def test_links_whose_names_are_not_utf8_are_not_followed(package, compare, tmp_path):
+    (tmp_path / "secret.xacro").write_text(MACRO.replace('value="2"', 'value="77"'))
+    name = os.fsdecode(b"arm_description/urdf/s\xffgment.xacro")
+    (package.root / name).symlink_to(tmp_path / "secret.xacro")
+    text = ARM.replace("urdf/segment.xacro", "urdf/$(arg kind)gment.xacro").replace(
+        "<xacro:include", '<xacro:arg name="kind" default="s"/><xacro:include', 1
+    )
+    package.commit({PATH: text})
+    package.git("switch", "--quiet", "--detach", "HEAD~1")
+    result = compare(package, "main~1..main")
+    assert "77" not in str(result)
+    assert [str(note) for note in result.notes] == [
+        f"symbolic link '{name}' leads out of the repository and is ignored"
+    ]
 
 
 def test_submodule_change_is_a_note(package, compare, tmp_path):

@@ -169,7 +169,7 @@ class TestInterrupt:
         assert output.endswith("KeyboardInterrupt\n")
 
 
-class TestManners:
+class TestProcessEffects:
     def test_unrelated_imports_load_nothing_of_linkwright(self):
         code = """
             import sys

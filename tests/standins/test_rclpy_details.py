@@ -63,7 +63,7 @@ def node():
     return rclpy.create_node("node", namespace="/ns")
 
 
-class TestMistakes:
+class TestInvalidArguments:
     def test_invalid_names_raise_value_errors(self, node):
         with pytest.raises(ValueError, match="unknown substitution") as topic:
             node.create_publisher(String, "topic/{what}", 10)

@@ -37,7 +37,7 @@ def node():
     return rclpy.create_node("node")
 
 
-class TestMessagesAreSnapshots:
+class TestMessageSnapshots:
     """Nothing that is done to a message after it was sent, or after it came, is seen by others."""
 
     def test_reused_message_is_published_as_snapshot(self, node):
@@ -252,7 +252,7 @@ class TestAsyncio:
         assert asyncio.run(run()).result.sequence.tolist() == [5]
 
 
-class TestLittleThings:
+class TestNodeBasics:
     def test_node_can_be_spun_in_its_own_callback(self, node):
         calls = []
 

@@ -67,7 +67,10 @@ def draw():
         ("1 / 0", "ZeroDivisionError: division by zero (squares.py:5)"),
         ("raise SystemExit(3)", "SystemExit: 3 (squares.py:5)"),
         ("return 3", "BadResultError: the scenario must return a dict, not int"),
-        ("return {'x': [1]}", "BadResultError: result 'x' must be a number, text, True or False, not list"),
+        (
+            "return {'x': [1]}",
+            "BadResultError: result 'x' must be a number, text, True, False or a path of (time, x, y), not list",
+        ),
         ("return {'n': 1}", "BadResultError: a result cannot be named 'n': use text that is not a column's name"),
         ("from linkwright.descriptions import load; load('<robot')", "XML203 <robot_description>:1:1"),
     ],

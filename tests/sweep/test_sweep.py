@@ -2,6 +2,7 @@
 
 import csv
 import io
+import json
 from html.parser import HTMLParser
 
 import pyarrow.parquet as pq
@@ -36,13 +37,20 @@ def backwards(scenario, until=None):
     return run
 
 
+DRIVEN = f"""{HEAD}
+@scenario(n=[1, 2], seeds=2)
+def driven(n, seed):
+    return {{"n_and_seed": n + seed, "track": [(0.5 * step, n * step, seed) for step in range(5)]}}
+"""
+
+
 def rows_of(path):
     return list(csv.DictReader(io.StringIO(path.read_text())))
 
 
-def swept(tmp_path, text=SQUARES, name="out.csv", until=None, resume=False):
+def swept(tmp_path, text=SQUARES, name="out.csv", until=None, resume=False, paths=None):
     scenario = loaded(tmp_path, text)
-    sweep = Sweep(scenario, tmp_path / name, ["linkwright", "sweep", "squares.py"])
+    sweep = Sweep(scenario, tmp_path / name, ["linkwright", "sweep", "squares.py"], paths and tmp_path / paths)
     messages = []
     table = sweep.run(backwards(scenario, until), resume=resume, progress=lambda *state: messages.append(state))
     return table, messages
@@ -68,6 +76,26 @@ def test_failed_run_is_a_row_with_error(tmp_path):
     assert rows[1]["error"] == "RuntimeError: <no> way (squares.py:6)"
     assert rows[1]["text"] == ""
     assert rows[2]["world"] == 'a,"b"'
+
+
+def test_paths_are_in_a_file_and_not_in_the_table(tmp_path):
+    swept(tmp_path, DRIVEN, paths="paths.json")
+    assert list(rows_of(tmp_path / "out.csv")[0]) == ["row", "n", "seed", "n_and_seed", "error"]
+    runs = json.loads((tmp_path / "paths.json").read_text())["runs"]
+    assert [(run["row"], run["parameters"], run["seed"]) for run in runs[1:3]] == [(2, {"n": 1}, 1), (3, {"n": 2}, 0)]
+    assert runs[3]["paths"] == {
+        "track": [[0.0, 0.0, 1.0], [0.5, 2.0, 1.0], [1.0, 4.0, 1.0], [1.5, 6.0, 1.0], [2.0, 8.0, 1.0]]
+    }
+
+
+def test_interrupted_sweep_keeps_its_paths(tmp_path):
+    swept(tmp_path, DRIVEN, paths="whole.json")
+    (tmp_path / "out.csv").unlink()
+    swept(tmp_path, DRIVEN, until=2, paths="paths.json")
+    with pytest.raises(LinkwrightError, match="has other runs than this one"):
+        swept(tmp_path, DRIVEN, resume=True)
+    swept(tmp_path, DRIVEN, resume=True, paths="paths.json")
+    assert (tmp_path / "paths.json").read_bytes() == (tmp_path / "whole.json").read_bytes()
 
 
 def test_parquet_table_has_same_values_and_types(tmp_path):

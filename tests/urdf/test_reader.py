@@ -141,8 +141,8 @@ class TestTruncation:
         assert self.parts(inside) == (True, 1, 0)
 
     def test_malformed_collision_drops_later_collisions(self):
-        inside = self.GOOD_COLLISION + "<collision/>" + self.GOOD_COLLISION + self.GOOD_VISUAL
-        assert self.parts(inside) == (False, 1, 1)
+        inside = self.GOOD_COLLISION + "<collision/>" + self.GOOD_COLLISION + self.GOOD_VISUAL + self.INERTIAL.format(1)
+        assert self.parts(inside) == (True, 1, 1)
 
 
 class TestMaterials:
@@ -256,7 +256,7 @@ class TestVersions:
         assert reading(chain(f'revolute:<limit lower="0" upper="1" {name}="-1"/>'), version="1.2").robot is None
 
 
-class TestRest:
+class TestExtensionElements:
     def test_extension_elements_are_kept_in_order(self):
         result = robot('<gazebo reference="a"/>', '<link name="a"/>', "<transmission/>", "<ros2_control/>")
         assert [element.tag for element in result.extensions] == ["gazebo", "transmission", "ros2_control"]

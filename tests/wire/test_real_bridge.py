@@ -95,6 +95,19 @@ def say_until_heard(said, heard, text):
     heard.ask_until(came, "received", "to_ros")
 
 
+def show_until_seen(shown, seen):
+    """Publish a single image, numbered 0, again and again, until the other side receives one.
+
+    Text that is heard does not mean that the images' topic is connected, too.
+    """
+
+    def came(numbers):
+        shown.ask("publish_images", 1, RATE)
+        return numbers
+
+    seen.ask_until(came, "received_images")
+
+
 def test_bridge_connects_topics_services_and_parameters(bridge, peer):
     bridge()
     sides = start_both_sides(peer, "real_peer")
@@ -149,10 +162,10 @@ def test_transforms_are_received(bridge, peer, telling, hearing):
 def test_images_arrive_in_order(bridge, peer, saying, hearing):
     bridge()
     sides = start_both_sides(peer, "real_peer")
-    say_until_heard(sides[saying], sides[hearing], "we know each other")
+    show_until_seen(sides[saying], sides[hearing])
     sides[saying].ask("publish_images", IMAGES, RATE)
     got = sides[hearing].ask_until(lambda numbers: IMAGES - 1 in numbers, "received_images")
-    assert got == list(range(IMAGES))
+    assert got[-IMAGES:] == list(range(IMAGES))
 
 
 @pytest.mark.parametrize("killed", RMW)

@@ -137,7 +137,7 @@ class TestConsequences:
         assert parts(tmp_path, f'<xacro:include filename="none.xacro"/>{warning}').diagnostics == ()
 
 
-class TestNothingToBeHad:
+class TestUnreadableParts:
     def test_malformed_xml_is_an_error(self, tmp_path):
         with pytest.raises(LinkwrightError, match="does not close"):
             parts(tmp_path, "<link>")

@@ -36,6 +36,7 @@ def main(args=None):
         rclpy.spin_once(node, timeout_sec=0.1)
 """
 
+OFFER = "        self.create_service(Trigger, 'reset_distance', self.on_reset)\n"
 TICK = "        self.create_timer(0.1, self.move)\n"
 SPEED, SPEED_ONCE = "self.get_parameter('speed').value", "self.declare_parameter('speed', 0.2)"
 
@@ -172,7 +173,8 @@ CASES = [
         Edit(ODOMETER, "        self.distance = 0.0\n        return", "        return"),
         says="is still",
     ),
-    wrong("service", "another name", Edit(ODOMETER, "'reset_distance'", "'reset'"), says="no service /reset_distance"),
+    wrong("service", "another name", Edit(ODOMETER, "'reset_distance'", "'reset'"), says="the program offers /reset."),
+    wrong("service", "no service", Edit(ODOMETER, OFFER, ""), says="call create_service"),
     wrong("time", "milliseconds", Edit(MOVE, "nanoseconds * 1e-9", "nanoseconds * 1e-6"), says="After 3 s"),
     wrong("time", "never", Edit(MOVE, "> self.get_parameter('duration').value", "< 0"), says="After 6 s"),
 ]

@@ -202,6 +202,24 @@ def service_resets(work):
         )
 
 
+def no_reset_service(test):
+    offered = sorted(
+        service
+        for node, namespace in test.program_nodes
+        for service, types in test.graph.get_service_names_and_types_by_node(node, namespace)
+        if not types[0].startswith(("rcl_interfaces/", "type_description_interfaces/"))
+    )
+    if offered:
+        return NotYet(
+            en=f"There is no service /reset_distance; the program offers {offered[0]}.",
+            zh=f"没有服务 /reset_distance；程序提供的是 {offered[0]}。",
+        )
+    return NotYet(
+        en="There is no service /reset_distance: does the program call create_service, and does it still run?",
+        zh="没有服务 /reset_distance：程序调用了 create_service 吗？它还在运行吗？",
+    )
+
+
 def call_reset(test):
     types = dict(test.graph.get_service_names_and_types()).get("/reset_distance")
     if types and "std_srvs/srv/Trigger" not in types:
@@ -212,7 +230,7 @@ def call_reset(test):
     try:
         return test.call("/reset_distance", get_service("std_srvs/srv/Trigger").Request(), timeout=2.0)
     except LookupError:
-        raise NotYet(en="There is no service /reset_distance.", zh="没有服务 /reset_distance。") from None
+        raise no_reset_service(test) from None
     except TimeoutError:
         raise NotYet(
             en="The service /reset_distance does not answer; does the callback return the response?",

@@ -49,10 +49,11 @@ export interface StepCheck {
   message: Record<string, string> | null;
 }
 
-/** The last results of the checks of a step, and whether the checks run. */
+/** The last results of the checks of a step, whether the checks run, and whether they have paused a running world. */
 export interface StepChecks {
   address: string;
   is_running: boolean;
+  is_world_paused: boolean;
   checks: StepCheck[];
   checked_at: number | null;
   type: "step_checks";

@@ -13,12 +13,14 @@ if TYPE_CHECKING:
 def write_output(path: Path, content: str | bytes) -> None:
     """Write a result file atomically, and create its folder if necessary.
 
+    A byte of a file's name that is not UTF-8 is written as an escape sequence.
+
     Raises:
         LinkwrightError: CLI201, the file cannot be written.
     """
     try:
         path.parent.mkdir(parents=True, exist_ok=True)
-        write_whole_file(path, content)
+        write_whole_file(path, content.encode("utf-8", "backslashreplace") if isinstance(content, str) else content)
     except OSError as error:
         raise cannot_write(path, error) from None
 

@@ -9,7 +9,7 @@ from collections.abc import Callable, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from linkwright.cli.exit_status import FINDINGS, FINE
+from linkwright.cli.exit_status import FINDINGS, FINE, USAGE
 from linkwright.cli.numbers import positive_int
 from linkwright.cli.output import write_output
 from linkwright.diagnostics import Diagnostic, LinkwrightError, phrase
@@ -50,6 +50,12 @@ def configure(parser: argparse.ArgumentParser) -> None:
     )
     parser.add_argument("--markdown", metavar="FILE", type=Path, help="write a comment for a pull request")
     parser.add_argument("--html", metavar="FILE", type=Path, help="write a page that needs no other file")
+    parser.add_argument(
+        "--scenes",
+        action="store_true",
+        help="add scenes in 3D to the page, with both versions of a robot over each other; the page grows by half a "
+        "megabyte and by the meshes",
+    )
     parser.add_argument("--json", metavar="FILE", type=Path, help="write all changes and findings for programs")
     parser.add_argument(
         "--sarif", metavar="FILE", type=Path, help="write the breaking changes and new findings for code scanning"
@@ -70,7 +76,8 @@ def configure(parser: argparse.ArgumentParser) -> None:
         metavar="FILE",
         action="append",
         default=[],
-        help="run this scenario of `linkwright sweep` in both versions, and compare its results; the code of both runs",
+        help="run this scenario of `linkwright sweep` in both versions, and compare its results and the paths "
+        "of its robots; the code of both runs",
     )
     parser.add_argument(
         "--seeds", metavar="N", type=positive_int, help="the number of seeds of scenarios (default: their own)"
@@ -87,12 +94,17 @@ def run(arguments: argparse.Namespace) -> int:
     """Write the report, and return 1 if a condition of ``--fail-on`` is met."""
     from linkwright.review import open_versions, review
 
+    if arguments.scenes and arguments.html is None:
+        print("linkwright review: --scenes needs a page for the scenes: --html FILE", file=sys.stderr)
+        return USAGE
     range_text, packages = _split_words(arguments.words, arguments.repository)
     versions = open_versions(arguments.repository, range_text)
     try:
         scenarios = [_relative(file, versions.new) for file in arguments.scenario]
         workers = arguments.workers or usable_processors()
-        result = review(versions, packages, workers, scenarios, arguments.seeds, with_images=arguments.html is not None)
+        has_page = arguments.html is not None
+        images = {"with_images": has_page, "with_scenes": has_page and arguments.scenes}
+        result = review(versions, packages, workers, scenarios, arguments.seeds, **images)
     finally:
         versions.close()
     _write(result, arguments)

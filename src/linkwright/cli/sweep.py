@@ -51,6 +51,12 @@ def configure(parser: argparse.ArgumentParser) -> None:
         help="the file of the table, .csv or .parquet; the summary is written beside it (default: the "
         "name of FILE, with .csv)",
     )
+    parser.add_argument(
+        "--paths",
+        metavar="FILE",
+        type=Path,
+        help="write the paths of the robots, and results that are paths, of each run as JSON",
+    )
     parser.add_argument("--resume", action="store_true", help="resume an interrupted sweep")
     parser.add_argument("--rerun", metavar="ROW", type=positive_int, help="run one row again, and print its results")
     parser.add_argument(
@@ -81,13 +87,14 @@ def run(arguments: argparse.Namespace) -> int:
     if arguments.seeds is not None:
         command += ["--seeds", str(arguments.seeds)]
     start_time = time.monotonic()
-    sweep = Sweep(scenario, table_path, command)
+    paths = None if arguments.paths is None else arguments.paths.absolute()
+    sweep = Sweep(scenario, table_path, command, paths)
     progress = _Progress()
     table = sweep.run(_choose_runner(arguments, path), resume=arguments.resume, progress=progress.show)
     progress.end()
     missing = len(plan_runs(scenario)) - len(table)
     _print_summary(table, time.monotonic() - start_time, progress.run_count)
-    for created_file in (sweep.table, sweep.page):
+    for created_file in filter(None, (sweep.table, sweep.page, sweep.paths)):
         print(localized(phrase("Created file {file}", file=display_path(created_file))))
     if missing:
         missing_runs = counted("{count} run is left", "{count} runs are left", missing)
@@ -121,7 +128,7 @@ def _rerun(scenario: Scenario, row: int) -> int:
     for name, value in {**scenario_run.parameters, "seed": scenario_run.seed}.items():
         print(f"{name}: {value}", flush=True)
     try:
-        results = run_scenario(scenario, scenario_run)
+        results = run_scenario(scenario, scenario_run).results
     except (Exception, SystemExit) as error:  # noqa: BLE001 - a scenario may raise whatever it likes
         traceback.print_exception(error)
         return FINDINGS

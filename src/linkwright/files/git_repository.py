@@ -23,6 +23,12 @@ _LFS_POINTER = lazy_pattern(
 _LINK_MODE = "120000"
 _NO_FILE_MODE = "000000"
 
+SHALLOW_HINT = phrase(
+    "the clone is shallow; `git fetch --unshallow` downloads its history (in GitHub Actions: `fetch-depth: 0` for "
+    "actions/checkout)"
+)
+"""The hint for a commit that a shallow clone lacks."""
+
 
 @dataclass(frozen=True, slots=True)
 class ChangedFile:
@@ -78,6 +84,9 @@ class GitRepository:
     def run(self, *arguments: str, environment: Mapping[str, str] | None = None) -> subprocess.CompletedProcess[str]:
         """Run git in the repository with English output, and return the completed process.
 
+        Bytes of its output that are not UTF-8 become surrogates, as in the names of files that Python reads. Without
+        them, a file of such a name would not be found, nor a symbolic link of such a name checked.
+
         Raises:
             LinkwrightError: CLI341 if git is not installed.
         """
@@ -89,7 +98,7 @@ class GitRepository:
                 env={**variables, "LC_ALL": "C", **self._variables, **(environment or {})},
                 capture_output=True,
                 encoding="utf-8",
-                errors="replace",
+                errors="surrogateescape",
                 check=False,
             )
         except FileNotFoundError:
@@ -117,10 +126,7 @@ class GitRepository:
 
     def _missing_commit_hint(self) -> Phrase:
         if self.is_shallow:
-            return phrase(
-                "the clone is shallow; `git fetch --unshallow` downloads its history (in GitHub Actions: "
-                "`fetch-depth: 0` for actions/checkout)"
-            )
+            return SHALLOW_HINT
         return phrase(
             "HEAD is the last commit; `git log --oneline` lists others, and `git fetch` downloads the commits "
             "of a server"
@@ -135,6 +141,10 @@ class GitRepository:
         """Return the hash of the best common ancestor of two commits, or None if they have none in this clone."""
         result = self.run("merge-base", commit, other)
         return result.stdout.strip() if result.returncode == 0 else None
+
+    def is_ancestor(self, commit: str, descendant: str) -> bool:
+        """Return whether a commit is in the history of another one, or is the same commit."""
+        return self.run("merge-base", "--is-ancestor", commit, descendant).returncode == 0
 
     def contains(self, commit: str, path: str) -> bool:
         """Return whether a commit contains a file, whose path is relative to the root."""

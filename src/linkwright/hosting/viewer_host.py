@@ -162,6 +162,10 @@ class ViewerHost:
             session.options.viewer_started(viewer)
         if not is_announced:
             await self._announce(server)
+        if server.is_embedded:
+            from linkwright.hosting.world_pause import WorldPause  # few programs run in a terminal of a page
+
+            server.on_pause(WorldPause(viewer.context.node).set_active)
         if session.options.open_browser and server.pages_wait and not server.is_embedded:
             session.spawn(self._open_unless_reconnected(viewer))
         replaced_window = "RViz" if plan.owner is not None else "Gazebo's window"

@@ -230,9 +230,12 @@ def _check_with_cache(rule: Rule, subject: Subject) -> Iterable[Diagnostic]:
 def _may_run(rule: Rule, subject: Subject) -> bool:
     """Return whether a rule applies to a subject.
 
-    Most rules apply neither to a description with missing parts nor to a file that only has parts for other files.
+    Rules about packages apply to a description in a package. Most other rules apply neither to a description with
+    missing parts nor to a file that only has parts for other files.
     """
-    if rule.scope is Scope.PACKAGE or rule.holds_for_parts:
+    if rule.scope is Scope.PACKAGE:
+        return subject.package is not None
+    if rule.holds_for_parts:
         return True
     return subject.is_whole and (rule.holds_for_libraries or not subject.is_library)
 

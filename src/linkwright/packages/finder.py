@@ -208,7 +208,7 @@ class PackageFinder:
         )
         for search in searches:
             yield from search(name)
-        yield self._shipped_packages().get(name)
+        yield shipped_packages().get(name)
         yield substituted_share(name)
 
     def _in_installs(self, name: str) -> Iterator[Path | None]:
@@ -232,7 +232,7 @@ class PackageFinder:
         yield from self._enclosing_packages()
         for root in self._source_roots():
             yield from self._scan(root).packages().items()
-        yield from self._shipped_packages().items()
+        yield from shipped_packages().items()
         yield from substitutes()
 
     def _start_folders_and_parents(self) -> Iterator[Path]:
@@ -278,15 +278,11 @@ class PackageFinder:
             scan = self._scans[root] = SourceScan(root)
         return scan
 
-    def _shipped_packages(self) -> dict[str, Path]:
-        folder = shipped_folder()
-        return {} if folder is None else SourceScan(folder).packages()
-
     # --- the text of the error -------------------------------------------------------------------------------
 
     def _nearest(self, name: str) -> tuple[Phrase | None, bool]:
         """Return a hint on a similar package name, or None, and whether the name is a misspelling."""
-        shipped = self._shipped_packages()
+        shipped = shipped_packages()
         candidates = [
             package for package in self.packages() if package not in shipped or is_misspelled(name, [package])
         ]
@@ -319,7 +315,7 @@ class PackageFinder:
                 phrase("{folder}, which does not contain a package name", folder=display_path(folder / "package.xml"))
                 for folder in scan.unnamed
             ]
-        shipped = joined(self._shipped_packages()) or phrase("none")
+        shipped = joined(shipped_packages()) or phrase("none")
         locations.append(phrase("the packages shipped with Linkwright: {shipped}", shipped=shipped))
         return locations
 
@@ -334,6 +330,12 @@ def shipped_folder() -> Path | None:
         if folder.is_dir():
             return folder
     return None
+
+
+def shipped_packages() -> dict[str, Path]:
+    """Return the packages shipped with Linkwright, as a mapping from name to folder."""
+    folder = shipped_folder()
+    return {} if folder is None else SourceScan(folder).packages()
 
 
 def _share_of_optional_sources(name: str, folder: Path | None) -> Path | None:

@@ -45,7 +45,7 @@ IMAGE_TYPES = {
 CONTENT_TYPES = {**MESH_TYPES, **IMAGE_TYPES, ".mtl": "model/mtl", ".bin": "application/octet-stream"}
 
 _SECRET = secrets.token_bytes(32)
-_SECRET_IN_ADDRESS = re.compile(r"(/mesh/[A-Za-z0-9_.-]+)~[0-9a-f]{32}(?=/)")
+_ADDRESS = re.compile(r"(/mesh/[A-Za-z0-9_.-]+-)([0-9a-f]{8})~[0-9a-f]{32}(/[^\"?]*)(?:\?v=[0-9a-f]+)?")
 
 _PACKAGE_URI = re.compile(r"package://([^/%]+)/")
 
@@ -168,8 +168,17 @@ class MeshIndex:
 
 
 def without_secrets(text: str) -> str:
-    """Return a text without the secrets in file addresses, so that the text can be shared."""
-    return _SECRET_IN_ADDRESS.sub(r"\1", text)
+    """Return a text that can be shared: file addresses have neither secrets, nor hashes of paths, nor times of files.
+
+    Folders are numbered instead, in the order in which the text names them.
+    """
+    numbers: dict[str, int] = {}
+
+    def shared(match: re.Match[str]) -> str:
+        start, folder, path = match.groups()
+        return f"{start}{numbers.setdefault(folder, len(numbers) + 1)}{path}"
+
+    return _ADDRESS.sub(shared, text)
 
 
 class MeshFolders:

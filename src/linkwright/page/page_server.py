@@ -14,11 +14,10 @@ from linkwright.page.access import PROGRAM_PAGES_VARIABLE, Gate, PortToken, load
 from linkwright.page.files import Downloads, MeshFolders
 
 if TYPE_CHECKING:
-    from asyncio import StreamWriter
     from collections.abc import Callable
 
     from linkwright.page.audience import Audience
-    from linkwright.page.program_pages import ProgramPages
+    from linkwright.page.program_pages import Embedding, ProgramPages
     from linkwright.page.server import WebServer
     from linkwright.page.uploads import Guests
 
@@ -60,7 +59,7 @@ class PageServer:
         self._needs_terminal = needs_terminal
         self._port_token: tuple[int, PortToken] | None = None
         self.program_pages = _new_program_pages() if only_loopback else None
-        self._embedding: StreamWriter | None = None
+        self._embedding: Embedding | None = None
 
     async def open(self) -> None:
         """Start listening, and serve the files of the page.
@@ -97,6 +96,11 @@ class PageServer:
         This program then runs in a terminal of the other page.
         """
         return self._embedding is not None
+
+    def on_pause(self, function: Callable[[bool], bool]) -> None:
+        """Call a function when the page that shows this one asks to pause or resume a world, see `Embedding`."""
+        if self._embedding is not None:
+            self._embedding.on_pause = function
 
     async def embed(self, environment: Mapping[str, str], title: str) -> bool:
         """Show the page in a frame of the page in whose terminal this program runs.

@@ -30,8 +30,9 @@ def robot_scene(
     ghost: Color | None = None,
     outlined: Mapping[str, Color] | None = None,
     library: SurfaceLibrary | None = None,
+    root: Placement | None = None,
 ) -> Scene:
-    """Return the scene of a robot's visuals, in the frame of its root link.
+    """Return the scene of a robot's visuals.
 
     Args:
         robot: the robot.
@@ -41,12 +42,15 @@ def robot_scene(
         ghost: the color in which the robot is drawn as transparent, for the old one of two; None for its own colors.
         outlined: the colors of lines around links, by the names of the links.
         library: the meshes that were already read, to share them between scenes.
+        root: the frame of the root link in the scene; None for the scene in the frame of the root link.
 
     Raises:
         UnknownNameError: KIN101 or KIN102, a name is not that of a joint that has a position.
     """
     reader = _VisualReader(library or SurfaceLibrary(), MeshLibrary(finder, folder or Path.cwd()))
     frames = link_frames(robot, positions or {})
+    if root is not None:
+        frames = {name: frame.inside(root) for name, frame in frames.items()}
     outline_colors = outlined or {}
     bodies = []
     for name in robot.links:

@@ -59,12 +59,17 @@ def accept_any_text() -> None:
     """Make the standard streams accept any text, and write it completely.
 
     Files and pipes use UTF-8, as description files do, and as Python does from 3.15 on (PEP 686). A character that a
-    terminal cannot display is written as an escape sequence. The encoding in ``PYTHONIOENCODING`` takes precedence.
+    terminal cannot display is written as an escape sequence, and so is a byte of a file's name that is not UTF-8. The
+    encoding in ``PYTHONIOENCODING`` takes precedence.
     """
     _write_completely()
     has_chosen_encoding = bool(os.environ.get("PYTHONIOENCODING"))
     for stream in (sys.stdin, sys.stdout, sys.stderr):
-        if not isinstance(stream, io.TextIOWrapper) or stream.encoding.lower().replace("-", "") == "utf8":
+        if not isinstance(stream, io.TextIOWrapper):
+            continue
+        if stream.encoding.lower().replace("-", "") == "utf8":
+            if stream is not sys.stdin and stream.errors == "strict" and not has_chosen_encoding:
+                stream.reconfigure(errors="backslashreplace")
             continue
         if not has_chosen_encoding and not stream.isatty():
             stream.reconfigure(encoding="utf-8", errors=stream.errors)

@@ -1,7 +1,8 @@
 """The comparison of the results of a scenario, which runs in both versions with the same parameters and seeds.
 
 Runs are compared in pairs: of each set of parameters and each seed, the result of the new version with that of the old
-one. The interval of the mean difference is a bootstrap (Efron 1979) with fixed random numbers.
+one. The interval of the mean difference is a bootstrap (Efron 1979) with fixed random numbers. Paths of robots are
+compared point by point at the same times.
 """
 
 from __future__ import annotations
@@ -9,26 +10,57 @@ from __future__ import annotations
 import csv
 import subprocess
 import sys
+from collections import defaultdict
 from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass
 from pathlib import Path
 
 import numpy as np
 from numpy.typing import NDArray
 
-from linkwright.diagnostics import foreign, phrase
+from linkwright.diagnostics import Phrase, counted, foreign, phrase
 from linkwright.files.scratch_folders import ScratchFolder
 from linkwright.review.changes import Change, Effect, Problem, Subject, SubjectKind
+from linkwright.review.paths import PathComparison, differing_paths, read_paths
 from linkwright.review.versions import Version, Versions
 
 _RESAMPLES = 4_000
 _PERCENTILES = (2.5, 97.5)
 """The limits of the interval: it contains the mean difference with a probability of 95 %."""
 _SEED, _ROW, _ERROR = "seed", "row", "error"
+_MAX_PATHS = 4
+"""The number of comparisons of paths that a report draws."""
 _TRUTH = {"true": 1.0, "false": 0.0}
 
 Row = Mapping[str, str]
 Parameters = tuple[str, ...]
 Array = NDArray[np.float64]
+
+
+@dataclass(frozen=True)
+class _Run:
+    """A run of the scenario.
+
+    Attributes:
+        row: the row of the table.
+        paths: the points of paths by name, shape (points, 3).
+    """
+
+    row: Row
+    paths: Mapping[str, Array]
+
+
+@dataclass(frozen=True)
+class _Runs:
+    """The runs of a version.
+
+    Attributes:
+        parameters: the names of the parameters, without the seed.
+        by_parameters: the runs by the values of their parameters and their seed.
+    """
+
+    parameters: Sequence[str]
+    by_parameters: Mapping[Parameters, _Run]
 
 
 def compare_behavior(versions: Versions, path: str, seeds: int | None = None) -> Subject:
@@ -44,16 +76,21 @@ def compare_behavior(versions: Versions, path: str, seeds: int | None = None) ->
     problems: list[Problem] = []
     old = _run(versions.old, path, seeds, problems)
     new = _run(versions.new, path, seeds, problems)
-    changes = [] if old is None or new is None else list(_changes(old, new))
-    return Subject(SubjectKind.SCENARIO, path, path, path, changes, problems=problems)
+    if old is None or new is None:
+        return Subject(SubjectKind.SCENARIO, path, path, path, problems=problems)
+    old_runs = old.by_parameters if old.parameters == new.parameters else {}
+    paths = _path_comparisons(old_runs, new)
+    changes = [*_changes(old_runs, new.by_parameters), *_path_changes(paths)]
+    return Subject(SubjectKind.SCENARIO, path, path, path, changes, problems=problems, paths=paths[:_MAX_PATHS])
 
 
-def _run(version: Version, path: str, seeds: int | None, problems: list[Problem]) -> dict[Parameters, Row] | None:
-    """Return the rows of the scenario's table by their parameters and seeds, or None if there are none."""
+def _run(version: Version, path: str, seeds: int | None, problems: list[Problem]) -> _Runs | None:
+    """Return the runs of the scenario, or None if there are none."""
     with ScratchFolder("sweep") as folder:
-        table = Path(folder) / "table.csv"
+        table, paths_file = Path(folder) / "table.csv", Path(folder) / "paths.json"
         options = [] if seeds is None else ["--seeds", str(seeds)]
-        command = [sys.executable, "-m", "linkwright", "sweep", str(version.file(path)), "--out", str(table), *options]
+        outputs = ["--out", str(table), "--paths", str(paths_file)]
+        command = [sys.executable, "-m", "linkwright", "sweep", str(version.file(path)), *outputs, *options]
         result = subprocess.run(  # noqa: S603 - our own program
             command, cwd=version.file(path).parent, capture_output=True, encoding="utf-8", errors="replace", check=False
         )
@@ -66,13 +103,15 @@ def _run(version: Version, path: str, seeds: int | None, problems: list[Problem]
             return None
         with table.open(encoding="utf-8", newline="") as file:
             rows = list(csv.DictReader(file))
+        paths = read_paths(paths_file)
     names = list(rows[0]) if rows else [_ROW, _SEED]
     parameters = names[1 : names.index(_SEED) + 1]
-    return {tuple(row[name] for name in parameters): row for row in rows}
+    runs = {tuple(row[name] for name in parameters): _Run(row, paths[row[_ROW]]) for row in rows}
+    return _Runs(parameters[:-1], runs)
 
 
-def _changes(old: Mapping[Parameters, Row], new: Mapping[Parameters, Row]) -> Iterator[Change]:
-    pairs = [(old[key], row) for key, row in new.items() if key in old]
+def _changes(old: Mapping[Parameters, _Run], new: Mapping[Parameters, _Run]) -> Iterator[Change]:
+    pairs = [(old[key].row, run.row) for key, run in new.items() if key in old]
     if not pairs:
         yield Change(phrase("the versions have no run with the same parameters and seed"))
         return
@@ -134,3 +173,59 @@ def _interval(differences: Array) -> tuple[float, float]:
     indexes = np.random.default_rng(0).integers(len(differences), size=(_RESAMPLES, len(differences)))
     low, high = np.percentile(differences[indexes].mean(axis=1), _PERCENTILES)
     return float(low), float(high)
+
+
+# --- paths -----------------------------------------------------------------------------------------------------------
+
+
+def _path_comparisons(old: Mapping[Parameters, _Run], new: _Runs) -> list[PathComparison]:
+    """Return the paths that differ, for each name and each set of parameters that are not drawn for a seed."""
+    keys = [key for key in new.by_parameters if key in old]
+    listed = [index for index in range(len(new.parameters)) if _is_listed(keys, index)]
+    groups: dict[tuple[str, str], list[tuple[str, Array, Array]]] = defaultdict(list)
+    for key in keys:
+        old_paths, new_paths = old[key].paths, new.by_parameters[key].paths
+        values = " ".join(f"{new.parameters[index]}={key[index]}" for index in listed)
+        for name in (name for name in new_paths if name in old_paths):
+            groups[name, values].append((key[-1], old_paths[name], new_paths[name]))
+    return differing_paths(groups)
+
+
+def _is_listed(keys: Sequence[Parameters], index: int) -> bool:
+    """Return whether a parameter has the same values with each seed, so that it was not drawn for the seed."""
+    values: dict[str, set[str]] = defaultdict(set)
+    for key in keys:
+        values[key[-1]].add(key[index])
+    return len({frozenset(texts) for texts in values.values()}) == 1
+
+
+def _path_changes(comparisons: Sequence[PathComparison]) -> Iterator[Change]:
+    yield from map(_path_change, comparisons[:_MAX_PATHS])
+    count = len(comparisons) - _MAX_PATHS
+    if count > 0:
+        yield Change(
+            counted(
+                "{count} more set of paths differs, by smaller distances",
+                "{count} more sets of paths differ, by smaller distances",
+                count,
+            )
+        )
+
+
+def _path_change(comparison: PathComparison) -> Change:
+    farthest = comparison.farthest
+    text: Phrase = phrase(
+        "{result}: paths up to {distance:.3g} m apart (seed {seed}, after {time:.3g} s)",
+        result=comparison.title,
+        distance=farthest.distance,
+        seed=farthest.seed,
+        time=farthest.time,
+    )
+    if len(comparison.pairs) > 1:
+        text = phrase(
+            "{change}, median of {count} runs {distance:.3g} m",
+            change=text,
+            count=len(comparison.pairs),
+            distance=comparison.typical.distance,
+        )
+    return Change(text)

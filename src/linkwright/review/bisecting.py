@@ -7,8 +7,6 @@ from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
-import numpy as np
-
 from linkwright.descriptions.comparison import Comparison, Difference
 from linkwright.descriptions.pairs import Model, Pair
 from linkwright.descriptions.revisions import CommitFiles
@@ -23,15 +21,13 @@ from linkwright.diagnostics import (
     foreign,
     phrase,
 )
-from linkwright.files.git_repository import GitRepository
-from linkwright.kinematics import KinematicTree
+from linkwright.files.git_repository import SHALLOW_HINT, GitRepository
 from linkwright.review.descriptions import sentence_of_difference
+from linkwright.review.frames import SharedFrames
 from linkwright.urdf import Robot
 
 _SKIPPED_STATUS = 125
 """The exit status with which a command says that it cannot judge a commit, as for ``git bisect run``."""
-_TOLERANCE = 1e-6
-"""The difference in m, and between the entries of rotation matrices, up to which a link has not moved."""
 
 
 class UndecidedError(Exception):
@@ -68,7 +64,8 @@ class History:
         new: the hash of the newest commit.
 
     Raises:
-        LinkwrightError: CLI341 to CLI344, git cannot find the repository, a commit, or the file in a commit.
+        LinkwrightError: CLI341 to CLI344, git cannot find the repository, a commit, or the file in a commit; REV114,
+            the oldest commit is not in the history of the newest one.
     """
 
     def __init__(self, file: Path, old: str, new: str) -> None:
@@ -77,11 +74,10 @@ class History:
         self._repository = GitRepository(real_path.parent, display_path(file), hint, downloads_lfs=False)
         self.new = self._repository.commit(new)
         self._names = self._names_of(real_path.relative_to(self._repository.root).as_posix())
+        self._require_file(self.new, new)
         self.old = self._repository.commit(old) if old else self._first_commit()
-        for commit, name in ((self.old, old), (self.new, new)):
-            if self.name_in(commit) is None:
-                message = phrase("commit '{name}' has no file '{inside}'", name=name or commit, inside=self._names[0])
-                raise LinkwrightError(Diagnostic("CLI344", message))
+        self._require_ancestor(old, new)
+        self._require_file(self.old, old or self.old)
 
     def name_in(self, commit: str) -> str | None:
         """Return the name that the file has in a commit, relative to the root, or None if it does not exist."""
@@ -128,6 +124,30 @@ class History:
             else:
                 earlier.append(commit)
 
+    def _require_file(self, commit: str, name: str) -> None:
+        if self.name_in(commit) is None:
+            message = phrase("commit '{name}' has no file '{inside}'", name=name, inside=self._names[0])
+            raise LinkwrightError(Diagnostic("CLI344", message))
+
+    def _require_ancestor(self, old: str, new: str) -> None:
+        """Raise if the oldest commit is not in the history of the newest one, so that no commit is between them."""
+        if self._repository.is_ancestor(self.old, self.new):
+            return
+        message = phrase("commit '{old}' is not in the history of '{new}'", old=old, new=new)
+        common = self._repository.merge_base(self.old, self.new)
+        hint = phrase("pass commits of one history, such as `--old {old}~5 --new {old}`", old=old)
+        if common == self.new:
+            hint = phrase("'{new}' is the older one: `--old {new} --new {old}`", old=old, new=new)
+        elif common is not None:
+            hint = phrase(
+                "begin with the last commit that both have in common: `--old {common} --new {new}`",
+                common=common[:9],
+                new=new,
+            )
+        elif self._repository.is_shallow:
+            hint = SHALLOW_HINT
+        raise LinkwrightError(Diagnostic("REV114", message, hint=hint))
+
     def _undecided_end(self, error: UndecidedError) -> LinkwrightError:
         """Return the error for an oldest or newest commit that cannot be judged."""
         cause = error.__cause__
@@ -149,12 +169,14 @@ class History:
 
     def _names_of(self, name: str) -> list[str]:
         """Return the names that the file has had, the newest first."""
-        arguments = ("log", "--follow", "--name-only", "--format=", "--", name)
-        names = self._repository.run(*arguments).stdout.splitlines()
+        arguments = ("log", "--follow", "--name-only", "-z", "--format=", "--", name)
+        names = self._repository.run(*arguments).stdout.split("\0")
         return list(dict.fromkeys([name, *filter(None, names)]))
 
     def _first_commit(self) -> str:
-        commits = self._repository.run("log", "--follow", "--format=%H", "--", self._names[0]).stdout.split()
+        """Return the commit that added the file to the history of the newest commit."""
+        name = self.name_in(self.new) or self._names[0]
+        commits = self._repository.run("log", "--follow", "--format=%H", self.new, "--", name).stdout.split()
         return commits[-1] if commits else self.new
 
 
@@ -216,10 +238,10 @@ class PartCheck:
             is_renamed = difference.kind == "renamed" and difference.old == self._name
             if difference.subject in ("link", "joint") and (difference.name == self._name or is_renamed):
                 yield difference
-        if self._name in self._robot.links and self._name in old.links:
-            old_frame, new_frame = (_frame(robot, self._name) for robot in (old, self._robot))
-            if not np.allclose(old_frame, new_frame, rtol=0.0, atol=_TOLERANCE):
-                distance = float(np.linalg.norm(old_frame[:3, 3] - new_frame[:3, 3]))
+        old_name = next((before for before, after in comparison.links.items() if after == self._name), None)
+        if old_name is not None:
+            distance = SharedFrames(old, self._robot, comparison.links).distance(old_name)
+            if distance is not None:
                 yield phrase("link '{name}': moved by {distance:.4g} m", name=self._name, distance=distance)
 
     def _model(self, files: CommitFiles, commit: str) -> Model:
@@ -236,13 +258,6 @@ def _require_part(robot: Robot, name: str) -> None:
         message = phrase("the robot has no link or joint '{name}'", name=name)
         hint = did_you_mean(name, names) or phrase("a command has more than one word: `-- check_urdf FILE`")
         raise LinkwrightError(Diagnostic("REV111", message, hint=hint))
-
-
-def _frame(robot: Robot, link: str) -> np.ndarray[tuple[int, ...], np.dtype[np.float64]]:
-    """Return the frame of a link in the root link's frame with all joints at position 0, shape (4, 4)."""
-    tree = KinematicTree(robot)
-    frames = tree.forward({})
-    return np.asarray(frames[tree.link_index(link)])
 
 
 @dataclass(frozen=True)

@@ -8,6 +8,7 @@ from dataclasses import dataclass, field
 from enum import Enum
 
 from linkwright.diagnostics import Diagnostic, Phrase
+from linkwright.review.paths import PathComparison
 
 _QUOTED = re.compile("'[^']*'")
 
@@ -139,6 +140,8 @@ class Subject:
         problems: why a part of the comparison is missing.
         cases: the names of all argument sets that were compared.
         images: views of both versions.
+        paths: the paths of robots that differ.
+        scene: both versions of a robot in 3D, if it was asked for.
     """
 
     kind: SubjectKind
@@ -150,6 +153,8 @@ class Subject:
     problems: Sequence[Problem] = ()
     cases: Sequence[str] = ()
     images: Sequence[ViewImages] = ()
+    paths: Sequence[PathComparison] = ()
+    scene: RobotScene | None = None
 
     @property
     def is_empty(self) -> bool:
@@ -170,6 +175,20 @@ class ViewImages:
     name: str
     old: bytes
     new: bytes
+
+
+@dataclass(frozen=True)
+class RobotScene:
+    """Both versions of a robot in 3D, over each other.
+
+    Attributes:
+        data: the recorded messages and files for the page of `linkwright export`, as JSON, compressed by gzip; empty
+            if there is no scene.
+        reason: why there is no scene.
+    """
+
+    data: bytes = b""
+    reason: Phrase | None = None
 
 
 @dataclass(frozen=True)

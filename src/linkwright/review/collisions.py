@@ -94,7 +94,7 @@ class _Scene:
         """Return the pairs of links that collide.
 
         Args:
-            frames: the frames of all links in the root link's frame, shape (links, 4, 4).
+            frames: the frames of all links, shape (links, 4, 4).
         """
         positions = self._data.qpos.reshape(-1, 7)
         for row, index in enumerate(self._indexes):

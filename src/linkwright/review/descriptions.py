@@ -17,9 +17,11 @@ from linkwright.review.changes import Change, Effect, Location
 from linkwright.review.collisions import collision_changes
 from linkwright.review.figures import RobotMeasures, figures_of
 from linkwright.review.file_pair import FilePair
+from linkwright.review.frames import UNMOVED, SharedFrames
 from linkwright.review.images import view_images
 from linkwright.review.names_in_plugins import path_of_renamed
 from linkwright.review.plugins import added_topics, contents_text, missing_topics_reason
+from linkwright.review.scenes import robot_scene
 from linkwright.review.versions import Version
 from linkwright.urdf import Robot
 
@@ -53,14 +55,19 @@ def compare_descriptions(pair: FilePair) -> None:
         if case.old.robot is None or case.new.robot is None:
             continue
         comparison = case.models.compare(case.old.robot, case.new.robot)
-        for change in _changes(pair, comparison, case.old.robot, case.new.robot):
+        frames = SharedFrames(case.old.robot, case.new.robot, comparison.links)
+        for change in _changes(pair, comparison, frames, case.old.robot, case.new.robot):
             group = groups.setdefault(change.identity, _Group(change))
             group.names[change.name] = None
             group.cases[case.name] = None
-        if pair.with_images and not pair.images:
-            pair.images += view_images(case.models, case.old.robot, case.new.robot, comparison)
+        if pair.drawings.images and not pair.images:
+            pair.images += view_images(case.models, case.old.robot, case.new.robot, comparison, frames)
+            if pair.images and pair.drawings.scenes:
+                roots = pair.versions.old.root, pair.versions.new.root
+                pair.scene = robot_scene(case.models, case.old, case.new, roots)
         if len(pair.cases) == 1:
-            old, new = RobotMeasures(case.old.robot, case.models.old), RobotMeasures(case.new.robot, case.models.new)
+            old = RobotMeasures(case.old.robot, case.models.old, UNMOVED, frames.old)
+            new = RobotMeasures(case.new.robot, case.models.new, frames.new_root, frames.new)
             pair.figures += figures_of(old, new)
             collisions = list(collision_changes(old, new))
     pair.changes += (group.change(pair.cases) for group in groups.values())
@@ -127,10 +134,15 @@ def _read(pair: FilePair, model: Model, version: Version) -> Description | None:
 # --- changes of a robot ----------------------------------------------------------------------------------------------
 
 
-def _changes(pair: FilePair, comparison: Comparison, old: Robot, new: Robot) -> Iterator[Change]:
+def _changes(pair: FilePair, comparison: Comparison, frames: SharedFrames, old: Robot, new: Robot) -> Iterator[Change]:
     if old.root != new.root:
+        text = phrase("root link '{old}' -> '{new}'", old=old.root, new=new.root)
+        if frames.are_aligned:
+            text = phrase(
+                "{change} (both robots are compared in the frame of '{link}')", change=text, link=frames.reference
+            )
         yield Change(
-            phrase("root link '{old}' -> '{new}'", old=old.root, new=new.root),
+            text,
             Effect.BREAKING,
             phrase("programs that use '{old}' as the base frame of the robot get other transforms", old=old.root)
             if old.root in new.links
@@ -140,7 +152,15 @@ def _changes(pair: FilePair, comparison: Comparison, old: Robot, new: Robot) -> 
     for difference in comparison.differences:
         reason = breaking_reason(difference, old) or missing_topics_reason(difference, added)
         effect = Effect.CHANGED if reason is None else Effect.BREAKING
-        yield Change(sentence_of_difference(difference), effect, reason, _location(pair, difference))
+        text = sentence_of_difference(difference)
+        if difference.subject == "link" and difference.kind == "renamed":
+            text = _with_motion(text, frames.distance(difference.old or ""))
+        yield Change(text, effect, reason, _location(pair, difference))
+
+
+def _with_motion(text: Phrase, distance: float | None) -> Phrase:
+    """Return the sentence about a renamed link with the distance by which it has moved, if it has."""
+    return text if distance is None else phrase("{change} (moved by {distance:.4g} m)", change=text, distance=distance)
 
 
 def _location(pair: FilePair, difference: Difference) -> Location | None:

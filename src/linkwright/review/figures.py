@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import zlib
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Mapping
 from functools import cached_property
 
 import numpy as np
@@ -12,10 +12,11 @@ from numpy.typing import NDArray
 from linkwright.descriptions.pairs import Model
 from linkwright.diagnostics import LinkwrightError, Phrase, phrase
 from linkwright.geometry.mass import MassProperties, combine
-from linkwright.geometry.shapes import Box, Capsule, SimpleShape, Sphere, placement
+from linkwright.geometry.shapes import Box, Capsule, Placement, SimpleShape, Sphere, placement
 from linkwright.inertia.mesh_library import MeshLibrary
 from linkwright.kinematics import KinematicTree
 from linkwright.review.changes import Figure
+from linkwright.review.frames import matrix
 from linkwright.urdf import Collision, Mesh, Robot, Visual
 from linkwright.xmltree import Element
 
@@ -45,29 +46,32 @@ def figures_of(old: RobotMeasures, new: RobotMeasures) -> Iterator[Figure]:
 
 
 class RobotMeasures:
-    """The quantities of a robot with all joints at position 0, or at the nearest limit to 0.
+    """The quantities of a robot with all joints at the positions at which joint_state_publisher starts.
+
+    Args:
+        robot: the robot.
+        model: the description of the robot.
+        root: the frame of the root link in the frame of the figures.
+        frames: the frames of the links in the frame of the figures.
 
     Attributes:
         robot: the robot.
         meshes: the meshes of the robot.
+        frames: the frames of the links, shape (4, 4) each.
         link_names: the links in the order of the frames of `sampled_frames`.
     """
 
-    def __init__(self, robot: Robot, model: Model) -> None:
+    def __init__(self, robot: Robot, model: Model, root: Placement, frames: Mapping[str, Placement]) -> None:
         self.robot = robot
+        self._root = matrix(root)
+        self.frames = {name: matrix(frame) for name, frame in frames.items()}
         self.meshes = MeshLibrary(model.finder, model.path.parent)
         self._tree = KinematicTree(robot)
         self.link_names = self._tree.link_names
 
     @cached_property
-    def frames(self) -> dict[str, Array]:
-        """The frames of the links in the root link's frame, shape (4, 4) each."""
-        low, high = self._limits
-        return dict(zip(self._tree.link_names, self._tree.forward(np.clip(0.0, low, high)), strict=True))
-
-    @cached_property
     def mass_properties(self) -> MassProperties:
-        """The mass properties of the whole robot in the root link's frame."""
+        """The mass properties of the whole robot in the frame of the figures."""
         parts = []
         for name, frame in self.frames.items():
             inertial = self.robot.links[name].inertial
@@ -116,7 +120,7 @@ class RobotMeasures:
         return triangles, size
 
     def reach(self) -> dict[str, float]:
-        """Return how far the ends of chains get from the root link's origin, in m, by the name of the last link.
+        """Return how far the ends of chains get from the origin of the figures, in m, by the name of the last link.
 
         The distance is the largest one of many configurations within the limits, which depend only on the names and the
         limits of the joints.
@@ -125,12 +129,12 @@ class RobotMeasures:
         if not ends:
             return {}
         frames = self.sampled_frames(_REACH_SAMPLES)
-        indexes = [self._tree.link_index(link) for link in ends]
+        indexes = [self.link_names.index(link) for link in ends]
         distances = np.linalg.norm(frames[:, indexes][..., :3, 3], axis=-1).max(axis=0)
         return dict(zip(ends, map(float, distances), strict=True))
 
     def sampled_frames(self, count: int) -> Array:
-        """Return the frames of the links in the root link's frame in many configurations within the limits.
+        """Return the frames of the links in the frame of the figures in many configurations within the limits.
 
         The configurations depend only on the names and the limits of the joints.
 
@@ -145,7 +149,7 @@ class RobotMeasures:
         samples = np.zeros((count, len(names)))
         for index, name in enumerate(names):
             samples[:, index] = np.random.default_rng(zlib.crc32(name.encode())).random(count)
-        return self._tree.forward(low + samples * (high - low))
+        return self._root @ self._tree.forward(low + samples * (high - low))
 
     def _chain_ends(self) -> list[str]:
         """Return the last link of each chain of several moving joints."""
@@ -177,7 +181,7 @@ class RobotMeasures:
         return low, high
 
     def _bounds(self, visual: Visual, link_frame: Array) -> tuple[Array, Array] | None:
-        """Return the corners of the box around a visual in the root link's frame, shape (3,) each."""
+        """Return the corners of the box around a visual in the frame of the figures, shape (3,) each."""
         placed = placement(visual.origin)
         rotation = link_frame[:3, :3] @ np.array(placed.rotation)
         center = link_frame[:3, :3] @ np.array(placed.position) + link_frame[:3, 3]

@@ -8,7 +8,7 @@ from pathlib import Path
 from typing import TypeVar
 
 from linkwright.diagnostics import LinkwrightError, Phrase, Span, foreign, phrase
-from linkwright.review.changes import Change, Effect, Figure, Location, Problem, ViewImages
+from linkwright.review.changes import Change, Effect, Figure, Location, Problem, RobotScene, ViewImages
 from linkwright.review.versions import Version, Versions
 
 _Content = TypeVar("_Content")
@@ -26,6 +26,19 @@ class UnreadableFileError(Exception):
         self.reason = reason
 
 
+@dataclass(frozen=True)
+class Drawings:
+    """The drawings of robots that a review makes.
+
+    Attributes:
+        images: whether to make images from four sides.
+        scenes: whether to make scenes in 3D.
+    """
+
+    images: bool = False
+    scenes: bool = False
+
+
 @dataclass
 class FilePair:
     """A file that both versions have, to which its comparison adds its results.
@@ -34,23 +47,25 @@ class FilePair:
         versions: both versions.
         old_path: the path in the old version, relative to the root of the repository.
         new_path: the path in the new version, relative to the root of the repository.
-        with_images: whether to make images of robots.
+        drawings: what to draw of robots that look different.
         changes: the changes found so far.
         figures: the quantities that differ.
         problems: why a part of the comparison is missing.
         cases: the names of the compared argument sets.
         images: images of both versions.
+        scene: both versions in 3D.
     """
 
     versions: Versions
     old_path: str
     new_path: str
-    with_images: bool = False
+    drawings: Drawings = field(default_factory=Drawings)
     changes: list[Change] = field(default_factory=list)
     figures: list[Figure] = field(default_factory=list)
     problems: list[Problem] = field(default_factory=list)
     cases: list[str] = field(default_factory=list)
     images: list[ViewImages] = field(default_factory=list)
+    scene: RobotScene | None = None
 
     @property
     def old_file(self) -> Path:

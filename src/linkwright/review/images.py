@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 
 import numpy as np
 from numpy.typing import NDArray
@@ -12,8 +12,9 @@ from linkwright.descriptions.pairs import Pair
 from linkwright.geometry.shapes import Placement
 from linkwright.images.png import png
 from linkwright.picture import OUTLINE_COLOR, VIEWS, SurfaceLibrary, camera_for, render, robot_scene
-from linkwright.picture.link_frames import exact_placement, link_frames
+from linkwright.picture.link_frames import exact_placement
 from linkwright.review.changes import ViewImages
+from linkwright.review.frames import SharedFrames
 from linkwright.urdf import Robot
 
 Array = NDArray[np.float64]
@@ -25,13 +26,14 @@ _MOVED = 1e-5
 """The difference in m, and between the entries of rotation matrices, up to which a link is in the same place."""
 
 
-def view_images(models: Pair, old: Robot, new: Robot, comparison: Comparison) -> list[ViewImages]:
+def view_images(models: Pair, old: Robot, new: Robot, comparison: Comparison, frames: SharedFrames) -> list[ViewImages]:
     """Return images from four sides, or none if both robots look the same.
 
     All joints are at position 0, or at the middle of limits that exclude 0. Both images of a view have the same camera.
     """
-    old_links = _changed_links(old, new, comparison, of_old=True)
-    new_links = _changed_links(old, new, comparison, of_old=False)
+    changed = {*_other_surfaces(comparison), *_moved(old, new, comparison, frames)}
+    old_links = _drawn(old, {*set(old.links) - set(comparison.links), *(name for name, _ in changed)})
+    new_links = _drawn(new, {*set(new.links) - set(comparison.links.values()), *(name for _, name in changed)})
     if not old_links and not new_links:
         return []
     library = SurfaceLibrary()
@@ -42,8 +44,12 @@ def view_images(models: Pair, old: Robot, new: Robot, comparison: Comparison) ->
             folder=model.path.parent,
             outlined=dict.fromkeys(links, OUTLINE_COLOR),
             library=library,
+            root=root,
         )
-        for robot, model, links in ((old, models.old, old_links), (new, models.new, new_links))
+        for robot, model, links, root in (
+            (old, models.old, old_links, None),
+            (new, models.new, new_links, frames.new_root),
+        )
     ]
     if not any(len(scene.mesh.faces) for scene in scenes):
         return []
@@ -54,13 +60,9 @@ def view_images(models: Pair, old: Robot, new: Robot, comparison: Comparison) ->
     return images
 
 
-def _changed_links(old: Robot, new: Robot, comparison: Comparison, *, of_old: bool) -> set[str]:
-    """Return the links of one of the robots that look different or are in another place."""
-    robot, matched = (old, set(comparison.links)) if of_old else (new, set(comparison.links.values()))
-    changed = set(robot.links) - matched
-    for old_name, new_name in (*_other_surfaces(comparison), *_moved(old, new, comparison)):
-        changed.add(old_name if of_old else new_name)
-    return {name for name in changed if name in robot.links and robot.links[name].visuals}
+def _drawn(robot: Robot, links: Iterable[str]) -> set[str]:
+    """Return the links of a robot that have visuals."""
+    return {name for name in links if name in robot.links and robot.links[name].visuals}
 
 
 def _other_surfaces(comparison: Comparison) -> Iterator[tuple[str, str]]:
@@ -72,17 +74,12 @@ def _other_surfaces(comparison: Comparison) -> Iterator[tuple[str, str]]:
             yield old_names[difference.name], difference.name
 
 
-def _moved(old: Robot, new: Robot, comparison: Comparison) -> Iterator[tuple[str, str]]:
-    """Yield the old and new names of links whose visuals are elsewhere, relative to the old robot's root link."""
-    reference = comparison.links.get(old.root)
-    if reference is None:
-        return
-    old_frames, new_frames = link_frames(old, {}), link_frames(new, {})
-    old_root = new_frames[reference]
+def _moved(old: Robot, new: Robot, comparison: Comparison, frames: SharedFrames) -> Iterator[tuple[str, str]]:
+    """Yield the old and new names of links whose visuals are elsewhere, relative to the link that both robots have."""
     for old_name, new_name in comparison.links.items():
-        if old_name in old_frames and new_name in new_frames:
-            old_places = _places(old, old_name, old_frames[old_name])
-            new_places = _places(new, new_name, new_frames[new_name].seen_from(old_root))
+        if old_name in frames.old and new_name in frames.new:
+            old_places = _places(old, old_name, frames.old[old_name])
+            new_places = _places(new, new_name, frames.new[new_name])
             if old_places.shape != new_places.shape or not np.allclose(old_places, new_places, rtol=0.0, atol=_MOVED):
                 yield old_name, new_name
 

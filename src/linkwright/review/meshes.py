@@ -27,7 +27,7 @@ def compare_meshes(pair: FilePair) -> None:
     if meshes is None:
         return
     old, new = meshes
-    if pair.with_images and pair.old_file.read_bytes() != pair.new_file.read_bytes():
+    if pair.drawings.images and pair.old_file.read_bytes() != pair.new_file.read_bytes():
         pair.images += mesh_images(pair)
     if old.count != new.count:
         pair.figures.append(Figure(phrase("triangles"), str(old.count), str(new.count)))

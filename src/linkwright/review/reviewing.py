@@ -20,7 +20,7 @@ from linkwright.lint.targets import Targets, find_targets
 from linkwright.packages.manifest import MANIFEST, package_name
 from linkwright.review.behavior import compare_behavior
 from linkwright.review.changes import Change, Effect, Review, Subject, SubjectKind
-from linkwright.review.file_pair import FilePair
+from linkwright.review.file_pair import Drawings, FilePair
 from linkwright.review.kinds import LAUNCH_HELPER, KindRule, may_help_launch_files, rule_of
 from linkwright.review.launch_helpers import makes_actions
 from linkwright.review.versions import Version, Versions
@@ -41,6 +41,7 @@ def review(
     seeds: int | None = None,
     *,
     with_images: bool = False,
+    with_scenes: bool = False,
 ) -> Review:
     """Compare two versions of a repository.
 
@@ -51,19 +52,25 @@ def review(
         scenarios: scenarios to run in both versions, relative to the root. Their code, and that of the packages, runs.
         seeds: the number of seeds of scenarios; None for their own.
         with_images: whether to make images of robots that look different.
+        with_scenes: whether to make scenes in 3D of them, too.
 
     Raises:
         LinkwrightError: REV103, there is no such package.
     """
-    result = _Reviewer(versions, _package_folders(versions, packages), with_images=with_images).run(workers)
+    drawings = Drawings(images=with_images or with_scenes, scenes=with_scenes)
+    result = _Reviewer(versions, _package_folders(versions, packages), drawings).run(workers)
     behavior = [compare_behavior(versions, path, seeds) for path in scenarios]
-    return replace(result, subjects=[*result.subjects, *(subject for subject in behavior if not subject.is_empty)])
+    return replace(
+        result,
+        subjects=[*result.subjects, *(subject for subject in behavior if not subject.is_empty)],
+        other_files=[path for path in result.other_files if path not in scenarios],
+    )
 
 
 class _Reviewer:
-    def __init__(self, versions: Versions, folders: Sequence[str], *, with_images: bool) -> None:
+    def __init__(self, versions: Versions, folders: Sequence[str], drawings: Drawings) -> None:
         self._versions = versions
-        self._with_images = with_images
+        self._drawings = drawings
         self._folders = folders
         self._changed_files = [file for file in versions.changed_files if self._is_in_scope(file.path)]
         self._new_paths = {
@@ -75,7 +82,7 @@ class _Reviewer:
         pairs = list(self._pairs())
         expanded = [pair for pair in pairs if pair[0].kind in _EXPANDED]
         with _processes(workers if len(expanded) >= _MIN_EXPANDED else 1) as submit:
-            subjects = [submit(_compare, self._versions, *pair, self._with_images) for pair in pairs]
+            subjects = [submit(_compare, self._versions, *pair, self._drawings) for pair in pairs]
             findings = [
                 submit(_find, version, self._check_targets(version, expanded))
                 for version in (self._versions.old, self._versions.new)
@@ -95,7 +102,7 @@ class _Reviewer:
             [subject for subject in all_subjects if not subject.is_empty],
             [file.path for file in self._changed_files if not {file.old_path, file.new_path} & (compared | parts)],
             *self._compare_findings(old_findings, new_findings),
-            list(self._notes()),
+            list(dict.fromkeys(self._notes())),
         )
 
     def _compare_findings(
@@ -189,16 +196,24 @@ class _Reviewer:
 
 
 def _compare(
-    versions: Versions, rule: KindRule, old_path: str | None, new_path: str | None, with_images: bool
+    versions: Versions, rule: KindRule, old_path: str | None, new_path: str | None, drawings: Drawings
 ) -> Subject:
-    """Compare a file in both versions."""
+    """Compare a file in both versions.
+
+    Args:
+        versions: the versions.
+        rule: the rule for the file.
+        old_path: the path in the old version; None for an added file.
+        new_path: the path in the new version; None for a removed file.
+        drawings: what to draw of robots that look different.
+    """
     kind, path = rule.kind, new_path or old_path or ""
     if old_path is None:
         return Subject(kind, path, None, new_path, [Change(rule.added)])
     effect = Effect.CHANGED if rule.removal_reason is None else Effect.BREAKING
     if new_path is None:
         return Subject(kind, path, old_path, None, [Change(rule.removed, effect, rule.removal_reason)])
-    pair = FilePair(versions, old_path, new_path, with_images)
+    pair = FilePair(versions, old_path, new_path, drawings)
     if old_path != new_path:
         text = phrase("renamed from {path}", path=old_path)
         pair.changes.append(Change(text, effect, rule.removal_reason))
@@ -208,7 +223,18 @@ def _compare(
         pair.add_problem(phrase("the versions cannot be compared: {reason}", reason=error.diagnostics[0].message))
     except (RecursionError, MemoryError):
         pair.add_problem(phrase("the versions cannot be compared: they are nested too deeply, or too large"))
-    return Subject(kind, path, old_path, new_path, pair.changes, pair.figures, pair.problems, pair.cases, pair.images)
+    return Subject(
+        kind,
+        path,
+        old_path,
+        new_path,
+        pair.changes,
+        pair.figures,
+        pair.problems,
+        pair.cases,
+        pair.images,
+        scene=pair.scene,
+    )
 
 
 def _find(version: Version, targets: Targets) -> list[Diagnostic]:

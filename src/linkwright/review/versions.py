@@ -12,7 +12,7 @@ from pathlib import Path
 from linkwright.descriptions.pairs import Model
 from linkwright.descriptions.revisions import CommitFiles, leads_outside
 from linkwright.diagnostics import Diagnostic, LinkwrightError, Span, display_path, phrase
-from linkwright.files.git_repository import ChangedFile, GitRepository
+from linkwright.files.git_repository import SHALLOW_HINT, ChangedFile, GitRepository
 from linkwright.packages import PackageFinder
 
 _DEFAULT_BRANCHES = ("origin/HEAD", "origin/main", "origin/master", "main", "master")
@@ -165,10 +165,7 @@ def _common_commit(repository: GitRepository, old_commit: str, old_name: str, ne
             "compare the two versions as they are: `linkwright review {old}..{new}`", old=old_name, new=new_name
         )
         if repository.is_shallow:
-            hint = phrase(
-                "the clone is shallow; `git fetch --unshallow` downloads its history (in GitHub Actions: "
-                "`fetch-depth: 0` for actions/checkout)"
-            )
+            hint = SHALLOW_HINT
         raise LinkwrightError(Diagnostic("REV102", message, hint=hint))
     return common
 

@@ -42,7 +42,7 @@ def compare_worlds(pair: FilePair) -> None:
         place = difference.new_place or difference.old_place
         location = None if place is None else pair.location(place.span, is_old=difference.new_place is None)
         pair.add(_sentence(difference, path), location, reason)
-    if differences and pair.with_images:
+    if differences and pair.drawings.images:
         pair.images += world_images(pair)
 
 

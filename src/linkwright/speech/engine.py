@@ -12,6 +12,7 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from linkwright.diagnostics import Diagnostic, LinkwrightError, did_you_mean, phrase
+from linkwright.diagnostics.extension_errors import load_extension
 from linkwright.loading.extensions import extensions
 from linkwright.speech.sound.samples import Samples
 
@@ -92,11 +93,13 @@ def make_engine(name: str, options: EngineOptions) -> SpeechEngine:
     """Create an engine by its name.
 
     Raises:
-        LinkwrightError: VOICE101, there is no such engine; or an error of the engine itself.
+        LinkwrightError: VOICE101, there is no such engine; VOICE106, the package that provides it cannot be imported;
+            or an error of the engine itself.
     """
     entry_point = extensions(_GROUP).get(name)
     if entry_point is None:
         message = phrase("there is no speech engine '{name}'", name=name)
         raise LinkwrightError(Diagnostic("VOICE101", message, hint=did_you_mean(name, engine_names())))
-    engine: SpeechEngine = entry_point.load()(options)
+    message = phrase("the speech engine '{name}' cannot be imported", name=name)
+    engine: SpeechEngine = load_extension(entry_point, "VOICE106", message)(options)
     return engine

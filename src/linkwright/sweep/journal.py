@@ -102,7 +102,7 @@ class Journal:
         entries = [entry for entry in map(_parse_line, lines) if entry is not None]
         if not entries or entries[0] != self._plan_entry:
             message = phrase("the unfinished sweep '{path}' has other runs than this one", path=display_path(self.path))
-            hint = phrase("use the same scenario, values and seeds, or remove the file to start again")
+            hint = phrase("use the same scenario, values, seeds and `--paths`, or remove the file to start again")
             raise LinkwrightError(Diagnostic("SWEEP108", message, hint=hint))
         for entry in entries[1:]:
             self.outcomes[entry["row"]] = Outcome(**entry)
@@ -125,7 +125,7 @@ def reporting_write_errors(path: Path) -> Iterator[None]:
 
 
 def _to_entry(outcome: Outcome) -> dict[str, Any]:
-    return {"row": outcome.row, "results": outcome.results, "error": outcome.error}
+    return {"row": outcome.row, "results": outcome.results, "error": outcome.error, "paths": outcome.paths}
 
 
 def _parse_line(line: str) -> dict[str, Any] | None:

@@ -24,14 +24,16 @@ class Run:
         row: the row number, starting at 1.
         parameters: the value of each parameter.
         seed: the seed for random numbers.
+        records_paths: whether the outcome has the paths of robots.
     """
 
     row: int
     parameters: Mapping[str, Value]
     seed: int
+    records_paths: bool = False
 
 
-def plan_runs(scenario: Scenario) -> list[Run]:
+def plan_runs(scenario: Scenario, *, records_paths: bool = False) -> list[Run]:
     """Return all runs of a scenario.
 
     Runs with the same listed values and different seeds are adjacent. A drawn value depends only on the seed and the
@@ -44,7 +46,8 @@ def plan_runs(scenario: Scenario) -> list[Run]:
         listed_values = dict(zip(lists, combination, strict=True))
         for seed in scenario.seeds:
             values = {**listed_values, **values_by_seed[seed]}
-            runs.append(Run(len(runs) + 1, {name: values[name] for name in scenario.parameters}, seed))
+            parameters = {name: values[name] for name in scenario.parameters}
+            runs.append(Run(len(runs) + 1, parameters, seed, records_paths))
     return runs
 
 
@@ -69,8 +72,8 @@ def with_values(scenario: Scenario, texts: Mapping[str, str], seeds: int | None)
 
 
 def fingerprint(scenario: Scenario, runs: Sequence[Run]) -> str:
-    """Return a hash of the scenario's file, and of the parameters and seeds of the runs."""
-    plan = json.dumps([(run.parameters, run.seed) for run in runs])
+    """Return a hash of the scenario's file, and of the parameters, seeds and recordings of the runs."""
+    plan = json.dumps([(run.parameters, run.seed, run.records_paths) for run in runs])
     return hashlib.sha256(scenario.path.read_bytes() + plan.encode()).hexdigest()
 
 

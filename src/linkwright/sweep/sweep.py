@@ -11,6 +11,7 @@ from pathlib import Path
 from linkwright.files.whole_files import write_whole_file
 from linkwright.sweep.journal import Journal, reporting_write_errors
 from linkwright.sweep.page import summary
+from linkwright.sweep.paths_file import paths_text
 from linkwright.sweep.plan import Run, fingerprint, plan_runs
 from linkwright.sweep.running import Outcome
 from linkwright.sweep.scenario import Scenario
@@ -28,11 +29,13 @@ class Sweep:
         scenario: the scenario.
         table: the file of the table; its extension selects the format.
         command: the command line of the sweep; the summary page shows it for reruns.
+        paths: the file for the paths of robots; None if they are not recorded.
     """
 
     scenario: Scenario
     table: Path
     command: Sequence[str]
+    paths: Path | None = None
 
     @property
     def page(self) -> Path:
@@ -55,7 +58,7 @@ class Sweep:
         Raises:
             LinkwrightError: an error of `Journal`; or SWEEP110, a file cannot be written.
         """
-        runs = plan_runs(self.scenario)
+        runs = plan_runs(self.scenario, records_paths=self.paths is not None)
         with Journal(self.table, fingerprint(self.scenario, runs), resume=resume) as journal:
             failed = sum(bool(outcome.error) for outcome in journal.outcomes.values())
 
@@ -69,8 +72,12 @@ class Sweep:
                 runner([run for run in runs if run.row not in journal.outcomes], on_outcome)
         table = Table.of(runs, journal.outcomes)
         page = summary(table, self.scenario.path.name, shlex.join(self.command), len(runs))
-        for path, content in ((self.table, table_bytes(table, self.table)), (self.page, page)):
+        contents: list[tuple[Path, str | bytes]] = [(self.table, table_bytes(table, self.table)), (self.page, page)]
+        if self.paths is not None:
+            contents.append((self.paths, paths_text(runs, journal.outcomes)))
+        for path, content in contents:
             with reporting_write_errors(path):
+                path.parent.mkdir(parents=True, exist_ok=True)
                 write_whole_file(path, content)
         if len(table) == len(runs):
             journal.remove()

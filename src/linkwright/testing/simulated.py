@@ -26,6 +26,7 @@ from linkwright.sdf.worlds import World
 from linkwright.simulation.server.server import ServerOptions, SimulationServer
 from linkwright.simulation.server.services import Services
 from linkwright.simulation.simulation import Simulation
+from linkwright.testing.paths import RobotPath, new_path
 from linkwright.testing.scenes import read_model, read_world
 from linkwright.testing.stepped import AsyncSteppedGraph
 from linkwright.testing.stepped_sync import SteppedGraph
@@ -93,6 +94,7 @@ class AsyncSteppedSimulation(AsyncSteppedGraph):
         self._period_ns = round(period * NANOSECONDS_PER_SECOND)
         self._remaining_ns = 0
         self._server: SimulationServer | None = None
+        self._robot_path: RobotPath | None = None
 
     async def __aenter__(self) -> Self:
         await super().__aenter__()
@@ -125,6 +127,7 @@ class AsyncSteppedSimulation(AsyncSteppedGraph):
         self._server.start()
         if self._model is not None:
             self._server.spawn(self._model, self._model.name, self._pose)
+            self._robot_path = new_path()
         if self._description is not None:
             parameters = {"robot_description": self._description, "use_sim_time": True}
             RobotStatePublisher(self.graph, NodeOptions(parameters=parameters))
@@ -208,6 +211,7 @@ class AsyncSteppedSimulation(AsyncSteppedGraph):
         await self._settle_world()
         self._remaining_ns += round(seconds * NANOSECONDS_PER_SECOND)
         server, simulation = self.server, self.simulation
+        self._record_position()
         while self._remaining_ns > 0:
             server.exchange.run_commands()
             step_ns = min(self._period_ns, self._remaining_ns)
@@ -217,9 +221,22 @@ class AsyncSteppedSimulation(AsyncSteppedGraph):
                 step_ns = simulation.time - time_before_ns
             self._remaining_ns -= step_ns
             await self.clock.advance(step_ns / NANOSECONDS_PER_SECOND, is_settled=True)
+            self._record_position()
             self._publish_time()
             server.exchange.deliver()
             await self._settle_graph()
+
+    def _record_position(self) -> None:
+        """Add the robot's true position to its path, if the path is recorded and the next point is due."""
+        path, time_ns = self._robot_path, self.clock.steady_ns()
+        if path is None or not path.is_due(time_ns):
+            return
+        assert self._model is not None, "there is a robot"
+        if self._model.name not in self.simulation.scene.models:
+            self._robot_path = None  # the robot was deleted
+            return
+        x, y = self.simulation.model_pose(self._model.name)[:2]
+        path.add(time_ns, float(x), float(y))
 
     async def reset(self) -> None:
         """Restore the initial state of the world, of simulated time and of the noise.
@@ -228,6 +245,8 @@ class AsyncSteppedSimulation(AsyncSteppedGraph):
         """
         self.server.reset()
         self._remaining_ns = 0
+        if self._robot_path is not None:
+            self._robot_path = new_path()
         self._publish_time()
         await self.settle()
 

@@ -3,12 +3,11 @@
 from __future__ import annotations
 
 import asyncio
-import time
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 from linkwright.descriptions import DescriptionLibrary
-from linkwright.graph import DESCRIPTION_QOS, STATIC_TF_PUBLISHER_QOS, TF_QOS, Graph
+from linkwright.graph import DESCRIPTION_QOS, STATIC_TF_PUBLISHER_QOS, TF_QOS, Graph, JumpClock
 from linkwright.messages import String, TFMessage
 from linkwright.nodes.joint_layout import JointSettings, make_layout
 from linkwright.nodes.robot_state_publisher import RobotTransforms
@@ -23,11 +22,14 @@ from linkwright.viewer.viewer import Viewer
 if TYPE_CHECKING:
     from linkwright.descriptions.pairs import Pair
 
+_TIME_NS = 1_000_000_000
+"""The time of a snapshot, in nanoseconds. No real time, so that the bytes of an export depend only on its files."""
+
 
 def snapshot_of_model(
     text: str, robot: Robot, library: DescriptionLibrary, finder: PackageFinder, old: OldDescription | None = None
 ) -> Snapshot:
-    """Return a snapshot of a model as `linkwright view` shows it.
+    """Return a snapshot of a model as `linkwright view` shows it, with the same bytes for the same files.
 
     Joints are at zero, or in the middle of their limits if the limits exclude zero.
 
@@ -57,7 +59,7 @@ class OldDescription:
 async def _snapshot(
     text: str, robot: Robot, library: DescriptionLibrary, finder: PackageFinder, old: OldDescription | None
 ) -> Snapshot:
-    graph = Graph(on_log=lambda _: None)
+    graph = Graph(clock=JumpClock(_TIME_NS), on_log=lambda _: None)
     config = RvizConfig.for_model(robot.root, size=size_of(robot), frames=not has_visuals(robot, finder))
     if old is not None:
         add_old_robot(config, old.pair.old.title)
@@ -65,13 +67,12 @@ async def _snapshot(
     viewer.manager.start()
     node = graph.create_node("robot_state_publisher")
     node.create_publisher(String, "robot_description", DESCRIPTION_QOS).publish(String(data=text))
-    now_ns = time.time_ns()
     transforms = RobotTransforms(robot, "")
     layout = make_layout(robot, JointSettings())
     zero_positions = {joint.name: joint.zero for joint in layout.free}
-    moving_batch = transforms.conversion_for(list(zero_positions)).batch(list(zero_positions.values()), now_ns)
+    moving_batch = transforms.conversion_for(list(zero_positions)).batch(list(zero_positions.values()), _TIME_NS)
     node.create_publisher(TFMessage, "/tf_static", STATIC_TF_PUBLISHER_QOS).publish(
-        TFMessage(batch=transforms.fixed_transforms(now_ns))
+        TFMessage(batch=transforms.fixed_transforms(_TIME_NS))
     )
     node.create_publisher(TFMessage, "/tf", TF_QOS).publish(TFMessage(batch=moving_batch))
     if old is not None:

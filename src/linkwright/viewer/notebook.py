@@ -8,7 +8,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from concurrent.futures import ThreadPoolExecutor
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from html import escape
 from pathlib import Path
 
@@ -39,7 +39,7 @@ class RobotCell:
     """
 
     name: str
-    page: str
+    page: str = field(repr=False)
     height: int
     diagnostics: tuple[Diagnostic, ...]
 

@@ -51,7 +51,7 @@ def disputes(*streams: Iterable[Sent], dispute: Dispute | None = None) -> list[t
     ],
     ids=["one", "handover", "alike", "both still", "stops", "a smoother that runs out", "taps", "recoveries"],
 )
-def test_normal_command_patterns_are_no_dispute(streams):
+def test_normal_command_patterns_are_not_reported(streams):
     assert disputes(*streams) == []
 
 

@@ -362,7 +362,9 @@ class TestFutures:
             assert time.monotonic() - start >= 0.1
 
     def test_zero_timeout_does_not_block(self, executor):
-        executor.spin_until_future_complete(Future(), timeout_sec=0)
+        future = Future()
+        executor.spin_until_future_complete(future, timeout_sec=0)
+        assert not future.done()
 
     def test_negative_timeout_waits_indefinitely(self, executor):
         future = Future()

@@ -46,13 +46,13 @@ class Asking:
         self._graph = Graph(threads=True, on_log=self._heard)
         self._nodes = [
             self._graph.create_node(name, parameters=parameters, start_parameter_services=False, enable_rosout=False)
-            for name in ("server", "asking")
+            for name in ("server", "make_scene")
         ]
-        server, asking = self._nodes
+        server, make_scene = self._nodes
         server.create_service(TRIGGER, "ask", lambda _, response: response)
         self._server = ActionServer(server, FIBONACCI, "count", self._count)
-        self.client = asking.create_client(TRIGGER, "ask", callback_group=client_group)
-        self.action = ActionClient(asking, FIBONACCI, "count", callback_group=client_group)
+        self.client = make_scene.create_client(TRIGGER, "ask", callback_group=client_group)
+        self.action = ActionClient(make_scene, FIBONACCI, "count", callback_group=client_group)
         self.executor = executor()
 
     def run(self, ask: Callable[[], Any], *, seconds: float = SECONDS) -> bool:

@@ -19,7 +19,7 @@ def executor():
         yield executor
 
 
-class TestByHand:
+class TestTaskWithoutExecutor:
     """A task without an executor runs a step at each call."""
 
     def test_task_runs_callable(self):
@@ -120,7 +120,7 @@ class TestByHand:
         assert not task.executing()
 
 
-class TestByAnExecutor:
+class TestTaskInExecutor:
     def test_executor_runs_task_when_spinning(self, executor):
         task = executor.create_task(lambda: "done")
         assert not task.done()

@@ -43,7 +43,7 @@ def prefixed(prefix: str, pattern: str) -> list[Any]:
     return [SetLaunchConfiguration(name, value) for name, value in given.items()]
 
 
-class TestWhere:
+class TestProcessChoice:
     async def test_isolated_nodes_run_as_processes(self, launch) -> None:
         started = RegisterEventHandler(
             OnProcessExit(on_exit=lambda event, _: LogInfo(msg=f"{event.process_name} {event.returncode}"))
@@ -141,7 +141,7 @@ class TestOutput:
         assert not done.succeeded
 
 
-class TestMany:
+class TestManyNodes:
     async def test_five_hundred_nodes_start_in_one_launch(self, launch) -> None:
         up: list[int] = []
 

@@ -77,7 +77,7 @@ async def test_error_offers_skip_missing_command(launch) -> None:
     assert "--skip-missing" not in done.err
 
 
-class TestWithoutTheOption:
+class TestMissingPackagesByDefault:
     """Parts that need missing third-party packages are skipped by default, because robots start many."""
 
     async def test_nodes_of_missing_packages_are_skipped(self, launch) -> None:

@@ -305,7 +305,7 @@ class TestHandlers:
         assert done.messages == ["x"]
 
 
-class TestEnds:
+class TestProcessExits:
     async def test_respawn_repeats_up_to_max_retries(self, launch) -> None:
         done = await launch(python("print('up')", respawn=True, respawn_delay=0.01, respawn_max_retries=2))
         assert done.out == "[py-1] up\n" * 3

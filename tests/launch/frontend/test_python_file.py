@@ -210,7 +210,7 @@ def test_non_action_in_group_is_rejected(write: Write) -> None:
 
 
 @pytest.mark.skipif(sys.platform == "win32", reason="links need a right there, without which none are made")
-class TestFilesThatArePutElsewhere:
+class TestLinkedShareFolder:
     """A package whose share folder has another layout than its sources, and contains links to them."""
 
     @pytest.fixture

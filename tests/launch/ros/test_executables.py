@@ -190,21 +190,13 @@ class TestInstalled:
         sourced = workspace_environment(finder, {"AMENT_PREFIX_PATH": str(prefix)})
         assert str(modules) not in sourced.get("PYTHONPATH", "")
 
-    def test_launched_process_finds_packages_of_launcher(self, arm: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    def test_finder_starts_at_folder_of_launcher(self, arm: Path, monkeypatch: pytest.MonkeyPatch) -> None:
         monkeypatch.setenv("LINKWRIGHT_START", str(arm))
         assert PackageFinder().find("arm") == arm
 
-    @pytest.mark.parametrize(
-        ("line", "needed"),
-        [
-            (f"#!{sys.executable}", False),
-            ("#!/bin/sh", False),
-            ("", False),
-            ("#!/no/such/python3", False),
-        ],
-    )
-    def test_scripts_with_suitable_interpreter_run_unchanged(self, write: Write, line: str, needed: bool) -> None:
-        assert needs_our_interpreter(write("script", f"{line}\nprint()\n")) is needed
+    @pytest.mark.parametrize("line", [f"#!{sys.executable}", "#!/bin/sh", "", "#!/no/such/python3"])
+    def test_scripts_with_suitable_interpreter_run_unchanged(self, write: Write, line: str) -> None:
+        assert not needs_our_interpreter(write("script", f"{line}\nprint()\n"))
 
     def test_script_for_older_python_uses_own_interpreter(self, write: Write, tmp_path: Path) -> None:
         other = write("python3", "#!/bin/sh\necho 3 4\n")
@@ -212,7 +204,7 @@ class TestInstalled:
         assert needs_our_interpreter(write("script", f"#!{other}\nprint()\n"))
 
 
-class TestOurs:
+class TestBuiltinExecutables:
     def test_builtin_packages_and_executables_are_listed(self, finder: PackageFinder) -> None:
         assert {"robot_state_publisher", "tf2_ros", "rviz2", "rclcpp_components"} <= builtin_packages()
         found = executables_of(finder, "robot_state_publisher")

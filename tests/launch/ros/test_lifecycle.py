@@ -58,12 +58,13 @@ async def test_change_state_triggers_transition_and_event(launch) -> None:
     done = await launch(
         node,
         managed("two"),
-        log_on_transition("configured", target_lifecycle_node=node, transition="on_configure_success"),
+        log_on_transition("configured", target_lifecycle_node=node, transition="transition_success"),
         log_on_transition("inactive", goal_state="inactive", start_state="configuring"),
         EmitEvent(event=wish),
         ends_when(printed("[launch.user]: inactive")),
     )
     assert done.messages.count("inactive") == 1
+    assert done.messages.count("configured") == 1
     assert node.current_state == "PRIMARY_STATE_INACTIVE"
 
 

@@ -6,6 +6,7 @@ import base64
 import gzip
 import hashlib
 import json
+import os
 import re
 
 import pytest
@@ -38,6 +39,16 @@ def recorded(text: str) -> dict:
 
 def page(text: str) -> str:
     return export_snapshot(snapshot(text), "html").decode()
+
+
+def test_same_files_give_the_same_bytes(tmp_path):
+    for name in ("a.stl", "b.stl"):
+        (tmp_path / name).write_bytes(stl_binary())
+    text = robot_of(link("a", mesh(tmp_path / "a.stl", "")) + link("b", mesh(tmp_path / "b.stl", "")))
+    first = page(text)
+    os.utime(tmp_path / "a.stl", (1_000_000, 1_000_000))
+    assert page(text) == first
+    assert str(tmp_path) not in first
 
 
 def test_html_contains_all_server_messages():

@@ -57,7 +57,7 @@ LIT = """<scene><ambient>0.2 0.2 0.2 1</ambient><background>0 1 1 1</background>
   <direction>0 0.3 -1</direction></light>"""
 
 
-def test_world_lights_are_kept_on_request(tmp_path):
+def test_lights_option_keeps_lights_and_background(tmp_path):
     path = tmp_path / "lit.world"
     path.write_text(world_text(LIT, GROUND, BALL.format(name="ball", pose="1 0 0.2 0 0 0")))
     made = {}

@@ -8,7 +8,7 @@ from geometry_msgs.msg import Twist
 from rclpy.node import Node
 from sensor_msgs.msg import LaserScan
 
-HALF_WIDTH = 0.34  # m: of the robot, with a margin
+HALF_WIDTH = 0.36  # m: of the robot, with a margin
 FAR = 2.2  # m
 DIRECTIONS = np.radians(np.arange(-80.0, 81.0, 4.0))
 
@@ -31,7 +31,7 @@ class Race(Node):
         twist = Twist()
         twist.angular.z = float(np.clip(2.2 * self.direction, -1.5, 1.5))
         ahead = min(room(x, y, 0.0), room(x, y, self.direction / 2))
-        twist.linear.x = float(np.clip(0.9 * (ahead - 0.3), 0.0, 0.6) * max(0.2, math.cos(self.direction)))
+        twist.linear.x = float(np.clip(0.9 * (ahead - 0.35), -0.1, 0.6) * max(0.2, math.cos(self.direction)))
         self.velocity.publish(twist)
 
 

@@ -56,7 +56,7 @@ export class ChecksPanel implements Panel {
   private statusText(): string {
     const words = strings.learning;
     const { results } = this.state;
-    if (results === null || results.is_running) return words.checking;
+    if (results === null || results.is_running) return results?.is_world_paused === true ? words.checkingAlone : words.checking;
     if (results.checked_at === null) return "";
     const time = new Date(results.checked_at * 1000).toLocaleTimeString(languageTag);
     const passedCount = results.checks.filter(({ is_passed: isPassed }) => isPassed).length;

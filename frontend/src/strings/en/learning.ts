@@ -42,6 +42,7 @@ export const learning = {
   checkHint: "Check the step again",
   stepKeys: "Show the previous or next step of the course",
   checking: "Checking…",
+  checkingAlone: "Checking… The world is paused until then.",
   allPassed: (time: string): string => `Passed at ${time}`,
   somePassed: (passed: number, count: number, time: string): string => `${passed} of ${count} checks passed at ${time}`,
   passed: "Passed: ",

@@ -42,6 +42,7 @@ export const learning: typeof english = {
   checkHint: "重新检查这一步",
   stepKeys: "显示课程的上一步或下一步",
   checking: "正在检查…",
+  checkingAlone: "正在检查…世界在此期间暂停。",
   allPassed: (time) => `${time} 通过`,
   somePassed: (passed, count, time) => `${time} 通过 ${passed}/${count} 项检查`,
   passed: "已通过：",

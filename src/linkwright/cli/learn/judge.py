@@ -7,20 +7,21 @@ from __future__ import annotations
 
 import argparse
 import json
+import subprocess
 import sys
-from contextlib import redirect_stdout
+from contextlib import contextmanager, redirect_stdout
 from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING
 
 from linkwright.cli.simulation_options import add_simulation_options
 from linkwright.cli.view import add_viewer_options
-from linkwright.diagnostics import Diagnostic, LinkwrightError, display_path, phrase
+from linkwright.diagnostics import Diagnostic, LinkwrightError, Phrase, display_path, phrase
 from linkwright.diagnostics.translation import language, localized
 from linkwright.files.scratch_folders import ScratchFolder
 
 if TYPE_CHECKING:
-    from collections.abc import Sequence
+    from collections.abc import Iterator, Sequence
 
     from linkwright.learning.judging.exercise import Exercise
     from linkwright.learning.judging.running import RunResult
@@ -61,6 +62,7 @@ def configure_judge(parser: argparse.ArgumentParser) -> None:
         default=3,
         help="the number of runs, which differ in their worlds (default: 3)",
     )
+    _add_rival(parser)
     parser.add_argument("--start", action="store_true", help="create PROGRAM from the template of the exercise")
     parser.add_argument("--json", action="store_true", help="print the result as JSON, in all languages")
 
@@ -74,19 +76,13 @@ def run_judge(arguments: argparse.Namespace) -> int:
     program = arguments.program or Path(f"{exercise.id}.py")
     if arguments.start:
         return _copy_template(exercise, program)
-    if not program.is_file():
-        raise LinkwrightError(
-            Diagnostic(
-                "LEARN142",
-                phrase("there is no program '{path}'", path=display_path(program)),
-                hint=phrase("create it from the template of the exercise with --start"),
-            )
-        )
+    _require_program(program, phrase("create it from the template of the exercise with --start"))
+    rival = _rival_program(exercise, arguments.rival)
     if arguments.seeds < 1:
         raise LinkwrightError(Diagnostic("LEARN143", phrase("--seeds must be at least 1")))
     results: list[RunResult] = []
     with redirect_stdout(sys.stderr):  # where the program prints
-        for result in judge_program(exercise, program, range(arguments.seeds)):
+        for result in judge_program(exercise, program, range(arguments.seeds), rival=rival):
             results.append(result)
             if not arguments.json:
                 print(_run_line(exercise, result), flush=True)
@@ -110,8 +106,37 @@ def configure_world(parser: argparse.ArgumentParser) -> None:
         help="your program, which is created from the template if it does not exist (default: EXERCISE.py)",
     )
     parser.add_argument("--seed", metavar="N", type=int, default=0, help="the seed of the world (default: 0)")
+    _add_rival(parser)
     add_simulation_options(parser)
     add_viewer_options(parser, terminal=False)
+
+
+def _add_rival(parser: argparse.ArgumentParser) -> None:
+    parser.add_argument(
+        "--rival", metavar="FILE", type=Path, help="the program of the other robot (default: that of the exercise)"
+    )
+
+
+def _require_program(program: Path, hint: Phrase | None = None) -> None:
+    if not program.is_file():
+        message = phrase("there is no program '{path}'", path=display_path(program))
+        raise LinkwrightError(Diagnostic("LEARN142", message, hint=hint))
+
+
+def _rival_program(exercise: Exercise, chosen: Path | None) -> Path | None:
+    """Return the program of the other robot, or None if the exercise has no other robot.
+
+    Raises:
+        LinkwrightError: LEARN142, there is no such program; LEARN145, a program is chosen for an exercise with one
+            robot.
+    """
+    if chosen is None:
+        return None if exercise.rival is None else exercise.rival.program
+    if exercise.rival is None:
+        message = phrase("the exercise '{name}' has one robot, so that `--rival` has no effect", name=exercise.id)
+        raise LinkwrightError(Diagnostic("LEARN145", message, hint=phrase("leave out the option")))
+    _require_program(chosen)
+    return chosen.absolute()
 
 
 def run_world(arguments: argparse.Namespace) -> int:
@@ -120,32 +145,51 @@ def run_world(arguments: argparse.Namespace) -> int:
     from linkwright.cli.sim import run
     from linkwright.learning.judging.exercise import find_exercise
     from linkwright.learning.judging.world import write_world
-    from linkwright.packages import PackageFinder
 
     exercise = find_exercise(arguments.exercise)
     program = (arguments.program or Path(f"{exercise.id}.py")).absolute()
+    rival = _rival_program(exercise, arguments.rival)
     if not arguments.headless and not program.exists():
         _copy_template(exercise, program)
     with ScratchFolder("exercise") as folder:
         arrangement = write_world(exercise, arguments.seed, Path(folder), publishes=True)
         words = [str(arrangement.world)]
-        if exercise.robot:
-            words.append(str(PackageFinder(start=[exercise.folder]).resolve(exercise.robot, exercise.folder)))
-            words += [f"{name}:={str(value).lower()}" for name, value in exercise.arguments.items()]
+        if arrangement.robot is not None:
+            words.append(str(arrangement.robot))
         simulated = parser_for("sim").parse_args(words)
         vars(simulated).update(vars(arguments), terminal=not arguments.headless)
         simulated.x, simulated.y, simulated.z, _, _, simulated.Y = arrangement.pose
-        return run(simulated, partial(_show_exercise, exercise, program))
+        with _running_rival(exercise, rival):
+            return run(simulated, partial(_show_exercise, exercise, program, rival))
 
 
-def _show_exercise(exercise: Exercise, program: Path, viewer: Viewer) -> None:
+@contextmanager
+def _running_rival(exercise: Exercise, program: Path | None) -> Iterator[None]:
+    """Run the program of the other robot, if any, in a process with the environment of ``linkwright shell``.
+
+    It starts with the first command to the learner's robot.
+    """
+    if exercise.rival is None or program is None:
+        yield
+        return
+    shell = [sys.executable, "-m", "linkwright", "shell", "--", sys.executable]
+    waiting = ["-m", "linkwright.cli.learn.rival", f"/{exercise.rival.start}", str(program)]
+    command = [*shell, *waiting, *exercise.rival.ros_arguments, "-p", "use_sim_time:=true"]
+    with subprocess.Popen(command, stdin=subprocess.DEVNULL) as process:  # noqa: S603 - the user's own program
+        try:
+            yield
+        finally:
+            process.terminate()
+
+
+def _show_exercise(exercise: Exercise, program: Path, rival: Path | None, viewer: Viewer) -> None:
     from linkwright.learning.page.exercise_guide import ExerciseGuide
     from linkwright.learning.page.feature import CourseFeature
     from linkwright.panels.source_editor.feature import SourceEditorFeature
 
     viewer.add_feature(SourceEditorFeature).edit_workspace(program.parent)
     context = viewer.context
-    viewer.add_feature(CourseFeature).show(ExerciseGuide(exercise, program, context.pages.publish, context.node))
+    viewer.add_feature(CourseFeature).show(ExerciseGuide(exercise, program, context.pages.publish, context.node, rival))
 
 
 def _copy_template(exercise: Exercise, program: Path) -> int:

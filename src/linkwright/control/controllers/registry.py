@@ -9,7 +9,8 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Any
 
-from linkwright.diagnostics import Diagnostic, LinkwrightError, did_you_mean, foreign, phrase
+from linkwright.diagnostics import Diagnostic, LinkwrightError, did_you_mean, phrase
+from linkwright.diagnostics.extension_errors import load_extension
 from linkwright.loading.extensions import extensions
 
 if TYPE_CHECKING:
@@ -43,14 +44,6 @@ def controller_class(type_name: str) -> type[Controller[Any]]:
         message = phrase("no installed package provides a controller of type '{name}'", name=type_name)
         hint = _UNSUPPORTED.get(type_name) or did_you_mean(type_name, controller_types())
         raise LinkwrightError(Diagnostic("CTL103", message, hint=hint))
-    try:
-        loaded_class: type[Controller[Any]] = entry.load()
-    except Exception as error:
-        message = phrase("the controller '{name}' cannot be imported", name=type_name)
-        hint = phrase(
-            "fix the Python package '{package}', whose import fails: {problem}",
-            package=entry.distribution,
-            problem=foreign(error),
-        )
-        raise LinkwrightError(Diagnostic("CTL104", message, hint=hint)) from error
+    message = phrase("the controller '{name}' cannot be imported", name=type_name)
+    loaded_class: type[Controller[Any]] = load_extension(entry, "CTL104", message)
     return loaded_class

@@ -12,6 +12,7 @@ from linkwright.control.hardware.description import ComponentDescription, Hardwa
 from linkwright.control.hardware.interfaces import CommandInterface, StateInterface
 from linkwright.control.hardware.timing import Timing
 from linkwright.diagnostics import Diagnostic, LinkwrightError, foreign, phrase
+from linkwright.diagnostics.extension_errors import load_extension
 from linkwright.graph.lifecycle.states import UNCONFIGURED, LifecycleState
 from linkwright.graph.log.logger import Logger
 from linkwright.loading.extensions import extensions
@@ -128,14 +129,6 @@ def hardware_class(plugin: str) -> type[Hardware] | None:
     entry = extensions(GROUP).get(plugin)
     if entry is None:
         return None
-    try:
-        loaded_class: type[Hardware] = entry.load()
-    except Exception as error:
-        message = phrase("the hardware '{name}' cannot be imported", name=plugin)
-        hint = phrase(
-            "fix the Python package '{package}', whose import fails: {problem}",
-            package=entry.distribution,
-            problem=foreign(error),
-        )
-        raise LinkwrightError(Diagnostic("CTL121", message, hint=hint)) from error
+    message = phrase("the hardware '{name}' cannot be imported", name=plugin)
+    loaded_class: type[Hardware] = load_extension(entry, "CTL121", message)
     return loaded_class

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import filecmp
 from collections.abc import Callable, Iterator, Mapping, Sequence
+from math import dist, hypot
 from pathlib import Path
 
 from linkwright.descriptions.comparison.difference import Difference, DifferenceLocation, Subject, location_of
@@ -19,6 +20,7 @@ from linkwright.descriptions.comparison.facts import (
     visual_blocks,
 )
 from linkwright.descriptions.comparison.matching import Matches, match
+from linkwright.descriptions.comparison.renames import RenameSearch
 from linkwright.diagnostics import LinkwrightError
 from linkwright.files.git_repository import file_hash, lfs_hash
 from linkwright.loading.lean_dataclasses import dataclass, field
@@ -28,6 +30,8 @@ from linkwright.xmltree import Element
 
 _Pair = tuple[Element | None, Element | None]
 """The elements in the old and in the new description, each None if there is none."""
+_FAR = 1e-3
+"""The distance in m, or as a fraction of the distance from the parent, from which two origins certainly differ."""
 _Part = TypeVar("_Part", Link, Joint)
 
 
@@ -76,7 +80,8 @@ class Side:
 def compare(old: Side, new: Side) -> Comparison:
     """Return the differences between two descriptions.
 
-    Links and joints are matched by name. An object with a new name is recognized if everything else is equal. Poses are
+    Links and joints are matched by name. An object with a new name is recognized if everything else is equal, or if
+    enough of it is and no other object is as similar. Poses are
     compared as poses, not as text, with the tolerances in `linkwright.descriptions.comparison.facts`. Elements outside
     the robot model (``<gazebo>``, ``<ros2_control>``, sensors) are compared as XML, ignoring white space, comments and
     the order of attributes.
@@ -92,7 +97,10 @@ class _Comparer:
 
     def run(self) -> Comparison:
         old, new = self.old.robot, self.new.robot
-        self.matches = match(old, new, self._is_same_link, self._is_same_joint)
+        links, joints = match(old, new, self._is_same_link, self._is_same_joint)
+        normalizers = self.old.normalize, self.new.normalize
+        RenameSearch(old, new, links, joints, *normalizers, self._have_same_inertial).run()
+        self.matches = Matches(links, joints)
         differences = [
             *self._robot(),
             *self._link_differences(),
@@ -111,7 +119,13 @@ class _Comparer:
     def _is_same_link(self, old: Link, new: Link) -> bool:
         return not any(self._link_property_differences(old, new))
 
+    def _have_same_inertial(self, old: Link, new: Link) -> bool:
+        old_blocks, new_blocks = link_blocks(old), link_blocks(new)
+        return bool(old_blocks and new_blocks) and all(map(self._are_equal_blocks, old_blocks, new_blocks))
+
     def _is_same_joint(self, old: Joint, new: Joint) -> bool:
+        if old.type != new.type or dist(old.origin.xyz, new.origin.xyz) > _FAR * (1.0 + hypot(*old.origin.xyz)):
+            return False  # without the facts of both, of which a link with many joints has many pairs
         return all(
             difference.property in ("parent", "child", "mimic joint")
             for difference in self._joint_property_differences(old, new)

@@ -131,4 +131,4 @@ def _artifact(file: str) -> dict[str, str]:
         return {"uri": Path(file).absolute().as_uri()}
     from urllib.parse import quote
 
-    return {"uri": quote(relative.replace(os.sep, "/")), "uriBaseId": _ROOT_ID}
+    return {"uri": quote(os.fsencode(relative.replace(os.sep, "/"))), "uriBaseId": _ROOT_ID}

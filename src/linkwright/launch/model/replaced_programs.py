@@ -11,7 +11,8 @@ from collections.abc import Mapping, Sequence
 from pathlib import PurePath
 from typing import TYPE_CHECKING
 
-from linkwright.diagnostics import Diagnostic, LinkwrightError, foreign, phrase
+from linkwright.diagnostics import phrase
+from linkwright.diagnostics.extension_errors import load_extension
 from linkwright.loading.extensions import EntryPoint, extensions
 
 if TYPE_CHECKING:
@@ -44,14 +45,6 @@ def replacing_node(words: Sequence[str], environment: Mapping[str, str]) -> Node
     entry_point = replaced_programs().get(PurePath(words[0]).name) if words else None
     if entry_point is None or shutil.which(words[0], path=environment.get("PATH")):
         return None
-    try:
-        parse_command: CommandParser = entry_point.load()
-    except Exception as error:
-        message = phrase("the node that replaces '{program}' cannot be imported", program=entry_point.name)
-        hint = phrase(
-            "fix the Python package '{package}', whose import fails: {problem}",
-            package=entry_point.distribution,
-            problem=foreign(error),
-        )
-        raise LinkwrightError(Diagnostic("NODE002", message, hint=hint)) from error
+    message = phrase("the node that replaces '{program}' cannot be imported", program=entry_point.name)
+    parse_command: CommandParser = load_extension(entry_point, "NODE002", message)
     return parse_command(words)

@@ -7,12 +7,13 @@ from pathlib import Path
 
 from linkwright.diagnostics import did_you_mean, phrase, quoted_names
 from linkwright.diagnostics.lookalikes import plain_text
+from linkwright.learning.checks.installed import expect_valid_setup
 from linkwright.learning.checks.not_yet import NotYet
 from linkwright.learning.checks.packages import FileFolder, PackageCheck
 from linkwright.packages import PackageFinder
 from linkwright.packages.manifest import package_name
 
-SOURCE_FOLDER = "src"
+SOURCE_FOLDER, SETUP_FILE = "src", "setup.py"
 _UNIT_FACTORS = (10.0, 100.0, 1000.0)
 
 
@@ -41,10 +42,15 @@ class Work(FileFolder):
         """Return a package of the workspace's sources.
 
         Raises:
-            NotYet: there is no such package below ``src``.
+            NotYet: there is no such package below ``src``, or its ``package.xml`` or ``setup.py`` has a syntax error,
+                because of which colcon could not build it.
         """
         if name not in self._packages:
-            self._packages[name] = PackageCheck(name, self._find_package(name), self.finder, self.folder)
+            package = PackageCheck(name, self._find_package(name), self.finder, self.folder)
+            package.expect_manifest()
+            if (package.folder / SETUP_FILE).is_file():
+                expect_valid_setup(package.folder)
+            self._packages[name] = package
         return self._packages[name]
 
     def _find_package(self, name: str) -> Path:

@@ -49,6 +49,29 @@ class Figure:
 
 
 @dataclass(frozen=True)
+class Rival:
+    """The other robot of an exercise, driven by another program.
+
+    Attributes:
+        model: its name in the world, which is also the namespace of its topics.
+        program: the file of the program that drives it, unless another one is chosen.
+        topics: the topics of the robot, without the namespace.
+        start: the topic of them whose first message to the learner's robot starts the program in real time.
+    """
+
+    model: str
+    program: Path
+    topics: tuple[str, ...]
+    start: str
+
+    @property
+    def ros_arguments(self) -> list[str]:
+        """The arguments that make a program for the learner's robot drive this one."""
+        rules = [f"__ns:=/{self.model}", *(f"/{topic}:=/{self.model}/{topic}" for topic in self.topics)]
+        return ["--ros-args", *(word for rule in rules for word in ("-r", rule))]
+
+
+@dataclass(frozen=True)
 class Exercise:
     """A programming exercise whose result a judge measures in simulation.
 
@@ -64,6 +87,7 @@ class Exercise:
         time_limit: the simulated time after which a run ends, in s.
         collision_cost: the points subtracted for each collision of the robot.
         figure: the number by which a program is judged.
+        rival: the other robot, or None.
         settings: further values for the judge.
     """
 
@@ -78,12 +102,18 @@ class Exercise:
     time_limit: float
     collision_cost: float
     figure: Figure
+    rival: Rival | None = None
     settings: Mapping[str, Any] = field(default_factory=dict)
 
     @property
     def id(self) -> str:
         """The name of the exercise in commands."""
         return self.folder.name
+
+    @property
+    def models(self) -> tuple[str, ...]:
+        """The names of the robots in the world, the learner's first."""
+        return (self.model,) if self.rival is None else (self.model, self.rival.model)
 
     @property
     def template(self) -> Path:
@@ -179,5 +209,10 @@ def _exercise_from(folder: Path, data: Mapping[str, Any]) -> Exercise:
         float(data["time_limit"]),
         float(data.get("collision_cost", 10.0)),
         Figure(LocalText(figure["name"]), str(figure["unit"]), none, half, full, int(figure.get("decimals", 1))),
+        _rival_from(folder, data["rival"]) if "rival" in data else None,
         dict(data.get("settings", {})),
     )
+
+
+def _rival_from(folder: Path, data: Mapping[str, Any]) -> Rival:
+    return Rival(str(data["model"]), folder / str(data["program"]), tuple(map(str, data["topics"])), str(data["start"]))

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from itertools import pairwise
 from math import atan2, hypot
+from typing import NamedTuple
 from xml.sax.saxutils import quoteattr
 
 Color = tuple[float, float, float]
@@ -18,17 +19,27 @@ BLUE: Color = (0.1, 0.25, 0.85)
 YELLOW: Color = (0.9, 0.8, 0.1)
 
 
+class OtherRobot(NamedTuple):
+    """A robot to add to a world. The attributes are the arguments of `Scene.add_robot`."""
+
+    file: str
+    name: str
+    pose: tuple[float, float, float]
+
+
 class Scene:
     """The models to add to a world, and the initial pose of the robot.
 
     Attributes:
         start: the initial x and y of the robot in m, and its yaw in rad.
         start_height: the initial height of the robot's frame, in m.
+        robots: the other robots, added by `add_robot`.
     """
 
     def __init__(self) -> None:
         self.start = (0.0, 0.0, 0.0)
         self.start_height = 0.0
+        self.robots: list[OtherRobot] = []
         self._models: list[str] = []
 
     def add_box(
@@ -155,6 +166,17 @@ class Scene:
         self._models.append(
             f'<model name={quoteattr(name)}><static>true</static><link name="link">{"".join(pieces)}</link></model>'
         )
+
+    def add_robot(self, file: str, name: str, pose: Sequence[float]) -> None:
+        """Add another robot, whose plugins need a namespace of their own.
+
+        Args:
+            file: its URDF or xacro file, relative to the folder of the exercise, or its ``package://`` URI.
+            name: the name of the model.
+            pose: its x and y in m, and its yaw in rad.
+        """
+        x, y, yaw = pose
+        self.robots.append(OtherRobot(file, name, (x, y, yaw)))
 
     def add_sdf(self, text: str) -> None:
         """Add an SDF ``<model>`` or ``<include>``."""

@@ -19,6 +19,7 @@ from linkwright.diagnostics import phrase
 from linkwright.learning.errors import file_error
 from linkwright.learning.judging.exercise import Exercise, load_exercise
 from linkwright.learning.judging.judge import Judge
+from linkwright.learning.judging.robots import include_robot, write_robot
 from linkwright.learning.judging.scene import Scene
 from linkwright.messages import String
 from linkwright.simulation.plugins.plugin import SimulatedPlugin
@@ -30,14 +31,16 @@ _UPDATE_RATE_HZ, _STATUS_RATE_HZ = 50.0, 5.0
 
 @dataclass(frozen=True)
 class Arrangement:
-    """The world of a run, and the initial pose of the robot.
+    """The world of a run, the robot and its initial pose.
 
     Attributes:
         world: the file of the world.
+        robot: the file of the robot, or None if the world contains it.
         pose: the pose of the robot's frame: x, y, z in m, roll, pitch, yaw in rad.
     """
 
     world: Path
+    robot: Path | None
     pose: tuple[float, float, float, float, float, float]
 
 
@@ -60,7 +63,7 @@ def create_judge(exercise: Exercise, seed: int) -> Judge:
 
 
 def write_world(exercise: Exercise, seed: int, folder: Path, *, publishes: bool) -> Arrangement:
-    """Write the world of a run into a folder.
+    """Write the world of a run and its robot into a folder.
 
     Args:
         exercise: the exercise.
@@ -69,11 +72,13 @@ def write_world(exercise: Exercise, seed: int, folder: Path, *, publishes: bool)
         publishes: whether the judge publishes its state, which a judged program must not receive.
 
     Raises:
-        LinkwrightError: LEARN140, the exercise has no judge.
-        OSError: the file cannot be written.
+        LinkwrightError: LEARN140, the exercise has no judge; or the robot has errors.
+        OSError: a file cannot be written.
     """
     scene = Scene()
     create_judge(exercise, seed).arrange(scene)
+    for other in scene.robots:
+        scene.add_sdf(include_robot(other, exercise.folder, folder))
     plugin = (
         f'<plugin name="judge" filename="liblinkwright_judge.so"><exercise>{escape(str(exercise.folder))}</exercise>'
         f"<seed>{seed}</seed><publish>{str(publishes).lower()}</publish></plugin>"
@@ -82,7 +87,8 @@ def write_world(exercise: Exercise, seed: int, folder: Path, *, publishes: bool)
     path = folder / f"{exercise.id}-{seed}.sdf"
     path.write_text(scene.insert_into(text, plugin), encoding="utf-8")
     x, y, yaw = scene.start
-    return Arrangement(path, (x, y, scene.start_height, 0.0, 0.0, yaw))
+    robot = write_robot(exercise.robot, exercise.arguments, exercise.folder, folder) if exercise.robot else None
+    return Arrangement(path, robot, (x, y, scene.start_height, 0.0, 0.0, yaw))
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -122,7 +128,7 @@ class JudgePlugin(SimulatedPlugin[Parameters]):
 
     def _watch(self) -> None:
         if not self._has_begun:
-            if self._exercise.model not in self.simulation.scene.models:
+            if not all(model in self.simulation.scene.models for model in self._exercise.models):
                 return
             self.judge.begin(self.simulation)
             self._has_begun = True

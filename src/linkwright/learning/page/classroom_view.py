@@ -81,9 +81,11 @@ class ClassroomView(ModelView):
         from linkwright.learning.page.course_guide import CourseGuide
         from linkwright.learning.page.feature import CourseFeature
         from linkwright.panels.source_editor.feature import SourceEditorFeature
+        from linkwright.panels.terminal.feature import TerminalFeature
 
         super()._set_viewer(viewer)
         viewer.add_feature(SourceEditorFeature).edit_workspace(self._room.workspace)
         context = viewer.context
-        guide = CourseGuide(self._room, context.pages.publish, context.node.get_logger(), self.show)
+        programs = viewer.add_feature(TerminalFeature).programs
+        guide = CourseGuide(self._room, context.pages.publish, context.node.get_logger(), self.show, programs)
         viewer.add_feature(CourseFeature).show(guide)

@@ -18,11 +18,15 @@ from linkwright.learning.page.check_runner import CheckRunner
 from linkwright.learning.page.guide import Guide, Publish, problem_of
 from linkwright.learning.page.step_html import step_html
 from linkwright.learning.progress import PROGRESS_FILE
+from linkwright.page.program_pages import ProgramPages
 from linkwright.page.protocol import learning as messages
 from linkwright.page.protocol.message import PageMessage, ServerMessage
 
 _DEBOUNCE_MS = 400
 """The longest time, in ms, for which changes of files are collected before the checks run."""
+
+_QUICK_S = 1.0
+"""The longest time, in s, for which checks run beside a running world. Checks that take longer simulate themselves."""
 
 _UNWATCHED_FOLDERS = frozenset({"build", "install", "log", "__pycache__", REPLACED_FOLDER})
 """Folders of the workspace whose files are generated."""
@@ -37,16 +41,25 @@ class CourseGuide(Guide):
         logger: logs the reason if files cannot be watched.
         on_changed: called with the robot's file to show beside the step, or None, when a step is opened and when
             files of the workspace have changed.
+        programs: the programs in the terminals, whose worlds are paused while checks simulate.
     """
 
     def __init__(
-        self, room: Classroom, publish: Publish, logger: Logger, on_changed: Callable[[Path | None], object]
+        self,
+        room: Classroom,
+        publish: Publish,
+        logger: Logger,
+        on_changed: Callable[[Path | None], object],
+        programs: ProgramPages,
     ) -> None:
         self._room = room
         self._publish = publish
         self._logger = logger
         self._on_changed = on_changed
         self._runner = CheckRunner(room.workspace, self._show_result)
+        self._programs = programs
+        programs.on_pause = lambda: self._publish(self._checks())
+        self._timer: asyncio.TimerHandle | None = None
         self._results: dict[str, messages.StepChecks] = {}
         self._step = room.current_step
         self._watch = asyncio.get_running_loop().create_task(self._watch_files(room.workspace))
@@ -73,6 +86,8 @@ class CourseGuide(Guide):
         """Stop watching files and running checks."""
         self._watch.cancel()
         self._runner.close()
+        self._stop_timer()
+        self._programs.resume_worlds()
 
     def _open(self, step: Step) -> None:
         self._room.open_step(step)
@@ -84,7 +99,14 @@ class CourseGuide(Guide):
 
     def _check(self) -> None:
         self._runner.request(self._step, self._room.progress.step(self._step.address).answer)
+        if self._timer is None:
+            self._timer = asyncio.get_running_loop().call_later(_QUICK_S, self._programs.pause_worlds)
         self._publish(self._checks())
+
+    def _stop_timer(self) -> None:
+        if self._timer is not None:
+            self._timer.cancel()
+            self._timer = None
 
     def _answer(self, message: messages.AnswerStep) -> None:
         self._room.answer(self._step, message.answer.strip())
@@ -114,9 +136,11 @@ class CourseGuide(Guide):
         self._check()
 
     def _show_result(self, step: Step, result: StepResult) -> None:
+        self._stop_timer()
+        self._programs.resume_worlds()
         items = [_check_item(check) for check in result.checks]
         self._results[step.address] = messages.StepChecks(
-            step.address, is_running=False, checks=items, checked_at=time.time()
+            step.address, is_running=False, is_world_paused=False, checks=items, checked_at=time.time()
         )
         try:
             self._room.record_result(step, result)
@@ -178,6 +202,7 @@ class CourseGuide(Guide):
         return messages.StepChecks(
             self._step.address,
             is_running=self._runner.is_running,
+            is_world_paused=self._programs.is_world_paused,
             checks=[] if known is None else known.checks,
             checked_at=None if known is None else known.checked_at,
         )

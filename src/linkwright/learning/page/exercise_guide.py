@@ -12,18 +12,18 @@ from typing import Any
 
 from linkwright.diagnostics import Diagnostic, LinkwrightError, display_path, foreign, phrase
 from linkwright.diagnostics.translation import LANGUAGES
-from linkwright.graph import Client, Node
+from linkwright.graph import Node
+from linkwright.hosting.world_pause import WorldPause
 from linkwright.learning.judging.exercise import Exercise
 from linkwright.learning.judging.world import STATUS_TOPIC
 from linkwright.learning.local_text import LocalText
 from linkwright.learning.page.guide import Guide, Publish
 from linkwright.learning.page.step_html import step_html
-from linkwright.messages import String, get_service
+from linkwright.messages import String
 from linkwright.page.protocol import learning as messages
 from linkwright.page.protocol.message import PageMessage, ServerMessage
 
 _PASS_SCORE = 50.0
-_PAUSE_SERVICE, _RESUME_SERVICE = "/pause_physics", "/unpause_physics"
 _NO_STATE = phrase("the world has not sent the state of the judge yet")
 
 
@@ -39,18 +39,21 @@ class ExerciseGuide(Guide):
         program: the learner's program.
         publish: sends a message to all pages.
         node: the node that subscribes to the state of the judge.
+        rival: the program of the other robot, if the exercise has one.
     """
 
-    def __init__(self, exercise: Exercise, program: Path, publish: Publish, node: Node) -> None:
+    def __init__(
+        self, exercise: Exercise, program: Path, publish: Publish, node: Node, rival: Path | None = None
+    ) -> None:
         self._exercise = exercise
         self._program = program
+        self._rival = rival
         self._publish = publish
         self._state: Mapping[str, Any] | None = None
         self._scores: list[messages.StepCheck] = []
         self._judged_at: float | None = None
         self._task: asyncio.Task[None] | None = None
-        empty = get_service("std_srvs/srv/Empty")
-        self._pause, self._resume = (node.create_client(empty, name) for name in (_PAUSE_SERVICE, _RESUME_SERVICE))
+        self._world = WorldPause(node)
         node.create_subscription(String, STATUS_TOPIC, self._receive, 10)
 
     def opening_messages(self) -> list[ServerMessage]:
@@ -78,8 +81,11 @@ class ExerciseGuide(Guide):
         self._publish(self._checks())
 
     async def _judge(self) -> None:
-        self._call(self._pause)
+        self._world.begin()
+        self._publish(self._checks())
         command = [sys.executable, "-m", "linkwright", "learn", "judge", str(self._exercise.folder), str(self._program)]
+        if self._rival is not None:
+            command += ["--rival", str(self._rival)]
         process = await asyncio.create_subprocess_exec(
             *command, "--json", stdout=asyncio.subprocess.PIPE, stderr=asyncio.subprocess.PIPE
         )
@@ -89,7 +95,7 @@ class ExerciseGuide(Guide):
             process.kill()
             raise
         self._task, self._judged_at = None, time.time()
-        self._call(self._resume)
+        self._world.end()
         try:
             self._scores = [self._score(run) for run in json.loads(output)["runs"]]
         except (ValueError, KeyError):
@@ -97,10 +103,6 @@ class ExerciseGuide(Guide):
             message = phrase("the program cannot be judged: {reason}", reason=reason)
             self._publish(messages.CourseProblem(message, ""))
         self._publish(self._checks())
-
-    def _call(self, client: Client[Any, Any]) -> None:
-        if client.service_is_ready():
-            client.call_async(client.srv_type.Request())
 
     def _course(self) -> messages.Course:
         item = messages.CourseStepItem(
@@ -132,6 +134,7 @@ class ExerciseGuide(Guide):
         return messages.StepChecks(
             self._exercise.id,
             is_running=self._task is not None,
+            is_world_paused=self._world.is_active,
             checks=[self._live(), *self._scores],
             checked_at=self._judged_at,
         )

@@ -82,7 +82,7 @@ class StepCheck(Record):
 
 
 class StepChecks(ServerMessage):
-    """The last results of the checks of a step, and whether the checks run.
+    """The last results of the checks of a step, whether the checks run, and whether they have paused a running world.
 
     `checks` is empty before the first results. `checked_at` is the time of the results in seconds since the epoch, or
     None if there are none.
@@ -90,6 +90,7 @@ class StepChecks(ServerMessage):
 
     address: str
     is_running: bool
+    is_world_paused: bool
     checks: list[StepCheck]
     checked_at: float | None
 

@@ -20,6 +20,7 @@ from linkwright.page.protocol.robot import RobotScene
 from linkwright.page.server import PAGE_FOLDER
 from linkwright.panels.export.snapshot import FileSet, Snapshot, mesh_addresses
 
+_PROGRAM = f"Linkwright {__version__}"
 _PAGE = """\
 <!doctype html>
 <html lang="en">
@@ -48,6 +49,18 @@ def html_of(snapshot: Snapshot) -> bytes:
     Raises:
         LinkwrightError: VIEW202, the page of this installation was not built.
     """
+    return recorded_json(snapshot).join(page_around(snapshot.name)).encode()
+
+
+def page_around(title: str) -> tuple[str, str]:
+    """Return the page before and after the place for the recorded messages, for several snapshots with one program.
+
+    Args:
+        title: the title of the page.
+
+    Raises:
+        LinkwrightError: VIEW202, the page of this installation was not built.
+    """
     folder = PAGE_FOLDER / "export"
     try:
         script = _script(folder)
@@ -62,16 +75,10 @@ def html_of(snapshot: Snapshot) -> bytes:
             )
         ) from None
     script = script.replace("</script", "<\\/script").replace("<!--", "<\\!--")
-    program = f"Linkwright {__version__}"
-    text = _PAGE.format(
-        policy=_policy(script),
-        program=program,
-        title=html.escape(snapshot.name),
-        style=style.replace("</style", "<\\/style"),
-        recorded=_recorded_json(snapshot, program),
-        script=script,
-    )
-    return text.encode()
+    before, after = _PAGE.split("{recorded}")
+    style = style.replace("</style", "<\\/style")
+    head = before.format(policy=_policy(script), program=_PROGRAM, title=html.escape(title), style=style)
+    return head, after.format(script=script)
 
 
 def _script(folder: Path) -> str:
@@ -90,18 +97,18 @@ def _policy(script: str) -> str:
     )
 
 
-def _recorded_json(snapshot: Snapshot, program: str) -> str:
+def recorded_json(snapshot: Snapshot) -> str:
     """Return messages, binary frames and files for the page, as JSON to embed in HTML."""
     robots = [message for message in snapshot.messages if isinstance(message, RobotScene)]
     files = FileSet(snapshot.meshes).collect([*mesh_addresses(robots), *snapshot.marker_meshes])
-    messages = without_secrets(",".join(encode(message) for message in snapshot.messages))
+    messages = ",".join(encode(message) for message in snapshot.messages)
     other_values = {
-        "program": program,
+        "program": _PROGRAM,
         "display": snapshot.scene.display,
         "awaits_size": snapshot.awaits_size,
         "spacing": snapshot.spacing,
         "frames": [base64.b64encode(frame).decode() for frame in snapshot.frames],
-        "files": {without_secrets(address): base64.b64encode(data).decode() for address, data in files.items()},
+        "files": {address: base64.b64encode(data).decode() for address, data in files.items()},
     }
-    text = f'{{"messages":[{messages}],{json.dumps(other_values)[1:]}'
+    text = without_secrets(f'{{"messages":[{messages}],{json.dumps(other_values)[1:]}')
     return text.replace("<", "\\u003c")

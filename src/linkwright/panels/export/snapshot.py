@@ -174,7 +174,7 @@ def referenced_files(suffix: str, data: bytes) -> list[str]:
     return [name for name in names if not name.startswith(("data:", "/", "file:", "http:", "https:"))]
 
 
-_UNCHANGED_MESSAGES = (DisplayProperties, FrameTable, Hello, SavedViews, ViewClasses, ViewState)
+_UNCHANGED_MESSAGES = (DisplayProperties, FrameTable, SavedViews, ViewClasses, ViewState)
 """Messages that are included unchanged, because they reveal nothing about the machine of the program."""
 
 _PATH_PROPERTIES = frozenset({"Description File"})
@@ -301,6 +301,8 @@ def take_snapshot(
             messages.append(replace(message, links=[replace(link, place=None) for link in message.links]))
         elif isinstance(message, ComparedDescriptions):
             messages.append(without_paths(message))
+        elif isinstance(message, Hello):
+            messages.append(replace(message, run=""))
         elif isinstance(message, _UNCHANGED_MESSAGES):
             messages.append(message)
     controls = _joint_controls(robot)

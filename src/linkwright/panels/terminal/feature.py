@@ -83,6 +83,11 @@ class TerminalFeature(PageFeature):
             programs.on_change = self._report_program_pages
         self._report()
 
+    @property
+    def programs(self) -> ProgramPages:
+        """The pages of programs in terminals; there are none before `enable`."""
+        return self._programs or ProgramPages()
+
     def opening_messages(self) -> list[ServerMessage]:
         """Return the terminals, if pages may run shells."""
         return [] if self._folder is None else [self._state(None)]

@@ -15,6 +15,7 @@ from typing import Any, get_type_hints
 import numpy as np
 
 from linkwright.diagnostics import Diagnostic, LinkwrightError, Phrase, did_you_mean, phrase
+from linkwright.diagnostics.extension_errors import load_extension
 from linkwright.graph import SENSOR_DATA_QOS, Graph, Node, ParameterDescriptor, Subscription
 from linkwright.loading.extensions import extensions
 from linkwright.messages import Time, get_message
@@ -151,7 +152,9 @@ def _make_filter(node: Node, prefix: str, settings: dict[str, Any]) -> ScanFilte
         raise _parameter_error(
             "NODE451", phrase("there is no filter '{kind}' ({name})", kind=type_name, name=f"{prefix}type"), hint
         )
-    filter_class = entry_point.load()
+    filter_class = load_extension(
+        entry_point, "NODE453", phrase("the filter '{name}' cannot be imported", name=type_name)
+    )
     field_types = get_type_hints(filter_class)
     given_values = settings.get("params") or {}
     parameters = {field.name: field for field in fields(filter_class) if field.init}

@@ -6,9 +6,12 @@ from typing import Any
 
 from linkwright.diagnostics import Diagnostic, Severity, Span, phrase, to_data
 from linkwright.review.changes import Change, Effect, Location, Review, Subject
+from linkwright.review.paths import PathComparison
 from linkwright.review.reports.sections import sentence_of
 
 BREAKING_CODE = "REV201"
+_DIGITS = 6
+"""The digits after the decimal point of times in s and positions in m."""
 
 
 def as_data(review: Review) -> dict[str, Any]:
@@ -57,8 +60,31 @@ def _subject(subject: Subject) -> dict[str, Any]:
             {"name": str(figure.name), "old": figure.old, "new": figure.new, "unit": figure.unit}
             for figure in subject.figures
         ],
+        "paths": [_paths(comparison) for comparison in subject.paths],
         "problems": [str(problem.text) for problem in subject.problems],
     }
+
+
+def _paths(comparison: PathComparison) -> dict[str, Any]:
+    """Return the paths of runs with the same parameters: times in s, positions in m."""
+    return {
+        "name": comparison.name,
+        "parameters": comparison.parameters,
+        "runs": [
+            {
+                "seed": pair.seed,
+                "distance": _rounded(pair.distance),
+                "time": _rounded(pair.time),
+                "old": [list(map(_rounded, point)) for point in pair.old],
+                "new": [list(map(_rounded, point)) for point in pair.new],
+            }
+            for pair in comparison.shown
+        ],
+    }
+
+
+def _rounded(number: float) -> float:
+    return round(number, _DIGITS) + 0.0
 
 
 def _change(change: Change) -> dict[str, Any]:

@@ -9,6 +9,8 @@ from html import escape
 from linkwright.diagnostics import Diagnostic, Phrase, phrase
 from linkwright.diagnostics.translation import language, localized
 from linkwright.review.changes import Change, Effect, Figure, Review, Subject, ViewImages
+from linkwright.review.reports.path_plots import PLOT_STYLE, path_plot
+from linkwright.review.reports.scene_page import SCENE_STYLE, Scenes
 from linkwright.review.reports.sections import Section, cases_text, repeated_text, sections_of, sentence_of, summary
 
 _STYLE = """
@@ -49,19 +51,21 @@ def as_html(review: Review) -> str:
     """Return the report as a page in the user's language, with views of both robots under a slider."""
     new = review.new_name or localized(phrase("working tree"))
     title = phrase("Robot review: {old} to {new}", old=review.old_name, new=new)
+    scenes = Scenes(review.subjects)
     parts = [
         f"<h1>{_text(title)}</h1><p class='soft'>{_text(summary(review))}</p>",
         *_breaking(review.breaking_changes),
-        *(_section(section) for section in sections_of(review)),
+        *(_section(section, scenes) for section in sections_of(review)),
         *_findings(phrase("New findings"), review.new_findings),
         *_findings(phrase("Fixed findings"), review.fixed_findings),
         *_list(phrase("Other changed files"), [f"<code>{escape(path)}</code>" for path in review.other_files]),
         *_list(phrase("Notes"), [_text(note) for note in review.notes]),
     ]
     head = f'<meta charset="utf-8"><meta name="viewport" content="width=device-width"><title>{_text(title)}</title>'
+    style = f"<style>{_STYLE}{PLOT_STYLE}{SCENE_STYLE}</style>"
     return (
-        f'<!doctype html>\n<html lang="{language()}"><head>{head}<style>{_STYLE}</style></head>'
-        f"<body><main>{''.join(parts)}</main><script>{_SCRIPT}</script></body></html>\n"
+        f'<!doctype html>\n<html lang="{language()}"><head>{head}{style}</head>'
+        f"<body><main>{''.join(parts)}</main><script>{_SCRIPT}</script>{scenes.script}</body></html>\n"
     )
 
 
@@ -71,15 +75,16 @@ def _breaking(changes: Sequence[tuple[Subject, Change]]) -> Iterator[str]:
         yield from _list(phrase("Breaking changes"), items)
 
 
-def _section(section: Section) -> str:
+def _section(section: Section, scenes: Scenes) -> str:
     subject = section.subject
     items = [_change(change, subject) for change in section.changes]
     items += [_text(repeated_text(path, count)) for path, count in section.repeated]
     items += [f"<span class='breaking'>{_text(problem.text)}</span>" for problem in subject.problems]
     changes = f"<ul>{''.join(f'<li>{item}</li>' for item in items)}</ul>" if items else ""
+    plots = "".join(map(path_plot, subject.paths))
     return (
         f"<h2><code>{escape(subject.path)}</code></h2><section>"
-        f"{_images(subject.images)}{_figures(subject.figures)}{changes}</section>"
+        f"{_images(subject.images)}{scenes.element(subject.scene)}{_figures(subject.figures)}{changes}{plots}</section>"
     )
 
 

@@ -5,14 +5,14 @@ from __future__ import annotations
 import asyncio
 from abc import ABC, abstractmethod
 from collections.abc import Iterable
-from typing import Any
+from typing import Any, ClassVar
 
 from linkwright.diagnostics import foreign, phrase
 from linkwright.geometry.single import Transform
 from linkwright.graph import TransformException
 from linkwright.page.files import MeshIndex
 from linkwright.rviz.config.rviz_config import DisplayConfig
-from linkwright.rviz.config.schema import Path, PropertySpec, Schema, topic_spec
+from linkwright.rviz.config.schema import FIXED_FRAME, Path, PropertySpec, Schema, topic_spec
 from linkwright.rviz.displays.base.display import DisplayHost, Pose
 from linkwright.rviz.displays.base.stored_markers import StoredMarkersDisplay
 from linkwright.rviz.displays.base.topic_display import TOPIC
@@ -49,7 +49,9 @@ class MarkerDisplay(StoredMarkersDisplay):
 
     CLASS = "rviz_default_plugins/Marker"
     MESSAGE = "visualization_msgs/msg/Marker"
-    SCHEMA = (topic_spec(default="visualization_marker", description="visualization_msgs/msg/Marker", filter_size=10),)
+    SCHEMA: ClassVar[Schema] = (
+        topic_spec(default="visualization_marker", description="visualization_msgs/msg/Marker", filter_size=10),
+    )
     FOLLOWS_TRANSFORMS = True
 
     def __init__(self, host: DisplayHost, identity: str, config: DisplayConfig) -> None:
@@ -168,14 +170,15 @@ class MarkerDisplay(StoredMarkersDisplay):
 
     def _place_marker(self, identity: str, marker: _Marker) -> None:
         fixed_frame = self.host.frames.fixed_frame
+        marker_frame = fixed_frame if marker.frame == FIXED_FRAME else marker.frame
         shape = marker.reading.shape
         try:
-            frame = self._frame_pose(fixed_frame, marker.frame, 0 if marker.locked else marker.stamp_ns)
+            frame = self._frame_pose(fixed_frame, marker_frame, 0 if marker.locked else marker.stamp_ns)
         except TransformException as error:
             reason = error.diagnostics[0].message
             text = phrase(
                 "For frame [{frame}]: No transform to fixed frame [{fixed_frame}].  TF error: [{reason}]",
-                frame=marker.frame,
+                frame=marker_frame,
                 fixed_frame=fixed_frame,
                 reason=reason,
             )
@@ -190,7 +193,7 @@ class MarkerDisplay(StoredMarkersDisplay):
         else:
             self.delete_status_row(identity)
         if marker.locked:
-            shape.frame, shape.pose = marker.frame, list(marker.reading.pose)
+            shape.frame, shape.pose = marker_frame, list(marker.reading.pose)
         else:
             shape.frame, shape.pose = "", marker_pose(frame, marker.reading)
         self._store.put(shape)
@@ -237,7 +240,9 @@ class MarkerArrayDisplay(MarkerDisplay):
 
     CLASS = "rviz_default_plugins/MarkerArray"
     MESSAGE = "visualization_msgs/msg/MarkerArray"
-    SCHEMA = (topic_spec(default="visualization_marker_array", description="visualization_msgs/msg/MarkerArray"),)
+    SCHEMA: ClassVar[Schema] = (
+        topic_spec(default="visualization_marker_array", description="visualization_msgs/msg/MarkerArray"),
+    )
 
     def process_message(self, message: Any, pose: Pose | None) -> None:
         """Apply the actions of the markers in order."""
@@ -269,7 +274,7 @@ class MessageMarkersDisplay(MarkerArrayDisplay, ABC):
     """
 
     DRAWN_AS = MarkerArrayDisplay.CLASS
-    SCHEMA = (topic_spec(),)
+    SCHEMA: ClassVar[Schema] = (topic_spec(),)
 
     @abstractmethod
     def markers(self, message: Any) -> Iterable[Any]:
@@ -282,7 +287,8 @@ class MessageMarkersDisplay(MarkerArrayDisplay, ABC):
 
         Returns:
             Messages of type visualization_msgs/msg/Marker, each with a unique pair of namespace and ID. A marker
-            without a frame is placed in the frame of the message's header, at its time.
+            without a frame is placed in the frame of the message's header, at its time, or in the Fixed Frame if the
+            message has no header. ``<Fixed Frame>``, the default of properties of kind ``frame``, is the Fixed Frame.
         """
 
     def process_message(self, message: Any, pose: Pose | None) -> None:
@@ -290,7 +296,11 @@ class MessageMarkersDisplay(MarkerArrayDisplay, ABC):
         markers_to_show = list(self.markers(message))
         header = getattr(message, "header", None)
         for marker in markers_to_show:
-            if not marker.header.frame_id and header is not None:
+            if marker.header.frame_id:
+                continue
+            if header is None:
+                marker.header.frame_id = FIXED_FRAME
+            else:
                 marker.header = header
         self._check_duplicates(markers_to_show)
         for identity in self._markers.keys() - {marker_id(marker) for marker in markers_to_show}:

@@ -15,7 +15,8 @@ from __future__ import annotations
 from functools import cache
 from typing import TYPE_CHECKING
 
-from linkwright.diagnostics import Diagnostic, LinkwrightError, foreign, phrase
+from linkwright.diagnostics import phrase
+from linkwright.diagnostics.extension_errors import load_extension
 from linkwright.loading.extensions import EntryPoint, extensions
 from linkwright.sdf.plugins import Plugin, library_name
 
@@ -93,14 +94,6 @@ def _find_class(group: str, name: str) -> PluginClass | None:
 
 @cache
 def _load(entry: EntryPoint) -> PluginClass:
-    try:
-        class_: PluginClass = entry.load()
-    except Exception as error:
-        message = phrase("the plugin '{name}' cannot be imported", name=entry.name)
-        hint = phrase(
-            "fix the Python package '{package}', whose import fails: {problem}",
-            package=entry.distribution,
-            problem=foreign(error),
-        )
-        raise LinkwrightError(Diagnostic("SIM136", message, hint=hint)) from error
+    message = phrase("the plugin '{name}' cannot be imported", name=entry.name)
+    class_: PluginClass = load_extension(entry, "SIM136", message)
     return class_

@@ -39,7 +39,16 @@ _OWN_FOLDERS = (str(Path(__file__).parents[2]), str(Path(threading.__file__).par
 
 
 class BudgetExceededError(RuntimeError):
-    """Raised when a program has computed for longer than its budget without waiting."""
+    """Raised when a program has computed for longer than its budget without waiting.
+
+    Args:
+        message: the message.
+        program: the program.
+    """
+
+    def __init__(self, message: str, program: Owner) -> None:
+        super().__init__(message)
+        self.program = program
 
 
 class EndedByTest(SystemExit):
@@ -228,7 +237,8 @@ class Turns:
                 self._kill_running(thread)
                 raise BudgetExceededError(
                     f"a program has computed for more than {budget_s:g} s without waiting, {place}: "
-                    "a loop that waits for a message or for time must spin or sleep"
+                    "a loop that waits for a message or for time must spin or sleep",
+                    thread.owner,
                 )
 
     def _is_returned_within(self, budget_s: float) -> bool:

@@ -9,6 +9,7 @@ from __future__ import annotations
 from pathlib import Path
 
 from linkwright.diagnostics import Diagnostic, LinkwrightError, did_you_mean, phrase, quoted_names
+from linkwright.diagnostics.extension_errors import load_extension
 from linkwright.loading.extensions import extensions
 from linkwright.model_files import find_model, model_table
 from linkwright.vision.detector import Detector
@@ -35,12 +36,13 @@ def make_detector(model: str, options: DetectorOptions) -> Detector:
     The name can belong to a model that `linkwright models get` has fetched.
 
     Raises:
-        LinkwrightError: VISION102 there is no such detector or file, VISION104 the file has another format; or an error
-            of the detector itself.
+        LinkwrightError: VISION102 there is no such detector or file, VISION104 the file has another format, VISION113
+            the package that provides the detector cannot be imported; or an error of the detector itself.
     """
     entry_point = extensions(_GROUP).get(model)
     if entry_point is not None:
-        detector: Detector = entry_point.load()(options)
+        message = phrase("the detector '{name}' cannot be imported", name=model)
+        detector: Detector = load_extension(entry_point, "VISION113", message)(options)
         return detector
     entry = model_table().get(model)
     file = find_model(entry) if entry is not None and entry.kind == _MODEL_KIND else Path(model).expanduser()

@@ -1,0 +1,70 @@
+"""The frames of the links of two robots, in a frame that both robots have."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+
+import numpy as np
+from numpy.typing import NDArray
+
+from linkwright.geometry.shapes import IDENTITY, Placement
+from linkwright.picture.link_frames import link_frames
+from linkwright.urdf import Robot
+
+Array = NDArray[np.float64]
+
+UNMOVED = Placement(IDENTITY, (0.0, 0.0, 0.0))
+_TOLERANCE = 1e-6
+"""The difference in m, and between the entries of rotation matrices, up to which a link has not moved."""
+
+
+class SharedFrames:
+    """The frames of the links of two robots, with all joints at the positions at which joint_state_publisher starts.
+
+    The root link of the new robot may be another one, such as a `base_footprint` below the old root. So the frames of
+    the new robot are placed so that a link of both robots is in the same place: the old root link, or else the first
+    one below it that the new robot has.
+
+    Args:
+        old: the old robot.
+        new: the new robot.
+        links: the new names of the links that both robots have, by old name.
+
+    Attributes:
+        old: the frames of the old robot in its root link's frame, by link.
+        new: the frames of the new robot in the same frame, by link.
+        reference: the new name of the link that is in the same place; empty if the robots have no link in common.
+        are_aligned: whether this link is not the root link of both robots.
+        new_root: the frame of the new root link.
+    """
+
+    def __init__(self, old: Robot, new: Robot, links: Mapping[str, str]) -> None:
+        self._links = links
+        self.old: Mapping[str, Placement] = link_frames(old, {})
+        own_frames = link_frames(new, {})
+        shared = (name for name in self.old if links.get(name) in own_frames)
+        reference = next(shared, None)
+        self.reference = "" if reference is None else links[reference]
+        self.new_root = UNMOVED
+        self.are_aligned = reference is not None and (reference, self.reference) != (old.root, new.root)
+        if reference is not None and self.are_aligned:
+            self.new_root = UNMOVED.seen_from(own_frames[self.reference]).inside(self.old[reference])
+        self.new = {name: frame.inside(self.new_root) for name, frame in own_frames.items()}
+
+    def distance(self, old_name: str) -> float | None:
+        """Return how far a link has moved, in m, or None if it has neither moved nor rotated or is not comparable."""
+        new_name = self._links.get(old_name, "")
+        if old_name not in self.old or new_name not in self.new:
+            return None
+        before, after = matrix(self.old[old_name]), matrix(self.new[new_name])
+        if np.allclose(before, after, rtol=0.0, atol=_TOLERANCE):
+            return None
+        return float(np.linalg.norm(before[:3, 3] - after[:3, 3]))
+
+
+def matrix(placement: Placement) -> Array:
+    """Return a placement as a homogeneous matrix, shape (4, 4)."""
+    result = np.eye(4)
+    result[:3, :3] = placement.rotation
+    result[:3, 3] = placement.position
+    return result

@@ -1,0 +1,96 @@
+"""The scenes in 3D of a report, in frames that are made when a user opens them.
+
+The program that draws them is in the page once, compressed. Each frame has an origin of its own (`sandbox`), and the
+policy of an exported page: its program can fetch nothing.
+"""
+
+from __future__ import annotations
+
+import gzip
+from base64 import b64encode
+from collections.abc import Sequence
+from html import escape
+
+from linkwright.diagnostics import Phrase, phrase
+from linkwright.diagnostics.translation import localized
+from linkwright.review.changes import RobotScene, Subject
+
+SCENE_STYLE = """
+.scene { margin: 8px 0 12px; } .scene summary { cursor: pointer; width: fit-content; }
+.scene iframe { width: 100%; height: min(620px, 85vh); margin: 8px 0 0;
+  border: 1px solid var(--line); border-radius: 6px; }
+"""
+
+SCENE_SCRIPT = """
+const unpacked = async (element) => {
+  const bytes = Uint8Array.from(atob(element.textContent), (letter) => letter.charCodeAt(0));
+  return new Response(new Blob([bytes]).stream().pipeThrough(new DecompressionStream("gzip"))).text();
+};
+for (const scene of document.querySelectorAll("details.scene")) {
+  scene.addEventListener("toggle", async () => {
+    if (!scene.open || scene.dataset.isDrawn) return;
+    scene.dataset.isDrawn = "yes";
+    const frame = document.createElement("iframe");
+    frame.setAttribute("sandbox", "allow-scripts");
+    frame.title = scene.querySelector("summary").textContent;
+    const [start, end] = (await unpacked(document.getElementById("viewer"))).split("\\0");
+    frame.srcdoc = start + (await unpacked(scene.querySelector("script"))) + end;
+    scene.append(frame);
+  });
+}
+"""
+
+_MAX_BYTES = 40_000_000
+"""The maximum size of all scenes of a page. Later ones are left out."""
+
+
+class Scenes:
+    """The scenes of a page.
+
+    Args:
+        subjects: the subjects of the report.
+    """
+
+    def __init__(self, subjects: Sequence[Subject]) -> None:
+        self._shown: set[int] = set()
+        size = 0
+        for subject in subjects:
+            if subject.scene is not None and subject.scene.data and size + len(subject.scene.data) <= _MAX_BYTES:
+                size += len(subject.scene.data)
+                self._shown.add(id(subject.scene))
+
+    @property
+    def script(self) -> str:
+        """The elements with the programs; empty if the page has no scene.
+
+        Raises:
+            LinkwrightError: VIEW202, the page of this installation was not built.
+        """
+        if not self._shown:
+            return ""
+        from linkwright.panels.export.html import page_around
+
+        title = localized(phrase("both versions in 3D"))
+        viewer = gzip.compress("\0".join(page_around(title)).encode(), mtime=0)
+        return f"{_packed(viewer, 'viewer')}<script>{SCENE_SCRIPT}</script>"
+
+    def element(self, scene: RobotScene | None) -> str:
+        """Return the element of a scene, or the sentence why there is none; empty if none was asked for."""
+        if scene is None:
+            return ""
+        if scene.reason is not None:
+            return f"<p class='soft'>{_text(scene.reason)}</p>"
+        if id(scene) not in self._shown:
+            reason = phrase("the scene in 3D is left out: those before it have {size:.0f} MB", size=_MAX_BYTES / 1e6)
+            return f"<p class='soft'>{_text(reason)}</p>"
+        title = _text(phrase("both versions in 3D"))
+        return f"<details class='scene'><summary>{title}</summary>{_packed(scene.data)}</details>"
+
+
+def _packed(data: bytes, name: str = "") -> str:
+    attribute = f" id='{name}'" if name else ""
+    return f"<script type='application/gzip'{attribute}>{b64encode(data).decode()}</script>"
+
+
+def _text(text: Phrase) -> str:
+    return escape(localized(text))

@@ -1,0 +1,33 @@
+"""The file with the paths of all runs of a sweep."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Mapping, Sequence
+
+from linkwright.sweep.paths import Path
+from linkwright.sweep.plan import Run
+from linkwright.sweep.running import Outcome
+
+_DIGITS = 6
+"""The digits after the decimal point of times in s and positions in m."""
+
+
+def paths_text(runs: Sequence[Run], outcomes: Mapping[int, Outcome]) -> str:
+    """Return the paths of the finished runs as JSON."""
+    data = [
+        {
+            "row": run.row,
+            "parameters": dict(run.parameters),
+            "seed": run.seed,
+            "paths": {name: _rounded(path) for name, path in outcomes[run.row].paths.items()},
+        }
+        for run in runs
+        if run.row in outcomes
+    ]
+    lines = ",\n".join(json.dumps(run, ensure_ascii=False) for run in data)
+    return f'{{"runs": [\n{lines}\n]}}\n'
+
+
+def _rounded(path: Path) -> list[list[float]]:
+    return [[round(number, _DIGITS) + 0.0 for number in point] for point in path]

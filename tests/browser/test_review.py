@@ -1,0 +1,40 @@
+"""The page of a review: scenes in 3D in frames of their own."""
+
+from __future__ import annotations
+
+import subprocess
+import sys
+
+import pytest
+
+from tests.browser.conftest import becomes
+from tests.repositories import ARM, PACKAGE, Repository
+
+pytestmark = pytest.mark.browser
+
+
+def test_scene_is_drawn_when_it_is_opened(browser, tmp_path):
+    repository = Repository(tmp_path / "repository")
+    repository.commit(PACKAGE)
+    repository.commit(
+        {"arm_description/urdf/arm.urdf.xacro": ARM.replace('parent="middle"', 'parent="middle" length="0.7"')}
+    )
+    path = tmp_path / "review.html"
+    words = ["--repository", str(repository.root), "HEAD~1..HEAD", "--html", str(path), "--scenes"]
+    subprocess.run([sys.executable, "-m", "linkwright", "review", *words], check=True, capture_output=True)
+    context = browser.new_context(viewport={"width": 1000, "height": 900}, offline=True)
+    page = context.new_page()
+    wrong: list[str] = []
+    page.on("pageerror", lambda error: wrong.append(str(error)))
+    page.on("console", lambda message: wrong.append(message.text) if message.type == "error" else None)
+    page.goto(path.as_uri())
+    assert page.locator("iframe").count() == 0
+    page.click("details.scene summary")
+    page.frame_locator("details.scene iframe").get_by_text("Compare", exact=True).wait_for()
+    becomes(lambda: page.frames[-1].evaluate("() => window.linkwright?.ready === true"), True)
+    assert page.frames[-1].evaluate("() => window.origin") == "null"
+    page.click("details.scene summary")
+    page.click("details.scene summary")
+    assert page.locator("iframe").count() == 1
+    context.close()
+    assert wrong == []
