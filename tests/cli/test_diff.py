@@ -88,11 +88,9 @@ def test_different_files_exit_with_1(package, capsys):
         "link 'base' renamed to 'foot'\n"
         "  urdf/body.xacro:3:17 called at urdf/arm.urdf.xacro:4:3 -> "
         "urdf/body.xacro:3:17 called at urdf/other.urdf.xacro:4:3\n"
-        "extension 'gazebo': plugin q - -> name=q <parameters>\n"
-        "  urdf/arm.urdf.xacro:5:3 -> urdf/other.urdf.xacro:5:11\n"
-        "extension 'gazebo': plugin p name=p <parameters> -> -\n"
-        "  urdf/arm.urdf.xacro:5:11 -> urdf/other.urdf.xacro:5:3\n"
-        "3 differences\n"
+        "extension 'gazebo': plugin q @name p -> q\n"
+        "  urdf/arm.urdf.xacro:5:25 -> urdf/other.urdf.xacro:5:25\n"
+        "2 differences\n"
     )
 
 

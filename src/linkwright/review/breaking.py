@@ -6,12 +6,11 @@ import re
 
 from linkwright.descriptions.comparison import Difference
 from linkwright.diagnostics import Phrase, phrase
+from linkwright.review.names_in_plugins import NAME_TAGS, path_of_renamed, used_name
 from linkwright.urdf import Robot
 
 _MOVING_TYPES = frozenset({"revolute", "continuous", "prismatic"})
 """The types of joints with a position in ``/joint_states``."""
-_NAME_TAGS = re.compile(r"topic|namespace|frame|remapping|\bservice", re.IGNORECASE)
-"""The tags of plugins' parameters with names in the graph or in tf."""
 _INTERFACE = re.compile(r"joint (?P<joint>\S+) (?P<kind>command|state)_interface (?P<name>\S+)")
 
 
@@ -60,6 +59,9 @@ def _extension_reason(difference: Difference) -> Phrase | None:
         return phrase(
             "controllers that claim '{joint}/{name}' do not start", joint=interface["joint"], name=interface["name"]
         )
+    renamed = path_of_renamed(difference, difference.property)
+    if renamed is not None and difference.name.startswith("ros2_control"):
+        return phrase("controllers that claim an interface of '{name}' do not start", name=difference.old)
     return plugin_name_reason(difference)
 
 
@@ -67,6 +69,7 @@ def plugin_name_reason(difference: Difference) -> Phrase | None:
     """Return why a changed parameter of a plugin is breaking: it names topics, services or frames that others use."""
     last_word = difference.property.split(" ")[-1]
     tag = difference.property.split(" ")[-2] if last_word.startswith("@") and " " in difference.property else last_word
-    if difference.old and _NAME_TAGS.search(tag) and difference.old != difference.new:
-        return phrase("programs that use the name '{name}' do not find it", name=difference.old)
+    is_same = difference.new is not None and used_name(difference.old or "") == used_name(difference.new)
+    if difference.old and NAME_TAGS.search(tag) and not is_same:
+        return phrase("programs that use the name '{name}' do not find it", name=used_name(difference.old))
     return None

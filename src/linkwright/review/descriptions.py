@@ -19,6 +19,8 @@ from linkwright.review.figures import RobotMeasures, figures_of
 from linkwright.review.file_pair import FilePair
 from linkwright.review.frames import UNMOVED, SharedFrames
 from linkwright.review.images import view_images
+from linkwright.review.names_in_plugins import path_of_renamed
+from linkwright.review.plugins import added_topics, contents_text, missing_topics_reason
 from linkwright.review.scenes import robot_scene
 from linkwright.review.versions import Version
 from linkwright.urdf import Robot
@@ -146,8 +148,9 @@ def _changes(pair: FilePair, comparison: Comparison, frames: SharedFrames, old: 
             if old.root in new.links
             else phrase("programs that look up the frame '{name}' do not find it", name=old.root),
         )
+    added = added_topics(comparison.differences)
     for difference in comparison.differences:
-        reason = breaking_reason(difference, old)
+        reason = breaking_reason(difference, old) or missing_topics_reason(difference, added)
         effect = Effect.CHANGED if reason is None else Effect.BREAKING
         text = sentence_of_difference(difference)
         if difference.subject == "link" and difference.kind == "renamed":
@@ -169,6 +172,19 @@ def _location(pair: FilePair, difference: Difference) -> Location | None:
 def sentence_of_difference(difference: Difference) -> Phrase:
     """Return a difference in one line. A moved or rotated frame also has the distance or angle."""
     text = sentence(difference)
+    old_path = path_of_renamed(difference, difference.property)
+    if old_path is not None:
+        return phrase(
+            "{subject} '{name}': {property} renamed to '{new}'",
+            subject=term(difference.subject),
+            name=difference.name,
+            property=old_path,
+            new=difference.new or "",
+        )
+    contents = None if difference.element is None else contents_text(difference.element)
+    if contents is not None:
+        change = _presence(difference) if difference.kind == "changed" else text
+        return phrase("{change}: {contents}", change=change, contents=contents)
     if difference.kind == "changed" and (difference.old is None or difference.new is None):
         return _presence(difference)
     if difference.old is None or difference.new is None or not difference.property.endswith(("xyz", "rpy")):

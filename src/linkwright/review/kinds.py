@@ -21,6 +21,7 @@ from linkwright.review.parameter_files import compare_parameter_files
 from linkwright.review.worlds import compare_worlds
 
 _YAML_SUFFIXES = (".yaml", ".yml")
+_TEST_FOLDERS = frozenset({"test", "tests"})
 
 
 @dataclass(frozen=True)
@@ -103,6 +104,23 @@ _RULES = (
 )
 
 
+LAUNCH_HELPER = KindRule(
+    SubjectKind.LAUNCH_FILE,
+    compare_launch_files,
+    (".py",),
+    phrase("functions for launch files added"),
+    phrase("functions for launch files removed"),
+    phrase("launch files that import the module do not find it"),
+)
+"""The rule for modules that make actions for launch files."""
+
+
+def may_help_launch_files(path: str) -> bool:
+    """Return whether the path of a file can be that of a module with functions for launch files."""
+    pure_path = PurePosixPath(path)
+    return pure_path.suffix == ".py" and pure_path.name != "setup.py" and _TEST_FOLDERS.isdisjoint(pure_path.parts)
+
+
 def rule_of(path: str) -> KindRule | None:
     """Return the rule for a file, or None for a file that is not compared.
 
@@ -110,8 +128,9 @@ def rule_of(path: str) -> KindRule | None:
         path: the path relative to the root of the repository.
     """
     name = PurePosixPath(path).name.lower()
-    if name.startswith("test_") and name.endswith(".py"):
+    is_test = name.startswith("test_") and name.endswith(".py")
+    if is_test and not _TEST_FOLDERS.isdisjoint(PurePosixPath(path).parts):
         return None  # a test with launch_testing
-    if is_launch_file_name(name) and name.endswith(_YAML_SUFFIXES):
-        return next(rule for rule in _RULES if rule.kind is SubjectKind.PARAMETERS)
+    if is_launch_file_name(name):
+        return next(rule for rule in _RULES if rule.kind is SubjectKind.LAUNCH_FILE)
     return next((rule for rule in _RULES if name.endswith(rule.suffixes)), None)

@@ -1,33 +1,31 @@
-"""Outlines of launch files, which are read but not run: arguments, nodes and included files with their settings."""
+"""Outlines of launch files, which are read but not run: their actions with their settings."""
 
 from __future__ import annotations
 
-import ast
-from collections.abc import Iterator
+import re
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
-from functools import partial
-from pathlib import Path
 
-from linkwright.diagnostics import SourceText, Span, foreign, phrase
-from linkwright.packages.readers.python_values import PythonFile, argument_of, called_name
-from linkwright.review.file_pair import UnreadableFileError
-from linkwright.xacro.cache import read_document
-from linkwright.xmltree import Element
+from linkwright.diagnostics import Span
 
-_NODES = ("Node", "LifecycleNode", "ComposableNode", "ComposableNodeContainer")
-_NODE_TAGS = ("node", "lifecycle_node", "composable_node", "node_container")
-_MAX_DEPTH = 20
-_MAX_TEXT = 300
-"""The number of characters of a setting that are compared and shown as text."""
+CONDITION = "condition"
+NAMESPACE = "namespace"
+NAMESPACE_OF_INCLUDED = "namespace of its nodes"
+"""The setting of an include that is not one of the arguments that it passes."""
+REMAPPING = "remapping "
+PARAMETER = "parameter "
+_VARIABLE = re.compile(r"\$\((?:var|arg) ([^() ]+)[^()]*\)")
 
 
 @dataclass(frozen=True)
 class Entry:
-    """An argument, node, process or included file of a launch file.
+    """An action of a launch file.
 
     Attributes:
-        kind: ``argument``, ``node``, ``process`` or ``include``.
-        name: the name of the argument, ``package/executable`` of the node, the command or the path of the file.
+        kind: ``argument``, ``variable``, ``node``, ``process``, ``include``; ``remapping``, ``parameter``,
+            ``parameters`` or ``environment`` of all nodes that follow; ``action`` of a package that is not read.
+        name: the name of the argument or variable, ``package/executable`` of the node, the command, the path of the
+            file, or the function that makes the action.
         settings: the values, by name. The value of an argument is its default.
         span: where it is.
     """
@@ -37,6 +35,31 @@ class Entry:
     settings: dict[str, str]
     span: Span
 
+    def is_same_name(self, setting: str, old: str | None, new: str | None) -> bool:
+        """Return whether a changed setting is a remapping of a name to itself, which is the same as none."""
+        if self.kind == "node" and setting.startswith(REMAPPING):
+            source = setting.removeprefix(REMAPPING)
+        elif self.kind == "remapping" and setting == "to":
+            source = self.name
+        else:
+            return False
+        return (old or source) == (new or source)
+
+
+@dataclass(frozen=True)
+class CodePart:
+    """A statement or element of a launch file that makes no action.
+
+    Attributes:
+        text: a form without names of variables, comments and layout.
+        source: the statement as it is written.
+        span: where it is.
+    """
+
+    text: str
+    source: str
+    span: Span
+
 
 @dataclass(frozen=True)
 class LaunchOutline:
@@ -44,153 +67,63 @@ class LaunchOutline:
 
     Attributes:
         entries: the entries in the order of the text.
-        code: the syntax tree of a file in Python as text, without comments and layout; empty for XML.
+        code: the rest of the file.
     """
 
     entries: list[Entry]
-    code: str = ""
+    code: list[CodePart]
+
+    def resolved(self, text: str) -> str:
+        """Return a text with the defaults of arguments in place of ``$(var NAME)``."""
+        defaults = {
+            entry.name: entry.settings["default"]
+            for entry in self.entries
+            if entry.kind == "argument" and "default" in entry.settings
+        }
+        return _VARIABLE.sub(lambda variable: defaults.get(variable[1], variable[0]), text)
 
 
-def read_outline(path: Path) -> LaunchOutline:
-    """Return the outline of a launch file in Python or XML.
+@dataclass(frozen=True)
+class Scope:
+    """The settings that enclosing groups give to an action.
 
-    Raises:
-        LinkwrightError: the file is not XML.
-        UnreadableFileError: the file is not Python.
-        OSError: the file cannot be read.
-        ValueError: the file is not text in UTF-8.
+    Attributes:
+        conditions: the conditions of the groups, the outermost first.
+        namespaces: the namespaces that they push.
     """
-    if path.suffix != ".py":
-        return LaunchOutline(list(_markup_entries(read_document(str(path)).root)))
-    try:
-        python = PythonFile(SourceText(str(path), path.read_text("utf-8")))
-    except SyntaxError as error:
-        line, reason = error.lineno or 1, foreign(error.msg)
-        message = phrase("line {line} is not valid Python: {reason}", line=line, reason=reason)
-        raise UnreadableFileError(message) from None
-    return LaunchOutline(list(_python_entries(python)), ast.dump(python.tree))
+
+    conditions: tuple[str, ...] = ()
+    namespaces: tuple[str, ...] = ()
+
+    @property
+    def depth(self) -> int:
+        """The number of settings."""
+        return len(self.conditions) + len(self.namespaces)
+
+    def under(self, condition: str) -> Scope:
+        """Return the scope inside an action with a condition, which is empty if it has none."""
+        return Scope((*self.conditions, condition), self.namespaces) if condition else self
+
+    def pushed(self, namespace: str) -> Scope:
+        """Return the scope after a namespace is pushed."""
+        return Scope(self.conditions, (*self.namespaces, namespace)) if namespace else self
+
+    def settings(self, kind: str, own: Mapping[str, str]) -> dict[str, str]:
+        """Return the settings of an action with those of its scope."""
+        settings = dict(own)
+        conditions = [*self.conditions, *filter(None, [own.get(CONDITION)])]
+        settings.pop(CONDITION, None)
+        if conditions:
+            settings[CONDITION] = " and ".join(dict.fromkeys(conditions))
+        key = NAMESPACE if kind == "node" else NAMESPACE_OF_INCLUDED
+        if self.namespaces and kind in ("node", "include"):
+            settings[key] = _joined_namespace([*self.namespaces, *filter(None, [own.get(key)])])
+        return settings
 
 
-# --- Python ----------------------------------------------------------------------------------------------------
-
-
-def _python_entries(python: PythonFile) -> Iterator[Entry]:
-    text = partial(_text, python)
-    names = ("DeclareLaunchArgument", *_NODES, "ExecuteProcess", "IncludeLaunchDescription")
-    for call in python.calls(*names):
-        function = called_name(call).rpartition(".")[2]
-        keywords = {keyword.arg: keyword.value for keyword in call.keywords if keyword.arg is not None}
-        if function == "DeclareLaunchArgument":
-            name = text(call.args[0] if call.args else argument_of(call, "name"))
-            settings = {"default": text(keywords["default_value"])} if "default_value" in keywords else {}
-            yield Entry("argument", name, settings, python.span(call))
-        elif function in _NODES:
-            name = "/".join(text(keywords[key]) for key in ("package", "executable", "plugin") if key in keywords)
-            settings = {key: text(value) for key, value in keywords.items() if key not in _IDENTITY}
-            yield Entry("node", name or text(call.func), settings, python.span(call))
-        elif function == "ExecuteProcess":
-            yield Entry("process", text(keywords.get("cmd")), {}, python.span(call))
-        else:
-            name = text(call.args[0] if call.args else argument_of(call, "launch_description_source"))
-            yield Entry("include", name, _include_settings(python, keywords.get("launch_arguments")), python.span(call))
-
-
-_IDENTITY = frozenset({"package", "executable", "plugin", "output", "emulate_tty", "condition"})
-"""The arguments of a node that name it, and those that do not change what other programs see.
-
-Conditions are the same text in most versions, and arguments show what they depend on.
-"""
-
-
-def _include_settings(python: PythonFile, node: ast.expr | None) -> dict[str, str]:
-    """Return the arguments of an include: ``{...}.items()``, a dictionary or a list of pairs."""
-    if node is None:
-        return {}
-    node = python.resolved(node)
-    if isinstance(node, ast.Call) and isinstance(node.func, ast.Attribute) and node.func.attr == "items":
-        node = python.resolved(node.func.value)
-    if isinstance(node, ast.Dict):
-        pairs = zip(node.keys, node.values, strict=True)
-        return {_text(python, key): _text(python, value) for key, value in pairs if key is not None}
-    return {"launch_arguments": _text(python, node)}
-
-
-def _text(python: PythonFile, node: ast.expr | None, depth: int = 0) -> str:
-    """Return an expression in the notation of XML launch files, as far as it has one."""
-    if node is None or depth > _MAX_DEPTH:
-        return ""
-    node = python.resolved(node)
-    part = partial(_text, python, depth=depth + 1)
-    if isinstance(node, ast.Constant):
-        return str(node.value)
-    if isinstance(node, (ast.List, ast.Tuple)):
-        return f"[{', '.join(map(part, node.elts))}]"
-    if isinstance(node, ast.Dict):
-        pairs = zip(node.keys, node.values, strict=True)
-        return f"{{{', '.join(f'{part(key)}: {part(value)}' for key, value in pairs)}}}"
-    if isinstance(node, ast.Call):
-        substitution = _substitution(node, part)
-        if substitution is not None:
-            return substitution
-    return " ".join(ast.unparse(node).split())[:_MAX_TEXT]
-
-
-def _substitution(node: ast.Call, part: partial[str]) -> str | None:
-    """Return a substitution in the notation of XML launch files, or None for any other call."""
-    function = called_name(node).rpartition(".")[2]
-    first = node.args[0] if node.args else (node.keywords[0].value if node.keywords else None)
-    if function == "LaunchConfiguration":
-        return f"$(var {part(first)})"
-    if function in ("FindPackageShare", "get_package_share_directory", "get_package_share_path"):
-        return f"$(find-pkg-share {part(first)})"
-    if function in ("PathJoinSubstitution", "join") and first is not None:
-        pieces = first.elts if isinstance(first, (ast.List, ast.Tuple)) else node.args
-        return "/".join(map(part, pieces))
-    if function in ("TextSubstitution", "str", "ParameterValue", "Path") and first is not None:
-        return part(first)
-    if function.endswith("LaunchDescriptionSource") and first is not None:
-        pieces = first.elts if isinstance(first, ast.List) else [first]
-        return "".join(map(part, pieces))
-    return None
-
-
-# --- XML ----------------------------------------------------------------------------------------------------
-
-
-def _markup_entries(element: Element) -> Iterator[Entry]:
-    for child in element.elements():
-        span = child.span()
-        if span is None:
-            continue
-        attributes = child.attributes
-        if child.tag == "arg":
-            settings = {"default": attributes["default"]} if "default" in attributes else {}
-            yield Entry("argument", attributes.get("name", ""), settings, span)
-        elif child.tag in _NODE_TAGS:
-            yield _markup_node(child, span)
-        elif child.tag == "executable":
-            yield Entry("process", attributes.get("cmd", ""), {}, span)
-        elif child.tag == "include":
-            settings = {item.attributes.get("name", ""): item.attributes.get("value", "") for item in _named(child)}
-            yield Entry("include", attributes.get("file", ""), settings, span)
-        if child.tag != "include":
-            yield from _markup_entries(child)
-
-
-def _named(element: Element) -> Iterator[Element]:
-    """Yield the arguments that an include passes."""
-    return (child for child in element.elements() if child.tag in ("arg", "let"))
-
-
-def _markup_node(element: Element, span: Span) -> Entry:
-    attributes = element.attributes
-    name = "/".join(attributes[key] for key in ("pkg", "exec", "plugin") if key in attributes)
-    ignored = {"pkg", "exec", "plugin", "output", "emulate_tty", "if", "unless"}
-    settings = {key: value for key, value in attributes.items() if key not in ignored}
-    for child in element.elements():
-        if child.tag == "param":
-            key = child.attributes.get("from") or child.attributes.get("name", "")
-            settings[f"parameter {key}"] = child.attributes.get("value", "")
-        elif child.tag == "remap":
-            settings[f"remapping {child.attributes.get('from', '')}"] = child.attributes.get("to", "")
-    return Entry("node", name, settings, span)
+def _joined_namespace(names: Sequence[str]) -> str:
+    """Return the namespace after pushes; a name that begins with ``/`` replaces those before it."""
+    text = ""
+    for name in names:
+        text = name if name.startswith("/") or not text else f"{text}/{name}"
+    return text

@@ -6,6 +6,10 @@ from linkwright.diagnostics import Phrase, phrase
 
 _LONG_LIST = 4
 """The number of items up to which both versions of a list are shown."""
+_LONG_VALUE = 200
+"""The number of characters up to which a value is shown as a whole."""
+_CONTEXT = 20
+"""The number of characters that are shown on both sides of a difference."""
 
 
 def change_text(name: Phrase | str, old: str, new: str) -> Phrase:
@@ -17,6 +21,7 @@ def change_text(name: Phrase | str, old: str, new: str) -> Phrase:
         new: the new value.
     """
     old_items, new_items = list_items(old), list_items(new)
+    old, new = excerpts(old, new)
     added, removed = set(new_items) - set(old_items), set(old_items) - set(new_items)
     is_set = len(set(old_items)) == len(old_items) and len(set(new_items)) == len(new_items)
     if min(len(old_items), len(new_items)) <= _LONG_LIST or not is_set or not (added or removed):
@@ -30,6 +35,27 @@ def change_text(name: Phrase | str, old: str, new: str) -> Phrase:
     return phrase(
         "{parameter}: {added} added, {removed} removed", parameter=name, added=added_text, removed=removed_text
     )
+
+
+def excerpts(old: str, new: str) -> tuple[str, str]:
+    """Return two values, or the parts in which they differ if they are long."""
+    if max(len(old), len(new)) <= _LONG_VALUE:
+        return old, new
+    common = min(len(old), len(new))
+    start = next((index for index in range(common) if old[index] != new[index]), common)
+    rest = common - start
+    end = next((index for index in range(rest) if old[-1 - index] != new[-1 - index]), rest)
+    return _excerpt(old, start, len(old) - end), _excerpt(new, start, len(new) - end)
+
+
+def _excerpt(text: str, start: int, end: int) -> str:
+    """Return a part of a text with some characters around it, from the start of a word if one is near."""
+    first = max(0, start - _CONTEXT)
+    first = text.rfind(" ", max(0, first - _CONTEXT), first) + 1 or first
+    last = min(len(text), end + _CONTEXT, first + _LONG_VALUE)
+    near = text.find(" ", last, last + _CONTEXT)
+    last = near if near >= 0 else last
+    return f"{'... ' if first else ''}{text[first:last]}{' ...' if last < len(text) else ''}"
 
 
 def list_items(text: str) -> list[str]:

@@ -9,6 +9,7 @@ from linkwright.files.git_repository import lfs_hash
 from linkwright.geometry.meshes import TriangleMesh, read_mesh
 from linkwright.review.changes import Figure
 from linkwright.review.file_pair import FilePair, UnreadableFileError
+from linkwright.review.scene_images import mesh_images
 
 MESH_SUFFIXES = (".stl", ".dae", ".obj", ".glb", ".gltf")
 _MAX_BYTES = 100 << 20
@@ -26,6 +27,8 @@ def compare_meshes(pair: FilePair) -> None:
     if meshes is None:
         return
     old, new = meshes
+    if pair.drawings.images and pair.old_file.read_bytes() != pair.new_file.read_bytes():
+        pair.images += mesh_images(pair)
     if old.count != new.count:
         pair.figures.append(Figure(phrase("triangles"), str(old.count), str(new.count)))
     for name, before, after in zip(

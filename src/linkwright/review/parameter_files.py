@@ -2,49 +2,48 @@
 
 from __future__ import annotations
 
-import re
 from collections.abc import Iterator, Mapping, Sequence
 from pathlib import Path
 
 from linkwright.diagnostics import Phrase, counted, phrase
+from linkwright.review.bridges import compare_bridges, read_bridges
 from linkwright.review.changes import Location
 from linkwright.review.file_pair import FilePair, UnreadableFileError
-from linkwright.review.list_changes import change_text, list_items
+from linkwright.review.list_changes import change_text
+from linkwright.review.parameter_names import NameRules, renamed_parts
 from linkwright.review.yaml_values import YamlValue, read_yaml_values
 
 _MAX_BYTES = 4 << 20
-_OFFERED_NAMES = re.compile(r"(^|[._])(joints?|joint_names?|wheel_names|interfaces|frame_id)$")
-"""The parameters with names that a controller or driver offers to other programs, which must not lose one of them."""
-_CONTROLLER_TYPE = re.compile(r"(?:[^.]+\.)?controller_manager\.ros__parameters\.(?P<controller>[^.]+)\.type")
-_STAMPED = re.compile(r"stamped", re.IGNORECASE)
-"""The parameters that choose between messages with and without a header, such as ``use_stamped_vel``."""
-_STAMPED_BY_DEFAULT = "use_stamped_vel"
-"""The parameter of diff_drive_controller and its relatives, which is true by default."""
-_NUMBER_OR_TRUTH = re.compile(r"[-+]?(\d+\.?\d*|\.\d+)(e[-+]?\d+)?|true|false", re.IGNORECASE)
 
 
 def compare_parameter_files(pair: FilePair) -> None:
     """Compare two versions of a YAML file, value by value."""
-    values = pair.read(_read)
+    texts = pair.read(_read)
+    if texts is None:
+        return
+    bridges = pair.read(lambda file: read_bridges(texts[file == pair.new_file]) or [])
+    if bridges is not None and all(bridges):
+        compare_bridges(pair, *bridges)
+        return
+    values = pair.read(lambda file: read_yaml_values(texts[file == pair.new_file]))
     if values is None:
         return
-    old, new = values
+    new = values[1]
+    old = _with_new_names(pair, *values)
+    rules = NameRules(old, new)
     for name, value in new.items():
         old_value = old.get(name)
         if old_value is not None and not _are_equal(old_value.text, value.text):
             location = Location(pair.new_path, value.line, value.column)
-            pair.add(
-                change_text(name, old_value.text, value.text),
-                location,
-                _breaking_reason(name, old_value.text, value.text),
-            )
+            change = change_text(name, old_value.text, value.text)
+            pair.add(change, location, rules.change_reason(name, old_value.text, value.text))
     for name, values_below in _lone_parts(new, old):
         location = Location(pair.new_path, values_below[0].line, values_below[0].column)
         pair.add(_lone_text(name, values_below, is_added=True), location)
     for name, values_below in _lone_parts(old, new):
         location = Location(pair.old_path, values_below[0].line, values_below[0].column, is_old=True)
         below = [(each, old[each].text) for each in old if each not in new and _is_below(each, name)]
-        reasons = (_removal_reason(parameter, value, new) for parameter, value in below)
+        reasons = (rules.removal_reason(parameter, value) for parameter, value in below)
         reason = next((reason for reason in reasons if reason is not None), None)
         pair.add(_lone_text(name, values_below, is_added=False), location, reason)
 
@@ -81,10 +80,25 @@ def _lone_text(name: str, values: Sequence[YamlValue], *, is_added: bool) -> Phr
     return phrase("{part} added", part=part) if is_added else phrase("{part} removed", part=part)
 
 
-def _read(file: Path) -> dict[str, YamlValue]:
+def _with_new_names(
+    pair: FilePair, old: Mapping[str, YamlValue], new: Mapping[str, YamlValue]
+) -> Mapping[str, YamlValue]:
+    """Add the renamed parts of a file, and return the old values with the new names of these parts."""
+    for old_part, new_part in renamed_parts(old, new).items():
+        inside = next(value for name, value in new.items() if _is_below(name, new_part))
+        text = phrase("{old} renamed to {name}", old=old_part, name=new_part)
+        pair.add(text, Location(pair.new_path, inside.line, inside.column))
+        old = {
+            f"{new_part}{name.removeprefix(old_part)}" if _is_below(name, old_part) else name: value
+            for name, value in old.items()
+        }
+    return old
+
+
+def _read(file: Path) -> str:
     if file.stat().st_size > _MAX_BYTES:
         raise UnreadableFileError(phrase("it is larger than {megabytes} MB", megabytes=_MAX_BYTES >> 20))
-    return read_yaml_values(file.read_text(encoding="utf-8"))
+    return file.read_text(encoding="utf-8")
 
 
 def _are_equal(old: str, new: str) -> bool:
@@ -97,31 +111,3 @@ def _are_equal(old: str, new: str) -> bool:
         ]
     except ValueError:
         return False
-
-
-def _breaking_reason(parameter: str, old: str, new: str) -> Phrase | None:
-    """Return why a changed value is breaking, or None if it is not."""
-    if _STAMPED.search(parameter) and {old.lower(), new.lower()} == {"true", "false"}:
-        return phrase("the message type of a topic changes between one with and one without a header")
-    gone = _items(old) - _items(new)
-    if gone and _OFFERED_NAMES.search(parameter):
-        return phrase("programs that use the name '{name}' do not find it", name=", ".join(sorted(gone)))
-    return None
-
-
-def _removal_reason(parameter: str, old: str, new: Mapping[str, YamlValue]) -> Phrase | None:
-    """Return why a removed parameter is breaking, or None if it is not.
-
-    The type of a controller can also be one of its own parameters.
-    """
-    if parameter.endswith(_STAMPED_BY_DEFAULT) and old.lower() == "false":
-        return phrase("the message type of a topic changes between one with and one without a header")
-    controller = _CONTROLLER_TYPE.fullmatch(parameter)
-    if controller is None or any(name.endswith(f"{controller['controller']}.ros__parameters.type") for name in new):
-        return None
-    return phrase("programs that load or command the controller '{name}' do not find it", name=controller["controller"])
-
-
-def _items(text: str) -> set[str]:
-    """Return the items of a value that is a list, or the value itself, without numbers and truth values."""
-    return {item for item in list_items(text) if item and not _NUMBER_OR_TRUTH.fullmatch(item)}

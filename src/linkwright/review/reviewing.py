@@ -21,7 +21,8 @@ from linkwright.packages.manifest import MANIFEST, package_name
 from linkwright.review.behavior import compare_behavior
 from linkwright.review.changes import Change, Effect, Review, Subject, SubjectKind
 from linkwright.review.file_pair import Drawings, FilePair
-from linkwright.review.kinds import KindRule, rule_of
+from linkwright.review.kinds import LAUNCH_HELPER, KindRule, may_help_launch_files, rule_of
+from linkwright.review.launch_helpers import makes_actions
 from linkwright.review.versions import Version, Versions
 
 _Pair = tuple[KindRule, "str | None", "str | None"]
@@ -125,15 +126,24 @@ class _Reviewer:
         paths: set[tuple[str | None, str | None]] = {(path, self._new_path(path)) for path in affected_old}
         paths |= {(self._old_path(path), path) for path in affected_new}
         for file in self._changed_files:
-            rule = rule_of(file.path)
+            rule = self._rule(file.old_path, file.new_path)
             if rule is None or rule.kind in _EXPANDED or file.is_submodule:
                 continue
             if self._is_part_of_a_robot(rule, file):
                 paths.add((file.old_path, file.new_path))
         for old_path, new_path in sorted(paths, key=lambda pair: (pair[1] or pair[0] or "", pair[0] or "")):
-            rule = rule_of(new_path or old_path or "")
+            rule = self._rule(old_path, new_path)
             if rule is not None:
                 yield rule, old_path, new_path
+
+    def _rule(self, old_path: str | None, new_path: str | None) -> KindRule | None:
+        """Return the rule for a file, or None for a file that is not compared."""
+        rule = rule_of(new_path or old_path or "")
+        sides = ((self._versions.old, old_path), (self._versions.new, new_path))
+        if rule is None and may_help_launch_files(new_path or old_path or ""):
+            is_helper = any(makes_actions(version.file(path)) for version, path in sides if path)
+            return LAUNCH_HELPER if is_helper else None
+        return rule
 
     def _is_part_of_a_robot(self, rule: KindRule, file: ChangedFile) -> bool:
         """Return whether a file is not a setting of a tool: hidden, or in YAML and outside all packages."""

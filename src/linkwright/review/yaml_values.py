@@ -38,10 +38,7 @@ def read_yaml_values(text: str) -> dict[str, YamlValue]:
         UnreadableFileError: the text is not YAML, or it has more values than a parameter file.
     """
     values: dict[str, YamlValue] = {}
-    try:
-        root = yaml.compose(text, Loader=yaml.SafeLoader)
-    except (yaml.YAMLError, RecursionError) as error:
-        raise UnreadableFileError(foreign(" ".join(str(error).split()))) from None
+    root = composed(text)
     if root is None:
         return values
     for path, value in _values(root, ""):
@@ -49,6 +46,18 @@ def read_yaml_values(text: str) -> dict[str, YamlValue]:
         if len(values) > _MAX_VALUES:
             raise UnreadableFileError(phrase("it has more than {count} values", count=_MAX_VALUES))
     return values
+
+
+def composed(text: str) -> yaml.Node | None:
+    """Return the nodes of a YAML document, or None if it is empty.
+
+    Raises:
+        UnreadableFileError: the text is not YAML.
+    """
+    try:
+        return yaml.compose(text, Loader=yaml.SafeLoader)
+    except (yaml.YAMLError, RecursionError) as error:
+        raise UnreadableFileError(foreign(" ".join(str(error).split()))) from None
 
 
 def _values(node: yaml.Node, path: str) -> Iterator[tuple[str, YamlValue]]:

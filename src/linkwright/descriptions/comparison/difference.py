@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from linkwright.diagnostics import Span
-from linkwright.loading.lean_dataclasses import dataclass
+from linkwright.loading.lean_dataclasses import dataclass, field
 from linkwright.loading.lean_typing import Literal
 from linkwright.xacro.faults import Frame, frames
 from linkwright.xmltree import Element
@@ -38,6 +38,7 @@ class Difference:
         unit: the unit of both values; empty for text.
         old_place: the location of the value in the old description, or of the beginning of its object.
         new_place: the location of the value in the new description, or of the beginning of its object.
+        element: the element that was added or removed as a whole, if it belongs to an extension.
     """
 
     subject: Subject
@@ -49,6 +50,7 @@ class Difference:
     unit: str = ""
     old_place: DifferenceLocation | None = None
     new_place: DifferenceLocation | None = None
+    element: Element | None = field(default=None, compare=False, repr=False)
 
 
 def location_of(element: Element | None, attribute: str = "") -> DifferenceLocation | None:

@@ -7,8 +7,14 @@ from collections.abc import Callable, Hashable, Iterator, Mapping, Sequence
 from itertools import zip_longest
 
 from linkwright.descriptions.comparison.difference import Difference, Kind, location_of
+from linkwright.descriptions.comparison.numbers import comparable_text
+from linkwright.descriptions.comparison.renamed_elements import renamed_elements
 from linkwright.loading.lean_dataclasses import dataclass
 from linkwright.xmltree import Element
+
+_NO_NUMBERS = frozenset({"name", "reference", "filename", "version"})
+_Rest = dict[str, list[tuple[str, Element]]]
+"""Elements with their keys, by tag and name."""
 
 
 @dataclass(frozen=True)
@@ -46,7 +52,12 @@ class ElementComparison:
             elif enclosing is None:
                 kind: Kind = "added" if old_element is None else "removed"
                 yield Difference(
-                    "extension", key, kind, "", None, None, "", location_of(old_element), location_of(new_element)
+                    "extension",
+                    key,
+                    kind,
+                    old_place=location_of(old_element),
+                    new_place=location_of(new_element),
+                    element=old_element or new_element,
                 )
             else:
                 texts = (
@@ -54,7 +65,8 @@ class ElementComparison:
                     None if new_element is None else _one_line(new_element),
                 )
                 locations = location_of(old_element or enclosing[1]), location_of(new_element or enclosing[2])
-                yield Difference("extension", enclosing[0], "changed", element_path, *texts, "", *locations)
+                element = old_element or new_element
+                yield Difference("extension", enclosing[0], "changed", element_path, *texts, "", *locations, element)
 
     def _pairs(
         self, old: Sequence[Element], new: Sequence[Element]
@@ -70,22 +82,43 @@ class ElementComparison:
             _without_common(_elements_by_key(elements), keys, common)
             for elements, keys in zip((old, new), contents, strict=True)
         )
+        yield from self._renamed(old, new, old_rest, new_rest)
         for base in dict.fromkeys([*new_rest, *old_rest]):
             for old_item, new_item in zip_longest(old_rest.get(base, ()), new_rest.get(base, ())):
                 key, _ = new_item or old_item
                 yield key, old_item and old_item[1], new_item and new_item[1]
 
+    def _renamed(
+        self, old: Sequence[Element], new: Sequence[Element], old_rest: _Rest, new_rest: _Rest
+    ) -> Iterator[tuple[str, Element, Element]]:
+        """Take the elements that were renamed from the rest, and yield them with their new keys."""
+        old_lone, new_lone = (
+            {id(items[0][1]): base for base, items in rest.items() if base not in others and len(items) == 1}
+            for rest, others in ((old_rest, new_rest), (new_rest, old_rest))
+        )
+        if not old_lone or not new_lone:
+            return
+        old_elements, new_elements = (
+            [rest[base][0][1] for base in lone.values()] for rest, lone in ((old_rest, old_lone), (new_rest, new_lone))
+        )
+        for old_element, new_element in renamed_elements(old, new, old_elements, new_elements):
+            del old_rest[old_lone[id(old_element)]]
+            ((key, _),) = new_rest.pop(new_lone[id(new_element)])
+            yield key, old_element, new_element
+
     def _content(self, element: Element, side: int) -> Hashable:
         """Return the comparable content of an element of the old (0) or the new (1) version."""
         normalize = (self.normalize_old, self.normalize_new)[side]
-        attributes = frozenset((name, " ".join(normalize(value).split())) for name, value in element.attributes.items())
+        attributes = frozenset(
+            (name, _comparable(name, normalize(value))) for name, value in element.attributes.items()
+        )
         children = tuple(self._content(child, side) for child in element.elements())
-        return element.tag, attributes, " ".join(normalize(element.text()).split()), children
+        return element.tag, attributes, comparable_text(normalize(element.text())), children
 
     def _element_differences(self, name: str, path: str, old: Element, new: Element) -> Iterator[Difference]:
         for attribute in dict.fromkeys([*new.attributes, *old.attributes]):
             old_value, new_value = old.attributes.get(attribute), new.attributes.get(attribute)
-            if not self._same_text(old_value, new_value):
+            if not self._same_text(old_value, new_value, attribute):
                 locations = location_of(old, attribute), location_of(new, attribute)
                 yield Difference(
                     "extension", name, "changed", f"{path} @{attribute}".strip(), old_value, new_value, "", *locations
@@ -95,10 +128,15 @@ class ElementComparison:
             yield Difference("extension", name, "changed", path, *texts, "", location_of(old), location_of(new))
         yield from self.child_differences(list(old.elements()), list(new.elements()), path, (name, old, new))
 
-    def _same_text(self, old: str | None, new: str | None) -> bool:
+    def _same_text(self, old: str | None, new: str | None, attribute: str = "") -> bool:
         if old is None or new is None:
             return old is new
-        return " ".join(self.normalize_old(old).split()) == " ".join(self.normalize_new(new).split())
+        return _comparable(attribute, self.normalize_old(old)) == _comparable(attribute, self.normalize_new(new))
+
+
+def _comparable(attribute: str, text: str) -> str:
+    """Return the comparable form of a text; names and versions are not read as numbers."""
+    return " ".join(text.split()) if attribute in _NO_NUMBERS else comparable_text(text)
 
 
 def _elements_by_key(elements: Sequence[Element]) -> dict[str, Element]:
@@ -119,9 +157,7 @@ def _elements_by_key(elements: Sequence[Element]) -> dict[str, Element]:
     return keyed_elements
 
 
-def _without_common(
-    elements: Mapping[str, Element], contents: Sequence[Hashable], common: Counter[Hashable]
-) -> dict[str, list[tuple[str, Element]]]:
+def _without_common(elements: Mapping[str, Element], contents: Sequence[Hashable], common: Counter[Hashable]) -> _Rest:
     """Return the elements, with their keys, by tag and name, except for nameless elements that have a counterpart.
 
     Args:
@@ -130,7 +166,7 @@ def _without_common(
         common: the number of counterparts of each content.
     """
     remaining = Counter(common)
-    rest: dict[str, list[tuple[str, Element]]] = {}
+    rest: _Rest = {}
     for (key, element), content in zip(elements.items(), contents, strict=True):
         name = _name_of(element)
         if name is None and remaining[content]:

@@ -1,0 +1,21 @@
+"""Texts in which equal numbers are written alike."""
+
+from __future__ import annotations
+
+import math
+
+from linkwright.loading.deferred import lazy_pattern
+
+_NUMBER = lazy_pattern(r"[-+]?(\d+\.?\d*|\.\d+)([eE][-+]?\d+)?")
+
+
+def comparable_text(text: str) -> str:
+    """Return a text with single spaces and equal numbers written alike: ``1.0`` as ``1``, ``-0`` as ``0``."""
+    return " ".join(map(_comparable_word, text.split()))
+
+
+def _comparable_word(word: str) -> str:
+    if not _NUMBER.fullmatch(word):
+        return word
+    number = float(word)
+    return repr(number + 0.0) if math.isfinite(number) else word

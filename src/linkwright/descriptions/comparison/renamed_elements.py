@@ -1,0 +1,68 @@
+"""The matching of elements whose names changed, by their contents."""
+
+from __future__ import annotations
+
+from collections import Counter
+from collections.abc import Iterator, Sequence
+
+from linkwright.descriptions.comparison.numbers import comparable_text
+from linkwright.xmltree import Element
+
+_RENAMED = frozenset({"world", "model", "link", "joint", "sensor", "frame", "plugin"})
+"""The tags of elements whose names other programs use."""
+_MIN_SIMILARITY = 0.5
+_MAX_PAIRS = 2500
+"""Descriptions in which more pairs are possible have other contents rather than other names."""
+
+
+def renamed_elements(
+    old: Sequence[Element], new: Sequence[Element], old_lone: Sequence[Element], new_lone: Sequence[Element]
+) -> Iterator[tuple[Element, Element]]:
+    """Yield the pairs of elements that have other names but the same tag and similar contents.
+
+    A world, or a model outside of worlds, also matches if it is the only one in both descriptions.
+
+    Args:
+        old: the elements of the old description.
+        new: the elements of the new description.
+        old_lone: those of the old elements whose names the new description does not have.
+        new_lone: those of the new elements whose names the old description does not have.
+    """
+    if len(old_lone) * len(new_lone) > _MAX_PAIRS:
+        return
+    for tag in dict.fromkeys(element.tag for element in new_lone):
+        if tag not in _RENAMED:
+            continue
+        pairs = [(first, second) for first in old_lone for second in new_lone if first.tag == second.tag == tag]
+        if tag in ("world", "model") and len(old) == len(new) == 1:
+            yield from pairs
+            continue
+        scores = [(_similarity(first, second), first, second) for first, second in pairs]
+        taken: set[int] = set()
+        for score, first, second in sorted(scores, key=lambda item: -item[0]):
+            if score >= _MIN_SIMILARITY and not {id(first), id(second)} & taken:
+                taken |= {id(first), id(second)}
+                yield first, second
+
+
+def _similarity(old: Element, new: Element) -> float:
+    """Return how much of the contents is equal, from 0 to 1."""
+    if old.tag == "plugin" and old.attributes.get("filename") != new.attributes.get("filename"):
+        return 0.0
+    first, second = Counter(_contents(old, "")), Counter(_contents(new, ""))
+    total = first.total() + second.total()
+    return 2 * (first & second).total() / total if total else 0.0
+
+
+def _contents(element: Element, path: str) -> Iterator[str]:
+    """Yield the texts and attributes below an element, each with its place."""
+    for child in element.elements():
+        place = f"{path}/{child.tag}"
+        yield f"{place}={comparable_text(child.text())}"
+        for name, value in child.attributes.items():
+            yield f"{place}@{name}={comparable_text(value)}"
+        yield from _contents(child, place)
+    if not path:
+        for name, value in element.attributes.items():
+            if name != "name":
+                yield f"@{name}={value}"

@@ -1,0 +1,137 @@
+"""The comparison of configurations of ros_gz bridges: the topics that are bridged, with their types."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass
+
+import yaml
+
+from linkwright.diagnostics import Phrase, phrase
+from linkwright.review.changes import Location
+from linkwright.review.file_pair import FilePair
+from linkwright.review.list_changes import change_text
+from linkwright.review.yaml_values import composed
+
+_TOPIC_KEYS = ("ros_topic_name", "topic_name", "gz_topic_name", "ign_topic_name")
+_ROS_TYPE, _DIRECTION = "ros_type_name", "direction"
+_TO_ROS = ("GZ_TO_ROS", "IGN_TO_ROS")
+_FROM_ROS = ("ROS_TO_GZ", "ROS_TO_IGN")
+
+
+@dataclass(frozen=True)
+class Bridge:
+    """A bridged topic.
+
+    Attributes:
+        settings: the settings by name.
+        places: the line and the column of each setting, starting at 1.
+        line: the line of the bridge.
+        column: its column.
+    """
+
+    settings: Mapping[str, str]
+    places: Mapping[str, tuple[int, int]]
+    line: int
+    column: int
+
+    @property
+    def topic(self) -> str:
+        """The name of the topic in ROS."""
+        return next((self.settings[key] for key in _TOPIC_KEYS if key in self.settings), "")
+
+
+def read_bridges(text: str) -> list[Bridge] | None:
+    """Return the bridges of a document in YAML, or None if it does not configure bridges.
+
+    Raises:
+        UnreadableFileError: the text is not YAML.
+    """
+    root = composed(text)
+    if not isinstance(root, yaml.SequenceNode) or not root.value:
+        return None
+    bridges = [bridge for bridge in map(_bridge, root.value) if bridge is not None]
+    return bridges if len(bridges) == len(root.value) else None
+
+
+def _bridge(node: yaml.Node) -> Bridge | None:
+    settings: dict[str, str] = {}
+    places: dict[str, tuple[int, int]] = {}
+    for key, value in node.value if isinstance(node, yaml.MappingNode) else []:
+        if isinstance(key, yaml.ScalarNode) and isinstance(value, yaml.ScalarNode):
+            settings[key.value] = value.value
+            places[key.value] = value.start_mark.line + 1, value.start_mark.column + 1
+    if not any(key in settings for key in _TOPIC_KEYS):
+        return None
+    return Bridge(settings, places, node.start_mark.line + 1, node.start_mark.column + 1)
+
+
+def compare_bridges(pair: FilePair, old: Sequence[Bridge], new: Sequence[Bridge]) -> None:
+    """Compare two versions of a configuration of bridges, topic by topic."""
+    old_rest, new_rest = list(old), list(new)
+    for old_bridge, new_bridge in list(_matched(old_rest, new_rest)):
+        _compare_settings(pair, old_bridge, new_bridge)
+    for bridge in new_rest:
+        pair.add(
+            phrase("bridge '{topic}' added", topic=bridge.topic), Location(pair.new_path, bridge.line, bridge.column)
+        )
+    for bridge in old_rest:
+        location = Location(pair.old_path, bridge.line, bridge.column, is_old=True)
+        pair.add(phrase("bridge '{topic}' removed", topic=bridge.topic), location, _missing_reason(bridge.topic))
+
+
+def _matched(old: list[Bridge], new: list[Bridge]) -> Iterator[tuple[Bridge, Bridge]]:
+    """Take the bridges that belong together from both lists, and yield them.
+
+    They have the same name in ROS, or else the same name in the simulator and the same type.
+    """
+    for keys in (("topic",), ("gz_topic_name", _ROS_TYPE), ("ign_topic_name", _ROS_TYPE)):
+        for new_bridge in list(new):
+            key = _key(new_bridge, keys)
+            old_bridge = next((each for each in old if key is not None and _key(each, keys) == key), None)
+            if old_bridge is not None:
+                old.remove(old_bridge)
+                new.remove(new_bridge)
+                yield old_bridge, new_bridge
+
+
+def _key(bridge: Bridge, names: Sequence[str]) -> tuple[str, ...] | None:
+    values = [bridge.topic if name == "topic" else bridge.settings.get(name) for name in names]
+    known = tuple(value for value in values if value)
+    return known if len(known) == len(names) else None
+
+
+def _compare_settings(pair: FilePair, old: Bridge, new: Bridge) -> None:
+    if old.topic != new.topic:
+        line, column = new.places[next(key for key in _TOPIC_KEYS if key in new.settings)]
+        text = phrase("bridge '{old}' renamed to '{topic}'", old=old.topic, topic=new.topic)
+        pair.add(text, Location(pair.new_path, line, column), _missing_reason(old.topic))
+    for name in dict.fromkeys([*new.settings, *old.settings]):
+        before, after = old.settings.get(name), new.settings.get(name)
+        is_name = name == next((key for key in _TOPIC_KEYS if key in new.settings), None)
+        if before == after or (is_name and old.topic != new.topic):
+            continue
+        line, column = new.places.get(name, (new.line, new.column))
+        change = change_text(name, "-" if before is None else before, "-" if after is None else after)
+        text = phrase("bridge '{topic}': {change}", topic=new.topic, change=change)
+        pair.add(text, Location(pair.new_path, line, column), _setting_reason(new.topic, name, before, after))
+
+
+def _setting_reason(topic: str, name: str, old: str | None, new: str | None) -> Phrase | None:
+    """Return why a changed setting of a bridge is breaking, or None if it is not."""
+    if name == _ROS_TYPE and old is not None and new is not None and _same_type(old) != _same_type(new):
+        return phrase("programs that use the topic '{topic}' with the old type do not receive it", topic=topic)
+    if name == _DIRECTION and old is not None and old not in _FROM_ROS and new in _FROM_ROS:
+        return phrase("the bridge does not publish the topic '{topic}' any more", topic=topic)
+    if name == _DIRECTION and old is not None and old not in _TO_ROS and new in _TO_ROS:
+        return phrase("the bridge does not subscribe to the topic '{topic}' any more", topic=topic)
+    return None
+
+
+def _same_type(name: str) -> str:
+    """Return a type in one notation: ``sensor_msgs/Imu`` is ``sensor_msgs/msg/Imu``."""
+    return name.replace("/msg/", "/")
+
+
+def _missing_reason(topic: str) -> Phrase:
+    return phrase("programs that use the name '{name}' do not find it", name=topic)

@@ -1,0 +1,192 @@
+"""The functions of a repository that make the actions of launch files, such as the methods of mixins."""
+
+from __future__ import annotations
+
+import ast
+import re
+from collections.abc import Iterator
+from dataclasses import dataclass
+from functools import lru_cache
+from pathlib import Path
+
+from linkwright.diagnostics import SourceText
+from linkwright.packages.readers.python_values import PythonFile, called_name
+from linkwright.review.launch_names import LaunchPythonFile
+
+_MAX_DEPTH = 5
+"""The number of files through which a name may be imported."""
+_MAX_BYTES = 1 << 20
+_MAX_PASSES = 5000
+"""The number of passes of loops in a launch file that are read one by one."""
+_LAUNCH = re.compile(r"launch(_\w+)?(\.|$)")
+"""The modules whose actions are known, or are the rest of a file."""
+
+
+@dataclass(frozen=True)
+class Function:
+    """A function or method.
+
+    Attributes:
+        python: its file.
+        node: its definition.
+        is_method: whether its first parameter is an object or a class.
+    """
+
+    python: PythonFile
+    node: ast.FunctionDef
+    is_method: bool = False
+
+
+def makes_actions(path: Path) -> bool:
+    """Return whether a file in Python imports the actions of launch files, so that it can make them for others."""
+    file = _read(path)
+    imports = (node for node in ast.walk(file.tree) if isinstance(node, ast.ImportFrom)) if file else ()
+    return any(not node.level and _LAUNCH.match(node.module or "") for node in imports)
+
+
+class HelperFunctions:
+    """The functions of a repository that launch files call.
+
+    Args:
+        root: the folder of the repository.
+        makes_action: the names of classes whose calls make actions.
+    """
+
+    def __init__(self, root: Path, makes_action: frozenset[str]) -> None:
+        self._root = root
+        self._makes_action = makes_action
+        self._local_names: dict[int, frozenset[str]] = {}
+        self._found: dict[tuple[int, str], Function | None] = {}
+        self._passes = _MAX_PASSES
+
+    def take_passes(self, count: int) -> bool:
+        """Return whether a loop may be read for each of its items; loops in loops could have billions of passes."""
+        if count > self._passes:
+            return False
+        self._passes -= count
+        return True
+
+    def local_names(self, python: PythonFile) -> frozenset[str]:
+        """Return the functions of a file that its other code calls, and that make actions."""
+        names = self._local_names.get(id(python))
+        if names is None:
+            called = {called_name(node) for node in ast.walk(python.tree) if isinstance(node, ast.Call)}
+            functions = (node for node in _definitions(python).values() if isinstance(node, ast.FunctionDef))
+            names = frozenset(node.name for node in functions if node.name in called and self._makes(node))
+            self._local_names[id(python)] = names
+        return names
+
+    def find(self, python: PythonFile, call: ast.Call) -> Function | None:
+        """Return the function that a call calls, or None if it is none of the repository that makes actions."""
+        name = called_name(call)
+        key = id(python), name
+        if key not in self._found:
+            self._found[key] = self._find(python, name)
+        return self._found[key]
+
+    def is_foreign(self, python: PythonFile, call: ast.Call) -> bool:
+        """Return whether a file imports the function that a call calls from a package that is not part of launch."""
+        first = called_name(call).partition(".")[0]
+        modules = [module for module, _ in _imports(python, first)]
+        return bool(modules) and not any(_LAUNCH.match(module) for module in modules) and not self.find(python, call)
+
+    def _find(self, python: PythonFile, name: str) -> Function | None:
+        first, _, method = name.partition(".")
+        if not first or "." in method:
+            return None
+        definition = self._definition(python, first, 0)
+        if definition is None:
+            return None
+        file, node = definition
+        if isinstance(node, ast.FunctionDef):
+            return Function(file, node) if self._makes(node) and not method else None
+        return self._method(file, node, method, 0)
+
+    def _method(self, file: PythonFile, owner: ast.ClassDef, name: str, depth: int) -> Function | None:
+        """Return a method of a class or of its base classes, or None if it does not make actions."""
+        methods = {item.name: item for item in owner.body if isinstance(item, ast.FunctionDef)}
+        found = methods.get(name)
+        if found is not None:
+            is_method = "staticmethod" not in map(ast.unparse, found.decorator_list)
+            return Function(file, found, is_method) if self._makes(found) else None
+        for base in owner.bases if depth < _MAX_DEPTH else ():
+            definition = self._definition(file, base.id, 0) if isinstance(base, ast.Name) else None
+            if definition is not None and isinstance(definition[1], ast.ClassDef):
+                inherited = self._method(definition[0], definition[1], name, depth + 1)
+                if inherited is not None:
+                    return inherited
+        return None
+
+    def _makes(self, function: ast.FunctionDef) -> bool:
+        """Return whether a function makes actions."""
+        calls = (node for node in ast.walk(function) if isinstance(node, ast.Call))
+        return any(called_name(call).rpartition(".")[2] in self._makes_action for call in calls)
+
+    def _definition(
+        self, python: PythonFile, name: str, depth: int
+    ) -> tuple[PythonFile, ast.FunctionDef | ast.ClassDef] | None:
+        """Return the definition of a function or class that a file defines or imports."""
+        own = _definitions(python).get(name)
+        if own is not None:
+            return python, own
+        if depth >= _MAX_DEPTH:
+            return None
+        for module, imported in _imports(python, name):
+            for path in self._module_files(module, Path(python.source.name)):
+                file = _read(path)
+                found = None if file is None else self._definition(file, imported, depth + 1)
+                if found is not None:
+                    return found
+        return None
+
+    def _module_files(self, module: str, importer: Path) -> Iterator[Path]:
+        """Yield the files of the repository that a module can be."""
+        level = len(module) - len(module.lstrip("."))
+        parts = tuple(part for part in module.split(".") if part)
+        if level:
+            folder = importer.parents[min(level, len(importer.parents)) - 1]
+            paths = [
+                folder.joinpath(*parts, "__init__.py"),
+                *([folder.joinpath(*parts).with_suffix(".py")] if parts else []),
+            ]
+            yield from (path for path in paths if path.is_relative_to(self._root))
+            return
+        for path in _python_files(self._root):
+            names = (*path.parts[:-1], path.stem) if path.stem != "__init__" else path.parts[:-1]
+            if names[-len(parts) :] == parts:
+                yield path
+
+
+def _definitions(python: PythonFile) -> dict[str, ast.FunctionDef | ast.ClassDef]:
+    return {node.name: node for node in python.tree.body if isinstance(node, (ast.FunctionDef, ast.ClassDef))}
+
+
+def _imports(python: PythonFile, name: str) -> Iterator[tuple[str, str]]:
+    """Yield the modules from which a file imports a name, with its name there."""
+    for node in ast.walk(python.tree):
+        if isinstance(node, ast.ImportFrom):
+            for alias in node.names:
+                if (alias.asname or alias.name) == name:
+                    yield "." * node.level + (node.module or ""), alias.name
+
+
+@lru_cache(maxsize=8)
+def _python_files(root: Path) -> tuple[Path, ...]:
+    """Return the files in Python below a folder, which does not change during a review."""
+    files = (
+        path
+        for path in sorted(root.rglob("*.py"))
+        if not any(part.startswith(".") for part in path.relative_to(root).parts)
+    )
+    return tuple(files)
+
+
+@lru_cache(maxsize=64)
+def _read(path: Path) -> PythonFile | None:
+    """Return a file, or None if it cannot be read."""
+    try:
+        if path.stat().st_size > _MAX_BYTES:
+            return None
+        return LaunchPythonFile(SourceText(str(path), path.read_text("utf-8")))
+    except (OSError, ValueError, SyntaxError):
+        return None

@@ -1,0 +1,263 @@
+"""Outlines of launch files in XML and YAML."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass, field
+from pathlib import Path
+
+import yaml
+
+from linkwright.diagnostics import SourceText, Span, phrase
+from linkwright.review.file_pair import UnreadableFileError
+from linkwright.review.launch_outlines import (
+    CONDITION,
+    NAMESPACE,
+    NAMESPACE_OF_INCLUDED,
+    PARAMETER,
+    REMAPPING,
+    CodePart,
+    Entry,
+    LaunchOutline,
+    Scope,
+)
+from linkwright.review.yaml_values import composed
+from linkwright.xmltree import Element
+
+_NODE_TAGS = ("node", "lifecycle_node", "composable_node", "node_container")
+_PUSHES = ("push_ros_namespace", "push-ros-namespace", "push_namespace")
+_ENVIRONMENT = ("set_env", "env", "append_env", "unset_env")
+_REMAPPINGS = ("remap", "set_remap")
+_CONDITIONS = ("if", "unless")
+_NOT_COMPARED = frozenset({"pkg", "exec", "type", "plugin", "output", "emulate_tty", "description", "doc", "cmd"})
+_MAX_NODES = 20_000
+"""The maximum number of actions of a file. Aliases of YAML can repeat one billions of times."""
+
+
+@dataclass
+class LaunchTag:
+    """An action of a launch file in XML or YAML.
+
+    Attributes:
+        name: the name of the tag.
+        attributes: the attributes.
+        span: where it is.
+        text: the text inside it.
+        children: the actions and settings inside it.
+    """
+
+    name: str
+    attributes: dict[str, str]
+    span: Span
+    text: str = ""
+    children: list[LaunchTag] = field(default_factory=list)
+
+
+def read_markup_outline(root: LaunchTag) -> LaunchOutline:
+    """Return the outline of a launch file in XML or YAML."""
+    rest: list[CodePart] = []
+    entries = list(_entries(root, Scope(), rest))
+    return LaunchOutline(entries, rest)
+
+
+def xml_tags(element: Element) -> LaunchTag:
+    """Return an element of XML with the elements in it."""
+    children = [xml_tags(child) for child in element.elements()]
+    span = element.span() or Span("", 1, 1, 1, 1)
+    attributes = {name: " ".join(value.split()) for name, value in element.attributes.items()}
+    return LaunchTag(element.tag, attributes, span, " ".join(element.text().split()), children)
+
+
+def yaml_tags(path: Path) -> LaunchTag:
+    """Return the actions of a launch file in YAML below a root.
+
+    Raises:
+        UnreadableFileError: the text is not YAML, or it has too many actions.
+        OSError: the file cannot be read.
+        ValueError: the file is not text in UTF-8.
+    """
+    source = SourceText(str(path), path.read_text("utf-8"))
+    node = composed(source.text)
+    root = LaunchTag("launch", {}, source.span(0, 1))
+    reader = _YamlReader(source)
+    for name, value in _items(node):
+        if name == "launch":
+            reader.add(root, value)
+    return root
+
+
+class _YamlReader:
+    """A reader of actions in YAML.
+
+    Each item of a list is a mapping from a tag to its attributes. An attribute that is a list contains tags of its
+    name, such as ``param``.
+    """
+
+    def __init__(self, source: SourceText) -> None:
+        self._source = source
+        self._count = 0
+
+    def add(self, parent: LaunchTag, node: yaml.Node) -> None:
+        """Add the actions of a list to a tag."""
+        for item in node.value if isinstance(node, yaml.SequenceNode) else []:
+            for name, value in _items(item):
+                parent.children.append(self._tag(name, value))
+
+    def _tag(self, name: str, node: yaml.Node) -> LaunchTag:
+        self._count += 1
+        if self._count > _MAX_NODES:
+            raise UnreadableFileError(phrase("it has more than {count} actions", count=_MAX_NODES))
+        tag = LaunchTag(name, {}, self._source.span(node.start_mark.index, node.start_mark.index + 1))
+        if isinstance(node, yaml.SequenceNode):
+            self.add(tag, node)
+        for key, value in _items(node):
+            if key == "children":
+                self.add(tag, value)
+            elif isinstance(value, yaml.SequenceNode):
+                tag.children += (self._tag(key, item) for item in value.value)
+            elif isinstance(value, yaml.ScalarNode):
+                tag.attributes[key] = str(value.value)
+        if isinstance(node, yaml.ScalarNode):
+            tag.text = str(node.value)
+        return tag
+
+
+def _items(node: yaml.Node | None) -> Iterator[tuple[str, yaml.Node]]:
+    for key, value in node.value if isinstance(node, yaml.MappingNode) else []:
+        yield str(key.value), value
+
+
+# --- entries ---------------------------------------------------------------------------------------------------------
+
+
+def _entries(parent: LaunchTag, scope: Scope, rest: list[CodePart]) -> Iterator[Entry]:
+    for tag in parent.children:
+        attributes = tag.attributes
+        if tag.name in _PUSHES:
+            namespace = attributes.get("namespace") or attributes.get("ns") or attributes.get("name", "")
+            condition = _condition(tag)
+            scope = scope.pushed(f"{namespace} ({condition})" if condition else namespace)
+        elif tag.name == "group":
+            inner = scope.under(_condition(tag)).pushed(attributes.get("ns", ""))
+            yield from _entries(tag, inner, rest)
+        else:
+            entry = _entry(tag)
+            if entry is not None:
+                yield Entry(entry.kind, entry.name, scope.settings(entry.kind, entry.settings), entry.span)
+                if entry.kind == "node":
+                    inner_tags = [child for child in tag.children if child.name in _NODE_TAGS]
+                    inner = scope.under(_condition(tag))
+                    yield from _entries(LaunchTag("", {}, tag.span, children=inner_tags), inner, rest)
+            else:
+                text = " ".join(
+                    [tag.name, *(f"{name}={value}" for name, value in sorted(attributes.items())), tag.text]
+                )
+                rest.append(CodePart(text, text, tag.span))
+                yield from _entries(tag, scope.under(_condition(tag)), rest)
+
+
+def _condition(tag: LaunchTag) -> str:
+    return " and ".join(f"{name} {tag.attributes[name]}" for name in _CONDITIONS if name in tag.attributes)
+
+
+def _entry(tag: LaunchTag) -> Entry | None:
+    """Return the entry of an action, or None for a tag that is none."""
+    attributes = tag.attributes
+    name = attributes.get("name", "")
+    settings: dict[str, str] = {}
+    if tag.name == "arg":
+        kind = "argument"
+        settings = _some(attributes, {"default": "default", "value": "value"})
+        choices = [child.attributes.get("value", "") for child in tag.children if child.name == "choice"]
+        if choices:
+            settings["choices"] = f"[{', '.join(choices)}]"
+    elif tag.name == "let":
+        kind, settings = "variable", {"value": attributes.get("value", "")}
+    elif tag.name in _NODE_TAGS:
+        kind, name, settings = "node", _node_name(attributes), _node_settings(tag)
+    elif tag.name == "executable":
+        kind, name, settings = "process", attributes.get("cmd", ""), _others(attributes)
+    elif tag.name == "include":
+        kind, name, settings = "include", attributes.get("file", ""), _passed_arguments(tag)
+    elif tag.name in _REMAPPINGS:
+        kind, name, settings = "remapping", attributes.get("from", ""), {"to": attributes.get("to", "")}
+    elif tag.name in ("param", "set_parameter"):
+        kind, settings = "parameter", {"value": _parameter_value(tag)}
+    elif tag.name == "rosparam":
+        kind, name, settings = "parameters", attributes.get("file") or attributes.get("param", ""), _rosparam(tag)
+    elif tag.name in _ENVIRONMENT:
+        kind = "environment"
+        key = {"append_env": "appended value", "unset_env": "unset"}.get(tag.name, "value")
+        settings = {key: attributes.get("value", "true")}
+    else:
+        return None
+    condition = _condition(tag)
+    return Entry(kind, name, {**settings, **({CONDITION: condition} if condition else {})}, tag.span)
+
+
+def _some(attributes: Mapping[str, str], names: Mapping[str, str]) -> dict[str, str]:
+    return {names[key]: value for key, value in attributes.items() if key in names}
+
+
+def _others(attributes: Mapping[str, str], ignored: Sequence[str] = ()) -> dict[str, str]:
+    names = {"ns": NAMESPACE, "args": "arguments"}
+    left_out = {*_NOT_COMPARED, *_CONDITIONS, *ignored}
+    return {names.get(key, key): value for key, value in attributes.items() if key not in left_out}
+
+
+def _node_name(attributes: Mapping[str, str]) -> str:
+    parts = (attributes.get("pkg"), attributes.get("exec") or attributes.get("type"), attributes.get("plugin"))
+    return "/".join(part for part in parts if part)
+
+
+def _node_settings(tag: LaunchTag) -> dict[str, str]:
+    settings = _others(tag.attributes)
+    for child in tag.children:
+        attributes = child.attributes
+        if child.name == "param" and "from" in attributes:
+            settings[f"{PARAMETER}{attributes['from']}"] = ""
+        elif child.name == "param":
+            settings |= _parameters(child, "")
+        elif child.name == "rosparam":
+            file = attributes.get("file") or attributes.get("param", "")
+            settings[f"{PARAMETER}{file}"] = child.text
+        elif child.name == "remap":
+            settings[f"{REMAPPING}{attributes.get('from', '')}"] = attributes.get("to", "")
+        elif child.name == "env":
+            settings[f"environment variable {attributes.get('name', '')}"] = attributes.get("value", "")
+    return settings
+
+
+def _parameters(tag: LaunchTag, path: str) -> dict[str, str]:
+    """Return a parameter, or those that it contains, by name."""
+    name = f"{path}{tag.attributes.get('name', '')}"
+    inner = [child for child in tag.children if child.name == "param"]
+    if not inner:
+        return {f"{PARAMETER}{name}": _parameter_value(tag)}
+    parameters: dict[str, str] = {}
+    for child in inner:
+        parameters |= _parameters(child, f"{name}.")
+    return parameters
+
+
+def _parameter_value(tag: LaunchTag) -> str:
+    """Return the value of a parameter, or the file or command that it comes from."""
+    keys = ("value", "textfile", "binfile", "command")
+    return next((tag.attributes[key] for key in keys if key in tag.attributes), tag.text)
+
+
+def _rosparam(tag: LaunchTag) -> dict[str, str]:
+    names = {"ns": NAMESPACE, "command": "command", "subst_value": "subst_value"}
+    return {**_some(tag.attributes, names), **({"text": tag.text} if tag.text else {})}
+
+
+def _passed_arguments(tag: LaunchTag) -> dict[str, str]:
+    """Return the arguments that an include passes, and the namespace of the nodes in the file."""
+    settings = {
+        child.attributes.get("name", ""): child.attributes.get("value", child.attributes.get("default", ""))
+        for child in tag.children
+        if child.name in ("arg", "let")
+    }
+    if tag.attributes.get("ns"):
+        settings[NAMESPACE_OF_INCLUDED] = tag.attributes["ns"]
+    return settings

@@ -1,0 +1,101 @@
+"""The values of names in launch files in Python, also of names that are assigned again."""
+
+from __future__ import annotations
+
+import ast
+from collections.abc import Iterator
+from dataclasses import dataclass
+from functools import cached_property
+
+from linkwright.packages.readers.python_values import PythonFile
+
+_MAX_DEPTH = 40
+_EVERYWHERE = (0, 1 << 30)
+_Branching = ast.If | ast.For | ast.While | ast.Try
+_Function = ast.FunctionDef | ast.AsyncFunctionDef | ast.Lambda
+
+
+@dataclass(frozen=True)
+class _Binding:
+    """A place that gives a name a value.
+
+    Attributes:
+        line: the last line of the statement.
+        value: the value, or None if it is not written there, as for parameters of functions.
+        block: the first and last line of the lines in which it certainly applies.
+    """
+
+    line: int
+    value: ast.expr | None
+    block: tuple[int, int]
+
+
+class LaunchPythonFile(PythonFile):
+    """A launch file in Python. A name has the value that the last statement before it assigns in its function."""
+
+    def resolved(self, node: ast.expr) -> ast.expr:
+        """Return the expression that is assigned to a name, and any other expression unchanged."""
+        for _ in range(_MAX_DEPTH):
+            if not isinstance(node, ast.Name):
+                break
+            value = self.assigned_expression(node.id) or self._latest(node)
+            if value is None:
+                break
+            node = value
+        return node
+
+    def _latest(self, node: ast.Name) -> ast.expr | None:
+        """Return the last value of a name before a line, or None if it is not certain."""
+        for start, end, bindings in self._functions:
+            before = [each for each in bindings.get(node.id, ()) if each.line < node.lineno]
+            if start <= node.lineno <= end and node.id in bindings:
+                latest = max(before, key=lambda each: each.line) if before else None
+                is_certain = latest is not None and latest.block[0] <= node.lineno <= latest.block[1]
+                return latest.value if latest is not None and is_certain else None
+        return None
+
+    @cached_property
+    def _functions(self) -> list[tuple[int, int, dict[str, list[_Binding]]]]:
+        """The first and last line of each function with its bindings, the innermost first; the last is the file."""
+        functions = [node for node in ast.walk(self.tree) if isinstance(node, (ast.FunctionDef, ast.AsyncFunctionDef))]
+        found = [(node.lineno, node.end_lineno or node.lineno, _bindings(node)) for node in functions]
+        found.sort(key=lambda item: item[1] - item[0])
+        return [*found, (0, len(self.source.text), _bindings(self.tree))]
+
+
+def _bindings(scope: ast.AST) -> dict[str, list[_Binding]]:
+    bindings: dict[str, list[_Binding]] = {}
+    for node, block in _nodes(scope, _EVERYWHERE):
+        for name, value in _names(node):
+            line = getattr(node, "end_lineno", None) or 0
+            bindings.setdefault(name, []).append(_Binding(line, value, block))
+    return bindings
+
+
+def _nodes(scope: ast.AST, block: tuple[int, int]) -> Iterator[tuple[ast.AST, tuple[int, int]]]:
+    """Yield the nodes of a function or file, without those of the functions in it, with the lines of their blocks."""
+    for child in ast.iter_child_nodes(scope):
+        yield child, block
+        if isinstance(child, _Branching):
+            handlers = [handler.body for handler in child.handlers] if isinstance(child, ast.Try) else []
+            final = child.finalbody if isinstance(child, ast.Try) else []
+            for statements in (child.body, child.orelse, *handlers, final):
+                for statement in statements:
+                    lines = statements[0].lineno, statements[-1].end_lineno or statements[-1].lineno
+                    yield statement, lines
+                    yield from _nodes(statement, lines)
+        elif not isinstance(child, _Function):
+            yield from _nodes(child, block)
+
+
+def _names(node: ast.AST) -> Iterator[tuple[str, ast.expr | None]]:
+    if isinstance(node, ast.arguments):
+        arguments = [*node.posonlyargs, *node.args, *node.kwonlyargs, node.vararg, node.kwarg]
+        yield from ((argument.arg, None) for argument in arguments if argument is not None)
+    elif isinstance(node, ast.Assign) and len(node.targets) == 1 and isinstance(node.targets[0], ast.Name):
+        yield node.targets[0].id, node.value
+    elif isinstance(node, ast.AnnAssign) and isinstance(node.target, ast.Name):
+        yield node.target.id, node.value
+    elif isinstance(node, (ast.Assign, ast.AugAssign, ast.NamedExpr, ast.For, ast.comprehension, ast.withitem)):
+        targets = (child for child in ast.walk(node) if isinstance(child, ast.Name))
+        yield from ((target.id, None) for target in targets if isinstance(target.ctx, ast.Store))

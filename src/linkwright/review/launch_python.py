@@ -1,0 +1,360 @@
+"""Outlines of launch files in Python, which are read as syntax trees."""
+
+from __future__ import annotations
+
+import ast
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass, field, replace
+
+from linkwright.packages.readers.python_values import PythonFile, called_name
+from linkwright.review.launch_helpers import Function, HelperFunctions
+from linkwright.review.launch_outlines import (
+    CONDITION,
+    PARAMETER,
+    REMAPPING,
+    Entry,
+    LaunchOutline,
+    Scope,
+)
+from linkwright.review.launch_rest import rest_of
+from linkwright.review.launch_text import BoundExpression, ExpressionTexts
+
+_NODES = ("Node", "LifecycleNode", "ComposableNode", "ComposableNodeContainer")
+_PROCESSES = ("ExecuteProcess", "ExecuteLocal")
+_ENVIRONMENT = ("SetEnvironmentVariable", "AppendEnvironmentVariable", "UnsetEnvironmentVariable")
+_OTHERS = ("DeclareLaunchArgument", "IncludeLaunchDescription", "SetLaunchConfiguration", "SetRemap", "SetParameter")
+ACTIONS = frozenset({*_NODES, *_PROCESSES, *_ENVIRONMENT, *_OTHERS})
+"""The classes whose calls make actions."""
+_PUSHES = ("PushRosNamespace", "PushROSNamespace", "PushNamespace")
+_LISTS = ("LaunchDescription", "GroupAction", "TimerAction")
+"""The objects whose first argument is a list of actions."""
+_ADDITIONS = ("add_action", "add_entity")
+_OUTSIDE = Scope()
+_INNER_ACTIONS = frozenset({"composable_node_descriptions", "on_exit"})
+"""The arguments of actions that contain other actions, which are entries themselves."""
+_ALIASES = {"node_executable": "executable", "node_name": "name", "node_namespace": "namespace"}
+"""The names of arguments of nodes before ROS 2 Foxy."""
+_NOT_COMPARED = frozenset({"package", "executable", "plugin", "output", "emulate_tty", "description", "cmd"})
+"""The arguments that name an action, and those that do not change what other programs see."""
+_MAX_HELPER_DEPTH = 3
+_Place = tuple[int, tuple[int, ...]]
+"""The identity of a call, and the numbers of the passes of the loops around it."""
+
+
+def read_python_outline(python: PythonFile, helpers: HelperFunctions) -> LaunchOutline:
+    """Return the outline of a launch file.
+
+    Args:
+        python: the file.
+        helpers: the functions of the repository that make actions.
+    """
+    reader = _Reader(python, helpers, ExpressionTexts(python))
+    reader.visit(python.tree)
+    entries = sorted(reader.entries(), key=lambda entry: (entry.span.line, entry.span.column))
+    return LaunchOutline(entries, rest_of(python, reader.covered))
+
+
+@dataclass
+class _Reader:
+    """A reader of the actions of a file, or of one function of it.
+
+    Attributes:
+        python: the file.
+        helpers: the functions of the repository that make actions.
+        texts: the texts of expressions.
+        extra: the keyword arguments that the caller of a function passes on with ``**``, as texts.
+        depth: the number of functions that call the function that is read.
+        scopes: each call that makes an action, with its scope and its texts, by the identity of its syntax tree and
+            the passes of the loops around it.
+        covered: the calls that entries describe, which do not belong to the rest of the file.
+    """
+
+    python: PythonFile
+    helpers: HelperFunctions
+    texts: ExpressionTexts
+    extra: Mapping[str, str] = field(default_factory=dict)
+    depth: int = 0
+    scopes: dict[_Place, tuple[ast.Call, Scope, ExpressionTexts]] = field(default_factory=dict)
+    covered: set[int] = field(default_factory=set)
+    _loops: tuple[int, ...] = ()
+    _outside: list[tuple[int, int, ExpressionTexts, tuple[int, ...]]] = field(default_factory=list)
+    _seen: set[tuple[int, tuple[int, ...], Scope]] = field(default_factory=set)
+
+    def entries(self) -> Iterator[Entry]:
+        for call, scope, texts in list(self.scopes.values()):
+            self.texts = texts
+            function = called_name(call).rpartition(".")[2]
+            if function in ACTIONS:
+                self.covered.add(id(call))
+                yield self._action(call, function, scope)
+            elif self._is_helper(call):
+                yield from self._helper_entries(call, scope)
+            else:
+                self.covered.add(id(call))
+                yield self._foreign_action(call, scope)
+
+    # --- the scopes of actions ---------------------------------------------------------------------------------------
+
+    def visit(self, node: ast.AST, scope: Scope = _OUTSIDE) -> None:
+        """Find the actions below a node, which is in a scope."""
+        if isinstance(node, ast.Name):
+            value = self.python.resolved(node)
+            if value is not node:
+                self._visit_value(value, scope)
+            return
+        if (id(node), self._loops, scope) in self._seen:
+            return
+        self._seen.add((id(node), self._loops, scope))
+        if isinstance(node, ast.Call):
+            self._visit_call(node, scope)
+        elif isinstance(node, (ast.List, ast.Tuple)):
+            for item in node.elts:
+                scope = scope.pushed(self._pushed(item))
+                self.visit(item, scope)
+        elif isinstance(node, ast.For) and isinstance(node.target, ast.Name):
+            self._visit_loop(node.target.id, node.iter, node.body, scope)
+        elif isinstance(node, (ast.ListComp, ast.GeneratorExp)) and isinstance(node.generators[0].target, ast.Name):
+            self._visit_loop(node.generators[0].target.id, node.generators[0].iter, [node.elt], scope)
+        elif isinstance(node, ast.FunctionDef):
+            if node.name not in self.helpers.local_names(self.python):
+                self._visit_body(node, scope)
+        else:
+            for child in ast.iter_child_nodes(node):
+                self.visit(child, scope)
+
+    def _visit_value(self, value: ast.expr, scope: Scope) -> None:
+        """Find the actions of the value of a name, which may be assigned outside of the loops that use it."""
+        texts, loops = self.texts, self._loops
+        outside = next((each for each in self._outside if not each[0] <= value.lineno <= each[1]), None)
+        if outside is not None:
+            _, _, self.texts, self._loops = outside
+        self.visit(value, scope)
+        self.texts, self._loops = texts, loops
+
+    def _visit_loop(self, name: str, iterable: ast.expr, body: Sequence[ast.stmt | ast.expr], scope: Scope) -> None:
+        """Find the actions of a loop, for each item if the list is written in the file."""
+        items = self.texts.items(iterable)
+        if items is None or not self.helpers.take_passes(len(items)):
+            for statement in body:
+                self.visit(statement, scope)
+            return
+        self.covered.add(id(iterable))
+        texts, loops = self.texts, self._loops
+        lines = [line for node in body for line in (node.lineno, node.end_lineno or node.lineno)]
+        self._outside.append((min(lines), max(lines), texts, loops))
+        for number, item in enumerate(items):
+            self.texts, self._loops = texts.with_value(name, item), (*loops, number)
+            for statement in body:
+                self.visit(statement, scope)
+        self.texts, self._loops = texts, loops
+        self._outside.pop()
+
+    def _visit_body(self, function: ast.FunctionDef, scope: Scope) -> None:
+        for statement in function.body:
+            scope = scope.pushed(self._pushed(_added_action(statement)))
+            self.visit(statement, scope)
+
+    def visit_function(self, function: ast.FunctionDef) -> None:
+        """Find the actions of a function."""
+        self._visit_body(function, _OUTSIDE)
+
+    def _visit_call(self, call: ast.Call, scope: Scope) -> None:
+        function = called_name(call).rpartition(".")[2]
+        if function in _PUSHES:
+            self.covered.add(id(call))
+            return
+        if function in ACTIONS or self._is_helper(call):
+            self._add(call, scope)
+        condition = next((keyword.value for keyword in call.keywords if keyword.arg == CONDITION), None)
+        inner = scope.under(self.texts.condition(condition))
+        if function in _LISTS or function in _ADDITIONS:
+            for action in self._foreign_actions(call):
+                self._add(action, inner)
+        for child in (call.func, *call.args, *(item.value for item in call.keywords if item.arg != CONDITION)):
+            self.visit(child, inner)
+
+    def _add(self, call: ast.Call, scope: Scope) -> None:
+        """Add an action with the innermost scope in which it is named."""
+        place = id(call), self._loops
+        known = self.scopes.get(place)
+        if known is None or known[1].depth < scope.depth:
+            self.scopes[place] = call, scope, self.texts
+
+    def _foreign_actions(self, call: ast.Call) -> Iterator[ast.Call]:
+        """Yield the actions in a list that functions of other packages make, which are not read."""
+        arguments = [
+            *call.args[:1],
+            *(item.value for item in call.keywords if item.arg in ("actions", "initial_entities")),
+        ]
+        for argument in map(self.python.resolved, arguments):
+            for item in argument.elts if isinstance(argument, (ast.List, ast.Tuple)) else [argument]:
+                action = self.python.resolved(item)
+                if isinstance(action, ast.Call) and self.helpers.is_foreign(self.python, action):
+                    yield action
+
+    def _is_helper(self, call: ast.Call) -> bool:
+        return self.depth < _MAX_HELPER_DEPTH and self.helpers.find(self.python, call) is not None
+
+    def _pushed(self, node: ast.AST | None) -> str:
+        """Return the namespace that an action pushes, with its condition; empty for other actions."""
+        node = self.python.resolved(node) if isinstance(node, ast.expr) else node
+        if not isinstance(node, ast.Call) or called_name(node).rpartition(".")[2] not in _PUSHES:
+            return ""
+        keywords = {keyword.arg: keyword.value for keyword in node.keywords}
+        namespace = self.texts.text(node.args[0] if node.args else keywords.get("namespace"))
+        condition = self.texts.condition(keywords.get(CONDITION))
+        return f"{namespace} ({condition})" if condition else namespace
+
+    # --- helpers -----------------------------------------------------------------------------------------------------
+
+    def _helper_entries(self, call: ast.Call, scope: Scope) -> Iterator[Entry]:
+        """Yield the actions that a function of the repository makes."""
+        function = self.helpers.find(self.python, call)
+        if function is None:
+            return
+        bindings, values, extra = self._arguments(call, function)
+        texts = ExpressionTexts(function.python, bindings, values)
+        reader = _Reader(function.python, self.helpers, texts, extra, self.depth + 1)
+        if function.python is self.python:
+            reader.covered = self.covered
+        reader.visit_function(function.node)
+        span = self.python.span(call)
+        self.covered.add(id(call))
+        for entry in reader.entries():
+            yield replace(entry, span=span, settings=scope.settings(entry.kind, entry.settings))
+
+    def _arguments(
+        self, call: ast.Call, function: Function
+    ) -> tuple[dict[str, str], dict[str, BoundExpression], dict[str, str]]:
+        """Return the texts and expressions of a function's parameters, and the texts of its ``**`` parameter."""
+        arguments = function.node.args
+        names = [argument.arg for argument in (*arguments.posonlyargs, *arguments.args)]
+        defaults = dict(zip(names[len(names) - len(arguments.defaults) :], arguments.defaults, strict=True))
+        keyword_defaults = zip(arguments.kwonlyargs, arguments.kw_defaults, strict=True)
+        defaults |= {argument.arg: value for argument, value in keyword_defaults if value is not None}
+        outer_texts = ExpressionTexts(function.python)
+        bindings = {name: outer_texts.text(value) for name, value in defaults.items()}
+        if function.is_method:
+            names = names[1:]
+        given = dict(zip(names, call.args, strict=False))
+        bindings |= {name: self.texts.text(value) for name, value in given.items()}
+        extra: dict[str, str] = {}
+        known = {*names, *(argument.arg for argument in arguments.kwonlyargs)}
+        for keyword in call.keywords:
+            if keyword.arg is None:
+                extra |= self.extra
+            elif keyword.arg == CONDITION:
+                (bindings if keyword.arg in known else extra)[keyword.arg] = self.texts.condition(keyword.value)
+            else:
+                (bindings if keyword.arg in known else extra)[keyword.arg] = self.texts.text(keyword.value)
+        given |= {keyword.arg: keyword.value for keyword in call.keywords if keyword.arg in known}
+        values = {name: self.texts.value(value) for name, value in given.items()}
+        return bindings, values, extra
+
+    # --- actions -----------------------------------------------------------------------------------------------------
+
+    def _action(self, call: ast.Call, function: str, scope: Scope) -> Entry:
+        text = self.texts.text
+        keywords = {_ALIASES.get(each.arg, each.arg): each.value for each in call.keywords if each.arg is not None}
+        extra = self.extra if any(keyword.arg is None for keyword in call.keywords) else {}
+        first = call.args[0] if call.args else next(iter(call.keywords), None)
+        first_text = text(first.value if isinstance(first, ast.keyword) else first)
+        second_text = text(call.args[1] if len(call.args) > 1 else _second_keyword(call))
+        settings: dict[str, str] = {}
+        if function == "DeclareLaunchArgument":
+            kind, name = "argument", text(call.args[0] if call.args else keywords.get("name"))
+            names = {"default_value": "default", "choices": "choices"}
+            settings = {names[key]: text(value) for key, value in keywords.items() if key in names}
+        elif function == "SetLaunchConfiguration":
+            kind, name, settings = "variable", first_text, {"value": second_text}
+        elif function == "SetRemap":
+            kind, name, settings = "remapping", first_text, {"to": second_text}
+        elif function == "SetParameter":
+            kind, name, settings = "parameter", first_text, {"value": second_text}
+        elif function in _ENVIRONMENT:
+            kind, name = "environment", first_text
+            key = {"SetEnvironmentVariable": "value", "AppendEnvironmentVariable": "appended value"}.get(function)
+            settings = {key: second_text} if key else {"unset": "true"}
+        elif function in _PROCESSES:
+            kind, name = "process", text(keywords.get("cmd"))
+            settings = self._other_settings(keywords)
+        elif function == "IncludeLaunchDescription":
+            kind, name = "include", text(call.args[0] if call.args else keywords.get("launch_description_source"))
+            settings = self._passed_arguments(keywords.get("launch_arguments"))
+        else:
+            kind = "node"
+            name = "/".join(text(keywords[key]) for key in ("package", "executable", "plugin") if key in keywords)
+            name, settings = name or text(call.func), {**self._node_settings(keywords), **extra}
+        condition = self.texts.condition(keywords.get(CONDITION)) or extra.get(CONDITION, "")
+        if condition:
+            settings[CONDITION] = condition
+        return Entry(kind, name, scope.settings(kind, settings), self.python.span(call))
+
+    def _foreign_action(self, call: ast.Call, scope: Scope) -> Entry:
+        keywords = {keyword.arg: keyword.value for keyword in call.keywords if keyword.arg is not None}
+        settings = self._other_settings(keywords)
+        if call.args:
+            settings["arguments"] = f"[{', '.join(map(self.texts.text, call.args))}]"
+        condition = self.texts.condition(keywords.get(CONDITION))
+        if condition:
+            settings[CONDITION] = condition
+        return Entry("action", called_name(call), scope.settings("action", settings), self.python.span(call))
+
+    def _passed_arguments(self, node: ast.expr | None) -> dict[str, str]:
+        """Return the arguments of an include: ``{...}.items()``, a dictionary or a list of pairs."""
+        if node is None:
+            return {}
+        pairs = self.texts.pairs(node)
+        return {"launch_arguments": self.texts.text(node)} if pairs is None else dict(pairs)
+
+    def _other_settings(self, keywords: Mapping[str, ast.expr]) -> dict[str, str]:
+        ignored = {*_NOT_COMPARED, *_INNER_ACTIONS, CONDITION}
+        return {key: self.texts.text(value) for key, value in keywords.items() if key not in ignored}
+
+    def _node_settings(self, keywords: Mapping[str, ast.expr]) -> dict[str, str]:
+        """Return the settings of a node, with each parameter and remapping alone."""
+        parts: dict[str, str] = {}
+        others = dict(keywords)
+        if "remappings" in keywords:
+            pairs = self._remappings(keywords["remappings"])
+            if pairs is not None:
+                del others["remappings"]
+                parts |= {f"{REMAPPING}{source}": target for source, target in pairs}
+        if "parameters" in keywords:
+            value = self.python.resolved(keywords["parameters"])
+            if isinstance(value, (ast.List, ast.Tuple)):
+                del others["parameters"]
+                parts |= self._parameters(value.elts)
+        return {**self._other_settings(others), **parts}
+
+    def _remappings(self, node: ast.expr) -> list[tuple[str, str]] | None:
+        node = self.python.resolved(node)
+        if isinstance(node, ast.BinOp) and isinstance(node.op, ast.Add):
+            sides = [self._remappings(side) for side in (node.left, node.right)]
+            return None if None in sides else [pair for side in sides if side for pair in side]
+        return self.texts.pairs(node)
+
+    def _parameters(self, items: list[ast.expr]) -> dict[str, str]:
+        parameters: dict[str, str] = {}
+        files = []
+        for item in items:
+            resolved = self.python.resolved(item)
+            pairs = self.texts.pairs(resolved) if isinstance(resolved, (ast.Dict, ast.Call)) else None
+            if pairs is None:
+                files.append(self.texts.text(item))
+            else:
+                parameters |= {f"{PARAMETER}{name}": value for name, value in pairs}
+        return {**({"parameters": f"[{', '.join(files)}]"} if files else {}), **parameters}
+
+
+def _second_keyword(call: ast.Call) -> ast.expr | None:
+    """Return the value of the second argument of a call, which may be the first keyword."""
+    values = [*call.args, *(keyword.value for keyword in call.keywords if keyword.arg not in (None, CONDITION))]
+    return values[1] if len(values) > 1 else None
+
+
+def _added_action(statement: ast.stmt) -> ast.expr | None:
+    """Return the action that a statement adds to a launch description, or None if it does something else."""
+    value = statement.value if isinstance(statement, ast.Expr) else None
+    is_addition = isinstance(value, ast.Call) and called_name(value).rpartition(".")[2] in _ADDITIONS
+    return value.args[0] if is_addition and isinstance(value, ast.Call) and value.args else None

@@ -1,0 +1,125 @@
+"""The code of a launch file in Python besides its actions, in a form that can be compared."""
+
+from __future__ import annotations
+
+import ast
+from collections.abc import Collection
+from copy import copy
+
+from linkwright.packages.readers.python_values import PythonFile, called_name
+from linkwright.review.launch_outlines import CodePart
+from linkwright.review.launch_text import shortened_text
+
+_TRANSPARENT = frozenset({"add_action", "add_entity", "GroupAction", "LaunchDescription"})
+"""The calls that only put actions together."""
+_BODIES = ("body", "orelse", "finalbody", "handlers", "cases")
+"""The fields of statements with other statements."""
+_UNCOMPARED_FIELDS = frozenset({"ctx", "returns", "annotation", "type_comment", "type_params", "kind"})
+
+
+def rest_of(python: PythonFile, covered: Collection[int]) -> list[CodePart]:
+    """Return the statements besides the actions, without names of variables, imports, comments and layout.
+
+    Args:
+        python: the file.
+        covered: the identities of the calls that make actions.
+    """
+    rest = _Rest(python, covered)
+    parts = (
+        CodePart(rest.statement_text(node), " ".join(ast.unparse(_header(node)).split()), python.span(node))
+        for node in sorted(_statements(python.tree), key=lambda node: (node.lineno, node.col_offset))
+    )
+    return [part for part in parts if part.text]
+
+
+def _statements(tree: ast.AST) -> list[ast.stmt]:
+    return [node for node in ast.walk(tree) if isinstance(node, ast.stmt)]
+
+
+def _header(node: ast.stmt) -> ast.stmt:
+    """Return a statement with ``...`` in place of the statements in it."""
+    if not any(getattr(node, name, None) for name in _BODIES):
+        return node
+    header = copy(node)
+    for name in _BODIES:
+        if getattr(node, name, None):
+            setattr(header, name, [ast.Expr(ast.Constant(...))] if name == "body" else [])
+    return header
+
+
+class _Rest:
+    def __init__(self, python: PythonFile, covered: Collection[int]) -> None:
+        self._python = python
+        self._covered = covered
+        self._texts: dict[int, str] = {}
+
+    def text(self, node: ast.AST) -> str:
+        """Return a part of the code; empty if it only makes actions."""
+        known = self._texts.get(id(node))
+        if known is None:
+            self._texts[id(node)] = ""  # a name that is defined by itself
+            known = self._texts[id(node)] = shortened_text(self._text(node))
+        return known
+
+    def statement_text(self, node: ast.stmt) -> str:
+        """Return a statement without the statements in it; empty if it only makes actions."""
+        if not any(hasattr(node, name) for name in _BODIES):
+            return self.text(node)
+        return self._other(node)
+
+    def _text(self, node: ast.AST) -> str:
+        if isinstance(node, (ast.Import, ast.ImportFrom)) or id(node) in self._covered:
+            return ""
+        if isinstance(node, ast.Expr):
+            return "" if isinstance(node.value, ast.Constant) else self.text(node.value)
+        if isinstance(node, ast.Name):
+            assigned = self._python.assigned_expression(node.id)
+            return f"name {node.id}" if assigned is None else self.text(assigned)
+        if isinstance(node, (ast.Assign, ast.AnnAssign)) and self._is_definition(node):
+            return ""
+        if isinstance(node, ast.Call) and called_name(node).rpartition(".")[2] in _TRANSPARENT:
+            return self._group(node)
+        if isinstance(node, (ast.List, ast.Tuple)):
+            return self._items(node.elts)
+        if isinstance(node, ast.Return):
+            value = "" if node.value is None else self.text(node.value)
+            return f"return {value}" if value else ""
+        return self._other(node)
+
+    def _is_definition(self, node: ast.Assign | ast.AnnAssign) -> bool:
+        """Return whether a statement gives a value to a name that has no other value, which its uses show."""
+        targets = node.targets if isinstance(node, ast.Assign) else [node.target]
+        return all(
+            isinstance(target, ast.Name) and self._python.assigned_expression(target.id) is node.value
+            for target in targets
+        )
+
+    def _group(self, node: ast.Call) -> str:
+        """Return what a group or launch description contains besides actions."""
+        arguments = [*node.args, *(keyword.value for keyword in node.keywords if keyword.arg in ("actions", None))]
+        settings = [
+            f"{keyword.arg}={self.text(keyword.value)}"
+            for keyword in node.keywords
+            if keyword.arg not in ("actions", "condition", "initial_entities", None)
+        ]
+        return self._items(arguments) + "".join(settings)
+
+    def _items(self, nodes: list[ast.expr]) -> str:
+        texts = [text for text in map(self.text, nodes) if text]
+        return f"[{', '.join(texts)}]" if texts else ""
+
+    def _other(self, node: ast.AST) -> str:
+        words = []
+        for name, value in ast.iter_fields(node):
+            if name in _UNCOMPARED_FIELDS or name in _BODIES:
+                continue
+            if isinstance(value, ast.AST):
+                text = self.text(value)
+            elif isinstance(value, list):
+                parts = (self.text(item) if isinstance(item, ast.AST) else repr(item) for item in value)
+                text = ", ".join(part for part in parts if part)
+            else:
+                text = repr(value)
+            if text:
+                words.append(f"{name}={text}")
+        return f"{type(node).__name__}({' '.join(words)})"

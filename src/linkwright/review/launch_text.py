@@ -1,0 +1,217 @@
+"""Expressions of launch files in Python as text, in the notation of XML launch files as far as it has one."""
+
+from __future__ import annotations
+
+import ast
+import hashlib
+from collections.abc import Callable, Iterator, Mapping
+from dataclasses import dataclass
+
+from linkwright.packages.readers.python_values import PythonFile, argument_of, called_name
+
+_MAX_DEPTH = 30
+_MAX_LENGTH = 10_000
+"""The number of characters of an expression that are kept. Names that are used twice in names that are used twice could
+make it endless."""
+_Part = Callable[[ast.expr | None], str]
+_COMPARISONS = {"LaunchConfigurationEquals": "==", "LaunchConfigurationNotEquals": "!="}
+_ARGUMENT_CONDITIONS = {"IfCondition": "if", "UnlessCondition": "unless"}
+
+
+@dataclass(frozen=True)
+class BoundExpression:
+    """An expression that a name has as its value.
+
+    Attributes:
+        texts: the texts of the expressions where it is written.
+        node: the expression.
+    """
+
+    texts: ExpressionTexts
+    node: ast.expr
+
+
+class ExpressionTexts:
+    """The texts of expressions of a file.
+
+    Args:
+        python: the file.
+        bindings: the texts of the parameters of the function that is read, by name.
+        values: the expressions of parameters and of variables of loops, by name.
+    """
+
+    def __init__(
+        self,
+        python: PythonFile,
+        bindings: Mapping[str, str] | None = None,
+        values: Mapping[str, BoundExpression] | None = None,
+    ) -> None:
+        self._python = python
+        self._bindings = bindings or {}
+        self._values = values or {}
+        self._texts: dict[int, str] = {}
+
+    def with_value(self, name: str, value: BoundExpression) -> ExpressionTexts:
+        """Return the texts with an expression for a variable of a loop."""
+        bindings = {**self._bindings, name: value.texts.text(value.node)}
+        return ExpressionTexts(self._python, bindings, {**self._values, name: value})
+
+    def value(self, node: ast.expr) -> BoundExpression:
+        """Return the expression that is assigned or passed to a name, and any other expression unchanged."""
+        node = self._python.resolved(node)
+        bound = self._values.get(node.id) if isinstance(node, ast.Name) else None
+        return bound or BoundExpression(self, node)
+
+    def items(self, node: ast.expr) -> list[BoundExpression] | None:
+        """Return the items of a list, or None if it is not written in the file."""
+        value = self.value(node)
+        if not isinstance(value.node, (ast.List, ast.Tuple)):
+            return None
+        return [value.texts.value(item) for item in value.node.elts]
+
+    def text(self, node: ast.expr | None, depth: int = 0) -> str:
+        """Return an expression as text, with the values of names that are assigned once."""
+        if node is None:
+            return ""
+        if depth > _MAX_DEPTH:
+            return shortened_text(" ".join(ast.unparse(node).split()))
+        known = self._texts.get(id(node))
+        if known is None:
+            known = self._texts[id(node)] = shortened_text(self._text(node, depth))
+        return known
+
+    def condition(self, node: ast.expr | None) -> str:
+        """Return a condition as text, such as ``unless $(var headless)``; empty if there is none."""
+        if node is None:
+            return ""
+        node = self._python.resolved(node)
+        if isinstance(node, ast.Name) and node.id in self._bindings:
+            return self._bindings[node.id]
+        if isinstance(node, ast.Constant) and node.value is None:
+            return ""
+        if isinstance(node, ast.Call):
+            function, arguments = called_name(node).rpartition(".")[2], _arguments(node)
+            if function in _ARGUMENT_CONDITIONS and arguments:
+                return f"{_ARGUMENT_CONDITIONS[function]} {self.text(arguments[0])}"
+            if function in _COMPARISONS and len(arguments) > 1:
+                return f"if $(var {self.text(arguments[0])}) {_COMPARISONS[function]} {self.text(arguments[1])}"
+        return f"if {self.text(node)}"
+
+    def pairs(self, node: ast.expr) -> list[tuple[str, str]] | None:
+        """Return the keys and values of a dictionary, of its ``items()``, or of a list of pairs; None for others."""
+        node = self._python.resolved(node)
+        if isinstance(node, ast.Call) and isinstance(node.func, ast.Attribute) and node.func.attr == "items":
+            node = self._python.resolved(node.func.value)
+        if isinstance(node, ast.Call) and called_name(node) == "dict" and not node.args:
+            return [(keyword.arg or "", self.text(keyword.value)) for keyword in node.keywords]
+        if isinstance(node, ast.Dict):
+            return list(self._items(node, ""))
+        if not isinstance(node, (ast.List, ast.Tuple, ast.Set)):
+            return None
+        pairs = [self._python.resolved(item) for item in node.elts]
+        if not all(isinstance(pair, (ast.Tuple, ast.List)) and len(pair.elts) == 2 for pair in pairs):
+            return None
+        return [
+            (self.text(pair.elts[0]), self.text(pair.elts[1]))
+            for pair in pairs
+            if isinstance(pair, (ast.Tuple, ast.List))
+        ]
+
+    def _items(self, node: ast.Dict, path: str) -> Iterator[tuple[str, str]]:
+        for key, value in zip(node.keys, node.values, strict=True):
+            if key is None:
+                yield f"{path}**", self.text(value)
+                continue
+            name, resolved = f"{path}{self.text(key)}", self._python.resolved(value)
+            if isinstance(resolved, ast.Dict) and resolved.keys:
+                yield from self._items(resolved, f"{name}.")
+            else:
+                yield name, self.text(resolved)
+
+    def _text(self, node: ast.expr, depth: int) -> str:
+        def part(item: ast.expr | None) -> str:
+            return self.text(item, depth + 1)
+
+        if isinstance(node, ast.Name):
+            if node.id in self._bindings:
+                return self._bindings[node.id]
+            value = self._python.resolved(node)
+            return node.id if value is node or isinstance(value, ast.Name) else part(value)
+        if isinstance(node, ast.Constant):
+            text = str(node.value)
+            return " ".join(text.split()) if "\n" in text else text
+        if isinstance(node, (ast.List, ast.Tuple, ast.Set)):
+            return f"[{', '.join(map(part, node.elts))}]"
+        if isinstance(node, ast.Dict):
+            pairs = zip(node.keys, node.values, strict=True)
+            return f"{{{', '.join(f'{part(key)}: {part(value)}' for key, value in pairs)}}}"
+        if isinstance(node, ast.Call):
+            substitution = self._substitution(node, part)
+            return _call_text(node, part) if substitution is None else substitution
+        if isinstance(node, ast.BinOp) and isinstance(node.op, ast.Add):
+            return f"{part(node.left)} + {part(node.right)}"
+        if isinstance(node, ast.BinOp) and isinstance(node.op, ast.Div):
+            return f"{part(node.left)}/{part(node.right)}"
+        if isinstance(node, ast.JoinedStr):
+            return "".join(part(item.value if isinstance(item, ast.FormattedValue) else item) for item in node.values)
+        if isinstance(node, ast.Subscript):
+            owner = self.value(node.value)
+            if isinstance(owner.node, ast.Dict):
+                pairs = zip(owner.node.keys, owner.node.values, strict=True)
+                found = [value for key, value in pairs if key is not None and ast.dump(key) == ast.dump(node.slice)]
+                if found:
+                    return owner.texts.text(found[-1], depth + 1)
+            return f"{part(node.value)}[{part(node.slice)}]"
+        if isinstance(node, ast.Attribute):
+            return f"{part(node.value)}.{node.attr}"
+        return " ".join(ast.unparse(node).split())
+
+    def _substitution(self, node: ast.Call, part: _Part) -> str | None:
+        """Return a substitution in the notation of XML launch files, or None for any other call."""
+        function = called_name(node).rpartition(".")[2]
+        arguments = _arguments(node)
+        first = arguments[0] if arguments else None
+        if function == "LaunchConfiguration":
+            default = argument_of(node, "default")
+            return f"$(var {part(first)})" if default is None else f"$(var {part(first)} {part(default)})"
+        if function in ("FindPackageShare", "get_package_share_directory", "get_package_share_path"):
+            return f"$(find-pkg-share {part(first)})"
+        if first is None:
+            return None
+        if function in ("PathJoinSubstitution", "join"):
+            return "/".join(map(part, self._pieces(first) if function != "join" else arguments))
+        if function in ("TextSubstitution", "str", "ParameterValue", "ParameterFile", "Path"):
+            return part(first)
+        if function == "EnvironmentVariable":
+            return f"$(env {' '.join(map(part, arguments))})"
+        if function == "PythonExpression":
+            return f"$(eval {''.join(map(part, self._pieces(first)))})"
+        if function == "Command":
+            return f"$(command {''.join(map(part, self._pieces(first)))})"
+        if function.endswith("LaunchDescriptionSource"):
+            return "".join(map(part, self._pieces(first)))
+        return None
+
+    def _pieces(self, node: ast.expr) -> list[ast.expr]:
+        node = self._python.resolved(node)
+        return node.elts if isinstance(node, (ast.List, ast.Tuple)) else [node]
+
+
+def shortened_text(text: str) -> str:
+    """Return a text, or the beginning of a long one with a number that differs if the rest does."""
+    if len(text) <= _MAX_LENGTH:
+        return text
+    return f"{text[:_MAX_LENGTH]}... ({hashlib.sha256(text.encode('utf-8', 'replace')).hexdigest()[:12]})"
+
+
+def _arguments(node: ast.Call) -> list[ast.expr]:
+    return [*node.args, *(keyword.value for keyword in node.keywords if keyword.arg is not None)]
+
+
+def _call_text(node: ast.Call, part: _Part) -> str:
+    """Return any other call: the function is written as it is, its arguments with their values."""
+    words = [part(argument) for argument in node.args]
+    words += [
+        f"{keyword.arg}={part(keyword.value)}" if keyword.arg else part(keyword.value) for keyword in node.keywords
+    ]
+    return f"{part(node.func)}({', '.join(words)})"

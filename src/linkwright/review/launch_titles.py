@@ -1,0 +1,100 @@
+"""The names of the actions of launch files in sentences."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterator, Sequence
+
+from linkwright.diagnostics import Phrase, joined, phrase
+from linkwright.review.launch_outlines import Entry
+from linkwright.review.list_changes import list_items
+
+_MAX_TITLES = 3
+_MAX_NAME = 160
+TRANSFORM_PUBLISHERS = ("tf2_ros/static_transform_publisher", "tf/static_transform_publisher")
+_CHILD = re.compile(r"--child-frame-id[ ,]+([^ ,\]]+)")
+_TRANSFORM_WORDS = (8, 9)
+"""The numbers of words of a transform: six or seven numbers and two frames."""
+_FLAGS = frozenset(
+    {"--load-only", "--stopped", "--inactive", "--unload-on-kill", "-u", "--activate-as-group", "--switch-asap", "-h"}
+)
+"""The options of a spawner without a value."""
+_END_OF_OPTIONS = ("--ros-args",)
+_SPAWNER = re.compile(r"controller_manager/(spawner|spawner\.py|unspawner|unspawner\.py)")
+
+
+def title(entry: Entry) -> Phrase:
+    """Return the kind and name of an action."""
+    name = entry.name if len(entry.name) <= _MAX_NAME else f"{entry.name[:_MAX_NAME]}..."
+    if entry.kind == "argument":
+        return phrase("argument '{name}'", name=name)
+    if entry.kind == "variable":
+        return phrase("variable '{name}'", name=name)
+    if entry.kind == "node":
+        return _node_title(entry, name)
+    if entry.kind == "process":
+        return phrase("process '{command}'", command=name)
+    if entry.kind == "include":
+        return phrase("include of '{file}'", file=name)
+    if entry.kind == "remapping":
+        return phrase("remapping of '{name}' for all nodes", name=name)
+    if entry.kind == "parameter":
+        return phrase("parameter '{name}' of all nodes", name=name)
+    if entry.kind == "parameters":
+        return phrase("parameters of '{file}'", file=name)
+    if entry.kind == "environment":
+        return phrase("environment variable '{name}'", name=name)
+    return phrase("action '{name}'", name=name)
+
+
+def _node_title(entry: Entry, name: str) -> Phrase:
+    """Return the name of a node, and of the controllers or the frame that it serves."""
+    names = served_names(entry)
+    if not names:
+        return phrase("node '{name}'", name=name)
+    return phrase("node '{name}' of {controllers}", name=name, controllers=", ".join(f"'{each}'" for each in names))
+
+
+def served_names(entry: Entry) -> list[str]:
+    """Return the controllers that a spawner starts, or the frame that a static transform places; empty if unknown."""
+    text = entry.settings.get("arguments", "")
+    words = list_items(text) if text.startswith("[") else text.split()
+    if _SPAWNER.fullmatch(entry.name):
+        return list(_controllers(words))
+    if not entry.name.startswith(TRANSFORM_PUBLISHERS):
+        return []
+    child = _CHILD.search(text)
+    if child is not None:
+        return [child[1]]
+    parts = {"tf2_ros": len(words), "tf": len(words) - 1}  # the publisher of ROS 1 has a period at the end
+    count = parts[entry.name.partition("/")[0]]
+    return [words[count - 1]] if count in _TRANSFORM_WORDS else []
+
+
+def _controllers(words: Sequence[str]) -> Iterator[str]:
+    """Yield the words of a spawner's command line that are neither options nor their values."""
+    is_value = False
+    for word in words:
+        if word in _END_OF_OPTIONS:
+            return
+        if not word.startswith("-") and not is_value:
+            yield word
+        is_value = word.startswith("-") and word not in _FLAGS
+
+
+def joined_titles(entries: Sequence[Entry]) -> Phrase:
+    """Return the titles of actions, or the first ones and the number of the others."""
+    titles = list(dict.fromkeys(map(title, entries)))
+    if len(titles) == 1:
+        return titles[0]
+    if len(titles) <= _MAX_TITLES:
+        return joined(titles)
+    return phrase("{entries} and {count} more", entries=joined(titles[:_MAX_TITLES]), count=len(titles) - _MAX_TITLES)
+
+
+def added_entry(entry: Entry) -> Phrase:
+    """Return that an action was added, with its value if it has only one."""
+    value = entry.settings.get("to") or entry.settings.get("value") or entry.settings.get("appended value")
+    if entry.kind in ("remapping", "parameter", "environment", "variable") and value:
+        return phrase("{entry} added: {new}", entry=title(entry), new=value[:_MAX_NAME])
+    return phrase("{entry} added", entry=title(entry))

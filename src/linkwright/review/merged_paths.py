@@ -1,0 +1,55 @@
+"""Equal changes of several elements in one: paths that differ in one word."""
+
+from __future__ import annotations
+
+from collections.abc import Hashable, Sequence
+
+_MAX_WORDS = 3
+"""The number of different words that are shown."""
+
+
+class MergedPaths:
+    """Paths of equal changes, such as of the same limit of several joints."""
+
+    def __init__(self) -> None:
+        self._words: list[list[str]] = []
+        self._places: list[int | None] = []
+        self._others: list[list[str]] = []
+        self._groups: dict[tuple[tuple[str, ...], int, Hashable], int] = {}
+
+    def add(self, path: str, change: Hashable) -> int:
+        """Return the number of the group to which a path belongs, which is the next number for a new group.
+
+        Args:
+            path: the path.
+            change: what is equal in the changes of a group.
+        """
+        words = path.split(" ")
+        patterns = [((*words[:place], "", *words[place + 1 :]), place, change) for place in range(len(words))]
+        for pattern in patterns:
+            group = self._groups.get(pattern)
+            if group is not None and self._places[group] in (None, pattern[1]):
+                self._places[group] = pattern[1]
+                self._others[group].append(words[pattern[1]])
+                return group
+        group = len(self._words)
+        self._words.append(words)
+        self._places.append(None)
+        self._others.append([])
+        for pattern in patterns:
+            self._groups.setdefault(pattern, group)
+        return group
+
+    @property
+    def paths(self) -> Sequence[str]:
+        """The first path of each group, with the words of the others at the place where they differ."""
+        return [self._path(*parts) for parts in zip(self._words, self._places, self._others, strict=True)]
+
+    def _path(self, words: Sequence[str], place: int | None, others: Sequence[str]) -> str:
+        if place is None:
+            return " ".join(words)
+        names = [words[place], *others]
+        text = ", ".join(names[:_MAX_WORDS])
+        if len(names) > _MAX_WORDS:
+            text = f"{text}, ... ({len(names)})"
+        return " ".join([*words[:place], text, *words[place + 1 :]])

@@ -1,0 +1,29 @@
+"""The names in extensions and worlds: topics, services and frames of plugins and sensors, and renamed elements."""
+
+from __future__ import annotations
+
+import re
+
+from linkwright.descriptions.comparison import Difference
+
+NAME_TAGS = re.compile(r"topic|namespace|frame(?!_?(rate|skip|count))|remapping|\bservice", re.IGNORECASE)
+"""The tags of parameters with names in the graph or in tf."""
+
+
+def used_name(value: str) -> str:
+    """Return the name that other programs use: the right side of a remapping such as ``~/out:=scan``."""
+    return value.rpartition(":=")[2].strip()
+
+
+def path_of_renamed(difference: Difference, path: str) -> str | None:
+    """Return the path of an element with its old name, or None if the difference is not another name of it.
+
+    Args:
+        difference: the difference.
+        path: the path of the value that differs.
+    """
+    element, is_name, _ = path.rpartition("@name")
+    element = element.strip()
+    if not is_name or not difference.old or not difference.new or not element.endswith(f" {difference.new}"):
+        return None
+    return element.removesuffix(difference.new) + difference.old

@@ -1,0 +1,119 @@
+"""The names in parameter files that other programs use: controllers, their joints and frames, and their types."""
+
+from __future__ import annotations
+
+import re
+from collections import Counter
+from collections.abc import Iterator, Mapping
+
+from linkwright.diagnostics import Phrase, phrase
+from linkwright.review.list_changes import list_items
+from linkwright.review.yaml_values import YamlValue
+
+_FRAMES = re.compile(r"(^|[._])frame_id$")
+"""The parameters with frames that any node offers to other programs."""
+_USED_FRAMES = re.compile(r"(^|[._])(base|odom|map|global|world|target|reference)_frame_id$")
+"""The parameters with frames that localization and navigation only use. Controllers publish them."""
+_JOINTS = re.compile(r"(^|[._])(joints?|joint_names?|wheel_names)$")
+"""The parameters with joints that a controller offers. Other nodes only use them."""
+_CONTROLLER_TYPE = re.compile(r"(?:[^.]+\.)?controller_manager\.ros__parameters\.(?P<controller>[^.]+)\.type")
+_OWN_TYPE = re.compile(r"(?:.+\.)?(?P<controller>[^.]+)\.ros__parameters\.type")
+_NODE = re.compile(r"(?P<node>.*)\.ros__parameters\.")
+_STAMPED = re.compile(r"stamped", re.IGNORECASE)
+"""The parameters that choose between messages with and without a header, such as ``use_stamped_vel``."""
+_STAMPED_BY_DEFAULT = "use_stamped_vel"
+"""The parameter of diff_drive_controller and its relatives, which is true by default."""
+_NUMBER_OR_TRUTH = re.compile(r"[-+]?(\d+\.?\d*|\.\d+)(e[-+]?\d+)?|true|false", re.IGNORECASE)
+_MIN_FACTS = 6
+"""The number of parameters and values from which a node can be recognized under another name."""
+_MIN_SIMILARITY = 0.6
+
+
+class NameRules:
+    """The rules for breaking changes of a parameter file.
+
+    Args:
+        old: the old values by path.
+        new: the new values by path.
+    """
+
+    def __init__(self, old: Mapping[str, YamlValue], new: Mapping[str, YamlValue]) -> None:
+        self._new = new
+        self._controllers = {*_controllers(old), *_controllers(new)}
+        self._new_controllers = set(_controllers(new))
+
+    def change_reason(self, parameter: str, old: str, new: str) -> Phrase | None:
+        """Return why a changed value is breaking, or None if it is not."""
+        if _STAMPED.search(parameter) and {old.lower(), new.lower()} == {"true", "false"}:
+            return phrase("the message type of a topic changes between one with and one without a header")
+        controller = _CONTROLLER_TYPE.fullmatch(parameter)
+        if controller is not None:
+            return phrase("the topics and actions of the controller '{name}' are others", name=controller["controller"])
+        gone = _items(old) - _items(new)
+        is_offered = _FRAMES.search(parameter) is not None and not _USED_FRAMES.search(parameter)
+        if self._is_controllers(parameter):
+            is_offered = _FRAMES.search(parameter) is not None or _JOINTS.search(parameter) is not None
+        if gone and is_offered:
+            return phrase("programs that use the name '{name}' do not find it", name=", ".join(sorted(gone)))
+        return None
+
+    def removal_reason(self, parameter: str, old: str) -> Phrase | None:
+        """Return why a removed parameter is breaking, or None if it is not.
+
+        The type of a controller can also be one of its own parameters.
+        """
+        if parameter.endswith(_STAMPED_BY_DEFAULT) and old.lower() == "false" and self._has_node(parameter):
+            return phrase("the message type of a topic changes between one with and one without a header")
+        controller = _CONTROLLER_TYPE.fullmatch(parameter)
+        if controller is None or controller["controller"] in self._new_controllers:
+            return None
+        name = controller["controller"]
+        return phrase("programs that load or command the controller '{name}' do not find it", name=name)
+
+    def _is_controllers(self, parameter: str) -> bool:
+        """Return whether a parameter belongs to a controller."""
+        node = _NODE.match(parameter)
+        name = node["node"].rpartition(".")[2] if node else parameter.partition(".")[0]
+        return name in self._controllers or name.endswith("controller")
+
+    def _has_node(self, parameter: str) -> bool:
+        """Return whether the new version has other parameters of the same node."""
+        node = _NODE.match(parameter)
+        return node is not None and any(name.startswith(node[0]) for name in self._new)
+
+
+def _controllers(values: Mapping[str, YamlValue]) -> Iterator[str]:
+    for name in values:
+        match = _CONTROLLER_TYPE.fullmatch(name) or _OWN_TYPE.fullmatch(name)
+        if match is not None:
+            yield match["controller"]
+
+
+def _items(text: str) -> set[str]:
+    """Return the items of a value that is a list, or the value itself, without numbers and truth values."""
+    return {item for item in list_items(text) if item and not _NUMBER_OR_TRUTH.fullmatch(item)}
+
+
+def renamed_parts(old: Mapping[str, YamlValue], new: Mapping[str, YamlValue]) -> dict[str, str]:
+    """Return the parameters of nodes that have another name but similar values: the new names, by old name."""
+    old_parts, new_parts = _nodes(old), _nodes(new)
+    renamed: dict[str, str] = {}
+    for old_name in [name for name in old_parts if name not in new_parts]:
+        for new_name in [name for name in new_parts if name not in old_parts and name not in renamed.values()]:
+            first, second = old_parts[old_name], new_parts[new_name]
+            similarity = 2 * (first & second).total() / (first.total() + second.total())
+            if first.total() >= _MIN_FACTS and similarity >= _MIN_SIMILARITY:
+                renamed[old_name] = new_name
+                break
+    return renamed
+
+
+def _nodes(values: Mapping[str, YamlValue]) -> dict[str, Counter[str]]:
+    """Return the parameters of each node, alone and with their values."""
+    nodes: dict[str, Counter[str]] = {}
+    for name, value in values.items():
+        match = _NODE.match(name)
+        if match is not None:
+            parameter = name.removeprefix(match[0])
+            nodes.setdefault(match["node"], Counter()).update([parameter, f"{parameter}={value.text}"])
+    return nodes

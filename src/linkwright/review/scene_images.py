@@ -1,0 +1,120 @@
+"""Images of both versions of a world, model or mesh, with the changed links outlined."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import replace
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from linkwright.descriptions import examine_world
+from linkwright.diagnostics import LinkwrightError
+from linkwright.geometry.arrays import Array
+from linkwright.geometry.shapes import IDENTITY, Placement
+from linkwright.images.png import png
+from linkwright.picture import OUTLINE_COLOR, VIEWS, Scene, SurfaceLibrary, render
+from linkwright.picture.bodies import Body, Surface
+from linkwright.picture.camera import fitting_camera
+from linkwright.picture.worlds import world_scene
+from linkwright.review.changes import ViewImages
+from linkwright.review.file_pair import FilePair
+from linkwright.review.versions import Version
+from linkwright.sdf.frames import FrameError
+from linkwright.sdf.resources import ResourceFinder
+
+_SIZE = (480, 360)
+_MAX_FACES = 2_000_000
+"""The number of triangles of both versions up to which images are made; more take a minute."""
+_FAR = 8.0
+"""The size of a scene, in sizes of the changed links, from which only the surroundings of these links are shown."""
+
+
+def world_images(pair: FilePair) -> list[ViewImages]:
+    """Return images of a world or model from four sides, or none if both versions look the same or cannot be drawn."""
+    library = SurfaceLibrary()
+    sides = ((pair.versions.old, pair.old_file), (pair.versions.new, pair.new_file))
+    scenes = [_world_scene(version, file, library) for version, file in sides]
+    old, new = scenes
+    return [] if old is None or new is None else _images(old, new)
+
+
+def mesh_images(pair: FilePair) -> list[ViewImages]:
+    """Return images of a mesh from four sides, or none if both versions look the same or cannot be drawn."""
+    try:
+        old, new = (_mesh_scene(file) for file in (pair.old_file, pair.new_file))
+    except LinkwrightError:
+        return []
+    return _images(old, new, outline=False)
+
+
+def _world_scene(version: Version, file: Path, library: SurfaceLibrary) -> Scene | None:
+    finder = version.finder(file.parent)
+    try:
+        world = examine_world(file, packages=finder)
+        return None if world.sdf is None else world_scene(world.sdf, ResourceFinder(finder), library=library)
+    except (LinkwrightError, FrameError):
+        return None
+
+
+def _mesh_scene(file: Path) -> Scene:
+    surfaces = tuple(part.surface for part in SurfaceLibrary().read(file) if part.surface.is_in_range)
+    return Scene([Body("", Placement(IDENTITY, (0.0, 0.0, 0.0)), surfaces)])
+
+
+def _images(old: Scene, new: Scene, *, outline: bool = True) -> list[ViewImages]:
+    changed = _changed_bodies(old, new), _changed_bodies(new, old)
+    drawn = [body for bodies in changed for body in bodies if body.surfaces]
+    if not drawn or len(old.mesh.faces) + len(new.mesh.faces) > _MAX_FACES:
+        return []
+    points = _shown_points([old.points, new.points], Scene(drawn).points)
+    scenes = [_outlined(scene, bodies) if outline else scene for scene, bodies in zip((old, new), changed, strict=True)]
+    images = []
+    for name, view in VIEWS.items():
+        camera = fitting_camera(view, _SIZE, points)
+        images.append(ViewImages(name, *(png(render(scene, camera=camera)) for scene in scenes)))
+    return images
+
+
+def _changed_bodies(scene: Scene, other: Scene) -> list[Body]:
+    """Return the links of a scene that the other does not have, or that look different or are elsewhere there."""
+    others = {body.name: body for body in other.bodies}
+    return [body for body in scene.bodies if body.name not in others or not _is_same(body, others[body.name])]
+
+
+def _is_same(body: Body, other: Body) -> bool:
+    if body.frame != other.frame or len(body.surfaces) != len(other.surfaces):
+        return False
+    return all(map(_is_same_surface, body.surfaces, other.surfaces))
+
+
+def _is_same_surface(surface: Surface, other: Surface) -> bool:
+    arrays = zip(_arrays(surface), _arrays(other), strict=True)
+    is_same_color = (surface.color, surface.alpha) == (other.color, other.alpha)
+    return is_same_color and all(_are_equal(first, second) for first, second in arrays)
+
+
+def _arrays(surface: Surface) -> list[NDArray[Any] | None]:
+    return [surface.points, surface.faces, surface.vertex_colors, surface.texture]
+
+
+def _are_equal(first: NDArray[Any] | None, second: NDArray[Any] | None) -> bool:
+    return first is second or (first is not None and second is not None and np.array_equal(first, second))
+
+
+def _outlined(scene: Scene, bodies: Sequence[Body]) -> Scene:
+    changed = {id(body) for body in bodies}
+    return Scene([replace(body, outline=OUTLINE_COLOR) if id(body) in changed else body for body in scene.bodies])
+
+
+def _shown_points(scenes: Sequence[Array], changed: Array) -> list[Array]:
+    """Return the points that the images show: all, or the surroundings of a change that is small in its world."""
+    low, high = changed.min(axis=0), changed.max(axis=0)
+    size = float(np.linalg.norm(high - low)) or 1.0
+    points = np.concatenate(scenes)
+    if float(np.linalg.norm(points.max(axis=0) - points.min(axis=0))) <= _FAR * size:
+        return list(scenes)
+    corners = np.array([[x, y, z] for x in (0, 1) for y in (0, 1) for z in (0, 1)], dtype=float)
+    return [low - size + corners * (high - low + 2.0 * size)]

@@ -1,0 +1,355 @@
+"""What a review says of actions of launch files in Python, XML and YAML, and of functions that make them."""
+
+from __future__ import annotations
+
+import pytest
+
+from tests.repositories import PACKAGE_XML
+from tests.review.conftest import breaking, sentences, subject
+
+PYTHON = """from launch import LaunchDescription
+from launch.actions import DeclareLaunchArgument, GroupAction, SetEnvironmentVariable
+from launch.conditions import IfCondition
+from launch.substitutions import LaunchConfiguration
+from launch_ros.actions import Node, PushRosNamespace, SetParameter, SetRemap
+
+
+def generate_launch_description():
+    return LaunchDescription([
+        DeclareLaunchArgument("mode", default_value="fast", choices=["fast", "slow"]),
+        DeclareLaunchArgument("cmd_vel_out", default_value="cmd_vel"),
+        SetEnvironmentVariable("GZ_SIM_RESOURCE_PATH", "models"),
+        GroupAction(condition=IfCondition(LaunchConfiguration("front")), actions=[
+            PushRosNamespace("front"),
+            SetRemap("scan", "scan_front"),
+            SetParameter("use_sim_time", True),
+            Node(package="lidar", executable="driver"),
+            Node(package="lidar", executable="filter", parameters=[{"range": {"min": 1}}, "filter.yaml"]),
+        ]),
+        Node(package="arm", executable="teleop", remappings=[("joy", "arm/joy")]),
+        Node(package="ros_gz_sim", executable="create", name="create"),
+        Node(package="controller_manager", executable="spawner", arguments=["arm_controller", "-v"]),
+        Node(package="tf2_ros", executable="static_transform_publisher",
+             arguments=["--frame-id", "base", "--child-frame-id", "lidar"]),
+    ])
+"""
+XML = """<launch>
+  <arg name="real" default="true"/>
+  <arg name="ur" default="ur5"/>
+  <env name="ROBOT" value="arm"/>
+  <remap from="scan" to="front/scan"/>
+  <rosparam command="load" file="drive.yaml"/>
+  <param name="use_sim_time" value="true"/>
+  <group ns="left" if="$(arg real)">
+    <node pkg="arm" type="driver.py" name="driver"/>
+    <include file="other.launch"><arg name="ur" default="$(arg ur)"/></include>
+  </group>
+</launch>
+"""
+YAML = """launch:
+- arg: {name: real, default: "true"}
+- node:
+    pkg: arm
+    exec: driver
+    if: $(var real)
+    param:
+    - {name: rate, value: "10"}
+    remap:
+    - {from: cmd, to: arm/cmd}
+- group:
+  - push_ros_namespace: {namespace: left}
+  - include:
+      file: other.launch.yaml
+      arg:
+      - {name: speed, value: "1"}
+"""
+
+
+@pytest.fixture
+def changes_of(repository, compare):
+    """Review a replacement in a launch file, and return the sentences of all changes and of the breaking ones."""
+
+    def run(name: str, text: str, old: str, new: str):
+        assert old in text
+        repository.commit({f"arm/launch/{name}": text})
+        repository.write({f"arm/launch/{name}": text.replace(old, new)})
+        result = compare(repository)
+        return [sentence for each in result.subjects for sentence in sentences(each)], breaking(result)
+
+    return run
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "expected", "is_breaking"),
+    [
+        ('"front")), actions', '"back")), actions',
+         ("remapping of 'scan' for all nodes, parameter 'use_sim_time' of all nodes, node 'lidar/driver' and 1 more: "
+          "condition if $(var front) -> if $(var back)"), False),
+        ('PushRosNamespace("front")', 'PushRosNamespace("back")',
+         "node 'lidar/driver', node 'lidar/filter': namespace front -> back", True),
+        ('"scan_front"', '"scan_back"', "remapping of 'scan' for all nodes: to scan_front -> scan_back", True),
+        ('"use_sim_time", True', '"use_sim_time", False',
+         "parameter 'use_sim_time' of all nodes: value True -> False", False),
+        ('"models"', '"worlds"', "environment variable 'GZ_SIM_RESOURCE_PATH': value models -> worlds", False),
+        ('["fast", "slow"]', '["fast"]', "argument 'mode': choices [fast, slow] -> [fast]", True),
+        ('{"min": 1}', '{"min": 2}', "node 'lidar/filter': parameter range.min 1 -> 2", False),
+        ('"filter.yaml"', '"other.yaml"', "node 'lidar/filter': parameters [filter.yaml] -> [other.yaml]", False),
+        ('("joy", "arm/joy")', '("joy", "arm/joy"), ("cmd_vel", LaunchConfiguration("cmd_vel_out"))',
+         "node 'arm/teleop': remapping cmd_vel - -> $(var cmd_vel_out)", False),
+        ('("joy", "arm/joy")', '', "node 'arm/teleop': remapping joy arm/joy -> -", True),
+        ('        Node(package="ros_gz_sim", executable="create", name="create"),\n', "",
+         "node 'ros_gz_sim/create' removed", False),
+        ('        Node(package="controller_manager", executable="spawner", arguments=["arm_controller", "-v"]),\n',
+         "", "node 'controller_manager/spawner' of 'arm_controller' removed", True),
+        ('"--child-frame-id", "lidar"', '"--child-frame-id", "laser"',
+         ("node 'tf2_ros/static_transform_publisher' of 'laser': "
+          "arguments [--frame-id, base, --child-frame-id, lidar] -> [--frame-id, base, --child-frame-id, laser]"),
+         False),
+    ],
+)  # fmt: skip
+def test_actions_in_python_are_compared(changes_of, old, new, expected, is_breaking):
+    found, found_breaking = changes_of("arm.launch.py", PYTHON, old, new)
+    assert found == [expected]
+    assert bool(found_breaking) is is_breaking
+
+
+@pytest.mark.parametrize(
+    ("old", "new"),
+    [
+        ('("joy", "arm/joy")', '("joy", "arm/joy"), ("cmd_vel", "cmd_vel")'),
+        ("def generate_launch_description():\n", "def generate_launch_description():\n    front = 'front'\n"),
+        ('Node(package="arm", executable="teleop"', 'Node(executable="teleop", package="arm"'),
+        ("from launch_ros.actions import Node, ", "import os\nfrom launch_ros.actions import Node, "),
+    ],
+)
+def test_refactored_python_is_no_change(changes_of, old, new):
+    assert changes_of("arm.launch.py", PYTHON, old, new) == ([], [])
+
+
+def test_namespace_of_each_node_is_that_of_a_group(changes_of):
+    old = """            PushRosNamespace("front"),
+            SetRemap("scan", "scan_front"),
+            SetParameter("use_sim_time", True),
+            Node(package="lidar", executable="driver"),
+            Node(package="lidar", executable="filter", """
+    new = """            SetRemap("scan", "scan_front"),
+            SetParameter("use_sim_time", True),
+            Node(package="lidar", executable="driver", namespace="front"),
+            Node(package="lidar", executable="filter", namespace="front", """
+    assert changes_of("arm.launch.py", PYTHON, old, new) == ([], [])
+
+
+def test_difference_at_the_end_of_a_long_value_is_shown(changes_of):
+    text = PYTHON.replace('"filter.yaml"', f"build(text='{'x' * 2000}', gain=1)")
+    (sentence,), _ = changes_of("arm.launch.py", text, "gain=1", "gain=2")
+    assert len(sentence) < 300
+    assert "gain=1" in sentence
+    assert "gain=2" in sentence
+
+
+def test_other_code_is_reported_besides_actions(changes_of):
+    text = PYTHON.replace("    return Launch", "    print('starting')\n    return Launch")
+    changed = text.replace('"models"', '"worlds"').replace("'starting'", "'started'")
+    found, _ = changes_of("arm.launch.py", text, text, changed)
+    assert found[1:] == ["other code: print('starting') -> print('started')"]
+
+
+def test_launch_file_with_name_of_a_test_is_compared(changes_of):
+    found, _ = changes_of("test_arm.launch.py", PYTHON, '"models"', '"worlds"')
+    assert len(found) == 1
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "expected", "is_breaking"),
+    [
+        ('if="$(arg real)"', 'unless="$(arg real)"',
+         "node 'arm/driver.py', include of 'other.launch': condition if $(arg real) -> unless $(arg real)", False),
+        ('ns="left"', 'ns="right"', "node 'arm/driver.py': namespace left -> right", True),
+        ('to="front/scan"', 'to="back/scan"', "remapping of 'scan' for all nodes: to front/scan -> back/scan", True),
+        ('  <rosparam command="load" file="drive.yaml"/>\n', "", "parameters of 'drive.yaml' removed", False),
+        ('"use_sim_time" value="true"', '"use_sim_time" value="false"',
+         "parameter 'use_sim_time' of all nodes: value true -> false", False),
+        ('"ROBOT" value="arm"', '"ROBOT" value="leg"', "environment variable 'ROBOT': value arm -> leg", False),
+        ('<arg name="ur" default="$(arg ur)"/>', '<arg name="ur" default="ur10"/>',
+         "include of 'other.launch': ur $(arg ur) -> ur10", False),
+    ],
+)  # fmt: skip
+def test_actions_in_xml_are_compared(changes_of, old, new, expected, is_breaking):
+    found, found_breaking = changes_of("arm.launch", XML, old, new)
+    assert expected in found
+    assert bool(found_breaking) is is_breaking
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "expected", "is_breaking"),
+    [
+        ("if: $(var real)", "unless: $(var real)",
+         "node 'arm/driver': condition if $(var real) -> unless $(var real)", False),
+        ('"10"', '"20"', "node 'arm/driver': parameter rate 10 -> 20", False),
+        ("to: arm/cmd", "to: cmd_vel", "node 'arm/driver': remapping cmd arm/cmd -> cmd_vel", True),
+        ("namespace: left", "namespace: right",
+         "include of 'other.launch.yaml': namespace of its nodes left -> right", True),
+        ('value: "1"', 'value: "2"', "include of 'other.launch.yaml': speed 1 -> 2", False),
+        ('- arg: {name: real, default: "true"}\n', "", "argument 'real' removed", True),
+    ],
+)  # fmt: skip
+def test_actions_in_yaml_are_compared(changes_of, old, new, expected, is_breaking):
+    found, found_breaking = changes_of("arm.launch.yaml", YAML, old, new)
+    assert found == [expected]
+    assert bool(found_breaking) is is_breaking
+
+
+MIXIN = """from launch.actions import DeclareLaunchArgument
+from launch_ros.actions import Node
+
+
+class ArmMixin:
+    @staticmethod
+    def arg_frame():
+        return DeclareLaunchArgument(name="frame", default_value="base")
+
+    @staticmethod
+    def node_driver(rate, **kwargs):
+        return Node(package="arm", executable="driver", parameters=[{"rate": rate}], **kwargs)
+"""
+CALLER = """from arm import ArmMixin
+from launch import LaunchDescription
+from launch.conditions import IfCondition
+from other_package import node_camera
+
+
+class Mixin(ArmMixin):
+    pass
+
+
+def generate_launch_description():
+    ld = LaunchDescription()
+    ld.add_action(Mixin.arg_frame())
+    ld.add_action(Mixin.node_driver(rate=10, condition=IfCondition("a")))
+    ld.add_action(node_camera("left"))
+    return ld
+"""
+PACKAGE = {
+    "arm/package.xml": PACKAGE_XML.replace("arm_description", "arm"),
+    "arm/arm/__init__.py": "from .mixin import ArmMixin\n",
+    "arm/arm/mixin.py": MIXIN,
+    "arm/launch/arm.launch.py": CALLER,
+}
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "expected", "is_breaking"),
+    [
+        ("    ld.add_action(Mixin.arg_frame())\n", "", "argument 'frame' removed", True),
+        ("rate=10", "rate=20", "node 'arm/driver': parameter rate 10 -> 20", False),
+        ('IfCondition("a")', 'IfCondition("b")', "node 'arm/driver': condition if a -> if b", False),
+        ('"left"', '"right"', "action 'node_camera': arguments [left] -> [right]", False),
+    ],
+)
+def test_actions_of_functions_of_the_repository_are_compared(repository, compare, old, new, expected, is_breaking):
+    repository.commit(PACKAGE)
+    repository.write({"arm/launch/arm.launch.py": CALLER.replace(old, new)})
+    result = compare(repository)
+    assert sentences(subject(result, "arm/launch/arm.launch.py")) == [expected]
+    assert bool(breaking(result)) is is_breaking
+
+
+def test_module_with_functions_for_launch_files_is_compared(repository, compare):
+    repository.commit(PACKAGE)
+    repository.write({"arm/arm/mixin.py": MIXIN.replace('default_value="base"', 'default_value="world"')})
+    result = compare(repository)
+    assert sentences(subject(result, "arm/arm/mixin.py")) == ["argument 'frame': default base -> world"]
+    assert result.other_files == []
+
+
+LOOPS = """from launch import LaunchDescription
+from launch.actions import DeclareLaunchArgument
+from launch_ros.actions import Node
+
+PARAMETERS = [{"name": "rate", "default": "10"}, {"name": "port", "default": "tty0"}]
+
+
+def declare(parameters):
+    return [DeclareLaunchArgument(each["name"], default_value=each["default"]) for each in parameters]
+
+
+def generate_launch_description():
+    ld = LaunchDescription(declare(PARAMETERS))
+    for side in ["left", "right"]:
+        ld.add_action(Node(package="arm", executable="driver", namespace=side))
+    return ld
+"""
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "expected"),
+    [
+        ('"tty0"', '"tty1"', "argument 'port': default tty0 -> tty1"),
+        (', {"name": "port", "default": "tty0"}', "", "argument 'port' removed"),
+        ('["left", "right"]', '["left", "rear"]', "node 'arm/driver': namespace right -> rear"),
+        ('["left", "right"]', '["left"]', "node 'arm/driver' removed"),
+    ],
+)
+def test_actions_of_loops_over_lists_are_compared(changes_of, old, new, expected):
+    assert changes_of("arm.launch.py", LOOPS, old, new)[0] == [expected]
+
+
+def test_name_that_is_assigned_again_has_the_value_before_the_action(changes_of):
+    text = LOOPS.replace("    ld = Launch", "    side = 'a'\n    side = side + '_arm'\n    ld = Launch")
+    text = text.replace('    for side in ["left", "right"]:\n        ld', "    ld")
+    found, _ = changes_of("arm.launch.py", text, "side = 'a'", "side = 'b'")
+    assert found[0] == "node 'arm/driver': namespace a + _arm -> b + _arm"
+
+
+def test_name_with_values_in_branches_stays_a_name(changes_of):
+    text = LOOPS.replace(
+        'for side in ["left", "right"]:', "side = 'a'\n    if PARAMETERS:\n        side = 'b'\n    if 1:"
+    )
+    found, _ = changes_of("arm.launch.py", text, "side = 'a'", "side = 'c'")
+    assert found == ["other code: side = 'a' -> side = 'c'"]
+
+
+def test_command_of_a_process_is_a_change(changes_of):
+    text = """from launch.actions import ExecuteProcess
+def generate_launch_description():
+    return LaunchDescription([ExecuteProcess(cmd=["gz", "sim", "-r", "house.sdf"], output="screen")])
+"""
+    found, _ = changes_of("arm.launch.py", text, "house", "yard")
+    assert found == ["process 'gz': command [gz, sim, -r, house.sdf] -> [gz, sim, -r, yard.sdf]"]
+
+
+@pytest.mark.parametrize(("old", "new"), [("/tf", "tf"), ("tf", "/tf")])
+def test_relative_name_is_that_of_the_empty_namespace(changes_of, old, new):
+    text = PYTHON.replace('("joy", "arm/joy")', f'("joy", "{old}")')
+    assert changes_of("arm.launch.py", text, f'"{old}")', f'"{new}")')[1] == []
+
+
+def test_controllers_of_a_spawner_come_after_its_options(changes_of):
+    arguments = (
+        '"--controller-manager-timeout", "60", "--inactive", "arm_controller", "--controller-ros-args", "-r a:=b"'
+    )
+    text = PYTHON.replace('"arm_controller", "-v"', arguments)
+    start = text.index('        Node(package="controller_manager"')
+    line = text[start : text.index("\n", start) + 1]
+    assert changes_of("arm.launch.py", text, line, "")[0] == [
+        "node 'controller_manager/spawner' of 'arm_controller' removed"
+    ]
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "expected"),
+    [
+        ("GZ_SIM_RESOURCE_PATH", "GZ_MODEL_PATH",
+         "environment variable 'GZ_SIM_RESOURCE_PATH' replaced by environment variable 'GZ_MODEL_PATH'"),
+        ('"ros_gz_sim", executable', '"gz_sim", executable',
+         "node 'ros_gz_sim/create' replaced by node 'gz_sim/create'"),
+    ],
+)  # fmt: skip
+def test_action_under_a_new_name_is_replaced(changes_of, old, new, expected):
+    assert changes_of("arm.launch.py", PYTHON, old, new) == ([expected], [])
+
+
+def test_program_of_the_same_package_is_not_a_replacement(changes_of):
+    found, found_breaking = changes_of("arm.launch.py", PYTHON, 'executable="teleop"', 'executable="keyboard"')
+    assert found == ["node 'arm/keyboard' added", "node 'arm/teleop' removed"]
+    assert found_breaking == found[1:]

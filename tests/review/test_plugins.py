@@ -1,0 +1,55 @@
+"""What a review says of plugins that a description gains or loses: their names and topics."""
+
+from __future__ import annotations
+
+import pytest
+
+from tests.review.conftest import breaking, sentences, subject
+
+PATH = "a/urdf/robot.urdf"
+DRIVE = """<gazebo>
+  <plugin name="drive" filename="libgazebo_ros_diff_drive.so"><odom_frame>odom</odom_frame></plugin>
+</gazebo>"""
+DOCK = """<gazebo>
+  <plugin name="dock" filename="libdock.so"><ros><remapping>~/out:=dock</remapping></ros></plugin>
+</gazebo>"""
+LIGHT = '<gazebo reference="base"><turnGravityOff>true</turnGravityOff></gazebo>'
+JOINT = '<joint name="{name}"><command_interface name="position"/><state_interface name="position"/></joint>'
+HARDWARE = '<ros2_control name="arm" type="system"><hardware><plugin>a/B</plugin></hardware>{joint}</ros2_control>'
+
+
+def robot(*extensions: str) -> str:
+    return f'<robot name="r"><link name="base"/>{"".join(extensions)}</robot>'
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "expected", "is_breaking"),
+    [
+        ([LIGHT], [LIGHT, DOCK], "extension 'gazebo' added: plugin 'dock' with the topics 'dock'", False),
+        ([LIGHT, DRIVE], [LIGHT], "extension 'gazebo' removed: plugin 'drive' with the topics 'cmd_vel', 'odom'", True),
+        ([DRIVE], [DOCK], "extension 'gazebo': plugin drive removed: topics 'cmd_vel', 'odom'", True),
+        ([LIGHT, DOCK], [LIGHT], "extension 'gazebo' removed: plugin 'dock' with the topics 'dock'", True),
+        (["<gazebo/>", LIGHT], ["<gazebo/>"], "extension 'gazebo base' removed", False),
+        ([HARDWARE.format(joint=JOINT.format(name="a"))], [HARDWARE.format(joint=JOINT.format(name="b"))],
+         "extension 'ros2_control arm': joint a renamed to 'b'", True),
+    ],
+)  # fmt: skip
+def test_plugins_are_named_with_their_topics(repository, compare, old, new, expected, is_breaking):
+    repository.commit({PATH: robot(*old)})
+    repository.write({PATH: robot(*new)})
+    result = compare(repository)
+    assert expected in sentences(subject(result, PATH))
+    assert bool(breaking(result)) is is_breaking
+
+
+def test_plugin_replaced_by_one_with_the_same_topics_is_not_breaking(repository, compare):
+    other = DOCK.replace('name="dock" filename="libdock.so"', 'name="station" filename="libstation.so"')
+    repository.commit({PATH: robot(DOCK)})
+    repository.write({PATH: robot(other)})
+    assert breaking(compare(repository)) == []
+
+
+def test_equal_numbers_of_extensions_are_no_change(repository, compare):
+    repository.commit({PATH: robot('<gazebo reference="base"><mu1>1.0</mu1></gazebo>')})
+    repository.write({PATH: robot('<gazebo reference="base"><mu1>1</mu1></gazebo>')})
+    assert compare(repository).subjects == []

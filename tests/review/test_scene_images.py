@@ -1,0 +1,59 @@
+"""Images of worlds and meshes in the page: only of those that look different."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from linkwright.review import open_versions, review
+
+BOX = """<model name="{name}"><pose>{x} 0 0.5 0 0 0</pose><link name="link"><visual name="v"><geometry>
+  <box><size>1 1 1</size></box></geometry></visual></link></model>"""
+
+
+def world(*boxes: str, step: float = 0.001) -> str:
+    physics = f'<physics name="p" type="ode"><max_step_size>{step}</max_step_size></physics>'
+    return f'<sdf version="1.9"><world name="w">{physics}{"".join(boxes)}</world></sdf>'
+
+
+def stl(height: float) -> bytes:
+    record = np.dtype([("normal", "<f4", 3), ("corners", "<f4", (3, 3)), ("attribute", "<u2")])
+    triangles = np.zeros(2, record)
+    triangles["corners"] = [[[0, 0, 0], [1, 0, 0], [0, 1, 0]], [[0, 0, 0], [1, 0, 0], [0, 0, height]]]
+    return bytes(80) + len(triangles).to_bytes(4, "little") + triangles.tobytes()
+
+
+FIXED = BOX.format(name="fixed", x=0)
+
+
+@pytest.fixture
+def images_of(repository):
+    def run(path: str, old: str | bytes, new: str | bytes):
+        repository.commit({path: old})
+        repository.write({path: new})
+        versions = open_versions(repository.root, "HEAD")
+        try:
+            (subject,) = review(versions, with_images=True).subjects
+        finally:
+            versions.close()
+        return subject.images
+
+    return run
+
+
+@pytest.mark.parametrize("far", [3, 100])
+def test_moved_model_of_a_world_is_shown(images_of, far):
+    old, new = (world(FIXED, BOX.format(name="moved", x=x)) for x in (far, far + 1))
+    images = images_of("w/worlds/w.sdf", old, new)
+    assert [view.name for view in images] == ["iso", "front", "left", "top"]
+    assert images[0].old != images[0].new
+
+
+def test_world_with_same_appearance_has_no_images(images_of):
+    assert images_of("w/worlds/w.sdf", world(FIXED), world(FIXED, step=0.002)) == []
+
+
+def test_changed_mesh_is_shown(images_of):
+    images = images_of("w/meshes/m.stl", stl(1.0), stl(2.0))
+    assert len(images) == 4
+    assert images[0].old != images[0].new

@@ -1,0 +1,102 @@
+"""What a review says of worlds and models in SDF: renamed elements, topics, prefixes."""
+
+from __future__ import annotations
+
+import pytest
+
+from tests.review.conftest import breaking, sentences, subject
+
+PATH = "w/worlds/yard.sdf"
+WORLD = """<sdf version="1.9">
+  <world name="yard">
+    <physics name="p" type="ode"><max_step_size>0.001</max_step_size></physics>
+    <model name="robot">
+      <frame name="tool"><pose relative_to="base">0 0 1 0 0 0</pose></frame>
+      <link name="base">
+        <inertial><mass>1.0</mass></inertial>
+        <sensor name="lidar" type="gpu_lidar"><topic>scan</topic><gz_frame_id>laser</gz_frame_id><lidar><range><max>9</max></range></lidar></sensor>
+        <collision name="c"><geometry><box><size>1 1 1</size></box></geometry></collision>
+      </link>
+      <joint name="wheel_joint" type="revolute"><parent>base</parent><child>wheel</child><axis><xyz gz:expressed_in="base">0 1 0</xyz></axis></joint>
+      <link name="wheel"/>
+      <plugin name="drive" filename="libgazebo_ros_diff_drive.so"><ros><remapping>cmd_vel:=drive/cmd</remapping></ros></plugin>
+    </model>
+  </world>
+</sdf>
+"""  # noqa: E501
+SENSOR = WORLD[WORLD.index("        <sensor") : WORLD.index("        <collision")]
+PLUGIN = WORLD[WORLD.index("      <plugin") : WORLD.index("    </model")]
+ROBOT = "world yard model robot"
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "expected", "is_breaking"),
+    [
+        ('<link name="base">', '<link name="body">', f"{ROBOT} link base renamed to 'body'", True),
+        ('<model name="robot">', '<model name="rover">', f"{ROBOT} renamed to 'rover'", True),
+        ('<joint name="wheel_joint"', '<joint name="axle"', f"{ROBOT} joint wheel_joint renamed to 'axle'", True),
+        ('<sensor name="lidar"', '<sensor name="laser"', f"{ROBOT} link base sensor lidar renamed to 'laser'", True),
+        ('<frame name="tool">', '<frame name="hand">', f"{ROBOT} frame tool renamed to 'hand'", True),
+        ('      <link name="wheel"/>\n', "", f"{ROBOT} link wheel removed", True),
+        (SENSOR, "", f"{ROBOT} link base sensor lidar removed", True),
+        ("<topic>scan<", "<topic>front/scan<", f"{ROBOT} link base sensor lidar topic: scan -> front/scan", True),
+        ("<topic>scan</topic>", "", f"{ROBOT} link base sensor lidar topic removed", True),
+        (">laser<", ">lidar<", f"{ROBOT} link base sensor lidar gz_frame_id: laser -> lidar", True),
+        (PLUGIN, "", f"{ROBOT} plugin drive removed: topics 'drive/cmd', 'odom'", True),
+        ("drive/cmd<", "cmd<",
+         f"{ROBOT} plugin drive ros remapping: cmd_vel:=drive/cmd -> cmd_vel:=cmd", True),
+        ('"base">0 1 0', '"base">0 -1 0', f"{ROBOT} joint wheel_joint axis xyz: 0 1 0 -> 0 -1 0", False),
+        ('<collision name="c">', '<collision name="d">', f"{ROBOT} link base collision d added", False),
+    ],
+)  # fmt: skip
+def test_changes_of_names_in_worlds_are_breaking(repository, compare, old, new, expected, is_breaking):
+    assert old in WORLD
+    repository.commit({PATH: WORLD})
+    repository.write({PATH: WORLD.replace(old, new)})
+    result = compare(repository)
+    assert expected in sentences(subject(result, PATH))
+    assert bool(breaking(result)) is is_breaking
+
+
+def test_renamed_world_is_compared_with_the_old_one(repository, compare):
+    repository.commit({PATH: WORLD})
+    repository.write({PATH: WORLD.replace('"yard"', '"park"').replace("0.001", "0.002")})
+    assert sentences(subject(compare(repository), PATH)) == [
+        "world yard renamed to 'park'",
+        "world park physics p max_step_size: 0.001 -> 0.002",
+    ]
+
+
+def test_equal_numbers_are_no_change(repository, compare):
+    repository.commit({PATH: WORLD})
+    repository.write({PATH: WORLD.replace(">1.0<", ">1<").replace(">1 1 1<", ">1.0 1 1e0<")})
+    assert compare(repository).subjects == []
+
+
+def test_reason_of_a_remapping_is_the_name_that_others_use(repository, compare):
+    repository.commit({PATH: WORLD})
+    repository.write({PATH: WORLD.replace("drive/cmd<", "cmd<")})
+    ((_, change),) = compare(repository).breaking_changes
+    assert str(change.reason) == "programs that use the name 'drive/cmd' do not find it"
+
+
+def test_equal_changes_of_several_elements_are_one(repository, compare):
+    joints = "".join(
+        f'<joint name="servo_{n}" type="revolute"><axis><limit><upper>0.5</upper></limit></axis></joint>'
+        for n in range(4)
+    )
+    text = f'<sdf version="1.9"><model name="plane">{joints}</model></sdf>'
+    repository.commit({PATH: text})
+    repository.write({PATH: text.replace("0.5", "0.7")})
+    assert sentences(subject(compare(repository), PATH)) == [
+        "model plane joint servo_0, servo_1, servo_2, ... (4) axis limit upper: 0.5 -> 0.7"
+    ]
+
+
+def test_added_element_is_shown_with_its_attributes(repository, compare):
+    repository.commit({PATH: WORLD})
+    plugin = '<plugin name="Entity context menu" filename="Menu"/>'
+    repository.write({PATH: WORLD.replace("    <physics", f"    {plugin}\n    <physics")})
+    assert sentences(subject(compare(repository), PATH)) == [
+        "world yard plugin Entity context menu filename=Menu added"
+    ]
