@@ -158,11 +158,14 @@ function start(app: HTMLElement): void {
   });
 
   session.course.availabilityChanged.on(() => {
-    if (session.course.course) source.openWorkspace(session.course.course.folder);
+    if (!session.course.course) return;
+    const { folder, file } = session.course.course;
+    source.openWorkspace(folder);
+    if (file !== "") void source.edit(file);
   });
   session.course.fileRequested.on((path) => {
     dock.open("source");
-    source.edit(path);
+    void source.edit(path);
   });
 
   session.words.enrollRequested.on(() => {

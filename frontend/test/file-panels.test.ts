@@ -121,7 +121,7 @@ describe("the panels of a file", () => {
 });
 
 describe("a course", () => {
-  const course: ServerMessage = { type: "course", title: { en: "A course" }, folder: "/ws", lessons: [] };
+  const course: ServerMessage = { type: "course", title: { en: "A course" }, folder: "/ws", file: "", lessons: [] };
 
   it("arranges the panels when it is shown for the first time", () => {
     receive(course);

@@ -148,6 +148,14 @@ def test_file_created_by_another_program_is_shown(start, open_page, workspace):
     page.locator(".editor-notice").wait_for(state="hidden")
 
 
+def test_exercise_opens_program_of_learner(start, open_page, tmp_path):
+    program = tmp_path / "park.py"
+    page = open_page(start("learn", "world", "park", str(program)), wait=False)
+    until(page, "lw.panels.source.editor?.text?.includes('rclpy') && lw.panels.source.editor.file.endsWith('park.py')")
+    assert page.locator(".editor-pane .cm-editor").count() == 1
+    assert page.get_by_text("is outside the workspace").count() == 0
+
+
 def test_lesson_texts_fit_and_only_commands_have_copy_button(start, open_page, workspace):
     page = open_page(start("learn", str(workspace)), wait=False, size=(1024, 700))
     until(page, f"{CHECKS}?.checked_at")

@@ -41,6 +41,7 @@ async def test_exercise_page_shows_text_and_judge_status(tmp_path):
     async with exercise_page(tmp_path / "mine.py") as (scene, client):
         opened = await client.opened()
         assert opened["course"]["folder"] == str(tmp_path)
+        assert opened["course"]["file"] == str(tmp_path / "mine.py")
         assert opened["course_step"]["files"] == [str(tmp_path / "mine.py")]
         assert "<td><code>cmd_vel</code></td>" in opened["course_step"]["body"]["zh"]
         assert opened["step_checks"]["checks"][0]["title"]["en"] == (

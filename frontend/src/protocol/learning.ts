@@ -19,6 +19,7 @@ export interface CourseLesson {
 export interface Course {
   title: Record<string, string>;
   folder: string;
+  file: string;
   lessons: CourseLesson[];
   type: "course";
 }

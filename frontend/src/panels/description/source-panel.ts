@@ -112,9 +112,11 @@ export class SourcePanel implements Panel {
   }
 
   /** Edits a file, which is created when it is saved if it does not exist. */
-  edit(path: string): void {
+  async edit(path: string): Promise<void> {
     this.requested = null;
-    void this.editor.edit(path);
+    await this.editor.edit(path);
+    this.file = path;
+    this.update();
   }
 
   /** Whether the editor shows files. */

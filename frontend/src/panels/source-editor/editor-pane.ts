@@ -17,7 +17,8 @@ export class EditorPane {
   readonly toggle: HTMLButtonElement;
   private editor: SourceEditor | null = null;
   private isWanted: boolean;
-  private isLoading = false;
+  /** Loads the editor; null before and after. */
+  private loading: Promise<void> | null = null;
   /** The folder whose files can be edited without a description; empty if there is none. */
   private workspace = "";
   private failure = "";
@@ -97,7 +98,7 @@ export class EditorPane {
   show(file: string | null, highlights: readonly Highlight[], line: number | null): boolean {
     this.file = file;
     this.highlights = highlights;
-    if (this.isWanted && file !== null && !this.isLoading) {
+    if (this.isWanted && file !== null && this.loading === null) {
       if (this.editor === null) void this.load();
       else if (this.editor.shown?.path !== file) void this.editor.show(file);
     }
@@ -136,15 +137,19 @@ export class EditorPane {
     this.toggle.title = this.isWanted ? words.view : words.editHint;
   }
 
-  private async load(): Promise<void> {
-    this.isLoading = true;
+  private load(): Promise<void> {
+    this.loading ??= this.loadEditor();
+    return this.loading;
+  }
+
+  private async loadEditor(): Promise<void> {
     try {
       const { SourceEditor } = await import("./source-editor");
       this.editor = new SourceEditor(this.session, this.onLine);
     } catch {
       this.failure = strings.sourceEditor.failed;
     }
-    this.isLoading = false;
+    this.loading = null;
     const { editor } = this;
     if (editor !== null) {
       this.element.append(editor.element);

@@ -159,7 +159,7 @@ class CourseGuide(Guide):
             )
             for lesson in room.course.lessons
         ]
-        return messages.Course(room.course.title.texts, str(room.workspace), lessons)
+        return messages.Course(room.course.title.texts, str(room.workspace), "", lessons)
 
     def _step_item(self, step: Step) -> messages.CourseStepItem:
         noted = self._room.progress.step(step.address)

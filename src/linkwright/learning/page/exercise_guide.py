@@ -109,7 +109,7 @@ class ExerciseGuide(Guide):
             self._exercise.id, self._exercise.title.texts, is_passed=False, is_taken_over=False
         )
         lesson = messages.CourseLesson(self._exercise.id, self._exercise.title.texts, [item])
-        return messages.Course(self._exercise.title.texts, str(self._program.parent), [lesson])
+        return messages.Course(self._exercise.title.texts, str(self._program.parent), str(self._program), [lesson])
 
     def _step(self) -> messages.CourseStep:
         folder = self._exercise.folder

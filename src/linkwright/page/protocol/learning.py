@@ -34,11 +34,13 @@ class CourseLesson(Record):
 class Course(ServerMessage):
     """The outline of the course, with the learner's progress.
 
-    It is sent when a page opens, and again when the progress changes. `folder` is the learner's workspace.
+    It is sent when a page opens, and again when the progress changes. `folder` is the learner's workspace. `file` is the
+    absolute path of the file that the editor shows first, or empty for the file of the robot.
     """
 
     title: dict[str, str]
     folder: str
+    file: str
     lessons: list[CourseLesson]
 
 
