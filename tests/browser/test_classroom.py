@@ -152,8 +152,9 @@ def test_exercise_opens_program_of_learner(start, open_page, tmp_path):
     program = tmp_path / "park.py"
     page = open_page(start("learn", "world", "park", str(program)), wait=False)
     until(page, "lw.panels.source.editor?.text?.includes('rclpy') && lw.panels.source.editor.file.endsWith('park.py')")
+    page.locator(".editor-notice").wait_for(state="hidden")
     assert page.locator(".editor-pane .cm-editor").count() == 1
-    assert page.get_by_text("is outside the workspace").count() == 0
+    assert page.evaluate("window.linkwright.panels.source.editor.file") == str(program)
 
 
 def test_lesson_texts_fit_and_only_commands_have_copy_button(start, open_page, workspace):

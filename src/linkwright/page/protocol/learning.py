@@ -34,8 +34,8 @@ class CourseLesson(Record):
 class Course(ServerMessage):
     """The outline of the course, with the learner's progress.
 
-    It is sent when a page opens, and again when the progress changes. `folder` is the learner's workspace. `file` is the
-    absolute path of the file that the editor shows first, or empty for the file of the robot.
+    It is sent when a page opens, and again when the progress changes. `folder` is the learner's workspace. `file` is
+    the absolute path of the file that the editor shows first, or empty for the file of the robot.
     """
 
     title: dict[str, str]
