@@ -8,7 +8,7 @@ from linkwright.descriptions.comparison import Difference
 from linkwright.diagnostics import Phrase, phrase
 from linkwright.urdf import Robot
 
-_MOVING_TYPES = frozenset({"revolute", "continuous", "prismatic"})
+MOVING_TYPES = frozenset({"revolute", "continuous", "prismatic"})
 """The types of joints with a position in ``/joint_states``."""
 _NAME_TAGS = re.compile(r"topic|namespace|frame|remapping|\bservice", re.IGNORECASE)
 """The tags of plugins' parameters with names in the graph or in tf."""
@@ -27,30 +27,39 @@ def breaking_reason(difference: Difference, old: Robot) -> Phrase | None:
     if difference.subject == "joint":
         return _joint_reason(difference, old)
     if difference.subject == "extension":
-        return _extension_reason(difference)
+        return extension_reason(difference)
     return None
 
 
 def _link_reason(difference: Difference) -> Phrase | None:
     name = difference.old if difference.kind == "renamed" else difference.name
-    if difference.kind in ("removed", "renamed"):
-        return phrase("programs that look up the frame '{name}' do not find it", name=name or "")
-    return None
+    return frame_reason(name or "") if difference.kind in ("removed", "renamed") else None
 
 
 def _joint_reason(difference: Difference, old: Robot) -> Phrase | None:
     if difference.kind in ("removed", "renamed"):
         name = (difference.old if difference.kind == "renamed" else difference.name) or ""
         joint = old.joints.get(name)
-        if joint is None or joint.type not in _MOVING_TYPES:
+        if joint is None or joint.type not in MOVING_TYPES:
             return None  # only tf knows fixed joints, by their links
-        return phrase("controllers and programs that name the joint '{name}' do not find it", name=name)
-    if difference.property == "type" and difference.old in _MOVING_TYPES and difference.new not in _MOVING_TYPES:
+        return joint_name_reason(name)
+    if difference.property == "type" and difference.old in MOVING_TYPES and difference.new not in MOVING_TYPES:
         return phrase("'{name}' has no position in /joint_states any more", name=difference.name)
     return None
 
 
-def _extension_reason(difference: Difference) -> Phrase | None:
+def frame_reason(name: str) -> Phrase:
+    """Return why it is breaking that a link has gone."""
+    return phrase("programs that look up the frame '{name}' do not find it", name=name)
+
+
+def joint_name_reason(name: str) -> Phrase:
+    """Return why it is breaking that a moving joint has gone."""
+    return phrase("controllers and programs that name the joint '{name}' do not find it", name=name)
+
+
+def extension_reason(difference: Difference) -> Phrase | None:
+    """Return why a difference of an element for another program is breaking, or None if it is not."""
     if difference.kind == "removed" and difference.name.startswith("ros2_control"):
         return phrase("controllers of this hardware do not find its interfaces")
     if difference.kind != "changed" or not difference.old:

@@ -3,9 +3,10 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Hashable, Sequence
+from collections.abc import Collection, Hashable, Sequence
 from dataclasses import dataclass, field
 from enum import Enum
+from typing import NamedTuple
 
 from linkwright.diagnostics import Diagnostic, Phrase
 
@@ -32,6 +33,7 @@ class SubjectKind(Enum):
     MANIFEST = "package manifest"
     MESH = "mesh"
     SCENARIO = "scenario"
+    PART = "part of descriptions"
 
 
 @dataclass(frozen=True)
@@ -125,6 +127,24 @@ class Problem:
     is_of_old: bool = False
 
 
+FILE = -1
+"""The offset that stands for the whole file: an expansion read it."""
+
+
+class ExpandedPlace(NamedTuple):
+    """An element of a changed file that the expansion of a compared robot used.
+
+    Attributes:
+        path: the path of the file relative to the root.
+        offset: the character offset of the element in the file, or `FILE`.
+        is_old: whether the file is that of the old version.
+    """
+
+    path: str
+    offset: int
+    is_old: bool
+
+
 @dataclass(frozen=True)
 class Subject:
     """A reviewed file with its changes.
@@ -139,6 +159,7 @@ class Subject:
         problems: why a part of the comparison is missing.
         cases: the names of all argument sets that were compared.
         images: views of both versions.
+        expanded: the elements of changed files that the compared robots show.
     """
 
     kind: SubjectKind
@@ -150,6 +171,7 @@ class Subject:
     problems: Sequence[Problem] = ()
     cases: Sequence[str] = ()
     images: Sequence[ViewImages] = ()
+    expanded: Collection[ExpandedPlace] = ()
 
     @property
     def is_empty(self) -> bool:

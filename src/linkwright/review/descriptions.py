@@ -18,6 +18,7 @@ from linkwright.review.collisions import collision_changes
 from linkwright.review.figures import RobotMeasures, figures_of
 from linkwright.review.file_pair import FilePair
 from linkwright.review.images import view_images
+from linkwright.review.parts.expanded import expanded_places
 from linkwright.review.versions import Version
 from linkwright.urdf import Robot
 
@@ -50,6 +51,7 @@ def compare_descriptions(pair: FilePair) -> None:
         pair.cases.append(case.name)
         if case.old.robot is None or case.new.robot is None:
             continue
+        pair.expanded.update(expanded_places(pair.versions, case.old, case.new))
         comparison = case.models.compare(case.old.robot, case.new.robot)
         for change in _changes(pair, comparison, case.old.robot, case.new.robot):
             group = groups.setdefault(change.identity, _Group(change))

@@ -8,7 +8,7 @@ from pathlib import Path
 from typing import TypeVar
 
 from linkwright.diagnostics import LinkwrightError, Phrase, Span, foreign, phrase
-from linkwright.review.changes import Change, Effect, Figure, Location, Problem, ViewImages
+from linkwright.review.changes import Change, Effect, ExpandedPlace, Figure, Location, Problem, ViewImages
 from linkwright.review.versions import Version, Versions
 
 _Content = TypeVar("_Content")
@@ -40,6 +40,7 @@ class FilePair:
         problems: why a part of the comparison is missing.
         cases: the names of the compared argument sets.
         images: images of both versions.
+        expanded: the elements of changed files that the compared robots show.
     """
 
     versions: Versions
@@ -51,6 +52,7 @@ class FilePair:
     problems: list[Problem] = field(default_factory=list)
     cases: list[str] = field(default_factory=list)
     images: list[ViewImages] = field(default_factory=list)
+    expanded: set[ExpandedPlace] = field(default_factory=set)
 
     @property
     def old_file(self) -> Path:

@@ -22,6 +22,7 @@ from linkwright.review.behavior import compare_behavior
 from linkwright.review.changes import Change, Effect, Review, Subject, SubjectKind
 from linkwright.review.file_pair import FilePair
 from linkwright.review.kinds import KindRule, rule_of
+from linkwright.review.parts import compare_parts
 from linkwright.review.versions import Version, Versions
 
 _Pair = tuple[KindRule, "str | None", "str | None"]
@@ -81,13 +82,14 @@ class _Reviewer:
             ]
             old_findings, new_findings = (result() for result in findings)
             all_subjects = [result() for result in subjects]
+        all_subjects = compare_parts(self._versions, self._changed_files, all_subjects, self._is_complete)
         compared = {path for _, *paths in pairs for path in paths if path}
         parts = {
             change.location.file
             for subject in all_subjects
             for change in subject.changes
             if change.location is not None
-        }
+        } | {subject.path for subject in all_subjects if not subject.is_empty}
         return Review(
             self._versions.old.name,
             self._versions.new.name,
@@ -106,6 +108,10 @@ class _Reviewer:
         added = new_findings(new, root, count_keys(old, old_root, self._new_paths))
         fixed = new_findings(old, old_root, count_keys(new, root, old_names))
         return list(map(self._versions.new.labeled, added)), list(map(self._versions.old.labeled, fixed))
+
+    def _is_complete(self, path: str) -> bool:
+        """Return whether a path is that of a complete description or world in one of the versions."""
+        return any(path in targets for targets in self._targets.values())
 
     def _is_in_scope(self, path: str) -> bool:
         return not self._folders or any(PurePosixPath(path).is_relative_to(folder) for folder in self._folders)
@@ -198,7 +204,18 @@ def _compare(
         pair.add_problem(phrase("the versions cannot be compared: {reason}", reason=error.diagnostics[0].message))
     except (RecursionError, MemoryError):
         pair.add_problem(phrase("the versions cannot be compared: they are nested too deeply, or too large"))
-    return Subject(kind, path, old_path, new_path, pair.changes, pair.figures, pair.problems, pair.cases, pair.images)
+    return Subject(
+        kind,
+        path,
+        old_path,
+        new_path,
+        pair.changes,
+        pair.figures,
+        pair.problems,
+        pair.cases,
+        pair.images,
+        pair.expanded,
+    )
 
 
 def _find(version: Version, targets: Targets) -> list[Diagnostic]:
