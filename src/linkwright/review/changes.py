@@ -63,7 +63,8 @@ class Change:
         reason: why the change is breaking; None for other changes.
         location: the location of the new value, or of the old value if there is no new one; None if unknown.
         cases: the names of the argument sets with which the change occurs; empty for all of them.
-        other_names: the names of other links, joints or extensions that a macro changes in the same way.
+        other_names: the names of other links, joints or extensions that change in the same way.
+        other_locations: the locations of their values, if they are not that of the first.
     """
 
     sentence: Phrase
@@ -72,6 +73,7 @@ class Change:
     location: Location | None = None
     cases: tuple[str, ...] = ()
     other_names: tuple[str, ...] = ()
+    other_locations: tuple[Location, ...] = ()
 
     @property
     def name(self) -> str:
@@ -86,9 +88,14 @@ class Change:
         """
         if self.location is None:
             return str(self.sentence)
+        return self.location, self.other_locations, self.content
+
+    @property
+    def content(self) -> Hashable:
+        """A key that is equal for the same change of other links and joints, wherever they are written."""
         values = tuple(str(self._core.arguments.get(name)) for name in ("subject", "old", "new"))
         property_name = _QUOTED.sub("", str(self._core.arguments.get("property")))
-        return self.location, self.effect, self._core.template, property_name, values
+        return self.effect, self._core.template, property_name, values
 
     @property
     def _core(self) -> Phrase:
@@ -128,7 +135,7 @@ class Problem:
 
 
 FILE = -1
-"""The offset that stands for the whole file: an expansion read it."""
+"""The offset of the whole file, if an expansion read it."""
 
 
 class ExpandedPlace(NamedTuple):

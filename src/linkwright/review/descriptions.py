@@ -18,6 +18,7 @@ from linkwright.review.collisions import collision_changes
 from linkwright.review.figures import RobotMeasures, figures_of
 from linkwright.review.file_pair import FilePair
 from linkwright.review.images import view_images
+from linkwright.review.merging import merged
 from linkwright.review.parts.expanded import expanded_places
 from linkwright.review.versions import Version
 from linkwright.urdf import Robot
@@ -63,7 +64,7 @@ def compare_descriptions(pair: FilePair) -> None:
             old, new = RobotMeasures(case.old.robot, case.models.old), RobotMeasures(case.new.robot, case.models.new)
             pair.figures += figures_of(old, new)
             collisions = list(collision_changes(old, new))
-    pair.changes += (group.change(pair.cases) for group in groups.values())
+    pair.changes += merged(group.change(pair.cases) for group in groups.values())
     pair.changes += collisions
 
 

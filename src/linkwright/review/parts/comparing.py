@@ -75,7 +75,7 @@ class _Comparer:
 
         Args:
             file: the file.
-            is_compared: whether the file is a complete robot, of which the review already says what happened to it.
+            is_compared: whether the file is a complete robot that the review has already compared.
         """
         changes: list[Change] = []
         old = self._outline(self._versions.old, file.old_path)
@@ -99,7 +99,7 @@ class _Comparer:
         compare_contents(pair, renamed)
 
     def _outline(self, version: Version, path: str | None) -> Outline | Phrase | None:
-        """Return the outline of a file, the reason why it cannot be read, or None if it is no description."""
+        """Return the outline of a file, the reason why it cannot be read, or None for other files."""
         if path is None or not version.file(path).is_file():
             return None
         try:

@@ -45,8 +45,8 @@ class ItemComparison:
     """A comparison of elements that were not expanded, by tag, name and condition.
 
     Attributes:
-        old: what names stand for in the old description.
-        new: what names stand for in the new description.
+        old: the meaning of names in the old description.
+        new: the meaning of names in the new description.
     """
 
     old: Wording

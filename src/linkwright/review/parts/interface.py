@@ -1,4 +1,4 @@
-"""The changes of what other descriptions and callers name: macros, their parameters, and arguments."""
+"""The changes of names that other descriptions and callers use: macros, their parameters, and arguments."""
 
 from __future__ import annotations
 

@@ -16,10 +16,10 @@ _LITERAL = re.compile(r"[^${}]*")
 
 @dataclass(frozen=True)
 class Wording:
-    """What the names in a text stand for.
+    """The meaning of the names in a text.
 
     Attributes:
-        literals: the values of properties that are no expressions, by name.
+        literals: the values of properties without expressions, by name.
         renamed: the new names of parameters and properties, by their old names.
     """
 
@@ -53,7 +53,7 @@ class Wording:
 
 
 def literals_of(root: Element) -> dict[str, str]:
-    """Return the values of the properties of a file that are no expressions and have one value, by name."""
+    """Return the values of the properties of a file that have one value without expressions, by name."""
     values: dict[str, str | None] = {}
     for name, element in properties_of(root):
         value = element.attributes.get("value")
