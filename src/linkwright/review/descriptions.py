@@ -138,7 +138,7 @@ def _changes(pair: FilePair, comparison: Comparison, old: Robot, new: Robot) -> 
             else phrase("programs that look up the frame '{name}' do not find it", name=old.root),
         )
     for difference in comparison.differences:
-        reason = breaking_reason(difference, old)
+        reason = breaking_reason(difference, old, new)
         effect = Effect.CHANGED if reason is None else Effect.BREAKING
         yield Change(sentence_of_difference(difference), effect, reason, _location(pair, difference))
 

@@ -18,6 +18,7 @@ from linkwright.descriptions.comparison.facts import (
     nearest,
     visual_blocks,
 )
+from linkwright.descriptions.comparison.hardware import ROS2_CONTROL, renamed_hardware
 from linkwright.descriptions.comparison.matching import Matches, match
 from linkwright.diagnostics import LinkwrightError
 from linkwright.files.git_repository import file_hash, lfs_hash
@@ -97,9 +98,7 @@ class _Comparer:
             *self._robot(),
             *self._link_differences(),
             *self._joint_differences(),
-            *ElementComparison(self.old.normalize, self.new.normalize).child_differences(
-                old.extensions, new.extensions
-            ),
+            *self._extension_differences(),
         ]
         return Comparison(tuple(differences), self.matches.links, self.matches.joints)
 
@@ -139,6 +138,22 @@ class _Comparer:
 
         old, new = self.old.robot.joints, self.new.robot.joints
         yield from _named_differences("joint", old, new, self.matches.joints, inside)
+
+    def _extension_differences(self) -> Iterator[Difference]:
+        comparison = ElementComparison(self.old.normalize, self.new.normalize)
+        old, new = list(self.old.robot.extensions), list(self.new.robot.extensions)
+        for old_element, new_element in list(renamed_hardware(old, new)):
+            old.remove(old_element)
+            new.remove(new_element)
+            old_name, name = (f"{ROS2_CONTROL} {element.attributes['name']}" for element in (old_element, new_element))
+            locations = location_of(old_element, "name"), location_of(new_element, "name")
+            yield Difference("extension", name, "renamed", "name", old_name, name, "", *locations)
+            yield from (
+                difference
+                for difference in comparison.element_differences(name, "", old_element, new_element)
+                if difference.property != "@name"
+            )
+        yield from comparison.child_differences(old, new)
 
     def _follows_a_name(self, difference: Difference) -> bool:
         """Return whether a value differs only because the link or joint that it names was renamed."""

@@ -201,7 +201,7 @@ class _Described:
         if kind == "conditions" or not root.startswith(("gazebo", "ros2_control")):
             return None
         if difference.is_whole and not name:
-            return None
+            return extension_reason(Difference("extension", root, "removed"))
         return extension_reason(Difference("extension", root, "changed", name, difference.old or "-", difference.new))
 
 
