@@ -257,3 +257,23 @@ def test_interface_that_other_hardware_offers_is_not_lost(package, compare):
 def test_other_unit_of_a_joint_is_breaking(package, compare, new, is_breaking):
     package.write({"arm_description/urdf/segment.xacro": MACRO.replace('type="revolute"', f'type="{new}"')})
     assert bool(breaking(compare(package))) == is_breaking
+
+
+def test_renamed_link_with_a_renamed_mesh_is_renamed(package, compare):
+    robot = """<robot name="box"><link name="base"/>
+  <link name="box_1"><visual><geometry><mesh filename="package://arm_description/{}"/></geometry></visual></link>
+  <joint name="box_joint" type="fixed"><parent link="base"/><child link="box_1"/></joint>
+</robot>"""
+    corners = b"vertex 0 0 0\nvertex 1 0 0\nvertex 0 1 0\n"
+    mesh = b"solid lid\nfacet normal 0 0 1\nouter loop\n" + corners + b"endloop\nendfacet\nendsolid\n"
+    package.commit({"arm_description/box.urdf": robot.format("old.stl"), "arm_description/old.stl": mesh})
+    package.commit(
+        {
+            "arm_description/box.urdf": robot.format("new.stl").replace("box_1", "lid"),
+            "arm_description/old.stl": None,
+            "arm_description/new.stl": mesh,
+        }
+    )
+    result = compare(package, "HEAD~1..HEAD")
+    assert sentences(subject(result, "arm_description/box.urdf")) == ["link 'box_1' renamed to 'lid'"]
+    assert sentences(subject(result, "arm_description/new.stl")) == ["renamed from arm_description/old.stl"]

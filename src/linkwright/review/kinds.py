@@ -99,6 +99,7 @@ _RULES = (
         (".stl", ".dae", ".obj", ".glb", ".gltf"),
         phrase("mesh added"),
         phrase("mesh removed"),
+        phrase("descriptions of other packages that name the file do not find it"),
     ),
 )
 

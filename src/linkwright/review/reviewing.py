@@ -22,6 +22,7 @@ from linkwright.review.behavior import compare_behavior
 from linkwright.review.changes import Change, Effect, Review, Subject, SubjectKind
 from linkwright.review.file_pair import FilePair
 from linkwright.review.kinds import KindRule, rule_of
+from linkwright.review.mesh_groups import grouped_meshes
 from linkwright.review.parts import compare_parts
 from linkwright.review.versions import Version, Versions
 
@@ -93,7 +94,7 @@ class _Reviewer:
         return Review(
             self._versions.old.name,
             self._versions.new.name,
-            [subject for subject in all_subjects if not subject.is_empty],
+            grouped_meshes([subject for subject in all_subjects if not subject.is_empty]),
             [file.path for file in self._changed_files if not {file.old_path, file.new_path} & (compared | parts)],
             *self._compare_findings(old_findings, new_findings),
             list(self._notes()),

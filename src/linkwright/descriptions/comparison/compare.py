@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-import filecmp
 from collections.abc import Callable, Iterator, Mapping, Sequence
+from functools import cached_property
 from pathlib import Path
 
 from linkwright.descriptions.comparison.difference import Difference, DifferenceLocation, Subject, location_of
@@ -18,10 +18,11 @@ from linkwright.descriptions.comparison.facts import (
     nearest,
     visual_blocks,
 )
+from linkwright.descriptions.comparison.file_contents import content_hash, has_same_bytes
 from linkwright.descriptions.comparison.hardware import ROS2_CONTROL, renamed_hardware
 from linkwright.descriptions.comparison.matching import Matches, match
 from linkwright.diagnostics import LinkwrightError
-from linkwright.files.git_repository import file_hash, lfs_hash
+from linkwright.files.git_repository import file_hash
 from linkwright.loading.lean_dataclasses import dataclass, field
 from linkwright.loading.lean_typing import TypeVar
 from linkwright.urdf import Collision, Joint, Link, Mesh, Robot, Visual
@@ -29,6 +30,8 @@ from linkwright.xmltree import Element
 
 _Pair = tuple[Element | None, Element | None]
 """The elements in the old and in the new description, each None if there is none."""
+_MESH, _SCALE = "mesh ", " scale"
+"""The words around the address of a mesh in the text of a geometry."""
 _Part = TypeVar("_Part", Link, Joint)
 
 
@@ -73,6 +76,21 @@ class Side:
             return None
         return path if path.is_file() else None
 
+    def by_contents(self) -> Side:
+        """Return this side with the contents of mesh files instead of their names."""
+        texts: dict[str, str] = {}
+
+        def contents(text: str) -> str:
+            uri = text.removeprefix(_MESH).removesuffix(_SCALE)
+            if not text.startswith(_MESH):
+                return self.normalize(text)
+            if text not in texts:
+                file = self.mesh(uri)
+                texts[text] = self.normalize(text) if file is None else text.replace(uri, content_hash(file))
+            return texts[text]
+
+        return Side(self.robot, contents, self.resolve)
+
 
 def compare(old: Side, new: Side) -> Comparison:
     """Return the differences between two descriptions.
@@ -107,8 +125,13 @@ class _Comparer:
     def _are_equal_blocks(self, old: Block, new: Block) -> bool:
         return old.equals(new, self.old.normalize, self.new.normalize)
 
+    @cached_property
+    def _by_contents(self) -> _Comparer:
+        """The comparison in which a mesh under another name is equal, if its file has the same contents."""
+        return _Comparer(self.old.by_contents(), self.new.by_contents())
+
     def _is_same_link(self, old: Link, new: Link) -> bool:
-        return not any(self._link_property_differences(old, new))
+        return not any(self._by_contents._link_property_differences(old, new))
 
     def _is_same_joint(self, old: Joint, new: Joint) -> bool:
         return all(
@@ -125,8 +148,12 @@ class _Comparer:
             yield Difference("robot", new.name, "changed", "name", old.name, new.name, "", *locations)
 
     def _link_differences(self) -> Iterator[Difference]:
+        def inside(old: Link, new: Link) -> Iterator[Difference]:
+            comparer = self if old.name == new.name else self._by_contents
+            return comparer._link_property_differences(old, new)
+
         old, new = self.old.robot.links, self.new.robot.links
-        yield from _named_differences("link", old, new, self.matches.links, self._link_property_differences)
+        yield from _named_differences("link", old, new, self.matches.links, inside)
 
     def _joint_differences(self) -> Iterator[Difference]:
         def inside(old: Joint, new: Joint) -> Iterator[Difference]:
@@ -199,7 +226,7 @@ class _Comparer:
             old_meshes, new_meshes = _mesh_elements(old_shapes), _mesh_elements(new_shapes)
             for name in (uri for uri in new_meshes if uri in old_meshes):
                 old_file, new_file = self.old.mesh(name), self.new.mesh(name)
-                if old_file and new_file and not _same_bytes(old_file, new_file):
+                if old_file and new_file and not has_same_bytes(old_file, new_file):
                     values = _content_difference(old_file, new_file)
                     locations = location_of(old_meshes[name]), location_of(new_meshes[name])
                     yield Difference("link", new.name, "changed", f"{tag} mesh {name}", *values, *locations)
@@ -294,14 +321,3 @@ def _content_difference(old: Path, new: Path) -> tuple[str, str, str]:
         return str(sizes[0]), str(sizes[1]), "bytes"
     first, second = (file_hash(path)[:8] for path in (old, new))
     return first, second, f"(SHA-256), both of {sizes[0]} bytes"
-
-
-def _same_bytes(old: Path, new: Path) -> bool:
-    """Return whether two files have the same contents. A pointer of Git LFS is equal to its file."""
-    try:
-        if old.samefile(new) or filecmp.cmp(old, new, shallow=False):
-            return True
-        hashes = lfs_hash(old), lfs_hash(new)
-        return any(hashes) and (hashes[0] or file_hash(old)) == (hashes[1] or file_hash(new))
-    except OSError:
-        return True
