@@ -33,6 +33,7 @@ class SubjectKind(Enum):
     MANIFEST = "package manifest"
     MESH = "mesh"
     SCENARIO = "scenario"
+    SEMANTICS = "semantic description"
     PART = "part of descriptions"
 
 

@@ -63,8 +63,8 @@ def _renames(subjects: Sequence[Subject]) -> Iterator[str]:
         yield f"{PurePosixPath(subject.old_path or '').name} -> {PurePosixPath(subject.path).name}"
 
 
-def _listed(names: Sequence[str]) -> Phrase:
+def _listed(names: Sequence[str]) -> Phrase | str:
     shown = ", ".join(names[:_MAX_NAMES])
     if len(names) <= _MAX_NAMES:
-        return phrase("{names}", names=shown)
+        return shown
     return phrase("{names} and {count} more", names=shown, count=len(names) - _MAX_NAMES)

@@ -14,6 +14,7 @@ from linkwright.review.parts.elements import ItemComparison, PartDifference
 from linkwright.review.parts.outline import PROPERTY, MacroOutline, uses_name
 from linkwright.review.parts.part_pair import PartPair
 from linkwright.review.parts.wording import Wording, literals_of, properties_of
+from linkwright.review.semantics import removal_reason
 from linkwright.xmltree import Element
 
 _MAX_CHARACTERS = 80
@@ -194,6 +195,8 @@ class _Described:
             if old.tag == "link":
                 return frame_reason(name)
             return joint_name_reason(name) if old.attributes.get("type") in MOVING_TYPES else None
+        if len(difference.path) == 1 and is_gone and old.tag in ("group", "group_state", "end_effector"):
+            return removal_reason(old.tag, old.attributes.get("name", ""))
         kind, name = difference.value, " ".join(difference.path[1:])
         if kind not in ("", "text", "conditions"):
             name = f"{name} @{kind}".strip()
