@@ -104,6 +104,40 @@ def test_element_behind_a_false_condition_is_reported(package, compare):
     assert sentences(subject(compare(package), ROBOT)) == ["joint probe_joint origin xyz: 0 0 0.2 -> 0 0 0.3"]
 
 
+def test_condition_around_an_element_of_all_robots_is_a_change(package, compare):
+    text = MACRO.replace("<visual>", '<xacro:if value="${length > 0}"><visual>').replace(
+        "</visual>", "</visual></xacro:if>"
+    )
+    package.write({SEGMENT: text})
+    expected = "macro 'segment': link ${name} visual: condition always -> if ${length > 0}"
+    assert sentences(subject(compare(package), SEGMENT)) == [expected]
+
+
+def test_renamed_frame_of_an_uncalled_macro_is_breaking(library, compare):
+    library.write({TOOL: GRIPPER.replace("${name}_tip", "${name}_end")})
+    assert breaking(compare(library)) == ["macro 'gripper': link ${name}_end name: ${name}_tip -> ${name}_end"]
+
+
+@pytest.mark.parametrize(
+    ("new", "reason"),
+    [
+        ("<ros><remapping>~/out:=image</remapping></ros>", None),
+        ("", "programs that use the name 'image' do not find it"),
+    ],
+)
+def test_topic_that_another_tag_keeps_is_not_lost(library, compare, new, reason):
+    library.write({TOOL: GRIPPER.replace("<topicName>image</topicName>", new)})
+    changes = {str(change.sentence): change.reason for change in subject(compare(library), TOOL).changes}
+    found = changes["macro 'gripper': gazebo ${name} sensor camera plugin driver topicName removed"]
+    assert (None if found is None else str(found)) == reason
+
+
+def test_removed_plugin_of_an_uncalled_macro_is_breaking_if_it_names_topics(library, compare):
+    start, end = GRIPPER.index("    <gazebo"), GRIPPER.index("  </xacro:macro>")
+    library.write({TOOL: GRIPPER[:start] + GRIPPER[end:]})
+    assert breaking(compare(library)) == ["macro 'gripper': gazebo ${name} removed"]
+
+
 def test_other_condition_is_a_change(library, compare):
     text = GRIPPER.replace(
         '<link name="${name}_tip"/>', '<xacro:if value="${tip}"><link name="${name}_tip"/></xacro:if>'

@@ -8,9 +8,15 @@ from itertools import takewhile
 
 from linkwright.descriptions.comparison import Difference
 from linkwright.diagnostics import Phrase, counted, phrase
-from linkwright.review.breaking import MOVING_TYPES, extension_reason, frame_reason, joint_name_reason
+from linkwright.review.breaking import (
+    MOVING_TYPES,
+    extension_reason,
+    frame_reason,
+    joint_name_reason,
+    plugin_name_reason,
+)
 from linkwright.review.changes import Change, Effect
-from linkwright.review.parts.elements import ItemComparison, PartDifference
+from linkwright.review.parts.elements import CONDITION_SEPARATOR, ItemComparison, PartDifference
 from linkwright.review.parts.outline import PROPERTY, MacroOutline, uses_name
 from linkwright.review.parts.part_pair import PartPair
 from linkwright.review.parts.wording import Wording, literals_of, properties_of
@@ -71,11 +77,25 @@ def _is_shown(pair: PartPair, difference: PartDifference, old: Element, new: Ele
     element = elements[1] or elements[0]
     assert element is not None
     sides = [is_old for is_old, each in zip((True, False), elements, strict=True) if each is not None]
+    if difference.value == "conditions":
+        return _is_condition_shown(pair, difference)
     if element.tag == PROPERTY:
         return difference.is_whole or _is_property_shown(pair, element.attributes.get("name", ""), old, new)
     if element.tag in (_INCLUDE, _INSERT):
         return any(pair.is_read(is_old=is_old) for is_old in sides)
     return any(pair.is_expanded(elements[0 if is_old else 1], is_old=is_old) for is_old in sides)
+
+
+def _is_condition_shown(pair: PartPair, difference: PartDifference) -> bool:
+    """Return whether the compared robots show a change of the conditions of an element.
+
+    A condition that comes or goes matters with other arguments, too, also where all compared robots have the element.
+    """
+    has_old = pair.is_expanded(difference.old_element, is_old=True)
+    has_new = pair.is_expanded(difference.new_element, is_old=False)
+    old, new = ((text or "").split(CONDITION_SEPARATOR) for text in (difference.old, difference.new))
+    comes_or_goes = set(filter(None, old)) < set(new) or set(filter(None, new)) < set(old)
+    return has_old != has_new or (has_old and has_new and not comes_or_goes)
 
 
 def _is_property_shown(pair: PartPair, name: str, old: Element, new: Element) -> bool:
@@ -203,9 +223,21 @@ class _Described:
         root = difference.path[0]
         if kind == "conditions" or not root.startswith(("gazebo", "ros2_control")):
             return None
+        if difference.new_element is None and root.startswith("gazebo"):
+            return self._lost_name_reason(old)
         if difference.is_whole and not name:
             return extension_reason(Difference("extension", root, "removed"))
         return extension_reason(Difference("extension", root, "changed", name, difference.old or "-", difference.new))
+
+    def _lost_name_reason(self, old: Element) -> Phrase | None:
+        """Return why the removal of an element of Gazebo is breaking: no other one has a name in it."""
+        kept = _words_of(self.pair.new.root)
+        for element in old.walk():
+            text = " ".join(element.text().split())
+            reason = plugin_name_reason(Difference("extension", "gazebo", "changed", element.tag, text or None))
+            if reason is not None and not {text, *text.split(":=")[1:]} & kept:
+                return reason
+        return None
 
 
 def _merged(described: list[_Described]) -> Iterator[Change]:
@@ -224,6 +256,16 @@ def _merged(described: list[_Described]) -> Iterator[Change]:
     if len(rest) > _MAX_LINES:
         text = counted("{count} more change", "{count} more changes", len(rest) - _MAX_LINES)
         yield replace(rest[_MAX_LINES], sentence=text, other_names=())
+
+
+def _words_of(root: Element) -> set[str]:
+    """Return the texts and values of attributes of a file, and the targets of remappings such as ``~/out:=scan``."""
+    words: set[str] = set()
+    for element in root.walk():
+        for text in (element.text(), *element.attributes.values()):
+            word = " ".join(text.split())
+            words |= {word, *word.split(":=")[1:]}
+    return words
 
 
 def _cut(text: str) -> str:

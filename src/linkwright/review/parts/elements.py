@@ -10,6 +10,7 @@ from linkwright.review.parts.outline import Item, items_of
 from linkwright.review.parts.wording import Wording
 from linkwright.xmltree import Element
 
+CONDITION_SEPARATOR = " and "
 _MIN_SIMILARITY = 0.5
 """The share of equal children from which an element with another name is a renamed one."""
 
@@ -66,7 +67,7 @@ class ItemComparison:
             yield from self.differences(old_item.element, new_item.element, item_path)
 
     def _conditions(self, old: Item, new: Item, path: tuple[str, ...]) -> Iterator[PartDifference]:
-        texts = [" and ".join(item.conditions) for item in (old, new)]
+        texts = [CONDITION_SEPARATOR.join(item.conditions) for item in (old, new)]
         if not self.same(*texts):
             yield PartDifference(path, "conditions", texts[0], texts[1], old.element, new.element)
 
@@ -128,12 +129,22 @@ class ItemComparison:
         pairs = []
         for new_item in list(new):
             candidates = [item for item in old if item.element.tag == new_item.element.tag]
+            rivals = [item for item in new if item.element.tag == new_item.element.tag]
+            if len(candidates) == len(rivals) == 1 and self._are_bare_links(candidates[0], new_item):
+                pairs.append((candidates[0], new_item))
+                old.remove(candidates[0])
+                new.remove(new_item)
+                continue
             best = max(candidates, key=lambda item: self._similarity(item, new_item), default=None)
             if best is not None and self._similarity(best, new_item) >= _MIN_SIMILARITY:
                 pairs.append((best, new_item))
                 old.remove(best)
                 new.remove(new_item)
         return pairs
+
+    def _are_bare_links(self, old: Item, new: Item) -> bool:
+        """Return whether two elements are frames: links without contents."""
+        return old.element.tag == "link" and not any((*old.element.elements(), *new.element.elements()))
 
     def _similarity(self, old: Item, new: Item) -> float:
         """Return the share of the children of two elements that are equal."""
