@@ -277,3 +277,14 @@ def test_renamed_link_with_a_renamed_mesh_is_renamed(package, compare):
     result = compare(package, "HEAD~1..HEAD")
     assert sentences(subject(result, "arm_description/box.urdf")) == ["link 'box_1' renamed to 'lid'"]
     assert sentences(subject(result, "arm_description/new.stl")) == ["renamed from arm_description/old.stl"]
+
+
+def test_equal_changes_of_several_parts_of_hardware_are_one_line(package, compare):
+    part = '    <gpio name="{}"><param name="gain">1</param></gpio>\n'
+    gpios = "".join(map(part.format, ("a", "b", "c")))
+    text = ARM.replace("</robot>", CONTROL.replace("  </ros2_control>", f"{gpios}  </ros2_control>"))
+    package.commit({PATH: text})
+    package.write({PATH: text.replace('"gain">1<', '"gain">2<')})
+    (change,) = subject(compare(package), PATH).changes
+    assert str(change.sentence) == "extension 'ros2_control hardware': gpio a param gain 1 -> 2"
+    assert change.other_names == ("gpio b", "gpio c")

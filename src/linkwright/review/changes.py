@@ -94,9 +94,18 @@ class Change:
     @property
     def content(self) -> Hashable:
         """A key that is equal for the same change of other links and joints, wherever they are written."""
-        values = tuple(str(self._core.arguments.get(name)) for name in ("subject", "old", "new"))
-        property_name = _QUOTED.sub("", str(self._core.arguments.get("property")))
-        return self.effect, self._core.template, property_name, values
+        return self.effect, _QUOTED.sub("", self.property_name), self.values
+
+    @property
+    def property_name(self) -> str:
+        """The name of the changed property; empty for other changes."""
+        return str(self._core.arguments.get("property", ""))
+
+    @property
+    def values(self) -> Hashable:
+        """The form of the sentence, and both values."""
+        values = (str(self._core.arguments.get(name)) for name in ("subject", "old", "new"))
+        return self._core.template, *values
 
     @property
     def _core(self) -> Phrase:

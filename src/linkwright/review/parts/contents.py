@@ -29,6 +29,8 @@ _SHOWN_BEGINNING = 20
 """The number of equal characters that are shown before the difference of long values."""
 _MAX_LINES = 15
 """The number of changes without a reason that are listed for a file."""
+_NAMESPACE = "namespace"
+"""The word in tags of a plugin that name no topic or frame by themselves."""
 _INCLUDE, _INSERT = "xacro:include", "xacro:insert_block"
 
 
@@ -234,6 +236,8 @@ class _Described:
         kept = _words_of(self.pair.new.root)
         for element in old.walk():
             text = " ".join(element.text().split())
+            if text == "/" or _NAMESPACE in element.tag.lower():
+                continue
             reason = plugin_name_reason(Difference("extension", "gazebo", "changed", element.tag, text or None))
             if reason is not None and not {text, *text.split(":=")[1:]} & kept:
                 return reason
