@@ -210,3 +210,31 @@ def test_part_that_is_no_xml_any_more_is_breaking(package, compare):
     (change,) = subject(compare(package), SEGMENT).changes
     assert str(change.sentence).startswith("the file cannot be read any more: ")
     assert str(change.reason) == "descriptions that include the file cannot be expanded"
+
+
+def test_variants_behind_conditions_are_not_taken_for_one_that_changed(library, compare):
+    old = '<link name="${name}_tip"/>'
+    plugin = '<ros2_control name="hand" type="system"><hardware>{}</hardware></ros2_control>'
+    library.commit({TOOL: GRIPPER.replace(old, plugin.format("<plugin>mock/Hand</plugin>"))})
+    variants = "".join(f'<xacro:if value="${{{name}}}"><plugin>{name}/Hand</plugin></xacro:if>' for name in ("a", "b"))
+    library.write({TOOL: GRIPPER.replace(old, plugin.format(variants))})
+    assert sentences(subject(compare(library), TOOL)) == [
+        "macro 'gripper': ros2_control hand hardware plugin a/Hand [if ${a}] added",
+        "macro 'gripper': ros2_control hand hardware plugin removed",
+    ]
+
+
+def test_world_with_xacro_is_compared_as_it_is_written(library, compare):
+    path = "arm_description/worlds/hall.world.xacro"
+    text = '<sdf xmlns:xacro="http://www.ros.org/wiki/xacro"><world name="hall">{}</world></sdf>'
+    library.commit({path: text.format("")})
+    library.write({path: text.format("<wind><linear_velocity>1 0 0</linear_velocity></wind>")})
+    assert sentences(subject(compare(library), path)) == ["world hall wind added"]
+
+
+def test_handed_on_parameter_is_reported_once(library, compare):
+    text = GRIPPER.replace('<link name="${name}_tip"/>', '<xacro:tip name="${name}"/>')
+    library.commit({TOOL: text})
+    new = text.replace("side:=left", "side:=left mass:=1").replace("<xacro:tip", '<xacro:tip mass="${mass}"')
+    library.write({TOOL: new})
+    assert sentences(subject(compare(library), TOOL)) == ["macro 'gripper': parameter mass:=1 added"]

@@ -24,6 +24,8 @@ from linkwright.review.versions import Version, Versions
 
 _SUFFIXES = (".xacro", ".urdf", ".macro", ".gazebo", ".trans", ".inc")
 """The ends of the names of files with descriptions or parts of them."""
+_XACRO = ".xacro"
+_SEMANTIC = ".srdf.xacro"
 _MIN_SIMILARITY = 0.5
 """The share of equal elements from which a macro with another name is a renamed one."""
 
@@ -106,7 +108,7 @@ class _Comparer:
             outline = read_outline(version.file(path))
         except LinkwrightError as error:
             return error.diagnostics[0].message
-        return outline if outline.is_description else None
+        return outline if path.endswith(_XACRO) or outline.is_description else None
 
 
 def _renamed(pair: PartPair) -> Iterator[tuple[str, str]]:
@@ -142,13 +144,15 @@ def _lost_macros(names: Sequence[str]) -> Iterator[Change]:
 
 def _file_changes(file: ChangedFile, old: Outline | Phrase | None, new: Outline | Phrase | None) -> Iterator[Change]:
     """Yield the changes of a part as a whole: added, removed, renamed, or unreadable."""
-    reason = phrase("descriptions that include the file do not find it")
+    reason = phrase("launch files and descriptions that name the file do not find it")
+    is_semantic = file.path.endswith(_SEMANTIC)
     if isinstance(old, Outline) and file.new_path is None:
-        yield Change(phrase("part of descriptions removed"), Effect.BREAKING, reason)
+        text = phrase("semantic description removed") if is_semantic else phrase("part of descriptions removed")
+        yield Change(text, Effect.BREAKING, reason)
     elif isinstance(old, Outline) and file.old_path and file.old_path != file.new_path:
         yield Change(phrase("renamed from {path}", path=file.old_path), Effect.BREAKING, reason)
     if isinstance(new, Outline) and file.old_path is None:
-        yield Change(phrase("part of descriptions added"))
+        yield Change(phrase("semantic description added") if is_semantic else phrase("part of descriptions added"))
         names = list(new.macros)
         if names:
             yield Change(phrase("macro '{name}' added", name=names[0]), other_names=tuple(names[1:]))

@@ -81,6 +81,8 @@ def _is_shown(pair: PartPair, difference: PartDifference, old: Element, new: Ele
     sides = [is_old for is_old, each in zip((True, False), elements, strict=True) if each is not None]
     if difference.value == "conditions":
         return _is_condition_shown(pair, difference)
+    if None in (difference.old, difference.new) and f"${{{difference.value}}}" in (difference.old, difference.new):
+        return True  # a call that hands on a parameter, which is a change of its own
     if element.tag == PROPERTY:
         return difference.is_whole or _is_property_shown(pair, element.attributes.get("name", ""), old, new)
     if element.tag in (_INCLUDE, _INSERT):

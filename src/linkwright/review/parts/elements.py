@@ -101,14 +101,23 @@ class ItemComparison:
             return is_equal(old_item, new_item) and has_same_conditions(old_item, new_item)
 
         pairs: list[tuple[Item | None, Item | None]] = []
-        for matches in (is_identical, is_equal, has_same_conditions, lambda *_: True):
+        for matches in (is_identical, is_equal, has_same_conditions):
             pairs += self._matched(old_rest, new_rest, matches)
+        pairs += self._matched(old_rest, new_rest, self._left_as_often(old_rest, new_rest))
         pairs += self._renamed(old_rest, new_rest)
         positions = {id(item): number for number, item in enumerate(new)}
         pairs.sort(key=lambda pair: positions[id(pair[1])])
         yield from pairs
         yield from ((None, item) for item in new_rest)
         yield from ((item, None) for item in old_rest)
+
+    def _left_as_often(self, old: Sequence[Item], new: Sequence[Item]) -> Callable[[Item, Item], bool]:
+        """Return a function that returns whether the keys of two elements are left as often in both lists."""
+        counts = (
+            Counter(self.old.translated(item.key) for item in old),
+            Counter(item.key for item in new),
+        )
+        return lambda _, item: counts[0][item.key] == counts[1][item.key]
 
     def _matched(
         self, old: list[Item], new: list[Item], matches: Callable[[Item, Item], bool]
@@ -159,11 +168,13 @@ class ItemComparison:
 def _whole(path: tuple[str, ...], old: Item | None, new: Item | None) -> PartDifference:
     """Return the difference of an element that only one of the descriptions has."""
     old_element, new_element = (None if item is None else item.element for item in (old, new))
-    old_text, new_text = (None if element is None else summary_of(element) for element in (old_element, new_element))
+    old_text, new_text = (None if item is None else summary_of(item) for item in (old, new))
     return PartDifference(path, "", old_text, new_text, old_element, new_element)
 
 
-def summary_of(element: Element) -> str:
-    """Return the attributes and the text of an element in one line."""
+def summary_of(item: Item) -> str:
+    """Return the attributes and the text of an element in one line, with the conditions around it."""
+    element = item.element
     shown = [f"{name}={value}" for name, value in element.attributes.items() if name not in ("name", "reference")]
-    return " ".join([*shown, *element.text().split()])
+    conditions = [f"[{CONDITION_SEPARATOR.join(item.conditions)}]"] if item.conditions else []
+    return " ".join([*shown, *element.text().split(), *conditions])

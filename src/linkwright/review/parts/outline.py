@@ -74,7 +74,7 @@ class Outline:
 
     @property
     def is_description(self) -> bool:
-        """Whether it is a robot or a part of one, or something else with macros."""
+        """Whether it is a robot, a part of one, or another document with macros or arguments."""
         return self.root.tag == "robot" or bool(self.macros) or bool(self.arguments)
 
 
