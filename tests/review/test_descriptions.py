@@ -180,6 +180,11 @@ CONTROL = """  <ros2_control name="hardware" type="system">
          "controllers that claim 'upper_joint/velocity' do not start"),
         ("cmd_vel", "base/cmd_vel", "programs that use the name 'cmd_vel' do not find it"),
         (">20<", ">30<", None),
+        (CONTROL[CONTROL.index('    <joint name="upper_joint"') : CONTROL.index("  </ros2_control>")], "",
+         "controllers that claim interfaces of 'upper_joint' do not start"),
+        ('<ros2_control name="hardware"', '<ros2_control name="motors"', None),
+        (CONTROL[CONTROL.index("  <ros2_control") : CONTROL.index("  <gazebo>")], "",
+         "controllers of this hardware do not find its interfaces"),
     ],
 )  # fmt: skip
 def test_plugin_interfaces_and_topics_are_compared(package, compare, old, new, reason):
@@ -239,3 +244,88 @@ def test_too_deeply_nested_description_is_a_problem_of_its_file_only(package, co
     result = compare(package)
     assert "robot 'other': name arm -> other" in sentences(subject(result, PATH))
     assert len(subject(result, "arm_description/urdf/deep.urdf").problems) in (1, 2)
+
+
+def test_equal_changes_of_several_joints_are_one_line(package, compare):
+    second = MACRO.replace('name="segment"', 'name="tip"')
+    text = ARM.replace('<xacro:segment name="lower"', '<xacro:tip name="lower"')
+    package.commit(
+        {
+            "arm_description/urdf/segment.xacro": MACRO.replace("</robot>", second[second.index("  <xacro:") :]),
+            PATH: text,
+        }
+    )
+    package.write(
+        {
+            "arm_description/urdf/segment.xacro": (package.root / "arm_description/urdf/segment.xacro")
+            .read_text()
+            .replace('effort="10"', 'effort="20"')
+        }
+    )
+    (change,) = subject(compare(package), PATH).changes
+    assert str(change.sentence) == "joint 'upper_joint': limit effort 10 -> 20 N m"
+    assert change.other_names == ("middle_joint", "lower_joint")
+    assert len(change.other_locations) == 1
+
+
+def test_renamed_hardware_keeps_its_other_changes(package, compare):
+    text = ARM.replace("</robot>", CONTROL)
+    package.commit({PATH: text})
+    package.write({PATH: text.replace('"hardware"', '"motors"').replace("mock_components/Generic", "motors/Arm")})
+    result = compare(package)
+    assert sentences(subject(result, PATH)) == [
+        "extension 'ros2_control hardware' renamed to 'ros2_control motors'",
+        "extension 'ros2_control motors': hardware plugin mock_components/GenericSystem -> motors/ArmSystem",
+    ]
+    assert breaking(result) == []
+
+
+def test_interface_that_other_hardware_offers_is_not_lost(package, compare):
+    text = ARM.replace("</robot>", CONTROL)
+    package.commit({PATH: text})
+    interface = '      <command_interface name="velocity"/>\n'
+    other = f"""  <ros2_control name="other" type="system">
+    <joint name="upper_joint">{interface}</joint>
+  </ros2_control>
+</robot>"""
+    package.write({PATH: text.replace(interface, "").replace("</robot>", other)})
+    assert breaking(compare(package)) == []
+
+
+@pytest.mark.parametrize(
+    ("new", "is_breaking"), [("prismatic", True), ("continuous", False), ("fixed", True), ("revolute", False)]
+)
+def test_other_unit_of_a_joint_is_breaking(package, compare, new, is_breaking):
+    package.write({"arm_description/urdf/segment.xacro": MACRO.replace('type="revolute"', f'type="{new}"')})
+    assert bool(breaking(compare(package))) == is_breaking
+
+
+def test_renamed_link_with_a_renamed_mesh_is_renamed(package, compare):
+    robot = """<robot name="box"><link name="base"/>
+  <link name="box_1"><visual><geometry><mesh filename="package://arm_description/{}"/></geometry></visual></link>
+  <joint name="box_joint" type="fixed"><parent link="base"/><child link="box_1"/></joint>
+</robot>"""
+    corners = b"vertex 0 0 0\nvertex 1 0 0\nvertex 0 1 0\n"
+    mesh = b"solid lid\nfacet normal 0 0 1\nouter loop\n" + corners + b"endloop\nendfacet\nendsolid\n"
+    package.commit({"arm_description/box.urdf": robot.format("old.stl"), "arm_description/old.stl": mesh})
+    package.commit(
+        {
+            "arm_description/box.urdf": robot.format("new.stl").replace("box_1", "lid"),
+            "arm_description/old.stl": None,
+            "arm_description/new.stl": mesh,
+        }
+    )
+    result = compare(package, "HEAD~1..HEAD")
+    assert sentences(subject(result, "arm_description/box.urdf")) == ["link 'box_1' renamed to 'lid'"]
+    assert sentences(subject(result, "arm_description/new.stl")) == ["renamed from arm_description/old.stl"]
+
+
+def test_equal_changes_of_several_parts_of_hardware_are_one_line(package, compare):
+    part = '    <gpio name="{}"><param name="gain">1</param></gpio>\n'
+    gpios = "".join(map(part.format, ("a", "b", "c")))
+    text = ARM.replace("</robot>", CONTROL.replace("  </ros2_control>", f"{gpios}  </ros2_control>"))
+    package.commit({PATH: text})
+    package.write({PATH: text.replace('"gain">1<', '"gain">2<')})
+    (change,) = subject(compare(package), PATH).changes
+    assert str(change.sentence) == "extension 'ros2_control hardware': gpio a param gain 1 -> 2"
+    assert change.other_names == ("gpio b", "gpio c")

@@ -343,3 +343,30 @@ def test_map_changes_are_reported(repository, compare):
     assert sentences(subject(compare(repository), "n/maps/house.pgm")) == [
         "25 % of the cells changed, in columns 2 to 2 and rows 0 to 1 of the image"
     ]
+
+
+def test_renamed_meshes_of_a_folder_are_one_breaking_line(repository, compare):
+    names = ("wheel", "arm", "lid")
+    repository.commit({f"a/meshes/{name}-1.stl": _stl(size) for size, name in enumerate(names, 1)})
+    repository.commit(
+        {f"a/meshes/{name}-1.stl": None for name in names}
+        | {f"a/meshes/{name}.stl": _stl(size) for size, name in enumerate(names, 1)}
+    )
+    (found,) = compare(repository, "HEAD~1..HEAD").subjects
+    assert found.path == "a/meshes/"
+    (change,) = found.changes
+    assert (
+        str(change.sentence) == "3 meshes renamed: arm-1.stl -> arm.stl, lid-1.stl -> lid.stl, wheel-1.stl -> wheel.stl"
+    )
+    assert str(change.reason) == "descriptions of other packages that name the file do not find it"
+    assert not found.problems
+
+
+def test_removed_and_added_meshes_are_grouped(repository, compare):
+    repository.commit({f"a/meshes/m{number}.stl": _stl(number) for number in range(1, 9)})
+    repository.commit({f"a/meshes/m{number}.stl": None for number in range(1, 9)})
+    result = compare(repository, "HEAD~1..HEAD")
+    (change,) = result.subjects[0].changes
+    assert str(change.sentence).endswith("m6.stl and 2 more")
+    assert result.breaking_changes
+    assert not compare(repository, "HEAD..HEAD~1").breaking_changes

@@ -3,66 +3,101 @@
 from __future__ import annotations
 
 import re
+from collections.abc import Collection
 
-from linkwright.descriptions.comparison import Difference
+from linkwright.descriptions.comparison import ROS2_CONTROL, Difference, interfaces_of
 from linkwright.diagnostics import Phrase, phrase
-from linkwright.review.names_in_plugins import NAME_TAGS, path_of_renamed, used_name
+from linkwright.review.names_in_plugins import NAME_TAGS, used_name
 from linkwright.urdf import Robot
 
-_MOVING_TYPES = frozenset({"revolute", "continuous", "prismatic"})
+MOVING_TYPES = frozenset({"revolute", "continuous", "prismatic"})
 """The types of joints with a position in ``/joint_states``."""
-_INTERFACE = re.compile(r"joint (?P<joint>\S+) (?P<kind>command|state)_interface (?P<name>\S+)")
+_LINEAR = "prismatic"
+_INTERFACE = re.compile(r"(?:joint|sensor|gpio) (?P<joint>\S+) (?P<kind>command|state)_interface (?P<name>\S+)")
+_PART = re.compile(r"(?:joint|sensor|gpio) (?P<joint>\S+)(?P<name> @name)?")
 
 
-def breaking_reason(difference: Difference, old: Robot) -> Phrase | None:
+def breaking_reason(difference: Difference, old: Robot, new: Robot) -> Phrase | None:
     """Return why a difference breaks programs that use the robot, or None if it does not.
 
     Args:
         difference: the difference.
         old: the old robot.
+        new: the new robot.
     """
     if difference.subject == "link":
         return _link_reason(difference)
     if difference.subject == "joint":
         return _joint_reason(difference, old)
     if difference.subject == "extension":
-        return _extension_reason(difference)
+        return extension_reason(difference, interfaces_of(old.extensions) - interfaces_of(new.extensions))
     return None
 
 
 def _link_reason(difference: Difference) -> Phrase | None:
     name = difference.old if difference.kind == "renamed" else difference.name
-    if difference.kind in ("removed", "renamed"):
-        return phrase("programs that look up the frame '{name}' do not find it", name=name or "")
-    return None
+    return frame_reason(name or "") if difference.kind in ("removed", "renamed") else None
 
 
 def _joint_reason(difference: Difference, old: Robot) -> Phrase | None:
     if difference.kind in ("removed", "renamed"):
         name = (difference.old if difference.kind == "renamed" else difference.name) or ""
         joint = old.joints.get(name)
-        if joint is None or joint.type not in _MOVING_TYPES:
+        if joint is None or joint.type not in MOVING_TYPES:
             return None  # only tf knows fixed joints, by their links
-        return phrase("controllers and programs that name the joint '{name}' do not find it", name=name)
-    if difference.property == "type" and difference.old in _MOVING_TYPES and difference.new not in _MOVING_TYPES:
+        return joint_name_reason(name)
+    if difference.property != "type" or difference.old not in MOVING_TYPES:
+        return None
+    if difference.new not in MOVING_TYPES:
         return phrase("'{name}' has no position in /joint_states any more", name=difference.name)
+    if (difference.old == _LINEAR) != (difference.new == _LINEAR):
+        return phrase("the positions of '{name}' change between rad and m", name=difference.name)
     return None
 
 
-def _extension_reason(difference: Difference) -> Phrase | None:
-    if difference.kind == "removed" and difference.name.startswith("ros2_control"):
-        return phrase("controllers of this hardware do not find its interfaces")
+def frame_reason(name: str) -> Phrase:
+    """Return why it is breaking that a link has gone."""
+    return phrase("programs that look up the frame '{name}' do not find it", name=name)
+
+
+def joint_name_reason(name: str) -> Phrase:
+    """Return why it is breaking that a moving joint has gone."""
+    return phrase("controllers and programs that name the joint '{name}' do not find it", name=name)
+
+
+def extension_reason(difference: Difference, lost: Collection[tuple[str, str]] | None = None) -> Phrase | None:
+    """Return why a difference of an element for another program is breaking, or None if it is not.
+
+    Args:
+        difference: the difference.
+        lost: the interfaces of ros2_control that the new robot does not offer any more; see `interfaces_of`. None if
+            the robots are unknown.
+    """
+    if difference.name.startswith(ROS2_CONTROL):
+        return _hardware_reason(difference, lost)
+    return plugin_name_reason(difference) if difference.kind == "changed" and difference.old else None
+
+
+def _hardware_reason(difference: Difference, lost: Collection[tuple[str, str]] | None) -> Phrase | None:
+    if difference.kind == "removed":
+        reason = phrase("controllers of this hardware do not find its interfaces")
+        return reason if lost is None or lost else None
     if difference.kind != "changed" or not difference.old:
         return None
     interface = _INTERFACE.fullmatch(difference.property)
     if interface is not None and difference.new is None:
-        return phrase(
-            "controllers that claim '{joint}/{name}' do not start", joint=interface["joint"], name=interface["name"]
-        )
-    renamed = path_of_renamed(difference, difference.property)
-    if renamed is not None and difference.name.startswith("ros2_control"):
-        return phrase("controllers that claim an interface of '{name}' do not start", name=difference.old)
-    return plugin_name_reason(difference)
+        joint, name = interface["joint"], interface["name"]
+        key = joint, f"state {name}" if interface["kind"] == "state" else name
+        reason = phrase("controllers that claim '{joint}/{name}' do not start", joint=joint, name=name)
+        return reason if lost is None or key in lost else None
+    part = _PART.fullmatch(difference.property)
+    is_renamed = part is not None and part["name"] is not None
+    if part is None or (difference.new is not None and not is_renamed):
+        return plugin_name_reason(difference)
+    joint = difference.old if is_renamed else part["joint"]
+    if lost is not None and not any(each == joint for each, _ in lost):
+        return None
+    return phrase("controllers that claim interfaces of '{joint}' do not start", joint=joint)
 
 
 def plugin_name_reason(difference: Difference) -> Phrase | None:

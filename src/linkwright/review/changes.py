@@ -3,9 +3,10 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Hashable, Sequence
+from collections.abc import Collection, Hashable, Sequence
 from dataclasses import dataclass, field
 from enum import Enum
+from typing import NamedTuple
 
 from linkwright.diagnostics import Diagnostic, Phrase
 from linkwright.review.paths import PathComparison
@@ -33,6 +34,8 @@ class SubjectKind(Enum):
     MANIFEST = "package manifest"
     MESH = "mesh"
     SCENARIO = "scenario"
+    SEMANTICS = "semantic description"
+    PART = "part of descriptions"
 
 
 @dataclass(frozen=True)
@@ -62,7 +65,8 @@ class Change:
         reason: why the change is breaking; None for other changes.
         location: the location of the new value, or of the old value if there is no new one; None if unknown.
         cases: the names of the argument sets with which the change occurs; empty for all of them.
-        other_names: the names of other links, joints or extensions that a macro changes in the same way.
+        other_names: the names of other links, joints or extensions that change in the same way.
+        other_locations: the locations of their values, if they are not that of the first.
     """
 
     sentence: Phrase
@@ -71,6 +75,7 @@ class Change:
     location: Location | None = None
     cases: tuple[str, ...] = ()
     other_names: tuple[str, ...] = ()
+    other_locations: tuple[Location, ...] = ()
 
     @property
     def name(self) -> str:
@@ -85,9 +90,23 @@ class Change:
         """
         if self.location is None:
             return str(self.sentence)
-        values = tuple(str(self._core.arguments.get(name)) for name in ("subject", "old", "new"))
-        property_name = _QUOTED.sub("", str(self._core.arguments.get("property")))
-        return self.location, self.effect, self._core.template, property_name, values
+        return self.location, self.other_locations, self.content
+
+    @property
+    def content(self) -> Hashable:
+        """A key that is equal for the same change of other links and joints, wherever they are written."""
+        return self.effect, _QUOTED.sub("", self.property_name), self.values
+
+    @property
+    def property_name(self) -> str:
+        """The name of the changed property; empty for other changes."""
+        return str(self._core.arguments.get("property", ""))
+
+    @property
+    def values(self) -> Hashable:
+        """The form of the sentence, and both values."""
+        values = (str(self._core.arguments.get(name)) for name in ("subject", "old", "new"))
+        return self._core.template, *values
 
     @property
     def _core(self) -> Phrase:
@@ -126,6 +145,24 @@ class Problem:
     is_of_old: bool = False
 
 
+FILE = -1
+"""The offset of the whole file, if an expansion read it."""
+
+
+class ExpandedPlace(NamedTuple):
+    """An element of a changed file that the expansion of a compared robot used.
+
+    Attributes:
+        path: the path of the file relative to the root.
+        offset: the character offset of the element in the file, or `FILE`.
+        is_old: whether the file is that of the old version.
+    """
+
+    path: str
+    offset: int
+    is_old: bool
+
+
 @dataclass(frozen=True)
 class Subject:
     """A reviewed file with its changes.
@@ -142,6 +179,7 @@ class Subject:
         images: views of both versions.
         paths: the paths of robots that differ.
         scene: both versions of a robot in 3D, if it was asked for.
+        expanded: the elements of changed files that the compared robots show.
     """
 
     kind: SubjectKind
@@ -155,6 +193,7 @@ class Subject:
     images: Sequence[ViewImages] = ()
     paths: Sequence[PathComparison] = ()
     scene: RobotScene | None = None
+    expanded: Collection[ExpandedPlace] = ()
 
     @property
     def is_empty(self) -> bool:

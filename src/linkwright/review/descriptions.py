@@ -19,7 +19,9 @@ from linkwright.review.figures import RobotMeasures, figures_of
 from linkwright.review.file_pair import FilePair
 from linkwright.review.frames import UNMOVED, SharedFrames
 from linkwright.review.images import view_images
+from linkwright.review.merging import merged
 from linkwright.review.names_in_plugins import path_of_renamed
+from linkwright.review.parts.expanded import expanded_places
 from linkwright.review.plugins import added_topics, contents_text, missing_topics_reason
 from linkwright.review.scenes import robot_scene
 from linkwright.review.versions import Version
@@ -54,6 +56,7 @@ def compare_descriptions(pair: FilePair) -> None:
         pair.cases.append(case.name)
         if case.old.robot is None or case.new.robot is None:
             continue
+        pair.expanded.update(expanded_places(pair.versions, case.old, case.new))
         comparison = case.models.compare(case.old.robot, case.new.robot)
         frames = SharedFrames(case.old.robot, case.new.robot, comparison.links)
         for change in _changes(pair, comparison, frames, case.old.robot, case.new.robot):
@@ -70,7 +73,7 @@ def compare_descriptions(pair: FilePair) -> None:
             new = RobotMeasures(case.new.robot, case.models.new, frames.new_root, frames.new)
             pair.figures += figures_of(old, new)
             collisions = list(collision_changes(old, new))
-    pair.changes += (group.change(pair.cases) for group in groups.values())
+    pair.changes += merged(group.change(pair.cases) for group in groups.values())
     pair.changes += collisions
 
 
@@ -150,7 +153,7 @@ def _changes(pair: FilePair, comparison: Comparison, frames: SharedFrames, old: 
         )
     added = added_topics(comparison.differences)
     for difference in comparison.differences:
-        reason = breaking_reason(difference, old) or missing_topics_reason(difference, added)
+        reason = breaking_reason(difference, old, new) or missing_topics_reason(difference, added)
         effect = Effect.CHANGED if reason is None else Effect.BREAKING
         text = sentence_of_difference(difference)
         if difference.subject == "link" and difference.kind == "renamed":

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import zlib
 from collections.abc import Callable, Iterator, Mapping
-from functools import cached_property
+from functools import cached_property, partial
 
 import numpy as np
 from numpy.typing import NDArray
@@ -17,6 +17,7 @@ from linkwright.inertia.mesh_library import MeshLibrary
 from linkwright.kinematics import KinematicTree
 from linkwright.review.changes import Figure
 from linkwright.review.frames import matrix
+from linkwright.review.reach import Chain, reaches
 from linkwright.urdf import Collision, Mesh, Robot, Visual
 from linkwright.xmltree import Element
 
@@ -39,10 +40,13 @@ def figures_of(old: RobotMeasures, new: RobotMeasures) -> Iterator[Figure]:
     """Yield the quantities that differ between two robots."""
     for name, unit, measure in _QUANTITIES:
         yield from _figure(name, unit, measure(old), measure(new))
-    old_reach, new_reach = old.reach(), new.reach()
-    for link in new_reach:
-        if link in old_reach:
-            yield from _figure(phrase("reach of '{link}'", link=link), "m", old_reach[link], new_reach[link])
+    old_chains, new_chains = old.chains(), new.chains()
+    common = [link for link in new_chains if link in old_chains]
+    if common:
+        samples = old.sampled_positions(_REACH_SAMPLES), new.sampled_positions(_REACH_SAMPLES)
+        for link in common:
+            reach = reaches(old_chains[link], new_chains[link], *samples)
+            yield from _figure(phrase("reach of '{link}'", link=link), "m", *reach)
 
 
 class RobotMeasures:
@@ -119,24 +123,36 @@ class RobotMeasures:
             return None
         return triangles, size
 
-    def reach(self) -> dict[str, float]:
-        """Return how far the ends of chains get from the origin of the figures, in m, by the name of the last link.
+    def chains(self) -> dict[str, Chain]:
+        """Return the chains of several moving joints, by the name of their last link."""
+        low, high = self._limits
+        names = self._tree.joint_names
+        turns = [self.robot.joints[name].type != "prismatic" for name in names]
+        chains = {}
+        for link, joints in self._chain_ends().items():
+            moving = [index for index, name in enumerate(names) if name in joints]
+            chains[link] = Chain(names, moving, turns, low, high, partial(self._distances, self._tree.link_index(link)))
+        return chains
 
-        The distance is the largest one of many configurations within the limits, which depend only on the names and the
-        limits of the joints.
+    def _distances(self, link: int, positions: Array) -> Array:
+        """Return the distances of a link from the origin of the figures in m, shape (count,)."""
+        distances: Array = np.linalg.norm(self.frames_at(positions)[:, link, :3, 3], axis=-1)
+        return distances
+
+    def frames_at(self, positions: Array) -> Array:
+        """Return the frames of the links in the frame of the figures.
+
+        Args:
+            positions: the positions of the joints in rad or m, shape (count, joints).
+
+        Returns:
+            Homogeneous matrices, shape (count, links, 4, 4).
         """
-        ends = self._chain_ends()
-        if not ends:
-            return {}
-        frames = self.sampled_frames(_REACH_SAMPLES)
-        indexes = [self.link_names.index(link) for link in ends]
-        distances = np.linalg.norm(frames[:, indexes][..., :3, 3], axis=-1).max(axis=0)
-        return dict(zip(ends, map(float, distances), strict=True))
+        frames: Array = self._root @ self._tree.forward(positions)
+        return frames
 
     def sampled_frames(self, count: int) -> Array:
-        """Return the frames of the links in the frame of the figures in many configurations within the limits.
-
-        The configurations depend only on the names and the limits of the joints.
+        """Return the frames of the links in many configurations within the limits; see `sampled_positions`.
 
         Args:
             count: the number of configurations.
@@ -144,18 +160,27 @@ class RobotMeasures:
         Returns:
             Homogeneous matrices, shape (count, links, 4, 4).
         """
+        return self.frames_at(self.sampled_positions(count))
+
+    def sampled_positions(self, count: int) -> Array:
+        """Return positions within the limits, which depend only on the names and the limits of the joints.
+
+        Returns:
+            Positions in rad or m, shape (count, joints).
+        """
         low, high = self._limits
         names = self._tree.joint_names
         samples = np.zeros((count, len(names)))
         for index, name in enumerate(names):
             samples[:, index] = np.random.default_rng(zlib.crc32(name.encode())).random(count)
-        return self._root @ self._tree.forward(low + samples * (high - low))
+        positions: Array = low + samples * (high - low)
+        return positions
 
-    def _chain_ends(self) -> list[str]:
-        """Return the last link of each chain of several moving joints."""
+    def _chain_ends(self) -> dict[str, set[str]]:
+        """Return the joints whose positions move the end of each chain, by the last link of the chain."""
         joints_by_child = {joint.child: joint for joint in self.robot.joints.values()}
         parents = {joint.parent for joint in self.robot.joints.values()}
-        farthest: dict[str, tuple[int, str]] = {}
+        farthest: dict[str, tuple[int, str, set[str]]] = {}
         for link in self._tree.link_names:
             if link in parents:
                 continue
@@ -167,8 +192,9 @@ class RobotMeasures:
                 name = joint.parent
             moving = [joint.name for joint in chain if joint.name in self._tree.joint_names]
             if len(moving) >= _MIN_CHAIN and (moving[0] not in farthest or farthest[moving[0]][0] < len(chain)):
-                farthest[moving[0]] = len(chain), link
-        return [link for _, link in list(farthest.values())[:_MAX_CHAINS]]
+                leaders = {joint.mimic.joint for joint in chain if joint.mimic is not None}
+                farthest[moving[0]] = len(chain), link, leaders.union(moving)
+        return {link: joints for _, link, joints in list(farthest.values())[:_MAX_CHAINS]}
 
     @cached_property
     def _limits(self) -> tuple[Array, Array]:

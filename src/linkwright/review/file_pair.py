@@ -8,7 +8,7 @@ from pathlib import Path
 from typing import TypeVar
 
 from linkwright.diagnostics import LinkwrightError, Phrase, Span, foreign, phrase
-from linkwright.review.changes import Change, Effect, Figure, Location, Problem, RobotScene, ViewImages
+from linkwright.review.changes import Change, Effect, ExpandedPlace, Figure, Location, Problem, RobotScene, ViewImages
 from linkwright.review.versions import Version, Versions
 
 _Content = TypeVar("_Content")
@@ -54,6 +54,7 @@ class FilePair:
         cases: the names of the compared argument sets.
         images: images of both versions.
         scene: both versions in 3D.
+        expanded: the elements of changed files that the compared robots show.
     """
 
     versions: Versions
@@ -66,6 +67,7 @@ class FilePair:
     cases: list[str] = field(default_factory=list)
     images: list[ViewImages] = field(default_factory=list)
     scene: RobotScene | None = None
+    expanded: set[ExpandedPlace] = field(default_factory=set)
 
     @property
     def old_file(self) -> Path:

@@ -18,6 +18,7 @@ from linkwright.review.manifests import compare_manifests
 from linkwright.review.maps import compare_maps
 from linkwright.review.meshes import compare_meshes
 from linkwright.review.parameter_files import compare_parameter_files
+from linkwright.review.semantics import compare_semantics
 from linkwright.review.worlds import compare_worlds
 
 _YAML_SUFFIXES = (".yaml", ".yml")
@@ -86,6 +87,14 @@ _RULES = (
         phrase("package removed"),
         phrase("packages that depend on the package do not build or start"),
     ),
+    KindRule(
+        SubjectKind.SEMANTICS,
+        compare_semantics,
+        (".srdf",),
+        phrase("semantic description added"),
+        phrase("semantic description removed"),
+        phrase("launch files and programs that name the file do not find it"),
+    ),
     KindRule(SubjectKind.MAP, compare_maps, (".pgm",), phrase("map added"), phrase("map removed")),
     KindRule(
         SubjectKind.PARAMETERS,
@@ -100,6 +109,7 @@ _RULES = (
         (".stl", ".dae", ".obj", ".glb", ".gltf"),
         phrase("mesh added"),
         phrase("mesh removed"),
+        phrase("descriptions of other packages that name the file do not find it"),
     ),
 )
 

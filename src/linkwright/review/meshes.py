@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from pathlib import Path
 
+from linkwright.descriptions.comparison import has_same_bytes
 from linkwright.diagnostics import phrase
 from linkwright.files.git_repository import lfs_hash
 from linkwright.geometry.meshes import TriangleMesh, read_mesh
@@ -20,6 +21,8 @@ _TOLERANCE = 1e-6
 def compare_meshes(pair: FilePair) -> None:
     """Compare two versions of a mesh file."""
     files = pair.old_file, pair.new_file
+    if has_same_bytes(*files):
+        return
     sizes = [None if lfs_hash(file) else file.stat().st_size for file in files]
     if None not in sizes and sizes[0] != sizes[1]:
         pair.figures.append(Figure(phrase("size of the file"), str(sizes[0]), str(sizes[1]), "bytes"))

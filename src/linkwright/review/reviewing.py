@@ -23,6 +23,8 @@ from linkwright.review.changes import Change, Effect, Review, Subject, SubjectKi
 from linkwright.review.file_pair import Drawings, FilePair
 from linkwright.review.kinds import LAUNCH_HELPER, KindRule, may_help_launch_files, rule_of
 from linkwright.review.launch_helpers import makes_actions
+from linkwright.review.mesh_groups import grouped_meshes
+from linkwright.review.parts import compare_parts
 from linkwright.review.versions import Version, Versions
 
 _Pair = tuple[KindRule, "str | None", "str | None"]
@@ -89,17 +91,18 @@ class _Reviewer:
             ]
             old_findings, new_findings = (result() for result in findings)
             all_subjects = [result() for result in subjects]
+        all_subjects = compare_parts(self._versions, self._changed_files, all_subjects, self._is_complete)
         compared = {path for _, *paths in pairs for path in paths if path}
         parts = {
             change.location.file
             for subject in all_subjects
             for change in subject.changes
             if change.location is not None
-        }
+        } | {subject.path for subject in all_subjects if not subject.is_empty}
         return Review(
             self._versions.old.name,
             self._versions.new.name,
-            [subject for subject in all_subjects if not subject.is_empty],
+            grouped_meshes([subject for subject in all_subjects if not subject.is_empty]),
             [file.path for file in self._changed_files if not {file.old_path, file.new_path} & (compared | parts)],
             *self._compare_findings(old_findings, new_findings),
             list(dict.fromkeys(self._notes())),
@@ -114,6 +117,10 @@ class _Reviewer:
         added = new_findings(new, root, count_keys(old, old_root, self._new_paths))
         fixed = new_findings(old, old_root, count_keys(new, root, old_names))
         return list(map(self._versions.new.labeled, added)), list(map(self._versions.old.labeled, fixed))
+
+    def _is_complete(self, path: str) -> bool:
+        """Return whether a path is that of a complete description or world in one of the versions."""
+        return any(path in targets for targets in self._targets.values())
 
     def _is_in_scope(self, path: str) -> bool:
         return not self._folders or any(PurePosixPath(path).is_relative_to(folder) for folder in self._folders)
@@ -234,6 +241,7 @@ def _compare(
         pair.cases,
         pair.images,
         scene=pair.scene,
+        expanded=pair.expanded,
     )
 
 

@@ -6,9 +6,12 @@ Changes to links, joints, origins, masses and other parts are reported with thei
 from linkwright.descriptions.comparison.compare import Comparison, Side, compare
 from linkwright.descriptions.comparison.difference import Difference, DifferenceLocation, Kind, Subject
 from linkwright.descriptions.comparison.elements import ElementComparison
+from linkwright.descriptions.comparison.file_contents import has_same_bytes
+from linkwright.descriptions.comparison.hardware import ROS2_CONTROL, interfaces_of
 from linkwright.descriptions.comparison.report import as_data, as_text, sentence
 
 __all__ = [
+    "ROS2_CONTROL",
     "Comparison",
     "Difference",
     "DifferenceLocation",
@@ -19,5 +22,7 @@ __all__ = [
     "as_data",
     "as_text",
     "compare",
+    "has_same_bytes",
+    "interfaces_of",
     "sentence",
 ]

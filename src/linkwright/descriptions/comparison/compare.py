@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-import filecmp
 from collections.abc import Callable, Iterator, Mapping, Sequence
+from functools import cached_property
 from math import dist, hypot
 from pathlib import Path
 
@@ -19,10 +19,12 @@ from linkwright.descriptions.comparison.facts import (
     nearest,
     visual_blocks,
 )
+from linkwright.descriptions.comparison.file_contents import content_hash, has_same_bytes
+from linkwright.descriptions.comparison.hardware import ROS2_CONTROL, renamed_hardware
 from linkwright.descriptions.comparison.matching import Matches, match
 from linkwright.descriptions.comparison.renames import RenameSearch
 from linkwright.diagnostics import LinkwrightError
-from linkwright.files.git_repository import file_hash, lfs_hash
+from linkwright.files.git_repository import file_hash
 from linkwright.loading.lean_dataclasses import dataclass, field
 from linkwright.loading.lean_typing import TypeVar
 from linkwright.urdf import Collision, Joint, Link, Mesh, Robot, Visual
@@ -32,6 +34,8 @@ _Pair = tuple[Element | None, Element | None]
 """The elements in the old and in the new description, each None if there is none."""
 _FAR = 1e-3
 """The distance in m, or as a fraction of the distance from the parent, from which two origins certainly differ."""
+_MESH, _SCALE = "mesh ", " scale"
+"""The words around the address of a mesh in the text of a geometry."""
 _Part = TypeVar("_Part", Link, Joint)
 
 
@@ -76,6 +80,21 @@ class Side:
             return None
         return path if path.is_file() else None
 
+    def by_contents(self) -> Side:
+        """Return this side with the contents of mesh files instead of their names."""
+        texts: dict[str, str] = {}
+
+        def contents(text: str) -> str:
+            uri = text.removeprefix(_MESH).removesuffix(_SCALE)
+            if not text.startswith(_MESH):
+                return self.normalize(text)
+            if text not in texts:
+                file = self.mesh(uri)
+                texts[text] = self.normalize(text) if file is None else text.replace(uri, content_hash(file))
+            return texts[text]
+
+        return Side(self.robot, contents, self.resolve)
+
 
 def compare(old: Side, new: Side) -> Comparison:
     """Return the differences between two descriptions.
@@ -105,9 +124,7 @@ class _Comparer:
             *self._robot(),
             *self._link_differences(),
             *self._joint_differences(),
-            *ElementComparison(self.old.normalize, self.new.normalize).child_differences(
-                old.extensions, new.extensions
-            ),
+            *self._extension_differences(),
         ]
         return Comparison(tuple(differences), self.matches.links, self.matches.joints)
 
@@ -116,8 +133,13 @@ class _Comparer:
     def _are_equal_blocks(self, old: Block, new: Block) -> bool:
         return old.equals(new, self.old.normalize, self.new.normalize)
 
+    @cached_property
+    def _by_contents(self) -> _Comparer:
+        """The comparison in which a mesh under another name is equal, if its file has the same contents."""
+        return _Comparer(self.old.by_contents(), self.new.by_contents())
+
     def _is_same_link(self, old: Link, new: Link) -> bool:
-        return not any(self._link_property_differences(old, new))
+        return not any(self._by_contents._link_property_differences(old, new))
 
     def _have_same_inertial(self, old: Link, new: Link) -> bool:
         old_blocks, new_blocks = link_blocks(old), link_blocks(new)
@@ -140,8 +162,12 @@ class _Comparer:
             yield Difference("robot", new.name, "changed", "name", old.name, new.name, "", *locations)
 
     def _link_differences(self) -> Iterator[Difference]:
+        def inside(old: Link, new: Link) -> Iterator[Difference]:
+            comparer = self if old.name == new.name else self._by_contents
+            return comparer._link_property_differences(old, new)
+
         old, new = self.old.robot.links, self.new.robot.links
-        yield from _named_differences("link", old, new, self.matches.links, self._link_property_differences)
+        yield from _named_differences("link", old, new, self.matches.links, inside)
 
     def _joint_differences(self) -> Iterator[Difference]:
         def inside(old: Joint, new: Joint) -> Iterator[Difference]:
@@ -153,6 +179,22 @@ class _Comparer:
 
         old, new = self.old.robot.joints, self.new.robot.joints
         yield from _named_differences("joint", old, new, self.matches.joints, inside)
+
+    def _extension_differences(self) -> Iterator[Difference]:
+        comparison = ElementComparison(self.old.normalize, self.new.normalize)
+        old, new = list(self.old.robot.extensions), list(self.new.robot.extensions)
+        for old_element, new_element in list(renamed_hardware(old, new)):
+            old.remove(old_element)
+            new.remove(new_element)
+            old_name, name = (f"{ROS2_CONTROL} {element.attributes['name']}" for element in (old_element, new_element))
+            locations = location_of(old_element, "name"), location_of(new_element, "name")
+            yield Difference("extension", name, "renamed", "name", old_name, name, "", *locations)
+            yield from (
+                difference
+                for difference in comparison.element_differences(name, "", old_element, new_element)
+                if difference.property != "@name"
+            )
+        yield from comparison.child_differences(old, new)
 
     def _follows_a_name(self, difference: Difference) -> bool:
         """Return whether a value differs only because the link or joint that it names was renamed."""
@@ -198,7 +240,7 @@ class _Comparer:
             old_meshes, new_meshes = _mesh_elements(old_shapes), _mesh_elements(new_shapes)
             for name in (uri for uri in new_meshes if uri in old_meshes):
                 old_file, new_file = self.old.mesh(name), self.new.mesh(name)
-                if old_file and new_file and not _same_bytes(old_file, new_file):
+                if old_file and new_file and not has_same_bytes(old_file, new_file):
                     values = _content_difference(old_file, new_file)
                     locations = location_of(old_meshes[name]), location_of(new_meshes[name])
                     yield Difference("link", new.name, "changed", f"{tag} mesh {name}", *values, *locations)
@@ -293,14 +335,3 @@ def _content_difference(old: Path, new: Path) -> tuple[str, str, str]:
         return str(sizes[0]), str(sizes[1]), "bytes"
     first, second = (file_hash(path)[:8] for path in (old, new))
     return first, second, f"(SHA-256), both of {sizes[0]} bytes"
-
-
-def _same_bytes(old: Path, new: Path) -> bool:
-    """Return whether two files have the same contents. A pointer of Git LFS is equal to its file."""
-    try:
-        if old.samefile(new) or filecmp.cmp(old, new, shallow=False):
-            return True
-        hashes = lfs_hash(old), lfs_hash(new)
-        return any(hashes) and (hashes[0] or file_hash(old)) == (hashes[1] or file_hash(new))
-    except OSError:
-        return True

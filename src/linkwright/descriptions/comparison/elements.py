@@ -48,7 +48,7 @@ class ElementComparison:
             element_path = f"{path} {key}".strip()
             if old_element is not None and new_element is not None:
                 name, start_path = (key, "") if enclosing is None else (enclosing[0], element_path)
-                yield from self._element_differences(name, start_path, old_element, new_element)
+                yield from self.element_differences(name, start_path, old_element, new_element)
             elif enclosing is None:
                 kind: Kind = "added" if old_element is None else "removed"
                 yield Difference(
@@ -115,7 +115,15 @@ class ElementComparison:
         children = tuple(self._content(child, side) for child in element.elements())
         return element.tag, attributes, comparable_text(normalize(element.text())), children
 
-    def _element_differences(self, name: str, path: str, old: Element, new: Element) -> Iterator[Difference]:
+    def element_differences(self, name: str, path: str, old: Element, new: Element) -> Iterator[Difference]:
+        """Yield the differences between two elements that belong together.
+
+        Args:
+            name: the name of the element of the robot that contains both, or that they are.
+            path: the names of the elements between them, with their own; empty for elements of the robot.
+            old: the old element.
+            new: the new element.
+        """
         for attribute in dict.fromkeys([*new.attributes, *old.attributes]):
             old_value, new_value = old.attributes.get(attribute), new.attributes.get(attribute)
             if not self._same_text(old_value, new_value, attribute):

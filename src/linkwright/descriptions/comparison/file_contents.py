@@ -1,0 +1,24 @@
+"""The comparison of files by their contents."""
+
+from __future__ import annotations
+
+import filecmp
+from pathlib import Path
+
+from linkwright.files.git_repository import file_hash, lfs_hash
+
+
+def has_same_bytes(old: Path, new: Path) -> bool:
+    """Return whether two files have the same contents. A pointer of Git LFS is equal to its file."""
+    try:
+        if old.samefile(new) or filecmp.cmp(old, new, shallow=False):
+            return True
+        hashes = lfs_hash(old), lfs_hash(new)
+        return any(hashes) and (hashes[0] or file_hash(old)) == (hashes[1] or file_hash(new))
+    except OSError:
+        return True
+
+
+def content_hash(file: Path) -> str:
+    """Return the hash of the contents of a file, also for the pointer of Git LFS to it."""
+    return lfs_hash(file) or file_hash(file)

@@ -1,0 +1,70 @@
+"""Meshes that are added, removed or renamed together, as one subject."""
+
+from __future__ import annotations
+
+from collections.abc import Hashable, Iterator, Sequence
+from dataclasses import replace
+from pathlib import PurePosixPath
+
+from linkwright.diagnostics import Phrase, counted, phrase
+from linkwright.review.changes import Change, Subject, SubjectKind
+
+_MAX_NAMES = 6
+"""The number of meshes that a line names."""
+
+
+def grouped_meshes(subjects: Sequence[Subject]) -> list[Subject]:
+    """Return the subjects, with one for several meshes of a folder that are added, removed or renamed together."""
+    groups: dict[Hashable, list[Subject]] = {}
+    for number, subject in enumerate(subjects):
+        groups.setdefault(_key(subject) or number, []).append(subject)
+    return [group[0] if len(group) == 1 else _as_one(group) for group in groups.values()]
+
+
+def _key(subject: Subject) -> Hashable | None:
+    """Return what several subjects must have in common to be one, or None for a subject that stays alone."""
+    if subject.kind is not SubjectKind.MESH or len(subject.changes) != 1 or subject.figures or subject.problems:
+        return None
+    paths = subject.old_path, subject.new_path
+    if paths[0] == paths[1]:
+        return None
+    return (*(None if path is None else PurePosixPath(path).parent for path in paths), subject.changes[0].effect)
+
+
+def _as_one(subjects: Sequence[Subject]) -> Subject:
+    first = subjects[0]
+    change: Change = first.changes[0]
+    folder = f"{PurePosixPath(first.path).parent}/"
+    return replace(first, path=folder, changes=[replace(change, sentence=_sentence(subjects))])
+
+
+def _sentence(subjects: Sequence[Subject]) -> Phrase:
+    count, names = len(subjects), _listed([PurePosixPath(subject.path).name for subject in subjects])
+    first = subjects[0]
+    if first.old_path is None:
+        return counted("{count} mesh added: {names}", "{count} meshes added: {names}", count, names=names)
+    if first.new_path is None:
+        return counted("{count} mesh removed: {names}", "{count} meshes removed: {names}", count, names=names)
+    old_folder = PurePosixPath(first.old_path).parent
+    if old_folder != PurePosixPath(first.path).parent:
+        return counted(
+            "{count} mesh moved from {folder}: {names}",
+            "{count} meshes moved from {folder}: {names}",
+            count,
+            folder=f"{old_folder}/",
+            names=names,
+        )
+    pairs = _listed(list(_renames(subjects)))
+    return counted("{count} mesh renamed: {names}", "{count} meshes renamed: {names}", count, names=pairs)
+
+
+def _renames(subjects: Sequence[Subject]) -> Iterator[str]:
+    for subject in subjects:
+        yield f"{PurePosixPath(subject.old_path or '').name} -> {PurePosixPath(subject.path).name}"
+
+
+def _listed(names: Sequence[str]) -> Phrase | str:
+    shown = ", ".join(names[:_MAX_NAMES])
+    if len(names) <= _MAX_NAMES:
+        return shown
+    return phrase("{names} and {count} more", names=shown, count=len(names) - _MAX_NAMES)

@@ -1,0 +1,161 @@
+"""The comparison of all changed files with unexpanded descriptions."""
+
+from __future__ import annotations
+
+from collections import Counter
+from collections.abc import Callable, Collection, Iterator, Mapping, Sequence
+from dataclasses import replace
+
+from linkwright.diagnostics import LinkwrightError, Phrase, phrase
+from linkwright.files.git_repository import ChangedFile
+from linkwright.review.changes import Change, Effect, ExpandedPlace, Subject, SubjectKind
+from linkwright.review.parts.contents import compare_contents, comparison_of
+from linkwright.review.parts.include_graph import IncludeGraph
+from linkwright.review.parts.interface import (
+    IncludeGraphs,
+    call_reason,
+    compare_arguments,
+    compare_macros,
+    renamed_macros,
+)
+from linkwright.review.parts.outline import MacroOutline, Outline, read_outline
+from linkwright.review.parts.part_pair import PartPair
+from linkwright.review.versions import Version, Versions
+
+_SUFFIXES = (".xacro", ".urdf", ".macro", ".gazebo", ".trans", ".inc")
+"""The ends of the names of files with descriptions or parts of them."""
+_XACRO = ".xacro"
+_SEMANTIC = ".srdf.xacro"
+_MIN_SIMILARITY = 0.5
+"""The share of equal elements from which a macro with another name is a renamed one."""
+
+
+def compare_parts(
+    versions: Versions,
+    files: Sequence[ChangedFile],
+    subjects: Sequence[Subject],
+    is_complete: Callable[[str], bool],
+) -> list[Subject]:
+    """Return the subjects with the changes of unexpanded descriptions that no compared robot shows.
+
+    Args:
+        versions: both versions.
+        files: the changed files of the review.
+        subjects: the subjects compared so far.
+        is_complete: a function that returns whether a path is that of a complete robot.
+    """
+    expanded = {place for subject in subjects for place in subject.expanded}
+    result = list(subjects)
+    indexes = {subject.path: number for number, subject in enumerate(subjects)}
+    comparer = _Comparer(versions, expanded, is_complete)
+    for file in files:
+        if not file.path.endswith(_SUFFIXES) or file.is_submodule:
+            continue
+        number = indexes.get(file.path)
+        try:
+            part = comparer.subject(file, is_compared=number is not None)
+        except (RecursionError, MemoryError):
+            continue
+        if number is None:
+            result.append(part)
+        elif part.changes:
+            result[number] = replace(result[number], changes=[*result[number].changes, *part.changes])
+    return result
+
+
+class _Comparer:
+    def __init__(
+        self, versions: Versions, expanded: Collection[ExpandedPlace], is_complete: Callable[[str], bool]
+    ) -> None:
+        self._versions = versions
+        self._expanded = expanded
+        self._is_complete = is_complete
+        self._graphs = IncludeGraphs(IncludeGraph(versions.old), IncludeGraph(versions.new))
+
+    def subject(self, file: ChangedFile, *, is_compared: bool) -> Subject:
+        """Return a file with its changes.
+
+        Args:
+            file: the file.
+            is_compared: whether the file is a complete robot that the review has already compared.
+        """
+        changes: list[Change] = []
+        old = self._outline(self._versions.old, file.old_path)
+        new = self._outline(self._versions.new, file.new_path)
+        if not is_compared:
+            changes += _file_changes(file, old, new)
+        if isinstance(old, Outline) and file.new_path is None and not is_compared:
+            changes += _lost_macros([name for name in old.macros if not self._graphs.new.defining(name)])
+        if file.old_path and file.new_path and isinstance(old, Outline) and isinstance(new, Outline):
+            is_complete = is_compared or self._is_complete(file.new_path)
+            pair = PartPair(self._versions, file.old_path, file.new_path, old, new, is_complete, self._expanded)
+            self._compare(pair)
+            changes += pair.changes
+        return Subject(SubjectKind.PART, file.path, file.old_path, file.new_path, changes)
+
+    def _compare(self, pair: PartPair) -> None:
+        renamed = dict(_renamed(pair))
+        if not pair.is_complete:
+            compare_macros(pair, self._graphs, renamed)
+        compare_arguments(pair, self._graphs)
+        compare_contents(pair, renamed)
+
+    def _outline(self, version: Version, path: str | None) -> Outline | Phrase | None:
+        """Return the outline of a file, the reason why it cannot be read, or None for other files."""
+        if path is None or not version.file(path).is_file():
+            return None
+        try:
+            outline = read_outline(version.file(path))
+        except LinkwrightError as error:
+            return error.diagnostics[0].message
+        return outline if path.endswith(_XACRO) or outline.is_description else None
+
+
+def _renamed(pair: PartPair) -> Iterator[tuple[str, str]]:
+    """Yield the old and new names of renamed macros."""
+    similarity: Mapping[tuple[str, str], float] = {
+        (old.name, new.name): _similarity(pair, old, new)
+        for old in pair.old.macros.values()
+        if old.name not in pair.new.macros
+        for new in pair.new.macros.values()
+        if new.name not in pair.old.macros
+    }
+    yield from renamed_macros(pair, similarity)
+
+
+def _similarity(pair: PartPair, old: MacroOutline, new: MacroOutline) -> float:
+    """Return the share of equal elements of two macros, or 0 if they are not similar."""
+    comparison = comparison_of(pair, old, new)
+    contents = [
+        Counter(wording.content(child) for child in macro.element.elements())
+        for wording, macro in ((comparison.old, old), (comparison.new, new))
+    ]
+    total = sum(content.total() for content in contents)
+    share = 2 * (contents[0] & contents[1]).total() / total if total else 0.0
+    return share if share >= _MIN_SIMILARITY else 0.0
+
+
+def _lost_macros(names: Sequence[str]) -> Iterator[Change]:
+    """Yield the change that macros are gone with their file."""
+    if names:
+        text = phrase("macro '{name}' removed", name=names[0])
+        yield Change(text, Effect.BREAKING, call_reason(), other_names=tuple(names[1:]))
+
+
+def _file_changes(file: ChangedFile, old: Outline | Phrase | None, new: Outline | Phrase | None) -> Iterator[Change]:
+    """Yield the changes of a part as a whole: added, removed, renamed, or unreadable."""
+    reason = phrase("launch files and descriptions that name the file do not find it")
+    is_semantic = file.path.endswith(_SEMANTIC)
+    if isinstance(old, Outline) and file.new_path is None:
+        text = phrase("semantic description removed") if is_semantic else phrase("part of descriptions removed")
+        yield Change(text, Effect.BREAKING, reason)
+    elif isinstance(old, Outline) and file.old_path and file.old_path != file.new_path:
+        yield Change(phrase("renamed from {path}", path=file.old_path), Effect.BREAKING, reason)
+    if isinstance(new, Outline) and file.old_path is None:
+        yield Change(phrase("semantic description added") if is_semantic else phrase("part of descriptions added"))
+        names = list(new.macros)
+        if names:
+            yield Change(phrase("macro '{name}' added", name=names[0]), other_names=tuple(names[1:]))
+    if isinstance(old, Outline) and new is not None and not isinstance(new, Outline):
+        text = phrase("the file cannot be read any more: {reason}", reason=new)
+        yield Change(text, Effect.BREAKING, phrase("descriptions that include the file cannot be expanded"))

@@ -1,0 +1,290 @@
+"""The changes of elements that no compared robot shows."""
+
+from __future__ import annotations
+
+from collections.abc import Hashable, Iterator, Mapping
+from dataclasses import dataclass, replace
+from itertools import takewhile
+
+from linkwright.descriptions.comparison import Difference
+from linkwright.diagnostics import Phrase, counted, phrase
+from linkwright.review.breaking import (
+    MOVING_TYPES,
+    extension_reason,
+    frame_reason,
+    joint_name_reason,
+    plugin_name_reason,
+)
+from linkwright.review.changes import Change, Effect
+from linkwright.review.parts.elements import CONDITION_SEPARATOR, ItemComparison, PartDifference
+from linkwright.review.parts.outline import PROPERTY, MacroOutline, uses_name
+from linkwright.review.parts.part_pair import PartPair
+from linkwright.review.parts.wording import Wording, literals_of, properties_of
+from linkwright.review.semantics import removal_reason
+from linkwright.xmltree import Element
+
+_MAX_CHARACTERS = 80
+"""The number of characters of a value that a line shows."""
+_SHOWN_BEGINNING = 20
+"""The number of equal characters that are shown before the difference of long values."""
+_MAX_LINES = 15
+"""The number of changes without a reason that are listed for a file."""
+_NAMESPACE = "namespace"
+"""The word in tags of a plugin that name no topic or frame by themselves."""
+_INCLUDE, _INSERT = "xacro:include", "xacro:insert_block"
+
+
+def comparison_of(pair: PartPair, old: MacroOutline | None = None, new: MacroOutline | None = None) -> ItemComparison:
+    """Return the comparison of the elements of two files, or of two macros in them."""
+    renamed = dict(_renamed_properties(pair))
+    literals = [literals_of(outline.root) for outline in (pair.old, pair.new)]
+    if old is not None and new is not None:
+        renamed |= dict(_renamed_parameters(old, new))
+        for values, macro in zip(literals, (old, new), strict=True):
+            for name in macro.parameters:
+                values.pop(name.lstrip("*"), None)
+    return ItemComparison(Wording(literals[0], renamed), Wording(literals[1]))
+
+
+def compare_contents(pair: PartPair, renamed: Mapping[str, str]) -> None:
+    """Add the changes of elements that no compared robot shows.
+
+    Args:
+        pair: the file.
+        renamed: the new names of macros, by their old names.
+    """
+    changes = [
+        _Described(pair, None, each) for each in _hidden(pair, comparison_of(pair), pair.old.root, pair.new.root)
+    ]
+    for name, macro in pair.new.macros.items():
+        old_name = next((old for old, new in renamed.items() if new == name), name)
+        old = pair.old.macros.get(old_name)
+        if old is not None:
+            comparison = comparison_of(pair, old, macro)
+            differences = _hidden(pair, comparison, old.element, macro.element)
+            changes += (_Described(pair, name, each) for each in differences)
+    pair.changes += _merged(changes)
+
+
+def _hidden(pair: PartPair, comparison: ItemComparison, old: Element, new: Element) -> Iterator[PartDifference]:
+    """Yield the differences between two elements that no compared robot shows."""
+    for difference in comparison.differences(old, new):
+        if not _is_shown(pair, difference, old, new):
+            yield difference
+
+
+def _is_shown(pair: PartPair, difference: PartDifference, old: Element, new: Element) -> bool:
+    """Return whether the compared robots show a difference, or would show it if it had an effect."""
+    elements = difference.old_element, difference.new_element
+    element = elements[1] or elements[0]
+    assert element is not None
+    sides = [is_old for is_old, each in zip((True, False), elements, strict=True) if each is not None]
+    if difference.value == "conditions":
+        return _is_condition_shown(pair, difference)
+    if None in (difference.old, difference.new) and f"${{{difference.value}}}" in (difference.old, difference.new):
+        return True  # a call that hands on a parameter, which is a change of its own
+    if element.tag == PROPERTY:
+        return difference.is_whole or _is_property_shown(pair, element.attributes.get("name", ""), old, new)
+    if element.tag in (_INCLUDE, _INSERT):
+        return any(pair.is_read(is_old=is_old) for is_old in sides)
+    return any(pair.is_expanded(elements[0 if is_old else 1], is_old=is_old) for is_old in sides)
+
+
+def _is_condition_shown(pair: PartPair, difference: PartDifference) -> bool:
+    """Return whether the compared robots show a change of the conditions of an element.
+
+    A condition that comes or goes matters with other arguments, too, also where all compared robots have the element.
+    """
+    has_old = pair.is_expanded(difference.old_element, is_old=True)
+    has_new = pair.is_expanded(difference.new_element, is_old=False)
+    old, new = ((text or "").split(CONDITION_SEPARATOR) for text in (difference.old, difference.new))
+    comes_or_goes = set(filter(None, old)) < set(new) or set(filter(None, new)) < set(old)
+    return has_old != has_new or (has_old and has_new and not comes_or_goes)
+
+
+def _is_property_shown(pair: PartPair, name: str, old: Element, new: Element) -> bool:
+    """Return whether a compared robot has an element that uses a property, also through other properties."""
+    found = False
+    for root, is_old in ((old, True), (new, False)):
+        names, pending = {name}, [name]
+        while pending:
+            each = pending.pop()
+            for element in root.walk():
+                if not uses_name(element, each):
+                    continue
+                found = True
+                other = element.attributes.get("name", "")
+                if element.tag == PROPERTY and other not in names:
+                    names.add(other)
+                    pending.append(other)
+                if pair.is_expanded(element, is_old=is_old):
+                    return True
+    return not found and any(pair.is_read(is_old=is_old) for is_old in (True, False))
+
+
+def _renamed_properties(pair: PartPair) -> Iterator[tuple[str, str]]:
+    """Yield the old and the new names of properties that have other names and equal values, in their order."""
+    old, new = (
+        {name: element.attributes.get("value") for name, element in properties_of(outline.root)}
+        for outline in (pair.old, pair.new)
+    )
+    added = {name: value for name, value in new.items() if name not in old}
+    for name, value in old.items():
+        match = next((other for other, other_value in added.items() if other_value == value), None)
+        if name not in new and match is not None:
+            del added[match]
+            yield name, match
+
+
+def _renamed_parameters(old: MacroOutline, new: MacroOutline) -> Iterator[tuple[str, str]]:
+    """Yield the old and the new names of parameters, if as many have gone as have come with equal defaults."""
+    gone = [parameter for name, parameter in old.parameters.items() if name not in new.parameters]
+    come = [parameter for name, parameter in new.parameters.items() if name not in old.parameters]
+    if [parameter.default for parameter in gone] == [parameter.default for parameter in come]:
+        for before, after in zip(gone, come, strict=True):
+            yield before.name.lstrip("*"), after.name.lstrip("*")
+
+
+# --- sentences -------------------------------------------------------------------------------------------------------
+
+
+@dataclass(frozen=True)
+class _Described:
+    """A difference in a file or macro, with its words.
+
+    Attributes:
+        pair: the file.
+        macro: the macro that contains it, or None outside of macros.
+        difference: the difference.
+    """
+
+    pair: PartPair
+    macro: str | None
+    difference: PartDifference
+
+    @property
+    def element(self) -> str:
+        """The path of the changed element, with the attribute."""
+        words = [*self.difference.path]
+        if len(words) > 1 and words[0] == f"gazebo {words[1]}":
+            words[0] = "gazebo"
+        if self.difference.value not in ("", "text", "conditions"):
+            words.append(self.difference.value)
+        return " ".join(words)
+
+    @property
+    def change(self) -> Change:
+        """The change in one line."""
+        collector = replace(self.pair, changes=[])
+        text = self._sentence()
+        if self.macro is not None:
+            text = phrase("macro '{macro}': {text}", macro=self.macro, text=text)
+        collector.add(text, self.difference.old_element, self.difference.new_element, self.reason)
+        return collector.changes[0]
+
+    @property
+    def key(self) -> Hashable:
+        """A key that is equal for changes of several elements that can be one line."""
+        difference = self.difference
+        if self.reason is not None:
+            return id(self)
+        if difference.is_whole:
+            element = difference.new_element or difference.old_element
+            return self.macro, difference.new is None, difference.path[:-1], element and element.tag
+        return self.macro, difference.value == "conditions", difference.old, difference.new
+
+    def _sentence(self) -> Phrase:
+        difference = self.difference
+        if difference.value == "conditions":
+            old, new = (text or phrase("always") for text in _shortened(difference.old or "", difference.new or ""))
+            return phrase("{element}: condition {old} -> {new}", element=self.element, old=old, new=new)
+        if difference.new is None:
+            return phrase("{element} removed", element=self.element)
+        if difference.old is None:
+            return phrase("{element} added", element=f"{self.element} {_cut(difference.new)}".strip())
+        old, new = _shortened(difference.old, difference.new)
+        return phrase("{element}: {old} -> {new}", element=self.element, old=old or "-", new=new or "-")
+
+    @property
+    def reason(self) -> Phrase | None:
+        """Why the change is breaking, or None if it is not."""
+        difference, old = self.difference, self.difference.old_element
+        if old is None:
+            return None
+        is_gone = difference.is_whole or difference.value == "name"
+        if len(difference.path) == 1 and old.tag in ("link", "joint"):
+            name = old.attributes.get("name", "")
+            if not is_gone:
+                return None
+            if old.tag == "link":
+                return frame_reason(name)
+            return joint_name_reason(name) if old.attributes.get("type") in MOVING_TYPES else None
+        if len(difference.path) == 1 and is_gone and old.tag in ("group", "group_state", "end_effector"):
+            return removal_reason(old.tag, old.attributes.get("name", ""))
+        kind, name = difference.value, " ".join(difference.path[1:])
+        if kind not in ("", "text", "conditions"):
+            name = f"{name} @{kind}".strip()
+        root = difference.path[0]
+        if kind == "conditions" or not root.startswith(("gazebo", "ros2_control")):
+            return None
+        if difference.new_element is None and root.startswith("gazebo"):
+            return self._lost_name_reason(old)
+        if difference.is_whole and not name:
+            return extension_reason(Difference("extension", root, "removed"))
+        return extension_reason(Difference("extension", root, "changed", name, difference.old or "-", difference.new))
+
+    def _lost_name_reason(self, old: Element) -> Phrase | None:
+        """Return why the removal of an element of Gazebo is breaking: no other one has a name in it."""
+        kept = _words_of(self.pair.new.root)
+        for element in old.walk():
+            text = " ".join(element.text().split())
+            if text == "/" or _NAMESPACE in element.tag.lower():
+                continue
+            reason = plugin_name_reason(Difference("extension", "gazebo", "changed", element.tag, text or None))
+            if reason is not None and not {text, *text.split(":=")[1:]} & kept:
+                return reason
+        return None
+
+
+def _merged(described: list[_Described]) -> Iterator[Change]:
+    """Yield the changes, one line for equal ones, and the number of those beyond the limit."""
+    groups: dict[Hashable, list[_Described]] = {}
+    for each in described:
+        groups.setdefault(each.key, []).append(each)
+    changes = []
+    for first, *others in groups.values():
+        names = dict.fromkeys(each.element for each in others if each.element != first.element)
+        changes.append(replace(first.change, other_names=tuple(names)))
+    breaking = [change for change in changes if change.effect is Effect.BREAKING]
+    rest = [change for change in changes if change.effect is not Effect.BREAKING]
+    yield from breaking
+    yield from rest[:_MAX_LINES]
+    if len(rest) > _MAX_LINES:
+        text = counted("{count} more change", "{count} more changes", len(rest) - _MAX_LINES)
+        yield replace(rest[_MAX_LINES], sentence=text, other_names=())
+
+
+def _words_of(root: Element) -> set[str]:
+    """Return the texts and values of attributes of a file, and the targets of remappings such as ``~/out:=scan``."""
+    words: set[str] = set()
+    for element in root.walk():
+        for text in (element.text(), *element.attributes.values()):
+            word = " ".join(text.split())
+            words |= {word, *word.split(":=")[1:]}
+    return words
+
+
+def _cut(text: str) -> str:
+    text = " ".join(text.split())
+    return text if len(text) <= _MAX_CHARACTERS else f"{text[:_MAX_CHARACTERS]}..."
+
+
+def _shortened(old: str, new: str) -> tuple[str, str]:
+    """Return two values without most of the beginning that long ones have in common."""
+    texts = [" ".join(text.split()) for text in (old, new)]
+    pairs = zip(*texts, strict=False)
+    common = sum(1 for _ in takewhile(lambda pair: pair[0] == pair[1], pairs))
+    if max(map(len, texts)) <= _MAX_CHARACTERS or common <= _SHOWN_BEGINNING:
+        return _cut(texts[0]), _cut(texts[1])
+    first, second = (_cut(f"...{text[common - _SHOWN_BEGINNING :]}") for text in texts)
+    return first, second

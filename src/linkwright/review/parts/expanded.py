@@ -1,0 +1,44 @@
+"""The elements of changed files that the compared robots show."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+from linkwright.descriptions import Description
+from linkwright.review.changes import FILE, ExpandedPlace
+from linkwright.review.versions import Version, Versions
+from linkwright.xacro.faults import Frame, frames
+from linkwright.xmltree import Element
+
+
+def expanded_places(versions: Versions, old: Description, new: Description) -> Iterator[ExpandedPlace]:
+    """Yield the elements of changed files that two expansions used: written elements, macro calls and includes."""
+    for version, description in ((versions.old, old), (versions.new, new)):
+        paths = {file.old_path if version.is_old else file.new_path for file in versions.changed_files}
+        yield from _places(version, description, {path for path in paths if path})
+
+
+def _places(version: Version, description: Description, paths: set[str]) -> Iterator[ExpandedPlace]:
+    names: dict[str, str] = {}
+    for file in description.files:
+        path = version.relative(file)
+        if path in paths:
+            names[str(file)] = path
+            yield ExpandedPlace(path, FILE, version.is_old)
+    if not names:
+        return
+    seen: set[int] = set()
+    for element in description.document.root.walk():
+        yield from _place(element, names, version)
+        frame = element.origin if isinstance(element.origin, Frame) else None
+        for each in frames(frame):
+            if id(each) in seen:
+                break
+            seen.add(id(each))
+            yield from _place(each.site, names, version)
+
+
+def _place(element: Element, names: dict[str, str], version: Version) -> Iterator[ExpandedPlace]:
+    path = None if element.source is None else names.get(element.source.name)
+    if path is not None:
+        yield ExpandedPlace(path, element.offset, version.is_old)

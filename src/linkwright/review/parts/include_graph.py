@@ -1,0 +1,87 @@
+"""Which files include which, and which of them declare an argument or a macro, in one version."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator
+from functools import cached_property
+from pathlib import Path
+
+from linkwright.lint.inclusions import folders_by_package
+from linkwright.lint.targets import DESCRIPTIONS, walk
+from linkwright.review.parts.outline import Outline, outline_or_none
+from linkwright.review.versions import Version
+
+
+class IncludeGraph:
+    """The includes between the descriptions of a version.
+
+    Args:
+        version: the version.
+    """
+
+    def __init__(self, version: Version) -> None:
+        self._version = version
+
+    def declares(self, path: str, is_declared: Callable[[Outline], bool]) -> bool:
+        """Return whether a file, or one that it includes, declares something."""
+        return any(is_declared(self._outlines[each]) for each in self._closure(path, self._included))
+
+    def robots_with(self, path: str) -> list[str]:
+        """Return the files that include a file, also through others, and that no other file includes."""
+        return [each for each in self._closure(path, self._includers) if not self._includers[each]]
+
+    def defining(self, macro: str) -> list[str]:
+        """Return the files that define a macro."""
+        return [path for path, outline in self._outlines.items() if macro in outline.macros]
+
+    def _closure(self, path: str, edges: dict[str, set[str]]) -> Iterator[str]:
+        pending, seen = [path], {path}
+        while pending:
+            each = pending.pop()
+            if each not in self._outlines:
+                continue
+            yield each
+            pending += sorted(edges[each] - seen)
+            seen |= edges[each]
+
+    @cached_property
+    def _walked(self) -> tuple[list[Path], list[Path]]:
+        return walk(self._version.root, DESCRIPTIONS)
+
+    @cached_property
+    def _outlines(self) -> dict[str, Outline]:
+        """The outlines of the descriptions that can be read, by path."""
+        outlines: dict[str, Outline] = {}
+        for file in self._walked[0]:
+            outline, path = outline_or_none(file), self._version.relative(file)
+            if outline is not None and path is not None:
+                outlines[path] = outline
+        return outlines
+
+    @cached_property
+    def _included(self) -> dict[str, set[str]]:
+        """The files that each file can include."""
+        packages = folders_by_package(self._walked[1])
+        by_name: dict[str, list[str]] = {}
+        for path in self._outlines:
+            by_name.setdefault(Path(path).name, []).append(path)
+        included: dict[str, set[str]] = {}
+        for path, outline in self._outlines.items():
+            file = self._version.file(path)
+            included[path] = {
+                other
+                for inclusion in outline.inclusions
+                for other in (self._outlines if inclusion.pattern else by_name.get(inclusion.name, ()))
+                if inclusion.may_lead(file, self._version.file(other), packages)
+                or inclusion.may_compute(self._version.file(other))
+            } - {path}
+        return included
+
+    @cached_property
+    def _includers(self) -> dict[str, set[str]]:
+        """The files that can include each file."""
+        includers: dict[str, set[str]] = {path: set() for path in self._outlines}
+        for path, others in self._included.items():
+            for other in others:
+                includers[other].add(path)
+        return includers

@@ -1,0 +1,200 @@
+"""The changes of names that other descriptions and callers use: macros, their parameters, and arguments."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass
+
+from linkwright.diagnostics import Phrase, counted, phrase
+from linkwright.review.list_changes import change_text
+from linkwright.review.parts.include_graph import IncludeGraph
+from linkwright.review.parts.outline import MacroOutline, Outline
+from linkwright.review.parts.part_pair import PartPair
+from linkwright.xacro.macros import Parameter
+from linkwright.xmltree import Element
+
+
+@dataclass(frozen=True)
+class IncludeGraphs:
+    """The includes of both versions.
+
+    Attributes:
+        old: those of the old version.
+        new: those of the new version.
+    """
+
+    old: IncludeGraph
+    new: IncludeGraph
+
+
+def compare_macros(pair: PartPair, graphs: IncludeGraphs, renamed: Mapping[str, str]) -> None:
+    """Add the macros and parameters that the new version of a part adds, removes or changes.
+
+    Args:
+        pair: the part.
+        graphs: the includes of both versions.
+        renamed: the new names of macros, by their old names.
+    """
+    for name, macro in pair.new.macros.items():
+        if name in pair.old.macros:
+            _compare_parameters(pair, pair.old.macros[name], macro)
+        elif name not in renamed.values() and not _has_macro(graphs.old, pair.old_path, name):
+            pair.add(phrase("macro '{name}' added", name=name), None, macro.element)
+    for name, macro in pair.old.macros.items():
+        if name in renamed:
+            new = pair.new.macros[renamed[name]]
+            text = phrase("macro '{old}' renamed to '{name}'", old=name, name=new.name)
+            pair.add(text, macro.element, new.element, call_reason())
+            _compare_parameters(pair, macro, new)
+        elif name not in pair.new.macros and not _has_macro(graphs.new, pair.new_path, name):
+            _add_lost_macro(pair, macro, graphs.new)
+
+
+def _add_lost_macro(pair: PartPair, macro: MacroOutline, graph: IncludeGraph) -> None:
+    others = graph.defining(macro.name)
+    if not others:
+        pair.add(phrase("macro '{name}' removed", name=macro.name), macro.element, None, call_reason())
+        return
+    text = phrase("macro '{name}' moved to {path}", name=macro.name, path=", ".join(others[:2]))
+    reason = phrase("descriptions that include only this file do not find the macro")
+    pair.add(text, macro.element, None, reason)
+
+
+def call_reason() -> Phrase:
+    """Return why it is breaking that a macro is gone."""
+    return phrase("descriptions that call the macro cannot be expanded")
+
+
+def _has_macro(graph: IncludeGraph, path: str, name: str) -> bool:
+    return graph.declares(path, lambda outline: name in outline.macros)
+
+
+def _compare_parameters(pair: PartPair, old: MacroOutline, new: MacroOutline) -> None:
+    """Add the parameters that a macro has gained or lost, and the changes of their defaults."""
+    lost = [name for name in old.parameters if name not in new.parameters]
+    gained = [parameter for name, parameter in new.parameters.items() if name not in old.parameters]
+    required = [parameter.name for parameter in gained if not _has_default(parameter)]
+    optional = [_with_default(parameter) for parameter in gained if _has_default(parameter)]
+    for names, change, reason in (
+        (
+            lost,
+            counted("parameter {names} removed", "parameters {names} removed", len(lost), names=", ".join(lost)),
+            phrase("calls that pass it cannot be expanded"),
+        ),
+        (
+            required,
+            counted(
+                "parameter {names} without a default added",
+                "parameters {names} without a default added",
+                len(required),
+                names=", ".join(required),
+            ),
+            phrase("calls that do not pass it cannot be expanded"),
+        ),
+        (
+            optional,
+            counted("parameter {names} added", "parameters {names} added", len(optional), names=", ".join(optional)),
+            None,
+        ),
+    ):
+        if names:
+            text = phrase("macro '{name}': {change}", name=new.name, change=change)
+            pair.add(text, old.element, new.element, reason)
+    for name, parameter in new.parameters.items():
+        if name in old.parameters:
+            _compare_defaults(pair, old, new, old.parameters[name], parameter)
+
+
+def _compare_defaults(
+    pair: PartPair, old_macro: MacroOutline, new_macro: MacroOutline, old: Parameter, new: Parameter
+) -> None:
+    if _default(old) == _default(new):
+        return
+    reason = None
+    if not _has_default(new):
+        change = phrase("parameter {name} has no default any more", name=new.name)
+        reason = phrase("calls that do not pass it cannot be expanded")
+    elif not _has_default(old):
+        change = phrase("parameter {name} has the default {value}", name=new.name, value=_default(new))
+    else:
+        name = phrase("default of parameter {name}", name=new.name)
+        change = change_text(name, _default(old), _default(new))
+    text = phrase("macro '{name}': {change}", name=new_macro.name, change=change)
+    pair.add(text, old_macro.element, new_macro.element, reason)
+
+
+def _has_default(parameter: Parameter) -> bool:
+    return parameter.default is not None or parameter.forward
+
+
+def _default(parameter: Parameter) -> str:
+    """Return a default as it is written, without the difference between single and double spaces."""
+    text = " ".join((parameter.default or "").split())
+    return f"^|{text}" if parameter.forward and text else "^" if parameter.forward else text
+
+
+def _with_default(parameter: Parameter) -> str:
+    return f"{parameter.name}:={_default(parameter)}"
+
+
+def compare_arguments(pair: PartPair, graphs: IncludeGraphs) -> None:
+    """Add the arguments that the new version of a file adds, removes or changes.
+
+    An argument that moves between a robot and its parts is none of these.
+    """
+    for name, element in pair.new.arguments.items():
+        old_element = pair.old.arguments.get(name)
+        if old_element is not None:
+            _compare_argument(pair, old_element, element)
+        elif not _is_declared(graphs.old, pair.old_path, name):
+            default = element.attributes.get("default")
+            if default is None:
+                pair.add(phrase("argument '{name}' without a default added", name=name), None, element)
+            else:
+                text = phrase("argument '{name}' added, with the default '{value}'", name=name, value=default)
+                pair.add(text, None, element)
+    for name, element in pair.old.arguments.items():
+        if name not in pair.new.arguments and not _is_declared(graphs.new, pair.new_path, name):
+            reason = phrase("a value that a caller passes for '{name}' has no effect", name=name)
+            pair.add(phrase("argument '{name}' removed", name=name), element, None, reason)
+
+
+def _compare_argument(pair: PartPair, old: Element, new: Element) -> None:
+    name = new.attributes["name"]
+    old_default, new_default = old.attributes.get("default"), new.attributes.get("default")
+    if old_default == new_default:
+        return
+    if new_default is None:
+        text = phrase("argument '{name}' has no default any more", name=name)
+        pair.add(text, old, new, phrase("callers must pass '{name}'", name=name))
+        return
+    text = change_text(phrase("default of argument '{name}'", name=name), old_default or "-", new_default)
+    pair.add(text, old, new)
+
+
+def _is_declared(graph: IncludeGraph, path: str, name: str) -> bool:
+    """Return whether all robots with a file declare an argument."""
+
+    def is_declared(outline: Outline) -> bool:
+        return name in outline.arguments
+
+    robots = graph.robots_with(path) or [path]
+    return all(graph.declares(robot, is_declared) for robot in robots)
+
+
+def renamed_macros(pair: PartPair, similarity: Mapping[tuple[str, str], float]) -> Iterator[tuple[str, str]]:
+    """Yield the old and the new names of macros that have other names and similar contents.
+
+    Args:
+        pair: the part.
+        similarity: the share of equal elements of two macros, by their names.
+    """
+    taken: set[str] = set()
+    for name in pair.old.macros:
+        if name in pair.new.macros:
+            continue
+        free = [other for other in pair.new.macros if other not in pair.old.macros and other not in taken]
+        best = max(free, key=lambda other: similarity[name, other], default=None)
+        if best is not None and similarity[name, best] > 0:
+            taken.add(best)
+            yield name, best

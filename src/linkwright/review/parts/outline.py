@@ -1,0 +1,133 @@
+"""The outline of an unexpanded description: its arguments, properties and macros, and the elements in them."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass, field
+from functools import cached_property
+from pathlib import Path
+
+from linkwright.diagnostics import LinkwrightError
+from linkwright.lint.inclusions import Inclusion, inclusions_in
+from linkwright.xacro.cache import read_document
+from linkwright.xacro.faults import Fault
+from linkwright.xacro.macros import Parameter, parse_parameters
+from linkwright.xmltree import Document, Element
+
+ARG, MACRO, PROPERTY = "xacro:arg", "xacro:macro", "xacro:property"
+_CONDITIONS = {"xacro:if": "if", "xacro:unless": "unless"}
+_XACRO = "xacro:"
+
+
+@dataclass(frozen=True)
+class Item:
+    """An element with the conditions around it.
+
+    Attributes:
+        key: the tag and the name, which identify the element among its siblings.
+        element: the element.
+        conditions: the conditions, such as ``if ${x}``, the outermost first.
+    """
+
+    key: str
+    element: Element
+    conditions: tuple[str, ...]
+
+
+@dataclass(frozen=True)
+class MacroOutline:
+    """A macro as it is written.
+
+    Attributes:
+        name: the name.
+        element: the element that defines it.
+    """
+
+    name: str
+    element: Element
+
+    @cached_property
+    def parameters(self) -> Mapping[str, Parameter]:
+        """The parameters by name; none if their list is malformed."""
+        try:
+            return {parameter.name: parameter for parameter in parse_parameters(self.element.attributes["params"])}
+        except (Fault, KeyError):
+            return {}
+
+
+@dataclass(frozen=True)
+class Outline:
+    """An unexpanded description.
+
+    Attributes:
+        root: its root element.
+        macros: the macros by name.
+        arguments: the ``<xacro:arg>`` by name.
+        inclusions: the files that it includes.
+    """
+
+    root: Element
+    macros: Mapping[str, MacroOutline] = field(default_factory=dict)
+    arguments: Mapping[str, Element] = field(default_factory=dict)
+    inclusions: tuple[Inclusion, ...] = ()
+
+    @property
+    def is_description(self) -> bool:
+        """Whether it is a robot, a part of one, or another document with macros or arguments."""
+        return self.root.tag == "robot" or bool(self.macros) or bool(self.arguments)
+
+
+def read_outline(file: Path) -> Outline:
+    """Return the outline of a file.
+
+    Raises:
+        LinkwrightError: the file cannot be read.
+    """
+    document: Document = read_document(str(file))
+    macros: dict[str, MacroOutline] = {}
+    arguments: dict[str, Element] = {}
+    for element in document.root.walk():
+        name = element.attributes.get("name", "")
+        if element.tag == MACRO and name:
+            macros[name.removeprefix(_XACRO)] = MacroOutline(name.removeprefix(_XACRO), element)
+        elif element.tag == ARG and name:
+            arguments[name] = element
+    text = "" if document.source is None else document.source.text
+    return Outline(document.root, macros, arguments, tuple(inclusions_in(text)))
+
+
+def outline_or_none(file: Path) -> Outline | None:
+    """Return the outline of a file, or None if it cannot be read."""
+    try:
+        return read_outline(file) if file.is_file() else None
+    except LinkwrightError:
+        return None
+
+
+def items_of(element: Element, conditions: tuple[str, ...] = ()) -> Iterator[Item]:
+    """Yield the elements inside an element, also those in conditions, without macros and arguments."""
+    for child in element.elements():
+        if child.tag in (ARG, MACRO):
+            continue
+        word = _CONDITIONS.get(child.tag)
+        if word is None:
+            yield Item(_key(child), child, conditions)
+        else:
+            yield from items_of(child, (*conditions, f"{word} {child.attributes.get('value', '')}"))
+
+
+def _key(element: Element) -> str:
+    """Return the tag and the name of an element. An element without a name has that of its plugin or sensor."""
+    name = element.attributes.get("name") or element.attributes.get("reference")
+    if element.tag == "gazebo" and name is None:
+        inner = element.first("plugin") or element.first("sensor")
+        name = None if inner is None else inner.attributes.get("name")
+        return "gazebo" if inner is None else f"gazebo {inner.tag} {name}"
+    return f"{element.tag.removeprefix(_XACRO)} {name}" if name else element.tag.removeprefix(_XACRO)
+
+
+def uses_name(element: Element, name: str) -> bool:
+    """Return whether an expression in the attributes or the text of an element uses a name."""
+    pattern = re.compile(rf"\$\{{[^}}]*\b{re.escape(name)}\b")
+    return any(pattern.search(value) for value in element.attributes.values()) or bool(pattern.search(element.text()))

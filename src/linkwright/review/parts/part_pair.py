@@ -1,0 +1,58 @@
+"""A changed file with an unexpanded description, in both versions."""
+
+from __future__ import annotations
+
+from collections.abc import Collection
+from dataclasses import dataclass, field
+
+from linkwright.diagnostics import Phrase
+from linkwright.review.changes import FILE, Change, Effect, ExpandedPlace, Location
+from linkwright.review.parts.outline import Outline
+from linkwright.review.versions import Versions
+from linkwright.xmltree import Element
+
+
+@dataclass
+class PartPair:
+    """A changed file with an unexpanded description, to which a comparison adds its changes.
+
+    Attributes:
+        versions: both versions.
+        old_path: the path in the old version.
+        new_path: the path in the new version.
+        old: the old outline.
+        new: the new outline.
+        is_complete: whether the file describes a complete robot, so that no other file calls its macros.
+        expanded: the elements of changed files that the compared robots show.
+        changes: the changes found so far.
+    """
+
+    versions: Versions
+    old_path: str
+    new_path: str
+    old: Outline
+    new: Outline
+    is_complete: bool
+    expanded: Collection[ExpandedPlace]
+    changes: list[Change] = field(default_factory=list)
+
+    def add(self, sentence: Phrase, old: Element | None, new: Element | None, reason: Phrase | None = None) -> None:
+        """Add a change at the location of the new element, or else of the old one; it is breaking with a reason."""
+        effect = Effect.CHANGED if reason is None else Effect.BREAKING
+        self.changes.append(Change(sentence, effect, reason, self._location(old, new)))
+
+    def _location(self, old: Element | None, new: Element | None) -> Location | None:
+        element, is_old = (old, True) if new is None else (new, False)
+        version = self.versions.old if is_old else self.versions.new
+        span = None if element is None else element.span()
+        path = None if span is None else version.relative(span.file)
+        return None if span is None or path is None else Location(path, span.line, span.column, is_old)
+
+    def is_expanded(self, element: Element | None, *, is_old: bool) -> bool:
+        """Return whether the compared robots use an element of one of the versions."""
+        path = self.old_path if is_old else self.new_path
+        return element is not None and ExpandedPlace(path, element.offset, is_old) in self.expanded
+
+    def is_read(self, *, is_old: bool) -> bool:
+        """Return whether the expansion of a compared robot read the file in one of the versions."""
+        return ExpandedPlace(self.old_path if is_old else self.new_path, FILE, is_old) in self.expanded

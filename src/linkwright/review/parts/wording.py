@@ -1,0 +1,81 @@
+"""Texts of unexpanded descriptions, made comparable."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Hashable, Iterator, Mapping
+from dataclasses import dataclass, field
+
+from linkwright.review.parts.outline import ARG, MACRO, PROPERTY
+from linkwright.xmltree import Element
+
+_EXPRESSION = re.compile(r"\$\{([^{}]*)\}")
+_WORD = re.compile(r"[A-Za-z_]\w*")
+_LITERAL = re.compile(r"[^${}]*")
+
+
+@dataclass(frozen=True)
+class Wording:
+    """The meaning of the names in a text.
+
+    Attributes:
+        literals: the values of properties without expressions, by name.
+        renamed: the new names of parameters and properties, by their old names.
+    """
+
+    literals: Mapping[str, str] = field(default_factory=dict)
+    renamed: Mapping[str, str] = field(default_factory=dict)
+
+    def translated(self, text: str) -> str:
+        """Return a text with the new names of parameters and properties, and single spaces."""
+        text = " ".join(text.split())
+        if not self.renamed or "$" not in text:
+            return text
+        return _EXPRESSION.sub(lambda match: _WORD.sub(lambda word: self.renamed.get(word[0], word[0]), match[0]), text)
+
+    def resolved(self, text: str) -> str:
+        """Return a text with the values of literal properties, and with numbers in one form."""
+        text = _EXPRESSION.sub(self._value, " ".join(text.split()))
+        return " ".join(map(_number, text.split()))
+
+    def _value(self, match: re.Match[str]) -> str:
+        content = match[1].strip()
+        value = self.literals.get(content, content)
+        return value if content in self.literals or _is_number(content) else match[0]
+
+    def content(self, element: Element) -> Hashable:
+        """Return the comparable content of an element, without white space, comments and nested macros."""
+        attributes = frozenset(
+            (name, self.resolved(self.translated(value))) for name, value in element.attributes.items()
+        )
+        children = tuple(self.content(child) for child in element.elements() if child.tag not in (ARG, MACRO))
+        return element.tag, attributes, self.resolved(self.translated(element.text())), children
+
+
+def literals_of(root: Element) -> dict[str, str]:
+    """Return the values of the properties of a file that have one value without expressions, by name."""
+    values: dict[str, str | None] = {}
+    for name, element in properties_of(root):
+        value = element.attributes.get("value")
+        is_literal = value is not None and _LITERAL.fullmatch(value) is not None and "default" not in element.attributes
+        values[name] = value if is_literal and name not in values else None
+    return {name: value for name, value in values.items() if value is not None}
+
+
+def properties_of(root: Element) -> Iterator[tuple[str, Element]]:
+    """Yield the properties of a file with their names, also those inside macros."""
+    for element in root.walk():
+        if element.tag == PROPERTY and "name" in element.attributes:
+            yield element.attributes["name"], element
+
+
+def _number(word: str) -> str:
+    return repr(float(word)) if _is_number(word) else word
+
+
+def _is_number(word: str) -> bool:
+    try:
+        float(word)
+    except ValueError:
+        return False
+    return True

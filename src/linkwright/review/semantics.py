@@ -1,0 +1,171 @@
+"""The comparison of semantic descriptions (SRDF): groups, their states, end effectors and disabled collisions."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+
+from linkwright.diagnostics import Phrase, counted, phrase, term
+from linkwright.review.file_pair import FilePair
+from linkwright.xacro.cache import read_document
+from linkwright.xmltree import Element
+
+_NAMED = ("group", "group_state", "end_effector", "virtual_joint", "passive_joint")
+_PAIRS = ("disable_collisions", "enable_collisions")
+_MAX_PARTS = 8
+"""The number of joints, members or pairs of links that a line names."""
+
+
+@dataclass(frozen=True)
+class _Entry:
+    """A named element of a semantic description.
+
+    Attributes:
+        tag: the tag.
+        name: the name; that of a state has its group before it.
+        values: the parts of the element with their values, which are empty for members of groups.
+        element: the element.
+    """
+
+    tag: str
+    name: str
+    values: Mapping[str, str]
+    element: Element
+
+
+def compare_semantics(pair: FilePair) -> None:
+    """Compare two versions of a semantic description."""
+    roots = pair.read(_root)
+    if roots is None:
+        return
+    old, new = ({(entry.tag, entry.name): entry for entry in _entries(root)} for root in roots)
+    renamed = dict(_renamed(old, new))
+    for key, entry in new.items():
+        if key in old:
+            _compare_entries(pair, old[key], entry)
+        elif key not in renamed.values():
+            pair.add(phrase("{entry} added", entry=_title(entry)), pair.location(entry.element.span()))
+    for key, entry in old.items():
+        if key in renamed:
+            text = phrase("{entry} renamed to '{name}'", entry=_title(entry), name=new[renamed[key]].name)
+            location = pair.location(new[renamed[key]].element.span())
+            pair.add(text, location, removal_reason(entry.tag, entry.name))
+        elif key not in new:
+            location = pair.location(entry.element.span(), is_old=True)
+            pair.add(phrase("{entry} removed", entry=_title(entry)), location, removal_reason(entry.tag, entry.name))
+    for tag in _PAIRS:
+        _compare_pairs(pair, tag, *(_pairs(root, tag) for root in roots))
+
+
+def removal_reason(tag: str, name: str) -> Phrase | None:
+    """Return why it is breaking that an element of a semantic description has gone, or None if it is not."""
+    if tag == "group":
+        return phrase("programs that plan for the group '{name}' do not find it", name=name)
+    if tag == "group_state":
+        return phrase("programs that move to the state '{name}' do not find it", name=name)
+    if tag == "end_effector":
+        return phrase("programs that use the end effector '{name}' do not find it", name=name)
+    return None
+
+
+def _root(file: Path) -> Element:
+    return read_document(str(file)).root
+
+
+def _entries(root: Element) -> Iterator[_Entry]:
+    for element in root.elements():
+        name = element.attributes.get("name", "")
+        if element.tag not in _NAMED:
+            continue
+        if element.tag == "group_state":
+            name = f"{element.attributes.get('group', '')}/{name}"
+            values = {part.attributes.get("name", ""): part.attributes.get("value", "") for part in element.elements()}
+        elif element.tag == "group":
+            values = {_member(part): "" for part in element.elements()}
+        else:
+            values = {key: value for key, value in element.attributes.items() if key != "name"}
+        yield _Entry(element.tag, name, values, element)
+
+
+def _member(element: Element) -> str:
+    """Return a member of a group in one line, such as ``chain base tip``."""
+    return " ".join([element.tag, *element.attributes.values()])
+
+
+def _renamed(
+    old: Mapping[tuple[str, str], _Entry], new: Mapping[tuple[str, str], _Entry]
+) -> Iterator[tuple[tuple[str, str], tuple[str, str]]]:
+    """Yield the old and new keys of elements that have other names and equal contents."""
+    added = [key for key in new if key not in old]
+    for key, entry in old.items():
+        if key in new or not entry.values:
+            continue
+        match = next((other for other in added if _is_same(entry, new[other])), None)
+        if match is not None:
+            added.remove(match)
+            yield key, match
+
+
+def _is_same(old: _Entry, new: _Entry) -> bool:
+    return old.tag == new.tag and dict(old.values) == dict(new.values)
+
+
+def _title(entry: _Entry) -> Phrase:
+    return phrase("{tag} '{name}'", tag=term(entry.tag), name=entry.name)
+
+
+def _compare_entries(pair: FilePair, old: _Entry, new: _Entry) -> None:
+    changes: list[str] = []
+    for name in dict.fromkeys([*new.values, *old.values]):
+        before, after = old.values.get(name), new.values.get(name)
+        if before is None:
+            changes.append(f"+ {name} {after}".strip())
+        elif after is None:
+            changes.append(f"- {name} {before}".strip())
+        elif not _are_equal(before, after):
+            changes.append(f"{name} {before} -> {after}")
+    if changes:
+        text = phrase("{entry}: {changes}", entry=_title(new), changes=_listed(changes))
+        pair.add(text, pair.location(new.element.span()))
+
+
+def _are_equal(old: str, new: str) -> bool:
+    """Return whether two values are equal as texts or as numbers."""
+    try:
+        return old == new or [float(word) for word in old.split()] == [float(word) for word in new.split()]
+    except ValueError:
+        return False
+
+
+def _pairs(root: Element, tag: str) -> dict[tuple[str, ...], Element]:
+    """Return the elements about pairs of links, by the links in the order of their names."""
+    return {
+        tuple(sorted((element.attributes.get("link1", ""), element.attributes.get("link2", "")))): element
+        for element in root.elements(tag)
+    }
+
+
+def _compare_pairs(
+    pair: FilePair, tag: str, old: Mapping[tuple[str, ...], Element], new: Mapping[tuple[str, ...], Element]
+) -> None:
+    added, removed = [key for key in new if key not in old], [key for key in old if key not in new]
+    if added:
+        text = counted(
+            "{tag}: {count} pair added: {pairs}", "{tag}: {count} pairs added: {pairs}", len(added), tag=term(tag),
+            pairs=_listed(list(map(" - ".join, added))),
+        )  # fmt: skip
+        pair.add(text, pair.location(new[added[0]].span()))
+    if removed:
+        text = counted(
+            "{tag}: {count} pair removed: {pairs}", "{tag}: {count} pairs removed: {pairs}", len(removed),
+            tag=term(tag), pairs=_listed(list(map(" - ".join, removed))),
+        )  # fmt: skip
+        pair.add(text, pair.location(old[removed[0]].span(), is_old=True))
+
+
+def _listed(parts: Sequence[str]) -> Phrase | str:
+    shown = ", ".join(parts[:_MAX_PARTS])
+    if len(parts) <= _MAX_PARTS:
+        return shown
+    return phrase("{names} and {count} more", names=shown, count=len(parts) - _MAX_PARTS)

@@ -1,0 +1,240 @@
+"""What a review says of unexpanded descriptions: macros, arguments, and the elements that no robot shows."""
+
+from __future__ import annotations
+
+import pytest
+
+from tests.repositories import ARM, MACRO
+from tests.review.conftest import breaking, sentences, subject
+
+ROBOT = "arm_description/urdf/arm.urdf.xacro"
+SEGMENT = "arm_description/urdf/segment.xacro"
+TOOL = "arm_description/urdf/tool.xacro"
+GRIPPER = """<?xml version="1.0"?>
+<robot xmlns:xacro="http://www.ros.org/wiki/xacro">
+  <xacro:property name="width" value="0.05"/>
+  <xacro:macro name="gripper" params="name parent side:=left *origin">
+    <link name="${name}">
+      <visual>
+        <geometry><mesh filename="package://arm_description/meshes/${side}.stl"/></geometry>
+      </visual>
+      <collision><geometry><box size="${width} 0.1 0.1"/></geometry></collision>
+    </link>
+    <link name="${name}_tip"/>
+    <joint name="${name}_joint" type="prismatic">
+      <parent link="${parent}"/>
+      <child link="${name}"/>
+      <xacro:insert_block name="origin"/>
+      <axis xyz="0 1 0"/>
+      <limit lower="0" upper="0.04" effort="10" velocity="1"/>
+    </joint>
+    <gazebo reference="${name}">
+      <sensor name="camera"><plugin name="driver" filename="driver.so"><topicName>image</topicName></plugin></sensor>
+    </gazebo>
+  </xacro:macro>
+</robot>
+"""
+GONE = "descriptions that call the macro cannot be expanded"
+
+
+@pytest.fixture
+def library(package):
+    """The package with a macro that none of its robots calls."""
+    package.commit({TOOL: GRIPPER})
+    return package
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "sentence", "reason"),
+    [
+        ("meshes/${side}", "meshes/finger_${side}",
+         ("macro 'gripper': link ${name} visual geometry mesh filename: package://arm_description/meshes/${side}.stl"
+         " -> package://arm_description/meshes/finger_${side}.stl"), None),
+        ('upper="0.04"', 'upper="0.05"',
+         "macro 'gripper': joint ${name}_joint limit upper: 0.04 -> 0.05", None),
+        ('value="0.05"', 'value="0.06"', "property width value: 0.05 -> 0.06", None),
+        ('    <link name="${name}_tip"/>\n', "", "macro 'gripper': link ${name}_tip removed",
+         "programs that look up the frame '${name}_tip' do not find it"),
+        ("<topicName>image<", "<topicName>picture<",
+         "macro 'gripper': gazebo ${name} sensor camera plugin driver topicName: image -> picture",
+         "programs that use the name 'image' do not find it"),
+        ('name="gripper"', 'name="jaw"', "macro 'gripper' renamed to 'jaw'", GONE),
+        ("name parent side", "name parent width side",
+         "macro 'gripper': parameter width without a default added",
+         "calls that do not pass it cannot be expanded"),
+        (" side:=left", "", "macro 'gripper': parameter side removed", "calls that pass it cannot be expanded"),
+        ("side:=left", "side:=right", "macro 'gripper': default of parameter side left -> right", None),
+        ("side:=left", "side:=left mass:=1", "macro 'gripper': parameter mass:=1 added", None),
+        ("side:=left", "side", "macro 'gripper': parameter side has no default any more",
+         "calls that do not pass it cannot be expanded"),
+    ],
+)  # fmt: skip
+def test_uncalled_macro_is_compared_as_it_is_written(library, compare, old, new, sentence, reason):
+    library.write({TOOL: GRIPPER.replace(old, new, 1)})
+    changes = {str(change.sentence): change for change in subject(compare(library), TOOL).changes}
+    assert sentence in changes
+    found = changes[sentence].reason
+    assert (None if found is None else str(found)) == reason
+
+
+@pytest.mark.parametrize(
+    ("old", "new"),
+    [
+        ("0.1 0.1", "0.10 .1"),
+        ("${width}", "0.05"),
+        ("<link name=", "<!-- other --><link  name="),
+        ("width", "breadth"),
+    ],
+)
+def test_other_writing_of_an_uncalled_macro_is_no_change(library, compare, old, new):
+    library.write({TOOL: GRIPPER.replace(old, new)})
+    result = compare(library)
+    assert result.subjects == []
+    assert result.other_files == [TOOL]
+
+
+def test_element_that_a_robot_shows_is_reported_once(package, compare):
+    package.write({SEGMENT: MACRO.replace('mass value="2"', 'mass value="3"')})
+    (found,) = compare(package).subjects
+    assert found.path == ROBOT
+
+
+def test_element_behind_a_false_condition_is_reported(package, compare):
+    package.write({ROBOT: ARM.replace('xyz="0 0 0.2"', 'xyz="0 0 0.3"')})
+    assert sentences(subject(compare(package), ROBOT)) == ["joint probe_joint origin xyz: 0 0 0.2 -> 0 0 0.3"]
+
+
+def test_condition_around_an_element_of_all_robots_is_a_change(package, compare):
+    text = MACRO.replace("<visual>", '<xacro:if value="${length > 0}"><visual>').replace(
+        "</visual>", "</visual></xacro:if>"
+    )
+    package.write({SEGMENT: text})
+    expected = "macro 'segment': link ${name} visual: condition always -> if ${length > 0}"
+    assert sentences(subject(compare(package), SEGMENT)) == [expected]
+
+
+def test_renamed_frame_of_an_uncalled_macro_is_breaking(library, compare):
+    library.write({TOOL: GRIPPER.replace("${name}_tip", "${name}_end")})
+    assert breaking(compare(library)) == ["macro 'gripper': link ${name}_end name: ${name}_tip -> ${name}_end"]
+
+
+@pytest.mark.parametrize(
+    ("new", "reason"),
+    [
+        ("<ros><remapping>~/out:=image</remapping></ros>", None),
+        ("", "programs that use the name 'image' do not find it"),
+    ],
+)
+def test_topic_that_another_tag_keeps_is_not_lost(library, compare, new, reason):
+    library.write({TOOL: GRIPPER.replace("<topicName>image</topicName>", new)})
+    changes = {str(change.sentence): change.reason for change in subject(compare(library), TOOL).changes}
+    found = changes["macro 'gripper': gazebo ${name} sensor camera plugin driver topicName removed"]
+    assert (None if found is None else str(found)) == reason
+
+
+def test_removed_plugin_of_an_uncalled_macro_is_breaking_if_it_names_topics(library, compare):
+    start, end = GRIPPER.index("    <gazebo"), GRIPPER.index("  </xacro:macro>")
+    library.write({TOOL: GRIPPER[:start] + GRIPPER[end:]})
+    assert breaking(compare(library)) == ["macro 'gripper': gazebo ${name} removed"]
+
+
+def test_other_condition_is_a_change(library, compare):
+    text = GRIPPER.replace(
+        '<link name="${name}_tip"/>', '<xacro:if value="${tip}"><link name="${name}_tip"/></xacro:if>'
+    )
+    library.commit({TOOL: text})
+    library.write({TOOL: text.replace('xacro:if value="${tip}"', 'xacro:if value="${not tip}"')})
+    expected = "macro 'gripper': link ${name}_tip: condition if ${tip} -> if ${not tip}"
+    assert sentences(subject(compare(library), TOOL)) == [expected]
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "sentence", "is_breaking"),
+    [
+        ('  <xacro:arg name="tool" default="none"/>\n', "", "argument 'tool' removed", True),
+        ('default="none"/>', 'default="none"/>\n  <xacro:arg name="paint" default="red"/>',
+         "argument 'paint' added, with the default 'red'", False),
+        ('default="none"', 'default="no"', "default of argument 'tool' none -> no", False),
+        ('name="tool" default="none"', 'name="tool"', "argument 'tool' has no default any more", True),
+    ],
+)  # fmt: skip
+def test_arguments_of_a_robot_are_compared(package, compare, old, new, sentence, is_breaking):
+    package.write({ROBOT: ARM.replace(old, new)})
+    result = compare(package)
+    assert sentence in sentences(subject(result, ROBOT))
+    assert (sentence in breaking(result)) == is_breaking
+
+
+def test_argument_that_moves_into_a_part_is_no_change(package, compare):
+    argument = '  <xacro:arg name="tool" default="none"/>\n'
+    package.write(
+        {ROBOT: ARM.replace(argument, ""), SEGMENT: MACRO.replace("  <xacro:macro", f"{argument}  <xacro:macro")}
+    )
+    assert compare(package).subjects == []
+
+
+def test_removed_and_renamed_parts_are_breaking(library, compare):
+    library.commit({TOOL: None, "arm_description/urdf/jaw.xacro": GRIPPER})
+    result = compare(library, "HEAD~1..HEAD")
+    assert breaking(result) == [f"renamed from {TOOL}"]
+    library.commit({"arm_description/urdf/jaw.xacro": None})
+    result = compare(library, "HEAD~1..HEAD")
+    assert breaking(result) == ["part of descriptions removed", "macro 'gripper' removed"]
+    result = compare(library, "HEAD..HEAD~1")
+    assert sentences(subject(result, "arm_description/urdf/jaw.xacro")) == [
+        "part of descriptions added",
+        "macro 'gripper' added",
+    ]
+
+
+def test_macro_in_another_file_breaks_only_those_who_do_not_get_it(library, compare):
+    parts = '<robot xmlns:xacro="http://www.ros.org/wiki/xacro">{}</robot>'
+    library.write({TOOL: parts.format(""), "arm_description/urdf/jaw.xacro": GRIPPER})
+    assert breaking(compare(library)) == ["macro 'gripper' moved to arm_description/urdf/jaw.xacro"]
+    include = '<xacro:include filename="$(find arm_description)/urdf/jaw.xacro"/>'
+    library.write({TOOL: parts.format(include)})
+    assert breaking(compare(library)) == []
+
+
+def test_robot_that_cannot_be_expanded_is_compared_as_it_is_written(package, compare):
+    text = ARM.replace('name="tool" default="none"/>', 'name="tool" default="none"/>\n  <xacro:elsewhere/>')
+    package.commit({ROBOT: text})
+    package.write({ROBOT: text.replace('xyz="0 0 0.2"', 'xyz="0 0 0.3"')})
+    found = subject(compare(package), ROBOT)
+    assert "joint probe_joint origin xyz: 0 0 0.2 -> 0 0 0.3" in sentences(found)
+    assert found.problems
+
+
+def test_part_that_is_no_xml_any_more_is_breaking(package, compare):
+    package.write({SEGMENT: MACRO.replace("</xacro:macro>", "")})
+    (change,) = subject(compare(package), SEGMENT).changes
+    assert str(change.sentence).startswith("the file cannot be read any more: ")
+    assert str(change.reason) == "descriptions that include the file cannot be expanded"
+
+
+def test_variants_behind_conditions_are_not_taken_for_one_that_changed(library, compare):
+    old = '<link name="${name}_tip"/>'
+    plugin = '<ros2_control name="hand" type="system"><hardware>{}</hardware></ros2_control>'
+    library.commit({TOOL: GRIPPER.replace(old, plugin.format("<plugin>mock/Hand</plugin>"))})
+    variants = "".join(f'<xacro:if value="${{{name}}}"><plugin>{name}/Hand</plugin></xacro:if>' for name in ("a", "b"))
+    library.write({TOOL: GRIPPER.replace(old, plugin.format(variants))})
+    assert sentences(subject(compare(library), TOOL)) == [
+        "macro 'gripper': ros2_control hand hardware plugin a/Hand [if ${a}] added",
+        "macro 'gripper': ros2_control hand hardware plugin removed",
+    ]
+
+
+def test_world_with_xacro_is_compared_as_it_is_written(library, compare):
+    path = "arm_description/worlds/hall.world.xacro"
+    text = '<sdf xmlns:xacro="http://www.ros.org/wiki/xacro"><world name="hall">{}</world></sdf>'
+    library.commit({path: text.format("")})
+    library.write({path: text.format("<wind><linear_velocity>1 0 0</linear_velocity></wind>")})
+    assert sentences(subject(compare(library), path)) == ["world hall wind added"]
+
+
+def test_handed_on_parameter_is_reported_once(library, compare):
+    text = GRIPPER.replace('<link name="${name}_tip"/>', '<xacro:tip name="${name}"/>')
+    library.commit({TOOL: text})
+    new = text.replace("side:=left", "side:=left mass:=1").replace("<xacro:tip", '<xacro:tip mass="${mass}"')
+    library.write({TOOL: new})
+    assert sentences(subject(compare(library), TOOL)) == ["macro 'gripper': parameter mass:=1 added"]

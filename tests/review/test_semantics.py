@@ -1,0 +1,78 @@
+"""What a review says of semantic descriptions (SRDF)."""
+
+from __future__ import annotations
+
+import pytest
+
+from tests.review.conftest import subject
+
+PATH = "arm_description/config/arm.srdf"
+SRDF = """<?xml version="1.0"?>
+<robot name="arm">
+  <group name="manipulator"><chain base_link="base_link" tip_link="lower"/></group>
+  <group name="hand"><joint name="left"/><joint name="right"/></group>
+  <group_state name="home" group="manipulator"><joint name="upper_joint" value="0"/></group_state>
+  <end_effector name="tool" group="hand" parent_link="lower"/>
+  <virtual_joint name="fixed" type="fixed" parent_frame="world" child_link="base_link"/>
+  <disable_collisions link1="base_link" link2="upper" reason="Adjacent"/>
+</robot>
+"""
+STATE = '  <group_state name="home" group="manipulator"><joint name="upper_joint" value="0"/></group_state>\n'
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "sentence", "reason"),
+    [
+        ('value="0"', 'value="1.5"', "group_state 'manipulator/home': upper_joint 0 -> 1.5", None),
+        ('<joint name="left"/>', '<joint name="middle"/>', "group 'hand': + joint middle, - joint left", None),
+        (STATE, "", "group_state 'manipulator/home' removed",
+         "programs that move to the state 'manipulator/home' do not find it"),
+        ('name="home"', 'name="rest"', "group_state 'manipulator/home' renamed to 'manipulator/rest'",
+         "programs that move to the state 'manipulator/home' do not find it"),
+        ('<group name="hand"', '<group name="gripper"', "group 'hand' renamed to 'gripper'",
+         "programs that plan for the group 'hand' do not find it"),
+        ('  <end_effector name="tool" group="hand" parent_link="lower"/>\n', "", "end_effector 'tool' removed",
+         "programs that use the end effector 'tool' do not find it"),
+        ('parent_frame="world"', 'parent_frame="map"', "virtual_joint 'fixed': parent_frame world -> map", None),
+        ("</robot>", '  <disable_collisions link1="upper" link2="lower" reason="Never"/>\n</robot>',
+         "disable_collisions: 1 pair added: lower - upper", None),
+        ('  <disable_collisions link1="base_link" link2="upper" reason="Adjacent"/>\n', "",
+         "disable_collisions: 1 pair removed: base_link - upper", None),
+    ],
+)  # fmt: skip
+def test_changes_of_a_semantic_description(package, compare, old, new, sentence, reason):
+    package.commit({PATH: SRDF})
+    package.write({PATH: SRDF.replace(old, new)})
+    (change,) = subject(compare(package), PATH).changes
+    assert str(change.sentence) == sentence
+    assert (None if change.reason is None else str(change.reason)) == reason
+
+
+@pytest.mark.parametrize(
+    ("old", "new"),
+    [('value="0"', 'value="0.0"'), ('link1="base_link" link2="upper"', 'link1="upper" link2="base_link"')],
+)
+def test_other_writing_is_no_change(package, compare, old, new):
+    package.commit({PATH: SRDF})
+    package.write({PATH: SRDF.replace(old, new)})
+    assert compare(package).subjects == []
+
+
+def test_removed_file_is_breaking(package, compare):
+    package.commit({PATH: SRDF})
+    package.write({PATH: None})
+    (change,) = subject(compare(package), PATH).changes
+    assert change.reason is not None
+
+
+def test_group_in_a_macro_that_is_removed_is_breaking(package, compare):
+    path = "arm_description/config/arm.srdf.xacro"
+    group = '<group name="${prefix}arm"><chain base_link="base_link" tip_link="lower"/></group>'
+    text = f"""<robot xmlns:xacro="http://www.ros.org/wiki/xacro">
+  <xacro:macro name="arm_srdf" params="prefix">{group}</xacro:macro>
+</robot>"""
+    package.commit({path: text})
+    package.write({path: text.replace(group, "")})
+    (change,) = subject(compare(package), path).changes
+    assert str(change.sentence) == "macro 'arm_srdf': group ${prefix}arm removed"
+    assert str(change.reason) == "programs that plan for the group '${prefix}arm' do not find it"
