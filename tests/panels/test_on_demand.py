@@ -7,7 +7,7 @@ from importlib import import_module
 import pytest
 
 from linkwright.loading.extensions import extensions
-from linkwright.page.protocol.message import address_of
+from linkwright.page.protocol.message import import_path_of
 from linkwright.panels.page_feature import ON_DEMAND_GROUP
 from tests.imports import loaded_by
 
@@ -32,7 +32,7 @@ except BadMessageError as error:
 @pytest.mark.parametrize("address", [message for feature in DECLARED for message in feature.receives])
 def test_message_address_matches_class(address: str):
     module, _, name = address.partition(":")
-    assert address_of(getattr(import_module(module), name)) == address
+    assert import_path_of(getattr(import_module(module), name)) == address
 
 
 @pytest.mark.parametrize(("sent", "defined"), [("", False), (GOOD, True), (WRONG, True)])

@@ -21,20 +21,20 @@ export interface Joints {
   type: "joints";
 }
 
-/** The positions of the joints in the Joints panel, rad or m, including mimic joints. */
+/** The positions of the joints in the Joints panel, including mimic joints, in rad or m. */
 export interface JointPositions {
   positions: Record<string, number>;
   type: "joint_positions";
 }
 
-/** A position to which the user has moved a joint, rad or m. */
+/** A position to which the user has moved a joint, in rad or m. */
 export interface SetJoint {
   name: string;
   position: number;
   type: "set_joint";
 }
 
-/** New positions of several joints, rad or m, when a pose is restored or a sweep advances. */
+/** New positions of several joints, in rad or m, when a pose is restored or a sweep advances. */
 export interface SetJoints {
   positions: Record<string, number>;
   type: "set_joints";

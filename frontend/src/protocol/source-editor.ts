@@ -64,7 +64,7 @@ export interface UnsavedTextShown {
   type: "unsaved_text_shown";
 }
 
-/** An edit of the robot that the page applies to the unsaved text of a file. */
+/** The new text of a file after an edit in the scene, for the page that has the file open. */
 export interface UnsavedTextEdited {
   path: string;
   base: number;

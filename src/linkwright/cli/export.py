@@ -41,7 +41,7 @@ def configure(parser: argparse.ArgumentParser) -> None:
 
 
 def run(arguments: argparse.Namespace) -> int:
-    """Write the file and print its name."""
+    """Write the export, and print its name."""
     from linkwright.panels.export.feature import FORMATS, format_of
 
     if format_of(arguments.out) is None:

@@ -1,6 +1,6 @@
-"""The reading of descriptions and worlds, with a cache so that each text is read only once.
+"""Reading of descriptions and worlds, and a cache of recently read descriptions.
 
-No other module decides whether a file is xacro or plain URDF.
+`is_xacro` decides whether a file is expanded with xacro by default.
 """
 
 from __future__ import annotations

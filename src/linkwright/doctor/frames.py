@@ -235,7 +235,7 @@ def _missing_state_findings(
                 notes=(
                     Note(
                         phrase(
-                            "{senders} publishes {published}",
+                            "joint states of {published} are published by {senders}",
                             senders=listed(senders),
                             published=listed(published_joints),
                         )

@@ -252,7 +252,14 @@ class Throttle:
         return bool(stamps.all() and (stamps <= stamp_ns).all())
 
     def record_publication(self, group: JointGroup, positions: FloatSequence, stamp_ns: int, time_ns: int) -> None:
-        """Record that a message with the stamp `stamp_ns` was published at `time_ns`."""
+        """Record that a message was published.
+
+        Args:
+            group: the joints of the message.
+            positions: the positions of these joints, in rad or m.
+            stamp_ns: the stamp of the message.
+            time_ns: the time of its publication.
+        """
         if self.is_move(group, positions):
             self._moved_ns[group.rows] = time_ns
         self._sent_ns[group.rows] = time_ns

@@ -29,9 +29,9 @@ from linkwright.page.protocol.message import (
     ProgramIsLate,
     Received,
     ServerMessage,
-    address_of,
     decode,
     encode,
+    import_path_of,
     redundancy_key,
 )
 
@@ -311,8 +311,8 @@ class Audience(PageGroup):
 
     Args:
         opening: returns the payloads for a new page, which contain the full current state.
-        receivers: the functions that handle messages of pages, by the address of the message class; other messages are
-            ignored.
+        receivers: the functions that handle messages of pages, by the import path of the message class; other messages
+            are ignored.
         on_page_closed: called when a page has closed.
         logger: logs invalid messages, and failures to handle a message.
     """
@@ -404,7 +404,7 @@ class Audience(PageGroup):
                     self._handle_message(page, decoded)
 
     def _handle_message(self, page: Page, message: PageMessage | SoundBlock) -> None:
-        receive = self._receivers.get(address_of(type(message)))
+        receive = self._receivers.get(import_path_of(type(message)))
         if receive is None:
             return
         try:

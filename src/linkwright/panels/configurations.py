@@ -214,7 +214,7 @@ class ConfigurationFeature(PageFeature):
                 )
                 return
             if path != config.path and configuration_file.state_of(path) is not None:
-                self._send_question(request.page, "exists", f"'{path}' is there already", str(path))
+                self._send_question(request.page, "exists", f"'{path}' already exists", str(path))
                 return
         previous_path = config.path
         config.save(path)

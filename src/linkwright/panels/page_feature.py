@@ -21,7 +21,7 @@ from linkwright.graph import Logger
 from linkwright.loading.extensions import extensions
 from linkwright.page.audience import Page
 from linkwright.page.outbox import Payload
-from linkwright.page.protocol.message import ServerMessage, address_of, define_later, tag_of
+from linkwright.page.protocol.message import ServerMessage, define_later, import_path_of, tag_of
 from linkwright.rviz.context import ViewerContext
 from linkwright.rviz.visualization.manager import Managers, VisualizationManager
 
@@ -52,7 +52,7 @@ class FeatureHost(Protocol):
 
         Args:
             cls: the class of the feature.
-            receives: the addresses of messages that the feature handles in addition to its `RECEIVES`.
+            receives: the import paths of messages that the feature handles in addition to its `RECEIVES`.
         """
 
     def configuration_messages(self, manager: VisualizationManager) -> list[ServerMessage]:
@@ -89,7 +89,7 @@ class PageFeature:
     @property
     def receives(self) -> tuple[str, ...]:
         """The messages of pages that this feature handles, as ``module:class``."""
-        return tuple(map(address_of, self.RECEIVES))
+        return tuple(map(import_path_of, self.RECEIVES))
 
     def start(self) -> None:
         """Start the feature when the viewer starts."""
@@ -189,7 +189,7 @@ class OnDemand:
 
 
 def messages(module: str, *names: str) -> tuple[str, ...]:
-    """Return the addresses of message classes that a module defines."""
+    """Return the import paths of message classes of a module, each as ``module:class``."""
     return tuple(f"{module}:{name}" for name in names)
 
 
@@ -241,7 +241,7 @@ class OnDemandFeatures(PageFeature):
 
     def receive(self, page: Page, message: Any) -> None:
         """Create the feature that handles the message, and pass the message on."""
-        self._create(self._declaration_by_message[address_of(type(message))]).receive(page, message)
+        self._create(self._declaration_by_message[import_path_of(type(message))]).receive(page, message)
 
     def on_recording_shown(self) -> None:
         """Create and notify the features that refuse requests while a recording is shown."""

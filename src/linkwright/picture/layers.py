@@ -13,7 +13,7 @@ from linkwright.picture.bodies import Body, Color, Surface, Texture
 from linkwright.picture.vectors import Indices
 
 OPAQUE = 0.996
-"""The opacity from which nothing is seen through a surface."""
+"""The opacity from which a surface counts as opaque."""
 
 
 @dataclass(frozen=True, eq=False, slots=True)
@@ -64,26 +64,26 @@ class Mesh:
 
     @property
     def opaque(self) -> Indices:
-        """The triangles through which nothing is seen."""
+        """The indices of the opaque triangles, shape (n,), without those of ghosts."""
         return self.selected([part.alpha >= OPAQUE and body.ghost is None for part, body in self._pairs])
 
     @property
     def transparent(self) -> Indices:
-        """The triangles of transparent materials."""
+        """The indices of the triangles of transparent materials, shape (n,), without those of ghosts."""
         return self.selected([0.0 < part.alpha < OPAQUE and body.ghost is None for part, body in self._pairs])
 
     @property
     def ghosts(self) -> Indices:
-        """The triangles of ghosts."""
+        """The indices of the triangles of ghosts, shape (n,)."""
         return self.selected([body.ghost is not None for body in self.bodies])
 
     @property
     def solid(self) -> Indices:
-        """The triangles that cast a shadow."""
+        """The indices of the triangles that cast a shadow, shape (n,)."""
         return self.selected([part.alpha > 0.0 and body.ghost is None for part, body in self._pairs])
 
     def outlined(self) -> dict[Color, Indices]:
-        """Return the triangles of bodies with an outline, by its color."""
+        """Return the indices of the triangles of bodies with an outline, by its color."""
         colors = dict.fromkeys(body.outline for body in self.bodies if body.outline is not None)
         return {color: self.selected([body.outline == color for body in self.bodies]) for color in colors}
 

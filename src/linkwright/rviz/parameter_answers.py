@@ -1,4 +1,4 @@
-"""Waits for another node's responses to requests about its parameters."""
+"""Functions that wait for the responses of another node to requests about its parameters."""
 
 from __future__ import annotations
 

@@ -93,7 +93,7 @@ def connect_to_ray(address: str, folder: Path | None = None) -> Iterator[RayClus
 
     Args:
         address: the address of the cluster, as ``ray.init`` accepts it.
-        folder: a folder whose files are copied to the working directory of the processes.
+        folder: a folder whose files are copied to the working directory of Ray's worker processes.
 
     Raises:
         LinkwrightError: SWEEP113, Ray is not installed; SWEEP114, there is no cluster at the address.

@@ -55,10 +55,13 @@ _recorded_paths: ContextVar[list[RobotPath] | None] = ContextVar("recorded_paths
 
 @contextmanager
 def recorded_paths() -> Iterator[list[RobotPath]]:
-    """Record the paths of the robots of all `SteppedSimulation` that advance in the context.
+    """Record the paths of the robots in simulations that start in the ``with`` block.
+
+    The simulations are `SteppedSimulation` objects.
 
     Yields:
-        The paths in the order in which they start: one for each simulation with a robot, and one more after each reset.
+        A list that is filled during the block, in the order in which the paths start: one path for each simulation
+        with a robot, and one more after each reset.
     """
     paths: list[RobotPath] = []
     token = _recorded_paths.set(paths)

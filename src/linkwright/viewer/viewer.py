@@ -251,7 +251,7 @@ class Viewer:
 
         Args:
             cls: the class of the feature.
-            receives: the addresses of messages that the feature handles in addition to its `RECEIVES`.
+            receives: the import paths of messages that the feature handles in addition to its `RECEIVES`.
         """
         found = next((feature for feature in self._features if type(feature) is cls), None)
         if found is None:

@@ -404,7 +404,8 @@ class Expander:
         """Enter a macro call or an include.
 
         Raises:
-            LinkwrightError: XAC601 if calls and includes are nested too deeply.
+            LinkwrightError: XAC601 if calls and includes are nested too deeply; XAC602 if the expansion creates too
+                many elements; XAC606 if it takes too long.
         """
         limit = self.session.limits.depth
         if frame.depth > limit:

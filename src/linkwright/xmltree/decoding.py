@@ -99,7 +99,7 @@ def _raise_if_binary(data: bytes, name: str) -> None:
         hint = phrase("save the file as UTF-8")
     elif not beginning.lstrip().startswith(b"<"):
         message = phrase("'{name}' is not a text file", name=name)
-        hint = phrase("it contains zero bytes, as images, archives and programs do; check that it is the intended file")
+        hint = phrase("it contains NUL bytes, as images, archives and programs do; check that it is the intended file")
     else:
         return
     source = SourceText(name, "")

@@ -36,7 +36,7 @@ _TEMPLATE_LANGUAGES = (
         "ERB",
         phrase("run `erb TEMPLATE > FILE`, and pass that file"),
     ),
-    (lazy_pattern(r"\{[%#].*?[%#]\}", re.DOTALL), "Jinja", phrase("render it with Jinja, and pass that file")),
+    (lazy_pattern(r"\{[%#].*?[%#]\}", re.DOTALL), "Jinja", phrase("render it with Jinja, and pass the rendered file")),
 )
 """For each template language, a pattern for its tags, its name, and a hint."""
 _DASHES_IN_COMMENT = lazy_pattern(r"<!--(?:(?!-->).)*--$", re.DOTALL)

@@ -69,13 +69,25 @@ def _add_limits(parser: argparse.ArgumentParser) -> None:
         help="the processor time that the checks of a step may take (default: 60)",
     )
     parser.add_argument(
-        "--memory", metavar="MIB", type=positive_int, default=2048, help="the memory in MiB (default: 2048)"
+        "--memory",
+        metavar="MIB",
+        type=positive_int,
+        default=2048,
+        help="the memory that the checks of a step may use, in MiB (default: 2048)",
     )
     parser.add_argument(
-        "--disk", metavar="MIB", type=positive_int, default=256, help="the disk space in MiB (default: 256)"
+        "--disk",
+        metavar="MIB",
+        type=positive_int,
+        default=256,
+        help="the disk space that the checks of a step may use, in MiB (default: 256)",
     )
     parser.add_argument(
-        "--processes", metavar="N", type=positive_int, default=256, help="the processes and threads (default: 256)"
+        "--processes",
+        metavar="N",
+        type=positive_int,
+        default=256,
+        help="the number of processes and threads that the checks of a step may start (default: 256)",
     )
 
 

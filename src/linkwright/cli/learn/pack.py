@@ -143,7 +143,7 @@ def _docs(folder: Path | None) -> Path | None:
     """
     if folder is not None and not (folder / "index.html").is_file():
         message = phrase("'{path}' has no index.html", path=display_path(folder))
-        hint = phrase("run `make docs` in a checkout of Linkwright, and name its folder site")
+        hint = phrase("run `make docs` in a checkout of Linkwright, and pass the folder `site` in it")
         raise LinkwrightError(Diagnostic("LEARN309", message, hint=hint))
     return folder
 

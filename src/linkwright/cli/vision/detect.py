@@ -38,14 +38,14 @@ def configure(parser: argparse.ArgumentParser) -> None:
         "--dictionary", metavar="NAME", help="the dictionary of the markers for aruco and apriltag, such as 6X6_250"
     )
     parser.add_argument(
-        "--threshold", metavar="SCORE", type=fraction, default=0.5, help="the minimum score, default 0.5"
+        "--threshold", metavar="SCORE", type=fraction, default=0.5, help="the minimum score (default: 0.5)"
     )
     parser.add_argument(
         "--iou",
         metavar="FRACTION",
         type=fraction,
         default=0.5,
-        help="the maximum overlap of boxes of one class, as intersection over union, default 0.5",
+        help="the maximum overlap of boxes of one class, as intersection over union (default: 0.5)",
     )
     parser.add_argument("--classes", metavar="NAME", action="append", help="report only this class; may be repeated")
     parser.add_argument(

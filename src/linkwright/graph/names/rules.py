@@ -169,11 +169,9 @@ def is_hidden(name: str) -> bool:
 
 @lru_cache(maxsize=4096)
 def topic_name_problem(name: str) -> Problem | None:
-    """Return the reason why a topic or service name is not valid before expansion.
+    """Return why a topic or service name is not valid before expansion, or None if it is valid.
 
-    The second value is the index of the mistake.
-
-    Returns None if the name is valid.
+    The result is a pair: the reason, and the index of the invalid character.
     """
     plain_name = _SUBSTITUTION.sub(lambda match: "x" * len(match[0]), name) if "{" in name else name
     if not name:

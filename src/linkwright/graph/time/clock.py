@@ -200,7 +200,7 @@ class JumpThreshold:
         on_clock_change: whether the callback is called when ROS time switches to simulated time or back.
 
     Raises:
-        ValueError: a threshold has the wrong sign, or none is given.
+        ValueError: a threshold has the wrong sign, or both are None and `on_clock_change` is False.
     """
 
     def __init__(

@@ -72,10 +72,10 @@ class ScheduledAlarm:
     Alarms are ordered by their times.
 
     Attributes:
-        steady_ns: when the call is due, in nanoseconds.
-        number: the order of alarms that are due at the same time; the lowest number comes first.
-        callback: the callback.
-        cancelled: whether the call is cancelled.
+        steady_ns: the time of the steady clock at which the call is due, in ns.
+        number: the rank among alarms that are due at the same time; the lowest is called first.
+        callback: the function to call.
+        cancelled: whether the call was cancelled.
     """
 
     steady_ns: int

@@ -72,9 +72,9 @@ class LaunchDescriptionSource(Located):
         return self._get()
 
     def try_get_launch_description_without_context(self) -> LaunchDescription | None:
-        """Return the description, or None if its path contains substitutions.
+        """Return the description, or None if it is not loaded and its path needs a launch context.
 
-        Such substitutions need a launch context.
+        The path needs a context if it contains substitutions other than text.
         """
         if self._description is None and all(
             isinstance(substitution, TextSubstitution) for substitution in self._location

@@ -158,8 +158,15 @@ class MoveItConfigsBuilder(ParameterBuilder):
     ) -> MoveItConfigsBuilder:
         """Read the configuration of the controllers that execute trajectories.
 
+        By default, the file is ``config/*_controllers.yaml``. If there are several such files, it is the one whose name
+        begins with ``moveit``, ``moveit2`` or the name of the robot, in this order.
+
+        Args:
+            file_path: the file, relative to the package.
+            moveit_manage_controllers: whether MoveIt may load and switch controllers.
+
         Raises:
-            RuntimeError: LAUNCH154, there are several such files, and none of them has a usual name.
+            RuntimeError: LAUNCH154, there are several such files, and none has one of these names.
         """
         parameters: Parameters = {"moveit_manage_controllers": moveit_manage_controllers}
         path = self._package_path / file_path if file_path is not None else self.__controllers()

@@ -44,7 +44,7 @@ class Journal:
         return self._marks.get(key)
 
     def add(self, key: str, mark: Mark) -> None:
-        """Write a mark.
+        """Append a mark and the key of its inputs to the file, if there is a file.
 
         Raises:
             LinkwrightError: LEARN121, the file cannot be written.

@@ -96,7 +96,7 @@ class DensityTooHigh(Rule):
                 )
                 yield self.report(
                     phrase(
-                        "link '{name}' would have a density of {density} kg/m3",
+                        "link '{name}' has a density of {density} kg/m3",
                         name=link.name,
                         density=_grouped_digits(inertial.mass / volume),
                     ),
@@ -169,7 +169,7 @@ class DensityTooLow(Rule):
                 link, inertial = max(links_with_mass, key=lambda item: item[1].mass)
                 yield self.report(
                     phrase(
-                        "link '{name}' would have a density of {mass:.2g} kg/m3, less than air",
+                        "link '{name}' has a density of {mass:.2g} kg/m3, less than air",
                         name=link.name,
                         mass=mass / volume,
                     ),

@@ -120,7 +120,7 @@ class NegativeScale(Rule):
                     ),
                     use.element,
                     "scale",
-                    hint=phrase("export a mirrored mesh for collisions"),
+                    hint=phrase("export the mesh already mirrored, and make its scale positive"),
                 )
 
 

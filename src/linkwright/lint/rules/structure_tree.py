@@ -171,7 +171,7 @@ class RepeatedElement(Rule):
                             tag=child.tag,
                         ),
                         child,
-                        hint=phrase("keep the intended one"),
+                        hint=phrase("keep only the intended <{tag}>", tag=child.tag),
                         notes=(Note(phrase("only this element is read"), first_element.span()),),
                         fix=remove_element(child, safe=False),
                     )

@@ -57,8 +57,8 @@ class ComparedItem(Record):
 class ComparedDescriptions(ServerMessage):
     """The differences between two descriptions.
 
-    `joints` maps joints of the old description to the joints of the new description that they follow. `shapes` maps
-    links of the old description to links of the new description with the same shapes.
+    `joints` maps joints of the old description to joints of the new description, whose positions they take. `shapes`
+    maps links of the old description to links of the new description with the same visuals and collisions.
     """
 
     old: ComparedRobot

@@ -168,20 +168,20 @@ class _TypeField(Struct):
     type: str
 
 
-def address_of(message: type) -> str:
-    """Return the address of a message class, as ``module:class``."""
+def import_path_of(message: type) -> str:
+    """Return the import path of a message class, as ``module:class``."""
     return f"{message.__module__}:{message.__qualname__}"
 
 
-def define_later(address: str) -> None:
+def define_later(import_path: str) -> None:
     """Register a `PageMessage` class by name.
 
     Its module is imported when the first such message arrives.
 
     Args:
-        address: the address of the message class, as ``module:class``.
+        import_path: the import path of the message class, as ``module:class``.
     """
-    module, _, name = address.partition(":")
+    module, _, name = import_path.partition(":")
     _MODULES_BY_TAG.setdefault(_tag(name), module)
 
 

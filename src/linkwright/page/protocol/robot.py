@@ -35,20 +35,20 @@ class Joints(ServerMessage):
 
 
 class JointPositions(ServerMessage):
-    """The positions of the joints in the Joints panel, rad or m, including mimic joints."""
+    """The positions of the joints in the Joints panel, including mimic joints, in rad or m."""
 
     positions: dict[str, float]
 
 
 class SetJoint(PageMessage):
-    """A position to which the user has moved a joint, rad or m."""
+    """A position to which the user has moved a joint, in rad or m."""
 
     name: str
     position: float
 
 
 class SetJoints(PageMessage):
-    """New positions of several joints, rad or m, when a pose is restored or a sweep advances."""
+    """New positions of several joints, in rad or m, when a pose is restored or a sweep advances."""
 
     positions: dict[str, float]
 

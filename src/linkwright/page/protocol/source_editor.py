@@ -96,9 +96,10 @@ class UnsavedTextShown(ServerMessage):
 
 
 class UnsavedTextEdited(ServerMessage):
-    """An edit of the robot that the page applies to the unsaved text of a file.
+    """The new text of a file after an edit in the scene, for the page that has the file open.
 
-    `base` is the number of the text that the edit was made for, or 0 for the text on the disk.
+    `base` is the `ShowUnsavedText.number` of the text that was edited, or 0 for the text on the disk. `text` is the
+    complete new text, with LF line ends.
     """
 
     NEWEST_OF: ClassVar[tuple[str, ...]] = ("path", "base")

@@ -91,9 +91,9 @@ class OldRobot:
 
 
 def followed_joints(old: Robot, new: Robot, same_names: Mapping[str, str]) -> dict[str, str]:
-    """Return the joints that the joints of the old robot follow: new names by old names.
+    """Return the joints of the new robot whose positions the joints of the old robot take, by old names.
 
-    A joint and the joint that it follows are both revolute, or both prismatic.
+    Both joints are revolute or continuous, or both are prismatic.
     """
     return {
         name: new_name
@@ -106,7 +106,7 @@ def followed_joints(old: Robot, new: Robot, same_names: Mapping[str, str]) -> di
 def _initial_positions(robot: Robot, leaders: Mapping[str, str]) -> dict[str, float]:
     """Return the initial positions of the movable joints by name, in rad or m.
 
-    Joints that mimic another movable joint are omitted, unless they follow a joint of the new robot.
+    Joints that mimic another movable joint are omitted, unless they take the position of a joint of the new robot.
     """
     zeros = {joint.name: joint.zero for joint in make_layout(robot, JointSettings()).ranges.values()}
     movable_joints = [joint for joint in robot.joints.values() if joint.type in MOVING_TYPES]

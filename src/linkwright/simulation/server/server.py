@@ -487,7 +487,7 @@ class SimulationServer:
         new_names = [element for element in elements if element not in self._logged]
         self._logged.update(new_names)
         if new_names:
-            self.node.get_logger().info(phrase("elements that are not simulated: {names}", names=joined(new_names)))
+            self.node.get_logger().info(phrase("these elements are not simulated: {names}", names=joined(new_names)))
 
     @contextmanager
     def _logging_failures(self, context: PluginContext) -> Iterator[None]:

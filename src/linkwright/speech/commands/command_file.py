@@ -186,7 +186,7 @@ class _Reader:
         The node is a text, a list of texts, or a mapping of languages to these.
         """
         if isinstance(node, yaml.MappingNode):
-            keys = Keys(self._document, node, phrase("strings by language"), None)
+            keys = Keys(self._document, node, phrase("the mapping from languages to strings"), None)
             return {language: keys.texts(language) for language in keys.names()}
         title = "texts"
         return {ANY: Keys.of(self._document, title, node).texts(title)}

@@ -51,7 +51,7 @@ class Keys:
         """Return a mapping that has one key with the given value."""
         key = yaml.ScalarNode("tag:yaml.org,2002:str", name)
         mapping_node = yaml.MappingNode("tag:yaml.org,2002:map", [(key, value)])
-        return cls(document, mapping_node, phrase("strings by language"), None)
+        return cls(document, mapping_node, phrase("the mapping from languages to strings"), None)
 
     def names(self) -> list[str]:
         """Return the keys that are present."""

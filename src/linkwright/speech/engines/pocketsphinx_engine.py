@@ -33,7 +33,7 @@ _MIN_PROBABILITY = 1e-300  # avoids the logarithm of a probability that underflo
 class PocketsphinxEngine(SpeechEngine):
     """An engine that recognizes phrases with pocketsphinx.
 
-    The confidence rates the acoustic fit, and is 0.5 for a score of -8 per frame. The probability from pocketsphinx
+    The confidence rates the acoustic fit, and is 0.5 for a log score of -8 per frame. The probability from pocketsphinx
     itself is not useful: it is divided among all paths through the grammar that sound alike, and a fifth of clear
     phrases had less than 0.1.
 

@@ -31,7 +31,7 @@ class Resampler:
 
     def __init__(self, rate: int) -> None:
         if not MIN_RATE <= rate <= MAX_RATE:
-            raise ValueError(f"a rate of {rate} is not within {MIN_RATE} and {MAX_RATE}")
+            raise ValueError(f"a rate of {rate} is not between {MIN_RATE} and {MAX_RATE}")
         common = gcd(rate, RATE)
         self._up, self._down = RATE // common, rate // common
         cutoff = _PASS_BAND * min(1.0, RATE / rate)

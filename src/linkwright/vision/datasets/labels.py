@@ -87,7 +87,10 @@ def label_image(stage: Stage, shot: Shot, geoms: Pixels, min_size: int, min_visi
 
 
 def box_of(mask: Any) -> Box | None:
-    """Return the bounding box of a mask of shape (height, width), or None for an empty mask."""
+    """Return the bounding box (left, top, right, bottom) of a mask, in pixels; None for an empty mask.
+
+    The mask has the shape (height, width). `right` and `bottom` are exclusive.
+    """
     rows = np.flatnonzero(mask.any(axis=1))
     if not len(rows):
         return None

@@ -112,7 +112,11 @@ class Seeker:
         self._reset()
 
     def begin(self, *, follow: bool = False) -> None:
-        """Begin to seek a new object."""
+        """Begin to seek a new object.
+
+        Args:
+            follow: whether to follow the object after reaching it.
+        """
         self.stop()
         self.phase, self.follows_object = Phase.SEARCHING, follow
 

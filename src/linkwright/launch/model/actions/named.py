@@ -101,7 +101,7 @@ def parse_pairs(entity: Entity, parser: Parser, tag: str) -> dict[Any, Any] | No
 
 
 def normalize_pairs(pairs_or_mapping: Any) -> Pairs:
-    """Return the pairs of a mapping, or of an iterable of names and values, as substitutions."""
+    """Return (name, value) pairs, or a mapping, as pairs of lists of substitutions."""
     pairs: Iterable[Any] = pairs_or_mapping.items() if hasattr(pairs_or_mapping, "items") else pairs_or_mapping
     return [
         (normalize_to_list_of_substitutions(name), normalize_to_list_of_substitutions(value)) for name, value in pairs

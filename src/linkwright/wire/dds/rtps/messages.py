@@ -225,19 +225,19 @@ def _bits(body: bytes, offset: int, base: int, count: int, order: str) -> list[i
 
 
 def message(prefix: bytes, *submessages: bytes, to: bytes = b"") -> bytes:
-    """Build a message from a participant to the participant with the prefix `to`, or to all."""
+    """Return an RTPS message from a participant to the participant with the prefix `to`, or to all."""
     destination = _submessage(_INFO_DST, 0, to) if to else b""
     return b"RTPS" + VERSION + VENDOR + prefix + destination + b"".join(submessages)
 
 
 def info_timestamp(nanoseconds: int) -> bytes:
-    """Build INFO_TS: when the following submessages were written, in ns since the epoch."""
+    """Return an INFO_TS submessage: when the following submessages were written, in ns since the epoch."""
     seconds, remainder = divmod(nanoseconds, NANOSECONDS_PER_SECOND)
     return _submessage(_INFO_TS, 0, struct.pack("<II", seconds, (remainder << 32) // NANOSECONDS_PER_SECOND))
 
 
 def data(reader: bytes, writer: bytes, number: int, payload: bytes | None, inline: bytes = b"") -> bytes:
-    """Build DATA. Without a payload, DATA contains only the key in `inline`."""
+    """Return a DATA submessage. Without a payload, it contains only the key in `inline`."""
     flags = (_INLINE if inline else 0) | (0 if payload is None else _HAS_DATA)
     head = struct.pack("<HH", 0, 16) + reader + writer + _pack(number)
     return _submessage(_DATA, flags, head + inline + (payload or b""))
@@ -251,7 +251,7 @@ def fragment_count(payload: bytes) -> int:
 def data_fragment(
     reader: bytes, writer: bytes, number: int, payload: bytes, fragment_number: int, inline: bytes = b""
 ) -> bytes:
-    """Build DATA_FRAG with one fragment of a payload.
+    """Return a DATA_FRAG submessage with one fragment of a payload.
 
     Fragments are counted from 1.
     """
@@ -261,7 +261,7 @@ def data_fragment(
 
 
 def fragment_start(reader: bytes, writer: bytes, number: int, size: int, fragment_number: int, length: int) -> bytes:
-    """Build the beginning of DATA_FRAG. The caller appends the bytes of the fragment.
+    """Return the beginning of a DATA_FRAG submessage. The caller appends the bytes of the fragment.
 
     Args:
         reader: the entity that the fragment is for.
@@ -281,24 +281,31 @@ def _fragment_head(reader: bytes, writer: bytes, number: int, size: int, fragmen
 
 
 def heartbeat(reader: bytes, writer: bytes, first: int, last: int, count: int, *, final: bool = False) -> bytes:
-    """Build HEARTBEAT for the samples from `first` to `last`."""
+    """Return a HEARTBEAT submessage that announces the samples that a writer has.
+
+    Args:
+        reader: the entity ID of the reader; `ALL` for all readers.
+        writer: the entity ID of the writer.
+        first: the sequence number of the first sample.
+        last: the sequence number of the last sample.
+        count: the number of this heartbeat, which increases.
+        final: whether the reader need not respond.
+    """
     body = reader + writer + _pack(first) + _pack(last) + struct.pack("<I", count)
     return _submessage(_HEARTBEAT, _FINAL if final else 0, body)
 
 
 def gap(reader: bytes, writer: bytes, start: int, base: int) -> bytes:
-    """Build GAP for all samples from `start` to before `base`."""
+    """Return a GAP submessage: the samples from `start` up to but not including `base` do not exist."""
     return _submessage(_GAP, 0, reader + writer + _pack(start) + _pack(base) + struct.pack("<I", 0))
 
 
 def acknack(
     reader: bytes, writer: bytes, base: int, missing: Collection[int], count: int, *, final: bool = True
 ) -> bytes:
-    """Build ACKNACK for a reader that lacks the samples in `missing`.
+    """Return an ACKNACK submessage of a reader that lacks the samples in `missing`.
 
-    All samples before `base` have arrived.
-
-    At most the first 256 sample numbers from `base` can be listed as missing.
+    All samples before `base` have arrived. At most the first 256 sequence numbers from `base` can be listed as missing.
     """
     size = max(missing) - base + 1 if missing else 0
     words = [0] * ((size + 31) // 32)
