@@ -129,7 +129,8 @@ class MeshIndex:
             return FileAddress(None, error.diagnostics[0].message)
         except ValueError:
             return FileAddress(
-                None, phrase("the path {uri} contains a character that file names cannot have; correct it", uri=repr(uri))
+                None,
+                phrase("the path {uri} contains a character that file names cannot have; correct it", uri=repr(uri)),
             )
         if not path.is_file():
             return FileAddress(None, phrase("there is no file '{path}'", path=path))
