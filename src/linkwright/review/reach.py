@@ -62,7 +62,7 @@ class Chain:
 
     def _improve(self, positions: Array, distances: Array, joint: int) -> None:
         """Move a joint of each configuration to its best position."""
-        candidates = [np.full(len(positions), limit[joint]) for limit in (self.low, self.high)]
+        candidates: list[Array] = [np.full(len(positions), limit[joint]) for limit in (self.low, self.high)]
         if self.turns[joint]:
             candidates.append(self._peaks(positions, joint))
         for values in candidates:
