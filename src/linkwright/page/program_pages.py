@@ -5,8 +5,8 @@ program that would open its page in the browser sends the address of its page th
 as the program, so that the server notices its end, even if it was killed. The program allows only pages of the
 server's origin to show its page in a frame.
 
-In the response, which lasts as long, the server asks programs to pause their worlds and to resume them. A program whose
-world is paused confirms it in a further line of its request.
+The response stays open, too. In it, the server asks the program to pause its world and to resume it. A program confirms
+a pause in another line of its request.
 """
 
 from __future__ import annotations
@@ -217,7 +217,7 @@ class Embedding:
         self._task = asyncio.get_running_loop().create_task(self._read(reader))
 
     def close(self) -> None:
-        """Close the connection, so that the page is no longer shown."""
+        """Close the connection. The page around it then removes the frame."""
         self._task.cancel()
         self._writer.close()
 

@@ -1,4 +1,4 @@
-"""What displays say in their status rows: phrases, so that each page is told in its language."""
+"""The texts of status rows are phrases, so that each page shows them in its language."""
 
 from __future__ import annotations
 
@@ -12,11 +12,11 @@ from tests.viewer.scene import page, world
 
 RVIZ = Path(linkwright.rviz.__file__).parent
 _TEXT_OF = {"set_status_row": 2, "refuse": 0, "_refuse": 1, "StatusRow": 2}
-"""Calls that give a status its text -> which argument that is."""
+"""The functions that set the text of a status, with the position of the argument for it."""
 
 
 def _is_plain(text: ast.expr) -> bool:
-    """Whether the source has a text here that is no phrase; the catalogs are checked for phrases."""
+    """Return whether an expression is a text that is not a phrase. Phrases are checked with the catalogs."""
     if isinstance(text, ast.IfExp):
         return _is_plain(text.body) or _is_plain(text.orelse)
     if isinstance(text, ast.BoolOp):

@@ -1,4 +1,4 @@
-"""Modeling a world in the page: what pages ask for changes the text, and the simulation is told of it."""
+"""Modeling of a world in the page: requests of pages change the file of the world and the simulation."""
 
 from __future__ import annotations
 
