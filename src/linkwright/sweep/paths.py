@@ -13,11 +13,11 @@ from linkwright.testing.paths import MAX_POINTS, Point
 ROBOT = "robot"
 """The name of a recorded path. The second one of a run is called ``robot 2``."""
 
-Path = Sequence[Point]
+TimedPath = Sequence[Point]
 """The points of a path in the order of their times."""
 
 
-def as_path(value: object) -> Path | None:
+def as_path(value: object) -> TimedPath | None:
     """Return a result that is a path, or None if it is another value.
 
     Args:
@@ -34,13 +34,13 @@ def as_path(value: object) -> Path | None:
     return _thinned(rows.tolist())
 
 
-def recorded(points: Sequence[Path]) -> dict[str, Path]:
+def recorded(points: Sequence[TimedPath]) -> dict[str, TimedPath]:
     """Return the paths that were recorded in a run, by name."""
     moving = [path for path in points if path]
     return {ROBOT if number == 1 else f"{ROBOT} {number}": path for number, path in enumerate(moving, start=1)}
 
 
-def _thinned(rows: list[Any]) -> Path:
+def _thinned(rows: list[Any]) -> TimedPath:
     stride = max(1, math.ceil(len(rows) / MAX_POINTS))
     points = [(row[0], row[1], row[2]) for row in rows[::stride]]
     return [*points, tuple(rows[-1])] if (len(rows) - 1) % stride else points

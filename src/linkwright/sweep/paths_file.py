@@ -5,7 +5,7 @@ from __future__ import annotations
 import json
 from collections.abc import Mapping, Sequence
 
-from linkwright.sweep.paths import Path
+from linkwright.sweep.paths import TimedPath
 from linkwright.sweep.plan import Run
 from linkwright.sweep.running import Outcome
 
@@ -29,5 +29,5 @@ def paths_text(runs: Sequence[Run], outcomes: Mapping[int, Outcome]) -> str:
     return f'{{"runs": [\n{lines}\n]}}\n'
 
 
-def _rounded(path: Path) -> list[list[float]]:
+def _rounded(path: TimedPath) -> list[list[float]]:
     return [[round(number, _DIGITS) + 0.0 for number in point] for point in path]

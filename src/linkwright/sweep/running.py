@@ -6,12 +6,12 @@ import os
 import random
 from collections.abc import Mapping
 from dataclasses import dataclass, field
-from pathlib import Path as FilePath
+from pathlib import Path
 
 import numpy as np
 
 from linkwright.standins import activate
-from linkwright.sweep.paths import Path, as_path, recorded
+from linkwright.sweep.paths import TimedPath, as_path, recorded
 from linkwright.sweep.plan import Run
 from linkwright.sweep.scenario import COLUMNS, SEED, Scenario, describe_error, line_in_traceback, load_scenario
 from linkwright.testing.paths import recorded_paths
@@ -37,14 +37,14 @@ class Outcome:
     row: int
     results: Mapping[str, Result] = field(default_factory=dict)
     error: str = ""
-    paths: Mapping[str, Path] = field(default_factory=dict)
+    paths: Mapping[str, TimedPath] = field(default_factory=dict)
 
 
 class BadResultError(Exception):
     """Raised if a scenario returns a value that a table cannot contain."""
 
 
-def load_into_process(path: FilePath) -> Scenario:
+def load_into_process(path: Path) -> Scenario:
     """Load a scenario and change to its folder, so that this process can run it.
 
     The scenario can import ROS modules, such as ``rclpy`` and ``geometry_msgs.msg``.
@@ -83,7 +83,7 @@ def run_scenario(scenario: Scenario, run: Run) -> Outcome:
     random.seed(run.seed)
     np.random.seed(run.seed % _MAX_NUMPY_SEEDS)
     seed = {SEED: run.seed} if scenario.takes_seed else {}
-    recorded_points: list[Path] = []
+    recorded_points: list[TimedPath] = []
     if run.records_paths:
         with recorded_paths() as robot_paths:
             returned = scenario.function(**run.parameters, **seed)
