@@ -284,6 +284,15 @@ def joined(texts: Iterable[str], separator: str = ", ", last: str | None = None)
     return _Joined(tuple(texts), separator, separator if last is None else last)
 
 
+def joined_first(texts: Iterable[str], limit: int) -> Phrase:
+    """Join the first `limit` texts, and add the number of the others: ``a, b and 3 more``."""
+    all_texts = list(texts)
+    shown = joined(all_texts[:limit])
+    if len(all_texts) <= limit:
+        return shown
+    return phrase("{names} and {count} more", names=shown, count=len(all_texts) - limit)
+
+
 def quoted_names(names: Iterable[object], last: str | None = None) -> Phrase:
     """Join names, each in quotation marks: ``'a', 'b' or 'c'``."""
     return joined(map(quoted, names), last=last)

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, field
 
-from linkwright.diagnostics import Phrase, phrase, quoted_names
+from linkwright.diagnostics import Phrase, joined_first, quoted
 from linkwright.graph.endpoints.base import EndpointInfo, EndpointKind
 from linkwright.graph.names.rules import join
 
@@ -199,10 +199,4 @@ def listed(names: Iterable[str], limit: int = 6) -> Phrase:
 
     If there are more than `limit` names, only the first ones are listed, with the number of the remaining ones.
     """
-    all_names = list(names)
-    shown_names = quoted_names(all_names[:limit])
-    return (
-        phrase("{names} and {count} more", names=shown_names, count=len(all_names) - limit)
-        if len(all_names) > limit
-        else shown_names
-    )
+    return joined_first(map(quoted, names), limit)

@@ -8,7 +8,7 @@ from collections.abc import Callable
 from contextlib import suppress
 from typing import TYPE_CHECKING
 
-from linkwright.diagnostics import Diagnostic, Phrase, Severity, joined, phrase, translated
+from linkwright.diagnostics import Diagnostic, Severity, joined_first, phrase, translated
 from linkwright.hosting.launch_log import LaunchLog
 
 if TYPE_CHECKING:
@@ -137,17 +137,10 @@ class SharedNames:
             "another launch or program on ROS_DOMAIN_ID {domain} has nodes with the same names, which "
             "interfere: {names}",
             domain=domain,
-            names=_list_names(sorted(names)),
+            names=joined_first(sorted(names), _MAX_LISTED_NAMES),
         )
         hint = phrase(
             "start one of them in another domain, for example with ROS_DOMAIN_ID={other} linkwright launch ...",
             other=domain + 1,
         )
         return Diagnostic("LAUNCH148", message, hint=hint).with_changes(severity=Severity.WARNING)
-
-
-def _list_names(names: list[str]) -> Phrase:
-    names_text = joined(names[:_MAX_LISTED_NAMES])
-    if len(names) <= _MAX_LISTED_NAMES:
-        return names_text
-    return phrase("{names} and {count} more", names=names_text, count=len(names) - _MAX_LISTED_NAMES)

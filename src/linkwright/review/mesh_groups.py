@@ -6,7 +6,7 @@ from collections.abc import Hashable, Iterator, Sequence
 from dataclasses import replace
 from pathlib import PurePosixPath
 
-from linkwright.diagnostics import Phrase, counted, phrase
+from linkwright.diagnostics import Phrase, counted, joined_first
 from linkwright.review.changes import Change, Subject, SubjectKind
 
 _MAX_NAMES = 6
@@ -39,7 +39,7 @@ def _as_one(subjects: Sequence[Subject]) -> Subject:
 
 
 def _sentence(subjects: Sequence[Subject]) -> Phrase:
-    count, names = len(subjects), _listed([PurePosixPath(subject.path).name for subject in subjects])
+    count, names = len(subjects), joined_first((PurePosixPath(subject.path).name for subject in subjects), _MAX_NAMES)
     first = subjects[0]
     if first.old_path is None:
         return counted("{count} mesh added: {names}", "{count} meshes added: {names}", count, names=names)
@@ -54,17 +54,10 @@ def _sentence(subjects: Sequence[Subject]) -> Phrase:
             folder=f"{old_folder}/",
             names=names,
         )
-    pairs = _listed(list(_renames(subjects)))
+    pairs = joined_first(_renames(subjects), _MAX_NAMES)
     return counted("{count} mesh renamed: {names}", "{count} meshes renamed: {names}", count, names=pairs)
 
 
 def _renames(subjects: Sequence[Subject]) -> Iterator[str]:
     for subject in subjects:
         yield f"{PurePosixPath(subject.old_path or '').name} -> {PurePosixPath(subject.path).name}"
-
-
-def _listed(names: Sequence[str]) -> Phrase | str:
-    shown = ", ".join(names[:_MAX_NAMES])
-    if len(names) <= _MAX_NAMES:
-        return shown
-    return phrase("{names} and {count} more", names=shown, count=len(names) - _MAX_NAMES)

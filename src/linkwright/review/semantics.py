@@ -2,11 +2,11 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 from pathlib import Path
 
-from linkwright.diagnostics import Phrase, counted, phrase, term
+from linkwright.diagnostics import Phrase, counted, joined_first, phrase, term
 from linkwright.review.file_pair import FilePair
 from linkwright.xacro.cache import read_document
 from linkwright.xmltree import Element
@@ -126,7 +126,7 @@ def _compare_entries(pair: FilePair, old: _Entry, new: _Entry) -> None:
         elif not _are_equal(before, after):
             changes.append(f"{name} {before} -> {after}")
     if changes:
-        text = phrase("{entry}: {changes}", entry=_title(new), changes=_listed(changes))
+        text = phrase("{entry}: {changes}", entry=_title(new), changes=joined_first(changes, _MAX_PARTS))
         pair.add(text, pair.location(new.element.span()))
 
 
@@ -153,19 +153,12 @@ def _compare_pairs(
     if added:
         text = counted(
             "{tag}: {count} pair added: {pairs}", "{tag}: {count} pairs added: {pairs}", len(added), tag=term(tag),
-            pairs=_listed(list(map(" - ".join, added))),
+            pairs=joined_first(map(" - ".join, added), _MAX_PARTS),
         )  # fmt: skip
         pair.add(text, pair.location(new[added[0]].span()))
     if removed:
         text = counted(
             "{tag}: {count} pair removed: {pairs}", "{tag}: {count} pairs removed: {pairs}", len(removed),
-            tag=term(tag), pairs=_listed(list(map(" - ".join, removed))),
+            tag=term(tag), pairs=joined_first(map(" - ".join, removed), _MAX_PARTS),
         )  # fmt: skip
         pair.add(text, pair.location(old[removed[0]].span(), is_old=True))
-
-
-def _listed(parts: Sequence[str]) -> Phrase | str:
-    shown = ", ".join(parts[:_MAX_PARTS])
-    if len(parts) <= _MAX_PARTS:
-        return shown
-    return phrase("{names} and {count} more", names=shown, count=len(parts) - _MAX_PARTS)
