@@ -13,7 +13,7 @@ from linkwright.review.changes import SubjectKind
 from linkwright.review.descriptions import compare_descriptions
 from linkwright.review.file_pair import FilePair
 from linkwright.review.interfaces import compare_interfaces
-from linkwright.review.launch_files import compare_launch_files
+from linkwright.review.launches.files import compare_launch_files
 from linkwright.review.manifests import compare_manifests
 from linkwright.review.maps import compare_maps
 from linkwright.review.meshes import compare_meshes

@@ -22,7 +22,7 @@ from linkwright.review.behavior import compare_behavior
 from linkwright.review.changes import Change, Effect, Review, Subject, SubjectKind
 from linkwright.review.file_pair import Drawings, FilePair
 from linkwright.review.kinds import LAUNCH_HELPER, KindRule, may_help_launch_files, rule_of
-from linkwright.review.launch_helpers import makes_actions
+from linkwright.review.launches.helpers import makes_actions
 from linkwright.review.mesh_groups import grouped_meshes
 from linkwright.review.parts import compare_parts
 from linkwright.review.versions import Version, Versions

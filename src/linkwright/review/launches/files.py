@@ -12,11 +12,11 @@ from pathlib import Path
 from linkwright.diagnostics import Phrase, SourceText, foreign, phrase
 from linkwright.review.changes import Location
 from linkwright.review.file_pair import FilePair, UnreadableFileError
-from linkwright.review.launch_effects import removal_reason, setting_reason
-from linkwright.review.launch_helpers import HelperFunctions
-from linkwright.review.launch_markup import read_markup_outline, xml_tags, yaml_tags
-from linkwright.review.launch_names import LaunchPythonFile
-from linkwright.review.launch_outlines import (
+from linkwright.review.launches.effects import removal_reason, setting_reason
+from linkwright.review.launches.helpers import HelperFunctions
+from linkwright.review.launches.markup import read_markup_outline, xml_tags, yaml_tags
+from linkwright.review.launches.names import LaunchPythonFile
+from linkwright.review.launches.outlines import (
     CONDITION,
     NAMESPACE,
     NAMESPACE_OF_INCLUDED,
@@ -24,8 +24,8 @@ from linkwright.review.launch_outlines import (
     Entry,
     LaunchOutline,
 )
-from linkwright.review.launch_python import ACTIONS, read_python_outline
-from linkwright.review.launch_titles import added_entry, joined_titles, title
+from linkwright.review.launches.python import ACTIONS, read_python_outline
+from linkwright.review.launches.titles import added_entry, joined_titles, title
 from linkwright.review.list_changes import change_text, excerpts
 from linkwright.xacro.cache import read_document
 

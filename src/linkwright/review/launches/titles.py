@@ -5,8 +5,8 @@ from __future__ import annotations
 import re
 from collections.abc import Iterator, Sequence
 
-from linkwright.diagnostics import Phrase, joined, phrase
-from linkwright.review.launch_outlines import Entry
+from linkwright.diagnostics import Phrase, joined_first, phrase
+from linkwright.review.launches.outlines import Entry
 from linkwright.review.list_changes import list_items
 
 _MAX_TITLES = 3
@@ -85,11 +85,7 @@ def _controllers(words: Sequence[str]) -> Iterator[str]:
 def joined_titles(entries: Sequence[Entry]) -> Phrase:
     """Return the titles of actions, or the first ones and the number of the others."""
     titles = list(dict.fromkeys(map(title, entries)))
-    if len(titles) == 1:
-        return titles[0]
-    if len(titles) <= _MAX_TITLES:
-        return joined(titles)
-    return phrase("{entries} and {count} more", entries=joined(titles[:_MAX_TITLES]), count=len(titles) - _MAX_TITLES)
+    return joined_first(titles, _MAX_TITLES)
 
 
 def added_entry(entry: Entry) -> Phrase:

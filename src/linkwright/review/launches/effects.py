@@ -5,8 +5,8 @@ from __future__ import annotations
 import re
 
 from linkwright.diagnostics import Phrase, phrase
-from linkwright.review.launch_outlines import NAMESPACE, NAMESPACE_OF_INCLUDED, REMAPPING, Entry, LaunchOutline
-from linkwright.review.launch_titles import TRANSFORM_PUBLISHERS, served_names
+from linkwright.review.launches.outlines import NAMESPACE, NAMESPACE_OF_INCLUDED, REMAPPING, Entry, LaunchOutline
+from linkwright.review.launches.titles import TRANSFORM_PUBLISHERS, served_names
 from linkwright.review.list_changes import list_items
 
 _USER_INTERFACE = re.compile(r"rviz2?/|rqt|joint_state_publisher_gui/|plotjuggler/")

@@ -11,7 +11,7 @@ from pathlib import Path
 
 from linkwright.diagnostics import SourceText
 from linkwright.packages.readers.python_values import PythonFile, called_name
-from linkwright.review.launch_names import LaunchPythonFile
+from linkwright.review.launches.names import LaunchPythonFile
 
 _MAX_DEPTH = 5
 """The number of files through which a name may be imported."""

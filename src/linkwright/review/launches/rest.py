@@ -7,8 +7,8 @@ from collections.abc import Collection
 from copy import copy
 
 from linkwright.packages.readers.python_values import PythonFile, called_name
-from linkwright.review.launch_outlines import CodePart
-from linkwright.review.launch_text import shortened_text
+from linkwright.review.launches.outlines import CodePart
+from linkwright.review.launches.text import shortened_text
 
 _TRANSPARENT = frozenset({"add_action", "add_entity", "GroupAction", "LaunchDescription"})
 """The calls that only put actions together."""

@@ -10,7 +10,7 @@ import yaml
 
 from linkwright.diagnostics import SourceText, Span, phrase
 from linkwright.review.file_pair import UnreadableFileError
-from linkwright.review.launch_outlines import (
+from linkwright.review.launches.outlines import (
     CONDITION,
     NAMESPACE,
     NAMESPACE_OF_INCLUDED,

@@ -7,8 +7,8 @@ from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 
 from linkwright.packages.readers.python_values import PythonFile, called_name
-from linkwright.review.launch_helpers import Function, HelperFunctions
-from linkwright.review.launch_outlines import (
+from linkwright.review.launches.helpers import Function, HelperFunctions
+from linkwright.review.launches.outlines import (
     CONDITION,
     PARAMETER,
     REMAPPING,
@@ -16,8 +16,8 @@ from linkwright.review.launch_outlines import (
     LaunchOutline,
     Scope,
 )
-from linkwright.review.launch_rest import rest_of
-from linkwright.review.launch_text import BoundExpression, ExpressionTexts
+from linkwright.review.launches.rest import rest_of
+from linkwright.review.launches.text import BoundExpression, ExpressionTexts
 
 _NODES = ("Node", "LifecycleNode", "ComposableNode", "ComposableNodeContainer")
 _PROCESSES = ("ExecuteProcess", "ExecuteLocal")
