@@ -238,3 +238,13 @@ def test_handed_on_parameter_is_reported_once(library, compare):
     new = text.replace("side:=left", "side:=left mass:=1").replace("<xacro:tip", '<xacro:tip mass="${mass}"')
     library.write({TOOL: new})
     assert sentences(subject(compare(library), TOOL)) == ["macro 'gripper': parameter mass:=1 added"]
+
+
+def test_part_that_is_nested_too_deeply_is_a_problem(library, compare, monkeypatch):
+    def read_outline(_file):
+        raise RecursionError
+
+    monkeypatch.setattr("linkwright.review.parts.comparing.read_outline", read_outline)
+    library.write({TOOL: GRIPPER.replace('upper="0.04"', 'upper="0.05"')})
+    (problem,) = subject(compare(library), TOOL).problems
+    assert str(problem.text) == "the versions cannot be compared: they are nested too deeply, or too large"

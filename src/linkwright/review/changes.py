@@ -8,7 +8,7 @@ from dataclasses import dataclass, field
 from enum import Enum
 from typing import NamedTuple
 
-from linkwright.diagnostics import Diagnostic, Phrase
+from linkwright.diagnostics import Diagnostic, Phrase, phrase
 from linkwright.review.paths import PathComparison
 
 _QUOTED = re.compile("'[^']*'")
@@ -143,6 +143,11 @@ class Problem:
 
     text: Phrase
     is_of_old: bool = False
+
+
+def nesting_problem() -> Problem:
+    """Return the problem that a comparison ended with a `RecursionError` or `MemoryError`."""
+    return Problem(phrase("the versions cannot be compared: they are nested too deeply, or too large"))
 
 
 FILE = -1

@@ -19,7 +19,7 @@ from linkwright.lint.known_findings import count_keys, new_findings
 from linkwright.lint.targets import Targets, find_targets
 from linkwright.packages.manifest import MANIFEST, package_name
 from linkwright.review.behavior import compare_behavior
-from linkwright.review.changes import Change, Effect, Review, Subject, SubjectKind
+from linkwright.review.changes import Change, Effect, Review, Subject, SubjectKind, nesting_problem
 from linkwright.review.file_pair import Drawings, FilePair
 from linkwright.review.kinds import LAUNCH_HELPER, KindRule, may_help_launch_files, rule_of
 from linkwright.review.launches.helpers import makes_actions
@@ -229,7 +229,7 @@ def _compare(
     except LinkwrightError as error:
         pair.add_problem(phrase("the versions cannot be compared: {reason}", reason=error.diagnostics[0].message))
     except (RecursionError, MemoryError):
-        pair.add_problem(phrase("the versions cannot be compared: they are nested too deeply, or too large"))
+        pair.problems.append(nesting_problem())
     return Subject(
         kind,
         path,

@@ -8,7 +8,7 @@ from dataclasses import replace
 
 from linkwright.diagnostics import LinkwrightError, Phrase, phrase
 from linkwright.files.git_repository import ChangedFile
-from linkwright.review.changes import Change, Effect, ExpandedPlace, Subject, SubjectKind
+from linkwright.review.changes import Change, Effect, ExpandedPlace, Subject, SubjectKind, nesting_problem
 from linkwright.review.parts.contents import compare_contents, comparison_of
 from linkwright.review.parts.include_graph import IncludeGraph
 from linkwright.review.parts.interface import (
@@ -55,11 +55,16 @@ def compare_parts(
         try:
             part = comparer.subject(file, is_compared=number is not None)
         except (RecursionError, MemoryError):
-            continue
+            part = Subject(SubjectKind.PART, file.path, file.old_path, file.new_path, [], problems=[nesting_problem()])
         if number is None:
             result.append(part)
-        elif part.changes:
-            result[number] = replace(result[number], changes=[*result[number].changes, *part.changes])
+        else:
+            known = result[number]
+            result[number] = replace(
+                known,
+                changes=[*known.changes, *part.changes],
+                problems=list(dict.fromkeys([*known.problems, *part.problems])),
+            )
     return result
 
 
