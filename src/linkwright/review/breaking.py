@@ -60,6 +60,11 @@ def frame_reason(name: str) -> Phrase:
     return phrase("programs that look up the frame '{name}' do not find it", name=name)
 
 
+def name_reason(name: str) -> Phrase:
+    """Return why it is breaking that a topic, service or another name is gone."""
+    return phrase("programs that use the name '{name}' do not find it", name=name)
+
+
 def joint_name_reason(name: str) -> Phrase:
     """Return why it is breaking that a moving joint has gone."""
     return phrase("controllers and programs that name the joint '{name}' do not find it", name=name)
@@ -106,5 +111,5 @@ def plugin_name_reason(difference: Difference) -> Phrase | None:
     tag = difference.property.split(" ")[-2] if last_word.startswith("@") and " " in difference.property else last_word
     is_same = difference.new is not None and used_name(difference.old or "") == used_name(difference.new)
     if difference.old and NAME_TAGS.search(tag) and not is_same:
-        return phrase("programs that use the name '{name}' do not find it", name=used_name(difference.old))
+        return name_reason(used_name(difference.old))
     return None

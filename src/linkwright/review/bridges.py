@@ -8,6 +8,7 @@ from dataclasses import dataclass
 import yaml
 
 from linkwright.diagnostics import Phrase, phrase
+from linkwright.review.breaking import name_reason
 from linkwright.review.changes import Location
 from linkwright.review.file_pair import FilePair
 from linkwright.review.list_changes import change_text
@@ -77,7 +78,7 @@ def compare_bridges(pair: FilePair, old: Sequence[Bridge], new: Sequence[Bridge]
         )
     for bridge in old_rest:
         location = Location(pair.old_path, bridge.line, bridge.column, is_old=True)
-        pair.add(phrase("bridge '{topic}' removed", topic=bridge.topic), location, _missing_reason(bridge.topic))
+        pair.add(phrase("bridge '{topic}' removed", topic=bridge.topic), location, name_reason(bridge.topic))
 
 
 def _matched(old: list[Bridge], new: list[Bridge]) -> Iterator[tuple[Bridge, Bridge]]:
@@ -105,7 +106,7 @@ def _compare_settings(pair: FilePair, old: Bridge, new: Bridge) -> None:
     if old.topic != new.topic:
         line, column = new.places[next(key for key in _TOPIC_KEYS if key in new.settings)]
         text = phrase("bridge '{old}' renamed to '{topic}'", old=old.topic, topic=new.topic)
-        pair.add(text, Location(pair.new_path, line, column), _missing_reason(old.topic))
+        pair.add(text, Location(pair.new_path, line, column), name_reason(old.topic))
     for name in dict.fromkeys([*new.settings, *old.settings]):
         before, after = old.settings.get(name), new.settings.get(name)
         is_name = name == next((key for key in _TOPIC_KEYS if key in new.settings), None)
@@ -131,7 +132,3 @@ def _setting_reason(topic: str, name: str, old: str | None, new: str | None) -> 
 def _same_type(name: str) -> str:
     """Return a type in one notation: ``sensor_msgs/Imu`` is ``sensor_msgs/msg/Imu``."""
     return name.replace("/msg/", "/")
-
-
-def _missing_reason(topic: str) -> Phrase:
-    return phrase("programs that use the name '{name}' do not find it", name=topic)

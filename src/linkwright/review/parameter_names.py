@@ -7,6 +7,7 @@ from collections import Counter
 from collections.abc import Iterator, Mapping
 
 from linkwright.diagnostics import Phrase, phrase
+from linkwright.review.breaking import name_reason
 from linkwright.review.list_changes import list_items
 from linkwright.review.yaml_values import YamlValue
 
@@ -48,13 +49,13 @@ class NameRules:
             return phrase("the message type of a topic changes between one with and one without a header")
         controller = _CONTROLLER_TYPE.fullmatch(parameter)
         if controller is not None:
-            return phrase("the topics and actions of the controller '{name}' are others", name=controller["controller"])
+            return phrase("the controller '{name}' offers other topics and actions", name=controller["controller"])
         gone = _items(old) - _items(new)
         is_offered = _FRAMES.search(parameter) is not None and not _USED_FRAMES.search(parameter)
         if self._is_controllers(parameter):
             is_offered = _FRAMES.search(parameter) is not None or _JOINTS.search(parameter) is not None
         if gone and is_offered:
-            return phrase("programs that use the name '{name}' do not find it", name=", ".join(sorted(gone)))
+            return name_reason(", ".join(sorted(gone)))
         return None
 
     def removal_reason(self, parameter: str, old: str) -> Phrase | None:

@@ -5,6 +5,7 @@ from __future__ import annotations
 import re
 
 from linkwright.diagnostics import Phrase, phrase
+from linkwright.review.breaking import name_reason
 from linkwright.review.launches.outlines import NAMESPACE, NAMESPACE_OF_INCLUDED, REMAPPING, Entry, LaunchOutline
 from linkwright.review.launches.titles import TRANSFORM_PUBLISHERS, served_names
 from linkwright.review.list_changes import list_items
@@ -103,7 +104,7 @@ def _remapping_reason(
     new_name = new_outline.resolved(source if new is None else new)
     if old_name.lstrip("/") == new_name.lstrip("/"):  # the same name in the empty namespace
         return None
-    return phrase("programs that use the name '{name}' do not find it", name=old_name)
+    return name_reason(old_name)
 
 
 def _are_remapped_elsewhere(names: str, outline: LaunchOutline) -> bool:
