@@ -7,7 +7,7 @@ from collections.abc import Iterable, Iterator
 from pathlib import PurePosixPath
 
 from linkwright.descriptions.comparison import Difference
-from linkwright.diagnostics import Phrase, joined, phrase
+from linkwright.diagnostics import Phrase, joined, phrase, quoted_names
 from linkwright.review.names_in_plugins import NAME_TAGS, used_name
 from linkwright.xmltree import Element
 
@@ -72,13 +72,14 @@ def contents_text(element: Element) -> Phrase | None:
     """Return the topics of a plugin, or the plugins in another element with theirs; None if there are none."""
     if element.tag == "plugin":
         topics = plugin_topics(element)
-        return phrase("topics {topics}", topics=_quoted(topics)) if topics else None
+        return phrase("topics {topics}", topics=quoted_names(topics)) if topics else None
     parts: list[Phrase] = []
     for plugin in plugins_of(element):
         topics = plugin_topics(plugin)
         part = phrase("plugin '{name}'", name=plugin_name(plugin))
         if topics:
-            part = phrase("plugin '{name}' with the topics {topics}", name=plugin_name(plugin), topics=_quoted(topics))
+            names = quoted_names(topics)
+            part = phrase("plugin '{name}' with the topics {topics}", name=plugin_name(plugin), topics=names)
         parts.append(part)
     return joined(parts) if parts else None
 
@@ -108,8 +109,4 @@ def missing_topics_reason(difference: Difference, added: frozenset[str]) -> Phra
     topics = [topic for topic in topics_of(difference.element) if topic not in added]
     if not topics:
         return None
-    return phrase("programs that use {topics} do not find the names", topics=_quoted(topics))
-
-
-def _quoted(names: Iterable[str]) -> str:
-    return ", ".join(f"'{name}'" for name in names)
+    return phrase("programs that use {topics} do not find the names", topics=quoted_names(topics))

@@ -5,7 +5,7 @@ from __future__ import annotations
 import re
 from collections.abc import Iterator, Sequence
 
-from linkwright.diagnostics import Phrase, joined_first, phrase
+from linkwright.diagnostics import Phrase, joined_first, phrase, quoted_names
 from linkwright.review.launches.outlines import Entry
 from linkwright.review.list_changes import list_items
 
@@ -52,7 +52,7 @@ def _node_title(entry: Entry, name: str) -> Phrase:
     names = served_names(entry)
     if not names:
         return phrase("node '{name}'", name=name)
-    return phrase("node '{name}' of {controllers}", name=name, controllers=", ".join(f"'{each}'" for each in names))
+    return phrase("node '{name}' of {controllers}", name=name, controllers=quoted_names(names))
 
 
 def served_names(entry: Entry) -> list[str]:
