@@ -119,10 +119,12 @@ class Problem:
     Attributes:
         text: the reason.
         is_of_old: whether only the old version has the problem, so that the new one solves it.
+        is_of_both: whether neither version can be read.
     """
 
     text: Phrase
     is_of_old: bool = False
+    is_of_both: bool = False
 
 
 @dataclass(frozen=True)
@@ -139,6 +141,8 @@ class Subject:
         problems: why a part of the comparison is missing.
         cases: the names of all argument sets that were compared.
         images: views of both versions.
+        missing: the names of packages and files that neither version has, and that were left out.
+        is_lost: whether the new version cannot be read, and the old version can.
     """
 
     kind: SubjectKind
@@ -150,6 +154,8 @@ class Subject:
     problems: Sequence[Problem] = ()
     cases: Sequence[str] = ()
     images: Sequence[ViewImages] = ()
+    missing: Sequence[str] = ()
+    is_lost: bool = False
 
     @property
     def is_empty(self) -> bool:

@@ -8,7 +8,7 @@ from pathlib import Path
 
 from linkwright.diagnostics import Phrase, counted, phrase
 from linkwright.review.changes import Location
-from linkwright.review.file_pair import FilePair, UnreadableFileError
+from linkwright.review.file_pair import FilePair, LimitError
 from linkwright.review.list_changes import change_text, list_items
 from linkwright.review.yaml_values import YamlValue, read_yaml_values
 
@@ -83,7 +83,7 @@ def _lone_text(name: str, values: Sequence[YamlValue], *, is_added: bool) -> Phr
 
 def _read(file: Path) -> dict[str, YamlValue]:
     if file.stat().st_size > _MAX_BYTES:
-        raise UnreadableFileError(phrase("it is larger than {megabytes} MB", megabytes=_MAX_BYTES >> 20))
+        raise LimitError(phrase("it is larger than {megabytes} MB", megabytes=_MAX_BYTES >> 20))
     return read_yaml_values(file.read_text(encoding="utf-8"))
 
 

@@ -15,13 +15,15 @@ from linkwright.diagnostics import Diagnostic, LinkwrightError, Phrase, counted,
 from linkwright.files.git_repository import ChangedFile
 from linkwright.lint.affected import TextFiles
 from linkwright.lint.checking import Checker
-from linkwright.lint.known_findings import count_keys, new_findings
-from linkwright.lint.targets import Targets, find_targets
+from linkwright.lint.targets import Targets, find_targets, included_robots
 from linkwright.packages.manifest import MANIFEST, package_name
 from linkwright.review.behavior import compare_behavior
 from linkwright.review.changes import Change, Effect, Review, Subject, SubjectKind
 from linkwright.review.file_pair import FilePair
+from linkwright.review.findings import compare_findings, find
+from linkwright.review.folders import review_without_folder
 from linkwright.review.kinds import KindRule, rule_of
+from linkwright.review.notes import is_unreadable_as_before, missing_notes, unreadable_notes
 from linkwright.review.versions import Version, Versions
 
 _Pair = tuple[KindRule, "str | None", "str | None"]
@@ -56,7 +58,10 @@ def review(
     """
     result = _Reviewer(versions, _package_folders(versions, packages), with_images=with_images).run(workers)
     behavior = [compare_behavior(versions, path, seeds) for path in scenarios]
-    return replace(result, subjects=[*result.subjects, *(subject for subject in behavior if not subject.is_empty)])
+    result = replace(result, subjects=[*result.subjects, *(subject for subject in behavior if not subject.is_empty)])
+    for version in (versions.old, versions.new):
+        result = review_without_folder(result, version.root)
+    return result
 
 
 class _Reviewer:
@@ -76,11 +81,13 @@ class _Reviewer:
         with _processes(workers if len(expanded) >= _MIN_EXPANDED else 1) as submit:
             subjects = [submit(_compare, self._versions, *pair, self._with_images) for pair in pairs]
             findings = [
-                submit(_find, version, self._check_targets(version, expanded))
+                submit(find, version, self._check_targets(version, expanded))
                 for version in (self._versions.old, self._versions.new)
             ]
             old_findings, new_findings = (result() for result in findings)
             all_subjects = [result() for result in subjects]
+        changed = {path for file in self._changed_files for path in (file.old_path, file.new_path)}
+        untouched = [subject for subject in all_subjects if is_unreadable_as_before(subject, changed)]
         compared = {path for _, *paths in pairs for path in paths if path}
         parts = {
             change.location.file
@@ -91,21 +98,11 @@ class _Reviewer:
         return Review(
             self._versions.old.name,
             self._versions.new.name,
-            [subject for subject in all_subjects if not subject.is_empty],
+            [subject for subject in all_subjects if not subject.is_empty and subject not in untouched],
             [file.path for file in self._changed_files if not {file.old_path, file.new_path} & (compared | parts)],
-            *self._compare_findings(old_findings, new_findings),
-            list(self._notes()),
+            *compare_findings(self._versions, old_findings, new_findings, self._new_paths),
+            [*self._notes(), *missing_notes(all_subjects), *unreadable_notes(untouched)],
         )
-
-    def _compare_findings(
-        self, old: Sequence[Diagnostic], new: Sequence[Diagnostic]
-    ) -> tuple[list[Diagnostic], list[Diagnostic]]:
-        """Return the findings that only the new version has, and those that only the old version has."""
-        root, old_root = self._versions.new.root, self._versions.old.root
-        old_names = {new_path: old_path for old_path, new_path in self._new_paths.items()}
-        added = new_findings(new, root, count_keys(old, old_root, self._new_paths))
-        fixed = new_findings(old, old_root, count_keys(new, root, old_names))
-        return list(map(self._versions.new.labeled, added)), list(map(self._versions.old.labeled, fixed))
 
     def _is_in_scope(self, path: str) -> bool:
         return not self._folders or any(PurePosixPath(path).is_relative_to(folder) for folder in self._folders)
@@ -152,11 +149,20 @@ class _Reviewer:
         return path if self._versions.old.file(path).is_file() else None
 
     def _check_targets(self, version: Version, pairs: Sequence[_Pair]) -> Targets:
-        """Return the compared descriptions and worlds of a version, and the packages with changed files."""
+        """Return the compared descriptions and worlds of a version, and the packages with changed files.
+
+        A package with changed files in one of the versions is checked in both.
+        """
         paths = [old_path if version.is_old else new_path for _, old_path, new_path in pairs]
-        changed = (file.old_path if version.is_old else file.new_path for file in self._changed_files)
-        folders = {folder for path in changed if path and (folder := _package_folder(version, path))}
-        return Targets(tuple(version.file(path) for path in paths if path), tuple(sorted(folders)))
+        folders = {
+            path
+            for side in (self._versions.old, self._versions.new)
+            for file in self._changed_files
+            if (changed := file.old_path if side.is_old else file.new_path)
+            if (folder := _package_folder(side, changed)) and (path := side.relative(folder)) is not None
+        }
+        packages = [version.file(folder) for folder in sorted(folders) if (version.file(folder) / MANIFEST).is_file()]
+        return Targets(tuple(version.file(path) for path in paths if path), tuple(packages))
 
     def _notes(self) -> Iterator[Phrase]:
         """Yield what the review could not look at."""
@@ -198,12 +204,19 @@ def _compare(
         pair.add_problem(phrase("the versions cannot be compared: {reason}", reason=error.diagnostics[0].message))
     except (RecursionError, MemoryError):
         pair.add_problem(phrase("the versions cannot be compared: they are nested too deeply, or too large"))
-    return Subject(kind, path, old_path, new_path, pair.changes, pair.figures, pair.problems, pair.cases, pair.images)
-
-
-def _find(version: Version, targets: Targets) -> list[Diagnostic]:
-    """Return the findings of a version about some files and packages."""
-    return Checker(folders=(version.root,)).check(targets, [version.root])[0]
+    return Subject(
+        kind,
+        path,
+        old_path,
+        new_path,
+        pair.changes,
+        pair.figures,
+        pair.problems,
+        pair.cases,
+        pair.images,
+        tuple(pair.missing),
+        pair.is_lost,
+    )
 
 
 @contextmanager
@@ -220,8 +233,13 @@ def _processes(count: int) -> Iterator[Callable[..., Callable[[], Any]]]:
 
 
 def _targets(version: Version) -> set[str]:
-    """Return the paths of the complete descriptions and worlds of a version."""
-    files = (version.relative(file) for file in find_targets([version.root]).files)
+    """Return the paths of the complete descriptions and worlds of a version.
+
+    A robot that another description includes is complete if a launch file starts it, too.
+    """
+    checker = Checker(folders=(version.root,))
+    started = [file for file in included_robots(version.root) if checker.calls(file, ())]
+    files = (version.relative(file) for file in (*find_targets([version.root]).files, *started))
     return {path for path in files if path is not None}
 
 
