@@ -103,3 +103,33 @@ def test_finding_that_names_a_renamed_file_is_not_new(package, compare):
     package.commit({PATH: None, "arm_description/urdf/robot.urdf.xacro": text})
     result = compare(package, "HEAD~1..HEAD")
     assert (codes(result.new_findings), codes(result.fixed_findings)) == ([], [])
+
+
+def test_launch_file_that_names_a_renamed_file_is_breaking(package, compare):
+    include = """from launch import LaunchDescription
+from launch.actions import IncludeLaunchDescription
+from launch.substitutions import PathJoinSubstitution
+from launch_ros.substitutions import FindPackageShare
+
+
+def generate_launch_description():
+    path = PathJoinSubstitution([FindPackageShare("arm_description"), "launch", "arm_launch.py"])
+    return LaunchDescription([IncludeLaunchDescription(path)])
+"""
+    markup = '<launch><include file="$(find-pkg-share arm_description)/launch/arm_launch.py"/></launch>'
+    package.commit(
+        {
+            "arm_description/launch/arm_launch.py": launch("alpha"),
+            "arm_description/launch/all.launch.py": include,
+            "arm_description/launch/all.launch.xml": markup,
+        }
+    )
+    package.commit(
+        {"arm_description/launch/arm_launch.py": None, "arm_description/launch/arm.launch.py": launch("alpha")}
+    )
+    result = compare(package, "HEAD~1..HEAD")
+    lost = "names 'launch/arm_launch.py' of 'arm_description', which does not exist any more"
+    assert sorted(subject.path for subject, change in result.breaking_changes if str(change.sentence) == lost) == [
+        "arm_description/launch/all.launch.py",
+        "arm_description/launch/all.launch.xml",
+    ]

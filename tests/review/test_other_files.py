@@ -350,3 +350,29 @@ def test_map_changes_are_reported(repository, compare):
     assert sentences(subject(compare(repository), "n/maps/house.pgm")) == [
         "25 % of the cells changed, in columns 2 to 2 and rows 0 to 1 of the image"
     ]
+
+
+PLUGINS = """<library path="arm_hardware">
+  <class name="arm/Hardware" type="arm::Hardware" base_class_type="hardware_interface::SystemInterface"/>
+  <class name="arm/Gripper" type="arm::Gripper" base_class_type="hardware_interface::SystemInterface"/>
+</library>
+"""
+
+
+def test_removed_plugin_class_is_breaking(repository, compare):
+    repository.commit({"a/arm_plugins.xml": PLUGINS})
+    one = PLUGINS.replace('name="arm/Gripper"', 'name="arm/Hand"')
+    repository.commit({"a/arm_plugins.xml": None, "a/plugins/hardware.xml": one})
+    result = compare(repository, "HEAD~1..HEAD")
+    assert breaking(result) == ["plugin class 'arm/Gripper' removed"]
+    found = subject(result, "a/plugins/hardware.xml")
+    assert sentences(found) == ["plugin class 'arm/Hand' added"]
+    assert found.changes[0].location.line == 3
+
+
+def test_changed_base_class_of_plugin_is_breaking(repository, compare):
+    repository.commit({"a/arm_plugins.xml": PLUGINS})
+    repository.write({"a/arm_plugins.xml": PLUGINS.replace("SystemInterface", "ActuatorInterface", 1)})
+    (sentence,) = breaking(compare(repository))
+    interfaces = "hardware_interface::SystemInterface -> hardware_interface::ActuatorInterface"
+    assert sentence == f"plugin class 'arm/Hardware': base class {interfaces}"

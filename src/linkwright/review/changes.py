@@ -32,6 +32,7 @@ class SubjectKind(Enum):
     MANIFEST = "package manifest"
     MESH = "mesh"
     SCENARIO = "scenario"
+    PLUGINS = "plugin description"
 
 
 @dataclass(frozen=True)

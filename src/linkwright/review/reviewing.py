@@ -24,6 +24,8 @@ from linkwright.review.findings import compare_findings, find
 from linkwright.review.folders import review_without_folder
 from linkwright.review.kinds import KindRule, rule_of
 from linkwright.review.notes import is_unreadable_as_before, missing_notes, unreadable_notes
+from linkwright.review.plugin_files import plugin_subjects
+from linkwright.review.references import lost_references
 from linkwright.review.versions import Version, Versions
 
 _Pair = tuple[KindRule, "str | None", "str | None"]
@@ -85,10 +87,11 @@ class _Reviewer:
                 for version in (self._versions.old, self._versions.new)
             ]
             old_findings, new_findings = (result() for result in findings)
-            all_subjects = [result() for result in subjects]
+            all_subjects = self._with_other_subjects([result() for result in subjects])
         changed = {path for file in self._changed_files for path in (file.old_path, file.new_path)}
         untouched = [subject for subject in all_subjects if is_unreadable_as_before(subject, changed)]
         compared = {path for _, *paths in pairs for path in paths if path}
+        compared |= {subject.path for subject in all_subjects}
         parts = {
             change.location.file
             for subject in all_subjects
@@ -103,6 +106,17 @@ class _Reviewer:
             *compare_findings(self._versions, old_findings, new_findings, self._new_paths),
             [*self._notes(), *missing_notes(all_subjects), *unreadable_notes(untouched)],
         )
+
+    def _with_other_subjects(self, subjects: Sequence[Subject]) -> list[Subject]:
+        """Return subjects with those of plugin descriptions, and with the paths of launch files that lead nowhere."""
+        lost: dict[str, list[Change]] = {}
+        for path, change in lost_references(self._versions, self._changed_files):
+            lost.setdefault(path, []).append(change)
+        result = [replace(subject, changes=[*subject.changes, *lost.pop(subject.path, ())]) for subject in subjects]
+        for path, changes in lost.items():
+            result.append(Subject(SubjectKind.LAUNCH_FILE, path, self._old_path(path), path, changes))
+        result += plugin_subjects(self._versions, self._changed_files)
+        return sorted(result, key=lambda subject: subject.path)
 
     def _is_in_scope(self, path: str) -> bool:
         return not self._folders or any(PurePosixPath(path).is_relative_to(folder) for folder in self._folders)
