@@ -376,3 +376,29 @@ def test_changed_base_class_of_plugin_is_breaking(repository, compare):
     (sentence,) = breaking(compare(repository))
     interfaces = "hardware_interface::SystemInterface -> hardware_interface::ActuatorInterface"
     assert sentence == f"plugin class 'arm/Hardware': base class {interfaces}"
+
+
+def test_fields_have_their_lines(repository, compare):
+    text = "# state\nint32 count\n---\nstring name\n---\nfloat32 count\n"
+    repository.commit({"a/action/Move.action": text})
+    repository.write({"a/action/Move.action": text.replace("float32 count", "float32 share\nfloat64 count")})
+    found = subject(compare(repository), "a/action/Move.action")
+    assert [(str(change.sentence), change.location.line) for change in found.changes] == [
+        ("field 'feedback share' of type float32 added", 6),
+        ("field 'feedback count': float32 -> float64", 7),
+    ]
+
+
+def test_other_kinds_of_dependencies_are_one_line(repository, compare):
+    names = ("geometry_msgs", "rclcpp", "sensor_msgs")
+
+    def manifest(tag: str) -> str:
+        lines = "".join(f"  <{tag}>{name}</{tag}>\n" for name in names)
+        return PACKAGE_XML.replace("</package>", f"{lines}</package>")
+
+    repository.commit({"a/package.xml": manifest("exec_depend")})
+    repository.write({"a/package.xml": manifest("depend").replace('format="3"', 'format="2"')})
+    assert sentences(subject(compare(repository), "a/package.xml")) == [
+        "format: 3 -> 2",
+        "exec_depend -> depend: geometry_msgs, rclcpp, sensor_msgs",
+    ]
