@@ -195,7 +195,7 @@ def test_plugin_interfaces_and_topics_are_compared(package, compare, old, new, r
     assert (None if change.reason is None else str(change.reason)) == reason
 
 
-def test_unreadable_version_is_a_problem_of_its_file_only(package, compare):
+def test_unreadable_version_is_a_change_of_its_file_only(package, compare):
     package.commit(
         {
             PATH: ARM.replace("</robot>", "${missing}</robot>"),
@@ -204,9 +204,9 @@ def test_unreadable_version_is_a_problem_of_its_file_only(package, compare):
     )
     package.write({PATH: ARM, "other/b.urdf": "<robot name='b'><link name='c'/></robot>"})
     result = compare(package)
-    (problem,) = subject(result, PATH).problems
-    assert str(problem.text).startswith("the old version cannot be read: HEAD:arm_description/urdf/arm.urdf.xacro:")
-    assert "missing" in problem.text
+    (sentence,) = sentences(subject(result, PATH))
+    assert sentence.startswith("can be read now; in the old version: arm_description/urdf/arm.urdf.xacro:")
+    assert "missing" in sentence
     assert breaking(result)
 
 

@@ -246,12 +246,23 @@ def test_reformatted_parameters_are_not_reported(repository, compare, text):
 ALIASES = "\n".join(["a0: &a0 [{x: 1}]", *(f"a{n}: &a{n} [{', '.join([f'*a{n - 1}'] * 9)}]" for n in range(1, 9))])
 
 
-@pytest.mark.parametrize(("text", "reason"), [("a: [1", "while parsing"), (ALIASES, "more than 20000 values")])
-def test_malicious_yaml_is_a_problem(repository, compare, text, reason):
+def test_yaml_with_too_many_values_is_a_problem(repository, compare):
     repository.commit({"a/package.xml": PACKAGE_XML, "a/config/c.yaml": PARAMETERS})
-    repository.write({"a/config/c.yaml": text})
+    repository.write({"a/config/c.yaml": ALIASES})
     (problem,) = subject(compare(repository), "a/config/c.yaml").problems
-    assert reason in problem.text
+    assert "more than 20000 values" in problem.text
+
+
+def test_file_that_cannot_be_read_any_more_is_breaking(repository, compare):
+    repository.commit({"a/package.xml": PACKAGE_XML, "a/config/c.yaml": PARAMETERS})
+    repository.commit({"a/config/c.yaml": "a: [1"})
+    (sentence,) = breaking(compare(repository, "HEAD~1..HEAD"))
+    assert sentence.startswith("cannot be read any more: while parsing")
+    repository.commit({"a/config/c.yaml": PARAMETERS})
+    result = compare(repository, "HEAD~1..HEAD")
+    (sentence,) = sentences(subject(result, "a/config/c.yaml"))
+    assert sentence.startswith("can be read now; in the old version: while parsing")
+    assert breaking(result) == []
 
 
 @pytest.mark.parametrize(
@@ -331,8 +342,7 @@ def test_mesh_in_git_lfs_is_not_downloaded(repository, compare):
     repository.write({"a/meshes/m.stl": pointer.format("1" * 64)})
     problems = subject(compare(repository), "a/meshes/m.stl").problems
     assert [str(problem.text) for problem in problems] == [
-        "the old version cannot be read: the file is in Git LFS and is not downloaded",
-        "the new version cannot be read: the file is in Git LFS and is not downloaded",
+        "neither version can be read: the file is in Git LFS and is not downloaded",
     ]
 
 
@@ -370,3 +380,55 @@ def test_removed_and_added_meshes_are_grouped(repository, compare):
     assert str(change.sentence).endswith("m6.stl and 2 more")
     assert result.breaking_changes
     assert not compare(repository, "HEAD..HEAD~1").breaking_changes
+
+
+PLUGINS = """<library path="arm_hardware">
+  <class name="arm/Hardware" type="arm::Hardware" base_class_type="hardware_interface::SystemInterface"/>
+  <class name="arm/Gripper" type="arm::Gripper" base_class_type="hardware_interface::SystemInterface"/>
+</library>
+"""
+
+
+def test_removed_plugin_class_is_breaking(repository, compare):
+    repository.commit({"a/arm_plugins.xml": PLUGINS})
+    one = PLUGINS.replace('name="arm/Gripper"', 'name="arm/Hand"')
+    repository.commit({"a/arm_plugins.xml": None, "a/plugins/hardware.xml": one})
+    result = compare(repository, "HEAD~1..HEAD")
+    assert breaking(result) == ["plugin class 'arm/Gripper' removed"]
+    found = subject(result, "a/plugins/hardware.xml")
+    assert sentences(found) == ["plugin class 'arm/Hand' added"]
+    assert found.changes[0].location.line == 3
+
+
+def test_changed_base_class_of_plugin_is_breaking(repository, compare):
+    repository.commit({"a/arm_plugins.xml": PLUGINS})
+    repository.write({"a/arm_plugins.xml": PLUGINS.replace("SystemInterface", "ActuatorInterface", 1)})
+    (sentence,) = breaking(compare(repository))
+    interfaces = "hardware_interface::SystemInterface -> hardware_interface::ActuatorInterface"
+    assert sentence == f"plugin class 'arm/Hardware': base class {interfaces}"
+
+
+def test_fields_have_their_lines(repository, compare):
+    text = "# state\nint32 count\n---\nstring name\n---\nfloat32 count\n"
+    repository.commit({"a/action/Move.action": text})
+    repository.write({"a/action/Move.action": text.replace("float32 count", "float32 share\nfloat64 count")})
+    found = subject(compare(repository), "a/action/Move.action")
+    assert [(str(change.sentence), change.location.line) for change in found.changes] == [
+        ("field 'feedback share' of type float32 added", 6),
+        ("field 'feedback count': float32 -> float64", 7),
+    ]
+
+
+def test_other_kinds_of_dependencies_are_one_line(repository, compare):
+    names = ("geometry_msgs", "rclcpp", "sensor_msgs")
+
+    def manifest(tag: str) -> str:
+        lines = "".join(f"  <{tag}>{name}</{tag}>\n" for name in names)
+        return PACKAGE_XML.replace("</package>", f"{lines}</package>")
+
+    repository.commit({"a/package.xml": manifest("exec_depend")})
+    repository.write({"a/package.xml": manifest("depend").replace('format="3"', 'format="2"')})
+    assert sentences(subject(compare(repository), "a/package.xml")) == [
+        "format: 3 -> 2",
+        "exec_depend -> depend: geometry_msgs, rclcpp, sensor_msgs",
+    ]

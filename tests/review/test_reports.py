@@ -193,3 +193,10 @@ def _tags(page: str) -> list[str]:
     tags: list[str] = []
     Reader().feed(page)
     return tags
+
+
+def test_only_the_arguments_that_differ_are_named():
+    change = Change(phrase("a change"), cases=("dof:=7 tool:=probe pose:=0 0 1",))
+    cases = ["dof:=7 tool:=none pose:=0 0 1", "dof:=7 tool:=probe pose:=0 0 1"]
+    subject = Subject(SubjectKind.DESCRIPTION, "a.urdf", "a.urdf", "a.urdf", [change], cases=cases)
+    assert "a change (with tool:=probe)" in as_text(Review("a", "b", [subject]))

@@ -24,7 +24,9 @@ _CONDITIONS: dict[str, Callable[[Review], object]] = {
     "breaking": lambda review: review.breaking_changes,
     "findings": lambda review: review.new_findings,
     "problems": lambda review: [
-        problem for subject in review.subjects for problem in subject.problems if not problem.is_of_old
+        subject
+        for subject in review.subjects
+        if subject.is_lost or not all(problem.is_of_old for problem in subject.problems)
     ],
     "changes": lambda review: review.subjects,
 }

@@ -74,6 +74,12 @@ class Phrase(str):
         """Return the text in another language."""
         return self._fill(wording.gettext(self.template), wording) if self.template else ""
 
+    def with_arguments(self, **arguments: object) -> Phrase:
+        """Return the phrase with other values for those of the arguments that it has."""
+        changes = {name: value for name, value in arguments.items() if name in self.arguments}
+        result: Phrase = type(self)(self.template, {**self.arguments, **changes}, *self.__reduce__()[1][2:])
+        return result
+
     @property
     def chosen_template(self) -> str:
         """The English template, or the template for the count of a phrase with a plural."""
@@ -296,6 +302,11 @@ def joined_first(texts: Iterable[str], limit: int) -> Phrase:
 def quoted_names(names: Iterable[object], last: str | None = None) -> Phrase:
     """Join names, each in quotation marks: ``'a', 'b' or 'c'``."""
     return joined(map(quoted, names), last=last)
+
+
+def listed_items(text: object) -> tuple[str, ...]:
+    """Return the texts that `joined` joined, or nothing for any other text."""
+    return text.items if isinstance(text, _Joined) else ()
 
 
 def as_phrase(text: str) -> Phrase:

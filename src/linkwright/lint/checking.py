@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from pathlib import Path
 
 from linkwright.diagnostics import Diagnostic, Span
@@ -104,12 +104,15 @@ class Checker:
         """Return a checker with the same settings for other folders, such as those of another version."""
         return Checker(self.values, self.select, self.ignore, self.config, tuple(folders))
 
-    def check(self, targets: Targets, paths: Sequence[Path]) -> tuple[list[Diagnostic], Checked | None]:
+    def check(
+        self, targets: Targets, paths: Sequence[Path], on_checked: Callable[[Checked], None] | None = None
+    ) -> tuple[list[Diagnostic], Checked | None]:
         """Check files and packages.
 
         Args:
             targets: the files and packages.
             paths: the files and folders that the user named.
+            on_checked: a function that is called with the result of each file.
 
         Returns:
             All findings without duplicates, and the result of the last file, or None if there is no file.
@@ -120,6 +123,8 @@ class Checker:
         all_settings_findings: list[tuple[Diagnostic, ...]] = []
         for file in targets.files:
             checked, settings_findings = self.check_file(file, targets, contexts=contexts)
+            if on_checked is not None:
+                on_checked(checked)
             examined_files.append(Examined.of(checked, file))
             all_settings_findings.append(settings_findings)
         for result, settings_findings in zip(examined_files, all_settings_findings, strict=True):
@@ -193,6 +198,23 @@ class Checker:
             for argument_set in self._argument_sets(file, packages)
             if argument_set.is_complete
         ]
+
+    def argument_sets(self, file: Path, packages: Sequence[Path]) -> list[ArgumentSet]:
+        """Return the argument sets of a description: from the settings, or else from its callers.
+
+        Sets of callers are included even if values are known only at runtime, or may not occur in combination.
+
+        Args:
+            file: the description.
+            packages: the folders that are searched for callers.
+        """
+        from linkwright.descriptions.argument_sets import ArgumentSet
+
+        settings, _ = self.settings(file)
+        configured_sets = settings.arguments_of(file)
+        if configured_sets:
+            return [ArgumentSet(values) for values in configured_sets]
+        return list(self._argument_sets(file, packages))
 
     def possible_arguments(self, file: Path, packages: Sequence[Path]) -> list[Mapping[str, str]]:
         """Return the argument values that callers pass to a description.

@@ -11,12 +11,14 @@ from collections.abc import Iterable, Mapping, Sequence
 from pathlib import Path
 from types import MappingProxyType
 
-from linkwright.diagnostics import Diagnostic, LinkwrightError, display_path, foreign, phrase
+from linkwright.diagnostics import Diagnostic, LinkwrightError, display_path, foreign, joined, phrase
+from linkwright.diagnostics.phrase import as_phrase, listed_items
 from linkwright.files.whole_files import write_whole_file
 from linkwright.loading.deferred import lazy_pattern
 from linkwright.loading.lean_dataclasses import NamedTuple
 
 _QUOTED = lazy_pattern("'([^']*)'")
+_NUMBER = lazy_pattern(r"\d(?:[\d.,\u00a0\u2009\u202f ]*\d)?")
 _VERSION = 1
 """The version of the format of baseline files."""
 
@@ -38,6 +40,13 @@ class Key(NamedTuple):
     def names(self) -> frozenset[str]:
         """The quoted names in the message."""
         return frozenset(_QUOTED.findall(self.message))
+
+    @property
+    def without_numbers(self) -> Key:
+        """The key without the numbers in the message, except those in quoted names."""
+        parts = self.message.split("'")
+        parts[::2] = [_NUMBER.sub("#", part) for part in parts[::2]]
+        return self._replace(message="'".join(parts))
 
 
 def key_of(finding: Diagnostic, folder: Path) -> Key:
@@ -67,7 +76,10 @@ def count_keys(
     counts: dict[Key, int] = {}
     for finding in findings:
         key = key_of(finding, folder)
-        key = key._replace(file=names.get(key.file) or key.file)
+        new_name = names.get(key.file)
+        if new_name:
+            message = key.message.replace(f"'{Path(key.file).name}'", f"'{Path(new_name).name}'")
+            key = key._replace(file=new_name, message=message)
         counts[key] = counts.get(key, 0) + 1
     return counts
 
@@ -75,20 +87,53 @@ def count_keys(
 def new_findings(findings: Sequence[Diagnostic], folder: Path, known: Mapping[Key, int]) -> list[Diagnostic]:
     """Return the findings without as many of each key as are known.
 
-    A finding that names several items, such as undeclared dependencies, is not new if a known finding names them all.
+    A finding that differs from a known one only in numbers is not new. Of a finding that lists names, such as
+    undeclared dependencies, only the names that no known finding lists are new.
     """
     remaining = dict(known)
-    names: dict[tuple[str, str], list[frozenset[str]]] = {}
-    for key in known:
-        names.setdefault((key.code, key.file), []).append(key.names)
-    result = []
+    rest: list[tuple[Key, Diagnostic]] = []
     for finding in findings:
         key = key_of(finding, folder)
         if remaining.get(key, 0) > 0:
             remaining[key] -= 1
-        elif not (key.names and any(key.names < others for others in names.get((key.code, key.file), ()))):
-            result.append(finding)
+        else:
+            rest.append((key, finding))
+    similar: dict[Key, int] = {}
+    for key, count in remaining.items():
+        similar[key.without_numbers] = similar.get(key.without_numbers, 0) + count
+    result = []
+    for key, finding in rest:
+        if similar.get(key.without_numbers, 0) > 0:
+            similar[key.without_numbers] -= 1
+            continue
+        known_names = [other.names for other in known if (other.code, other.file) == (key.code, key.file)]
+        new = _with_new_names(finding, key, known_names)
+        if new is not None:
+            result.append(new)
     return result
+
+
+def _with_new_names(finding: Diagnostic, key: Key, known_names: Sequence[frozenset[str]]) -> Diagnostic | None:
+    """Return a finding with the names that no known finding lists, or None if there are none."""
+    if key.names and any(key.names < others for others in known_names):
+        return None
+    message = as_phrase(finding.message)
+    lists = {name: items for name, value in message.arguments.items() if (items := listed_items(value))}
+    if len(lists) != 1:
+        return finding
+    ((argument, listed),) = lists.items()
+    listed_names = frozenset(name for item in listed for name in _QUOTED.findall(item))
+    others = key.names - listed_names
+    known: frozenset[str] = frozenset().union(
+        *(names for names in known_names if others <= names and names & listed_names)
+    )
+    new_items = [item for item in listed if not known.issuperset(_QUOTED.findall(item) or [item])]
+    if len(new_items) == len(listed):
+        return finding
+    if not new_items:
+        return None
+    arguments = {argument: joined(new_items), "count": len(new_items)}
+    return finding.with_changes(message=message.with_arguments(**arguments))
 
 
 def read_baseline(path: Path) -> dict[Key, int]:

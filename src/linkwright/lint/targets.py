@@ -82,6 +82,13 @@ def find_targets(paths: Iterable[Path], *, with_packages: bool = False) -> Targe
     return Targets(tuple(files), tuple(packages), frozenset(path for path in paths if not path.is_dir()))
 
 
+def included_robots(folder: Path) -> list[Path]:
+    """Return the xacro files in and below a folder that describe a complete robot and that other files include."""
+    files, packages = walk(folder, (_XACRO,))
+    entries = set(_entries(files, packages))
+    return [path for path in files if path not in entries and _describes_robot(path)]
+
+
 def find_xml_files(paths: Iterable[Path]) -> list[Path]:
     """Return the XML files of robot packages among files and folders, without duplicates.
 

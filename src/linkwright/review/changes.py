@@ -36,6 +36,7 @@ class SubjectKind(Enum):
     SCENARIO = "scenario"
     SEMANTICS = "semantic description"
     PART = "part of descriptions"
+    PLUGINS = "plugin description"
 
 
 @dataclass(frozen=True)
@@ -139,10 +140,12 @@ class Problem:
     Attributes:
         text: the reason.
         is_of_old: whether only the old version has the problem, so that the new one solves it.
+        is_of_both: whether neither version can be read.
     """
 
     text: Phrase
     is_of_old: bool = False
+    is_of_both: bool = False
 
 
 def nesting_problem() -> Problem:
@@ -185,6 +188,8 @@ class Subject:
         paths: the paths of robots that differ.
         scene: both versions of a robot in 3D, if it was asked for.
         expanded: the elements of changed files that the compared robots show.
+        missing: the names of packages and files that neither version has, and that were left out.
+        is_lost: whether the new version cannot be read, and the old version can.
     """
 
     kind: SubjectKind
@@ -199,6 +204,8 @@ class Subject:
     paths: Sequence[PathComparison] = ()
     scene: RobotScene | None = None
     expanded: Collection[ExpandedPlace] = ()
+    missing: Sequence[str] = ()
+    is_lost: bool = False
 
     @property
     def is_empty(self) -> bool:

@@ -3,16 +3,14 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Hashable, Iterator, Mapping, Sequence
+from collections.abc import Hashable, Iterator, Sequence, Sized
 from dataclasses import dataclass, field, replace
 
-from linkwright.descriptions import Description
 from linkwright.descriptions.comparison import Comparison, Difference, sentence
-from linkwright.descriptions.pairs import Model, Pair
-from linkwright.diagnostics import LinkwrightError, Phrase, phrase, term
+from linkwright.diagnostics import Phrase, phrase, term
 from linkwright.geometry.single import Pose, pose_quaternion
-from linkwright.lint.checking import Checker
 from linkwright.review.breaking import breaking_reason
+from linkwright.review.cases import Case, cases, switched_cases
 from linkwright.review.changes import Change, Effect, Location
 from linkwright.review.collisions import collision_changes
 from linkwright.review.figures import RobotMeasures, figures_of
@@ -24,57 +22,47 @@ from linkwright.review.names_in_plugins import path_of_renamed
 from linkwright.review.parts.expanded import expanded_places
 from linkwright.review.plugins import added_topics, contents_text, missing_topics_reason
 from linkwright.review.scenes import robot_scene
-from linkwright.review.versions import Version
-from linkwright.urdf import Robot
-
-_MAX_CASES = 12
-"""The maximum number of argument sets to compare. Vendors' launch files can combine hundreds."""
-
-
-@dataclass(frozen=True)
-class _Case:
-    """A description in both versions with one set of argument values.
-
-    Attributes:
-        name: the values as ``name:=value`` words; empty for the defaults.
-        old: the old description.
-        new: the new description.
-        models: both models.
-    """
-
-    name: str
-    old: Description
-    new: Description
-    models: Pair
 
 
 def compare_descriptions(pair: FilePair) -> None:
     """Compare two versions of a description with each set of argument values."""
     groups: dict[Hashable, _Group] = {}
     collisions: list[Change] = []
-    for case in _cases(pair):
+    for case in _cases(pair, groups):
         pair.cases.append(case.name)
         if case.old.robot is None or case.new.robot is None:
             continue
         pair.expanded.update(expanded_places(pair.versions, case.old, case.new))
         comparison = case.models.compare(case.old.robot, case.new.robot)
         frames = SharedFrames(case.old.robot, case.new.robot, comparison.links)
-        for change in _changes(pair, comparison, frames, case.old.robot, case.new.robot):
+        for change in _changes(pair, comparison, frames, case):
             group = groups.setdefault(change.identity, _Group(change))
             group.names[change.name] = None
             group.cases[case.name] = None
+        if case.partial is not None and case.partial.has_stand_ins:
+            continue  # where the links are is unknown
         if pair.drawings.images and not pair.images:
             pair.images += view_images(case.models, case.old.robot, case.new.robot, comparison, frames)
             if pair.images and pair.drawings.scenes:
                 roots = pair.versions.old.root, pair.versions.new.root
                 pair.scene = robot_scene(case.models, case.old, case.new, roots)
-        if len(pair.cases) == 1:
+        if len(pair.cases) == 1 and case.partial is None:
             old = RobotMeasures(case.old.robot, case.models.old, UNMOVED, frames.old)
             new = RobotMeasures(case.new.robot, case.models.new, frames.new_root, frames.new)
             pair.figures += figures_of(old, new)
             collisions = list(collision_changes(old, new))
     pair.changes += merged(group.change(pair.cases) for group in groups.values())
     pair.changes += collisions
+
+
+def _cases(pair: FilePair, groups: Sized) -> Iterator[Case]:
+    """Yield the cases of callers and, if they show no change, those with the opposites of boolean arguments."""
+    compared = []
+    for case in cases(pair):
+        compared.append(case)
+        yield case
+    if not groups:
+        yield from switched_cases(pair, compared)
 
 
 @dataclass
@@ -90,55 +78,14 @@ class _Group:
         return replace(self.first, cases=cases, other_names=tuple(self.names)[1:])
 
 
-def _cases(pair: FilePair) -> Iterator[_Case]:
-    """Yield the description with each set of values that one of the versions is called with.
-
-    Sets with which neither version can be read are problems, as are those with which only one can.
-    """
-    sets: dict[str, Mapping[str, str]] = {}
-    for version, path in ((pair.versions.new, pair.new_path), (pair.versions.old, pair.old_path)):
-        for values in _argument_sets(version, path):
-            sets.setdefault(_case_name(values, version), values)
-    if len(sets) > _MAX_CASES:
-        text = phrase(
-            "only {count} of {total} sets of argument values were compared", count=_MAX_CASES, total=len(sets)
-        )
-        pair.add_problem(text)
-    for name, values in list(sets.items())[:_MAX_CASES]:
-        models = Pair(pair.versions.old.model(pair.old_path, values), pair.versions.new.model(pair.new_path, values))
-        old = _read(pair, models.old, pair.versions.old)
-        new = _read(pair, models.new, pair.versions.new)
-        if old is not None and new is not None:
-            yield _Case(name, old, new, models)
-
-
-def _argument_sets(version: Version, path: str) -> list[Mapping[str, str]]:
-    """Return the values with which a description is called, or its defaults if it is not."""
-    checker = Checker(folders=(version.root,))
-    return [values for values, _ in checker.calls(version.file(path), ())] or [{}]
-
-
-def _case_name(values: Mapping[str, str], version: Version) -> str:
-    """Return the values as they are written on the command line, without the folder of the version."""
-    text = " ".join(f"{name}:={value}" for name, value in sorted(values.items()))
-    return text.replace(str(version.root), ".")
-
-
-def _read(pair: FilePair, model: Model, version: Version) -> Description | None:
-    try:
-        return model.read()
-    except LinkwrightError as error:
-        first = error.diagnostics[0]
-        location = "" if first.span is None else f"{model.display_name(first.span.file)}:{first.span.line}: "
-        pair.add_unreadable(version, phrase("{location}{reason}", location=location, reason=first.message))
-        return None
-
-
 # --- changes of a robot ----------------------------------------------------------------------------------------------
 
 
-def _changes(pair: FilePair, comparison: Comparison, frames: SharedFrames, old: Robot, new: Robot) -> Iterator[Change]:
-    if old.root != new.root:
+def _changes(pair: FilePair, comparison: Comparison, frames: SharedFrames, case: Case) -> Iterator[Change]:
+    old, new, partial = case.old.robot, case.new.robot, case.partial
+    if old is None or new is None:
+        return
+    if old.root != new.root and (partial is None or partial.has_certain_roots()):
         text = phrase("root link '{old}' -> '{new}'", old=old.root, new=new.root)
         if frames.are_aligned:
             text = phrase(
@@ -153,17 +100,29 @@ def _changes(pair: FilePair, comparison: Comparison, frames: SharedFrames, old: 
         )
     added = added_topics(comparison.differences)
     for difference in comparison.differences:
+        if partial is not None and not partial.is_certain(difference):
+            continue
         reason = breaking_reason(difference, old, new) or missing_topics_reason(difference, added)
         effect = Effect.CHANGED if reason is None else Effect.BREAKING
         text = sentence_of_difference(difference)
         if difference.subject == "link" and difference.kind == "renamed":
-            text = _with_motion(text, frames.distance(difference.old or ""))
-        yield Change(text, effect, reason, _location(pair, difference))
+            is_placed = partial is None or not partial.has_stand_ins
+            text = _with_motion(text, frames.distance(difference.old or "") if is_placed else None)
+        yield Change(text, effect, reason, _mesh_location(pair, case, difference) or _location(pair, difference))
 
 
 def _with_motion(text: Phrase, distance: float | None) -> Phrase:
     """Return the sentence about a renamed link with the distance by which it has moved, if it has."""
     return text if distance is None else phrase("{change} (moved by {distance:.4g} m)", change=text, distance=distance)
+
+
+def _mesh_location(pair: FilePair, case: Case, difference: Difference) -> Location | None:
+    """Return the mesh file of a difference between the contents of a mesh, which several robots may use."""
+    _, is_mesh, address = difference.property.partition(" mesh ")
+    if not is_mesh or difference.subject != "link":
+        return None
+    path = pair.versions.new.relative(case.models.new.resolve(address))
+    return None if path is None else Location(path, 1, 1)
 
 
 def _location(pair: FilePair, difference: Difference) -> Location | None:

@@ -5,13 +5,15 @@ from __future__ import annotations
 from collections.abc import Callable
 from dataclasses import dataclass, field
 from pathlib import Path
-from typing import TypeVar
+from typing import NamedTuple, TypeVar
 
-from linkwright.diagnostics import LinkwrightError, Phrase, Span, foreign, phrase
+from linkwright.diagnostics import LinkwrightError, Phrase, Span, foreign, phrase, quoted_names
 from linkwright.review.changes import Change, Effect, ExpandedPlace, Figure, Location, Problem, RobotScene, ViewImages
 from linkwright.review.versions import Version, Versions
 
 _Content = TypeVar("_Content")
+_MAX_NAMES = 5
+"""The number of names that a problem lists."""
 
 
 class UnreadableFileError(Exception):
@@ -24,6 +26,34 @@ class UnreadableFileError(Exception):
     def __init__(self, reason: Phrase) -> None:
         super().__init__(reason)
         self.reason = reason
+
+
+class LimitError(UnreadableFileError):
+    """Raised for a file that is not read because of its size or place, and that may be right."""
+
+
+class Fault(NamedTuple):
+    """The reason why a version cannot be read.
+
+    Attributes:
+        reason: the reason.
+        path: the file with the fault relative to the root, or its path outside; empty for the compared file.
+        line: the line of the fault; 0 if unknown.
+        column: the column of the fault.
+        is_certain: whether the file is at fault, and not the computer or a limit.
+    """
+
+    reason: Phrase
+    path: str = ""
+    line: int = 0
+    column: int = 1
+    is_certain: bool = True
+
+    @property
+    def text(self) -> Phrase:
+        """The reason with its location."""
+        location = f"{self.path}:{self.line}: " if self.path else ""
+        return phrase("{location}{reason}", location=location, reason=self.reason)
 
 
 @dataclass(frozen=True)
@@ -55,6 +85,8 @@ class FilePair:
         images: images of both versions.
         scene: both versions in 3D.
         expanded: the elements of changed files that the compared robots show.
+        missing: the names of packages and files that neither version has, and that were left out.
+        is_lost: whether the new version cannot be read, and the old version can.
     """
 
     versions: Versions
@@ -68,6 +100,8 @@ class FilePair:
     images: list[ViewImages] = field(default_factory=list)
     scene: RobotScene | None = None
     expanded: set[ExpandedPlace] = field(default_factory=set)
+    missing: dict[str, None] = field(default_factory=dict)
+    is_lost: bool = False
 
     @property
     def old_file(self) -> Path:
@@ -80,41 +114,74 @@ class FilePair:
         return self.versions.new.file(self.new_path)
 
     def read(self, read: Callable[[Path], _Content]) -> tuple[_Content, _Content] | None:
-        """Return the contents of both versions, or None, with a problem added, if one of them cannot be read.
+        """Return the contents of both versions, or None, with a problem or change added, if one cannot be read.
 
         Args:
             read: a function that reads a file, and raises `LinkwrightError`, `UnreadableFileError`, `OSError` or
                 `ValueError` if it cannot.
         """
-        old = self._read(read, self.old_file, self.versions.old)
-        new = self._read(read, self.new_file, self.versions.new)
-        return None if old is None or new is None else (old, new)
-
-    def _read(self, read: Callable[[Path], _Content], file: Path, version: Version) -> _Content | None:
-        reason: Phrase
-        try:
-            return read(file)
-        except LinkwrightError as error:
-            reason = error.diagnostics[0].message
-        except UnreadableFileError as error:
-            reason = error.reason
-        except OSError as error:
-            reason = foreign(error.strerror or str(error))
-        except ValueError as error:
-            reason = foreign(str(error))
-        self.add_unreadable(version, reason)
+        old, new = _read(read, self.old_file), _read(read, self.new_file)
+        if not isinstance(old, Fault) and not isinstance(new, Fault):
+            return old, new
+        self.add_faults(old if isinstance(old, Fault) else None, new if isinstance(new, Fault) else None)
         return None
 
-    def add_unreadable(self, version: Version, reason: Phrase) -> None:
-        """Add the problem that a version cannot be read, once for each reason."""
-        text = phrase("the new version cannot be read: {reason}", reason=reason)
-        if version.is_old:
-            text = phrase("the old version cannot be read: {reason}", reason=reason)
-        self.add_problem(text, is_of_old=version.is_old)
+    def add_faults(self, old: Fault | None, new: Fault | None, cases: tuple[str, ...] = ()) -> None:
+        """Add why one or both versions cannot be read.
 
-    def add_problem(self, text: Phrase, *, is_of_old: bool = False) -> None:
+        A file that only one version can read is a change, which is breaking if it is the old version.
+
+        Args:
+            old: the fault of the old version; None if it can be read.
+            new: the fault of the new version; None if it can be read.
+            cases: the names of the argument sets with which the description cannot be read; empty for all.
+        """
+        if old is not None and new is not None:
+            if (old.reason, old.path) == (new.reason, new.path):
+                self._add(Problem(phrase("neither version can be read: {reason}", reason=new.text), is_of_both=True))
+            else:
+                self.add_unreadable(self.versions.old, old, is_of_both=True)
+                self.add_unreadable(self.versions.new, new, is_of_both=True)
+        elif new is not None and not new.is_certain:
+            self.add_unreadable(self.versions.new, new)
+        elif new is not None:
+            text = phrase("cannot be read any more: {reason}", reason=new.text)
+            reason = phrase("launch files and programs that use the file fail")
+            location = Location(new.path or self.new_path, new.line, new.column) if new.line else None
+            self.changes.append(Change(text, Effect.BREAKING, reason, location, cases))
+            self.is_lost = True
+        elif old is not None and not old.is_certain:
+            self.add_unreadable(self.versions.old, old)
+        elif old is not None:
+            text = phrase("can be read now; in the old version: {reason}", reason=old.text)
+            location = Location(old.path or self.old_path, old.line, old.column, is_old=True) if old.line else None
+            self.changes.append(Change(text, location=location, cases=cases))
+
+    def add_unreadable(self, version: Version, fault: Fault, *, is_of_both: bool = False) -> None:
+        """Add the problem that a version cannot be read, once for each reason."""
+        text = phrase("the new version cannot be read: {reason}", reason=fault.text)
+        if version.is_old:
+            text = phrase("the old version cannot be read: {reason}", reason=fault.text)
+        self._add(Problem(text, is_of_old=version.is_old, is_of_both=is_of_both))
+
+    def add_unevaluated(self, names: list[str]) -> None:
+        """Add the problem that values of links and joints need definitions of missing files."""
+        text = phrase(
+            "values that need definitions of missing files are not compared: {names}", names=quoted_names(names)
+        )
+        if len(names) > _MAX_NAMES:
+            text = phrase(
+                "values that need definitions of missing files are not compared: {names} and {count} more",
+                names=quoted_names(names[:_MAX_NAMES]),
+                count=len(names) - _MAX_NAMES,
+            )
+        self.add_problem(text)
+
+    def add_problem(self, text: Phrase) -> None:
         """Add a reason why a part of the comparison is missing, once."""
-        problem = Problem(text, is_of_old)
+        self._add(Problem(text))
+
+    def _add(self, problem: Problem) -> None:
         if problem not in self.problems:
             self.problems.append(problem)
 
@@ -128,3 +195,18 @@ class FilePair:
         version = self.versions.old if is_old else self.versions.new
         path = None if span is None else version.relative(span.file)
         return None if span is None or path is None else Location(path, span.line, span.column, is_old)
+
+
+def _read(read: Callable[[Path], _Content], file: Path) -> _Content | Fault:
+    try:
+        return read(file)
+    except LinkwrightError as error:
+        return Fault(error.diagnostics[0].message)
+    except LimitError as error:
+        return Fault(error.reason, is_certain=False)
+    except UnreadableFileError as error:
+        return Fault(error.reason)
+    except OSError as error:
+        return Fault(foreign(error.strerror or str(error)), is_certain=False)
+    except ValueError as error:
+        return Fault(foreign(str(error)))

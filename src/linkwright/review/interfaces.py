@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Sequence
 from pathlib import Path
 
@@ -12,6 +13,7 @@ from linkwright.packages import enclosing_package
 from linkwright.review.changes import Location
 from linkwright.review.file_pair import FilePair
 
+_SEPARATOR = "---"
 _PARTS = {1: ("",), 2: ("request ", "response "), 3: ("goal ", "result ", "feedback ")}
 """The names of the structures of a message, a service and an action, in front of the names of fields."""
 
@@ -26,9 +28,10 @@ def compare_interfaces(pair: FilePair) -> None:
     if definitions is None:
         return
     old, new = map(structures_of, definitions)
-    for old_part, new_part, name in zip(old, new, _PARTS[len(new)], strict=True):
-        _compare_fields(pair, old_part.fields, new_part.fields, name)
-        _compare_constants(pair, old_part.constants, new_part.constants, name)
+    for index, (old_part, new_part, name) in enumerate(zip(old, new, _PARTS[len(new)], strict=True)):
+        places = _Places(pair, index)
+        _compare_fields(pair, old_part.fields, new_part.fields, name, places)
+        _compare_constants(pair, old_part.constants, new_part.constants, name, places)
 
 
 def _read(file: Path) -> Definition:
@@ -38,17 +41,51 @@ def _read(file: Path) -> Definition:
     return parse_source(read_source(file), type_name, TrustedMessages())
 
 
-def _compare_fields(pair: FilePair, old: Sequence[Field], new: Sequence[Field], part: str) -> None:
-    location = Location(pair.new_path, 1, 1)
+class _Places:
+    """The lines of the names in a structure of a definition.
+
+    Args:
+        pair: both versions of the file.
+        index: the index of the structure: of the request and the response, for example.
+    """
+
+    def __init__(self, pair: FilePair, index: int) -> None:
+        self._pair = pair
+        self._old, self._new = (_lines(file, index) for file in (pair.old_file, pair.new_file))
+
+    def of(self, name: str, *, is_old: bool = False) -> Location:
+        """Return the location of a field or constant."""
+        path, lines = (self._pair.old_path, self._old) if is_old else (self._pair.new_path, self._new)
+        start = r".*\s" if path.endswith(".idl") else r"\s*[^#\s]\S*\s+"
+        pattern = re.compile(rf"{start}({re.escape(name)})\b")
+        for number, line in lines:
+            match = pattern.match(line)
+            if match is not None:
+                return Location(path, number, match.start(1) + 1, is_old)
+        return Location(path, 1, 1, is_old)
+
+
+def _lines(file: Path, index: int) -> list[tuple[int, str]]:
+    """Return the numbered lines of a structure, or of the whole file if it is in IDL."""
+    lines = list(enumerate(read_source(file).text.splitlines(), 1))
+    if file.suffix == ".idl":
+        return lines
+    ends = [number for number, line in lines if line.strip() == _SEPARATOR]
+    start, end = ([0, *ends][index], [*ends, len(lines) + 1][index]) if index <= len(ends) else (0, 0)
+    return lines[start : end - 1]
+
+
+def _compare_fields(pair: FilePair, old: Sequence[Field], new: Sequence[Field], part: str, places: _Places) -> None:
     reason = phrase("nodes that were built with the old type do not exchange messages with new ones")
     old_fields, new_fields = ({field.name: field for field in fields} for fields in (old, new))
     for name in dict.fromkeys([*new_fields, *old_fields]):
         before, after = old_fields.get(name), new_fields.get(name)
         if before is None and after is not None:
             text = phrase("field '{name}' of type {type} added", name=part + name, type=after.type.to_msg_text())
-            pair.add(text, location, reason)
+            pair.add(text, places.of(name), reason)
         elif after is None:
-            pair.add(phrase("field '{name}' removed", name=part + name), location, reason)
+            text = phrase("field '{name}' removed", name=part + name)
+            pair.add(text, places.of(name, is_old=True), reason)
         elif before is not None and before.type != after.type:
             text = phrase(
                 "field '{name}': {old} -> {new}",
@@ -56,7 +93,7 @@ def _compare_fields(pair: FilePair, old: Sequence[Field], new: Sequence[Field], 
                 old=before.type.to_msg_text(),
                 new=after.type.to_msg_text(),
             )
-            pair.add(text, location, reason)
+            pair.add(text, places.of(name), reason)
         elif before is not None and before.default != after.default:
             text = phrase(
                 "default of field '{name}': {old} -> {new}",
@@ -64,24 +101,26 @@ def _compare_fields(pair: FilePair, old: Sequence[Field], new: Sequence[Field], 
                 old=str(before.default),
                 new=str(after.default),
             )
-            pair.add(text, location)
+            pair.add(text, places.of(name))
     common = [name for name in new_fields if name in old_fields]
     if common != [name for name in old_fields if name in new_fields]:
-        pair.add(phrase("order of the fields changed"), location, reason)
+        pair.add(phrase("order of the fields changed"), places.of(common[0]), reason)
 
 
-def _compare_constants(pair: FilePair, old: Sequence[Constant], new: Sequence[Constant], part: str) -> None:
-    location = Location(pair.new_path, 1, 1)
+def _compare_constants(
+    pair: FilePair, old: Sequence[Constant], new: Sequence[Constant], part: str, places: _Places
+) -> None:
     old_values, new_values = ({constant.name: constant.value for constant in constants} for constants in (old, new))
     for name in dict.fromkeys([*new_values, *old_values]):
         before, after = old_values.get(name), new_values.get(name)
         if name not in old_values:
             text = phrase("constant '{name}' = {value} added", name=part + name, value=str(after))
-            pair.add(text, location)
+            pair.add(text, places.of(name))
         elif name not in new_values:
             reason = phrase("programs that use the constant do not build or start")
-            pair.add(phrase("constant '{name}' removed", name=part + name), location, reason)
+            text = phrase("constant '{name}' removed", name=part + name)
+            pair.add(text, places.of(name, is_old=True), reason)
         elif before != after:
             reason = phrase("programs that were built with the old value send or expect another one")
             text = phrase("constant '{name}': {old} -> {new}", name=part + name, old=str(before), new=str(after))
-            pair.add(text, location, reason)
+            pair.add(text, places.of(name), reason)

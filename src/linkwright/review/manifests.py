@@ -25,6 +25,10 @@ def compare_manifests(pair: FilePair) -> None:
             reason = phrase("packages and launch files that name the package do not find it")
             element = new.root.first(tag) or new.root
             pair.add(text, pair.location(element.span()), reason if tag == "name" else None)
+    formats = [manifest.root.attributes.get("format", "1") for manifest in manifests]
+    if formats[0] != formats[1]:
+        text = phrase("format: {old} -> {new}", old=formats[0], new=formats[1])
+        pair.add(text, pair.location(new.root.span()))
     if old.build_type != new.build_type:
         text = phrase("build type: {old} -> {new}", old=old.build_type or "-", new=new.build_type or "-")
         pair.add(text, pair.location(new.root.span()))
@@ -44,10 +48,24 @@ def _compare_dependencies(pair: FilePair, old: Manifest, new: Manifest) -> None:
         {(dependency.tag, dependency.name): dependency.element for dependency in manifest.dependencies}
         for manifest in (old, new)
     )
-    for (tag, package), element in new_elements.items():
-        if (tag, package) not in old_elements:
-            pair.add(phrase("{tag} {package} added", tag=tag, package=package), pair.location(element.span()))
-    for (tag, package), element in old_elements.items():
-        if (tag, package) not in new_elements:
-            location = pair.location(element.span(), is_old=True)
+    retagged: dict[tuple[tuple[str, ...], tuple[str, ...]], list[str]] = {}
+    for package in dict.fromkeys(package for _, package in (*new_elements, *old_elements)):
+        removed = [tag for tag, name in old_elements if name == package and (tag, name) not in new_elements]
+        added = [tag for tag, name in new_elements if name == package and (tag, name) not in old_elements]
+        if added and removed:
+            retagged.setdefault((tuple(removed), tuple(added)), []).append(package)
+            continue
+        for tag in added:
+            location = pair.location(new_elements[tag, package].span())
+            pair.add(phrase("{tag} {package} added", tag=tag, package=package), location)
+        for tag in removed:
+            location = pair.location(old_elements[tag, package].span(), is_old=True)
             pair.add(phrase("{tag} {package} removed", tag=tag, package=package), location)
+    for (removed_tags, added_tags), packages in retagged.items():
+        text = phrase(
+            "{old} -> {new}: {packages}",
+            old=" + ".join(removed_tags),
+            new=" + ".join(added_tags),
+            packages=", ".join(packages),
+        )
+        pair.add(text, pair.location(new_elements[added_tags[0], packages[0]].span()))

@@ -9,7 +9,7 @@ from linkwright.diagnostics import phrase
 from linkwright.files.git_repository import lfs_hash
 from linkwright.geometry.meshes import TriangleMesh, read_mesh
 from linkwright.review.changes import Figure
-from linkwright.review.file_pair import FilePair, UnreadableFileError
+from linkwright.review.file_pair import FilePair, LimitError
 from linkwright.review.scene_images import mesh_images
 
 MESH_SUFFIXES = (".stl", ".dae", ".obj", ".glb", ".gltf")
@@ -49,7 +49,7 @@ def compare_meshes(pair: FilePair) -> None:
 
 def _read(file: Path) -> TriangleMesh:
     if lfs_hash(file):
-        raise UnreadableFileError(phrase("the file is in Git LFS and is not downloaded"))
+        raise LimitError(phrase("the file is in Git LFS and is not downloaded"))
     if file.stat().st_size > _MAX_BYTES:
-        raise UnreadableFileError(phrase("it is larger than {megabytes} MB", megabytes=_MAX_BYTES >> 20))
+        raise LimitError(phrase("it is larger than {megabytes} MB", megabytes=_MAX_BYTES >> 20))
     return read_mesh(file)

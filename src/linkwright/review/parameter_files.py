@@ -8,7 +8,7 @@ from pathlib import Path
 from linkwright.diagnostics import Phrase, counted, phrase
 from linkwright.review.bridges import compare_bridges, read_bridges
 from linkwright.review.changes import Location
-from linkwright.review.file_pair import FilePair, UnreadableFileError
+from linkwright.review.file_pair import FilePair, LimitError
 from linkwright.review.list_changes import change_text
 from linkwright.review.parameter_names import NameRules, renamed_parts
 from linkwright.review.yaml_values import YamlValue, read_yaml_values
@@ -22,7 +22,9 @@ def compare_parameter_files(pair: FilePair) -> None:
     if texts is None:
         return
     bridges = pair.read(lambda file: read_bridges(texts[file == pair.new_file]) or [])
-    if bridges is not None and all(bridges):
+    if bridges is None:
+        return
+    if all(bridges):
         compare_bridges(pair, *bridges)
         return
     values = pair.read(lambda file: read_yaml_values(texts[file == pair.new_file]))
@@ -97,7 +99,7 @@ def _with_new_names(
 
 def _read(file: Path) -> str:
     if file.stat().st_size > _MAX_BYTES:
-        raise UnreadableFileError(phrase("it is larger than {megabytes} MB", megabytes=_MAX_BYTES >> 20))
+        raise LimitError(phrase("it is larger than {megabytes} MB", megabytes=_MAX_BYTES >> 20))
     return file.read_text(encoding="utf-8")
 
 

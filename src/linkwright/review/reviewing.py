@@ -15,16 +15,20 @@ from linkwright.diagnostics import Diagnostic, LinkwrightError, Phrase, counted,
 from linkwright.files.git_repository import ChangedFile
 from linkwright.lint.affected import TextFiles
 from linkwright.lint.checking import Checker
-from linkwright.lint.known_findings import count_keys, new_findings
-from linkwright.lint.targets import Targets, find_targets
+from linkwright.lint.targets import Targets, find_targets, included_robots
 from linkwright.packages.manifest import MANIFEST, package_name
 from linkwright.review.behavior import compare_behavior
 from linkwright.review.changes import Change, Effect, Review, Subject, SubjectKind, nesting_problem
 from linkwright.review.file_pair import Drawings, FilePair
+from linkwright.review.findings import compare_findings, find
+from linkwright.review.folders import review_without_folder
 from linkwright.review.kinds import LAUNCH_HELPER, KindRule, may_help_launch_files, rule_of
 from linkwright.review.launches.helpers import makes_actions
 from linkwright.review.mesh_groups import grouped_meshes
+from linkwright.review.notes import is_unreadable_as_before, missing_notes, unreadable_notes
 from linkwright.review.parts import compare_parts
+from linkwright.review.plugin_files import plugin_subjects
+from linkwright.review.references import lost_references
 from linkwright.review.versions import Version, Versions
 
 _Pair = tuple[KindRule, "str | None", "str | None"]
@@ -62,11 +66,14 @@ def review(
     drawings = Drawings(images=with_images or with_scenes, scenes=with_scenes)
     result = _Reviewer(versions, _package_folders(versions, packages), drawings).run(workers)
     behavior = [compare_behavior(versions, path, seeds) for path in scenarios]
-    return replace(
+    result = replace(
         result,
         subjects=[*result.subjects, *(subject for subject in behavior if not subject.is_empty)],
         other_files=[path for path in result.other_files if path not in scenarios],
     )
+    for version in (versions.old, versions.new):
+        result = review_without_folder(result, version.root)
+    return result
 
 
 class _Reviewer:
@@ -86,13 +93,16 @@ class _Reviewer:
         with _processes(workers if len(expanded) >= _MIN_EXPANDED else 1) as submit:
             subjects = [submit(_compare, self._versions, *pair, self._drawings) for pair in pairs]
             findings = [
-                submit(_find, version, self._check_targets(version, expanded))
+                submit(find, version, self._check_targets(version, expanded))
                 for version in (self._versions.old, self._versions.new)
             ]
             old_findings, new_findings = (result() for result in findings)
-            all_subjects = [result() for result in subjects]
+            all_subjects = self._with_other_subjects([result() for result in subjects])
         all_subjects = compare_parts(self._versions, self._changed_files, all_subjects, self._is_complete)
+        changed = {path for file in self._changed_files for path in (file.old_path, file.new_path)}
+        untouched = [subject for subject in all_subjects if is_unreadable_as_before(subject, changed)]
         compared = {path for _, *paths in pairs for path in paths if path}
+        compared |= {subject.path for subject in all_subjects if not subject.is_empty}
         parts = {
             change.location.file
             for subject in all_subjects
@@ -102,21 +112,22 @@ class _Reviewer:
         return Review(
             self._versions.old.name,
             self._versions.new.name,
-            grouped_meshes([subject for subject in all_subjects if not subject.is_empty]),
+            grouped_meshes([subject for subject in all_subjects if not subject.is_empty and subject not in untouched]),
             [file.path for file in self._changed_files if not {file.old_path, file.new_path} & (compared | parts)],
-            *self._compare_findings(old_findings, new_findings),
-            list(dict.fromkeys(self._notes())),
+            *compare_findings(self._versions, old_findings, new_findings, self._new_paths),
+            list(dict.fromkeys([*self._notes(), *missing_notes(all_subjects), *unreadable_notes(untouched)])),
         )
 
-    def _compare_findings(
-        self, old: Sequence[Diagnostic], new: Sequence[Diagnostic]
-    ) -> tuple[list[Diagnostic], list[Diagnostic]]:
-        """Return the findings that only the new version has, and those that only the old version has."""
-        root, old_root = self._versions.new.root, self._versions.old.root
-        old_names = {new_path: old_path for old_path, new_path in self._new_paths.items()}
-        added = new_findings(new, root, count_keys(old, old_root, self._new_paths))
-        fixed = new_findings(old, old_root, count_keys(new, root, old_names))
-        return list(map(self._versions.new.labeled, added)), list(map(self._versions.old.labeled, fixed))
+    def _with_other_subjects(self, subjects: Sequence[Subject]) -> list[Subject]:
+        """Return subjects with those of plugin descriptions, and with the paths of launch files that lead nowhere."""
+        lost: dict[str, list[Change]] = {}
+        for path, change in lost_references(self._versions, self._changed_files):
+            lost.setdefault(path, []).append(change)
+        result = [replace(subject, changes=[*subject.changes, *lost.pop(subject.path, ())]) for subject in subjects]
+        for path, changes in lost.items():
+            result.append(Subject(SubjectKind.LAUNCH_FILE, path, self._old_path(path), path, changes))
+        result += plugin_subjects(self._versions, self._changed_files)
+        return sorted(result, key=lambda subject: subject.path)
 
     def _is_complete(self, path: str) -> bool:
         """Return whether a path is that of a complete description or world in one of the versions."""
@@ -176,11 +187,20 @@ class _Reviewer:
         return path if self._versions.old.file(path).is_file() else None
 
     def _check_targets(self, version: Version, pairs: Sequence[_Pair]) -> Targets:
-        """Return the compared descriptions and worlds of a version, and the packages with changed files."""
+        """Return the compared descriptions and worlds of a version, and the packages with changed files.
+
+        A package with changed files in one of the versions is checked in both.
+        """
         paths = [old_path if version.is_old else new_path for _, old_path, new_path in pairs]
-        changed = (file.old_path if version.is_old else file.new_path for file in self._changed_files)
-        folders = {folder for path in changed if path and (folder := _package_folder(version, path))}
-        return Targets(tuple(version.file(path) for path in paths if path), tuple(sorted(folders)))
+        folders = {
+            path
+            for side in (self._versions.old, self._versions.new)
+            for file in self._changed_files
+            if (changed := file.old_path if side.is_old else file.new_path)
+            if (folder := _package_folder(side, changed)) and (path := side.relative(folder)) is not None
+        }
+        packages = [version.file(folder) for folder in sorted(folders) if (version.file(folder) / MANIFEST).is_file()]
+        return Targets(tuple(version.file(path) for path in paths if path), tuple(packages))
 
     def _notes(self) -> Iterator[Phrase]:
         """Yield what the review could not look at."""
@@ -242,12 +262,9 @@ def _compare(
         pair.images,
         scene=pair.scene,
         expanded=pair.expanded,
+        missing=tuple(pair.missing),
+        is_lost=pair.is_lost,
     )
-
-
-def _find(version: Version, targets: Targets) -> list[Diagnostic]:
-    """Return the findings of a version about some files and packages."""
-    return Checker(folders=(version.root,)).check(targets, [version.root])[0]
 
 
 @contextmanager
@@ -264,8 +281,13 @@ def _processes(count: int) -> Iterator[Callable[..., Callable[[], Any]]]:
 
 
 def _targets(version: Version) -> set[str]:
-    """Return the paths of the complete descriptions and worlds of a version."""
-    files = (version.relative(file) for file in find_targets([version.root]).files)
+    """Return the paths of the complete descriptions and worlds of a version.
+
+    A robot that another description includes is complete if a launch file starts it, too.
+    """
+    checker = Checker(folders=(version.root,))
+    started = [file for file in included_robots(version.root) if checker.calls(file, ())]
+    files = (version.relative(file) for file in (*find_targets([version.root]).files, *started))
     return {path for path in files if path is not None}
 
 

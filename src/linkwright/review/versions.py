@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import os
+import re
 from collections.abc import Mapping
 from contextlib import ExitStack
 from dataclasses import dataclass
@@ -14,6 +15,8 @@ from linkwright.descriptions.revisions import CommitFiles, leads_outside
 from linkwright.diagnostics import Diagnostic, LinkwrightError, Span, display_path, phrase
 from linkwright.files.git_repository import SHALLOW_HINT, ChangedFile, GitRepository
 from linkwright.packages import PackageFinder
+from linkwright.packages.manifest import SourceScan
+from linkwright.packages.share_layout import share_of_sources
 
 _DEFAULT_BRANCHES = ("origin/HEAD", "origin/main", "origin/master", "main", "master")
 
@@ -54,6 +57,20 @@ class Version:
         file = self.file(path)
         return Model(file, values, self.finder(file.parent), self.commit)
 
+    @cached_property
+    def shares(self) -> Mapping[str, Path]:
+        """The share folders of the packages of the version, by the name of the package."""
+        if self.commit is not None:
+            return self.commit.packages
+        return {name: share_of_sources(name, folder) for name, folder in SourceScan(self.root).packages().items()}
+
+    def unlabeled(self, file: str) -> str:
+        """Return a file's path relative to the root, for its path or a name that `Model.display_name` returned."""
+        prefix = "" if self.commit is None else f"{self.commit.name}:"
+        if prefix and file.startswith(prefix):
+            return file.removeprefix(prefix)
+        return self.relative(file) or file
+
     def labeled(self, finding: Diagnostic) -> Diagnostic:
         """Return a finding in which files of the repository have paths relative to the root."""
         notes = tuple(note._replace(span=self._relative_span(note.span)) for note in finding.notes)
@@ -80,6 +97,16 @@ class Versions:
     old: Version
     new: Version
     changed_files: list[ChangedFile]
+
+    def translated(self, value: str, version: Version) -> str:
+        """Return a value of one version in which paths lead to the same files of the other version."""
+        other = self.new if version.is_old else self.old
+        folders = {share: other.shares[name] for name, share in version.shares.items() if name in other.shares}
+        folders[version.root] = other.root
+        for folder in sorted(folders, key=lambda path: -len(str(path))):
+            pattern = rf"{re.escape(str(folder))}(?![^\s/])"
+            value = str(folders[folder]).join(re.split(pattern, value))
+        return value
 
     def close(self) -> None:
         """Remove the temporary folders."""

@@ -8,7 +8,7 @@ from dataclasses import dataclass
 import yaml
 
 from linkwright.diagnostics import foreign, phrase
-from linkwright.review.file_pair import UnreadableFileError
+from linkwright.review.file_pair import LimitError, UnreadableFileError
 
 _MAX_VALUES = 20_000
 """The maximum number of values of a file. Aliases can repeat a value billions of times."""
@@ -44,7 +44,7 @@ def read_yaml_values(text: str) -> dict[str, YamlValue]:
     for path, value in _values(root, ""):
         values[path] = value
         if len(values) > _MAX_VALUES:
-            raise UnreadableFileError(phrase("it has more than {count} values", count=_MAX_VALUES))
+            raise LimitError(phrase("it has more than {count} values", count=_MAX_VALUES))
     return values
 
 

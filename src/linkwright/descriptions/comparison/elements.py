@@ -73,8 +73,7 @@ class ElementComparison:
     ) -> Iterator[tuple[str, Element | None, Element | None]]:
         """Yield the pairs of elements that belong together and may differ, each with its key.
 
-        Elements without a name that have an equal counterpart are left out, so that an inserted element does not shift
-        the others.
+        Elements that have an equal counterpart are left out, so that an inserted element does not shift the others.
         """
         contents = [[self._content(element, side) for element in elements] for side, elements in enumerate((old, new))]
         common = Counter(contents[0]) & Counter(contents[1])
@@ -166,7 +165,7 @@ def _elements_by_key(elements: Sequence[Element]) -> dict[str, Element]:
 
 
 def _without_common(elements: Mapping[str, Element], contents: Sequence[Hashable], common: Counter[Hashable]) -> _Rest:
-    """Return the elements, with their keys, by tag and name, except for nameless elements that have a counterpart.
+    """Return the elements that have no counterpart, with their keys, by tag and name.
 
     Args:
         elements: the elements by key.
@@ -176,11 +175,10 @@ def _without_common(elements: Mapping[str, Element], contents: Sequence[Hashable
     remaining = Counter(common)
     rest: _Rest = {}
     for (key, element), content in zip(elements.items(), contents, strict=True):
-        name = _name_of(element)
-        if name is None and remaining[content]:
+        if remaining[content]:
             remaining[content] -= 1
         else:
-            rest.setdefault(f"{element.tag} {name or ''}", []).append((key, element))
+            rest.setdefault(f"{element.tag} {_name_of(element) or ''}", []).append((key, element))
     return rest
 
 

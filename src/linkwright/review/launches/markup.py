@@ -9,7 +9,7 @@ from pathlib import Path
 import yaml
 
 from linkwright.diagnostics import SourceText, Span, phrase
-from linkwright.review.file_pair import UnreadableFileError
+from linkwright.review.file_pair import LimitError
 from linkwright.review.launches.outlines import (
     CONDITION,
     NAMESPACE,
@@ -106,7 +106,7 @@ class _YamlReader:
     def _tag(self, name: str, node: yaml.Node) -> LaunchTag:
         self._count += 1
         if self._count > _MAX_NODES:
-            raise UnreadableFileError(phrase("it has more than {count} actions", count=_MAX_NODES))
+            raise LimitError(phrase("it has more than {count} actions", count=_MAX_NODES))
         tag = LaunchTag(name, {}, self._source.span(node.start_mark.index, node.start_mark.index + 1))
         if isinstance(node, yaml.SequenceNode):
             self.add(tag, node)

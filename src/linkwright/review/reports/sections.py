@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections import Counter
 from collections.abc import Hashable, Iterator, Sequence
 from dataclasses import dataclass
@@ -13,6 +14,9 @@ _MAX_NAMES = 3
 """The number of other links or joints that a line names."""
 _MAX_NAMED_CASES = 1
 """The number of argument sets that a line names."""
+
+_ARGUMENT = re.compile(r" (?=[\w.-]+:=)")
+"""The space between two arguments in the name of an argument set."""
 
 
 @dataclass(frozen=True)
@@ -65,10 +69,17 @@ def cases_text(change: Change, subject: Subject) -> Phrase | None:
     """Return with which argument sets a change occurs, or None if it occurs with all of them."""
     if not change.cases:
         return None
-    names = [name or "-" for name in change.cases]
+    names = [_distinct_values(name, subject.cases or change.cases) or "-" for name in change.cases]
     if len(names) <= _MAX_NAMED_CASES:
         return phrase("with {arguments}", arguments=", ".join(names))
     return phrase("with {count} of {total} argument sets", count=len(names), total=len(subject.cases))
+
+
+def _distinct_values(name: str, cases: Sequence[str]) -> str:
+    """Return the values of an argument set that the first set does not have, or those that only the first set has."""
+    words = [set(_ARGUMENT.split(case)) for case in cases]
+    others = set.intersection(*words) if name == cases[0] else words[0]
+    return " ".join(word for word in _ARGUMENT.split(name) if word not in others) or name
 
 
 def repeated_text(path: str, count: int) -> Phrase:

@@ -1,0 +1,282 @@
+"""The descriptions to compare: both versions with each set of argument values that a caller passes."""
+
+from __future__ import annotations
+
+from collections.abc import Generator, Iterator, Mapping, Sequence
+from dataclasses import dataclass
+
+from linkwright.descriptions import Description
+from linkwright.descriptions.argument_sets import ArgumentSet
+from linkwright.descriptions.pairs import Model, Pair
+from linkwright.diagnostics import LinkwrightError, phrase
+from linkwright.diagnostics.phrase import as_phrase
+from linkwright.lint.argument_sets import UNDECLARED, UNUSED
+from linkwright.lint.checking import Checker
+from linkwright.review.file_pair import Fault, FilePair
+from linkwright.review.folders import without_folder
+from linkwright.review.partial_robots import PartialPair, missing_in_both, read_partial_robot
+from linkwright.review.versions import Version
+
+_MAX_CASES = 12
+"""The maximum number of argument sets to compare. Vendors' launch files can combine hundreds."""
+
+
+_MAX_SWITCHES = 8
+"""The maximum number of boolean arguments whose opposite value is tried."""
+_OPPOSITES = {"true": "false", "false": "true", "True": "False", "False": "True"}
+
+
+@dataclass(frozen=True)
+class Case:
+    """A description in both versions with one set of argument values.
+
+    Attributes:
+        name: the values as ``name:=value`` words; empty for the defaults.
+        old: the old description.
+        new: the new description.
+        models: both models.
+        partial: both robots, if they lack packages or files that neither version has; else None.
+    """
+
+    name: str
+    old: Description
+    new: Description
+    models: Pair
+    partial: PartialPair | None = None
+
+
+@dataclass
+class _Values:
+    """Values with which one or both versions are called.
+
+    Attributes:
+        old: the values, with the paths of the old version.
+        new: the values, with the paths of the new version.
+        doubt: how many reasons there are why the values may not occur in combination; 0 if they do.
+        is_of_old: whether the old version is called with them.
+        is_of_new: whether the new version is called with them.
+    """
+
+    old: Mapping[str, str]
+    new: Mapping[str, str]
+    doubt: int
+    is_of_old: bool = False
+    is_of_new: bool = False
+
+
+@dataclass(frozen=True)
+class _Failure:
+    """An argument set with which a version cannot be read, and the results for both versions."""
+
+    name: str
+    values: _Values
+    old: Description | LinkwrightError
+    new: Description | LinkwrightError
+
+
+def cases(pair: FilePair) -> Iterator[Case]:
+    """Yield the description with each set of values that one of the versions is called with.
+
+    If a version cannot be read with a set, this is a problem, or a change if only one of the versions cannot.
+    """
+    sets = _argument_sets(pair)
+    certain = sum(not values.doubt for values in sets.values())
+    if certain > _MAX_CASES:
+        text = phrase("only {count} of {total} sets of argument values were compared", count=_MAX_CASES, total=certain)
+        pair.add_problem(text)
+    failures: list[_Failure] = []
+    for name, values in list(sets.items())[:_MAX_CASES]:
+        result = _case(pair, name, values)
+        if isinstance(result, Case):
+            yield result
+        else:
+            failures.append(result)
+    if not pair.cases and all(_needs_values(failure) for failure in failures):
+        failures = yield from _cases_with_tried_values(pair, failures)
+    _report(pair, failures)
+
+
+def switched_cases(pair: FilePair, compared: Sequence[Case]) -> Iterator[Case]:
+    """Yield the description with the opposite value of each boolean argument that both versions have.
+
+    A part that a condition includes is not in the cases whose callers keep the default. The other values are those of
+    the case that reads most of the changed files.
+
+    Args:
+        pair: the description.
+        compared: the cases that show no change.
+    """
+    changed = {file.new_path for file in pair.versions.changed_files if file.new_path}
+    if not compared:
+        return
+    base = max(compared, key=lambda case: len(changed & {pair.versions.new.relative(file) for file in case.new.files}))
+    if base.old.expansion is None or base.new.expansion is None:
+        return
+    arguments, old_arguments = base.new.expansion.arguments, base.old.expansion.arguments
+    unused = {
+        str(as_phrase(remark.message).arguments.get("name"))
+        for case in (base.old, base.new)
+        for remark in case.remarks
+        if remark.code == UNUSED
+    }
+    opposites = {
+        name: _OPPOSITES[value]
+        for name, value in arguments.items()
+        if value in _OPPOSITES and name in old_arguments and name not in unused
+    }
+    for name, value in list(opposites.items())[:_MAX_SWITCHES]:
+        new = {**base.models.new.values, name: value}
+        values = _Values({**base.models.old.values, name: value}, new, 1)
+        result = _case(pair, _case_name(new, pair.versions.new), values)
+        if isinstance(result, Case):
+            yield result
+
+
+def _case(pair: FilePair, name: str, values: _Values) -> Case | _Failure:
+    versions = pair.versions
+    models = Pair(versions.old.model(pair.old_path, values.old), versions.new.model(pair.new_path, values.new))
+    old, new = _read(models.old), _read(models.new)
+    if isinstance(old, Description) and isinstance(new, Description):
+        return Case(name, old, new, models)
+    partial = _partial_pair(models)
+    if partial is None:
+        return _Failure(name, values, old, new)
+    old_error, new_error = partial.old.error, partial.new.error
+    if old_error is None and new_error is None:
+        pair.missing.update(dict.fromkeys(missing_in_both(partial, models.old, models.new)))
+        if partial.unevaluated_names:
+            pair.add_unevaluated(partial.unevaluated_names)
+        return Case(name, partial.old.description, partial.new.description, models, partial)
+    if old_error is None and new_error is not None and partial.has_same_omissions():
+        return _Failure(name, values, partial.old.description, LinkwrightError(new_error))
+    return _Failure(name, values, old, new)
+
+
+def _cases_with_tried_values(pair: FilePair, failures: list[_Failure]) -> Generator[Case, None, list[_Failure]]:
+    """Yield the description with values for arguments that have none, and return the other failures.
+
+    Arguments in conditions are tried as false, and then each of them as true. Others are empty.
+    """
+    values: dict[str, str] = dict(failures[0].values.new)
+    tried: list[str] = []
+    result: Case | _Failure = failures[0]
+    while isinstance(result, _Failure) and len(values) < _MAX_CASES:
+        argument = _argument_without_value(result.new) or _argument_without_value(result.old)
+        if argument is None or argument[0] in values:
+            return failures
+        name, is_condition = argument
+        values[name] = "false" if is_condition else ""
+        tried += [name] if is_condition else []
+        result = _tried_case(pair, values)
+    if isinstance(result, _Failure):
+        return failures
+    yield result
+    for name in tried:
+        result = _tried_case(pair, {**values, name: "true"})
+        if isinstance(result, Case):
+            yield result
+    return []
+
+
+def _tried_case(pair: FilePair, values: Mapping[str, str]) -> Case | _Failure:
+    return _case(pair, _case_name(values, pair.versions.new), _Values(values, values, 1))
+
+
+def _needs_values(failure: _Failure) -> bool:
+    return bool(_argument_without_value(failure.old) and _argument_without_value(failure.new))
+
+
+def _argument_without_value(result: Description | LinkwrightError) -> tuple[str, bool] | None:
+    """Return the name of an argument that is not declared, and whether it is used in a condition."""
+    if isinstance(result, Description) or result.diagnostics[0].code != UNDECLARED:
+        return None
+    first = result.diagnostics[0]
+    source, span = first.source, first.span
+    line = "" if source is None or span is None else source.text.splitlines()[span.line - 1]
+    is_condition = "xacro:if" in line or "xacro:unless" in line
+    return str(as_phrase(first.message).arguments.get("name", "")), is_condition
+
+
+def _argument_sets(pair: FilePair) -> dict[str, _Values]:
+    """Return the argument sets of both versions by name: the most certain ones first, then those of the new version."""
+    sets: dict[str, _Values] = {}
+    for version, path in ((pair.versions.new, pair.new_path), (pair.versions.old, pair.old_path)):
+        for called in _called_sets(version, path):
+            values = called.values
+            translated = {name: pair.versions.translated(value, version) for name, value in values.items()}
+            old, new = (values, translated) if version.is_old else (translated, values)
+            doubt = _doubt(called)
+            found = sets.setdefault(_case_name(new, pair.versions.new), _Values(old, new, doubt))
+            found.doubt = min(found.doubt, doubt)
+            if version.is_old:
+                found.is_of_old = True
+            else:
+                found.is_of_new = True
+    return dict(sorted(sets.items(), key=lambda item: item[1].doubt))
+
+
+def _called_sets(version: Version, path: str) -> list[ArgumentSet]:
+    """Return the sets with which a description is called, or its defaults if it is not."""
+    return Checker(folders=(version.root,)).argument_sets(version.file(path), ()) or [ArgumentSet({})]
+
+
+def _doubt(called: ArgumentSet) -> int:
+    """Return how many reasons there are why values may not occur in combination."""
+    is_guess = called.is_mixed or (called.is_offered and not called.is_certain)
+    is_call = called.is_complete and not called.is_offered  # an offered value may not fit the other defaults
+    return (0 if is_call else 1) + len(called.runtime_names) + (_MAX_CASES if is_guess else 0)
+
+
+def _case_name(values: Mapping[str, str], version: Version) -> str:
+    """Return the values as they are written on the command line, without the folder of the version."""
+    text = " ".join(f"{name}:={value}" for name, value in sorted(values.items()))
+    return text.replace(str(version.root), ".")
+
+
+def _read(model: Model) -> Description | LinkwrightError:
+    try:
+        return model.read()
+    except LinkwrightError as error:
+        return error
+
+
+def _partial_pair(models: Pair) -> PartialPair | None:
+    """Return both robots without missing packages and files, or None if they cannot be read without them either."""
+    old, new = read_partial_robot(models.old), read_partial_robot(models.new)
+    if old is None or new is None:
+        return None
+    partial = PartialPair(old, new)
+    return partial if missing_in_both(partial, models.old, models.new) else None
+
+
+def _report(pair: FilePair, failures: list[_Failure]) -> None:
+    """Add the argument sets with which a version cannot be read.
+
+    A version need not be readable with a set that no caller passes to it, or with values that may not occur in
+    combination.
+    """
+    names: dict[tuple[Fault | None, Fault | None], list[str]] = {}
+    for failure in failures:
+        old = _fault(failure.old, pair.versions.old)
+        new = _fault(failure.new, pair.versions.new)
+        if old is not None and failure.values.doubt and (pair.cases or failure is not failures[0]):
+            continue
+        if old is None and new is not None and not failure.values.is_of_new:
+            pair.add_unreadable(pair.versions.new, new)
+        elif old is None or new is not None or failure.values.is_of_old:
+            names.setdefault((old, new), []).append(failure.name)
+        elif not pair.cases:
+            pair.add_unreadable(pair.versions.old, old)
+    for (old, new), cases_of_fault in names.items():
+        pair.add_faults(old, new, tuple(cases_of_fault) if pair.cases or len(names) > 1 else ())
+    pair.cases += (name for cases_of_fault in names.values() for name in cases_of_fault)
+
+
+def _fault(result: Description | LinkwrightError, version: Version) -> Fault | None:
+    if isinstance(result, Description):
+        return None
+    first = result.diagnostics[0]
+    reason = without_folder(first.message, version.root)
+    if first.span is None:
+        return Fault(reason)
+    return Fault(reason, version.unlabeled(first.span.file), first.span.line, first.span.column)

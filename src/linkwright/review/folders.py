@@ -1,0 +1,74 @@
+"""Texts without the folders of the versions, so that the same commits give the same report everywhere."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from dataclasses import replace
+from pathlib import Path
+from typing import TypeVar, cast
+
+from linkwright.diagnostics import Diagnostic
+from linkwright.diagnostics.phrase import Phrase, as_phrase
+from linkwright.review.changes import Review, Subject
+from linkwright.xacro.omissions import STAND_IN_FOLDER
+
+_Value = TypeVar("_Value")
+
+
+def without_folder(value: _Value, folder: Path) -> _Value:
+    """Return a text, or a tuple or mapping of texts, in which paths are relative to a folder.
+
+    The arguments of phrases are treated in the same way. Paths in packages that are missing become URIs.
+    """
+    if isinstance(value, Phrase):
+        if str(folder) not in value and STAND_IN_FOLDER not in value:
+            return value
+        create, arguments = cast("tuple[Callable[..., _Value], tuple[object, ...]]", value.__reduce__())
+        return create(*(without_folder(argument, folder) for argument in arguments))
+    if isinstance(value, str):
+        text = value.replace(f"{folder}/", "").replace(str(folder), ".")
+        return cast(_Value, text.replace(f"{STAND_IN_FOLDER}/", "package://"))
+    if isinstance(value, tuple):
+        return cast(_Value, tuple(without_folder(item, folder) for item in value))
+    if isinstance(value, Mapping):
+        return cast(_Value, {name: without_folder(item, folder) for name, item in value.items()})
+    return value
+
+
+def review_without_folder(result: Review, folder: Path) -> Review:
+    """Return a review with the texts of `without_folder`."""
+    return replace(
+        result,
+        subjects=[_subject_without_folder(subject, folder) for subject in result.subjects],
+        new_findings=[_finding_without_folder(finding, folder) for finding in result.new_findings],
+        fixed_findings=[_finding_without_folder(finding, folder) for finding in result.fixed_findings],
+        notes=[without_folder(note, folder) for note in result.notes],
+    )
+
+
+def _subject_without_folder(subject: Subject, folder: Path) -> Subject:
+    return replace(
+        subject,
+        changes=[
+            replace(
+                change,
+                sentence=without_folder(change.sentence, folder),
+                reason=without_folder(change.reason, folder),
+                cases=without_folder(change.cases, folder),
+            )
+            for change in subject.changes
+        ],
+        figures=[
+            replace(figure, old=without_folder(figure.old, folder), new=without_folder(figure.new, folder))
+            for figure in subject.figures
+        ],
+        problems=[replace(problem, text=without_folder(problem.text, folder)) for problem in subject.problems],
+        cases=[without_folder(case, folder) for case in subject.cases],
+    )
+
+
+def _finding_without_folder(finding: Diagnostic, folder: Path) -> Diagnostic:
+    """Return a finding with the texts of `without_folder`."""
+    notes = tuple(note._replace(message=without_folder(as_phrase(note.message), folder)) for note in finding.notes)
+    hint = None if finding.hint is None else without_folder(as_phrase(finding.hint), folder)
+    return finding.with_changes(message=without_folder(as_phrase(finding.message), folder), hint=hint, notes=notes)

@@ -1,0 +1,54 @@
+"""Notes about what a review does not compare, one for many files."""
+
+from __future__ import annotations
+
+from collections.abc import Collection, Iterator, Sequence
+
+from linkwright.diagnostics import Phrase, counted, quoted_names
+from linkwright.review.changes import Subject
+
+_MAX_NAMES = 5
+"""The number of missing packages and files that a note names."""
+
+
+def is_unreadable_as_before(subject: Subject, changed: Collection[str | None]) -> bool:
+    """Return whether neither version of a file that did not change can be read.
+
+    Args:
+        subject: the file.
+        changed: the paths of the changed files.
+    """
+    return (
+        bool(subject.problems)
+        and all(problem.is_of_both for problem in subject.problems)
+        and not subject.changes
+        and not {subject.old_path, subject.new_path} & set(changed)
+    )
+
+
+def unreadable_notes(subjects: Sequence[Subject]) -> Iterator[Phrase]:
+    """Yield a note about files that neither version can read, as before."""
+    if subjects:
+        first = subjects[0]
+        yield counted(
+            "one file that the changes may affect is not compared: '{path}': {reason}",
+            "{count} files that the changes may affect are not compared, such as '{path}': {reason}",
+            len(subjects),
+            path=first.path,
+            reason=first.problems[0].text,
+        )
+
+
+def missing_notes(subjects: Sequence[Subject]) -> Iterator[Phrase]:
+    """Yield a note about the packages and files that neither version has."""
+    incomplete = [subject for subject in subjects if subject.missing]
+    names = sorted({name for subject in incomplete for name in subject.missing})
+    if incomplete:
+        yield counted(
+            "'{path}' is compared without the packages and files that neither version has: {names}",
+            "{count} descriptions, such as '{path}', are compared without the packages and files that neither version "
+            "has: {names}",
+            len(incomplete),
+            path=incomplete[0].path,
+            names=quoted_names([*names[:_MAX_NAMES], *["..."][: len(names) > _MAX_NAMES]]),
+        )

@@ -1,0 +1,179 @@
+"""Robots without the files and packages that neither version has.
+
+On a computer without ROS, packages of sensors are often missing. The rest of the robot is still compared.
+"""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass
+
+from linkwright.descriptions import Description
+from linkwright.descriptions.comparison import Difference
+from linkwright.descriptions.pairs import Model
+from linkwright.diagnostics import Diagnostic, LinkwrightError, Severity
+from linkwright.xacro.omissions import UNEVALUATED, Omissions, expand_with_omissions
+from linkwright.xacro.session import Inputs
+from linkwright.xmltree import Element
+
+_KEPT_AS_WRITTEN = frozenset({"name", "link", "joint", "filename", "type"})
+"""Attributes that may contain any text, so that an unevaluated one is compared as it is written."""
+_CALL = "xacro:"
+
+
+@dataclass(frozen=True)
+class PartialRobot:
+    """A robot without the missing files and packages.
+
+    Attributes:
+        description: the description.
+        omissions: the missing packages and files, and the parts that need them.
+        stand_ins: the names of links and joints that replace missing ones, so that the rest is one tree.
+        unevaluated: the tag and the name of links, joints and materials with values that need missing names.
+    """
+
+    description: Description
+    omissions: Omissions
+    stand_ins: frozenset[str]
+    unevaluated: frozenset[tuple[str, str]]
+
+    @property
+    def error(self) -> Diagnostic | None:
+        """The first reason why the description has no robot; None if it has one."""
+        if self.description.robot is not None:
+            return None
+        errors = (item for item in self.description.diagnostics if item.severity is Severity.ERROR)
+        return next(errors, None)
+
+
+@dataclass(frozen=True)
+class PartialPair:
+    """Both versions of a robot without the files and packages that neither version has."""
+
+    old: PartialRobot
+    new: PartialRobot
+
+    @property
+    def has_stand_ins(self) -> bool:
+        """Whether links are missing, so that the places of others are unknown."""
+        return bool(self.old.stand_ins | self.new.stand_ins)
+
+    @property
+    def unevaluated_names(self) -> list[str]:
+        """The names of links, joints and materials with values that are not compared."""
+        return sorted({name for _, name in self.old.unevaluated | self.new.unevaluated})
+
+    def has_certain_roots(self) -> bool:
+        """Return whether the roots of both robots are not due to missing files."""
+        return not self.has_stand_ins and self.has_same_omissions()
+
+    def has_same_omissions(self) -> bool:
+        """Return whether the same is left out of both versions."""
+        return not _has_more(self.old, self.new) and not _has_more(self.new, self.old)
+
+    def is_certain(self, difference: Difference) -> bool:
+        """Return whether a difference cannot be due to what is left out."""
+        if difference.subject == "extension" and difference.name.startswith(_CALL):
+            return True
+        names = {difference.name, difference.old or "" if difference.kind == "renamed" else ""}
+        if difference.subject in ("link", "joint") and names & (self.old.stand_ins | self.new.stand_ins):
+            return False
+        if difference.kind == "added":
+            return not _has_more(self.old, self.new)
+        if difference.kind in ("removed", "renamed"):
+            return not _has_more(self.new, self.old)
+        return (difference.subject, difference.name) not in self.old.unevaluated | self.new.unevaluated
+
+
+def read_partial_robot(model: Model) -> PartialRobot | None:
+    """Return a robot without missing files and packages, or None if it cannot be expanded without them either."""
+    try:
+        expansion, omissions = expand_with_omissions(Inputs(str(model.path), model.values), model.finder)
+    except LinkwrightError:
+        return None
+    root = expansion.document.root
+    unevaluated = frozenset(_drop_unevaluated(root))
+    stand_ins = frozenset(_connect(root))
+    return PartialRobot(Description.of_expansion(str(model.path), expansion), omissions, stand_ins, unevaluated)
+
+
+def _has_more(one: PartialRobot, other: PartialRobot) -> bool:
+    """Return whether more is left out of one version than of the other, which may be why parts are absent in it."""
+    return (
+        one.omissions.packages > other.omissions.packages
+        or len(one.omissions.files) > len(other.omissions.files)
+        or any(count > other.omissions.macros.get(name, 0) for name, count in one.omissions.macros.items())
+        or not one.omissions.tags <= other.omissions.tags
+    )
+
+
+def _drop_unevaluated(root: Element) -> Iterator[tuple[str, str]]:
+    """Remove unevaluated numbers from links, joints and materials, and yield the tags and names of these.
+
+    Everywhere else, unevaluated texts stay, and are compared as they are written.
+    """
+    root.attributes.pop(UNEVALUATED, None)
+    for child in root.elements():
+        for element in child.walk():
+            names = element.attributes.pop(UNEVALUATED, None)
+            if names is None or child.tag not in ("link", "joint", "material"):
+                continue
+            for name in names.split():
+                if name not in _KEPT_AS_WRITTEN:
+                    del element.attributes[name]
+            yield child.tag, child.attributes.get("name", "")
+
+
+def _connect(root: Element) -> Iterator[str]:
+    """Add missing links, and joints to links without a parent, and yield the names of both."""
+    links = {element.attributes.get("name", "") for element in root.elements("link")}
+    parents: dict[str, str] = {}
+    for joint in root.elements("joint"):
+        parent, child = joint.first("parent"), joint.first("child")
+        if parent is not None and child is not None:
+            parents[child.attributes.get("link", "")] = parent.attributes.get("link", "")
+    missing = dict.fromkeys(name for pair in parents.items() for name in pair if name not in links)
+    for name in missing:
+        root.children.append(Element("link", {"name": name}))
+        yield name
+    roots = sorted((links | missing.keys()) - parents.keys())
+    if len(roots) < 2:
+        return
+    counts = dict.fromkeys(roots, 0)
+    for name in parents:
+        counts[_root_of(name, parents)] = counts.get(_root_of(name, parents), 0) + 1
+    main_root = max(roots, key=lambda name: counts[name])
+    for name in roots:
+        if name != main_root:
+            joint = Element("joint", {"name": f"{main_root} to {name}", "type": "fixed"})
+            joint.children += [Element("parent", {"link": main_root}), Element("child", {"link": name})]
+            root.children.append(joint)
+            yield f"{main_root} to {name}"
+
+
+def _root_of(link: str, parents: Mapping[str, str]) -> str:
+    for _ in range(len(parents)):
+        if link not in parents:
+            break
+        link = parents[link]
+    return link
+
+
+def missing_in_both(pair: PartialPair, old: Model, new: Model) -> list[str]:
+    """Return the names of the packages and files that neither version has.
+
+    The list is empty if nothing is missing, or if one of the versions has something that the other version needs.
+    """
+    names: dict[str, None] = {}
+    for robot, model, other in ((pair.old, old, new), (pair.new, new, old)):
+        for package in sorted(robot.omissions.packages):
+            if other.finder.find(package) is not None:
+                return []
+            names[package] = None
+        for file in sorted(robot.omissions.files):
+            relative = os.path.relpath(os.path.realpath(file), model.path.parent)
+            if os.path.exists(other.path.parent / relative):  # noqa: PTH110 - the path may be odd
+                return []
+            names[os.path.basename(file)] = None  # noqa: PTH119 - see above
+    return list(names)

@@ -1,0 +1,85 @@
+"""The comparison of plugin descriptions of pluginlib, which name the classes that programs load."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+
+from linkwright.diagnostics import LinkwrightError, phrase
+from linkwright.files.git_repository import ChangedFile
+from linkwright.review.changes import Change, Effect, Location, Subject, SubjectKind
+from linkwright.review.versions import Version, Versions
+from linkwright.xacro.cache import read_document
+
+_ROOTS = frozenset({"library", "class_libraries"})
+
+
+@dataclass(frozen=True)
+class _PluginClass:
+    """A class that a plugin description declares: its type, its base class, and where it is declared."""
+
+    type: str
+    base: str
+    path: str
+    location: Location | None
+
+
+def plugin_subjects(versions: Versions, changed_files: Sequence[ChangedFile]) -> Iterator[Subject]:
+    """Yield the changed plugin descriptions with added, removed and changed classes.
+
+    A class that only moves to another file is not a change.
+    """
+    old = _classes(versions.old, [file.old_path for file in changed_files])
+    new = _classes(versions.new, [file.new_path for file in changed_files])
+    changes: dict[str, list[Change]] = {}
+    for name, plugin in new.items():
+        for change in _changes(name, old.get(name), plugin):
+            changes.setdefault(plugin.path, []).append(change)
+    for name, plugin in old.items():
+        if name not in new:
+            text = phrase("plugin class '{name}' removed", name=name)
+            reason = phrase("programs and configurations that load the class do not find it")
+            changes.setdefault(plugin.path, []).append(Change(text, Effect.BREAKING, reason, plugin.location))
+    paths = {path: file for file in changed_files for path in (file.old_path, file.new_path) if path}
+    for path in sorted(changes):
+        file = paths[path]
+        yield Subject(SubjectKind.PLUGINS, path, file.old_path, file.new_path, changes[path])
+
+
+def _classes(version: Version, paths: Sequence[str | None]) -> Mapping[str, _PluginClass]:
+    """Return the classes that plugin descriptions declare, by the name that programs load."""
+    classes: dict[str, _PluginClass] = {}
+    for path in paths:
+        if path is None or not path.endswith(".xml") or not version.file(path).is_file():
+            continue
+        classes.update(_classes_of(version.file(path), path, is_old=version.is_old))
+    return classes
+
+
+def _classes_of(file: Path, path: str, *, is_old: bool) -> Iterator[tuple[str, _PluginClass]]:
+    try:
+        root = read_document(str(file)).root
+    except LinkwrightError:
+        return
+    if root.tag not in _ROOTS:
+        return
+    for element in root.walk():
+        attributes, span = element.attributes, element.span()
+        name = attributes.get("name") or attributes.get("type")
+        if element.tag == "class" and name:
+            location = None if span is None else Location(path, span.line, span.column, is_old)
+            yield name, _PluginClass(attributes.get("type", ""), attributes.get("base_class_type", ""), path, location)
+
+
+def _changes(name: str, old: _PluginClass | None, new: _PluginClass) -> Iterator[Change]:
+    if old is None:
+        yield Change(phrase("plugin class '{name}' added", name=name), location=new.location)
+        return
+    if old.base != new.base:
+        text = phrase("plugin class '{name}': base class {old} -> {new}", name=name, old=old.base, new=new.base)
+        reason = phrase("programs that load the class as the old base class do not start")
+        yield Change(text, Effect.BREAKING, reason, new.location)
+    if old.type != new.type:
+        text = phrase("plugin class '{name}': type {old} -> {new}", name=name, old=old.type, new=new.type)
+        yield Change(text, location=new.location)

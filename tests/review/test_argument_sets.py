@@ -1,0 +1,138 @@
+"""The argument sets with which a review compares a description."""
+
+from __future__ import annotations
+
+from tests.repositories import ARM
+from tests.review.conftest import breaking, sentences, subject
+
+PATH = "arm_description/urdf/arm.urdf.xacro"
+LAUNCH = """import os
+
+from ament_index_python.packages import get_package_share_directory
+from launch import LaunchDescription
+from launch_ros.actions import Node
+from xacro import process_file
+
+
+def description(tool):
+    folder = get_package_share_directory("arm_description")
+    return process_file(os.path.join(folder, "urdf", "arm.urdf.xacro"), mappings={"tool": tool}).toxml()
+
+
+def generate_launch_description():
+    return LaunchDescription(
+        [
+            Node(package="robot_state_publisher", executable="robot_state_publisher",
+                 parameters=[{"robot_description": description("none")}]),
+            Node(package="robot_state_publisher", executable="robot_state_publisher",
+                 parameters=[{"robot_description": description("probe")}]),
+        ]
+    )
+"""
+WITHOUT_DEFAULT = ARM.replace('  <xacro:arg name="tool" default="none"/>\n', "")
+
+
+def test_mappings_of_process_file_are_tried(package, compare):
+    package.commit({"arm_description/launch/arm.launch.py": LAUNCH, PATH: WITHOUT_DEFAULT})
+    package.write({PATH: WITHOUT_DEFAULT.replace('xyz="0 0 0.2"', 'xyz="0 0 0.3"')})
+    found = subject(compare(package), PATH)
+    assert found.cases == ["tool:=none", "tool:=probe"]
+    assert sentences(found) == ["joint 'probe_joint': origin xyz 0 0 0.2 -> 0 0 0.3 m (moved by 0.1 m)"]
+
+
+def test_argument_without_value_in_a_condition_is_tried_as_false_and_true(package, compare):
+    text = (
+        WITHOUT_DEFAULT.replace("""'$(arg tool)' == 'probe'""", "$(arg has_probe)")
+        .replace("${$", "$")
+        .replace(')}">', ')">')
+    )
+    assert '<xacro:if value="$(arg has_probe)">' in text
+    package.commit({PATH: text})
+    package.write({PATH: text.replace('xyz="0 0 0.2"', 'xyz="0 0 0.3"')})
+    found = subject(compare(package), PATH)
+    assert found.cases == ["has_probe:=false", "has_probe:=true"]
+    (change,) = found.changes
+    assert change.cases == ("has_probe:=true",)
+
+
+def test_part_behind_a_switch_is_compared_with_its_opposite(package, compare):
+    switch = '<xacro:arg name="sim" default="false"/><xacro:if value="$(arg sim)"><xacro:include filename="sim.xacro"/>'
+    part = '<robot><gazebo><plugin name="drive"><topic>cmd_vel</topic></plugin></gazebo></robot>'
+    package.commit(
+        {PATH: ARM.replace("</robot>", f"{switch}</xacro:if></robot>"), "arm_description/urdf/sim.xacro": part}
+    )
+    package.write({"arm_description/urdf/sim.xacro": part.replace("cmd_vel", "drive/cmd_vel")})
+    result = compare(package)
+    ((found, change),) = result.breaking_changes
+    assert str(change.sentence) == "extension 'gazebo': plugin drive topic cmd_vel -> drive/cmd_vel"
+    assert (found.cases, change.cases) == (["", "sim:=true"], ("sim:=true",))
+
+
+def test_started_robot_that_another_one_includes_is_compared(package, compare):
+    launch = LAUNCH.replace(', mappings={"tool": tool}', "")
+    world = """<robot xmlns:xacro="http://www.ros.org/wiki/xacro" name="arm_in_gazebo">
+  <xacro:include filename="$(find arm_description)/urdf/arm.urdf.xacro"/>
+  ${missing}
+</robot>
+"""
+    package.commit({"arm_description/launch/arm.launch.py": launch, "arm_description/urdf/gazebo.urdf.xacro": world})
+    package.write({PATH: ARM.replace('name="base_link"', 'name="base"').replace('"base_link"', '"base"')})
+    assert "link 'base_link' renamed to 'base'" in sentences(subject(compare(package), PATH))
+
+
+def test_paths_in_values_lead_to_the_files_of_each_version(package, compare):
+    text = ARM.replace(
+        "</robot>",
+        '<xacro:arg name="settings" default=""/><gazebo><plugin name="p"><parameters>$(arg settings)</parameters>'
+        "</plugin></gazebo></robot>",
+    )
+    launch = LAUNCH.replace(
+        'mappings={"tool": tool}', 'mappings={"settings": os.path.join(folder, "config", "a.yaml")}'
+    )
+    files = {
+        PATH: text,
+        "arm_description/launch/arm.launch.py": launch,
+        "arm_description/config/a.yaml": "a: 1",
+    }
+    package.commit(files)
+    package.commit({PATH: text.replace('xyz="0 0 0.2"', 'xyz="0 0 0.3"')})
+    (found,) = compare(package, "HEAD~1..HEAD").subjects
+    assert found.cases == ["settings:=./arm_description/config/a.yaml"]
+    assert sentences(found) == ["joint probe_joint origin xyz: 0 0 0.2 -> 0 0 0.3"]
+
+
+def test_paths_in_reports_are_relative(package, compare):
+    text = ARM.replace(
+        "</robot>", "<gazebo><plugin name='p'><config>$(find arm_description)/a.yaml</config></plugin></gazebo></robot>"
+    )
+    package.commit({PATH: text})
+    package.commit({PATH: text.replace("a.yaml", "b.yaml")})
+    found = subject(compare(package, "HEAD~1..HEAD"), PATH)
+    assert sentences(found) == ["extension 'gazebo': plugin p config arm_description/a.yaml -> arm_description/b.yaml"]
+
+
+def test_set_that_only_some_combinations_can_read_is_no_problem(package, compare):
+    text = ARM.replace(
+        "</robot>", '<xacro:include filename="$(find arm_description)/urdf/$(arg tool)_part.xacro"/></robot>'
+    )
+    part = "<robot/>"
+    package.commit(
+        {
+            PATH: text,
+            "arm_description/urdf/probe_part.xacro": part,
+            "arm_description/launch/arm.launch.py": LAUNCH,
+        }
+    )
+    package.write({PATH: text.replace('xyz="0 0 0.2"', 'xyz="0 0 0.3"')})
+    result = compare(package)
+    found = subject(result, PATH)
+    assert found.cases == ["tool:=probe"]
+    assert found.problems == []
+    assert breaking(result) == []
+
+
+def test_robot_that_breaks_with_every_set_is_one_breaking_change(package, compare):
+    package.commit({"arm_description/launch/arm.launch.py": LAUNCH})
+    package.write({PATH: ARM.replace("</robot>", "<<<<<<< ours\n</robot>")})
+    (sentence,) = breaking(compare(package))
+    assert sentence.startswith(f"cannot be read any more: {PATH}:")

@@ -1,0 +1,135 @@
+"""Findings that are new or fixed, and those that are neither."""
+
+from __future__ import annotations
+
+from tests.repositories import ARM, MACRO, PACKAGE_XML
+from tests.review.conftest import breaking
+
+PATH = "arm_description/urdf/arm.urdf.xacro"
+SEGMENT = "arm_description/urdf/segment.xacro"
+UNUSED = MACRO.replace('params="name parent', 'params="name color parent')
+"""A macro with a parameter that it does not use, which is a finding."""
+WITH_UNUSED = ARM.replace("<xacro:segment ", '<xacro:segment color="red" ')
+LAUNCH = """from launch import LaunchDescription
+from launch_ros.actions import Node
+
+
+def generate_launch_description():
+    return LaunchDescription([{nodes}])
+"""
+
+
+def launch(*packages: str) -> str:
+    return LAUNCH.replace("{nodes}", ", ".join(f'Node(package="{name}", executable="run")' for name in packages))
+
+
+def codes(findings) -> list[str]:
+    return [finding.code for finding in findings]
+
+
+def test_new_and_fixed_findings_are_reported(package, compare):
+    package.commit({SEGMENT: UNUSED, PATH: WITH_UNUSED})
+    assert codes(compare(package, "HEAD~1..HEAD").new_findings) == ["LW705"]
+    package.commit({SEGMENT: MACRO, PATH: ARM})
+    assert codes(compare(package, "HEAD~1..HEAD").fixed_findings) == ["LW705"]
+
+
+def test_nothing_is_fixed_in_a_robot_that_cannot_be_read_any_more(package, compare):
+    package.commit({SEGMENT: UNUSED, PATH: WITH_UNUSED})
+    package.commit({PATH: WITH_UNUSED.replace("</robot>", "<</robot>")})
+    result = compare(package, "HEAD~1..HEAD")
+    assert breaking(result)
+    assert result.fixed_findings == []
+    assert [finding.code for finding in result.new_findings if not finding.code.startswith("XML")] == []
+
+
+def test_nothing_is_new_in_a_robot_that_can_be_read_now(package, compare):
+    package.commit({SEGMENT: UNUSED, PATH: WITH_UNUSED.replace("</robot>", "<</robot>")})
+    package.commit({PATH: WITH_UNUSED})
+    result = compare(package, "HEAD~1..HEAD")
+    assert result.new_findings == []
+    assert all(code.startswith("XML") for code in codes(result.fixed_findings))
+
+
+def test_missing_mesh_is_new_in_a_robot_whose_sensor_package_is_missing(package, compare):
+    sensor = '<xacro:include filename="$(find lidar_description)/lidar.xacro"/></robot>'
+    mesh = "package://arm_description/meshes/base.obj"
+    visual = f'<link name="base_link"><visual><geometry><mesh filename="{mesh}"/></geometry></visual></link>'
+    text = ARM.replace('<link name="base_link"/>', visual).replace("</robot>", sensor)
+    package.commit({PATH: text, "arm_description/meshes/base.obj": "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n"})
+    package.commit({"arm_description/meshes/base.obj": None})
+    assert codes(compare(package, "HEAD~1..HEAD").new_findings) == ["LW424"]
+
+
+def test_findings_of_unchanged_part_that_a_new_robot_includes_are_not_new(repository, compare):
+    repository.commit({"arm_description/package.xml": PACKAGE_XML, SEGMENT: UNUSED})
+    repository.commit({PATH: WITH_UNUSED})
+    assert [code for code in codes(compare(repository, "HEAD~1..HEAD").new_findings) if code == "LW705"] == []
+
+
+def test_findings_of_package_that_only_gets_files_are_not_new(repository, compare):
+    manifest = PACKAGE_XML.replace("An arm.", "TODO: Package description")
+    repository.commit({"arm_description/package.xml": manifest, SEGMENT: MACRO})
+    repository.commit({PATH: ARM})
+    assert "LW808" not in codes(compare(repository, "HEAD~1..HEAD").new_findings)
+
+
+def test_only_new_names_of_a_list_are_reported(package, compare):
+    package.commit({"arm_description/launch/a.launch.py": launch("alpha", "beta")})
+    package.commit({"arm_description/launch/a.launch.py": launch("alpha", "beta", "gamma")})
+    result = compare(package, "HEAD~1..HEAD")
+    (finding,) = [finding for finding in result.new_findings if finding.code == "LW848"]
+    assert str(finding.message).endswith("does not depend: 'gamma'")
+    assert "LW848" not in codes(result.fixed_findings)
+    package.commit({"arm_description/launch/a.launch.py": launch("alpha", "gamma")})
+    result = compare(package, "HEAD~1..HEAD")
+    (finding,) = [finding for finding in result.fixed_findings if finding.code == "LW848"]
+    assert str(finding.message).endswith("does not depend: 'beta'")
+    assert "LW848" not in codes(result.new_findings)
+
+
+def test_finding_with_other_number_is_not_new(package, compare):
+    text = MACRO.replace('upper="1.5"', 'upper="-2"')
+    package.commit({SEGMENT: text})
+    assert codes(compare(package, "HEAD~1..HEAD").new_findings) != []
+    package.commit({SEGMENT: text.replace('upper="-2"', 'upper="-3"')})
+    result = compare(package, "HEAD~1..HEAD")
+    assert (codes(result.new_findings), codes(result.fixed_findings)) == ([], [])
+
+
+def test_finding_that_names_a_renamed_file_is_not_new(package, compare):
+    text = ARM.replace('  <xacro:arg name="tool" default="none"/>\n', "")
+    package.commit({PATH: text})
+    package.commit({PATH: None, "arm_description/urdf/robot.urdf.xacro": text})
+    result = compare(package, "HEAD~1..HEAD")
+    assert (codes(result.new_findings), codes(result.fixed_findings)) == ([], [])
+
+
+def test_launch_file_that_names_a_renamed_file_is_breaking(package, compare):
+    include = """from launch import LaunchDescription
+from launch.actions import IncludeLaunchDescription
+from launch.substitutions import PathJoinSubstitution
+from launch_ros.substitutions import FindPackageShare
+
+
+def generate_launch_description():
+    path = PathJoinSubstitution([FindPackageShare("arm_description"), "launch", "arm_launch.py"])
+    return LaunchDescription([IncludeLaunchDescription(path)])
+"""
+    markup = '<launch><include file="$(find-pkg-share arm_description)/launch/arm_launch.py"/></launch>'
+    package.commit(
+        {
+            "arm_description/launch/arm_launch.py": launch("alpha"),
+            "arm_description/launch/all.launch.py": include,
+            "arm_description/launch/all.launch.xml": markup,
+        }
+    )
+    package.commit(
+        {"arm_description/launch/arm_launch.py": None, "arm_description/launch/arm.launch.py": launch("alpha")}
+    )
+    result = compare(package, "HEAD~1..HEAD")
+    lost = "names 'launch/arm_launch.py' of 'arm_description', which does not exist any more"
+    assert sorted(subject.path for subject, change in result.breaking_changes if str(change.sentence) == lost) == [
+        "arm_description/launch/all.launch.py",
+        "arm_description/launch/all.launch.xml",
+    ]

@@ -1,0 +1,131 @@
+"""Robots that include packages and files that neither version has."""
+
+from __future__ import annotations
+
+import pytest
+
+from tests.repositories import ARM, MACRO
+from tests.review.conftest import breaking, sentences, subject
+
+PATH = "arm_description/urdf/arm.urdf.xacro"
+SENSOR = """  <xacro:include filename="$(find lidar_description)/urdf/lidar.xacro"/>
+  <xacro:lidar parent="lower" rate="10"><origin xyz="0 0 1"/></xacro:lidar>
+  <link name="bracket"/>
+  <joint name="bracket_joint" type="fixed">
+    <parent link="lidar_base"/>
+    <child link="bracket"/>
+    <origin xyz="0 0 0.1"/>
+  </joint>
+  <link name="cover">
+    <visual><origin xyz="0 0 ${lidar_height}"/><geometry><sphere radius="0.1"/></geometry></visual>
+  </link>
+  <joint name="cover_joint" type="fixed"><parent link="lower"/><child link="cover"/></joint>
+</robot>"""
+WITH_SENSOR = ARM.replace("</robot>", SENSOR)
+
+
+@pytest.fixture
+def sensor(package):
+    package.commit({PATH: WITH_SENSOR})
+    return package
+
+
+def notes(result) -> list[str]:
+    return [str(note) for note in result.notes]
+
+
+def test_rest_of_robot_is_compared_with_one_note(sensor, compare):
+    sensor.write({PATH: WITH_SENSOR.replace('xyz="0 0 0.1"', 'xyz="0 0 0.2"')})
+    result = compare(sensor)
+    found = subject(result, PATH)
+    assert sentences(found) == ["joint 'bracket_joint': origin xyz 0 0 0.1 -> 0 0 0.2 m (moved by 0.1 m)"]
+    assert [str(problem.text) for problem in found.problems] == [
+        "values that need definitions of missing files are not compared: 'cover'"
+    ]
+    assert found.figures == []
+    assert notes(result) == [
+        f"'{PATH}' is compared without the packages and files that neither version has: 'lidar_description'"
+    ]
+
+
+def test_values_of_a_call_of_a_missing_macro_are_compared(sensor, compare):
+    sensor.write({PATH: WITH_SENSOR.replace('rate="10"', 'rate="20"')})
+    assert sentences(subject(compare(sensor), PATH)) == ["extension 'xacro:lidar': @rate 10 -> 20"]
+
+
+def test_equal_rest_is_not_reported(sensor, compare):
+    sensor.write({"arm_description/urdf/segment.xacro": MACRO.replace("<mass value", "<!-- heavy --><mass value")})
+    result = compare(sensor)
+    assert sentences(subject(result, PATH)) == []
+    assert breaking(result) == []
+
+
+def test_value_that_only_one_version_can_evaluate_is_no_change(sensor, compare):
+    text = WITH_SENSOR.replace("${lidar_height}", "0.3")
+    sensor.write({PATH: text})
+    assert sentences(subject(compare(sensor), PATH)) == []
+
+
+def test_part_that_moves_into_missing_package_is_not_called_removed(package, compare):
+    own = ARM.replace(
+        "</robot>",
+        '<link name="lidar"/><joint name="lidar_joint" type="fixed"><parent link="lower"/>'
+        '<child link="lidar"/></joint></robot>',
+    )
+    package.commit({PATH: own})
+    package.write({PATH: WITH_SENSOR})
+    result = compare(package)
+    assert breaking(result) == []
+    assert "link 'lidar' removed" not in sentences(subject(result, PATH))
+
+
+def test_package_that_commit_removes_is_not_left_out(package, compare):
+    package.commit(
+        {
+            "lidar_description/package.xml": "<package format='3'><name>lidar_description</name></package>",
+            "lidar_description/urdf/lidar.xacro": "<robot xmlns:xacro='http://www.ros.org/wiki/xacro'>"
+            "<xacro:property name='lidar_height' value='1'/><xacro:macro name='lidar' params='parent rate *origin'>"
+            "<link name='lidar_base'/><joint name='lidar_joint' type='fixed'><parent link='${parent}'/>"
+            "<child link='lidar_base'/></joint></xacro:macro></robot>",
+            PATH: WITH_SENSOR,
+        }
+    )
+    package.commit({"lidar_description/package.xml": None, "lidar_description/urdf/lidar.xacro": None})
+    result = compare(package, "HEAD~1..HEAD")
+    assert any(
+        "cannot be read any more" in sentence and "lidar_description" in sentence for sentence in breaking(result)
+    )
+
+
+def test_file_that_neither_version_has_is_left_out(package, compare):
+    text = ARM.replace("</robot>", '<xacro:include filename="absent.xacro"/><xacro:absent/></robot>')
+    package.commit({PATH: text})
+    package.write({"arm_description/urdf/segment.xacro": MACRO.replace('mass value="2"', 'mass value="3"')})
+    result = compare(package)
+    assert "link 'upper': inertial mass 2 -> 3 kg" in sentences(subject(result, PATH))
+    assert "'absent.xacro'" in notes(result)[0]
+
+
+def test_mistake_beside_missing_package_is_breaking(sensor, compare):
+    sensor.write({PATH: WITH_SENSOR.replace('<link name="bracket"/>', '<link name="bracket"/><link name="bracket"/>')})
+    ((_, change),) = compare(sensor).breaking_changes
+    assert "link 'bracket' is defined twice" in change.sentence
+    assert (change.location.file, change.location.line) == (PATH, 19)
+
+
+def test_misspelled_name_in_robot_without_missing_files_is_no_omission(package, compare):
+    package.write({PATH: ARM.replace('parent="upper"', 'parent="${uper}"')})
+    (sentence,) = breaking(compare(package))
+    assert "the property 'uper' is not defined" in sentence
+
+
+def test_unreadable_robots_that_did_not_change_are_counted_in_a_note(package, compare):
+    broken = ARM.replace("</robot>", "${missing}</robot>")
+    package.commit({PATH: broken, "arm_description/urdf/second.urdf.xacro": broken})
+    package.write({"arm_description/urdf/segment.xacro": MACRO.replace('mass value="2"', 'mass value="3"')})
+    result = compare(package)
+    (found,) = result.subjects
+    assert found.path == "arm_description/urdf/segment.xacro"
+    (note,) = notes(result)
+    assert note.startswith("2 files that the changes may affect are not compared, such as ")
+    assert "the property 'missing' is not defined" in note
