@@ -79,7 +79,7 @@ class CommentSweeper:
         siblings.append(self._marker)
         self._marker_siblings = siblings
 
-    def moved(self, old: list[Node], new: list[Node]) -> None:
+    def on_nodes_moved(self, old: list[Node], new: list[Node]) -> None:
         """Update the marker after the nodes of a list were moved to the end of another list."""
         if self._marker_siblings is old:
             self._marker_siblings = new
@@ -116,7 +116,7 @@ class Site(NamedTuple):
 
 
 Directive = Callable[["Expander", Site], None]
-"""A function that expands a tag of the language."""
+"""A function that expands a xacro tag."""
 
 
 class Expander:
@@ -138,13 +138,13 @@ class Expander:
         self._call = call
         self.sweeper = CommentSweeper()
         self.unwritable: dict[tuple[int, str], tuple[Element, Diagnostic]] = {}
-        """The ID of an element and the name of an attribute -> the element, and the warning about the value."""
+        """The elements and the warnings about attribute values, by element ID and attribute name."""
         self._errors: list[Diagnostic] = []
         self._nesting = 0
         self._max_nesting = session.limits.nesting
         self._root: Element | None = None
 
-    def document(self, document: Document) -> Document:
+    def expand_document(self, document: Document) -> Document:
         """Return the expansion of a document.
 
         Raises:
@@ -173,7 +173,7 @@ class Expander:
         self._root = root
         try:
             scope = Scope(self.session.globals, self.session)
-            self.element(root, container.children, scope, MacroTable())
+            self.expand_element(root, container.children, scope, MacroTable())
         except LinkwrightError as error:
             self._errors += error.diagnostics
             return None
@@ -189,7 +189,7 @@ class Expander:
 
     # the walk
 
-    def children(self, node: Element, parent: Element, scope: Scope, macros: MacroTable) -> None:
+    def expand_children(self, node: Element, parent: Element, scope: Scope, macros: MacroTable) -> None:
         """Expand the children of an element, and append the result to a parent.
 
         Raises:
@@ -209,7 +209,7 @@ class Expander:
             elif action == COPY:
                 self._copy(item, output)
             elif action == ELEMENT:
-                self.element(item, output, scope, macros)
+                self.expand_element(item, output, scope, macros)
             elif action == TAG:
                 session.budget.elements -= 2
                 session.current_node, session.current_attribute = item, None
@@ -241,14 +241,14 @@ class Expander:
         for node in run.nodes:
             if isinstance(node, Element):
                 budget.elements -= uncounted_nodes >> 3
-                self.element(node, output, scope, macros)
+                self.expand_element(node, output, scope, macros)
                 uncounted_nodes = 0
             else:
                 output.append(node)
                 uncounted_nodes += 1
         budget.elements -= uncounted_nodes >> 3
 
-    def element(self, node: Element, output: list[Node], scope: Scope, macros: MacroTable) -> None:
+    def expand_element(self, node: Element, output: list[Node], scope: Scope, macros: MacroTable) -> None:
         """Expand an ordinary element and append it to the output.
 
         The attributes are evaluated before the content.
@@ -269,13 +269,13 @@ class Expander:
         element = Element(node.tag, attributes, node.source, node.offset, session.frame)
         output.append(element)
         if plan.steps or plan.steps is None:
-            self.children(node, element, scope, macros)
+            self.expand_children(node, element, scope, macros)
 
-    def blocks(self, node: Element, scope: Scope, macros: MacroTable) -> Element:
+    def expand_blocks(self, node: Element, scope: Scope, macros: MacroTable) -> Element:
         """Return a container with the expanded content of a macro call."""
         container = Container(node.tag)
         if node.children:
-            self.children(node, container, scope, macros)
+            self.expand_children(node, container, scope, macros)
         return container
 
     def attributes(self, node: Element, scope: Scope) -> dict[str, str]:
@@ -377,7 +377,7 @@ class Expander:
         """
         output = site.parent.children
         output.extend(container.children)
-        self.sweeper.moved(container.children, output)
+        self.sweeper.on_nodes_moved(container.children, output)
         for name, value in container.attributes.items():
             if not name.startswith("xmlns:"):
                 site.parent.attributes[name] = value
@@ -538,7 +538,7 @@ def check_attributes(expander: Expander, node: Element, required: tuple[str, ...
     for name in required:
         if name not in attributes:
             similar_names = nearest(name, [attribute for attribute in attributes if attribute not in optional])
-            missing = (
+            hint = (
                 phrase("write {name}=\"...\" for '{similar_name}'", name=name, similar_name=similar_names[0])
                 if similar_names
                 else phrase('write {name}="..."', name=name)
@@ -548,7 +548,7 @@ def check_attributes(expander: Expander, node: Element, required: tuple[str, ...
                 phrase("'{tag}' needs the attribute '{name}'", tag=node.tag, name=name),
                 node,
                 node.span(),
-                missing,
+                hint,
             )
     if len(attributes) == len(required):
         return
@@ -557,9 +557,9 @@ def check_attributes(expander: Expander, node: Element, required: tuple[str, ...
     for name in attributes:
         if name in required or name in optional or name.startswith("xmlns:"):
             continue
-        hint = did_you_mean(name, required + optional)
         message = phrase("'{tag}' does not accept the attribute '{name}'", tag=node.tag, name=name)
-        expander.session.warn("XAC302", message, attribute_name_span(node, name), hint)
+        correction = did_you_mean(name, required + optional)
+        expander.session.warn("XAC302", message, attribute_name_span(node, name), correction)
 
 
 def warn_of_global(expander: Expander, node: Element, name: str, attribute: str) -> None:

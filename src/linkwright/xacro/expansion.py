@@ -122,7 +122,7 @@ def expand(
     session = inputs.session()
     document = main_document(session, text)
     with recursion_limit_for(session.limits):
-        expanded_document = Expander(session, DIRECTIVES, call_macro).document(document)
+        expanded_document = Expander(session, DIRECTIVES, call_macro).expand_document(document)
     session.warn_of_unused_arguments()
     session.close()
     expanded_document.prolog[:0] = banner(inputs.name)

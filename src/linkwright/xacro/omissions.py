@@ -73,7 +73,7 @@ def expand_with_omissions(inputs: Inputs, packages: Packages) -> tuple[Expansion
     session = inputs._replace(packages=_StandInPackages(packages, omissions)).session()
     document = main_document(session, inputs.text)
     with recursion_limit_for(session.limits):
-        expanded_document = _OmittingExpander(session, omissions).document(document)
+        expanded_document = _OmittingExpander(session, omissions).expand_document(document)
     session.close()
     expansion = Expansion(
         expanded_document, session.dependencies, session.arguments, tuple(session.diagnostics), inputs
@@ -154,7 +154,7 @@ class _OmittingExpander(Expander):
         if code == _MISSING_MACRO:
             name = node.attributes.get("macro") or node.tag.partition(":")[2]
             self._omissions.macros[name] = self._omissions.macros.get(name, 0) + 1
-            self.element(node, site.parent.children, site.scope, site.macros)
+            self.expand_element(node, site.parent.children, site.scope, site.macros)
             return True
         if code in _UNKNOWN_NAMES:
             attributes = " ".join(f'{name}="{value}"' for name, value in node.attributes.items())

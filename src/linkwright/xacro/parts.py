@@ -113,13 +113,13 @@ class _PartsExpander(Expander):
                         del result[name]
         return result
 
-    def blocks(self, node: Element, scope: Scope, macros: MacroTable) -> Element:
+    def expand_blocks(self, node: Element, scope: Scope, macros: MacroTable) -> Element:
         """Return the expanded content of a macro call.
 
         Raises:
             _LeftOutError: if the content has a gap.
         """
-        container = super().blocks(node, scope, macros)
+        container = super().expand_blocks(node, scope, macros)
         if _GAP in container.attributes:
             raise _LeftOutError
         return container

@@ -149,7 +149,7 @@ class Session:
 
     def may_change_values(self, text: str) -> bool:
         """Return whether the evaluation of a text may change a value, as ``${items.pop(0)}`` does."""
-        return compile_template(text).changes
+        return compile_template(text).may_change_values
 
     # names
 

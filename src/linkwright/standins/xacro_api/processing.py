@@ -243,7 +243,7 @@ def _expand(tree: Document, file: str | None, mappings: Mapping[str, Any] | None
         descriptions.record_read_time(call)
     try:
         with recursion_limit_for(inputs.limits):
-            document = StackExpander(session, session.directives, session.call).document(tree)
+            document = StackExpander(session, session.directives, session.call).expand_document(tree)
     except LinkwrightError as error:
         session.restore_stacks()
         _print_diagnostics(session.diagnostics)

@@ -424,21 +424,21 @@ class Compiler:
     # lists, tuples, sets and dicts
 
     def _list(self, node: ast.List) -> Closure:
-        return self._display(node, list)
+        return self._collection(node, list)
 
     def _tuple(self, node: ast.Tuple) -> Closure:
-        return self._display(node, tuple)
+        return self._collection(node, tuple)
 
     def _set(self, node: ast.Set) -> Closure:
-        return self._display(node, lambda items: set(checked_keys(items)))
+        return self._collection(node, lambda items: set(checked_keys(items)))
 
-    def _display(self, node: ast.List | ast.Tuple | ast.Set, kind: Callable[[list[Any]], Any]) -> Closure:
+    def _collection(self, node: ast.List | ast.Tuple | ast.Set, build: Callable[[list[Any]], Any]) -> Closure:
         items = [self._argument(item) for item in node.elts]
         start, end = self._offsets(node)
 
         def display(env: Environment) -> Any:
             try:
-                return charge_value(env.session.budget, kind(_arguments(env, items, [])[0]))
+                return charge_value(env.session.budget, build(_arguments(env, items, [])[0]))
             except (RefusalError, TypeError) as error:
                 raise self._failure(error, start, end) from None
 
@@ -471,37 +471,37 @@ class Compiler:
         return self._collect_items(node, node.elt, set)
 
     def _collect_items(
-        self, node: ast.ListComp | ast.SetComp, element: ast.expr, kind: Callable[[Iterator[Any]], Any]
+        self, node: ast.ListComp | ast.SetComp, element: ast.expr, build: Callable[[Iterator[Any]], Any]
     ) -> Closure:
         element_value, iterations = self.compile(element), self._iterations(node.generators)
         start, end = self._offsets(node)
 
         def comprehension(env: Environment) -> Any:
             try:
-                return charge_value(env.session.budget, kind(element_value(inner) for inner in iterations(env)))
+                return charge_value(env.session.budget, build(element_value(inner) for inner in iterations(env)))
             except (RefusalError, TypeError, ValueError) as error:
                 raise self._failure(error, start, end) from None
 
         return comprehension
 
     def _dictcomp(self, node: ast.DictComp) -> Closure:
-        key, value, turns = self.compile(node.key), self.compile(node.value), self._iterations(node.generators)
+        key, value, iterations = self.compile(node.key), self.compile(node.value), self._iterations(node.generators)
         start, end = self._offsets(node)
 
         def comprehension(env: Environment) -> Any:
             try:
-                return charge_value(env.session.budget, {key(inner): value(inner) for inner in turns(env)})
+                return charge_value(env.session.budget, {key(inner): value(inner) for inner in iterations(env)})
             except (RefusalError, TypeError, ValueError) as error:
                 raise self._failure(error, start, end) from None
 
         return comprehension
 
     def _generatorexp(self, node: ast.GeneratorExp) -> Closure:
-        item, turns = self.compile(node.elt), self._iterations(node.generators)
+        item, iterations = self.compile(node.elt), self._iterations(node.generators)
 
         def generator(env: Environment) -> Iterator[Any]:
             env.session.budget.charge_steps(_GENERATOR_COST)
-            return (item(inner) for inner in turns(env))
+            return (item(inner) for inner in iterations(env))
 
         return generator
 
@@ -566,7 +566,7 @@ _METHODS: dict[type[ast.AST], Callable[[Compiler, Any], Closure]] = {
     for kind in vars(ast).values()
     if isinstance(kind, type) and issubclass(kind, ast.AST) and hasattr(Compiler, f"_{kind.__name__.lower()}")
 }
-"""Class of a node of the syntax tree -> the method that compiles it."""
+"""The methods that compile nodes, by class of node."""
 
 
 def _arguments(

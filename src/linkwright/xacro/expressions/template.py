@@ -62,10 +62,15 @@ def substitute(body: str, session: Context) -> str:
 
 
 def _check_characters(body: str) -> None:
-    for sign in "$(":
-        offset = body.find(sign)
+    for character in "$(":
+        offset = body.find(character)
         if offset >= 0:
-            raise Fault("XAC213", phrase("'{sign}' is not allowed inside '$(...)'", sign=sign), offset, offset + 1)
+            raise Fault(
+                "XAC213",
+                phrase("'{character}' is not allowed inside '$(...)'", character=character),
+                offset,
+                offset + 1,
+            )
 
 
 def _evaluate_find(text: str, body: str, session: Context) -> str:
@@ -234,7 +239,7 @@ class Token(NamedTuple):
     end: int
 
 
-_PIECE = r"""(?x)
+_PATTERN = r"""(?x)
     \$(?P<escaped>\$+[{(])
   | \$\{(?P<expression>[^}]*)\}
   | \$\((?P<substitution>[^)]*)\)
@@ -257,7 +262,7 @@ def tokenize(text: str) -> list[Token]:
     """
     if text.startswith("${") and text.find("}") == len(text) - 1:
         return [Token(TokenKind.EXPRESSION, text[2:-1], 0, len(text))]  # the usual form of a text with a dollar
-    pattern = re.compile(_PIECE)
+    pattern = re.compile(_PATTERN)
     tokens: list[Token] = []
     offset = 0
     while offset < len(text):
@@ -297,13 +302,13 @@ class Template:
     Attributes:
         evaluate: the function that returns the value of the text in a scope. It raises a `Fault` whose offsets are
             relative to the text.
-        changes: whether the evaluation may change a value, as ``${items.pop(0)}`` does.
+        may_change_values: whether the evaluation may change a value, as ``${items.pop(0)}`` does.
     """
 
-    __slots__ = ("changes", "evaluate")
+    __slots__ = ("evaluate", "may_change_values")
 
     def __init__(self, text: str) -> None:
-        self.changes = False
+        self.may_change_values = False
         tokens = tokenize(text)
         parts = [None if token.kind is TokenKind.TEXT else self._part(token) for token in tokens]
         single_part = parts[0] if len(parts) == 1 else None
@@ -320,7 +325,7 @@ class Template:
         except Fault as fault:
             fault.shift_to_enclosing_text(start, end, start + _BRACKET_LENGTH)
             raise
-        self.changes = self.changes or expression.changes
+        self.may_change_values = self.may_change_values or expression.changes
         return _with_offsets(expression.evaluate, start, end)
 
     def _nested(self, token: Token) -> _Part:
@@ -330,7 +335,7 @@ class Template:
         """
         kind, text, start, end = token
         inner = _with_offsets(compile_template(text).evaluate, start, end)
-        self.changes = True  # the source, and so its effects, are not known before the evaluation
+        self.may_change_values = True  # the source, and so its effects, are not known before the evaluation
 
         def part(scope: Scope) -> Any:
             source = _checked_text(inner(scope))

@@ -101,7 +101,7 @@ def _expand_file(
         attributes = expander.attributes(root, scope)
         namespaces = {name: value for name, value in attributes.items() if name.startswith("xmlns:")}
         container = Container(site.node.tag, namespaces)
-        expander.children(root, container, scope, macros)
+        expander.expand_children(root, container, scope, macros)
     finally:
         session.frame, session.file = outer_frame, outer_file
     return container
@@ -277,7 +277,7 @@ def expand_condition(expander: Expander, site: Site) -> None:
         if "$" in node.attributes["value"] and session.may_change_values(node.attributes["value"]):
             expander.attributes(node, scope)  # ros/xacro evaluates the attributes of inserted elements a second time
         container = Container(node.tag)
-        expander.children(node, container, scope, site.macros)
+        expander.expand_children(node, container, scope, site.macros)
         expander.splice(container, site)
     if marker_holder:
         expander.sweeper.move_marker(output)
@@ -291,10 +291,10 @@ def insert_block(expander: Expander, site: Site) -> None:
     if f"**{name}" in scope:
         block: Element = scope.lookup(f"**{name}")
         container = Container(block.tag)
-        expander.children(block, container, scope, site.macros)
+        expander.expand_children(block, container, scope, site.macros)
         expander.splice(container, site)
     elif f"*{name}" in scope:
-        expander.element(scope.lookup(f"*{name}"), site.parent.children, scope, site.macros)
+        expander.expand_element(scope.lookup(f"*{name}"), site.parent.children, scope, site.macros)
     else:
         block_names = [block.lstrip("*") for block in scope.blocks()]
         hint = did_you_mean(name, block_names)
@@ -321,7 +321,7 @@ def expand_element(expander: Expander, site: Site) -> None:
     if tag.startswith("xacro:"):
         expander.directive(site._replace(node=element))
     else:
-        expander.element(element, site.parent.children, site.scope, site.macros)
+        expander.expand_element(element, site.parent.children, site.scope, site.macros)
 
 
 def set_attribute(expander: Expander, site: Site) -> None:

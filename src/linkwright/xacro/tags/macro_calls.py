@@ -166,7 +166,7 @@ class _Call:
     def _bind_blocks(self, macro: Macro, unbound: list[Parameter], scope: Scope) -> list[Parameter]:
         if not unbound and not self._node.children:
             return unbound
-        blocks = self._expander.blocks(self._node, self._site.scope, self._site.macros).elements()
+        blocks = self._expander.expand_blocks(self._node, self._site.scope, self._site.macros).elements()
         remaining = []
         for parameter in unbound:
             if not parameter.is_block:
@@ -235,7 +235,7 @@ class _Call:
                 evaluated_value = expander.text_value(body, name, scope)
                 if name.startswith("xmlns:"):
                     container.attributes[name] = evaluated_value
-            expander.children(body, container, scope, macros)
+            expander.expand_children(body, container, scope, macros)
         finally:
             session.frame = outer_frame
         return container

@@ -78,13 +78,11 @@ def _element_lines(provenance: Provenance, root: Provenance) -> Iterator[str]:
     if has_other_calls:
         yield from (f"  {line}" for call in provenance.calls for line in _call_lines(call))
     for attribute in attributes:
-        description = f"  {attribute.name}={_quoted(attribute.value)}"
-        if attribute.calls != provenance.calls or not _is_inside(attribute, provenance):
-            description += f" set by <xacro:attribute> at {format_location(attribute.span)}"
-        yield (
-            description if attribute.written == attribute.value else f"{description} from {_quoted(attribute.written)}"
-        )
-        yield from (f"    {line}" for line in _table([_value_row(value) for value in attribute.values]))
+        line = f"  {attribute.name}={_quoted(attribute.value)}"
+        if attribute.calls != provenance.calls or not _is_written_on_element(attribute, provenance):
+            line += f" set by <xacro:attribute> at {format_location(attribute.span)}"
+        yield (line if attribute.written == attribute.value else f"{line} from {_quoted(attribute.written)}")
+        yield from (f"    {row}" for row in _table([_value_row(value) for value in attribute.values]))
     for text in texts:
         yield f"  text {_quoted(text.value)} from {_quoted(text.written)}"
         yield from (f"    {line}" for line in _table([_value_row(value) for value in text.values]))
@@ -109,10 +107,10 @@ def _table(rows: list[tuple[str, str, str]]) -> Iterator[str]:
 
 
 def _is_shown(attribute: AttributeProvenance, provenance: Provenance) -> bool:
-    return attribute.written != attribute.value or not _is_inside(attribute, provenance)
+    return attribute.written != attribute.value or not _is_written_on_element(attribute, provenance)
 
 
-def _is_inside(attribute: AttributeProvenance, provenance: Provenance) -> bool:
+def _is_written_on_element(attribute: AttributeProvenance, provenance: Provenance) -> bool:
     """Return whether an attribute is written on its element instead of set by another tag."""
     element: Element = provenance.element
     return attribute.span is None or element.attribute_span(attribute.name) == attribute.span

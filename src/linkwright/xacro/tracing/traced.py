@@ -66,7 +66,7 @@ def expand_traced(
     if inputs.text is not None and PROBE in directives:
         document = with_probes(document)
     with recursion_limit_for(inputs.limits):
-        return without_probes(Expander(session, directives, call).document(document))
+        return without_probes(Expander(session, directives, call).expand_document(document))
 
 
 def with_probes(document: Document) -> Document:
