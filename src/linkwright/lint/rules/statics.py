@@ -57,16 +57,16 @@ def contacts(subject: Subject) -> list[Contact] | None:
         is_wheel = name in wheel_names
         if name not in frames or not (is_wheel or (_CASTER.search(name) and (link.visuals or link.collisions))):
             continue
-        lowest = None
+        lowest_point = None
         for shape in link.collisions or link.visuals:
             pose = placement(shape.origin).inside(frames[name]).seen_from(base)
             x, y, z = pose.position
             depth = _depth(shape.geometry, pose.rotation[2][2])
-            if depth is not None and (lowest is None or z - depth < lowest[2]):
-                lowest = (x, y, z - depth)
-        if lowest is None:
+            if depth is not None and (lowest_point is None or z - depth < lowest_point[2]):
+                lowest_point = (x, y, z - depth)
+        if lowest_point is None:
             return None
-        all_contacts.append(Contact(link, lowest, is_wheel))
+        all_contacts.append(Contact(link, lowest_point, is_wheel))
     return all_contacts
 
 
@@ -99,11 +99,11 @@ class WheelsNotLevel(Rule):
         tolerance = self.option(subject, "tolerance", float)
         wheel_contacts = [contact for contact in all_contacts if contact.is_wheel]
         ground = min(contact.lowest_point[2] for contact in wheel_contacts)
-        lowest = min(wheel_contacts, key=lambda item: item.lowest_point[2]).link
+        lowest_wheel = min(wheel_contacts, key=lambda item: item.lowest_point[2]).link
         lifted_wheels = _lifted_wheels(subject)
         for contact in all_contacts:
             gap = contact.lowest_point[2] - ground
-            if abs(gap) > tolerance and lifted_wheels.isdisjoint((contact.link.name, lowest.name)):
+            if abs(gap) > tolerance and lifted_wheels.isdisjoint((contact.link.name, lowest_wheel.name)):
                 direction = phrase("above") if gap > 0 else phrase("below")
                 yield self.report(
                     phrase(
@@ -112,11 +112,11 @@ class WheelsNotLevel(Rule):
                         name=contact.link.name,
                         distance=abs(gap) * 1000,
                         side=direction,
-                        lowest_name=lowest.name,
+                        lowest_name=lowest_wheel.name,
                     ),
                     contact.link.element,
                     "name",
-                    notes=[Note(phrase("'{name}' is defined here", name=lowest.name), _span_of(lowest))],
+                    notes=[Note(phrase("'{name}' is defined here", name=lowest_wheel.name), _span_of(lowest_wheel))],
                     hint=phrase("check the heights of their joints, and the radii of the wheels"),
                 )
 
@@ -186,9 +186,9 @@ class CenterBeyondWheels(Rule):
                 notes=[
                     Note(
                         phrase(
-                            "it is at x = {center:.3g} m, y = {other_center:.3g} m",
-                            center=center[0],
-                            other_center=center[1],
+                            "it is at x = {x:.3g} m, y = {y:.3g} m",
+                            x=center[0],
+                            y=center[1],
                         )
                     ),
                     Note(phrase("'{name}' is the heaviest link", name=heaviest_link.name)),
@@ -248,9 +248,9 @@ def _distance_outside(point: Point, corners: Sequence[Point]) -> float:
     """
     max_distance = 0.0
     for start, end in zip(corners, [*corners[1:], corners[0]], strict=True):
-        edge = hypot(end[0] - start[0], end[1] - start[1])
-        if edge > 0:
-            max_distance = max(max_distance, -turn(start, end, point) / edge)
+        edge_length = hypot(end[0] - start[0], end[1] - start[1])
+        if edge_length > 0:
+            max_distance = max(max_distance, -turn(start, end, point) / edge_length)
     return max_distance
 
 
