@@ -19,7 +19,7 @@ from tests.begun import BEGUN, telling
 from tests.domains import own_domain
 from tests.waiting import SECONDS, wait_until
 
-pytestmark = pytest.mark.skipif(not dds.available(), reason="there is no cyclonedds here")
+pytestmark = pytest.mark.skipif(not dds.is_available(), reason="there is no cyclonedds here")
 
 TALKER = """
 import asyncio

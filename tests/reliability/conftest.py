@@ -24,7 +24,7 @@ ROS_VARIABLES = (
 
 def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
     """Where there is no DDS wheel, processes do not meet."""
-    if not dds.available():
+    if not dds.is_available():
         for item in items:
             if Path(__file__).parent in item.path.parents:
                 item.add_marker(pytest.mark.skip(reason="there is no cyclonedds here"))

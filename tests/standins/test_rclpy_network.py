@@ -14,7 +14,10 @@ from linkwright.standins import process
 from linkwright.wire import dds
 from tests.domains import own_domain
 
-pytestmark = [pytest.mark.slow, pytest.mark.skipif(not dds.available(), reason="there is no wheel of cyclonedds here")]
+pytestmark = [
+    pytest.mark.slow,
+    pytest.mark.skipif(not dds.is_available(), reason="there is no wheel of cyclonedds here"),
+]
 
 SERVER = """\
     import rclpy

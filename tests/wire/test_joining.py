@@ -9,11 +9,11 @@ import pytest
 
 from linkwright.graph import Graph, LogRecord
 from linkwright.messages import String
-from linkwright.wire.dds import available, join, unavailable_reason
+from linkwright.wire.dds import is_available, join, unavailable_reason
 from linkwright.wire.dds.settings import max_participants
 from linkwright.wire.domain_id import MAX_DOMAIN_ID
 
-with_dds = pytest.mark.skipif(not available(), reason="there is no DDS here")
+with_dds = pytest.mark.skipif(not is_available(), reason="there is no DDS here")
 
 
 @pytest.fixture
@@ -48,7 +48,7 @@ def test_import_does_not_load_cyclonedds():
 
 def test_linkwright_dds_0_keeps_process_offline(graph, log, monkeypatch):
     monkeypatch.setenv("LINKWRIGHT_DDS", "0")
-    assert not available()
+    assert not is_available()
     assert unavailable_reason() == "the environment variable LINKWRIGHT_DDS is 0"
     assert join(graph) is None
     assert log == []

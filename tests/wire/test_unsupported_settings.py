@@ -9,7 +9,7 @@ from linkwright.diagnostics import LinkwrightError
 from linkwright.graph import Graph
 from linkwright.graph.faults import RclError
 from linkwright.standins.rclpy_api.context import Context
-from linkwright.wire.joining import available, check_security, join
+from linkwright.wire.joining import check_security, is_available, join
 from linkwright.wire.unsupported_settings import new_unsupported_settings, unsupported_settings
 from tests.domains import own_domain
 
@@ -17,7 +17,7 @@ SECURE = {"ROS_SECURITY_ENABLE": "true"}
 ENFORCED = {**SECURE, "ROS_SECURITY_STRATEGY": "Enforce"}
 SERVER = {"ROS_DISCOVERY_SERVER": "127.0.0.1:11811"}
 
-with_network = pytest.mark.skipif(not available(), reason="there is neither DDS nor Zenoh here")
+with_network = pytest.mark.skipif(not is_available(), reason="there is neither DDS nor Zenoh here")
 
 
 def codes(variables):

@@ -73,9 +73,12 @@ def add_ttl_argument(parser: argparse.ArgumentParser) -> None:
 
 def _configure_receive(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
-        "--group", type=multicast_group, default=multicast.GROUP, help="the multicast group (default: %(default)s)"
+        "--group",
+        type=multicast_group,
+        default=multicast.DEFAULT_GROUP,
+        help="the multicast group (default: %(default)s)",
     )
-    parser.add_argument("--port", type=port, default=multicast.PORT, help="the UDP port (default: %(default)s)")
+    parser.add_argument("--port", type=port, default=multicast.DEFAULT_PORT, help="the UDP port (default: %(default)s)")
 
 
 def _configure_send(parser: argparse.ArgumentParser) -> None:

@@ -264,11 +264,11 @@ async def join_others(graph: Graph, spin_time: float | None, *, read_only: bool 
         LinkwrightError: CLI401, neither DDS nor Zenoh is available; DDS101, ROS_DOMAIN_ID is not a domain; DDS111, a
             setting of Zenoh is malformed; DDS121, security is enforced; DDS102, DDS112, the domain cannot be joined.
     """
-    from linkwright.wire.joining import available, check_settings, join, unavailable_reason
+    from linkwright.wire.joining import check_settings, is_available, join, unavailable_reason
 
-    if available():
+    if is_available():
         check_settings()  # report malformed settings as errors; joining would only log them
-    transport = join(graph, discovers_only=read_only, must_join=True) if available() else None
+    transport = join(graph, discovers_only=read_only, must_join=True) if is_available() else None
     if transport is None:
         raise LinkwrightError(
             Diagnostic(

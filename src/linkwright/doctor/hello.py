@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections import Counter
 from dataclasses import dataclass, field
 
-from linkwright.wire.multicast import GROUP, PORT
+from linkwright.wire.multicast import DEFAULT_GROUP, DEFAULT_PORT
 
 _GREETING = "hello, it's me "
 _SEPARATOR = "-" * 60
@@ -68,7 +68,7 @@ class Greetings:
             f"Topic: {topic}, Published Msg Count: {self.published}",
             "Subscribed from:",
             *_format_rows(self.subscribed, period),
-            f"Multicast Group/Port: {GROUP}/{PORT}, Sent Msg Count: {self.sent}",
+            f"Multicast Group/Port: {DEFAULT_GROUP}/{DEFAULT_PORT}, Sent Msg Count: {self.sent}",
             "Received from:",
             *_format_rows(self.received, period),
             _SEPARATOR,

@@ -102,10 +102,10 @@ def _platform_rows() -> list[tuple[str, str]]:
 
 
 def _middleware_name() -> str:
-    from linkwright.wire.joining import available, middleware, unavailable_reason
+    from linkwright.wire.joining import is_available, middleware, unavailable_reason
     from linkwright.wire.unsupported_settings import ZENOH
 
-    if not available():
+    if not is_available():
         return f"none: {unavailable_reason()}"
     return (
         "Eclipse Zenoh (as rmw_zenoh_cpp)" if middleware() == ZENOH else "Eclipse Cyclone DDS (as rmw_cyclonedds_cpp)"

@@ -67,9 +67,9 @@ class Network:
         graph = self._graph
         if graph is None or graph.closed:
             return
-        from linkwright.wire.joining import available, join, unavailable_reason
+        from linkwright.wire.joining import is_available, join, unavailable_reason
 
-        if available():
+        if is_available():
             transport = join(graph)
             self.domain_id = None if transport is None else transport.domain_id
         elif self._session.has_processes:

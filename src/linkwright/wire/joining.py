@@ -38,8 +38,8 @@ def middleware(environment: Mapping[str, str] | None = None) -> str:
     Args:
         environment: the environment variables; by default, the variables of this process.
     """
-    variables = os.environ if environment is None else environment
-    requested = variables.get(MIDDLEWARE, "").strip()
+    environment = os.environ if environment is None else environment
+    requested = environment.get(MIDDLEWARE, "").strip()
     if requested:
         return ZENOH if requested == ZENOH else CYCLONE
     return ZENOH if find_spec("cyclonedds") is None and zenoh_is_installed() else CYCLONE
@@ -53,11 +53,11 @@ def unavailable_reason(environment: Mapping[str, str] | None = None) -> Phrase:
     Args:
         environment: the environment variables; by default, the variables of this process.
     """
-    variables = os.environ if environment is None else environment
-    if middleware(variables) == ZENOH:
-        return zenoh.unavailable_reason(variables)
-    reason = dds.unavailable_reason(variables)
-    if reason and find_spec("cyclonedds") is None and not variables.get(MIDDLEWARE, "").strip():
+    environment = os.environ if environment is None else environment
+    if middleware(environment) == ZENOH:
+        return zenoh.unavailable_reason(environment)
+    reason = dds.unavailable_reason(environment)
+    if reason and find_spec("cyclonedds") is None and not environment.get(MIDDLEWARE, "").strip():
         return phrase(
             "neither DDS nor Zenoh is installed: {hint}, or with 'dds' in place of 'zenoh' for DDS, the "
             "default of ROS 2 (DDS has wheels for Linux x86_64, Windows and macOS arm64, up to Python 3.13; "
@@ -70,7 +70,7 @@ def unavailable_reason(environment: Mapping[str, str] | None = None) -> Phrase:
     return reason
 
 
-def available(environment: Mapping[str, str] | None = None) -> bool:
+def is_available(environment: Mapping[str, str] | None = None) -> bool:
     """Return whether this process can communicate with others."""
     return not unavailable_reason(environment)
 
@@ -128,5 +128,5 @@ def join(graph: Graph, **options: Unpack[JoinOptions]) -> BackgroundTransport | 
         return None
     for finding in new_unsupported_settings(environment):
         graph.get_logger("wire").warning(render(finding))
-    join_transport = zenoh.join if middleware(environment) == ZENOH else dds.join
-    return join_transport(graph, **options)
+    join_selected_transport = zenoh.join if middleware(environment) == ZENOH else dds.join
+    return join_selected_transport(graph, **options)

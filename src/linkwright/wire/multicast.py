@@ -10,8 +10,8 @@ import struct
 
 from linkwright.diagnostics import Diagnostic, LinkwrightError, Note, foreign, phrase
 
-GROUP = "225.0.0.1"
-PORT = 49150
+DEFAULT_GROUP = "225.0.0.1"
+DEFAULT_PORT = 49150
 MAX_DATAGRAM_BYTES = 4096
 """The maximum number of bytes of a datagram that are read."""
 
@@ -22,25 +22,25 @@ def open_sender(ttl: int | None = None) -> socket.socket:
     Args:
         ttl: the maximum number of hops of a datagram; None for the system's default of 1, which stops at routers.
     """
-    sender = socket.socket(socket.AF_INET, socket.SOCK_DGRAM)
+    sending_socket = socket.socket(socket.AF_INET, socket.SOCK_DGRAM)
     if ttl is not None:
-        sender.setsockopt(socket.IPPROTO_IP, socket.IP_MULTICAST_TTL, ttl)
-    return sender
+        sending_socket.setsockopt(socket.IPPROTO_IP, socket.IP_MULTICAST_TTL, ttl)
+    return sending_socket
 
 
-def send(sender: socket.socket, data: bytes, group: str = GROUP, port: int = PORT) -> None:
+def send(sending_socket: socket.socket, data: bytes, group: str = DEFAULT_GROUP, port: int = DEFAULT_PORT) -> None:
     """Send a datagram.
 
     Raises:
         LinkwrightError: CLI461, the system refuses to send the datagram.
     """
     try:
-        sender.sendto(data, (group, port))
+        sending_socket.sendto(data, (group, port))
     except OSError as error:
         raise _multicast_error(error, group, port) from error
 
 
-def open_receiver(group: str = GROUP, port: int = PORT) -> socket.socket:
+def open_receiver(group: str = DEFAULT_GROUP, port: int = DEFAULT_PORT) -> socket.socket:
     """Open a socket that receives the datagrams of a group.
 
     Other programs may use the same group and port.
@@ -48,18 +48,18 @@ def open_receiver(group: str = GROUP, port: int = PORT) -> socket.socket:
     Raises:
         LinkwrightError: CLI461, the system refuses to open the socket.
     """
-    receiver = socket.socket(socket.AF_INET, socket.SOCK_DGRAM)
+    receiving_socket = socket.socket(socket.AF_INET, socket.SOCK_DGRAM)
     try:
-        receiver.setsockopt(socket.SOL_SOCKET, socket.SO_REUSEADDR, 1)
+        receiving_socket.setsockopt(socket.SOL_SOCKET, socket.SO_REUSEADDR, 1)
         if hasattr(socket, "SO_REUSEPORT"):
-            receiver.setsockopt(socket.SOL_SOCKET, socket.SO_REUSEPORT, 1)
-        receiver.bind(("", port))
+            receiving_socket.setsockopt(socket.SOL_SOCKET, socket.SO_REUSEPORT, 1)
+        receiving_socket.bind(("", port))
         membership = struct.pack("=4sI", socket.inet_aton(group), socket.INADDR_ANY)
-        receiver.setsockopt(socket.IPPROTO_IP, socket.IP_ADD_MEMBERSHIP, membership)
+        receiving_socket.setsockopt(socket.IPPROTO_IP, socket.IP_ADD_MEMBERSHIP, membership)
     except OSError as error:
-        receiver.close()
+        receiving_socket.close()
         raise _multicast_error(error, group, port) from error
-    return receiver
+    return receiving_socket
 
 
 def _multicast_error(error: OSError, group: str, port: int) -> LinkwrightError:

@@ -3,7 +3,7 @@
 Importing this package does not load the DDS library.
 """
 
-from linkwright.wire.dds.joining import available, join, unavailable_reason
+from linkwright.wire.dds.joining import is_available, join, unavailable_reason
 from linkwright.wire.dds.transport import DdsTransport
 
-__all__ = ["DdsTransport", "available", "join", "unavailable_reason"]
+__all__ = ["DdsTransport", "is_available", "join", "unavailable_reason"]

@@ -40,7 +40,7 @@ _EARLY_REQUEST_TIMEOUT_S = 10.0
 _TIME_TOLERANCE_NS = 1000
 """The maximum difference, in ns, between two readings of one time stamp, whose unit on the wire is 2^-32 s."""
 
-_MAX_REMEMBERED = 64
+_MAX_NUMBERED_REQUESTS = 64
 
 
 @dataclass(frozen=True, slots=True)
@@ -49,7 +49,7 @@ class EarlyRequest:
 
     Attributes:
         writer: the GUID of the client's writer.
-        body: CDR with its header.
+        body: the request as CDR, with the encapsulation header.
         written_ns: the time of writing by the client's clock, in ns.
         arrived_at: the time of arrival, in seconds of the steady clock.
     """
@@ -90,8 +90,8 @@ class FastServer:
 
     def on_early_request(self, request: EarlyRequest) -> None:
         """Accept a request from Cyclone's reader, unless this reader receives it, too."""
-        heard_at = self._participant.matched_writers(self._requests).get(request.writer)
-        if heard_at is None or time.monotonic() < heard_at + _SETTLING_TIME_S:
+        discovered_at = self._participant.matched_writers(self._requests).get(request.writer)
+        if discovered_at is None or time.monotonic() < discovered_at + _SETTLING_TIME_S:
             with self._lock:
                 self._early_requests.append(request)
 
@@ -124,7 +124,8 @@ class FastServer:
             self._first_samples.setdefault(sample.writer, (sample.number, sample.time))
             numbered = self._numbered_requests.get(sample.writer, ())
             if any(
-                number == sample.number and abs(time_ - sample.time) < _TIME_TOLERANCE_NS for number, time_ in numbered
+                number == sample.number and abs(time_ns - sample.time) < _TIME_TOLERANCE_NS
+                for number, time_ns in numbered
             ):
                 return  # already handled: it was first taken from Cyclone's reader
         identity = read_related_identity(sample.inline, sample.order)
@@ -160,13 +161,13 @@ class FastServer:
 
         Requests that wait for too long without a number are dropped.
         """
-        heard_at_by_writer = self._participant.matched_writers(self._requests)
+        discovered_at_by_writer = self._participant.matched_writers(self._requests)
         with self._lock:
             early_requests, self._early_requests = self._early_requests, []
             settled_writers = {
                 early_request.writer
                 for early_request in early_requests
-                if _is_settled(heard_at_by_writer.get(early_request.writer), now)
+                if _is_settled(discovered_at_by_writer.get(early_request.writer), now)
             }
             self._early_requests = [
                 early_request
@@ -195,7 +196,7 @@ class FastServer:
             numbered = list(
                 zip(range(last_number - len(early_requests) + 1, last_number + 1), early_requests, strict=True)
             )
-            numbered_requests = self._numbered_requests.setdefault(writer, deque(maxlen=_MAX_REMEMBERED))
+            numbered_requests = self._numbered_requests.setdefault(writer, deque(maxlen=_MAX_NUMBERED_REQUESTS))
             numbered_requests.extend((number, request.written_ns) for number, request in numbered)
         return numbered
 
@@ -240,8 +241,8 @@ class FastClient:
         """
         listening_prefixes = {guid[:PREFIX] for guid in self._participant.matched_readers(self._requests)}
         return any(
-            heard_at is not None and guid[:PREFIX] in listening_prefixes and not self._is_dead(guid[:PREFIX])
-            for guid, heard_at in self._participant.matched_writers(self._replies).items()
+            discovered_at is not None and guid[:PREFIX] in listening_prefixes and not self._is_dead(guid[:PREFIX])
+            for guid, discovered_at in self._participant.matched_writers(self._replies).items()
         )
 
     def close(self) -> None:
@@ -266,5 +267,5 @@ class FastClient:
             forward_response(sample.payload or b"", self._client, on_response)
 
 
-def _is_settled(heard_at: float | None, now: float) -> bool:
-    return heard_at is not None and now >= heard_at + _SETTLING_TIME_S
+def _is_settled(discovered_at: float | None, now: float) -> bool:
+    return discovered_at is not None and now >= discovered_at + _SETTLING_TIME_S

@@ -42,7 +42,7 @@ def unavailable_reason(environment: Mapping[str, str] | None = None) -> Phrase:
     return Phrase("")
 
 
-def available(environment: Mapping[str, str] | None = None) -> bool:
+def is_available(environment: Mapping[str, str] | None = None) -> bool:
     """Return whether this process can use DDS."""
     return not unavailable_reason(environment)
 
