@@ -5,7 +5,7 @@ from __future__ import annotations
 import os
 from pathlib import Path
 
-from linkwright.descriptions.unsaved import Listener, Outcome, UnsavedText, UnsavedTexts
+from linkwright.descriptions.unsaved import Listener, UnsavedText, UnsavedTexts, UpdateOutcome
 
 
 class Editor:
@@ -46,8 +46,8 @@ async def test_store_returns_outcome_of_listeners(tmp_path: Path) -> None:
     assert await unsaved.store(UnsavedText(ONE, path, 1, "")) == "elsewhere"
     heard: list[str] = []
 
-    def listener(outcome: Outcome) -> None:
-        async def listen(real_path: str) -> Outcome:
+    def listener(outcome: UpdateOutcome) -> None:
+        async def listen(real_path: str) -> UpdateOutcome:
             heard.append(real_path)
             return outcome
 

@@ -8,10 +8,10 @@ from collections.abc import Awaitable, Callable, Iterable, Mapping
 from linkwright.loading.lean_dataclasses import NamedTuple, dataclass
 from linkwright.loading.lean_typing import Literal, Protocol
 
-Outcome = Literal["shown", "errors", "elsewhere"]
+UpdateOutcome = Literal["shown", "errors", "elsewhere"]
 """Whether descriptions are shown with a new text, are unchanged because of its errors, or do not contain it."""
 
-Listener = Callable[[str], Awaitable[Outcome]]
+Listener = Callable[[str], Awaitable[UpdateOutcome]]
 """A function that reads descriptions again after the text of a file, given by its real path, has changed."""
 
 
@@ -21,12 +21,12 @@ class TextOwner(Protocol):
     Editors are hashable.
     """
 
-    def edit(self, path: str, number: int, text: str) -> None:
+    def edit(self, path: str, revision: int, text: str) -> None:
         """Replace a text in the editor after the robot was edited in the scene.
 
         Args:
             path: the editor's path of the file.
-            number: the number of the text that the edit was made for, or 0 if the editor has no unsaved text of the
+            revision: the revision of the text that the edit was made for, or 0 if the editor has no unsaved text of the
                 file.
             text: the new text, with the line ends of the file.
         """
@@ -39,13 +39,13 @@ class UnsavedText:
     Attributes:
         owner: the editor.
         path: the editor's path of the file.
-        number: the number that the editor gave to this text.
+        revision: the number that the editor gave to this text.
         text: the text, with the line ends of the file.
     """
 
     owner: TextOwner
     path: str
-    number: int
+    revision: int
     text: str
 
 
@@ -54,7 +54,7 @@ class _Key(NamedTuple):
     real_path: str
 
 
-def with_lf(text: str) -> str:
+def with_lf_line_ends(text: str) -> str:
     """Return a text with the line ends of pages, LF."""
     return text.replace("\r\n", "\n").replace("\r", "\n")
 
@@ -81,14 +81,14 @@ class UnsavedTexts:
         """The texts by the real paths of their files."""
         return {key.real_path: unsaved for key, unsaved in self._texts.items()}
 
-    async def store(self, unsaved: UnsavedText) -> Outcome:
+    async def store(self, unsaved: UnsavedText) -> UpdateOutcome:
         """Replace the editor's text of a file, and return the effect on the descriptions."""
         key = _key(unsaved.owner, unsaved.path)
         self._texts.pop(key, None)  # the newest text is the last one
         self._texts[key] = unsaved
         return await self._notify_listeners(key.real_path)
 
-    async def remove(self, owner: TextOwner, path: str) -> Outcome:
+    async def remove(self, owner: TextOwner, path: str) -> UpdateOutcome:
         """Remove the editor's text of a file, and return the effect on the descriptions.
 
         If no other editor has a text of the file, the text on the disk is used again.
@@ -103,7 +103,7 @@ class UnsavedTexts:
         for path in paths:
             await self._notify_listeners(path)
 
-    async def _notify_listeners(self, real_path: str) -> Outcome:
+    async def _notify_listeners(self, real_path: str) -> UpdateOutcome:
         import asyncio  # imported here because the import of asyncio is slow
 
         outcomes = await asyncio.gather(*(listener(real_path) for listener in self._listeners))

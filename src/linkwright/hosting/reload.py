@@ -19,7 +19,7 @@ from linkwright.hosting.launch_log import LaunchLog
 from linkwright.hosting.xacro_calls import Descriptions, XacroCall
 
 if TYPE_CHECKING:
-    from linkwright.descriptions.unsaved import Outcome
+    from linkwright.descriptions.unsaved import UpdateOutcome
     from linkwright.graph import Node
     from linkwright.nodes.watched_files import ReadWorld
 
@@ -172,7 +172,7 @@ class LiveReload:
             elif call in self._saved_calls:
                 self._start_reload(call)
 
-    async def _reload_unsaved(self, path: str) -> Outcome:
+    async def _reload_unsaved(self, path: str) -> UpdateOutcome:
         """Reload the descriptions that contain a file whose unsaved text has changed."""
         affected_calls = [call for call in self._callbacks if self._uses_file(call, path)]
         for call in affected_calls if not self._is_closed else ():

@@ -26,7 +26,7 @@ from contextlib import suppress
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from linkwright.descriptions.unsaved import Outcome, UnsavedText
+from linkwright.descriptions.unsaved import UnsavedText, UpdateOutcome
 from linkwright.page.protocol.description import SourceRange
 from linkwright.panels.text_editor import TextEditorFeature
 
@@ -48,7 +48,7 @@ class TextEditorConnection:
         self._on_ended = on_ended
         self._loop = asyncio.get_running_loop()
         self._unsaved = viewer.context.library.unsaved
-        self._tasks: set[asyncio.Task[Outcome]] = set()
+        self._tasks: set[asyncio.Task[UpdateOutcome]] = set()
         self._feature = viewer.add_feature(TextEditorFeature)
         self._feature.selected = self._open_in_editor
         threading.Thread(target=self._read, name="linkwright-text-editor", daemon=True).start()
@@ -78,7 +78,7 @@ class TextEditorConnection:
         if isinstance(cursor, dict) and isinstance(cursor.get("line"), int):
             self._feature.show(Path(str(cursor.get("file"))), cursor["line"])
 
-    async def _set_text(self, path: str, content: object) -> Outcome:
+    async def _set_text(self, path: str, content: object) -> UpdateOutcome:
         if not isinstance(content, dict):
             return await self._unsaved.remove(self, path)
         number, text = content.get("number"), str(content.get("text", ""))

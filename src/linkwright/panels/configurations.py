@@ -124,7 +124,7 @@ class ConfigurationFeature(PageFeature):
         message, manager = request.message, request.manager
         if not has_display(message.cls):
             raise ValueError(f"there are no displays of the class '{message.cls[:100]}'")
-        entry = manager.config.new_display(message.cls, _name(message.name))
+        entry = manager.config.new_display(message.cls, _checked_name(message.name))
         group = manager.display(message.group) if message.group is not None else None
         topic = message.topic
         prepare: Callable[[ViewerDisplay], None] | None = None
@@ -140,7 +140,7 @@ class ConfigurationFeature(PageFeature):
 
     def _rename(self, request: Request[RenameDisplay]) -> None:
         for display in _displays_of(request.manager, [request.message.display]):
-            request.manager.tree.rename(display, _name(request.message.name))
+            request.manager.tree.rename(display, _checked_name(request.message.name))
 
     def _remove(self, request: Request[RemoveDisplays]) -> None:
         if displays := _displays_of(request.manager, request.message.displays):
@@ -156,7 +156,7 @@ class ConfigurationFeature(PageFeature):
 
     def _group(self, request: Request[GroupDisplays]) -> None:
         if displays := _displays_of(request.manager, request.message.displays):
-            request.manager.tree.group(displays, _name(request.message.name))
+            request.manager.tree.group(displays, _checked_name(request.message.name))
 
     def _undo(self, request: Request[Undo]) -> None:
         request.manager.history.undo()
@@ -166,15 +166,15 @@ class ConfigurationFeature(PageFeature):
 
     # --- questions ---------------------------------------------------------------------------------------------
 
-    def _ask_displays(self, request: Request[AskDisplayChoices]) -> None:
+    def _send_display_choices(self, request: Request[AskDisplayChoices]) -> None:
         from linkwright.panels.displays import choices
 
         request.page.send(choices(self.context.node))
 
-    def _ask_folder(self, request: Request[AskFolder]) -> None:
+    def _send_folder(self, request: Request[AskFolder]) -> None:
         request.page.send(list_folder(request.message.path, _base_folder(request.manager)))
 
-    def _ask_text(self, request: Request[AskConfigurationText]) -> None:
+    def _send_text(self, request: Request[AskConfigurationText]) -> None:
         path = request.manager.config.path
         request.page.send(ConfigurationText(path.name if path else _DEFAULT_FILE_NAME, request.manager.config.text()))
 
@@ -243,9 +243,9 @@ class ConfigurationFeature(PageFeature):
 
 _HANDLERS: dict[type, Callable[..., None]] = {
     AddDisplay: ConfigurationFeature._add,
-    AskConfigurationText: ConfigurationFeature._ask_text,
-    AskDisplayChoices: ConfigurationFeature._ask_displays,
-    AskFolder: ConfigurationFeature._ask_folder,
+    AskConfigurationText: ConfigurationFeature._send_text,
+    AskDisplayChoices: ConfigurationFeature._send_display_choices,
+    AskFolder: ConfigurationFeature._send_folder,
     DuplicateDisplays: ConfigurationFeature._duplicate,
     GroupDisplays: ConfigurationFeature._group,
     LoadConfiguration: ConfigurationFeature._load,
@@ -263,12 +263,12 @@ _HANDLERS: dict[type, Callable[..., None]] = {
 ConfigurationFeature.RECEIVES = tuple(_HANDLERS)
 
 
-def _displays_of(manager: VisualizationManager, identities: list[str]) -> list[ViewerDisplay]:
+def _displays_of(manager: VisualizationManager, display_ids: list[str]) -> list[ViewerDisplay]:
     """Return the displays with these IDs, in the order of the tree.
 
     Unknown IDs are ignored.
     """
-    selected = set(identities)
+    selected = set(display_ids)
     return [display for display in manager.displays if display.id in selected]
 
 
@@ -281,7 +281,7 @@ def _base_folder(manager: VisualizationManager) -> Path:
     return path.absolute().parent if path is not None else Path.cwd()
 
 
-def _name(text: str) -> str:
+def _checked_name(text: str) -> str:
     """Return a name from a page, with each run of white space replaced by one space.
 
     Raises:

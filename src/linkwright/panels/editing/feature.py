@@ -199,7 +199,7 @@ def _edit_unsaved(plan: EditPlan, unsaved: Mapping[str, UnsavedText]) -> None:
         if own is None:
             owner.edit(path, 0, text)
         else:
-            own.owner.edit(own.path, own.number, text)
+            own.owner.edit(own.path, own.revision, text)
 
 
 def elsewhere() -> Diagnostic:

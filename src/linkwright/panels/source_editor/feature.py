@@ -12,7 +12,7 @@ from typing import Any
 
 from linkwright.descriptions.editing import EditRefusedError, Workspace
 from linkwright.descriptions.editing.refusals import changed_file
-from linkwright.descriptions.unsaved import UnsavedText, with_lf
+from linkwright.descriptions.unsaved import UnsavedText, with_lf_line_ends
 from linkwright.diagnostics import Diagnostic, Phrase, phrase
 from linkwright.diagnostics.extras import EXTRAS, install_hint
 from linkwright.page.audience import Page
@@ -52,8 +52,8 @@ class _PageTexts:
 
     page: Page
 
-    def edit(self, path: str, number: int, text: str) -> None:
-        self.page.send(messages.UnsavedTextEdited(path, number, with_lf(text)))
+    def edit(self, path: str, revision: int, text: str) -> None:
+        self.page.send(messages.UnsavedTextEdited(path, revision, with_lf_line_ends(text)))
 
 
 class SourceEditorFeature(PageFeature):

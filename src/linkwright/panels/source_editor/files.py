@@ -9,7 +9,7 @@ from itertools import takewhile
 from pathlib import Path
 
 from linkwright.descriptions.editing import EditPlan, EditRefusedError, Workspace
-from linkwright.descriptions.unsaved import with_lf
+from linkwright.descriptions.unsaved import with_lf_line_ends
 from linkwright.diagnostics import Diagnostic, LinkwrightError, Phrase, display_path, foreign, phrase
 from linkwright.files.whole_files import write_whole_file
 from linkwright.xmltree.decoding import decode
@@ -50,7 +50,7 @@ class FileContent:
     @property
     def page_text(self) -> str | None:
         """The text with the line end LF."""
-        return None if self.text is None else with_lf(self.text)
+        return None if self.text is None else with_lf_line_ends(self.text)
 
 
 class SourceFiles:

@@ -19,14 +19,14 @@ class LanguageProcess:
 
     Args:
         language: the language of its texts, one of `LANGUAGES`; None for the language of the environment.
-        receive: called on the event loop with each message of the server, as JSON.
-        ended: called on the event loop when the server has ended without `close`.
+        on_message: called on the event loop with each message of the server, as JSON.
+        on_end: called on the event loop when the server has ended without `close`.
 
     Raises:
         OSError: the process cannot be started.
     """
 
-    def __init__(self, language: str | None, receive: Callable[[str], object], ended: Callable[[], object]) -> None:
+    def __init__(self, language: str | None, on_message: Callable[[str], object], on_end: Callable[[], object]) -> None:
         options = () if language is None else ("--lang", language)
         self._process = subprocess.Popen(  # noqa: S603 - Linkwright's own program
             [sys.executable, "-m", "linkwright", *options, "lsp", "--stdio", "--python"],
@@ -38,36 +38,38 @@ class LanguageProcess:
         assert self._process.stdout is not None, "it is a pipe"
         self._loop = asyncio.get_running_loop()
         self._is_closed = False
-        self._waiting: SimpleQueue[str | None] = SimpleQueue()
-        work = ((self._write, (self._process.stdin,)), (self._read, (self._process.stdout, receive, ended)))
+        self._outgoing: SimpleQueue[str | None] = SimpleQueue()
+        work = ((self._write, (self._process.stdin,)), (self._read, (self._process.stdout, on_message, on_end)))
         self._threads = [threading.Thread(target=target, args=arguments, daemon=True) for target, arguments in work]
         for thread in self._threads:
             thread.start()
 
     def send(self, content: str) -> None:
         """Send a message to the server, as JSON. Messages wait until the server has started."""
-        self._waiting.put(content)
+        self._outgoing.put(content)
 
     def close(self) -> None:
         """End the server, which has no unsaved data."""
         self._is_closed = True
         self._process.kill()
-        self._waiting.put(None)
+        self._outgoing.put(None)
         self._process.wait()
         for thread in self._threads:
             thread.join()
 
-    def _write(self, requests: IO[bytes]) -> None:
-        with suppress(OSError), requests:  # the reader notices this too
-            while (message := self._waiting.get()) is not None:
-                requests.write(framed(message.encode()))
-                requests.flush()
+    def _write(self, server_input: IO[bytes]) -> None:
+        with suppress(OSError), server_input:  # the reading thread notices the end of the process too
+            while (message := self._outgoing.get()) is not None:
+                server_input.write(framed(message.encode()))
+                server_input.flush()
 
-    def _read(self, answers: IO[bytes], receive: Callable[[str], object], ended: Callable[[], object]) -> None:
-        with answers:
-            while (content := read_content(answers)) is not None:
-                self._call(receive, content.decode(errors="replace"))
-        self._call(ended)
+    def _read(
+        self, server_output: IO[bytes], on_message: Callable[[str], object], on_end: Callable[[], object]
+    ) -> None:
+        with server_output:
+            while (content := read_content(server_output)) is not None:
+                self._call(on_message, content.decode(errors="replace"))
+        self._call(on_end)
 
     def _call(self, callback: Callable[..., object], *arguments: object) -> None:
         """Call a function on the event loop, unless the server was closed."""
