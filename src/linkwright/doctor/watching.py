@@ -26,7 +26,7 @@ from linkwright.doctor.record import (
     node_of,
 )
 from linkwright.graph.endpoints.base import EndpointInfo, EndpointKind, MessageInfo
-from linkwright.graph.endpoints.drivers import Dispute, find_drivers, find_publishers
+from linkwright.graph.endpoints.drivers import DisputeDetector, find_drivers, find_publishers
 from linkwright.graph.names.rules import join
 from linkwright.graph.qos.profile import DurabilityPolicy, QoSProfile, ReliabilityPolicy
 from linkwright.process.nanoseconds import NANOSECONDS_PER_SECOND
@@ -153,7 +153,7 @@ class _Watcher:
         self._latched: set[str] = set()
         self._transform_topics: set[str] = set()
         self._frames: dict[tuple[str, str], str] = {}
-        self._disputes: dict[str, Dispute] = {}
+        self._disputes: dict[str, DisputeDetector] = {}
         self.descriptions: dict[tuple[str, str], ObservedDescription] = {}
         self.clock: ObservedClock | None = None
 
@@ -309,8 +309,8 @@ class _Watcher:
         )
 
     def _on_velocity(self, topic: str, data: bytes, info: MessageInfo) -> None:
-        dispute = self._disputes.setdefault(topic, Dispute(_MIN_DISPUTE_SECONDS, _MIN_DISPUTE_COUNT))
-        dispute.note_command(info.publisher_gid, bytes(data[-_TWIST_BYTES:]), time.monotonic())
+        dispute = self._disputes.setdefault(topic, DisputeDetector(_MIN_DISPUTE_SECONDS, _MIN_DISPUTE_COUNT))
+        dispute.record_command(info.publisher_gid, bytes(data[-_TWIST_BYTES:]), time.monotonic())
 
     def _on_stamped(self, topic: str, data: bytes, info: MessageInfo, *, is_velocity: bool) -> None:
         if is_velocity:

@@ -8,7 +8,7 @@ import pytest
 
 from linkwright.graph import EndpointKind, MessageInfo, NodeIdentity, QoSProfile
 from linkwright.graph.endpoints.base import EndpointInfo
-from linkwright.graph.endpoints.drivers import Dispute, DriverWatch
+from linkwright.graph.endpoints.drivers import DisputeDetector, DriverWatch
 from linkwright.graph.log.logger import Logger
 from linkwright.messages import get_message
 
@@ -22,12 +22,12 @@ def stream(who: str, begin: float, end: float, rate: float, speed: float) -> lis
     return [(begin + number / rate, who, speed) for number in range(round((end - begin) * rate))]
 
 
-def disputes(*streams: Iterable[Sent], dispute: Dispute | None = None) -> list[tuple[float, set[object]]]:
+def disputes(*streams: Iterable[Sent], dispute: DisputeDetector | None = None) -> list[tuple[float, set[object]]]:
     """When a dispute is told of, and who disputes."""
-    dispute = dispute or Dispute()
+    dispute = dispute or DisputeDetector()
     heard = []
     for now, who, speed in sorted(each for stream in streams for each in stream):
-        if dispute.note_command(who, speed, now):
+        if dispute.record_command(who, speed, now):
             heard.append((now, set(dispute.parties)))
     return heard
 
@@ -88,7 +88,7 @@ def test_short_break_is_not_reported_again():
 
 
 def test_time_jump_back_resets_dispute():
-    dispute = Dispute()
+    dispute = DisputeDetector()
     assert disputes(stream("a", 100, 102, 10, 0.1), stream("b", 100.01, 102, 10, 0.2), dispute=dispute) == []
     assert disputes(stream("a", 0, 2, 10, 0.1), stream("b", 0.01, 2, 10, 0.2), dispute=dispute) == []
     assert disputes(stream("a", 2, 4, 10, 0.1), stream("b", 2.01, 4, 10, 0.2), dispute=dispute)
@@ -126,7 +126,7 @@ def warned(graph: Known, message_type: type = Twist) -> list[str]:
                 message.twist.linear.x = float(number)
             else:
                 message.linear.x = float(number)
-            watch.note_command(message, MessageInfo(0, 0, each.gid))
+            watch.record_command(message, MessageInfo(0, 0, each.gid))
     return log
 
 

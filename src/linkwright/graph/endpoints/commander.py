@@ -50,7 +50,7 @@ class Commander:
     def _accept(self, callback: Callable[[Any], object], message: Any, info: MessageInfo) -> None:
         self.note_publisher(info)
         if self._drivers is not None:
-            self._drivers.note_command(message, info)
+            self._drivers.record_command(message, info)
         callback(message)
 
     def _on_lost(self, publisher: EndpointInfo) -> None:

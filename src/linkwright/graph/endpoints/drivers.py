@@ -22,7 +22,7 @@ _QUIET_S = 10.0
 """The seconds without a takeover after which a dispute of the same parties is reported again."""
 
 
-class Dispute:
+class DisputeDetector:
     """A detector of publishers whose commands repeatedly replace each other.
 
     A publisher takes over when its command differs from the previous command, which another publisher sent. In a
@@ -42,11 +42,11 @@ class Dispute:
         self._min_duration_s = min_duration_s
         self._min_takeovers = min_takeovers
         self._last_command: tuple[Hashable, object, float] | None = None
-        self._start_s = self._last_takeover_s = float("-inf")
+        self._dispute_start_s = self._last_takeover_s = float("-inf")
         self._takeovers: Counter[Hashable] = Counter()
         self.parties: frozenset[Hashable] = frozenset()
 
-    def note_command(self, publisher: Hashable, command: object, now_s: float) -> bool:
+    def record_command(self, publisher: Hashable, command: object, now_s: float) -> bool:
         """Record a command, and return whether a dispute begins.
 
         Args:
@@ -62,13 +62,13 @@ class Dispute:
             return False
         gap_s = now_s - self._last_takeover_s
         if not 0.0 <= gap_s <= _GAP_S:
-            self._start_s = previous[2] if 0.0 <= now_s - previous[2] <= _GAP_S else now_s
+            self._dispute_start_s = previous[2] if 0.0 <= now_s - previous[2] <= _GAP_S else now_s
             self._takeovers = Counter([previous[0]])
             if not 0.0 <= gap_s <= _QUIET_S:
                 self.parties = frozenset()
         self._last_takeover_s = now_s
         self._takeovers[publisher] += 1
-        if now_s - self._start_s < self._min_duration_s:
+        if now_s - self._dispute_start_s < self._min_duration_s:
             return False
         parties = frozenset(party for party, count in self._takeovers.items() if count >= self._min_takeovers)
         if len(parties) < 2 or parties <= self.parties:
@@ -120,20 +120,20 @@ class DriverWatch:
         self._logger = logger
         self._graph = graph
         self._now_ns = now_ns
-        self._dispute = Dispute()
+        self._dispute = DisputeDetector()
 
     @classmethod
     def of(cls, node: CommandedNode) -> DriverWatch:
         """Create a watch that uses the clock, the logger and the graph of a node."""
         return cls(node.get_logger(), node.graph, node.get_clock().now_ns)
 
-    def note_command(self, message: Any, info: MessageInfo) -> None:
+    def record_command(self, message: Any, info: MessageInfo) -> None:
         """Record a command message.
 
         Of a stamped message only the twist is compared.
         """
         command = getattr(message, "twist", message)
-        if self._dispute.note_command(info.publisher_gid, command, self._now_ns() / NANOSECONDS_PER_SECOND):
+        if self._dispute.record_command(info.publisher_gid, command, self._now_ns() / NANOSECONDS_PER_SECOND):
             self._warn()
 
     def _warn(self) -> None:

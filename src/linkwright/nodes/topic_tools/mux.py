@@ -29,7 +29,7 @@ class _Switch(TopicTool):
     _CHOICES_PARAMETER: ClassVar[str]
     """The name of the parameter with the topics to select from."""
     _SINGLE_DEFAULT: ClassVar[str]
-    _VERB: ClassVar[str]
+    _STATE_TEXT: ClassVar[str]
 
     def __init__(self, graph: Graph, options: NodeOptions) -> None:
         super().__init__(graph, options)
@@ -56,16 +56,16 @@ class _Switch(TopicTool):
         if not self._topics:
             raise bad_value(self._CHOICES_PARAMETER, "[]", node.get_name())
         selected: str = node.declare_parameter("initial_topic", "").value
-        single: str = node.declare_parameter(self._SINGLE_PARAMETER, self._SINGLE_DEFAULT).value
+        single_topic: str = node.declare_parameter(self._SINGLE_PARAMETER, self._SINGLE_DEFAULT).value
         self._lazy = node.declare_parameter("lazy", False).value
-        self._set_topics(single, selected or self._topics[0])
+        self._set_topics(single_topic, selected or self._topics[0])
 
     @abstractmethod
-    def _set_topics(self, single: str, selected: str) -> None:
+    def _set_topics(self, single_topic: str, selected: str) -> None:
         """Set the topics `_input` and `_output` for a selection.
 
         Args:
-            single: the output topic of mux, or the input topic of demux.
+            single_topic: the output topic of mux, or the input topic of demux.
             selected: the selected input topic of mux, or output topic of demux.
         """
 
@@ -75,7 +75,7 @@ class _Switch(TopicTool):
         """The name of the selected topic."""
 
     @abstractmethod
-    def _change(self, selected: str) -> None:
+    def _replace_selected(self, selected: str) -> None:
         """Replace the selected topic."""
 
     def _update_endpoints(self) -> None:
@@ -99,7 +99,7 @@ class _Switch(TopicTool):
         if topic == NO_TOPIC:
             logger.warning(f"failed to add topic {topic} to {name}, because it's reserved for special use")
         elif topic in self._topics:
-            logger.warning(f"tried to add a topic that {name} was already {self._VERB}: [{topic}]")
+            logger.warning(f"tried to add a topic that {name} was already {self._STATE_TEXT}: [{topic}]")
         else:
             self._topics.append(topic)
             logger.info(f"added {topic} to {name}")
@@ -140,7 +140,7 @@ class _Switch(TopicTool):
             if not response.success:
                 return response
             logger.info(f"{name} selected {'input' if name == 'mux' else 'output'}: [{topic}]")
-        self._change(topic)
+        self._replace_selected(topic)
         self._update_endpoints()
         return response
 
@@ -160,16 +160,16 @@ class Mux(_Switch):
         "input_topics",
         "~/selected",
     )
-    _VERB = "listening to"
+    _STATE_TEXT = "listening to"
 
-    def _set_topics(self, single: str, selected: str) -> None:
-        self._input, self._output = selected, single
+    def _set_topics(self, single_topic: str, selected: str) -> None:
+        self._input, self._output = selected, single_topic
 
     @property
     def _selected(self) -> str:
         return self._input
 
-    def _change(self, selected: str) -> None:
+    def _replace_selected(self, selected: str) -> None:
         self._input = selected
 
 
@@ -188,14 +188,14 @@ class Demux(_Switch):
         "output_topics",
         "~/input",
     )
-    _VERB = "publishing to"
+    _STATE_TEXT = "publishing to"
 
-    def _set_topics(self, single: str, selected: str) -> None:
-        self._input, self._output = single, selected
+    def _set_topics(self, single_topic: str, selected: str) -> None:
+        self._input, self._output = single_topic, selected
 
     @property
     def _selected(self) -> str:
         return self._output
 
-    def _change(self, selected: str) -> None:
+    def _replace_selected(self, selected: str) -> None:
         self._output = selected

@@ -160,7 +160,7 @@ class _Bridge(SingleNode):
             if all(info.publisher_gid != publisher.gid for publisher in self._publishers):
                 if commander is not None and driver_watch is not None:
                     commander.note_publisher(info)
-                    driver_watch.note_command(message, info)
+                    driver_watch.record_command(message, info)
                 publishers[0].publish(convert(message))
 
         def subscribe() -> Subscription[Any]:

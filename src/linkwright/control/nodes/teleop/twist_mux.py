@@ -112,7 +112,7 @@ class TwistMux(SingleNode):
         return self._node.get_clock().now().nanoseconds
 
     def _on_velocity(self, source: _Source, drivers: DriverWatch, message: Any, info: MessageInfo) -> None:
-        drivers.note_command(message, info)
+        drivers.record_command(message, info)
         now_ns = self._now_ns()
         source.record_message(now_ns)
         lock_priority = self._lock_priority(now_ns)
