@@ -46,14 +46,14 @@ class Task(Future[T]):
         on_end: Callable[[], None] | None = None,
     ) -> None:
         super().__init__(executor=executor)
-        self._runner = executor
+        self._executor = executor
         self._on_end = on_end
-        self._steps: Coroutine[Any, Any, T] | None = None
+        self._coroutine: Coroutine[Any, Any, T] | None = None
         self._function: Callable[..., Any] | None = None
         if callable(handler):
             self._function = handler
         else:
-            self._steps = handler
+            self._coroutine = handler
         self._arguments = tuple(args or ())
         self._keywords = dict(kwargs or {})
         self._run_lock = threading.Lock()
@@ -69,7 +69,7 @@ class Task(Future[T]):
             awaited = self._run_step()
         finally:
             self._run_lock.release()
-        if self._steps is not None:
+        if self._coroutine is not None:
             self._wait_for(awaited)
 
     def executing(self) -> bool:
@@ -84,8 +84,8 @@ class Task(Future[T]):
         super().cancel()
         if self.cancelled() and self._run_lock.acquire(blocking=False):
             try:
-                if self._steps is not None:
-                    self._steps.close()
+                if self._coroutine is not None:
+                    self._coroutine.close()
                 self._finish()
             finally:
                 self._run_lock.release()
@@ -105,12 +105,12 @@ class Task(Future[T]):
                     self.set_result(result)
                     self._finish()
                     return None
-                self._steps = result
-            assert self._steps is not None
+                self._coroutine = result
+            assert self._coroutine is not None
             with StepsByExecutor():
-                return self._steps.send(None)
-        except StopIteration as end:
-            self.set_result(end.value)
+                return self._coroutine.send(None)
+        except StopIteration as stop:
+            self.set_result(stop.value)
         except Exception as error:  # noqa: BLE001  # the executor raises it from spin
             self.set_exception(error)
         except BaseException:
@@ -120,7 +120,7 @@ class Task(Future[T]):
         return None
 
     def _wait_for(self, awaited: object) -> None:
-        if self._runner is None:
+        if self._executor is None:
             return
         if isinstance(awaited, Future):
             awaited.add_waiter(self._resume)
@@ -128,11 +128,11 @@ class Task(Future[T]):
             self._resume()
 
     def _resume(self) -> None:
-        if self._runner is not None:
-            self._runner.run_again(self)
+        if self._executor is not None:
+            self._executor.run_again(self)
 
     def _finish(self) -> None:
-        self._steps = None
+        self._coroutine = None
         self._arguments, self._keywords = (), {}
         on_end, self._on_end = self._on_end, None
         if on_end is not None:
