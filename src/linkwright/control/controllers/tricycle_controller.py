@@ -14,7 +14,7 @@ from linkwright.control.controllers.controller import Controller, ControllerErro
 from linkwright.control.controllers.drive_odometry import DriveOdometry, variances
 from linkwright.control.controllers.velocity_input import VelocityInput
 from linkwright.control.hardware.interfaces import POSITION, VELOCITY
-from linkwright.control.motion.axle_limits import ANY, SteeringLimiter, TractionLimiter
+from linkwright.control.motion.axle_limits import UNLIMITED, SteeringLimiter, TractionLimiter
 from linkwright.diagnostics import phrase
 from linkwright.kinematics.drives import TricycleDrive
 from linkwright.kinematics.limits import UNBOUNDED, Bounds
@@ -144,9 +144,9 @@ class TricycleController(Controller[Parameters]):
 
     def on_activate(self) -> None:
         """Reset the velocities to zero, and accept commands."""
-        self._traction_limiter.restart()
+        self._traction_limiter.reset()
         angle = self.states[1].value
-        self._steering_limiter.restart(0.0 if isnan(angle) else angle)
+        self._steering_limiter.reset(0.0 if isnan(angle) else angle)
         self._odometry.odometer.reset_velocity()
         self._input.open()
 
@@ -234,7 +234,7 @@ def _magnitude_bounds(limiter_name: str, kind: str, min_value: float, max_value:
                 kind=kind,
             )
         )
-    bounds = (ANY[0] if isnan(min_value) else min_value, inf if isnan(max_value) else max_value)
+    bounds = (UNLIMITED[0] if isnan(min_value) else min_value, inf if isnan(max_value) else max_value)
     if bounds[0] > bounds[1]:
         raise _wrong_order_error(limiter_name, kind)
     return bounds

@@ -12,7 +12,7 @@ from math import copysign, inf
 
 from linkwright.kinematics.limits import UNBOUNDED, Bounds
 
-ANY: Bounds = (0.0, inf)
+UNLIMITED: Bounds = (0.0, inf)
 """The bounds of a magnitude without a limit."""
 
 
@@ -26,24 +26,28 @@ class TractionLimiter:
         jerk: the bounds of the rate at which the acceleration changes, in rad/s3.
 
     Attributes:
-        speed: the current speed.
+        speed: the current speed, in rad/s.
     """
 
     def __init__(
-        self, velocity: Bounds = ANY, acceleration: Bounds = ANY, deceleration: Bounds = ANY, jerk: Bounds = ANY
+        self,
+        velocity: Bounds = UNLIMITED,
+        acceleration: Bounds = UNLIMITED,
+        deceleration: Bounds = UNLIMITED,
+        jerk: Bounds = UNLIMITED,
     ) -> None:
         self._velocity = velocity
         self._acceleration = acceleration
         self._deceleration = deceleration
         self._jerk = jerk
-        self.restart()
+        self.reset()
 
-    def restart(self) -> None:
+    def reset(self) -> None:
         """Reset the speed and the acceleration to zero."""
         self.speed = self._previous_speed = 0.0
 
     def approach(self, target: float, seconds: float) -> float:
-        """Return the next speed towards a target, `seconds` after the last call."""
+        """Return the next speed towards a target, both in rad/s, `seconds` after the last call."""
         speed = self.speed
         target = _limit_second_difference(speed, self._previous_speed, target, self._jerk, seconds)
         bounds = self._acceleration if abs(target) >= abs(speed) else self._deceleration
@@ -61,25 +65,27 @@ class SteeringLimiter:
         acceleration: the bounds of the rate at which that velocity changes, in rad/s2.
 
     Attributes:
-        angle: the current angle.
+        angle: the current angle, in rad.
     """
 
-    def __init__(self, position: Bounds = UNBOUNDED, velocity: Bounds = ANY, acceleration: Bounds = ANY) -> None:
+    def __init__(
+        self, position: Bounds = UNBOUNDED, velocity: Bounds = UNLIMITED, acceleration: Bounds = UNLIMITED
+    ) -> None:
         self._position = position
         self._velocity = velocity
         self._acceleration = acceleration
-        self.restart()
+        self.reset()
 
-    def restart(self, angle: float = 0.0) -> None:
-        """Reset the angle to a value, at rest."""
-        self.angle = self._previous_speed = angle
+    def reset(self, angle: float = 0.0) -> None:
+        """Reset the steering angle to a value in rad, and its velocity to zero."""
+        self.angle = self._previous_angle = angle
 
     def approach(self, target: float, seconds: float) -> float:
-        """Return the next angle towards a target, `seconds` after the last call."""
+        """Return the next angle towards a target, both in rad, `seconds` after the last call."""
         angle = self.angle
-        target = _limit_second_difference(angle, self._previous_speed, target, self._acceleration, seconds)
+        target = _limit_second_difference(angle, self._previous_angle, target, self._acceleration, seconds)
         new_angle = angle + _limit_magnitude(self._velocity, target - angle, seconds)
-        self.angle, self._previous_speed = min(max(new_angle, self._position[0]), self._position[1]), angle
+        self.angle, self._previous_angle = min(max(new_angle, self._position[0]), self._position[1]), angle
         return self.angle
 
 

@@ -22,7 +22,7 @@ from linkwright.graph.parameters.files import read_parameter_file
 from linkwright.messages import get_service
 from linkwright.nodes.options import NodeOptions, create_node, handle_start_errors
 
-_MANAGER_ENTRIES = ("type", "fallback_controllers")
+_MANAGER_PARAMETER_NAMES = ("type", "fallback_controllers")
 """The entries in a controller's parameter file that are set as parameters of the manager."""
 
 
@@ -34,7 +34,7 @@ class Spawner(ManagerProgram):
     """
 
     def __init__(self, graph: Graph, options: NodeOptions) -> None:
-        self._must_unload = False
+        self._unloads_on_close = False
         arguments = parse_arguments(_parser(), remove_ros_arguments(options.arguments))
         self._node, _ = create_node(graph, options, f"spawner_{arguments.controller_names[0]}")
         self._arguments = arguments
@@ -55,8 +55,8 @@ class Spawner(ManagerProgram):
 
     def close(self) -> None:
         """Unload the controllers if ``--unload-on-kill`` is set, and close the node."""
-        if self._must_unload:
-            self._must_unload = False
+        if self._unloads_on_close:
+            self._unloads_on_close = False
             self._request_unload()
         super().close()
 
@@ -83,7 +83,7 @@ class Spawner(ManagerProgram):
             logger.info(f"Configured and activated all the parsed controllers list : {arguments.controller_names}!")
         if arguments.unload_on_kill:
             logger.info("Waiting until interrupt to unload controllers")
-            self._must_unload = True
+            self._unloads_on_close = True
             await asyncio.get_running_loop().create_future()
         return 0
 
@@ -97,11 +97,11 @@ class Spawner(ManagerProgram):
             logger.warning("Controller already loaded, skipping load_controller")
             return True
         for parameter, value in self._parameters(name).items():
-            text = f'controller param "{parameter}" to "{value}" for {name}'
+            assignment = f'controller param "{parameter}" to "{value}" for {name}'
             if not await self._client.set_parameter(f"{name}.{parameter}", value):
-                logger.fatal(f"Could not set {text}")
+                logger.fatal(f"Could not set {assignment}")
                 return False
-            logger.info(f"Setting {text}")
+            logger.info(f"Setting {assignment}")
         if not (await self._client.call("load_controller", name=name)).ok:
             logger.fatal(f"Failed loading controller {name}")
             return False
@@ -126,7 +126,7 @@ class Spawner(ManagerProgram):
             full_name = join(self._node.get_namespace(), name)
             for path in self._files:
                 values = read_parameter_file(path).for_node(full_name)
-                parameters |= {key: values[key] for key in _MANAGER_ENTRIES if key in values}
+                parameters |= {key: values[key] for key in _MANAGER_PARAMETER_NAMES if key in values}
         return parameters
 
     def _request_unload(self) -> None:
