@@ -88,7 +88,7 @@ class LaunchSession:
         self.loop = asyncio.get_running_loop()
         self.context.extend_locals(locals_ or {})
         self.log.begin()
-        launch_config.share(self.log.folder)
+        launch_config.use_launch_folder(self.log.folder)
         try:
             self.visit(description, self.context)
             self._visit_included()

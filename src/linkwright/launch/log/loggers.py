@@ -80,7 +80,7 @@ class LaunchConfig:
         self.log_file_name = MAIN_LOG
         self.file_handlers: dict[str, logging.Handler] = {}
         self.screen_handler: logging.Handler | None = None
-        self.main_file = _MainFileHandler()
+        self.main_file_handler = _MainFileHandler()
         self.screen_formatter: logging.Formatter | None = None
         self.file_formatter: logging.Formatter | None = None
         self._log_handler_factory: Callable[..., logging.Handler] | None = None
@@ -121,7 +121,7 @@ class LaunchConfig:
                 raise ValueError(f"{new_log_dir} is not a directory")
         self._log_dir = None if new_log_dir is None else str(new_log_dir)
 
-    def share(self, folder: Path) -> None:
+    def use_launch_folder(self, folder: Path) -> None:
         """Use the log folder of the running launch, unless log files have already been opened."""
         if not self.file_handlers:
             self._log_dir = str(folder)
@@ -220,7 +220,7 @@ def get_logger(name: str | None = None) -> logging.Logger:
     Its lines have the format of launch lines.
     """
     logger = logging.getLogger(name)
-    for handler in (launch_config.get_screen_handler(), launch_config.main_file):
+    for handler in (launch_config.get_screen_handler(), launch_config.main_file_handler):
         if handler not in logger.handlers and not _is_handled_by_parent(logger, handler):
             logger.addHandler(handler)
     if not launch_config.is_level_set and logger.getEffectiveLevel() > logging.INFO:
@@ -255,7 +255,7 @@ def get_output_loggers(process_name: str, output_config: Any) -> tuple[logging.L
     Raises:
         ValueError: the destinations are not valid.
     """
-    config = _normalize_output_configuration(output_config)
+    destinations_by_source = _normalize_output_configuration(output_config)
     loggers = []
     for source in _STREAMS[:2]:
         logger = logging.getLogger(f"{process_name}-{source}")
@@ -263,14 +263,14 @@ def get_output_loggers(process_name: str, output_config: Any) -> tuple[logging.L
         logger.setLevel(logging.INFO)
         plain_formatter = logging.Formatter("{msg}", style="{")
         timestamp_formatter = logging.Formatter("{created:.7f} {msg}", style="{")
-        destinations = config[source] | config["both"]
+        destinations = destinations_by_source[source] | destinations_by_source["both"]
         if "screen" in destinations:
             _add_handler(logger, launch_config.get_screen_handler(), plain_formatter)
         if "log" in destinations:
             _add_handler(logger, launch_config.get_log_file_handler(), timestamp_formatter)
-        if "own_log" in config[source]:
+        if "own_log" in destinations_by_source[source]:
             _add_handler(logger, launch_config.get_log_file_handler(f"{process_name}-{source}.log"), plain_formatter)
-        if "own_log" in config["both"]:
+        if "own_log" in destinations_by_source["both"]:
             _add_handler(logger, launch_config.get_log_file_handler(f"{process_name}.log"), plain_formatter)
         loggers.append(logger)
     return loggers[0], loggers[1]
@@ -283,15 +283,14 @@ def _add_handler(logger: logging.Logger, handler: logging.Handler, formatter: lo
         logger.addHandler(handler)
 
 
-def _normalize_output_configuration(config: Any) -> dict[str, set[str]]:
+def _normalize_output_configuration(output_config: Any) -> dict[str, set[str]]:
     normalized: dict[str, set[str]] = {source: set() for source in _STREAMS}
-    if isinstance(config, str):
-        if config not in _OUTPUTS:
-            raise ValueError(f'{config} is not a valid standard output config i.e. "screen", "log" or "both"')
-        config = _OUTPUTS[config]
-    if not isinstance(config, Mapping):
-        raise ValueError(f"{config} is not a valid standard output config")  # noqa: TRY004 - as in ROS
-    for source, destinations in config.items():
+    if isinstance(output_config, str) and output_config not in _OUTPUTS:
+        raise ValueError(f'{output_config} is not a valid standard output config i.e. "screen", "log" or "both"')
+    output = _OUTPUTS[output_config] if isinstance(output_config, str) else output_config
+    if not isinstance(output, Mapping):
+        raise ValueError(f"{output} is not a valid standard output config")  # noqa: TRY004 - as in ROS
+    for source, destinations in output.items():
         if source not in normalized:
             raise ValueError(f"{source} is not a valid output source")
         chosen_destinations = {destinations} if isinstance(destinations, str) else set(destinations)

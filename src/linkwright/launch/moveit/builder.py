@@ -100,9 +100,9 @@ class MoveItConfigsBuilder(ParameterBuilder):
     ) -> None:
         super().__init__(package_name or f"{robot_name}_moveit_config")
         self.__name = robot_name
-        self.__parameter = robot_description
+        self.__description_parameter = robot_description
         self.__moveit_configs = MoveItConfigs(package_path=self._package_path)
-        self.__urdf, self.__srdf = self.__models()
+        self.__urdf, self.__srdf = self.__description_paths()
 
     def robot_description(self, file_path: _Path = None, mappings: _Mappings = None) -> MoveItConfigsBuilder:
         """Read the URDF, or print a warning if its file does not exist.
@@ -115,25 +115,27 @@ class MoveItConfigsBuilder(ParameterBuilder):
         except ParameterBuilderFileNotFoundError as error:
             _warn_about_missing_urdf(error)
         else:
-            self.__moveit_configs.robot_description = {self.__parameter: model}
+            self.__moveit_configs.robot_description = {self.__description_parameter: model}
         return self
 
     def robot_description_semantic(self, file_path: _Path = None, mappings: _Mappings = None) -> MoveItConfigsBuilder:
         """Read the SRDF, and set the parameter for the semantic robot description."""
         path = self.__srdf if file_path is None else self._package_path / file_path
         self.__moveit_configs.robot_description_semantic = {
-            f"{self.__parameter}_semantic": _expand_description(path, mappings)
+            f"{self.__description_parameter}_semantic": _expand_description(path, mappings)
         }
         return self
 
     def robot_description_kinematics(self, file_path: _Path = None) -> MoveItConfigsBuilder:
         """Read the configuration of the inverse kinematics solvers."""
-        self.__moveit_configs.robot_description_kinematics = self.__below("_kinematics", file_path, "kinematics.yaml")
+        self.__moveit_configs.robot_description_kinematics = self.__load_under(
+            "_kinematics", file_path, "kinematics.yaml"
+        )
         return self
 
     def joint_limits(self, file_path: _Path = None) -> MoveItConfigsBuilder:
         """Read the joint limits, which replace the limits in the URDF."""
-        self.__moveit_configs.joint_limits = self.__below("_planning", file_path, "joint_limits.yaml")
+        self.__moveit_configs.joint_limits = self.__load_under("_planning", file_path, "joint_limits.yaml")
         return self
 
     def moveit_cpp(self, file_path: _Path = None) -> MoveItConfigsBuilder:
@@ -143,7 +145,9 @@ class MoveItConfigsBuilder(ParameterBuilder):
 
     def pilz_cartesian_limits(self, file_path: _Path = None) -> MoveItConfigsBuilder:
         """Read Cartesian limits for the Pilz planner."""
-        self.__moveit_configs.pilz_cartesian_limits = self.__below("_planning", file_path, "pilz_cartesian_limits.yaml")
+        self.__moveit_configs.pilz_cartesian_limits = self.__load_under(
+            "_planning", file_path, "pilz_cartesian_limits.yaml"
+        )
         return self
 
     def cartesian_limits(self, file_path: _Path = None) -> MoveItConfigsBuilder:
@@ -292,10 +296,10 @@ class MoveItConfigsBuilder(ParameterBuilder):
     def __file(self, file_path: _Path, default_name: str) -> Path:
         return self._package_path / (_CONFIG_FOLDER / default_name if file_path is None else file_path)
 
-    def __below(self, suffix: str, file_path: _Path, default_name: str) -> Parameters:
-        return {self.__parameter + suffix: load_yaml(self.__file(file_path, default_name))}
+    def __load_under(self, suffix: str, file_path: _Path, default_name: str) -> Parameters:
+        return {self.__description_parameter + suffix: load_yaml(self.__file(file_path, default_name))}
 
-    def __models(self) -> tuple[Path, Path]:
+    def __description_paths(self) -> tuple[Path, Path]:
         """Return the paths of the URDF and the SRDF, and store the xacro arguments of the URDF.
 
         The paths come from the file of MoveIt's Setup Assistant, or are derived from the name of the robot.

@@ -18,7 +18,7 @@ from linkwright.launch.model.substitution import (
     perform_substitutions,
 )
 
-_COUNTS_LOCAL = "unique_ros_node_names"
+_COUNTS_NAME = "unique_ros_node_names"
 
 
 def is_root_namespace(ns: str) -> bool:
@@ -61,33 +61,33 @@ def prefix_namespace(base_ns: str | None, ns: str | None, *, return_absolute_ns:
 
 def add_node_name(context: Any, node_name: str) -> None:
     """Record that a node with the given full name was started."""
-    _counts(context)[node_name] += 1
+    _node_name_counts(context)[node_name] += 1
 
 
 def get_node_name_count(context: Any, node_name: str) -> int:
     """Return the number of nodes that the launch started with the given full name."""
-    return _counts(context).get(node_name, 0)
+    return _node_name_counts(context).get(node_name, 0)
 
 
 def record_node_start(context: Any, node_name: str) -> str | None:
     """Record the start of a node, and return a warning if there is another node with this name.
 
     Returns:
-        The warning, or None if the name is unique.
+        The warning, or None if no other node with this name was started.
     """
     add_node_name(context, node_name)
-    count = get_node_name_count(context, node_name)
-    if count < 2:
+    node_count = get_node_name_count(context, node_name)
+    if node_count < 2:
         return None
-    return f"there are now at least {count} nodes with the name {node_name} created within this launch context"
+    return f"there are now at least {node_count} nodes with the name {node_name} created within this launch context"
 
 
-def _counts(context: Any) -> defaultdict[str, int]:
+def _node_name_counts(context: Any) -> defaultdict[str, int]:
     try:
-        counts: defaultdict[str, int] = getattr(context.locals, _COUNTS_LOCAL)
+        counts: defaultdict[str, int] = getattr(context.locals, _COUNTS_NAME)
     except AttributeError:
         counts = defaultdict(int)
-        context.extend_globals({_COUNTS_LOCAL: counts})
+        context.extend_globals({_COUNTS_NAME: counts})
     return counts
 
 

@@ -129,13 +129,13 @@ class LaunchTest(pytest.Function):
     Attributes:
         options: the options of the launch fixture.
         test: the test function or bound method.
-        begun: the generator after its first part has passed; None before that.
+        started_generator: the generator after its first part has passed; None before that.
         first_part: the test that runs the first part of the same generator; None for a test with a single part.
     """
 
     options: LaunchOptions
     test: Callable[..., Any]
-    begun: Any = None
+    started_generator: Any = None
     first_part: LaunchTest | None = None
 
     @classmethod
@@ -161,7 +161,7 @@ class LaunchTest(pytest.Function):
         return self.first_part is not None or bool(marker and marker.kwargs.get("shutdown", False))
 
     @property
-    def launch(self) -> tuple[object, ...]:
+    def launch_key(self) -> tuple[object, ...]:
         """The key of the launch that the test belongs to.
 
         All tests of one launch have the same key.
@@ -176,7 +176,7 @@ class LaunchTest(pytest.Function):
         __tracebackhide__ = True
         loop = self._loop
         arguments = {name: self.funcargs[name] for name in self._fixtureinfo.argnames}
-        if not _has_parts(self.test):
+        if not _is_generator(self.test):
             if self.is_after_shutdown:
                 self._end_launch()
             if inspect.iscoroutinefunction(self.test):
@@ -184,9 +184,9 @@ class LaunchTest(pytest.Function):
             else:
                 loop.run_until_complete(loop.run_in_executor(None, functools.partial(self.test, **arguments)))
         elif self.first_part is not None:
-            if self.first_part.begun is None:
+            if self.first_part.started_generator is None:
                 pytest.skip("the part of the test before the shutdown did not pass")
-            self._resume(loop, self.first_part.begun)
+            self._resume(loop, self.first_part.started_generator)
         elif self.is_after_shutdown:
             pytest.fail("a generator or async generator must not be marked with shutdown=True", pytrace=False)
         else:
@@ -195,7 +195,7 @@ class LaunchTest(pytest.Function):
                 loop.run_until_complete(_next(generator))
             else:
                 loop.run_until_complete(loop.run_in_executor(None, next, generator, _EXHAUSTED))
-            self.begun = generator
+            self.started_generator = generator
             if self.options.scope == "function":
                 self._resume(loop, generator)
 
@@ -224,7 +224,7 @@ async def _next(generator: Any) -> object:
     return await anext(generator, _EXHAUSTED)
 
 
-def _has_parts(test: Callable[..., Any]) -> bool:
+def _is_generator(test: Callable[..., Any]) -> bool:
     return inspect.isgeneratorfunction(test) or inspect.isasyncgenfunction(test)
 
 
@@ -260,7 +260,7 @@ def pytest_pycollect_makeitem(
     items = list(collector._genfunctions(name, obj))
     tests = [LaunchTest.of(item, options) for item in items]
     second_parts = []
-    if _has_parts(obj) and options.scope != "function":
+    if _is_generator(obj) and options.scope != "function":
         second_parts = [LaunchTest.of(item, options, test) for item, test in zip(items, tests, strict=True)]
     return [*tests, *second_parts]
 
@@ -276,13 +276,13 @@ def _mark_skipped(item: pytest.Function) -> pytest.Function:
 def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
     """Sort the tests so that tests after a launch follow all tests that run during it."""
     last_index = {
-        item.launch: index
+        item.launch_key: index
         for index, item in enumerate(items)
         if isinstance(item, LaunchTest) and not item.is_after_shutdown
     }
     sort_keys: dict[pytest.Item, tuple[int, bool]] = {}
     for index, item in enumerate(items):
         is_after = isinstance(item, LaunchTest) and item.is_after_shutdown
-        during_index = last_index.get(item.launch, index) if isinstance(item, LaunchTest) and is_after else index
+        during_index = last_index.get(item.launch_key, index) if isinstance(item, LaunchTest) and is_after else index
         sort_keys[item] = max(index, during_index), is_after
     items.sort(key=lambda item: sort_keys[item])
