@@ -33,7 +33,7 @@ def activate() -> None:
     if not any(isinstance(finder, _LazyInterfaceFinder) for finder in sys.meta_path):
         sys.meta_path += [_WorkspaceModuleFinder(), _LazyInterfaceFinder()]
     _register_for_processes()
-    missing = [name for name in LAUNCH_MODULES if not modules.is_ours(sys.modules.get(name))]
+    missing = [name for name in LAUNCH_MODULES if not modules.is_stand_in(sys.modules.get(name))]
     if not missing:
         return
     for name in [name for name in sys.modules if name.partition(".")[0] in missing]:

@@ -50,7 +50,7 @@ def find_spec(name: str) -> ModuleSpec | None:
     return spec
 
 
-def is_ours(module: ModuleType | None) -> bool:
+def is_stand_in(module: ModuleType | None) -> bool:
     """Return whether a module was created by this module."""
     return isinstance(getattr(getattr(module, "__spec__", None), "loader", None), _Loader)
 
@@ -91,7 +91,7 @@ class _Loader:
     def __init__(self, entries: table.Module) -> None:
         self._entries = entries
 
-    def homes(self, name: str) -> list[str]:
+    def providers(self, name: str) -> list[str]:
         """Return the modules that provide a name, for the message of a failed import of the name."""
         return table.modules_providing(name)
 
@@ -103,7 +103,7 @@ class _Loader:
         """Fill the module with functions that import its names on first use."""
         entries = self._entries
         module.__doc__ = f"A stand-in for ``{entries.name}``."
-        names = {**dict.fromkeys(entries.names), **dict.fromkeys(entries.submodules)}
+        dir_names = {**dict.fromkeys(entries.names), **dict.fromkeys(entries.submodules)}
 
         def import_name(name: str) -> Any:
             if name in entries.names:
@@ -118,7 +118,7 @@ class _Loader:
             setattr(module, name, value)
             return value
 
-        own_names = {"__getattr__": import_name, "__dir__": lambda: sorted({*names, *vars(module)})}  # PEP 562
+        own_names = {"__getattr__": import_name, "__dir__": lambda: sorted({*dir_names, *vars(module)})}  # PEP 562
         vars(module).update(own_names, __all__=entries.public)
         for name in entries.submodules:
             if name in entries.names and entries.names[name].origin != table.IMPORT:

@@ -41,12 +41,12 @@ class File:
     """A file to write, relative to the package's folder.
 
     Attributes:
-        announced: whether its creation is reported.
+        is_reported: whether its creation is reported.
     """
 
     path: Path
     text: str
-    announced: bool = True
+    is_reported: bool = True
 
 
 @dataclass(frozen=True)
@@ -78,18 +78,18 @@ def create_package(request: PackageRequest, report: Callable[[str], None]) -> li
         raise LinkwrightError(*findings)
     for line in summary(request):
         report(line)
-    package = request.destination / request.name
+    package_folder = request.destination / request.name
     is_created = False
     try:
-        package.mkdir(parents=True)
+        package_folder.mkdir(parents=True)
         is_created = True
-        report(f"creating folder {format_path(package)}")
+        report(f"creating folder {format_path(package_folder)}")
         for step in steps(request):
-            _execute_step(step, package, report)
+            _execute_step(step, package_folder, report)
     except OSError as error:
         if is_created:
-            shutil.rmtree(package, ignore_errors=True)  # an incomplete package would block the next attempt
-        path = format_path(Path(error.filename)) if error.filename else format_path(package)
+            shutil.rmtree(package_folder, ignore_errors=True)  # an incomplete package would block the next attempt
+        path = format_path(Path(error.filename)) if error.filename else format_path(package_folder)
         message = phrase("cannot create '{folder}': {strerror}", folder=path, strerror=foreign(error.strerror or error))
         hint = phrase("choose a folder that you may write to: --destination-directory FOLDER")
         raise LinkwrightError(Diagnostic("PKG208", message, hint=hint)) from None
@@ -110,14 +110,18 @@ def check_request(request: PackageRequest) -> list[Diagnostic]:
     for dependency in request.dependencies:
         findings += check_dependency(dependency)
     findings += check_email(request.maintainer.email)
-    package = request.destination / request.name
-    if not has_errors(findings) and (package.exists() or package.is_symlink()):
-        member_kind = "folder" if package.is_dir() else "file"
+    package_folder = request.destination / request.name
+    if not has_errors(findings) and (package_folder.exists() or package_folder.is_symlink()):
+        existing_kind = "folder" if package_folder.is_dir() else "file"
         hint = phrase("remove it, or choose another name or another --destination-directory")
         findings.append(
             Diagnostic(
                 "PKG207",
-                phrase("the {kind} '{package}' already exists", kind=term(member_kind), package=format_path(package)),
+                phrase(
+                    "the {kind} '{package}' already exists",
+                    kind=term(existing_kind),
+                    package=format_path(package_folder),
+                ),
                 hint=hint,
             )
         )
@@ -176,7 +180,7 @@ def steps(request: PackageRequest) -> Iterator[Step]:
         yield from _cmake_steps(request)
     text = license_text(request.license, year=request.year, holder=request.maintainer.name)
     if text is not None:
-        yield File(Path("LICENSE"), text, announced=False)
+        yield File(Path("LICENSE"), text, is_reported=False)
 
 
 def format_path(path: Path) -> str:
@@ -226,15 +230,15 @@ def _cmake_steps(request: PackageRequest) -> Iterator[Step]:
         yield File(include / "visibility_control.h", cmake_templates.visibility_control(request))
 
 
-def _execute_step(step: Step, package: Path, report: Callable[[str], None]) -> None:
+def _execute_step(step: Step, package_folder: Path, report: Callable[[str], None]) -> None:
     if isinstance(step, ReportLine):
         report(step.text)
         return
-    path = package / step.path
+    path = package_folder / step.path
     if isinstance(step, Folder):
         report(f"creating folder {format_path(path)}")
         path.mkdir(parents=True, exist_ok=True)
         return
-    if step.announced:
+    if step.is_reported:
         report(f"creating {format_path(path)}")
     write_whole_file(path, step.text)

@@ -98,8 +98,8 @@ def other_module_hint(error: ImportError) -> Phrase | None:
     if missing is None:
         return None
     name, module = missing
-    find_homes = getattr(getattr(sys.modules.get(module), "__loader__", None), "homes", None)
-    modules = find_homes(name) if find_homes else []
+    find_providers = getattr(getattr(sys.modules.get(module), "__loader__", None), "providers", None)
+    modules = find_providers(name) if find_providers else []
     return phrase("import it from {modules}", modules=quoted_names(modules, " or ")) if modules else None
 
 

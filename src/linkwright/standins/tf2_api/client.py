@@ -138,15 +138,15 @@ class BufferClient(BufferInterface):
     def _request_transform(self, goal: Any, timeout: Duration) -> Any:
         if not self.action_client.server_is_ready():
             raise TimeoutException(phrase("The BufferServer is not ready."))
-        wait_sec = (timeout.nanoseconds + self.timeout_padding.nanoseconds) / 1e9
+        wait_s = (timeout.nanoseconds + self.timeout_padding.nanoseconds) / 1e9
         goal_future = self.action_client.send_goal_async(goal)
-        if not goal_future.wait(wait_sec) or goal_future.cancelled():
+        if not goal_future.wait(wait_s) or goal_future.cancelled():
             raise TimeoutException(_NO_RESPONSE_TEXT.format("in the specified time"))
-        handle = goal_future.result()
-        if handle is None or not handle.accepted:
+        goal_handle = goal_future.result()
+        if goal_handle is None or not goal_handle.accepted:
             raise TimeoutException(_NO_RESPONSE_TEXT.format("with accepted status"))
-        result_future = handle.get_result_async()
-        response = result_future.result() if result_future.wait(wait_sec) else None
+        result_future = goal_handle.get_result_async()
+        response = result_future.result() if result_future.wait(wait_s) else None
         if response is None:
             raise TimeoutException(_NO_RESPONSE_TEXT.format("in the specified time"))
         result = response.result
