@@ -20,9 +20,9 @@ def parameters_in_sources(document: Document, program: NodeProgram) -> tuple[Par
     Raises:
         NotYetKnownError: the sources of the workspace were never read, and the document does not wait.
     """
-    found: dict[str, ParameterInfo] = {}
-    for declared in declared_parameters(document, program.executable) if program.executable else ():
-        default = declared.default.strip("\"'") or None
-        info = ParameterInfo(declared.name, declared.type, default, f"`{declared.file.name}`")
-        found.setdefault(declared.name, info)
-    return tuple(found.values())
+    parameters: dict[str, ParameterInfo] = {}
+    for declaration in declared_parameters(document, program.executable) if program.executable else ():
+        default = declaration.default.strip("\"'") or None
+        parameter = ParameterInfo(declaration.name, declaration.type, default, f"`{declaration.file.name}`")
+        parameters.setdefault(declaration.name, parameter)
+    return tuple(parameters.values())

@@ -68,13 +68,17 @@ def _xml_comments(text: str, file: Path, code: str, offset: int) -> list[Edit]:
     if element is None:
         return []
     comment = f"<!-- linkwright: ignore {code} ({REASON}) -->"
-    line = text.rfind("\n", 0, element.start) + 1
-    blanks = text[line : element.start]
-    above = [] if blanks.strip() else [Edit(file, line, line, f"{blanks}{comment}{line_ending(text)}")]
+    line_start = text.rfind("\n", 0, element.start) + 1
+    indentation = text[line_start : element.start]
+    on_new_line = (
+        []
+        if indentation.strip()
+        else [Edit(file, line_start, line_start, f"{indentation}{comment}{line_ending(text)}")]
+    )
     end = _line_end(text, offset)
-    behind = [Edit(file, end, end, f" {comment}")]
-    inside = [Edit(file, element.start, element.start, f"{comment} ")]
-    return [*behind, *above] if element.parent is None else [*above, *behind, *inside]
+    at_line_end = [Edit(file, end, end, f" {comment}")]
+    before_element = [Edit(file, element.start, element.start, f"{comment} ")]
+    return [*at_line_end, *on_new_line] if element.parent is None else [*on_new_line, *at_line_end, *before_element]
 
 
 def _is_in_markup(text: str, offset: int) -> bool:
@@ -88,10 +92,13 @@ def _is_in_markup(text: str, offset: int) -> bool:
 def _line_comments(text: str, file: Path, code: str, offset: int) -> list[Edit]:
     """Return the edits to try: a comment on a new line above, or at the line end."""
     comment = f"# linkwright: ignore {code} ({REASON})"
-    line, end = text.rfind("\n", 0, offset) + 1, _line_end(text, offset)
-    written = text[line:end]
-    blanks = written[: len(written) - len(written.lstrip())]
-    return [Edit(file, line, line, f"{blanks}{comment}{line_ending(text)}"), Edit(file, end, end, f"  {comment}")]
+    line_start, end = text.rfind("\n", 0, offset) + 1, _line_end(text, offset)
+    line_text = text[line_start:end]
+    indentation = line_text[: len(line_text) - len(line_text.lstrip())]
+    return [
+        Edit(file, line_start, line_start, f"{indentation}{comment}{line_ending(text)}"),
+        Edit(file, end, end, f"  {comment}"),
+    ]
 
 
 def _line_end(text: str, offset: int) -> int:
@@ -101,9 +108,9 @@ def _line_end(text: str, offset: int) -> int:
 
 
 def _suppresses(text: str, edit: Edit, code: str, offset: int) -> bool:
-    moved = offset + (len(edit.text) if edit.start <= offset else 0)
-    new = apply_edits(text, [edit])
-    return any(directive.suppresses(code, moved) for directive in directives(SourceText("", new)))
+    moved_offset = offset + (len(edit.text) if edit.start <= offset else 0)
+    new_text = apply_edits(text, [edit])
+    return any(directive.suppresses(code, moved_offset) for directive in directives(SourceText("", new_text)))
 
 
 def _is_harmless(text: str, edit: Edit) -> bool:
