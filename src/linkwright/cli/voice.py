@@ -30,7 +30,7 @@ if TYPE_CHECKING:
     from linkwright.speech.sound.samples import Samples
 
 _ENGINE = "enrolled"
-_LANGUAGES = {"en": "stop", "zh": "停止"}
+_TEST_PHRASES = {"en": "stop", "zh": "停止"}
 """The languages to test engines in, with a phrase for each."""
 
 
@@ -79,7 +79,7 @@ class _Trial:
 
     def __init__(self, engine: SpeechEngine, commands: CommandSet, *, partials: bool) -> None:
         self._engine, self._commands, self._partials = engine, commands, partials
-        self._fed_samples = 0  # the number of samples fed to the engine
+        self._fed_samples = 0
 
     def feed(self, file: str, samples: Samples) -> None:
         """Feed a recording to the engine, and print the results, one per line."""
@@ -131,13 +131,13 @@ class _Trial:
     def _result_text(self, result: Heard) -> Phrase:
         if not result.text:
             return phrase("none of the phrases")
-        words = {"text": result.text, "confidence": f"{result.confidence:.2f}"}
+        values = {"text": result.text, "confidence": f"{result.confidence:.2f}"}
         if not result.final:
-            return phrase("partial: '{text}' ({confidence})", **words)
-        understood = self._commands.match_command(result.text)
-        if understood is None:
-            return phrase("'{text}' ({confidence}), no command", **words)
-        return phrase("'{text}' ({confidence}), command {intent}", intent=understood.command.intent, **words)
+            return phrase("partial: '{text}' ({confidence})", **values)
+        match = self._commands.match_command(result.text)
+        if match is None:
+            return phrase("'{text}' ({confidence}), no command", **values)
+        return phrase("'{text}' ({confidence}), command {intent}", intent=match.command.intent, **values)
 
 
 def configure_enroll(parser: argparse.ArgumentParser) -> None:
@@ -220,7 +220,7 @@ def run_engines(_: argparse.Namespace) -> int:
     from linkwright.speech.engine import engine_names
 
     for name in engine_names():
-        for language, text in _LANGUAGES.items():
+        for language, text in _TEST_PHRASES.items():
             print(f"{name} {language}: {localized(_engine_status(name, language, text))}")
     return FINE
 

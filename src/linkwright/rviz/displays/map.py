@@ -104,7 +104,7 @@ class MapDisplay(TopicDisplay):
         If it is the current map, the updates applied to it are preserved.
         """
         self._pose = pose
-        if message is not self._map and not self._load(message):
+        if message is not self._map and not self._accept_map(message):
             return
         self._send()
 
@@ -186,7 +186,7 @@ class MapDisplay(TopicDisplay):
 
     # --- maps --------------------------------------------------------------------------------------------------
 
-    def _load(self, message: Any) -> bool:
+    def _accept_map(self, message: Any) -> bool:
         info = message.info
         cells = np.frombuffer(message.data, np.uint8)
         origin = _pose_of(info.origin)
@@ -275,9 +275,9 @@ def _pose_of(origin: Any) -> list[float]:
 
     A zero quaternion becomes the identity rotation.
     """
-    p, q = origin.position, origin.orientation
-    quaternion = [q.x, q.y, q.z, q.w]
-    return [p.x, p.y, p.z, *(quaternion if any(quaternion) else [0.0, 0.0, 0.0, 1.0])]
+    position, orientation = origin.position, origin.orientation
+    quaternion = [orientation.x, orientation.y, orientation.z, orientation.w]
+    return [position.x, position.y, position.z, *(quaternion if any(quaternion) else [0.0, 0.0, 0.0, 1.0])]
 
 
 def _read_only_values(info: Any) -> Iterator[tuple[Path, float | int]]:

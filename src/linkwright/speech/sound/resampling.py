@@ -32,8 +32,8 @@ class Resampler:
     def __init__(self, rate: int) -> None:
         if not MIN_RATE <= rate <= MAX_RATE:
             raise ValueError(f"a rate of {rate} is not between {MIN_RATE} and {MAX_RATE}")
-        common = gcd(rate, RATE)
-        self._up, self._down = RATE // common, rate // common
+        divisor = gcd(rate, RATE)
+        self._up, self._down = RATE // divisor, rate // divisor
         cutoff = _PASS_BAND * min(1.0, RATE / rate)
         half_length = ceil(_ZERO_CROSSINGS / cutoff)
         offsets = np.arange(-half_length + 1, half_length + 1)[None, :] - np.arange(self._up)[:, None] / self._up
@@ -41,7 +41,7 @@ class Resampler:
             _KAISER_BETA
         )
         taps = cutoff * np.sinc(cutoff * offsets) * window
-        self._table = taps / taps.sum(axis=1, keepdims=True)
+        self._taps = taps / taps.sum(axis=1, keepdims=True)
         self._half_length = half_length
         self._buffer: NDArray[np.float64] = np.zeros(half_length - 1)
         self._position = 0  # the position of the next output in the buffer, in 1/up of an input sample
@@ -52,17 +52,19 @@ class Resampler:
         The output is delayed by half the filter, 2 ms or less at usual rates. `flush` returns the rest.
         """
         self._buffer = np.concatenate((self._buffer, np.asarray(values, dtype=np.float64)))
-        tap_count = self._table.shape[1]
+        tap_count = self._taps.shape[1]
         last_position = (len(self._buffer) - tap_count) * self._up
-        count = max(0, (last_position - self._position) // self._down + 1)
-        output = np.empty(count)
-        windows = np.lib.stride_tricks.sliding_window_view(self._buffer, tap_count) if count else self._buffer[None]
-        for start in range(0, count, _BATCH):
-            positions = self._position + self._down * np.arange(start, min(count, start + _BATCH))
+        output_count = max(0, (last_position - self._position) // self._down + 1)
+        output = np.empty(output_count)
+        windows = (
+            np.lib.stride_tricks.sliding_window_view(self._buffer, tap_count) if output_count else self._buffer[None]
+        )
+        for start in range(0, output_count, _BATCH):
+            positions = self._position + self._down * np.arange(start, min(output_count, start + _BATCH))
             output[start : start + len(positions)] = np.einsum(
-                "ij,ij->i", windows[positions // self._up], self._table[positions % self._up]
+                "ij,ij->i", windows[positions // self._up], self._taps[positions % self._up]
             )
-        self._position += count * self._down
+        self._position += output_count * self._down
         consumed = min(self._position // self._up, len(self._buffer))
         self._buffer = self._buffer[consumed:]
         self._position -= consumed * self._up

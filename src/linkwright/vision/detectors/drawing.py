@@ -27,12 +27,16 @@ def class_color(name: str) -> tuple[int, int, int]:
     if named_color is not None:
         return named_color
     hue = crc32(name.encode()) % _HUE_COUNT / _HUE_COUNT * 6.0
-    rising = hue % 1.0
-    high, up, down = 1.0, rising, 1.0 - rising
-    channels = ((high, up, 0), (down, high, 0), (0, high, up), (0, down, high), (up, 0, high), (high, 0, down))[
-        int(hue)
-    ]
-    red, green, blue = (int(55 + 200 * part) for part in channels)
+    full, rising, falling = 1.0, hue % 1.0, 1.0 - hue % 1.0
+    channels = (
+        (full, rising, 0),
+        (falling, full, 0),
+        (0, full, rising),
+        (0, falling, full),
+        (rising, 0, full),
+        (full, 0, falling),
+    )[int(hue)]
+    red, green, blue = (int(55 + 200 * channel) for channel in channels)
     return red, green, blue
 
 
@@ -47,7 +51,10 @@ def draw_detections(image: NDArray[np.uint8], detections: Detections) -> NDArray
     canvas = np.array(image, order="C")
     line_width = max(1, round(image.shape[0] / 300))
     text_height = max(_MIN_TEXT_HEIGHT, round(_TEXT_HEIGHT_SHARE * image.shape[0]))
-    scale, stroke = cv2.getFontScaleFromHeight(cv2.FONT_HERSHEY_SIMPLEX, text_height), max(1, round(text_height / 10))
+    font_scale, stroke_width = (
+        cv2.getFontScaleFromHeight(cv2.FONT_HERSHEY_SIMPLEX, text_height),
+        max(1, round(text_height / 10)),
+    )
     for index in reversed(range(len(detections))):  # draw the most certain detection last, so that it is not covered
         name = detections.name(index)
         color = class_color(name)
@@ -57,7 +64,7 @@ def draw_detections(image: NDArray[np.uint8], detections: Detections) -> NDArray
         else:
             cv2.rectangle(canvas, (left, top), (right, bottom), color, line_width)
         text = f"{name} {detections.scores[index]:.2f}"
-        (width, height), descent = cv2.getTextSize(text, cv2.FONT_HERSHEY_SIMPLEX, scale, stroke)
+        (width, height), descent = cv2.getTextSize(text, cv2.FONT_HERSHEY_SIMPLEX, font_scale, stroke_width)
         text_bottom = max(height + descent, top - line_width)
         left = max(0, min(left, image.shape[1] - width))
         cv2.rectangle(canvas, (left, text_bottom - height - descent), (left + width, text_bottom), color, cv2.FILLED)
@@ -67,9 +74,9 @@ def draw_detections(image: NDArray[np.uint8], detections: Detections) -> NDArray
             text,
             (left, text_bottom - descent // 2),
             cv2.FONT_HERSHEY_SIMPLEX,
-            scale,
+            font_scale,
             text_color,
-            stroke,
+            stroke_width,
             cv2.LINE_AA,
         )
     return canvas

@@ -262,7 +262,7 @@ async def test_move_group_namespace_selects_service_and_description():
             lambda _, response: response,
         )
         display = w.display("PlanningScene")
-        await eventually(lambda: display.scene.is_whole)
+        await eventually(lambda: display.scene.has_full_scene)
         assert w.status("PlanningScene")["URDF"] == ("ok", "URDF parsed OK")
 
 

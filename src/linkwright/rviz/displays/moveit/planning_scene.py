@@ -228,7 +228,7 @@ class PlanningSceneDisplay(MoveItDisplay):
 
         def answered(_: Any) -> None:
             response = future.result()
-            if self._client is client and response is not None and not self.scene.is_whole:
+            if self._client is client and response is not None and not self.scene.has_full_scene:
                 self._on_scene(response.scene)
 
         future.add_done_callback(answered)

@@ -82,7 +82,7 @@ class Scene:
 
     Attributes:
         name: the name of the scene.
-        is_whole: whether a full scene was received, and not only changes.
+        has_full_scene: whether a full scene was received, and not only changes.
         state: the robot's state.
         octomap: the cells and the pose of the octomap, or None.
         problems: the problems with objects, by object ID.
@@ -90,7 +90,7 @@ class Scene:
 
     def __init__(self) -> None:
         self.name = ""
-        self.is_whole = False
+        self.has_full_scene = False
         self.state = JointPositions()
         self.octomap: PlacedCells | None = None
         self.problems: dict[str, Phrase] = {}
@@ -109,7 +109,7 @@ class Scene:
             self._colors.clear()
             self.problems.clear()
             self.octomap = None
-            self.is_whole = True
+            self.has_full_scene = True
         if message.name:
             self.name = message.name
         for object_color in message.object_colors:
@@ -121,7 +121,7 @@ class Scene:
         self.attach(message.robot_state.attached_collision_objects)
         octomap = message.world.octomap
         if octomap.octomap.id or octomap.octomap.data:
-            self._map(octomap)
+            self._apply_octomap(octomap)
 
     def attach(self, messages: Iterable[Any]) -> None:
         """Attach and detach objects, as moveit_msgs/msg/AttachedCollisionObject messages request."""
@@ -190,13 +190,13 @@ class Scene:
         name, link = message.object.id, message.link_name
         if message.object.operation == _REMOVE:
             removed_ids = [
-                identity
-                for identity, (at, _) in self._attached.items()
-                if identity == name or (not name and link in ("", at))
+                object_id
+                for object_id, (attached_link, _) in self._attached.items()
+                if object_id == name or (not name and link in ("", attached_link))
             ]
-            for identity in removed_ids:
-                del self._attached[identity]
-                self.problems.pop(identity, None)
+            for object_id in removed_ids:
+                del self._attached[object_id]
+                self.problems.pop(object_id, None)
             return
         attached_object = SceneObject.of(message.object)
         previous = self._attached.get(name)
@@ -209,7 +209,7 @@ class Scene:
         self.problems.pop(name, None)
         self._attached[name] = (link, attached_object)
 
-    def _map(self, message: Any) -> None:
+    def _apply_octomap(self, message: Any) -> None:
         octomap = message.octomap
         self.octomap = None
         try:
