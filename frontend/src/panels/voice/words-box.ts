@@ -84,7 +84,7 @@ export class WordsBox {
     this.words.watch(seen && this.element.open);
   }
 
-  /** Starts enrollment at the user's place. The panel must be in front. */
+  /** Starts to enroll the words again at the user's location. The panel must be in front. */
   enrollHere(): void {
     this.element.open = true;
     this.focusDue = true;
