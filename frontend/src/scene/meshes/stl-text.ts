@@ -17,7 +17,7 @@ export function readAsciiStl(text: string): Float32Array {
 class AsciiStl {
   private readonly token = /\S+/g;
   private readonly positions: number[] = [];
-  private at = 0;
+  private offset = 0;
 
   constructor(private readonly text: string) {}
 
@@ -26,7 +26,7 @@ class AsciiStl {
     for (let word = this.next(); word !== null; word = this.next()) {
       if (word === "solid" || word === "endsolid") this.skipLine();
       else if (word === "facet") this.readFacet();
-      else throw this.errorAt(strings.meshes.stl.word(word.slice(0, 40), "'facet'"));
+      else throw this.errorAt(strings.meshes.stl.unexpectedWord(word.slice(0, 40), "'facet'"));
     }
     return new Float32Array(this.positions);
   }
@@ -42,7 +42,7 @@ class AsciiStl {
       for (let i = 0; i < 3; i++) this.positions.push(this.readNumber());
       count++;
     }
-    if (word !== "endloop") throw this.errorAt(strings.meshes.stl.word(word.slice(0, 40), "'vertex'"));
+    if (word !== "endloop") throw this.errorAt(strings.meshes.stl.unexpectedWord(word.slice(0, 40), "'vertex'"));
     if (count !== 3) throw this.errorAt(strings.meshes.stl.corners(countText(count)));
     this.expect("endfacet");
   }
@@ -51,36 +51,36 @@ class AsciiStl {
     const word = this.nextRequired(strings.meshes.stl.number);
     const value = Number(word);
     if (!Number.isNaN(value) || NON_FINITE.test(word)) return value;
-    throw this.errorAt(strings.meshes.stl.word(word.slice(0, 40), strings.meshes.stl.number));
+    throw this.errorAt(strings.meshes.stl.unexpectedWord(word.slice(0, 40), strings.meshes.stl.number));
   }
 
   private expect(word: string): void {
     const found = this.nextRequired(`'${word}'`);
-    if (found !== word) throw this.errorAt(strings.meshes.stl.word(found.slice(0, 40), `'${word}'`));
+    if (found !== word) throw this.errorAt(strings.meshes.stl.unexpectedWord(found.slice(0, 40), `'${word}'`));
   }
 
-  private nextRequired(what: string): string {
+  private nextRequired(expected: string): string {
     const word = this.next();
     if (word !== null) return word;
-    this.at = this.text.trimEnd().length;
-    throw this.errorAt(strings.meshes.stl.ends(what));
+    this.offset = this.text.trimEnd().length;
+    throw this.errorAt(strings.meshes.stl.unexpectedEnd(expected));
   }
 
   private next(): string | null {
     const match = this.token.exec(this.text);
     if (!match) return null;
-    this.at = match.index;
+    this.offset = match.index;
     return match[0].toLowerCase();
   }
 
   /** Skips the name after `solid`, which may be any text. */
   private skipLine(): void {
-    const end = this.text.indexOf("\n", this.at);
+    const end = this.text.indexOf("\n", this.offset);
     this.token.lastIndex = end < 0 ? this.text.length : end;
   }
 
-  private errorAt(what: string): MeshError {
-    const line = this.text.slice(0, this.at).split("\n").length;
-    return new MeshError(strings.meshes.stl.line(countText(line), what));
+  private errorAt(problem: string): MeshError {
+    const line = this.text.slice(0, this.offset).split("\n").length;
+    return new MeshError(strings.meshes.stl.line(countText(line), problem));
   }
 }
