@@ -27,7 +27,7 @@ type Sky = readonly [below: Rgb, middle: Rgb, above: Rgb];
 
 /** The pixels of a sky texture from the nadir to the zenith. */
 const SKY_PIXELS = 64;
-/** How much brighter a backdrop is at its horizon. */
+/** The fraction of white that is mixed into a backdrop at its horizon. */
 const HORIZON_BRIGHTNESS = 0.18;
 const DAY: Sky = [[0.42, 0.44, 0.45], [0.8, 0.86, 0.92], [0.31, 0.52, 0.82]];
 const NIGHT: Sky = [[0.05, 0.05, 0.06], [0.1, 0.11, 0.17], [0.02, 0.03, 0.08]];
@@ -43,19 +43,19 @@ export class SkyAndFog {
     scene.backgroundRotation.x = Math.PI / 2;
   }
 
-  /** Applies surroundings; `flat` for an orthographic camera, which sees the same color of a sky everywhere. */
-  set({ daylight, fog, backdrop = null }: Surroundings, flat: boolean): void {
-    const wanted = daylight ?? backdrop;
-    if (wanted !== this.skyKey) {
+  /** Applies surroundings; `isOrthographic` for an orthographic camera, which sees the same color of a sky everywhere. */
+  set({ daylight, fog, backdrop = null }: Surroundings, isOrthographic: boolean): void {
+    const key = daylight ?? backdrop;
+    if (key !== this.skyKey) {
       this.sky?.dispose();
-      this.sky = wanted === null ? null : skyTexture(typeof wanted === "number" ? skyAt(wanted) : skyOf(wanted));
-      this.skyKey = wanted;
+      this.sky = key === null ? null : skyTexture(typeof key === "number" ? skyAt(key) : skyOf(key));
+      this.skyKey = key;
     }
-    if (!flat) this.scene.background = this.sky;
+    if (!isOrthographic) this.scene.background = this.sky;
     else this.scene.background = daylight === null ? null : new Color(...skyAt(daylight)[1]);
-    const key = JSON.stringify(fog);
-    if (key === this.fogKey) return;
-    this.fogKey = key;
+    const fogKey = JSON.stringify(fog);
+    if (fogKey === this.fogKey) return;
+    this.fogKey = fogKey;
     this.scene.fog = fog ? fogOf(fog) : null;
   }
 }
@@ -74,23 +74,23 @@ function skyAt(daylight: number): Sky {
   return [mix(NIGHT[0], DAY[0], daylight), mix(NIGHT[1], DAY[1], daylight), mix(NIGHT[2], DAY[2], daylight)];
 }
 
-/** Returns a backdrop of a color. */
+/** Returns the sky of a backdrop color, brighter at the horizon. */
 function skyOf(color: string): Sky {
   const { r, g, b } = new Color(color);
-  const own: Rgb = [r, g, b];
-  return [own, mix(own, [1, 1, 1], HORIZON_BRIGHTNESS), own];
+  const rgb: Rgb = [r, g, b];
+  return [rgb, mix(rgb, [1, 1, 1], HORIZON_BRIGHTNESS), rgb];
 }
 
-function mix(a: Rgb, b: Rgb, share: number): Rgb {
-  const at = (i: 0 | 1 | 2): number => a[i] + (b[i] - a[i]) * share;
-  return [at(0), at(1), at(2)];
+function mix(a: Rgb, b: Rgb, fraction: number): Rgb {
+  const channel = (i: 0 | 1 | 2): number => a[i] + (b[i] - a[i]) * fraction;
+  return [channel(0), channel(1), channel(2)];
 }
 
 function skyTexture(sky: Sky): DataTexture {
   const pixels = new Uint8Array(4 * SKY_PIXELS);
   for (let row = 0; row < SKY_PIXELS; row++) {
     const rgb = colorAt(Math.sin(((row + 0.5) / SKY_PIXELS - 0.5) * Math.PI), sky);
-    pixels.set([...rgb.map((each) => Math.round(255 * each)), 255], 4 * row);
+    pixels.set([...rgb.map((channel) => Math.round(255 * channel)), 255], 4 * row);
   }
   const texture = new DataTexture(pixels, 1, SKY_PIXELS);
   texture.mapping = EquirectangularReflectionMapping;

@@ -1,6 +1,7 @@
 import type { Matrix4 } from "three";
 
-const NUMBERS = 7;
+/** The numbers of a pose: x y z qx qy qz qw. */
+const POSE_SIZE = 7;
 
 /** Returns the model of the world to which a link, `model::link`, belongs. */
 export function modelOf(link: string): string {
@@ -16,18 +17,19 @@ export class Displacement {
     this.models = models;
   }
 
+  /** Premultiplies the pose of a link by the displacement of its model, and returns the pose. */
   apply(link: string, pose: Matrix4): Matrix4 {
-    const moved = this.models.size > 0 && this.models.get(modelOf(link));
-    return moved ? pose.premultiply(moved) : pose;
+    const offset = this.models.size > 0 ? this.models.get(modelOf(link)) : undefined;
+    return offset ? pose.premultiply(offset) : pose;
   }
 
-  /** Ends the displacement once the actual poses of these models have changed. */
-  endIfMoved(before: Float32Array, after: Float32Array, rowOf: ReadonlyMap<string, number>): void {
+  /** Clears the displacement if the actual pose of a displaced model has changed. */
+  clearIfPosesChanged(before: Float32Array, after: Float32Array, rowOf: ReadonlyMap<string, number>): void {
     if (this.models.size === 0) return;
     for (const [link, row] of rowOf) {
       if (!this.models.has(modelOf(link))) continue;
-      const at = row * NUMBERS;
-      for (let i = at; i < at + NUMBERS; i++) {
+      const start = row * POSE_SIZE;
+      for (let i = start; i < start + POSE_SIZE; i++) {
         if (before[i] === after[i]) continue;
         this.models = new Map();
         return;

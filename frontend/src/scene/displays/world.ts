@@ -47,7 +47,7 @@ export class WorldDrawing implements Drawing {
     const { content } = data;
     if (content.kind === "world_scene") this.setScene(content);
     else if (content.kind === "world_poses") {
-      if (this.placed) this.displacement.endIfMoved(this.placed.content.poses, content.poses, this.rowOf);
+      if (this.placed) this.displacement.clearIfPosesChanged(this.placed.content.poses, content.poses, this.rowOf);
       this.placed = { data, content };
       this.isPoseStale = true;
     } else if (content.kind === "world_rays") {

@@ -16,7 +16,7 @@ export class Modeler {
   private readonly manipulation: Manipulation;
   private readonly placer: Placer;
   private readonly lights: LightMarks;
-  private moved: ReadonlyMap<string, Matrix4> = new Map();
+  private displacements: ReadonlyMap<string, Matrix4> = new Map();
   private wasActive = false;
 
   constructor(
@@ -26,30 +26,30 @@ export class Modeler {
     const { modeling, simulation, frames, data } = session;
     this.lights = new LightMarks(modeling);
     stage.overlays.add(this.lights.root);
-    this.manipulation = new Manipulation(stage, modeling, (moved) => this.displace(moved));
+    this.manipulation = new Manipulation(stage, modeling, (displacements) => this.displace(displacements));
     this.placer = new Placer(stage, modeling);
-    modeling.changed.on(() => this.follow());
-    modeling.selectionChanged.on(() => this.select());
+    modeling.changed.on(() => this.onModelingChanged());
+    modeling.selectionChanged.on(() => this.outlineSelection());
     modeling.toolChanged.on(() => {
       this.manipulation.update();
-      this.hint();
+      this.showHint();
     });
-    modeling.dropped.on(() => this.drop());
+    modeling.dropped.on(() => this.placeDropped());
     simulation.refused.on(() => this.displace(new Map()));
     for (const signal of [frames.posesChanged, frames.tableChanged]) {
       signal.on(() => {
         if (modeling.active) this.update();
       });
     }
-    // A new model is drawn later than it is announced.
+    // A new model is announced before it is drawn.
     data.received.on(({ content }) => {
-      if (modeling.active && content.kind === "world_scene") this.select();
+      if (modeling.active && content.kind === "world_scene") this.outlineSelection();
     });
-    this.follow();
-    this.drop();
+    this.onModelingChanged();
+    this.placeDropped();
   }
 
-  /** Handles an event and returns the event for the active tool; null if the tool is to get none. */
+  /** Handles an event. Returns the event to pass to the active tool; null to pass none. */
   pointer(event: ToolEvent): ToolEvent | null {
     const { modeling, tools } = this.session;
     if (!modeling.active || (tools.current && !HANDLING_TOOLS.includes(tools.current.cls))) return event;
@@ -89,7 +89,7 @@ export class Modeler {
     return this.session.modeling.find(name) && !found.drawing.isFlat(found.hit.key) ? name : null;
   }
 
-  private hint(): void {
+  private showHint(): void {
     const { modeling, tools } = this.session;
     const words = strings.modeling;
     if (modeling.placing) tools.hint = modeling.placing.kind === "wall" ? words.wallHint : words.placeHint;
@@ -110,7 +110,7 @@ export class Modeler {
     sceneMenu.emit({ x: event.x, y: event.y, choices });
   }
 
-  private drop(): void {
+  private placeDropped(): void {
     const drop = this.session.modeling.takeDrop();
     if (!drop) return;
     const { placing, at } = drop;
@@ -120,31 +120,31 @@ export class Modeler {
     else this.placer.drop(placing, size.width / 2, size.height / 2);
   }
 
-  private follow(): void {
+  private onModelingChanged(): void {
     const { modeling, tools } = this.session;
     if (modeling.active !== this.wasActive) {
       this.wasActive = modeling.active;
       if (modeling.active) tools.choose(tools.default);
       else this.displace(new Map());
     }
-    this.moved = new Map();
+    this.displacements = new Map();
     this.update();
   }
 
-  private displace(moved: ReadonlyMap<string, Matrix4>): void {
-    this.moved = moved;
-    this.stage.world?.drawing.displace(moved);
-    this.lights.update(worldFrame(this.stage), moved);
+  private displace(displacements: ReadonlyMap<string, Matrix4>): void {
+    this.displacements = displacements;
+    this.stage.world?.drawing.displace(displacements);
+    this.lights.update(worldFrame(this.stage), displacements);
   }
 
   private update(): void {
     this.manipulation.update();
-    this.lights.update(worldFrame(this.stage), this.moved);
+    this.lights.update(worldFrame(this.stage), this.displacements);
     this.stage.loop.invalidate();
   }
 
   /** Outlines the selected models in the scene. */
-  private select(): void {
+  private outlineSelection(): void {
     const { stage, session } = this;
     const { world } = stage;
     const links = world ? session.modeling.selected.flatMap((name) => world.drawing.linksOf(name)) : [];
