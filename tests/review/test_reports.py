@@ -46,6 +46,43 @@ def test_changes_of_a_shared_file_are_listed_once(changed, compare):
     assert text.count("arm_description/urdf/segment.xacro:14:") == 1
 
 
+LAUNCH = """from launch import LaunchDescription
+from launch_ros.actions import Node
+
+
+def generate_launch_description():
+    return LaunchDescription([
+        Node(package="arm", executable="drive", name="drive", remappings=[("cmd", "cmd_vel")]),
+        Node(package="arm", executable="drive", name="drive", remappings=[("cmd", "cmd_vel")]),
+    ])
+"""
+
+
+def test_equal_changes_of_several_files_are_listed_once(package, compare):
+    names = [f"arm_description/launch/{name}.launch.py" for name in ("a", "b", "c", "d", "e", "f", "g")]
+    package.commit(dict.fromkeys(names, LAUNCH))
+    package.commit(dict.fromkeys(names[:6], LAUNCH.replace('"cmd_vel"', '"cmd_vel_nav"')) | {names[6]: "# nothing\n"})
+    result = compare(package, "HEAD~1..HEAD")
+    lines = as_text(result).splitlines()
+    (line,) = [line for line in lines if "cmd_vel_nav" in line]
+    assert line.endswith("(2 times)")
+    paths = ", ".join(names[1:5])
+    assert f"  = the same in 5 more files: {paths} and 1 more" in lines
+    assert [line for line in lines if line in names] == [names[0], names[6]]
+    breaking = [change for _, change in result.breaking_changes if "cmd_vel" in str(change.sentence)]
+    assert len(breaking) == 12
+    for report in (as_markdown(result), as_html(result)):
+        assert re.search(r"the same in 5 more files: .* and 1 more", report)
+        assert report.split("arm_description/launch/g", 1)[0].count("cmd_vel_nav") <= 2
+
+
+def test_text_report_lists_twenty_other_files():
+    result = Review("main", "topic", [], [f"src/{number}.cpp" for number in range(25)])
+    text = as_text(result)
+    assert "src/19.cpp\n  5 more files\n" in text
+    assert "src/20.cpp" not in text
+
+
 def test_reports_are_deterministic(changed, compare):
     first, second = (compare(changed, "HEAD~1..HEAD") for _ in range(2))
     for report in (as_text, as_markdown, as_html, as_data):
@@ -79,8 +116,10 @@ def test_control_characters_in_names_are_replaced():
 
 
 def test_long_review_is_truncated_to_comment_size():
-    changes = [Change(phrase("link '{name}' removed", name=f"link_{number}")) for number in range(300)]
-    subjects = [Subject(SubjectKind.DESCRIPTION, f"urdf/{number}.urdf", "a", "b", changes) for number in range(30)]
+    subjects = []
+    for robot in range(30):
+        changes = [Change(phrase("link '{name}' removed", name=f"link_{robot}_{number}")) for number in range(300)]
+        subjects.append(Subject(SubjectKind.DESCRIPTION, f"urdf/{robot}.urdf", "a", "b", changes))
     text = as_markdown(Review("main", "", subjects))
     assert len(text) < 65_536
     assert "do not fit into a comment" in text.splitlines()[-1]

@@ -11,7 +11,17 @@ from linkwright.diagnostics.translation import language, localized
 from linkwright.review.changes import Change, Effect, Figure, Review, Subject, ViewImages
 from linkwright.review.reports.path_plots import PLOT_STYLE, path_plot
 from linkwright.review.reports.scene_page import SCENE_STYLE, Scenes
-from linkwright.review.reports.sections import Section, cases_text, repeated_text, sections_of, sentence_of, summary
+from linkwright.review.reports.sections import (
+    Section,
+    alike_text,
+    breaking_changes,
+    cases_text,
+    paths_text,
+    repeated_text,
+    sections_of,
+    sentence_of,
+    summary,
+)
 
 _STYLE = """
 :root { color-scheme: light dark; --ink: #1d2733; --soft: #5c6a7d; --line: #d8dee6; --back: #f6f8fa; --card: #fff;
@@ -54,7 +64,7 @@ def as_html(review: Review) -> str:
     scenes = Scenes(review.subjects)
     parts = [
         f"<h1>{_text(title)}</h1><p class='soft'>{_text(summary(review))}</p>",
-        *_breaking(review.breaking_changes),
+        *_breaking(review),
         *(_section(section, scenes) for section in sections_of(review)),
         *_findings(phrase("New findings"), review.new_findings),
         *_findings(phrase("Fixed findings"), review.fixed_findings),
@@ -69,16 +79,21 @@ def as_html(review: Review) -> str:
     )
 
 
-def _breaking(changes: Sequence[tuple[Subject, Change]]) -> Iterator[str]:
-    if changes:
-        items = [f"{_change(change, subject)} <code>{escape(subject.path)}</code>" for subject, change in changes]
-        yield from _list(phrase("Breaking changes"), items)
+def _breaking(review: Review) -> Iterator[str]:
+    subjects = {subject.path: subject for subject in review.subjects}
+    items = [
+        f"{_change(change, subjects[paths[0]])} <code>{_text(paths_text(paths))}</code>"
+        for paths, change in breaking_changes(review)
+    ]
+    yield from _list(phrase("Breaking changes"), items)
 
 
 def _section(section: Section, scenes: Scenes) -> str:
     subject = section.subject
     items = [_change(change, subject) for change in section.changes]
     items += [_text(repeated_text(path, count)) for path, count in section.repeated]
+    alike = alike_text(section)
+    items += [] if alike is None else [_text(alike)]
     items += [f"<span class='breaking'>{_text(problem.text)}</span>" for problem in subject.problems]
     changes = f"<ul>{''.join(f'<li>{item}</li>' for item in items)}</ul>" if items else ""
     plots = "".join(map(path_plot, subject.paths))

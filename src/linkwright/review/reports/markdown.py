@@ -9,7 +9,17 @@ from linkwright.diagnostics import Diagnostic, Phrase, counted, phrase
 from linkwright.diagnostics.render import printable
 from linkwright.diagnostics.translation import localized
 from linkwright.review.changes import Change, Effect, Figure, Location, Review, Subject
-from linkwright.review.reports.sections import Section, cases_text, repeated_text, sections_of, sentence_of, summary
+from linkwright.review.reports.sections import (
+    Section,
+    alike_text,
+    breaking_changes,
+    cases_text,
+    paths_text,
+    repeated_text,
+    sections_of,
+    sentence_of,
+    summary,
+)
 
 MARKER = "<!-- linkwright review -->"
 """The first line, by which a program finds the comment that it keeps up to date."""
@@ -51,10 +61,10 @@ def _heading(review: Review) -> str:
 
 
 def _parts(review: Review) -> Iterator[str]:
-    breaking = review.breaking_changes
+    breaking = breaking_changes(review)
     if breaking:
         title = _escape(phrase("Breaking changes"))
-        yield "\n".join([f"#### {title}", "", *(_breaking_line(subject, change) for subject, change in breaking)])
+        yield "\n".join([f"#### {title}", "", *(_breaking_line(paths, change) for paths, change in breaking)])
     for section in sections_of(review):
         yield _section(section)
     for title, findings in (
@@ -72,9 +82,9 @@ def _parts(review: Review) -> Iterator[str]:
         yield "\n".join(f"> {_escape(note)}" for note in review.notes)
 
 
-def _breaking_line(subject: Subject, change: Change) -> str:
+def _breaking_line(paths: Sequence[str], change: Change) -> str:
     reason = "" if change.reason is None else f": {_escape(change.reason)}"
-    return f"- **{_escape(sentence_of(change))}**{reason} ({_code(subject.path)})"
+    return f"- **{_escape(sentence_of(change))}**{reason} ({_code(localized(paths_text(paths)))})"
 
 
 def _section(section: Section) -> str:
@@ -89,6 +99,8 @@ def _section(section: Section) -> str:
         title = counted("{count} more change", "{count} more changes", len(rest))
         lines += ["", _details(_escape(title), rest)]
     lines += [f"- {_escape(repeated_text(path, count))}" for path, count in section.repeated]
+    alike = alike_text(section)
+    lines += [] if alike is None else [f"- {_escape(alike)}"]
     lines += [f"> {_escape(problem.text)}" for problem in subject.problems]
     return "\n".join(lines).rstrip()
 

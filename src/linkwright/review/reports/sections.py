@@ -1,17 +1,19 @@
-"""The sections of a report, in which a change of a shared file is listed once."""
+"""The sections of a report, in which a change of a shared file, and equal changes of several files, are listed once."""
 
 from __future__ import annotations
 
 import re
 from collections import Counter
 from collections.abc import Hashable, Iterator, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field, replace
 
-from linkwright.diagnostics import Phrase, counted, phrase, quoted_names
+from linkwright.diagnostics import Phrase, counted, joined_first, phrase, quoted_names
 from linkwright.review.changes import Change, Effect, Review, Subject
 
 _MAX_NAMES = 3
 """The number of other links or joints that a line names."""
+_MAX_PATHS = 4
+"""The number of other files that a line names."""
 _MAX_NAMED_CASES = 1
 """The number of argument sets that a line names."""
 
@@ -27,18 +29,45 @@ class Section:
         subject: the subject.
         changes: its changes, breaking ones first, without those that an earlier section lists.
         repeated: the number of changes that an earlier section lists, by the path of its subject.
+        alike: the paths of other subjects of the same kind with the same changes, which have no section.
     """
 
     subject: Subject
     changes: Sequence[Change]
     repeated: Sequence[tuple[str, int]]
+    alike: list[str] = field(default_factory=list)
 
 
-def sections_of(review: Review) -> Iterator[Section]:
-    """Yield the sections of a report.
+def sections_of(review: Review) -> list[Section]:
+    """Return the sections of a report.
 
-    A macro that several descriptions include makes the same change in each of them, perhaps with other names.
+    A macro that several descriptions include makes the same change in each of them, perhaps with other names. An edit
+    of many launch files, parameter files or manifests often makes the same changes in each of them.
     """
+    sections: list[Section] = []
+    with_contents: dict[Hashable, Section] = {}
+    for section in _sections(review):
+        first = with_contents.setdefault(_contents(section), section)
+        if first is section:
+            sections.append(section)
+        else:
+            first.alike.append(section.subject.path)
+    return sections
+
+
+def _contents(section: Section) -> Hashable:
+    """Return a key that is equal for sections with the same changes and nothing else."""
+    subject = section.subject
+    if section.repeated or subject.figures or subject.problems or subject.images or subject.paths or subject.scene:
+        return subject.path
+    return subject.kind, *(_text_key(change) for change in section.changes)
+
+
+def _text_key(change: Change) -> Hashable:
+    return change.effect, str(sentence_of(change)), str(change.reason), change.cases
+
+
+def _sections(review: Review) -> Iterator[Section]:
     listed: dict[Hashable, str] = {}
     for subject in review.subjects:
         changes = []
@@ -49,13 +78,37 @@ def sections_of(review: Review) -> Iterator[Section]:
                 repeated[first] += 1
                 continue
             changes.append(change)
+        changes = _unique(changes)
         changes.sort(key=lambda change: change.effect is not Effect.BREAKING)
         yield Section(subject, changes, list(repeated.items()))
 
 
+def _unique(changes: Sequence[Change]) -> list[Change]:
+    """Return changes in which equal sentences about several places of a file are one."""
+    groups: dict[Hashable, list[Change]] = {}
+    for change in changes:
+        groups.setdefault(_text_key(change), []).append(change)
+    return [_at_all_places(group) for group in groups.values()]
+
+
+def _at_all_places(changes: Sequence[Change]) -> Change:
+    others = [location for change in changes[1:] for location in (change.location, *change.other_locations) if location]
+    return replace(changes[0], other_locations=(*changes[0].other_locations, *others)) if others else changes[0]
+
+
+def breaking_changes(review: Review) -> list[tuple[list[str], Change]]:
+    """Return the breaking changes with the paths of their subjects; equal changes of several subjects are one."""
+    groups: dict[Hashable, tuple[dict[str, None], Change]] = {}
+    for subject, change in review.breaking_changes:
+        groups.setdefault(_text_key(change), ({}, change))[0][subject.path] = None
+    return [(list(paths), change) for paths, change in groups.values()]
+
+
 def sentence_of(change: Change) -> Phrase:
-    """Return a change in one line, with the other links or joints to which it applies."""
+    """Return a change in one line, with the other links or joints to which it applies, or the number of its places."""
     names = change.other_names
+    if not names and change.other_locations:
+        return phrase("{change} ({count} times)", change=change.sentence, count=1 + len(change.other_locations))
     if not names:
         return change.sentence
     listed = quoted_names(names[:_MAX_NAMES])
@@ -92,9 +145,26 @@ def repeated_text(path: str, count: int) -> Phrase:
     )
 
 
+def paths_text(paths: Sequence[str]) -> Phrase:
+    """Return some paths in one line."""
+    return joined_first(paths, _MAX_PATHS)
+
+
+def alike_text(section: Section) -> Phrase | None:
+    """Return the line for other files with the same changes, or None if there are none."""
+    if not section.alike:
+        return None
+    return counted(
+        "the same in one more file: {paths}",
+        "the same in {count} more files: {paths}",
+        len(section.alike),
+        paths=paths_text(section.alike),
+    )
+
+
 def summary(review: Review) -> Phrase:
     """Return the number of changes and findings in one line."""
-    breaking = len(review.breaking_changes)
+    breaking = len(breaking_changes(review))
     total = sum(len(section.changes) for section in sections_of(review))
     return phrase(
         "{breaking}, {changes}, {findings}, {fixed}",

@@ -4,12 +4,22 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 
-from linkwright.diagnostics import Diagnostic, Phrase, phrase
+from linkwright.diagnostics import Diagnostic, Phrase, counted, phrase
 from linkwright.diagnostics.render import printable
 from linkwright.diagnostics.translation import localized
 from linkwright.review.changes import Effect, Review
-from linkwright.review.reports.sections import Section, cases_text, repeated_text, sections_of, sentence_of, summary
+from linkwright.review.reports.sections import (
+    Section,
+    alike_text,
+    cases_text,
+    repeated_text,
+    sections_of,
+    sentence_of,
+    summary,
+)
 
+_MAX_OTHER_FILES = 20
+"""The number of files that are listed although they were not compared."""
 _NEWLINE = "\N{SYMBOL FOR NEWLINE}"
 """The character for a newline in the name of a file, which must not begin a line of its own."""
 
@@ -24,7 +34,10 @@ def _lines(review: Review) -> Iterator[str]:
         yield from _section(section)
     if review.other_files:
         yield localized(phrase("other changed files"))
-        yield from (f"  {path}" for path in review.other_files)
+        yield from (f"  {path}" for path in review.other_files[:_MAX_OTHER_FILES])
+        rest = len(review.other_files) - _MAX_OTHER_FILES
+        if rest > 0:
+            yield f"  {localized(counted('{count} more file', '{count} more files', rest))}"
         yield ""
     for title, findings in (
         (phrase("new findings"), review.new_findings),
@@ -52,6 +65,9 @@ def _section(section: Section) -> Iterator[str]:
             yield f"    {change.location.file}:{change.location.line}:{change.location.column}"
     for path, count in section.repeated:
         yield f"  - {localized(repeated_text(path, count))}"
+    alike = alike_text(section)
+    if alike is not None:
+        yield f"  = {localized(alike)}"
     for figure in subject.figures:
         yield f"  # {localized(figure.name)}: {figure.old or '-'} -> {figure.new or '-'} {figure.unit}".rstrip()
     for problem in subject.problems:
