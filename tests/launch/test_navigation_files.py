@@ -38,7 +38,8 @@ SLAM = [(f"slam_toolbox/{kind}_slam_toolbox_node").split("/") for kind in ("asyn
 
 
 def share(package: str) -> Path:
-    return PackageFinder(start=Path("/"), environment={}).share(package)
+    # Without sources: a checkout of nav2 or slam_toolbox near the start folder would take precedence.
+    return PackageFinder(start=Path("/no/such/folder"), environment={}).share(package)
 
 
 def include(package: str, name: str, **arguments: str) -> IncludeLaunchDescription:

@@ -57,7 +57,7 @@ def test_manifest_and_index_marker_are_installed(workspace: Path) -> None:
 def test_sourced_workspace_provides_package(workspace: Path) -> None:
     prefix = sourced(workspace, "AMENT_PREFIX_PATH")
     assert prefix == str(workspace / "install" / PACKAGE.name)
-    finder = PackageFinder(start=Path("/"), environment={"AMENT_PREFIX_PATH": prefix})
+    finder = PackageFinder(start=Path("/no/such/folder"), environment={"AMENT_PREFIX_PATH": prefix})
     assert finder.share(PACKAGE.name).resolve() == share(workspace).resolve()
 
 
