@@ -12,7 +12,8 @@ import pytest
 from linkwright.cli import main
 from linkwright.page.server import PAGE_FOLDER
 from linkwright.panels.export import html
-from linkwright.review import open_versions, review, scenes
+from linkwright.review import open_versions, review
+from linkwright.review.drawings import scenes
 from linkwright.review.reports import as_html, scene_page
 from tests.repositories import PACKAGE, Repository
 

@@ -22,8 +22,8 @@ from linkwright.diagnostics import (
     phrase,
 )
 from linkwright.files.git_repository import SHALLOW_HINT, GitRepository
-from linkwright.review.descriptions import sentence_of_difference
 from linkwright.review.frames import SharedFrames
+from linkwright.review.robots.descriptions import sentence_of_difference
 from linkwright.urdf import Robot
 
 _SKIPPED_STATUS = 125

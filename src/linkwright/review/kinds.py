@@ -10,16 +10,16 @@ from linkwright.diagnostics import Phrase, phrase
 from linkwright.packages.launch_files import is_launch_file_name
 from linkwright.packages.manifest import MANIFEST
 from linkwright.review.changes import SubjectKind
-from linkwright.review.descriptions import compare_descriptions
 from linkwright.review.file_pair import FilePair
-from linkwright.review.interfaces import compare_interfaces
+from linkwright.review.files.interfaces import compare_interfaces
+from linkwright.review.files.manifests import compare_manifests
+from linkwright.review.files.maps import compare_maps
+from linkwright.review.files.meshes import compare_meshes
+from linkwright.review.files.parameter_files import compare_parameter_files
+from linkwright.review.files.semantics import compare_semantics
+from linkwright.review.files.worlds import compare_worlds
 from linkwright.review.launches.files import compare_launch_files
-from linkwright.review.manifests import compare_manifests
-from linkwright.review.maps import compare_maps
-from linkwright.review.meshes import compare_meshes
-from linkwright.review.parameter_files import compare_parameter_files
-from linkwright.review.semantics import compare_semantics
-from linkwright.review.worlds import compare_worlds
+from linkwright.review.robots.descriptions import compare_descriptions
 
 _YAML_SUFFIXES = (".yaml", ".yml")
 _TEST_FOLDERS = frozenset({"test", "tests"})

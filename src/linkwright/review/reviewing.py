@@ -20,14 +20,14 @@ from linkwright.packages.manifest import MANIFEST, package_name
 from linkwright.review.behavior import compare_behavior
 from linkwright.review.changes import Change, Effect, Review, Subject, SubjectKind, nesting_problem
 from linkwright.review.file_pair import Drawings, FilePair
+from linkwright.review.files.mesh_groups import grouped_meshes
+from linkwright.review.files.plugin_files import plugin_subjects
 from linkwright.review.findings import compare_findings, find
 from linkwright.review.folders import review_without_folder
 from linkwright.review.kinds import LAUNCH_HELPER, KindRule, may_help_launch_files, rule_of
 from linkwright.review.launches.helpers import makes_actions
-from linkwright.review.mesh_groups import grouped_meshes
 from linkwright.review.notes import is_unreadable_as_before, missing_notes, unreadable_notes
 from linkwright.review.parts import compare_parts
-from linkwright.review.plugin_files import plugin_subjects
 from linkwright.review.references import lost_references
 from linkwright.review.versions import Version, Versions
 

@@ -10,6 +10,7 @@ import yaml
 
 from linkwright.diagnostics import SourceText, Span, phrase
 from linkwright.review.file_pair import LimitError
+from linkwright.review.files.yaml_values import composed
 from linkwright.review.launches.outlines import (
     CONDITION,
     NAMESPACE,
@@ -21,7 +22,6 @@ from linkwright.review.launches.outlines import (
     LaunchOutline,
     Scope,
 )
-from linkwright.review.yaml_values import composed
 from linkwright.xmltree import Element
 
 _NODE_TAGS = ("node", "lifecycle_node", "composable_node", "node_container")

@@ -16,11 +16,11 @@ from linkwright.review.breaking import (
     plugin_name_reason,
 )
 from linkwright.review.changes import Change, Effect
+from linkwright.review.files.semantics import removal_reason
 from linkwright.review.parts.elements import CONDITION_SEPARATOR, ItemComparison, PartDifference
 from linkwright.review.parts.outline import PROPERTY, MacroOutline, uses_name
 from linkwright.review.parts.part_pair import PartPair
 from linkwright.review.parts.wording import Wording, literals_of, properties_of
-from linkwright.review.semantics import removal_reason
 from linkwright.xmltree import Element
 
 _MAX_CHARACTERS = 80

@@ -9,8 +9,8 @@ from linkwright.diagnostics import phrase
 from linkwright.files.git_repository import lfs_hash
 from linkwright.geometry.meshes import TriangleMesh, read_mesh
 from linkwright.review.changes import Figure
+from linkwright.review.drawings.scene_images import mesh_images
 from linkwright.review.file_pair import FilePair, LimitError
-from linkwright.review.scene_images import mesh_images
 
 MESH_SUFFIXES = (".stl", ".dae", ".obj", ".glb", ".gltf")
 _MAX_BYTES = 100 << 20

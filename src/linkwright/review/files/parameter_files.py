@@ -6,12 +6,12 @@ from collections.abc import Iterator, Mapping, Sequence
 from pathlib import Path
 
 from linkwright.diagnostics import Phrase, counted, phrase
-from linkwright.review.bridges import compare_bridges, read_bridges
 from linkwright.review.changes import Location
 from linkwright.review.file_pair import FilePair, LimitError
+from linkwright.review.files.bridges import compare_bridges, read_bridges
+from linkwright.review.files.parameter_names import NameRules, renamed_parts
+from linkwright.review.files.yaml_values import YamlValue, read_yaml_values
 from linkwright.review.list_changes import change_text
-from linkwright.review.parameter_names import NameRules, renamed_parts
-from linkwright.review.yaml_values import YamlValue, read_yaml_values
 
 _MAX_BYTES = 4 << 20
 

@@ -8,8 +8,8 @@ from collections.abc import Iterator, Mapping
 
 from linkwright.diagnostics import Phrase, phrase
 from linkwright.review.breaking import name_reason
+from linkwright.review.files.yaml_values import YamlValue
 from linkwright.review.list_changes import list_items
-from linkwright.review.yaml_values import YamlValue
 
 _FRAMES = re.compile(r"(^|[._])frame_id$")
 """The parameters with frames that any node offers to other programs."""

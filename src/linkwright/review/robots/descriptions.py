@@ -10,18 +10,18 @@ from linkwright.descriptions.comparison import Comparison, Difference, sentence
 from linkwright.diagnostics import Phrase, phrase, term
 from linkwright.geometry.single import Pose, pose_quaternion
 from linkwright.review.breaking import breaking_reason
-from linkwright.review.cases import Case, cases, switched_cases
+from linkwright.review.robots.cases import Case, cases, switched_cases
 from linkwright.review.changes import Change, Effect, Location
-from linkwright.review.collisions import collision_changes
-from linkwright.review.figures import RobotMeasures, figures_of
+from linkwright.review.robots.collisions import collision_changes
+from linkwright.review.robots.figures import RobotMeasures, figures_of
 from linkwright.review.file_pair import FilePair
 from linkwright.review.frames import UNMOVED, SharedFrames
-from linkwright.review.images import view_images
+from linkwright.review.drawings.images import view_images
 from linkwright.review.merging import merged
 from linkwright.review.names_in_plugins import path_of_renamed
 from linkwright.review.parts.expanded import expanded_places
 from linkwright.review.plugins import added_topics, contents_text, missing_topics_reason
-from linkwright.review.scenes import robot_scene
+from linkwright.review.drawings.scenes import robot_scene
 
 
 def compare_descriptions(pair: FilePair) -> None:

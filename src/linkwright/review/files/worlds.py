@@ -8,11 +8,11 @@ from pathlib import Path
 from linkwright.descriptions.comparison import Difference, ElementComparison
 from linkwright.diagnostics import Phrase, phrase
 from linkwright.review.breaking import plugin_name_reason
+from linkwright.review.drawings.scene_images import world_images
 from linkwright.review.file_pair import FilePair
-from linkwright.review.merged_paths import MergedPaths
+from linkwright.review.files.merged_paths import MergedPaths
 from linkwright.review.names_in_plugins import path_of_renamed
 from linkwright.review.plugins import added_topics, contents_text, missing_topics_reason
-from linkwright.review.scene_images import world_images
 from linkwright.sdf.text import parse_as_gazebo
 from linkwright.xmltree import Element
 from linkwright.xmltree.reader import read_bytes

@@ -11,8 +11,8 @@ from linkwright.diagnostics import Phrase, phrase
 from linkwright.review.breaking import name_reason
 from linkwright.review.changes import Location
 from linkwright.review.file_pair import FilePair
+from linkwright.review.files.yaml_values import composed
 from linkwright.review.list_changes import change_text
-from linkwright.review.yaml_values import composed
 
 _TOPIC_KEYS = ("ros_topic_name", "topic_name", "gz_topic_name", "ign_topic_name")
 _ROS_TYPE, _DIRECTION = "ros_type_name", "direction"

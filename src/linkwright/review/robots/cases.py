@@ -14,7 +14,7 @@ from linkwright.lint.argument_sets import UNDECLARED, UNUSED
 from linkwright.lint.checking import Checker
 from linkwright.review.file_pair import Fault, FilePair
 from linkwright.review.folders import without_folder
-from linkwright.review.partial_robots import PartialPair, missing_in_both, read_partial_robot
+from linkwright.review.robots.partial_robots import PartialPair, missing_in_both, read_partial_robot
 from linkwright.review.versions import Version
 
 _MAX_CASES = 12

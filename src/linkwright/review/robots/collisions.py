@@ -19,7 +19,7 @@ from linkwright.geometry.arrays import quaternion_from_matrix
 from linkwright.geometry.hull import convex_hull
 from linkwright.geometry.shapes import Box, Capsule, Cylinder, Sphere, placement
 from linkwright.review.changes import Change
-from linkwright.review.figures import RobotMeasures
+from linkwright.review.robots.figures import RobotMeasures
 from linkwright.simulation.library import load_mujoco
 from linkwright.urdf import Collision, Mesh
 from linkwright.urdf.bodies import Bodies

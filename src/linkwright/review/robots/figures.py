@@ -17,7 +17,7 @@ from linkwright.inertia.mesh_library import MeshLibrary
 from linkwright.kinematics import KinematicTree
 from linkwright.review.changes import Figure
 from linkwright.review.frames import matrix
-from linkwright.review.reach import Chain, reaches
+from linkwright.review.robots.reach import Chain, reaches
 from linkwright.urdf import Collision, Mesh, Robot, Visual
 from linkwright.xmltree import Element
 
