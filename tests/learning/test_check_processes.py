@@ -49,3 +49,23 @@ def test_setup_file_may_print_non_ascii_text_in_c_locale(tmp_path, monkeypatch):
     program = "from setuptools import setup\nprint('机器人')\nsetup(data_files=[('share', ['world.sdf'])])\n"
     (tmp_path / "setup.py").write_text(program, encoding="utf-8")
     assert files_of_setup(tmp_path) == {PurePosixPath("share/world.sdf"): tmp_path / "world.sdf"}
+
+
+@pytest.mark.parametrize("stop_at_failure", [False, True])
+def test_checks_can_stop_at_first_failure(tmp_path, stop_at_failure):
+    course = tmp_path / "course"
+    create_course(course)
+    (course / "01-one-link" / "checks.py").write_text(
+        "from linkwright.learning import NotYet, check\n\n"
+        '@check("mass", en="One.", zh="一。")\n'
+        "def fail(work):\n"
+        '    raise NotYet(en="No.", zh="没有。")\n\n'
+        '@check("mass", en="Two.", zh="二。")\n'
+        "def write(work):\n"
+        "    (work.folder / 'second').touch()\n",
+        encoding="utf-8",
+    )
+    step = load_course(course).find_step("mass")
+    result = running.check_in_process(step, tmp_path, stop_at_failure=stop_at_failure)
+    assert [check.passed for check in result.checks] == ([False] if stop_at_failure else [False, True])
+    assert (tmp_path / "second").exists() is not stop_at_failure

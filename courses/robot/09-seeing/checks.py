@@ -1,4 +1,5 @@
 import math
+from functools import cache
 
 import numpy as np
 
@@ -49,13 +50,20 @@ def program(work, name):
     return work.package("my_vision").program(name)
 
 
-@check("camera", en="The camera publishes images of 320 x 240.", zh="相机发布 320 x 240 的图像。")
-def publishes_images(work):
+@cache
+def camera_messages(work):
+    """Return the messages of a second: the images, of which there is at least one, and the camera infos."""
     with simulate(work) as test:
-        images = test.record(IMAGES, IMAGE)
+        images, infos = test.record(IMAGES, IMAGE), test.record("/camera/camera_info", INFO)
         test.advance(1.0)
     if not len(images):
         raise NotYet(en=f"Nothing is published on {IMAGES}.", zh=f"{IMAGES} 上没有消息。")
+    return images, infos
+
+
+@check("camera", en="The camera publishes images of 320 x 240.", zh="相机发布 320 x 240 的图像。")
+def publishes_images(work):
+    images, _ = camera_messages(work)
     size = images.last.width, images.last.height
     if size != (WIDTH, HEIGHT):
         raise NotYet(
@@ -71,12 +79,10 @@ def publishes_images(work):
 
 @check("camera", en="Its horizontal field of view is 1.2 rad.", zh="它的水平视角是 1.2 rad。")
 def has_field_of_view(work):
-    with simulate(work) as test:
-        lenses = test.record("/camera/camera_info", INFO)
-        test.advance(0.3)
-    if not len(lenses):
+    _, infos = camera_messages(work)
+    if not len(infos):
         raise NotYet(en="Nothing is published on /camera/camera_info.", zh="/camera/camera_info 上没有消息。")
-    angle = 2 * math.atan(lenses.last.width / 2 / lenses.last.k[0])
+    angle = 2 * math.atan(infos.last.width / 2 / infos.last.k[0])
     if abs(angle - 1.2) > 0.02:
         raise NotYet(
             en=f"The field of view is {angle:.3g} rad, but should be 1.2 rad.",
@@ -90,11 +96,7 @@ def has_field_of_view(work):
     zh="图像在坐标系 camera_optical_frame 中，其 z 轴指向前方。",
 )
 def has_optical_frame(work):
-    with simulate(work) as test:
-        images = test.record(IMAGES, IMAGE)
-        test.advance(0.3)
-    if not len(images):
-        raise NotYet(en=f"Nothing is published on {IMAGES}.", zh=f"{IMAGES} 上没有消息。")
+    images, _ = camera_messages(work)
     frame = images.last.header.frame_id
     if frame != "camera_optical_frame":
         raise NotYet(
@@ -129,6 +131,7 @@ def drawn_image(colors, encoding):
     return image, places
 
 
+@cache
 def mask_of(work, encoding="rgb8"):
     """Show an image to the learner's node, and return its mask and the places of the colors."""
     image, places = drawn_image({**RED, **OTHERS}, encoding)
@@ -214,6 +217,7 @@ def seen_from(start, point):
     return forward - CAMERA[0], left - CAMERA[1], point[2] - CAMERA[2]
 
 
+@cache
 def find_ball(work, start, *, must_see=True):
     with simulate(work, work.lesson / "ball.world", start) as test:
         balls = test.record("/ball", POINT)
@@ -267,6 +271,7 @@ def ball_is_absent(work):
         )
 
 
+@cache
 def find_markers(work, start):
     """Return the last transform of each marker that the learner's node broadcasts."""
     world = work.package("my_worlds").file("worlds/markers.world")

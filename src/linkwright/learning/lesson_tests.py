@@ -123,7 +123,7 @@ def _test_step(
 ) -> Iterator[TestResult]:
     """Yield the results of a step's tests, and leave the step's solution in the workspace."""
     answer = step.right_answer
-    if check_in_process(step, workspace, server=server).passed:
+    if check_in_process(step, workspace, stop_at_failure=True, server=server).passed:
         yield TestResult(step.lesson.id, step.id, phrase("the checks accept the step without its solution"))
     _overlay(step.solution, workspace)
     yield TestResult(step.lesson.id, step.id, _unexpected_result(step, workspace, answer, None, server))
@@ -141,7 +141,7 @@ def _unexpected_result(
     step: Step, workspace: Path, answer: str | None, says: str | None, server: ForkServer
 ) -> Phrase | None:
     """Return the difference between the expected and the actual result of the checks, or None."""
-    result = check_in_process(step, workspace, answer=answer, server=server)
+    result = check_in_process(step, workspace, answer=answer, stop_at_failure=True, server=server)
     messages = [str(check.message) for check in result.checks if check.message is not None]
     if says is None:
         return (

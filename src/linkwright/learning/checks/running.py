@@ -43,6 +43,8 @@ _NICENESS_VARIABLE = "LINKWRIGHT_CHECK_NICENESS"
 
 MODULE = "linkwright.learning.checks"
 
+_STOP_OPTION = "--stop-at-failure"
+
 _IMPORTED = (
     "linkwright.learning.checks.*",
     "linkwright.control.*",
@@ -75,7 +77,12 @@ _CLOSING_SECONDS = 5.0
 
 
 def check_step(
-    step: Step, workspace: Path, *, answer: str | None = None, begin_checks: Callable[[], None]
+    step: Step,
+    workspace: Path,
+    *,
+    answer: str | None = None,
+    stop_at_failure: bool = False,
+    begin_checks: Callable[[], None],
 ) -> StepResult:
     """Run the checks of a step in this process.
 
@@ -83,6 +90,7 @@ def check_step(
         step: the step.
         workspace: the learner's workspace.
         answer: the learner's answer, a number as text.
+        stop_at_failure: whether the first failed check is the last one to run.
         begin_checks: called before the first check, before any code of the learner runs.
 
     Raises:
@@ -92,7 +100,11 @@ def check_step(
     checks = load_checks(step.lesson.folder / CHECKS_FILE).get(step.id, ())
     work = Work(workspace, lesson=step.lesson.folder, answer=answer)
     begin_checks()
-    results = [_run(check, work) for check in checks]
+    results: list[CheckResult] = []
+    for check in checks:
+        results.append(_run(check, work))
+        if stop_at_failure and not results[-1].passed:
+            break
     return StepResult(step.address, _without_repetition(results), time.monotonic() - begin)
 
 
@@ -128,8 +140,11 @@ def check_command(step: Step, workspace: Path, output: Path, *, answer: str | No
     return [*PYTHON, "-m", MODULE, *_check_arguments(step, workspace, output, answer)]
 
 
-def _check_arguments(step: Step, workspace: Path, output: Path, answer: str | None) -> list[str]:
-    arguments = [str(step.lesson.folder), step.id, str(workspace), str(output)]
+def _check_arguments(
+    step: Step, workspace: Path, output: Path, answer: str | None, *, stop_at_failure: bool = False
+) -> list[str]:
+    options = [_STOP_OPTION] if stop_at_failure else []
+    arguments = [*options, str(step.lesson.folder), step.id, str(workspace), str(output)]
     return arguments if answer is None else [*arguments, answer]
 
 
@@ -143,11 +158,15 @@ def check_in_process(
     workspace: Path,
     *,
     answer: str | None = None,
+    stop_at_failure: bool = False,
     time_limit: float = TIME_LIMIT,
     server: ForkServer | None = None,
 ) -> StepResult:
     """Run the checks of a step in a separate process. See `CheckProcess`."""
-    return CheckProcess(step, workspace, answer=answer, time_limit=time_limit, server=server).run()
+    process = CheckProcess(
+        step, workspace, answer=answer, stop_at_failure=stop_at_failure, time_limit=time_limit, server=server
+    )
+    return process.run()
 
 
 class CheckProcess:
@@ -160,6 +179,7 @@ class CheckProcess:
         step: the step.
         workspace: the learner's workspace.
         answer: the learner's answer, a number as text.
+        stop_at_failure: whether the first failed check is the last one to run.
         time_limit: the time after which the process is killed, in seconds.
         server: starts the process; see `create_check_server`. None to start an ordinary process.
         niceness: the increase of the process's nice value, 0 to 19; ignored on Windows.
@@ -171,6 +191,7 @@ class CheckProcess:
         workspace: Path,
         *,
         answer: str | None = None,
+        stop_at_failure: bool = False,
         time_limit: float = TIME_LIMIT,
         server: ForkServer | None = None,
         niceness: int = 0,
@@ -178,6 +199,7 @@ class CheckProcess:
         self._step = step
         self._workspace = workspace
         self._answer = answer
+        self._stop_at_failure = stop_at_failure
         self._time_limit = time_limit
         self._niceness = niceness
         self._start = partial(start_fresh, PYTHON) if server is None else server.start
@@ -189,7 +211,10 @@ class CheckProcess:
         begin = time.monotonic()
         with ScratchFolder("check") as scratch:
             output = Path(scratch) / "result.json"
-            reason = self._run_program(_check_arguments(self._step, self._workspace, output, self._answer))
+            arguments = _check_arguments(
+                self._step, self._workspace, output, self._answer, stop_at_failure=self._stop_at_failure
+            )
+            reason = self._run_program(arguments)
             data = _read(output)
         if data is not None and reason is None:
             return StepResult.from_data(data)
@@ -276,12 +301,15 @@ def main(arguments: Sequence[str]) -> int:
         os.nice(int(os.environ.get(_NICENESS_VARIABLE, "0")))
     os.environ["ROS_AUTOMATIC_DISCOVERY_RANGE"] = "LOCALHOST"
     os.environ["ROS_DOMAIN_ID"] = os.environ.get(DOMAIN_VARIABLE) or str(hold_domain())
-    lesson_folder, step_id, workspace, output, *answers = arguments
+    stop_at_failure = arguments[0] == _STOP_OPTION
+    lesson_folder, step_id, workspace, output, *answers = arguments[1:] if stop_at_failure else arguments
     lesson = load_lesson(Path(lesson_folder))
     step = next(step for step in lesson.steps if step.id == step_id)
     try:
         answer = answers[0] if answers else None
-        result = check_step(step, Path(workspace), answer=answer, begin_checks=Path(output).touch)
+        result = check_step(
+            step, Path(workspace), answer=answer, stop_at_failure=stop_at_failure, begin_checks=Path(output).touch
+        )
     except LinkwrightError as error:
         texts = [LocalText.from_phrase(describe_finding(finding)) for finding in error.diagnostics]
         failed = [CheckResult(step.title, passed=False, message=text, is_machine_fault=True) for text in texts]
