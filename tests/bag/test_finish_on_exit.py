@@ -23,9 +23,9 @@ FORMS = {
 @pytest.fixture(params=FORMS)
 def writer(request: pytest.FixtureRequest, tmp_path: Path) -> BagWriter:
     name, options = FORMS[request.param]
-    made = BagWriter(tmp_path / name, **options)
-    made.add_topic("/chatter", "std_msgs/msg/String")
-    return made
+    writer = BagWriter(tmp_path / name, **options)
+    writer.add_topic("/chatter", "std_msgs/msg/String")
+    return writer
 
 
 def numbers(path: Path) -> list[int]:
@@ -65,6 +65,6 @@ def test_finish_all_completes_recording_while_thread_writes(writer: BagWriter) -
 def test_finish_all_leaves_closed_recording_unchanged(writer: BagWriter) -> None:
     writer.write("/chatter", 1, serialize(String(data="word")))
     writer.close()
-    before = {each: each.stat().st_mtime_ns for each in (writer.path, *writer.path.glob("*"))}
+    before = {path: path.stat().st_mtime_ns for path in (writer.path, *writer.path.glob("*"))}
     finish_all()
-    assert {each: each.stat().st_mtime_ns for each in before} == before
+    assert {path: path.stat().st_mtime_ns for path in before} == before

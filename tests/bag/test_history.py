@@ -49,8 +49,8 @@ def numbers(messages: object) -> list[int]:
 def test_history_drops_oldest_messages_beyond_byte_limit() -> None:
     history, _ = filled(most=5 * 1200, count=3000)
     assert history.size <= 5 * 1200
-    kept = list(history.messages(["/a"], 0))
-    assert [stamp // SECOND for _, stamp, _ in kept] == [2996, 2997, 2998, 2999], "and the one before is known"
+    messages = list(history.messages(["/a"], 0))
+    assert [stamp // SECOND for _, stamp, _ in messages] == [2996, 2997, 2998, 2999], "and the one before is known"
     assert history.start_ns == 2996 * SECOND
     assert numbers(history.state_at(["/a"], 2995 * SECOND)) == [2995 % 256]
     assert history.state_at(["/a"], 2994 * SECOND) == []
@@ -156,8 +156,11 @@ def states(clock: Clock, history: History, positions: list[float], *, start: flo
 
 def positions(messages: list[tuple[str, int, bytes]]) -> list[tuple[float, float]]:
     """Position and stamp, in seconds, of joint states."""
-    read = [deserialize(uncompressed_bytes(data), JointState) for _, _, data in messages]
-    return [(each.position[0], each.header.stamp.sec + each.header.stamp.nanosec / 1e9) for each in read]
+    joint_states = [deserialize(uncompressed_bytes(data), JointState) for _, _, data in messages]
+    return [
+        (joint_state.position[0], joint_state.header.stamp.sec + joint_state.header.stamp.nanosec / 1e9)
+        for joint_state in joint_states
+    ]
 
 
 def test_unmoving_joint_states_keep_two_messages_per_ten_seconds() -> None:
