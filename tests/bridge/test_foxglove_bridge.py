@@ -70,7 +70,7 @@ class World:
     async def offers(self, topic: str) -> None:
         """Wait until the bridge has seen a topic."""
         channels = self.bridge._offer.channels
-        await eventually(lambda: topic in [each.advertisement()["topic"] for each in channels.all()])
+        await eventually(lambda: topic in [channel.advertisement()["topic"] for channel in channels.all()])
 
     @asynccontextmanager
     async def client(self, protocols=V1, **options):
@@ -83,25 +83,25 @@ class World:
 
 @asynccontextmanager
 async def world(**parameters):
-    made = World(**parameters)
-    await eventually(lambda: any("connect to" in record.text for record in made.log))
+    world = World(**parameters)
+    await eventually(lambda: any("connect to" in record.text for record in world.log))
     try:
-        yield made
+        yield world
     finally:
-        made.bridge.close()
-        await made.bridge._cleanup_task
-        await made.graph.close()
+        world.bridge.close()
+        await world.bridge._cleanup_task
+        await world.graph.close()
 
 
 @pytest.mark.parametrize("steps", range(8))
 async def test_server_socket_is_closed_when_startup_is_interrupted(steps):
-    made = World()
+    world = World()
     for _ in range(steps):
         await asyncio.sleep(0)
-    made.bridge.close()
-    assert made.bridge._listener.fileno() == -1  # before the loop runs on, which may be ended here
-    await asyncio.wait([made.bridge._server_task])
-    await made.graph.close()
+    world.bridge.close()
+    assert world.bridge._listener.fileno() == -1  # before the loop runs on, which may be ended here
+    await asyncio.wait([world.bridge._server_task])
+    await world.graph.close()
 
 
 def test_executable_is_registered_for_launch_files():
@@ -190,8 +190,8 @@ async def test_client_calls_service():
         w.node.create_service(set_bool, "/light", answer)
         light = None
         while light is None:
-            message = (await client.until("advertiseServices"))["services"]
-            light = next((each for each in message if each["name"] == "/light"), None)
+            services = (await client.until("advertiseServices"))["services"]
+            light = next((service for service in services if service["name"] == "/light"), None)
         assert light["request"]["schema"] == light["requestSchema"] == "bool data\n"
         head = struct.pack("<BIII", 2, light["id"], 77, 3) + b"cdr"
         await client.socket.send_bytes(head + serialize(set_bool.Request(data=True)))
@@ -221,7 +221,7 @@ async def test_parameters_are_read_set_and_subscribed():
         assert [answer["parameters"][0]["value"] for answer in answers] == [2.0, 2.0]
         assert w.node.get_parameter("speed").value == 2.0
         await client.send("getParameters", parameterNames=[], id="all")
-        names = {each["name"] for each in (await client.until("parameterValues"))["parameters"]}
+        names = {parameter["name"] for parameter in (await client.until("parameterValues"))["parameters"]}
         assert {"/robot.speed", "/robot.use_sim_time"} <= names
 
 
@@ -363,7 +363,7 @@ async def test_whitelists_hide_other_topics_and_services():
         w.node.create_publisher(String, "/hidden", 10)
         await w.offers("/seen_one")
         async with w.client() as client:
-            assert [each["topic"] for each in (await client.until("advertise"))["channels"]] == ["/seen_one"]
+            assert [channel["topic"] for channel in (await client.until("advertise"))["channels"]] == ["/seen_one"]
             assert (await client.until("advertiseServices"))["services"] == []
             channel = {"id": 1, "topic": "/other", "encoding": "cdr", "schemaName": "std_msgs/msg/String"}
             await client.send("advertise", channels=[channel])
@@ -376,7 +376,7 @@ async def test_slow_whitelist_pattern_does_not_block_bridge():
         w.node.create_publisher(String, f"/{'s' * 60}_", 10)
         await w.offers("/seen")
         async with w.client() as client:
-            assert [each["topic"] for each in (await client.until("advertise"))["channels"]] == ["/seen"]
+            assert [channel["topic"] for channel in (await client.until("advertise"))["channels"]] == ["/seen"]
 
 
 async def test_disconnecting_client_logs_nothing(caplog):
@@ -390,8 +390,8 @@ async def test_disconnecting_client_logs_nothing(caplog):
 
 async def test_startup_fails_if_port_is_in_use_or_whitelist_is_invalid():
     graph = Graph(on_log=lambda _: None)
-    with socket.create_server(("127.0.0.1", 0)) as taken:
-        port = taken.getsockname()[1]
+    with socket.create_server(("127.0.0.1", 0)) as server:
+        port = server.getsockname()[1]
         with pytest.raises(LinkwrightError) as caught:
             FoxgloveBridge(graph, NodeOptions(parameters={"port": port}))
         assert caught.value.diagnostics[0].code == "NODE702"
