@@ -85,5 +85,5 @@ def violations(page: Page, within: str | None = None) -> list[str]:
     for theme, worst in THEMES.items():
         page.emulate_media(color_scheme=theme)
         page.wait_for_function("theme => document.documentElement.dataset.theme === theme", arg=theme)
-        found += [f"{theme}: {each}" for each in page.evaluate(_RUN, [within, worst])]
+        found += [f"{theme}: {violation}" for violation in page.evaluate(_RUN, [within, worst])]
     return found

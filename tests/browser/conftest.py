@@ -194,8 +194,8 @@ def live() -> Iterator[Callable[..., LiveViewer]]:
         return running[-1]
 
     yield run
-    for each in running:
-        each.close()
+    for viewer in running:
+        viewer.close()
 
 
 @pytest.fixture

@@ -34,7 +34,7 @@ ROBOT = configuration(
 
 def drawn(page, name: str) -> dict:
     """The first visual of a link as it is drawn."""
-    robot = next(each for each in state(page, "displays") if each["name"] == "Robot")["drawn"]
+    robot = next(display for display in state(page, "displays") if display["name"] == "Robot")["drawn"]
     return robot["links"][name]["visuals"][0]
 
 

@@ -51,8 +51,8 @@ def test_long_joint_names_keep_their_ends(start, open_page, tmp_path):
         assert shown.get_attribute("title") == shown.text_content() == name.format(number)
         beginning, end = (shown.locator("span").nth(which) for which in (0, 1))
         assert end.text_content() == f"finger_{number}_joint"
-        assert beginning.evaluate("(each) => each.scrollWidth > each.clientWidth")
-        assert end.evaluate("(each) => each.scrollWidth <= each.clientWidth + 1")
+        assert beginning.evaluate("(element) => element.scrollWidth > element.clientWidth")
+        assert end.evaluate("(element) => element.scrollWidth <= element.clientWidth + 1")
         assert page.get_by_role("slider", name=name.format(number), exact=True).is_visible()
 
 

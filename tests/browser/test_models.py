@@ -97,7 +97,7 @@ def test_launch_files_run_from_package_folder(start, open_page, package, launch,
     if links == 12:
         # Readers have no mesh at first: the robot shows, and the row says where the file was looked for.
         until(page, f"{robot_model}.status.some(({{ name, level }}) => name === 'kinect_link' && level === 'error')")
-        status = next(each["status"] for each in state(page, "displays") if each["name"] == "RobotModel")
+        status = next(display["status"] for display in state(page, "displays") if display["name"] == "RobotModel")
         row = next(row for row in status if row["name"] == "kinect_link")
         assert str(share / "meshes" / "kinect.dae") in row["text"]
         wait_until(lambda: any("meshes/kinect.dae" in line for line in program.output))

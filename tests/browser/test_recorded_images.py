@@ -66,7 +66,7 @@ def place(page: Page, selector: str) -> dict[str, float]:
 
 def boxes(page: Page) -> list[dict[str, float]]:
     """The pictures that are seen."""
-    found = (each.bounding_box() for each in page.locator(".image-panel").all())
+    found = (panel.bounding_box() for panel in page.locator(".image-panel").all())
     return [dict(box) for box in found if box is not None]
 
 

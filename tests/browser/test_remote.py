@@ -43,7 +43,7 @@ def noise(width: int, height: int) -> Any:
 
 
 _HELD = """
-  const told = new Promise((done) => (window.tell = done));
+  const told = new Promise((resolve) => (window.tell = resolve));
   window.WebSocket = class extends WebSocket {
     set onmessage(take) { super.onmessage = async (event) => { await told; take(event); }; }
   };
@@ -86,13 +86,13 @@ def test_slow_connection_thins_heavy_topics_and_shows_notice(live, open_page):
             viewer.publish(topic, message)
         notice = "document.querySelector('.line-notice:not([hidden])')?.innerText ?? ''"
         facts.update(
-            page.evaluate(f"() => ({{ text: {notice}, drawn: linkwright.displays.map((each) => each.drawn) }})")
+            page.evaluate(f"() => ({{ text: {notice}, drawn: linkwright.displays.map((display) => display.drawn) }})")
         )
         points, shown = facts["drawn"]
         return (
             all(
-                each in facts["text"]
-                for each in ("The connection is slow", "Cloud 1 in", "of 1280 × 720, quality", "WebP")
+                words in facts["text"]
+                for words in ("The connection is slow", "Cloud 1 in", "of 1280 × 720, quality", "WebP")
             )
             and points["step"] > 1
             and 0 < points["points"] < 50_000

@@ -29,10 +29,10 @@ def port() -> str:
 @pytest.fixture
 def context(browser):
     """A browser whose console may tell that nobody answered."""
-    made = browser.new_context(viewport={"width": 1280, "height": 800}, locale="en-US")
-    made.set_default_timeout(1000 * SECONDS)
-    yield made
-    made.close()
+    context = browser.new_context(viewport={"width": 1280, "height": 800}, locale="en-US")
+    context.set_default_timeout(1000 * SECONDS)
+    yield context
+    context.close()
 
 
 def opened(context, url):

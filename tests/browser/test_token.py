@@ -24,10 +24,10 @@ def viewer(live):
 @pytest.fixture
 def context(browser):
     """A browser that has seen nothing yet."""
-    made = browser.new_context(viewport={"width": 1280, "height": 800}, locale="en-US")
-    made.set_default_timeout(1000 * SECONDS)
-    yield made
-    made.close()
+    context = browser.new_context(viewport={"width": 1280, "height": 800}, locale="en-US")
+    context.set_default_timeout(1000 * SECONDS)
+    yield context
+    context.close()
 
 
 @pytest.fixture
@@ -91,9 +91,9 @@ def test_token_is_not_sent_to_other_server_on_same_host(viewer, context, other_s
     address = urlsplit(viewer.url)
     assert heard
     # The browser may ask for an icon too, on behalf of that server's own page.
-    for each in heard:
+    for request in heard:
         for telling in ("cookie:", address.netloc, address.query.partition("=")[2].lower()):
-            assert telling not in each.lower()
+            assert telling not in request.lower()
     assert context.cookies() == []
     assert page.evaluate("() => Object.keys(localStorage)") == []
     page.go_back()

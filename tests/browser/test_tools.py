@@ -78,7 +78,7 @@ def test_pose_estimate_uses_covariance_of_tool_properties(scene):
     assert (abs(pose.orientation.z), pose.orientation.w) == pytest.approx((1, 0), abs=0.01)
     covariance = list(estimate.pose.covariance)
     assert (covariance[0], covariance[7], covariance[35]) == (0.25, 0.25, 0.5)
-    listed = next(each for each in scene.file()["Tools"] if each["Class"].endswith("/SetInitialPose"))
+    listed = next(tool for tool in scene.file()["Tools"] if tool["Class"].endswith("/SetInitialPose"))
     assert listed["Covariance yaw"] == 0.5
 
 
@@ -133,7 +133,7 @@ def test_tools_are_added_and_removed(scene):
     page.get_by_role("button", name="Add a tool").click()
     page.get_by_role("menuitem", name="Measure").click()
     until(page, "lw.tools.length === 8")
-    listed = [each["Class"].rpartition("/")[2] for each in scene.file()["Tools"]]
+    listed = [tool["Class"].rpartition("/")[2] for tool in scene.file()["Tools"]]
     assert listed[-2:] == ["SetGoal", "Measure"]
 
 
