@@ -121,9 +121,9 @@ class Runner:
             return {}
         assert step["shell"] == "bash"
         values = {name: _filled(str(value), context) for name, value in step.get("env", {}).items()}
-        done = self.bash(step["run"], {**variables, **values})
-        result.output += done.stdout
-        if done.returncode:
+        process = self.bash(step["run"], {**variables, **values})
+        result.output += process.stdout
+        if process.returncode:
             result.failed = step["name"]
         output_file = self.temporary / "output.txt"
         lines = output_file.read_text(encoding="utf-8").splitlines() if output_file.is_file() else []
