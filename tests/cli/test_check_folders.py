@@ -184,7 +184,7 @@ def test_checked_robot_is_freed_without_garbage_collector(here, monkeypatch):
     alive = []
 
     def counted(*arguments, **options):
-        alive.append(sum(isinstance(each, Subject) for each in gc.get_objects()))
+        alive.append(sum(isinstance(candidate, Subject) for candidate in gc.get_objects()))
         return examine(*arguments, **options)
 
     monkeypatch.setattr(checking, "examine", counted)

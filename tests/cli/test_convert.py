@@ -158,6 +158,6 @@ def test_mjcf_materials_have_mean_texture_colors(tmp_path: Path) -> None:
         f"<uri>quad.obj</uri></mesh></geometry><material>{material}</material></visual></link></model></sdf>"
     )
     assert main(["convert", str(world), "--to", "mjcf", "-o", str(tmp_path / "out" / "m.xml")]) == 0
-    made = mujoco.MjModel.from_xml_path(str(tmp_path / "out" / "m.xml"))
-    assert made.ntex == 0
-    assert made.geom_rgba[0].tolist() == pytest.approx([0.25, 0.0, 0.5, 1.0], abs=1e-3)
+    model = mujoco.MjModel.from_xml_path(str(tmp_path / "out" / "m.xml"))
+    assert model.ntex == 0
+    assert model.geom_rgba[0].tolist() == pytest.approx([0.25, 0.0, 0.5, 1.0], abs=1e-3)

@@ -143,11 +143,11 @@ def test_named_pipe_beside_file_is_not_opened(tmp_path: Path) -> None:
     for name in ("pipe.xacro", "pipe.urdf"):
         os.mkfifo(tmp_path / name)
     for target in (path, tmp_path):
-        done = subprocess.run(
+        result = subprocess.run(
             [sys.executable, "-m", "linkwright", "check", str(target)],
             env={**os.environ, "PYTHONPATH": str(REPOSITORY / "src")},
             capture_output=True,
             timeout=120,
             check=False,
         )
-        assert done.returncode in (0, 1)
+        assert result.returncode in (0, 1)
