@@ -62,7 +62,7 @@ async def test_documented_example_swings_joint(stand, page):
     stand.say("std_msgs/msg/Float64", "/swing/amplitude", get_message("std_msgs/msg/Float64")(data=0.1))
     await stand.step(controller, count=50)
     assert stand.commands["elbow/position"].value == pytest.approx(0.9)
-    assert "'speed' is not a parameter of this controller" in [str(each.text) for each in stand.log]
+    assert "'speed' is not a parameter of this controller" in [str(record.text) for record in stand.log]
 
 
 @pytest.fixture
@@ -90,13 +90,15 @@ def installed(tmp_path, monkeypatch):
 @pytest.mark.usefixtures("installed")
 async def test_manager_runs_controller_of_package(graph):
     text = robot(joint("hip") + joint("knee"))
-    made = manager(graph, text, {"swing": {"type": "my_controllers/Swing"}}, swing={"joint": "hip", "frequency": 1.0})
-    assert made.load("swing")
-    assert made.configure("swing")
-    assert made.switch(["swing"], [], STRICT)[0]
+    controller_manager = manager(
+        graph, text, {"swing": {"type": "my_controllers/Swing"}}, swing={"joint": "hip", "frequency": 1.0}
+    )
+    assert controller_manager.load("swing")
+    assert controller_manager.configure("swing")
+    assert controller_manager.switch(["swing"], [], STRICT)[0]
     for number in range(1, 26):
-        made.cycle(number * 10_000_000, 0.01)
-    assert made.resources.commands(["hip/position"])[0].value == pytest.approx(0.2)
+        controller_manager.cycle(number * 10_000_000, 0.01)
+    assert controller_manager.resources.commands(["hip/position"])[0].value == pytest.approx(0.2)
 
 
 @pytest.mark.usefixtures("installed")

@@ -191,12 +191,12 @@ async def test_limits_are_respected_and_limited_command_published(wheels):
     for number in range(200):
         command(wheels, *((9.0, -9.0), (-9.0, 9.0), (0.3, 0.1))[number // 15 % 3])
         await wheels.step(controller, STEP)
-    forward = [0.0, *(each.twist.linear.x for each in heard)]
-    turning = [0.0, *(each.twist.angular.z for each in heard)]
+    forward = [0.0, *(message.twist.linear.x for message in heard)]
+    turning = [0.0, *(message.twist.angular.z for message in heard)]
     assert len(forward) == 201
-    assert all(-0.5 <= each <= 1.0 for each in forward)
+    assert all(-0.5 <= speed <= 1.0 for speed in forward)
     assert all(-4.0 - 1e-9 <= (b - a) / STEP <= 2.0 + 1e-9 for a, b in pairwise(forward))
-    assert all(abs(each) <= 1.5 for each in turning)
+    assert all(abs(speed) <= 1.5 for speed in turning)
     assert all(abs(b - a) / STEP <= 3.0 + 1e-9 for a, b in pairwise(turning))
     assert controller.commands[0].value == pytest.approx((forward[-1] - turning[-1] * 0.2) / 0.1)
 
@@ -256,7 +256,7 @@ async def test_odometry_has_publish_rate_and_covariances(wheels):
     heard = wheels.heard("nav_msgs/msg/Odometry", f"/{NAME}/odom")
     transforms = wheels.heard("tf2_msgs/msg/TFMessage", "/tf")
     await wheels.step(controller, count=100)
-    times = [each.header.stamp.nanoseconds for each in heard]
+    times = [message.header.stamp.nanoseconds for message in heard]
     assert times == list(range(10_000_000, 1_000_000_001, 50_000_000))
     assert list(heard[0].pose.covariance[::7]) == diagonal
     assert not any(heard[0].twist.covariance)

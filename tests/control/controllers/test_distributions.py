@@ -57,4 +57,4 @@ async def test_parameters_of_other_distribution_are_accepted(stand, monkeypatch,
     assert (axis.has_velocity_limits, axis.max_deceleration) == (True, -2.0)
     assert {"linear.x.has_velocity_limits", "linear.x.max_deceleration"} <= declared(controller)
     assert "angular.z.has_velocity_limits" in declared(controller) or distribution == "jazzy"
-    assert not [each.text for each in log if "is not a parameter" in str(each.text)]
+    assert not [record.text for record in log if "is not a parameter" in str(record.text)]

@@ -157,5 +157,5 @@ async def test_parallel_gripper_forwards_maximum_effort_and_velocity(stand):
     assert asked.result.state.name == ["finger"]
     assert asked.result.state.effort[0] == 5.0
     assert "Received action goal with wrong number of position values, expects 1, got 0" in [
-        str(each.text) for each in stand.log
+        str(record.text) for record in stand.log
     ]

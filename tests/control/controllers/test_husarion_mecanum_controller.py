@@ -58,7 +58,7 @@ async def test_wheel_speeds_match_motion_with_and_without_header(wheels, velocit
     message = twist(-forward, -turning, -sideways)
     wheels.say("geometry_msgs/msg/Twist", f"/{NAME}/cmd_vel_unstamped", message)
     await wheels.step(controller)
-    assert commanded(wheels) == pytest.approx([-each for each in wheels_turn])
+    assert commanded(wheels) == pytest.approx([-speed for speed in wheels_turn])
 
 
 async def test_command_expires_after_timeout(wheels):

@@ -51,7 +51,7 @@ class Arm:
         return Asked(self.stand, ACTION, "/controller/follow_joint_trajectory", goal)
 
     def logged(self) -> list[str]:
-        return [str(each.text) for each in self.stand.log]
+        return [str(record.text) for record in self.stand.log]
 
 
 def test_controller_is_found_by_type():

@@ -89,7 +89,7 @@ async def test_chained_mode_accepts_reference_interfaces(stand):
     ask(stand, 9.0)
     await stand.step(controller)
     assert stand.commands["wheel/effort"].value == pytest.approx(0.5)
-    assert [each.value for each in controller.exported] == [0.0, 0.0]
+    assert [interface.value for interface in controller.exported] == [0.0, 0.0]
 
 
 async def test_reference_of_wrong_size_or_names_is_reported(stand):
@@ -98,7 +98,7 @@ async def test_reference_of_wrong_size_or_names_is_reported(stand):
     await stand.step(controller)
     ask(stand, 1.0, names=("arm",))
     await stand.step(controller)
-    logged = [str(each.text) for each in stand.log]
+    logged = [str(record.text) for record in stand.log]
     assert "Size of input data names (1) and/or values (2) is not matching the expected size (1)." in logged
     assert "DoF name 'wheel' is not in the message: it has arm." in logged
     assert isnan(stand.commands["wheel/effort"].value)
@@ -114,16 +114,16 @@ async def test_controller_state_is_published(stand):
     assert state.time_step == pytest.approx(0.01)
 
 
-@pytest.mark.parametrize("kept", [True, False])
-async def test_save_i_term_keeps_integral_on_reactivation(stand, kept):
-    controller = wheel(stand, **WHEEL, gains={"wheel": {"i": 1.0, "save_i_term": kept}})
+@pytest.mark.parametrize("saves_integral", [True, False])
+async def test_save_i_term_keeps_integral_on_reactivation(stand, saves_integral):
+    controller = wheel(stand, **WHEEL, gains={"wheel": {"i": 1.0, "save_i_term": saves_integral}})
     for _ in range(2):
         controller.on_activate()
         ask(stand, 1.0)
         await stand.step(controller)
         controller.on_deactivate()
     controller.on_activate()
-    assert controller._pids[0].integral == pytest.approx(0.02 if kept else 0.0)
+    assert controller._pids[0].integral == pytest.approx(0.02 if saves_integral else 0.0)
 
 
 async def test_deactivation_sets_effort_to_zero(stand):

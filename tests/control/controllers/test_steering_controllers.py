@@ -49,7 +49,8 @@ def command(stand, *velocity: float, at: int = 0) -> None:
 
 def commanded(stand, *joints: str) -> list[float]:
     return [
-        next(each.value for name, each in stand.commands.items() if name.startswith(f"{joint}/")) for joint in joints
+        next(interface.value for name, interface in stand.commands.items() if name.startswith(f"{joint}/"))
+        for joint in joints
     ]
 
 

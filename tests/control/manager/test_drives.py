@@ -87,15 +87,15 @@ async def test_drive_is_deactivated_if_wheel_state_is_not_a_number(graph, log):
     await base.drive(1.0, 0.0, 2)
     assert base.manager.controllers["base"].controller.state is INACTIVE
     assert base.wheels() == [0.0, 0.0]
-    assert any("Either the left or right wheel position is invalid" in each.text for each in log)
+    assert any("Either the left or right wheel position is invalid" in record.text for record in log)
 
 
 async def test_manager_selects_controller_variant_by_parameters(graph):
     wheels = {f"{corner}_wheel_name": side for corner, side in CORNERS.items()}
     sizes = {"wheel_separation_x": 0.2, "wheel_separation_y": 0.2, "wheel_radius": 0.1, "open_loop": True}
-    made = manager(graph, WHEELS, {"base": {"type": MECANUM}}, base={**wheels, **sizes})
-    assert made.load("base")
-    assert made.configure("base")
+    controller_manager = manager(graph, WHEELS, {"base": {"type": MECANUM}}, base={**wheels, **sizes})
+    assert controller_manager.load("base")
+    assert controller_manager.configure("base")
     topics = dict(graph.get_topic_names_and_types())
     assert "/base/cmd_vel" in topics
     assert "/base/reference" not in topics

@@ -293,7 +293,7 @@ async def test_async_controllers_and_hardware_run_synchronously_with_notice(
     assert it.switch(["low"], [], STRICT)[0]
     it.cycle(1, 0.01)
     assert value(it, "hip/velocity") == 0.5
-    logged = [each for each in logged("INFO") if "is_async" in each]
+    logged = [line for line in logged("INFO") if "is_async" in line]
     assert (
         logged[0]
         == "hardware 'arm': is_async is not supported, so the hardware is read and written in the control loop"

@@ -46,10 +46,10 @@ class Joystick:
 @pytest.fixture
 def joystick(tmp_path, monkeypatch):
     monkeypatch.setattr("linkwright.control.nodes.teleop.joystick_device.FOLDER", tmp_path)
-    each = Joystick(tmp_path / "js0")
-    yield each
-    if each.file is not None:
-        os.close(each.file)
+    joystick = Joystick(tmp_path / "js0")
+    yield joystick
+    if joystick.file is not None:
+        os.close(joystick.file)
 
 
 @pytest.fixture
@@ -68,8 +68,8 @@ async def start(stage):
         return running[-1]
 
     yield node
-    for each in running:
-        each.close()
+    for joy_node in running:
+        joy_node.close()
 
 
 async def test_axes_and_buttons_match_ros(joystick, stage, joy_messages, start):
@@ -78,7 +78,7 @@ async def test_axes_and_buttons_match_ros(joystick, stage, joy_messages, start):
     node = start(deadzone=0.2, autorepeat_rate=0.0)
     await eventually(lambda: len(node._buttons) == 2)
     await stage.clock.advance(0.01)
-    assert [(list(each.axes), list(each.buttons)) for each in joy_messages] == [([0, 0], [0, 0])], (
+    assert [(list(message.axes), list(message.buttons)) for message in joy_messages] == [([0, 0], [0, 0])], (
         "one message of the start"
     )
     joystick.say((BUTTON, 1, 1))
@@ -120,7 +120,7 @@ async def test_sticky_buttons_toggle(joystick, stage, joy_messages, start):
         joystick.say((BUTTON, 0, value))
         if value:
             await eventually(lambda expected=(count + 1) // 2: len(joy_messages) == expected)
-    assert [list(each.buttons) for each in joy_messages] == [[1], [0]]
+    assert [list(message.buttons) for message in joy_messages] == [[1], [0]]
 
 
 async def test_missing_joystick_is_reported_once(joystick, stage, joy_messages, start, logged):
@@ -248,7 +248,7 @@ async def test_lost_joy_publisher_stops_robot(stage, start, logged):
     pilot.velocities.clear()
     pilot.node.destroy_node()
     await stage.clock.advance(1.0)
-    assert [each.linear.x for each in pilot.velocities] == [0.0]
+    assert [twist.linear.x for twist in pilot.velocities] == [0.0]
     assert logged("WARN") == ["no node publishes '/joy' any more, so the robot is stopped"]
 
 
@@ -259,4 +259,4 @@ async def test_closing_node_stops_robot(stage):
     pilot.velocities.clear()
     node.close()
     await stage.graph.settle()
-    assert [each.linear.x for each in pilot.velocities] == [0.0]
+    assert [twist.linear.x for twist in pilot.velocities] == [0.0]

@@ -76,9 +76,9 @@ def start(stage, terminal):
         return started[-1]
 
     yield driver
-    for each in started:
-        if not each.closed:
-            each.close()
+    for started_driver in started:
+        if not started_driver.closed:
+            started_driver.close()
 
 
 async def test_keys_match_teleop_twist_keyboard(start):

@@ -43,7 +43,7 @@ class Traffic:
         self.out.clear()
         publisher.publish(message)
         await self.stage.graph.settle()
-        return [getattr(each, "twist", each).linear.x for each in self.out]
+        return [getattr(message, "twist", message).linear.x for message in self.out]
 
     async def status_values(self):
         await self.stage.clock.advance(1.0)
@@ -150,7 +150,7 @@ async def test_two_publishers_on_one_input_topic_are_reported(traffic):
                 await traffic.stage.clock.advance(0.1)
 
     def logged():
-        return [each.text for each in traffic.stage.log if "several nodes drive the robot" in each.text]
+        return [record.text for record in traffic.stage.log if "several nodes drive the robot" in record.text]
 
     await drive(tablet, joystick)
     assert not logged()
@@ -170,9 +170,9 @@ async def test_lost_publisher_of_last_velocity_stops_robot(traffic):
     await traffic.stage.graph.settle()
     tablet.be_lost()
     await traffic.stage.graph.settle()
-    assert [each.linear.x for each in traffic.out] == [0.1, 0.3]
+    assert [twist.linear.x for twist in traffic.out] == [0.1, 0.3]
     joystick.be_lost()
     await traffic.stage.graph.settle()
-    assert [each.linear.x for each in traffic.out] == [0.1, 0.3, 0.0]
-    (logged,) = [each.text for each in traffic.stage.log if "was lost" in each.text]
+    assert [twist.linear.x for twist in traffic.out] == [0.1, 0.3, 0.0]
+    (logged,) = [record.text for record in traffic.stage.log if "was lost" in record.text]
     assert logged.endswith("a stop command is sent to '/cmd_vel_out'")
