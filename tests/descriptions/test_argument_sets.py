@@ -33,9 +33,9 @@ def sets(workspace: Path, file: str, text: str) -> list[ArgumentSet]:
     return list(argument_sets(workspace / "arm/urdf/arm.urdf.xacro"))
 
 
-def values(found: list[ArgumentSet]) -> list[dict[str, str]]:
+def values(argument_sets: list[ArgumentSet]) -> list[dict[str, str]]:
     """Return the values of the sets that are certain to occur."""
-    return [dict(each.values) for each in found if each.is_complete]
+    return [dict(argument_set.values) for argument_set in argument_sets if argument_set.is_complete]
 
 
 HEAD = """
@@ -96,8 +96,8 @@ def generate_launch_description():
         launch_arguments={{'prefix': 'outer_'}}.items(),
     )])
 """
-    found = values(sets(workspace, "user/launch/outer.launch.py", outer))
-    assert [each["prefix"] for each in found] == ["a_", "outer_"]
+    prefixes = values(sets(workspace, "user/launch/outer.launch.py", outer))
+    assert [arguments["prefix"] for arguments in prefixes] == ["a_", "outer_"]
 
 
 def test_parametrized_test_with_process_file_provides_values(workspace: Path) -> None:
@@ -159,9 +159,9 @@ def generate_launch_description():
     doc = xacro.parse(open(os.path.join(get_package_share_directory('arm'), 'urdf/arm.urdf.xacro')))
     xacro.process_doc(doc, mappings={'one': one})
 """
-    found = sets(workspace, "arm/launch/view.launch.py", text)
-    assert [dict(each.values) for each in found] == [{"one": "false"}, {"one": "true"}]
-    assert not any(each.is_complete for each in found)
+    argument_sets = sets(workspace, "arm/launch/view.launch.py", text)
+    assert [dict(argument_set.values) for argument_set in argument_sets] == [{"one": "false"}, {"one": "true"}]
+    assert not any(argument_set.is_complete for argument_set in argument_sets)
 
 
 def test_moveit_configs_builder_provides_values(workspace: Path) -> None:
@@ -239,7 +239,7 @@ def test_environment_variable_uses_written_default(
 def test_share_folder_inside_path_is_uncertain(workspace: Path) -> None:
     text = """<launch><let name="file" value="./$(find-pkg-share arm)/urdf/arm.urdf.xacro"/><node pkg="p" exec="e">
         <param name="d" value="$(command 'xacro $(var file) prefix:=x_')"/></node></launch>"""
-    assert [each.is_certain for each in sets(workspace, "arm/launch/view.launch.xml", text)] == [False]
+    assert [argument_set.is_certain for argument_set in sets(workspace, "arm/launch/view.launch.xml", text)] == [False]
 
 
 @pytest.mark.parametrize(
@@ -422,8 +422,10 @@ def setup(a0):
 {again}
     xacro.process_file(get_package_share_path('arm') / 'urdf/arm.urdf.xacro', mappings={{'prefix': 'a', 'name': a27}})
 """
-    found = sets(workspace, "arm/launch/again.launch.py", text)
-    assert [(dict(each.values), each.runtime_names) for each in found] == [({"prefix": "a"}, ("name",))]
+    argument_sets = sets(workspace, "arm/launch/again.launch.py", text)
+    assert [(dict(argument_set.values), argument_set.runtime_names) for argument_set in argument_sets] == [
+        ({"prefix": "a"}, ("name",))
+    ]
 
 
 @pytest.mark.parametrize(("function", "prefix"), [("describe", "a b"), ("xacro.process_file", '"a b"')])

@@ -103,7 +103,7 @@ def test_block_in_only_one_robot_is_one_difference():
     without = ROBOT.replace('<limit lower="-1" upper="1" effort="10" velocity="2"/>', "").replace(
         "revolute", "continuous"
     )
-    differences = {each[3]: each for each in found(ROBOT, without)}
+    differences = {difference[3]: difference for difference in found(ROBOT, without)}
     assert sorted(differences) == ["limit", "type"]
     assert differences["limit"][4:] == ("lower -1 rad, upper 1 rad, effort 10 N m, velocity 2 rad/s", None)
 
@@ -119,7 +119,7 @@ def test_inserted_visual_leaves_following_visuals_unchanged():
 
 def test_added_and_removed_links_and_joints_are_reported():
     new = ROBOT.replace('"hand"', '"gripper"').replace('"wrist" type="fixed"', '"flange" type="floating"')
-    assert [each[:3] for each in found(ROBOT, new)] == [
+    assert [difference[:3] for difference in found(ROBOT, new)] == [
         ("link", "gripper", "added"),
         ("link", "hand", "removed"),
         ("joint", "flange", "added"),
@@ -141,7 +141,7 @@ def test_renamed_links_and_joints_are_recognized():
 
 def test_changed_link_with_new_name_is_not_a_rename():
     new = ROBOT.replace('"arm"', '"boom"').replace("a.stl", "b.stl")
-    kinds = {(each[1], each[2]) for each in found(ROBOT, new) if each[0] == "link"}
+    kinds = {(difference[1], difference[2]) for difference in found(ROBOT, new) if difference[0] == "link"}
     assert kinds == {("boom", "added"), ("arm", "removed")}
 
 
@@ -295,7 +295,7 @@ def test_renamed_joint_between_the_same_links_is_recognized():
     new = ROBOT.replace('"wrist"', '"flange"').replace(
         '<parent link="arm"/>', '<origin xyz="1 0 0"/><parent link="arm"/>'
     )
-    assert [each[:4] for each in found(ROBOT, new)] == [
+    assert [difference[:4] for difference in found(ROBOT, new)] == [
         ("joint", "flange", "renamed", "name"),
         ("joint", "flange", "changed", "origin xyz"),
     ]

@@ -23,7 +23,7 @@ def real_path(path: str) -> str:
 
 
 def texts_of(unsaved: UnsavedTexts) -> dict[str, str]:
-    return {path: each.text for path, each in unsaved.texts.items()}
+    return {path: unsaved_text.text for path, unsaved_text in unsaved.texts.items()}
 
 
 async def test_newest_unsaved_text_of_two_editors_applies(tmp_path: Path) -> None:

@@ -363,7 +363,7 @@ def rounded(value: Any) -> Any:
     if isinstance(value, float):
         return round(value, 7) + 0.0
     if isinstance(value, dict):
-        return {key: rounded(each) for key, each in value.items()}
+        return {key: rounded(member) for key, member in value.items()}
     return tuple(map(rounded, value)) if isinstance(value, (tuple, list)) else value
 
 
@@ -432,4 +432,4 @@ def test_expansion_changes_only_edited_values(data: st.DataObject) -> None:
     assert after.robot is not None
     assert facts(after.robot) == facts(with_edit(before.robot, request))
     assert list(unedited(after.document.root)) == list(unedited(before.document.root))
-    assert [each for path, each in plan.old_texts.items() if each == plan.texts[path]] == []
+    assert [text for path, text in plan.old_texts.items() if text == plan.texts[path]] == []
