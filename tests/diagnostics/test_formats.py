@@ -73,8 +73,8 @@ def test_sarif_contains_required_fields(found):
     assert run["columnKind"] == "unicodeCodePoints"
     assert run["originalUriBaseIds"]["ROOT"]["uri"].endswith("/")
     first, second, third = run["results"]
-    assert [each["level"] for each in run["results"]] == ["error", "warning", "note"]
-    assert all(rules[each["ruleIndex"]] == each["ruleId"] for each in run["results"])
+    assert [result["level"] for result in run["results"]] == ["error", "warning", "note"]
+    assert all(rules[result["ruleIndex"]] == result["ruleId"] for result in run["results"])
     assert first["locations"][0]["physicalLocation"] == {
         "artifactLocation": {"uri": "my%20robots/r%2C1.urdf", "uriBaseId": "ROOT"},
         "region": {"startLine": 2, "startColumn": 1, "endLine": 2, "endColumn": 4},
@@ -102,7 +102,7 @@ def lang(request):
 @pytest.mark.usefixtures("lang")
 def test_json_contains_template_and_arguments():
     data = json.loads(format_diagnostics(_made_of_templates(), "json"))["diagnostics"]
-    assert [(each["template"], each["arguments"]) for each in data] == [
+    assert [(diagnostic["template"], diagnostic["arguments"]) for diagnostic in data] == [
         ("{kind} '{name}' is {share:.0%} off", {"kind": "link", "name": "a{b}", "share": 0.5}),
         ("{count} links of {robot}", {"count": 3, "robot": "r2"}),
         ("write ${x}", {}),
@@ -114,10 +114,10 @@ def test_sarif_results_reference_rule_message_strings():
     found = _made_of_templates()
     (run,) = json.loads(format_diagnostics(found, "sarif"))["runs"]
     rules = run["tool"]["driver"]["rules"]
-    for each, diagnostic in zip(run["results"], found, strict=True):
-        result = each["message"]
-        template = rules[each["ruleIndex"]]["messageStrings"][result["id"]]["text"]
-        assert template.format(*result.get("arguments", [])) == diagnostic.message
+    for result, diagnostic in zip(run["results"], found, strict=True):
+        message = result["message"]
+        template = rules[result["ruleIndex"]]["messageStrings"][message["id"]]["text"]
+        assert template.format(*message.get("arguments", [])) == diagnostic.message
     assert [len(rule["messageStrings"]) for rule in rules] == [2, 1]
 
 

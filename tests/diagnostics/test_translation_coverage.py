@@ -45,8 +45,8 @@ class Recording:
     def gettext(self, message: str) -> str:
         return self._heard(message, self._translations.gettext(message))
 
-    def ngettext(self, one: str, several: str, count: int) -> str:
-        return self._heard(several, self._translations.ngettext(one, several, count))
+    def ngettext(self, singular: str, plural: str, count: int) -> str:
+        return self._heard(plural, self._translations.ngettext(singular, plural, count))
 
     def pgettext(self, context: str, message: str) -> str:
         translation = self._translations.pgettext(context, message)
