@@ -63,7 +63,7 @@ def test_emacs_assigns_modes_to_xml_yaml_and_interface_files():
     ]
     for kind in ("xml", "yaml", "interface"):
         for pattern in PATTERNS[kind]:
-            assert any(each.search(example(pattern)) for each in expressions), pattern
+            assert any(expression.search(example(pattern)) for expression in expressions), pattern
 
 
 def test_helix_lists_files_of_its_own_languages():

@@ -117,6 +117,6 @@ def test_first_readme_commands_run_in_fresh_checkout(checkout: Path, newcomer: d
     hint = re.search(r"hint: run (.*)", output.stderr)
     assert hint is not None, output.stderr
     assert "[mesh]" in hint[1]
-    done = run(["bash", "-e", "-c", f"source .venv/bin/activate; {hint[1]}; {export}"], cwd=checkout, env=newcomer)
-    assert done.returncode == 0, done.stderr
+    result = run(["bash", "-e", "-c", f"source .venv/bin/activate; {hint[1]}; {export}"], cwd=checkout, env=newcomer)
+    assert result.returncode == 0, result.stderr
     assert (checkout / "robot.glb").is_file()

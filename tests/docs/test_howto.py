@@ -18,7 +18,7 @@ PUBLISH = 'linkwright topic pub -r 10 /cmd_vel geometry_msgs/msg/Twist "{linear:
 @pytest.mark.parametrize("page", sorted(DOCS.glob("howto-*.md")), ids=lambda page: page.stem)
 def test_both_languages_show_same_files(page: Path) -> None:
     english, chinese = (
-        [(each.title, each.text) for each in blocks(p) if each.title] for p in (page, DOCS / "zh" / page.name)
+        [(block.title, block.text) for block in blocks(p) if block.title] for p in (page, DOCS / "zh" / page.name)
     )
     assert english == chinese
 

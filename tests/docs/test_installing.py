@@ -48,7 +48,7 @@ def test_readmes_show_install_commands() -> None:
 
 
 def test_source_and_frontend_contain_no_install_commands() -> None:
-    assert [each for each in install_commands() if each[0].parts[0] in ("frontend", "robots", "src")] == []
+    assert [command for command in install_commands() if command[0].parts[0] in ("frontend", "robots", "src")] == []
 
 
 def test_install_commands_match_a_checkout(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:

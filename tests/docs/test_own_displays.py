@@ -39,11 +39,11 @@ def files(of: Path) -> dict[str, str]:
 @pytest.fixture(params=PAGES, ids=["en", "zh"])
 def street(request, tmp_path, monkeypatch):
     """The workspace of the page, with its package installed."""
-    made = files(request.param)
-    for name, text in made.items():
+    texts = files(request.param)
+    for name, text in texts.items():
         (tmp_path / name).parent.mkdir(parents=True, exist_ok=True)
         (tmp_path / name).write_text(text, encoding="utf-8")
-    project = read_toml(made["street_displays/pyproject.toml"])["project"]
+    project = read_toml(texts["street_displays/pyproject.toml"])["project"]
     facts = tmp_path / "street_displays" / "street_displays-1.0.dist-info"
     facts.mkdir()
     points = {**project["entry-points"]["linkwright.displays"], POINTS_CLASS: "object_points:ObjectPoints"}
@@ -62,17 +62,17 @@ def street(request, tmp_path, monkeypatch):
 
 
 def car(number: int, x: float, *, label: str = "car", speed: float = 3.0, path: int = 0) -> Any:
-    made = get_message("street_msgs/msg/TrackedObject")(id=number, label=label, speed=speed)
-    made.pose.position.x = x
-    made.size.x, made.size.y, made.size.z = 4.0, 2.0, 1.5
-    made.path = [get_message("geometry_msgs/msg/Point")(x=x + step) for step in range(path)]
-    return made
+    car = get_message("street_msgs/msg/TrackedObject")(id=number, label=label, speed=speed)
+    car.pose.position.x = x
+    car.size.x, car.size.y, car.size.z = 4.0, 2.0, 1.5
+    car.path = [get_message("geometry_msgs/msg/Point")(x=x + step) for step in range(path)]
+    return car
 
 
 def seen(*objects: Any) -> Any:
-    made = get_message("street_msgs/msg/TrackedObjects")(objects=list(objects))
-    made.header.frame_id = "street"
-    return made
+    cars = get_message("street_msgs/msg/TrackedObjects")(objects=list(objects))
+    cars.header.frame_id = "street"
+    return cars
 
 
 def test_both_languages_have_same_example():
@@ -102,7 +102,7 @@ async def test_example_display_draws_and_removes_tracked_objects(street):
         w.move({("base", "street"): (0, 0, 1, 0, 0, 0, 1)}, static=True)
         await w.settle()
         drawn = shown_markers(display)
-        assert {name: each["shape"] for name, each in drawn.items()} == {
+        assert {name: marker["shape"] for name, marker in drawn.items()} == {
             "boxes/1": "cube",
             "names/1": "text",
             "paths/1": "line_strip",

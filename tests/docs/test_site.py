@@ -75,8 +75,8 @@ def build_small(folder: Path, **changed: str) -> tuple[Path, subprocess.Complete
 @pytest.fixture(scope="module")
 def site(tmp_path_factory: pytest.TempPathFactory) -> Path:
     """A site of the pages above."""
-    folder, done = build_small(tmp_path_factory.mktemp("small"))
-    assert done.returncode == 0, done.stderr
+    folder, result = build_small(tmp_path_factory.mktemp("small"))
+    assert result.returncode == 0, result.stderr
     return folder
 
 
@@ -161,12 +161,12 @@ def test_search_index_is_separate_per_language(site: Path) -> None:
     ids=["anchor", "page", "page in Chinese", "page not listed"],
 )
 def test_broken_links_and_unlisted_pages_fail_build(tmp_path: Path, changed: dict[str, str], reason: str) -> None:
-    _, done = build_small(tmp_path, **changed)
-    assert done.returncode == 1
-    assert reason in done.stderr
+    _, result = build_small(tmp_path, **changed)
+    assert result.returncode == 1
+    assert reason in result.stderr
 
 
 def test_full_site_builds(tmp_path: Path) -> None:
-    done = build(REPOSITORY / "mkdocs.yml", tmp_path / "site")
-    assert done.returncode == 0, done.stderr
+    result = build(REPOSITORY / "mkdocs.yml", tmp_path / "site")
+    assert result.returncode == 0, result.stderr
     assert len(list((tmp_path / "site").rglob("*.html"))) > 100

@@ -86,7 +86,7 @@ async def test_custom_command_file_moves_mbot(tmp_path: Path) -> None:
 
         await playground.advance(1.0)
         assert await tell("please dance", 12.0) == "look at me"
-        assert sum(abs(each.twist.twist.angular.z) for each in turned) > 0
+        assert sum(abs(odometry.twist.twist.angular.z) for odometry in turned) > 0
         x, y, _, _, _, z, w = playground.robot_pose()
         assert math.hypot(x, y) < 0.1
         assert abs(2.0 * math.atan2(z, w)) < 0.1, "two whole turns"
