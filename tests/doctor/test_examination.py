@@ -71,12 +71,12 @@ WELL = Observation(
 
 
 def codes(seen: Observation) -> list[str]:
-    return [each.code for each in examine(seen)]
+    return [diagnostic.code for diagnostic in examine(seen)]
 
 
 def only(seen: Observation, code: str):
     found = examine(seen)
-    assert [each.code for each in found] == [code], found
+    assert [diagnostic.code for diagnostic in found] == [code], found
     return found[0]
 
 
@@ -140,7 +140,7 @@ def test_silent_joint_state_publisher_is_reported():
 
 def test_joint_missing_from_joint_states_suggests_misspelled_name():
     seen = replace(without(WELL, "wheel", "copy"), joints=(ObservedJoint("spinn", (JSP,)),))
-    found = {each.code: each for each in examine(seen)}
+    found = {diagnostic.code: diagnostic for diagnostic in examine(seen)}
     assert set(found) == {"DOC403", "DOC405"}
     missing = found["DOC403"]
     assert (
@@ -183,7 +183,11 @@ def test_transform_from_two_publishers_is_reported():
 
 def test_frame_with_two_parents_is_reported():
     other = ObservedTransform("odom", "base", ("/a",)), ObservedTransform("map", "base", ("/b",))
-    found = [each for each in examine(replace(WELL, transforms=(*WELL.transforms, *other))) if each.code == "DOC303"]
+    found = [
+        diagnostic
+        for diagnostic in examine(replace(WELL, transforms=(*WELL.transforms, *other)))
+        if diagnostic.code == "DOC303"
+    ]
     assert found[0].message == "frame 'base' has 2 parents, 'map', 'odom', and jumps between them"
 
 
@@ -248,7 +252,7 @@ def test_root_of_single_link_robot_is_accepted_as_fixed_frame():
 def test_missing_fixed_frame_hint_names_all_tree_roots():
     apart = (*WELL.transforms, ObservedTransform("camera", "lens", ("/camera",)))
     found = examine(replace(WELL, transforms=apart, fixed_frames=(FixedFrame("odom", "x"),)))
-    (hint,) = [each.hint for each in found if each.code == "DOC309"]
+    (hint,) = [diagnostic.hint for diagnostic in found if diagnostic.code == "DOC309"]
     assert hint == "choose another Fixed Frame; the roots of the trees of frames are 'base', 'camera'"
 
 
@@ -259,7 +263,7 @@ def test_frame_list_has_chinese_quotes_in_chinese():
     )
     robot = ObservedDescription("/robot_description", RSP, f'<robot name="r"><link name="base"/>{joints}</robot>')
     seen = replace(WELL, descriptions=(robot,), joints=(), endpoints=(publisher(RSP, "/tf", TF),))
-    (found,) = [each for each in examine(seen) if each.code == "DOC401"]
+    (found,) = [diagnostic for diagnostic in examine(seen) if diagnostic.code == "DOC401"]
     names = "“l0”、“l1”、“l2”、“l3”、“l4”、“l5”和另外 2 个"
     assert translate(found, "zh").message == f"没有节点发布关节状态，所以 8 个坐标系（{names}）没有变换"
 
