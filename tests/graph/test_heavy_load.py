@@ -104,12 +104,12 @@ async def test_thread_loses_no_reliable_messages_to_event_loop():
     """A hundred thousand messages into a queue that holds them."""
     graph = Graph(on_log=print)
     node = graph.create_node("node")
-    numbers, done = [], asyncio.Event()
+    numbers, all_received = [], asyncio.Event()
 
     def hear(message):
         numbers.append(int(message.data))
         if len(numbers) == 100_000:
-            done.set()
+            all_received.set()
 
     node.create_subscription(String, "topic", hear, 100_000)
     publisher = node.create_publisher(String, "topic", 10)
@@ -120,7 +120,7 @@ async def test_thread_loses_no_reliable_messages_to_event_loop():
 
     thread = threading.Thread(target=talk)
     thread.start()
-    await asyncio.wait_for(done.wait(), 60.0)
+    await asyncio.wait_for(all_received.wait(), 60.0)
     thread.join()
     assert numbers == list(range(100_000))
     await graph.close()

@@ -268,8 +268,8 @@ async def test_goal_status_reaches_late_subscription(stage):
     assert status.status == GoalStatus.SUCCEEDED
 
 
-@pytest.mark.parametrize(("timeout", "kept"), [(10, [2, 2, 1, 0]), (-1, [2, 2, 2, 2])])
-async def test_results_expire_after_result_timeout(stage, clock, timeout, kept):
+@pytest.mark.parametrize(("timeout", "counts_by_time"), [(10, [2, 2, 1, 0]), (-1, [2, 2, 2, 2])])
+async def test_results_expire_after_result_timeout(stage, clock, timeout, counts_by_time):
     stage.serve(result_timeout=timeout)
     await (await stage.send()).get_result_async()
     await clock.advance(5.0)
@@ -278,7 +278,7 @@ async def test_results_expire_after_result_timeout(stage, clock, timeout, kept):
     for seconds in (0.0, 4.9, 0.2, 5.0):
         await clock.advance(seconds)
         counts.append(len(stage.server._goal_handles))
-    assert counts == kept
+    assert counts == counts_by_time
 
 
 async def test_invalid_callbacks_and_goal_types_are_rejected(stage):

@@ -26,7 +26,7 @@ def disputes(*streams: Iterable[Sent], dispute: DisputeDetector | None = None) -
     """When a dispute is told of, and who disputes."""
     dispute = dispute or DisputeDetector()
     heard = []
-    for now, who, speed in sorted(each for stream in streams for each in stream):
+    for now, who, speed in sorted(command for stream in streams for command in stream):
         if dispute.record_command(who, speed, now):
             heard.append((now, set(dispute.parties)))
     return heard
@@ -41,7 +41,7 @@ def disputes(*streams: Iterable[Sent], dispute: DisputeDetector | None = None) -
         (stream("keys", 0, 60, 10, 0.0), stream("planner", 0.05, 60, 10, 0.0)),
         (stream("planner", 0, 60, 20, 0.5), [(20.01, "behaviors", 0.0), (40.01, "behaviors", 0.0)]),
         (stream("smoother", 0, 11.3, 20, 0.3), stream("behaviors", 10, 30, 10, -0.05)),
-        (stream("planner", 0, 60, 20, 0.5), [(10.0 * each, "keys", 0.1) for each in range(1, 6)]),
+        (stream("planner", 0, 60, 20, 0.5), [(10.0 * tap, "keys", 0.1) for tap in range(1, 6)]),
         (
             stream("planner", 0, 5, 20, 0.5),
             stream("behaviors", 5, 8, 10, -0.05),
@@ -118,7 +118,7 @@ def warned(graph: Known, message_type: type = Twist) -> list[str]:
     now = 0
     watch = DriverWatch(Logger("drive", lambda record: log.append(record.text), lambda: 0), graph, lambda: now)
     for tick in range(50):
-        for number, each in enumerate(graph.endpoints()):
+        for number, endpoint in enumerate(graph.endpoints()):
             now = tick * 100_000_000 + number
             message = message_type()
             if message_type is Stamped:
@@ -126,7 +126,7 @@ def warned(graph: Known, message_type: type = Twist) -> list[str]:
                 message.twist.linear.x = float(number)
             else:
                 message.linear.x = float(number)
-            watch.record_command(message, MessageInfo(0, 0, each.gid))
+            watch.record_command(message, MessageInfo(0, 0, endpoint.gid))
     return log
 
 

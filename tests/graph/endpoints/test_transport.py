@@ -109,7 +109,7 @@ async def test_internal_node_is_not_mirrored_but_heard_in_process(graph, transpo
     assert transport.open == ["listener", (EndpointKind.SUBSCRIPTION, "/topic")]
     publisher.publish(String(data="here"))
     await graph.settle()
-    assert [each.data for each in heard] == ["here"]
+    assert [message.data for message in heard] == ["here"]
     publisher.destroy()
     node.destroy_node()
     assert transport.open == ["listener", (EndpointKind.SUBSCRIPTION, "/topic")]

@@ -199,12 +199,15 @@ async def test_lifecycle_services_change_state(graph, managed, log):
         (15, "errorprocessing"),
     ]
     available = (await ask("get_available_transitions", "GetAvailableTransitions")).available_transitions
-    assert [(each.transition.id, each.transition.label, each.goal_state.label) for each in available] == [
+    assert [
+        (description.transition.id, description.transition.label, description.goal_state.label)
+        for description in available
+    ] == [
         (4, "deactivate", "deactivating"),
         (7, "shutdown", "shuttingdown"),
     ]
     whole = (await ask("get_transition_graph", "GetAvailableTransitions")).available_transitions
-    assert [each.transition.id for each in whole] == [
+    assert [description.transition.id for description in whole] == [
         *(1, 10, 11, 12, 2, 20, 21, 22, 3, 30, 31, 32, 4, 40, 41, 42, 5, 6, 7, 50, 51, 52, 60, 61, 62),
     ]
     assert [(event.start_state.label, event.goal_state.label) for event in events] == [

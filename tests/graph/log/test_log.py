@@ -175,7 +175,7 @@ async def test_node_logs_are_published_on_rosout(graph, log, clock):
     )
     node.get_logger().error("after")
     await graph.settle()
-    assert [(each.name, each.msg, each.level) for each in heard] == [
+    assert [(message.name, message.msg, message.level) for message in heard] == [
         ("robot.talker", "before", 30),
         ("robot.talker.part", "child", 20),
         ("robot.talker", "after", 40),

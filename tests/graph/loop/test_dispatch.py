@@ -223,13 +223,13 @@ async def test_coroutine_exceptions_are_logged(graph, log):
 
 async def test_messages_from_other_threads_arrive_on_event_loop(graph):
     node = graph.create_node("node")
-    received, done = [], asyncio.Event()
+    received, all_received = [], asyncio.Event()
     here = threading.get_ident()
 
     def heard(message):
         received.append((message.data, threading.get_ident() == here))
         if len(received) == 4000:
-            done.set()
+            all_received.set()
 
     node.create_subscription(String, "topic", heard, QoSProfile(history=HistoryPolicy.KEEP_ALL))
     publisher = node.create_publisher(String, "topic", 10)
@@ -241,7 +241,7 @@ async def test_messages_from_other_threads_arrive_on_event_loop(graph):
     threads = [threading.Thread(target=talk, args=(name,)) for name in "abcd"]
     for thread in threads:
         thread.start()
-    await asyncio.wait_for(done.wait(), 20.0)
+    await asyncio.wait_for(all_received.wait(), 20.0)
     for thread in threads:
         thread.join()
     assert all(on_loop for _, on_loop in received)
@@ -252,10 +252,10 @@ async def test_messages_from_other_threads_arrive_on_event_loop(graph):
 async def test_timers_can_be_created_in_other_threads():
     graph = Graph(on_log=print)
     node = graph.create_node("node")
-    done = asyncio.Event()
+    called = asyncio.Event()
     loop = asyncio.get_running_loop()
-    timer = await loop.run_in_executor(None, lambda: node.create_timer(0.001, done.set))
-    await asyncio.wait_for(done.wait(), 5.0)
+    timer = await loop.run_in_executor(None, lambda: node.create_timer(0.001, called.set))
+    await asyncio.wait_for(called.wait(), 5.0)
     await loop.run_in_executor(None, timer.cancel)
     assert timer.is_canceled()
     await graph.close()
@@ -328,12 +328,12 @@ def test_blocking_subscriber_does_not_delay_others():
         blocked.set()
         gate.wait(60.0)
 
-    done = threading.Event()
+    all_received = threading.Event()
 
     def heard(message):
         received.append(message)
         if len(received) == 100:
-            done.set()
+            all_received.set()
 
     slow.create_subscription(String, "topic", block, 10)
     quick.create_subscription(String, "topic", heard, 1000)
@@ -348,7 +348,7 @@ def test_blocking_subscriber_does_not_delay_others():
         assert blocked.wait(60.0)
         for _ in range(99):
             publisher.publish(String())
-        assert done.wait(60.0)
+        assert all_received.wait(60.0)
     finally:
         gate.set()
         executor.shutdown()
