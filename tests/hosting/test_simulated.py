@@ -45,7 +45,9 @@ async def test_headless_robot_publishes_odometry_joint_states_and_tf():
     listener = view.host.graph.create_node("listener")
     heard = {name: Recording(view.host.graph, listener, name) for name in ("/odom", "/joint_states", "/tf", "/clock")}
     assert await view.run(None), err.getvalue()
-    assert all(len(recording) > 0 for recording in heard.values()), {name: len(each) for name, each in heard.items()}
+    assert all(len(recording) > 0 for recording in heard.values()), {
+        name: len(recording) for name, recording in heard.items()
+    }
     assert heard["/joint_states"].last.header.stamp.sec >= 1
 
 

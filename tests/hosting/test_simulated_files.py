@@ -55,8 +55,8 @@ class Shown:
     @property
     def simulator(self) -> Simulator:
         """The node of the simulation."""
-        running = [each for _, each in self.view.host._running.values()]
-        return next(each for each in running if isinstance(each, Simulator))
+        running = [node for _, node in self.view.host._running.values()]
+        return next(node for node in running if isinstance(node, Simulator))
 
     @property
     def server(self) -> SimulationServer:

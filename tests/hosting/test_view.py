@@ -168,10 +168,10 @@ def test_missing_model_is_one_error(tmp_path: Path, capsys: pytest.CaptureFixtur
 
 def test_used_port_is_reported(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     (tmp_path / "m.urdf").write_text(GOOD)
-    with socket.socket() as taken:
-        taken.bind(("127.0.0.1", 0))
-        taken.listen()
-        port = taken.getsockname()[1]
+    with socket.socket() as server:
+        server.bind(("127.0.0.1", 0))
+        server.listen()
+        port = server.getsockname()[1]
         assert run_view(tmp_path / "m.urdf", {}, HostOptions(port=port, open_browser=False)) == 1
     err = capsys.readouterr().err
     assert f"{port}" in err
