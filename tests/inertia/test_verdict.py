@@ -68,7 +68,7 @@ def test_worst_grade_is_reported_and_sorts_first(tmp_path):
     worse = verdict_on(tmp_path, inertial(moment=16))
     bad = verdict_on(tmp_path, inertial(moment=1.6))
     fine = verdict_on(tmp_path, inertial())
-    assert sorted([fine, bad, worse, verdict], key=lambda each: each.sort_key) == [verdict, worse, bad, fine]
+    assert sorted([fine, bad, worse, verdict], key=lambda verdict: verdict.sort_key) == [verdict, worse, bad, fine]
 
 
 def test_tiny_mass_in_large_shape_has_zero_density(tmp_path):
