@@ -46,7 +46,7 @@ def test_named_wheels_drive_and_other_wheels_roll_freely():
     found = inferred(robot(*FOUR), wheels=["c_joint", "d"])
     assert found.drive is not None
     assert found.drive.kind == "differential"
-    assert [each.link for each in (*found.drive.left, *found.drive.right)] == ["c", "d"]
+    assert [wheel.link for wheel in (*found.drive.left, *found.drive.right)] == ["c", "d"]
     assert found.held_joints == ()
 
 

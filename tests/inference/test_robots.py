@@ -39,7 +39,7 @@ def shown(found: Inference) -> str:
         lines = [f"{drive.kind} {drive.separation:.3g} {2 * drive.radius:.3g}"]
     lines[0] += f" ground {round(found.ground, 4) + 0.0:g} base {found.base_frame}"
     if drive is not None and drive.left:
-        left, right = (" ".join(each.joint for each in side) for side in (drive.left, drive.right))
+        left, right = (" ".join(wheel.joint for wheel in side) for side in (drive.left, drive.right))
         lines.append(f"left {left}; right {right}")
     lines += [f"casters {' '.join(found.casters)}"] if found.casters else []
     lines += [f"held {' '.join(found.held_joints)}"] if found.held_joints else []
@@ -72,4 +72,4 @@ def test_completed_robot_needs_no_inference(robot):
 def test_inferred_elements_have_source_locations(robot):
     document, found = read_and_inferred(robot)
     assert all(diagnostic.span is not None and diagnostic.source is not None for diagnostic in found.diagnostics)
-    assert all(each.source is not None for each in complete_description(document, found).root.walk())
+    assert all(element.source is not None for element in complete_description(document, found).root.walk())

@@ -39,10 +39,10 @@ def test_written_file_describes_completed_robot(write, tmp_path, robot):
     assert dict(again.links) == dict(expected.links)
     assert dict(again.joints) == dict(expected.joints)
     assert [extension.tag for extension in again.extensions] == [extension.tag for extension in expected.extensions]
-    kept = iter(text.splitlines())
+    written_lines = iter(text.splitlines())
     for line in robot.splitlines():
         if "/>" not in line and "axis" not in line:
-            assert line in kept, "lines stay, in their order"
+            assert line in written_lines, "lines stay, in their order"
 
 
 def test_new_elements_have_indentation_and_line_endings_of_file(write):
@@ -72,7 +72,7 @@ def test_link_of_macro_is_refused_and_other_links_are_written(write):
     )
     assert written.count == 2
     assert text.count("<collision>") == 1
-    assert [each.code for each in written.refused] == ["DRIVE301", "DRIVE301"]
+    assert [diagnostic.code for diagnostic in written.refused] == ["DRIVE301", "DRIVE301"]
     assert "the macro 'part' generates it" in written.refused[0].message
     assert written.refused[0].span is not None
 
@@ -92,7 +92,9 @@ def test_drive_with_joint_names_from_expressions_is_refused(write):
         "r.urdf.xacro",
     )
     assert "<gazebo>" not in text
-    assert any("the referenced name 'p_l' comes from an expression" in each.message for each in written.refused)
+    assert any(
+        "the referenced name 'p_l' comes from an expression" in diagnostic.message for diagnostic in written.refused
+    )
     assert text.count("<inertial>") == 3
 
 
