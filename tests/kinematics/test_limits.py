@@ -15,7 +15,7 @@ WANTED = some.lists(some.floats(-5.0, 5.0), min_size=1, max_size=60)
 
 
 def limited_speeds(limiter: SpeedLimiter, wanted: list[float]) -> list[float]:
-    return [limiter.approach(each, STEP) for each in wanted]
+    return [limiter.approach(speed, STEP) for speed in wanted]
 
 
 @given(WANTED)
