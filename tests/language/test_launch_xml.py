@@ -34,7 +34,7 @@ VALUES = {"true or false": "true", "number": "1.0", "integer": "1", "level of a 
 def written(rule: ElementRule) -> str:
     """Return an element with the attributes that it needs."""
     needed = [attribute for attribute in rule.attributes if attribute.required]
-    attributes = "".join(f' {each.name}="{VALUES.get(each.type.name, "a")}"' for each in needed)
+    attributes = "".join(f' {attribute.name}="{VALUES.get(attribute.type.name, "a")}"' for attribute in needed)
     return f"<{rule.tag}{attributes}/>"
 
 
