@@ -23,9 +23,11 @@ Write = Callable[[str, str], Path]
 
 @pytest.fixture
 def context() -> LaunchContext:
-    made = LaunchContext()
-    made.launch_configurations.update(number="3", truth="true", word="on", text="a: b", model="<robot> a: b\n</robot>")
-    return made
+    context = LaunchContext()
+    context.launch_configurations.update(
+        number="3", truth="true", word="on", text="a: b", model="<robot> a: b\n</robot>"
+    )
+    return context
 
 
 def values(context: LaunchContext, *parameters: Any, node: str = "/talker") -> dict[str, Any]:
@@ -219,11 +221,11 @@ listener:
 
     def test_file_with_substitutions_is_written_and_cleaned_up(self, context: LaunchContext, write: Write) -> None:
         file = ParameterFile(write("p.yaml", "/**: {ros__parameters: {a: $(var number)}}"), allow_substs=True)
-        made = file.evaluate(context)
-        assert file.param_file == made
-        assert made.read_text() == "/**: {ros__parameters: {a: 3}}"
+        path = file.evaluate(context)
+        assert file.param_file == path
+        assert path.read_text() == "/**: {ros__parameters: {a: 3}}"
         file.cleanup()
-        assert not made.exists()
+        assert not path.exists()
 
     def test_missing_parameter_file_raises_file_not_found(self, context: LaunchContext, tmp_path: Path) -> None:
         with pytest.raises(FileNotFoundError) as caught:
