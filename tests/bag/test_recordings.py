@@ -368,9 +368,9 @@ def test_qos_profiles_survive_recording() -> None:
         deadline=Duration(seconds=1.5),
         lifespan=Duration(nanoseconds=7),
     )
-    again = from_library(to_library(qos))
+    round_trip = from_library(to_library(qos))
     for policy in ("history", "reliability", "durability", "deadline", "lifespan", "liveliness"):
-        assert getattr(again, policy) == getattr(qos, policy)
+        assert getattr(round_trip, policy) == getattr(qos, policy)
 
 
 def test_recording_qos_requests_no_more_than_publishers_offer() -> None:

@@ -207,7 +207,7 @@ def test_service_responses_reach_the_client_that_sent_the_request(networks, serv
         return all(len(answer) == CALLS for answer in answers)
 
     spin_all(all_answered, there, *asking)
-    assert answers == [[1000 * which + number for number in range(CALLS)] for which in range(3)]
+    assert answers == [[1000 * index + number for number in range(CALLS)] for index in range(3)]
     there.close()
     spin_all(lambda: not any(client.service_is_ready() for client in clients), *asking)
 
@@ -417,10 +417,10 @@ def test_services_of_unknown_type_are_called_with_raw_bytes(networks, server, cl
     networks.bridge()
     there, here = networks.make(server)("there"), networks.make(client)("here")
     type_name, name, qos = "strange_msgs/srv/Odd", "/odd", QoSProfile(10)
-    asked = []
+    requests = []
 
     def answer(request, reply):
-        asked.append(request)
+        requests.append(request)
         reply(b"\0\1\0\0" + request[4:] * 2)
 
     service = Service(there.node.handle, type_name, name, qos, answer, replying=True, raw=True)
@@ -434,7 +434,7 @@ def test_services_of_unknown_type_are_called_with_raw_bytes(networks, server, cl
         future = asking.call_async(b"\0\1\0\0odd%d" % number)
         spin_all(future.done, here, there)
         answers.append(future.result())
-    assert asked == [b"\0\1\0\0odd%d" % number for number in range(5)]
+    assert requests == [b"\0\1\0\0odd%d" % number for number in range(5)]
     assert answers == [b"\0\1\0\0odd%dodd%d" % (number, number) for number in range(5)]
 
 

@@ -52,10 +52,10 @@ def files(tmp_path: Path) -> tuple[Path, Path]:
     return old, new
 
 
-def looks(page: Page, which: int) -> dict[str, tuple[str, float]]:
+def looks(page: Page, index: int) -> dict[str, tuple[str, float]]:
     """Color and opacity of each link of the first or second robot."""
     robots = [display["drawn"] for display in state(page, "displays") if display["class"].endswith("RobotModel")]
-    shown = {name: text["visuals"] for name, text in robots[which]["links"].items()}
+    shown = {name: text["visuals"] for name, text in robots[index]["links"].items()}
     return {
         name: (shapes[0]["materials"][0]["color"], round(shapes[0]["materials"][0]["opacity"], 2))
         for name, shapes in shown.items()
@@ -63,9 +63,9 @@ def looks(page: Page, which: int) -> dict[str, tuple[str, float]]:
     }
 
 
-def bounds(page: Page, which: int, link: str) -> Any:
+def bounds(page: Page, index: int, link: str) -> Any:
     robots = [display["drawn"] for display in state(page, "displays") if display["class"].endswith("RobotModel")]
-    box = robots[which]["links"][link]["visuals"][0]["bounds"]
+    box = robots[index]["links"][link]["visuals"][0]["bounds"]
     return [(low + high) / 2 for low, high in zip(box["min"], box["max"], strict=True)]
 
 
@@ -114,21 +114,23 @@ def test_identical_old_robot_is_hidden(start, open_page, files):
     old.write_text(NEW, encoding="utf-8")
     page = open_page(start("view", str(old), str(new)))
     page.get_by_text("are identical").wait_for()
-    both = pixels(page)
-    assert sum(g > 60 and g > 2 * max(r, b) for r, g, b in both) > 100, "the robot is seen"
+    both_robots = pixels(page)
+    assert sum(g > 60 and g > 2 * max(r, b) for r, g, b in both_robots) > 100, "the robot is seen"
     show(page, "Show the old robot", on=False)
-    alone = pixels(page)
-    assert [(pixel, pixel_alone) for pixel, pixel_alone in zip(both, alone, strict=True) if pixel != pixel_alone] == []
+    new_only = pixels(page)
+    assert [
+        (pixel, pixel_alone) for pixel, pixel_alone in zip(both_robots, new_only, strict=True) if pixel != pixel_alone
+    ] == []
 
 
 def test_robots_can_be_shown_alone_and_old_opacity_is_adjustable(start, open_page, files):
     page = open_page(start("view", *map(str, files)))
     page.get_by_text("5 differences").wait_for()
-    both = pixels(page)
+    both_robots = pixels(page)
     show(page, "Show the new robot", on=False)
     old_only = pixels(page)
     assert sum(g > 60 and g > 2 * max(r, b) for r, g, b in old_only) == 0
-    assert old_only != both
+    assert old_only != both_robots
     page.get_by_label("Opacity of the old robot").fill("1")
     becomes(lambda: {alpha for _, alpha in looks(page, 1).values()}, {1})
     opaque = pixels(page)

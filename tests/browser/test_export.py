@@ -213,8 +213,8 @@ def test_exported_glb_shows_the_same_robot(live, open_page, tmp_path):
     path = saved(page, "Export glb…", tmp_path)
     before = drawn(page)
     viewer = live(ROBOT)
-    again = f'<robot name="again"><link name="base">{mesh(path, "")}</link></robot>'
-    viewer.publish("/robot_description", String(data=again), DESCRIPTION_QOS)
+    robot = f'<robot name="again"><link name="base">{mesh(path, "")}</link></robot>'
+    viewer.publish("/robot_description", String(data=robot), DESCRIPTION_QOS)
     (drawing,) = drawn(open_page(viewer))["base"]
     bounds = [shape["bounds"] for shapes in before.values() for shape in shapes]
     for corner, choose in (("min", min), ("max", max)):

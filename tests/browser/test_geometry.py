@@ -91,8 +91,8 @@ def drawn(page) -> dict[str, dict]:
     return {display["name"]: display["drawn"] for display in state(page, "displays")}
 
 
-def size(told: dict) -> list[float]:
-    return [most - least for least, most in zip(told["bounds"]["min"], told["bounds"]["max"], strict=True)]
+def size(drawing: dict) -> list[float]:
+    return [high - low for low, high in zip(drawing["bounds"]["min"], drawing["bounds"]["max"], strict=True)]
 
 
 def test_displays_draw_their_messages_at_the_right_pose(live, open_page):

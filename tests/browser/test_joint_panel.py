@@ -49,7 +49,7 @@ def test_long_joint_names_keep_their_ends(start, open_page, tmp_path):
     names.nth(1).wait_for()
     for number, shown in enumerate(names.all(), start=1):
         assert shown.get_attribute("title") == shown.text_content() == name.format(number)
-        beginning, end = (shown.locator("span").nth(which) for which in (0, 1))
+        beginning, end = (shown.locator("span").nth(index) for index in (0, 1))
         assert end.text_content() == f"finger_{number}_joint"
         assert beginning.evaluate("(element) => element.scrollWidth > element.clientWidth")
         assert end.evaluate("(element) => element.scrollWidth <= element.clientWidth + 1")

@@ -79,10 +79,10 @@ def test_grid_fits_single_mesh_model_unless_user_changed_it(start, open_page, tm
     becomes(cell.input_value, "100")
     cell.fill("20")
     page.keyboard.press("Enter")
-    again = open_page(program)
-    again.locator('[data-key="display-1"] .twist').click()
-    until(again, "lw.settled")
-    assert again.locator('[data-key="display-1/Cell Size"] input').input_value() == "20"
+    second_page = open_page(program)
+    second_page.locator('[data-key="display-1"] .twist').click()
+    until(second_page, "lw.settled")
+    assert second_page.locator('[data-key="display-1/Cell Size"] input').input_value() == "20"
 
 
 @pytest.mark.parametrize("package", TUTORIAL_PACKAGES, ids=lambda package: package.parent.name)

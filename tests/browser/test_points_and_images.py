@@ -239,7 +239,7 @@ def test_image_is_composited_without_repainting_page(live, open_page):
     viewer.publish("/image", image("rgb8", 40, 20, bytes(2400)))
     until(page, "lw.displays[0]?.drawn?.width === 40")
     own = ("CANVAS height 20 width 40", "CANVAS data-engine", "DIV class orientation")
-    becomes(lambda: [any(layer.startswith(what) for layer in layers(page)) for what in own], [True, True, True])
+    becomes(lambda: [any(layer.startswith(prefix) for layer in layers(page)) for prefix in own], [True, True, True])
 
 
 def test_compressed_image_is_decoded_by_browser(live, open_page):

@@ -77,10 +77,10 @@ def test_simulation_bar_and_mouse_control_models(live, open_page, monkeypatch, t
     listed = threading.Event()
     monkeypatch.setattr(entities, "model_choices", lambda packages: (listed.wait(SECONDS), ModelChoices([]))[1])
     viewer = described(live)
-    asked: list[tuple[str, object]] = []
+    requests_made: list[tuple[str, object]] = []
 
     def answer(name: str, request, response):
-        asked.append((name, request))
+        requests_made.append((name, request))
         if hasattr(response, "success"):
             response.success = True
         return response
@@ -92,7 +92,7 @@ def test_simulation_bar_and_mouse_control_models(live, open_page, monkeypatch, t
             )
 
     def requests(name: str) -> list:
-        return [request for name_called, request in asked if name_called == name]
+        return [request for name_called, request in requests_made if name_called == name]
 
     page = open_page(viewer)
     assert page.locator(".simulation-bar").is_hidden()

@@ -52,7 +52,7 @@ def package(tmp_path, monkeypatch) -> Path:
 def git(folder: Path, *words: str) -> None:
     environment = {name: value for name, value in os.environ.items() if not name.startswith("GIT_")}
     identity = {
-        f"GIT_{who}_{what}": "test@example.org" for who in ("AUTHOR", "COMMITTER") for what in ("NAME", "EMAIL")
+        f"GIT_{role}_{field}": "test@example.org" for role in ("AUTHOR", "COMMITTER") for field in ("NAME", "EMAIL")
     }
     nobody = {"GIT_CONFIG_GLOBAL": os.devnull, "GIT_CONFIG_SYSTEM": os.devnull}
     subprocess.run(

@@ -87,14 +87,14 @@ def test_unreadable_rviz_file_is_reported_before_start(
 
 @pytest.mark.parametrize("file", ["r.urdf", "drive"])
 def test_displays_of_rviz_file_are_used(folder: Path, file: str, monkeypatch: pytest.MonkeyPatch) -> None:
-    asked: list[HostOptions] = []
+    host_options: list[HostOptions] = []
 
     def show(path: object, *arguments: object, **_: object) -> int:
-        asked.extend(argument for argument in arguments if isinstance(argument, HostOptions))
+        host_options.extend(argument for argument in arguments if isinstance(argument, HostOptions))
         return 0
 
     monkeypatch.setattr(bag_view, "run_bag_view", show)
     monkeypatch.setattr(view, "run_view", show)
     assert main(["view", file, "-d", "v.rviz"]) == 0
-    assert [options.rviz for options in asked] == [folder / "v.rviz"]
+    assert [options.rviz for options in host_options] == [folder / "v.rviz"]
     assert view._config_of(folder / "v.rviz").options.text("Fixed Frame") == "odom"

@@ -77,8 +77,8 @@ class Stand:
         self.node.create_publisher(type_name, topic, 10).publish(message)
 
 
-def _chosen(there: dict[str, Any], asked: Any) -> list[Any]:
-    return list(there.values()) if asked is Interfaces.ALL else [there[name] for name in asked]
+def _chosen(interfaces: dict[str, Any], names: Any) -> list[Any]:
+    return list(interfaces.values()) if names is Interfaces.ALL else [interfaces[name] for name in names]
 
 
 def values(interfaces: list[Interface]) -> list[float]:

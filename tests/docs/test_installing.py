@@ -53,13 +53,13 @@ def test_source_and_frontend_contain_no_install_commands() -> None:
 
 def test_install_commands_match_a_checkout(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
     monkeypatch.chdir(tmp_path)
-    for path, what in install_commands():
-        if what not in OTHERS:
-            extras = [extra for listed in re.findall(r"\[([\w,]+)\]", what) for extra in listed.split(",")]
-            assert set(extras) <= {*EXTRAS, "all"}, (path, what)
-            installation = Installation(Origin(str(tmp_path), what.startswith("-e ")), ("pip", "install"))
-            in_order = re.sub(r"\[.*\]", f"[{','.join(sorted(extras))}]", what)
-            assert f"pip install {in_order}" == installation.command_for_extras(*extras), (path, what)
+    for path, command in install_commands():
+        if command not in OTHERS:
+            extras = [extra for listed in re.findall(r"\[([\w,]+)\]", command) for extra in listed.split(",")]
+            assert set(extras) <= {*EXTRAS, "all"}, (path, command)
+            installation = Installation(Origin(str(tmp_path), command.startswith("-e ")), ("pip", "install"))
+            in_order = re.sub(r"\[.*\]", f"[{','.join(sorted(extras))}]", command)
+            assert f"pip install {in_order}" == installation.command_for_extras(*extras), (path, command)
 
 
 @pytest.mark.parametrize(

@@ -128,10 +128,10 @@ def test_make_demo_runs_playground_with_laser_and_camera(tmp_path):
     result = make_demo(tmp_path, *installed(tmp_path, "echo $@"), "ARGS=--no-open")
     command, *words = result.stdout.split()
     assert command == "sim"
-    asked = parser_for("sim").parse_args(words)
-    assert (asked.world, asked.values) == ("playground", ["laser:=true", "camera:=true"])
-    assert (REPOSITORY / asked.robot).is_file()
-    assert asked.no_open
+    arguments = parser_for("sim").parse_args(words)
+    assert (arguments.world, arguments.values) == ("playground", ["laser:=true", "camera:=true"])
+    assert (REPOSITORY / arguments.robot).is_file()
+    assert arguments.no_open
 
 
 def test_make_demo_reports_failure(tmp_path):

@@ -42,7 +42,7 @@ class RemoteTransport(Transport):
     def close(self) -> None:
         pass
 
-    def _mirror(self, what: object) -> None:
+    def _mirror(self, entity: object) -> None:
         pass
 
     open_node = close_node = open_publisher = close_publisher = open_subscription = close_subscription = _mirror

@@ -62,8 +62,8 @@ async def test_viewer_uses_world_frame_and_simulated_time():
     shown = {display.cls.rpartition("/")[2]: display.checked for display in config.displays}
     assert shown == {"Grid": True, "RobotModel": False, "TF": False, "World": True, "Odometry": False}
     listener = view.host.graph.create_node("listener")
-    asked = listener.create_client(get_service("rcl_interfaces/srv/GetParameters"), "/viewer/get_parameters")
-    answer = await asked.call_async(asked.srv_type.Request(names=["use_sim_time"]))
+    client = listener.create_client(get_service("rcl_interfaces/srv/GetParameters"), "/viewer/get_parameters")
+    answer = await client.call_async(client.srv_type.Request(names=["use_sim_time"]))
     assert answer.values[0].bool_value, "what it heard before a reset would be newer than all that comes"
     view.interrupt("the test is over")
     assert await running

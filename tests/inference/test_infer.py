@@ -60,9 +60,9 @@ def test_requested_drive_kind_overrides_plugin_of_file():
     plugin = '<gazebo><plugin name="d" filename="libgazebo_ros_planar_move.so"/></gazebo>'
     own = inferred(robot(*FOUR, plugin))
     assert own.drive is None
-    asked = inferred(robot(*FOUR, plugin), kind="skid")
-    assert asked.drive is not None
-    assert asked.drive.kind == "skid"
+    skid_steered = inferred(robot(*FOUR, plugin), kind="skid")
+    assert skid_steered.drive is not None
+    assert skid_steered.drive.kind == "skid"
 
 
 def test_kind_joints_gives_joint_drive_without_fixed_base():

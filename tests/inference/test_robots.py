@@ -58,8 +58,8 @@ def test_completed_robot_needs_no_inference(robot):
     before = write(document)
     text = write(complete_description(document, found))
     assert write(document) == before, "the document that was read stays as it is"
-    again = examine(text)
-    assert not again.diagnostics
+    completed = examine(text)
+    assert not completed.diagnostics
     assert {diagnostic.code for diagnostic in inferred(text).diagnostics} <= {
         "DRIVE201",
         "DRIVE202",

@@ -35,10 +35,10 @@ def write(tmp_path):
 def test_written_file_describes_completed_robot(write, tmp_path, robot):
     written, expected, text = write(robot)
     assert not written.refused
-    again = load(tmp_path / "r.urdf")
-    assert dict(again.links) == dict(expected.links)
-    assert dict(again.joints) == dict(expected.joints)
-    assert [extension.tag for extension in again.extensions] == [extension.tag for extension in expected.extensions]
+    reloaded = load(tmp_path / "r.urdf")
+    assert dict(reloaded.links) == dict(expected.links)
+    assert dict(reloaded.joints) == dict(expected.joints)
+    assert [extension.tag for extension in reloaded.extensions] == [extension.tag for extension in expected.extensions]
     written_lines = iter(text.splitlines())
     for line in robot.splitlines():
         if "/>" not in line and "axis" not in line:

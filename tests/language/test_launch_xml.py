@@ -40,12 +40,12 @@ def written(rule: ElementRule) -> str:
 
 @pytest.mark.parametrize("tag", sorted(LAUNCH.child_rules))
 def test_table_contains_attributes_read_by_actions(tag, monkeypatch):
-    asked: set[str] = set()
+    requested: set[str] = set()
     read = Entity.get_attr
 
     def recording(entity: Entity, name: str, **options):
         if entity.parent is None:
-            asked.add(name)
+            requested.add(name)
         return read(entity, name, **options)
 
     monkeypatch.setattr(Entity, "get_attr", recording)
@@ -55,8 +55,8 @@ def test_table_contains_attributes_read_by_actions(tag, monkeypatch):
     text = written(rule).replace("/>", f">{children}</{tag}>")
     Parser().parse_action(Entity(parse(text, "a.launch.xml").root))
     of_python_or_yaml = {"choices", "level"} if tag in ("arg", "bool_arg") or tag.startswith("log_") else set()
-    assert asked <= {*rule.attribute_rules, *rule.child_rules, "choice"} | of_python_or_yaml
-    assert {*rule.attribute_rules} <= asked
+    assert requested <= {*rule.attribute_rules, *rule.child_rules, "choice"} | of_python_or_yaml
+    assert {*rule.attribute_rules} <= requested
 
 
 def test_elements_and_attributes_are_completed(at):

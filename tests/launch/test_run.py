@@ -61,10 +61,10 @@ def test_source_package_is_launched_by_path(start: Callable[..., Running], write
 
 
 def test_two_launches_use_different_ports(start: Callable[..., Running]) -> None:
-    both = [start("my_robot_description", "display.launch.py") for _ in range(2)]
-    urls = [running.url for running in both]
+    launchers = [start("my_robot_description", "display.launch.py") for _ in range(2)]
+    urls = [running.url for running in launchers]
     assert urls[0].split("/?")[0] != urls[1].split("/?")[0]
-    for running, url in zip(both, urls, strict=True):
+    for running, url in zip(launchers, urls, strict=True):
         with urllib.request.urlopen(url) as response:
             assert response.status == 200
         assert running.end()[0] == 130

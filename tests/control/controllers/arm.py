@@ -39,7 +39,7 @@ def tolerance(name: str, position: float = 0.0, velocity: float = 0.0) -> Any:
     return get_message("control_msgs/msg/JointTolerance")(name=name, position=position, velocity=velocity)
 
 
-class Asked:
+class SentGoal:
     """A goal that was sent to an action of a controller.
 
     Attributes:

@@ -58,7 +58,7 @@ def changed_lines(before: str, after: str) -> list[str]:
 
 
 @pytest.mark.parametrize(
-    ("body", "joint", "asked", "line"),
+    ("body", "joint", "target", "line"),
     [
         ("", '<origin xyz="0  0 0.250"/>', (0, 0, 0.3), '<origin xyz="0  0 0.3"/>'),
         ("", '<origin xyz="0 0 0.250"/>', (0.1, 0, 0.25), '<origin xyz="0.1 0 0.250"/>'),
@@ -122,10 +122,10 @@ def changed_lines(before: str, after: str) -> list[str]:
     ],
 )
 def test_position_edit_changes_text_that_produced_it(
-    tmp_path: Path, body: str, joint: str, asked: tuple[float, ...], line: str
+    tmp_path: Path, body: str, joint: str, target: tuple[float, ...], line: str
 ) -> None:
     text = robot(body, joint)
-    after = edited(tmp_path, text, EditRequest("joint", "j", xyz=asked))
+    after = edited(tmp_path, text, EditRequest("joint", "j", xyz=target))
     assert changed_lines(text, after) == [line]
 
 

@@ -112,9 +112,9 @@ async def test_goal_callback_rejects_goals(stage, log):
 async def test_duplicate_goal_uuid_is_rejected(stage):
     stage.defer()
     first = await stage.send()
-    again = await stage.send(goal_uuid=first.goal_id)
+    duplicate = await stage.send(goal_uuid=first.goal_id)
     assert first.accepted
-    assert not again.accepted
+    assert not duplicate.accepted
 
 
 async def test_goal_is_canceled(stage, clock):

@@ -17,17 +17,17 @@ Sent = tuple[float, str, float]
 """When, in seconds, by whom, how fast."""
 
 
-def stream(who: str, begin: float, end: float, rate: float, speed: float) -> list[Sent]:
+def stream(sender: str, begin: float, end: float, rate: float, speed: float) -> list[Sent]:
     """Commands that come regularly."""
-    return [(begin + number / rate, who, speed) for number in range(round((end - begin) * rate))]
+    return [(begin + number / rate, sender, speed) for number in range(round((end - begin) * rate))]
 
 
 def disputes(*streams: Iterable[Sent], dispute: DisputeDetector | None = None) -> list[tuple[float, set[object]]]:
     """When a dispute is told of, and who disputes."""
     dispute = dispute or DisputeDetector()
     heard = []
-    for now, who, speed in sorted(command for stream in streams for command in stream):
-        if dispute.record_command(who, speed, now):
+    for now, sender, speed in sorted(command for stream in streams for command in stream):
+        if dispute.record_command(sender, speed, now):
             heard.append((now, set(dispute.parties)))
     return heard
 
@@ -57,8 +57,8 @@ def test_normal_command_patterns_are_not_reported(streams):
 
 @pytest.mark.parametrize(("first", "second"), [(10.0, 10.0), (1.0, 1.0), (50.0, 1.0), (100.0, 20.0)])
 def test_contradicting_publishers_are_reported_once(first, second):
-    ((when, who),) = disputes(stream("keys", 5, 60, first, 0.3), stream("planner", 10.003, 60, second, -0.1))
-    assert who == {"keys", "planner"}
+    ((when, senders),) = disputes(stream("keys", 5, 60, first, 0.3), stream("planner", 10.003, 60, second, -0.1))
+    assert senders == {"keys", "planner"}
     assert 12.9 <= when <= 14.1
 
 
@@ -74,14 +74,14 @@ def test_third_driver_is_reported_and_all_again_after_a_break():
         stream("a", 40, 50, 10, 0.1),
         stream("b", 40.01, 50, 10, 0.2),
     )
-    assert [who for _, who in heard] == [{"a", "b"}, {"a", "b", "c"}, {"a", "b"}]
+    assert [senders for _, senders in heard] == [{"a", "b"}, {"a", "b", "c"}, {"a", "b"}]
 
 
 def test_short_break_is_not_reported_again():
     bursts = [(0, 5), (9, 14), (18, 23)]
     streams = [
-        stream(who, begin + shift, end, 10, 0.1 + shift)
-        for who, shift in (("a", 0), ("b", 0.01))
+        stream(sender, begin + shift, end, 10, 0.1 + shift)
+        for sender, shift in (("a", 0), ("b", 0.01))
         for begin, end in bursts
     ]
     assert len(disputes(*streams)) == 1

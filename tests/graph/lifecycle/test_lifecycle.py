@@ -137,11 +137,11 @@ async def test_managed_entities_are_notified_until_one_fails(managed):
         def on_configure(self, state):
             return FAILURE
 
-    asked = []
+    labels = []
 
     class Counting(SimpleManagedEntity):
         def on_configure(self, state):
-            asked.append(state.label)
+            labels.append(state.label)
             return SUCCESS
 
         @SimpleManagedEntity.when_enabled
@@ -163,7 +163,7 @@ async def test_managed_entities_are_notified_until_one_fails(managed):
     managed.trigger_cleanup()
     managed.add_managed_entity(Stubborn())
     assert managed.trigger_configure() is FAILURE
-    assert asked == ["unconfigured", "unconfigured"]
+    assert labels == ["unconfigured", "unconfigured"]
 
 
 async def test_lifecycle_services_change_state(graph, managed, log):

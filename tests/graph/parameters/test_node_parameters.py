@@ -90,9 +90,9 @@ async def test_override_of_wrong_type_is_rejected_with_hint(graph):
 def test_parameter_type_is_inferred_from_value(value, kind):
     parameter = Parameter("p", value=value)
     assert parameter.type_ is ParameterType[kind]
-    again = Parameter.from_parameter_msg(parameter.to_parameter_msg())
-    assert (again.name, again.type_) == ("p", parameter.type_)
-    assert again.value == ([b"x"] if value == b"x" else list(value) if isinstance(value, tuple) else value)
+    round_trip = Parameter.from_parameter_msg(parameter.to_parameter_msg())
+    assert (round_trip.name, round_trip.type_) == ("p", parameter.type_)
+    assert round_trip.value == ([b"x"] if value == b"x" else list(value) if isinstance(value, tuple) else value)
 
 
 @pytest.mark.parametrize("value", [[1, 1.0], [None], {}, object(), [[1]]])

@@ -27,8 +27,8 @@ async def test_parameters_override_qos_in_code(graph):
     descriptor = node.describe_parameter(f"{START}.depth")
     assert descriptor.read_only
     assert descriptor.description == "depth for publisher `/chatter` with id `None`"
-    again = override_qos(node, "publisher", "/chatter", given, QoSOverridingOptions.with_default_policies())
-    assert again.depth == 3
+    second_profile = override_qos(node, "publisher", "/chatter", given, QoSOverridingOptions.with_default_policies())
+    assert second_profile.depth == 3
 
 
 async def test_all_policies_and_entity_id_are_supported(graph):

@@ -48,19 +48,19 @@ def managed(name: str = "one", **options: Any) -> LifecycleNode:
     return LifecycleNode(package="life", executable="node", name=name, namespace="", **options)
 
 
-def log_on_transition(text: str, **what: Any) -> RegisterEventHandler:
-    return RegisterEventHandler(OnStateTransition(entities=[LogInfo(msg=text)], **what))
+def log_on_transition(text: str, **filters: Any) -> RegisterEventHandler:
+    return RegisterEventHandler(OnStateTransition(entities=[LogInfo(msg=text)], **filters))
 
 
 async def test_change_state_triggers_transition_and_event(launch) -> None:
     node = managed()
-    wish = ChangeState(lifecycle_node_matcher=matches_action(node), transition_id=CONFIGURE)
+    change_state = ChangeState(lifecycle_node_matcher=matches_action(node), transition_id=CONFIGURE)
     result = await launch(
         node,
         managed("two"),
         log_on_transition("configured", target_lifecycle_node=node, transition="transition_success"),
         log_on_transition("inactive", goal_state="inactive", start_state="configuring"),
-        EmitEvent(event=wish),
+        EmitEvent(event=change_state),
         ends_when(printed("[launch.user]: inactive")),
     )
     assert result.messages.count("inactive") == 1
@@ -85,8 +85,8 @@ async def test_lifecycle_transition_runs_sequence(launch) -> None:
 
 async def test_failed_transition_is_reported(launch) -> None:
     node = managed(parameters=[{"fails": True}])
-    wish = ChangeState(lifecycle_node_matcher=matches_node_name("one"), transition_id=CONFIGURE)
-    result = await launch(node, EmitEvent(event=wish), ends_when(printed("Failed to make transition")))
+    change_state = ChangeState(lifecycle_node_matcher=matches_node_name("one"), transition_id=CONFIGURE)
+    result = await launch(node, EmitEvent(event=change_state), ends_when(printed("Failed to make transition")))
     assert "Failed to make transition 'TRANSITION_CONFIGURE' for LifecycleNode '/one'" in result.err
 
 
