@@ -55,8 +55,8 @@ class Shown:
     @property
     def simulator(self) -> Simulator:
         """The node of the simulation."""
-        view = [node for _, node in self.view.host._running.values()]
-        return next(node for node in view if isinstance(node, Simulator))
+        nodes = [node for _, node in self.view.host._running.values()]
+        return next(node for node in nodes if isinstance(node, Simulator))
 
     @property
     def server(self) -> SimulationServer:
