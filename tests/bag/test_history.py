@@ -28,10 +28,10 @@ class Clock:
         return self.ns
 
 
-def filled(most: int = 10**6, size: int = 1000, count: int = 10) -> tuple[History, Clock]:
+def filled(max_size: int = 10**6, size: int = 1000, count: int = 10) -> tuple[History, Clock]:
     """A history with a message of a topic each second."""
     clock = Clock()
-    history = History(most, clock)
+    history = History(max_size, clock)
     for second in range(count):
         clock.ns = second * SECOND
         history.add("/a", bytes([second % 256]) * size)
@@ -47,7 +47,7 @@ def numbers(messages: object) -> list[int]:
 
 
 def test_history_drops_oldest_messages_beyond_byte_limit() -> None:
-    history, _ = filled(most=5 * 1200, count=3000)
+    history, _ = filled(max_size=5 * 1200, count=3000)
     assert history.size <= 5 * 1200
     messages = list(history.messages(["/a"], 0))
     assert [stamp // SECOND for _, stamp, _ in messages] == [2996, 2997, 2998, 2999], "and the one before is known"
@@ -59,7 +59,7 @@ def test_history_drops_oldest_messages_beyond_byte_limit() -> None:
 
 
 def test_state_at_returns_last_messages_and_dropped_static_transforms() -> None:
-    history, clock = filled(most=10**5)
+    history, clock = filled(max_size=10**5)
     for child in ("one", "two", "one"):
         history.add("/tf_static", static(child))
     history.add("/map", b"\7")
@@ -92,9 +92,9 @@ def image(shade: int, size: int = 200_000) -> bytes:
     return bytes([shade]) * size
 
 
-def packed(history: History, most: int) -> None:
+def packed(history: History, max_size: int) -> None:
     """Wait until what is kept takes no more than so many bytes."""
-    wait_until(lambda: history.size <= most)
+    wait_until(lambda: history.size <= max_size)
 
 
 def test_repetitive_large_messages_are_compressed_and_read_unchanged() -> None:
@@ -115,7 +115,7 @@ def test_repetitive_large_messages_are_compressed_and_read_unchanged() -> None:
 
 def test_incompressible_messages_are_stored_uncompressed() -> None:
     noise = np.random.default_rng(0).integers(0, 256, 200_000).astype(np.uint8).tobytes()
-    history, _ = filled(count=0, most=10**7)
+    history, _ = filled(count=0, max_size=10**7)
     history.add("/camera", noise)
     history.add("/camera", image(1))
     packed(history, 202_000)
@@ -134,7 +134,7 @@ def test_messages_dropped_before_compression_are_harmless(monkeypatch: pytest.Mo
         return bytes(compress(data, level))
 
     monkeypatch.setattr(_zstd(), "compress", slow)
-    history, _ = filled(count=0, most=500_000)
+    history, _ = filled(count=0, max_size=500_000)
     for shade in range(5):
         history.add("/camera", image(shade))
     assert history.size == 2 * 200_200, "one, and the one before it"
@@ -324,14 +324,14 @@ def test_content_of_malformed_transforms_is_empty(data: bytes) -> None:
 
 def test_images_beyond_limit_are_thinned_over_minutes() -> None:
     clock = Clock()
-    history = History(most := 4_000_000, clock)
+    history = History(max_size := 4_000_000, clock)
     noise = np.random.default_rng(1).bytes(15_000)  # 266 of them fill the room: nine seconds
     for frame in range(30 * 300):
         clock.ns = frame * SECOND // 30
         history.add("/camera", noise)
         if frame % 30 == 0:
             history.add("/small", b"second")
-    assert history.size <= most
+    assert history.size <= max_size
     assert history.start_ns <= SECOND
     stamps = [stamp / SECOND for _, stamp, _ in history.messages(["/camera"], 0)]
     assert len(stamps) > 200

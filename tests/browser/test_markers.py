@@ -106,8 +106,8 @@ def test_unreadable_marker_mesh_is_reported(live, open_page, tmp_path):
     mesh.write_text("no mesh")
     viewer = live(MARKERS)
     page = open_page(viewer, wait=False)
-    wanted = marker(1, kind=Marker.MESH_RESOURCE, mesh_resource=mesh.as_uri())
-    viewer.publish("/marks", MarkerArray(markers=[wanted]))
+    mesh_marker = marker(1, kind=Marker.MESH_RESOURCE, mesh_resource=mesh.as_uri())
+    viewer.publish("/marks", MarkerArray(markers=[mesh_marker]))
     until(page, "lw.displays[1]?.status.some(row => row.name === 'a/1' && row.level === 'error')")
     assert "Mesh resource marker [a/1]" in viewer.status("Marks")["a/1"][1]
 

@@ -57,10 +57,12 @@ def described(text: str) -> tuple[list[HardwareDescription], list[str]]:
     return found, [f"{finding.code} {finding.message}" for finding in findings]
 
 
-def manager(graph: Graph, text: str, parameters: dict[str, Any] | None = None, **given: dict[str, Any]) -> Any:
+def manager(
+    graph: Graph, text: str, parameters: dict[str, Any] | None = None, **controller_parameters: dict[str, Any]
+) -> Any:
     """A manager of a robot: the parameters of its node, and those of the nodes of its controllers."""
     rules = ParameterRules()
-    for name, values in given.items():
+    for name, values in controller_parameters.items():
         for key, value in values.items():
             rules.set(name, key, value)
     node = graph.create_node(

@@ -55,11 +55,11 @@ def example(page: Path) -> Any:
 async def test_documented_example_swings_joint(stand, page):
     stand.joint("elbow", commands=("position",), position=1.0)
     controller = stand.start(example(page), "swing", joint="elbow", amplitude=0.3, frequency=1.0, speed=2.0)
-    heard = stand.heard("std_msgs/msg/Float64", "/swing/angle")
+    angles = stand.record("std_msgs/msg/Float64", "/swing/angle")
     await stand.step(controller, count=25)
     assert stand.commands["elbow/position"].value == pytest.approx(1.3)
-    assert heard[-1].data == pytest.approx(0.3)
-    stand.say("std_msgs/msg/Float64", "/swing/amplitude", get_message("std_msgs/msg/Float64")(data=0.1))
+    assert angles[-1].data == pytest.approx(0.3)
+    stand.publish("std_msgs/msg/Float64", "/swing/amplitude", get_message("std_msgs/msg/Float64")(data=0.1))
     await stand.step(controller, count=50)
     assert stand.commands["elbow/position"].value == pytest.approx(0.9)
     assert "'speed' is not a parameter of this controller" in [str(record.text) for record in stand.log]

@@ -272,8 +272,8 @@ JOINED = """
 )
 def test_absolute_path_component_restarts_joined_path(workspace: Path, default: str, expected: str) -> None:
     text = f"{HEAD}\ndef generate_launch_description():\n{JOINED.format(default=default)}"
-    wanted = expected.format(user=workspace / "user", arm=workspace / "arm")
-    assert values(sets(workspace, "user/launch/a.launch.py", text)) == [{"prefix": wanted}]
+    expected_text = expected.format(user=workspace / "user", arm=workspace / "arm")
+    assert values(sets(workspace, "user/launch/a.launch.py", text)) == [{"prefix": expected_text}]
 
 
 ROBOT_FILE = "PathJoinSubstitution([FindPackageShare('arm'), 'urdf', 'arm.urdf.xacro'])"

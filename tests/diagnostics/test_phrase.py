@@ -117,8 +117,8 @@ def test_terms_and_foreign_texts_are_translated_as_a_whole() -> None:
 
 def test_exception_keeps_its_phrase() -> None:
     text = phrase("there is no macro '{name}'", name="a")
-    for given in (ValueError(text), foreign(ValueError(text))):
-        assert in_chinese(phrase("cannot read it: {reason}", reason=given)) == "无法读取：没有名为“a”的宏"
+    for argument in (ValueError(text), foreign(ValueError(text))):
+        assert in_chinese(phrase("cannot read it: {reason}", reason=argument)) == "无法读取：没有名为“a”的宏"
 
 
 @pytest.mark.parametrize(

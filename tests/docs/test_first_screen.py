@@ -64,17 +64,19 @@ def newcomer(tmp_path: Path) -> dict[str, str]:
     """
     programs = tmp_path / "programs"
     programs.mkdir()
-    given = {name: value for name, value in os.environ.items() if name.startswith(("PIP_", "UV_", "SSL_", "ROS_"))}
+    environment = {
+        name: value for name, value in os.environ.items() if name.startswith(("PIP_", "UV_", "SSL_", "ROS_"))
+    }
     uv = shutil.which(os.environ.get("UV") or "uv") or shutil.which(REPOSITORY / ".build" / "uv" / "bin" / "uv")
     if uv:
         (programs / "uv").symlink_to(Path(uv).absolute())
-        given["UV_CACHE_DIR"] = run([uv, "cache", "dir"]).stdout.strip()
+        environment["UV_CACHE_DIR"] = run([uv, "cache", "dir"]).stdout.strip()
         pip = program(programs / "uv-as-pip", 'exec uv pip "$@"')
         program(programs / "python3", f'{sys.executable} "$@" --without-pip && ln -s {pip} "$3/bin/pip"')
     else:
         (programs / "python3").symlink_to(sys.executable)
     return {
-        **given,
+        **environment,
         "BROWSER": str(program(programs / "browser", f'echo "$1" >{tmp_path}/opened')),
         "HOME": str(tmp_path),
         "PATH": os.pathsep.join([str(programs), os.environ["PATH"]]),
@@ -108,8 +110,8 @@ def test_first_readme_commands_run_in_fresh_checkout(checkout: Path, newcomer: d
             wait_until((checkout.parent / "opened").is_file, what="a browser that was told to open the page")
         finally:
             os.killpg(shell.pid, signal.SIGINT)
-            rest = shell.stdout.read()
-    assert shell.returncode in (0, 130, -signal.SIGINT), "".join(messages) + rest
+            remaining_output = shell.stdout.read()
+    assert shell.returncode in (0, 130, -signal.SIGINT), "".join(messages) + remaining_output
 
     # What the base lacks is told with the command that fits, and that works.
     export = "linkwright export robot.glb robots/my_robot_description/urdf/mbot_with_kinect.urdf"

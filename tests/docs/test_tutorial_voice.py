@@ -73,8 +73,8 @@ async def test_custom_command_file_moves_mbot(tmp_path: Path) -> None:
     file = tmp_path / block.title
     file.write_text(block.text, encoding="utf-8")
     async with AsyncSteppedSimulation(WORLD, ROBOT, period=0.02) as playground:
-        given = {"engine": "", "commands_file": str(file), "use_sim_time": True}
-        running = VoiceCommander(playground.graph, NodeOptions(parameters=given))
+        parameters = {"engine": "", "commands_file": str(file), "use_sim_time": True}
+        running = VoiceCommander(playground.graph, NodeOptions(parameters=parameters))
         text = playground.node.create_publisher(STRING, "/voice/text_input", 10)
         responses = playground.record("/voice/response")
         turned = playground.record("/odom")

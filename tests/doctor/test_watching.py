@@ -73,10 +73,10 @@ async def test_late_node_name_identifies_endpoint_of_command(joined: Graph) -> N
 
 
 async def test_unnamed_endpoint_is_waited_for_one_second_at_most(joined: Graph) -> None:
-    begun = time.monotonic()
+    start = time.monotonic()
     seen = await observe_graph(joined, RemoteTransport(TELEOP, LATE))
     assert seen.endpoints == (TELEOP, LATE)
-    assert time.monotonic() - begun > 0.9
+    assert time.monotonic() - start > 0.9
 
 
 async def test_contradictory_velocity_publishers_are_recorded(joined: Graph) -> None:

@@ -77,8 +77,8 @@ class TestBuilder:
         write("src/arm_moveit_config/.setup_assistant", f"moveit_setup_assistant_config:\n  urdf: {urdf}\n")
         noted = MoveItConfigsBuilder("arm").to_moveit_configs().robot_description["robot_description"]
         assert '<link name="tool_noted"/>' in noted
-        given = MoveItConfigsBuilder("arm").robot_description(mappings={"tool": "given"}).to_moveit_configs()
-        assert '<link name="tool_given"/>' in given.robot_description["robot_description"]
+        configs = MoveItConfigsBuilder("arm").robot_description(mappings={"tool": "given"}).to_moveit_configs()
+        assert '<link name="tool_given"/>' in configs.robot_description["robot_description"]
 
     def test_setup_assistant_arguments_apply_to_configuration_model(self, write: Any) -> None:
         write("src/arm_moveit_config/config/arm.urdf.xacro", URDF)

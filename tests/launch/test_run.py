@@ -191,11 +191,12 @@ class TestBadInput:
         self, write: Write, capsys: pytest.CaptureFixture[str], inner: str
     ) -> None:
         included = write("inner.launch.py", launch_file(inner))
-        given = "launch_arguments={'model': 'm'}.items(), condition=UnlessCondition('true')"
+        include_options = "launch_arguments={'model': 'm'}.items(), condition=UnlessCondition('true')"
         path = write(
             "a.launch.py",
             launch_file(
-                f"IncludeLaunchDescription('{included}', {given})", head="from launch.conditions import UnlessCondition"
+                f"IncludeLaunchDescription('{included}', {include_options})",
+                head="from launch.conditions import UnlessCondition",
             ),
         )
         assert run_launch(LaunchTarget(str(path)), {"model": "mine"}) == 0
@@ -205,14 +206,14 @@ class TestBadInput:
         self, write: Write, capsys: pytest.CaptureFixture[str]
     ) -> None:
         included = write("inner.launch.py", launch_file("DeclareLaunchArgument('needed', choices=['a'])"))
-        given = "launch_arguments={'other': LaunchConfiguration('none')}.items()"
+        include_options = "launch_arguments={'other': LaunchConfiguration('none')}.items()"
         path = write(
             "a.launch.xml",
             f'<launch><arg name="go" default="false"/><include file="{included}" if="$(var go)"/>'
             f'<include file="{included}.gone" if="$(var go)"><arg name="x" value="$(var none)"/></include></launch>',
         )
         assert run_launch(LaunchTarget(str(path)), {"needed": "b"}) == 0
-        include = f"IncludeLaunchDescription('{included}', {given}, condition=UnlessCondition('true'))"
+        include = f"IncludeLaunchDescription('{included}', {include_options}, condition=UnlessCondition('true'))"
         path = write("a.launch.py", launch_file(include, head="from launch.conditions import UnlessCondition"))
         assert run_launch(LaunchTarget(str(path)), {"needed": "b"}) == 0
         assert "error" not in capsys.readouterr().err

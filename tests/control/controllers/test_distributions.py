@@ -19,7 +19,7 @@ def declared(controller) -> set[str]:
 
 
 @pytest.mark.parametrize(
-    ("kind", "given", "humble", "jazzy"),
+    ("kind", "parameters", "humble", "jazzy"),
     [
         (DRIVE, WHEELS, {"linear.x.has_velocity_limits", "use_stamped_vel"}, {"linear.x.max_deceleration"}),
         (TRAJECTORY, ARM, {"open_loop_control", "gains.hip.angle_wraparound"}, {"interpolate_from_desired_state"}),
@@ -27,11 +27,11 @@ def declared(controller) -> set[str]:
     ],
     ids=["drive", "trajectory", "car"],
 )
-async def test_declared_parameters_match_distribution(stand, monkeypatch, kind, given, humble, jazzy):
+async def test_declared_parameters_match_distribution(stand, monkeypatch, kind, parameters, humble, jazzy):
     found = {}
     for distribution in ("", "humble", "jazzy"):
         monkeypatch.setenv("ROS_DISTRO", distribution)
-        found[distribution] = declared(stand.make(controller_class(kind), f"it_{distribution}", **given))
+        found[distribution] = declared(stand.make(controller_class(kind), f"it_{distribution}", **parameters))
     assert found[""] == found["humble"]
     assert found["humble"] >= humble
     assert not found["humble"] & jazzy
@@ -44,8 +44,8 @@ async def test_default_matches_distribution(stand, monkeypatch, distribution, al
     monkeypatch.setenv("ROS_DISTRO", distribution)
     controller = stand.make(controller_class(TRAJECTORY), **ARM)
     assert controller.parameters.allow_nonzero_velocity_at_trajectory_end is allowed
-    given = stand.make(controller_class(TRAJECTORY), "given", allow_nonzero_velocity_at_trajectory_end=True, **ARM)
-    assert given.parameters.allow_nonzero_velocity_at_trajectory_end
+    controller = stand.make(controller_class(TRAJECTORY), "given", allow_nonzero_velocity_at_trajectory_end=True, **ARM)
+    assert controller.parameters.allow_nonzero_velocity_at_trajectory_end
 
 
 @pytest.mark.parametrize("distribution", ["humble", "jazzy"])

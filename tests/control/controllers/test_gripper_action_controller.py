@@ -21,12 +21,12 @@ class Fingers:
     """A gripper on a stand: hardware that moves to its command at 0.1 m/s, as far as it can."""
 
     def __init__(
-        self, stand: Any, kind: type = PositionGripper, commands: tuple[str, ...] = ("position",), **said: Any
+        self, stand: Any, kind: type = PositionGripper, commands: tuple[str, ...] = ("position",), **parameters: Any
     ):
         self.stand = stand
         stand.joint("finger", commands=commands, position=0.0, velocity=0.0)
         self.limit = 1.0
-        self.controller = stand.start(kind, joint="finger", **said)
+        self.controller = stand.start(kind, joint="finger", **parameters)
 
     @property
     def command(self) -> float:

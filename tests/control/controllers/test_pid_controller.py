@@ -29,7 +29,7 @@ def command(names: list[str], values: list[float], rates: list[float]) -> Any:
 
 def ask(stand: Any, *values: float, names: tuple[str, ...] = ("wheel",), rates: tuple[float, ...] = ()) -> None:
     """Send a reference."""
-    stand.say(COMMAND, "/controller/reference", command(list(names), list(values), list(rates)))
+    stand.publish(COMMAND, "/controller/reference", command(list(names), list(values), list(rates)))
 
 
 async def test_command_follows_error(stand):
@@ -73,7 +73,7 @@ async def test_angle_wraparound_uses_shorter_way(stand):
 async def test_measured_states_can_come_from_topic(stand):
     controller = wheel(stand, **WHEEL, use_external_measured_states=True, gains={"wheel": {"p": 1.0}})
     ask(stand, 4.0)
-    stand.say(COMMAND, "/controller/measured_state", command(["wheel"], [1.0], []))
+    stand.publish(COMMAND, "/controller/measured_state", command(["wheel"], [1.0], []))
     await stand.step(controller)
     assert stand.commands["wheel/effort"].value == pytest.approx(3.0)
 
@@ -106,10 +106,10 @@ async def test_reference_of_wrong_size_or_names_is_reported(stand):
 
 async def test_controller_state_is_published(stand):
     controller = wheel(stand, velocity=1.0, **WHEEL, gains={"wheel": {"p": 2.0}})
-    heard = stand.heard("control_msgs/msg/MultiDOFStateStamped", "/controller/controller_state")
+    states = stand.record("control_msgs/msg/MultiDOFStateStamped", "/controller/controller_state")
     ask(stand, 4.0)
     await stand.step(controller)
-    (state,) = heard[-1].dof_states
+    (state,) = states[-1].dof_states
     assert (state.name, state.reference, state.feedback, state.error, state.output) == ("wheel", 4.0, 1.0, 3.0, 6.0)
     assert state.time_step == pytest.approx(0.01)
 

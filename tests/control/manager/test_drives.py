@@ -22,9 +22,9 @@ SAID = {"wheel_separation": 0.4, "wheel_radius": 0.1, "cmd_vel_timeout": 9.0, "p
 class Base:
     """A robot on two wheels with active controllers."""
 
-    def __init__(self, graph: Any, types: dict[str, str], **given: dict[str, Any]) -> None:
+    def __init__(self, graph: Any, types: dict[str, str], **parameters: dict[str, Any]) -> None:
         self.graph, self.node, self.time_ns = graph, graph.create_node("audience"), 0
-        self.manager = manager(graph, WHEELS, {name: {"type": kind} for name, kind in types.items()}, **given)
+        self.manager = manager(graph, WHEELS, {name: {"type": kind} for name, kind in types.items()}, **parameters)
         for name in types:
             assert self.manager.load(name)
             assert self.manager.configure(name)
@@ -46,7 +46,7 @@ class Base:
 
 
 async def test_drive_commands_pid_controllers_in_chained_mode(graph):
-    given = {
+    parameters = {
         f"pid_{side}": {
             "dof_names": [side],
             "command_interface": "velocity",
@@ -61,7 +61,7 @@ async def test_drive_commands_pid_controllers_in_chained_mode(graph):
         graph,
         {"pid_left": PID, "pid_right": PID, "base": DRIVE},
         base=SAID | names | {"position_feedback": False},
-        **given,
+        **parameters,
     )
     await base.drive(0.0, 0.0, 2)
     await base.drive(1.0, 0.5, 301)

@@ -67,9 +67,9 @@ def create_manager(graph, monkeypatch):
 
     monkeypatch.setattr("linkwright.control.manager.manager.controller_class", found)
 
-    def make(types=None, text=CONTROL, **given):
+    def make(types=None, text=CONTROL, **parameters):
         types = {"low": "t/Low", "high": "t/High"} if types is None else types
-        return manager(graph, text, {name: {"type": kind} for name, kind in types.items()}, **given)
+        return manager(graph, text, {name: {"type": kind} for name, kind in types.items()}, **parameters)
 
     return make
 

@@ -71,8 +71,8 @@ class Driver:
 def start(stage, terminal):
     started = []
 
-    def driver(**given):
-        started.append(Driver(stage, *terminal, **given))
+    def driver(**options):
+        started.append(Driver(stage, *terminal, **options))
         return started[-1]
 
     yield driver

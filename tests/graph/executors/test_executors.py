@@ -396,12 +396,12 @@ class TestFutures:
 
 class TestGroups:
     def test_mutually_exclusive_group_runs_one_callback_at_a_time(self, node):
-        running, most = [], []
+        running, peaks = [], []
         group = MutuallyExclusiveCallbackGroup()
 
         def work(_message):
             running.append(1)
-            most.append(len(running))
+            peaks.append(len(running))
             time.sleep(0.01)
             running.pop()
 
@@ -413,17 +413,17 @@ class TestGroups:
             thread = spun(executor)
             for publisher in publishers * 5:
                 publisher.publish(String())
-            wait_until(lambda: len(most) == 15)
+            wait_until(lambda: len(peaks) == 15)
             executor.shutdown()
             thread.join(SECONDS)
-        assert max(most) == 1
+        assert max(peaks) == 1
 
     def test_default_group_is_mutually_exclusive(self, node):
-        most, running = [], []
+        peaks, running = [], []
 
         def work(_message):
             running.append(1)
-            most.append(len(running))
+            peaks.append(len(running))
             time.sleep(0.01)
             running.pop()
 
@@ -435,10 +435,10 @@ class TestGroups:
             thread = spun(executor)
             for publisher in publishers * 5:
                 publisher.publish(String())
-            wait_until(lambda: len(most) == 10)
+            wait_until(lambda: len(peaks) == 10)
             executor.shutdown()
             thread.join(SECONDS)
-        assert max(most) == 1
+        assert max(peaks) == 1
 
     def test_reentrant_group_runs_callback_concurrently(self, node):
         barrier = threading.Barrier(3, timeout=60.0)

@@ -317,7 +317,9 @@ async def test_set_callbacks_reject_with_reason(graph):
     node.declare_parameter("a", 1)
     node.declare_parameter("b", 1)
     node.add_on_set_parameters_callback(check)
-    node.add_post_set_parameters_callback(lambda given: applied.append([parameter.name for parameter in given]))
+    node.add_post_set_parameters_callback(
+        lambda parameters: applied.append([parameter.name for parameter in parameters])
+    )
     good, bad = Parameter("a", value=2), Parameter("b", value=-2)
     assert node.set_parameters([good, bad])[1].reason == "must not be negative"
     assert (node.get_parameter("a").value, node.get_parameter("b").value) == (2, 1)

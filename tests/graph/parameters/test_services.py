@@ -75,7 +75,7 @@ async def test_unknown_parameter_empties_response(graph, client):
 
 async def test_parameter_client_sets_parameters(graph, server, client):
     server.add_on_set_parameters_callback(
-        lambda given: SetParametersResult(all(parameter.value != 13 for parameter in given), "unlucky")
+        lambda parameters: SetParametersResult(all(parameter.value != 13 for parameter in parameters), "unlucky")
     )
     messages = []
     future = client.set_parameters(

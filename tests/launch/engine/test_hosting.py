@@ -39,8 +39,8 @@ def talker(**options: Any) -> Node:
 
 
 def prefixed(prefix: str, pattern: str) -> list[Any]:
-    given = {"launch-prefix": prefix, "launch-prefix-filter": pattern}
-    return [SetLaunchConfiguration(name, value) for name, value in given.items()]
+    configurations = {"launch-prefix": prefix, "launch-prefix-filter": pattern}
+    return [SetLaunchConfiguration(name, value) for name, value in configurations.items()]
 
 
 class TestProcessChoice:

@@ -72,12 +72,13 @@ class TestRequests:
             SetParametersFromFile(str(path)),
             v="true",
         )
-        given = [(parameter.name, parameter.value) for parameter in request.parameters]
-        assert [name for name, _ in given] == ["a", "c", "d", "b.x", "c", "d"]
-        assert given[0][1].string_value == "text"
-        assert given[1][1].integer_value == 9  # a node's own name counts more than a pattern, whichever comes first
-        assert list(given[2][1].double_array_value) == [1.5]
-        assert given[3][1].bool_value is True
+        parameters = [(parameter.name, parameter.value) for parameter in request.parameters]
+        assert [name for name, _ in parameters] == ["a", "c", "d", "b.x", "c", "d"]
+        assert parameters[0][1].string_value == "text"
+        # A node's own name counts more than a pattern, whichever comes first.
+        assert parameters[1][1].integer_value == 9
+        assert list(parameters[2][1].double_array_value) == [1.5]
+        assert parameters[3][1].bool_value is True
 
     def test_extra_arguments_are_passed(self) -> None:
         request = load_request(talker(extra_arguments=[{"use_intra_process_comms": True}]))

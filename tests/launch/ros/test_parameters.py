@@ -42,8 +42,8 @@ def message_of(error: BaseException) -> str:
 
 class TestParameters:
     def test_python_values_keep_their_types(self, context: LaunchContext) -> None:
-        given = {"a": 1, "b": 1.5, "c": True, "d": "true", "e": [1, 2], "f": ["x", "y"], "g": [1, 2.5], "h": ""}
-        assert values(context, given) == {**given, "g": [1.0, 2.5]}
+        parameters = {"a": 1, "b": 1.5, "c": True, "d": "true", "e": [1, 2], "f": ["x", "y"], "g": [1, 2.5], "h": ""}
+        assert values(context, parameters) == {**parameters, "g": [1.0, 2.5]}
 
     def test_substitutions_are_parsed_as_yaml(self, context: LaunchContext) -> None:
         found = values(
@@ -142,12 +142,16 @@ class TestParameters:
         assert message in message_of(caught.value)
 
     def test_plain_strings_are_not_parsed_as_yaml(self, context: LaunchContext) -> None:
-        given = {"a": "1", "b": ["true", "2"], "c": "{x: y}"}
-        assert values(context, given) == given
+        parameters = {"a": "1", "b": ["true", "2"], "c": "{x: y}"}
+        assert values(context, parameters) == parameters
 
     def test_evaluated_parameters_keep_files_and_flatten_dictionaries(self, context: LaunchContext) -> None:
-        given = normalize_parameters(["/a.yaml", {"n": {"x": 1}, "l": [1, 2.5]}, Path("/b.yaml")])
-        assert evaluate_parameters(context, given) == (Path("/a.yaml"), {"n.x": 1, "l": (1.0, 2.5)}, Path("/b.yaml"))
+        parameters = normalize_parameters(["/a.yaml", {"n": {"x": 1}, "l": [1, 2.5]}, Path("/b.yaml")])
+        assert evaluate_parameters(context, parameters) == (
+            Path("/a.yaml"),
+            {"n.x": 1, "l": (1.0, 2.5)},
+            Path("/b.yaml"),
+        )
 
 
 class TestParameterFiles:
