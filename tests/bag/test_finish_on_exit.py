@@ -31,9 +31,9 @@ def writer(request: pytest.FixtureRequest, tmp_path: Path) -> BagWriter:
 def numbers(path: Path) -> list[int]:
     """The times of the messages of a recording that is whole."""
     with BagReader(path) as bag:
-        found = [stamp for _, stamp, _ in bag.messages()]
+        stamps = [stamp for _, stamp, _ in bag.messages()]
         assert not bag.findings
-    return found
+    return stamps
 
 
 def test_finish_all_completes_recording_while_thread_writes(writer: BagWriter) -> None:
@@ -55,11 +55,11 @@ def test_finish_all_completes_recording_while_thread_writes(writer: BagWriter) -
     finally:
         over.set()
         thread.join(SECONDS)
-    found = numbers(writer.path)
-    assert found == list(range(1, len(found) + 1))
-    assert len(found) >= 100
+    numbers_written = numbers(writer.path)
+    assert numbers_written == list(range(1, len(numbers_written) + 1))
+    assert len(numbers_written) >= 100
     writer.close()
-    assert numbers(writer.path) == found
+    assert numbers(writer.path) == numbers_written
 
 
 def test_finish_all_leaves_closed_recording_unchanged(writer: BagWriter) -> None:

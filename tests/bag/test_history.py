@@ -214,8 +214,8 @@ def test_transforms_of_unmoving_publishers_are_thinned_separately() -> None:
             history.add("/tf", data, content=content_of(TFMessage.TYPE_NAME, data))
     assert history.count == 3000 + 2 * 3
     for second in (5, 15, 28):
-        found = [deserialize(data, TFMessage).batch for _, _, data in history.state_at(["/tf"], second * SECOND)]
-        newest = {batch.children[0]: batch.poses[0][0] for batch in found}
+        batches = [deserialize(data, TFMessage).batch for _, _, data in history.state_at(["/tf"], second * SECOND)]
+        newest = {batch.children[0]: batch.poses[0][0] for batch in batches}
         assert newest == {"wheel": 0.0, "robot": second}
 
 
@@ -258,8 +258,8 @@ def test_slowly_moving_transforms_are_kept_within_nanometer() -> None:
         clock.ns = number * SECOND // 100
         transforms(history, clock, number * 1e-10)
     for second in (0.5, 7.0, 12.34, 29.98):
-        found = [deserialize(data, TFMessage).batch for _, _, data in history.state_at(["/tf"], int(second * SECOND))]
-        assert found[-1].poses[0][0] == pytest.approx(second * 1e-8, abs=2e-9)
+        batches = [deserialize(data, TFMessage).batch for _, _, data in history.state_at(["/tf"], int(second * SECOND))]
+        assert batches[-1].poses[0][0] == pytest.approx(second * 1e-8, abs=2e-9)
 
 
 def test_clock_alone_is_thinned_and_interpolated() -> None:
@@ -318,8 +318,8 @@ def test_content_of_message_without_stamp_is_none() -> None:
 
 @pytest.mark.parametrize("data", [b"", b"\0\1\0\0", b"\0\1\0\0\xff\0\0\0", b"\0\0\0\0\0\0\0\1" + bytes(80)])
 def test_content_of_malformed_transforms_is_empty(data: bytes) -> None:
-    found = content_of(TFMessage.TYPE_NAME, data)
-    assert found is None or found.child_frames == ""
+    transforms = content_of(TFMessage.TYPE_NAME, data)
+    assert transforms is None or transforms.child_frames == ""
 
 
 def test_images_beyond_limit_are_thinned_over_minutes() -> None:
@@ -353,19 +353,19 @@ def test_thinned_images_reach_back_at_most_ten_minutes() -> None:
 
 def content_of_poses(children: tuple[str, ...], numbers: list[list[float]], stamp_ns: int = 0) -> Content:
     batch = TransformBatch(("odom",) * len(children), children, stamp_ns, np.array(numbers))
-    found = content_of(TFMessage.TYPE_NAME, serialize(TFMessage(batch=batch)))
-    assert found is not None
-    return found
+    transforms = content_of(TFMessage.TYPE_NAME, serialize(TFMessage(batch=batch)))
+    assert transforms is not None
+    return transforms
 
 
 def test_content_of_transforms_has_frames_and_poses_without_stamps() -> None:
     left, right = [1.0, 2, 3, 0, 0, 0, 1], [4.0, 5, 6, 0, 0, 1, 0]
     for children, numbers in ((("a", "b"), [left, right]), (("c", "d"), [left, right]), (("c", "d"), [right, left])):
-        found = content_of_poses(children, numbers, 7)
-        assert found.child_frames.replace("\0", "") == "\n".join(children)
-        assert np.frombuffer(found.poses).reshape(-1, 7).tolist() == numbers
-        assert found == content_of_poses(children, numbers, 9_000_000_000)
-        assert found.is_repeated_by(content_of_poses(children, numbers))
+        transforms = content_of_poses(children, numbers, 7)
+        assert transforms.child_frames.replace("\0", "") == "\n".join(children)
+        assert np.frombuffer(transforms.poses).reshape(-1, 7).tolist() == numbers
+        assert transforms == content_of_poses(children, numbers, 9_000_000_000)
+        assert transforms.is_repeated_by(content_of_poses(children, numbers))
     assert not content_of_poses(("a", "b"), [left, right]).is_repeated_by(content_of_poses(("a", "c"), [left, right]))
 
 

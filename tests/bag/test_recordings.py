@@ -76,14 +76,14 @@ def test_bag_reader_returns_messages_ordered_by_time(tmp_path: Path, storage: st
         assert bag.topics[0].offered_qos == (DESCRIPTION_QOS,)
         assert bag.topics[1].offered_qos == (DEFAULT_QOS, SENSOR_DATA_QOS)
         assert (bag.start_ns, bag.end_ns) == (START, START + 2_000_000_000)
-        found = list(bag.messages())
-    assert [(topic, stamp - START) for topic, stamp, _ in found] == [
+        messages = list(bag.messages())
+    assert [(topic, stamp - START) for topic, stamp, _ in messages] == [
         ("/chatter", 0),
         ("/joint_states", 500_000_000),
         ("/chatter", 1_000_000_000),
         ("/chatter", 2_000_000_000),
     ]
-    assert found[0][2][:4] == b"\x00\x01\x00\x00"
+    assert messages[0][2][:4] == b"\x00\x01\x00\x00"
 
 
 @pytest.mark.parametrize("storage", STORAGES)

@@ -74,10 +74,10 @@ def test_bridged_node_is_listed_with_its_publishers_until_it_closes(networks, so
 
     # On DDS whose an endpoint is comes after the endpoint itself.
     spin_all(lambda: [endpoint.node_name for endpoint in reported()] == ["there"], here)
-    (seen,) = reported()
-    assert seen.topic_type == "std_msgs/msg/String"
-    assert seen.qos_profile.reliability is ReliabilityPolicy.BEST_EFFORT
-    assert seen.qos_profile.depth == 7
+    (reported_endpoint,) = reported()
+    assert reported_endpoint.topic_type == "std_msgs/msg/String"
+    assert reported_endpoint.qos_profile.reliability is ReliabilityPolicy.BEST_EFFORT
+    assert reported_endpoint.qos_profile.depth == 7
     assert "there" in here.node.get_node_names()
     there.close()
     spin_all(lambda: "there" not in here.node.get_node_names(), here)
@@ -93,17 +93,20 @@ def test_bridged_node_is_listed_with_its_subscriptions_and_clients(networks, sou
     there.node.create_client(AddTwoInts, "/far/add")
 
     def reported():
-        found = here.node.get_subscriptions_info_by_topic("/far/chatter")
-        return [endpoint for endpoint in found if endpoint.node_name == "there"]
+        endpoints = here.node.get_subscriptions_info_by_topic("/far/chatter")
+        return [endpoint for endpoint in endpoints if endpoint.node_name == "there"]
 
     def called():
         return dict(here.node.get_client_names_and_types_by_node("there", "/"))
 
     spin_all(lambda: reported() and "/far/add" in called(), here, there)
-    (seen,) = reported()
-    assert (seen.topic_type, seen.topic_type_hash) == ("std_msgs/msg/String", type_hash(String))
-    assert seen.qos_profile.reliability is ReliabilityPolicy.BEST_EFFORT
-    assert seen.qos_profile.deadline == Duration(seconds=2)
+    (reported_endpoint,) = reported()
+    assert (reported_endpoint.topic_type, reported_endpoint.topic_type_hash) == (
+        "std_msgs/msg/String",
+        type_hash(String),
+    )
+    assert reported_endpoint.qos_profile.reliability is ReliabilityPolicy.BEST_EFFORT
+    assert reported_endpoint.qos_profile.deadline == Duration(seconds=2)
     assert called()["/far/add"] == ["example_interfaces/srv/AddTwoInts"]
     assert not subscription.get_publisher_count()
     subscription.destroy()
@@ -339,8 +342,8 @@ def test_two_bridges_deliver_each_message_once_and_one_takes_over(networks):
     publisher = there.node.create_publisher(String, "chatter", EVERYTHING)
 
     def settled() -> bool:
-        shown = [endpoint.node_name for endpoint in there.node.get_subscriptions_info_by_topic("chatter")]
-        return shown.count("here") == 1 and here.node.count_publishers("chatter") == 1
+        node_names = [endpoint.node_name for endpoint in there.node.get_subscriptions_info_by_topic("chatter")]
+        return node_names.count("here") == 1 and here.node.count_publishers("chatter") == 1
 
     spin_all(settled, there, here)
     for number in range(100):
@@ -381,8 +384,8 @@ def test_messages_of_unknown_type_are_bridged_as_raw_bytes(networks):
         announced = session.liveliness().declare_token(token.key)
         stranger = session.declare_publisher(token.data_key)
         spin_all(lambda: stranger.matching_status.matching and here.node.count_publishers("/odd"), here)
-        (seen,) = here.node.get_publishers_info_by_topic("/odd")
-        assert seen.topic_type_hash == type_hash
+        (endpoint,) = here.node.get_publishers_info_by_topic("/odd")
+        assert endpoint.topic_type_hash == type_hash
         for number, gid in enumerate((token.gid, bytes(16)), 1):  # the second as programs that make up their gids
             stranger.put(b"\0\1\0\0abc%d" % number, attachment=attachment.write(number, 2, gid))
         spin_all(lambda: len(received) == 2, here)

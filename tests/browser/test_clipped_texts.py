@@ -85,15 +85,15 @@ def test_control_texts_are_not_clipped(start: Start, browser: Browser, tmp_path,
     page = context.new_page()
     page.goto(program.url)
     page.wait_for_function("window.linkwright?.ready === true")
-    found = {}
+    cut_texts = {}
     for width, height in ((1280, 800), (1024, 768), (800, 600)):
         page.set_viewport_size({"width": width, "height": height})
         page.wait_for_function(f"document.querySelector('.dock').clientWidth === {width}")
         page.evaluate(OPEN_ALL)
         until(page, "lw.settled")
-        found[width] = page.evaluate(CUT)
+        cut_texts[width] = page.evaluate(CUT)
     context.close()
-    assert not any(found.values()), found
+    assert not any(cut_texts.values()), cut_texts
 
 
 @pytest.mark.parametrize(("width", "height"), [(800, 600), (390, 844)])

@@ -55,10 +55,10 @@ def files(tmp_path: Path) -> tuple[Path, Path]:
 def looks(page: Page, index: int) -> dict[str, tuple[str, float]]:
     """Color and opacity of each link of the first or second robot."""
     robots = [display["drawn"] for display in state(page, "displays") if display["class"].endswith("RobotModel")]
-    shown = {name: text["visuals"] for name, text in robots[index]["links"].items()}
+    visuals = {name: text["visuals"] for name, text in robots[index]["links"].items()}
     return {
         name: (shapes[0]["materials"][0]["color"], round(shapes[0]["materials"][0]["opacity"], 2))
-        for name, shapes in shown.items()
+        for name, shapes in visuals.items()
         if shapes
     }
 

@@ -101,8 +101,8 @@ def test_handle_moves_link_along_one_axis(start, open_page, file):
     page.get_by_role("button", name="Snap to a grid").click()
     canvas = page.locator("canvas").first.bounding_box()
     until(page, "lw.panels.editing.handles !== undefined")
-    found = state(page, "panels.editing.handles.z")
-    x, y = canvas["x"] + found["x"], canvas["y"] + found["y"]
+    handle = state(page, "panels.editing.handles.z")
+    x, y = canvas["x"] + handle["x"], canvas["y"] + handle["y"]
     page.mouse.move(x, y)
     page.mouse.down()
     for step in range(1, 6):

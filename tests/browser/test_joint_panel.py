@@ -83,11 +83,11 @@ def test_sweep_moves_joints_until_stopped(page):
     page.get_by_label("Order of the joints").select_option("all")
     page.get_by_role("group", name="Sweep").get_by_label("Speed").select_option("4")
     page.get_by_role("button", name="Start the sweep").click()
-    seen = set()
+    positions_seen = set()
 
     def swept() -> bool:
-        seen.add(round(state(page, "joints.upper_joint"), 2))
-        return len(seen) >= 6 and max(seen) - min(seen) > 1.5
+        positions_seen.add(round(state(page, "joints.upper_joint"), 2))
+        return len(positions_seen) >= 6 and max(positions_seen) - min(positions_seen) > 1.5
 
     becomes(swept, True)
     page.get_by_role("button", name="Stop the sweep").click()

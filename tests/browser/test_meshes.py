@@ -85,9 +85,12 @@ def test_broken_mesh_is_reported_at_its_link(start, open_page, robot, tmp_path):
         (tmp_path / name).write_bytes(data)
     links = [link(f"broken_{name[:-4]}", f"file://{tmp_path}/{name}", -0.4) for name in BROKEN]
     page = open_page(start("view", robot(*links)))
-    named = {f"broken_{name[:-4]}": (name, words) for name, (_, words) in BROKEN.items()}
-    becomes(lambda: {link: rows(page).get(link, ("", ""))[0] for link in named}, dict.fromkeys(named, "error"))
-    for link_name, (name, words) in named.items():
+    files_by_link = {f"broken_{name[:-4]}": (name, words) for name, (_, words) in BROKEN.items()}
+    becomes(
+        lambda: {link: rows(page).get(link, ("", ""))[0] for link in files_by_link},
+        dict.fromkeys(files_by_link, "error"),
+    )
+    for link_name, (name, words) in files_by_link.items():
         text = rows(page)[link_name][1]
         assert name in text
         assert words in text

@@ -46,8 +46,8 @@ def seen(page: Any, *points: tuple[float, float]) -> list[Color]:
 
 
 def drawn(page: Any, display: int = 0) -> dict[str, Any]:
-    found: dict[str, Any] = state(page, f"displays[{display}].drawn")
-    return found
+    drawing: dict[str, Any] = state(page, f"displays[{display}].drawn")
+    return drawing
 
 
 def three_points(**fields: Any) -> Any:
@@ -228,9 +228,9 @@ def layers(page: Any) -> list[str]:
     tools.send("LayerTree.enable")
     wait_until(lambda: page.evaluate("1") and any(messages))
     nodes = [layer["backendNodeId"] for layer in next(filter(None, reversed(messages))) if "backendNodeId" in layer]
-    found = [tools.send("DOM.describeNode", {"backendNodeId": node})["node"] for node in nodes]
+    elements = [tools.send("DOM.describeNode", {"backendNodeId": node})["node"] for node in nodes]
     tools.detach()
-    return [" ".join([node["nodeName"], *node.get("attributes", [])]) for node in found]
+    return [" ".join([node["nodeName"], *node.get("attributes", [])]) for node in elements]
 
 
 def test_image_is_composited_without_repainting_page(live, open_page):

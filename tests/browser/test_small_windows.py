@@ -60,8 +60,8 @@ RECTANGLE = """([selector, part, text]) => {
 
 def box(page: Page, selector: str, *, part: str | None = None, text: str = "") -> dict[str, float]:
     """The first element to be seen, or the first that has such a part with a text in it."""
-    found: dict[str, float] = page.wait_for_function(RECTANGLE, arg=[selector, part, text]).json_value()
-    return found
+    rectangle: dict[str, float] = page.wait_for_function(RECTANGLE, arg=[selector, part, text]).json_value()
+    return rectangle
 
 
 def place(page: Page, name: str) -> dict[str, float]:

@@ -63,10 +63,10 @@ def test_keep_fixed_joints_preserves_links(folder, capsys):
 
 def test_converted_world_contains_includes_at_saved_poses(folder):
     assert main(["convert", "w.world", "-o", "flat.world"]) == 0
-    found = examine_world(folder / "flat.world", environment={"HOME": "/nowhere"})
-    assert found.diagnostics == ()
-    assert found.sdf is not None
-    world = found.sdf.worlds[0]
+    model_world = examine_world(folder / "flat.world", environment={"HOME": "/nowhere"})
+    assert model_world.diagnostics == ()
+    assert model_world.sdf is not None
+    world = model_world.sdf.worlds[0]
     assert (world.gravity, world.includes, world.states) == ((0.0, 0.0, -1.0), (), ())
     assert world.models[0].pose.pose.xyz == (4.0, 5.0, 6.0)
 

@@ -215,8 +215,8 @@ def statuses(commands: Mapping[str, Sequence[str]], folder: Path, redirection: s
 @pytest.mark.skipif(sys.platform != "linux", reason="/dev/full is Linux's")
 @pytest.mark.parametrize(("redirection", "reason"), [(">/dev/full", "No space left"), (">&-", "Bad file descriptor")])
 def test_unwritable_standard_output_is_one_error(robot: Path, redirection: str, reason: str) -> None:
-    found, printed = statuses(QUICK, robot.parent, redirection)
-    assert found == dict.fromkeys(QUICK, 1)
+    statuses_by_command, printed = statuses(QUICK, robot.parent, redirection)
+    assert statuses_by_command == dict.fromkeys(QUICK, 1)
     assert printed.count(f"error[CLI202]: cannot write to standard output: {reason}") == len(QUICK)
     assert "bug in Linkwright" not in printed
     assert "Exception ignored" not in printed
@@ -256,8 +256,8 @@ def test_output_truncated_by_full_disk_is_an_error(
 @pytest.mark.skipif(sys.platform == "win32", reason="there is no fork")
 def test_closed_standard_input_is_treated_as_empty(robot: Path) -> None:
     commands = {**QUICK, "check -": ["xacro", "-"], "pub": ["interface", "show", "-"]}
-    found, printed = statuses(commands, robot.parent, "<&-")
-    assert {name for name, status in found.items() if status} == {"check -", "pub"}
+    statuses_by_command, printed = statuses(commands, robot.parent, "<&-")
+    assert {name for name, status in statuses_by_command.items() if status} == {"check -", "pub"}
     assert "bug in Linkwright" not in printed
 
 

@@ -114,10 +114,10 @@ def test_tree_indentation_of_long_chain_is_limited() -> None:
 
 
 def test_many_findings_print_errors_and_count() -> None:
-    found = [Diagnostic("LW101", phrase("warning"), severity=Severity.WARNING) for _ in range(2_000)]
-    found += [Diagnostic("LW102", phrase("mistake"))] * 3
+    diagnostics = [Diagnostic("LW101", phrase("warning"), severity=Severity.WARNING) for _ in range(2_000)]
+    diagnostics += [Diagnostic("LW102", phrase("mistake"))] * 3
     stream = io.StringIO()
-    print_diagnostics(found, stream)
+    print_diagnostics(diagnostics, stream)
     lines = stream.getvalue().splitlines()
     assert len(lines) == MAX_PRINTED + 1
     assert sum("mistake" in line for line in lines) == 3

@@ -46,10 +46,10 @@ def test_contradictory_arguments_are_rejected(
 
 def test_several_files_are_viewed_as_one_recording(folder: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     (file,) = (folder / "drive").glob("*.mcap")
-    shown: list[Path] = []
-    monkeypatch.setattr(bag_view, "run_bag_view", lambda files, *_, **__: shown.extend(files) or 0)
+    files_shown: list[Path] = []
+    monkeypatch.setattr(bag_view, "run_bag_view", lambda files, *_, **__: files_shown.extend(files) or 0)
     assert main(["view", str(file), str(file.relative_to(folder))]) == 0
-    assert [path.absolute() for path in shown] == [file, file]
+    assert [path.absolute() for path in files_shown] == [file, file]
 
 
 def test_ros1_recording_error_suggests_conversion(folder: Path, capsys: pytest.CaptureFixture[str]) -> None:

@@ -53,8 +53,8 @@ def described(text: str) -> tuple[list[HardwareDescription], list[str]]:
     """The hardware in a description, and what is wrong with it."""
     reading = DescriptionLibrary().read(text)
     assert reading.robot is not None
-    found, findings = hardware_from_robot(reading.robot)
-    return found, [f"{finding.code} {finding.message}" for finding in findings]
+    hardware, findings = hardware_from_robot(reading.robot)
+    return hardware, [f"{finding.code} {finding.message}" for finding in findings]
 
 
 def manager(

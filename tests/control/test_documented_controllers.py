@@ -38,8 +38,8 @@ DOCUMENTED = [
 
 def shown(text: str, language: str, part: str) -> str:
     """Return the code block of a page in a language that contains a text."""
-    found: list[str] = re.findall(rf"```{language}\n(.*?)```", text, re.DOTALL)
-    (block,) = (block for block in found if part in block)
+    code_blocks: list[str] = re.findall(rf"```{language}\n(.*?)```", text, re.DOTALL)
+    (block,) = (block for block in code_blocks if part in block)
     return block
 
 
@@ -105,9 +105,9 @@ async def test_manager_runs_controller_of_package(graph):
 def test_package_with_import_error_is_reported_by_name():
     with pytest.raises(LinkwrightError) as raised:
         controller_class("my/Broken")
-    (found,) = raised.value.diagnostics
-    assert found.code == "CTL104"
-    assert "my_controllers" in str(found.hint)
+    (diagnostic,) = raised.value.diagnostics
+    assert diagnostic.code == "CTL104"
+    assert "my_controllers" in str(diagnostic.hint)
 
 
 def names(table: Any) -> set[str]:

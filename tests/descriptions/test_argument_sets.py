@@ -66,18 +66,18 @@ def test_command_uses_default_of_launch_argument(workspace: Path) -> None:
 
 def test_each_choice_of_launch_argument_is_a_set(workspace: Path) -> None:
     text = launch_file("choices=['a_', 'b_']")
-    found = sets(workspace, "arm/launch/view.launch.py", text)
-    assert [value["prefix"] for value in values(found)] == ["a_", "b_"]
-    assert found[1].varied == ("prefix",)
-    assert found[0].span is not None
-    assert found[0].span.file.endswith("view.launch.py")
+    argument_sets = sets(workspace, "arm/launch/view.launch.py", text)
+    assert [value["prefix"] for value in values(argument_sets)] == ["a_", "b_"]
+    assert argument_sets[1].varied == ("prefix",)
+    assert argument_sets[0].span is not None
+    assert argument_sets[0].span.file.endswith("view.launch.py")
 
 
 def test_launch_argument_without_values_stays_open(workspace: Path) -> None:
     text = launch_file()
-    (found,) = sets(workspace, "arm/launch/view.launch.py", text)
-    assert found.runtime_names == ("prefix",)
-    assert not found.is_complete
+    (argument_set,) = sets(workspace, "arm/launch/view.launch.py", text)
+    assert argument_set.runtime_names == ("prefix",)
+    assert not argument_set.is_complete
 
 
 def test_dependent_package_provides_values(workspace: Path) -> None:
@@ -130,8 +130,8 @@ def test_expands():
         path = get_package_share_path('arm') / 'urdf' / 'arm.urdf.xacro'
         xacro.process_file(path, mappings=dict(prefix=prefix, dof=dof))
 """
-    found = values(sets(workspace, "arm/test/test_arm.py", text))
-    assert found == [{"prefix": "a_", "dof": "1"}, {"prefix": "b_", "dof": "1"}, {"prefix": "a_", "dof": "2"}]
+    argument_values = values(sets(workspace, "arm/test/test_arm.py", text))
+    assert argument_values == [{"prefix": "a_", "dof": "1"}, {"prefix": "b_", "dof": "1"}, {"prefix": "a_", "dof": "2"}]
 
 
 def test_shell_command_in_f_string_provides_values(workspace: Path) -> None:
@@ -232,8 +232,8 @@ def test_environment_variable_uses_written_default(
 ) -> None:
     text = f"""<launch><arg name="prefix" default="{default}"/><param name="robot_description"
         command="$(find xacro)/xacro '$(find arm)/urdf/arm.urdf.xacro' prefix:=$(arg prefix)"/></launch>"""
-    (found,) = sets(workspace, "arm/launch/view.launch", text)
-    assert (found.values, found.runtime_names) == (known, is_open)
+    (argument_set,) = sets(workspace, "arm/launch/view.launch", text)
+    assert (argument_set.values, argument_set.runtime_names) == (known, is_open)
 
 
 def test_share_folder_inside_path_is_uncertain(workspace: Path) -> None:
@@ -310,9 +310,9 @@ def content(urdf_arguments={{}}):
     ids=["extend", "append", "default", "stars", "or", "key", "update", "process_file"],
 )
 def test_helper_without_known_callers_is_incomplete(workspace: Path, text: str) -> None:
-    (found,) = sets(workspace, "user/launch/helper.py", HEAD + text)
-    assert "" in found.runtime_names
-    assert not found.is_complete
+    (argument_set,) = sets(workspace, "user/launch/helper.py", HEAD + text)
+    assert "" in argument_set.runtime_names
+    assert not argument_set.is_complete
 
 
 @pytest.mark.parametrize(

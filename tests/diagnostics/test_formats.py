@@ -111,10 +111,10 @@ def test_json_contains_template_and_arguments():
 
 @pytest.mark.usefixtures("lang")
 def test_sarif_results_reference_rule_message_strings():
-    found = _made_of_templates()
-    (run,) = json.loads(format_diagnostics(found, "sarif"))["runs"]
+    diagnostics = _made_of_templates()
+    (run,) = json.loads(format_diagnostics(diagnostics, "sarif"))["runs"]
     rules = run["tool"]["driver"]["rules"]
-    for result, diagnostic in zip(run["results"], found, strict=True):
+    for result, diagnostic in zip(run["results"], diagnostics, strict=True):
         message = result["message"]
         template = rules[result["ruleIndex"]]["messageStrings"][message["id"]]["text"]
         assert template.format(*message.get("arguments", [])) == diagnostic.message

@@ -231,8 +231,8 @@ def test_machine_formats_stay_english_unless_language_is_set(monkeypatch: pytest
 
 
 def test_translated_returns_same_list_in_english() -> None:
-    found = [finding()]
-    assert translated(found) is found
+    diagnostics = [finding()]
+    assert translated(diagnostics) is diagnostics
 
 
 # the command line

@@ -158,10 +158,12 @@ def test_xacro_errors_are_translated(
         case.write(folder)
         monkeypatch.chdir(folder)
         try:
-            found: Iterable[Diagnostic] = expand("main.xacro", case.arguments, packages={"pkg_a": "/a"}).diagnostics
+            diagnostics: Iterable[Diagnostic] = expand(
+                "main.xacro", case.arguments, packages={"pkg_a": "/a"}
+            ).diagnostics
         except LinkwrightError as error:
-            found = error.diagnostics
-        assert_translated(found, words)
+            diagnostics = error.diagnostics
+        assert_translated(diagnostics, words)
 
 
 def test_urdf_errors_are_translated(words: Recording) -> None:

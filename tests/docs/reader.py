@@ -219,8 +219,8 @@ class Reader:
             return 0
         self._first.type(f"linkwright topic info {topic}")
         self._first.status()
-        found = re.search(r"Subscription count: (\d+)", self._first.said)
-        return int(found[1]) if found is not None else 0
+        match = re.search(r"Subscription count: (\d+)", self._first.said)
+        return int(match[1]) if match is not None else 0
 
     def _is_there(self, node: str) -> bool:
         return node in self._first.run("linkwright node list").splitlines()

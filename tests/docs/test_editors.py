@@ -91,5 +91,7 @@ def test_patterns_match_supported_formats():
     for ending in XML_FILES:
         assert any(fnmatch.fnmatch(f"a{ending}", pattern) or ending == pattern for pattern in PATTERNS["xml"]), ending
     for pattern in (*PATTERNS["yaml"], *PATTERNS["interface"], "package.xml", "*.srdf", "*launch.py", "*/launch/*.py"):
-        assert any(known.covers(Path(example(pattern))) for known in FORMATS) or pattern == "*launch.py", pattern
-    assert any(known.covers(Path("a.launch.py")) for known in FORMATS)
+        assert any(file_format.covers(Path(example(pattern))) for file_format in FORMATS) or pattern == "*launch.py", (
+            pattern
+        )
+    assert any(file_format.covers(Path("a.launch.py")) for file_format in FORMATS)

@@ -37,8 +37,8 @@ def checkout(tmp_path: Path) -> Path:
     if not (REPOSITORY / PAGE).is_dir() or not (REPOSITORY / ".git").exists():
         pytest.skip("this is no checkout with a built page")
     folder = tmp_path / "checkout"
-    listed = run(["git", "ls-files", "-z", "--cached", "--others", "--exclude-standard"], cwd=REPOSITORY).stdout
-    for name in listed.split("\0")[:-1]:
+    file_names = run(["git", "ls-files", "-z", "--cached", "--others", "--exclude-standard"], cwd=REPOSITORY).stdout
+    for name in file_names.split("\0")[:-1]:
         if not name.startswith(("benchmarks/", "docs/", "tests/")) and (REPOSITORY / name).is_file():
             (folder / name).parent.mkdir(parents=True, exist_ok=True)
             shutil.copy(REPOSITORY / name, folder / name)
@@ -101,11 +101,11 @@ def test_first_readme_commands_run_in_fresh_checkout(checkout: Path, newcomer: d
         try:
             for line in shell.stdout:
                 messages.append(line)
-                if found := re.search(r"Viewer: (http://\S+)", line):
+                if match := re.search(r"Viewer: (http://\S+)", line):
                     break
             else:
                 pytest.fail("".join(messages))
-            with urllib.request.build_opener(urllib.request.ProxyHandler({})).open(found[1]) as answer:
+            with urllib.request.build_opener(urllib.request.ProxyHandler({})).open(match[1]) as answer:
                 assert answer.status == 200
             wait_until((checkout.parent / "opened").is_file, what="a browser that was told to open the page")
         finally:

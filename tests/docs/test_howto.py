@@ -26,8 +26,8 @@ def test_both_languages_show_same_files(page: Path) -> None:
 @pytest.mark.slow
 def test_drive_and_world_guides_complete_urdf_without_masses(follow: Callable[..., Path]) -> None:
     page = DOCS / "howto-drive.md"
-    shown = next(block.text.splitlines()[0] for block in blocks(page) if block.language == "text")
-    follow(page, {"linkwright drive cart.urdf": Known(shows=shown), PUBLISH: Known(shows="publishing #1")})
+    first_line = next(block.text.splitlines()[0] for block in blocks(page) if block.language == "text")
+    follow(page, {"linkwright drive cart.urdf": Known(shows=first_line), PUBLISH: Known(shows="publishing #1")})
     home = follow(DOCS / "howto-world.md", {})
     cart = (home / "cart.urdf").read_text(encoding="utf-8")
     assert cart.count("<mass ") == 4

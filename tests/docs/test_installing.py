@@ -34,10 +34,10 @@ OTHERS = {
 @cache
 def install_commands() -> list[tuple[Path, str]]:
     """Each command of pip, pipx and uv that users read or see printed: where, and what it installs."""
-    found = [path for name in WRITTEN for path in sorted([REPOSITORY / name, *(REPOSITORY / name).rglob("*")])]
+    paths = [path for name in WRITTEN for path in sorted([REPOSITORY / name, *(REPOSITORY / name).rglob("*")])]
     return [
         (path.relative_to(REPOSITORY), match["what"])
-        for path in found
+        for path in paths
         if path.suffix in KINDS and path.is_file() and RECORDS not in path.parents
         for match in INSTALLING.finditer(path.read_text(encoding="utf-8"))
     ]
@@ -55,7 +55,11 @@ def test_install_commands_match_a_checkout(monkeypatch: pytest.MonkeyPatch, tmp_
     monkeypatch.chdir(tmp_path)
     for path, command in install_commands():
         if command not in OTHERS:
-            extras = [extra for listed in re.findall(r"\[([\w,]+)\]", command) for extra in listed.split(",")]
+            extras = [
+                extra
+                for extras_of_command in re.findall(r"\[([\w,]+)\]", command)
+                for extra in extras_of_command.split(",")
+            ]
             assert set(extras) <= {*EXTRAS, "all"}, (path, command)
             installation = Installation(Origin(str(tmp_path), command.startswith("-e ")), ("pip", "install"))
             in_order = re.sub(r"\[.*\]", f"[{','.join(sorted(extras))}]", command)

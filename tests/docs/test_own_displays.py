@@ -101,21 +101,21 @@ async def test_example_display_draws_and_removes_tracked_objects(street):
         assert shown_markers(display) == {}  # there is no frame 'street' yet
         w.move({("base", "street"): (0, 0, 1, 0, 0, 0, 1)}, static=True)
         await w.settle()
-        drawn = shown_markers(display)
-        assert {name: marker["shape"] for name, marker in drawn.items()} == {
+        markers = shown_markers(display)
+        assert {name: marker["shape"] for name, marker in markers.items()} == {
             "boxes/1": "cube",
             "names/1": "text",
             "paths/1": "line_strip",
             "boxes/2": "cube",
             "names/2": "text",
         }
-        assert drawn["boxes/1"]["pose"][:3] == [5, 0, 1]
-        assert drawn["names/1"]["text"] == "car 3.0 m/s"
+        assert markers["boxes/1"]["pose"][:3] == [5, 0, 1]
+        assert markers["names/1"]["text"] == "car 3.0 m/s"
         display.set_property(("Show Names",), False)
         display.set_property(("Alpha",), 0.25)
-        drawn = shown_markers(display)
-        assert sorted(drawn) == ["boxes/1", "boxes/2", "paths/1"]
-        assert drawn["boxes/2"]["color"] == pytest.approx([1, 0.6, 0, 0.25])
+        markers = shown_markers(display)
+        assert sorted(markers) == ["boxes/1", "boxes/2", "paths/1"]
+        assert markers["boxes/2"]["color"] == pytest.approx([1, 0.6, 0, 0.25])
         publisher.publish(seen(car(2, -4.0, speed=math.inf)))
         await w.settle()
         assert list(shown_markers(display)) == ["boxes/2"]

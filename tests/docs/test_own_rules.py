@@ -60,10 +60,10 @@ def test_shown_finding_is_reported_only_in_package(team, tmp_path):
     package.mkdir()
     (package / "package.xml").write_text("<package format='3'><name>crane_description</name></package>")
     (package / "crane.urdf").write_text('<robot name="crane"><link name="hook"/></robot>')
-    (found,) = [finding for finding in check(package / "crane.urdf") if finding.code == "TEAM001"]
+    (diagnostic,) = [finding for finding in check(package / "crane.urdf") if finding.code == "TEAM001"]
     text = next(block.text for block in blocks(PAGES[0]) if "TEAM001]" in block.text)
-    assert found.message in text
-    assert found.hint in text
+    assert diagnostic.message in text
+    assert diagnostic.hint in text
 
 
 def test_docstring_is_rule_page(team):

@@ -81,9 +81,9 @@ def site(tmp_path_factory: pytest.TempPathFactory) -> Path:
 
 
 def tabs(page: Path) -> list[str]:
-    found = re.search(r'<nav class="md-tabs".*?</nav>', page.read_text(encoding="utf-8"), re.DOTALL)
-    assert found is not None
-    return [text.strip() for text in re.findall(r'class="md-tabs__link">\s*(.*?)\s*</a>', found[0], re.DOTALL)]
+    match = re.search(r'<nav class="md-tabs".*?</nav>', page.read_text(encoding="utf-8"), re.DOTALL)
+    assert match is not None
+    return [text.strip() for text in re.findall(r'class="md-tabs__link">\s*(.*?)\s*</a>', match[0], re.DOTALL)]
 
 
 def languages(page: Path) -> dict[str, str]:
@@ -104,9 +104,9 @@ def test_navigation_has_tutorials_guides_reference_and_explanation() -> None:
 
 
 def test_english_pages_are_listed_once() -> None:
-    listed = Counter(page for _, page in entries(SETTINGS["nav"]) if page)
+    pages = Counter(page for _, page in entries(SETTINGS["nav"]) if page)
     there = {path.relative_to(DOCS).as_posix() for path in DOCS.rglob("*.md") if "zh" not in path.parts}
-    assert dict(listed) == dict.fromkeys((name for name in there if not name.startswith("decisions/0")), 1)
+    assert dict(pages) == dict.fromkeys((name for name in there if not name.startswith("decisions/0")), 1)
 
 
 def test_navigation_titles_have_chinese_translation() -> None:

@@ -68,14 +68,14 @@ async def test_late_node_name_identifies_endpoint_of_command(joined: Graph) -> N
         transport.endpoints = [TELEOP, replace(LATE, node=NodeIdentity("_ros2cli_2", "/"))]
 
     asyncio.get_running_loop().call_later(0.2, name)
-    seen = await observe_graph(joined, transport)
-    assert seen.endpoints == (TELEOP,)
+    observation = await observe_graph(joined, transport)
+    assert observation.endpoints == (TELEOP,)
 
 
 async def test_unnamed_endpoint_is_waited_for_one_second_at_most(joined: Graph) -> None:
     start = time.monotonic()
-    seen = await observe_graph(joined, RemoteTransport(TELEOP, LATE))
-    assert seen.endpoints == (TELEOP, LATE)
+    observation = await observe_graph(joined, RemoteTransport(TELEOP, LATE))
+    assert observation.endpoints == (TELEOP, LATE)
     assert time.monotonic() - start > 0.9
 
 
@@ -164,9 +164,9 @@ async def test_simulator_stamps_have_no_delay_and_world_poses_are_not_frames(joi
         for publisher in (poses, frames):
             publisher.publish(message)
         await asyncio.sleep(0.01)
-    seen = watched.result()
-    assert [(transform.parent, transform.child) for transform in seen.transforms] == [("odom", "base")]
-    assert [(stamp.topic, stamp.behind_ns) for stamp in seen.stamps] == [("/robot1/tf", 0)]
+    observation = watched.result()
+    assert [(transform.parent, transform.child) for transform in observation.transforms] == [("odom", "base")]
+    assert [(stamp.topic, stamp.behind_ns) for stamp in observation.stamps] == [("/robot1/tf", 0)]
 
 
 async def test_latched_and_bond_messages_have_no_recorded_stamps(joined: Graph) -> None:

@@ -40,13 +40,15 @@ def collada_with_library(parts: str) -> str:
 
 def corners(data: bytes, kind: str, *, is_plain: bool) -> np.ndarray:
     """Return the sorted corners of all triangles in meters, each from its lowest corner; shape (n, 9)."""
-    found = []
+    vertices_by_mesh = []
     for mesh, matrix, unit, _ in (placed := placed_meshes(data, kind, is_plain=is_plain)):
         assert isinstance(mesh, PlainMesh) is is_plain
         vertices = (np.asarray(mesh.vertices) @ matrix[:3, :3].T + matrix[:3, 3]) * unit
-        found.append(vertices.round(5))
+        vertices_by_mesh.append(vertices.round(5))
     rows = [
-        list(map(tuple, vertices[face])) for vertices, mesh in zip(found, placed, strict=True) for face in mesh.faces
+        list(map(tuple, vertices[face]))
+        for vertices, mesh in zip(vertices_by_mesh, placed, strict=True)
+        for face in mesh.faces
     ]
     turned = [face[first:] + face[:first] for face in rows for first in [face.index(min(face))]]
     return np.array(sorted(turned)).reshape(-1, 9)

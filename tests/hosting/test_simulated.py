@@ -43,12 +43,14 @@ async def test_headless_robot_publishes_odometry_joint_states_and_tf():
     err = io.StringIO()
     view = SimulatedView(in_an_empty_world(), PackageFinder(start=MBOT.parent), OPTIONS, LaunchLog(io.StringIO(), err))
     listener = view.host.graph.create_node("listener")
-    heard = {name: Recording(view.host.graph, listener, name) for name in ("/odom", "/joint_states", "/tf", "/clock")}
-    assert await view.run(None), err.getvalue()
-    assert all(len(recording) > 0 for recording in heard.values()), {
-        name: len(recording) for name, recording in heard.items()
+    recordings = {
+        name: Recording(view.host.graph, listener, name) for name in ("/odom", "/joint_states", "/tf", "/clock")
     }
-    assert heard["/joint_states"].last.header.stamp.sec >= 1
+    assert await view.run(None), err.getvalue()
+    assert all(len(recording) > 0 for recording in recordings.values()), {
+        name: len(recording) for name, recording in recordings.items()
+    }
+    assert recordings["/joint_states"].last.header.stamp.sec >= 1
 
 
 async def test_viewer_uses_world_frame_and_simulated_time():

@@ -70,18 +70,18 @@ class Shown:
 
     async def look(self, function: Callable[[Simulation], Any]) -> Any:
         """Return the result of a function in the thread of the simulation."""
-        seen: list[Any] = []
-        self.server.exchange.post(lambda: seen.append(function(self.server.simulation)))
-        await eventually(lambda: bool(seen))
-        return seen[0]
+        outcomes: list[Any] = []
+        self.server.exchange.post(lambda: outcomes.append(function(self.server.simulation)))
+        await eventually(lambda: bool(outcomes))
+        return outcomes[0]
 
     async def when(self, condition: Callable[[Simulation], bool]) -> None:
         """Wait until a condition holds in the thread of the simulation."""
-        seen: list[bool] = []
+        outcomes: list[bool] = []
 
         def is_so() -> bool:
-            self.server.exchange.post(lambda: seen.append(condition(self.server.simulation)))
-            return any(seen)
+            self.server.exchange.post(lambda: outcomes.append(condition(self.server.simulation)))
+            return any(outcomes)
 
         await eventually(is_so, what=self.err.getvalue)
 

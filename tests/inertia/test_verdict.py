@@ -21,8 +21,8 @@ def verdict_on(tmp_path, inertial, shapes=BALL, more=""):
         '<joint name="j" type="continuous"><parent link="world"/><child link="a"/></joint>' + more + "</robot>"
     )
     robot = read(parse(text, "r.urdf")).robot
-    found = estimate(robot.links["a"], MeshLibrary(PackageFinder(start=[tmp_path]), tmp_path))
-    return assess(robot.links["a"], found, Bodies(robot))
+    inertia_estimate = estimate(robot.links["a"], MeshLibrary(PackageFinder(start=[tmp_path]), tmp_path))
+    return assess(robot.links["a"], inertia_estimate, Bodies(robot))
 
 
 def inertial(mass=4.0, moment=0.016, origin="0 0 0"):

@@ -24,9 +24,9 @@ def write(tmp_path):
         path = tmp_path / name
         path.write_bytes(text.encode())
         description = examine(path)
-        found = infer(description.robot, MeshLibrary(PackageFinder(start=tmp_path), tmp_path))
-        written = write_inference(description.robot, found)
-        return written, read(complete_description(description.document, found)).robot, path.read_bytes().decode()
+        inference = infer(description.robot, MeshLibrary(PackageFinder(start=tmp_path), tmp_path))
+        written = write_inference(description.robot, inference)
+        return written, read(complete_description(description.document, inference)).robot, path.read_bytes().decode()
 
     return run
 
@@ -102,8 +102,8 @@ def test_file_changed_since_reading_is_refused(tmp_path):
     path = tmp_path / "r.urdf"
     path.write_text('<robot name="r"><link name="a"/></robot>')
     description = examine(path)
-    found = infer(description.robot, MeshLibrary(PackageFinder(start=tmp_path), tmp_path))
+    inference = infer(description.robot, MeshLibrary(PackageFinder(start=tmp_path), tmp_path))
     path.write_text('<robot name="r"><link name="abc"/></robot>')
-    written = write_inference(description.robot, found)
+    written = write_inference(description.robot, inference)
     assert "has changed since it was read" in written.refused[0].message
     assert path.read_text() == '<robot name="r"><link name="abc"/></robot>'

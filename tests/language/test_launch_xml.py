@@ -142,8 +142,8 @@ def test_remapping_completion_offers_topics_of_the_node(at):
 
 
 def test_hover_of_executable_shows_topics(at):
-    found = at('<node pkg="teleop_twist_keyboard" exec="teleop_twist_key|board"/>').hover()
-    assert "**cmd_vel** `geometry_msgs/msg/Twist`, publisher" in found
+    hover = at('<node pkg="teleop_twist_keyboard" exec="teleop_twist_key|board"/>').hover()
+    assert "**cmd_vel** `geometry_msgs/msg/Twist`, publisher" in hover
 
 
 def test_remapping_completion_reads_sources_of_own_node(at):
@@ -155,10 +155,10 @@ def test_remapping_completion_reads_sources_of_own_node(at):
     )
     place.document.project.index.refresh()
     assert place.labels() == ["glow", "~/run"]
-    found = at(node.format("gl|ow"))
-    found.document.project.index.refresh()
-    assert "publisher, blink.py" in found.hover()
-    assert found.targets() == ["blink.py:glow"]
+    document = at(node.format("gl|ow"))
+    document.document.project.index.refresh()
+    assert "publisher, blink.py" in document.hover()
+    assert document.targets() == ["blink.py:glow"]
 
 
 def test_parameters_are_completed_by_executable(at):

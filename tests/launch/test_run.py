@@ -298,6 +298,6 @@ def test_missing_parts_of_launch_file_itself_cannot_be_skipped(write: Write, tex
     for skip, notes in ((True, 1), (False, 0)):
         with pytest.raises(LinkwrightError) as caught:
             run_launch(target, options=LaunchOptions(skip_missing=skip, open_browser=False))
-        (found,) = caught.value.diagnostics
-        assert found.hint
-        assert len([note for note in found.notes if note.message.startswith("the launch file itself")]) == notes
+        (diagnostic,) = caught.value.diagnostics
+        assert diagnostic.hint
+        assert len([note for note in diagnostic.notes if note.message.startswith("the launch file itself")]) == notes

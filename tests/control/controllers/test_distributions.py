@@ -28,15 +28,17 @@ def declared(controller) -> set[str]:
     ids=["drive", "trajectory", "car"],
 )
 async def test_declared_parameters_match_distribution(stand, monkeypatch, kind, parameters, humble, jazzy):
-    found = {}
+    names_by_distribution = {}
     for distribution in ("", "humble", "jazzy"):
         monkeypatch.setenv("ROS_DISTRO", distribution)
-        found[distribution] = declared(stand.make(controller_class(kind), f"it_{distribution}", **parameters))
-    assert found[""] == found["humble"]
-    assert found["humble"] >= humble
-    assert not found["humble"] & jazzy
-    assert found["jazzy"] >= jazzy
-    assert not found["jazzy"] & humble
+        names_by_distribution[distribution] = declared(
+            stand.make(controller_class(kind), f"it_{distribution}", **parameters)
+        )
+    assert names_by_distribution[""] == names_by_distribution["humble"]
+    assert names_by_distribution["humble"] >= humble
+    assert not names_by_distribution["humble"] & jazzy
+    assert names_by_distribution["jazzy"] >= jazzy
+    assert not names_by_distribution["jazzy"] & humble
 
 
 @pytest.mark.parametrize(("distribution", "allowed"), [("humble", True), ("jazzy", False)])

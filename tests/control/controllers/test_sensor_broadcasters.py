@@ -151,6 +151,6 @@ async def test_missing_or_invalid_parameters_are_rejected(stand, kind, parameter
 def test_admittance_controller_is_rejected_with_hint():
     with pytest.raises(LinkwrightError) as raised:
         controller_class("admittance_controller/AdmittanceController")
-    (found,) = raised.value.diagnostics
-    assert found.code == "CTL103"
-    assert "does not support admittance control" in str(found.hint)
+    (diagnostic,) = raised.value.diagnostics
+    assert diagnostic.code == "CTL103"
+    assert "does not support admittance control" in str(diagnostic.hint)

@@ -93,8 +93,8 @@ async def test_failed_hardware_stops_its_controllers_and_can_be_reactivated(grap
 
     arm.wrong = wrong
     await advance(graph, clock, 3)
-    listed = (await ask(graph, node, "list_controllers")).controller
-    assert {controller.name: controller.state for controller in listed} == {"hips": "inactive", "knees": "active"}
+    controllers = (await ask(graph, node, "list_controllers")).controller
+    assert {controller.name: controller.state for controller in controllers} == {"hips": "inactive", "knees": "active"}
     components = (await ask(graph, node, "list_hardware_components")).component
     assert {component.name: component.state.label for component in components} == {
         "arm": "unconfigured",

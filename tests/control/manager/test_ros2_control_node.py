@@ -69,8 +69,8 @@ async def test_controllers_are_managed_by_services_and_topics(graph, clock, tmp_
     assert switched.ok, switched.message
     await advance(graph, clock, 2)
     assert list(states[-1].position) == [0.5, 0.0]
-    listed = (await ask(graph, node, "list_controllers")).controller
-    assert [(controller.name, controller.state, list(controller.claimed_interfaces)) for controller in listed] == [
+    controllers = (await ask(graph, node, "list_controllers")).controller
+    assert [(controller.name, controller.state, list(controller.claimed_interfaces)) for controller in controllers] == [
         ("broadcaster", "active", []),
         ("positions", "active", ["hip/position", "knee/position"]),
     ]

@@ -125,9 +125,9 @@ async def test_diagnostics_report_masked_topics(stage, traffic):
 async def test_incomplete_topic_parameters_are_rejected(stage, topics, named):
     with pytest.raises(LinkwrightError) as raised:
         TwistMux(stage.graph, NodeOptions(parameters={"topics": topics}))
-    (found,) = raised.value.diagnostics
-    assert found.code == "NODE904"
-    assert f"'{named}'" in found.message
+    (diagnostic,) = raised.value.diagnostics
+    assert diagnostic.code == "NODE904"
+    assert f"'{named}'" in diagnostic.message
 
 
 async def test_missing_topics_are_reported_and_node_runs(stage, logged):
@@ -138,8 +138,8 @@ async def test_missing_topics_are_reported_and_node_runs(stage, logged):
 async def test_two_publishers_on_one_input_topic_are_reported(traffic):
     mux(traffic.stage)
     transport = RemoteTransport(traffic.stage.graph)
-    named = (("/tab_vel", "tab"), ("/joy_vel", "joy"), ("/joy_vel", "pad"))
-    tablet, joystick, other = (RemotePublisher(transport, topic, node) for topic, node in named)
+    topics_and_nodes = (("/tab_vel", "tab"), ("/joy_vel", "joy"), ("/joy_vel", "pad"))
+    tablet, joystick, other = (RemotePublisher(transport, topic, node) for topic, node in topics_and_nodes)
 
     async def drive(*sources):
         for _ in range(20):

@@ -62,13 +62,13 @@ async def test_goal_succeeds_with_feedback_and_result(stage):
     stage.serve()
     assert stage.client.server_is_ready()
     assert stage.client.wait_for_server(0.1)
-    seen = []
-    handle = await stage.send(4, feedback_callback=lambda message: seen.append(list(message.feedback.sequence)))
+    sequences = []
+    handle = await stage.send(4, feedback_callback=lambda message: sequences.append(list(message.feedback.sequence)))
     assert handle.accepted
     response = await handle.get_result_async()
     assert list(response.result.sequence) == [0, 1, 1, 2, 3]
     assert response.status == GoalStatus.SUCCEEDED
-    assert seen == [[0, 1], [0, 1, 1], [0, 1, 1, 2], [0, 1, 1, 2, 3]]
+    assert sequences == [[0, 1], [0, 1, 1], [0, 1, 1, 2], [0, 1, 1, 2, 3]]
     await stage.graph.settle()
     assert handle.status == GoalStatus.SUCCEEDED
 
@@ -258,12 +258,12 @@ async def test_goal_status_reaches_late_subscription(stage):
     handle = await stage.send()
     stage.handles[0].execute(lambda goal: (goal.succeed(), Fibonacci.Result())[1])
     await stage.graph.settle()
-    seen = []
+    statuses = []
     stage.client_node.create_subscription(
-        Fibonacci.Impl.GoalStatusMessage, "fibonacci/_action/status", seen.append, stage.client._status.qos_profile
+        Fibonacci.Impl.GoalStatusMessage, "fibonacci/_action/status", statuses.append, stage.client._status.qos_profile
     )
     await stage.graph.settle()
-    (status,) = seen[-1].status_list
+    (status,) = statuses[-1].status_list
     assert bytes(status.goal_info.goal_id.uuid) == bytes(handle.goal_id.uuid)
     assert status.status == GoalStatus.SUCCEEDED
 

@@ -25,11 +25,11 @@ def stream(sender: str, begin: float, end: float, rate: float, speed: float) -> 
 def disputes(*streams: Iterable[Sent], dispute: DisputeDetector | None = None) -> list[tuple[float, set[object]]]:
     """When a dispute is told of, and who disputes."""
     dispute = dispute or DisputeDetector()
-    heard = []
+    reports = []
     for now, sender, speed in sorted(command for stream in streams for command in stream):
         if dispute.record_command(sender, speed, now):
-            heard.append((now, set(dispute.parties)))
-    return heard
+            reports.append((now, set(dispute.parties)))
+    return reports
 
 
 @pytest.mark.parametrize(
@@ -67,14 +67,14 @@ def test_publisher_of_zero_commands_counts_as_driver():
 
 
 def test_third_driver_is_reported_and_all_again_after_a_break():
-    heard = disputes(
+    reports = disputes(
         stream("a", 0, 20, 10, 0.1),
         stream("b", 0.01, 20, 10, 0.2),
         stream("c", 10.02, 20, 10, 0.3),
         stream("a", 40, 50, 10, 0.1),
         stream("b", 40.01, 50, 10, 0.2),
     )
-    assert [senders for _, senders in heard] == [{"a", "b"}, {"a", "b", "c"}, {"a", "b"}]
+    assert [senders for _, senders in reports] == [{"a", "b"}, {"a", "b", "c"}, {"a", "b"}]
 
 
 def test_short_break_is_not_reported_again():

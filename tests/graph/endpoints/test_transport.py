@@ -103,13 +103,13 @@ async def test_internal_node_is_not_mirrored_but_heard_in_process(graph, transpo
     publisher = node.create_publisher(String, "topic", 1)
     if is_early:
         graph.attach(transport)
-    heard = []
+    messages = []
     listener = graph.create_node("listener")
-    listener.create_subscription(String, "topic", heard.append, 1)
+    listener.create_subscription(String, "topic", messages.append, 1)
     assert transport.open == ["listener", (EndpointKind.SUBSCRIPTION, "/topic")]
     publisher.publish(String(data="here"))
     await graph.settle()
-    assert [message.data for message in heard] == ["here"]
+    assert [message.data for message in messages] == ["here"]
     publisher.destroy()
     node.destroy_node()
     assert transport.open == ["listener", (EndpointKind.SUBSCRIPTION, "/topic")]

@@ -109,8 +109,10 @@ async def test_failed_shutdown_sets_state(managed, answer, state):
 
 
 async def test_lifecycle_publisher_is_silent_unless_active(graph, managed):
-    heard = []
-    graph.create_node("listener").create_subscription(String, "/words", lambda message: heard.append(message.data), 10)
+    messages = []
+    graph.create_node("listener").create_subscription(
+        String, "/words", lambda message: messages.append(message.data), 10
+    )
     publisher = managed.create_lifecycle_publisher(String, "/words", 10)
 
     async def say(text):
@@ -126,7 +128,7 @@ async def test_lifecycle_publisher_is_silent_unless_active(graph, managed):
     await say("now")
     managed.trigger_deactivate()
     await say("too late")
-    assert heard == ["now"]
+    assert messages == ["now"]
     managed.destroy_lifecycle_publisher(publisher)
     with pytest.raises(TypeError, match="unexpected keyword argument 'publisher_class'"):
         managed.create_lifecycle_publisher(String, "/words", 10, publisher_class=object)

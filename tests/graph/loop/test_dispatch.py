@@ -76,12 +76,12 @@ def run_of(seed):
             for topic in chance.sample("abcdef", 3):
                 publishers.append(node.create_publisher(String, topic, 10))
 
-                def heard(message, node=node, topic=topic):
+                def receive(message, node=node, topic=topic):
                     happened.append((clock.steady_ns(), node.get_name(), topic, message.data))
                     if len(message.data) < 4:
                         chance.choice(publishers).publish(String(data=message.data + topic))
 
-                node.create_subscription(String, topic, heard, chance.randint(1, 10))
+                node.create_subscription(String, topic, receive, chance.randint(1, 10))
             period = chance.choice((0.1, 0.25, 0.3))
             node.create_timer(period, lambda node=node: chance.choice(publishers).publish(String(data="")))
 
@@ -226,12 +226,12 @@ async def test_messages_from_other_threads_arrive_on_event_loop(graph):
     received, all_received = [], asyncio.Event()
     here = threading.get_ident()
 
-    def heard(message):
+    def receive(message):
         received.append((message.data, threading.get_ident() == here))
         if len(received) == 4000:
             all_received.set()
 
-    node.create_subscription(String, "topic", heard, QoSProfile(history=HistoryPolicy.KEEP_ALL))
+    node.create_subscription(String, "topic", receive, QoSProfile(history=HistoryPolicy.KEEP_ALL))
     publisher = node.create_publisher(String, "topic", 10)
 
     def talk(name):
@@ -330,13 +330,13 @@ def test_blocking_subscriber_does_not_delay_others():
 
     all_received = threading.Event()
 
-    def heard(message):
+    def receive(message):
         received.append(message)
         if len(received) == 100:
             all_received.set()
 
     slow.create_subscription(String, "topic", block, 10)
-    quick.create_subscription(String, "topic", heard, 1000)
+    quick.create_subscription(String, "topic", receive, 1000)
     publisher = quick.create_publisher(String, "topic", 10)
     executor = MultiThreadedExecutor(2)
     executor.add_node(slow)

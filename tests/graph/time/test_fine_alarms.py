@@ -16,10 +16,10 @@ MILLISECOND = 1_000_000
 
 
 async def alarms() -> FineAlarms:
-    found = fine_alarms(asyncio.get_running_loop())
-    if found is None:
+    fine = fine_alarms(asyncio.get_running_loop())
+    if fine is None:
         pytest.skip("event loops of this system wait by the microsecond themselves")
-    return found
+    return fine
 
 
 async def test_alarms_are_called_in_order_and_never_early():

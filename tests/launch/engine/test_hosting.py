@@ -165,17 +165,17 @@ class TestManyNodes:
         assert up[0] >= 500
 
     async def test_event_loop_runs_between_node_starts(self, launch) -> None:
-        found: list[int] = []
+        counts: list[int] = []
 
         async def watch(context: LaunchContext) -> None:
-            while not found or found[-1] < 100:
-                found.append(sum(name.startswith("/n") for name in context.session.host.graph.node_names()))
+            while not counts or counts[-1] < 100:
+                counts.append(sum(name.startswith("/n") for name in context.session.host.graph.node_names()))
                 await asyncio.sleep(0)
             context.emit_event_sync(ShutdownEvent())
 
         nodes = [talker(name=f"n{number}") for number in range(100)]
         await launch(OpaqueCoroutine(coroutine=watch), *nodes)
-        assert all(later - before <= 1 for before, later in pairwise(found))
+        assert all(later - before <= 1 for before, later in pairwise(counts))
 
 
 class TestScope:

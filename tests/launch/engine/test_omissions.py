@@ -39,8 +39,8 @@ async def test_missing_parts_are_skipped_and_listed_once(launch, write: Write) -
     assert result.succeeded
     assert result.err.count("warning[LAUNCH146]: 7 parts of the launch are skipped, and the rest runs") == 1
     assert "error" not in result.err
-    for named in ("no_such_package", "no_such_program", "no_such_share", "no-such-executable", "no_such_module"):
-        assert named in result.err
+    for name in ("no_such_package", "no_such_program", "no_such_share", "no-such-executable", "no_such_module"):
+        assert name in result.err
 
 
 async def test_actions_that_depend_on_missing_value_are_skipped(launch) -> None:

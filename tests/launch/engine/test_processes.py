@@ -117,10 +117,10 @@ async def test_emulate_tty_provides_pseudo_terminal(launch) -> None:
 def written_below(folder: Path) -> dict[str, list[str]]:
     """Return the output of processes in the log files of the only launch, without times."""
     (launch,) = [path for path in folder.iterdir() if not path.is_symlink()]
-    found = {path.name: sorted(path.read_text().splitlines()) for path in launch.iterdir()}
-    of_processes = [line.partition(" ")[2] for line in found.pop("launch.log")]
+    lines_by_file = {path.name: sorted(path.read_text().splitlines()) for path in launch.iterdir()}
+    of_processes = [line.partition(" ")[2] for line in lines_by_file.pop("launch.log")]
     of_processes = sorted(line for line in of_processes if line.startswith("[py-1]"))
-    return {**found, "launch.log": of_processes} if of_processes else found
+    return {**lines_by_file, "launch.log": of_processes} if of_processes else lines_by_file
 
 
 OWN_LOGS = {

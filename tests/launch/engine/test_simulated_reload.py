@@ -42,14 +42,14 @@ class Launched:
 
     async def when(self, condition: Callable[[Simulation], bool]) -> None:
         """Wait until a condition holds in the thread of the simulation."""
-        seen: list[bool] = []
+        outcomes: list[bool] = []
 
         def is_so() -> bool:
             for _, running in self._session.host._running.values():
                 if isinstance(running, Simulator):
                     server = running.server
-                    server.exchange.post(lambda server=server: seen.append(condition(server.simulation)))
-            return any(seen)
+                    server.exchange.post(lambda server=server: outcomes.append(condition(server.simulation)))
+            return any(outcomes)
 
         await eventually(is_so, what=self.err.getvalue)
 

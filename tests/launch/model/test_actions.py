@@ -367,8 +367,8 @@ def test_launch_arguments_of_description_are_listed(write: Write) -> None:
             IncludeLaunchDescription([ThisLaunchFileDir(), "/unknown.launch.py"]),
         ]
     )
-    found = {argument.name: argument.conditionally_included for argument in description.get_launch_arguments()}
-    assert found == {"a": False, "b": True, "speed": False}
+    inclusion = {argument.name: argument.conditionally_included for argument in description.get_launch_arguments()}
+    assert inclusion == {"a": False, "b": True, "speed": False}
 
 
 def test_argument_given_by_include_is_not_listed(write: Write) -> None:

@@ -54,8 +54,8 @@ def arm(write: Write) -> Path:
 
 class TestSources:
     def test_entry_points_of_setup_py_are_read(self, arm: Path) -> None:
-        found = source_programs(arm)
-        assert found.entry_points == {
+        programs = source_programs(arm)
+        assert programs.entry_points == {
             "wave": EntryPoint("arm.wave", "main"),
             "nod": EntryPoint("arm.nod", "Nodder.run"),
             "shake": EntryPoint("arm.shake", "main"),
@@ -93,18 +93,18 @@ class TestSources:
         ).parent
         write("p/scripts/look.py", "")
         write("p/scripts/see.py", "")
-        found = source_programs(folder)
-        assert found.scripts == {"look.py": folder / "scripts/look.py", "seer": folder / "scripts/see.py"}
-        assert found.compiled == {"driver", "comp_node"}
+        programs = source_programs(folder)
+        assert programs.scripts == {"look.py": folder / "scripts/look.py", "seer": folder / "scripts/see.py"}
+        assert programs.compiled == {"driver", "comp_node"}
 
     def test_entry_point_runs_without_build(self, arm: Path, finder: PackageFinder) -> None:
-        found = find_executable(finder, arm.name, "wave")
-        assert found.origin is Origin.SOURCE
-        assert found.path is not None
-        assert found.path.parts[-3:] == ("lib", "arm", "wave")
-        result = subprocess.run([*found.command, "--fast"], capture_output=True, text=True, check=False)
+        executable = find_executable(finder, arm.name, "wave")
+        assert executable.origin is Origin.SOURCE
+        assert executable.path is not None
+        assert executable.path.parts[-3:] == ("lib", "arm", "wave")
+        result = subprocess.run([*executable.command, "--fast"], capture_output=True, text=True, check=False)
         assert result.returncode == 3, result.stderr
-        assert result.stdout == f"five fingers ['{found.path}', '--fast']\n"
+        assert result.stdout == f"five fingers ['{executable.path}', '--fast']\n"
 
     def test_generated_script_is_rewritten_only_if_changed(self, arm: Path, finder: PackageFinder) -> None:
         path = find_executable(finder, arm.name, "nod").path
@@ -207,12 +207,12 @@ class TestInstalled:
 class TestBuiltinExecutables:
     def test_builtin_packages_and_executables_are_listed(self, finder: PackageFinder) -> None:
         assert {"robot_state_publisher", "tf2_ros", "rviz2", "rclcpp_components"} <= builtin_packages()
-        found = executables_of(finder, "robot_state_publisher")
-        assert str(found["robot_state_publisher"]) == "built into Linkwright"
+        executables = executables_of(finder, "robot_state_publisher")
+        assert str(executables["robot_state_publisher"]) == "built into Linkwright"
 
     def test_builtin_nodes_run_as_processes(self, finder: PackageFinder) -> None:
-        found = find_executable(finder, "tf2_ros", "static_transform_publisher")
-        assert found.command[1:] == ["-m", "linkwright.node_program", "tf2_ros", "static_transform_publisher"]
+        executable = find_executable(finder, "tf2_ros", "static_transform_publisher")
+        assert executable.command[1:] == ["-m", "linkwright.node_program", "tf2_ros", "static_transform_publisher"]
 
     def test_executable_in_package_returns_runnable_file(self, finder: PackageFinder) -> None:
         with use_finder(finder):

@@ -46,7 +46,7 @@ class TestParameters:
         assert values(context, parameters) == {**parameters, "g": [1.0, 2.5]}
 
     def test_substitutions_are_parsed_as_yaml(self, context: LaunchContext) -> None:
-        found = values(
+        parameters = values(
             context,
             {
                 "a": LaunchConfiguration("number"),
@@ -56,7 +56,7 @@ class TestParameters:
                 "e": [[LaunchConfiguration("number")], [TextSubstitution(text="4")]],
             },
         )
-        assert found == {"a": 3, "b": True, "c": True, "d": "/3", "e": [3, 4]}
+        assert parameters == {"a": 3, "b": True, "c": True, "d": "/3", "e": [3, 4]}
 
     @pytest.mark.parametrize(
         ("name", "kind", "value"),
@@ -74,9 +74,9 @@ class TestParameters:
         self, context: LaunchContext, name: str, kind: Any, value: Any
     ) -> None:
         context.launch_configurations["list"] = "[1, 2]"
-        found = values(context, {"p": ParameterValue(LaunchConfiguration(name), value_type=kind)})
-        assert found == {"p": value}
-        assert type(found["p"]) is type(value)
+        parameters = values(context, {"p": ParameterValue(LaunchConfiguration(name), value_type=kind)})
+        assert parameters == {"p": value}
+        assert type(parameters["p"]) is type(value)
 
     def test_value_of_wrong_type_is_rejected(self, context: LaunchContext) -> None:
         with pytest.raises(ValueError) as caught:
@@ -84,8 +84,8 @@ class TestParameters:
         assert "parameter 'p' is not of the requested type int" in message_of(caught.value)
 
     def test_nested_dictionaries_and_substituted_names_are_flattened(self, context: LaunchContext) -> None:
-        found = values(context, {"zeros": {"joint": 1.0, ("n", LaunchConfiguration("number")): 2.0}, "a.b": 1})
-        assert found == {"zeros.joint": 1.0, "zeros.n3": 2.0, "a.b": 1}
+        parameters = values(context, {"zeros": {"joint": 1.0, ("n", LaunchConfiguration("number")): 2.0}, "a.b": 1})
+        assert parameters == {"zeros.joint": 1.0, "zeros.n3": 2.0, "a.b": 1}
 
     def test_later_values_override_earlier(self, context: LaunchContext) -> None:
         assert values(context, {"a": 1, "b": 1}, {"a": 2}, Parameter("b", 3)) == {"a": 2, "b": 3}
@@ -193,11 +193,11 @@ listener:
             "/**: {ros__parameters: {a: $(var number), b: $(env LW_NONE x), c: '$(var n$(var word) d)', "
             "d: $(find-pkg-share my_robot_description)}}",
         )
-        found = values(context, ParameterFile(path, allow_substs=True))
-        assert found["a"] == 3
-        assert found["b"] == "x"
-        assert found["c"] == "d"
-        assert found["d"].endswith("my_robot_description")
+        parameters = values(context, ParameterFile(path, allow_substs=True))
+        assert parameters["a"] == 3
+        assert parameters["b"] == "x"
+        assert parameters["c"] == "d"
+        assert parameters["d"].endswith("my_robot_description")
 
     @pytest.mark.parametrize(
         ("text", "message"),
