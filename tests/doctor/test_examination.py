@@ -74,20 +74,20 @@ def codes(observation: Observation) -> list[str]:
     return [diagnostic.code for diagnostic in examine(observation)]
 
 
-def only(observation: Observation, code: str):
+def only_diagnostic(observation: Observation, code: str):
     diagnostics = examine(observation)
     assert [diagnostic.code for diagnostic in diagnostics] == [code], diagnostics
     return diagnostics[0]
 
 
-def without(observation: Observation, *children: str) -> Observation:
+def without_frames(observation: Observation, *children: str) -> Observation:
     return replace(
         observation,
         transforms=tuple(transform for transform in observation.transforms if transform.child not in children),
     )
 
 
-def more(observation: Observation, *endpoints: EndpointInfo) -> Observation:
+def with_endpoints(observation: Observation, *endpoints: EndpointInfo) -> Observation:
     return replace(observation, endpoints=(*observation.endpoints, *endpoints))
 
 
@@ -96,13 +96,15 @@ def test_healthy_graph_has_no_findings():
 
 
 def test_empty_graph_report_names_domain_and_discovery_range():
-    diagnostic = only(Observation(seconds=2.0, environment={"ROS_DOMAIN_ID": "7"}), "DOC801")
+    diagnostic = only_diagnostic(Observation(seconds=2.0, environment={"ROS_DOMAIN_ID": "7"}), "DOC801")
     assert "domain 7" in diagnostic.notes[0].message
     assert "ROS_AUTOMATIC_DISCOVERY_RANGE" in diagnostic.hint
 
 
 def test_empty_graph_over_zenoh_hints_at_rmw_zenohd():
-    diagnostic = only(Observation(seconds=2.0, environment={"ROS_DOMAIN_ID": "150"}, over_zenoh=True), "DOC801")
+    diagnostic = only_diagnostic(
+        Observation(seconds=2.0, environment={"ROS_DOMAIN_ID": "150"}, over_zenoh=True), "DOC801"
+    )
     assert "rmw_zenohd" in diagnostic.hint
 
 
@@ -116,7 +118,7 @@ def test_domain_id_above_101_is_reported():
 
 def test_missing_transform_publisher_is_reported():
     observation = replace(WELL, transforms=(), endpoints=())
-    diagnostic = only(observation, "DOC301")
+    diagnostic = only_diagnostic(observation, "DOC301")
     assert (
         diagnostic.message
         == "there is no transform of 3 frames, 'wheel', 'mast', 'copy', because no node publishes transforms"
@@ -125,22 +127,22 @@ def test_missing_transform_publisher_is_reported():
 
 def test_missing_joint_state_publisher_is_reported():
     observation = replace(
-        without(WELL, "wheel", "copy"),
+        without_frames(WELL, "wheel", "copy"),
         joints=(),
         endpoints=tuple(endpoint for endpoint in WELL.endpoints if endpoint.name != "/joint_states"),
     )
-    diagnostic = only(observation, "DOC401")
+    diagnostic = only_diagnostic(observation, "DOC401")
     assert diagnostic.message == "no node publishes joint states, so there is no transform of 2 frames, 'wheel', 'copy'"
     assert "joint_state_publisher" in diagnostic.hint
 
 
 def test_silent_joint_state_publisher_is_reported():
-    diagnostic = only(replace(without(WELL, "wheel", "copy"), joints=()), "DOC402")
+    diagnostic = only_diagnostic(replace(without_frames(WELL, "wheel", "copy"), joints=()), "DOC402")
     assert diagnostic.message.startswith("'/joint_state_publisher' did not publish joint states in 3 s")
 
 
 def test_joint_missing_from_joint_states_suggests_misspelled_name():
-    observation = replace(without(WELL, "wheel", "copy"), joints=(ObservedJoint("spinn", (JSP,)),))
+    observation = replace(without_frames(WELL, "wheel", "copy"), joints=(ObservedJoint("spinn", (JSP,)),))
     diagnostics_by_code = {diagnostic.code: diagnostic for diagnostic in examine(observation)}
     assert set(diagnostics_by_code) == {"DOC403", "DOC405"}
     missing = diagnostics_by_code["DOC403"]
@@ -153,18 +155,18 @@ def test_joint_missing_from_joint_states_suggests_misspelled_name():
 
 
 def test_missing_static_transform_is_reported():
-    diagnostic = only(without(WELL, "mast"), "DOC304")
+    diagnostic = only_diagnostic(without_frames(WELL, "mast"), "DOC304")
     assert diagnostic.message == "there is no transform of frame 'mast', because no static transform was published"
     assert "'stand'" in diagnostic.notes[0].message
 
 
 def test_joint_states_on_unread_topic_hint_at_remapping():
     observation = replace(
-        without(WELL, "wheel", "copy"),
+        without_frames(WELL, "wheel", "copy"),
         joints=(ObservedJoint("spin", (JSP,), ("/arm/joint_states",)),),
         endpoints=(*WELL.endpoints, publisher(JSP, "/arm/joint_states", JOINT_STATE)),
     )
-    diagnostic = only(observation, "DOC305")
+    diagnostic = only_diagnostic(observation, "DOC305")
     assert "remap joint_states of robot_state_publisher" in diagnostic.hint
 
 
@@ -178,7 +180,7 @@ def test_prefixed_frames_match_robot_links():
 
 def test_transform_from_two_publishers_is_reported():
     doubled = replace(WELL.transforms[0], senders=("/driver", RSP))
-    diagnostic = only(replace(WELL, transforms=(doubled, *WELL.transforms[1:])), "DOC302")
+    diagnostic = only_diagnostic(replace(WELL, transforms=(doubled, *WELL.transforms[1:])), "DOC302")
     assert diagnostic.message == ("2 nodes publish the transform of frame 'wheel': '/driver', '/robot_state_publisher'")
 
 
@@ -194,7 +196,7 @@ def test_frame_with_two_parents_is_reported():
 
 def test_disconnected_frame_tree_is_reported():
     apart = ObservedTransform("camera", "lens", ("/camera_driver",))
-    diagnostic = only(replace(WELL, transforms=(*WELL.transforms, apart)), "DOC308")
+    diagnostic = only_diagnostic(replace(WELL, transforms=(*WELL.transforms, apart)), "DOC308")
     assert "--frame-id base --child-frame-id camera" in diagnostic.hint
 
 
@@ -209,23 +211,23 @@ def test_invalid_transform_is_reported():
 
 
 def test_missing_fixed_frame_is_reported():
-    diagnostic = only(replace(WELL, fixed_frames=(FixedFrame("map", "mbot.rviz"),)), "DOC309")
+    diagnostic = only_diagnostic(replace(WELL, fixed_frames=(FixedFrame("map", "mbot.rviz"),)), "DOC309")
     assert diagnostic.message == "the fixed frame 'map' of mbot.rviz does not exist, so nothing is shown"
     assert diagnostic.hint == "choose another Fixed Frame; the root of all frames is 'base'"
     assert codes(replace(WELL, fixed_frames=(FixedFrame("base", "mbot.rviz"),))) == []
     mapped = (*WELL.transforms, ObservedTransform("map", "base", ("/localization",), is_static=True))
-    diagnostic = only(replace(WELL, transforms=mapped, fixed_frames=(FixedFrame("odom", "x"),)), "DOC309")
+    diagnostic = only_diagnostic(replace(WELL, transforms=mapped, fixed_frames=(FixedFrame("odom", "x"),)), "DOC309")
     assert diagnostic.hint == "choose another Fixed Frame; the root of all frames is 'map'"
-    near = only(replace(WELL, fixed_frames=(FixedFrame("bse", "x"),)), "DOC309")
+    near = only_diagnostic(replace(WELL, fixed_frames=(FixedFrame("bse", "x"),)), "DOC309")
     assert near.hint == "did you mean 'base'?"
 
 
 def test_message_in_missing_frame_is_reported():
     lost = ObservedFrame("/scan", "/laser", "lazer")
-    diagnostic = only(replace(WELL, frames=(lost,)), "DOC310")
+    diagnostic = only_diagnostic(replace(WELL, frames=(lost,)), "DOC310")
     assert diagnostic.message == "'/scan' of '/laser' is in frame 'lazer', which does not exist"
     assert "static_transform_publisher" in diagnostic.hint
-    near = only(replace(WELL, frames=(ObservedFrame("/scan", "/laser", "whel"),)), "DOC310")
+    near = only_diagnostic(replace(WELL, frames=(ObservedFrame("/scan", "/laser", "whel"),)), "DOC310")
     rays = [ObservedFrame(topic, "/laser", "mbot::laser::lidar") for topic in ("/world_rays", "/world_rays/others")]
     assert not codes(replace(WELL, frames=tuple(rays))), "they are in frames of the simulated world"
     assert near.hint == "did you mean 'wheel'?"
@@ -276,19 +278,19 @@ def test_frame_list_has_chinese_quotes_in_chinese():
 
 def test_file_name_as_description_is_reported():
     wrong = ObservedDescription("/robot_description", RSP, "mbot.urdf")
-    diagnostic = only(replace(WELL, descriptions=(wrong,), joints=()), "DOC501")
+    diagnostic = only_diagnostic(replace(WELL, descriptions=(wrong,), joints=()), "DOC501")
     assert "not the name of a file" in diagnostic.hint
 
 
 @pytest.mark.parametrize(("text", "severity"), [(ROBOT, Severity.WARNING), (ROBOT + " ", Severity.ERROR)])
 def test_two_descriptions_on_one_topic_are_reported(text, severity):
     second = ObservedDescription("/robot_description", "/other", text)
-    diagnostic = only(replace(WELL, descriptions=(*WELL.descriptions, second)), "DOC502")
+    diagnostic = only_diagnostic(replace(WELL, descriptions=(*WELL.descriptions, second)), "DOC502")
     assert diagnostic.severity is severity
 
 
 def test_joint_from_two_publishers_is_reported():
-    diagnostic = only(replace(WELL, joints=(ObservedJoint("spin", ("/driver", JSP)),)), "DOC404")
+    diagnostic = only_diagnostic(replace(WELL, joints=(ObservedJoint("spin", ("/driver", JSP)),)), "DOC404")
     assert diagnostic.message.startswith("2 nodes publish the state of joint 'spin' on '/joint_states'")
 
 
@@ -296,15 +298,15 @@ def test_joint_from_two_publishers_is_reported():
 
 
 def test_duplicate_node_name_is_reported():
-    diagnostic = only(replace(WELL, nodes=(RSP, RSP, JSP)), "DOC101")
+    diagnostic = only_diagnostic(replace(WELL, nodes=(RSP, RSP, JSP)), "DOC101")
     assert diagnostic.message == "2 nodes have the name '/robot_state_publisher'"
 
 
 def test_topic_with_two_types_is_reported():
-    observation = more(
+    observation = with_endpoints(
         WELL, publisher("/a", "/chat", "std_msgs/msg/String"), subscription("/b", "/chat", "std_msgs/msg/Int32")
     )
-    diagnostic = only(observation, "DOC201")
+    diagnostic = only_diagnostic(observation, "DOC201")
     assert [note.message for note in diagnostic.notes] == [
         "std_msgs/msg/Int32 is subscribed to by '/b'",
         "std_msgs/msg/String is published by '/a'",
@@ -312,12 +314,12 @@ def test_topic_with_two_types_is_reported():
 
 
 def test_twist_and_twist_stamped_mismatch_is_reported():
-    observation = more(
+    observation = with_endpoints(
         WELL,
         publisher("/teleop", "/cmd_vel", "geometry_msgs/msg/Twist"),
         subscription("/diff_drive", "/cmd_vel", "geometry_msgs/msg/TwistStamped"),
     )
-    assert "stamped:=true" in only(observation, "DOC202").hint
+    assert "stamped:=true" in only_diagnostic(observation, "DOC202").hint
 
 
 TWIST = "geometry_msgs/msg/Twist"
@@ -327,17 +329,17 @@ EITHER = tuple(subscription("/behavior_server", "/cmd_vel_teleop", kind) for kin
 @pytest.mark.parametrize("kinds", [(), (TWIST,), (f"{TWIST}Stamped",), (TWIST, f"{TWIST}Stamped")])
 def test_subscriber_to_both_velocity_types_matches_either_type(kinds):
     sent = [publisher(f"/teleop_{number}", "/cmd_vel_teleop", kind) for number, kind in enumerate(kinds)]
-    assert not {"DOC201", "DOC202"} & set(codes(more(WELL, *EITHER, *sent)))
+    assert not {"DOC201", "DOC202"} & set(codes(with_endpoints(WELL, *EITHER, *sent)))
 
 
 def test_type_mismatch_is_reported_beside_subscriber_to_both_types():
     sent = publisher("/teleop", "/cmd_vel_teleop", TWIST)
     other = subscription("/base", "/cmd_vel_teleop", f"{TWIST}Stamped")
-    assert "DOC202" in codes(more(WELL, *EITHER, sent, other))
+    assert "DOC202" in codes(with_endpoints(WELL, *EITHER, sent, other))
 
 
 def test_velocity_topic_without_subscriber_is_reported():
-    diagnostic = only(more(WELL, publisher("/teleop", "/cmd_vel", TWIST)), "DOC207")
+    diagnostic = only_diagnostic(with_endpoints(WELL, publisher("/teleop", "/cmd_vel", TWIST)), "DOC207")
     assert (
         diagnostic.message
         == "'/teleop' publishes velocities on '/cmd_vel', but no node subscribes to it, so nothing moves"
@@ -346,12 +348,12 @@ def test_velocity_topic_without_subscriber_is_reported():
 
 
 def test_unsubscribed_velocity_topic_suggests_remapping():
-    observation = more(
+    observation = with_endpoints(
         WELL,
         publisher("/teleop", "/cmd_vel", TWIST),
         subscription("/drive", "/base/command", "geometry_msgs/msg/TwistStamped"),
     )
-    assert only(observation, "DOC207").hint.endswith("-r /cmd_vel:=/base/command")
+    assert only_diagnostic(observation, "DOC207").hint.endswith("-r /cmd_vel:=/base/command")
 
 
 @pytest.mark.parametrize(
@@ -362,17 +364,23 @@ def test_unsubscribed_velocity_topic_suggests_remapping():
     ],
 )
 def test_subscribed_and_measured_velocities_have_no_findings(more_endpoints):
-    assert examine(more(WELL, *more_endpoints)) == []
+    assert examine(with_endpoints(WELL, *more_endpoints)) == []
 
 
 def test_misspelled_velocity_topic_is_reported_once():
-    observation = more(WELL, publisher("/teleop", "/cmd_vel", TWIST), subscription("/drive", "/robot/cmd_vel", TWIST))
+    observation = with_endpoints(
+        WELL, publisher("/teleop", "/cmd_vel", TWIST), subscription("/drive", "/robot/cmd_vel", TWIST)
+    )
     assert codes(observation) == ["DOC204"]
 
 
 def test_contradictory_velocity_publishers_are_reported():
-    observation = more(WELL, publisher("/teleop", "/cmd_vel", TWIST), subscription("/drive", "/cmd_vel", TWIST))
-    diagnostic = only(replace(observation, disputed=(ObservedDrivers("/cmd_vel", ("/planner", "/teleop")),)), "DOC208")
+    observation = with_endpoints(
+        WELL, publisher("/teleop", "/cmd_vel", TWIST), subscription("/drive", "/cmd_vel", TWIST)
+    )
+    diagnostic = only_diagnostic(
+        replace(observation, disputed=(ObservedDrivers("/cmd_vel", ("/planner", "/teleop")),)), "DOC208"
+    )
     assert (
         diagnostic.message
         == "two nodes drive the robot: '/planner', '/teleop' publish contradictory velocities on '/cmd_vel'"
@@ -381,7 +389,7 @@ def test_contradictory_velocity_publishers_are_reported():
 
 
 def test_qos_mismatch_report_names_policy_and_endpoints():
-    observation = more(
+    observation = with_endpoints(
         WELL,
         publisher("/lidar", "/scan", "sensor_msgs/msg/LaserScan", QoSProfile(5, ReliabilityPolicy.BEST_EFFORT)),
         subscription(
@@ -392,7 +400,7 @@ def test_qos_mismatch_report_names_policy_and_endpoints():
         ),
     )
     assert codes(replace(observation, over_zenoh=True)) == []  # there it gets them
-    diagnostic = only(observation, "DOC203")
+    diagnostic = only_diagnostic(observation, "DOC203")
     assert diagnostic.message == (
         "'/rviz' receives nothing from '/lidar' on topic '/scan', because their quality of service is incompatible"
     )
@@ -404,7 +412,7 @@ def test_qos_mismatch_report_names_policy_and_endpoints():
 
 def test_topic_of_same_node_is_not_suggested():
     text = "std_msgs/msg/String"
-    observation = more(
+    observation = with_endpoints(
         WELL, subscription("/voice", "/voice/text_input", text), publisher("/voice", "/voice/text", text)
     )
     assert codes(observation) == []
@@ -413,25 +421,27 @@ def test_topic_of_same_node_is_not_suggested():
 @pytest.mark.parametrize("published", ["/robot1/scan", "/scann"])
 def test_unpublished_topic_suggests_remapping_to_similar_topic(published):
     scan = "sensor_msgs/msg/LaserScan"
-    diagnostic = only(more(WELL, subscription("/slam", "/scan", scan), publisher("/lidar", published, scan)), "DOC204")
+    diagnostic = only_diagnostic(
+        with_endpoints(WELL, subscription("/slam", "/scan", scan), publisher("/lidar", published, scan)), "DOC204"
+    )
     assert f"-r /scan:={published}" in diagnostic.hint
 
 
 def test_unpublished_topic_alone_is_not_reported():
-    assert examine(more(WELL, subscription("/slam", "/scan", "sensor_msgs/msg/LaserScan"))) == []
+    assert examine(with_endpoints(WELL, subscription("/slam", "/scan", "sensor_msgs/msg/LaserScan"))) == []
 
 
 def test_missing_service_is_reported():
-    observation = more(
+    observation = with_endpoints(
         WELL,
         endpoint("client", "/planner", "/map_server/map", "nav_msgs/srv/GetMap"),
         endpoint("service", "/map_server", "/map", "nav_msgs/srv/GetMap"),
     )
-    assert "service '/map' has the same type" in only(observation, "DOC206").hint
+    assert "service '/map' has the same type" in only_diagnostic(observation, "DOC206").hint
 
 
 def test_service_type_mismatch_is_reported():
-    observation = more(
+    observation = with_endpoints(
         WELL,
         endpoint("client", "/a", "/go", "std_srvs/srv/Trigger"),
         endpoint("service", "/b", "/go", "std_srvs/srv/SetBool"),
@@ -445,16 +455,16 @@ def test_service_type_mismatch_is_reported():
 def test_mixed_use_sim_time_is_reported():
     clock = publisher("/gazebo", "/clock", "rosgraph_msgs/msg/Clock")
     observation = replace(
-        more(WELL, clock), sim_time={RSP: True, JSP: False, "/gazebo": False}, clock=ObservedClock(9, 1, 9)
+        with_endpoints(WELL, clock), sim_time={RSP: True, JSP: False, "/gazebo": False}, clock=ObservedClock(9, 1, 9)
     )
-    diagnostic = only(observation, "DOC601")
+    diagnostic = only_diagnostic(observation, "DOC601")
     assert diagnostic.message == (
         "use_sim_time is true for '/robot_state_publisher', but false for '/joint_state_publisher'"
     )
 
 
 def test_hidden_nodes_and_clock_publisher_need_no_use_sim_time():
-    observation = more(WELL, publisher("/gazebo", "/clock", "rosgraph_msgs/msg/Clock"))
+    observation = with_endpoints(WELL, publisher("/gazebo", "/clock", "rosgraph_msgs/msg/Clock"))
     clock = ObservedClock(9, 5, 6)
     times = {RSP: True, JSP: True, "/gazebo": False, "/_gzclient": False}
     assert codes(replace(observation, sim_time=times, clock=clock)) == []
@@ -466,20 +476,20 @@ def test_use_sim_time_without_clock_is_reported():
 
 @pytest.mark.parametrize("clock", [None, ObservedClock(9, 5, 5)])
 def test_stopped_clock_is_reported(clock):
-    observation = more(WELL, publisher("/gazebo", "/clock", "rosgraph_msgs/msg/Clock"))
+    observation = with_endpoints(WELL, publisher("/gazebo", "/clock", "rosgraph_msgs/msg/Clock"))
     assert codes(replace(observation, sim_time={RSP: True, JSP: True}, clock=clock)) == ["DOC603"]
 
 
 def test_two_clock_publishers_are_reported():
     kind = "rosgraph_msgs/msg/Clock"
-    observation = more(WELL, publisher("/gazebo", "/clock", kind), publisher("/bag", "/clock", kind))
+    observation = with_endpoints(WELL, publisher("/gazebo", "/clock", kind), publisher("/bag", "/clock", kind))
     assert codes(observation) == ["DOC604"]
 
 
 @pytest.mark.parametrize(("behind_s", "message"), [(3600, "3600.0 s behind"), (-60, "60.0 s ahead of")])
 def test_stamp_far_from_current_time_is_reported(behind_s, message):
     stamp = ObservedStamp("/scan", "/lidar", behind_s * 10**9)
-    assert f"are {message} the clock here" in only(replace(WELL, stamps=(stamp,)), "DOC605").message
+    assert f"are {message} the clock here" in only_diagnostic(replace(WELL, stamps=(stamp,)), "DOC605").message
 
 
 def test_zero_stamp_is_reported():
@@ -487,7 +497,7 @@ def test_zero_stamp_is_reported():
 
 
 def test_inactive_managed_node_is_reported():
-    diagnostic = only(replace(WELL, lifecycle={"/camera": "inactive", "/lidar": "active"}), "DOC701")
+    diagnostic = only_diagnostic(replace(WELL, lifecycle={"/camera": "inactive", "/lidar": "active"}), "DOC701")
     assert diagnostic.message == "managed node '/camera' is inactive, so it does nothing yet"
     assert diagnostic.hint == "request the next transition: ros2 lifecycle set /camera activate"
 

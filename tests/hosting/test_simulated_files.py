@@ -44,7 +44,7 @@ def world(*parts: str) -> str:
     return f'<sdf version="1.7"><world name="w">{GROUND}{"".join(parts)}</world></sdf>'
 
 
-class Shown:
+class RunningSimulation:
     """A simulation with its output."""
 
     def __init__(self, view: SimulatedView, err: io.StringIO, until: Callable[[str], object]) -> None:
@@ -87,7 +87,7 @@ class Shown:
 
 
 @asynccontextmanager
-async def shown(simulated: SimulatedWorld) -> AsyncIterator[Shown]:
+async def running_simulation(simulated: SimulatedWorld) -> AsyncIterator[RunningSimulation]:
     """Start a paused simulation without a page."""
     out, err = io.StringIO(), io.StringIO()
     finder = PackageFinder(start=simulated.path.parent)
@@ -101,7 +101,7 @@ async def shown(simulated: SimulatedWorld) -> AsyncIterator[Shown]:
 
     try:
         await until("gzserver-2]: started" if simulated.text else "gzserver-1]: started")
-        yield Shown(view, err, until)
+        yield RunningSimulation(view, err, until)
     finally:
         view.interrupt("the test is over")
         await running
@@ -129,7 +129,7 @@ def has(*names: str) -> Callable[[Simulation], bool]:
 
 async def test_saved_world_is_reloaded_and_unchanged_models_keep_pose(tmp_path):
     (tmp_path / "a.world").write_text(world(FALLING))
-    async with shown(SimulatedWorld(str(tmp_path / "a.world"), tmp_path / "a.world")) as running:
+    async with running_simulation(SimulatedWorld(str(tmp_path / "a.world"), tmp_path / "a.world")) as running:
         await running.look(lambda simulation: simulation.set_model_pose("falling", (1.0, 2.0, 3.0, 0.0, 0.0, 0.0, 1.0)))
         (tmp_path / "a.world").write_text(world(FALLING, box("new", "5 5 1 0 0 0")))
         await running.when(has("ground", "falling", "new"))
@@ -140,7 +140,7 @@ async def test_saved_world_is_reloaded_and_unchanged_models_keep_pose(tmp_path):
 async def test_edited_world_is_not_replaced_by_changed_file(tmp_path):
     file = tmp_path / "a.world"
     file.write_text(world(FALLING))
-    async with shown(SimulatedWorld(str(file), file)) as running:
+    async with running_simulation(SimulatedWorld(str(file), file)) as running:
         edited = world(FALLING, box("edited", "5 5 1 0 0 0"))
         await running.look(lambda _: running.worlds.load(str(file), edited))
         file.write_text(world(box("other", "5 5 1 0 0 0")))
@@ -155,7 +155,7 @@ async def test_edited_world_is_not_replaced_by_changed_file(tmp_path):
 
 async def test_broken_world_is_reported_and_simulation_continues(tmp_path):
     (tmp_path / "a.world").write_text(world(FALLING))
-    async with shown(SimulatedWorld(str(tmp_path / "a.world"), tmp_path / "a.world")) as running:
+    async with running_simulation(SimulatedWorld(str(tmp_path / "a.world"), tmp_path / "a.world")) as running:
         (tmp_path / "a.world").write_text("<sdf version='1.7'><world></sdf>")
         await running.until("error[XML")
         assert [finding.code[:3] for finding in running.view.reload.findings()] == ["XML"]
@@ -168,7 +168,7 @@ async def test_broken_world_is_reported_and_simulation_continues(tmp_path):
 
 async def test_world_that_cannot_be_simulated_is_reported(tmp_path):
     (tmp_path / "a.world").write_text(world(FALLING))
-    async with shown(SimulatedWorld(str(tmp_path / "a.world"), tmp_path / "a.world")) as running:
+    async with running_simulation(SimulatedWorld(str(tmp_path / "a.world"), tmp_path / "a.world")) as running:
         never = '<physics type="ode"><max_step_size>-1</max_step_size></physics>'
         (tmp_path / "a.world").write_text(world(FALLING, never))
         await running.until("; the simulation continues unchanged")
@@ -180,7 +180,7 @@ async def test_included_model_is_watched(tmp_path):
     (tmp_path / "crate").mkdir()
     (tmp_path / "crate/model.sdf").write_text(f'<sdf version="1.7">{FALLING}</sdf>')
     (tmp_path / "a.world").write_text(world("<include><uri>model://crate</uri></include>"))
-    async with shown(SimulatedWorld(str(tmp_path / "a.world"), tmp_path / "a.world")) as running:
+    async with running_simulation(SimulatedWorld(str(tmp_path / "a.world"), tmp_path / "a.world")) as running:
         (tmp_path / "crate/model.sdf").write_text(f'<sdf version="1.7">{box("crate", "1 1 1 0 0 0")}</sdf>')
         await running.when(has("ground", "crate"))
 
@@ -190,7 +190,7 @@ async def test_saved_robot_is_reloaded_with_pose_and_joint_positions(tmp_path):
         simulation.set_model_pose("arm", (1.0, 2.0, 3.0, 0.0, 0.0, 0.0, 1.0))
         simulation.set_joint_position("arm::turn", 0.5)
 
-    async with shown(with_robot(tmp_path, ARM.format(""))) as running:
+    async with running_simulation(with_robot(tmp_path, ARM.format(""))) as running:
         await running.look(elsewhere)
         (tmp_path / "robot.urdf").write_text(ARM.format(MORE))
         await running.when(lambda simulation: "arm::more" in simulation.scene.bodies)
@@ -204,7 +204,7 @@ async def test_saved_robot_is_reloaded_with_pose_and_joint_positions(tmp_path):
 
 async def test_driven_robot_is_completed_again_after_change(tmp_path):
     (tmp_path / "mbot.urdf").write_text(MBOT)
-    async with shown(drive_of(tmp_path / "mbot.urdf")) as running:
+    async with running_simulation(drive_of(tmp_path / "mbot.urdf")) as running:
         mast = '<link name="mast"/><joint name="m" type="fixed"><parent link="base_link"/><child link="mast"/></joint>'
         (tmp_path / "mbot.urdf").write_text(MBOT.replace("</robot>", f"{mast}</robot>"))
         await running.when(lambda simulation: "mbot::mast" in simulation.scene.bodies)
@@ -226,7 +226,7 @@ CUBE = "".join(
 async def test_changed_robot_mesh_is_reloaded(tmp_path):
     (tmp_path / "part.stl").write_text(f"solid part\n{CUBE}endsolid part\n")
     mesh = '<visual><geometry><mesh filename="part.stl"/></geometry></visual>'
-    async with shown(
+    async with running_simulation(
         with_robot(tmp_path, ARM.format("").replace('<link name="tip">', f'<link name="tip">{mesh}'))
     ) as running:
         assert await running.look(_extent) < 1.5
@@ -239,7 +239,7 @@ async def test_changed_world_mesh_is_reloaded(tmp_path):
     mesh = '<visual name="v"><geometry><mesh><uri>part.stl</uri></mesh></geometry></visual>'
     part = f'<model name="part"><static>true</static><link name="l">{mesh}</link></model>'
     (tmp_path / "a.world").write_text(world(FALLING, part))
-    async with shown(SimulatedWorld(str(tmp_path / "a.world"), tmp_path / "a.world")) as running:
+    async with running_simulation(SimulatedWorld(str(tmp_path / "a.world"), tmp_path / "a.world")) as running:
         await running.look(lambda simulation: simulation.set_model_pose("falling", (1.0, 2.0, 3.0, 0.0, 0.0, 0.0, 1.0)))
         assert await running.look(_extent) < 1.5
         (tmp_path / "part.stl").write_text(f"solid part\n{CUBE.replace('1 0 0', '3 0 0')}endsolid part\n")

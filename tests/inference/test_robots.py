@@ -31,7 +31,7 @@ def inferred(text: str) -> Inference:
     return read_and_inferred(text)[1]
 
 
-def shown(inference: Inference) -> str:
+def summary_of(inference: Inference) -> str:
     """Return an inference in the form of the page."""
     drive = inference.drive
     lines = ["none"]
@@ -51,7 +51,7 @@ def shown(inference: Inference) -> str:
 
 @pytest.mark.parametrize(("title", "robot", "expected"), CASES, ids=[case[0] for case in CASES])
 def test_inference_matches_markdown_case(title, robot, expected):
-    assert shown(inferred(robot)) == expected
+    assert summary_of(inferred(robot)) == expected
 
 
 @pytest.mark.parametrize("robot", [case[1] for case in CASES], ids=[case[0] for case in CASES])
