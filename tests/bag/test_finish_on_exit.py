@@ -23,17 +23,17 @@ FORMS = {
 @pytest.fixture(params=FORMS)
 def writer(request: pytest.FixtureRequest, tmp_path: Path) -> BagWriter:
     name, options = FORMS[request.param]
-    made = BagWriter(tmp_path / name, **options)
-    made.add_topic("/chatter", "std_msgs/msg/String")
-    return made
+    writer = BagWriter(tmp_path / name, **options)
+    writer.add_topic("/chatter", "std_msgs/msg/String")
+    return writer
 
 
 def numbers(path: Path) -> list[int]:
     """The times of the messages of a recording that is whole."""
     with BagReader(path) as bag:
-        found = [stamp for _, stamp, _ in bag.messages()]
+        stamps = [stamp for _, stamp, _ in bag.messages()]
         assert not bag.findings
-    return found
+    return stamps
 
 
 def test_finish_all_completes_recording_while_thread_writes(writer: BagWriter) -> None:
@@ -55,16 +55,16 @@ def test_finish_all_completes_recording_while_thread_writes(writer: BagWriter) -
     finally:
         over.set()
         thread.join(SECONDS)
-    found = numbers(writer.path)
-    assert found == list(range(1, len(found) + 1))
-    assert len(found) >= 100
+    numbers_written = numbers(writer.path)
+    assert numbers_written == list(range(1, len(numbers_written) + 1))
+    assert len(numbers_written) >= 100
     writer.close()
-    assert numbers(writer.path) == found
+    assert numbers(writer.path) == numbers_written
 
 
 def test_finish_all_leaves_closed_recording_unchanged(writer: BagWriter) -> None:
     writer.write("/chatter", 1, serialize(String(data="word")))
     writer.close()
-    before = {each: each.stat().st_mtime_ns for each in (writer.path, *writer.path.glob("*"))}
+    before = {path: path.stat().st_mtime_ns for path in (writer.path, *writer.path.glob("*"))}
     finish_all()
-    assert {each: each.stat().st_mtime_ns for each in before} == before
+    assert {path: path.stat().st_mtime_ns for path in before} == before

@@ -28,10 +28,10 @@ class Clock:
         return self.ns
 
 
-def filled(most: int = 10**6, size: int = 1000, count: int = 10) -> tuple[History, Clock]:
+def filled(max_size: int = 10**6, size: int = 1000, count: int = 10) -> tuple[History, Clock]:
     """A history with a message of a topic each second."""
     clock = Clock()
-    history = History(most, clock)
+    history = History(max_size, clock)
     for second in range(count):
         clock.ns = second * SECOND
         history.add("/a", bytes([second % 256]) * size)
@@ -47,10 +47,10 @@ def numbers(messages: object) -> list[int]:
 
 
 def test_history_drops_oldest_messages_beyond_byte_limit() -> None:
-    history, _ = filled(most=5 * 1200, count=3000)
+    history, _ = filled(max_size=5 * 1200, count=3000)
     assert history.size <= 5 * 1200
-    kept = list(history.messages(["/a"], 0))
-    assert [stamp // SECOND for _, stamp, _ in kept] == [2996, 2997, 2998, 2999], "and the one before is known"
+    messages = list(history.messages(["/a"], 0))
+    assert [stamp // SECOND for _, stamp, _ in messages] == [2996, 2997, 2998, 2999], "and the one before is known"
     assert history.start_ns == 2996 * SECOND
     assert numbers(history.state_at(["/a"], 2995 * SECOND)) == [2995 % 256]
     assert history.state_at(["/a"], 2994 * SECOND) == []
@@ -59,7 +59,7 @@ def test_history_drops_oldest_messages_beyond_byte_limit() -> None:
 
 
 def test_state_at_returns_last_messages_and_dropped_static_transforms() -> None:
-    history, clock = filled(most=10**5)
+    history, clock = filled(max_size=10**5)
     for child in ("one", "two", "one"):
         history.add("/tf_static", static(child))
     history.add("/map", b"\7")
@@ -92,9 +92,9 @@ def image(shade: int, size: int = 200_000) -> bytes:
     return bytes([shade]) * size
 
 
-def packed(history: History, most: int) -> None:
+def packed(history: History, max_size: int) -> None:
     """Wait until what is kept takes no more than so many bytes."""
-    wait_until(lambda: history.size <= most)
+    wait_until(lambda: history.size <= max_size)
 
 
 def test_repetitive_large_messages_are_compressed_and_read_unchanged() -> None:
@@ -115,7 +115,7 @@ def test_repetitive_large_messages_are_compressed_and_read_unchanged() -> None:
 
 def test_incompressible_messages_are_stored_uncompressed() -> None:
     noise = np.random.default_rng(0).integers(0, 256, 200_000).astype(np.uint8).tobytes()
-    history, _ = filled(count=0, most=10**7)
+    history, _ = filled(count=0, max_size=10**7)
     history.add("/camera", noise)
     history.add("/camera", image(1))
     packed(history, 202_000)
@@ -134,7 +134,7 @@ def test_messages_dropped_before_compression_are_harmless(monkeypatch: pytest.Mo
         return bytes(compress(data, level))
 
     monkeypatch.setattr(_zstd(), "compress", slow)
-    history, _ = filled(count=0, most=500_000)
+    history, _ = filled(count=0, max_size=500_000)
     for shade in range(5):
         history.add("/camera", image(shade))
     assert history.size == 2 * 200_200, "one, and the one before it"
@@ -156,8 +156,11 @@ def states(clock: Clock, history: History, positions: list[float], *, start: flo
 
 def positions(messages: list[tuple[str, int, bytes]]) -> list[tuple[float, float]]:
     """Position and stamp, in seconds, of joint states."""
-    read = [deserialize(uncompressed_bytes(data), JointState) for _, _, data in messages]
-    return [(each.position[0], each.header.stamp.sec + each.header.stamp.nanosec / 1e9) for each in read]
+    joint_states = [deserialize(uncompressed_bytes(data), JointState) for _, _, data in messages]
+    return [
+        (joint_state.position[0], joint_state.header.stamp.sec + joint_state.header.stamp.nanosec / 1e9)
+        for joint_state in joint_states
+    ]
 
 
 def test_unmoving_joint_states_keep_two_messages_per_ten_seconds() -> None:
@@ -211,8 +214,8 @@ def test_transforms_of_unmoving_publishers_are_thinned_separately() -> None:
             history.add("/tf", data, content=content_of(TFMessage.TYPE_NAME, data))
     assert history.count == 3000 + 2 * 3
     for second in (5, 15, 28):
-        found = [deserialize(data, TFMessage).batch for _, _, data in history.state_at(["/tf"], second * SECOND)]
-        newest = {batch.children[0]: batch.poses[0][0] for batch in found}
+        batches = [deserialize(data, TFMessage).batch for _, _, data in history.state_at(["/tf"], second * SECOND)]
+        newest = {batch.children[0]: batch.poses[0][0] for batch in batches}
         assert newest == {"wheel": 0.0, "robot": second}
 
 
@@ -255,8 +258,8 @@ def test_slowly_moving_transforms_are_kept_within_nanometer() -> None:
         clock.ns = number * SECOND // 100
         transforms(history, clock, number * 1e-10)
     for second in (0.5, 7.0, 12.34, 29.98):
-        found = [deserialize(data, TFMessage).batch for _, _, data in history.state_at(["/tf"], int(second * SECOND))]
-        assert found[-1].poses[0][0] == pytest.approx(second * 1e-8, abs=2e-9)
+        batches = [deserialize(data, TFMessage).batch for _, _, data in history.state_at(["/tf"], int(second * SECOND))]
+        assert batches[-1].poses[0][0] == pytest.approx(second * 1e-8, abs=2e-9)
 
 
 def test_clock_alone_is_thinned_and_interpolated() -> None:
@@ -315,20 +318,20 @@ def test_content_of_message_without_stamp_is_none() -> None:
 
 @pytest.mark.parametrize("data", [b"", b"\0\1\0\0", b"\0\1\0\0\xff\0\0\0", b"\0\0\0\0\0\0\0\1" + bytes(80)])
 def test_content_of_malformed_transforms_is_empty(data: bytes) -> None:
-    found = content_of(TFMessage.TYPE_NAME, data)
-    assert found is None or found.child_frames == ""
+    transforms = content_of(TFMessage.TYPE_NAME, data)
+    assert transforms is None or transforms.child_frames == ""
 
 
 def test_images_beyond_limit_are_thinned_over_minutes() -> None:
     clock = Clock()
-    history = History(most := 4_000_000, clock)
+    history = History(max_size := 4_000_000, clock)
     noise = np.random.default_rng(1).bytes(15_000)  # 266 of them fill the room: nine seconds
     for frame in range(30 * 300):
         clock.ns = frame * SECOND // 30
         history.add("/camera", noise)
         if frame % 30 == 0:
             history.add("/small", b"second")
-    assert history.size <= most
+    assert history.size <= max_size
     assert history.start_ns <= SECOND
     stamps = [stamp / SECOND for _, stamp, _ in history.messages(["/camera"], 0)]
     assert len(stamps) > 200
@@ -350,19 +353,19 @@ def test_thinned_images_reach_back_at_most_ten_minutes() -> None:
 
 def content_of_poses(children: tuple[str, ...], numbers: list[list[float]], stamp_ns: int = 0) -> Content:
     batch = TransformBatch(("odom",) * len(children), children, stamp_ns, np.array(numbers))
-    found = content_of(TFMessage.TYPE_NAME, serialize(TFMessage(batch=batch)))
-    assert found is not None
-    return found
+    transforms = content_of(TFMessage.TYPE_NAME, serialize(TFMessage(batch=batch)))
+    assert transforms is not None
+    return transforms
 
 
 def test_content_of_transforms_has_frames_and_poses_without_stamps() -> None:
     left, right = [1.0, 2, 3, 0, 0, 0, 1], [4.0, 5, 6, 0, 0, 1, 0]
     for children, numbers in ((("a", "b"), [left, right]), (("c", "d"), [left, right]), (("c", "d"), [right, left])):
-        found = content_of_poses(children, numbers, 7)
-        assert found.child_frames.replace("\0", "") == "\n".join(children)
-        assert np.frombuffer(found.poses).reshape(-1, 7).tolist() == numbers
-        assert found == content_of_poses(children, numbers, 9_000_000_000)
-        assert found.is_repeated_by(content_of_poses(children, numbers))
+        transforms = content_of_poses(children, numbers, 7)
+        assert transforms.child_frames.replace("\0", "") == "\n".join(children)
+        assert np.frombuffer(transforms.poses).reshape(-1, 7).tolist() == numbers
+        assert transforms == content_of_poses(children, numbers, 9_000_000_000)
+        assert transforms.is_repeated_by(content_of_poses(children, numbers))
     assert not content_of_poses(("a", "b"), [left, right]).is_repeated_by(content_of_poses(("a", "c"), [left, right]))
 
 

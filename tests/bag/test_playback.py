@@ -26,9 +26,9 @@ def text(data: str) -> bytes:
 
 def transform(child: str) -> bytes:
     message = get_message(TF)()
-    one = get_message("geometry_msgs/msg/TransformStamped")()
-    one.child_frame_id = child
-    message.transforms = [one]
+    stamped_transform = get_message("geometry_msgs/msg/TransformStamped")()
+    stamped_transform.child_frame_id = child
+    message.transforms = [stamped_transform]
     return serialize(message)
 
 
@@ -88,16 +88,16 @@ def test_state_at_returns_last_message_of_each_topic_and_transforms(
 
 def without_index(whole: bytes, *, message_indexes: bool) -> bytes:
     """A finished MCAP file without a summary; without the indexes behind its chunks, too, if they are not wanted."""
-    kept, place = bytearray(whole[:8]), 8
+    records, place = bytearray(whole[:8]), 8
     while True:
         kind, length = struct.unpack_from("<BQ", whole, place)
         end = place + 9 + length
         if kind == 0x0F:  # the end of the data
             break
         if kind != 0x07 or message_indexes:
-            kept += whole[place:end]
+            records += whole[place:end]
         place = end
-    return bytes(kept) + struct.pack("<BQI", 0x0F, 4, 0) + struct.pack("<BQ", 0x02, 20) + bytes(20) + whole[:8]
+    return bytes(records) + struct.pack("<BQI", 0x0F, 4, 0) + struct.pack("<BQ", 0x02, 20) + bytes(20) + whole[:8]
 
 
 @pytest.mark.parametrize("compressed", [False, True])
@@ -144,17 +144,19 @@ def test_state_at_matches_reading_all_messages(tmp_path: Path, storage: str) -> 
     with BagReader(tmp_path / "bag") as bag:
         whole = list(bag.messages())
         for at in sorted({START + stamp + step for stamp in stamps for step in (-1, 0, 1)}):
-            before = [each for each in whole if each[1] <= at]
-            transforms = [each for each in before if each[0] == "/tf"]
+            before = [message for message in whole if message[1] <= at]
+            transforms = [message for message in before if message[0] == "/tf"]
             since = min(at, transforms[-1][1] if transforms and transforms[-1][1] < at - 2 * SECOND else at)
             moving = [transform for transform in transforms if transform[1] >= since - 2 * SECOND]
-            last = [[each for each in before if each[0] == topic][-1:] for topic in ("/a", "/b")]
-            static = [each for each in before if each[0] == "/tf_static"]
+            last = [[message for message in before if message[0] == topic][-1:] for topic in ("/a", "/b")]
+            static = [message for message in before if message[0] == "/tf_static"]
             assert sorted(bag.state_at(topics, at)) == sorted([*static, *moving, *last[0], *last[1]])
-            assert bag.time_before(topics, at) == max((each[1] for each in whole if each[1] < at), default=None)
+            assert bag.time_before(topics, at) == max(
+                (message[1] for message in whole if message[1] < at), default=None
+            )
 
 
-class Shown:
+class PlayedRecording:
     """A graph with a recording in it, and a node that listens."""
 
     def __init__(self, path: Path) -> None:
@@ -185,101 +187,103 @@ class Shown:
             await asyncio.sleep(0)
         await self.graph.settle()
 
-    async def taken(self) -> list[str]:
+    async def take_heard(self) -> list[str]:
         await self.settle()
         heard, self.heard = self.heard, []
         return heard
 
 
 @pytest.fixture
-async def shown(tmp_path: Path, request: pytest.FixtureRequest) -> AsyncIterator[Shown]:
-    made = Shown(recorded(tmp_path, getattr(request, "param", "mcap")))
-    yield made
-    made.playback.close()
-    made.bag.close()
-    await made.graph.close()
+async def recording(tmp_path: Path, request: pytest.FixtureRequest) -> AsyncIterator[PlayedRecording]:
+    recording = PlayedRecording(recorded(tmp_path, getattr(request, "param", "mcap")))
+    yield recording
+    recording.playback.close()
+    recording.bag.close()
+    await recording.graph.close()
 
 
-@pytest.mark.parametrize("shown", STORAGES, indirect=True)
-async def test_playback_publishes_subscribed_topics_and_clock(shown: Shown) -> None:
-    shown.listen("/a")
-    assert await shown.taken() == ["a 0"]
-    shown.playback.play()
-    await shown.clock.advance(2.5)
-    assert await shown.taken() == ["a 1", "a 2"]
-    assert shown.times == sorted(shown.times)
-    assert 2.4 * SECOND < shown.times[-1] <= 2.5 * SECOND
-    shown.listen("/b")
-    assert await shown.taken() == ["b 0"], "who comes later is told what was there"
-    shown.playback.set_speed(2)
-    await shown.clock.advance(1.0)
-    assert await shown.taken() == ["a 3", "a 4", "b 4"]
-    shown.playback.pause()
-    await shown.clock.advance(5.0)
-    assert await shown.taken() == []
+@pytest.mark.parametrize("recording", STORAGES, indirect=True)
+async def test_playback_publishes_subscribed_topics_and_clock(recording: PlayedRecording) -> None:
+    recording.listen("/a")
+    assert await recording.take_heard() == ["a 0"]
+    recording.playback.play()
+    await recording.clock.advance(2.5)
+    assert await recording.take_heard() == ["a 1", "a 2"]
+    assert recording.times == sorted(recording.times)
+    assert 2.4 * SECOND < recording.times[-1] <= 2.5 * SECOND
+    recording.listen("/b")
+    assert await recording.take_heard() == ["b 0"], "who comes later is told what was there"
+    recording.playback.set_speed(2)
+    await recording.clock.advance(1.0)
+    assert await recording.take_heard() == ["a 3", "a 4", "b 4"]
+    recording.playback.pause()
+    await recording.clock.advance(5.0)
+    assert await recording.take_heard() == []
 
 
-async def test_seek_resets_listeners_before_publishing_state(shown: Shown) -> None:
-    shown.listen("/a")
-    shown.listen("/b")
-    await shown.taken()
-    shown.playback.seek(START + 3 * SECOND)
-    shown.playback.seek(START + 10 * SECOND + 5)
-    assert await shown.taken() == ["reset", "b 8", "a 10"], "of several seeks the newest"
-    assert shown.playback.position_ns == START + 10 * SECOND + 5
-    shown.playback.seek(START + 2 * SECOND)
-    assert await shown.taken() == ["reset", "b 0", "a 2"]
-    assert shown.times[-1] == 2 * SECOND
-    shown.playback.play()
-    await shown.clock.advance(1.1)
-    assert await shown.taken() == ["a 3"]
+async def test_seek_resets_listeners_before_publishing_state(recording: PlayedRecording) -> None:
+    recording.listen("/a")
+    recording.listen("/b")
+    await recording.take_heard()
+    recording.playback.seek(START + 3 * SECOND)
+    recording.playback.seek(START + 10 * SECOND + 5)
+    assert await recording.take_heard() == ["reset", "b 8", "a 10"], "of several seeks the newest"
+    assert recording.playback.position_ns == START + 10 * SECOND + 5
+    recording.playback.seek(START + 2 * SECOND)
+    assert await recording.take_heard() == ["reset", "b 0", "a 2"]
+    assert recording.times[-1] == 2 * SECOND
+    recording.playback.play()
+    await recording.clock.advance(1.1)
+    assert await recording.take_heard() == ["a 3"]
 
 
-async def test_step_moves_between_messages_of_subscribed_topics(shown: Shown) -> None:
-    shown.listen("/b")
-    await shown.taken()
-    shown.playback.step(forward=True)
-    shown.playback.step(forward=True)
-    assert await shown.taken() == ["b 4", "b 8"]
-    assert shown.playback.position_ns == START + 8 * SECOND
-    shown.playback.step(forward=False)
-    assert await shown.taken() == ["reset", "b 4"]
-    shown.playback.seek(START)
-    await shown.taken()
-    shown.playback.step(forward=False)
-    assert await shown.taken() == []
+async def test_step_moves_between_messages_of_subscribed_topics(recording: PlayedRecording) -> None:
+    recording.listen("/b")
+    await recording.take_heard()
+    recording.playback.step(forward=True)
+    recording.playback.step(forward=True)
+    assert await recording.take_heard() == ["b 4", "b 8"]
+    assert recording.playback.position_ns == START + 8 * SECOND
+    recording.playback.step(forward=False)
+    assert await recording.take_heard() == ["reset", "b 4"]
+    recording.playback.seek(START)
+    await recording.take_heard()
+    recording.playback.step(forward=False)
+    assert await recording.take_heard() == []
 
 
-async def test_step_by_topic_publishes_messages_between(shown: Shown) -> None:
-    shown.listen("/a")
-    await shown.taken()
-    shown.playback.step(True, "/b")
-    assert await shown.taken() == ["a 1", "a 2", "a 3", "a 4"], "what lies between is shown, too"
-    assert shown.playback.position_ns == START + 4 * SECOND
-    shown.playback.step(False, "/tf_static")
-    assert await shown.taken() == ["reset", "a 0"]
-    shown.playback.seek(START + 19 * SECOND)
-    await shown.taken()
-    shown.playback.step(True, "/b")
-    assert await shown.taken() == [], "there is no later one"
-    assert shown.playback.position_ns == START + 19 * SECOND
+async def test_step_by_topic_publishes_messages_between(recording: PlayedRecording) -> None:
+    recording.listen("/a")
+    await recording.take_heard()
+    recording.playback.step(True, "/b")
+    assert await recording.take_heard() == ["a 1", "a 2", "a 3", "a 4"], "what lies between is shown, too"
+    assert recording.playback.position_ns == START + 4 * SECOND
+    recording.playback.step(False, "/tf_static")
+    assert await recording.take_heard() == ["reset", "a 0"]
+    recording.playback.seek(START + 19 * SECOND)
+    await recording.take_heard()
+    recording.playback.step(True, "/b")
+    assert await recording.take_heard() == [], "there is no later one"
+    assert recording.playback.position_ns == START + 19 * SECOND
 
 
-async def test_step_over_too_many_messages_becomes_seek(shown: Shown, monkeypatch: pytest.MonkeyPatch) -> None:
+async def test_step_over_too_many_messages_becomes_seek(
+    recording: PlayedRecording, monkeypatch: pytest.MonkeyPatch
+) -> None:
     monkeypatch.setattr("linkwright.bag.playback._MAX_TICK_MESSAGES", 2)
-    shown.listen("/a")
-    await shown.taken()
-    shown.playback.step(True, "/b")
-    assert (await shown.taken())[-2:] == ["reset", "a 4"]
-    assert shown.playback.position_ns == START + 4 * SECOND
+    recording.listen("/a")
+    await recording.take_heard()
+    recording.playback.step(True, "/b")
+    assert (await recording.take_heard())[-2:] == ["reset", "a 4"]
+    assert recording.playback.position_ns == START + 4 * SECOND
 
 
-async def test_step_back_without_subscriptions_keeps_position(shown: Shown) -> None:
-    shown.playback.seek(START + 8 * SECOND)
-    await shown.settle()
-    shown.playback.step(forward=False)
-    await shown.settle()
-    assert shown.playback.position_ns == START + 8 * SECOND
+async def test_step_back_without_subscriptions_keeps_position(recording: PlayedRecording) -> None:
+    recording.playback.seek(START + 8 * SECOND)
+    await recording.settle()
+    recording.playback.step(forward=False)
+    await recording.settle()
+    assert recording.playback.position_ns == START + 8 * SECOND
 
 
 @pytest.mark.parametrize("storage", ["mcap", "sqlite3"])
@@ -291,7 +295,7 @@ def test_state_at_keeps_transforms_from_before_a_pause(tmp_path: Path, storage: 
             writer.write("/tf", START + stamp * SECOND, transform(f"{stamp}"))
     with BagReader(tmp_path / "bag") as bag:
         for at, stamps in ((0, [0]), (40, [0]), (60, [59, 60]), (100, [59, 60]), (179, [59, 60]), (181, [180])):
-            assert [each[1] for each in bag.state_at(["/tf"], START + at * SECOND)] == [
+            assert [message[1] for message in bag.state_at(["/tf"], START + at * SECOND)] == [
                 START + stamp * SECOND for stamp in stamps
             ]
 
@@ -303,21 +307,21 @@ def test_empty_recording_is_reported(tmp_path: Path) -> None:
         assert [finding.code for finding in bag.findings] == ["BAG113"]
 
 
-async def test_playback_stops_at_end_or_loops(shown: Shown) -> None:
-    shown.listen("/b")
-    shown.playback.seek(START + 19 * SECOND)
-    await shown.taken()
-    shown.playback.play()
-    await shown.clock.advance(2.0)
-    assert not shown.playback.playing
-    assert shown.playback.position_ns == shown.playback.end_ns
-    shown.playback.set_loop(True)
-    shown.playback.play()
-    await shown.clock.advance(0.1)
-    assert (await shown.taken())[:2] == ["reset", "b 0"]
-    assert shown.playback.playing
-    await shown.clock.advance(20.0)
-    assert shown.playback.position_ns < START + 2 * SECOND, "it has begun anew"
+async def test_playback_stops_at_end_or_loops(recording: PlayedRecording) -> None:
+    recording.listen("/b")
+    recording.playback.seek(START + 19 * SECOND)
+    await recording.take_heard()
+    recording.playback.play()
+    await recording.clock.advance(2.0)
+    assert not recording.playback.playing
+    assert recording.playback.position_ns == recording.playback.end_ns
+    recording.playback.set_loop(True)
+    recording.playback.play()
+    await recording.clock.advance(0.1)
+    assert (await recording.take_heard())[:2] == ["reset", "b 0"]
+    assert recording.playback.playing
+    await recording.clock.advance(20.0)
+    assert recording.playback.position_ns < START + 2 * SECOND, "it has begun anew"
 
 
 async def test_playback_slows_down_when_messages_exceed_tick_limit(tmp_path: Path) -> None:
@@ -326,17 +330,17 @@ async def test_playback_slows_down_when_messages_exceed_tick_limit(tmp_path: Pat
         writer.add_topic("/a", STRING, [DEFAULT_QOS])
         for number in range(5000):
             writer.write("/a", START + number * 1000, text(str(number)))
-    shown = Shown(path)
-    shown.listen("/a")
-    await shown.taken()
-    shown.playback.play()
-    await shown.clock.advance(0.017)
-    assert shown.playback.position_ns == START + 1001 * 1000 - 1
-    await shown.clock.advance(0.1)
-    assert shown.playback.position_ns == START + 4999 * 1000
-    shown.playback.close()
-    shown.bag.close()
-    await shown.graph.close()
+    recording = PlayedRecording(path)
+    recording.listen("/a")
+    await recording.take_heard()
+    recording.playback.play()
+    await recording.clock.advance(0.017)
+    assert recording.playback.position_ns == START + 1001 * 1000 - 1
+    await recording.clock.advance(0.1)
+    assert recording.playback.position_ns == START + 4999 * 1000
+    recording.playback.close()
+    recording.bag.close()
+    await recording.graph.close()
 
 
 async def test_damaged_chunk_pauses_playback_and_is_reported(tmp_path: Path) -> None:
@@ -345,14 +349,14 @@ async def test_damaged_chunk_pauses_playback_and_is_reported(tmp_path: Path) -> 
     magic = b"\x28\xb5\x2f\xfd"  # of zstd
     first, rest = file.read_bytes().split(magic, 1)
     file.write_bytes(first + magic + rest.replace(magic, b"zstd"))
-    shown = Shown(path)
-    shown.listen("/a")
-    shown.failures.clear()
-    shown.playback.play()
-    shown.playback.seek(START + 12 * SECOND)
-    await shown.settle()
-    assert [failure.diagnostics[0].code for failure in shown.failures] == ["BAG102"]
-    assert not shown.playback.playing
-    shown.playback.close()
-    shown.bag.close()
-    await shown.graph.close()
+    recording = PlayedRecording(path)
+    recording.listen("/a")
+    recording.failures.clear()
+    recording.playback.play()
+    recording.playback.seek(START + 12 * SECOND)
+    await recording.settle()
+    assert [failure.diagnostics[0].code for failure in recording.failures] == ["BAG102"]
+    assert not recording.playback.playing
+    recording.playback.close()
+    recording.bag.close()
+    await recording.graph.close()

@@ -303,19 +303,19 @@ async def test_unknown_type_is_played_with_definition_from_recording(
     record_of_a_foreign_type(tmp_path / "bag", package, storage, Sample=SAMPLE, Probe=PROBE)
     with pytest.raises(LinkwrightError, match="there is no message"):
         get_message(f"{package}/msg/Probe")
-    heard: list[tuple[float, list[str], str]] = []
+    events: list[tuple[float, list[str], str]] = []
     with BagReader(tmp_path / "bag") as bag:
         probe = get_message(f"{package}/msg/Probe")
         graph.create_node("listener").create_subscription(
             probe,
             "/probe",
-            lambda m: heard.append((m.depth, [sample.label for sample in m.samples], m.header.frame_id)),
+            lambda m: events.append((m.depth, [sample.label for sample in m.samples], m.header.frame_id)),
             10,
         )
         player = Player(player_node, bag, PlayOptions())
         player.start()
         await clock.advance(3)
-    assert heard == [(0.0, [], "drill"), (0.5, ["topsoil"], "drill"), (1.0, ["topsoil", "topsoil"], "drill")]
+    assert events == [(0.0, [], "drill"), (0.5, ["topsoil"], "drill"), (1.0, ["topsoil", "topsoil"], "drill")]
     assert get_message(f"{package}/msg/Sample").CLAY == 1
     store = get_typestore(Stores.ROS2_HUMBLE)
     for name, text in (("Sample", SAMPLE), ("Probe", PROBE)):

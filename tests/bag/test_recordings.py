@@ -57,8 +57,8 @@ def code_of(error: pytest.ExceptionInfo[LinkwrightError]) -> str:
 def test_metadata_contradicting_files_hides_no_messages(tmp_path: Path, storage: str, key: str) -> None:
     path = write(tmp_path, storage) / "metadata.yaml"
     document = yaml.safe_load(path.read_text(encoding="utf-8"))
-    for each in document["rosbag2_bagfile_information"]["topics_with_message_count"]:
-        each["topic_metadata"][key] = "RIHS01_0" if "hash" in key else ""
+    for topic in document["rosbag2_bagfile_information"]["topics_with_message_count"]:
+        topic["topic_metadata"][key] = "RIHS01_0" if "hash" in key else ""
     path.write_text(yaml.safe_dump(document), encoding="utf-8")
     with BagReader(path.parent) as bag:
         assert len(list(bag.messages())) == 4
@@ -76,14 +76,14 @@ def test_bag_reader_returns_messages_ordered_by_time(tmp_path: Path, storage: st
         assert bag.topics[0].offered_qos == (DESCRIPTION_QOS,)
         assert bag.topics[1].offered_qos == (DEFAULT_QOS, SENSOR_DATA_QOS)
         assert (bag.start_ns, bag.end_ns) == (START, START + 2_000_000_000)
-        found = list(bag.messages())
-    assert [(topic, stamp - START) for topic, stamp, _ in found] == [
+        messages = list(bag.messages())
+    assert [(topic, stamp - START) for topic, stamp, _ in messages] == [
         ("/chatter", 0),
         ("/joint_states", 500_000_000),
         ("/chatter", 1_000_000_000),
         ("/chatter", 2_000_000_000),
     ]
-    assert found[0][2][:4] == b"\x00\x01\x00\x00"
+    assert messages[0][2][:4] == b"\x00\x01\x00\x00"
 
 
 @pytest.mark.parametrize("storage", STORAGES)
@@ -104,9 +104,9 @@ def test_compressed_recording_is_smaller_with_equal_messages(tmp_path: Path) -> 
     (tmp_path / "plain").mkdir()
     (tmp_path / "small").mkdir()
     plain, small = write(tmp_path / "plain", count=400), write(tmp_path / "small", count=400, compression="storage")
-    with BagReader(plain) as one, BagReader(small) as other:
-        assert list(one.messages()) == list(other.messages())
-        assert other.files[0].stat().st_size < one.files[0].stat().st_size / 2
+    with BagReader(plain) as plain_bag, BagReader(small) as small_bag:
+        assert list(plain_bag.messages()) == list(small_bag.messages())
+        assert small_bag.files[0].stat().st_size < plain_bag.files[0].stat().st_size / 2
 
 
 def test_messages_can_be_filtered_by_topic_and_start_time(tmp_path: Path) -> None:
@@ -140,7 +140,7 @@ os._exit(1)
 
 def test_single_file_recording_has_no_folder(tmp_path: Path) -> None:
     path = write(tmp_path / "new", name="run.mcap", single_file=True)
-    assert [each.name for each in path.parent.iterdir()] == ["run.mcap"]
+    assert [file.name for file in path.parent.iterdir()] == ["run.mcap"]
     with BagReader(path) as bag, BagReader(write(tmp_path)) as folder:
         assert not bag.findings
         assert list(bag.messages()) == list(folder.messages())
@@ -154,7 +154,7 @@ def test_single_file_recording_has_no_folder(tmp_path: Path) -> None:
 
 def parts(folder: Path, storage: str, names: Sequence[str]) -> list[Path]:
     """Files without metadata: in each three messages of a topic, that begin a second after those of the one before."""
-    made = []
+    files = []
     for number, name in enumerate(names):
         with BagWriter(folder / f"part{number}", storage) as writer:
             writer.add_topic("/chatter", "std_msgs/msg/String", [DEFAULT_QOS])
@@ -167,10 +167,10 @@ def parts(folder: Path, storage: str, names: Sequence[str]) -> list[Path]:
                 )  # the last one is after the next file's first
                 writer.write("/chatter", stamp, serialize(String(data=f"{number}.{step}")))
         (file,) = (path for path in (folder / f"part{number}").iterdir() if path.name != "metadata.yaml")
-        made.append(folder / "drive" / f"{name}{file.suffix}")
-        made[-1].parent.mkdir(exist_ok=True)
-        file.rename(made[-1])
-    return made
+        files.append(folder / "drive" / f"{name}{file.suffix}")
+        files[-1].parent.mkdir(exist_ok=True)
+        file.rename(files[-1])
+    return files
 
 
 def texts(messages: Iterable[tuple[str, int, bytes]]) -> list[str]:
@@ -326,7 +326,7 @@ def test_unknown_topic_error_suggests_nearest(tmp_path: Path) -> None:
 
 
 @pytest.mark.parametrize(
-    ("selection", "taken"),
+    ("selection", "selected"),
     [
         (TopicSelection(everything=True), ["/a", "/b/c"]),
         (TopicSelection(everything=True, hidden=True), ["/a", "/b/c", "/b/_hidden"]),
@@ -343,14 +343,14 @@ def test_unknown_topic_error_suggests_nearest(tmp_path: Path) -> None:
         (TopicSelection(pattern="^/[sa]$"), ["/a", "/s/_service_event"]),
     ],
 )
-def test_topic_selection_filters_topics(selection: TopicSelection, taken: list[str]) -> None:
+def test_topic_selection_filters_topics(selection: TopicSelection, selected: list[str]) -> None:
     topics = [
         ("/a", "std_msgs/msg/String"),
         ("/b/c", "std_msgs/msg/Int32"),
         ("/b/_hidden", "std_msgs/msg/Int32"),
         ("/s/_service_event", "std_srvs/srv/Empty_Event"),
     ]
-    assert [name for name, kind in topics if selection.selects(name, kind)] == taken
+    assert [name for name, kind in topics if selection.selects(name, kind)] == selected
     assert not selection.is_empty
 
 
@@ -368,9 +368,9 @@ def test_qos_profiles_survive_recording() -> None:
         deadline=Duration(seconds=1.5),
         lifespan=Duration(nanoseconds=7),
     )
-    again = from_library(to_library(qos))
+    round_trip = from_library(to_library(qos))
     for policy in ("history", "reliability", "durability", "deadline", "lifespan", "liveliness"):
-        assert getattr(again, policy) == getattr(qos, policy)
+        assert getattr(round_trip, policy) == getattr(qos, policy)
 
 
 def test_recording_qos_requests_no_more_than_publishers_offer() -> None:
@@ -387,10 +387,10 @@ def test_playing_qos_matches_recorded_qos_if_publishers_agree() -> None:
 
 def test_playing_qos_uses_largest_recorded_history() -> None:
     """What is kept, and for how long, is no matter of agreement (as in rosbag2)."""
-    kept = [QoSProfile(depth=20), QoSProfile(depth=50, lifespan=Duration(seconds=1.0)), QoSProfile(depth=1)]
-    assert profile_for_playing(kept) == kept[1]
+    profiles = [QoSProfile(depth=20), QoSProfile(depth=50, lifespan=Duration(seconds=1.0)), QoSProfile(depth=1)]
+    assert profile_for_playing(profiles) == profiles[1]
     everything = QoSProfile(history=HistoryPolicy.KEEP_ALL)
-    assert profile_for_playing([*kept, everything]) == everything
+    assert profile_for_playing([*profiles, everything]) == everything
 
 
 def test_playing_qos_defaults_to_depth_ten_if_history_is_unknown() -> None:

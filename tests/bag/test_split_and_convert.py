@@ -57,7 +57,7 @@ def test_recording_splits_by_duration_and_metadata_lists_files(tmp_path, storage
     assert sorted(path.name for path in folder.iterdir()) == [*names, "metadata.yaml"]
     result = metadata(folder)
     assert result["relative_file_paths"] == names
-    assert [(each["path"], each["message_count"]) for each in result["files"]] == list(
+    assert [(file["path"], file["message_count"]) for file in result["files"]] == list(
         zip(names, (11, 11, 11, 7), strict=True)
     )
     assert result["message_count"] == result["topics_with_message_count"][0]["message_count"] == 40
@@ -133,9 +133,9 @@ def options(tmp_path: Path, *outputs: dict[str, Any]) -> Path:
 
 
 def test_rewrite_merges_by_time_and_splits_by_topics(tmp_path) -> None:
-    one, other = write(tmp_path / "one"), write(tmp_path / "other", "sqlite3", topic="/others", count=10)
-    made = rewrite(
-        [one, other],
+    first, second = write(tmp_path / "one"), write(tmp_path / "other", "sqlite3", topic="/others", count=10)
+    folders = rewrite(
+        [first, second],
         options(
             tmp_path,
             {"uri": str(tmp_path / "all"), "storage_id": "sqlite3", "all": True, "max_bagfile_duration": 2},
@@ -143,14 +143,14 @@ def test_rewrite_merges_by_time_and_splits_by_topics(tmp_path) -> None:
             {"uri": str(tmp_path / "part"), "regex": "wor", "start_time_ns": START + 2 * SECOND},
         ),
     )
-    assert [each.name for each in made] == ["all", "some", "part"]
-    assert content(made[0]) == sorted(
-        [*whole(), *whole("/others", 10)], key=lambda each: (each[1], each[0] != "/words")
+    assert [folder.name for folder in folders] == ["all", "some", "part"]
+    assert content(folders[0]) == sorted(
+        [*whole(), *whole("/others", 10)], key=lambda message: (message[1], message[0] != "/words")
     )
-    assert metadata(made[0])["relative_file_paths"] == ["all_0.db3", "all_1.db3"]
-    assert content(made[1]) == whole("/others", 10)
-    assert (made[1] / "some_0.mcap.zstd").exists()
-    assert content(made[2]) == whole()[20:]
+    assert metadata(folders[0])["relative_file_paths"] == ["all_0.db3", "all_1.db3"]
+    assert content(folders[1]) == whole("/others", 10)
+    assert (folders[1] / "some_0.mcap.zstd").exists()
+    assert content(folders[2]) == whole()[20:]
 
 
 @pytest.mark.parametrize(

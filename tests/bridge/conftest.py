@@ -67,19 +67,19 @@ class Networks:
     """What a test has in both networks: processes over DDS and over Zenoh, and bridges."""
 
     def __init__(self) -> None:
-        self._made: list[Process | Bridge] = []
+        self._closables: list[Process | Bridge] = []
 
     def dds(self, name: str) -> Process:
         """A process over DDS."""
-        return self._kept(Process(name))
+        return self._track(Process(name))
 
     def zenoh(self, name: str) -> Process:
         """A process over Zenoh."""
-        return self._kept(Process(name, wire="zenoh"))
+        return self._track(Process(name, wire="zenoh"))
 
     def bridge(self, bridge_id: str = "b0", **names: tuple[str, ...]) -> Bridge:
         """A bridge between both."""
-        return self._kept(Bridge(bridge_id, **names))
+        return self._track(Bridge(bridge_id, **names))
 
     def make(self, network: str) -> Callable[[str], Process]:
         """What makes processes in a network."""
@@ -87,20 +87,20 @@ class Networks:
 
     def close(self) -> None:
         """End all."""
-        for each in self._made:
-            each.close()
+        for closable in self._closables:
+            closable.close()
 
-    def _kept(self, made: ClosableT) -> ClosableT:
-        self._made.append(made)
-        return made
+    def _track(self, closable: ClosableT) -> ClosableT:
+        self._closables.append(closable)
+        return closable
 
 
 @pytest.fixture
 def networks() -> Iterator[Networks]:
     """Both networks, empty."""
-    made = Networks()
-    yield made
-    made.close()
+    networks = Networks()
+    yield networks
+    networks.close()
 
 
 def spin_all(condition: Callable[[], object], *processes: Process) -> None:

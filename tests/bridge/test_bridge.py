@@ -35,31 +35,31 @@ Fibonacci = get_interface("example_interfaces/action/Fibonacci")
 
 
 def listen(process, topic, qos):
-    got = []
-    process.node.create_subscription(String, topic, lambda message: got.append(message.data), qos)
-    return got
+    received = []
+    process.node.create_subscription(String, topic, lambda message: received.append(message.data), qos)
+    return received
 
 
 @pytest.mark.parametrize(("source", "target"), WAYS)
 def test_topic_messages_are_bridged_once_and_in_order(networks, source, target):
     networks.bridge()
     there, here = networks.make(source)("there"), networks.make(target)("here")
-    got = listen(here, "chatter", EVERYTHING)
-    also = listen(there, "chatter", EVERYTHING)
+    received_here = listen(here, "chatter", EVERYTHING)
+    received_there = listen(there, "chatter", EVERYTHING)
     publisher = there.node.create_publisher(String, "chatter", EVERYTHING)
     spin_all(lambda: publisher.get_subscription_count() >= 2 and here.node.count_publishers("chatter"), there, here)
     words = [str(number) for number in range(500)]
     for word in words:
         publisher.publish(String(data=word))
-    spin_all(lambda: len(got) >= len(words), here, there)
+    spin_all(lambda: len(received_here) >= len(words), here, there)
     back = here.node.create_publisher(
         String, "chatter", EVERYTHING
     )  # what went over before would have come back by now
     spin_all(lambda: back.get_subscription_count() >= 2, here, there)
     back.publish(String(data="end"))
-    spin_all(lambda: "end" in also and "end" in got, there, here)
-    assert got == [*words, "end"]
-    assert also == [*words, "end"]
+    spin_all(lambda: "end" in received_there and "end" in received_here, there, here)
+    assert received_here == [*words, "end"]
+    assert received_there == [*words, "end"]
 
 
 @pytest.mark.parametrize(("source", "target"), WAYS)
@@ -73,11 +73,11 @@ def test_bridged_node_is_listed_with_its_publishers_until_it_closes(networks, so
         return here.node.get_publishers_info_by_topic("/far/chatter")
 
     # On DDS whose an endpoint is comes after the endpoint itself.
-    spin_all(lambda: [each.node_name for each in reported()] == ["there"], here)
-    (seen,) = reported()
-    assert seen.topic_type == "std_msgs/msg/String"
-    assert seen.qos_profile.reliability is ReliabilityPolicy.BEST_EFFORT
-    assert seen.qos_profile.depth == 7
+    spin_all(lambda: [endpoint.node_name for endpoint in reported()] == ["there"], here)
+    (reported_endpoint,) = reported()
+    assert reported_endpoint.topic_type == "std_msgs/msg/String"
+    assert reported_endpoint.qos_profile.reliability is ReliabilityPolicy.BEST_EFFORT
+    assert reported_endpoint.qos_profile.depth == 7
     assert "there" in here.node.get_node_names()
     there.close()
     spin_all(lambda: "there" not in here.node.get_node_names(), here)
@@ -93,17 +93,20 @@ def test_bridged_node_is_listed_with_its_subscriptions_and_clients(networks, sou
     there.node.create_client(AddTwoInts, "/far/add")
 
     def reported():
-        found = here.node.get_subscriptions_info_by_topic("/far/chatter")
-        return [each for each in found if each.node_name == "there"]
+        endpoints = here.node.get_subscriptions_info_by_topic("/far/chatter")
+        return [endpoint for endpoint in endpoints if endpoint.node_name == "there"]
 
     def called():
         return dict(here.node.get_client_names_and_types_by_node("there", "/"))
 
     spin_all(lambda: reported() and "/far/add" in called(), here, there)
-    (seen,) = reported()
-    assert (seen.topic_type, seen.topic_type_hash) == ("std_msgs/msg/String", type_hash(String))
-    assert seen.qos_profile.reliability is ReliabilityPolicy.BEST_EFFORT
-    assert seen.qos_profile.deadline == Duration(seconds=2)
+    (reported_endpoint,) = reported()
+    assert (reported_endpoint.topic_type, reported_endpoint.topic_type_hash) == (
+        "std_msgs/msg/String",
+        type_hash(String),
+    )
+    assert reported_endpoint.qos_profile.reliability is ReliabilityPolicy.BEST_EFFORT
+    assert reported_endpoint.qos_profile.deadline == Duration(seconds=2)
     assert called()["/far/add"] == ["example_interfaces/srv/AddTwoInts"]
     assert not subscription.get_publisher_count()
     subscription.destroy()
@@ -117,17 +120,17 @@ def test_bridged_node_is_listed_with_its_subscriptions_and_clients(networks, sou
 def test_first_messages_of_new_publisher_reach_existing_subscription(networks, source, target, reliability):
     networks.bridge()
     here = networks.make(target)("here")
-    got = listen(here, "chatter", QoSProfile(10, reliability=reliability))
+    received = listen(here, "chatter", QoSProfile(10, reliability=reliability))
     there = networks.make(source)("there")
     spin_all(lambda: there.node.count_subscribers("chatter"), there, here)
     for number in range(10):
         publisher = there.node.create_publisher(String, "chatter", QoSProfile(10, reliability=reliability))
         spin_all(lambda publisher=publisher: publisher.get_subscription_count(), there)
         publisher.publish(String(data=str(number)))
-        spin_all(lambda number=number: len(got) > number, here)
+        spin_all(lambda number=number: len(received) > number, here)
         publisher.destroy()
         spin_all(lambda: not here.node.count_publishers("chatter"), here, there)
-    assert got == [str(number) for number in range(10)]
+    assert received == [str(number) for number in range(10)]
 
 
 @pytest.mark.parametrize(("source", "target"), WAYS)
@@ -139,27 +142,27 @@ def test_late_subscription_receives_latched_messages_once(networks, source, targ
     networks.bridge()
     for name in ("first", "second"):
         here = networks.make(target)(name)
-        got = listen(here, "described", LASTING)
-        spin_all(lambda got=got: len(got) >= 3, here)
-        assert got == ["two", "three", "four"]
+        received = listen(here, "described", LASTING)
+        spin_all(lambda received=received: len(received) >= 3, here)
+        assert received == ["two", "three", "four"]
     publisher.publish(String(data="five"))
-    spin_all(lambda: len(got) == 4, here)
-    assert got[3:] == ["five"]
+    spin_all(lambda: len(received) == 4, here)
+    assert received[3:] == ["five"]
 
 
 @pytest.mark.parametrize(("source", "target"), WAYS)
 def test_first_message_of_second_publisher_on_bridged_topic_is_not_lost(networks, source, target):
     networks.bridge()
     first, here = networks.make(source)("first"), networks.make(target)("here")
-    got = listen(here, "chatter", EVERYTHING)
+    received = listen(here, "chatter", EVERYTHING)
     publisher = first.node.create_publisher(String, "chatter", EVERYTHING)
     spin_all(publisher.get_subscription_count, first)
     late = networks.make(source)("late")
     publisher = late.node.create_publisher(String, "chatter", EVERYTHING)
     spin_all(publisher.get_subscription_count, late)
     publisher.publish(String(data="at once"))
-    spin_all(lambda: got, here)
-    assert got == ["at once"]
+    spin_all(lambda: received, here)
+    assert received == ["at once"]
 
 
 @pytest.mark.parametrize(("source", "target"), WAYS)
@@ -168,16 +171,16 @@ def test_last_message_of_closed_publisher_is_delivered(networks, monkeypatch, so
     monkeypatch.setattr("linkwright.wire.dds.engine.CLOSING_TIME", SECONDS)
     networks.bridge()
     there, here = networks.make(source)("there"), networks.make(target)("here")
-    got = listen(here, "chatter", EVERYTHING)
+    received = listen(here, "chatter", EVERYTHING)
     publisher = there.node.create_publisher(String, "chatter", EVERYTHING)
     spin_all(publisher.get_subscription_count, there, here)
     publisher.publish(String(data="first"))
-    spin_all(lambda: got, here, there)
+    spin_all(lambda: received, here, there)
     for number in range(5000):
         publisher.publish(String(data=str(number)))
     there.close()
-    spin_all(lambda: len(got) > 5000, here)
-    assert got == ["first", *map(str, range(5000))]
+    spin_all(lambda: len(received) > 5000, here)
+    assert received == ["first", *map(str, range(5000))]
     spin_all(lambda: "there" not in here.node.get_node_names(), here)
 
 
@@ -192,22 +195,22 @@ def test_service_responses_reach_the_client_that_sent_the_request(networks, serv
 
     there.node.create_service(AddTwoInts, "add", add)
     asking = [networks.make(client)(name) for name in ("first", "second", "third")]
-    clients = [each.node.create_client(AddTwoInts, "add") for each in asking]
+    clients = [process.node.create_client(AddTwoInts, "add") for process in asking]
     spin_all(lambda: all(client.service_is_ready() for client in clients), *asking, there)
     answers = [[] for _ in clients]
     waiting = [None for _ in clients]
 
     def all_answered() -> bool:
-        for which, each in enumerate(clients):
-            if waiting[which] is not None and waiting[which].done():
-                answers[which].append(waiting[which].result().sum)
-                waiting[which] = None
-            if waiting[which] is None and len(answers[which]) < CALLS:
-                waiting[which] = each.call_async(AddTwoInts.Request(a=1000 * which, b=len(answers[which])))
+        for index, client in enumerate(clients):
+            if waiting[index] is not None and waiting[index].done():
+                answers[index].append(waiting[index].result().sum)
+                waiting[index] = None
+            if waiting[index] is None and len(answers[index]) < CALLS:
+                waiting[index] = client.call_async(AddTwoInts.Request(a=1000 * index, b=len(answers[index])))
         return all(len(answer) == CALLS for answer in answers)
 
     spin_all(all_answered, there, *asking)
-    assert answers == [[1000 * which + number for number in range(CALLS)] for which in range(3)]
+    assert answers == [[1000 * index + number for number in range(CALLS)] for index in range(3)]
     there.close()
     spin_all(lambda: not any(client.service_is_ready() for client in clients), *asking)
 
@@ -335,23 +338,23 @@ def test_two_bridges_deliver_each_message_once_and_one_takes_over(networks):
     first = networks.bridge("b0")
     networks.bridge("b1")
     there, here = networks.dds("there"), networks.zenoh("here")
-    got = listen(here, "chatter", EVERYTHING)
+    received = listen(here, "chatter", EVERYTHING)
     publisher = there.node.create_publisher(String, "chatter", EVERYTHING)
 
     def settled() -> bool:
-        shown = [each.node_name for each in there.node.get_subscriptions_info_by_topic("chatter")]
-        return shown.count("here") == 1 and here.node.count_publishers("chatter") == 1
+        node_names = [endpoint.node_name for endpoint in there.node.get_subscriptions_info_by_topic("chatter")]
+        return node_names.count("here") == 1 and here.node.count_publishers("chatter") == 1
 
     spin_all(settled, there, here)
     for number in range(100):
         publisher.publish(String(data=str(number)))
-    spin_all(lambda: len(got) >= 100, here, there)
-    assert got == [str(number) for number in range(100)]
+    spin_all(lambda: len(received) >= 100, here, there)
+    assert received == [str(number) for number in range(100)]
     first.close()
     spin_all(settled, there, here)
     publisher.publish(String(data="end"))
-    spin_all(lambda: len(got) > 100, here, there)
-    assert got[100:] == ["end"]
+    spin_all(lambda: len(received) > 100, here, there)
+    assert received[100:] == ["end"]
 
 
 def test_denied_and_not_allowed_names_are_not_bridged(networks):
@@ -369,8 +372,8 @@ def test_denied_and_not_allowed_names_are_not_bridged(networks):
 def test_messages_of_unknown_type_are_bridged_as_raw_bytes(networks):
     networks.bridge()
     here = networks.dds("here")
-    got = []
-    here.node.create_subscription("strange_msgs/msg/Odd", "odd", got.append, 10, raw=True)
+    received = []
+    here.node.create_subscription("strange_msgs/msg/Odd", "odd", received.append, 10, raw=True)
     type_hash = f"RIHS01_{0:064x}"
     domain = read_settings().domain_id
     token = Token(
@@ -381,13 +384,13 @@ def test_messages_of_unknown_type_are_bridged_as_raw_bytes(networks):
         announced = session.liveliness().declare_token(token.key)
         stranger = session.declare_publisher(token.data_key)
         spin_all(lambda: stranger.matching_status.matching and here.node.count_publishers("/odd"), here)
-        (seen,) = here.node.get_publishers_info_by_topic("/odd")
-        assert seen.topic_type_hash == type_hash
+        (endpoint,) = here.node.get_publishers_info_by_topic("/odd")
+        assert endpoint.topic_type_hash == type_hash
         for number, gid in enumerate((token.gid, bytes(16)), 1):  # the second as programs that make up their gids
             stranger.put(b"\0\1\0\0abc%d" % number, attachment=attachment.write(number, 2, gid))
-        spin_all(lambda: len(got) == 2, here)
+        spin_all(lambda: len(received) == 2, here)
         announced.undeclare()
-    assert got == [b"\0\1\0\0abc1", b"\0\1\0\0abc2"]
+    assert received == [b"\0\1\0\0abc1", b"\0\1\0\0abc2"]
     spin_all(lambda: not here.node.count_publishers("/odd"), here)
 
 
@@ -417,10 +420,10 @@ def test_services_of_unknown_type_are_called_with_raw_bytes(networks, server, cl
     networks.bridge()
     there, here = networks.make(server)("there"), networks.make(client)("here")
     type_name, name, qos = "strange_msgs/srv/Odd", "/odd", QoSProfile(10)
-    asked = []
+    requests = []
 
     def answer(request, reply):
-        asked.append(request)
+        requests.append(request)
         reply(b"\0\1\0\0" + request[4:] * 2)
 
     service = Service(there.node.handle, type_name, name, qos, answer, replying=True, raw=True)
@@ -434,7 +437,7 @@ def test_services_of_unknown_type_are_called_with_raw_bytes(networks, server, cl
         future = asking.call_async(b"\0\1\0\0odd%d" % number)
         spin_all(future.done, here, there)
         answers.append(future.result())
-    assert asked == [b"\0\1\0\0odd%d" % number for number in range(5)]
+    assert requests == [b"\0\1\0\0odd%d" % number for number in range(5)]
     assert answers == [b"\0\1\0\0odd%dodd%d" % (number, number) for number in range(5)]
 
 

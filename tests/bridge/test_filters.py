@@ -20,8 +20,8 @@ from linkwright.diagnostics import LinkwrightError
     ],
 )
 def test_name_filter_matches_allowed_names_and_those_below_them(allowed, denied, passing, kept_back):
-    names = NameFilter(allowed, denied)
-    assert [each for each in (*passing, *kept_back) if names.passes(each)] == passing
+    name_filter = NameFilter(allowed, denied)
+    assert [name for name in (*passing, *kept_back) if name_filter.passes(name)] == passing
 
 
 @pytest.mark.parametrize("pattern", ["", "scan", "/a/", "//", "/a b", "/a.*", "/[ab]"])

@@ -58,7 +58,7 @@ class Foxglove:
         await self.socket.send_json({"op": op, **fields})
 
 
-class World:
+class Setup:
     def __init__(self, **parameters) -> None:
         self.log = []
         self.graph = Graph(on_log=self.log.append)
@@ -70,7 +70,7 @@ class World:
     async def offers(self, topic: str) -> None:
         """Wait until the bridge has seen a topic."""
         channels = self.bridge._offer.channels
-        await eventually(lambda: topic in [each.advertisement()["topic"] for each in channels.all()])
+        await eventually(lambda: topic in [channel.advertisement()["topic"] for channel in channels.all()])
 
     @asynccontextmanager
     async def client(self, protocols=V1, **options):
@@ -82,26 +82,26 @@ class World:
 
 
 @asynccontextmanager
-async def world(**parameters):
-    made = World(**parameters)
-    await eventually(lambda: any("connect to" in record.text for record in made.log))
+async def bridge_setup(**parameters):
+    setup = Setup(**parameters)
+    await eventually(lambda: any("connect to" in record.text for record in setup.log))
     try:
-        yield made
+        yield setup
     finally:
-        made.bridge.close()
-        await made.bridge._cleanup_task
-        await made.graph.close()
+        setup.bridge.close()
+        await setup.bridge._cleanup_task
+        await setup.graph.close()
 
 
 @pytest.mark.parametrize("steps", range(8))
 async def test_server_socket_is_closed_when_startup_is_interrupted(steps):
-    made = World()
+    setup = Setup()
     for _ in range(steps):
         await asyncio.sleep(0)
-    made.bridge.close()
-    assert made.bridge._listener.fileno() == -1  # before the loop runs on, which may be ended here
-    await asyncio.wait([made.bridge._server_task])
-    await made.graph.close()
+    setup.bridge.close()
+    assert setup.bridge._listener.fileno() == -1  # before the loop runs on, which may be ended here
+    await asyncio.wait([setup.bridge._server_task])
+    await setup.graph.close()
 
 
 def test_executable_is_registered_for_launch_files():
@@ -109,11 +109,11 @@ def test_executable_is_registered_for_launch_files():
 
 
 async def test_new_client_receives_server_info_and_channels():
-    async with world() as w:
-        w.node.create_publisher(String, "/chatter", 10)
-        await w.offers("/chatter")
+    async with bridge_setup() as setup:
+        setup.node.create_publisher(String, "/chatter", 10)
+        await setup.offers("/chatter")
         for protocol in ("foxglove.websocket.v1", "foxglove.sdk.v1"):
-            async with w.client((protocol,)) as client:
+            async with setup.client((protocol,)) as client:
                 assert client.socket.protocol == protocol
                 hello = await client.next()
                 assert hello["op"] == "serverInfo"
@@ -128,8 +128,8 @@ async def test_new_client_receives_server_info_and_channels():
 
 
 async def test_messages_are_sent_as_cdr_until_unsubscribed():
-    async with world() as w, w.client() as client:
-        publisher = w.node.create_publisher(String, "/chatter", 10)
+    async with bridge_setup() as setup, setup.client() as client:
+        publisher = setup.node.create_publisher(String, "/chatter", 10)
         channel = await client.channel("/chatter")
         await client.send("subscribe", subscriptions=[{"id": 42, "channelId": channel["id"]}])
         await eventually(lambda: publisher.get_subscription_count() == 1)
@@ -144,19 +144,19 @@ async def test_messages_are_sent_as_cdr_until_unsubscribed():
 
 
 async def test_late_client_receives_latched_message():
-    async with world() as w:
-        w.node.create_publisher(String, "/robot_description", DESCRIPTION_QOS).publish(String(data="<robot/>"))
-        async with w.client() as client:
+    async with bridge_setup() as setup:
+        setup.node.create_publisher(String, "/robot_description", DESCRIPTION_QOS).publish(String(data="<robot/>"))
+        async with setup.client() as client:
             channel = await client.channel("/robot_description")
             await client.send("subscribe", subscriptions=[{"id": 1, "channelId": channel["id"]}])
             assert deserialize((await client.frame(1))[13:], String).data == "<robot/>"
 
 
 async def test_channels_are_advertised_and_unadvertised():
-    async with world() as w, w.client() as client:
-        publisher = w.node.create_publisher(String, "/brief", 10)
+    async with bridge_setup() as setup, setup.client() as client:
+        publisher = setup.node.create_publisher(String, "/brief", 10)
         channel = await client.channel("/brief")
-        w.node.destroy_publisher(publisher)
+        setup.node.destroy_publisher(publisher)
         assert channel["id"] in (await client.until("unadvertise"))["channelIds"]
         await client.send("subscribe", subscriptions=[{"id": 1, "channelId": channel["id"]}])
         assert (await client.until("status"))["level"] == 2
@@ -164,9 +164,9 @@ async def test_channels_are_advertised_and_unadvertised():
 
 async def test_client_publishes_to_ros_topic():
     heard = []
-    async with world() as w, w.client() as client:
+    async with bridge_setup() as setup, setup.client() as client:
         twist = get_message("geometry_msgs/msg/Twist")
-        w.node.create_subscription(twist, "/cmd_vel", heard.append, 10)
+        setup.node.create_subscription(twist, "/cmd_vel", heard.append, 10)
         channel = {"id": 9, "topic": "/cmd_vel", "encoding": "cdr", "schemaName": "geometry_msgs/Twist"}
         await client.send("advertise", channels=[channel])
         message = twist()
@@ -186,12 +186,12 @@ async def test_client_calls_service():
         response.success, response.message = True, f"set to {request.data}"
         return response
 
-    async with world() as w, w.client() as client:
-        w.node.create_service(set_bool, "/light", answer)
+    async with bridge_setup() as setup, setup.client() as client:
+        setup.node.create_service(set_bool, "/light", answer)
         light = None
         while light is None:
-            message = (await client.until("advertiseServices"))["services"]
-            light = next((each for each in message if each["name"] == "/light"), None)
+            services = (await client.until("advertiseServices"))["services"]
+            light = next((service for service in services if service["name"] == "/light"), None)
         assert light["request"]["schema"] == light["requestSchema"] == "bool data\n"
         head = struct.pack("<BIII", 2, light["id"], 77, 3) + b"cdr"
         await client.socket.send_bytes(head + serialize(set_bool.Request(data=True)))
@@ -205,8 +205,8 @@ async def test_client_calls_service():
 
 
 async def test_parameters_are_read_set_and_subscribed():
-    async with world() as w, w.client() as client:
-        w.node.declare_parameter("speed", 1.5)
+    async with bridge_setup() as setup, setup.client() as client:
+        setup.node.declare_parameter("speed", 1.5)
         await client.send("getParameters", parameterNames=["/robot.speed"], id="one")
         message = await client.until("parameterValues")
         assert message == {
@@ -219,30 +219,30 @@ async def test_parameters_are_read_set_and_subscribed():
         await client.send("setParameters", parameters=[change], id="two")
         answers = [await client.until("parameterValues") for _ in range(2)]
         assert [answer["parameters"][0]["value"] for answer in answers] == [2.0, 2.0]
-        assert w.node.get_parameter("speed").value == 2.0
+        assert setup.node.get_parameter("speed").value == 2.0
         await client.send("getParameters", parameterNames=[], id="all")
-        names = {each["name"] for each in (await client.until("parameterValues"))["parameters"]}
+        names = {parameter["name"] for parameter in (await client.until("parameterValues"))["parameters"]}
         assert {"/robot.speed", "/robot.use_sim_time"} <= names
 
 
 async def test_connection_graph_is_sent_and_updated():
-    async with world() as w, w.client() as client:
-        w.node.create_publisher(String, "/chatter", 10)
-        await w.offers("/chatter")
+    async with bridge_setup() as setup, setup.client() as client:
+        setup.node.create_publisher(String, "/chatter", 10)
+        await setup.offers("/chatter")
         await client.send("subscribeConnectionGraph")
         first = await client.until("connectionGraphUpdate")
         assert {"name": "/chatter", "publisherIds": ["/robot"]} in first["publishedTopics"]
-        w.node.create_subscription(String, "/chatter", print, 10)
-        then = await client.until("connectionGraphUpdate")
-        assert then["subscribedTopics"] == [{"name": "/chatter", "subscriberIds": ["/robot"]}]
-        assert then["publishedTopics"] == []
+        setup.node.create_subscription(String, "/chatter", print, 10)
+        update_after = await client.until("connectionGraphUpdate")
+        assert update_after["subscribedTopics"] == [{"name": "/chatter", "subscriberIds": ["/robot"]}]
+        assert update_after["publishedTopics"] == []
 
 
 async def test_simulated_time_is_sent_to_clients():
-    async with world(use_sim_time=True) as w, w.client() as client:
+    async with bridge_setup(use_sim_time=True) as setup, setup.client() as client:
         assert "time" in (await client.next())["capabilities"]
         clock = get_message("rosgraph_msgs/msg/Clock")
-        publisher = w.node.create_publisher(clock, "/clock", 10)
+        publisher = setup.node.create_publisher(clock, "/clock", 10)
         message = clock()
         message.clock.sec = 12
         publisher.publish(message)
@@ -274,12 +274,12 @@ async def test_only_meshes_of_packages_in_robot_description_are_served(tmp_path,
     (source / "b.stl").write_bytes(b"solid b")
     (share / "meshes" / "b.stl").symlink_to(source / "b.stl")
     monkeypatch.chdir(share)
-    async with world() as w, w.client() as client:
+    async with bridge_setup() as setup, setup.client() as client:
         assert (await fetched(client, "package://arm_pkg/meshes/a.stl"))[0] == 1
-        w.node.create_publisher(String, "/robot_description", DESCRIPTION_QOS).publish(
+        setup.node.create_publisher(String, "/robot_description", DESCRIPTION_QOS).publish(
             String(data='<robot><mesh filename="package://arm_pkg/meshes/a.stl"/></robot>')
         )
-        await w.graph.settle()
+        await setup.graph.settle()
         assert await fetched(client, "package://arm_pkg/meshes/a.stl") == (0, b"solid a")
         assert await fetched(client, "package://arm_pkg/meshes/b.stl") == (0, b"solid b")
         for refused in (
@@ -321,24 +321,27 @@ def test_origin_is_allowed_only_if_listed_or_local(origin, welcome):
 
 
 async def test_connection_from_other_origin_is_rejected():
-    async with world() as w:
+    async with bridge_setup() as setup:
         with pytest.raises(aiohttp.WSServerHandshakeError) as caught:
-            async with w.client(origin="https://evil.example"):
+            async with setup.client(origin="https://evil.example"):
                 pass
         assert caught.value.status == 403
-    async with world(allowed_origins=["https://evil.example"]) as w, w.client(origin="https://evil.example") as client:
+    async with (
+        bridge_setup(allowed_origins=["https://evil.example"]) as setup,
+        setup.client(origin="https://evil.example") as client,
+    ):
         assert (await client.next())["op"] == "serverInfo"
 
 
 async def test_connection_without_foxglove_subprotocol_is_closed():
-    async with world() as w, w.client(()) as client:
+    async with bridge_setup() as setup, setup.client(()) as client:
         message = await client.socket.receive(timeout=SECONDS)
         assert message.type is aiohttp.WSMsgType.CLOSE
         assert client.socket.close_code == 1002
 
 
 async def test_malformed_client_messages_are_reported_and_bridge_survives():
-    async with world() as w, w.client() as client:
+    async with bridge_setup() as setup, setup.client() as client:
         empty = '{"op": "advertise", "channels": [{}]}'
         for text in ("nonsense", "[]", "{}", '{"op": "fly"}', '{"op": "subscribe"}', empty, "[" * 100_000):
             await client.socket.send_str(text)
@@ -358,12 +361,12 @@ async def test_malformed_client_messages_are_reported_and_bridge_survives():
 
 async def test_whitelists_hide_other_topics_and_services():
     lists = {"topic_whitelist": ["/seen.*"], "client_topic_whitelist": ["/cmd_vel"], "service_whitelist": ["/none"]}
-    async with world(**lists) as w:
-        w.node.create_publisher(String, "/seen_one", 10)
-        w.node.create_publisher(String, "/hidden", 10)
-        await w.offers("/seen_one")
-        async with w.client() as client:
-            assert [each["topic"] for each in (await client.until("advertise"))["channels"]] == ["/seen_one"]
+    async with bridge_setup(**lists) as setup:
+        setup.node.create_publisher(String, "/seen_one", 10)
+        setup.node.create_publisher(String, "/hidden", 10)
+        await setup.offers("/seen_one")
+        async with setup.client() as client:
+            assert [channel["topic"] for channel in (await client.until("advertise"))["channels"]] == ["/seen_one"]
             assert (await client.until("advertiseServices"))["services"] == []
             channel = {"id": 1, "topic": "/other", "encoding": "cdr", "schemaName": "std_msgs/msg/String"}
             await client.send("advertise", channels=[channel])
@@ -371,27 +374,27 @@ async def test_whitelists_hide_other_topics_and_services():
 
 
 async def test_slow_whitelist_pattern_does_not_block_bridge():
-    async with world(topic_whitelist=["/(s|ss)+", "/seen"]) as w:
-        w.node.create_publisher(String, "/seen", 10)
-        w.node.create_publisher(String, f"/{'s' * 60}_", 10)
-        await w.offers("/seen")
-        async with w.client() as client:
-            assert [each["topic"] for each in (await client.until("advertise"))["channels"]] == ["/seen"]
+    async with bridge_setup(topic_whitelist=["/(s|ss)+", "/seen"]) as setup:
+        setup.node.create_publisher(String, "/seen", 10)
+        setup.node.create_publisher(String, f"/{'s' * 60}_", 10)
+        await setup.offers("/seen")
+        async with setup.client() as client:
+            assert [channel["topic"] for channel in (await client.until("advertise"))["channels"]] == ["/seen"]
 
 
 async def test_disconnecting_client_logs_nothing(caplog):
-    async with world() as w:
+    async with bridge_setup() as setup:
         for headers in ("", f"{UPGRADE}Sec-WebSocket-Protocol: {V1[0]}\r\n"):
-            await ask_and_leave(w.port, "/", headers)
-        async with w.client() as client:
+            await ask_and_leave(setup.port, "/", headers)
+        async with setup.client() as client:
             await client.until("serverInfo")
     assert [record.getMessage() for record in caplog.records] == []
 
 
 async def test_startup_fails_if_port_is_in_use_or_whitelist_is_invalid():
     graph = Graph(on_log=lambda _: None)
-    with socket.create_server(("127.0.0.1", 0)) as taken:
-        port = taken.getsockname()[1]
+    with socket.create_server(("127.0.0.1", 0)) as server:
+        port = server.getsockname()[1]
         with pytest.raises(LinkwrightError) as caught:
             FoxgloveBridge(graph, NodeOptions(parameters={"port": port}))
         assert caught.value.diagnostics[0].code == "NODE702"

@@ -29,7 +29,9 @@ def test_subscription_awaits_the_stream_that_its_publisher_uses(type_name, messa
 
 
 def test_type_hash_distinguishes_streams_only_when_keyed():
-    ours, theirs = (endpoint(EndpointKind.PUBLISHER, "std_msgs/msg/String", each) for each in ("", OTHER_HASH))
+    ours, theirs = (
+        endpoint(EndpointKind.PUBLISHER, "std_msgs/msg/String", type_hash) for type_hash in ("", OTHER_HASH)
+    )
     assert publisher_stream(ours, keyed=True) != publisher_stream(theirs, keyed=True)
     assert publisher_stream(ours, keyed=False) == publisher_stream(theirs, keyed=False)
 

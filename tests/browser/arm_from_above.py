@@ -105,7 +105,7 @@ def open_scene(live: Any, open_page: Any) -> Scene:
     viewer.publish("/robot_description", String(data=ARM), DESCRIPTION_QOS)
     viewer.place("tip", *TIP, 0.0)
     viewer.place("mark", 0.0, 0.0, 0.0, parent="tip")
-    made = Scene(viewer, open_page(viewer))
-    until(made.page, "lw.tools.length === 8 && lw.frames.tip !== undefined")
-    viewer.settle(made.page)
-    return made
+    scene = Scene(viewer, open_page(viewer))
+    until(scene.page, "lw.tools.length === 8 && lw.frames.tip !== undefined")
+    viewer.settle(scene.page)
+    return scene

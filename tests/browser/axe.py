@@ -81,9 +81,9 @@ def violations(page: Page, within: str | None = None) -> list[str]:
     """
     if not page.evaluate("() => 'contrastOf' in window"):
         page.evaluate(SCRIPT.read_text(encoding="utf-8") + _PREPARE)
-    found = []
+    found_violations = []
     for theme, worst in THEMES.items():
         page.emulate_media(color_scheme=theme)
         page.wait_for_function("theme => document.documentElement.dataset.theme === theme", arg=theme)
-        found += [f"{theme}: {each}" for each in page.evaluate(_RUN, [within, worst])]
-    return found
+        found_violations += [f"{theme}: {violation}" for violation in page.evaluate(_RUN, [within, worst])]
+    return found_violations

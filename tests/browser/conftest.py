@@ -119,8 +119,8 @@ class Program:
                 line = self._lines.get(timeout=max(0.0, deadline - time.monotonic()))
                 if line is None:
                     pytest.fail(f"the program ended before a line like {pattern!r}:\n{''.join(self.output)}")
-                if found := re.search(pattern, line):
-                    return found
+                if match := re.search(pattern, line):
+                    return match
             if time.monotonic() >= deadline:
                 pytest.fail(f"no line like {pattern!r} within {seconds} s:\n{''.join(self.output)}")
 
@@ -194,8 +194,8 @@ def live() -> Iterator[Callable[..., LiveViewer]]:
         return running[-1]
 
     yield run
-    for each in running:
-        each.close()
+    for viewer in running:
+        viewer.close()
 
 
 @pytest.fixture

@@ -190,8 +190,8 @@ class Firefox:
         """What is on the screen where the first element of a selector is."""
         box = self.evaluate(f"document.querySelector({json.dumps(selector)}).getBoundingClientRect()")
         clip = {"type": "box", **{name: box[name] for name in ("x", "y", "width", "height")}}
-        taken = self.call("browsingContext.captureScreenshot", context=self._tab, clip=clip)
-        return Image.open(io.BytesIO(base64.b64decode(taken["data"]))).convert("RGB")
+        capture = self.call("browsingContext.captureScreenshot", context=self._tab, clip=clip)
+        return Image.open(io.BytesIO(base64.b64decode(capture["data"]))).convert("RGB")
 
     def close(self) -> None:
         """Close the browser."""

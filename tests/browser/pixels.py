@@ -18,4 +18,4 @@ def colors_at(page: Any, *places: tuple[float, float]) -> list[Color]:
     clip = {"x": x, "y": y, "width": max(xs) - x + 1, "height": max(ys) - y + 1}
     with Image.open(io.BytesIO(page.screenshot(clip=clip))) as image:
         colors = image.convert("RGB")
-    return [colors.getpixel((each - x, other - y)) for each, other in zip(xs, ys, strict=True)]
+    return [colors.getpixel((column - x, row - y)) for column, row in zip(xs, ys, strict=True)]

@@ -123,8 +123,8 @@ def test_catch_up_on_later_step_applies_solution_and_keeps_backup(start, open_pa
     page.get_by_role("button", name="Take over").click()
     page.locator(".checks-offer").wait_for(state="hidden")
     becomes((workspace / "robot.urdf").read_text, ROBOT.read_text())
-    (kept,) = (workspace / "replaced").rglob("robot.urdf")
-    assert kept.read_text() == "mine"
+    (backup,) = (workspace / "replaced").rglob("robot.urdf")
+    assert backup.read_text() == "mine"
     page.get_by_role("button", name="Steps").click()
     page.locator(".outline-step[title*='taken over']").wait_for()
 

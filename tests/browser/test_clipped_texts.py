@@ -20,7 +20,7 @@ ROBOT = """\
 """
 
 OPEN_ALL = """async () => {
-  const frames = () => new Promise((done) => requestAnimationFrame(() => requestAnimationFrame(done)));
+  const frames = () => new Promise((resolve) => requestAnimationFrame(() => requestAnimationFrame(resolve)));
   const menu = document.querySelectorAll(".menu-bar .menu-button")[1];
   for (;;) {
     menu.click();
@@ -34,25 +34,25 @@ OPEN_ALL = """async () => {
 }"""
 
 CUT = """async () => {
-  const frames = () => new Promise((done) => requestAnimationFrame(() => requestAnimationFrame(done)));
+  const frames = () => new Promise((resolve) => requestAnimationFrame(() => requestAnimationFrame(resolve)));
   const pen = document.createElement("canvas").getContext("2d");
-  const room = (each, style) => each.clientWidth - parseFloat(style.paddingLeft) - parseFloat(style.paddingRight);
-  const written = (each, text, style) => {
+  const room = (element, style) => element.clientWidth - parseFloat(style.paddingLeft) - parseFloat(style.paddingRight);
+  const widthOf = (text, style) => {
     pen.font = style.font;
     return pen.measureText(text).width;
   };
-  const isCut = (each) => {
-    const style = getComputedStyle(each);
-    if (each.matches("select")) {
-      return Math.max(0, ...[...each.options].map(({ text }) => written(each, text, style))) > room(each, style) + 1;
+  const isCut = (element) => {
+    const style = getComputedStyle(element);
+    if (element.matches("select")) {
+      return Math.max(0, ...[...element.options].map(({ text }) => widthOf(text, style))) > room(element, style) + 1;
     }
-    if (each.matches("input")) return written(each, each.placeholder, style) > room(each, style) + 1;
-    if (each.matches(".dv-tab")) {
-      const bar = each.closest(".dv-tabs-container").getBoundingClientRect();
-      const { left, right } = each.getBoundingClientRect();
-      return left < bar.right - 1 && right > bar.right + 1 && each.matches(".dv-active-tab");
+    if (element.matches("input")) return widthOf(element.placeholder, style) > room(element, style) + 1;
+    if (element.matches(".dv-tab")) {
+      const bar = element.closest(".dv-tabs-container").getBoundingClientRect();
+      const { left, right } = element.getBoundingClientRect();
+      return left < bar.right - 1 && right > bar.right + 1 && element.matches(".dv-active-tab");
     }
-    return each.scrollWidth > each.clientWidth + 1 || each.getBoundingClientRect().right > innerWidth + 1;
+    return element.scrollWidth > element.clientWidth + 1 || element.getBoundingClientRect().right > innerWidth + 1;
   };
   const labels = ".row-title, .toolbar-label, .bar-label, .tick, .check-label, .segmented";
   const controls = `button, select, input[placeholder], [role=tab], ${labels}`;
@@ -60,13 +60,14 @@ CUT = """async () => {
   const ofUsers = ".place, .editing-part, .topic-row button, .link-row button, .tree button";
   const found = new Set();
   const look = (panel) => {
-    for (const each of document.querySelectorAll(controls)) {
-      if (!each.checkVisibility() || each.offsetWidth === 0 || each.matches(ofUsers) || !isCut(each)) continue;
-      found.add(`${panel}: ${each.getAttribute("aria-label") || each.textContent || each.placeholder}`);
+    for (const element of document.querySelectorAll(controls)) {
+      if (!element.checkVisibility() || element.offsetWidth === 0) continue;
+      if (element.matches(ofUsers) || !isCut(element)) continue;
+      found.add(`${panel}: ${element.getAttribute("aria-label") || element.textContent || element.placeholder}`);
     }
   };
   for (const name of [...document.querySelectorAll(".dv-tab .tab-title")].map((title) => title.textContent)) {
-    const title = [...document.querySelectorAll(".dv-tab .tab-title")].find((each) => each.textContent === name);
+    const title = [...document.querySelectorAll(".dv-tab .tab-title")].find((other) => other.textContent === name);
     title?.closest(".dv-tab").dispatchEvent(new PointerEvent("pointerdown", { bubbles: true, button: 0 }));
     await frames();
     look(name);
@@ -84,15 +85,15 @@ def test_control_texts_are_not_clipped(start: Start, browser: Browser, tmp_path,
     page = context.new_page()
     page.goto(program.url)
     page.wait_for_function("window.linkwright?.ready === true")
-    found = {}
+    cut_texts = {}
     for width, height in ((1280, 800), (1024, 768), (800, 600)):
         page.set_viewport_size({"width": width, "height": height})
         page.wait_for_function(f"document.querySelector('.dock').clientWidth === {width}")
         page.evaluate(OPEN_ALL)
         until(page, "lw.settled")
-        found[width] = page.evaluate(CUT)
+        cut_texts[width] = page.evaluate(CUT)
     context.close()
-    assert not any(found.values()), found
+    assert not any(cut_texts.values()), cut_texts
 
 
 @pytest.mark.parametrize(("width", "height"), [(800, 600), (390, 844)])
@@ -117,7 +118,7 @@ def test_inspect_card_fits_low_window(start: Start, browser: Browser, tmp_path) 
     page.wait_for_function("window.linkwright?.ready === true")
     page.locator(".timeline-track").wait_for()
     page.get_by_role("button", name="Inspect").click()
-    cut = "each => each.scrollHeight > each.clientHeight + 1"
+    cut = "element => element.scrollHeight > element.clientHeight + 1"
     becomes(lambda: page.locator(".inspect-card").evaluate(cut), False)
     page.close()
 

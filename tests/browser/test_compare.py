@@ -52,20 +52,20 @@ def files(tmp_path: Path) -> tuple[Path, Path]:
     return old, new
 
 
-def looks(page: Page, which: int) -> dict[str, tuple[str, float]]:
+def looks(page: Page, index: int) -> dict[str, tuple[str, float]]:
     """Color and opacity of each link of the first or second robot."""
-    robots = [each["drawn"] for each in state(page, "displays") if each["class"].endswith("RobotModel")]
-    shown = {name: text["visuals"] for name, text in robots[which]["links"].items()}
+    robots = [display["drawn"] for display in state(page, "displays") if display["class"].endswith("RobotModel")]
+    visuals = {name: text["visuals"] for name, text in robots[index]["links"].items()}
     return {
         name: (shapes[0]["materials"][0]["color"], round(shapes[0]["materials"][0]["opacity"], 2))
-        for name, shapes in shown.items()
+        for name, shapes in visuals.items()
         if shapes
     }
 
 
-def bounds(page: Page, which: int, link: str) -> Any:
-    robots = [each["drawn"] for each in state(page, "displays") if each["class"].endswith("RobotModel")]
-    box = robots[which]["links"][link]["visuals"][0]["bounds"]
+def bounds(page: Page, index: int, link: str) -> Any:
+    robots = [display["drawn"] for display in state(page, "displays") if display["class"].endswith("RobotModel")]
+    box = robots[index]["links"][link]["visuals"][0]["bounds"]
     return [(low + high) / 2 for low, high in zip(box["min"], box["max"], strict=True)]
 
 
@@ -103,7 +103,7 @@ def pixels(page: Page) -> list[tuple[int, int, int]]:
 def show(page: Page, title: str, *, on: bool) -> None:
     """Switch a robot on or off."""
     box = page.get_by_title(title, exact=False).get_by_role("checkbox")
-    count = "lw.displays.filter((each) => each.class.endsWith('RobotModel') && each.enabled).length"
+    count = "lw.displays.filter((display) => display.class.endsWith('RobotModel') && display.enabled).length"
     before = page.evaluate(f"() => {{ const lw = window.linkwright; return {count}; }}")
     box.set_checked(on)
     until(page, f"{count} === {before + (1 if on else -1)}")
@@ -114,25 +114,27 @@ def test_identical_old_robot_is_hidden(start, open_page, files):
     old.write_text(NEW, encoding="utf-8")
     page = open_page(start("view", str(old), str(new)))
     page.get_by_text("are identical").wait_for()
-    both = pixels(page)
-    assert sum(g > 60 and g > 2 * max(r, b) for r, g, b in both) > 100, "the robot is seen"
+    both_robots = pixels(page)
+    assert sum(g > 60 and g > 2 * max(r, b) for r, g, b in both_robots) > 100, "the robot is seen"
     show(page, "Show the old robot", on=False)
-    alone = pixels(page)
-    assert [(one, other) for one, other in zip(both, alone, strict=True) if one != other] == []
+    new_only = pixels(page)
+    assert [
+        (pixel, pixel_alone) for pixel, pixel_alone in zip(both_robots, new_only, strict=True) if pixel != pixel_alone
+    ] == []
 
 
 def test_robots_can_be_shown_alone_and_old_opacity_is_adjustable(start, open_page, files):
     page = open_page(start("view", *map(str, files)))
     page.get_by_text("5 differences").wait_for()
-    both = pixels(page)
+    both_robots = pixels(page)
     show(page, "Show the new robot", on=False)
     old_only = pixels(page)
     assert sum(g > 60 and g > 2 * max(r, b) for r, g, b in old_only) == 0
-    assert old_only != both
+    assert old_only != both_robots
     page.get_by_label("Opacity of the old robot").fill("1")
     becomes(lambda: {alpha for _, alpha in looks(page, 1).values()}, {1})
     opaque = pixels(page)
-    assert sum(sum(each) for each in opaque) < sum(sum(each) for each in old_only), (
+    assert sum(sum(pixel) for pixel in opaque) < sum(sum(pixel) for pixel in old_only), (
         "its gray is darker than the ground behind it"
     )
     show(page, "Show the new robot", on=True)
@@ -156,7 +158,7 @@ def test_difference_selects_link_and_opens_both_sources(start, open_page, files)
         group(page, "turn", "Joint").get_by_role("button", name=side, exact=False).click()
         until(page, "lw.panels.source.expanded.lines > 0")
         becomes(lambda name=side[:8]: state(page, "panels.source.origin.file").endswith(name), True)
-        becomes(lambda: [each["from"] for each in state(page, "panels.source.origin.marks")][-1:], [number])
+        becomes(lambda: [mark["from"] for mark in state(page, "panels.source.origin.marks")][-1:], [number])
 
 
 def test_joint_sliders_move_both_robots_and_edits_are_followed(start, open_page, files):
@@ -204,7 +206,7 @@ def test_comparison_list_is_in_front_in_small_window(start, open_page, files):
     assert panel is not None
     assert first is not None
     assert first["y"] + first["height"] <= panel["y"] + panel["height"]
-    groups = [each.bounding_box() for each in page.locator(".difference-group").all()]
+    groups = [group.bounding_box() for group in page.locator(".difference-group").all()]
     assert max(group["x"] + group["width"] for group in groups) > 700, "they stand in columns"
 
 

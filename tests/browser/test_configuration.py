@@ -20,7 +20,7 @@ def _state_of_the_user(tmp_path, monkeypatch):
 
 
 def names(page) -> list[str]:
-    return [each["name"] for each in state(page, "displays")]
+    return [display["name"] for display in state(page, "displays")]
 
 
 def row(page, identity: str):

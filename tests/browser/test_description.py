@@ -148,5 +148,5 @@ def test_robot_broken_at_start_is_shown_without_tf_once_fixed(start, open_page, 
     file.write_text(good)
     until(page, "lw.robot?.visuals > 0 && lw.ready")
     page.locator(".banner").wait_for(state="hidden")
-    shown = {each["class"].rpartition("/")[2]: each["enabled"] for each in state(page, "displays")}
-    assert shown == {"Grid": True, "RobotModel": True, "TF": False}
+    displays = {display["class"].rpartition("/")[2]: display["enabled"] for display in state(page, "displays")}
+    assert displays == {"Grid": True, "RobotModel": True, "TF": False}

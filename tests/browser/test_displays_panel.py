@@ -24,7 +24,7 @@ _SILENT = """
 
 
 def names(page) -> list[str]:
-    return [each["name"] for each in state(page, "displays")]
+    return [display["name"] for display in state(page, "displays")]
 
 
 def row(page, identity: str):
@@ -108,17 +108,17 @@ def test_display_keys_are_ignored_on_property_rows(grouped):
 def test_disabled_group_disables_its_displays(grouped):
     _, page = grouped
     page.locator("[data-key='display-2'] .check").click()
-    until(page, "lw.displays.every((each) => each.enabled === (each.name === 'Grid'))")
+    until(page, "lw.displays.every((display) => display.enabled === (display.name === 'Grid'))")
     assert page.locator("[data-key='display-3'] .check").is_checked()
     page.locator("[data-key='display-2'] .check").click()
-    until(page, "lw.displays.every((each) => each.enabled)")
+    until(page, "lw.displays.every((display) => display.enabled)")
 
 
 def test_displays_are_reordered_by_drag_and_keys(grouped):
     viewer, page = grouped
     page.locator("[data-key='display-1'] .row-title").drag_to(page.locator("[data-key='display-2']"))
     until(page, "lw.displays[0].name === 'Marks'")
-    assert [each["Name"] for each in saved(viewer)[0]["Displays"]] == ["Grid", "Axes", "Radar"]
+    assert [display["Name"] for display in saved(viewer)[0]["Displays"]] == ["Grid", "Axes", "Radar"]
     row(page, "display-1").click()
     page.keyboard.press("Alt+ArrowDown")
     until(page, "lw.displays[1].name === 'Axes'")

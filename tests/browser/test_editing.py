@@ -101,8 +101,8 @@ def test_handle_moves_link_along_one_axis(start, open_page, file):
     page.get_by_role("button", name="Snap to a grid").click()
     canvas = page.locator("canvas").first.bounding_box()
     until(page, "lw.panels.editing.handles !== undefined")
-    found = state(page, "panels.editing.handles.z")
-    x, y = canvas["x"] + found["x"], canvas["y"] + found["y"]
+    handle = state(page, "panels.editing.handles.z")
+    x, y = canvas["x"] + handle["x"], canvas["y"] + handle["y"]
     page.mouse.move(x, y)
     page.mouse.down()
     for step in range(1, 6):
@@ -169,8 +169,8 @@ def test_diff_of_long_line_shows_changed_values(start, browser, file: Path) -> N
     page.locator(".edit-diff mark").first.wait_for()
     text = page.locator(".edit-text").bounding_box()
     assert page.locator(".edit-diff mark").all_inner_texts() == ["0", "0.1"]
-    for each in page.locator(".edit-diff mark").all():
-        box = each.bounding_box()
+    for mark in page.locator(".edit-diff mark").all():
+        box = mark.bounding_box()
         assert text["y"] <= box["y"]
         assert box["y"] + box["height"] <= text["y"] + text["height"]
     page.close()
@@ -242,10 +242,10 @@ def test_low_panel_shows_parts_numbers_and_diff_without_scrolling(start, browser
     text = page.locator(".edit-text").bounding_box()
     assert panel is not None
     assert text is not None
-    for each in page.locator(seen).all():
-        box = each.bounding_box()
+    for element in page.locator(seen).all():
+        box = element.bounding_box()
         assert box is not None
-        around = text if each.evaluate("(e) => e.tagName") == "MARK" else panel
-        assert around["y"] <= box["y"] + 1, each.inner_text()
-        assert box["y"] + box["height"] <= around["y"] + around["height"] + 1, each.inner_text()
+        around = text if element.evaluate("(e) => e.tagName") == "MARK" else panel
+        assert around["y"] <= box["y"] + 1, element.inner_text()
+        assert box["y"] + box["height"] <= around["y"] + around["height"] + 1, element.inner_text()
     page.close()

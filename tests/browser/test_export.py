@@ -65,15 +65,15 @@ def export(out: Path, model: Path, *values: str) -> None:
 
 def drawn(page) -> dict:
     """Every visual as it is drawn, by link."""
-    robot = next(each for each in state(page, "displays") if each["class"].endswith("RobotModel"))["drawn"]
+    robot = next(display for display in state(page, "displays") if display["class"].endswith("RobotModel"))["drawn"]
     return {name: text["visuals"] for name, text in robot["links"].items()}
 
 
-def assert_alike(one: dict, other: dict) -> None:
+def assert_alike(first: dict, second: dict) -> None:
     """Numbers may differ in their last digits: joints were worked out from transforms."""
-    assert one.keys() == other.keys()
-    for name, shapes in one.items():
-        for a, b in zip(shapes, other[name], strict=True):
+    assert first.keys() == second.keys()
+    for name, shapes in first.items():
+        for a, b in zip(shapes, second[name], strict=True):
             assert a["materials"] == b["materials"]
             for corner in ("min", "max"):
                 assert a["bounds"][corner] == pytest.approx(b["bounds"][corner], abs=1e-5)
@@ -137,7 +137,7 @@ def test_exported_page_has_visual_switches_views_and_translation(open_file, tmp_
     page.get_by_label("Collision").check()
     page.get_by_label("Visual").uncheck()
     becomes(lambda: state(page, "robot")["visuals"], 0)
-    robot = next(each for each in state(page, "displays") if each["class"].endswith("RobotModel"))
+    robot = next(display for display in state(page, "displays") if display["class"].endswith("RobotModel"))
     assert robot["drawn"]["links"]["arm"]["collisions"]
     page.get_by_role("button", name="Top").click()
     becomes(lambda: state(page, "view")["pitch"], pytest.approx(1.57, abs=0.01))
@@ -156,7 +156,7 @@ WHEELED = """\
 
 
 def grid(page) -> dict:
-    return next(each for each in state(page, "displays") if each["class"].endswith("/Grid"))["drawn"]
+    return next(display for display in state(page, "displays") if display["class"].endswith("/Grid"))["drawn"]
 
 
 def test_exported_grid_is_at_wheel_contact_height(open_file, tmp_path):
@@ -213,8 +213,8 @@ def test_exported_glb_shows_the_same_robot(live, open_page, tmp_path):
     path = saved(page, "Export glb…", tmp_path)
     before = drawn(page)
     viewer = live(ROBOT)
-    again = f'<robot name="again"><link name="base">{mesh(path, "")}</link></robot>'
-    viewer.publish("/robot_description", String(data=again), DESCRIPTION_QOS)
+    robot = f'<robot name="again"><link name="base">{mesh(path, "")}</link></robot>'
+    viewer.publish("/robot_description", String(data=robot), DESCRIPTION_QOS)
     (drawing,) = drawn(open_page(viewer))["base"]
     bounds = [shape["bounds"] for shapes in before.values() for shape in shapes]
     for corner, choose in (("min", min), ("max", max)):

@@ -76,7 +76,9 @@ def test_firefox_draws_and_moves_robot(start, launch, tmp_path):
     browser.until(f"JSON.stringify(lw.frames.lid.orientation) !== JSON.stringify({before})")
     thumb = browser.evaluate("getComputedStyle(document.documentElement).getPropertyValue('--thumb')").strip()
     color = tuple(bytes.fromhex(thumb[1:]))
-    colors = {each: count for count, each in browser.screenshot("[data-joint=hinge] .slider").getcolors(1 << 24)}
+    colors = {
+        pixel_color: count for count, pixel_color in browser.screenshot("[data-joint=hinge] .slider").getcolors(1 << 24)
+    }
     assert colors.get(color, 0) > 40, (thumb, colors)
     assert browser.errors == []
 
@@ -148,7 +150,9 @@ def test_firefox_edits_file_with_language_server(start, launch, tmp_path):
     browser.until("lw.ready")
 
     def click(selector: str, text: str) -> None:
-        found = f"[...document.querySelectorAll('{selector}')].find((each) => each.textContent.trim() === '{text}')"
+        found = (
+            f"[...document.querySelectorAll('{selector}')].find((element) => element.textContent.trim() === '{text}')"
+        )
         browser.until(f"{found} && !{found}.disabled")
         browser.evaluate(f"{found}.click()")
 
@@ -190,8 +194,8 @@ def test_firefox_without_webgl_shows_message_and_panels(start, launch, tmp_path)
     assert message.startswith("The 3D view needs WebGL 2, which this browser does not provide.\n")
     assert "The other panels work without it." in message
     box, scene = (
-        browser.evaluate(f"document.querySelector('{each}').getBoundingClientRect()")
-        for each in (".no-webgl > strong", ".scene-box")
+        browser.evaluate(f"document.querySelector('{selector}').getBoundingClientRect()")
+        for selector in (".no-webgl > strong", ".scene-box")
     )
     assert scene["left"] < box["left"] < box["right"] < scene["right"]
     browser.until("document.querySelectorAll('.joint').length === 4")

@@ -88,18 +88,18 @@ def published(viewer) -> None:
 
 
 def drawn(page) -> dict[str, dict]:
-    return {each["name"]: each["drawn"] for each in state(page, "displays")}
+    return {display["name"]: display["drawn"] for display in state(page, "displays")}
 
 
-def size(told: dict) -> list[float]:
-    return [most - least for least, most in zip(told["bounds"]["min"], told["bounds"]["max"], strict=True)]
+def size(drawing: dict) -> list[float]:
+    return [high - low for low, high in zip(drawing["bounds"]["min"], drawing["bounds"]["max"], strict=True)]
 
 
 def test_displays_draw_their_messages_at_the_right_pose(live, open_page):
     viewer = live(DISPLAYS)
     published(viewer)
     page = open_page(viewer, wait=False)
-    until(page, "lw.displays.every((each) => each.drawn?.bounds)")
+    until(page, "lw.displays.every((display) => display.drawn?.bounds)")
     viewer.settle(page)
     drawing = drawn(page)
     assert drawing["Pose"]["bounds"]["min"] == pytest.approx([1, -0.05, 0.95], abs=1e-3)
@@ -121,14 +121,14 @@ def test_displays_draw_their_messages_at_the_right_pose(live, open_page):
     assert size(drawing["Torque"])[1] < 0.2 < size(drawing["Torque"])[0]
     assert size(drawing["Click"]) == pytest.approx([0.2] * 3, abs=1e-2)
     assert drawing["Axes"]["bounds"]["max"] == pytest.approx([1, 1, 2], abs=1e-3)
-    becomes(lambda: {each["level"] for each in state(page, "displays")}, {"ok"})
+    becomes(lambda: {display["level"] for display in state(page, "displays")}, {"ok"})
 
 
 def test_property_changes_and_disabling_act_at_once(live, open_page):
     viewer = live(DISPLAYS)
     published(viewer)
     page = open_page(viewer, wait=False)
-    until(page, "lw.displays.every((each) => each.drawn?.bounds)")
+    until(page, "lw.displays.every((display) => display.drawn?.bounds)")
     viewer.settle(page)
 
     def change(name: str, path: tuple[str, ...], value: object) -> None:
@@ -145,9 +145,9 @@ def test_property_changes_and_disabling_act_at_once(live, open_page):
     change("Guess", ("Covariance",), False)
     change("Torque", ("Joints", "lift"), False)
     change("Click", ("Topic",), "/nothing")
-    until(page, "lw.displays.find((each) => each.name === 'Click').drawn.points === 0")
-    until(page, "lw.displays.find((each) => each.name === 'Torque').drawn.rings === 0")
-    until(page, "lw.displays.find((each) => each.name === 'Way').drawn.axes === 3")
+    until(page, "lw.displays.find((display) => display.name === 'Click').drawn.points === 0")
+    until(page, "lw.displays.find((display) => display.name === 'Torque').drawn.rings === 0")
+    until(page, "lw.displays.find((display) => display.name === 'Way').drawn.axes === 3")
     viewer.settle(page)
     drawing = drawn(page)
     assert drawing["Pose"]["bounds"]["max"][0] == pytest.approx(3.3, abs=1e-3)
@@ -207,7 +207,7 @@ def test_tree_rows_of_frames_links_and_joints_match_scene(live, open_page):
     page = open_page(viewer)
     until(page, "lw.displays[0].drawn?.arrows === 1 && lw.displays[1].drawn?.inertias === 1")
     viewer.settle(page)
-    frames, robot = (each["drawn"] for each in state(page, "displays"))
+    frames, robot = (display["drawn"] for display in state(page, "displays"))
     assert (frames["axes"], frames["names"]) == (2, 2)
     assert frames["bounds"]["max"][2] == pytest.approx(1.2, abs=1e-3)
     assert (robot["axes"], robot["jointAxes"], robot["masses"], robot["inertias"]) == (2, 1, 1, 1)

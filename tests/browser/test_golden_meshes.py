@@ -34,7 +34,7 @@ ROBOT = configuration(
 
 def drawn(page, name: str) -> dict:
     """The first visual of a link as it is drawn."""
-    robot = next(each for each in state(page, "displays") if each["name"] == "Robot")["drawn"]
+    robot = next(display for display in state(page, "displays") if display["name"] == "Robot")["drawn"]
     return robot["links"][name]["visuals"][0]
 
 
@@ -49,13 +49,13 @@ def shown(live, open_page, links: str, names):
 def test_bounds_and_colors_match_rviz(live, open_page, tmp_path):
     page = shown(live, open_page, golden_links(tmp_path), GOLDEN)
     wrong = {}
-    for name, (_, _, _, _, (least, most), color, opacity) in GOLDEN.items():
+    for name, (_, _, _, _, (low, high), color, opacity) in GOLDEN.items():
         drawing = drawn(page, name)
         (look,) = drawing["materials"]
         bounds = drawing["bounds"]
         right = (
-            bounds["min"] == pytest.approx(least, abs=1e-5)
-            and bounds["max"] == pytest.approx(most, abs=1e-5)
+            bounds["min"] == pytest.approx(low, abs=1e-5)
+            and bounds["max"] == pytest.approx(high, abs=1e-5)
             and (look["color"], look["opacity"]) == (color, pytest.approx(opacity))
         )
         if not right:

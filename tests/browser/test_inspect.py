@@ -29,8 +29,8 @@ def orange(page):
     box = page.locator(".canvas-box canvas").bounding_box()
     free = page.locator(".stack").bounding_box()["x"] - box["x"]  # the card of Inspect is open
     x, y = box["x"] + free / 2, box["y"] + box["height"] / 2
-    seen = colors_at(page, *((x + dx, y + dy) for dx, dy in ((-40, 0), (-30, 10), (30, 10), (40, 0), (0, 25))))
-    return sum(r > 100 and 0.3 * r < g < 0.8 * r and b < 0.7 * g for r, g, b in seen)
+    colors = colors_at(page, *((x + dx, y + dy) for dx, dy in ((-40, 0), (-30, 10), (30, 10), (40, 0), (0, 25))))
+    return sum(r > 100 and 0.3 * r < g < 0.8 * r and b < 0.7 * g for r, g, b in colors)
 
 
 def test_masses_inertias_and_implausible_values_are_shown(page):
@@ -87,9 +87,9 @@ def test_joint_axes_show_limits_and_positions(page):
     page.keyboard.press("Enter")
     until(page, "Math.abs(lw.inspected.joints[0].position - 0.7) < 1e-4")
     until(page, "Math.abs(lw.inspected.joints[2].position - 0.1) < 1e-4")
-    shown = {joint["name"]: joint for joint in state(page, "inspected.joints")}
-    assert (shown["upper_joint"]["lower"], shown["upper_joint"]["upper"]) == (-2, 2)
-    assert shown["finger_joint"]["position"] == pytest.approx(-0.04, abs=1e-4)
+    joints = {joint["name"]: joint for joint in state(page, "inspected.joints")}
+    assert (joints["upper_joint"]["lower"], joints["upper_joint"]["upper"]) == (-2, 2)
+    assert joints["finger_joint"]["position"] == pytest.approx(-0.04, abs=1e-4)
     switch(page, "joints")
     until(page, "lw.inspected.joints.length === 0 && lw.inspected.vertices === 0")
 

@@ -49,10 +49,10 @@ def test_long_joint_names_keep_their_ends(start, open_page, tmp_path):
     names.nth(1).wait_for()
     for number, shown in enumerate(names.all(), start=1):
         assert shown.get_attribute("title") == shown.text_content() == name.format(number)
-        beginning, end = (shown.locator("span").nth(which) for which in (0, 1))
+        beginning, end = (shown.locator("span").nth(index) for index in (0, 1))
         assert end.text_content() == f"finger_{number}_joint"
-        assert beginning.evaluate("(each) => each.scrollWidth > each.clientWidth")
-        assert end.evaluate("(each) => each.scrollWidth <= each.clientWidth + 1")
+        assert beginning.evaluate("(element) => element.scrollWidth > element.clientWidth")
+        assert end.evaluate("(element) => element.scrollWidth <= element.clientWidth + 1")
         assert page.get_by_role("slider", name=name.format(number), exact=True).is_visible()
 
 
@@ -83,11 +83,11 @@ def test_sweep_moves_joints_until_stopped(page):
     page.get_by_label("Order of the joints").select_option("all")
     page.get_by_role("group", name="Sweep").get_by_label("Speed").select_option("4")
     page.get_by_role("button", name="Start the sweep").click()
-    seen = set()
+    positions_seen = set()
 
     def swept() -> bool:
-        seen.add(round(state(page, "joints.upper_joint"), 2))
-        return len(seen) >= 6 and max(seen) - min(seen) > 1.5
+        positions_seen.add(round(state(page, "joints.upper_joint"), 2))
+        return len(positions_seen) >= 6 and max(positions_seen) - min(positions_seen) > 1.5
 
     becomes(swept, True)
     page.get_by_role("button", name="Stop the sweep").click()

@@ -70,7 +70,7 @@ def test_default_view_shows_shape_of_black_and_white_robots(start, open_page, tm
     assert min(ground) > 60
     assert max(ground) < 245
     assert max(ball) - min(ball) > 25, "the ball is round, whatever its color"
-    assert max(abs(ground[30] - each) for each in ball) > 40
+    assert max(abs(ground[30] - gray) for gray in ball) > 40
 
 
 def test_rviz_file_colors_are_kept(start, open_page, tmp_path):

@@ -73,10 +73,10 @@ class Robot:
 
 @pytest.fixture
 def robot(live: Callable[..., LiveViewer]) -> Iterator[Robot]:
-    made = Robot(live(configuration(GRID)))
-    made.live.run(made.start)
-    yield made
-    made.live.run(made.stop)
+    robot = Robot(live(configuration(GRID)))
+    robot.live.run(robot.start)
+    yield robot
+    robot.live.run(robot.stop)
 
 
 @pytest.fixture
@@ -218,10 +218,10 @@ def test_node_graph_shows_publishers_and_subscribers(page: Page, robot: Robot):
     becomes(from_left_to_right, row)
     page.locator(".vertex[data-id='topic:/joint_states']").click()
     details = page.locator(".graph-details")
-    becomes(lambda: all(each in details.inner_text() for each in ("sensor_msgs/msg/JointState", "/planner")), True)
+    becomes(lambda: all(name in details.inner_text() for name in ("sensor_msgs/msg/JointState", "/planner")), True)
     near = page.locator(".vertex.near")
     becomes(
-        lambda: sorted(near.evaluate_all("shapes => shapes.map((each) => each.dataset.id)")),
+        lambda: sorted(near.evaluate_all("elements => elements.map((element) => element.dataset.id)")),
         ["node:/arm", "node:/planner"],
     )
     # A node that comes is drawn without being asked for.

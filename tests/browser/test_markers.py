@@ -48,7 +48,7 @@ def all_kinds(mesh: Path) -> list[Marker]:
     """One marker of each type, in a row along y."""
     triangle = [(0, 0, 0), (1, 0, 0), (0, 0, 1)]
     rainbow = [color(1.0, 0.0, 0.0), color(0.0, 1.0, 0.0), color(0.0, 0.0, 1.0)]
-    made = [
+    markers = [
         marker(0, kind=Marker.ARROW, color=color(1.0, 0.5, 0.0)),
         marker(1, kind=Marker.CUBE, color=color(0.0, 1.0, 0.0)),
         marker(2, kind=Marker.SPHERE, color=color(0.0, 0.0, 1.0, 0.5)),
@@ -63,9 +63,9 @@ def all_kinds(mesh: Path) -> list[Marker]:
         marker(11, kind=Marker.TRIANGLE_LIST, points=triangle, colors=rainbow, color=color(1.0, 1.0, 1.0)),
         marker(12, kind=12, points=[*triangle, (1, 0, 1)], color=color(0.6, 0.3, 1.0)),
     ]
-    for number, each in enumerate(made):
-        each.pose.position.y = (number - 6) * 1.5
-        small = each.type in (
+    for number, example in enumerate(markers):
+        example.pose.position.y = (number - 6) * 1.5
+        small = example.type in (
             Marker.LINE_STRIP,
             Marker.LINE_LIST,
             Marker.CUBE_LIST,
@@ -74,10 +74,10 @@ def all_kinds(mesh: Path) -> list[Marker]:
             12,
         )
         if small:
-            each.scale.x, each.scale.y, each.scale.z = (0.1, 0.2, 0.2)
-        if each.type == Marker.ARROW:
-            each.scale.y = each.scale.z = 0.2
-    return made
+            example.scale.x, example.scale.y, example.scale.z = (0.1, 0.2, 0.2)
+        if example.type == Marker.ARROW:
+            example.scale.y = example.scale.z = 0.2
+    return markers
 
 
 def test_all_marker_types_are_drawn(live, open_page, tmp_path):
@@ -106,8 +106,8 @@ def test_unreadable_marker_mesh_is_reported(live, open_page, tmp_path):
     mesh.write_text("no mesh")
     viewer = live(MARKERS)
     page = open_page(viewer, wait=False)
-    wanted = marker(1, kind=Marker.MESH_RESOURCE, mesh_resource=mesh.as_uri())
-    viewer.publish("/marks", MarkerArray(markers=[wanted]))
+    mesh_marker = marker(1, kind=Marker.MESH_RESOURCE, mesh_resource=mesh.as_uri())
+    viewer.publish("/marks", MarkerArray(markers=[mesh_marker]))
     until(page, "lw.displays[1]?.status.some(row => row.name === 'a/1' && row.level === 'error')")
     assert "Mesh resource marker [a/1]" in viewer.status("Marks")["a/1"][1]
 
@@ -175,7 +175,7 @@ def test_interactive_marker_is_dragged_along_its_axis(live, open_page):
     assert pose[1:3] == [0, 0]
 
     def events() -> list[int]:
-        return viewer.run(lambda: [each.event_type for each in server.feedback])
+        return viewer.run(lambda: [feedback.event_type for feedback in server.feedback])
 
     wait_until(lambda: events()[-1] == Feedback.MOUSE_UP, what=events)
     assert events()[0] == Feedback.MOUSE_DOWN

@@ -43,7 +43,7 @@ def robot(tmp_path):
 
 
 def rows(page):
-    display = next(each for each in state(page, "displays") if each["name"] == "RobotModel")
+    display = next(display for display in state(page, "displays") if display["name"] == "RobotModel")
     return {row["name"]: (row["level"], row["text"]) for row in display["status"]}
 
 
@@ -85,10 +85,13 @@ def test_broken_mesh_is_reported_at_its_link(start, open_page, robot, tmp_path):
         (tmp_path / name).write_bytes(data)
     links = [link(f"broken_{name[:-4]}", f"file://{tmp_path}/{name}", -0.4) for name in BROKEN]
     page = open_page(start("view", robot(*links)))
-    named = {f"broken_{name[:-4]}": (name, words) for name, (_, words) in BROKEN.items()}
-    becomes(lambda: {link: rows(page).get(link, ("", ""))[0] for link in named}, dict.fromkeys(named, "error"))
-    for each, (name, words) in named.items():
-        text = rows(page)[each][1]
+    files_by_link = {f"broken_{name[:-4]}": (name, words) for name, (_, words) in BROKEN.items()}
+    becomes(
+        lambda: {link: rows(page).get(link, ("", ""))[0] for link in files_by_link},
+        dict.fromkeys(files_by_link, "error"),
+    )
+    for link_name, (name, words) in files_by_link.items():
+        text = rows(page)[link_name][1]
         assert name in text
         assert words in text
     becomes(lambda: [rows(page).get(kind, ("", ""))[0] for kind in KINDS], ["ok"] * len(KINDS))
@@ -124,7 +127,7 @@ def test_robot_without_readable_meshes_is_reported_and_shown_by_frames(start, op
     page = open_page(start("view", str(file)))
     banner = page.locator(".banner.warning")
     banner.get_by_text("robot 'r' is not visible: none of its meshes can be read").wait_for()
-    until(page, "lw.displays.some((each) => each.class.endsWith('/TF') && each.enabled)")
+    until(page, "lw.displays.some((display) => display.class.endsWith('/TF') && display.enabled)")
     banner.get_by_role("button", name="Show").click()
     page.locator(".diagnostics").get_by_text("package 'elsewhere' not found").first.wait_for()
     banner.get_by_role("button", name="Close").click()

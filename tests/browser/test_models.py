@@ -79,10 +79,10 @@ def test_grid_fits_single_mesh_model_unless_user_changed_it(start, open_page, tm
     becomes(cell.input_value, "100")
     cell.fill("20")
     page.keyboard.press("Enter")
-    again = open_page(program)
-    again.locator('[data-key="display-1"] .twist').click()
-    until(again, "lw.settled")
-    assert again.locator('[data-key="display-1/Cell Size"] input').input_value() == "20"
+    second_page = open_page(program)
+    second_page.locator('[data-key="display-1"] .twist').click()
+    until(second_page, "lw.settled")
+    assert second_page.locator('[data-key="display-1/Cell Size"] input').input_value() == "20"
 
 
 @pytest.mark.parametrize("package", TUTORIAL_PACKAGES, ids=lambda package: package.parent.name)
@@ -97,7 +97,7 @@ def test_launch_files_run_from_package_folder(start, open_page, package, launch,
     if links == 12:
         # Readers have no mesh at first: the robot shows, and the row says where the file was looked for.
         until(page, f"{robot_model}.status.some(({{ name, level }}) => name === 'kinect_link' && level === 'error')")
-        status = next(each["status"] for each in state(page, "displays") if each["name"] == "RobotModel")
+        status = next(display["status"] for display in state(page, "displays") if display["name"] == "RobotModel")
         row = next(row for row in status if row["name"] == "kinect_link")
         assert str(share / "meshes" / "kinect.dae") in row["text"]
         wait_until(lambda: any("meshes/kinect.dae" in line for line in program.output))

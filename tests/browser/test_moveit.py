@@ -49,19 +49,19 @@ def kitchen(*, wrist: float = 0.2):
     robot.attached_collision_objects = [
         attached("hand", thing("cup", primitive(SolidPrimitive.CYLINDER, 0.3, 0.08), frame="hand", at=pose(z=0.25)))
     ]
-    made = scene(
+    kitchen_scene = scene(
         thing("table", primitive(SolidPrimitive.BOX, 1.0, 2.0, 0.05), at=pose(x=1.6, z=0.4)),
         thing("ball", primitive(SolidPrimitive.SPHERE, 0.2), at=pose(x=1.6, y=0.5, z=0.63)),
         thing("cone", primitive(SolidPrimitive.CONE, 0.5, 0.2), at=pose(x=1.6, y=-0.5, z=0.68)),
         robot=robot,
     )
-    octomap = made.world.octomap
+    octomap = kitchen_scene.world.octomap
     octomap.header.frame_id, octomap.origin = "base", pose(x=-1.0, y=-1.0)
     octomap.octomap.id, octomap.octomap.binary, octomap.octomap.resolution = "OcTree", True, 0.1
     inner, leaves = struct.pack("<H", 0xFFFF), struct.pack("<H", 0xAAAA)
     down = struct.pack("<H", 3 << 14) + struct.pack("<H", 3) * 12
     octomap.octomap.data = signed(down + inner + (inner + leaves * 8) * 8)
-    return made
+    return kitchen_scene
 
 
 def test_planning_scene_and_trajectory_are_drawn(live, open_page, tmp_path):
@@ -95,7 +95,7 @@ def test_moving_mesh_is_not_reloaded(live, open_page, tmp_path):
         "lw.displays[0]?.drawn?.markers?.['Scene Robot/hand'] === 'mesh' && "
         "lw.displays[0].drawn.bounds?.[1]?.[2] > 0.9",
     )
-    loads = "performance.getEntriesByType('resource').filter((each) => each.name.includes('.stl')).length"
+    loads = "performance.getEntriesByType('resource').filter((resource) => resource.name.includes('.stl')).length"
     until(page, f"{loads} === 1")
     viewer.publish("/monitored_planning_scene", scene(robot=state(shoulder=math.pi), diff=True))
     until(page, "lw.displays[0]?.drawn?.bounds?.[0]?.[2] < -0.9")

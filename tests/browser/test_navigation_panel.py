@@ -17,7 +17,7 @@ Panels:
   - {Class: rviz_common/Displays, Name: Displays}
   - {Class: nav2_rviz_plugins/Navigation 2, Name: Navigation 2}
 """
-VALUES = "[...document.querySelectorAll('.navigation-value')].map((each) => each.textContent)"
+VALUES = "[...document.querySelectorAll('.navigation-value')].map((element) => element.textContent)"
 
 
 def test_configuration_opens_navigation_panel_and_its_buttons_work(live, open_page, tmp_path):

@@ -51,12 +51,13 @@ TELL = """() => {
 def overlapping(boxes: dict[str, list[float]]) -> list[str]:
     """The pairs of boxes that have more than an edge in common, and those that are not within the scene."""
     left, top, right, bottom = boxes.pop(".scene-box")
-    found = [
-        f"{one} over {other}"
-        for (one, a), (other, b) in combinations(boxes.items(), 2)
-        if min(a[2], b[2]) - max(a[0], b[0]) > 0.5 and min(a[3], b[3]) - max(a[1], b[1]) > 0.5
+    overlaps = [
+        f"{first} over {second}"
+        for (first, first_box), (second, second_box) in combinations(boxes.items(), 2)
+        if min(first_box[2], second_box[2]) - max(first_box[0], second_box[0]) > 0.5
+        and min(first_box[3], second_box[3]) - max(first_box[1], second_box[1]) > 0.5
     ]
-    return found + [
+    return overlaps + [
         f"{name} outside"
         for name, box in boxes.items()
         if box[0] < left - 0.5 or box[1] < top - 0.5 or box[2] > right + 0.5 or box[3] > bottom + 0.5

@@ -25,14 +25,14 @@ def _state_of_the_user(tmp_path, monkeypatch):
 
 def settled(page, *names: str) -> None:
     """Waits until these are the panels that are open, beside the scene and those that RViz never had."""
-    wanted = sorted({*names, *OURS})
+    expected = sorted({*names, *OURS})
     page.wait_for_function(
         """wanted => {
           const tabs = [...document.querySelectorAll('.panel-tab')].map(tab => tab.textContent.split(' (')[0].trim());
           const others = tabs.filter(name => name !== '3D View');
           return JSON.stringify([...new Set(others)].sort()) === JSON.stringify(wanted);
         }""",
-        arg=wanted,
+        arg=expected,
     )
 
 

@@ -46,8 +46,8 @@ def seen(page: Any, *points: tuple[float, float]) -> list[Color]:
 
 
 def drawn(page: Any, display: int = 0) -> dict[str, Any]:
-    found: dict[str, Any] = state(page, f"displays[{display}].drawn")
-    return found
+    drawing: dict[str, Any] = state(page, f"displays[{display}].drawn")
+    return drawing
 
 
 def three_points(**fields: Any) -> Any:
@@ -228,9 +228,9 @@ def layers(page: Any) -> list[str]:
     tools.send("LayerTree.enable")
     wait_until(lambda: page.evaluate("1") and any(messages))
     nodes = [layer["backendNodeId"] for layer in next(filter(None, reversed(messages))) if "backendNodeId" in layer]
-    found = [tools.send("DOM.describeNode", {"backendNodeId": node})["node"] for node in nodes]
+    elements = [tools.send("DOM.describeNode", {"backendNodeId": node})["node"] for node in nodes]
     tools.detach()
-    return [" ".join([node["nodeName"], *node.get("attributes", [])]) for node in found]
+    return [" ".join([node["nodeName"], *node.get("attributes", [])]) for node in elements]
 
 
 def test_image_is_composited_without_repainting_page(live, open_page):
@@ -239,7 +239,7 @@ def test_image_is_composited_without_repainting_page(live, open_page):
     viewer.publish("/image", image("rgb8", 40, 20, bytes(2400)))
     until(page, "lw.displays[0]?.drawn?.width === 40")
     own = ("CANVAS height 20 width 40", "CANVAS data-engine", "DIV class orientation")
-    becomes(lambda: [any(layer.startswith(what) for layer in layers(page)) for what in own], [True, True, True])
+    becomes(lambda: [any(layer.startswith(prefix) for layer in layers(page)) for prefix in own], [True, True, True])
 
 
 def test_compressed_image_is_decoded_by_browser(live, open_page):

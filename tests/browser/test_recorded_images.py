@@ -66,8 +66,8 @@ def place(page: Page, selector: str) -> dict[str, float]:
 
 def boxes(page: Page) -> list[dict[str, float]]:
     """The pictures that are seen."""
-    found = (each.bounding_box() for each in page.locator(".image-panel").all())
-    return [dict(box) for box in found if box is not None]
+    rectangles = (panel.bounding_box() for panel in page.locator(".image-panel").all())
+    return [dict(box) for box in rectangles if box is not None]
 
 
 def switch(page: Page, name: str) -> None:

@@ -72,14 +72,14 @@ def test_all_topics_are_recorded_downloaded_and_reopened(page: Page, open_page, 
     expect(dialog).to_contain_text(str(folder))
     with page.expect_download() as fetched:
         dialog.get_by_role("button", name="Download").click()
-    taken = tmp_path / "taken.mcap"
-    fetched.value.save_as(taken)
+    download = tmp_path / "taken.mcap"
+    fetched.value.save_as(download)
     (file,) = folder.glob("*.mcap")
-    assert taken.read_bytes() == file.read_bytes()
+    assert download.read_bytes() == file.read_bytes()
     assert {"/tf", "/robot_description", "/joint_states"} <= topics(page).keys()
-    again = open_page(start("view", str(taken)), wait=False)
-    until(again, "lw.timeline?.live === false && lw.timeline.length > 1 && lw.frames.tip")
-    assert again.get_by_role("button", name="Record", exact=True).count() == 0
+    recorded_page = open_page(start("view", str(download)), wait=False)
+    until(recorded_page, "lw.timeline?.live === false && lw.timeline.length > 1 && lw.frames.tip")
+    assert recorded_page.get_by_role("button", name="Record", exact=True).count() == 0
 
 
 def test_finished_recording_opens_in_page(page: Page):

@@ -43,7 +43,7 @@ def noise(width: int, height: int) -> Any:
 
 
 _HELD = """
-  const told = new Promise((done) => (window.tell = done));
+  const told = new Promise((resolve) => (window.tell = resolve));
   window.WebSocket = class extends WebSocket {
     set onmessage(take) { super.onmessage = async (event) => { await told; take(event); }; }
   };
@@ -86,13 +86,13 @@ def test_slow_connection_thins_heavy_topics_and_shows_notice(live, open_page):
             viewer.publish(topic, message)
         notice = "document.querySelector('.line-notice:not([hidden])')?.innerText ?? ''"
         facts.update(
-            page.evaluate(f"() => ({{ text: {notice}, drawn: linkwright.displays.map((each) => each.drawn) }})")
+            page.evaluate(f"() => ({{ text: {notice}, drawn: linkwright.displays.map((display) => display.drawn) }})")
         )
         points, shown = facts["drawn"]
         return (
             all(
-                each in facts["text"]
-                for each in ("The connection is slow", "Cloud 1 in", "of 1280 × 720, quality", "WebP")
+                words in facts["text"]
+                for words in ("The connection is slow", "Cloud 1 in", "of 1280 × 720, quality", "WebP")
             )
             and points["step"] > 1
             and 0 < points["points"] < 50_000
@@ -136,9 +136,9 @@ def test_page_requests_nothing_from_other_hosts(live, browser):
     own = urlsplit(viewer.url).netloc
     context = browser.new_context(viewport={"width": 1280, "height": 800})
     page = context.new_page()
-    asked: list[str] = []
-    page.on("request", lambda request: asked.append(request.url))
-    page.on("websocket", lambda socket: asked.append(socket.url))
+    urls: list[str] = []
+    page.on("request", lambda request: urls.append(request.url))
+    page.on("websocket", lambda socket: urls.append(socket.url))
     page.goto(viewer.url)
     until(page, "lw.displays.length === 2")
     viewer.publish("/image", image(64, 64))
@@ -149,6 +149,6 @@ def test_page_requests_nothing_from_other_hosts(live, browser):
     until(page, "lw.displays[1].drawn?.width === 64")
     page.wait_for_load_state("networkidle")
     context.close()
-    assert len(asked) > 3
-    elsewhere = [url for url in asked if urlsplit(url).netloc != own and not url.startswith(("data:", "blob:"))]
+    assert len(urls) > 3
+    elsewhere = [url for url in urls if urlsplit(url).netloc != own and not url.startswith(("data:", "blob:"))]
     assert elsewhere == []

@@ -29,10 +29,10 @@ def port() -> str:
 @pytest.fixture
 def context(browser):
     """A browser whose console may tell that nobody answered."""
-    made = browser.new_context(viewport={"width": 1280, "height": 800}, locale="en-US")
-    made.set_default_timeout(1000 * SECONDS)
-    yield made
-    made.close()
+    context = browser.new_context(viewport={"width": 1280, "height": 800}, locale="en-US")
+    context.set_default_timeout(1000 * SECONDS)
+    yield context
+    context.close()
 
 
 def opened(context, url):
@@ -70,8 +70,8 @@ def test_pages_keep_panels_joint_pose_and_camera_after_restart(start, context, p
     assert program.interrupt() == 130
     is_gone(page)
     assert "Start it again" in page.locator(".notice[data-state=ended]").inner_text()
-    again = start("view", str(MBOT), "--port", port)
-    assert again.url == program.url
+    restarted = start("view", str(MBOT), "--port", port)
+    assert restarted.url == program.url
     is_back(page)
     becomes(lambda: state(page, "joints"), joints)
     becomes(lambda: state(second, "joints"), joints)
@@ -174,14 +174,14 @@ def test_page_with_lost_connection_reclaims_its_terminal(start, context, shell):
 def test_token_is_not_sent_to_program_without_it(start, context, port, monkeypatch, tmp_path):
     program = start("view", str(MBOT), "--port", port)
     page = opened(context, program.url)
-    asked: list[str] = []
-    page.on("request", lambda request: asked.append(request.url))
-    page.on("websocket", lambda opened: asked.append(opened.url))
+    urls: list[str] = []
+    page.on("request", lambda request: urls.append(request.url))
+    page.on("websocket", lambda opened: urls.append(opened.url))
     assert program.interrupt() == 130
     is_gone(page)
     monkeypatch.setenv("XDG_STATE_HOME", str(tmp_path / "of-another-user"))
     other = start("view", str(MBOT), "--port", port)
     assert other.url != program.url
     page.locator(".notice[data-state=refused]").wait_for()
-    assert any("/proof?nonce=" in url for url in asked)
-    assert not [url for url in asked if "token" in url]
+    assert any("/proof?nonce=" in url for url in urls)
+    assert not [url for url in urls if "token" in url]

@@ -49,8 +49,9 @@ def sized(browser: Browser, live: Callable[..., LiveViewer]) -> Iterator[Callabl
 
 
 RECTANGLE = """([selector, part, text]) => {
-  const has = (each) => part === null || [...each.querySelectorAll(part)].some((tab) => tab.textContent.includes(text));
-  const found = [...document.querySelectorAll(selector)].find((each) => each.checkVisibility() && has(each));
+  const hasText = (element) => element.textContent.includes(text);
+  const has = (element) => part === null || [...element.querySelectorAll(part)].some(hasText);
+  const found = [...document.querySelectorAll(selector)].find((element) => element.checkVisibility() && has(element));
   const { x, y, width, height } = found?.getBoundingClientRect() ?? {};
   return width > 0 ? { x, y, width, height } : null;
 }"""
@@ -59,8 +60,8 @@ RECTANGLE = """([selector, part, text]) => {
 
 def box(page: Page, selector: str, *, part: str | None = None, text: str = "") -> dict[str, float]:
     """The first element to be seen, or the first that has such a part with a text in it."""
-    found: dict[str, float] = page.wait_for_function(RECTANGLE, arg=[selector, part, text]).json_value()
-    return found
+    rectangle: dict[str, float] = page.wait_for_function(RECTANGLE, arg=[selector, part, text]).json_value()
+    return rectangle
 
 
 def place(page: Page, name: str) -> dict[str, float]:
@@ -108,7 +109,7 @@ def test_displays_filter_does_not_overlap_tabs(sized):
 def test_title_bar_fits_phone(sized, width):
     page = sized(width, 844)
     edges = page.locator(".title-bar button:visible").evaluate_all(
-        "all => all.map(each => each.getBoundingClientRect()).map(({ left, right }) => [left, right])"
+        "elements => elements.map(element => element.getBoundingClientRect()).map(({ left, right }) => [left, right])"
     )
     assert len(edges) == 9
     assert all(left >= 0 and right <= width for left, right in edges), edges
@@ -207,7 +208,7 @@ def test_wide_text_panels_share_one_group(sized):
 def test_tabs_are_operable_by_keyboard(sized):
     page = sized(1280, 800)
     tabs = page.locator("[role=tablist]", has=page.locator(".dv-tab", has_text="Views")).get_by_role("tab")
-    assert tabs.evaluate_all("all => all.map(each => each.tabIndex)").count(0) == 1
+    assert tabs.evaluate_all("elements => elements.map(element => element.tabIndex)").count(0) == 1
     focused = "() => document.activeElement.getAttribute('aria-label')"
     page.locator(".dv-tab", has_text="Views").focus()
     page.keyboard.press("ArrowRight")
@@ -242,7 +243,7 @@ def test_multiple_displays_are_selected_duplicated_removed_and_restored(sized):
         return page.locator(".displays-panel .row.selected .row-title").all_inner_texts()
 
     def names() -> list[str]:
-        return [each["name"] for each in state(page, "displays")]
+        return [display["name"] for display in state(page, "displays")]
 
     at = {"x": 60, "y": 8}
     row("Axes").click(position=at)
@@ -302,4 +303,7 @@ def test_view_type_label_stays_on_one_line_in_chinese(sized):
     page = sized(800, 600, "zh-CN")
     page.locator(".dv-tab", has_text="视角").click()
     label = page.locator(".view-type > .toolbar-label")
-    becomes(lambda: label.evaluate("each => each.offsetHeight < 2 * parseFloat(getComputedStyle(each).fontSize)"), True)
+    becomes(
+        lambda: label.evaluate("element => element.offsetHeight < 2 * parseFloat(getComputedStyle(element).fontSize)"),
+        True,
+    )

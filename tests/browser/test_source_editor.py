@@ -421,13 +421,13 @@ def test_inlay_values_hover_and_colors_are_shown_in_text(start, open_page, file)
     hint.first.wait_for()
     assert hint.all_inner_texts() == ["= left", "= 0.1 0.1 0.6", "= left_joint", "= left"]
     assert page.locator(".cm-token-macro.cm-token-definition").inner_text() == "leg"
-    assert page.locator(".cm-color > i").evaluate("each => each.style.background") == "rgba(51, 153, 255, 0.5)"
+    assert page.locator(".cm-color > i").evaluate("element => element.style.background") == "rgba(51, 153, 255, 0.5)"
 
     go_to(text, 3)
     text.press("Control+.")
     choose(page, "Choose the color…")
     field = page.locator("input[type=color]")
-    field.evaluate("each => { each.value = '#ff0000'; each.dispatchEvent(new Event('change')); }")
+    field.evaluate("element => { element.value = '#ff0000'; element.dispatchEvent(new Event('change')); }")
     shows(page, 'rgba="1 0 0 0.5"')
     until(page, f"{EDITOR}.scene === 'shown' && document.activeElement.matches('.cm-content')")
     assert leg.read_text() == text_of_leg

@@ -24,20 +24,20 @@ def viewer(live):
 @pytest.fixture
 def context(browser):
     """A browser that has seen nothing yet."""
-    made = browser.new_context(viewport={"width": 1280, "height": 800}, locale="en-US")
-    made.set_default_timeout(1000 * SECONDS)
-    yield made
-    made.close()
+    context = browser.new_context(viewport={"width": 1280, "height": 800}, locale="en-US")
+    context.set_default_timeout(1000 * SECONDS)
+    yield context
+    context.close()
 
 
 @pytest.fixture
 def other_server():
     """A server of somebody else on this host, and what browsers tell it."""
-    heard = []
+    requests = []
 
     class Handler(http.server.BaseHTTPRequestHandler):
         def do_GET(self):
-            heard.append(str(self.headers))
+            requests.append(str(self.headers))
             self.send_response(200)
             self.end_headers()
 
@@ -47,7 +47,7 @@ def other_server():
     server = http.server.HTTPServer(("127.0.0.1", 0), Handler)
     thread = threading.Thread(target=server.serve_forever, daemon=True)
     thread.start()
-    yield f"http://127.0.0.1:{server.server_address[1]}/", heard
+    yield f"http://127.0.0.1:{server.server_address[1]}/", requests
     server.shutdown()
     server.server_close()
     thread.join()
@@ -83,17 +83,17 @@ def test_token_leaves_address_bar_and_is_shared_by_all_tabs(viewer, context):
 
 
 def test_token_is_not_sent_to_other_server_on_same_host(viewer, context, other_server):
-    url, heard = other_server
+    url, requests = other_server
     page = context.new_page()
     page.goto(viewer.url)
     is_let_in(page)
     page.goto(url)
     address = urlsplit(viewer.url)
-    assert heard
+    assert requests
     # The browser may ask for an icon too, on behalf of that server's own page.
-    for each in heard:
+    for request in requests:
         for telling in ("cookie:", address.netloc, address.query.partition("=")[2].lower()):
-            assert telling not in each.lower()
+            assert telling not in request.lower()
     assert context.cookies() == []
     assert page.evaluate("() => Object.keys(localStorage)") == []
     page.go_back()

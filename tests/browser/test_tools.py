@@ -78,8 +78,8 @@ def test_pose_estimate_uses_covariance_of_tool_properties(scene):
     assert (abs(pose.orientation.z), pose.orientation.w) == pytest.approx((1, 0), abs=0.01)
     covariance = list(estimate.pose.covariance)
     assert (covariance[0], covariance[7], covariance[35]) == (0.25, 0.25, 0.5)
-    listed = next(each for each in scene.file()["Tools"] if each["Class"].endswith("/SetInitialPose"))
-    assert listed["Covariance yaw"] == 0.5
+    pose_tool = next(tool for tool in scene.file()["Tools"] if tool["Class"].endswith("/SetInitialPose"))
+    assert pose_tool["Covariance yaw"] == 0.5
 
 
 def test_clicked_point_is_published_and_drawn(scene):
@@ -133,8 +133,8 @@ def test_tools_are_added_and_removed(scene):
     page.get_by_role("button", name="Add a tool").click()
     page.get_by_role("menuitem", name="Measure").click()
     until(page, "lw.tools.length === 8")
-    listed = [each["Class"].rpartition("/")[2] for each in scene.file()["Tools"]]
-    assert listed[-2:] == ["SetGoal", "Measure"]
+    tools = [tool["Class"].rpartition("/")[2] for tool in scene.file()["Tools"]]
+    assert tools[-2:] == ["SetGoal", "Measure"]
 
 
 # --- selection -------------------------------------------------------------------------------------------------------

@@ -101,7 +101,7 @@ def test_views_are_saved_renamed_used_and_removed(scene):
     assert state(page, "view.values")["Scale"] == SCALE
     becomes(lambda: scene.file()["Views"]["Current"]["Class"], "rviz_default_plugins/TopDownOrtho")
     views = scene.file()["Views"]
-    assert [(each["Name"], each["Scale"]) for each in views["Saved"]] == [("map", SCALE)]
+    assert [(view["Name"], view["Scale"]) for view in views["Saved"]] == [("map", SCALE)]
     page.get_by_role("button", name="Remove", exact=True).click()
     until(page, "lw.view.saved.length === 0")
     assert not scene.file()["Views"]["Saved"]

@@ -58,7 +58,7 @@ def moved(viewer, x: float) -> None:
 def bounds(page, link: str, shape: int = 0) -> list[list[float]]:
     drawn = page.evaluate("() => window.linkwright.displays[0].drawn")
     box = drawn["links"][link]["visuals"][shape]["bounds"]
-    return [[round(each, 2) for each in box[end]] for end in ("min", "max")]
+    return [[round(coordinate, 2) for coordinate in box[end]] for end in ("min", "max")]
 
 
 def test_models_are_drawn_and_moved(live, open_page):
@@ -77,10 +77,10 @@ def test_simulation_bar_and_mouse_control_models(live, open_page, monkeypatch, t
     listed = threading.Event()
     monkeypatch.setattr(entities, "model_choices", lambda packages: (listed.wait(SECONDS), ModelChoices([]))[1])
     viewer = described(live)
-    asked: list[tuple[str, object]] = []
+    requests_made: list[tuple[str, object]] = []
 
     def answer(name: str, request, response):
-        asked.append((name, request))
+        requests_made.append((name, request))
         if hasattr(response, "success"):
             response.success = True
         return response
@@ -92,7 +92,7 @@ def test_simulation_bar_and_mouse_control_models(live, open_page, monkeypatch, t
             )
 
     def requests(name: str) -> list:
-        return [request for each, request in asked if each == name]
+        return [request for name_called, request in requests_made if name_called == name]
 
     page = open_page(viewer)
     assert page.locator(".simulation-bar").is_hidden()
@@ -108,7 +108,7 @@ def test_simulation_bar_and_mouse_control_models(live, open_page, monkeypatch, t
     assert record["x"] + record["width"] <= page.viewport_size["width"]
     page.get_by_role("button", name="Add a model", exact=True).click()
     places = page.get_by_role("dialog").locator(".spawn-places input")
-    assert [each.input_value() for each in places.all()] == [
+    assert [field.input_value() for field in places.all()] == [
         "3",
         "0",
         "0",

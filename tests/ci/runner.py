@@ -90,10 +90,10 @@ class Runner:
         event_file = self.temporary / "event.json"
         event_file.write_text(json.dumps(event), encoding="utf-8")
         context: dict[str, Any] = {"github": {"event": event, "token": "a-token"}, "steps": {}}
-        given = {name.replace("_", "-"): value for name, value in inputs.items()}
-        assert given.keys() <= definition["inputs"].keys()
+        inputs_by_name = {name.replace("_", "-"): value for name, value in inputs.items()}
+        assert inputs_by_name.keys() <= definition["inputs"].keys()
         context["inputs"] = {
-            name: given.get(name, _filled(declared.get("default", ""), context))
+            name: inputs_by_name.get(name, _filled(declared.get("default", ""), context))
             for name, declared in definition["inputs"].items()
         }
         variables = {"GITHUB_EVENT_PATH": str(event_file), "GITHUB_ACTION_PATH": str(folder)}
@@ -121,9 +121,9 @@ class Runner:
             return {}
         assert step["shell"] == "bash"
         values = {name: _filled(str(value), context) for name, value in step.get("env", {}).items()}
-        done = self.bash(step["run"], {**variables, **values})
-        result.output += done.stdout
-        if done.returncode:
+        process = self.bash(step["run"], {**variables, **values})
+        result.output += process.stdout
+        if process.returncode:
             result.failed = step["name"]
         output_file = self.temporary / "output.txt"
         lines = output_file.read_text(encoding="utf-8").splitlines() if output_file.is_file() else []

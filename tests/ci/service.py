@@ -101,8 +101,8 @@ class Service:
 
     def _artifacts(self, query: dict[str, list[str]]) -> dict[str, Any]:
         name = query["name"][0]
-        found = [{"id": number, "name": name, "expired": number == 9} for number in (7, 8, 9)]
-        return {"artifacts": found if self.artifact is not None else []}
+        artifacts = [{"id": number, "name": name, "expired": number == 9} for number in (7, 8, 9)]
+        return {"artifacts": artifacts if self.artifact is not None else []}
 
 
 @contextmanager

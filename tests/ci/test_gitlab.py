@@ -57,9 +57,9 @@ def gitlab(example: Example, service: Service, runner: Runner) -> GitLab:
 
 
 def test_report_is_posted_on_merge_request(example: Example, service: Service, gitlab: GitLab) -> None:
-    done = gitlab.run()
-    assert done.returncode == 0, done.stdout
-    assert done.stdout.endswith("the comment is posted\n")
+    result = gitlab.run()
+    assert result.returncode == 0, result.stdout
+    assert result.stdout.endswith("the comment is posted\n")
     (body,) = service.bodies
     assert body.startswith(f"{MARKER}\n### Robot review: ")
     assert "link 'lower' removed" in body
@@ -80,16 +80,16 @@ def test_second_run_edits_note(example: Example, service: Service, gitlab: GitLa
 
 
 def test_report_files_are_written_without_token(service: Service, gitlab: GitLab) -> None:
-    done = gitlab.run(LINKWRIGHT_TOKEN="")
-    assert done.returncode == 0
-    assert "there is no comment, because the variable LINKWRIGHT_TOKEN is not set" in done.stdout
+    result = gitlab.run(LINKWRIGHT_TOKEN="")
+    assert result.returncode == 0
+    assert "there is no comment, because the variable LINKWRIGHT_TOKEN is not set" in result.stdout
     assert service.requests == []
     assert (gitlab.folder / "report.html").is_file()
 
 
 def test_fail_on_condition_fails_job_after_note(service: Service, gitlab: GitLab) -> None:
-    done = gitlab.run(LINKWRIGHT_FAIL_ON="breaking", LINKWRIGHT_PACKAGES="arm_description")
-    assert done.returncode == 1
+    result = gitlab.run(LINKWRIGHT_FAIL_ON="breaking", LINKWRIGHT_PACKAGES="arm_description")
+    assert result.returncode == 1
     assert len(service.comments) == 1
 
 
@@ -110,8 +110,8 @@ def test_linkwright_is_cloned_from_url(service: Service, runner: Runner, gitlab:
     linkwright.commit({str(path.relative_to(REPOSITORY)): path.read_text(encoding="utf-8") for path in programs})
     linkwright.git("tag", "v1")
     linkwright.commit(dict.fromkeys((str(path.relative_to(REPOSITORY)) for path in programs), "raise SystemExit(9)"))
-    done = gitlab.run(LINKWRIGHT=f"file://{linkwright.root}", LINKWRIGHT_REF="v1")
-    assert done.returncode == 0, done.stdout
+    result = gitlab.run(LINKWRIGHT=f"file://{linkwright.root}", LINKWRIGHT_REF="v1")
+    assert result.returncode == 0, result.stdout
     assert len(service.comments) == 1
     *_, option, folder = runner.installed.read_text(encoding="utf-8").splitlines()
     assert (option, Path(folder).name) == ("--editable", "linkwright")

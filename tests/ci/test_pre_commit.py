@@ -50,14 +50,14 @@ def test_hooks_have_fields_that_pre_commit_requires() -> None:
 
 def test_old_findings_fail_only_hook_that_checks_all(repository: Repository) -> None:
     assert run(repository, "linkwright-check").returncode == 1
-    done = run(repository, "linkwright-check-changed")
-    assert done.returncode == 0, done.stderr
+    result = run(repository, "linkwright-check-changed")
+    assert result.returncode == 0, result.stderr
 
 
 def test_new_findings_stop_commit(repository: Repository) -> None:
     repository.write({"arm_description/urdf/arm.urdf.xacro": WRONG})
     repository.git("add", "--all")
-    done = run(repository, "linkwright-check-changed")
-    assert done.returncode == 1
-    assert "loose" in done.stderr
-    assert "old.urdf.xacro" not in done.stderr
+    result = run(repository, "linkwright-check-changed")
+    assert result.returncode == 1
+    assert "loose" in result.stderr
+    assert "old.urdf.xacro" not in result.stderr

@@ -60,9 +60,9 @@ def test_checking_masses_and_small_meshes_imports_no_numpy(tmp_path):
     robot.write_text(f'<robot name="r">{links}{joint}</robot>')
     code = "import sys; from linkwright.cli import main; main(sys.argv[1:]); print(*sorted(sys.modules))"
     command = [sys.executable, "-c", code, "check", "--select", "ALL", str(robot)]
-    done = subprocess.run(command, check=True, capture_output=True, text=True)
-    assert "the collision mesh 'part.stl' of link 'stl' is not watertight" in done.stderr
-    loaded = set(done.stdout.split())
+    result = subprocess.run(command, check=True, capture_output=True, text=True)
+    assert "the collision mesh 'part.stl' of link 'stl' is not watertight" in result.stderr
+    loaded = set(result.stdout.split())
     assert not {"dataclasses", "inspect", "numpy", "pkgutil", "typing", "linkwright.xacro.expansion"} & loaded
 
 

@@ -69,8 +69,8 @@ def test_folder_check_selects_standalone_descriptions(here):
             "ignored/i.urdf": GOOD,
         },
     )
-    found = [path.relative_to(here).as_posix() for path in find_targets([here]).files]
-    assert found == ["a/broken.xacro", "a/plain.urdf", "a/robot.urdf.xacro", "a/wrapper.xacro"]
+    targets = [path.relative_to(here).as_posix() for path in find_targets([here]).files]
+    assert targets == ["a/broken.xacro", "a/plain.urdf", "a/robot.urdf.xacro", "a/wrapper.xacro"]
 
 
 def test_files_included_by_argument_or_environment_are_not_standalone(here):
@@ -184,7 +184,7 @@ def test_checked_robot_is_freed_without_garbage_collector(here, monkeypatch):
     alive = []
 
     def counted(*arguments, **options):
-        alive.append(sum(isinstance(each, Subject) for each in gc.get_objects()))
+        alive.append(sum(isinstance(candidate, Subject) for candidate in gc.get_objects()))
         return examine(*arguments, **options)
 
     monkeypatch.setattr(checking, "examine", counted)
@@ -218,8 +218,13 @@ def test_format_option_writes_findings_to_standard_output(here, capsys):
     main(["check", "b.urdf", *ONLY, "--format", "concise"])
     assert capsys.readouterr().out.startswith("b.urdf:7:16: warning[LW221] ")
     main(["check", "b.urdf", *ONLY, "--format", "json"])
-    (found,) = json.loads(capsys.readouterr().out)["diagnostics"]
-    assert (found["code"], found["file"], found["line"], found["column"]) == ("LW221", "b.urdf", 7, 16)
+    (diagnostic,) = json.loads(capsys.readouterr().out)["diagnostics"]
+    assert (diagnostic["code"], diagnostic["file"], diagnostic["line"], diagnostic["column"]) == (
+        "LW221",
+        "b.urdf",
+        7,
+        16,
+    )
     main(["check", "b.urdf", *ONLY, "--format", "sarif"])
     assert json.loads(capsys.readouterr().out)["version"] == "2.1.0"
     main(["check", "b.urdf", *ONLY, "--format", "github"])
@@ -304,8 +309,8 @@ def test_public_folder_of_nested_web_package_is_skipped(here, manifest, is_told)
     write(here, {"package.xml": "<package/>", manifest: "{}", "web/public/robot.urdf": GOOD, "urdf/robot.urdf": GOOD})
     write(here, {"inner/package.xml": "<package/>"})
     for folder in (here, Path()):
-        found = [path.parent.name for path in find_targets([folder]).files]
-        assert found == (["urdf", "public"] if is_told else ["urdf"])
+        folders = [path.parent.name for path in find_targets([folder]).files]
+        assert folders == (["urdf", "public"] if is_told else ["urdf"])
 
 
 def test_empty_folder_is_an_error(here, capsys):

@@ -17,10 +17,10 @@ WORSE = MOVED.replace('velocity="1"', 'velocity="0"')
 
 @pytest.fixture
 def repository(tmp_path, monkeypatch):
-    made = Repository(tmp_path / "repository")
-    made.commit({**PACKAGE, SEGMENT: FAULTY})
-    monkeypatch.chdir(made.root)
-    return made
+    repository = Repository(tmp_path / "repository")
+    repository.commit({**PACKAGE, SEGMENT: FAULTY})
+    monkeypatch.chdir(repository.root)
+    return repository
 
 
 @pytest.fixture
@@ -128,6 +128,6 @@ def test_finding_with_fewer_items_is_not_new(tmp_path):
     from linkwright.diagnostics import Diagnostic
     from linkwright.lint.known_findings import count_keys, new_findings
 
-    one, two = Diagnostic("LW848", "not declared: 'a'"), Diagnostic("LW848", "not declared: 'a', 'b'")
-    assert new_findings([one], tmp_path, count_keys([two], tmp_path)) == []
-    assert new_findings([two], tmp_path, count_keys([one], tmp_path)) == [two]
+    shorter, longer = Diagnostic("LW848", "not declared: 'a'"), Diagnostic("LW848", "not declared: 'a', 'b'")
+    assert new_findings([shorter], tmp_path, count_keys([longer], tmp_path)) == []
+    assert new_findings([longer], tmp_path, count_keys([shorter], tmp_path)) == [longer]

@@ -161,9 +161,9 @@ def test_completion_in_bash(line: str, offered: list[str]) -> None:
         + f'COMP_LINE="{line}"; COMP_POINT=${{#COMP_LINE}}; _linkwright_complete 2>/dev/null\n'
         + "printf '%s\\n' \"${COMPREPLY[@]}\"; complete -p linkwright >&2"
     )
-    done = subprocess.run(["bash", "-c", program], capture_output=True, text=True, check=True)
-    assert done.stdout.split() == offered
-    assert "_linkwright_complete" in done.stderr
+    result = subprocess.run(["bash", "-c", program], capture_output=True, text=True, check=True)
+    assert result.stdout.split() == offered
+    assert "_linkwright_complete" in result.stderr
 
 
 SHELL_LINES = [
@@ -206,9 +206,9 @@ def test_completion_in_zsh(words: list[str], offered: list[str]) -> None:
         + f"words=({typed}); CURRENT=$#words\n"
         + f"PREFIX={shlex.quote(words[-1])}; _linkwright_complete"
     )
-    done = subprocess.run(["zsh", "-f", "-c", program], capture_output=True, text=True, check=False)
-    assert done.stdout.split() == offered
-    assert "compdef _linkwright_complete linkwright" in done.stderr
+    result = subprocess.run(["zsh", "-f", "-c", program], capture_output=True, text=True, check=False)
+    assert result.stdout.split() == offered
+    assert "compdef _linkwright_complete linkwright" in result.stderr
 
 
 @pytest.mark.skipif(shutil.which("fish") is None, reason="there is no fish")
@@ -218,10 +218,10 @@ def test_completion_in_zsh(words: list[str], offered: list[str]) -> None:
 def test_completion_in_fish(words: list[str], offered: list[str], tmp_path: Path) -> None:
     program = script("fish", sys.executable, ["linkwright"]) + f"complete -C {shlex.quote(' '.join(words))}"
     environment = {**os.environ, "HOME": str(tmp_path)}
-    done = subprocess.run(
+    result = subprocess.run(
         ["fish", "--no-config", "-c", program], capture_output=True, text=True, check=True, env=environment
     )
-    assert sorted(line.partition("\t")[0] for line in done.stdout.splitlines()) == sorted(offered)
+    assert sorted(line.partition("\t")[0] for line in result.stdout.splitlines()) == sorted(offered)
 
 
 @pytest.mark.parametrize("shell", ["bash", "zsh", "fish"])
@@ -240,8 +240,8 @@ def test_missing_ros_programs_print_alternatives() -> None:
     program += shell_script("bash", sys.executable, "LINKWRIGHT_SHELL", ["rosdep", "gazebo"])
     program += "rosdep install; echo $?; gazebo --verbose; no_such_program; echo $?"
     environment = {**os.environ, "LINKWRIGHT_SHELL": "/nowhere", "LINKWRIGHT_LANG": "en"}
-    done = subprocess.run(["bash", "-c", program], capture_output=True, text=True, check=False, env=environment)
-    assert done.stdout.split("\n") == ["127", "other no_such_program", "9", ""]
-    assert "command 'rosdep' does not exist" in done.stderr
-    assert "put the sources of a missing package into the workspace's src folder" in done.stderr
-    assert "which starts Linkwright's simulation instead" in done.stderr
+    result = subprocess.run(["bash", "-c", program], capture_output=True, text=True, check=False, env=environment)
+    assert result.stdout.split("\n") == ["127", "other no_such_program", "9", ""]
+    assert "command 'rosdep' does not exist" in result.stderr
+    assert "put the sources of a missing package into the workspace's src folder" in result.stderr
+    assert "which starts Linkwright's simulation instead" in result.stderr

@@ -63,10 +63,10 @@ def test_keep_fixed_joints_preserves_links(folder, capsys):
 
 def test_converted_world_contains_includes_at_saved_poses(folder):
     assert main(["convert", "w.world", "-o", "flat.world"]) == 0
-    found = examine_world(folder / "flat.world", environment={"HOME": "/nowhere"})
-    assert found.diagnostics == ()
-    assert found.sdf is not None
-    world = found.sdf.worlds[0]
+    model_world = examine_world(folder / "flat.world", environment={"HOME": "/nowhere"})
+    assert model_world.diagnostics == ()
+    assert model_world.sdf is not None
+    world = model_world.sdf.worlds[0]
     assert (world.gravity, world.includes, world.states) == ((0.0, 0.0, -1.0), (), ())
     assert world.models[0].pose.pose.xyz == (4.0, 5.0, 6.0)
 
@@ -158,6 +158,6 @@ def test_mjcf_materials_have_mean_texture_colors(tmp_path: Path) -> None:
         f"<uri>quad.obj</uri></mesh></geometry><material>{material}</material></visual></link></model></sdf>"
     )
     assert main(["convert", str(world), "--to", "mjcf", "-o", str(tmp_path / "out" / "m.xml")]) == 0
-    made = mujoco.MjModel.from_xml_path(str(tmp_path / "out" / "m.xml"))
-    assert made.ntex == 0
-    assert made.geom_rgba[0].tolist() == pytest.approx([0.25, 0.0, 0.5, 1.0], abs=1e-3)
+    model = mujoco.MjModel.from_xml_path(str(tmp_path / "out" / "m.xml"))
+    assert model.ntex == 0
+    assert model.geom_rgba[0].tolist() == pytest.approx([0.25, 0.0, 0.5, 1.0], abs=1e-3)

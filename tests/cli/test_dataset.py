@@ -42,10 +42,10 @@ def test_classes_without_objects_are_reported(words, tmp_path, capsys):
 def test_interrupt_keeps_completed_images(words, tmp_path, capsys, monkeypatch):
     add = DatasetFolder.add
 
-    def interrupted(folder, taken):
-        if taken.index == 2:
+    def interrupted(folder, sample):
+        if sample.index == 2:
             raise KeyboardInterrupt
-        add(folder, taken)
+        add(folder, sample)
 
     monkeypatch.setattr(DatasetFolder, "add", interrupted)
     assert main([*words, "-n", "5"]) == INTERRUPTED

@@ -52,7 +52,7 @@ def package(tmp_path, monkeypatch) -> Path:
 def git(folder: Path, *words: str) -> None:
     environment = {name: value for name, value in os.environ.items() if not name.startswith("GIT_")}
     identity = {
-        f"GIT_{who}_{what}": "test@example.org" for who in ("AUTHOR", "COMMITTER") for what in ("NAME", "EMAIL")
+        f"GIT_{role}_{field}": "test@example.org" for role in ("AUTHOR", "COMMITTER") for field in ("NAME", "EMAIL")
     }
     nobody = {"GIT_CONFIG_GLOBAL": os.devnull, "GIT_CONFIG_SYSTEM": os.devnull}
     subprocess.run(
@@ -99,18 +99,30 @@ def test_meshes_at_same_uri_are_compared_by_content(package, tmp_path, monkeypat
     shutil.copytree(package, other)
     (tmp_path / "elsewhere").mkdir()
     monkeypatch.chdir(tmp_path / "elsewhere")
-    words = ["diff", *(str(each / "urdf/arm.urdf.xacro") for each in (other, package)), "--format", "json"]
+    words = ["diff", *(str(folder / "urdf/arm.urdf.xacro") for folder in (other, package)), "--format", "json"]
     main(words)
-    assert [each for each in json.loads(capsys.readouterr().out)["differences"] if each["subject"] == "link"] == []
+    assert [
+        difference
+        for difference in json.loads(capsys.readouterr().out)["differences"]
+        if difference["subject"] == "link"
+    ] == []
     edit(package / "meshes/body.stl", "solid", "solid body")
     assert main(words) == 1
-    (mesh,) = (each for each in json.loads(capsys.readouterr().out)["differences"] if each["subject"] == "link")
+    (mesh,) = (
+        difference
+        for difference in json.loads(capsys.readouterr().out)["differences"]
+        if difference["subject"] == "link"
+    )
     assert mesh["property"] == "visual mesh package://arm/meshes/body.stl"
     assert (mesh["old"], mesh["new"], mesh["unit"]) == ("5", "10", "bytes")
     edit(package / "meshes/body.stl", "solid body", "dilos")
     main(words)
-    (mesh,) = (each for each in json.loads(capsys.readouterr().out)["differences"] if each["subject"] == "link")
-    first, second = (sha256(each).hexdigest()[:8] for each in (b"solid", b"dilos"))
+    (mesh,) = (
+        difference
+        for difference in json.loads(capsys.readouterr().out)["differences"]
+        if difference["subject"] == "link"
+    )
+    first, second = (sha256(content).hexdigest()[:8] for content in (b"solid", b"dilos"))
     assert (mesh["old"], mesh["new"], mesh["unit"]) == (first, second, "(SHA-256), both of 5 bytes")
 
 
@@ -172,7 +184,7 @@ def test_renamed_file_is_found_in_commit(committed, capsys, staged):
     assert main(["diff", "urdf/hand.urdf.xacro", "--against", "HEAD", "--format", "json"]) == 1
     output = json.loads(capsys.readouterr().out)
     assert (output["old"], output["new"]) == ("HEAD:urdf/arm.urdf.xacro", "urdf/hand.urdf.xacro")
-    assert [each["property"] for each in output["differences"]] == ["inertial mass"]
+    assert [difference["property"] for difference in output["differences"]] == ["inertial mass"]
     assert staged or (committed / ".git/index").read_bytes() == before
 
 

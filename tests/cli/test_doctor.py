@@ -179,7 +179,7 @@ def test_json_and_other_formats_are_printed(in_graph, capsys, form):
     assert main(["doctor", "--seconds", "1", "--format", form]) == 1
     printed = capsys.readouterr().out
     if form == "json":
-        assert [each["code"] for each in json.loads(printed)["diagnostics"]] == ["DOC302"]
+        assert [diagnostic["code"] for diagnostic in json.loads(printed)["diagnostics"]] == ["DOC302"]
     else:
         assert "DOC302" in printed
 

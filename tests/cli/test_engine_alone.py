@@ -24,8 +24,8 @@ def rooms() -> tuple[set[str], set[str]]:
 def test_every_package_is_in_engine_or_excluded() -> None:
     engine, others = rooms()
     package = REPOSITORY / "src" / "linkwright"
-    found = {f"linkwright.{folder.parent.name}" for folder in package.glob("*/__init__.py")} - {"linkwright.cli"}
-    assert found == {name for name in engine | others if not name.startswith("linkwright.cli.")}
+    found_rooms = {f"linkwright.{folder.parent.name}" for folder in package.glob("*/__init__.py")} - {"linkwright.cli"}
+    assert found_rooms == {name for name in engine | others if not name.startswith("linkwright.cli.")}
 
 
 def test_linkwright_requires_same_version_of_linkwright_core() -> None:
@@ -44,8 +44,8 @@ def alone(monkeypatch):
 
 def test_help_lists_engine_commands(alone, capsys):
     assert main(["--help"]) == 0
-    listed = [line.split()[0] for line in capsys.readouterr().out.splitlines() if line.startswith("  ")]
-    assert listed == ["check", "format", "xacro", "diff", "explain", "inertia", "convert", "picture", "--lang"]
+    commands = [line.split()[0] for line in capsys.readouterr().out.splitlines() if line.startswith("  ")]
+    assert commands == ["check", "format", "xacro", "diff", "explain", "inertia", "convert", "picture", "--lang"]
 
 
 def test_other_commands_require_linkwright(alone, capsys):

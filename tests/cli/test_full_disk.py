@@ -198,7 +198,7 @@ def statuses(commands: Mapping[str, Sequence[str]], folder: Path, redirection: s
     """Run commands with redirected streams, and return their exit statuses and output."""
     program = _MANY.format(commands=[list(words) for words in commands.values()])
     environment = {**os.environ, "PYTHONPATH": str(REPOSITORY / "src")}
-    done = subprocess.run(
+    result = subprocess.run(
         ["sh", "-c", f'exec "$@" {redirection}', "sh", sys.executable, "-c", program],
         cwd=folder,
         env=environment,
@@ -208,15 +208,15 @@ def statuses(commands: Mapping[str, Sequence[str]], folder: Path, redirection: s
         timeout=300,
         check=False,
     )
-    printed, _, found = done.stderr.rpartition("[")
+    printed, _, found = result.stderr.rpartition("[")
     return dict(zip(commands, map(int, found.rstrip("]").split(",")), strict=True)), printed
 
 
 @pytest.mark.skipif(sys.platform != "linux", reason="/dev/full is Linux's")
 @pytest.mark.parametrize(("redirection", "reason"), [(">/dev/full", "No space left"), (">&-", "Bad file descriptor")])
 def test_unwritable_standard_output_is_one_error(robot: Path, redirection: str, reason: str) -> None:
-    found, printed = statuses(QUICK, robot.parent, redirection)
-    assert found == dict.fromkeys(QUICK, 1)
+    statuses_by_command, printed = statuses(QUICK, robot.parent, redirection)
+    assert statuses_by_command == dict.fromkeys(QUICK, 1)
     assert printed.count(f"error[CLI202]: cannot write to standard output: {reason}") == len(QUICK)
     assert "bug in Linkwright" not in printed
     assert "Exception ignored" not in printed
@@ -240,7 +240,7 @@ def test_output_truncated_by_full_disk_is_an_error(
     monkeypatch.setenv("PYTHONUNBUFFERED", unbuffered)
     for name, words in LONG.items():
         with (robot.parent / "out").open("w") as out, full_disk(ROOM):
-            done = subprocess.run(
+            result = subprocess.run(
                 [sys.executable, "-m", "linkwright", *words],
                 env={**os.environ, "PYTHONPATH": str(REPOSITORY / "src")},
                 stdout=out,
@@ -249,15 +249,15 @@ def test_output_truncated_by_full_disk_is_an_error(
                 check=False,
             )
         assert (robot.parent / "out").stat().st_size == ROOM, name
-        assert done.returncode == 1, name
-        assert "error[CLI202]: cannot write to standard output: File too large" in done.stderr, name
+        assert result.returncode == 1, name
+        assert "error[CLI202]: cannot write to standard output: File too large" in result.stderr, name
 
 
 @pytest.mark.skipif(sys.platform == "win32", reason="there is no fork")
 def test_closed_standard_input_is_treated_as_empty(robot: Path) -> None:
     commands = {**QUICK, "check -": ["xacro", "-"], "pub": ["interface", "show", "-"]}
-    found, printed = statuses(commands, robot.parent, "<&-")
-    assert {name for name, status in found.items() if status} == {"check -", "pub"}
+    statuses_by_command, printed = statuses(commands, robot.parent, "<&-")
+    assert {name for name, status in statuses_by_command.items() if status} == {"check -", "pub"}
     assert "bug in Linkwright" not in printed
 
 
@@ -267,7 +267,7 @@ def test_unwritable_standard_error_keeps_exit_status(robot: Path, redirection: s
     for words, status in ((["check", "r.urdf"], 0), (["check", "missing.urdf"], 1)):
         program = f'"$0" -m linkwright {" ".join(words)} {redirection}'
         environment = {**os.environ, "PYTHONPATH": str(REPOSITORY / "src")}
-        done = subprocess.run(
+        result = subprocess.run(
             ["sh", "-c", program, sys.executable],
             cwd=robot.parent,
             env=environment,
@@ -275,7 +275,7 @@ def test_unwritable_standard_error_keeps_exit_status(robot: Path, redirection: s
             timeout=60,
             check=False,
         )
-        assert done.returncode == status, words
+        assert result.returncode == status, words
 
 
 @pytest.mark.skipif(sys.platform == "win32", reason="Windows keeps folders that are in use")
@@ -299,7 +299,7 @@ def test_removed_working_directory_is_handled(tmp_path: Path, monkeypatch: pytes
         os.chdir(gone)
         shutil.rmtree(gone)
         try:
-            done = subprocess.run(
+            result = subprocess.run(
                 [sys.executable, "-m", "linkwright", *words],
                 env={**os.environ, "PYTHONPATH": str(REPOSITORY / "src"), "ROS_LOG_DIR": str(tmp_path / "log")},
                 capture_output=True,
@@ -309,6 +309,6 @@ def test_removed_working_directory_is_handled(tmp_path: Path, monkeypatch: pytes
             )
         finally:
             os.chdir(here)
-        assert "bug in Linkwright" not in done.stderr, words
-        assert done.returncode in (0, 1), (words, done.stderr)
-        assert done.returncode == 0 or "error[" in done.stderr, words
+        assert "bug in Linkwright" not in result.stderr, words
+        assert result.returncode in (0, 1), (words, result.stderr)
+        assert result.returncode == 0 or "error[" in result.stderr, words

@@ -87,7 +87,7 @@ def test_json_output_contains_inertials_of_links(model, capsys):
     assert base["present"]["center_distance"] == pytest.approx(0.01)
     assert base["present"]["moment_ratios"] == pytest.approx([1.5] * 3)
     assert base["equivalent_box"] == pytest.approx([0.2] * 3, rel=1e-4)
-    assert [each["verdict"] for each in data["links"]] == ["unjudged", "fits", "missing"]
+    assert [link["verdict"] for link in data["links"]] == ["unjudged", "fits", "missing"]
     assert base["present_density"] == pytest.approx(250.0)
     assert wheel["present"] is None
     assert wheel["why"] == "it has no <inertial>"

@@ -114,10 +114,10 @@ def test_tree_indentation_of_long_chain_is_limited() -> None:
 
 
 def test_many_findings_print_errors_and_count() -> None:
-    found = [Diagnostic("LW101", phrase("warning"), severity=Severity.WARNING) for _ in range(2_000)]
-    found += [Diagnostic("LW102", phrase("mistake"))] * 3
+    diagnostics = [Diagnostic("LW101", phrase("warning"), severity=Severity.WARNING) for _ in range(2_000)]
+    diagnostics += [Diagnostic("LW102", phrase("mistake"))] * 3
     stream = io.StringIO()
-    print_diagnostics(found, stream)
+    print_diagnostics(diagnostics, stream)
     lines = stream.getvalue().splitlines()
     assert len(lines) == MAX_PRINTED + 1
     assert sum("mistake" in line for line in lines) == 3
@@ -143,11 +143,11 @@ def test_named_pipe_beside_file_is_not_opened(tmp_path: Path) -> None:
     for name in ("pipe.xacro", "pipe.urdf"):
         os.mkfifo(tmp_path / name)
     for target in (path, tmp_path):
-        done = subprocess.run(
+        result = subprocess.run(
             [sys.executable, "-m", "linkwright", "check", str(target)],
             env={**os.environ, "PYTHONPATH": str(REPOSITORY / "src")},
             capture_output=True,
             timeout=120,
             check=False,
         )
-        assert done.returncode in (0, 1)
+        assert result.returncode in (0, 1)

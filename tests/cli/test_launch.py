@@ -60,15 +60,15 @@ def test_process_output_goes_to_log_by_default(write: Write, tmp_path: Path) -> 
 
 
 def test_debug_option_sets_log_level(write: Write) -> None:
-    done = launched("--debug", write(PRINTS))
-    assert "[INFO] [launch]: Default logging verbosity is set to DEBUG" in done.stderr
-    assert "[DEBUG] [launch]: processing event: 'launch.events.process.ProcessStarted'" in done.stderr
+    result = launched("--debug", write(PRINTS))
+    assert "[INFO] [launch]: Default logging verbosity is set to DEBUG" in result.stderr
+    assert "[DEBUG] [launch]: processing event: 'launch.events.process.ProcessStarted'" in result.stderr
 
 
 def test_launch_prefix_applies_to_filtered_programs(write: Write) -> None:
     path = write("ExecuteProcess(cmd=['echo', 'a'])", "ExecuteProcess(cmd=['true', 'b'])")
-    done = launched("-a", "--launch-prefix", "echo before", "--launch-prefix-filter", "tr", path)
-    assert sorted(done.stdout.splitlines()) == ["[echo-1] a", "[true-2] before true b"]
+    result = launched("-a", "--launch-prefix", "echo before", "--launch-prefix-filter", "tr", path)
+    assert sorted(result.stdout.splitlines()) == ["[echo-1] a", "[true-2] before true b"]
 
 
 def test_isolate_starts_separate_process(write: Write) -> None:

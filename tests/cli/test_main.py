@@ -98,9 +98,9 @@ def test_closed_pipe_is_not_an_error(tmp_path):
     links = "".join(f'<link name="l{number}"/>' for number in range(20000))
     model.write_text(f'<robot name="r">{links}</robot>')
     command = f"{sys.executable} -m linkwright xacro {model} | head -n 1"
-    done = subprocess.run(["bash", "-o", "pipefail", "-c", command], capture_output=True, text=True, check=False)
-    assert done.stdout == '<?xml version="1.0" ?>\n'
-    assert done.stderr == ""
+    result = subprocess.run(["bash", "-o", "pipefail", "-c", command], capture_output=True, text=True, check=False)
+    assert result.stdout == '<?xml version="1.0" ?>\n'
+    assert result.stderr == ""
 
 
 def test_garbage_collector_skips_startup_imports():
@@ -113,8 +113,8 @@ def test_garbage_collector_skips_startup_imports():
         "gc.collect()\n"
         "print(gc.get_threshold()[0])\n"
     )
-    done = subprocess.run([sys.executable, "-c", program], capture_output=True, text=True, check=True)
-    first, later = map(int, done.stdout.split()[-2:])
+    result = subprocess.run([sys.executable, "-c", program], capture_output=True, text=True, check=True)
+    first, later = map(int, result.stdout.split()[-2:])
     assert first > later > 700
 
 

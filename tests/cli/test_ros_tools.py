@@ -32,8 +32,8 @@ def test_shell_programs_match_tools() -> None:
 
 def test_ros2_help_lists_commands(capsys: pytest.CaptureFixture[str]) -> None:
     assert main("ros2", []) == 0
-    listed = {line.split()[0] for line in capsys.readouterr().out.splitlines() if line.startswith("  ")}
-    assert listed == set(COMMANDS)
+    commands = {line.split()[0] for line in capsys.readouterr().out.splitlines() if line.startswith("  ")}
+    assert commands == set(COMMANDS)
 
 
 @pytest.mark.parametrize("name", COMMANDS)

@@ -64,9 +64,9 @@ def run() -> Iterator[Run]:
         return running[-1]
 
     yield begin
-    for each in running:
-        each.kill()
-        each.communicate()
+    for process in running:
+        process.kill()
+        process.communicate()
 
 
 def test_entry_point_receives_arguments_and_returns_exit_status(run: Run) -> None:

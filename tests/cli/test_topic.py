@@ -295,20 +295,20 @@ def listener(heard: list, kind=String, topic: str = "chatter"):
 
 
 def test_pub_once_publishes_one_message(in_graph, capsys):
-    heard: list = []
-    in_graph(listener(heard))
+    messages: list = []
+    in_graph(listener(messages))
     words = ["pub", "--once", "/chatter", "std_msgs/msg/String", "data: hello"]
     assert main(["topic", *words, "--keep-alive", "0.02"]) == 0
-    assert [message.data for message in heard] == ["hello"]
+    assert [message.data for message in messages] == ["hello"]
     assert out(capsys) == "publisher: beginning loop\npublishing #1: std_msgs.msg.String(data='hello')\n\n"
 
 
 def test_pub_times_publishes_given_number_of_messages(in_graph, capsys):
-    heard: list = []
-    in_graph(listener(heard))
+    messages: list = []
+    in_graph(listener(messages))
     words = ["pub", "-t", "3", "-r", "100", "-p", "2", "/chatter", "std_msgs/String", "{data: x}"]
     assert main(["topic", *words, "--keep-alive", "0.02"]) == 0
-    assert len(heard) == 3
+    assert len(messages) == 3
     assert out(capsys) == "publisher: beginning loop\npublishing #2: std_msgs.msg.String(data='x')\n\n"
 
 
@@ -322,22 +322,22 @@ def test_pub_times_out_without_subscription(in_graph, capsys):
 
 
 def test_pub_sets_stamp_to_publishing_time(in_graph):
-    heard: list = []
-    in_graph(listener(heard, JointState, "joint_states"))
+    messages: list = []
+    in_graph(listener(messages, JointState, "joint_states"))
     words = ["pub", "-1", "/joint_states", "sensor_msgs/msg/JointState", "{header: auto, name: [a], position: [1]}"]
     assert main(["topic", *words, "--keep-alive", "0.02"]) == 0
-    assert heard[0].header.stamp.sec > 1_500_000_000
-    assert list(heard[0].position) == [1.0]
+    assert messages[0].header.stamp.sec > 1_500_000_000
+    assert list(messages[0].position) == [1.0]
 
 
 def test_pub_reads_messages_from_yaml_file(in_graph, tmp_path):
-    heard: list = []
-    in_graph(listener(heard))
+    messages: list = []
+    in_graph(listener(messages))
     file = tmp_path / "messages.yaml"
     file.write_text("data: one\n---\ndata: two\n---\n", encoding="utf-8")
     words = ["pub", "/chatter", "std_msgs/msg/String", "--yaml-file", str(file), "-r", "50", "-w", "1"]
     assert main(["topic", *words, "--keep-alive", "0.02"]) == 0
-    assert [message.data for message in heard] == ["one", "two"]
+    assert [message.data for message in messages] == ["one", "two"]
 
 
 @pytest.mark.parametrize(
@@ -386,11 +386,11 @@ def test_hz_prints_average_rate(in_graph, capsys, monkeypatch):
     in_graph(lambda graph: talker(graph, period=0.01))
     assert run_for(1.2, ["topic", "hz", "/chatter"], monkeypatch) == 0
     text = out(capsys)
-    found = re.fullmatch(
+    match = re.fullmatch(
         r"average rate: (\d+\.\d{3})\n\tmin: (\d\.\d{3})s max: (\d\.\d{3})s std dev: \d\.\d{5}s window: \d+\n", text
     )
-    assert found, text
-    rate, shortest, longest = map(float, found.groups())
+    assert match, text
+    rate, shortest, longest = map(float, match.groups())
     assert shortest - 0.001 <= 1 / rate <= longest + 0.001
 
 
@@ -438,9 +438,9 @@ def test_delay_prints_average_delay(in_graph, capsys, monkeypatch):
 
     in_graph(make)
     assert run_for(1.2, ["topic", "delay", "/range"], monkeypatch) == 0
-    found = re.match(r"average delay: (-?\d\.\d{3})\n\tmin: ", out(capsys))
-    assert found
-    assert abs(float(found[1])) < 0.5
+    match = re.match(r"average delay: (-?\d\.\d{3})\n\tmin: ", out(capsys))
+    assert match
+    assert abs(float(match[1])) < 0.5
 
 
 def test_delay_requires_header(in_graph, capsys):

@@ -63,7 +63,7 @@ def talker() -> Iterator[None]:
 
 
 def linkwright(*words: str, timeout: float = SECONDS, status: int = 0) -> str:
-    done = subprocess.run(
+    result = subprocess.run(
         [sys.executable, "-m", "linkwright", *words],
         capture_output=True,
         text=True,
@@ -71,8 +71,8 @@ def linkwright(*words: str, timeout: float = SECONDS, status: int = 0) -> str:
         timeout=timeout,
         check=False,
     )
-    assert done.returncode == status, done.stderr
-    return done.stdout
+    assert result.returncode == status, result.stderr
+    return result.stdout
 
 
 def begin(*words: str) -> subprocess.Popen[str]:
@@ -132,7 +132,7 @@ class TestTalkerGraph:
 
     def test_closed_pipe_is_not_an_error(self):
         command = f"{sys.executable} -m linkwright topic echo /chatter | head -n 3"
-        done = subprocess.run(
+        result = subprocess.run(
             ["bash", "-o", "pipefail", "-c", command],
             capture_output=True,
             text=True,
@@ -140,8 +140,8 @@ class TestTalkerGraph:
             timeout=60,
             check=False,
         )
-        assert len(done.stdout.splitlines()) == 3
-        assert done.stderr == ""
+        assert len(result.stdout.splitlines()) == 3
+        assert result.stderr == ""
 
 
 def test_pub_reaches_earlier_echo():
@@ -202,7 +202,7 @@ def test_doctor_finds_problems_of_other_processes():
     try:
         assert publisher.stdout is not None
         publisher.stdout.readline()
-        done = subprocess.run(
+        result = subprocess.run(
             [sys.executable, "-m", "linkwright", "doctor", "--seconds", "1", "--format", "json"],
             capture_output=True,
             text=True,
@@ -210,7 +210,7 @@ def test_doctor_finds_problems_of_other_processes():
             timeout=60,
             check=False,
         )
-        codes = [each["code"] for each in json.loads(done.stdout)["diagnostics"]]
+        codes = [diagnostic["code"] for diagnostic in json.loads(result.stdout)["diagnostics"]]
         # What another command subscribes to is no part of what runs; that nothing runs would be spoken of.
         assert codes == []
     finally:

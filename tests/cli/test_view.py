@@ -46,10 +46,10 @@ def test_contradictory_arguments_are_rejected(
 
 def test_several_files_are_viewed_as_one_recording(folder: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     (file,) = (folder / "drive").glob("*.mcap")
-    shown: list[Path] = []
-    monkeypatch.setattr(bag_view, "run_bag_view", lambda files, *_, **__: shown.extend(files) or 0)
+    files_shown: list[Path] = []
+    monkeypatch.setattr(bag_view, "run_bag_view", lambda files, *_, **__: files_shown.extend(files) or 0)
     assert main(["view", str(file), str(file.relative_to(folder))]) == 0
-    assert [each.absolute() for each in shown] == [file, file]
+    assert [path.absolute() for path in files_shown] == [file, file]
 
 
 def test_ros1_recording_error_suggests_conversion(folder: Path, capsys: pytest.CaptureFixture[str]) -> None:
@@ -60,14 +60,14 @@ def test_ros1_recording_error_suggests_conversion(folder: Path, capsys: pytest.C
     assert "rosbags-convert" in output
 
 
-@pytest.mark.parametrize("words", [["missing.urdf"], ["r.urdf", "missing.urdf"], ["r.urdf", "--port", "{taken}"]])
+@pytest.mark.parametrize("words", [["missing.urdf"], ["r.urdf", "missing.urdf"], ["r.urdf", "--port", "{port}"]])
 def test_startup_error_is_printed_alone(
     folder: Path, words: list[str], monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
     monkeypatch.setenv("ROS_LOG_DIR", str(folder / "log"))
-    with socket.create_server(("127.0.0.1", 0)) as taken:
-        port = str(taken.getsockname()[1])
-        assert main(["view", "--no-open", *(word.format(taken=port) for word in words)]) == 1
+    with socket.create_server(("127.0.0.1", 0)) as server:
+        port = str(server.getsockname()[1])
+        assert main(["view", "--no-open", *(word.format(port=port) for word in words)]) == 1
     output = capsys.readouterr()
     assert output.out == ""
     error, hint = output.err.splitlines()
@@ -87,14 +87,14 @@ def test_unreadable_rviz_file_is_reported_before_start(
 
 @pytest.mark.parametrize("file", ["r.urdf", "drive"])
 def test_displays_of_rviz_file_are_used(folder: Path, file: str, monkeypatch: pytest.MonkeyPatch) -> None:
-    asked: list[HostOptions] = []
+    host_options: list[HostOptions] = []
 
     def show(path: object, *arguments: object, **_: object) -> int:
-        asked.extend(argument for argument in arguments if isinstance(argument, HostOptions))
+        host_options.extend(argument for argument in arguments if isinstance(argument, HostOptions))
         return 0
 
     monkeypatch.setattr(bag_view, "run_bag_view", show)
     monkeypatch.setattr(view, "run_view", show)
     assert main(["view", file, "-d", "v.rviz"]) == 0
-    assert [each.rviz for each in asked] == [folder / "v.rviz"]
+    assert [options.rviz for options in host_options] == [folder / "v.rviz"]
     assert view._config_of(folder / "v.rviz").options.text("Fixed Frame") == "odom"

@@ -45,9 +45,9 @@ def marker(folder, dictionary):
 def test_aruco_detections_have_corners(tmp_path, capsys):
     path = marker(tmp_path, cv2.aruco.DICT_4X4_50)
     assert main(["vision", "detect", path, "-m", "aruco", "--format", "json"]) == 0
-    ((found,),) = [row["detections"] for row in json.loads(capsys.readouterr().out)]
-    assert found["class"] == "4"
-    assert len(found["corners"]) == 4
+    ((detection,),) = [row["detections"] for row in json.loads(capsys.readouterr().out)]
+    assert detection["class"] == "4"
+    assert len(detection["corners"]) == 4
 
 
 @pytest.mark.parametrize("model", ["aruco", "apriltag"])

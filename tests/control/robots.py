@@ -25,10 +25,10 @@ def joint(
     return JOINT.format(
         name=name,
         more=more,
-        commands="".join(f"<command_interface name='{each}'/>" for each in commands.split()),
+        commands="".join(f"<command_interface name='{interface}'/>" for interface in commands.split()),
         states="".join(
-            f"<state_interface name='{each}'>{value if each == 'position' else ''}</state_interface>"
-            for each in states.split()
+            f"<state_interface name='{interface}'>{value if interface == 'position' else ''}</state_interface>"
+            for interface in states.split()
         ),
     )
 
@@ -38,9 +38,10 @@ def robot(control: str, *, parameters: str = "", mimic: str = "", joints: tuple[
     links = "<link name='base'/>" + "".join(f"<link name='{joint}_link'/>" for joint in joints)
     above = ["base", *(f"{joint}_link" for joint in joints)]
     moving = "".join(
-        f"<joint name='{each}' type='revolute'><parent link='{parent}'/><child link='{each}_link'/><axis xyz='0 0 1'/>"
-        f"<limit lower='-3' upper='3' effort='10' velocity='5'/>{mimic if each == joints[-1] else ''}</joint>"
-        for each, parent in zip(joints, above, strict=False)
+        f"<joint name='{joint}' type='revolute'><parent link='{parent}'/><child link='{joint}_link'/>"
+        "<axis xyz='0 0 1'/>"
+        f"<limit lower='-3' upper='3' effort='10' velocity='5'/>{mimic if joint == joints[-1] else ''}</joint>"
+        for joint, parent in zip(joints, above, strict=False)
     )
     return (
         f"<robot name='r'>{links}{moving}<ros2_control name='arm' type='system'><hardware>"
@@ -52,14 +53,16 @@ def described(text: str) -> tuple[list[HardwareDescription], list[str]]:
     """The hardware in a description, and what is wrong with it."""
     reading = DescriptionLibrary().read(text)
     assert reading.robot is not None
-    found, findings = hardware_from_robot(reading.robot)
-    return found, [f"{finding.code} {finding.message}" for finding in findings]
+    hardware, findings = hardware_from_robot(reading.robot)
+    return hardware, [f"{finding.code} {finding.message}" for finding in findings]
 
 
-def manager(graph: Graph, text: str, parameters: dict[str, Any] | None = None, **given: dict[str, Any]) -> Any:
+def manager(
+    graph: Graph, text: str, parameters: dict[str, Any] | None = None, **controller_parameters: dict[str, Any]
+) -> Any:
     """A manager of a robot: the parameters of its node, and those of the nodes of its controllers."""
     rules = ParameterRules()
-    for name, values in given.items():
+    for name, values in controller_parameters.items():
         for key, value in values.items():
             rules.set(name, key, value)
     node = graph.create_node(
@@ -68,6 +71,8 @@ def manager(graph: Graph, text: str, parameters: dict[str, Any] | None = None, *
         allow_undeclared_parameters=True,
         automatically_declare_parameters_from_overrides=True,
     )
-    made = ControllerManager(node, DirectExchange(), Resources(node.get_logger()), ProcessArguments(rules))
-    load_hardware(made, text, DescriptionLibrary(), hardware_by_entry_points)
-    return made
+    controller_manager = ControllerManager(
+        node, DirectExchange(), Resources(node.get_logger()), ProcessArguments(rules)
+    )
+    load_hardware(controller_manager, text, DescriptionLibrary(), hardware_by_entry_points)
+    return controller_manager

@@ -66,19 +66,19 @@ class Stand:
             self.exchange.deliver()
             await self.graph.settle()
 
-    def heard(self, type_name: str, topic: str) -> list[Any]:
+    def record(self, type_name: str, topic: str) -> list[Any]:
         """The messages of a topic, from now on."""
         messages: list[Any] = []
         self.node.create_subscription(type_name, topic, messages.append, 100)
         return messages
 
-    def say(self, type_name: str, topic: str, message: Any) -> None:
+    def publish(self, type_name: str, topic: str, message: Any) -> None:
         """Publish a message; the next step brings it."""
         self.node.create_publisher(type_name, topic, 10).publish(message)
 
 
-def _chosen(there: dict[str, Any], asked: Any) -> list[Any]:
-    return list(there.values()) if asked is Interfaces.ALL else [there[name] for name in asked]
+def _chosen(interfaces: dict[str, Any], names: Any) -> list[Any]:
+    return list(interfaces.values()) if names is Interfaces.ALL else [interfaces[name] for name in names]
 
 
 def values(interfaces: list[Interface]) -> list[float]:

@@ -38,8 +38,8 @@ DOCUMENTED = [
 
 def shown(text: str, language: str, part: str) -> str:
     """Return the code block of a page in a language that contains a text."""
-    found: list[str] = re.findall(rf"```{language}\n(.*?)```", text, re.DOTALL)
-    (block,) = (block for block in found if part in block)
+    code_blocks: list[str] = re.findall(rf"```{language}\n(.*?)```", text, re.DOTALL)
+    (block,) = (block for block in code_blocks if part in block)
     return block
 
 
@@ -55,14 +55,14 @@ def example(page: Path) -> Any:
 async def test_documented_example_swings_joint(stand, page):
     stand.joint("elbow", commands=("position",), position=1.0)
     controller = stand.start(example(page), "swing", joint="elbow", amplitude=0.3, frequency=1.0, speed=2.0)
-    heard = stand.heard("std_msgs/msg/Float64", "/swing/angle")
+    angles = stand.record("std_msgs/msg/Float64", "/swing/angle")
     await stand.step(controller, count=25)
     assert stand.commands["elbow/position"].value == pytest.approx(1.3)
-    assert heard[-1].data == pytest.approx(0.3)
-    stand.say("std_msgs/msg/Float64", "/swing/amplitude", get_message("std_msgs/msg/Float64")(data=0.1))
+    assert angles[-1].data == pytest.approx(0.3)
+    stand.publish("std_msgs/msg/Float64", "/swing/amplitude", get_message("std_msgs/msg/Float64")(data=0.1))
     await stand.step(controller, count=50)
     assert stand.commands["elbow/position"].value == pytest.approx(0.9)
-    assert "'speed' is not a parameter of this controller" in [str(each.text) for each in stand.log]
+    assert "'speed' is not a parameter of this controller" in [str(record.text) for record in stand.log]
 
 
 @pytest.fixture
@@ -90,22 +90,24 @@ def installed(tmp_path, monkeypatch):
 @pytest.mark.usefixtures("installed")
 async def test_manager_runs_controller_of_package(graph):
     text = robot(joint("hip") + joint("knee"))
-    made = manager(graph, text, {"swing": {"type": "my_controllers/Swing"}}, swing={"joint": "hip", "frequency": 1.0})
-    assert made.load("swing")
-    assert made.configure("swing")
-    assert made.switch(["swing"], [], STRICT)[0]
+    controller_manager = manager(
+        graph, text, {"swing": {"type": "my_controllers/Swing"}}, swing={"joint": "hip", "frequency": 1.0}
+    )
+    assert controller_manager.load("swing")
+    assert controller_manager.configure("swing")
+    assert controller_manager.switch(["swing"], [], STRICT)[0]
     for number in range(1, 26):
-        made.cycle(number * 10_000_000, 0.01)
-    assert made.resources.commands(["hip/position"])[0].value == pytest.approx(0.2)
+        controller_manager.cycle(number * 10_000_000, 0.01)
+    assert controller_manager.resources.commands(["hip/position"])[0].value == pytest.approx(0.2)
 
 
 @pytest.mark.usefixtures("installed")
 def test_package_with_import_error_is_reported_by_name():
     with pytest.raises(LinkwrightError) as raised:
         controller_class("my/Broken")
-    (found,) = raised.value.diagnostics
-    assert found.code == "CTL104"
-    assert "my_controllers" in str(found.hint)
+    (diagnostic,) = raised.value.diagnostics
+    assert diagnostic.code == "CTL104"
+    assert "my_controllers" in str(diagnostic.hint)
 
 
 def names(table: Any) -> set[str]:

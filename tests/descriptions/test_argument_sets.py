@@ -33,9 +33,9 @@ def sets(workspace: Path, file: str, text: str) -> list[ArgumentSet]:
     return list(argument_sets(workspace / "arm/urdf/arm.urdf.xacro"))
 
 
-def values(found: list[ArgumentSet]) -> list[dict[str, str]]:
+def values(argument_sets: list[ArgumentSet]) -> list[dict[str, str]]:
     """Return the values of the sets that are certain to occur."""
-    return [dict(each.values) for each in found if each.is_complete]
+    return [dict(argument_set.values) for argument_set in argument_sets if argument_set.is_complete]
 
 
 HEAD = """
@@ -66,18 +66,18 @@ def test_command_uses_default_of_launch_argument(workspace: Path) -> None:
 
 def test_each_choice_of_launch_argument_is_a_set(workspace: Path) -> None:
     text = launch_file("choices=['a_', 'b_']")
-    found = sets(workspace, "arm/launch/view.launch.py", text)
-    assert [value["prefix"] for value in values(found)] == ["a_", "b_"]
-    assert found[1].varied == ("prefix",)
-    assert found[0].span is not None
-    assert found[0].span.file.endswith("view.launch.py")
+    argument_sets = sets(workspace, "arm/launch/view.launch.py", text)
+    assert [value["prefix"] for value in values(argument_sets)] == ["a_", "b_"]
+    assert argument_sets[1].varied == ("prefix",)
+    assert argument_sets[0].span is not None
+    assert argument_sets[0].span.file.endswith("view.launch.py")
 
 
 def test_launch_argument_without_values_stays_open(workspace: Path) -> None:
     text = launch_file()
-    (found,) = sets(workspace, "arm/launch/view.launch.py", text)
-    assert found.runtime_names == ("prefix",)
-    assert not found.is_complete
+    (argument_set,) = sets(workspace, "arm/launch/view.launch.py", text)
+    assert argument_set.runtime_names == ("prefix",)
+    assert not argument_set.is_complete
 
 
 def test_dependent_package_provides_values(workspace: Path) -> None:
@@ -96,8 +96,8 @@ def generate_launch_description():
         launch_arguments={{'prefix': 'outer_'}}.items(),
     )])
 """
-    found = values(sets(workspace, "user/launch/outer.launch.py", outer))
-    assert [each["prefix"] for each in found] == ["a_", "outer_"]
+    prefixes = values(sets(workspace, "user/launch/outer.launch.py", outer))
+    assert [arguments["prefix"] for arguments in prefixes] == ["a_", "outer_"]
 
 
 def test_parametrized_test_with_process_file_provides_values(workspace: Path) -> None:
@@ -130,8 +130,8 @@ def test_expands():
         path = get_package_share_path('arm') / 'urdf' / 'arm.urdf.xacro'
         xacro.process_file(path, mappings=dict(prefix=prefix, dof=dof))
 """
-    found = values(sets(workspace, "arm/test/test_arm.py", text))
-    assert found == [{"prefix": "a_", "dof": "1"}, {"prefix": "b_", "dof": "1"}, {"prefix": "a_", "dof": "2"}]
+    argument_values = values(sets(workspace, "arm/test/test_arm.py", text))
+    assert argument_values == [{"prefix": "a_", "dof": "1"}, {"prefix": "b_", "dof": "1"}, {"prefix": "a_", "dof": "2"}]
 
 
 def test_shell_command_in_f_string_provides_values(workspace: Path) -> None:
@@ -159,9 +159,9 @@ def generate_launch_description():
     doc = xacro.parse(open(os.path.join(get_package_share_directory('arm'), 'urdf/arm.urdf.xacro')))
     xacro.process_doc(doc, mappings={'one': one})
 """
-    found = sets(workspace, "arm/launch/view.launch.py", text)
-    assert [dict(each.values) for each in found] == [{"one": "false"}, {"one": "true"}]
-    assert not any(each.is_complete for each in found)
+    argument_sets = sets(workspace, "arm/launch/view.launch.py", text)
+    assert [dict(argument_set.values) for argument_set in argument_sets] == [{"one": "false"}, {"one": "true"}]
+    assert not any(argument_set.is_complete for argument_set in argument_sets)
 
 
 def test_moveit_configs_builder_provides_values(workspace: Path) -> None:
@@ -232,14 +232,14 @@ def test_environment_variable_uses_written_default(
 ) -> None:
     text = f"""<launch><arg name="prefix" default="{default}"/><param name="robot_description"
         command="$(find xacro)/xacro '$(find arm)/urdf/arm.urdf.xacro' prefix:=$(arg prefix)"/></launch>"""
-    (found,) = sets(workspace, "arm/launch/view.launch", text)
-    assert (found.values, found.runtime_names) == (known, is_open)
+    (argument_set,) = sets(workspace, "arm/launch/view.launch", text)
+    assert (argument_set.values, argument_set.runtime_names) == (known, is_open)
 
 
 def test_share_folder_inside_path_is_uncertain(workspace: Path) -> None:
     text = """<launch><let name="file" value="./$(find-pkg-share arm)/urdf/arm.urdf.xacro"/><node pkg="p" exec="e">
         <param name="d" value="$(command 'xacro $(var file) prefix:=x_')"/></node></launch>"""
-    assert [each.is_certain for each in sets(workspace, "arm/launch/view.launch.xml", text)] == [False]
+    assert [argument_set.is_certain for argument_set in sets(workspace, "arm/launch/view.launch.xml", text)] == [False]
 
 
 @pytest.mark.parametrize(
@@ -272,8 +272,8 @@ JOINED = """
 )
 def test_absolute_path_component_restarts_joined_path(workspace: Path, default: str, expected: str) -> None:
     text = f"{HEAD}\ndef generate_launch_description():\n{JOINED.format(default=default)}"
-    wanted = expected.format(user=workspace / "user", arm=workspace / "arm")
-    assert values(sets(workspace, "user/launch/a.launch.py", text)) == [{"prefix": wanted}]
+    expected_text = expected.format(user=workspace / "user", arm=workspace / "arm")
+    assert values(sets(workspace, "user/launch/a.launch.py", text)) == [{"prefix": expected_text}]
 
 
 ROBOT_FILE = "PathJoinSubstitution([FindPackageShare('arm'), 'urdf', 'arm.urdf.xacro'])"
@@ -310,9 +310,9 @@ def content(urdf_arguments={{}}):
     ids=["extend", "append", "default", "stars", "or", "key", "update", "process_file"],
 )
 def test_helper_without_known_callers_is_incomplete(workspace: Path, text: str) -> None:
-    (found,) = sets(workspace, "user/launch/helper.py", HEAD + text)
-    assert "" in found.runtime_names
-    assert not found.is_complete
+    (argument_set,) = sets(workspace, "user/launch/helper.py", HEAD + text)
+    assert "" in argument_set.runtime_names
+    assert not argument_set.is_complete
 
 
 @pytest.mark.parametrize(
@@ -422,8 +422,10 @@ def setup(a0):
 {again}
     xacro.process_file(get_package_share_path('arm') / 'urdf/arm.urdf.xacro', mappings={{'prefix': 'a', 'name': a27}})
 """
-    found = sets(workspace, "arm/launch/again.launch.py", text)
-    assert [(dict(each.values), each.runtime_names) for each in found] == [({"prefix": "a"}, ("name",))]
+    argument_sets = sets(workspace, "arm/launch/again.launch.py", text)
+    assert [(dict(argument_set.values), argument_set.runtime_names) for argument_set in argument_sets] == [
+        ({"prefix": "a"}, ("name",))
+    ]
 
 
 @pytest.mark.parametrize(("function", "prefix"), [("describe", "a b"), ("xacro.process_file", '"a b"')])

@@ -35,7 +35,7 @@ def compared(old: str, new: str) -> Comparison:
     return compare(Side(robots[0]), Side(robots[1]))
 
 
-def found(old: str, new: str) -> list[tuple[str, str, str, str, str | None, str | None]]:
+def differences_between(old: str, new: str) -> list[tuple[str, str, str, str, str | None, str | None]]:
     differences = compared(old, new).differences
     return [
         (difference.subject, difference.name, difference.kind, difference.property, difference.old, difference.new)
@@ -44,7 +44,7 @@ def found(old: str, new: str) -> list[tuple[str, str, str, str, str | None, str 
 
 
 def test_robot_equals_itself():
-    assert found(ROBOT, ROBOT) == []
+    assert differences_between(ROBOT, ROBOT) == []
 
 
 @pytest.mark.parametrize(
@@ -59,7 +59,7 @@ def test_robot_equals_itself():
     ],
 )
 def test_equivalent_notation_is_equal(written, instead):
-    assert found(ROBOT, ROBOT.replace(written, instead)) == []
+    assert differences_between(ROBOT, ROBOT.replace(written, instead)) == []
 
 
 @pytest.mark.parametrize(
@@ -95,7 +95,7 @@ def test_equivalent_notation_is_equal(written, instead):
     ],
 )
 def test_change_is_reported_with_old_and_new_value(written, instead, expected):
-    [difference] = found(ROBOT, ROBOT.replace(written, instead))
+    [difference] = differences_between(ROBOT, ROBOT.replace(written, instead))
     assert difference == expected
 
 
@@ -103,7 +103,7 @@ def test_block_in_only_one_robot_is_one_difference():
     without = ROBOT.replace('<limit lower="-1" upper="1" effort="10" velocity="2"/>', "").replace(
         "revolute", "continuous"
     )
-    differences = {each[3]: each for each in found(ROBOT, without)}
+    differences = {difference[3]: difference for difference in differences_between(ROBOT, without)}
     assert sorted(differences) == ["limit", "type"]
     assert differences["limit"][4:] == ("lower -1 rad, upper 1 rad, effort 10 N m, velocity 2 rad/s", None)
 
@@ -113,13 +113,13 @@ def test_inserted_visual_leaves_following_visuals_unchanged():
         "<visual><geometry>",
         '<visual><geometry><cylinder radius="1" length="2"/></geometry></visual><visual><geometry>',
     )
-    [difference] = found(ROBOT, new)
+    [difference] = differences_between(ROBOT, new)
     assert difference[:5] == ("link", "base", "changed", "visual 1", None)
 
 
 def test_added_and_removed_links_and_joints_are_reported():
     new = ROBOT.replace('"hand"', '"gripper"').replace('"wrist" type="fixed"', '"flange" type="floating"')
-    assert [each[:3] for each in found(ROBOT, new)] == [
+    assert [difference[:3] for difference in differences_between(ROBOT, new)] == [
         ("link", "gripper", "added"),
         ("link", "hand", "removed"),
         ("joint", "flange", "added"),
@@ -141,7 +141,9 @@ def test_renamed_links_and_joints_are_recognized():
 
 def test_changed_link_with_new_name_is_not_a_rename():
     new = ROBOT.replace('"arm"', '"boom"').replace("a.stl", "b.stl")
-    kinds = {(each[1], each[2]) for each in found(ROBOT, new) if each[0] == "link"}
+    kinds = {
+        (difference[1], difference[2]) for difference in differences_between(ROBOT, new) if difference[0] == "link"
+    }
     assert kinds == {("boom", "added"), ("arm", "removed")}
 
 
@@ -295,7 +297,7 @@ def test_renamed_joint_between_the_same_links_is_recognized():
     new = ROBOT.replace('"wrist"', '"flange"').replace(
         '<parent link="arm"/>', '<origin xyz="1 0 0"/><parent link="arm"/>'
     )
-    assert [each[:4] for each in found(ROBOT, new)] == [
+    assert [difference[:4] for difference in differences_between(ROBOT, new)] == [
         ("joint", "flange", "renamed", "name"),
         ("joint", "flange", "changed", "origin xyz"),
     ]

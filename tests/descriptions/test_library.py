@@ -37,12 +37,12 @@ class TestLoad:
     def test_error_contains_all_findings(self):
         with pytest.raises(LinkwrightError) as caught:
             load(robot_text(chain("revolut", "hinge")))
-        assert [found.code for found in caught.value.diagnostics] == ["URDF140", "URDF140"]
+        assert [diagnostic.code for diagnostic in caught.value.diagnostics] == ["URDF140", "URDF140"]
 
     def test_robot_accepted_by_urdfdom_is_loaded(self):
         text = robot_text('<link name="a"><visual/></link>')
         assert load(text).links["a"].visuals == ()
-        assert [found.code for found in examine(text).diagnostics] == ["URDF130"]
+        assert [diagnostic.code for diagnostic in examine(text).diagnostics] == ["URDF130"]
 
     def test_missing_file_is_an_error(self, tmp_path):
         with pytest.raises(LinkwrightError, match="no such file"):
@@ -60,8 +60,8 @@ class TestTinyxmlTolerance:
         assert load('\n  <?xml version="1.0"?>\n' + GOOD).name == "r"
 
     def test_locations_account_for_leading_whitespace(self):
-        found = examine('\n<?xml version="1.0"?>\n<robot name="r"/>').diagnostics[0]
-        assert (found.span.line, found.span.column) == (3, 1)
+        diagnostic = examine('\n<?xml version="1.0"?>\n<robot name="r"/>').diagnostics[0]
+        assert (diagnostic.span.line, diagnostic.span.column) == (3, 1)
 
     @pytest.mark.parametrize("rest", ["<robot/>", "\n<more>\n</more>", "\nwords"])
     def test_text_after_root_is_ignored(self, rest):
@@ -96,10 +96,10 @@ def test_finding_in_macro_notes_macro_calls():
         '  <xacro:ball size="big"/>\n'
         "</robot>"
     )
-    found = examine(text).diagnostics[0]
-    assert found.message == "'radius' in <sphere> of link 'a' is not a number: 'big'"
-    assert (found.span.line, found.span.column) == (3, 54)
-    assert [(note.span.line, note.span.column) for note in found.notes if note.span] == [(5, 3)]
+    diagnostic = examine(text).diagnostics[0]
+    assert diagnostic.message == "'radius' in <sphere> of link 'a' is not a number: 'big'"
+    assert (diagnostic.span.line, diagnostic.span.column) == (3, 54)
+    assert [(note.span.line, note.span.column) for note in diagnostic.notes if note.span] == [(5, 3)]
 
 
 class TestLibrary:
@@ -111,8 +111,8 @@ class TestLibrary:
         library = DescriptionLibrary()
         document = parse("\n\n" + GOOD.replace("fixed", "fixt"), "robot.xacro")
         library.store(Description("robot.xacro", document, read(document)), GOOD)
-        found = library.read(GOOD).diagnostics[0]
-        assert (found.span.file, found.span.line) == ("robot.xacro", 3)
+        diagnostic = library.read(GOOD).diagnostics[0]
+        assert (diagnostic.span.file, diagnostic.span.line) == ("robot.xacro", 3)
 
     def test_stored_description_knows_its_files(self, tmp_path):
         library = DescriptionLibrary()

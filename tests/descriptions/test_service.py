@@ -23,10 +23,10 @@ def link_names(path: Path, **options) -> list[str]:
 class TestXacroDetection:
     def test_plain_urdf_is_not_expanded(self, tmp_path):
         (tmp_path / "r.urdf").write_text(PLAIN)
-        found = examine(tmp_path / "r.urdf")
-        assert found.expansion is None
-        assert found.text == PLAIN
-        assert found.files == (tmp_path / "r.urdf",)
+        description = examine(tmp_path / "r.urdf")
+        assert description.expansion is None
+        assert description.text == PLAIN
+        assert description.files == (tmp_path / "r.urdf",)
 
     @pytest.mark.parametrize("name", ["r.xacro", "r.urdf.xacro"])
     def test_file_with_xacro_suffix_is_expanded(self, tmp_path, name):
@@ -67,10 +67,10 @@ class TestOverlay:
                 str(tmp_path / "names.yaml"): "link: arm",
             }
         )
-        found = examine(tmp_path / "r.xacro", overlay=unsaved)
-        assert found.robot is not None
-        assert list(found.robot.links) == ["base", "arm"]
-        assert 'name="base"' in found.sources[tmp_path / "part.xacro"].source.text
+        description = examine(tmp_path / "r.xacro", overlay=unsaved)
+        assert description.robot is not None
+        assert list(description.robot.links) == ["base", "arm"]
+        assert 'name="base"' in description.sources[tmp_path / "part.xacro"].source.text
 
     def test_overlay_applies_through_symlink(self, tmp_path):
         (tmp_path / "src").mkdir()
@@ -88,8 +88,8 @@ class TestOverlay:
     def test_provenance_uses_overlay_texts(self, tmp_path):
         (tmp_path / "r.xacro").write_text(PLAIN)
         text = f'<robot name="r" {PREFIX}><xacro:property name="n" value="arm"/><link name="${{n}}"/></robot>'
-        found = examine(tmp_path / "r.xacro", overlay=Overlay({tmp_path / "r.xacro": text}))
-        provenance = found.provenance(next(found.document.root.elements("link")))
+        description = examine(tmp_path / "r.xacro", overlay=Overlay({tmp_path / "r.xacro": text}))
+        provenance = description.provenance(next(description.document.root.elements("link")))
         assert provenance.attributes[0].values[0].value == "'arm'"
 
 
@@ -120,17 +120,19 @@ class TestUrdfdomTolerance:
     def test_robot_is_read_with_warning(self, tmp_path, written, code):
         path = tmp_path / "r.urdf"
         path.write_text(written)
-        found = examine(path, partly=True)
-        assert list(found.robot.links) == ["a"]
-        assert [(diagnostic.severity.value, diagnostic.code) for diagnostic in found.diagnostics] == [("warning", code)]
+        description = examine(path, partly=True)
+        assert list(description.robot.links) == ["a"]
+        assert [(diagnostic.severity.value, diagnostic.code) for diagnostic in description.diagnostics] == [
+            ("warning", code)
+        ]
 
     @pytest.mark.parametrize("name", ["$(arg lost)/a", "${lost}a"])
     def test_link_without_name_before_expansion_is_an_error(self, tmp_path, name):
         path = tmp_path / "r.urdf"
         path.write_text(f'<robot name="r" {PREFIX}><link name="{name}"/></robot>')
-        found = examine(path, partly=True)
-        assert found.robot is None
-        assert [(problem.severity.value, problem.code) for problem in found.problems] in (
+        description = examine(path, partly=True)
+        assert description.robot is None
+        assert [(problem.severity.value, problem.code) for problem in description.problems] in (
             [("error", "XAC211")],
             [("error", "XAC201")],
         )
@@ -142,27 +144,27 @@ class TestUrdfdomTolerance:
             '<link name="a<\x01&&lt;b"/>\n<link  name="c"note=\'x&y\'x="&amp;1"/></robot>'
         )
         path.write_text(written)
-        found = examine(path, partly=True)
-        first, second = found.document.root.elements("link")
+        description = examine(path, partly=True)
+        first, second = description.document.root.elements("link")
         assert first.attributes == {"name": "a<\x01&<b"}
         assert second.attributes == {"name": "c", "note": "x&y", "x": "&1"}
         assert second.attribute_span("note").line == 4
-        assert [child.data for child in found.document.root.children if isinstance(child, Comment)] == [" < \x02 "]
-        assert [(diagnostic.severity.value, diagnostic.code) for diagnostic in found.diagnostics[:-1]] == [
+        assert [child.data for child in description.document.root.children if isinstance(child, Comment)] == [
+            " < \x02 "
+        ]
+        assert [(diagnostic.severity.value, diagnostic.code) for diagnostic in description.diagnostics[:-1]] == [
             ("warning", "XML206")
         ] * 5
-        assert found.diagnostics[-1].code == "URDF152"  # two roots
+        assert description.diagnostics[-1].code == "URDF152"  # two roots
 
     def test_invalid_part_with_xacro_condition_is_read_as_xacro(self, tmp_path):
         path = tmp_path / "r.urdf"
         part = '<xacro:if value="$(arg unknown)"><geometry><sphere radius="1"/></geometry></xacro:if>'
         path.write_text(f'<robot name="r" {PREFIX}><link name="a"><visual>{part}</visual></link></robot>')
-        found = examine(path, partly=True)
-        assert [(problem.severity.value, problem.code) for problem in found.problems] == [("error", "XAC211")]
-        assert (
-            "URDF130"
-            not in [diagnostic.code for diagnostic in found.diagnostics if diagnostic.severity.value == "error"][1:]
-        )
+        description = examine(path, partly=True)
+        assert [(problem.severity.value, problem.code) for problem in description.problems] == [("error", "XAC211")]
+        errors = [diagnostic.code for diagnostic in description.diagnostics if diagnostic.severity.value == "error"]
+        assert "URDF130" not in errors[1:]
 
     @pytest.mark.parametrize(
         "written",
@@ -210,5 +212,5 @@ class TestUrdfdomTolerance:
     def test_unexpanded_file_without_links_keeps_xacro_error(self, tmp_path):
         path = tmp_path / "r.urdf"
         path.write_text(f'<robot name="r" {PREFIX}><xacro:arm/></robot>')
-        found = examine(path, partly=True)
-        assert [(problem.severity.value, problem.code) for problem in found.problems] == [("error", "XAC401")]
+        description = examine(path, partly=True)
+        assert [(problem.severity.value, problem.code) for problem in description.problems] == [("error", "XAC401")]

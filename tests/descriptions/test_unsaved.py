@@ -23,7 +23,7 @@ def real_path(path: str) -> str:
 
 
 def texts_of(unsaved: UnsavedTexts) -> dict[str, str]:
-    return {path: each.text for path, each in unsaved.texts.items()}
+    return {path: unsaved_text.text for path, unsaved_text in unsaved.texts.items()}
 
 
 async def test_newest_unsaved_text_of_two_editors_applies(tmp_path: Path) -> None:
@@ -44,11 +44,11 @@ async def test_store_returns_outcome_of_listeners(tmp_path: Path) -> None:
     listeners: list[Listener] = []
     unsaved, path = UnsavedTexts(listeners), str(tmp_path / "a.urdf")
     assert await unsaved.store(UnsavedText(ONE, path, 1, "")) == "elsewhere"
-    heard: list[str] = []
+    paths: list[str] = []
 
     def listener(outcome: UpdateOutcome) -> None:
         async def listen(real_path: str) -> UpdateOutcome:
-            heard.append(real_path)
+            paths.append(real_path)
             return outcome
 
         listeners.append(listen)
@@ -59,4 +59,4 @@ async def test_store_returns_outcome_of_listeners(tmp_path: Path) -> None:
     listener("errors")
     assert await unsaved.remove(ONE, path) == "errors"
     assert await unsaved.remove(ONE, path) == "elsewhere"  # it was removed before
-    assert heard == [real_path(path)] * 5
+    assert paths == [real_path(path)] * 5

@@ -81,7 +81,7 @@ def test_unread_meshes_are_reported_once_per_check(without, tmp_path):
     assert unread_in(tmp_path / "with") == []
     without("trimesh")
     unread = unread_in(tmp_path / "without")  # another file: what was read is kept
-    assert [(each.severity, each.hint) for each in unread] == [(Severity.INFO, install_hint("mesh"))]
+    assert [(diagnostic.severity, diagnostic.hint) for diagnostic in unread] == [(Severity.INFO, install_hint("mesh"))]
 
 
 def test_image_decoder_names_missing_image_extra(without):

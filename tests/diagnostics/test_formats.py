@@ -12,7 +12,7 @@ from linkwright.diagnostics.translation.translate import set_language
 
 
 @pytest.fixture
-def found(tmp_path, monkeypatch):
+def diagnostics(tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)
     source = SourceText(str(tmp_path / "my robots" / "r,1.urdf"), "ab\ncdé\n")
     note = Note("defined: here,\nsee 100%", source.span(0, 2))
@@ -23,16 +23,16 @@ def found(tmp_path, monkeypatch):
     ]
 
 
-def test_concise_prints_one_line_per_diagnostic(found):
-    assert format_diagnostics(found, "concise").splitlines() == [
+def test_concise_prints_one_line_per_diagnostic(diagnostics):
+    assert format_diagnostics(diagnostics, "concise").splitlines() == [
         "my robots/r,1.urdf:2:1: error[LW201] 50% is wrong: a,b (do: this)",
         "warning[XML101] no file",
         "<stdin>:1:1: info[XAC704] hello",
     ]
 
 
-def test_json_is_object_with_diagnostics_list(found, tmp_path):
-    data = json.loads(format_diagnostics(found, "json"))
+def test_json_is_object_with_diagnostics_list(diagnostics, tmp_path):
+    data = json.loads(format_diagnostics(diagnostics, "json"))
     assert list(data) == ["diagnostics"]
     file = str(tmp_path / "my robots" / "r,1.urdf")
     assert data["diagnostics"][0] == {
@@ -53,8 +53,8 @@ def test_json_is_object_with_diagnostics_list(found, tmp_path):
     assert data["diagnostics"][1]["hints"] == []
 
 
-def test_github_commands_are_escaped(found):
-    first, second, third = format_diagnostics(found, "github").splitlines()
+def test_github_commands_are_escaped(diagnostics):
+    first, second, third = format_diagnostics(diagnostics, "github").splitlines()
     assert first == (
         "::error file=my robots/r%2C1.urdf,line=2,endLine=2,col=1,endColumn=3,title=LW201"
         "::50%25 is%0Awrong: a,b%0Anote: defined: here,%0Asee 100%25 (my robots/r,1.urdf:1:1)%0Ahint: do: this"
@@ -63,8 +63,8 @@ def test_github_commands_are_escaped(found):
     assert third == "::notice title=XAC704::hello"
 
 
-def test_sarif_contains_required_fields(found):
-    log = json.loads(format_diagnostics(found, "sarif"))
+def test_sarif_contains_required_fields(diagnostics):
+    log = json.loads(format_diagnostics(diagnostics, "sarif"))
     assert log["version"] == "2.1.0"
     (run,) = log["runs"]
     rules = [rule["id"] for rule in run["tool"]["driver"]["rules"]]
@@ -73,8 +73,8 @@ def test_sarif_contains_required_fields(found):
     assert run["columnKind"] == "unicodeCodePoints"
     assert run["originalUriBaseIds"]["ROOT"]["uri"].endswith("/")
     first, second, third = run["results"]
-    assert [each["level"] for each in run["results"]] == ["error", "warning", "note"]
-    assert all(rules[each["ruleIndex"]] == each["ruleId"] for each in run["results"])
+    assert [result["level"] for result in run["results"]] == ["error", "warning", "note"]
+    assert all(rules[result["ruleIndex"]] == result["ruleId"] for result in run["results"])
     assert first["locations"][0]["physicalLocation"] == {
         "artifactLocation": {"uri": "my%20robots/r%2C1.urdf", "uriBaseId": "ROOT"},
         "region": {"startLine": 2, "startColumn": 1, "endLine": 2, "endColumn": 4},
@@ -102,7 +102,7 @@ def lang(request):
 @pytest.mark.usefixtures("lang")
 def test_json_contains_template_and_arguments():
     data = json.loads(format_diagnostics(_made_of_templates(), "json"))["diagnostics"]
-    assert [(each["template"], each["arguments"]) for each in data] == [
+    assert [(diagnostic["template"], diagnostic["arguments"]) for diagnostic in data] == [
         ("{kind} '{name}' is {share:.0%} off", {"kind": "link", "name": "a{b}", "share": 0.5}),
         ("{count} links of {robot}", {"count": 3, "robot": "r2"}),
         ("write ${x}", {}),
@@ -111,13 +111,13 @@ def test_json_contains_template_and_arguments():
 
 @pytest.mark.usefixtures("lang")
 def test_sarif_results_reference_rule_message_strings():
-    found = _made_of_templates()
-    (run,) = json.loads(format_diagnostics(found, "sarif"))["runs"]
+    diagnostics = _made_of_templates()
+    (run,) = json.loads(format_diagnostics(diagnostics, "sarif"))["runs"]
     rules = run["tool"]["driver"]["rules"]
-    for each, diagnostic in zip(run["results"], found, strict=True):
-        result = each["message"]
-        template = rules[each["ruleIndex"]]["messageStrings"][result["id"]]["text"]
-        assert template.format(*result.get("arguments", [])) == diagnostic.message
+    for result, diagnostic in zip(run["results"], diagnostics, strict=True):
+        message = result["message"]
+        template = rules[result["ruleIndex"]]["messageStrings"][message["id"]]["text"]
+        assert template.format(*message.get("arguments", [])) == diagnostic.message
     assert [len(rule["messageStrings"]) for rule in rules] == [2, 1]
 
 

@@ -55,5 +55,5 @@ def test_known_elements_are_not_misspellings_of_each_other(path):
     names = CHILDREN[path]
     spellings = {name: "".join(filter(str.isalpha, name)).casefold() for name in names}
     for name in names:
-        others = [each for each in names if spellings[each] != spellings[name]]
+        others = [other for other in names if spellings[other] != spellings[name]]
         assert find_misspelled(name, others) is None

@@ -41,8 +41,8 @@ class Chinese(NullTranslations):
     def gettext(self, message: str) -> str:
         return CHINESE.get(message, message)
 
-    def ngettext(self, one: str, many: str, count: int) -> str:
-        return CHINESE[one]
+    def ngettext(self, singular: str, plural: str, count: int) -> str:
+        return CHINESE[singular]
 
     def pgettext(self, context: str, message: str) -> str:
         return CHINESE.get((context, message), message)
@@ -117,8 +117,8 @@ def test_terms_and_foreign_texts_are_translated_as_a_whole() -> None:
 
 def test_exception_keeps_its_phrase() -> None:
     text = phrase("there is no macro '{name}'", name="a")
-    for given in (ValueError(text), foreign(ValueError(text))):
-        assert in_chinese(phrase("cannot read it: {reason}", reason=given)) == "无法读取：没有名为“a”的宏"
+    for argument in (ValueError(text), foreign(ValueError(text))):
+        assert in_chinese(phrase("cannot read it: {reason}", reason=argument)) == "无法读取：没有名为“a”的宏"
 
 
 @pytest.mark.parametrize(
@@ -131,5 +131,5 @@ def test_exception_keeps_its_phrase() -> None:
     ],
 )
 def test_copied_and_pickled_phrases_stay_translatable(text: Phrase) -> None:
-    for each in (copy.deepcopy(text), pickle.loads(pickle.dumps(text))):
-        assert (each, type(each), in_chinese(each)) == (text, type(text), in_chinese(text))
+    for copied in (copy.deepcopy(text), pickle.loads(pickle.dumps(text))):
+        assert (copied, type(copied), in_chinese(copied)) == (text, type(text), in_chinese(text))

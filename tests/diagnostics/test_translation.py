@@ -161,8 +161,8 @@ def test_special_characters_in_names_are_kept(name: str) -> None:
 
 @given(st.text())
 def test_arbitrary_text_can_be_inserted(text: str) -> None:
-    for each in (phrase("there is no macro '{name}'", name=text), foreign(text), quoted_names([text, text], " or ")):
-        in_chinese(each)
+    for message in (phrase("there is no macro '{name}'", name=text), foreign(text), quoted_names([text, text], " or ")):
+        in_chinese(message)
 
 
 def test_chinese_catalog_uses_chinese_punctuation() -> None:
@@ -209,7 +209,7 @@ def test_diagnostics_are_printed_in_chinese(monkeypatch: pytest.MonkeyPatch) -> 
 
 def test_carets_align_below_double_width_characters() -> None:
     lines = render(finding()).splitlines()
-    cells = "".join(each * (2 if east_asian_width(each) == "W" else 1) for each in lines[3])
+    cells = "".join(character * (2 if east_asian_width(character) == "W" else 1) for character in lines[3])
     assert cells[lines[4].index("^") : lines[4].rindex("^") + 1] == "prefx"
 
 
@@ -231,8 +231,8 @@ def test_machine_formats_stay_english_unless_language_is_set(monkeypatch: pytest
 
 
 def test_translated_returns_same_list_in_english() -> None:
-    found = [finding()]
-    assert translated(found) is found
+    diagnostics = [finding()]
+    assert translated(diagnostics) is diagnostics
 
 
 # the command line

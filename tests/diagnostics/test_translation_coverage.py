@@ -45,8 +45,8 @@ class Recording:
     def gettext(self, message: str) -> str:
         return self._heard(message, self._translations.gettext(message))
 
-    def ngettext(self, one: str, several: str, count: int) -> str:
-        return self._heard(several, self._translations.ngettext(one, several, count))
+    def ngettext(self, singular: str, plural: str, count: int) -> str:
+        return self._heard(plural, self._translations.ngettext(singular, plural, count))
 
     def pgettext(self, context: str, message: str) -> str:
         translation = self._translations.pgettext(context, message)
@@ -158,10 +158,12 @@ def test_xacro_errors_are_translated(
         case.write(folder)
         monkeypatch.chdir(folder)
         try:
-            found: Iterable[Diagnostic] = expand("main.xacro", case.arguments, packages={"pkg_a": "/a"}).diagnostics
+            diagnostics: Iterable[Diagnostic] = expand(
+                "main.xacro", case.arguments, packages={"pkg_a": "/a"}
+            ).diagnostics
         except LinkwrightError as error:
-            found = error.diagnostics
-        assert_translated(found, words)
+            diagnostics = error.diagnostics
+        assert_translated(diagnostics, words)
 
 
 def test_urdf_errors_are_translated(words: Recording) -> None:

@@ -27,14 +27,14 @@ class Block:
 
 def pages() -> list[Path]:
     """Every page that a reader sees, the READMEs among them, without the records of decisions."""
-    found = [path for path in sorted(DOCS.rglob("*.md")) if "decisions" not in path.parts]
-    return [*READMES, *found]
+    pages = [path for path in sorted(DOCS.rglob("*.md")) if "decisions" not in path.parts]
+    return [*READMES, *pages]
 
 
 def blocks(page: Path) -> list[Block]:
     """The page's code blocks in order."""
-    found = _BLOCK.finditer(page.read_text(encoding="utf-8"))
-    return [Block(match["language"], match["title"] or "", match["text"]) for match in found]
+    matches = _BLOCK.finditer(page.read_text(encoding="utf-8"))
+    return [Block(match["language"], match["title"] or "", match["text"]) for match in matches]
 
 
 def commands(page: Path) -> list[str]:

@@ -86,14 +86,14 @@ class Terminal:
                 self._changed.notify_all()
 
     @property
-    def said(self) -> str:
+    def output(self) -> str:
         """What was printed since the last line was typed."""
         return self._text[self._typed_at :]
 
     @property
     def is_free(self) -> bool:
         """Whether the last line has ended."""
-        return _PROMPT.search(self.said) is not None
+        return _PROMPT.search(self.output) is not None
 
     def type(self, line: str) -> None:
         """Type a line and the enter key."""
@@ -105,25 +105,25 @@ class Terminal:
     def wait_for(self, text: str) -> None:
         """Wait until the line has printed a text; it fails where the line ends before."""
         with self._changed:
-            came = self._changed.wait_for(lambda: text in self.said or self.is_free, PATIENCE)
-        assert came, f"{self.line!r} prints no {text!r}:\n{self.said}"
-        assert text in self.said, f"{self.line!r} ended without {text!r}:\n{self.said}"
+            came = self._changed.wait_for(lambda: text in self.output or self.is_free, PATIENCE)
+        assert came, f"{self.line!r} prints no {text!r}:\n{self.output}"
+        assert text in self.output, f"{self.line!r} ended without {text!r}:\n{self.output}"
 
     def status(self) -> int:
         """Wait for the end of the line, and return its exit status."""
         with self._changed:
             ended = self._changed.wait_for(lambda: self.is_free, PATIENCE)
-        assert ended, f"{self.line!r} has not ended:\n{self.said}"
-        found = _PROMPT.search(self.said)
-        assert found is not None
-        return int(found[1])
+        assert ended, f"{self.line!r} has not ended:\n{self.output}"
+        prompt = _PROMPT.search(self.output)
+        assert prompt is not None
+        return int(prompt[1])
 
     def run(self, line: str) -> str:
         """Type a line that ends well, and return what it printed."""
         self.type(line)
         status = self.status()
-        assert status == 0, f"{line!r} ended with {status}:\n{self.said}"
-        return _PROMPT.split(self.said)[0]
+        assert status == 0, f"{line!r} ended with {status}:\n{self.output}"
+        return _PROMPT.split(self.output)[0]
 
     def interrupt(self) -> int:
         """Press Ctrl-C, and return the exit status of the line."""
@@ -189,7 +189,7 @@ class Reader:
             self._page.wait_for(_ANY_PAGE)
             self._launched = time.monotonic()
             while known.node and not self._is_there(known.node):
-                assert not self._page.is_free, f"{line!r} has ended:\n{self._page.said}"
+                assert not self._page.is_free, f"{line!r} has ended:\n{self._page.output}"
         elif known.goes_on:
             before = self._subscribers(known.hears)
             terminal = Terminal(self._environment, self._folder())
@@ -203,8 +203,8 @@ class Reader:
             self._first.type(line)
             while self._first.status() and not known.may_fail and self._try_again(self._first):
                 pass
-            assert self._first.status() == 0 or known.may_fail, f"{line!r}:\n{self._first.said}"
-            assert known.shows in self._first.said
+            assert self._first.status() == 0 or known.may_fail, f"{line!r}:\n{self._first.output}"
+            assert known.shows in self._first.output
             self._check(self._first)
 
     def _try_again(self, terminal: Terminal) -> bool:
@@ -219,8 +219,8 @@ class Reader:
             return 0
         self._first.type(f"linkwright topic info {topic}")
         self._first.status()
-        found = re.search(r"Subscription count: (\d+)", self._first.said)
-        return int(found[1]) if found is not None else 0
+        match = re.search(r"Subscription count: (\d+)", self._first.output)
+        return int(match[1]) if match is not None else 0
 
     def _is_there(self, node: str) -> bool:
         return node in self._first.run("linkwright node list").splitlines()
@@ -228,7 +228,7 @@ class Reader:
     def _end_beside(self) -> None:
         for terminal in self._beside:
             terminal.wait_for(self._known[terminal.line].shows)
-            assert not terminal.is_free, f"{terminal.line!r} has ended:\n{terminal.said}"
+            assert not terminal.is_free, f"{terminal.line!r} has ended:\n{terminal.output}"
         for terminal in reversed(self._beside):
             self._end(terminal)
             terminal.close()
@@ -244,17 +244,17 @@ class Reader:
 
     def _end(self, terminal: Terminal) -> None:
         status = terminal.interrupt()
-        assert status in (0, 130), f"{terminal.line!r} ended with {status}:\n{terminal.said}"
+        assert status in (0, 130), f"{terminal.line!r} ended with {status}:\n{terminal.output}"
         self._check(terminal)
 
     def _check(self, terminal: Terminal) -> None:
         known = self._known.get(terminal.line, Known())
-        bad = [line for line in terminal.said.splitlines() if _BAD.search(line)]
+        bad = [line for line in terminal.output.splitlines() if _BAD.search(line)]
         if known.complains:
             assert all(known.complains in line for line in bad)
-            assert bad, f"{terminal.line!r} did not say {known.complains!r}:\n{terminal.said}"
+            assert bad, f"{terminal.line!r} did not say {known.complains!r}:\n{terminal.output}"
         else:
-            assert known.may_fail or not bad, f"{terminal.line!r}:\n{terminal.said}"
+            assert known.may_fail or not bad, f"{terminal.line!r}:\n{terminal.output}"
 
 
 def write(block: Block, folder: Path) -> None:

@@ -63,7 +63,7 @@ def test_emacs_assigns_modes_to_xml_yaml_and_interface_files():
     ]
     for kind in ("xml", "yaml", "interface"):
         for pattern in PATTERNS[kind]:
-            assert any(each.search(example(pattern)) for each in expressions), pattern
+            assert any(expression.search(example(pattern)) for expression in expressions), pattern
 
 
 def test_helix_lists_files_of_its_own_languages():
@@ -91,5 +91,7 @@ def test_patterns_match_supported_formats():
     for ending in XML_FILES:
         assert any(fnmatch.fnmatch(f"a{ending}", pattern) or ending == pattern for pattern in PATTERNS["xml"]), ending
     for pattern in (*PATTERNS["yaml"], *PATTERNS["interface"], "package.xml", "*.srdf", "*launch.py", "*/launch/*.py"):
-        assert any(known.covers(Path(example(pattern))) for known in FORMATS) or pattern == "*launch.py", pattern
-    assert any(known.covers(Path("a.launch.py")) for known in FORMATS)
+        assert any(file_format.covers(Path(example(pattern))) for file_format in FORMATS) or pattern == "*launch.py", (
+            pattern
+        )
+    assert any(file_format.covers(Path("a.launch.py")) for file_format in FORMATS)

@@ -65,8 +65,8 @@ def test_the_detector_finds_the_box_of_the_bright_pixels(shown_class: Callable[[
     image = np.zeros((50, 100, 3), np.uint8)
     assert len(detector.detect(image, Limits())) == 0
     image[10:20, 30:60] = 255
-    found = detector.detect(image, Limits())
-    assert (found.boxes.tolist(), found.name(0)) == ([[30, 10, 60, 20]], "bright")
+    detections = detector.detect(image, Limits())
+    assert (detections.boxes.tolist(), detections.name(0)) == ([[30, 10, 60, 20]], "bright")
 
 
 @LANGUAGES

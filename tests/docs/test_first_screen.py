@@ -37,8 +37,8 @@ def checkout(tmp_path: Path) -> Path:
     if not (REPOSITORY / PAGE).is_dir() or not (REPOSITORY / ".git").exists():
         pytest.skip("this is no checkout with a built page")
     folder = tmp_path / "checkout"
-    listed = run(["git", "ls-files", "-z", "--cached", "--others", "--exclude-standard"], cwd=REPOSITORY).stdout
-    for name in listed.split("\0")[:-1]:
+    file_names = run(["git", "ls-files", "-z", "--cached", "--others", "--exclude-standard"], cwd=REPOSITORY).stdout
+    for name in file_names.split("\0")[:-1]:
         if not name.startswith(("benchmarks/", "docs/", "tests/")) and (REPOSITORY / name).is_file():
             (folder / name).parent.mkdir(parents=True, exist_ok=True)
             shutil.copy(REPOSITORY / name, folder / name)
@@ -64,17 +64,19 @@ def newcomer(tmp_path: Path) -> dict[str, str]:
     """
     programs = tmp_path / "programs"
     programs.mkdir()
-    given = {name: value for name, value in os.environ.items() if name.startswith(("PIP_", "UV_", "SSL_", "ROS_"))}
+    environment = {
+        name: value for name, value in os.environ.items() if name.startswith(("PIP_", "UV_", "SSL_", "ROS_"))
+    }
     uv = shutil.which(os.environ.get("UV") or "uv") or shutil.which(REPOSITORY / ".build" / "uv" / "bin" / "uv")
     if uv:
         (programs / "uv").symlink_to(Path(uv).absolute())
-        given["UV_CACHE_DIR"] = run([uv, "cache", "dir"]).stdout.strip()
+        environment["UV_CACHE_DIR"] = run([uv, "cache", "dir"]).stdout.strip()
         pip = program(programs / "uv-as-pip", 'exec uv pip "$@"')
         program(programs / "python3", f'{sys.executable} "$@" --without-pip && ln -s {pip} "$3/bin/pip"')
     else:
         (programs / "python3").symlink_to(sys.executable)
     return {
-        **given,
+        **environment,
         "BROWSER": str(program(programs / "browser", f'echo "$1" >{tmp_path}/opened')),
         "HOME": str(tmp_path),
         "PATH": os.pathsep.join([str(programs), os.environ["PATH"]]),
@@ -99,17 +101,17 @@ def test_first_readme_commands_run_in_fresh_checkout(checkout: Path, newcomer: d
         try:
             for line in shell.stdout:
                 messages.append(line)
-                if found := re.search(r"Viewer: (http://\S+)", line):
+                if match := re.search(r"Viewer: (http://\S+)", line):
                     break
             else:
                 pytest.fail("".join(messages))
-            with urllib.request.build_opener(urllib.request.ProxyHandler({})).open(found[1]) as answer:
+            with urllib.request.build_opener(urllib.request.ProxyHandler({})).open(match[1]) as answer:
                 assert answer.status == 200
             wait_until((checkout.parent / "opened").is_file, what="a browser that was told to open the page")
         finally:
             os.killpg(shell.pid, signal.SIGINT)
-            rest = shell.stdout.read()
-    assert shell.returncode in (0, 130, -signal.SIGINT), "".join(messages) + rest
+            remaining_output = shell.stdout.read()
+    assert shell.returncode in (0, 130, -signal.SIGINT), "".join(messages) + remaining_output
 
     # What the base lacks is told with the command that fits, and that works.
     export = "linkwright export robot.glb robots/my_robot_description/urdf/mbot_with_kinect.urdf"
@@ -117,6 +119,6 @@ def test_first_readme_commands_run_in_fresh_checkout(checkout: Path, newcomer: d
     hint = re.search(r"hint: run (.*)", output.stderr)
     assert hint is not None, output.stderr
     assert "[mesh]" in hint[1]
-    done = run(["bash", "-e", "-c", f"source .venv/bin/activate; {hint[1]}; {export}"], cwd=checkout, env=newcomer)
-    assert done.returncode == 0, done.stderr
+    result = run(["bash", "-e", "-c", f"source .venv/bin/activate; {hint[1]}; {export}"], cwd=checkout, env=newcomer)
+    assert result.returncode == 0, result.stderr
     assert (checkout / "robot.glb").is_file()

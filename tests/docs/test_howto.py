@@ -18,7 +18,7 @@ PUBLISH = 'linkwright topic pub -r 10 /cmd_vel geometry_msgs/msg/Twist "{linear:
 @pytest.mark.parametrize("page", sorted(DOCS.glob("howto-*.md")), ids=lambda page: page.stem)
 def test_both_languages_show_same_files(page: Path) -> None:
     english, chinese = (
-        [(each.title, each.text) for each in blocks(p) if each.title] for p in (page, DOCS / "zh" / page.name)
+        [(block.title, block.text) for block in blocks(p) if block.title] for p in (page, DOCS / "zh" / page.name)
     )
     assert english == chinese
 
@@ -26,8 +26,8 @@ def test_both_languages_show_same_files(page: Path) -> None:
 @pytest.mark.slow
 def test_drive_and_world_guides_complete_urdf_without_masses(follow: Callable[..., Path]) -> None:
     page = DOCS / "howto-drive.md"
-    shown = next(block.text.splitlines()[0] for block in blocks(page) if block.language == "text")
-    follow(page, {"linkwright drive cart.urdf": Known(shows=shown), PUBLISH: Known(shows="publishing #1")})
+    first_line = next(block.text.splitlines()[0] for block in blocks(page) if block.language == "text")
+    follow(page, {"linkwright drive cart.urdf": Known(shows=first_line), PUBLISH: Known(shows="publishing #1")})
     home = follow(DOCS / "howto-world.md", {})
     cart = (home / "cart.urdf").read_text(encoding="utf-8")
     assert cart.count("<mass ") == 4

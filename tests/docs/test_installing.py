@@ -34,10 +34,10 @@ OTHERS = {
 @cache
 def install_commands() -> list[tuple[Path, str]]:
     """Each command of pip, pipx and uv that users read or see printed: where, and what it installs."""
-    found = [path for name in WRITTEN for path in sorted([REPOSITORY / name, *(REPOSITORY / name).rglob("*")])]
+    paths = [path for name in WRITTEN for path in sorted([REPOSITORY / name, *(REPOSITORY / name).rglob("*")])]
     return [
         (path.relative_to(REPOSITORY), match["what"])
-        for path in found
+        for path in paths
         if path.suffix in KINDS and path.is_file() and RECORDS not in path.parents
         for match in INSTALLING.finditer(path.read_text(encoding="utf-8"))
     ]
@@ -48,18 +48,22 @@ def test_readmes_show_install_commands() -> None:
 
 
 def test_source_and_frontend_contain_no_install_commands() -> None:
-    assert [each for each in install_commands() if each[0].parts[0] in ("frontend", "robots", "src")] == []
+    assert [command for command in install_commands() if command[0].parts[0] in ("frontend", "robots", "src")] == []
 
 
 def test_install_commands_match_a_checkout(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
     monkeypatch.chdir(tmp_path)
-    for path, what in install_commands():
-        if what not in OTHERS:
-            extras = [extra for listed in re.findall(r"\[([\w,]+)\]", what) for extra in listed.split(",")]
-            assert set(extras) <= {*EXTRAS, "all"}, (path, what)
-            installation = Installation(Origin(str(tmp_path), what.startswith("-e ")), ("pip", "install"))
-            in_order = re.sub(r"\[.*\]", f"[{','.join(sorted(extras))}]", what)
-            assert f"pip install {in_order}" == installation.command_for_extras(*extras), (path, what)
+    for path, command in install_commands():
+        if command not in OTHERS:
+            extras = [
+                extra
+                for extras_of_command in re.findall(r"\[([\w,]+)\]", command)
+                for extra in extras_of_command.split(",")
+            ]
+            assert set(extras) <= {*EXTRAS, "all"}, (path, command)
+            installation = Installation(Origin(str(tmp_path), command.startswith("-e ")), ("pip", "install"))
+            in_order = re.sub(r"\[.*\]", f"[{','.join(sorted(extras))}]", command)
+            assert f"pip install {in_order}" == installation.command_for_extras(*extras), (path, command)
 
 
 @pytest.mark.parametrize(

@@ -24,7 +24,7 @@ FOLDERS = (
     ".github", "benchmarks", "courses", "docs", "editors", "frontend/src", "frontend/test", "fuzz", "packaging",
     "robots", "src", "tests", "tools",
 )  # fmt: skip
-MADE = [line.strip("/") for line in (REPOSITORY / ".gitignore").read_text(encoding="utf-8").split()]
+IGNORED = [line.strip("/") for line in (REPOSITORY / ".gitignore").read_text(encoding="utf-8").split()]
 """What make makes, which a fresh clone lacks."""
 
 _FENCE = re.compile(r"^```.*?^```$", re.MULTILINE | re.DOTALL)
@@ -38,8 +38,10 @@ def named(page: Path) -> Iterator[str]:
     """The paths and modules in a page's inline code; placeholders like NAME.py and what make makes are none."""
     for words in _WORDS.findall(_FENCE.sub("", page.read_text(encoding="utf-8"))):
         for word in words.split():
-            made = word.split("/")[0] in MADE or any(f"/{path}".endswith(f"/{word.strip('/')}") for path in MADE)
-            path = _PATH.fullmatch(word) and not (made or _PLACEHOLDER.search(word) or "/msg/" in word)
+            is_ignored = word.split("/")[0] in IGNORED or any(
+                f"/{path}".endswith(f"/{word.strip('/')}") for path in IGNORED
+            )
+            path = _PATH.fullmatch(word) and not (is_ignored or _PLACEHOLDER.search(word) or "/msg/" in word)
             if path or _MODULE.fullmatch(word):
                 yield word
 

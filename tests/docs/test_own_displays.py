@@ -39,11 +39,11 @@ def files(of: Path) -> dict[str, str]:
 @pytest.fixture(params=PAGES, ids=["en", "zh"])
 def street(request, tmp_path, monkeypatch):
     """The workspace of the page, with its package installed."""
-    made = files(request.param)
-    for name, text in made.items():
+    texts = files(request.param)
+    for name, text in texts.items():
         (tmp_path / name).parent.mkdir(parents=True, exist_ok=True)
         (tmp_path / name).write_text(text, encoding="utf-8")
-    project = read_toml(made["street_displays/pyproject.toml"])["project"]
+    project = read_toml(texts["street_displays/pyproject.toml"])["project"]
     facts = tmp_path / "street_displays" / "street_displays-1.0.dist-info"
     facts.mkdir()
     points = {**project["entry-points"]["linkwright.displays"], POINTS_CLASS: "object_points:ObjectPoints"}
@@ -62,17 +62,17 @@ def street(request, tmp_path, monkeypatch):
 
 
 def car(number: int, x: float, *, label: str = "car", speed: float = 3.0, path: int = 0) -> Any:
-    made = get_message("street_msgs/msg/TrackedObject")(id=number, label=label, speed=speed)
-    made.pose.position.x = x
-    made.size.x, made.size.y, made.size.z = 4.0, 2.0, 1.5
-    made.path = [get_message("geometry_msgs/msg/Point")(x=x + step) for step in range(path)]
-    return made
+    car = get_message("street_msgs/msg/TrackedObject")(id=number, label=label, speed=speed)
+    car.pose.position.x = x
+    car.size.x, car.size.y, car.size.z = 4.0, 2.0, 1.5
+    car.path = [get_message("geometry_msgs/msg/Point")(x=x + step) for step in range(path)]
+    return car
 
 
 def seen(*objects: Any) -> Any:
-    made = get_message("street_msgs/msg/TrackedObjects")(objects=list(objects))
-    made.header.frame_id = "street"
-    return made
+    cars = get_message("street_msgs/msg/TrackedObjects")(objects=list(objects))
+    cars.header.frame_id = "street"
+    return cars
 
 
 def test_both_languages_have_same_example():
@@ -101,21 +101,21 @@ async def test_example_display_draws_and_removes_tracked_objects(street):
         assert shown_markers(display) == {}  # there is no frame 'street' yet
         w.move({("base", "street"): (0, 0, 1, 0, 0, 0, 1)}, static=True)
         await w.settle()
-        drawn = shown_markers(display)
-        assert {name: each["shape"] for name, each in drawn.items()} == {
+        markers = shown_markers(display)
+        assert {name: marker["shape"] for name, marker in markers.items()} == {
             "boxes/1": "cube",
             "names/1": "text",
             "paths/1": "line_strip",
             "boxes/2": "cube",
             "names/2": "text",
         }
-        assert drawn["boxes/1"]["pose"][:3] == [5, 0, 1]
-        assert drawn["names/1"]["text"] == "car 3.0 m/s"
+        assert markers["boxes/1"]["pose"][:3] == [5, 0, 1]
+        assert markers["names/1"]["text"] == "car 3.0 m/s"
         display.set_property(("Show Names",), False)
         display.set_property(("Alpha",), 0.25)
-        drawn = shown_markers(display)
-        assert sorted(drawn) == ["boxes/1", "boxes/2", "paths/1"]
-        assert drawn["boxes/2"]["color"] == pytest.approx([1, 0.6, 0, 0.25])
+        markers = shown_markers(display)
+        assert sorted(markers) == ["boxes/1", "boxes/2", "paths/1"]
+        assert markers["boxes/2"]["color"] == pytest.approx([1, 0.6, 0, 0.25])
         publisher.publish(seen(car(2, -4.0, speed=math.inf)))
         await w.settle()
         assert list(shown_markers(display)) == ["boxes/2"]

@@ -53,15 +53,17 @@ def test_shown_tests_pass(team, tmp_path):
 
 
 def test_shown_finding_is_reported_only_in_package(team, tmp_path):
-    assert [each for each in check('<robot name="crane"><link name="hook"/></robot>') if each.code == "TEAM001"] == []
+    assert [
+        finding for finding in check('<robot name="crane"><link name="hook"/></robot>') if finding.code == "TEAM001"
+    ] == []
     package = tmp_path / "crane_description"
     package.mkdir()
     (package / "package.xml").write_text("<package format='3'><name>crane_description</name></package>")
     (package / "crane.urdf").write_text('<robot name="crane"><link name="hook"/></robot>')
-    (found,) = [each for each in check(package / "crane.urdf") if each.code == "TEAM001"]
+    (diagnostic,) = [finding for finding in check(package / "crane.urdf") if finding.code == "TEAM001"]
     text = next(block.text for block in blocks(PAGES[0]) if "TEAM001]" in block.text)
-    assert found.message in text
-    assert found.hint in text
+    assert diagnostic.message in text
+    assert diagnostic.hint in text
 
 
 def test_docstring_is_rule_page(team):

@@ -109,29 +109,29 @@ def installed(folder, linkwright):
 
 def test_make_reports_unsupported_python_in_one_line(tmp_path):
     old = script(tmp_path / "old", 'echo "is 3.8"')
-    done = make_demo(tmp_path, f"PYTHON={old}")
-    assert done.returncode == 2
-    assert done.stdout == ""
-    (line,) = done.stderr.splitlines()
+    result = make_demo(tmp_path, f"PYTHON={old}")
+    assert result.returncode == 2
+    assert result.stdout == ""
+    (line,) = result.stderr.splitlines()
     assert f"Linkwright needs Python 3.10 or newer, and {old} is 3.8" in line
 
 
 def test_make_demo_interrupt_prints_no_make_error(tmp_path):
     """Ctrl-C reaches make, its shell and the program."""
     program = "trap 'echo ended; exit 130' INT\nkill -INT 0\nwhile :; do sleep 0.1; done"
-    done = make_demo(tmp_path, *installed(tmp_path, program))
-    assert "ended" in done.stdout
-    assert done.stderr == ""
+    result = make_demo(tmp_path, *installed(tmp_path, program))
+    assert "ended" in result.stdout
+    assert result.stderr == ""
 
 
 def test_make_demo_runs_playground_with_laser_and_camera(tmp_path):
-    done = make_demo(tmp_path, *installed(tmp_path, "echo $@"), "ARGS=--no-open")
-    command, *words = done.stdout.split()
+    result = make_demo(tmp_path, *installed(tmp_path, "echo $@"), "ARGS=--no-open")
+    command, *words = result.stdout.split()
     assert command == "sim"
-    asked = parser_for("sim").parse_args(words)
-    assert (asked.world, asked.values) == ("playground", ["laser:=true", "camera:=true"])
-    assert (REPOSITORY / asked.robot).is_file()
-    assert asked.no_open
+    arguments = parser_for("sim").parse_args(words)
+    assert (arguments.world, arguments.values) == ("playground", ["laser:=true", "camera:=true"])
+    assert (REPOSITORY / arguments.robot).is_file()
+    assert arguments.no_open
 
 
 def test_make_demo_reports_failure(tmp_path):

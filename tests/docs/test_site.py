@@ -75,15 +75,15 @@ def build_small(folder: Path, **changed: str) -> tuple[Path, subprocess.Complete
 @pytest.fixture(scope="module")
 def site(tmp_path_factory: pytest.TempPathFactory) -> Path:
     """A site of the pages above."""
-    folder, done = build_small(tmp_path_factory.mktemp("small"))
-    assert done.returncode == 0, done.stderr
+    folder, result = build_small(tmp_path_factory.mktemp("small"))
+    assert result.returncode == 0, result.stderr
     return folder
 
 
 def tabs(page: Path) -> list[str]:
-    found = re.search(r'<nav class="md-tabs".*?</nav>', page.read_text(encoding="utf-8"), re.DOTALL)
-    assert found is not None
-    return [text.strip() for text in re.findall(r'class="md-tabs__link">\s*(.*?)\s*</a>', found[0], re.DOTALL)]
+    match = re.search(r'<nav class="md-tabs".*?</nav>', page.read_text(encoding="utf-8"), re.DOTALL)
+    assert match is not None
+    return [text.strip() for text in re.findall(r'class="md-tabs__link">\s*(.*?)\s*</a>', match[0], re.DOTALL)]
 
 
 def languages(page: Path) -> dict[str, str]:
@@ -104,9 +104,9 @@ def test_navigation_has_tutorials_guides_reference_and_explanation() -> None:
 
 
 def test_english_pages_are_listed_once() -> None:
-    listed = Counter(page for _, page in entries(SETTINGS["nav"]) if page)
+    pages = Counter(page for _, page in entries(SETTINGS["nav"]) if page)
     there = {path.relative_to(DOCS).as_posix() for path in DOCS.rglob("*.md") if "zh" not in path.parts}
-    assert dict(listed) == dict.fromkeys((name for name in there if not name.startswith("decisions/0")), 1)
+    assert dict(pages) == dict.fromkeys((name for name in there if not name.startswith("decisions/0")), 1)
 
 
 def test_navigation_titles_have_chinese_translation() -> None:
@@ -161,12 +161,12 @@ def test_search_index_is_separate_per_language(site: Path) -> None:
     ids=["anchor", "page", "page in Chinese", "page not listed"],
 )
 def test_broken_links_and_unlisted_pages_fail_build(tmp_path: Path, changed: dict[str, str], reason: str) -> None:
-    _, done = build_small(tmp_path, **changed)
-    assert done.returncode == 1
-    assert reason in done.stderr
+    _, result = build_small(tmp_path, **changed)
+    assert result.returncode == 1
+    assert reason in result.stderr
 
 
 def test_full_site_builds(tmp_path: Path) -> None:
-    done = build(REPOSITORY / "mkdocs.yml", tmp_path / "site")
-    assert done.returncode == 0, done.stderr
+    result = build(REPOSITORY / "mkdocs.yml", tmp_path / "site")
+    assert result.returncode == 0, result.stderr
     assert len(list((tmp_path / "site").rglob("*.html"))) > 100

@@ -73,8 +73,8 @@ async def test_custom_command_file_moves_mbot(tmp_path: Path) -> None:
     file = tmp_path / block.title
     file.write_text(block.text, encoding="utf-8")
     async with AsyncSteppedSimulation(WORLD, ROBOT, period=0.02) as playground:
-        given = {"engine": "", "commands_file": str(file), "use_sim_time": True}
-        running = VoiceCommander(playground.graph, NodeOptions(parameters=given))
+        parameters = {"engine": "", "commands_file": str(file), "use_sim_time": True}
+        running = VoiceCommander(playground.graph, NodeOptions(parameters=parameters))
         text = playground.node.create_publisher(STRING, "/voice/text_input", 10)
         responses = playground.record("/voice/response")
         turned = playground.record("/odom")
@@ -86,7 +86,7 @@ async def test_custom_command_file_moves_mbot(tmp_path: Path) -> None:
 
         await playground.advance(1.0)
         assert await tell("please dance", 12.0) == "look at me"
-        assert sum(abs(each.twist.twist.angular.z) for each in turned) > 0
+        assert sum(abs(odometry.twist.twist.angular.z) for odometry in turned) > 0
         x, y, _, _, _, z, w = playground.robot_pose()
         assert math.hypot(x, y) < 0.1
         assert abs(2.0 * math.atan2(z, w)) < 0.1, "two whole turns"

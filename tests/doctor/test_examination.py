@@ -70,24 +70,25 @@ WELL = Observation(
 )
 
 
-def codes(seen: Observation) -> list[str]:
-    return [each.code for each in examine(seen)]
+def codes(observation: Observation) -> list[str]:
+    return [diagnostic.code for diagnostic in examine(observation)]
 
 
-def only(seen: Observation, code: str):
-    found = examine(seen)
-    assert [each.code for each in found] == [code], found
-    return found[0]
+def only_diagnostic(observation: Observation, code: str):
+    diagnostics = examine(observation)
+    assert [diagnostic.code for diagnostic in diagnostics] == [code], diagnostics
+    return diagnostics[0]
 
 
-def without(seen: Observation, *children: str) -> Observation:
+def without_frames(observation: Observation, *children: str) -> Observation:
     return replace(
-        seen, transforms=tuple(transform for transform in seen.transforms if transform.child not in children)
+        observation,
+        transforms=tuple(transform for transform in observation.transforms if transform.child not in children),
     )
 
 
-def more(seen: Observation, *endpoints: EndpointInfo) -> Observation:
-    return replace(seen, endpoints=(*seen.endpoints, *endpoints))
+def with_endpoints(observation: Observation, *endpoints: EndpointInfo) -> Observation:
+    return replace(observation, endpoints=(*observation.endpoints, *endpoints))
 
 
 def test_healthy_graph_has_no_findings():
@@ -95,14 +96,16 @@ def test_healthy_graph_has_no_findings():
 
 
 def test_empty_graph_report_names_domain_and_discovery_range():
-    found = only(Observation(seconds=2.0, environment={"ROS_DOMAIN_ID": "7"}), "DOC801")
-    assert "domain 7" in found.notes[0].message
-    assert "ROS_AUTOMATIC_DISCOVERY_RANGE" in found.hint
+    diagnostic = only_diagnostic(Observation(seconds=2.0, environment={"ROS_DOMAIN_ID": "7"}), "DOC801")
+    assert "domain 7" in diagnostic.notes[0].message
+    assert "ROS_AUTOMATIC_DISCOVERY_RANGE" in diagnostic.hint
 
 
 def test_empty_graph_over_zenoh_hints_at_rmw_zenohd():
-    found = only(Observation(seconds=2.0, environment={"ROS_DOMAIN_ID": "150"}, over_zenoh=True), "DOC801")
-    assert "rmw_zenohd" in found.hint
+    diagnostic = only_diagnostic(
+        Observation(seconds=2.0, environment={"ROS_DOMAIN_ID": "150"}, over_zenoh=True), "DOC801"
+    )
+    assert "rmw_zenohd" in diagnostic.hint
 
 
 def test_domain_id_above_101_is_reported():
@@ -114,57 +117,57 @@ def test_domain_id_above_101_is_reported():
 
 
 def test_missing_transform_publisher_is_reported():
-    seen = replace(WELL, transforms=(), endpoints=())
-    found = only(seen, "DOC301")
+    observation = replace(WELL, transforms=(), endpoints=())
+    diagnostic = only_diagnostic(observation, "DOC301")
     assert (
-        found.message
+        diagnostic.message
         == "there is no transform of 3 frames, 'wheel', 'mast', 'copy', because no node publishes transforms"
     )
 
 
 def test_missing_joint_state_publisher_is_reported():
-    seen = replace(
-        without(WELL, "wheel", "copy"),
+    observation = replace(
+        without_frames(WELL, "wheel", "copy"),
         joints=(),
         endpoints=tuple(endpoint for endpoint in WELL.endpoints if endpoint.name != "/joint_states"),
     )
-    found = only(seen, "DOC401")
-    assert found.message == "no node publishes joint states, so there is no transform of 2 frames, 'wheel', 'copy'"
-    assert "joint_state_publisher" in found.hint
+    diagnostic = only_diagnostic(observation, "DOC401")
+    assert diagnostic.message == "no node publishes joint states, so there is no transform of 2 frames, 'wheel', 'copy'"
+    assert "joint_state_publisher" in diagnostic.hint
 
 
 def test_silent_joint_state_publisher_is_reported():
-    found = only(replace(without(WELL, "wheel", "copy"), joints=()), "DOC402")
-    assert found.message.startswith("'/joint_state_publisher' did not publish joint states in 3 s")
+    diagnostic = only_diagnostic(replace(without_frames(WELL, "wheel", "copy"), joints=()), "DOC402")
+    assert diagnostic.message.startswith("'/joint_state_publisher' did not publish joint states in 3 s")
 
 
 def test_joint_missing_from_joint_states_suggests_misspelled_name():
-    seen = replace(without(WELL, "wheel", "copy"), joints=(ObservedJoint("spinn", (JSP,)),))
-    found = {each.code: each for each in examine(seen)}
-    assert set(found) == {"DOC403", "DOC405"}
-    missing = found["DOC403"]
+    observation = replace(without_frames(WELL, "wheel", "copy"), joints=(ObservedJoint("spinn", (JSP,)),))
+    diagnostics_by_code = {diagnostic.code: diagnostic for diagnostic in examine(observation)}
+    assert set(diagnostics_by_code) == {"DOC403", "DOC405"}
+    missing = diagnostics_by_code["DOC403"]
     assert (
         missing.message
         == "joint 'spin' is not in the joint states, so there is no transform of 2 frames, 'wheel', 'copy'"
     )
     assert missing.hint == "did you mean 'spinn'?"
-    assert found["DOC405"].hint == "did you mean 'spin'?"
+    assert diagnostics_by_code["DOC405"].hint == "did you mean 'spin'?"
 
 
 def test_missing_static_transform_is_reported():
-    found = only(without(WELL, "mast"), "DOC304")
-    assert found.message == "there is no transform of frame 'mast', because no static transform was published"
-    assert "'stand'" in found.notes[0].message
+    diagnostic = only_diagnostic(without_frames(WELL, "mast"), "DOC304")
+    assert diagnostic.message == "there is no transform of frame 'mast', because no static transform was published"
+    assert "'stand'" in diagnostic.notes[0].message
 
 
 def test_joint_states_on_unread_topic_hint_at_remapping():
-    seen = replace(
-        without(WELL, "wheel", "copy"),
+    observation = replace(
+        without_frames(WELL, "wheel", "copy"),
         joints=(ObservedJoint("spin", (JSP,), ("/arm/joint_states",)),),
         endpoints=(*WELL.endpoints, publisher(JSP, "/arm/joint_states", JOINT_STATE)),
     )
-    found = only(seen, "DOC305")
-    assert "remap joint_states of robot_state_publisher" in found.hint
+    diagnostic = only_diagnostic(observation, "DOC305")
+    assert "remap joint_states of robot_state_publisher" in diagnostic.hint
 
 
 def test_prefixed_frames_match_robot_links():
@@ -177,20 +180,24 @@ def test_prefixed_frames_match_robot_links():
 
 def test_transform_from_two_publishers_is_reported():
     doubled = replace(WELL.transforms[0], senders=("/driver", RSP))
-    found = only(replace(WELL, transforms=(doubled, *WELL.transforms[1:])), "DOC302")
-    assert found.message == ("2 nodes publish the transform of frame 'wheel': '/driver', '/robot_state_publisher'")
+    diagnostic = only_diagnostic(replace(WELL, transforms=(doubled, *WELL.transforms[1:])), "DOC302")
+    assert diagnostic.message == ("2 nodes publish the transform of frame 'wheel': '/driver', '/robot_state_publisher'")
 
 
 def test_frame_with_two_parents_is_reported():
     other = ObservedTransform("odom", "base", ("/a",)), ObservedTransform("map", "base", ("/b",))
-    found = [each for each in examine(replace(WELL, transforms=(*WELL.transforms, *other))) if each.code == "DOC303"]
-    assert found[0].message == "frame 'base' has 2 parents, 'map', 'odom', and jumps between them"
+    diagnostics = [
+        diagnostic
+        for diagnostic in examine(replace(WELL, transforms=(*WELL.transforms, *other)))
+        if diagnostic.code == "DOC303"
+    ]
+    assert diagnostics[0].message == "frame 'base' has 2 parents, 'map', 'odom', and jumps between them"
 
 
 def test_disconnected_frame_tree_is_reported():
     apart = ObservedTransform("camera", "lens", ("/camera_driver",))
-    found = only(replace(WELL, transforms=(*WELL.transforms, apart)), "DOC308")
-    assert "--frame-id base --child-frame-id camera" in found.hint
+    diagnostic = only_diagnostic(replace(WELL, transforms=(*WELL.transforms, apart)), "DOC308")
+    assert "--frame-id base --child-frame-id camera" in diagnostic.hint
 
 
 def test_frame_loop_is_reported():
@@ -204,23 +211,23 @@ def test_invalid_transform_is_reported():
 
 
 def test_missing_fixed_frame_is_reported():
-    found = only(replace(WELL, fixed_frames=(FixedFrame("map", "mbot.rviz"),)), "DOC309")
-    assert found.message == "the fixed frame 'map' of mbot.rviz does not exist, so nothing is shown"
-    assert found.hint == "choose another Fixed Frame; the root of all frames is 'base'"
+    diagnostic = only_diagnostic(replace(WELL, fixed_frames=(FixedFrame("map", "mbot.rviz"),)), "DOC309")
+    assert diagnostic.message == "the fixed frame 'map' of mbot.rviz does not exist, so nothing is shown"
+    assert diagnostic.hint == "choose another Fixed Frame; the root of all frames is 'base'"
     assert codes(replace(WELL, fixed_frames=(FixedFrame("base", "mbot.rviz"),))) == []
     mapped = (*WELL.transforms, ObservedTransform("map", "base", ("/localization",), is_static=True))
-    found = only(replace(WELL, transforms=mapped, fixed_frames=(FixedFrame("odom", "x"),)), "DOC309")
-    assert found.hint == "choose another Fixed Frame; the root of all frames is 'map'"
-    near = only(replace(WELL, fixed_frames=(FixedFrame("bse", "x"),)), "DOC309")
+    diagnostic = only_diagnostic(replace(WELL, transforms=mapped, fixed_frames=(FixedFrame("odom", "x"),)), "DOC309")
+    assert diagnostic.hint == "choose another Fixed Frame; the root of all frames is 'map'"
+    near = only_diagnostic(replace(WELL, fixed_frames=(FixedFrame("bse", "x"),)), "DOC309")
     assert near.hint == "did you mean 'base'?"
 
 
 def test_message_in_missing_frame_is_reported():
     lost = ObservedFrame("/scan", "/laser", "lazer")
-    found = only(replace(WELL, frames=(lost,)), "DOC310")
-    assert found.message == "'/scan' of '/laser' is in frame 'lazer', which does not exist"
-    assert "static_transform_publisher" in found.hint
-    near = only(replace(WELL, frames=(ObservedFrame("/scan", "/laser", "whel"),)), "DOC310")
+    diagnostic = only_diagnostic(replace(WELL, frames=(lost,)), "DOC310")
+    assert diagnostic.message == "'/scan' of '/laser' is in frame 'lazer', which does not exist"
+    assert "static_transform_publisher" in diagnostic.hint
+    near = only_diagnostic(replace(WELL, frames=(ObservedFrame("/scan", "/laser", "whel"),)), "DOC310")
     rays = [ObservedFrame(topic, "/laser", "mbot::laser::lidar") for topic in ("/world_rays", "/world_rays/others")]
     assert not codes(replace(WELL, frames=tuple(rays))), "they are in frames of the simulated world"
     assert near.hint == "did you mean 'wheel'?"
@@ -241,14 +248,16 @@ def test_simulation_world_is_accepted_as_fixed_frame():
 
 def test_root_of_single_link_robot_is_accepted_as_fixed_frame():
     lonely = ObservedDescription("/robot_description", RSP, '<robot name="r"><link name="only"/></robot>')
-    seen = replace(WELL, transforms=(), joints=(), descriptions=(lonely,), fixed_frames=(FixedFrame("only", "x"),))
-    assert examine(seen) == []
+    observation = replace(
+        WELL, transforms=(), joints=(), descriptions=(lonely,), fixed_frames=(FixedFrame("only", "x"),)
+    )
+    assert examine(observation) == []
 
 
 def test_missing_fixed_frame_hint_names_all_tree_roots():
     apart = (*WELL.transforms, ObservedTransform("camera", "lens", ("/camera",)))
-    found = examine(replace(WELL, transforms=apart, fixed_frames=(FixedFrame("odom", "x"),)))
-    (hint,) = [each.hint for each in found if each.code == "DOC309"]
+    diagnostics = examine(replace(WELL, transforms=apart, fixed_frames=(FixedFrame("odom", "x"),)))
+    (hint,) = [diagnostic.hint for diagnostic in diagnostics if diagnostic.code == "DOC309"]
     assert hint == "choose another Fixed Frame; the roots of the trees of frames are 'base', 'camera'"
 
 
@@ -258,10 +267,10 @@ def test_frame_list_has_chinese_quotes_in_chinese():
         for i in range(8)
     )
     robot = ObservedDescription("/robot_description", RSP, f'<robot name="r"><link name="base"/>{joints}</robot>')
-    seen = replace(WELL, descriptions=(robot,), joints=(), endpoints=(publisher(RSP, "/tf", TF),))
-    (found,) = [each for each in examine(seen) if each.code == "DOC401"]
+    observation = replace(WELL, descriptions=(robot,), joints=(), endpoints=(publisher(RSP, "/tf", TF),))
+    (joints_diagnostic,) = [diagnostic for diagnostic in examine(observation) if diagnostic.code == "DOC401"]
     names = "“l0”、“l1”、“l2”、“l3”、“l4”、“l5”和另外 2 个"
-    assert translate(found, "zh").message == f"没有节点发布关节状态，所以 8 个坐标系（{names}）没有变换"
+    assert translate(joints_diagnostic, "zh").message == f"没有节点发布关节状态，所以 8 个坐标系（{names}）没有变换"
 
 
 # descriptions and joints
@@ -269,48 +278,48 @@ def test_frame_list_has_chinese_quotes_in_chinese():
 
 def test_file_name_as_description_is_reported():
     wrong = ObservedDescription("/robot_description", RSP, "mbot.urdf")
-    found = only(replace(WELL, descriptions=(wrong,), joints=()), "DOC501")
-    assert "not the name of a file" in found.hint
+    diagnostic = only_diagnostic(replace(WELL, descriptions=(wrong,), joints=()), "DOC501")
+    assert "not the name of a file" in diagnostic.hint
 
 
 @pytest.mark.parametrize(("text", "severity"), [(ROBOT, Severity.WARNING), (ROBOT + " ", Severity.ERROR)])
 def test_two_descriptions_on_one_topic_are_reported(text, severity):
     second = ObservedDescription("/robot_description", "/other", text)
-    found = only(replace(WELL, descriptions=(*WELL.descriptions, second)), "DOC502")
-    assert found.severity is severity
+    diagnostic = only_diagnostic(replace(WELL, descriptions=(*WELL.descriptions, second)), "DOC502")
+    assert diagnostic.severity is severity
 
 
 def test_joint_from_two_publishers_is_reported():
-    found = only(replace(WELL, joints=(ObservedJoint("spin", ("/driver", JSP)),)), "DOC404")
-    assert found.message.startswith("2 nodes publish the state of joint 'spin' on '/joint_states'")
+    diagnostic = only_diagnostic(replace(WELL, joints=(ObservedJoint("spin", ("/driver", JSP)),)), "DOC404")
+    assert diagnostic.message.startswith("2 nodes publish the state of joint 'spin' on '/joint_states'")
 
 
 # topics, services, nodes
 
 
 def test_duplicate_node_name_is_reported():
-    found = only(replace(WELL, nodes=(RSP, RSP, JSP)), "DOC101")
-    assert found.message == "2 nodes have the name '/robot_state_publisher'"
+    diagnostic = only_diagnostic(replace(WELL, nodes=(RSP, RSP, JSP)), "DOC101")
+    assert diagnostic.message == "2 nodes have the name '/robot_state_publisher'"
 
 
 def test_topic_with_two_types_is_reported():
-    seen = more(
+    observation = with_endpoints(
         WELL, publisher("/a", "/chat", "std_msgs/msg/String"), subscription("/b", "/chat", "std_msgs/msg/Int32")
     )
-    found = only(seen, "DOC201")
-    assert [note.message for note in found.notes] == [
+    diagnostic = only_diagnostic(observation, "DOC201")
+    assert [note.message for note in diagnostic.notes] == [
         "std_msgs/msg/Int32 is subscribed to by '/b'",
         "std_msgs/msg/String is published by '/a'",
     ]
 
 
 def test_twist_and_twist_stamped_mismatch_is_reported():
-    seen = more(
+    observation = with_endpoints(
         WELL,
         publisher("/teleop", "/cmd_vel", "geometry_msgs/msg/Twist"),
         subscription("/diff_drive", "/cmd_vel", "geometry_msgs/msg/TwistStamped"),
     )
-    assert "stamped:=true" in only(seen, "DOC202").hint
+    assert "stamped:=true" in only_diagnostic(observation, "DOC202").hint
 
 
 TWIST = "geometry_msgs/msg/Twist"
@@ -320,30 +329,31 @@ EITHER = tuple(subscription("/behavior_server", "/cmd_vel_teleop", kind) for kin
 @pytest.mark.parametrize("kinds", [(), (TWIST,), (f"{TWIST}Stamped",), (TWIST, f"{TWIST}Stamped")])
 def test_subscriber_to_both_velocity_types_matches_either_type(kinds):
     sent = [publisher(f"/teleop_{number}", "/cmd_vel_teleop", kind) for number, kind in enumerate(kinds)]
-    assert not {"DOC201", "DOC202"} & set(codes(more(WELL, *EITHER, *sent)))
+    assert not {"DOC201", "DOC202"} & set(codes(with_endpoints(WELL, *EITHER, *sent)))
 
 
 def test_type_mismatch_is_reported_beside_subscriber_to_both_types():
     sent = publisher("/teleop", "/cmd_vel_teleop", TWIST)
     other = subscription("/base", "/cmd_vel_teleop", f"{TWIST}Stamped")
-    assert "DOC202" in codes(more(WELL, *EITHER, sent, other))
+    assert "DOC202" in codes(with_endpoints(WELL, *EITHER, sent, other))
 
 
 def test_velocity_topic_without_subscriber_is_reported():
-    found = only(more(WELL, publisher("/teleop", "/cmd_vel", TWIST)), "DOC207")
+    diagnostic = only_diagnostic(with_endpoints(WELL, publisher("/teleop", "/cmd_vel", TWIST)), "DOC207")
     assert (
-        found.message == "'/teleop' publishes velocities on '/cmd_vel', but no node subscribes to it, so nothing moves"
+        diagnostic.message
+        == "'/teleop' publishes velocities on '/cmd_vel', but no node subscribes to it, so nothing moves"
     )
-    assert "controller runs in the same ROS_DOMAIN_ID" in found.hint
+    assert "controller runs in the same ROS_DOMAIN_ID" in diagnostic.hint
 
 
 def test_unsubscribed_velocity_topic_suggests_remapping():
-    seen = more(
+    observation = with_endpoints(
         WELL,
         publisher("/teleop", "/cmd_vel", TWIST),
         subscription("/drive", "/base/command", "geometry_msgs/msg/TwistStamped"),
     )
-    assert only(seen, "DOC207").hint.endswith("-r /cmd_vel:=/base/command")
+    assert only_diagnostic(observation, "DOC207").hint.endswith("-r /cmd_vel:=/base/command")
 
 
 @pytest.mark.parametrize(
@@ -354,26 +364,32 @@ def test_unsubscribed_velocity_topic_suggests_remapping():
     ],
 )
 def test_subscribed_and_measured_velocities_have_no_findings(more_endpoints):
-    assert examine(more(WELL, *more_endpoints)) == []
+    assert examine(with_endpoints(WELL, *more_endpoints)) == []
 
 
 def test_misspelled_velocity_topic_is_reported_once():
-    seen = more(WELL, publisher("/teleop", "/cmd_vel", TWIST), subscription("/drive", "/robot/cmd_vel", TWIST))
-    assert codes(seen) == ["DOC204"]
+    observation = with_endpoints(
+        WELL, publisher("/teleop", "/cmd_vel", TWIST), subscription("/drive", "/robot/cmd_vel", TWIST)
+    )
+    assert codes(observation) == ["DOC204"]
 
 
 def test_contradictory_velocity_publishers_are_reported():
-    seen = more(WELL, publisher("/teleop", "/cmd_vel", TWIST), subscription("/drive", "/cmd_vel", TWIST))
-    found = only(replace(seen, disputed=(ObservedDrivers("/cmd_vel", ("/planner", "/teleop")),)), "DOC208")
+    observation = with_endpoints(
+        WELL, publisher("/teleop", "/cmd_vel", TWIST), subscription("/drive", "/cmd_vel", TWIST)
+    )
+    diagnostic = only_diagnostic(
+        replace(observation, disputed=(ObservedDrivers("/cmd_vel", ("/planner", "/teleop")),)), "DOC208"
+    )
     assert (
-        found.message
+        diagnostic.message
         == "two nodes drive the robot: '/planner', '/teleop' publish contradictory velocities on '/cmd_vel'"
     )
-    assert codes(seen) == []
+    assert codes(observation) == []
 
 
 def test_qos_mismatch_report_names_policy_and_endpoints():
-    seen = more(
+    observation = with_endpoints(
         WELL,
         publisher("/lidar", "/scan", "sensor_msgs/msg/LaserScan", QoSProfile(5, ReliabilityPolicy.BEST_EFFORT)),
         subscription(
@@ -383,12 +399,12 @@ def test_qos_mismatch_report_names_policy_and_endpoints():
             QoSProfile(5, ReliabilityPolicy.RELIABLE, DurabilityPolicy.TRANSIENT_LOCAL),
         ),
     )
-    assert codes(replace(seen, over_zenoh=True)) == []  # there it gets them
-    found = only(seen, "DOC203")
-    assert found.message == (
+    assert codes(replace(observation, over_zenoh=True)) == []  # there it gets them
+    diagnostic = only_diagnostic(observation, "DOC203")
+    assert diagnostic.message == (
         "'/rviz' receives nothing from '/lidar' on topic '/scan', because their quality of service is incompatible"
     )
-    assert [note.message for note in found.notes] == [
+    assert [note.message for note in diagnostic.notes] == [
         "reliability: '/lidar' offers BEST_EFFORT, '/rviz' requests RELIABLE",
         "durability: '/lidar' offers VOLATILE, '/rviz' requests TRANSIENT_LOCAL",
     ]
@@ -396,37 +412,41 @@ def test_qos_mismatch_report_names_policy_and_endpoints():
 
 def test_topic_of_same_node_is_not_suggested():
     text = "std_msgs/msg/String"
-    seen = more(WELL, subscription("/voice", "/voice/text_input", text), publisher("/voice", "/voice/text", text))
-    assert codes(seen) == []
+    observation = with_endpoints(
+        WELL, subscription("/voice", "/voice/text_input", text), publisher("/voice", "/voice/text", text)
+    )
+    assert codes(observation) == []
 
 
 @pytest.mark.parametrize("published", ["/robot1/scan", "/scann"])
 def test_unpublished_topic_suggests_remapping_to_similar_topic(published):
     scan = "sensor_msgs/msg/LaserScan"
-    found = only(more(WELL, subscription("/slam", "/scan", scan), publisher("/lidar", published, scan)), "DOC204")
-    assert f"-r /scan:={published}" in found.hint
+    diagnostic = only_diagnostic(
+        with_endpoints(WELL, subscription("/slam", "/scan", scan), publisher("/lidar", published, scan)), "DOC204"
+    )
+    assert f"-r /scan:={published}" in diagnostic.hint
 
 
 def test_unpublished_topic_alone_is_not_reported():
-    assert examine(more(WELL, subscription("/slam", "/scan", "sensor_msgs/msg/LaserScan"))) == []
+    assert examine(with_endpoints(WELL, subscription("/slam", "/scan", "sensor_msgs/msg/LaserScan"))) == []
 
 
 def test_missing_service_is_reported():
-    seen = more(
+    observation = with_endpoints(
         WELL,
         endpoint("client", "/planner", "/map_server/map", "nav_msgs/srv/GetMap"),
         endpoint("service", "/map_server", "/map", "nav_msgs/srv/GetMap"),
     )
-    assert "service '/map' has the same type" in only(seen, "DOC206").hint
+    assert "service '/map' has the same type" in only_diagnostic(observation, "DOC206").hint
 
 
 def test_service_type_mismatch_is_reported():
-    seen = more(
+    observation = with_endpoints(
         WELL,
         endpoint("client", "/a", "/go", "std_srvs/srv/Trigger"),
         endpoint("service", "/b", "/go", "std_srvs/srv/SetBool"),
     )
-    assert codes(seen) == ["DOC205"]
+    assert codes(observation) == ["DOC205"]
 
 
 # time
@@ -434,18 +454,20 @@ def test_service_type_mismatch_is_reported():
 
 def test_mixed_use_sim_time_is_reported():
     clock = publisher("/gazebo", "/clock", "rosgraph_msgs/msg/Clock")
-    seen = replace(more(WELL, clock), sim_time={RSP: True, JSP: False, "/gazebo": False}, clock=ObservedClock(9, 1, 9))
-    found = only(seen, "DOC601")
-    assert found.message == (
+    observation = replace(
+        with_endpoints(WELL, clock), sim_time={RSP: True, JSP: False, "/gazebo": False}, clock=ObservedClock(9, 1, 9)
+    )
+    diagnostic = only_diagnostic(observation, "DOC601")
+    assert diagnostic.message == (
         "use_sim_time is true for '/robot_state_publisher', but false for '/joint_state_publisher'"
     )
 
 
 def test_hidden_nodes_and_clock_publisher_need_no_use_sim_time():
-    seen = more(WELL, publisher("/gazebo", "/clock", "rosgraph_msgs/msg/Clock"))
+    observation = with_endpoints(WELL, publisher("/gazebo", "/clock", "rosgraph_msgs/msg/Clock"))
     clock = ObservedClock(9, 5, 6)
     times = {RSP: True, JSP: True, "/gazebo": False, "/_gzclient": False}
-    assert codes(replace(seen, sim_time=times, clock=clock)) == []
+    assert codes(replace(observation, sim_time=times, clock=clock)) == []
 
 
 def test_use_sim_time_without_clock_is_reported():
@@ -454,20 +476,20 @@ def test_use_sim_time_without_clock_is_reported():
 
 @pytest.mark.parametrize("clock", [None, ObservedClock(9, 5, 5)])
 def test_stopped_clock_is_reported(clock):
-    seen = more(WELL, publisher("/gazebo", "/clock", "rosgraph_msgs/msg/Clock"))
-    assert codes(replace(seen, sim_time={RSP: True, JSP: True}, clock=clock)) == ["DOC603"]
+    observation = with_endpoints(WELL, publisher("/gazebo", "/clock", "rosgraph_msgs/msg/Clock"))
+    assert codes(replace(observation, sim_time={RSP: True, JSP: True}, clock=clock)) == ["DOC603"]
 
 
 def test_two_clock_publishers_are_reported():
     kind = "rosgraph_msgs/msg/Clock"
-    seen = more(WELL, publisher("/gazebo", "/clock", kind), publisher("/bag", "/clock", kind))
-    assert codes(seen) == ["DOC604"]
+    observation = with_endpoints(WELL, publisher("/gazebo", "/clock", kind), publisher("/bag", "/clock", kind))
+    assert codes(observation) == ["DOC604"]
 
 
 @pytest.mark.parametrize(("behind_s", "message"), [(3600, "3600.0 s behind"), (-60, "60.0 s ahead of")])
 def test_stamp_far_from_current_time_is_reported(behind_s, message):
     stamp = ObservedStamp("/scan", "/lidar", behind_s * 10**9)
-    assert f"are {message} the clock here" in only(replace(WELL, stamps=(stamp,)), "DOC605").message
+    assert f"are {message} the clock here" in only_diagnostic(replace(WELL, stamps=(stamp,)), "DOC605").message
 
 
 def test_zero_stamp_is_reported():
@@ -475,13 +497,13 @@ def test_zero_stamp_is_reported():
 
 
 def test_inactive_managed_node_is_reported():
-    found = only(replace(WELL, lifecycle={"/camera": "inactive", "/lidar": "active"}), "DOC701")
-    assert found.message == "managed node '/camera' is inactive, so it does nothing yet"
-    assert found.hint == "request the next transition: ros2 lifecycle set /camera activate"
+    diagnostic = only_diagnostic(replace(WELL, lifecycle={"/camera": "inactive", "/lidar": "active"}), "DOC701")
+    assert diagnostic.message == "managed node '/camera' is inactive, so it does nothing yet"
+    assert diagnostic.hint == "request the next transition: ros2 lifecycle set /camera activate"
 
 
 def test_errors_come_before_warnings():
-    seen = replace(
+    observation = replace(
         WELL, nodes=(RSP, RSP), transforms=(replace(WELL.transforms[0], is_valid=False), *WELL.transforms[1:])
     )
-    assert codes(seen) == ["DOC306", "DOC101"]
+    assert codes(observation) == ["DOC306", "DOC101"]

@@ -42,7 +42,7 @@ class RemoteTransport(Transport):
     def close(self) -> None:
         pass
 
-    def _mirror(self, what: object) -> None:
+    def _mirror(self, entity: object) -> None:
         pass
 
     open_node = close_node = open_publisher = close_publisher = open_subscription = close_subscription = _mirror
@@ -68,15 +68,15 @@ async def test_late_node_name_identifies_endpoint_of_command(joined: Graph) -> N
         transport.endpoints = [TELEOP, replace(LATE, node=NodeIdentity("_ros2cli_2", "/"))]
 
     asyncio.get_running_loop().call_later(0.2, name)
-    seen = await observe_graph(joined, transport)
-    assert seen.endpoints == (TELEOP,)
+    observation = await observe_graph(joined, transport)
+    assert observation.endpoints == (TELEOP,)
 
 
 async def test_unnamed_endpoint_is_waited_for_one_second_at_most(joined: Graph) -> None:
-    begun = time.monotonic()
-    seen = await observe_graph(joined, RemoteTransport(TELEOP, LATE))
-    assert seen.endpoints == (TELEOP, LATE)
-    assert time.monotonic() - begun > 0.9
+    start = time.monotonic()
+    observation = await observe_graph(joined, RemoteTransport(TELEOP, LATE))
+    assert observation.endpoints == (TELEOP, LATE)
+    assert time.monotonic() - start > 0.9
 
 
 async def test_contradictory_velocity_publishers_are_recorded(joined: Graph) -> None:
@@ -85,8 +85,8 @@ async def test_contradictory_velocity_publishers_are_recorded(joined: Graph) -> 
     idle = joined.create_node("idle")
     idle.create_publisher(TWIST, "/cmd_vel", 10)
     publishers = [
-        each.create_publisher(kind, topic, 10)
-        for each, kind, topic in (
+        sender.create_publisher(kind, topic, 10)
+        for sender, kind, topic in (
             (node, TWIST, "/cmd_vel"),
             (other, TWIST, "/cmd_vel"),
             (node, TWIST_STAMPED, "/arm/cmd_vel"),
@@ -98,13 +98,13 @@ async def test_contradictory_velocity_publishers_are_recorded(joined: Graph) -> 
     ]
     watched = asyncio.ensure_future(observe_graph(joined, RemoteTransport(), seconds=2.0))
     while not watched.done():
-        for number, each in enumerate(publishers):
-            message = each.msg_type()
-            driven = message.twist if each.type_name == TWIST_STAMPED else message
-            driven.linear.x = 0.5 if each.topic_name.startswith("/base") else float(number)
-            each.publish(message)
+        for number, publisher in enumerate(publishers):
+            message = publisher.msg_type()
+            driven = message.twist if publisher.type_name == TWIST_STAMPED else message
+            driven.linear.x = 0.5 if publisher.topic_name.startswith("/base") else float(number)
+            publisher.publish(message)
         await asyncio.sleep(0.01)
-    assert [(each.topic, each.drivers) for each in watched.result().disputed] == [
+    assert [(dispute.topic, dispute.drivers) for dispute in watched.result().disputed] == [
         ("/arm/cmd_vel", ("/keys", "/planner")),
         ("/cmd_vel", ("/keys", "/planner")),
     ]
@@ -112,15 +112,15 @@ async def test_contradictory_velocity_publishers_are_recorded(joined: Graph) -> 
 
 async def test_velocities_but_no_stamps_of_commands_are_recorded(joined: Graph) -> None:
     first, second = joined.create_node("_ros2cli_7"), joined.create_node("_ros2cli_8")
-    publishers = [each.create_publisher(TWIST, "/cmd_vel", 10) for each in (first, second)]
+    publishers = [node.create_publisher(TWIST, "/cmd_vel", 10) for node in (first, second)]
     publishers.append(first.create_publisher("sensor_msgs/msg/JointState", "/joint_states", 10))
     watched = asyncio.ensure_future(observe_graph(joined, RemoteTransport(), seconds=2.0))
     while not watched.done():
-        for number, each in enumerate(publishers):
-            message = each.msg_type()
-            if each.type_name == TWIST:
+        for number, publisher in enumerate(publishers):
+            message = publisher.msg_type()
+            if publisher.type_name == TWIST:
                 message.linear.x = float(number)
-            each.publish(message)
+            publisher.publish(message)
         await asyncio.sleep(0.01)
     (disputed,) = watched.result().disputed
     assert disputed.drivers == ("/_ros2cli_7", "/_ros2cli_8")
@@ -140,8 +140,8 @@ async def test_bridged_transforms_have_one_sender_and_no_delay(joined: Graph) ->
     message.transforms[0].header.stamp.sec = 5
     while not watched.done():
         clock.publish(Clock(clock=message.transforms[0].header.stamp))
-        for each in (own, other, handed_on):
-            each.publish(message)
+        for publisher in (own, other, handed_on):
+            publisher.publish(message)
         await asyncio.sleep(0.01)
     (transform,) = watched.result().transforms
     assert len(transform.senders) == 1
@@ -161,27 +161,27 @@ async def test_simulator_stamps_have_no_delay_and_world_poses_are_not_frames(joi
     message.transforms[0].header.stamp.sec = 5
     while not watched.done():
         clock.publish(Clock(clock=message.transforms[0].header.stamp))
-        for each in (poses, frames):
-            each.publish(message)
+        for publisher in (poses, frames):
+            publisher.publish(message)
         await asyncio.sleep(0.01)
-    seen = watched.result()
-    assert [(transform.parent, transform.child) for transform in seen.transforms] == [("odom", "base")]
-    assert [(stamp.topic, stamp.behind_ns) for stamp in seen.stamps] == [("/robot1/tf", 0)]
+    observation = watched.result()
+    assert [(transform.parent, transform.child) for transform in observation.transforms] == [("odom", "base")]
+    assert [(stamp.topic, stamp.behind_ns) for stamp in observation.stamps] == [("/robot1/tf", 0)]
 
 
 async def test_latched_and_bond_messages_have_no_recorded_stamps(joined: Graph) -> None:
     server = joined.create_node("map_server")
-    kept = QoSProfile(depth=1, durability=DurabilityPolicy.TRANSIENT_LOCAL)
-    old_map = server.create_publisher("nav_msgs/msg/OccupancyGrid", "/map", kept)
-    unset = server.create_publisher("nav_msgs/msg/OccupancyGrid", "/unset", kept)
+    latched = QoSProfile(depth=1, durability=DurabilityPolicy.TRANSIENT_LOCAL)
+    old_map = server.create_publisher("nav_msgs/msg/OccupancyGrid", "/map", latched)
+    unset = server.create_publisher("nav_msgs/msg/OccupancyGrid", "/unset", latched)
     bond = server.create_publisher("bond/msg/Status", "/bond", 10)
     scan = server.create_publisher("sensor_msgs/msg/LaserScan", "/scan", 10)
     watched = asyncio.ensure_future(observe_graph(joined, RemoteTransport(), seconds=0.5))
     while not watched.done():
-        for each in (old_map, unset, bond, scan):
-            message = each.msg_type()
-            message.header.stamp.sec = 0 if each is unset else 17
-            each.publish(message)
+        for publisher in (old_map, unset, bond, scan):
+            message = publisher.msg_type()
+            message.header.stamp.sec = 0 if publisher is unset else 17
+            publisher.publish(message)
         await asyncio.sleep(0.01)
     assert [(stamp.topic, stamp.is_zero) for stamp in watched.result().stamps] == [("/scan", False), ("/unset", True)]
 

@@ -154,11 +154,11 @@ def test_process_substitution_is_read(
 
 @pytest.mark.parametrize("command", ["check", "xacro"])
 def test_dev_stdin_is_read(command: str) -> None:
-    done = subprocess.run(
+    result = subprocess.run(
         [sys.executable, "-m", "linkwright", command, "/dev/stdin"],
         check=False,
         input=XACRO.encode(),
         capture_output=True,
     )
-    assert done.returncode == 0, done.stderr.decode()
-    assert b"2" in done.stdout
+    assert result.returncode == 0, result.stderr.decode()
+    assert b"2" in result.stdout

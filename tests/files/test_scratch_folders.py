@@ -76,8 +76,13 @@ def test_folders_in_use_or_of_others_are_kept(place: Path) -> None:
 
 
 def test_temporary_folders_are_scratch_folders() -> None:
-    made = re.compile(r"\bTemporaryDirectory\(|\bmkdtemp\(")
-    made_to_stay, in_another = {"link_folder.py"}, {"contents.py", "run.py", "running.py"}  # of a sandbox's run
-    allowed = {"scratch_folders.py"} | made_to_stay | in_another
-    found = {path.name for path in (REPOSITORY / "src").rglob("*.py") if made.search(path.read_text(encoding="utf-8"))}
+    creation = re.compile(r"\bTemporaryDirectory\(|\bmkdtemp\(")
+    kept_on_exit, inside_scratch_folder = (
+        {"link_folder.py"},
+        {"contents.py", "run.py", "running.py"},
+    )  # of a sandbox's run
+    allowed = {"scratch_folders.py"} | kept_on_exit | inside_scratch_folder
+    found = {
+        path.name for path in (REPOSITORY / "src").rglob("*.py") if creation.search(path.read_text(encoding="utf-8"))
+    }
     assert found <= allowed

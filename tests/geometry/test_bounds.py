@@ -25,15 +25,15 @@ def test_bounds_of_shapes():
 
 
 @given(vectors, vectors, vectors, vectors)
-def test_moved_bounds_enclose_moved_corners(one, other, xyz, rpy):
+def test_moved_bounds_enclose_moved_corners(first, second, xyz, rpy):
     pose = Pose(xyz, rpy)
-    box = Bounds(tuple(map(min, one, other)), tuple(map(max, one, other)))
+    box = Bounds(tuple(map(min, first, second)), tuple(map(max, first, second)))
     corners = np.array(list(product(*zip(box.low, box.high, strict=True))))
     matrix = matrix_from_pose(row_from_pose(pose))
     moved = corners @ matrix[:3, :3].T + matrix[:3, 3]
-    found = box.moved(placement(pose))
-    assert np.allclose(found.low, moved.min(axis=0), atol=1e-9)
-    assert np.allclose(found.high, moved.max(axis=0), atol=1e-9)
+    bounds = box.moved(placement(pose))
+    assert np.allclose(bounds.low, moved.min(axis=0), atol=1e-9)
+    assert np.allclose(bounds.high, moved.max(axis=0), atol=1e-9)
 
 
 def test_size_center_and_diagonal():

@@ -137,16 +137,16 @@ CASES = {
     "nan.glb": (glb(corners=[[0, 0, NAN], *CORNERS[1:]]), "a coordinate is not a finite number"),
     "corner.glb": (glb(indices=(0, 1, 70)), "a triangle refers to vertex 70, but there are 3"),
     "accessor.glb": (
-        glb(lambda made: position(made).update(POSITION=9)),
+        glb(lambda contents: position(contents).update(POSITION=9)),
         "attributes.POSITION is 9, but the number of",
     ),
-    "position.glb": (glb(lambda made: position(made).clear()), "primitives[0] has no attribute 'POSITION'"),
+    "position.glb": (glb(lambda contents: position(contents).clear()), "primitives[0] has no attribute 'POSITION'"),
     "type.glb": (
-        glb(lambda made: made["accessors"][0].update(componentType=1)),
+        glb(lambda contents: contents["accessors"][0].update(componentType=1)),
         "accessors[0].componentType is 1, which glTF does not have",
     ),
     "long.glb": (
-        glb(lambda made: made["bufferViews"][0].update(byteLength=999)),
+        glb(lambda contents: contents["bufferViews"][0].update(byteLength=999)),
         "bufferViews[0] reaches beyond the 44 bytes of its buffer",
     ),
     "beside.gltf": (

@@ -63,6 +63,6 @@ def test_collada_keeps_mesh_with_unreadable_material(materials: str) -> None:
 def test_collada_tolerates_same_xml_errors_as_gazebo(proper: str, loose: str, is_plain: bool) -> None:
     assert proper in COLLADA
     (expected,) = placed_meshes(COLLADA.encode(), "dae", is_plain=is_plain)
-    (found,) = placed_meshes(COLLADA.replace(proper, loose).encode(), "dae", is_plain=is_plain)
-    assert found.faces.tolist() == expected.faces.tolist()
-    assert found.mesh.vertices.tolist() == expected.mesh.vertices.tolist()
+    (placed_mesh,) = placed_meshes(COLLADA.replace(proper, loose).encode(), "dae", is_plain=is_plain)
+    assert placed_mesh.faces.tolist() == expected.faces.tolist()
+    assert placed_mesh.mesh.vertices.tolist() == expected.mesh.vertices.tolist()

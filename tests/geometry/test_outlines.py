@@ -13,7 +13,7 @@ from linkwright.geometry.outlines import FACET, read_small
 
 CUBE = [(x, y, z) for x in (0.0, 1.0) for y in (0.0, 1.0) for z in (0.0, 1.0)]
 SQUARES = [(0, 1, 3, 2), (4, 6, 7, 5), (0, 4, 5, 1), (2, 3, 7, 6), (0, 2, 6, 4), (1, 5, 7, 3)]
-TRIANGLES = [each for a, b, c, d in SQUARES for each in ((a, b, c), (a, c, d))]
+TRIANGLES = [triangle for a, b, c, d in SQUARES for triangle in ((a, b, c), (a, c, d))]
 SCALES = [(1.0, 1.0, 1.0), (0.001, 0.001, 0.001), (-1.0, 2.0, 0.5), (1.0, 1.0, 0.0)]
 numbers = st.floats(-100, 100, width=32)
 points = st.tuples(numbers, numbers, numbers)

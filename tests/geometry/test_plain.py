@@ -32,7 +32,7 @@ PAIRS = '<input semantic="NORMAL" source="#n" offset="1"/><input semantic="VERTE
 KEPT = '<instance_node url="#kept"/>'
 
 
-def kept(parts: str) -> str:
+def collada_with_library(parts: str) -> str:
     """Return a file that uses a node of its library twice."""
     library = f'<library_nodes><node id="kept">{parts}</node></library_nodes><library_visual_scenes>'
     return COLLADA.replace(NODE, f"<node>{KEPT}{KEPT}</node>").replace("<library_visual_scenes>", library)
@@ -40,13 +40,15 @@ def kept(parts: str) -> str:
 
 def corners(data: bytes, kind: str, *, is_plain: bool) -> np.ndarray:
     """Return the sorted corners of all triangles in meters, each from its lowest corner; shape (n, 9)."""
-    found = []
+    vertices_by_mesh = []
     for mesh, matrix, unit, _ in (placed := placed_meshes(data, kind, is_plain=is_plain)):
         assert isinstance(mesh, PlainMesh) is is_plain
         vertices = (np.asarray(mesh.vertices) @ matrix[:3, :3].T + matrix[:3, 3]) * unit
-        found.append(vertices.round(5))
+        vertices_by_mesh.append(vertices.round(5))
     rows = [
-        list(map(tuple, vertices[face])) for vertices, each in zip(found, placed, strict=True) for face in each.faces
+        list(map(tuple, vertices[face]))
+        for vertices, mesh in zip(vertices_by_mesh, placed, strict=True)
+        for face in mesh.faces
     ]
     turned = [face[first:] + face[:first] for face in rows for first in [face.index(min(face))]]
     return np.array(sorted(turned)).reshape(-1, 9)
@@ -64,7 +66,7 @@ def corners(data: bytes, kind: str, *, is_plain: bool) -> np.ndarray:
             "<node><translate>1 2 3</translate><rotate>0 0 1 30</rotate><scale>2 3 -4</scale><node>"
             "<matrix>0 1 0 .5 -1 0 0 .25 0 0 1 0 0 0 0 1</matrix>" + NODE + "<extra/></node></node>" + NODE,
         ),
-        kept("<rotate>0.6 0.8 0 90</rotate>" + NODE),
+        collada_with_library("<rotate>0.6 0.8 0 90</rotate>" + NODE),
         COLLADA.replace(TRIANGLES, LINE + TRIANGLES + TRIANGLES.replace("0 1 2", "2 1 0")),
         SQUARE.replace("triangles", "polylist").replace("<p>0 1 2", "<vcount>5 3 4</vcount><p>0 1 2 3 4 0 2 4 4 3 2 0"),
         SQUARE.replace("triangles", "polygons").replace("0 1 2</p>", "0 1 2 4</p><p>0 3 4</p>"),
@@ -114,7 +116,7 @@ def test_collada_triangles_match_trimesh(text: str, tmp_path: Path) -> None:
         COLLADA.replace(NODE, ""),
         COLLADA.replace(' xmlns="http://www.collada.org/2005/11/COLLADASchema"', ""),
         COLLADA.replace("</COLLADA>", ""),
-        kept(KEPT),
+        collada_with_library(KEPT),
         "",
     ],
     ids=[
@@ -157,7 +159,7 @@ def test_mirrored_solid_is_watertight_without_arrays() -> None:
 
 def test_collada_with_many_instances_is_not_read_as_small_mesh() -> None:
     assert read_small(COLLADA.replace(NODE, NODE * 19_000).encode(), "dae") is not None
-    often = kept(NODE * 200).replace(KEPT, KEPT * 70)
+    often = collada_with_library(NODE * 200).replace(KEPT, KEPT * 70)
     assert read_small(often.encode(), "dae") is None
 
 

@@ -52,15 +52,15 @@ def test_quaternion_from_rpy_matches_urdf_reader(rpy):
 @given(triples)
 def test_matrix_round_trip_keeps_rotation(rpy):
     quaternion = quaternion_from_rpy(rpy)
-    found = quaternion_from_matrix(rotation_matrix(quaternion))
-    assert found[3] >= 0
-    assert abs(np.dot(found, quaternion)) == pytest.approx(1)
+    round_trip = quaternion_from_matrix(rotation_matrix(quaternion))
+    assert round_trip[3] >= 0
+    assert abs(np.dot(round_trip, quaternion)) == pytest.approx(1)
 
 
 @pytest.mark.parametrize("axis", [X, Y, Z, -X, [1, 1, 0] / np.sqrt(2)])
 def test_half_turn_matrix_gives_its_axis(axis):
-    found = quaternion_from_matrix(rotation_matrix(quaternion_about(axis, pi)))
-    assert abs(np.dot(found[:3], axis)) == pytest.approx(1)
+    round_trip = quaternion_from_matrix(rotation_matrix(quaternion_about(axis, pi)))
+    assert abs(np.dot(round_trip[:3], axis)) == pytest.approx(1)
 
 
 @given(triples, triples, vectors)

@@ -30,8 +30,8 @@ angles = st.floats(-pi, pi)
 @given(angles, angles, angles)
 def test_rpy_round_trip_keeps_rotation(roll, pitch, yaw):
     quaternion = quaternion_from_rpy((roll, pitch, yaw))
-    again = quaternion_from_rpy(rpy_from_quaternion(quaternion))
-    cosine = abs(sum(a * b for a, b in zip(quaternion, again, strict=True)))
+    round_trip = quaternion_from_rpy(rpy_from_quaternion(quaternion))
+    cosine = abs(sum(a * b for a, b in zip(quaternion, round_trip, strict=True)))
     # Near pitch = +-90 degrees urdfdom sets the roll to zero, which is off by up to 0.26 degrees.
     assert cosine > 1 - 1e-5
 

@@ -17,12 +17,12 @@ NODES = 500
 async def test_five_hundred_nodes_exchange_messages():
     clock = JumpClock()
     graph = Graph(clock=clock, on_log=print)
-    heard = [0] * NODES
+    counts = [0] * NODES
     for number in range(NODES):
         node = graph.create_node(f"node_{number}", namespace=f"robot_{number % 10}")
 
         def hear(_message, number=number):
-            heard[number] += 1
+            counts[number] += 1
 
         node.create_subscription(String, "/all", hear, 10)
         node.create_subscription(String, "ours", hear, 10)
@@ -32,10 +32,10 @@ async def test_five_hundred_nodes_exchange_messages():
     assert len(graph.node_names()) == NODES + 1
     everybody.publish(String())
     await graph.settle()
-    assert heard == [1] * NODES
+    assert counts == [1] * NODES
     await clock.advance(1.0)
     # Ten topics of fifty nodes; queues of ten keep the first of what their own fifty publish until they are read.
-    assert min(heard) > 10
+    assert min(counts) > 10
     before = len(graph.endpoints())
     graph.nodes()[0].destroy()
     assert len(graph.endpoints()) < before
@@ -104,12 +104,12 @@ async def test_thread_loses_no_reliable_messages_to_event_loop():
     """A hundred thousand messages into a queue that holds them."""
     graph = Graph(on_log=print)
     node = graph.create_node("node")
-    numbers, done = [], asyncio.Event()
+    numbers, all_received = [], asyncio.Event()
 
     def hear(message):
         numbers.append(int(message.data))
         if len(numbers) == 100_000:
-            done.set()
+            all_received.set()
 
     node.create_subscription(String, "topic", hear, 100_000)
     publisher = node.create_publisher(String, "topic", 10)
@@ -120,7 +120,7 @@ async def test_thread_loses_no_reliable_messages_to_event_loop():
 
     thread = threading.Thread(target=talk)
     thread.start()
-    await asyncio.wait_for(done.wait(), 60.0)
+    await asyncio.wait_for(all_received.wait(), 60.0)
     thread.join()
     assert numbers == list(range(100_000))
     await graph.close()

@@ -87,8 +87,10 @@ def drive_of(path: Path) -> SimulatedWorld:
     description = examine(path)
     assert description.robot is not None
     meshes = MeshLibrary(PackageFinder(start=path.parent), path.parent)
-    found = infer(description.robot, meshes)
-    return replace(SimulatedWorld.of("empty", description, found, lambda robot: infer(robot, meshes)), headless=True)
+    inference = infer(description.robot, meshes)
+    return replace(
+        SimulatedWorld.of("empty", description, inference, lambda robot: infer(robot, meshes)), headless=True
+    )
 
 
 @asynccontextmanager
@@ -144,9 +146,9 @@ async def test_drive_ends_after_simulated_seconds(tmp_path, monkeypatch):
     out, err = io.StringIO(), io.StringIO()
     options = HostOptions(port=0, open_browser=False, network=False)
     model = SimulatedView(drive, PackageFinder(start=path.parent, environment={}), options, LaunchLog(out, err))
-    heard = Recording(model.host.graph, model.host.graph.create_node("listener"), "/odom")
+    odometry = Recording(model.host.graph, model.host.graph.create_node("listener"), "/odom")
     assert await model.run(None)
-    assert heard.last.child_frame_id == "base_link", "what was inferred is what is simulated"
+    assert odometry.last.child_frame_id == "base_link", "what was inferred is what is simulated"
     assert "[gzserver-2]: has finished cleanly" in err.getvalue()
 
 

@@ -64,10 +64,12 @@ async def test_all_topics_are_recorded_with_simulated_time(tmp_path: Path) -> No
     with BagWriter(tmp_path / "run") as writer:
         assert await view.run(None, writer), err.getvalue()
     with BagReader(tmp_path / "run") as bag:
-        found = [(topic, stamp) for topic, stamp, _ in bag.messages()]
+        topics_and_stamps = [(topic, stamp) for topic, stamp, _ in bag.messages()]
         assert not bag.findings
-    assert {"/clock", "/odom", "/tf", "/tf_static", "/robot_description", "/imu"} <= {topic for topic, _ in found}
-    stamps = [stamp for _, stamp in found]
+    assert {"/clock", "/odom", "/tf", "/tf_static", "/robot_description", "/imu"} <= {
+        topic for topic, _ in topics_and_stamps
+    }
+    stamps = [stamp for _, stamp in topics_and_stamps]
     assert stamps == sorted(stamps)
     assert 0 < stamps[0] <= stamps[-1] <= 2 * SECOND
 

@@ -43,10 +43,14 @@ async def test_headless_robot_publishes_odometry_joint_states_and_tf():
     err = io.StringIO()
     view = SimulatedView(in_an_empty_world(), PackageFinder(start=MBOT.parent), OPTIONS, LaunchLog(io.StringIO(), err))
     listener = view.host.graph.create_node("listener")
-    heard = {name: Recording(view.host.graph, listener, name) for name in ("/odom", "/joint_states", "/tf", "/clock")}
+    recordings = {
+        name: Recording(view.host.graph, listener, name) for name in ("/odom", "/joint_states", "/tf", "/clock")
+    }
     assert await view.run(None), err.getvalue()
-    assert all(len(recording) > 0 for recording in heard.values()), {name: len(each) for name, each in heard.items()}
-    assert heard["/joint_states"].last.header.stamp.sec >= 1
+    assert all(len(recording) > 0 for recording in recordings.values()), {
+        name: len(recording) for name, recording in recordings.items()
+    }
+    assert recordings["/joint_states"].last.header.stamp.sec >= 1
 
 
 async def test_viewer_uses_world_frame_and_simulated_time():
@@ -60,8 +64,8 @@ async def test_viewer_uses_world_frame_and_simulated_time():
     shown = {display.cls.rpartition("/")[2]: display.checked for display in config.displays}
     assert shown == {"Grid": True, "RobotModel": False, "TF": False, "World": True, "Odometry": False}
     listener = view.host.graph.create_node("listener")
-    asked = listener.create_client(get_service("rcl_interfaces/srv/GetParameters"), "/viewer/get_parameters")
-    answer = await asked.call_async(asked.srv_type.Request(names=["use_sim_time"]))
+    client = listener.create_client(get_service("rcl_interfaces/srv/GetParameters"), "/viewer/get_parameters")
+    answer = await client.call_async(client.srv_type.Request(names=["use_sim_time"]))
     assert answer.values[0].bool_value, "what it heard before a reset would be newer than all that comes"
     view.interrupt("the test is over")
     assert await running

@@ -44,7 +44,7 @@ def world(*parts: str) -> str:
     return f'<sdf version="1.7"><world name="w">{GROUND}{"".join(parts)}</world></sdf>'
 
 
-class Shown:
+class RunningSimulation:
     """A simulation with its output."""
 
     def __init__(self, view: SimulatedView, err: io.StringIO, until: Callable[[str], object]) -> None:
@@ -55,8 +55,8 @@ class Shown:
     @property
     def simulator(self) -> Simulator:
         """The node of the simulation."""
-        running = [each for _, each in self.view.host._running.values()]
-        return next(each for each in running if isinstance(each, Simulator))
+        nodes = [node for _, node in self.view.host._running.values()]
+        return next(node for node in nodes if isinstance(node, Simulator))
 
     @property
     def server(self) -> SimulationServer:
@@ -70,24 +70,24 @@ class Shown:
 
     async def look(self, function: Callable[[Simulation], Any]) -> Any:
         """Return the result of a function in the thread of the simulation."""
-        seen: list[Any] = []
-        self.server.exchange.post(lambda: seen.append(function(self.server.simulation)))
-        await eventually(lambda: bool(seen))
-        return seen[0]
+        outcomes: list[Any] = []
+        self.server.exchange.post(lambda: outcomes.append(function(self.server.simulation)))
+        await eventually(lambda: bool(outcomes))
+        return outcomes[0]
 
     async def when(self, condition: Callable[[Simulation], bool]) -> None:
         """Wait until a condition holds in the thread of the simulation."""
-        seen: list[bool] = []
+        outcomes: list[bool] = []
 
         def is_so() -> bool:
-            self.server.exchange.post(lambda: seen.append(condition(self.server.simulation)))
-            return any(seen)
+            self.server.exchange.post(lambda: outcomes.append(condition(self.server.simulation)))
+            return any(outcomes)
 
         await eventually(is_so, what=self.err.getvalue)
 
 
 @asynccontextmanager
-async def shown(simulated: SimulatedWorld) -> AsyncIterator[Shown]:
+async def running_simulation(simulated: SimulatedWorld) -> AsyncIterator[RunningSimulation]:
     """Start a paused simulation without a page."""
     out, err = io.StringIO(), io.StringIO()
     finder = PackageFinder(start=simulated.path.parent)
@@ -101,7 +101,7 @@ async def shown(simulated: SimulatedWorld) -> AsyncIterator[Shown]:
 
     try:
         await until("gzserver-2]: started" if simulated.text else "gzserver-1]: started")
-        yield Shown(view, err, until)
+        yield RunningSimulation(view, err, until)
     finally:
         view.interrupt("the test is over")
         await running
@@ -129,60 +129,60 @@ def has(*names: str) -> Callable[[Simulation], bool]:
 
 async def test_saved_world_is_reloaded_and_unchanged_models_keep_pose(tmp_path):
     (tmp_path / "a.world").write_text(world(FALLING))
-    async with shown(SimulatedWorld(str(tmp_path / "a.world"), tmp_path / "a.world")) as it:
-        await it.look(lambda simulation: simulation.set_model_pose("falling", (1.0, 2.0, 3.0, 0.0, 0.0, 0.0, 1.0)))
+    async with running_simulation(SimulatedWorld(str(tmp_path / "a.world"), tmp_path / "a.world")) as running:
+        await running.look(lambda simulation: simulation.set_model_pose("falling", (1.0, 2.0, 3.0, 0.0, 0.0, 0.0, 1.0)))
         (tmp_path / "a.world").write_text(world(FALLING, box("new", "5 5 1 0 0 0")))
-        await it.when(has("ground", "falling", "new"))
-        assert (await it.look(lambda simulation: simulation.model_pose("falling")))[:3] == (1.0, 2.0, 3.0)
-        assert f"reloaded {tmp_path / 'a.world'}" in it.err.getvalue()
+        await running.when(has("ground", "falling", "new"))
+        assert (await running.look(lambda simulation: simulation.model_pose("falling")))[:3] == (1.0, 2.0, 3.0)
+        assert f"reloaded {tmp_path / 'a.world'}" in running.err.getvalue()
 
 
 async def test_edited_world_is_not_replaced_by_changed_file(tmp_path):
     file = tmp_path / "a.world"
     file.write_text(world(FALLING))
-    async with shown(SimulatedWorld(str(file), file)) as it:
+    async with running_simulation(SimulatedWorld(str(file), file)) as running:
         edited = world(FALLING, box("edited", "5 5 1 0 0 0"))
-        await it.look(lambda _: it.worlds.load(str(file), edited))
+        await running.look(lambda _: running.worlds.load(str(file), edited))
         file.write_text(world(box("other", "5 5 1 0 0 0")))
-        await it.until("has changed; the simulation continues with the edited world")
-        assert await it.look(has("ground", "falling", "edited"))
-        before = it.worlds.loaded
+        await running.until("has changed; the simulation continues with the edited world")
+        assert await running.look(has("ground", "falling", "edited"))
+        before = running.worlds.loaded
         file.write_text(edited)
-        await it.until("", lambda: it.worlds.loaded is not before)
+        await running.until("", lambda: running.worlds.loaded is not before)
         file.write_text(world(box("other", "5 5 1 0 0 0")))
-        await it.when(has("ground", "other"))
+        await running.when(has("ground", "other"))
 
 
 async def test_broken_world_is_reported_and_simulation_continues(tmp_path):
     (tmp_path / "a.world").write_text(world(FALLING))
-    async with shown(SimulatedWorld(str(tmp_path / "a.world"), tmp_path / "a.world")) as it:
+    async with running_simulation(SimulatedWorld(str(tmp_path / "a.world"), tmp_path / "a.world")) as running:
         (tmp_path / "a.world").write_text("<sdf version='1.7'><world></sdf>")
-        await it.until("error[XML")
-        assert [finding.code[:3] for finding in it.view.reload.findings()] == ["XML"]
-        assert await it.look(has("ground", "falling"))
+        await running.until("error[XML")
+        assert [finding.code[:3] for finding in running.view.reload.findings()] == ["XML"]
+        assert await running.look(has("ground", "falling"))
         (tmp_path / "a.world").write_text(world(box("new", "5 5 1 0 0 0")))
-        await it.until("repaired")
-        await it.when(has("ground", "new"))
-        assert it.view.reload.findings() == []
+        await running.until("repaired")
+        await running.when(has("ground", "new"))
+        assert running.view.reload.findings() == []
 
 
 async def test_world_that_cannot_be_simulated_is_reported(tmp_path):
     (tmp_path / "a.world").write_text(world(FALLING))
-    async with shown(SimulatedWorld(str(tmp_path / "a.world"), tmp_path / "a.world")) as it:
+    async with running_simulation(SimulatedWorld(str(tmp_path / "a.world"), tmp_path / "a.world")) as running:
         never = '<physics type="ode"><max_step_size>-1</max_step_size></physics>'
         (tmp_path / "a.world").write_text(world(FALLING, never))
-        await it.until("; the simulation continues unchanged")
-        assert "the changed world was not loaded: " in it.err.getvalue()
-        assert "a time step of -1.0 s" in it.err.getvalue()
+        await running.until("; the simulation continues unchanged")
+        assert "the changed world was not loaded: " in running.err.getvalue()
+        assert "a time step of -1.0 s" in running.err.getvalue()
 
 
 async def test_included_model_is_watched(tmp_path):
     (tmp_path / "crate").mkdir()
     (tmp_path / "crate/model.sdf").write_text(f'<sdf version="1.7">{FALLING}</sdf>')
     (tmp_path / "a.world").write_text(world("<include><uri>model://crate</uri></include>"))
-    async with shown(SimulatedWorld(str(tmp_path / "a.world"), tmp_path / "a.world")) as it:
+    async with running_simulation(SimulatedWorld(str(tmp_path / "a.world"), tmp_path / "a.world")) as running:
         (tmp_path / "crate/model.sdf").write_text(f'<sdf version="1.7">{box("crate", "1 1 1 0 0 0")}</sdf>')
-        await it.when(has("ground", "crate"))
+        await running.when(has("ground", "crate"))
 
 
 async def test_saved_robot_is_reloaded_with_pose_and_joint_positions(tmp_path):
@@ -190,25 +190,25 @@ async def test_saved_robot_is_reloaded_with_pose_and_joint_positions(tmp_path):
         simulation.set_model_pose("arm", (1.0, 2.0, 3.0, 0.0, 0.0, 0.0, 1.0))
         simulation.set_joint_position("arm::turn", 0.5)
 
-    async with shown(with_robot(tmp_path, ARM.format(""))) as it:
-        await it.look(elsewhere)
+    async with running_simulation(with_robot(tmp_path, ARM.format(""))) as running:
+        await running.look(elsewhere)
         (tmp_path / "robot.urdf").write_text(ARM.format(MORE))
-        await it.when(lambda simulation: "arm::more" in simulation.scene.bodies)
-        pose = await it.look(lambda simulation: simulation.model_pose("arm"))
+        await running.when(lambda simulation: "arm::more" in simulation.scene.bodies)
+        pose = await running.look(lambda simulation: simulation.model_pose("arm"))
         assert pose[:3] == pytest.approx((1.0, 2.0, 3.0))
-        assert (await it.look(lambda simulation: simulation.joint_state("arm::turn")))[0] == pytest.approx(0.5)
+        assert (await running.look(lambda simulation: simulation.joint_state("arm::turn")))[0] == pytest.approx(0.5)
         (tmp_path / "robot.urdf").write_text(ARM.format("<link"))
-        await it.until("error[XML")
-        assert await it.look(lambda simulation: "arm::more" in simulation.scene.bodies)
+        await running.until("error[XML")
+        assert await running.look(lambda simulation: "arm::more" in simulation.scene.bodies)
 
 
 async def test_driven_robot_is_completed_again_after_change(tmp_path):
     (tmp_path / "mbot.urdf").write_text(MBOT)
-    async with shown(drive_of(tmp_path / "mbot.urdf")) as it:
+    async with running_simulation(drive_of(tmp_path / "mbot.urdf")) as running:
         mast = '<link name="mast"/><joint name="m" type="fixed"><parent link="base_link"/><child link="mast"/></joint>'
         (tmp_path / "mbot.urdf").write_text(MBOT.replace("</robot>", f"{mast}</robot>"))
-        await it.when(lambda simulation: "mbot::mast" in simulation.scene.bodies)
-        radius = await it.look(lambda simulation: simulation.wheel_radius("mbot::left_wheel_link"))
+        await running.when(lambda simulation: "mbot::mast" in simulation.scene.bodies)
+        radius = await running.look(lambda simulation: simulation.wheel_radius("mbot::left_wheel_link"))
         assert radius == pytest.approx(0.06)
 
 
@@ -226,12 +226,12 @@ CUBE = "".join(
 async def test_changed_robot_mesh_is_reloaded(tmp_path):
     (tmp_path / "part.stl").write_text(f"solid part\n{CUBE}endsolid part\n")
     mesh = '<visual><geometry><mesh filename="part.stl"/></geometry></visual>'
-    async with shown(
+    async with running_simulation(
         with_robot(tmp_path, ARM.format("").replace('<link name="tip">', f'<link name="tip">{mesh}'))
-    ) as it:
-        assert await it.look(_extent) < 1.5
+    ) as running:
+        assert await running.look(_extent) < 1.5
         (tmp_path / "part.stl").write_text(f"solid part\n{CUBE.replace('1 0 0', '3 0 0')}endsolid part\n")
-        await it.when(lambda simulation: _extent(simulation) > 2.0)
+        await running.when(lambda simulation: _extent(simulation) > 2.0)
 
 
 async def test_changed_world_mesh_is_reloaded(tmp_path):
@@ -239,12 +239,12 @@ async def test_changed_world_mesh_is_reloaded(tmp_path):
     mesh = '<visual name="v"><geometry><mesh><uri>part.stl</uri></mesh></geometry></visual>'
     part = f'<model name="part"><static>true</static><link name="l">{mesh}</link></model>'
     (tmp_path / "a.world").write_text(world(FALLING, part))
-    async with shown(SimulatedWorld(str(tmp_path / "a.world"), tmp_path / "a.world")) as it:
-        await it.look(lambda simulation: simulation.set_model_pose("falling", (1.0, 2.0, 3.0, 0.0, 0.0, 0.0, 1.0)))
-        assert await it.look(_extent) < 1.5
+    async with running_simulation(SimulatedWorld(str(tmp_path / "a.world"), tmp_path / "a.world")) as running:
+        await running.look(lambda simulation: simulation.set_model_pose("falling", (1.0, 2.0, 3.0, 0.0, 0.0, 0.0, 1.0)))
+        assert await running.look(_extent) < 1.5
         (tmp_path / "part.stl").write_text(f"solid part\n{CUBE.replace('1 0 0', '3 0 0')}endsolid part\n")
-        await it.when(lambda simulation: _extent(simulation) > 2.0)
-        assert (await it.look(lambda simulation: simulation.model_pose("falling")))[:3] == (1.0, 2.0, 3.0)
+        await running.when(lambda simulation: _extent(simulation) > 2.0)
+        assert (await running.look(lambda simulation: simulation.model_pose("falling")))[:3] == (1.0, 2.0, 3.0)
 
 
 def _extent(simulation: Simulation) -> float:

@@ -34,7 +34,9 @@ def _logs(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
 
 
 @asynccontextmanager
-async def shown(path: Path, foxglove: int | None = None) -> AsyncIterator[tuple[ModelView, Callable[[str], object]]]:
+async def opened_view(
+    path: Path, foxglove: int | None = None
+) -> AsyncIterator[tuple[ModelView, Callable[[str], object]]]:
     """Start a view, and return a function that waits for a printed text; the view must end without a failure."""
     out, err = io.StringIO(), io.StringIO()
     finder = PackageFinder(start=path.parent, environment={})
@@ -61,7 +63,7 @@ def names_started(printed: str) -> list[str]:
 
 async def test_viewer_starts_before_nodes(tmp_path: Path) -> None:
     (tmp_path / "m.urdf").write_text(GOOD)
-    async with shown(tmp_path / "m.urdf") as (_, until):
+    async with opened_view(tmp_path / "m.urdf") as (_, until):
         await until("Robot initialized")
         printed = await until("joint_state_publisher_gui-2]: started")
         assert names_started(printed) == ["viewer-3", "robot_state_publisher-1", "joint_state_publisher_gui-2"]
@@ -127,14 +129,14 @@ async def test_interrupt_while_viewer_loads_starts_nothing(tmp_path: Path, monke
 
 async def test_foxglove_option_starts_bridge(tmp_path: Path) -> None:
     (tmp_path / "m.urdf").write_text(GOOD)
-    async with shown(tmp_path / "m.urdf", foxglove=0) as (_, until):
+    async with opened_view(tmp_path / "m.urdf", foxglove=0) as (_, until):
         assert names_started(await until("foxglove_bridge-4]: started"))[-1] == "foxglove_bridge-4"
 
 
 async def test_broken_model_is_published_once_fixed(tmp_path: Path) -> None:
     path = tmp_path / "m.urdf"
     path.write_text(BROKEN)
-    async with shown(path) as (view, until):
+    async with opened_view(path) as (view, until):
         printed = await until("joint_state_publisher_gui-1]: started")
         assert "error[XML" in printed
         assert names_started(printed) == ["viewer-2", "joint_state_publisher_gui-1"]
@@ -148,7 +150,7 @@ async def test_broken_model_is_published_once_fixed(tmp_path: Path) -> None:
 async def test_errors_are_not_repeated_when_other_files_change(tmp_path: Path) -> None:
     path = tmp_path / "m.urdf"
     path.write_text(BROKEN)
-    async with shown(path) as (view, until):
+    async with opened_view(path) as (view, until):
         await until("joint_state_publisher_gui-1]: started")
         for changed, times in ((tmp_path / "log.txt", 1), (path, 2)):
             view.reload._on_change({changed})
@@ -168,10 +170,10 @@ def test_missing_model_is_one_error(tmp_path: Path, capsys: pytest.CaptureFixtur
 
 def test_used_port_is_reported(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     (tmp_path / "m.urdf").write_text(GOOD)
-    with socket.socket() as taken:
-        taken.bind(("127.0.0.1", 0))
-        taken.listen()
-        port = taken.getsockname()[1]
+    with socket.socket() as server:
+        server.bind(("127.0.0.1", 0))
+        server.listen()
+        port = server.getsockname()[1]
         assert run_view(tmp_path / "m.urdf", {}, HostOptions(port=port, open_browser=False)) == 1
     err = capsys.readouterr().err
     assert f"{port}" in err
@@ -182,7 +184,7 @@ async def test_sdf_model_is_shown(tmp_path: Path) -> None:
     box = "<geometry><box><size>1 1 1</size></box></geometry>"
     link = f'<link name="base"><visual name="v">{box}</visual></link>'
     (tmp_path / "crate.sdf").write_text(f'<sdf version="1.9"><model name="crate">{link}</model></sdf>')
-    async with shown(tmp_path / "crate.sdf") as (view, until):
+    async with opened_view(tmp_path / "crate.sdf") as (view, until):
         assert "Unable to initialize" not in await until("Robot initialized")
         known = view.descriptions.expand(XacroCall(tmp_path / "crate.sdf"))
         robot = view.descriptions.library.read(known).robot
@@ -195,7 +197,7 @@ async def test_arguments_from_page_complete_the_robot(tmp_path: Path) -> None:
     path.write_text(
         '<robot xmlns:xacro="http://www.ros.org/wiki/xacro" name="a"><link name="$(arg side)_link"/></robot>'
     )
-    async with shown(path) as (view, until):
+    async with opened_view(path) as (view, until):
         await until("the argument 'side' is not declared")
         await until("[viewer-2]: started")
         viewer = view._viewer

@@ -26,18 +26,18 @@ def of(tmp_path):
 
 
 def test_default_density_is_that_of_water(of):
-    found = of(f"<visual>{BOX}</visual>")
-    assert (found.kind, found.shapes, found.basis) == ("visual", 1, "density")
-    assert found.properties.mass == pytest.approx(8.0)
-    assert found.density == pytest.approx(1000.0)
+    estimated = of(f"<visual>{BOX}</visual>")
+    assert (estimated.kind, estimated.shapes, estimated.basis) == ("visual", 1, "density")
+    assert estimated.properties.mass == pytest.approx(8.0)
+    assert estimated.density == pytest.approx(1000.0)
 
 
 def test_mass_of_file_is_kept(of):
-    found = of(f"{INERTIAL.format(2)}<visual>{BOX}</visual>")
-    assert found.basis == "present"
-    assert found.properties.mass == pytest.approx(2.0)
-    assert found.density == pytest.approx(250.0)
-    assert found.properties.inertia[0, 0] == pytest.approx(2.0 * 0.04 * 2 / 12)
+    estimated = of(f"{INERTIAL.format(2)}<visual>{BOX}</visual>")
+    assert estimated.basis == "present"
+    assert estimated.properties.mass == pytest.approx(2.0)
+    assert estimated.density == pytest.approx(250.0)
+    assert estimated.properties.inertia[0, 0] == pytest.approx(2.0 * 0.04 * 2 / 12)
 
 
 def test_negative_mass_of_file_is_replaced(of):
@@ -58,49 +58,51 @@ def test_collision_shapes_are_preferred_unless_visuals_are_requested(of):
 
 
 def test_several_shapes_combine_to_one_body(of):
-    found = of(
+    estimated = of(
         f'<visual><origin xyz="0 0 0.1"/>{BOX}</visual><visual><origin xyz="0 0 -0.1"/>{BOX}</visual>', density=100.0
     )
-    assert found.shapes == 2
-    assert np.allclose(found.properties.center, 0)
-    assert found.properties.mass == pytest.approx(1.6)
-    assert found.properties.inertia[0, 0] == pytest.approx(1.6 * (0.04 + 0.16) / 12)
+    assert estimated.shapes == 2
+    assert np.allclose(estimated.properties.center, 0)
+    assert estimated.properties.mass == pytest.approx(1.6)
+    assert estimated.properties.inertia[0, 0] == pytest.approx(1.6 * (0.04 + 0.16) / 12)
 
 
 def test_link_without_shapes_has_no_properties(of):
-    found = of("")
-    assert found.properties is None
-    assert found.kind is None
+    estimated = of("")
+    assert estimated.properties is None
+    assert estimated.kind is None
 
 
 def test_capsule_has_mass_of_cylinder_and_sphere(of):
-    found = of('<collision><geometry><capsule radius="0.1" length="0.2"/></geometry></collision>', density=1.0)
-    assert found.properties.mass == pytest.approx(np.pi * 0.01 * 0.2 + 4 / 3 * np.pi * 0.001)
+    estimated = of('<collision><geometry><capsule radius="0.1" length="0.2"/></geometry></collision>', density=1.0)
+    assert estimated.properties.mass == pytest.approx(np.pi * 0.01 * 0.2 + 4 / 3 * np.pi * 0.001)
 
 
 def test_open_mesh_is_replaced_by_convex_hull_with_note(of, tmp_path):
     (tmp_path / "open.obj").write_text(TETRAHEDRON)
-    found = of('<collision><geometry><mesh filename="open.obj" scale="1 -2 3"/></geometry></collision>', density=1.0)
-    assert found.properties.mass == pytest.approx(1.0)
-    assert np.allclose(found.properties.center, (0.25, -0.5, 0.75))
-    assert found.notes == ("the collision mesh 'open.obj' is not watertight: its convex hull is used",)
+    estimated = of(
+        '<collision><geometry><mesh filename="open.obj" scale="1 -2 3"/></geometry></collision>', density=1.0
+    )
+    assert estimated.properties.mass == pytest.approx(1.0)
+    assert np.allclose(estimated.properties.center, (0.25, -0.5, 0.75))
+    assert estimated.notes == ("the collision mesh 'open.obj' is not watertight: its convex hull is used",)
 
 
 def test_missing_collision_mesh_falls_back_to_visuals(of):
-    found = of(f'<visual>{BOX}</visual><collision><geometry><mesh filename="none.stl"/></geometry></collision>')
-    assert found.kind == "visual"
-    assert found.notes[0].startswith("a collision mesh is left out: there is no mesh file")
-    assert found.notes[1] == "the visual shapes are used instead"
+    estimated = of(f'<visual>{BOX}</visual><collision><geometry><mesh filename="none.stl"/></geometry></collision>')
+    assert estimated.kind == "visual"
+    assert estimated.notes[0].startswith("a collision mesh is left out: there is no mesh file")
+    assert estimated.notes[1] == "the visual shapes are used instead"
 
 
 def test_shapes_without_volume_are_left_out(of, tmp_path):
     (tmp_path / "flat.obj").write_text("v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n")
-    found = of(
+    estimated = of(
         '<visual><geometry><box size="1 0 1"/></geometry></visual>'
         '<visual><geometry><mesh filename="flat.obj"/></geometry></visual>'
     )
-    assert found.properties is None
-    assert found.notes == (
+    assert estimated.properties is None
+    assert estimated.notes == (
         "a visual box is left out: it has a size that is not positive",
         "the visual mesh 'flat.obj' is left out: it is flat",
     )

@@ -57,7 +57,7 @@ def test_reading_mesh_releases_memory_of_file(kind, tmp_path):
 def _bytes_of_meshes():
     """Return the number of objects with corners, triangles or the bytes of a file."""
     kinds = (trimesh.caching.TrackedArray, trimesh.caching.DataStore, trimesh.parent.LoadSource)
-    return sum(isinstance(each, kinds) for each in gc.get_objects())
+    return sum(isinstance(candidate, kinds) for candidate in gc.get_objects())
 
 
 @pytest.mark.parametrize("kind", ["stl", "stl_ascii", "obj", "dae", "glb", "gltf"])

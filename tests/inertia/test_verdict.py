@@ -21,8 +21,8 @@ def verdict_on(tmp_path, inertial, shapes=BALL, more=""):
         '<joint name="j" type="continuous"><parent link="world"/><child link="a"/></joint>' + more + "</robot>"
     )
     robot = read(parse(text, "r.urdf")).robot
-    found = estimate(robot.links["a"], MeshLibrary(PackageFinder(start=[tmp_path]), tmp_path))
-    return assess(robot.links["a"], found, Bodies(robot))
+    inertia_estimate = estimate(robot.links["a"], MeshLibrary(PackageFinder(start=[tmp_path]), tmp_path))
+    return assess(robot.links["a"], inertia_estimate, Bodies(robot))
 
 
 def inertial(mass=4.0, moment=0.016, origin="0 0 0"):
@@ -68,7 +68,7 @@ def test_worst_grade_is_reported_and_sorts_first(tmp_path):
     worse = verdict_on(tmp_path, inertial(moment=16))
     bad = verdict_on(tmp_path, inertial(moment=1.6))
     fine = verdict_on(tmp_path, inertial())
-    assert sorted([fine, bad, worse, verdict], key=lambda each: each.sort_key) == [verdict, worse, bad, fine]
+    assert sorted([fine, bad, worse, verdict], key=lambda verdict: verdict.sort_key) == [verdict, worse, bad, fine]
 
 
 def test_tiny_mass_in_large_shape_has_zero_density(tmp_path):

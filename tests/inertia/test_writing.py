@@ -31,11 +31,11 @@ def write(tmp_path):
         path.write_bytes(text if isinstance(text, bytes) else text.encode())
         robot = load(path)
         written = write_inertials(robot, dict.fromkeys(links or ("a",), CUBE))
-        again = load(path)
+        reloaded = load(path)
         for link in written.links:
-            assert again.links[link].inertial is not None
-            assert again.links[link].inertial.mass == 1.0
-            assert again.links[link].inertial.ixx == pytest.approx(CUBE.inertia[0, 0], rel=1e-5)
+            assert reloaded.links[link].inertial is not None
+            assert reloaded.links[link].inertial.mass == 1.0
+            assert reloaded.links[link].inertial.ixx == pytest.approx(CUBE.inertia[0, 0], rel=1e-5)
         return written, path.read_bytes().decode("utf-8")
 
     return run

@@ -26,14 +26,14 @@ MOTOR = (20.0, 1.5)
 
 def standing(title: str) -> tuple[Simulation, Drive]:
     """Return a robot on the ground, and its drive."""
-    document, found = read_and_inferred(ROBOTS[title])
-    robot = read(complete_description(document, found)).robot
+    document, inference = read_and_inferred(ROBOTS[title])
+    robot = read(complete_description(document, inference)).robot
     assert robot is not None
-    assert found.drive is not None
+    assert inference.drive is not None
     simulation = simulated(GROUND)
     model = model_from_robot(robot, lump_fixed_joints=True).model
-    simulation.spawn(model, "r", (0.0, 0.0, -found.ground, 0.0, 0.0, 0.0, 1.0))
-    return simulation, found.drive
+    simulation.spawn(model, "r", (0.0, 0.0, -inference.ground, 0.0, 0.0, 0.0, 1.0))
+    return simulation, inference.drive
 
 
 def motors(simulation: Simulation, drive: Drive) -> tuple[list[Motor], list[Motor]]:

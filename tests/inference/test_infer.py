@@ -43,33 +43,33 @@ FOUR = (wheel("a", 0.2, 0.2), wheel("b", 0.2, -0.2), wheel("c", -0.2, 0.2), whee
 
 
 def test_named_wheels_drive_and_other_wheels_roll_freely():
-    found = inferred(robot(*FOUR), wheels=["c_joint", "d"])
-    assert found.drive is not None
-    assert found.drive.kind == "differential"
-    assert [each.link for each in (*found.drive.left, *found.drive.right)] == ["c", "d"]
-    assert found.held_joints == ()
+    inference = inferred(robot(*FOUR), wheels=["c_joint", "d"])
+    assert inference.drive is not None
+    assert inference.drive.kind == "differential"
+    assert [wheel.link for wheel in (*inference.drive.left, *inference.drive.right)] == ["c", "d"]
+    assert inference.held_joints == ()
 
 
 def test_requested_drive_kind_is_inferred():
-    found = inferred(robot(*FOUR), kind="mecanum")
-    assert found.drive is not None
-    assert found.drive.kind == "mecanum"
+    inference = inferred(robot(*FOUR), kind="mecanum")
+    assert inference.drive is not None
+    assert inference.drive.kind == "mecanum"
 
 
 def test_requested_drive_kind_overrides_plugin_of_file():
     plugin = '<gazebo><plugin name="d" filename="libgazebo_ros_planar_move.so"/></gazebo>'
     own = inferred(robot(*FOUR, plugin))
     assert own.drive is None
-    asked = inferred(robot(*FOUR, plugin), kind="skid")
-    assert asked.drive is not None
-    assert asked.drive.kind == "skid"
+    skid_steered = inferred(robot(*FOUR, plugin), kind="skid")
+    assert skid_steered.drive is not None
+    assert skid_steered.drive.kind == "skid"
 
 
 def test_kind_joints_gives_joint_drive_without_fixed_base():
-    found = inferred(robot(*FOUR), kind="joints")
-    assert found.drive is not None
-    assert found.drive.kind == "joints"
-    assert not found.fixed_base
+    inference = inferred(robot(*FOUR), kind="joints")
+    assert inference.drive is not None
+    assert inference.drive.kind == "joints"
+    assert not inference.fixed_base
 
 
 @pytest.mark.parametrize(
@@ -116,11 +116,11 @@ def _saved(folder: Path, *parts: str):
 
 def test_round_mesh_becomes_wheel_with_cylinder_collision(tyre):
     description = _saved(tyre, wheel("a", 0, 0.2, shapes=MESH), wheel("b", 0, -0.2, shapes=MESH))
-    found = inferred(description, tyre)
-    assert found.drive is not None
-    assert found.drive.radius == pytest.approx(0.08, rel=1e-6)
-    assert found.drive.left[0].width == pytest.approx(0.04, rel=1e-6)
-    collision = next(finding for finding in found.findings if finding.diagnostic.code == "DRIVE101").added[0]
+    inference = inferred(description, tyre)
+    assert inference.drive is not None
+    assert inference.drive.radius == pytest.approx(0.08, rel=1e-6)
+    assert inference.drive.left[0].width == pytest.approx(0.04, rel=1e-6)
+    collision = next(finding for finding in inference.findings if finding.diagnostic.code == "DRIVE101").added[0]
     shape = next(collision.first("geometry").elements())
     assert shape.tag == "cylinder"
     assert float(shape.attributes["radius"]) == pytest.approx(0.08)
@@ -135,9 +135,9 @@ def test_square_mesh_is_not_a_wheel(tmp_path):
 
 def test_missing_wheel_mesh_is_reported(tmp_path):
     description = _saved(tmp_path, wheel("a", 0, 0.2, shapes=MESH), wheel("b", 0, -0.2, shapes=MESH))
-    found = inferred(description, tmp_path)
-    assert found.drive is None
-    assert "mesh 'tyre.stl' of link 'a', which may be a wheel, cannot be read" in found.diagnostics[-1].message
+    inference = inferred(description, tmp_path)
+    assert inference.drive is None
+    assert "mesh 'tyre.stl' of link 'a', which may be a wheel, cannot be read" in inference.diagnostics[-1].message
 
 
 def test_mesh_with_many_vertices_becomes_box(tmp_path):

@@ -31,35 +31,37 @@ def inferred(text: str) -> Inference:
     return read_and_inferred(text)[1]
 
 
-def shown(found: Inference) -> str:
+def summary_of(inference: Inference) -> str:
     """Return an inference in the form of the page."""
-    drive = found.drive
+    drive = inference.drive
     lines = ["none"]
     if drive is not None:
         lines = [f"{drive.kind} {drive.separation:.3g} {2 * drive.radius:.3g}"]
-    lines[0] += f" ground {round(found.ground, 4) + 0.0:g} base {found.base_frame}"
+    lines[0] += f" ground {round(inference.ground, 4) + 0.0:g} base {inference.base_frame}"
     if drive is not None and drive.left:
-        left, right = (" ".join(each.joint for each in side) for side in (drive.left, drive.right))
+        left, right = (" ".join(wheel.joint for wheel in side) for side in (drive.left, drive.right))
         lines.append(f"left {left}; right {right}")
-    lines += [f"casters {' '.join(found.casters)}"] if found.casters else []
-    lines += [f"held {' '.join(found.held_joints)}"] if found.held_joints else []
-    lines += [f"{diagnostic.code} {diagnostic.severity.value} {diagnostic.message}" for diagnostic in found.diagnostics]
+    lines += [f"casters {' '.join(inference.casters)}"] if inference.casters else []
+    lines += [f"held {' '.join(inference.held_joints)}"] if inference.held_joints else []
+    lines += [
+        f"{diagnostic.code} {diagnostic.severity.value} {diagnostic.message}" for diagnostic in inference.diagnostics
+    ]
     return "".join(f"{line}\n" for line in lines)
 
 
 @pytest.mark.parametrize(("title", "robot", "expected"), CASES, ids=[case[0] for case in CASES])
 def test_inference_matches_markdown_case(title, robot, expected):
-    assert shown(inferred(robot)) == expected
+    assert summary_of(inferred(robot)) == expected
 
 
 @pytest.mark.parametrize("robot", [case[1] for case in CASES], ids=[case[0] for case in CASES])
 def test_completed_robot_needs_no_inference(robot):
-    document, found = read_and_inferred(robot)
+    document, inference = read_and_inferred(robot)
     before = write(document)
-    text = write(complete_description(document, found))
+    text = write(complete_description(document, inference))
     assert write(document) == before, "the document that was read stays as it is"
-    again = examine(text)
-    assert not again.diagnostics
+    completed = examine(text)
+    assert not completed.diagnostics
     assert {diagnostic.code for diagnostic in inferred(text).diagnostics} <= {
         "DRIVE201",
         "DRIVE202",
@@ -70,6 +72,6 @@ def test_completed_robot_needs_no_inference(robot):
 
 @pytest.mark.parametrize("robot", [case[1] for case in CASES], ids=[case[0] for case in CASES])
 def test_inferred_elements_have_source_locations(robot):
-    document, found = read_and_inferred(robot)
-    assert all(diagnostic.span is not None and diagnostic.source is not None for diagnostic in found.diagnostics)
-    assert all(each.source is not None for each in complete_description(document, found).root.walk())
+    document, inference = read_and_inferred(robot)
+    assert all(diagnostic.span is not None and diagnostic.source is not None for diagnostic in inference.diagnostics)
+    assert all(element.source is not None for element in complete_description(document, inference).root.walk())

@@ -24,9 +24,9 @@ def write(tmp_path):
         path = tmp_path / name
         path.write_bytes(text.encode())
         description = examine(path)
-        found = infer(description.robot, MeshLibrary(PackageFinder(start=tmp_path), tmp_path))
-        written = write_inference(description.robot, found)
-        return written, read(complete_description(description.document, found)).robot, path.read_bytes().decode()
+        inference = infer(description.robot, MeshLibrary(PackageFinder(start=tmp_path), tmp_path))
+        written = write_inference(description.robot, inference)
+        return written, read(complete_description(description.document, inference)).robot, path.read_bytes().decode()
 
     return run
 
@@ -35,14 +35,14 @@ def write(tmp_path):
 def test_written_file_describes_completed_robot(write, tmp_path, robot):
     written, expected, text = write(robot)
     assert not written.refused
-    again = load(tmp_path / "r.urdf")
-    assert dict(again.links) == dict(expected.links)
-    assert dict(again.joints) == dict(expected.joints)
-    assert [extension.tag for extension in again.extensions] == [extension.tag for extension in expected.extensions]
-    kept = iter(text.splitlines())
+    reloaded = load(tmp_path / "r.urdf")
+    assert dict(reloaded.links) == dict(expected.links)
+    assert dict(reloaded.joints) == dict(expected.joints)
+    assert [extension.tag for extension in reloaded.extensions] == [extension.tag for extension in expected.extensions]
+    written_lines = iter(text.splitlines())
     for line in robot.splitlines():
         if "/>" not in line and "axis" not in line:
-            assert line in kept, "lines stay, in their order"
+            assert line in written_lines, "lines stay, in their order"
 
 
 def test_new_elements_have_indentation_and_line_endings_of_file(write):
@@ -72,7 +72,7 @@ def test_link_of_macro_is_refused_and_other_links_are_written(write):
     )
     assert written.count == 2
     assert text.count("<collision>") == 1
-    assert [each.code for each in written.refused] == ["DRIVE301", "DRIVE301"]
+    assert [diagnostic.code for diagnostic in written.refused] == ["DRIVE301", "DRIVE301"]
     assert "the macro 'part' generates it" in written.refused[0].message
     assert written.refused[0].span is not None
 
@@ -92,7 +92,9 @@ def test_drive_with_joint_names_from_expressions_is_refused(write):
         "r.urdf.xacro",
     )
     assert "<gazebo>" not in text
-    assert any("the referenced name 'p_l' comes from an expression" in each.message for each in written.refused)
+    assert any(
+        "the referenced name 'p_l' comes from an expression" in diagnostic.message for diagnostic in written.refused
+    )
     assert text.count("<inertial>") == 3
 
 
@@ -100,8 +102,8 @@ def test_file_changed_since_reading_is_refused(tmp_path):
     path = tmp_path / "r.urdf"
     path.write_text('<robot name="r"><link name="a"/></robot>')
     description = examine(path)
-    found = infer(description.robot, MeshLibrary(PackageFinder(start=tmp_path), tmp_path))
+    inference = infer(description.robot, MeshLibrary(PackageFinder(start=tmp_path), tmp_path))
     path.write_text('<robot name="r"><link name="abc"/></robot>')
-    written = write_inference(description.robot, found)
+    written = write_inference(description.robot, inference)
     assert "has changed since it was read" in written.refused[0].message
     assert path.read_text() == '<robot name="r"><link name="abc"/></robot>'

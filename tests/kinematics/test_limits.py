@@ -14,8 +14,8 @@ STEP = 0.01
 WANTED = some.lists(some.floats(-5.0, 5.0), min_size=1, max_size=60)
 
 
-def limited_speeds(limiter: SpeedLimiter, wanted: list[float]) -> list[float]:
-    return [limiter.approach(each, STEP) for each in wanted]
+def limited_speeds(limiter: SpeedLimiter, targets: list[float]) -> list[float]:
+    return [limiter.approach(speed, STEP) for speed in targets]
 
 
 @given(WANTED)

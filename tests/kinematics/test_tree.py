@@ -122,9 +122,9 @@ class TestArm:
             self.tree.forward({"j_3": 1})
         assert caught.value.name == "j_3"
         assert isinstance(caught.value, LinkwrightError)
-        found = caught.value.diagnostics[0]
-        assert (found.code, found.message) == ("KIN101", "the robot has no joint 'j_3'")
-        assert "'j3'" in found.hint
+        diagnostic = caught.value.diagnostics[0]
+        assert (diagnostic.code, diagnostic.message) == ("KIN101", "the robot has no joint 'j_3'")
+        assert "'j3'" in diagnostic.hint
 
     def test_position_of_fixed_joint_is_rejected(self):
         with pytest.raises(UnknownNameError) as caught:

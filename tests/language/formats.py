@@ -73,9 +73,9 @@ class Place:
         workspace = Workspace([folder or file.parents[2]])
         text = text.replace("|", "", 1)
         self.document = Document(workspace, {file: text}, file, text)
-        found = format_of(file)
-        assert isinstance(found, Format)
-        self.format = found
+        file_format = format_of(file)
+        assert isinstance(file_format, Format)
+        self.format = file_format
 
     def items(self) -> list[Completion]:
         """Return the completions."""
@@ -88,8 +88,8 @@ class Place:
 
     def hover(self) -> str:
         """Return the hover; empty if there is none."""
-        found = self.format.explain(self.document, self.offset)
-        return "" if found is None else localized(found.text)
+        explanation = self.format.explain(self.document, self.offset)
+        return "" if explanation is None else localized(explanation.text)
 
     def targets(self) -> list[str]:
         """Return the definitions, each as the name of the file and the text at the location."""

@@ -63,7 +63,7 @@ def test_requests_survive_any_incomplete_description(cut, name):
     for start, end in ((offset, offset), (offset, other)):
         value = selected_value(text, start, end)
         assert value is None or start <= value.start < value.end <= end or start == end
-        assert all(one.end <= end for one in selected_elements(text, start, end))
+        assert all(element.end <= end for element in selected_elements(text, start, end))
         assert all(offer.title for offer in offers_at(text, file, start, end, names))
     comment = suppression(text, file, "LW104", offset)
     assert comment is None or 0 <= comment.start <= len(text)

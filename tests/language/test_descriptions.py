@@ -79,9 +79,9 @@ def offered(package: Path):
         project = Workspace([package])
         project.index.refresh()
         texts = {file: text}
-        found = complete(Document(project, texts, file, text), offset, project.names(file, texts))
-        assert len({item.label for item in found}) == len(found)
-        return [item.label for item in found if item.label.startswith(text[item.start : offset])]
+        completions = complete(Document(project, texts, file, text), offset, project.names(file, texts))
+        assert len({item.label for item in completions}) == len(completions)
+        return [item.label for item in completions if item.label.startswith(text[item.start : offset])]
 
     return labels
 
@@ -201,8 +201,8 @@ def explained(package: Path):
         text, file = text.replace("|", "", 1), package / name
         project = Workspace([package])
         project.index.refresh()
-        found = explain_at(Document(project, {file: text}, file, text), offset, project.names(file, {file: text}))
-        return "" if found is None else localized(found.text)
+        explanation = explain_at(Document(project, {file: text}, file, text), offset, project.names(file, {file: text}))
+        return "" if explanation is None else localized(explanation.text)
 
     return hover
 

@@ -34,9 +34,9 @@ def folder(tmp_path: Path) -> Path:
 
 @pytest.fixture
 def index(folder: Path) -> IncludeIndex:
-    found = IncludeIndex([folder])
-    found.refresh()
-    return found
+    index = IncludeIndex([folder])
+    index.refresh()
+    return index
 
 
 def names(folder: Path, files: list[Path]) -> list[str]:
@@ -60,12 +60,12 @@ def test_related_files_start_with_the_file_and_its_includes(tmp_path):
         one=f"<robot>{arms}</robot>",
         two=f"<robot>{arms}</robot>",
     )
-    found = IncludeIndex([real_path(tmp_path)])
-    found.refresh()
+    index = IncludeIndex([real_path(tmp_path)])
+    index.refresh()
     folder = real_path(tmp_path) / "arms" / "urdf"
-    related = found.related(folder / "one.xacro", {})
+    related = index.related(folder / "one.xacro", {})
     assert [file.stem for file in related] == ["one", "middle", "right", "left"]
-    assert found.related(folder / "left.xacro", {})[0] == folder / "left.xacro"
+    assert index.related(folder / "left.xacro", {})[0] == folder / "left.xacro"
 
 
 def test_unknown_package_does_not_match_known_files(folder, index):

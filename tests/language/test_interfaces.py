@@ -50,8 +50,8 @@ def test_definition_of_type_is_its_file(at):
 
 def test_symbols_are_fields_of_request_and_response(at):
     place = at("|int32 a\n---\nint32 B=3\nstring<=5 c", "srv/Set.srv")
-    found = [(part.name, [child.name for child in part.children]) for part in place.format.symbols(place.document)]
-    assert found == [("Request", ["a"]), ("Response", ["B", "c"])]
+    symbols = [(part.name, [child.name for child in part.children]) for part in place.format.symbols(place.document)]
+    assert symbols == [("Request", ["a"]), ("Response", ["B", "c"])]
 
 
 def test_types_used_in_package_come_first(at):

@@ -92,8 +92,10 @@ def test_arguments_declared_in_loop_are_found():
         "[DeclareLaunchArgument(n, default_value=d, description=t) for n, (d, t) in KNOWN.items()]\n"
         "for axis in ['x', 'y']:\n    add(DeclareLaunchArgument(axis, default_value='0'))\n"
     )
-    found = {argument.name: (argument.default, argument.description) for argument in arguments_in(text, Path("a.py"))}
-    assert found == {"a": ("1", "first"), "b": ("2", "second"), "x": ("0", ""), "y": ("0", "")}
+    defaults_and_descriptions = {
+        argument.name: (argument.default, argument.description) for argument in arguments_in(text, Path("a.py"))
+    }
+    assert defaults_and_descriptions == {"a": ("1", "first"), "b": ("2", "second"), "x": ("0", ""), "y": ("0", "")}
 
 
 def test_symbols_are_arguments_nodes_and_includes(at):

@@ -34,18 +34,18 @@ VALUES = {"true or false": "true", "number": "1.0", "integer": "1", "level of a 
 def written(rule: ElementRule) -> str:
     """Return an element with the attributes that it needs."""
     needed = [attribute for attribute in rule.attributes if attribute.required]
-    attributes = "".join(f' {each.name}="{VALUES.get(each.type.name, "a")}"' for each in needed)
+    attributes = "".join(f' {attribute.name}="{VALUES.get(attribute.type.name, "a")}"' for attribute in needed)
     return f"<{rule.tag}{attributes}/>"
 
 
 @pytest.mark.parametrize("tag", sorted(LAUNCH.child_rules))
 def test_table_contains_attributes_read_by_actions(tag, monkeypatch):
-    asked: set[str] = set()
+    requested: set[str] = set()
     read = Entity.get_attr
 
     def recording(entity: Entity, name: str, **options):
         if entity.parent is None:
-            asked.add(name)
+            requested.add(name)
         return read(entity, name, **options)
 
     monkeypatch.setattr(Entity, "get_attr", recording)
@@ -55,8 +55,8 @@ def test_table_contains_attributes_read_by_actions(tag, monkeypatch):
     text = written(rule).replace("/>", f">{children}</{tag}>")
     Parser().parse_action(Entity(parse(text, "a.launch.xml").root))
     of_python_or_yaml = {"choices", "level"} if tag in ("arg", "bool_arg") or tag.startswith("log_") else set()
-    assert asked <= {*rule.attribute_rules, *rule.child_rules, "choice"} | of_python_or_yaml
-    assert {*rule.attribute_rules} <= asked
+    assert requested <= {*rule.attribute_rules, *rule.child_rules, "choice"} | of_python_or_yaml
+    assert {*rule.attribute_rules} <= requested
 
 
 def test_elements_and_attributes_are_completed(at):
@@ -142,8 +142,8 @@ def test_remapping_completion_offers_topics_of_the_node(at):
 
 
 def test_hover_of_executable_shows_topics(at):
-    found = at('<node pkg="teleop_twist_keyboard" exec="teleop_twist_key|board"/>').hover()
-    assert "**cmd_vel** `geometry_msgs/msg/Twist`, publisher" in found
+    hover = at('<node pkg="teleop_twist_keyboard" exec="teleop_twist_key|board"/>').hover()
+    assert "**cmd_vel** `geometry_msgs/msg/Twist`, publisher" in hover
 
 
 def test_remapping_completion_reads_sources_of_own_node(at):
@@ -155,10 +155,10 @@ def test_remapping_completion_reads_sources_of_own_node(at):
     )
     place.document.project.index.refresh()
     assert place.labels() == ["glow", "~/run"]
-    found = at(node.format("gl|ow"))
-    found.document.project.index.refresh()
-    assert "publisher, blink.py" in found.hover()
-    assert found.targets() == ["blink.py:glow"]
+    document = at(node.format("gl|ow"))
+    document.document.project.index.refresh()
+    assert "publisher, blink.py" in document.hover()
+    assert document.targets() == ["blink.py:glow"]
 
 
 def test_parameters_are_completed_by_executable(at):

@@ -75,9 +75,9 @@ class Package:
         """Return the name that follows a text in a file."""
         path = self.folder / file
         text = path.read_text(encoding="utf-8")
-        found = occurrence_at(text, path, text.index(before) + len(before) + 1)
-        assert found is not None
-        return found
+        occurrence = occurrence_at(text, path, text.index(before) + len(before) + 1)
+        assert occurrence is not None
+        return occurrence
 
     def rename(self, file: str, before: str, new: str) -> Renaming:
         """Rename the name that follows a text in a file."""
@@ -247,5 +247,5 @@ def test_chinese_text_and_crlf_files_are_edited_at_correct_offsets(package: Pack
 
 def test_references_of_macro_parameter_are_in_its_scope(package: Package):
     name = package.name("urdf/parts.xacro", 'params="name ')
-    found = [(use.file.name, use.is_definition) for use in references(package.workspace, {}, name)]
-    assert sorted(found) == [("arm.urdf.xacro", False), ("parts.xacro", False), ("parts.xacro", True)]
+    uses = [(use.file.name, use.is_definition) for use in references(package.workspace, {}, name)]
+    assert sorted(uses) == [("arm.urdf.xacro", False), ("parts.xacro", False), ("parts.xacro", True)]

@@ -28,9 +28,9 @@ def at(tmp_path: Path):
     description.write_text(LAMP)
 
     def place(text: str) -> Place:
-        found = Place(folder / "config" / "lamp.srdf", f'<robot name="lamp">{text}</robot>')
-        found.document.project.index.refresh()
-        return found
+        place_in_file = Place(folder / "config" / "lamp.srdf", f'<robot name="lamp">{text}</robot>')
+        place_in_file.document.project.index.refresh()
+        return place_in_file
 
     return place
 

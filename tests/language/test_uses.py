@@ -17,8 +17,8 @@ def folder(tmp_path: Path) -> Path:
 
 def uses(place: Place, **options) -> list[str]:
     """Return the uses, each as the file, the offset and the text."""
-    found = uses_at(place.document, place.format, place.offset, **options)
-    return [f"{use.file.name}:{use.start}:{place.document.other(use.file)[use.start : use.end]}" for use in found]
+    uses = uses_at(place.document, place.format, place.offset, **options)
+    return [f"{use.file.name}:{use.start}:{place.document.other(use.file)[use.start : use.end]}" for use in uses]
 
 
 def test_argument_uses_are_found_in_its_file(folder):

@@ -31,9 +31,9 @@ def folder(tmp_path: Path) -> Path:
 
 @pytest.fixture
 def workspace(folder: Path) -> Workspace:
-    found = Workspace([folder])
-    found.index.refresh()
-    return found
+    workspace = Workspace([folder])
+    workspace.index.refresh()
+    return workspace
 
 
 def codes(workspace: Workspace, file: Path, texts=None) -> dict[str, list[str]]:
@@ -90,5 +90,5 @@ def test_material_has_only_its_own_color():
         '<material name="plain"><texture filename="a.png"/></material><material name="open">'
         '<material name="orange"><color rgba="1 0.5 0 1"/></material>'
     )
-    found = {name.name: name.detail for name in definitions_in(text, Path("a.urdf"))}
-    assert found == {"plain": "", "open": "", "orange": "1 0.5 0 1"}
+    details = {name.name: name.detail for name in definitions_in(text, Path("a.urdf"))}
+    assert details == {"plain": "", "open": "", "orange": "1 0.5 0 1"}

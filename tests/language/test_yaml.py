@@ -75,14 +75,18 @@ class Typing:
 
     def explained(self, marked: str, name: str = "a.yaml") -> str:
         document, offset = self.document(marked, name)
-        found = format_of(document.file).explain(document, offset)
-        return "" if found is None else str(found.text)
+        explanation = format_of(document.file).explain(document, offset)
+        return "" if explanation is None else str(explanation.text)
 
     def targets(self, marked: str, name: str = "a.yaml") -> list[tuple[str, str]]:
         document, offset = self.document(marked, name)
-        found = [*format_of(document.file).define(document, offset)]
-        texts = [document.text if target.file == document.file else document.other(target.file) for target in found]
-        return [(target.file.name, text[target.start : target.end]) for target, text in zip(found, texts, strict=True)]
+        definitions = [*format_of(document.file).define(document, offset)]
+        texts = [
+            document.text if target.file == document.file else document.other(target.file) for target in definitions
+        ]
+        return [
+            (target.file.name, text[target.start : target.end]) for target, text in zip(definitions, texts, strict=True)
+        ]
 
 
 @pytest.fixture

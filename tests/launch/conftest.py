@@ -97,7 +97,7 @@ def start(tmp_path: Path) -> Iterator[Callable[..., Running]]:
         return running[-1]
 
     yield begin
-    for each in running:
-        if each.process.poll() is None:
-            each.process.kill()
-            each.process.wait()
+    for launcher in running:
+        if launcher.process.poll() is None:
+            launcher.process.kill()
+            launcher.process.wait()

@@ -81,9 +81,9 @@ class Running:
     @property
     def url(self) -> str:
         self.until("Viewer: ")
-        found = re.search(r"^Viewer: (http://127\.0\.0\.1:\d+/\?token=\S+)$", self.out, re.MULTILINE)
-        assert found
-        return found[1]
+        match = re.search(r"^Viewer: (http://127\.0\.0\.1:\d+/\?token=\S+)$", self.out, re.MULTILINE)
+        assert match
+        return match[1]
 
 
 def is_gone(pid: int) -> bool:

@@ -54,8 +54,8 @@ class Page:
                 message = await socket.receive(timeout=SECONDS)
                 if message.type is aiohttp.WSMsgType.TEXT:
                     decoded = json.loads(message.data)
-                    for each in decoded if isinstance(decoded, list) else [decoded]:
-                        self.told[each["type"]] = each
+                    for view_message in decoded if isinstance(decoded, list) else [decoded]:
+                        self.told[view_message["type"]] = view_message
 
     def codes(self) -> list[str]:
         return [item["code"] for item in self.told.get("diagnostics", {"items": []})["items"]]
@@ -67,8 +67,8 @@ class Page:
 async def test_views_are_isolated_unless_joined(start: Callable[..., Running], tmp_path: Path) -> None:
     views = {name: start("view", write_robot(tmp_path, name)) for name in ("red", "blue")}
     joined = start("view", write_robot(tmp_path, "green"), "--join")
-    for each in (*views.values(), joined):
-        each.until("Robot initialized")
+    for launcher in (*views.values(), joined):
+        launcher.until("Robot initialized")
     await eventually(lambda: is_on_network(joined))
     for name, view in views.items():
         page = Page()
@@ -87,14 +87,17 @@ async def test_launches_with_shared_node_names_are_reported_once(
     ]
     (tmp_path / "a.launch.py").write_text(launch_file(*actions))
     first, second = start(tmp_path / "a.launch.py"), start(tmp_path / "a.launch.py")
-    for each in (first, second):
+    for launcher in (first, second):
         for node in ("/robot_state_publisher", "/rviz2"):
-            wait_until(lambda each=each, node=node: node in _shared_lines(each), what=lambda each=each: each.err)
-    for each in (first, second):
-        assert _shared_lines(each).count("/robot_state_publisher") == 1
-        assert f"{SHARED} {domain} " in _shared_lines(each)
-        assert f"for example with ROS_DOMAIN_ID={domain + 1} linkwright launch ..." in _shared_lines(each)
-        assert "Another process has a node" not in each.err
+            wait_until(
+                lambda launcher=launcher, node=node: node in _shared_lines(launcher),
+                what=lambda launcher=launcher: launcher.err,
+            )
+    for launcher in (first, second):
+        assert _shared_lines(launcher).count("/robot_state_publisher") == 1
+        assert f"{SHARED} {domain} " in _shared_lines(launcher)
+        assert f"for example with ROS_DOMAIN_ID={domain + 1} linkwright launch ..." in _shared_lines(launcher)
+        assert "Another process has a node" not in launcher.err
     page = Page()
     await page.follow(second, lambda: page.codes() == ["LAUNCH148"])
     assert first.end()[0] == 130

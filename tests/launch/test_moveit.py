@@ -77,8 +77,8 @@ class TestBuilder:
         write("src/arm_moveit_config/.setup_assistant", f"moveit_setup_assistant_config:\n  urdf: {urdf}\n")
         noted = MoveItConfigsBuilder("arm").to_moveit_configs().robot_description["robot_description"]
         assert '<link name="tool_noted"/>' in noted
-        given = MoveItConfigsBuilder("arm").robot_description(mappings={"tool": "given"}).to_moveit_configs()
-        assert '<link name="tool_given"/>' in given.robot_description["robot_description"]
+        configs = MoveItConfigsBuilder("arm").robot_description(mappings={"tool": "given"}).to_moveit_configs()
+        assert '<link name="tool_given"/>' in configs.robot_description["robot_description"]
 
     def test_setup_assistant_arguments_apply_to_configuration_model(self, write: Any) -> None:
         write("src/arm_moveit_config/config/arm.urdf.xacro", URDF)
@@ -153,7 +153,7 @@ class TestBuilder:
 class TestParameters:
     def test_parameter_builder_merges_parameters(self, write: Any) -> None:
         write("src/arm_moveit_config/config/notes.txt", "some text")
-        made = (
+        parameters = (
             ParameterBuilder("arm_moveit_config")
             .yaml("config/kinematics.yaml")
             .yaml("config/joint_limits.yaml", parameter_namespace="limits")
@@ -163,9 +163,9 @@ class TestParameters:
             .parameter("rate", 10.0)
             .to_dict()
         )
-        assert set(made) == {"arm", "limits", "notes", "semantic", "rate"}
-        assert set(made["limits"]) == {"joint_limits", "arm"}
-        assert made["notes"] == "some text"
+        assert set(parameters) == {"arm", "limits", "notes", "semantic", "rate"}
+        assert set(parameters["limits"]) == {"joint_limits", "arm"}
+        assert parameters["notes"] == "some text"
 
     def test_load_functions_read_files(self, write: Any, tmp_path: Path) -> None:
         assert load_yaml(get_path("arm_moveit_config", "config/kinematics.yaml")) == {
@@ -193,11 +193,11 @@ class TestParameters:
 
     def test_xacro_substitution_expands_model(self, tmp_path: Path) -> None:
         path = str(tmp_path / "src/arm_description/urdf/arm.urdf.xacro")
-        made = Xacro([path], mappings={"tool": [LaunchConfiguration("tool"), "s"]})
+        model = Xacro([path], mappings={"tool": [LaunchConfiguration("tool"), "s"]})
         context = LaunchContext()
         context.launch_configurations["tool"] = "fork"
-        assert "tool_forks" in made.perform(context)
-        assert path in made.describe()
+        assert "tool_forks" in model.perform(context)
+        assert path in model.describe()
         with pytest.raises(LinkwrightError, match="does not exist"):
             Xacro("/nowhere.xacro").perform(context)
 
@@ -260,6 +260,6 @@ class TestLaunches:
 
         description = load_launch_file(self.files(write)["rsp"])
         ending = TimerAction(period=0.3, actions=[EmitEvent(event=Shutdown(reason="seen"))])
-        done = await launch(description, ending, finder=arm)
-        assert done.succeeded, done.err
-        assert "robot_state_publisher-1" in done.err
+        result = await launch(description, ending, finder=arm)
+        assert result.succeeded, result.err
+        assert "robot_state_publisher-1" in result.err

@@ -69,7 +69,7 @@ class Started:
     def names(self) -> set[str]:
         return {name for nodes in self.nodes.values() for name, _, _ in nodes}
 
-    def one(self, executable: str) -> tuple[str, dict[str, Any], list[tuple[str, str]]]:
+    def node(self, executable: str) -> tuple[str, dict[str, Any], list[tuple[str, str]]]:
         (node,) = self.nodes[executable]
         return node
 
@@ -96,12 +96,12 @@ async def test_localization_launch_starts_map_server_and_amcl(launch: Launch, st
     launched = await launch(include("nav2_bringup", "localization_launch.py", map=str(place), use_sim_time="True"))
     assert launched.succeeded, launched.err
     assert started.names == {"/map_server", "/amcl", "/lifecycle_manager_localization"}
-    _, parameters, remappings = started.one("map_server")
+    _, parameters, remappings = started.node("map_server")
     assert parameters["yaml_filename"] == str(place)
     assert parameters["use_sim_time"] is True
     assert ("/tf", "tf") in remappings
-    assert started.one("amcl")[1]["max_particles"] == 2000
-    assert started.one("lifecycle_manager")[1] == {
+    assert started.node("amcl")[1]["max_particles"] == 2000
+    assert started.node("lifecycle_manager")[1] == {
         "use_sim_time": True,
         "autostart": True,
         "node_names": ["map_server", "amcl"],
@@ -112,12 +112,12 @@ async def test_navigation_launch_starts_all_servers(launch: Launch, started: Sta
     launched = await launch(include("nav2_bringup", "navigation_launch.py", autostart="false"))
     assert launched.succeeded, launched.err
     assert started.names == {*(f"/{name}" for _, name in NAVIGATION), "/lifecycle_manager_navigation"}
-    manager = started.one("lifecycle_manager")[1]
+    manager = started.node("lifecycle_manager")[1]
     assert manager["node_names"] == [name for _, name in NAVIGATION]
     assert manager["autostart"] is False
-    assert ("cmd_vel", "cmd_vel_nav") in started.one("controller_server")[2]
-    smoothed = started.one("velocity_smoother")[2]
-    assert [each for each in smoothed if "cmd_vel" in each[0]] == [
+    assert ("cmd_vel", "cmd_vel_nav") in started.node("controller_server")[2]
+    smoothed = started.node("velocity_smoother")[2]
+    assert [remapping for remapping in smoothed if "cmd_vel" in remapping[0]] == [
         ("cmd_vel", "cmd_vel_nav"),
         ("cmd_vel_smoothed", "cmd_vel"),
     ]
@@ -131,7 +131,7 @@ async def test_missing_server_is_skipped_and_not_managed(
     assert launched.succeeded
     assert "one part of the launch is skipped" in launched.err
     assert "smoother_server" in launched.err
-    assert "smoother_server" not in started.one("lifecycle_manager")[1]["node_names"]
+    assert "smoother_server" not in started.node("lifecycle_manager")[1]["node_names"]
 
 
 async def test_bringup_launch_applies_namespace(launch: Launch, started: Started) -> None:
@@ -141,7 +141,7 @@ async def test_bringup_launch_applies_namespace(launch: Launch, started: Started
     assert launched.succeeded, launched.err
     assert {f"/red/{name}" for _, name in (*LOCALIZATION, *NAVIGATION)} <= started.names
     assert {"/red/lifecycle_manager_localization", "/red/lifecycle_manager_navigation"} <= started.names
-    assert started.one("planner_server")[1]["planner_plugins"] == ["GridBased"]
+    assert started.node("planner_server")[1]["planner_plugins"] == ["GridBased"]
 
 
 async def test_bringup_launch_with_slam_builds_map(launch: Launch, started: Started, tmp_path: Path) -> None:
@@ -154,7 +154,7 @@ async def test_bringup_launch_with_slam_builds_map(launch: Launch, started: Star
     assert "/map_saver" in started.names
     assert "/slam_toolbox" in started.names
     assert "amcl" not in started.nodes
-    assert started.one("sync_slam_toolbox_node")[1]["resolution"] == 0.02
+    assert started.node("sync_slam_toolbox_node")[1]["resolution"] == 0.02
 
 
 async def test_slam_toolbox_uses_own_defaults_without_section_in_file(
@@ -164,7 +164,7 @@ async def test_slam_toolbox_uses_own_defaults_without_section_in_file(
     file.write_text("amcl:\n  ros__parameters:\n    max_beams: 30\n")
     launched = await launch(include("nav2_bringup", "slam_launch.py", params_file=str(file)))
     assert launched.succeeded, launched.err
-    parameters = started.one("sync_slam_toolbox_node")[1]
+    parameters = started.node("sync_slam_toolbox_node")[1]
     assert (parameters["resolution"], parameters["use_sim_time"]) == (0.05, True)
 
 
@@ -182,7 +182,7 @@ async def test_slam_toolbox_launch_files_start_node(
 ) -> None:
     launched = await launch(include("slam_toolbox", file, use_sim_time="false"))
     assert launched.succeeded, launched.err
-    name, parameters, _ = started.one(executable)
+    name, parameters, _ = started.node(executable)
     assert name == "/slam_toolbox"
     assert parameters["use_sim_time"] is False
     assert parameters["base_frame"] == "base_footprint"
@@ -191,7 +191,7 @@ async def test_slam_toolbox_launch_files_start_node(
 async def test_map_saver_launch_starts_managed_node(launch: Launch, started: Started) -> None:
     launched = await launch(include("nav2_map_server", "map_saver_server.launch.py"))
     assert launched.succeeded, launched.err
-    assert started.one("lifecycle_manager")[1]["node_names"] == ["map_saver"]
+    assert started.node("lifecycle_manager")[1]["node_names"] == ["map_saver"]
 
 
 async def test_composed_servers_receive_parameters(launch: Launch, monkeypatch: pytest.MonkeyPatch) -> None:
@@ -208,7 +208,7 @@ async def test_composed_servers_receive_parameters(launch: Launch, monkeypatch: 
     assert launched.succeeded, launched.err
     (words,) = composed
     assert words["target_container"] == "red/nav2_container"
-    plugins = [each.node_plugin[0].text for each in words["composable_node_descriptions"]]
+    plugins = [component.node_plugin[0].text for component in words["composable_node_descriptions"]]
     assert plugins == ["nav2_map_server::MapServer", "nav2_amcl::AmclNode", "nav2_lifecycle_manager::LifecycleManager"]
 
 
@@ -238,7 +238,7 @@ async def test_lifecycle_manager_skips_missing_nodes_of_user_launch_file(launch:
         Node(package="nav2_lifecycle_manager", executable="lifecycle_manager", parameters=[{"node_names": names}]),
     )
     assert launched.succeeded
-    assert started.one("lifecycle_manager")[1]["node_names"] == ["planner_server"]
+    assert started.node("lifecycle_manager")[1]["node_names"] == ["planner_server"]
     assert "'docking_server' is skipped, so no lifecycle manager waits for it" in launched.err
 
 

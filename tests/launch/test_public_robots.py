@@ -51,9 +51,9 @@ def messages(launch: Any, tmp_path: Path) -> Any:
     async def run(path: Path, **configurations: str) -> list[str]:
         finder = PackageFinder(start=tmp_path, environment={})
         with use_finder(finder):
-            done = await launch(load_launch_file(path), finder=finder, **configurations)
-        assert done.succeeded, done.err
-        return done.messages
+            result = await launch(load_launch_file(path), finder=finder, **configurations)
+        assert result.succeeded, result.err
+        return result.messages
 
     return run
 
@@ -254,11 +254,11 @@ class TestNamesUpToFoxy:
             )
         assert node.node_executable == "talker"
         assert perform_substitutions(LaunchContext(), part.node_plugin) == "p::Part"
-        texts = [str(each.message) for each in logged]
+        texts = [str(warning.message) for warning in logged]
         assert texts[0] == "'node_executable' of Node is deprecated: use 'executable'"
         assert "'node_plugin' of ComposableNode is deprecated: use 'plugin'" in texts
         assert len(texts) == 10
-        assert {each.filename for each in logged} == {__file__}
+        assert {warning.filename for warning in logged} == {__file__}
 
     def test_old_and_new_argument_together_are_rejected(self) -> None:
         from launch_ros.actions import Node
@@ -274,8 +274,8 @@ class TestMarkup:
         - set_parameter: {name: use_sim_time, value: "true"}
         - set_parameter: {name: rate, value: 2.5}
         """
-        done = await launch(load_launch_file(file(text, "a.launch.yaml")))
-        assert done.session.context.launch_configurations["global_params"] == [("use_sim_time", True), ("rate", 2.5)]
+        result = await launch(load_launch_file(file(text, "a.launch.yaml")))
+        assert result.session.context.launch_configurations["global_params"] == [("use_sim_time", True), ("rate", 2.5)]
 
     async def test_launch_version_attribute_is_accepted(self, file: Any, messages: Any) -> None:
         text = '<launch version="0.1.1"><log_info message="$(var x)"/></launch>'
@@ -336,9 +336,9 @@ class TestPrograms:
         os.environ["PATH"] = environment["PATH"]
         path = file(text)
         os.environ["LINKWRIGHT_START"] = str(path.parent)
-        done = await launch(load_launch_file(path))
-        assert done.succeeded, done.err
-        assert done.messages[0].endswith("/ros2")
+        result = await launch(load_launch_file(path))
+        assert result.succeeded, result.err
+        assert result.messages[0].endswith("/ros2")
 
     def test_ros_variables_are_set_unless_sourced(self) -> None:
         bare, sourced = {"A": "b"}, {"ROS_DISTRO": "jazzy"}
@@ -367,8 +367,8 @@ def test_rewritten_yaml_keeps_group_with_parameter_name(write: Any) -> None:
     from launch import LaunchContext
 
     path = write("p.yaml", "map:\n  ros__parameters: {map: 1, other: 2}\n")
-    made = RewrittenYaml(source_file=str(path), param_rewrites={"map": "7"}, convert_types=True)
-    content = yaml.safe_load(Path(made.perform(LaunchContext())).read_text())
+    rewritten = RewrittenYaml(source_file=str(path), param_rewrites={"map": "7"}, convert_types=True)
+    content = yaml.safe_load(Path(rewritten.perform(LaunchContext())).read_text())
     assert content == {"map": {"ros__parameters": {"map": 7, "other": 2}}}
 
 
@@ -379,16 +379,16 @@ def test_launch_utils_create_controller_spawners() -> None:
     from launch import LaunchContext
 
     context = LaunchContext()
-    made = launch_utils.generate_load_controller_launch_description("arm", "a/Arm", "/p.yaml", ["--inactive"])
-    *declared, spawner = made.entities
-    for each in declared:
-        each.execute(context)
+    description = launch_utils.generate_load_controller_launch_description("arm", "a/Arm", "/p.yaml", ["--inactive"])
+    *declared, spawner = description.entities
+    for argument in declared:
+        argument.execute(context)
     words = [perform_substitutions(context, word) for word in spawner.cmd[1:]]
     manager = ["--controller-manager", "controller_manager"]
     typed = ["arm", "--controller-type", "a/Arm"]
     assert words[:9] == [*typed, *manager, "--param-file", "/p.yaml", "", "--inactive"]
-    made = launch_utils.generate_load_controller_launch_description("arm", controller_params_file="/p.yaml")
-    words = [perform_substitutions(context, word) for word in made.entities[-1].cmd[1:]]
+    description = launch_utils.generate_load_controller_launch_description("arm", controller_params_file="/p.yaml")
+    words = [perform_substitutions(context, word) for word in description.entities[-1].cmd[1:]]
     assert words[:5] == ["arm", *manager, "--param-file", "/p.yaml"]
     listed = launch_utils.generate_controllers_spawner_launch_description_from_dict({"a": ["x", "y"], "b": None})
     words = [perform_substitutions(context, word) for word in listed.entities[-1].cmd[1:]]

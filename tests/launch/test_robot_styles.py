@@ -170,43 +170,43 @@ async def test_navigation_launch_file_runs(launch: Any, write: Any, robot: Path)
     path = write("src/bot/launch/nav.launch.py", NAVIGATION)
     finder = check(robot)
     with use_finder(finder):
-        done = await launch(load_launch_file(path), finder=finder)
-    assert done.succeeded, done.err
-    assert done.messages[0].startswith("params ")
+        result = await launch(load_launch_file(path), finder=finder)
+    assert result.succeeded, result.err
+    assert result.messages[0].startswith("params ")
 
 
 async def test_manipulation_launch_file_runs(launch: Any, write: Any, robot: Path) -> None:
     path = write("src/bot/launch/move_group.launch.py", MOVEIT)
     finder = check(robot)
     with use_finder(finder):
-        done = await launch(load_launch_file(path), finder=finder)
-    assert done.messages[0] == "sim false ['amcl', 'controller']"
-    assert '<link name="base"/>' in done.err
+        result = await launch(load_launch_file(path), finder=finder)
+    assert result.messages[0] == "sim false ['amcl', 'controller']"
+    assert '<link name="base"/>' in result.err
 
 
 async def test_chained_event_handlers_run(launch: Any, write: Any, robot: Path) -> None:
-    done = await launch(load_launch_file(write("src/bot/launch/events.launch.py", EVENTS)))
-    assert done.succeeded, done.err
-    assert "[first-1] one" in done.out
-    assert "two" in done.out
-    assert done.messages == ["first started", "ended: all done", "third ended"]
+    result = await launch(load_launch_file(write("src/bot/launch/events.launch.py", EVENTS)))
+    assert result.succeeded, result.err
+    assert "[first-1] one" in result.out
+    assert "two" in result.out
+    assert result.messages == ["first started", "ended: all done", "third ended"]
 
 
 async def test_multi_robot_launch_file_runs(launch: Any, write: Any, robot: Path) -> None:
     write("src/bot/launch/one.launch.xml", dedent(ONE_XML))
     path = write("src/bot/launch/robots.launch.py", ROBOTS)
-    done = await launch(load_launch_file(path))
-    assert done.messages == ["r1 is at home", "r2 r2 at 1.0", "none left"], done.err
+    result = await launch(load_launch_file(path))
+    assert result.messages == ["r1 is at home", "r2 r2 at 1.0", "none left"], result.err
 
 
 async def test_yaml_file_includes_xml_file(launch: Any, write: Any, robot: Path) -> None:
     write("src/bot/launch/one.launch.xml", dedent(ONE_XML))
     path = write("src/bot/launch/system.launch.yaml", dedent(SYSTEM_YAML))
     description = load_launch_file(path)
-    done = await launch(description, namespace="ns", current="x")
-    assert "the launch description was not read from a file" in done.err  # $(dirname) outside of a launch file
-    done = await launch(_file(path), namespace="ns")
-    assert done.messages == ["ns yamlbot at 0.75", "nowhere else"], done.err
+    result = await launch(description, namespace="ns", current="x")
+    assert "the launch description was not read from a file" in result.err  # $(dirname) outside of a launch file
+    result = await launch(_file(path), namespace="ns")
+    assert result.messages == ["ns yamlbot at 0.75", "nowhere else"], result.err
 
 
 def _file(path: Path) -> Any:
@@ -247,15 +247,15 @@ async def test_error_in_nested_include_names_all_files(launch: Any, write: Any) 
         HEAD + "def generate_launch_description():\n    here = os.path.dirname(__file__)\n"
         "    return LaunchDescription([IncludeLaunchDescription(here + '/b.launch.yaml')])\n",
     )
-    done = await launch(_file(path))
-    assert not done.succeeded
-    assert "error[LAUNCH121]: launch configuration 'y' is not set" in done.err
-    lines = done.err.splitlines()
+    result = await launch(_file(path))
+    assert not result.succeeded
+    assert "error[LAUNCH121]: launch configuration 'y' is not set" in result.err
+    lines = result.err.splitlines()
     assert any("c.launch.xml:3:" in line for line in lines)
     included = [line for line in lines if "included from here" in line]
     assert len(included) >= 2
-    assert "b.launch.yaml:2:3" in done.err
-    assert "a.launch.py:12:" in done.err
+    assert "b.launch.yaml:2:3" in result.err
+    assert "a.launch.py:12:" in result.err
 
 
 async def test_missing_include_argument_has_hint(launch: Any, write: Any) -> None:
@@ -264,9 +264,9 @@ async def test_missing_include_argument_has_hint(launch: Any, write: Any) -> Non
         "a.launch.xml",
         '<launch><include file="$(dirname)/b.launch.xml"><arg name="modle" value="1"/></include></launch>',
     )
-    done = await launch(_file(path))
-    assert "requires argument 'model', which is not given" in done.err
-    assert "did you mean 'model' instead of 'modle'?" in done.err
+    result = await launch(_file(path))
+    assert "requires argument 'model', which is not given" in result.err
+    assert "did you mean 'model' instead of 'modle'?" in result.err
 
 
 async def test_missing_package_is_reported(launch: Any, write: Any) -> None:
@@ -275,9 +275,9 @@ async def test_missing_package_is_reported(launch: Any, write: Any) -> None:
     )
     path = write("a.launch.xml", text)
     assert "'a':" in format_arguments(load_launch_file(path))
-    done = await launch(_file(path))
-    assert "no_such_bot" in done.err
-    assert not done.succeeded
+    result = await launch(_file(path))
+    assert "no_such_bot" in result.err
+    assert not result.succeeded
 
 
 class TestNavigationSubstitutions:
@@ -329,8 +329,8 @@ class TestNavigationSubstitutions:
         context.launch_configurations["on"] = "Yes"
         replaced = ReplaceString(source_file=source, replacements={"<ns>": "bot"}).perform(context)
         assert "bot/base" in Path(replaced).read_text()
-        kept = ReplaceString(source, {"<ns>": "bot"}, condition=IfCondition("false"))
-        assert kept.perform(context) == source
+        unchanged = ReplaceString(source, {"<ns>": "bot"}, condition=IfCondition("false"))
+        assert unchanged.perform(context) == source
         assert HasNodeParams(source, "amcl").perform(context) == "True"
         assert HasNodeParams(source, "acml").perform(context) == "False"
         assert LaunchConfigAsBool("on").perform(context) == "True"
@@ -369,6 +369,6 @@ def generate_launch_description():
     return generate_test_description()[0]
 """
     )
-    done = await launch(load_launch_file(write("a.launch.py", text)))
-    assert done.messages == ["up"]
-    assert done.succeeded
+    result = await launch(load_launch_file(write("a.launch.py", text)))
+    assert result.messages == ["up"]
+    assert result.succeeded

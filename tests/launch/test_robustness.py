@@ -41,16 +41,16 @@ AGAIN_AND_AGAIN = {
 
 @pytest.mark.parametrize("name", AGAIN_AND_AGAIN)
 async def test_recursive_includes_and_actions_are_one_error(launch, write: Write, name: str) -> None:
-    for each, text in AGAIN_AND_AGAIN.items():
-        write(each, text)
+    for file_name, text in AGAIN_AND_AGAIN.items():
+        write(file_name, text)
     path = write(name, AGAIN_AND_AGAIN[name])
-    done = await launch(IncludeLaunchDescription(str(path)))
-    assert not done.succeeded
-    assert done.err.count("error[") == 1
-    assert "error[LAUNCH156]" in done.err
-    assert f"{path.parent}" in done.err
-    assert "asyncio" not in done.err
-    assert done.err.count("included from here") <= 3  # each place once, however often it was passed
+    result = await launch(IncludeLaunchDescription(str(path)))
+    assert not result.succeeded
+    assert result.err.count("error[") == 1
+    assert "error[LAUNCH156]" in result.err
+    assert f"{path.parent}" in result.err
+    assert "asyncio" not in result.err
+    assert result.err.count("included from here") <= 3  # each place once, however often it was passed
 
 
 def test_arguments_of_recursive_include_are_listed(write: Write) -> None:
@@ -110,10 +110,10 @@ TAIL = (
 @pytest.mark.parametrize(("given", "message"), [("'I give up'", "I give up"), ("3", "3"), ("", ""), ("0", "0")])
 async def test_sys_exit_in_running_launch_is_an_error(launch, write: Write, given: str, message: str) -> None:
     path = write("a.launch.py", (ENDED + TAIL).format(given=given, first="pass"))
-    done = await launch(IncludeLaunchDescription(str(path)))
-    assert not done.succeeded
-    assert f"raised SystemExit{': ' * bool(message)}{message}\n" in done.err
-    assert "a.launch.py:6:5" in done.err
+    result = await launch(IncludeLaunchDescription(str(path)))
+    assert not result.succeeded
+    assert f"raised SystemExit{': ' * bool(message)}{message}\n" in result.err
+    assert "a.launch.py:6:5" in result.err
 
 
 @pytest.mark.parametrize("text", [HEAD + "sys.exit('no')\n", (ENDED + TAIL).format(given="'no'", first="stop(1)")])
@@ -134,9 +134,9 @@ def test_sys_exit_with_status_0_while_loading_is_passed_on(write: Write, text: s
 
 async def test_recursive_function_is_reported_once(launch, write: Write) -> None:
     text = HEAD + "def stop(context):\n    return stop(context)\n" + TAIL.format(first="pass")
-    done = await launch(IncludeLaunchDescription(str(write("a.launch.py", text))))
-    assert "raised RecursionError" in done.err
-    assert done.err.count("called from here") == 1
+    result = await launch(IncludeLaunchDescription(str(write("a.launch.py", text))))
+    assert "raised RecursionError" in result.err
+    assert result.err.count("called from here") == 1
 
 
 def test_generate_function_with_parameters_is_reported(write: Write) -> None:
@@ -149,16 +149,16 @@ def test_generate_function_with_parameters_is_reported(write: Write) -> None:
 
 @pytest.mark.parametrize("name", ["机器人", "my node", "a-b", "1st", "x" * 300])
 async def test_malformed_node_name_is_rejected(launch, name: str) -> None:
-    done = await launch(Node(package="robot_state_publisher", executable="robot_state_publisher", name=name))
-    assert not done.succeeded
-    assert f"error[LAUNCH134]: node name '{name}' is malformed: node name " in done.err
+    result = await launch(Node(package="robot_state_publisher", executable="robot_state_publisher", name=name))
+    assert not result.succeeded
+    assert f"error[LAUNCH134]: node name '{name}' is malformed: node name " in result.err
 
 
 @pytest.mark.parametrize("namespace", ["机器人", "a b", "a//b", "a/1"])
 async def test_malformed_namespace_is_rejected(launch, namespace: str) -> None:
-    done = await launch(PushRosNamespace(namespace))
-    assert not done.succeeded
-    assert f"error[LAUNCH134]: namespace '/{namespace}' is malformed: namespace " in done.err
+    result = await launch(PushRosNamespace(namespace))
+    assert not result.succeeded
+    assert f"error[LAUNCH134]: namespace '/{namespace}' is malformed: namespace " in result.err
 
 
 def test_line_splitter_decodes_and_splits_output() -> None:
@@ -191,7 +191,7 @@ WRONG_VALUES = {
 @pytest.mark.parametrize("tag", WRONG_VALUES)
 async def test_parameter_of_wrong_type_is_reported_with_name(launch, write: Write, tag: str) -> None:
     path = write("a.launch.xml", PARAM.format(tag) + "\n </node>\n</launch>\n")
-    done = await launch(IncludeLaunchDescription(str(path)))
-    assert "error[LAUNCH132]: parameter 'p' " in done.err
-    assert WRONG_VALUES[tag] in done.err
-    assert f"{path}:4:3" in done.err
+    result = await launch(IncludeLaunchDescription(str(path)))
+    assert "error[LAUNCH132]: parameter 'p' " in result.err
+    assert WRONG_VALUES[tag] in result.err
+    assert f"{path}:4:3" in result.err

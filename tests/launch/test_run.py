@@ -61,10 +61,10 @@ def test_source_package_is_launched_by_path(start: Callable[..., Running], write
 
 
 def test_two_launches_use_different_ports(start: Callable[..., Running]) -> None:
-    both = [start("my_robot_description", "display.launch.py") for _ in range(2)]
-    urls = [running.url for running in both]
+    launchers = [start("my_robot_description", "display.launch.py") for _ in range(2)]
+    urls = [running.url for running in launchers]
     assert urls[0].split("/?")[0] != urls[1].split("/?")[0]
-    for running, url in zip(both, urls, strict=True):
+    for running, url in zip(launchers, urls, strict=True):
         with urllib.request.urlopen(url) as response:
             assert response.status == 200
         assert running.end()[0] == 130
@@ -191,11 +191,12 @@ class TestBadInput:
         self, write: Write, capsys: pytest.CaptureFixture[str], inner: str
     ) -> None:
         included = write("inner.launch.py", launch_file(inner))
-        given = "launch_arguments={'model': 'm'}.items(), condition=UnlessCondition('true')"
+        include_options = "launch_arguments={'model': 'm'}.items(), condition=UnlessCondition('true')"
         path = write(
             "a.launch.py",
             launch_file(
-                f"IncludeLaunchDescription('{included}', {given})", head="from launch.conditions import UnlessCondition"
+                f"IncludeLaunchDescription('{included}', {include_options})",
+                head="from launch.conditions import UnlessCondition",
             ),
         )
         assert run_launch(LaunchTarget(str(path)), {"model": "mine"}) == 0
@@ -205,14 +206,14 @@ class TestBadInput:
         self, write: Write, capsys: pytest.CaptureFixture[str]
     ) -> None:
         included = write("inner.launch.py", launch_file("DeclareLaunchArgument('needed', choices=['a'])"))
-        given = "launch_arguments={'other': LaunchConfiguration('none')}.items()"
+        include_options = "launch_arguments={'other': LaunchConfiguration('none')}.items()"
         path = write(
             "a.launch.xml",
             f'<launch><arg name="go" default="false"/><include file="{included}" if="$(var go)"/>'
             f'<include file="{included}.gone" if="$(var go)"><arg name="x" value="$(var none)"/></include></launch>',
         )
         assert run_launch(LaunchTarget(str(path)), {"needed": "b"}) == 0
-        include = f"IncludeLaunchDescription('{included}', {given}, condition=UnlessCondition('true'))"
+        include = f"IncludeLaunchDescription('{included}', {include_options}, condition=UnlessCondition('true'))"
         path = write("a.launch.py", launch_file(include, head="from launch.conditions import UnlessCondition"))
         assert run_launch(LaunchTarget(str(path)), {"needed": "b"}) == 0
         assert "error" not in capsys.readouterr().err
@@ -297,6 +298,6 @@ def test_missing_parts_of_launch_file_itself_cannot_be_skipped(write: Write, tex
     for skip, notes in ((True, 1), (False, 0)):
         with pytest.raises(LinkwrightError) as caught:
             run_launch(target, options=LaunchOptions(skip_missing=skip, open_browser=False))
-        (found,) = caught.value.diagnostics
-        assert found.hint
-        assert len([note for note in found.notes if note.message.startswith("the launch file itself")]) == notes
+        (diagnostic,) = caught.value.diagnostics
+        assert diagnostic.hint
+        assert len([note for note in diagnostic.notes if note.message.startswith("the launch file itself")]) == notes

@@ -61,10 +61,10 @@ async def test_opaque_function_builds_node_from_expanded_xacro(launch, write: Wr
         assert robot is not None
         assert robot.root == "base"
 
-    done = await launch(
+    result = await launch(
         OpaqueFunction(function=build), TimerAction(period=0.05, actions=[OpaqueFunction(function=check), Shutdown()])
     )
-    assert done.succeeded, done.err
+    assert result.succeeded, result.err
 
 
 def test_parsed_document_depends_only_on_files(write: Write) -> None:

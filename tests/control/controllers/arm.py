@@ -19,17 +19,19 @@ def trajectory(
     start_ns: int = 0,
 ) -> Any:
     """A trajectory message: seconds, positions, velocities and accelerations of each point."""
-    kind = get_message("trajectory_msgs/msg/JointTrajectoryPoint")
+    point_type = get_message("trajectory_msgs/msg/JointTrajectoryPoint")
     fields = ("positions", "velocities", "accelerations", "effort")
-    made = [
-        kind(
+    trajectory_points = [
+        point_type(
             **dict(zip(fields, lists, strict=False)),
             time_from_start=Duration.from_nanoseconds(round(seconds * SECOND)),
         )
         for seconds, *lists in points
     ]
     header = Header(stamp=Time.from_nanoseconds(start_ns))
-    return get_message("trajectory_msgs/msg/JointTrajectory")(header=header, joint_names=list(names), points=made)
+    return get_message("trajectory_msgs/msg/JointTrajectory")(
+        header=header, joint_names=list(names), points=trajectory_points
+    )
 
 
 def tolerance(name: str, position: float = 0.0, velocity: float = 0.0) -> Any:
@@ -37,7 +39,7 @@ def tolerance(name: str, position: float = 0.0, velocity: float = 0.0) -> Any:
     return get_message("control_msgs/msg/JointTolerance")(name=name, position=position, velocity=velocity)
 
 
-class Asked:
+class SentGoal:
     """A goal that was sent to an action of a controller.
 
     Attributes:

@@ -37,4 +37,4 @@ async def roll(stand: Stand, controller: Controller[Any], count: int = 1) -> Non
 
 def warnings(stand: Stand) -> list[str]:
     """What was told so far, from warnings on."""
-    return [each.text for each in stand.log if each.level.name in ("WARN", "ERROR")]
+    return [record.text for record in stand.log if record.level.name in ("WARN", "ERROR")]

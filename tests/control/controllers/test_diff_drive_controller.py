@@ -33,7 +33,7 @@ def speeds(stand) -> list[float]:
 
 
 def command(stand, *velocity: float, at: int = 0) -> None:
-    stand.say("geometry_msgs/msg/TwistStamped", f"/{NAME}/cmd_vel", stamped(at, *velocity))
+    stand.publish("geometry_msgs/msg/TwistStamped", f"/{NAME}/cmd_vel", stamped(at, *velocity))
 
 
 def test_controller_is_found_by_type():
@@ -66,12 +66,12 @@ async def test_wheels_of_one_side_turn_equally_and_are_averaged(stand):
         stand.joint(joint, commands=("velocity",), position=0.0, velocity=0.0)
     four = ROBOT | {"left_wheel_names": ["fl", "rl"], "right_wheel_names": ["fr", "rr"], "publish_rate": 100.0}
     controller = stand.start(DiffDriveController, NAME, **four)
-    heard = stand.heard("nav_msgs/msg/Odometry", f"/{NAME}/odom")
+    odometry = stand.record("nav_msgs/msg/Odometry", f"/{NAME}/odom")
     await stand.step(controller)
     for joint, angle in (("fl", 1.0), ("rl", 3.0), ("fr", 2.0), ("rr", 2.0)):
         stand.states[f"{joint}/position"].value = angle
     await stand.step(controller)
-    assert heard[-1].pose.pose.position.x == pytest.approx(0.2)
+    assert odometry[-1].pose.pose.position.x == pytest.approx(0.2)
     command(stand, 1.0)
     await stand.step(controller)
     assert [command.value for command in stand.commands.values()] == pytest.approx([10.0] * 4)
@@ -80,16 +80,16 @@ async def test_wheels_of_one_side_turn_equally_and_are_averaged(stand):
 @pytest.mark.parametrize("feedback", [True, False], ids=["positions", "velocities"])
 async def test_odometry_matches_driven_arc(wheels, feedback):
     controller = wheels.start(DiffDriveController, NAME, **ROBOT, position_feedback=feedback, cmd_vel_timeout=60.0)
-    heard = wheels.heard("nav_msgs/msg/Odometry", f"/{NAME}/odom")
-    transforms = wheels.heard("tf2_msgs/msg/TFMessage", "/tf")
+    odometry = wheels.record("nav_msgs/msg/Odometry", f"/{NAME}/odom")
+    transforms = wheels.record("tf2_msgs/msg/TFMessage", "/tf")
     command(wheels, 0.5, 0.4)
     await roll(wheels, controller, 501)
-    place, velocity = heard[-1].pose.pose, heard[-1].twist.twist
+    place, velocity = odometry[-1].pose.pose, odometry[-1].twist.twist
     turn = 0.4 * 5.0
     assert (place.position.x, place.position.y) == pytest.approx((1.25 * sin(turn), 1.25 * (1 - cos(turn))), abs=1e-9)
     assert (place.orientation.z, place.orientation.w) == pytest.approx((sin(turn / 2), cos(turn / 2)))
     assert (velocity.linear.x, velocity.angular.z) == pytest.approx((0.5, 0.4))
-    assert (heard[-1].header.frame_id, heard[-1].child_frame_id) == ("odom", "base_link")
+    assert (odometry[-1].header.frame_id, odometry[-1].child_frame_id) == ("odom", "base_link")
     last = transforms[-1].transforms[0]
     assert (last.header.frame_id, last.child_frame_id) == ("odom", "base_link")
     assert last.transform.translation.x == place.position.x
@@ -98,20 +98,20 @@ async def test_odometry_matches_driven_arc(wheels, feedback):
 async def test_odometry_starts_at_zero_for_any_wheel_angle(wheels):
     wheels.states["left/position"].value = 100.0
     controller = wheels.start(DiffDriveController, NAME, **ROBOT, publish_rate=100.0)
-    heard = wheels.heard("nav_msgs/msg/Odometry", f"/{NAME}/odom")
+    odometry = wheels.record("nav_msgs/msg/Odometry", f"/{NAME}/odom")
     await wheels.step(controller, count=3)
-    assert heard[-1].pose.pose.position.x == 0.0
+    assert odometry[-1].pose.pose.position.x == 0.0
 
 
 async def test_open_loop_odometry_follows_limited_command(wheels):
     limits = {"linear": {"x": {"max_acceleration": 1.0}}}
     controller = wheels.start(DiffDriveController, NAME, **ROBOT, open_loop=True, cmd_vel_timeout=60.0, **limits)
     assert controller.states == []
-    heard = wheels.heard("nav_msgs/msg/Odometry", f"/{NAME}/odom")
+    odometry = wheels.record("nav_msgs/msg/Odometry", f"/{NAME}/odom")
     command(wheels, 1.0)
     await wheels.step(controller, count=201)
-    assert heard[-1].pose.pose.position.x == pytest.approx(0.505 + 1.01, abs=1e-9)
-    assert heard[-1].twist.twist.linear.x == 1.0
+    assert odometry[-1].pose.pose.position.x == pytest.approx(0.505 + 1.01, abs=1e-9)
+    assert odometry[-1].twist.twist.linear.x == 1.0
 
 
 @pytest.mark.parametrize("zero", [True, False], ids=["no time in the header", "time in the header"])
@@ -170,7 +170,7 @@ async def test_command_that_is_not_a_number_stops_robot(wheels, value):
 
 async def test_humble_accepts_unstamped_commands(wheels):
     controller = wheels.start(DiffDriveController, NAME, **ROBOT, use_stamped_vel=False)
-    wheels.say("geometry_msgs/msg/Twist", f"/{NAME}/cmd_vel_unstamped", twist(1.0))
+    wheels.publish("geometry_msgs/msg/Twist", f"/{NAME}/cmd_vel_unstamped", twist(1.0))
     await wheels.step(controller)
     assert speeds(wheels) == pytest.approx([10.0, 10.0])
     command(wheels, 0.5, at=wheels.time_ns)
@@ -187,16 +187,16 @@ LIMITS = {
 
 async def test_limits_are_respected_and_limited_command_published(wheels):
     controller = wheels.start(DiffDriveController, NAME, **ROBOT, **LIMITS, publish_limited_velocity=True)
-    heard = wheels.heard("geometry_msgs/msg/TwistStamped", f"/{NAME}/cmd_vel_out")
+    commands = wheels.record("geometry_msgs/msg/TwistStamped", f"/{NAME}/cmd_vel_out")
     for number in range(200):
         command(wheels, *((9.0, -9.0), (-9.0, 9.0), (0.3, 0.1))[number // 15 % 3])
         await wheels.step(controller, STEP)
-    forward = [0.0, *(each.twist.linear.x for each in heard)]
-    turning = [0.0, *(each.twist.angular.z for each in heard)]
+    forward = [0.0, *(message.twist.linear.x for message in commands)]
+    turning = [0.0, *(message.twist.angular.z for message in commands)]
     assert len(forward) == 201
-    assert all(-0.5 <= each <= 1.0 for each in forward)
+    assert all(-0.5 <= speed <= 1.0 for speed in forward)
     assert all(-4.0 - 1e-9 <= (b - a) / STEP <= 2.0 + 1e-9 for a, b in pairwise(forward))
-    assert all(abs(each) <= 1.5 for each in turning)
+    assert all(abs(speed) <= 1.5 for speed in turning)
     assert all(abs(b - a) / STEP <= 3.0 + 1e-9 for a, b in pairwise(turning))
     assert controller.commands[0].value == pytest.approx((forward[-1] - turning[-1] * 0.2) / 0.1)
 
@@ -217,8 +217,8 @@ async def test_jazzy_limits_differ_by_direction(wheels):
         "max_deceleration_reverse": 10.0,
     }
     controller = wheels.start(DiffDriveController, NAME, **ROBOT, linear={"x": limits}, cmd_vel_timeout=9.0)
-    for wanted, reached in ((9.0, 0.2), (-9.0, -0.2), (-9.0, -1.0), (9.0, 0.0), (9.0, 0.2)):
-        command(wheels, wanted)
+    for target, reached in ((9.0, 0.2), (-9.0, -0.2), (-9.0, -1.0), (9.0, 0.0), (9.0, 0.2)):
+        command(wheels, target)
         await wheels.step(controller, 0.1)
         assert speeds(wheels)[0] * 0.1 == pytest.approx(reached, abs=1e-9)
 
@@ -253,13 +253,13 @@ async def test_odometry_has_publish_rate_and_covariances(wheels):
     diagonal = [1.0, 2.0, 3.0, 4.0, 5.0, 6.0]
     more = {"publish_rate": 20.0, "pose_covariance_diagonal": diagonal, "enable_odom_tf": False}
     controller = wheels.start(DiffDriveController, NAME, **ROBOT, **more)
-    heard = wheels.heard("nav_msgs/msg/Odometry", f"/{NAME}/odom")
-    transforms = wheels.heard("tf2_msgs/msg/TFMessage", "/tf")
+    odometry = wheels.record("nav_msgs/msg/Odometry", f"/{NAME}/odom")
+    transforms = wheels.record("tf2_msgs/msg/TFMessage", "/tf")
     await wheels.step(controller, count=100)
-    times = [each.header.stamp.nanoseconds for each in heard]
+    times = [message.header.stamp.nanoseconds for message in odometry]
     assert times == list(range(10_000_000, 1_000_000_001, 50_000_000))
-    assert list(heard[0].pose.covariance[::7]) == diagonal
-    assert not any(heard[0].twist.covariance)
+    assert list(odometry[0].pose.covariance[::7]) == diagonal
+    assert not any(odometry[0].twist.covariance)
     assert not transforms
 
 
@@ -275,21 +275,21 @@ async def test_odometry_has_publish_rate_and_covariances(wheels):
 )
 async def test_frame_ids_have_requested_prefix(wheels, name, parameters, frame):
     controller = wheels.start(DiffDriveController, name, **ROBOT, **parameters)
-    heard = wheels.heard("nav_msgs/msg/Odometry", f"{name if name[0] == '/' else '/' + name}/odom")
+    odometry = wheels.record("nav_msgs/msg/Odometry", f"{name if name[0] == '/' else '/' + name}/odom")
     await wheels.step(controller)
-    assert heard[0].header.frame_id == frame
+    assert odometry[0].header.frame_id == frame
 
 
 async def test_set_odometry_service_sets_pose(wheels):
     controller = wheels.start(DiffDriveController, NAME, **ROBOT, publish_rate=100.0)
-    heard = wheels.heard("nav_msgs/msg/Odometry", f"/{NAME}/odom")
+    odometry = wheels.record("nav_msgs/msg/Odometry", f"/{NAME}/odom")
     client = wheels.node.create_client("control_msgs/srv/SetOdometry", f"/{NAME}/set_odometry")
     request = client.srv_type.Request(x=1.0, y=2.0, yaw=0.0)
     answer = client.call_async(request)
     await wheels.step(controller)
     await wheels.graph.settle()
     assert answer.result().success
-    assert (heard[-1].pose.pose.position.x, heard[-1].pose.pose.position.y) == (1.0, 2.0)
+    assert (odometry[-1].pose.pose.position.x, odometry[-1].pose.pose.position.y) == (1.0, 2.0)
 
 
 @pytest.mark.parametrize(

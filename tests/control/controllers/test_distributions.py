@@ -19,7 +19,7 @@ def declared(controller) -> set[str]:
 
 
 @pytest.mark.parametrize(
-    ("kind", "given", "humble", "jazzy"),
+    ("kind", "parameters", "humble", "jazzy"),
     [
         (DRIVE, WHEELS, {"linear.x.has_velocity_limits", "use_stamped_vel"}, {"linear.x.max_deceleration"}),
         (TRAJECTORY, ARM, {"open_loop_control", "gains.hip.angle_wraparound"}, {"interpolate_from_desired_state"}),
@@ -27,16 +27,18 @@ def declared(controller) -> set[str]:
     ],
     ids=["drive", "trajectory", "car"],
 )
-async def test_declared_parameters_match_distribution(stand, monkeypatch, kind, given, humble, jazzy):
-    found = {}
+async def test_declared_parameters_match_distribution(stand, monkeypatch, kind, parameters, humble, jazzy):
+    names_by_distribution = {}
     for distribution in ("", "humble", "jazzy"):
         monkeypatch.setenv("ROS_DISTRO", distribution)
-        found[distribution] = declared(stand.make(controller_class(kind), f"it_{distribution}", **given))
-    assert found[""] == found["humble"]
-    assert found["humble"] >= humble
-    assert not found["humble"] & jazzy
-    assert found["jazzy"] >= jazzy
-    assert not found["jazzy"] & humble
+        names_by_distribution[distribution] = declared(
+            stand.make(controller_class(kind), f"it_{distribution}", **parameters)
+        )
+    assert names_by_distribution[""] == names_by_distribution["humble"]
+    assert names_by_distribution["humble"] >= humble
+    assert not names_by_distribution["humble"] & jazzy
+    assert names_by_distribution["jazzy"] >= jazzy
+    assert not names_by_distribution["jazzy"] & humble
 
 
 @pytest.mark.parametrize(("distribution", "allowed"), [("humble", True), ("jazzy", False)])
@@ -44,8 +46,8 @@ async def test_default_matches_distribution(stand, monkeypatch, distribution, al
     monkeypatch.setenv("ROS_DISTRO", distribution)
     controller = stand.make(controller_class(TRAJECTORY), **ARM)
     assert controller.parameters.allow_nonzero_velocity_at_trajectory_end is allowed
-    given = stand.make(controller_class(TRAJECTORY), "given", allow_nonzero_velocity_at_trajectory_end=True, **ARM)
-    assert given.parameters.allow_nonzero_velocity_at_trajectory_end
+    controller = stand.make(controller_class(TRAJECTORY), "given", allow_nonzero_velocity_at_trajectory_end=True, **ARM)
+    assert controller.parameters.allow_nonzero_velocity_at_trajectory_end
 
 
 @pytest.mark.parametrize("distribution", ["humble", "jazzy"])
@@ -57,4 +59,4 @@ async def test_parameters_of_other_distribution_are_accepted(stand, monkeypatch,
     assert (axis.has_velocity_limits, axis.max_deceleration) == (True, -2.0)
     assert {"linear.x.has_velocity_limits", "linear.x.max_deceleration"} <= declared(controller)
     assert "angular.z.has_velocity_limits" in declared(controller) or distribution == "jazzy"
-    assert not [each.text for each in log if "is not a parameter" in str(each.text)]
+    assert not [record.text for record in log if "is not a parameter" in str(record.text)]

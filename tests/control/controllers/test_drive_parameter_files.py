@@ -51,7 +51,7 @@ async def test_documented_drive_starts(stand, page):
     parameters = parse_parameters(SourceText(page, documented(page))).for_node("/base_controller")
     controller = stand.start(controller_class(TYPES["jazzy_base"]), "base_controller", **parameters)
     second = 1_000_000_000
-    stand.say("geometry_msgs/msg/TwistStamped", "/base_controller/cmd_vel", stamped(second, 9.0))
+    stand.publish("geometry_msgs/msg/TwistStamped", "/base_controller/cmd_vel", stamped(second, 9.0))
     await stand.step(controller, 1.0)
     assert [command.value for command in controller.commands] == pytest.approx([0.8 / 0.06] * 2)
     assert not warnings(stand)

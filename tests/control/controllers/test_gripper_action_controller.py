@@ -10,7 +10,7 @@ import pytest
 from linkwright.control.controllers.gripper_action_controller import EffortGripper, ParallelGripper, PositionGripper
 from linkwright.control.controllers.registry import controller_class
 from linkwright.messages import JointState, get_action, get_message
-from tests.control.controllers.arm import Asked, run
+from tests.control.controllers.arm import SentGoal, run
 
 ACTION = "control_msgs/action/GripperCommand"
 PARALLEL = "control_msgs/action/ParallelGripperCommand"
@@ -21,12 +21,12 @@ class Fingers:
     """A gripper on a stand: hardware that moves to its command at 0.1 m/s, as far as it can."""
 
     def __init__(
-        self, stand: Any, kind: type = PositionGripper, commands: tuple[str, ...] = ("position",), **said: Any
+        self, stand: Any, kind: type = PositionGripper, commands: tuple[str, ...] = ("position",), **parameters: Any
     ):
         self.stand = stand
         stand.joint("finger", commands=commands, position=0.0, velocity=0.0)
         self.limit = 1.0
-        self.controller = stand.start(kind, joint="finger", **said)
+        self.controller = stand.start(kind, joint="finger", **parameters)
 
     @property
     def command(self) -> float:
@@ -41,9 +41,9 @@ class Fingers:
     async def run(self, seconds: float) -> None:
         await run(self.stand, self.controller, seconds, self.move)
 
-    def ask(self, position: float, effort: float = 0.0) -> Asked:
+    def send_goal(self, position: float, effort: float = 0.0) -> SentGoal:
         command = get_message("control_msgs/msg/GripperCommand")(position=position, max_effort=effort)
-        return Asked(self.stand, ACTION, "/controller/gripper_cmd", get_action(ACTION).Goal(command=command))
+        return SentGoal(self.stand, ACTION, "/controller/gripper_cmd", get_action(ACTION).Goal(command=command))
 
 
 @pytest.mark.parametrize(
@@ -62,54 +62,54 @@ async def test_gripper_holds_position_and_moves_to_goal(stand):
     fingers = Fingers(stand)
     await fingers.run(0.05)
     assert fingers.command == 0.0
-    asked = fingers.ask(0.05, effort=7.0)
+    goal = fingers.send_goal(0.05, effort=7.0)
     await fingers.run(0.3)
-    assert asked.status is None
+    assert goal.status is None
     await fingers.run(0.4)
-    assert asked.status == SUCCEEDED
-    assert (asked.result.reached_goal, asked.result.stalled, asked.result.effort) == (True, False, 7.0)
-    assert asked.result.position == pytest.approx(0.04, abs=0.0021)
-    assert asked.feedback
+    assert goal.status == SUCCEEDED
+    assert (goal.result.reached_goal, goal.result.stalled, goal.result.effort) == (True, False, 7.0)
+    assert goal.result.position == pytest.approx(0.04, abs=0.0021)
+    assert goal.feedback
 
 
 @pytest.mark.parametrize(("allowed", "status"), [(False, ABORTED), (True, SUCCEEDED)])
 async def test_blocked_gripper_stalls(stand, allowed, status):
     fingers = Fingers(stand, allow_stalling=allowed, stall_timeout=0.5)
     fingers.limit = 0.02
-    asked = fingers.ask(0.05)
+    goal = fingers.send_goal(0.05)
     await fingers.run(0.65)
-    assert asked.status is None
+    assert goal.status is None
     await fingers.run(0.2)
-    assert asked.status == status
-    assert (asked.result.reached_goal, asked.result.stalled) == (False, True)
+    assert goal.status == status
+    assert (goal.result.reached_goal, goal.result.stalled) == (False, True)
     assert fingers.command == 0.05
 
 
 async def test_canceled_goal_holds_position(stand):
     fingers = Fingers(stand)
-    asked = fingers.ask(0.5)
+    goal = fingers.send_goal(0.5)
     await fingers.run(0.2)
-    asked.cancel()
+    goal.cancel()
     await fingers.run(0.2)
-    assert asked.status == CANCELED
+    assert goal.status == CANCELED
     assert fingers.command == pytest.approx(0.02, abs=0.0021)
 
 
 async def test_new_goal_preempts_previous_goal(stand):
     fingers = Fingers(stand)
-    first = fingers.ask(0.5)
+    first = fingers.send_goal(0.5)
     await fingers.run(0.1)
-    second = fingers.ask(0.0)
+    second = fingers.send_goal(0.0)
     await fingers.run(0.5)
     assert (first.status, second.status) == (CANCELED, SUCCEEDED)
 
 
 async def test_goal_is_rejected_if_not_a_number_or_inactive(stand):
     fingers = Fingers(stand)
-    wrong = fingers.ask(nan)
+    wrong = fingers.send_goal(nan)
     await fingers.run(0.02)
     fingers.controller.on_deactivate()
-    late = fingers.ask(0.1)
+    late = fingers.send_goal(0.1)
     await stand.graph.settle()
     assert (wrong.accepted, late.accepted) == (False, False)
 
@@ -118,7 +118,7 @@ async def test_effort_follows_error_up_to_maximum_of_goal(stand):
     fingers = Fingers(
         stand, EffortGripper, ("effort", "position"), gains={"finger": {"p": 100.0, "d": 10.0}}, goal_tolerance=0.001
     )
-    asked = fingers.ask(0.1, effort=4.0)
+    goal = fingers.send_goal(0.1, effort=4.0)
     await run(stand, fingers.controller, 0.05)
     assert stand.commands["finger/effort"].value == 4.0
     fingers.stand.states["finger/position"].value = 0.08
@@ -129,7 +129,7 @@ async def test_effort_follows_error_up_to_maximum_of_goal(stand):
     stand.exchange.deliver()
     await stand.graph.settle()
     assert stand.commands["finger/effort"].value == 0.0
-    assert asked.status == CANCELED
+    assert goal.status == CANCELED
 
 
 async def test_parallel_gripper_forwards_maximum_effort_and_velocity(stand):
@@ -141,21 +141,21 @@ async def test_parallel_gripper_forwards_maximum_effort_and_velocity(stand):
         max_velocity_interface="limits/velocity",
     )
 
-    def ask(position: list[float], velocity: list[float], effort: list[float]) -> Asked:
+    def send_goal(position: list[float], velocity: list[float], effort: list[float]) -> SentGoal:
         command = JointState(name=["finger"], position=position, velocity=velocity, effort=effort)
-        return Asked(stand, PARALLEL, "/controller/gripper_cmd", get_action(PARALLEL).Goal(command=command))
+        return SentGoal(stand, PARALLEL, "/controller/gripper_cmd", get_action(PARALLEL).Goal(command=command))
 
     def limits() -> tuple[float, float]:
         return stand.commands["limits/effort"].value, stand.commands["limits/velocity"].value
 
     await fingers.run(0.02)
     assert limits() == (10.0, 0.1)
-    asked, wrong = ask([0.02], [0.3], [5.0]), ask([], [], [])
+    goal, wrong = send_goal([0.02], [0.3], [5.0]), send_goal([], [], [])
     await fingers.run(0.5)
     assert limits() == (5.0, 0.3)
-    assert (asked.status, wrong.accepted) == (SUCCEEDED, False)
-    assert asked.result.state.name == ["finger"]
-    assert asked.result.state.effort[0] == 5.0
+    assert (goal.status, wrong.accepted) == (SUCCEEDED, False)
+    assert goal.result.state.name == ["finger"]
+    assert goal.result.state.effort[0] == 5.0
     assert "Received action goal with wrong number of position values, expects 1, got 0" in [
-        str(each.text) for each in stand.log
+        str(record.text) for record in stand.log
     ]

@@ -28,7 +28,7 @@ def wheels(stand):
 
 
 def command(stand, forward: float, sideways: float, turning: float) -> None:
-    stand.say("geometry_msgs/msg/TwistStamped", f"/{NAME}/cmd_vel", stamped(0, forward, turning, sideways))
+    stand.publish("geometry_msgs/msg/TwistStamped", f"/{NAME}/cmd_vel", stamped(0, forward, turning, sideways))
 
 
 def commanded(stand) -> list[float]:
@@ -56,9 +56,9 @@ async def test_wheel_speeds_match_motion_with_and_without_header(wheels, velocit
     assert commanded(wheels) == pytest.approx(wheels_turn)
     forward, sideways, turning = velocity
     message = twist(-forward, -turning, -sideways)
-    wheels.say("geometry_msgs/msg/Twist", f"/{NAME}/cmd_vel_unstamped", message)
+    wheels.publish("geometry_msgs/msg/Twist", f"/{NAME}/cmd_vel_unstamped", message)
     await wheels.step(controller)
-    assert commanded(wheels) == pytest.approx([-each for each in wheels_turn])
+    assert commanded(wheels) == pytest.approx([-speed for speed in wheels_turn])
 
 
 async def test_command_expires_after_timeout(wheels):
@@ -73,19 +73,19 @@ async def test_command_expires_after_timeout(wheels):
 async def test_limits_apply_to_each_axis_and_result_is_published(wheels):
     limits = {"linear": {"y": {"has_velocity_limits": True, "max_velocity": 0.5}}}
     controller = wheels.start(HusarionMecanumController, NAME, **ROBOT, **limits, publish_limited_velocity=True)
-    heard = wheels.heard("geometry_msgs/msg/TwistStamped", f"/{NAME}/cmd_vel_out")
+    commands = wheels.record("geometry_msgs/msg/TwistStamped", f"/{NAME}/cmd_vel_out")
     command(wheels, 0.2, 2.0, 0.0)
     await wheels.step(controller)
-    assert (heard[-1].twist.linear.x, heard[-1].twist.linear.y) == pytest.approx((0.2, 0.5))
+    assert (commands[-1].twist.linear.x, commands[-1].twist.linear.y) == pytest.approx((0.2, 0.5))
 
 
 @pytest.mark.parametrize("source", [{"position_feedback": True}, {"position_feedback": False}, {"open_loop": True}])
 async def test_odometry_matches_driven_arc(wheels, source):
     controller = wheels.start(HusarionMecanumController, NAME, **ROBOT, **source, cmd_vel_timeout=60.0)
-    heard = wheels.heard("nav_msgs/msg/Odometry", f"/{NAME}/odom")
+    odometry = wheels.record("nav_msgs/msg/Odometry", f"/{NAME}/odom")
     command(wheels, 0.3, 0.4, 0.5)
     await roll(wheels, controller, 501)
-    place, velocity = heard[-1].pose.pose, heard[-1].twist.twist
+    place, velocity = odometry[-1].pose.pose, odometry[-1].twist.twist
     turn = 2.5
     x = (0.3 * sin(turn) + 0.4 * (cos(turn) - 1.0)) / 0.5
     y = (0.3 * (1.0 - cos(turn)) + 0.4 * sin(turn)) / 0.5
@@ -95,6 +95,6 @@ async def test_odometry_matches_driven_arc(wheels, source):
 
 @pytest.mark.parametrize("missing", [f"{CORNERS[0]}_wheel_name", "wheel_radius", "wheel_separation_x"])
 def test_missing_parameter_is_reported(wheels, missing):
-    given = {name: value for name, value in ROBOT.items() if name != missing}
+    parameters = {name: value for name, value in ROBOT.items() if name != missing}
     with pytest.raises(ControllerError, match=missing):
-        wheels.make(HusarionMecanumController, NAME, **given).on_configure()
+        wheels.make(HusarionMecanumController, NAME, **parameters).on_configure()

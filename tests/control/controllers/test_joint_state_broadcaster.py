@@ -16,10 +16,10 @@ def test_controller_is_found_by_type():
 async def test_missing_state_interfaces_are_nan(stand):
     stand.joint("hip", position=0.5, velocity=1.0)
     stand.joint("knee", position=-0.5, temperature=30.0)
-    heard = stand.heard("sensor_msgs/msg/JointState", "joint_states")
-    dynamic = stand.heard("control_msgs/msg/DynamicJointState", "dynamic_joint_states")
+    joint_states = stand.record("sensor_msgs/msg/JointState", "joint_states")
+    dynamic = stand.record("control_msgs/msg/DynamicJointState", "dynamic_joint_states")
     await stand.step(stand.start(JointStateBroadcaster))
-    (message,) = heard
+    (message,) = joint_states
     assert message.name == ["hip", "knee"]
     assert list(message.position) == [0.5, -0.5]
     assert message.velocity[0] == 1.0
@@ -32,21 +32,21 @@ async def test_missing_state_interfaces_are_nan(stand):
 
 async def test_missing_values_are_not_shared_between_messages(stand):
     stand.joint("hip", position=0.5)
-    heard = stand.heard("sensor_msgs/msg/JointState", "joint_states")
+    joint_states = stand.record("sensor_msgs/msg/JointState", "joint_states")
     broadcaster = stand.start(JointStateBroadcaster)
     await stand.step(broadcaster)
-    heard[0].effort[0] = 7.0
+    joint_states[0].effort[0] = 7.0
     await stand.step(broadcaster)
-    assert isnan(heard[1].effort[0])
+    assert isnan(joint_states[1].effort[0])
 
 
 async def test_only_described_and_extra_joints_are_published(stand):
     stand.joint("hip", position=0.5)
     stand.joint("imu", position=1.0)
-    heard = stand.heard("sensor_msgs/msg/JointState", "joint_states")
+    joint_states = stand.record("sensor_msgs/msg/JointState", "joint_states")
     await stand.step(stand.start(JointStateBroadcaster, description=DESCRIPTION, extra_joints=["gripper"]))
-    assert heard[0].name == ["hip", "gripper"]
-    assert list(heard[0].position) == [0.5, 0.0]
+    assert joint_states[0].name == ["hip", "gripper"]
+    assert list(joint_states[0].position) == [0.5, 0.0]
 
 
 async def test_selected_interfaces_are_published_on_local_topics(stand):
@@ -54,19 +54,19 @@ async def test_selected_interfaces_are_published_on_local_topics(stand):
     stand.joint("knee", position=0.7, velocity=2.0)
     parameters = {"joints": ["knee"], "interfaces": ["velocity"], "use_local_topics": True}
     broadcaster = stand.start(JointStateBroadcaster, "jsb", **parameters)
-    heard = stand.heard("sensor_msgs/msg/JointState", "/jsb/joint_states")
+    joint_states = stand.record("sensor_msgs/msg/JointState", "/jsb/joint_states")
     await stand.step(broadcaster)
-    assert (heard[0].name, list(heard[0].velocity)) == (["knee"], [2.0])
+    assert (joint_states[0].name, list(joint_states[0].velocity)) == (["knee"], [2.0])
 
 
 async def test_state_interfaces_can_be_mapped(stand):
     stand.joint("hip", kinematic=0.5)
-    heard = stand.heard("sensor_msgs/msg/JointState", "joint_states")
+    joint_states = stand.record("sensor_msgs/msg/JointState", "joint_states")
     await stand.step(stand.start(JointStateBroadcaster, map_interface_to_joint_state={"position": "kinematic"}))
-    assert list(heard[0].position) == [0.5]
+    assert list(joint_states[0].position) == [0.5]
 
 
 async def test_unknown_parameter_is_reported(stand):
     stand.start(JointStateBroadcaster, joint=["hip"])
-    (logged,) = [each.text for each in stand.log if "not a parameter" in each.text]
+    (logged,) = [record.text for record in stand.log if "not a parameter" in record.text]
     assert logged == "'joint' is not a parameter of this controller; did you mean 'joints'?"

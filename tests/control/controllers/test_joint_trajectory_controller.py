@@ -12,7 +12,7 @@ from linkwright.control.controllers.joint_trajectory_controller import JointTraj
 from linkwright.control.controllers.registry import controller_class
 from linkwright.diagnostics import LinkwrightError
 from linkwright.messages import Duration, Time, get_action, get_service
-from tests.control.controllers.arm import JOINTS, SECOND, Asked, run, tolerance, trajectory
+from tests.control.controllers.arm import JOINTS, SECOND, SentGoal, run, tolerance, trajectory
 
 ACTION = "control_msgs/action/FollowJointTrajectory"
 TYPE = "trajectory_msgs/msg/JointTrajectory"
@@ -43,15 +43,15 @@ class Arm:
     async def run(self, seconds: float) -> None:
         await run(self.stand, self.controller, seconds, self.obey)
 
-    def say(self, message: Any) -> None:
-        self.stand.say(TYPE, "/controller/joint_trajectory", message)
+    def publish(self, message: Any) -> None:
+        self.stand.publish(TYPE, "/controller/joint_trajectory", message)
 
-    def ask(self, message: Any, **more: Any) -> Asked:
+    def send_goal(self, message: Any, **more: Any) -> SentGoal:
         goal = get_action(ACTION).Goal(trajectory=message, **more)
-        return Asked(self.stand, ACTION, "/controller/follow_joint_trajectory", goal)
+        return SentGoal(self.stand, ACTION, "/controller/follow_joint_trajectory", goal)
 
     def logged(self) -> list[str]:
-        return [str(each.text) for each in self.stand.log]
+        return [str(record.text) for record in self.stand.log]
 
 
 def test_controller_is_found_by_type():
@@ -69,7 +69,7 @@ async def test_joints_are_held_until_first_trajectory(stand):
 async def test_positions_are_interpolated_linearly_one_update_ahead(stand):
     arm = Arm(stand)
     await arm.run(0.1)
-    arm.say(trajectory((1.0, [1.0, -2.0]), (2.0, [0.0, 0.0])))
+    arm.publish(trajectory((1.0, [1.0, -2.0]), (2.0, [0.0, 0.0])))
     await arm.run(0.5)
     assert arm.command("shoulder") == pytest.approx(0.5)
     await arm.run(0.5)
@@ -82,7 +82,7 @@ async def test_positions_are_interpolated_linearly_one_update_ahead(stand):
 
 async def test_velocities_are_interpolated_as_cubic_and_commanded(stand):
     arm = Arm(stand, command_interfaces=["position", "velocity"])
-    arm.say(trajectory((2.0, [1.0, 1.0], [0.0, 0.0])))
+    arm.publish(trajectory((2.0, [1.0, 1.0], [0.0, 0.0])))
     await arm.run(1.0)
     assert arm.command("shoulder") == pytest.approx(0.5, abs=1e-6)
     assert arm.command("shoulder", "velocity") == pytest.approx(0.75, abs=1e-4)
@@ -100,7 +100,7 @@ async def test_accelerations_are_commanded(stand):
         JointTrajectoryController, joints=list(JOINTS), command_interfaces=three, state_interfaces=three
     )
     point = (2.0, [1.0, 1.0], [0.0, 0.0], [0.0, 0.0])
-    stand.say(TYPE, "/controller/joint_trajectory", trajectory(point))
+    stand.publish(TYPE, "/controller/joint_trajectory", trajectory(point))
     await run(stand, controller, 1.0)
     values = [stand.commands[f"shoulder/{kind}"].value for kind in three]
     assert values == pytest.approx([0.5, 15.0 / 16.0, 0.0], abs=1e-9)
@@ -109,7 +109,7 @@ async def test_accelerations_are_commanded(stand):
 async def test_velocity_command_is_feed_forward_plus_error(stand):
     gains = {joint: {"p": 2.0, "ff_velocity_scale": 1.0} for joint in JOINTS}
     arm = Arm(stand, command_interfaces=["velocity"], gains=gains)
-    arm.say(trajectory((1.0, [1.0, 1.0])))
+    arm.publish(trajectory((1.0, [1.0, 1.0])))
     await arm.run(0.5)
     assert arm.command("shoulder", "velocity") == pytest.approx(1.0 + 2.0 * 0.49)
 
@@ -124,15 +124,15 @@ async def test_effort_by_pid_moves_mass_along_trajectory(stand):
             velocity.value += 0.01 * (arm.command(joint, "effort") - 1.0)
             position.value += 0.01 * velocity.value
 
-    asked = arm.ask(trajectory((2.0, [1.0, 0.5], [0.0, 0.0])))
+    goal = arm.send_goal(trajectory((2.0, [1.0, 0.5], [0.0, 0.0])))
     await run(stand, arm.controller, 4.0, fall)
     assert stand.states["shoulder/position"].value == pytest.approx(1.0, abs=0.01)
-    assert asked.status == SUCCEEDED
+    assert goal.status == SUCCEEDED
 
 
 async def test_gains_can_be_changed_while_active(stand):
     arm = Arm(stand, command_interfaces=["velocity"], gains={joint: {"p": 1.0} for joint in JOINTS})
-    arm.say(trajectory((0.01, [1.0, 1.0])))
+    arm.publish(trajectory((0.01, [1.0, 1.0])))
     await arm.run(0.1)
     assert arm.command("shoulder", "velocity") == pytest.approx(1.0)
     node = arm.controller.node.graph_node
@@ -143,31 +143,31 @@ async def test_gains_can_be_changed_while_active(stand):
 
 async def test_goal_succeeds_with_feedback(stand):
     arm = Arm(stand, action_monitor_rate=10.0)
-    asked = arm.ask(trajectory((1.0, [1.0, 0.5])))
+    goal = arm.send_goal(trajectory((1.0, [1.0, 0.5])))
     await arm.run(1.1)
-    assert asked.status == SUCCEEDED
-    assert (asked.result.error_code, asked.result.error_string) == (0, "Goal successfully reached!")
-    assert len(asked.feedback) == 10
-    assert asked.feedback[5].joint_names == list(JOINTS)
-    assert asked.feedback[5].desired.positions[0] == pytest.approx(0.5)
-    assert asked.feedback[5].error.positions[0] == pytest.approx(0.0)
+    assert goal.status == SUCCEEDED
+    assert (goal.result.error_code, goal.result.error_string) == (0, "Goal successfully reached!")
+    assert len(goal.feedback) == 10
+    assert goal.feedback[5].joint_names == list(JOINTS)
+    assert goal.feedback[5].desired.positions[0] == pytest.approx(0.5)
+    assert goal.feedback[5].error.positions[0] == pytest.approx(0.0)
     assert "Goal reached, success!" in arm.logged()
 
 
 async def test_joints_can_be_listed_in_any_order(stand):
     arm = Arm(stand)
-    arm.say(trajectory((0.5, [2.0, 1.0]), names=("elbow", "shoulder")))
+    arm.publish(trajectory((0.5, [2.0, 1.0]), names=("elbow", "shoulder")))
     await arm.run(1.0)
     assert (arm.command("shoulder"), arm.command("elbow")) == (1.0, 2.0)
 
 
 async def test_joints_omitted_from_partial_goal_are_held(stand):
     arm = Arm(stand, allow_partial_joints_goal=True)
-    arm.say(trajectory((0.5, [0.7, 0.4])))
+    arm.publish(trajectory((0.5, [0.7, 0.4])))
     await arm.run(1.0)
-    asked = arm.ask(trajectory((0.5, [1.0], [0.0]), names=("elbow",)))
+    goal = arm.send_goal(trajectory((0.5, [1.0], [0.0]), names=("elbow",)))
     await arm.run(1.0)
-    assert asked.status == SUCCEEDED
+    assert goal.status == SUCCEEDED
     assert (arm.command("shoulder"), arm.command("elbow")) == (0.7, 1.0)
 
 
@@ -212,37 +212,37 @@ GOOD = (1.0, [1.0, 1.0])
 async def test_invalid_trajectory_is_rejected_with_reason(stand, message, expected):
     arm = Arm(stand)
     await arm.run(1.0)
-    asked = arm.ask(message)
-    arm.say(message)
+    goal = arm.send_goal(message)
+    arm.publish(message)
     await arm.run(1.5)
-    assert asked.accepted is False
+    assert goal.accepted is False
     assert arm.logged().count(expected) == 2
     assert arm.command("shoulder") == 0.0
 
 
 async def test_partial_goal_requires_joint_names(stand):
     arm = Arm(stand, allow_partial_joints_goal=True)
-    asked = arm.ask(trajectory(names=()))
+    goal = arm.send_goal(trajectory(names=()))
     await arm.run(0.05)
-    assert asked.accepted is False
+    assert goal.accepted is False
     assert "Empty joint names on incoming trajectory." in arm.logged()
 
 
 async def test_nonzero_final_velocity_can_be_forbidden(stand):
     arm = Arm(stand, allow_nonzero_velocity_at_trajectory_end=False)
-    asked = arm.ask(trajectory((1.0, [1.0, 1.0], [0.0, 0.1])))
+    goal = arm.send_goal(trajectory((1.0, [1.0, 1.0], [0.0, 0.1])))
     await arm.run(0.05)
-    assert asked.accepted is False
+    assert goal.accepted is False
     assert "Velocity of last trajectory point of joint elbow is not zero: 0.100000000000000" in arm.logged()
 
 
 async def test_points_without_positions_are_integrated_if_allowed(stand):
     arm = Arm(stand, allow_integration_in_goal_trajectories=True)
-    asked = arm.ask(trajectory((1.0, [], [2.0, 0.0]), (2.0, [], [0.0, 0.0])))
+    goal = arm.send_goal(trajectory((1.0, [], [2.0, 0.0]), (2.0, [], [0.0, 0.0])))
     await arm.run(2.5)
-    assert asked.status == SUCCEEDED
+    assert goal.status == SUCCEEDED
     assert arm.command("shoulder") == pytest.approx(2.0)
-    empty = arm.ask(trajectory((1.0, [])))
+    empty = arm.send_goal(trajectory((1.0, [])))
     await arm.run(0.05)
     assert empty.accepted is False
 
@@ -250,7 +250,7 @@ async def test_points_without_positions_are_integrated_if_allowed(stand):
 async def test_trajectory_with_future_start_reaches_first_point_on_time(stand):
     arm = Arm(stand)
     await arm.run(1.0)
-    arm.say(trajectory((1.0, [1.0, 1.0]), start_ns=2 * SECOND))
+    arm.publish(trajectory((1.0, [1.0, 1.0]), start_ns=2 * SECOND))
     await arm.run(1.0)
     assert arm.command("shoulder") == pytest.approx(0.5, abs=0.01)
     await arm.run(1.0)
@@ -260,7 +260,7 @@ async def test_trajectory_with_future_start_reaches_first_point_on_time(stand):
 async def test_trajectory_with_past_start_continues_at_current_time(stand):
     arm = Arm(stand)
     await arm.run(1.0)
-    arm.say(trajectory((0.5, [0.5, 0.5]), (2.5, [2.5, 2.5]), start_ns=SECOND // 2))
+    arm.publish(trajectory((0.5, [0.5, 0.5]), (2.5, [2.5, 2.5]), start_ns=SECOND // 2))
     await arm.run(0.5)
     assert arm.command("shoulder") == pytest.approx(1.01)
 
@@ -268,11 +268,11 @@ async def test_trajectory_with_past_start_continues_at_current_time(stand):
 async def test_violated_path_tolerance_aborts_goal_and_holds_joints(stand):
     arm = Arm(stand, constraints={"shoulder": {"trajectory": 0.1}})
     arm.stuck.add("shoulder")
-    asked = arm.ask(trajectory((1.0, [1.0, 1.0])))
+    goal = arm.send_goal(trajectory((1.0, [1.0, 1.0])))
     await arm.run(0.5)
-    assert asked.status == ABORTED
-    assert asked.result.error_code == asked.result.PATH_TOLERANCE_VIOLATED
-    assert asked.result.error_string == "Aborted due to path tolerance violation"
+    assert goal.status == ABORTED
+    assert goal.result.error_code == goal.result.PATH_TOLERANCE_VIOLATED
+    assert goal.result.error_string == "Aborted due to path tolerance violation"
     assert arm.command("shoulder") == 0.0
     assert arm.command("elbow") == pytest.approx(0.11)
     assert "State tolerances failed for joint 'shoulder': Position Error: 0.110000, Position Tolerance: 0.100000" in (
@@ -283,35 +283,35 @@ async def test_violated_path_tolerance_aborts_goal_and_holds_joints(stand):
 async def test_goal_is_aborted_after_goal_time(stand):
     arm = Arm(stand, constraints={"goal_time": 0.5, "shoulder": {"goal": 0.1}})
     arm.stuck.add("shoulder")
-    asked = arm.ask(trajectory((1.0, [1.0, 1.0])))
+    goal = arm.send_goal(trajectory((1.0, [1.0, 1.0])))
     await arm.run(1.5)
-    assert asked.status is None
+    assert goal.status is None
     await arm.run(0.05)
-    assert asked.status == ABORTED
-    assert asked.result.error_code == asked.result.GOAL_TOLERANCE_VIOLATED
-    assert asked.result.error_string.startswith("Aborted due to goal_time_tolerance exceeding by 0.51")
+    assert goal.status == ABORTED
+    assert goal.result.error_code == goal.result.GOAL_TOLERANCE_VIOLATED
+    assert goal.result.error_string.startswith("Aborted due to goal_time_tolerance exceeding by 0.51")
     assert arm.command("shoulder") == 0.0
 
 
 async def test_goal_never_times_out_without_goal_time(stand):
     arm = Arm(stand, constraints={"shoulder": {"goal": 0.1}})
     arm.stuck.add("shoulder")
-    asked = arm.ask(trajectory((0.1, [1.0, 1.0])))
+    goal = arm.send_goal(trajectory((0.1, [1.0, 1.0])))
     await arm.run(5.0)
-    assert asked.status is None
+    assert goal.status is None
     arm.stuck.clear()
     await arm.run(0.05)
-    assert asked.status == SUCCEEDED
+    assert goal.status == SUCCEEDED
 
 
 async def test_goal_overrides_tolerances(stand):
     arm = Arm(stand, constraints={"goal_time": 0.1, "shoulder": {"trajectory": 0.1, "goal": 0.1}})
     arm.stuck.add("shoulder")
     erased = [tolerance("shoulder", -1.0)]
-    first = arm.ask(trajectory((0.5, [1.0, 1.0])), path_tolerance=erased, goal_tolerance=erased)
+    first = arm.send_goal(trajectory((0.5, [1.0, 1.0])), path_tolerance=erased, goal_tolerance=erased)
     await arm.run(1.0)
     assert first.status == SUCCEEDED
-    second = arm.ask(
+    second = arm.send_goal(
         trajectory((0.5, [1.0, 0.0])),
         path_tolerance=[tolerance("shoulder", 3.0)],
         goal_time_tolerance=Duration(sec=1, nanosec=0),
@@ -338,19 +338,19 @@ async def test_goal_overrides_tolerances(stand):
 async def test_invalid_goal_tolerances_keep_controller_tolerances(stand, wrong, message):
     arm = Arm(stand, constraints={"shoulder": {"trajectory": 0.1}})
     arm.stuck.add("shoulder")
-    asked = arm.ask(trajectory((0.5, [1.0, 1.0])), path_tolerance=[tolerance("shoulder", -1.0), wrong])
+    goal = arm.send_goal(trajectory((0.5, [1.0, 1.0])), path_tolerance=[tolerance("shoulder", -1.0), wrong])
     await arm.run(0.5)
-    assert asked.status == ABORTED
+    assert goal.status == ABORTED
     assert message in arm.logged()
 
 
 async def test_canceled_goal_holds_joints(stand):
     arm = Arm(stand)
-    asked = arm.ask(trajectory((1.0, [1.0, 1.0])))
+    goal = arm.send_goal(trajectory((1.0, [1.0, 1.0])))
     await arm.run(0.5)
-    asked.cancel()
+    goal.cancel()
     await arm.run(1.0)
-    assert asked.status == CANCELED
+    assert goal.status == CANCELED
     assert arm.command("shoulder") == pytest.approx(0.5)
     await arm.run(1.0)
     assert arm.command("shoulder") == pytest.approx(0.5)
@@ -358,9 +358,9 @@ async def test_canceled_goal_holds_joints(stand):
 
 async def test_new_goal_preempts_previous_goal(stand):
     arm = Arm(stand)
-    first = arm.ask(trajectory((1.0, [1.0, 1.0])))
+    first = arm.send_goal(trajectory((1.0, [1.0, 1.0])))
     await arm.run(0.5)
-    second = arm.ask(trajectory((1.0, [0.0, 0.0])))
+    second = arm.send_goal(trajectory((1.0, [0.0, 0.0])))
     await arm.run(1.2)
     assert (first.status, second.status) == (CANCELED, SUCCEEDED)
     assert first.result.error_code == first.result.INVALID_GOAL
@@ -369,30 +369,30 @@ async def test_new_goal_preempts_previous_goal(stand):
 
 async def test_trajectory_on_topic_preempts_goal(stand):
     arm = Arm(stand)
-    asked = arm.ask(trajectory((1.0, [1.0, 1.0])))
+    goal = arm.send_goal(trajectory((1.0, [1.0, 1.0])))
     await arm.run(0.5)
-    arm.say(trajectory((0.5, [0.0, 0.0])))
+    arm.publish(trajectory((0.5, [0.0, 0.0])))
     await arm.run(1.0)
-    assert asked.status == CANCELED
+    assert goal.status == CANCELED
     assert arm.command("shoulder") == 0.0
 
 
 async def test_rejected_goal_keeps_previous_goal(stand):
     arm = Arm(stand)
-    first = arm.ask(trajectory((1.0, [1.0, 1.0])))
+    first = arm.send_goal(trajectory((1.0, [1.0, 1.0])))
     await arm.run(0.5)
-    arm.ask(trajectory())
+    arm.send_goal(trajectory())
     await arm.run(0.6)
     assert first.status == SUCCEEDED
 
 
 async def test_inactive_controller_rejects_goals_and_ends_current_goal(stand):
     arm = Arm(stand, command_interfaces=["position", "velocity"])
-    running = arm.ask(trajectory((1.0, [1.0, 1.0], [0.0, 0.0])))
+    running = arm.send_goal(trajectory((1.0, [1.0, 1.0], [0.0, 0.0])))
     await arm.run(0.5)
     arm.controller.on_deactivate()
     stand.exchange.deliver()
-    late = arm.ask(trajectory(GOOD))
+    late = arm.send_goal(trajectory(GOOD))
     await stand.graph.settle()
     assert (running.status, late.accepted) == (CANCELED, False)
     assert running.result.error_string == "Current goal cancelled during deactivate transition."
@@ -403,7 +403,7 @@ async def test_inactive_controller_rejects_goals_and_ends_current_goal(stand):
 
 async def test_reactivation_holds_last_commands(stand):
     arm = Arm(stand)
-    arm.say(trajectory((0.5, [1.0, 1.0])))
+    arm.publish(trajectory((0.5, [1.0, 1.0])))
     await arm.run(1.0)
     arm.controller.on_deactivate()
     stand.states["shoulder/position"].value = 0.9
@@ -413,12 +413,12 @@ async def test_reactivation_holds_last_commands(stand):
 
 async def test_open_loop_trajectory_starts_at_last_command(stand):
     arm = Arm(stand, open_loop_control=True)
-    arm.say(trajectory((0.5, [1.0, 1.0])))
+    arm.publish(trajectory((0.5, [1.0, 1.0])))
     await arm.run(1.0)
     arm.stuck.update(JOINTS)
     for joint in JOINTS:
         stand.states[f"{joint}/position"].value = 0.5
-    arm.say(trajectory((1.0, [2.0, 2.0])))
+    arm.publish(trajectory((1.0, [2.0, 2.0])))
     await arm.run(0.5)
     assert arm.command("shoulder") == pytest.approx(1.5)
 
@@ -428,16 +428,16 @@ async def test_angle_wraparound_turns_shorter_way(stand):
     stand.states["shoulder/position"].value = 3.0
     stand.commands["shoulder/position"].value = 3.0
     arm.controller.on_activate()
-    asked = arm.ask(trajectory((1.0, [-3.0, 0.0])))
+    goal = arm.send_goal(trajectory((1.0, [-3.0, 0.0])))
     await arm.run(0.5)
     assert arm.command("shoulder") == pytest.approx(-pi)
     await arm.run(0.6)
-    assert asked.status == SUCCEEDED
+    assert goal.status == SUCCEEDED
 
 
 async def test_points_are_commanded_when_due_without_interpolation(stand):
     arm = Arm(stand, interpolation_method="none")
-    arm.say(trajectory((1.0, [1.0, 1.0]), (2.0, [2.0, 2.0])))
+    arm.publish(trajectory((1.0, [1.0, 1.0]), (2.0, [2.0, 2.0])))
     await arm.run(0.9)
     assert arm.command("shoulder") == 0.0
     await arm.run(0.2)
@@ -447,7 +447,7 @@ async def test_points_are_commanded_when_due_without_interpolation(stand):
 async def test_ended_trajectory_is_dropped_after_cmd_timeout(stand):
     arm = Arm(stand, cmd_timeout=0.5)
     arm.stuck.update(JOINTS)
-    arm.say(trajectory((0.5, [1.0, 1.0])))
+    arm.publish(trajectory((0.5, [1.0, 1.0])))
     await arm.run(0.9)
     assert arm.command("shoulder") == 1.0
     await arm.run(0.2)
@@ -463,10 +463,10 @@ async def test_cmd_timeout_below_goal_time_is_ignored_with_warning(stand):
 async def test_state_is_published_each_update_or_at_set_rate(stand):
     arm = Arm(stand, state_publish_rate=20.0)
     new, old = (
-        stand.heard("control_msgs/msg/JointTrajectoryControllerState", f"/controller/{topic}")
+        stand.record("control_msgs/msg/JointTrajectoryControllerState", f"/controller/{topic}")
         for topic in ("controller_state", "state")
     )
-    arm.say(trajectory((1.0, [1.0, 1.0])))
+    arm.publish(trajectory((1.0, [1.0, 1.0])))
     await arm.run(0.5)
     assert len(new) == len(old) == 10
     message = new[-1]
@@ -480,12 +480,12 @@ async def test_state_is_published_each_update_or_at_set_rate(stand):
 async def test_errors_of_held_joints_are_computed_only_for_subscribers(stand, monkeypatch):
     compare, compared = JointTrajectoryController._compare, []
     monkeypatch.setattr(
-        JointTrajectoryController, "_compare", lambda self, wanted: compared.append(wanted) or compare(self, wanted)
+        JointTrajectoryController, "_compare", lambda self, target: compared.append(target) or compare(self, target)
     )
     arm = Arm(stand)
     await arm.run(0.1)
     assert compared == []
-    states = stand.heard("control_msgs/msg/JointTrajectoryControllerState", "/controller/controller_state")
+    states = stand.record("control_msgs/msg/JointTrajectoryControllerState", "/controller/controller_state")
     await arm.run(0.02)
     assert len(states) == len(compared) == 2
     assert list(states[-1].error.positions) == [0.0, 0.0]
@@ -501,7 +501,7 @@ async def test_query_state_returns_state_at_time(stand):
         await arm.run(0.01)
         return future.result()
 
-    arm.say(trajectory((1.0, [1.0, 0.0])))
+    arm.publish(trajectory((1.0, [1.0, 0.0])))
     await arm.run(0.1)
     answer = await ask(0.51)
     assert (answer.success, answer.name) == (True, list(JOINTS))
@@ -550,7 +550,7 @@ async def test_activation_fails_without_known_positions(stand):
 async def test_unknown_velocity_state_counts_as_zero(stand):
     arm = Arm(stand)
     stand.states["shoulder/velocity"].value = nan
-    arm.say(trajectory((1.0, [1.0, 1.0], [0.0, 0.0])))
+    arm.publish(trajectory((1.0, [1.0, 1.0], [0.0, 0.0])))
     await arm.run(0.5)
     assert arm.command("shoulder") == pytest.approx(0.5)
     await arm.run(0.6)
@@ -568,7 +568,7 @@ async def test_command_joints_can_differ_from_state_joints(stand):
 
 async def test_time_reset_holds_joints(stand):
     arm = Arm(stand)
-    arm.say(trajectory((1.0, [1.0, 1.0])))
+    arm.publish(trajectory((1.0, [1.0, 1.0])))
     await arm.run(0.5)
     stand.time_ns = 0
     await arm.run(0.1)
@@ -581,6 +581,6 @@ async def test_controller_can_be_configured_again_after_cleanup(stand):
     arm.controller.on_cleanup()
     await stand.graph.settle()
     stand.activate(arm.controller)
-    asked = arm.ask(trajectory((0.1, [1.0, 1.0])))
+    goal = arm.send_goal(trajectory((0.1, [1.0, 1.0])))
     await arm.run(0.2)
-    assert asked.status == SUCCEEDED
+    assert goal.status == SUCCEEDED

@@ -34,7 +34,7 @@ async def test_lost_publisher_stops_velocity_and_holds_position_and_effort(stand
     driver.be_lost()
     await stand.step(controller)
     assert stand.commands[f"hip/{interface}"].value == after
-    logged = [each.text for each in stand.log if "was lost" in each.text]
+    logged = [record.text for record in stand.log if "was lost" in record.text]
     assert len(logged) == (after == 0.0)
 
 
@@ -52,7 +52,7 @@ async def test_drive_stops_before_timeout_when_publisher_is_lost(stand):
     driver.be_lost()
     await stand.step(controller)
     assert [command.value for command in stand.commands.values()] == [0.0, 0.0]
-    (logged,) = [each.text for each in stand.log if "was lost" in each.text]
+    (logged,) = [record.text for record in stand.log if "was lost" in record.text]
     assert logged.startswith("'/driver', which sent the commands on '/base/cmd_vel', was lost")
 
 
@@ -72,7 +72,7 @@ async def test_drive_reports_two_simultaneous_publishers_once(stand, clock):
         drivers[speed % 2].send(message)
         await clock.advance(0.1)
     await stand.step(controller)
-    (logged,) = [each.text for each in stand.log if each.level >= LogLevel.WARN]
+    (logged,) = [record.text for record in stand.log if record.level >= LogLevel.WARN]
     assert logged.startswith("several nodes drive the robot: '/keys', '/planner' send commands on '/base/cmd_vel'")
 
 
@@ -88,4 +88,4 @@ async def test_lost_publisher_of_expired_command_is_not_reported(stand):
     await stand.step(controller, count=20)
     driver.be_lost()
     await stand.step(controller)
-    assert not [each.text for each in stand.log if "was lost" in each.text]
+    assert not [record.text for record in stand.log if "was lost" in record.text]

@@ -25,7 +25,7 @@ def wheels(stand):
 
 
 def command(stand, forward: float, sideways: float, turning: float) -> None:
-    stand.say("geometry_msgs/msg/TwistStamped", f"/{NAME}/reference", stamped(0, forward, turning, sideways))
+    stand.publish("geometry_msgs/msg/TwistStamped", f"/{NAME}/reference", stamped(0, forward, turning, sideways))
 
 
 def commanded(stand) -> list[float]:
@@ -53,11 +53,11 @@ async def test_wheel_speeds_match_motion(wheels, velocity, wheels_turn):
 
 async def test_odometry_matches_driven_arc(wheels):
     controller = wheels.start(MecanumDriveController, NAME, **ROBOT, reference_timeout=60.0)
-    heard = wheels.heard("nav_msgs/msg/Odometry", f"/{NAME}/odometry")
-    transforms = wheels.heard("tf2_msgs/msg/TFMessage", f"/{NAME}/tf_odometry")
+    odometry = wheels.record("nav_msgs/msg/Odometry", f"/{NAME}/odometry")
+    transforms = wheels.record("tf2_msgs/msg/TFMessage", f"/{NAME}/tf_odometry")
     command(wheels, 0.3, 0.4, 0.5)
     await roll(wheels, controller, 501)
-    place, velocity, turn = heard[-1].pose.pose, heard[-1].twist.twist, 2.5
+    place, velocity, turn = odometry[-1].pose.pose, odometry[-1].twist.twist, 2.5
     x = (0.3 * sin(turn) + 0.4 * (cos(turn) - 1.0)) / 0.5
     y = (0.3 * (1.0 - cos(turn)) + 0.4 * sin(turn)) / 0.5
     assert (place.position.x, place.position.y) == pytest.approx((x, y), abs=1e-9)
@@ -69,13 +69,13 @@ async def test_base_frame_offset_is_applied(wheels):
     offset = {"x": 0.2, "y": -0.1, "theta": pi / 2.0}
     sizes = {"kinematics": SIZES | {"base_frame_offset": offset}}
     controller = wheels.start(MecanumDriveController, NAME, **ROBOT | sizes, reference_timeout=60.0)
-    heard = wheels.heard("nav_msgs/msg/Odometry", f"/{NAME}/odometry")
+    odometry = wheels.record("nav_msgs/msg/Odometry", f"/{NAME}/odometry")
     command(wheels, 1.0, 0.0, 0.0)
     await wheels.step(controller)
     assert commanded(wheels) == pytest.approx([-10.0, 10.0, -10.0, 10.0])
     command(wheels, 0.3, 0.4, 0.5)
     await roll(wheels, controller, 3)
-    velocity = heard[-1].twist.twist
+    velocity = odometry[-1].twist.twist
     assert (velocity.linear.x, velocity.linear.y, velocity.angular.z) == pytest.approx((0.3, 0.4, 0.5))
 
 
@@ -98,16 +98,16 @@ async def test_chained_mode_accepts_references_and_publishes_state(wheels):
         "base/linear/y/velocity",
         "base/angular/z/velocity",
     ]
-    heard = wheels.heard("control_msgs/msg/MecanumDriveControllerState", f"/{NAME}/controller_state")
+    states = wheels.record("control_msgs/msg/MecanumDriveControllerState", f"/{NAME}/controller_state")
     controller.is_chained = True
     for reference, value in zip(controller.references, (0.0, 1.0, 0.0), strict=True):
         reference.value = value
     await roll(wheels, controller)
-    assert heard[-1].reference_velocity.linear.y == 1.0
+    assert states[-1].reference_velocity.linear.y == 1.0
     await roll(wheels, controller)
     assert commanded(wheels) == [0.0] * 4
-    assert (heard[-1].front_left_wheel_velocity, heard[-1].back_left_wheel_velocity) == pytest.approx((-10.0, 10.0))
-    assert isnan(heard[-1].reference_velocity.linear.y)
+    assert (states[-1].front_left_wheel_velocity, states[-1].back_left_wheel_velocity) == pytest.approx((-10.0, 10.0))
+    assert isnan(states[-1].reference_velocity.linear.y)
 
 
 @pytest.mark.parametrize(

@@ -29,7 +29,7 @@ def command(names: list[str], values: list[float], rates: list[float]) -> Any:
 
 def ask(stand: Any, *values: float, names: tuple[str, ...] = ("wheel",), rates: tuple[float, ...] = ()) -> None:
     """Send a reference."""
-    stand.say(COMMAND, "/controller/reference", command(list(names), list(values), list(rates)))
+    stand.publish(COMMAND, "/controller/reference", command(list(names), list(values), list(rates)))
 
 
 async def test_command_follows_error(stand):
@@ -73,7 +73,7 @@ async def test_angle_wraparound_uses_shorter_way(stand):
 async def test_measured_states_can_come_from_topic(stand):
     controller = wheel(stand, **WHEEL, use_external_measured_states=True, gains={"wheel": {"p": 1.0}})
     ask(stand, 4.0)
-    stand.say(COMMAND, "/controller/measured_state", command(["wheel"], [1.0], []))
+    stand.publish(COMMAND, "/controller/measured_state", command(["wheel"], [1.0], []))
     await stand.step(controller)
     assert stand.commands["wheel/effort"].value == pytest.approx(3.0)
 
@@ -89,7 +89,7 @@ async def test_chained_mode_accepts_reference_interfaces(stand):
     ask(stand, 9.0)
     await stand.step(controller)
     assert stand.commands["wheel/effort"].value == pytest.approx(0.5)
-    assert [each.value for each in controller.exported] == [0.0, 0.0]
+    assert [interface.value for interface in controller.exported] == [0.0, 0.0]
 
 
 async def test_reference_of_wrong_size_or_names_is_reported(stand):
@@ -98,7 +98,7 @@ async def test_reference_of_wrong_size_or_names_is_reported(stand):
     await stand.step(controller)
     ask(stand, 1.0, names=("arm",))
     await stand.step(controller)
-    logged = [str(each.text) for each in stand.log]
+    logged = [str(record.text) for record in stand.log]
     assert "Size of input data names (1) and/or values (2) is not matching the expected size (1)." in logged
     assert "DoF name 'wheel' is not in the message: it has arm." in logged
     assert isnan(stand.commands["wheel/effort"].value)
@@ -106,24 +106,24 @@ async def test_reference_of_wrong_size_or_names_is_reported(stand):
 
 async def test_controller_state_is_published(stand):
     controller = wheel(stand, velocity=1.0, **WHEEL, gains={"wheel": {"p": 2.0}})
-    heard = stand.heard("control_msgs/msg/MultiDOFStateStamped", "/controller/controller_state")
+    states = stand.record("control_msgs/msg/MultiDOFStateStamped", "/controller/controller_state")
     ask(stand, 4.0)
     await stand.step(controller)
-    (state,) = heard[-1].dof_states
+    (state,) = states[-1].dof_states
     assert (state.name, state.reference, state.feedback, state.error, state.output) == ("wheel", 4.0, 1.0, 3.0, 6.0)
     assert state.time_step == pytest.approx(0.01)
 
 
-@pytest.mark.parametrize("kept", [True, False])
-async def test_save_i_term_keeps_integral_on_reactivation(stand, kept):
-    controller = wheel(stand, **WHEEL, gains={"wheel": {"i": 1.0, "save_i_term": kept}})
+@pytest.mark.parametrize("saves_integral", [True, False])
+async def test_save_i_term_keeps_integral_on_reactivation(stand, saves_integral):
+    controller = wheel(stand, **WHEEL, gains={"wheel": {"i": 1.0, "save_i_term": saves_integral}})
     for _ in range(2):
         controller.on_activate()
         ask(stand, 1.0)
         await stand.step(controller)
         controller.on_deactivate()
     controller.on_activate()
-    assert controller._pids[0].integral == pytest.approx(0.02 if kept else 0.0)
+    assert controller._pids[0].integral == pytest.approx(0.02 if saves_integral else 0.0)
 
 
 async def test_deactivation_sets_effort_to_zero(stand):

@@ -7,7 +7,7 @@ import pytest
 from linkwright.control.controllers.registry import controller_class
 from linkwright.control.hardware.interfaces import StateInterface
 from linkwright.messages import get_action
-from tests.control.controllers.arm import JOINTS, Asked, run, trajectory
+from tests.control.controllers.arm import JOINTS, SentGoal, run, trajectory
 
 ACTION = "control_msgs/action/FollowJointTrajectory"
 KIND = "ur_controllers/ScaledJointTrajectoryController"
@@ -29,9 +29,9 @@ async def position_after(stand, seconds, factor=None, **more):
             stand.states[name].value = command.value
 
     message = trajectory((2.0, [2.0] * len(JOINTS)))
-    asked = Asked(stand, ACTION, "/controller/follow_joint_trajectory", get_action(ACTION).Goal(trajectory=message))
+    goal = SentGoal(stand, ACTION, "/controller/follow_joint_trajectory", get_action(ACTION).Goal(trajectory=message))
     await run(stand, controller, seconds, obey)
-    return stand.commands[f"{JOINTS[0]}/position"].value, asked
+    return stand.commands[f"{JOINTS[0]}/position"].value, goal
 
 
 @pytest.mark.parametrize(("factor", "reached"), [(1.0, 1.0), (0.5, 0.5), (0.0, 0.0)])
@@ -41,9 +41,9 @@ async def test_trajectory_advances_at_robot_speed_scaling(stand, factor, reached
 
 
 async def test_scaled_goal_takes_longer_and_succeeds(stand):
-    position, asked = await position_after(stand, 4.2, 0.5)
+    position, goal = await position_after(stand, 4.2, 0.5)
     assert position == pytest.approx(2.0)
-    assert asked.status == SUCCEEDED
+    assert goal.status == SUCCEEDED
 
 
 async def test_trajectory_runs_unscaled_without_interface(stand):

@@ -42,9 +42,9 @@ async def test_imu_is_published(stand):
     broadcaster = stand.start(
         ImuBroadcaster, sensor_name="imu", frame_id="imu_link", static_covariance_orientation=covariance
     )
-    heard = stand.heard("sensor_msgs/msg/Imu", "/controller/imu")
+    imu_messages = stand.record("sensor_msgs/msg/Imu", "/controller/imu")
     await stand.step(broadcaster)
-    (message,) = heard
+    (message,) = imu_messages
     assert message.header.frame_id == "imu_link"
     assert message.header.stamp.nanosec == 10_000_000
     assert (message.orientation.x, message.orientation.w) == (9.0, 6.0)
@@ -56,9 +56,9 @@ async def test_imu_is_published(stand):
 async def test_wrench_is_published(stand):
     stand.joint("tcp", **{kind: float(number) for number, kind in enumerate(WRENCH)})
     broadcaster = stand.start(ForceTorqueBroadcaster, sensor_name="tcp", frame_id="tool0")
-    heard = stand.heard("geometry_msgs/msg/WrenchStamped", "/controller/wrench")
+    wrenches = stand.record("geometry_msgs/msg/WrenchStamped", "/controller/wrench")
     await stand.step(broadcaster)
-    assert (heard[0].header.frame_id, heard[0].wrench.force.y, heard[0].wrench.torque.z) == ("tool0", 1.0, 5.0)
+    assert (wrenches[0].header.frame_id, wrenches[0].wrench.force.y, wrenches[0].wrench.torque.z) == ("tool0", 1.0, 5.0)
 
 
 async def test_wrench_axes_can_be_renamed_or_missing(stand):
@@ -68,9 +68,9 @@ async def test_wrench_axes_can_be_renamed_or_missing(stand):
         frame_id="tool0",
         interface_names={"force": {"z": "cell/pull"}, "torque": {"x": "cell/twist"}},
     )
-    heard = stand.heard("geometry_msgs/msg/WrenchStamped", "/controller/wrench")
+    wrenches = stand.record("geometry_msgs/msg/WrenchStamped", "/controller/wrench")
     await stand.step(broadcaster)
-    wrench = heard[0].wrench
+    wrench = wrenches[0].wrench
     assert (wrench.force.x, wrench.force.z, wrench.torque.x) == (0.0, 3.0, 4.0)
 
 
@@ -83,19 +83,19 @@ async def test_wrench_offset_is_applied_before_multiplier(stand):
         offset={"force": {"z": 2.0}},
         multiplier={"force": {"z": -1.0}, "torque": {"x": 0.5}},
     )
-    heard = stand.heard("geometry_msgs/msg/WrenchStamped", "/controller/wrench")
+    wrenches = stand.record("geometry_msgs/msg/WrenchStamped", "/controller/wrench")
     await stand.step(broadcaster)
-    wrench = heard[0].wrench
+    wrench = wrenches[0].wrench
     assert (wrench.force.x, wrench.force.z, wrench.torque.x) == (1.0, -3.0, 0.5)
 
 
 async def test_range_is_published(stand):
     stand.joint("sonar", range=1.5)
     broadcaster = stand.start(RangeBroadcaster, sensor_name="sonar", frame_id="sonar_link", max_range=3.0)
-    heard = stand.heard("sensor_msgs/msg/Range", "/controller/range")
+    ranges = stand.record("sensor_msgs/msg/Range", "/controller/range")
     await stand.step(broadcaster)
-    assert (heard[0].range, heard[0].max_range, heard[0].radiation_type) == (1.5, 3.0, 0)
-    assert heard[0].field_of_view == pytest.approx(0.52)
+    assert (ranges[0].range, ranges[0].max_range, ranges[0].radiation_type) == (1.5, 3.0, 0)
+    assert ranges[0].field_of_view == pytest.approx(0.52)
 
 
 async def test_pose_and_transform_are_published(stand):
@@ -103,8 +103,8 @@ async def test_pose_and_transform_are_published(stand):
     broadcaster = stand.start(
         PoseBroadcaster, pose_name="tcp", frame_id="base", tf={"child_frame_id": "tool", "publish_rate": 20.0}
     )
-    poses = stand.heard("geometry_msgs/msg/PoseStamped", "/controller/pose")
-    transforms = stand.heard("tf2_msgs/msg/TFMessage", "/tf")
+    poses = stand.record("geometry_msgs/msg/PoseStamped", "/controller/pose")
+    transforms = stand.record("tf2_msgs/msg/TFMessage", "/tf")
     await stand.step(broadcaster, count=10)
     assert (len(poses), len(transforms)) == (10, 2)
     assert (poses[0].pose.position.z, poses[0].pose.orientation.w) == (3.0, 1.0)
@@ -151,6 +151,6 @@ async def test_missing_or_invalid_parameters_are_rejected(stand, kind, parameter
 def test_admittance_controller_is_rejected_with_hint():
     with pytest.raises(LinkwrightError) as raised:
         controller_class("admittance_controller/AdmittanceController")
-    (found,) = raised.value.diagnostics
-    assert found.code == "CTL103"
-    assert "does not support admittance control" in str(found.hint)
+    (diagnostic,) = raised.value.diagnostics
+    assert diagnostic.code == "CTL103"
+    assert "does not support admittance control" in str(diagnostic.hint)

@@ -44,12 +44,13 @@ def vehicle(stand, kind, sizes, **more) -> Any:
 
 
 def command(stand, *velocity: float, at: int = 0) -> None:
-    stand.say("geometry_msgs/msg/TwistStamped", f"/{NAME}/reference", stamped(at, *velocity))
+    stand.publish("geometry_msgs/msg/TwistStamped", f"/{NAME}/reference", stamped(at, *velocity))
 
 
 def commanded(stand, *joints: str) -> list[float]:
     return [
-        next(each.value for name, each in stand.commands.items() if name.startswith(f"{joint}/")) for joint in joints
+        next(interface.value for name, interface in stand.commands.items() if name.startswith(f"{joint}/"))
+        for joint in joints
     ]
 
 
@@ -98,19 +99,19 @@ async def test_bicycle_wheel_commands(stand):
 )
 async def test_odometry_matches_driven_arc(stand, kind, sizes, how):
     controller = vehicle(stand, kind, sizes, reference_timeout=60.0, **how)
-    heard = stand.heard("nav_msgs/msg/Odometry", f"/{NAME}/odometry")
-    transforms = stand.heard("tf2_msgs/msg/TFMessage", f"/{NAME}/tf_odometry")
+    odometry = stand.record("nav_msgs/msg/Odometry", f"/{NAME}/odometry")
+    transforms = stand.record("tf2_msgs/msg/TFMessage", f"/{NAME}/tf_odometry")
     command(stand, 0.5, 0.2)
     await roll(stand, controller, 20)
-    begin = heard[-1].pose.pose
+    begin = odometry[-1].pose.pose
     await roll(stand, controller, 500)
-    end, velocity = heard[-1].pose.pose, heard[-1].twist.twist
+    end, velocity = odometry[-1].pose.pose, odometry[-1].twist.twist
     yaw = 2.0 * atan(begin.orientation.z / begin.orientation.w)
     assert end.position.x - begin.position.x == pytest.approx(2.5 * (sin(yaw + 1.0) - sin(yaw)), abs=1e-9)
     assert end.position.y - begin.position.y == pytest.approx(2.5 * (cos(yaw) - cos(yaw + 1.0)), abs=1e-9)
     assert (velocity.linear.x, velocity.angular.z) == pytest.approx((0.5, 0.2))
     assert transforms[-1].transforms[0].transform.translation.x == end.position.x
-    assert list(heard[-1].pose.covariance[::7]) == [0.0, 7.0, 14.0, 21.0, 28.0, 35.0]
+    assert list(odometry[-1].pose.covariance[::7]) == [0.0, 7.0, 14.0, 21.0, 28.0, 35.0]
 
 
 @EACH
@@ -136,7 +137,7 @@ async def test_command_holds_for_one_update_without_timeout(stand):
 
 async def test_humble_accepts_unstamped_commands(stand):
     controller = vehicle(stand, BicycleSteeringController, BICYCLE, use_stamped_vel=False)
-    stand.say("geometry_msgs/msg/Twist", f"/{NAME}/reference_unstamped", twist(1.0))
+    stand.publish("geometry_msgs/msg/Twist", f"/{NAME}/reference_unstamped", twist(1.0))
     await stand.step(controller)
     assert commanded(stand, "wheel") == [10.0]
 
@@ -186,10 +187,10 @@ async def test_chained_mode_accepts_reference_interfaces(stand):
 
 async def test_controller_state_is_published(stand):
     controller = vehicle(stand, BicycleSteeringController, BICYCLE)
-    heard = stand.heard("control_msgs/msg/SteeringControllerStatus", f"/{NAME}/controller_state")
+    statuses = stand.record("control_msgs/msg/SteeringControllerStatus", f"/{NAME}/controller_state")
     command(stand, 1.0, 0.5)
     await roll(stand, controller, 2)
-    last = heard[-1]
+    last = statuses[-1]
     assert (list(last.traction_wheels_velocity), list(last.linear_velocity_command)) == ([10.0], [10.0])
     assert list(last.steer_positions) == list(last.steering_angle_command) == [atan(0.6)]
 

@@ -23,7 +23,7 @@ def wheel(stand):
 
 
 def command(stand, *velocity: float) -> None:
-    stand.say("geometry_msgs/msg/TwistStamped", f"/{NAME}/cmd_vel", stamped(0, *velocity))
+    stand.publish("geometry_msgs/msg/TwistStamped", f"/{NAME}/cmd_vel", stamped(0, *velocity))
 
 
 def commanded(stand) -> list[float]:
@@ -58,14 +58,14 @@ async def test_odometry_matches_driven_arc(wheel, open_loop):
     controller = wheel.start(
         TricycleController, NAME, **ROBOT, open_loop=open_loop, cmd_vel_timeout=60000, enable_odom_tf=True
     )
-    heard = wheel.heard("nav_msgs/msg/Odometry", f"/{NAME}/odom")
-    transforms = wheel.heard("tf2_msgs/msg/TFMessage", "/tf")
+    odometry = wheel.record("nav_msgs/msg/Odometry", f"/{NAME}/odom")
+    transforms = wheel.record("tf2_msgs/msg/TFMessage", "/tf")
     command(wheel, 0.5, 0.2)
     await roll(wheel, controller, 20)
-    begin = heard[-1].pose.pose
+    begin = odometry[-1].pose.pose
     yaw = 2.0 * atan(begin.orientation.z / begin.orientation.w)
     await roll(wheel, controller, 500)
-    end = heard[-1].pose.pose
+    end = odometry[-1].pose.pose
     assert end.position.x - begin.position.x == pytest.approx(2.5 * (sin(yaw + 1.0) - sin(yaw)), abs=1e-9)
     assert end.position.y - begin.position.y == pytest.approx(2.5 * (cos(yaw) - cos(yaw + 1.0)), abs=1e-9)
     assert transforms[-1].transforms[0].transform.translation.x == end.position.x
@@ -73,23 +73,23 @@ async def test_odometry_matches_driven_arc(wheel, open_loop):
 
 async def test_odometry_can_contain_twist_only(wheel):
     controller = wheel.start(TricycleController, NAME, **ROBOT, odom_only_twist=True)
-    heard = wheel.heard("nav_msgs/msg/Odometry", f"/{NAME}/odom")
+    odometry = wheel.record("nav_msgs/msg/Odometry", f"/{NAME}/odom")
     command(wheel, 0.5)
     await roll(wheel, controller, 30)
-    assert heard[-1].twist.twist.linear.x == pytest.approx(0.5)
-    assert (heard[-1].pose.pose.position.x, heard[-1].pose.pose.orientation.w) == (0.0, 1.0)
+    assert odometry[-1].twist.twist.linear.x == pytest.approx(0.5)
+    assert (odometry[-1].pose.pose.position.x, odometry[-1].pose.pose.orientation.w) == (0.0, 1.0)
 
 
 async def test_reset_odometry_service_resets_pose(wheel):
     controller = wheel.start(TricycleController, NAME, **ROBOT)
-    heard = wheel.heard("nav_msgs/msg/Odometry", f"/{NAME}/odom")
+    odometry = wheel.record("nav_msgs/msg/Odometry", f"/{NAME}/odom")
     command(wheel, 0.5)
     await roll(wheel, controller, 30)
     client = wheel.node.create_client("std_srvs/srv/Empty", f"/{NAME}/reset_odometry")
     client.call_async(client.srv_type.Request())
     await roll(wheel, controller)
-    assert heard[-2].pose.pose.position.x > 0.1
-    assert heard[-1].pose.pose.position.x == pytest.approx(0.005)
+    assert odometry[-2].pose.pose.position.x > 0.1
+    assert odometry[-1].pose.pose.position.x == pytest.approx(0.005)
 
 
 async def test_command_expires_after_timeout_in_milliseconds(wheel):
@@ -103,7 +103,7 @@ async def test_command_expires_after_timeout_in_milliseconds(wheel):
 
 async def test_humble_accepts_unstamped_commands(wheel):
     controller = wheel.start(TricycleController, NAME, **ROBOT, use_stamped_vel=False)
-    wheel.say("geometry_msgs/msg/Twist", f"/{NAME}/cmd_vel", twist(1.0))
+    wheel.publish("geometry_msgs/msg/Twist", f"/{NAME}/cmd_vel", twist(1.0))
     await wheel.step(controller)
     assert commanded(wheel)[0] == pytest.approx(10.0)
 
@@ -114,7 +114,7 @@ async def test_limits_are_respected_and_ackermann_command_published(wheel):
         "steering": {"max_position": 0.5, "max_velocity": 1.0},
     }
     controller = wheel.start(TricycleController, NAME, **ROBOT, **limits, publish_ackermann_command=True)
-    heard = wheel.heard("ackermann_msgs/msg/AckermannDrive", f"/{NAME}/cmd_ackermann")
+    commands = wheel.record("ackermann_msgs/msg/AckermannDrive", f"/{NAME}/cmd_ackermann")
     speeds, angles = [0.0], [0.0]
     for number in range(300):
         command(wheel, *((1.0, 2.0), (-1.0, 1.0), (0.2, 0.0))[number // 50 % 3])
@@ -128,7 +128,7 @@ async def test_limits_are_respected_and_ackermann_command_published(wheel):
         bound = 20.0 if abs(after) >= abs(before) else 40.0
         assert abs(after - before) / STEP <= bound + 1e-9
     assert all(abs(after - before) / STEP <= 1.0 + 1e-9 for before, after in pairwise(angles))
-    assert (heard[-1].speed, heard[-1].steering_angle) == pytest.approx((speeds[-1], angles[-1]))
+    assert (commands[-1].speed, commands[-1].steering_angle) == pytest.approx((speeds[-1], angles[-1]))
 
 
 async def test_deactivation_stops_wheel(wheel):

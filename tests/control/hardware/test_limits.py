@@ -28,7 +28,9 @@ class Joint:
 
     def __init__(self, kind: str, states: dict[str, float] | None = None, **limits) -> None:
         self.command = CommandInterface("hip", kind)
-        self.states = {each: StateInterface("hip", each, value) for each, value in (states or {}).items()}
+        self.states = {
+            interface: StateInterface("hip", interface, value) for interface, value in (states or {}).items()
+        }
         self.limiter = JointLimiter("hip", JointLimits(kinds=KINDS, **limits), {kind: self.command}, self.states)
 
     def send(self, value: float, period_s: float = 0.1) -> float:
@@ -107,19 +109,19 @@ CONTROL = robot(
 async def test_manager_enforces_command_limits_if_enabled(graph, log, monkeypatch, distribution, message, limited):
     monkeypatch.setenv("ROS_DISTRO", distribution)
     parameters = {} if message is None else {"enforce_command_limits": message}
-    made = manager(
+    controller_manager = manager(
         graph,
         CONTROL,
         {**parameters, "positions": {"type": FORWARD}},
         positions={"joints": ["hip", "knee"], "interface_name": "position"},
     )
-    assert made.load("positions")
-    assert made.configure("positions")
-    assert made.switch(["positions"], [], STRICT)[0]
-    made.controllers["positions"].controller._command = [9.0, 9.0]
+    assert controller_manager.load("positions")
+    assert controller_manager.configure("positions")
+    assert controller_manager.switch(["positions"], [], STRICT)[0]
+    controller_manager.controllers["positions"].controller._command = [9.0, 9.0]
     for cycle in range(1, 301):
-        made.cycle(cycle * 10_000_000, 0.01)
-    hip, knee = made.resources.commands(["hip/position", "knee/position"])
+        controller_manager.cycle(cycle * 10_000_000, 0.01)
+    hip, knee = controller_manager.resources.commands(["hip/position", "knee/position"])
     assert (hip.value, knee.value) == ((3.0 if limited else 9.0), 9.0)
-    logged = [each.text for each in log if "is outside its limits" in each.text]
+    logged = [record.text for record in log if "is outside its limits" in record.text]
     assert len(logged) == limited

@@ -8,7 +8,7 @@ import pytest
 
 from linkwright.control.manager.switching import STRICT
 from linkwright.messages import get_action
-from tests.control.controllers.arm import Asked, trajectory
+from tests.control.controllers.arm import SentGoal, trajectory
 from tests.control.robots import joint, manager, robot
 
 ACTION = "control_msgs/action/FollowJointTrajectory"
@@ -36,9 +36,9 @@ class Robot:
             self.manager.cycle(self.time_ns, 0.01)
         await self.graph.settle()
 
-    def ask(self, *points: Any) -> Asked:
+    def send_goal(self, *points: Any) -> SentGoal:
         goal = get_action(ACTION).Goal(trajectory=trajectory(*points, names=JOINTS))
-        return Asked(self, ACTION, "/arm/follow_joint_trajectory", goal)  # type: ignore[arg-type]  # it has a node
+        return SentGoal(self, ACTION, "/arm/follow_joint_trajectory", goal)  # type: ignore[arg-type]  # it has a node
 
     def positions(self) -> list[float]:
         return [state.value for state in self.manager.resources.states([f"{name}/position" for name in JOINTS])]
@@ -48,21 +48,21 @@ async def test_arm_holds_position_and_follows_trajectory(graph):
     arm = Robot(graph)
     await arm.advance(0.1)
     assert arm.positions() == [0.2, 0.0]
-    asked = arm.ask((1.0, [1.2, -1.0]))
+    goal = arm.send_goal((1.0, [1.2, -1.0]))
     await arm.advance(0.5)
     assert arm.positions() == pytest.approx([0.7, -0.5], abs=0.021)
     await arm.advance(0.6)
-    assert asked.status == SUCCEEDED
+    assert goal.status == SUCCEEDED
     assert arm.positions() == [1.2, -1.0]
 
 
 async def test_goal_can_be_canceled_on_event_loop(graph):
     arm = Robot(graph)
-    asked = arm.ask((1.0, [1.2, 1.0]))
+    goal = arm.send_goal((1.0, [1.2, 1.0]))
     await arm.advance(0.5)
-    asked.cancel()
+    goal.cancel()
     await arm.advance(0.1)
-    assert asked.status == CANCELED
+    assert goal.status == CANCELED
     held = arm.positions()
     await arm.advance(0.5)
     assert arm.positions() == pytest.approx(held)
@@ -71,16 +71,16 @@ async def test_goal_can_be_canceled_on_event_loop(graph):
 
 async def test_deactivation_ends_goal_and_allows_new_one(graph):
     arm = Robot(graph)
-    first = arm.ask((1.0, [1.2, 1.0]))
+    first = arm.send_goal((1.0, [1.2, 1.0]))
     await arm.advance(0.5)
     assert arm.manager.switch([], ["arm"], STRICT)[0]
     await arm.advance(0.1)
     assert first.status == CANCELED
-    late = arm.ask((1.0, [0.0, 0.0]))
+    late = arm.send_goal((1.0, [0.0, 0.0]))
     await arm.advance(0.1)
     assert late.accepted is False
     assert arm.manager.switch(["arm"], [], STRICT)[0]
-    second = arm.ask((0.5, [0.0, 0.0]))
+    second = arm.send_goal((0.5, [0.0, 0.0]))
     await arm.advance(0.7)
     assert second.status == SUCCEEDED
     assert arm.positions() == [0.0, 0.0]

@@ -22,9 +22,9 @@ SAID = {"wheel_separation": 0.4, "wheel_radius": 0.1, "cmd_vel_timeout": 9.0, "p
 class Base:
     """A robot on two wheels with active controllers."""
 
-    def __init__(self, graph: Any, types: dict[str, str], **given: dict[str, Any]) -> None:
+    def __init__(self, graph: Any, types: dict[str, str], **parameters: dict[str, Any]) -> None:
         self.graph, self.node, self.time_ns = graph, graph.create_node("audience"), 0
-        self.manager = manager(graph, WHEELS, {name: {"type": kind} for name, kind in types.items()}, **given)
+        self.manager = manager(graph, WHEELS, {name: {"type": kind} for name, kind in types.items()}, **parameters)
         for name in types:
             assert self.manager.load(name)
             assert self.manager.configure(name)
@@ -46,7 +46,7 @@ class Base:
 
 
 async def test_drive_commands_pid_controllers_in_chained_mode(graph):
-    given = {
+    parameters = {
         f"pid_{side}": {
             "dof_names": [side],
             "command_interface": "velocity",
@@ -61,7 +61,7 @@ async def test_drive_commands_pid_controllers_in_chained_mode(graph):
         graph,
         {"pid_left": PID, "pid_right": PID, "base": DRIVE},
         base=SAID | names | {"position_feedback": False},
-        **given,
+        **parameters,
     )
     await base.drive(0.0, 0.0, 2)
     await base.drive(1.0, 0.5, 301)
@@ -87,15 +87,15 @@ async def test_drive_is_deactivated_if_wheel_state_is_not_a_number(graph, log):
     await base.drive(1.0, 0.0, 2)
     assert base.manager.controllers["base"].controller.state is INACTIVE
     assert base.wheels() == [0.0, 0.0]
-    assert any("Either the left or right wheel position is invalid" in each.text for each in log)
+    assert any("Either the left or right wheel position is invalid" in record.text for record in log)
 
 
 async def test_manager_selects_controller_variant_by_parameters(graph):
     wheels = {f"{corner}_wheel_name": side for corner, side in CORNERS.items()}
     sizes = {"wheel_separation_x": 0.2, "wheel_separation_y": 0.2, "wheel_radius": 0.1, "open_loop": True}
-    made = manager(graph, WHEELS, {"base": {"type": MECANUM}}, base={**wheels, **sizes})
-    assert made.load("base")
-    assert made.configure("base")
+    controller_manager = manager(graph, WHEELS, {"base": {"type": MECANUM}}, base={**wheels, **sizes})
+    assert controller_manager.load("base")
+    assert controller_manager.configure("base")
     topics = dict(graph.get_topic_names_and_types())
     assert "/base/cmd_vel" in topics
     assert "/base/reference" not in topics

@@ -85,16 +85,16 @@ async def test_failed_hardware_stops_its_controllers_and_can_be_reactivated(grap
         assert (await ask(graph, node, "configure_controller", name=name)).ok
     assert (await ask(graph, node, "switch_controller", activate_controllers=["hips", "knees"], strictness=2)).ok
     array = get_message("std_msgs/msg/Float64MultiArray")
-    wanted = {each: node.create_publisher(array, f"/{each}/commands", 10) for each in ("hips", "knees")}
-    for each in wanted.values():
-        each.publish(array(data=[2.0]))
+    publishers = {name: node.create_publisher(array, f"/{name}/commands", 10) for name in ("hips", "knees")}
+    for publisher in publishers.values():
+        publisher.publish(array(data=[2.0]))
     await advance(graph, clock, 3)
     assert arm.sent == 2.0
 
     arm.wrong = wrong
     await advance(graph, clock, 3)
-    listed = (await ask(graph, node, "list_controllers")).controller
-    assert {each.name: each.state for each in listed} == {"hips": "inactive", "knees": "active"}
+    controllers = (await ask(graph, node, "list_controllers")).controller
+    assert {controller.name: controller.state for controller in controllers} == {"hips": "inactive", "knees": "active"}
     components = (await ask(graph, node, "list_hardware_components")).component
     assert {component.name: component.state.label for component in components} == {
         "arm": "unconfigured",
@@ -105,7 +105,7 @@ async def test_failed_hardware_stops_its_controllers_and_can_be_reactivated(grap
     assert first.startswith("Error while reading hardware 'arm': ")
     assert first.endswith("the cable is out")
     assert second == ("Deactivating controllers : [ hips ] as their hardware components failed: [ arm ]")
-    wanted["knees"].publish(array(data=[3.0]))
+    publishers["knees"].publish(array(data=[3.0]))
     await advance(graph, clock, 2)
     leg = running._manager.resources.components["leg"]
     assert [command.value for command in leg.commands] == [3.0]
@@ -116,6 +116,6 @@ async def test_failed_hardware_stops_its_controllers_and_can_be_reactivated(grap
     set_state = {"name": "arm", "target_state": State(id=0, label="active")}
     assert (await ask(graph, node, "set_hardware_component_state", **set_state)).ok
     assert (await ask(graph, node, "switch_controller", activate_controllers=["hips"], strictness=2)).ok
-    wanted["hips"].publish(array(data=[1.0]))
+    publishers["hips"].publish(array(data=[1.0]))
     await advance(graph, clock, 3)
     assert (arm.sent, arm.life) == (1.0, ("on", "error", "on"))

@@ -67,9 +67,9 @@ def create_manager(graph, monkeypatch):
 
     monkeypatch.setattr("linkwright.control.manager.manager.controller_class", found)
 
-    def make(types=None, text=CONTROL, **given):
+    def make(types=None, text=CONTROL, **parameters):
         types = {"low": "t/Low", "high": "t/High"} if types is None else types
-        return manager(graph, text, {name: {"type": kind} for name, kind in types.items()}, **given)
+        return manager(graph, text, {name: {"type": kind} for name, kind in types.items()}, **parameters)
 
     return make
 
@@ -85,29 +85,29 @@ def value(manager, name):
 
 
 async def test_controller_lifecycle(create_manager, logged):
-    it = create_manager({"forward": FORWARD}, forward={"joints": ["hip"], "interface_name": "position"})
-    started(it, "forward")
-    assert it.switch(["forward"], [], STRICT) == (True, "Successfully switched controllers!")
-    assert it.resources.claims == {"hip/position": "forward"}
-    it.controllers["forward"].controller._command = [0.7]
-    it.cycle(10, 0.01)
-    it.cycle(20, 0.01)
-    assert it.resources.states(["hip/position"])[0].value == 0.7
-    assert not it.unload("forward")
+    controller_manager = create_manager({"forward": FORWARD}, forward={"joints": ["hip"], "interface_name": "position"})
+    started(controller_manager, "forward")
+    assert controller_manager.switch(["forward"], [], STRICT) == (True, "Successfully switched controllers!")
+    assert controller_manager.resources.claims == {"hip/position": "forward"}
+    controller_manager.controllers["forward"].controller._command = [0.7]
+    controller_manager.cycle(10, 0.01)
+    controller_manager.cycle(20, 0.01)
+    assert controller_manager.resources.states(["hip/position"])[0].value == 0.7
+    assert not controller_manager.unload("forward")
     assert logged("ERROR") == ["Could not unload controller with name 'forward' because it is still active"]
-    assert it.switch([], ["forward"], STRICT)[0]
-    assert it.resources.claims == {}
-    assert it.unload("forward")
-    assert it.controllers == {}
+    assert controller_manager.switch([], ["forward"], STRICT)[0]
+    assert controller_manager.resources.claims == {}
+    assert controller_manager.unload("forward")
+    assert controller_manager.controllers == {}
 
 
 async def test_unknown_and_broken_controllers_are_not_loaded(create_manager, logged):
-    it = create_manager({"a": "t/Unknown", "broken": "t/Broken", "low": "t/Low"})
-    assert not it.load("none")
-    assert not it.load("a")
-    assert not it.load("broken")
-    assert it.load("low")
-    assert not it.load("low")
+    controller_manager = create_manager({"a": "t/Unknown", "broken": "t/Broken", "low": "t/Low"})
+    assert not controller_manager.load("none")
+    assert not controller_manager.load("a")
+    assert not controller_manager.load("broken")
+    assert controller_manager.load("low")
+    assert not controller_manager.load("low")
     errors = logged("ERROR")
     assert errors[0] == "The 'type' param was not defined for 'none'."
     assert errors[1] == "Loader for controller 'a' (type 't/Unknown') not found."
@@ -117,9 +117,9 @@ async def test_unknown_and_broken_controllers_are_not_loaded(create_manager, log
 
 
 async def test_controller_can_refuse_transitions(create_manager, logged):
-    it = create_manager({"reluctant": "t/Reluctant"})
-    it.load("reluctant")
-    assert not it.configure("reluctant")
+    controller_manager = create_manager({"reluctant": "t/Reluctant"})
+    controller_manager.load("reluctant")
+    assert not controller_manager.configure("reluctant")
     assert logged("ERROR") == [
         "it does not like it here",
         "After configuring, controller 'reluctant' is in state 'unconfigured' , expected inactive.",
@@ -127,33 +127,33 @@ async def test_controller_can_refuse_transitions(create_manager, logged):
 
 
 async def test_command_interface_has_one_owner(create_manager, logged):
-    it = create_manager({"one": FORWARD, "two": FORWARD}, one=POSITIONS, two=POSITIONS)
-    started(it, "one", "two")
-    assert it.switch(["one"], [], STRICT)[0]
+    controller_manager = create_manager({"one": FORWARD, "two": FORWARD}, one=POSITIONS, two=POSITIONS)
+    started(controller_manager, "one", "two")
+    assert controller_manager.switch(["one"], [], STRICT)[0]
     text = "Resource conflict for controller 'two'. Command interface 'hip/position' is already claimed."
-    assert it.switch(["two"], [], STRICT) == (False, text)
-    assert it.controllers["two"].controller.state is INACTIVE
-    assert it.switch(["two"], ["one"], STRICT)[0]
-    assert it.switch(["one"], [], FORCE_AUTO)[0]
-    assert set(it.resources.claims.values()) == {"one"}
+    assert controller_manager.switch(["two"], [], STRICT) == (False, text)
+    assert controller_manager.controllers["two"].controller.state is INACTIVE
+    assert controller_manager.switch(["two"], ["one"], STRICT)[0]
+    assert controller_manager.switch(["one"], [], FORCE_AUTO)[0]
+    assert set(controller_manager.resources.claims.values()) == {"one"}
     assert logged("ERROR") == [text]
 
 
 async def test_unknown_interface_is_reported(create_manager, logged):
-    it = create_manager({"one": FORWARD}, one={**POSITIONS, "interface_name": "effort"})
-    started(it, "one")
+    controller_manager = create_manager({"one": FORWARD}, one={**POSITIONS, "interface_name": "effort"})
+    started(controller_manager, "one")
     text = "Can't activate controller 'one': Command interface with key 'hip/effort' does not exist"
-    assert it.switch(["one"], [], STRICT) == (False, text)
+    assert controller_manager.switch(["one"], [], STRICT) == (False, text)
 
 
 async def test_strict_switch_fails_where_best_effort_continues(create_manager, logged):
-    it = create_manager()
-    started(it, "low")
-    assert not it.switch(["low", "nobody"], [], STRICT)[0]
-    assert it.controllers["low"].is_inactive
-    assert it.switch(["low", "nobody"], [], BEST_EFFORT)[0]
-    assert it.controllers["low"].is_active
-    assert it.switch([], ["nobody"], BEST_EFFORT) == (
+    controller_manager = create_manager()
+    started(controller_manager, "low")
+    assert not controller_manager.switch(["low", "nobody"], [], STRICT)[0]
+    assert controller_manager.controllers["low"].is_inactive
+    assert controller_manager.switch(["low", "nobody"], [], BEST_EFFORT)[0]
+    assert controller_manager.controllers["low"].is_active
+    assert controller_manager.switch([], ["nobody"], BEST_EFFORT) == (
         True,
         "Empty activate and deactivate list, not requesting switch",
     )
@@ -161,44 +161,44 @@ async def test_strict_switch_fails_where_best_effort_continues(create_manager, l
 
 
 async def test_chained_controllers_are_ordered_and_activated(create_manager):
-    it = create_manager()
-    started(it, "low", "high")
-    assert list(it.controllers) == ["high", "low"]
-    assert not it.switch(["high"], [], STRICT)[0]
-    assert it.switch(["low"], [], STRICT)[0]
-    it.cycle(1, 0.01)
-    assert value(it, "hip/velocity") == 0.5
-    assert it.switch(["high"], [], STRICT)[0]
-    assert it.controllers["low"].controller.is_chained
-    it.cycle(2, 0.01)
-    assert value(it, "hip/velocity") == 2.0
-    assert not it.switch([], ["low"], STRICT)[0]
-    assert it.switch([], ["high"], STRICT)[0]
-    assert not it.controllers["low"].controller.is_chained
-    it.cycle(3, 0.01)
-    assert value(it, "hip/velocity") == 0.5
+    controller_manager = create_manager()
+    started(controller_manager, "low", "high")
+    assert list(controller_manager.controllers) == ["high", "low"]
+    assert not controller_manager.switch(["high"], [], STRICT)[0]
+    assert controller_manager.switch(["low"], [], STRICT)[0]
+    controller_manager.cycle(1, 0.01)
+    assert value(controller_manager, "hip/velocity") == 0.5
+    assert controller_manager.switch(["high"], [], STRICT)[0]
+    assert controller_manager.controllers["low"].controller.is_chained
+    controller_manager.cycle(2, 0.01)
+    assert value(controller_manager, "hip/velocity") == 2.0
+    assert not controller_manager.switch([], ["low"], STRICT)[0]
+    assert controller_manager.switch([], ["high"], STRICT)[0]
+    assert not controller_manager.controllers["low"].controller.is_chained
+    controller_manager.cycle(3, 0.01)
+    assert value(controller_manager, "hip/velocity") == 0.5
 
 
 async def test_chain_is_activated_together_or_separately(create_manager):
-    it = create_manager()
-    started(it, "low", "high")
-    assert it.switch(["high", "low"], [], STRICT)[0]
-    assert it.controllers["low"].controller.is_chained
-    assert it.switch([], ["high", "low"], STRICT)[0]
-    assert it.switch(["high"], [], AUTO)[0]
-    assert all(controller.controller.state is ACTIVE for controller in it.controllers.values())
+    controller_manager = create_manager()
+    started(controller_manager, "low", "high")
+    assert controller_manager.switch(["high", "low"], [], STRICT)[0]
+    assert controller_manager.controllers["low"].controller.is_chained
+    assert controller_manager.switch([], ["high", "low"], STRICT)[0]
+    assert controller_manager.switch(["high"], [], AUTO)[0]
+    assert all(controller.controller.state is ACTIVE for controller in controller_manager.controllers.values())
 
 
 async def test_controller_that_raises_is_deactivated_and_joints_stop(create_manager, logged):
-    it = create_manager()
-    started(it, "low", "high")
-    it.switch(["high", "low"], [], STRICT)
-    it.cycle(1, 0.01)
-    it.controllers["low"].controller.fault = RuntimeError("out of luck")
-    command = it.resources.commands(["hip/velocity"])[0]
-    it.cycle(2, 0.01)
+    controller_manager = create_manager()
+    started(controller_manager, "low", "high")
+    controller_manager.switch(["high", "low"], [], STRICT)
+    controller_manager.cycle(1, 0.01)
+    controller_manager.controllers["low"].controller.fault = RuntimeError("out of luck")
+    command = controller_manager.resources.commands(["hip/velocity"])[0]
+    controller_manager.cycle(2, 0.01)
     assert command.value == 0.0
-    assert [controller.is_active for controller in it.controllers.values()] == [False, False]
+    assert [controller.is_active for controller in controller_manager.controllers.values()] == [False, False]
     errors = logged("ERROR")
     assert errors[0].startswith("Caught exception while updating: RuntimeError: out of luck\nTraceback")
     assert errors[1] == "Deactivating controllers : [ low high ] as their update resulted in an error!"
@@ -206,42 +206,42 @@ async def test_controller_that_raises_is_deactivated_and_joints_stop(create_mana
 
 @pytest.mark.parametrize("wrong", [nan, inf])
 async def test_nan_commands_do_not_reach_hardware(create_manager, logged, wrong):
-    it = create_manager()
-    started(it, "low")
-    it.switch(["low"], [], STRICT)
-    it.cycle(1, 0.01)
-    it.controllers["low"].controller.value = wrong
-    it.cycle(2, 0.01)
-    assert value(it, "hip/velocity") == 0.0
+    controller_manager = create_manager()
+    started(controller_manager, "low")
+    controller_manager.switch(["low"], [], STRICT)
+    controller_manager.cycle(1, 0.01)
+    controller_manager.controllers["low"].controller.value = wrong
+    controller_manager.cycle(2, 0.01)
+    assert value(controller_manager, "hip/velocity") == 0.0
     assert "'hip/velocity' is not a number" in logged("ERROR")[0]
 
 
 async def test_commands_with_overflowing_sum_reach_hardware(create_manager, logged):
-    it = create_manager()
-    started(it, "low")
-    it.switch(["low"], [], STRICT)
-    loaded = it.controllers["low"]
+    controller_manager = create_manager()
+    started(controller_manager, "low")
+    controller_manager.switch(["low"], [], STRICT)
+    loaded = controller_manager.controllers["low"]
     loaded.controller.commands *= 2  # the sum of both is not a number
     loaded.controller.value = 1.5e308
-    it.cycle(1, 0.01)
-    assert value(it, "hip/velocity") == 1.5e308
+    controller_manager.cycle(1, 0.01)
+    assert value(controller_manager, "hip/velocity") == 1.5e308
     assert logged("ERROR") == []
 
 
 async def test_failing_hardware_stops_its_controllers(create_manager, logged):
-    it = create_manager()
-    started(it, "low", "high")
-    it.switch(["high", "low"], [], STRICT)
-    command = it.resources.commands(["hip/velocity"])[0]
-    it.cycle(1, 0.01)
+    controller_manager = create_manager()
+    started(controller_manager, "low", "high")
+    controller_manager.switch(["high", "low"], [], STRICT)
+    command = controller_manager.resources.commands(["hip/velocity"])[0]
+    controller_manager.cycle(1, 0.01)
 
     def fail(time_ns, period_s):
         raise OSError("the cable is out")
 
-    it.resources.components["arm"].write = fail
-    it.cycle(2, 0.01)
+    controller_manager.resources.components["arm"].write = fail
+    controller_manager.cycle(2, 0.01)
     assert command.value == 0.0
-    assert it.resources.components["arm"].state.label == "unconfigured"
+    assert controller_manager.resources.components["arm"].state.label == "unconfigured"
     assert logged("ERROR") == [
         "Error while writing hardware 'arm': OSError: the cable is out",
         "Deactivating controllers : [ low high ] as their hardware components failed: [ arm ]",
@@ -249,36 +249,38 @@ async def test_failing_hardware_stops_its_controllers(create_manager, logged):
 
 
 async def test_hardware_lifecycle(create_manager):
-    it = create_manager()
-    started(it, "low")
-    it.switch(["low"], [], STRICT)
-    assert it.set_hardware_state("arm", INACTIVE)
-    assert it.controllers["low"].is_inactive
-    assert it.set_hardware_state("arm", ACTIVE)
-    assert it.switch(["low"], [], STRICT)[0]
+    controller_manager = create_manager()
+    started(controller_manager, "low")
+    controller_manager.switch(["low"], [], STRICT)
+    assert controller_manager.set_hardware_state("arm", INACTIVE)
+    assert controller_manager.controllers["low"].is_inactive
+    assert controller_manager.set_hardware_state("arm", ACTIVE)
+    assert controller_manager.switch(["low"], [], STRICT)[0]
 
 
 async def test_slower_controller_is_updated_at_its_own_rate(create_manager):
-    it = create_manager({"low": "t/Low"}, low={"update_rate": 50})
-    started(it, "low")
+    controller_manager = create_manager({"low": "t/Low"}, low={"update_rate": 50})
+    started(controller_manager, "low")
     times = []
-    it.controllers["low"].controller.update = lambda time_ns, period_s: times.append((time_ns, period_s))
-    it.switch(["low"], [], STRICT)
+    controller_manager.controllers["low"].controller.update = lambda time_ns, period_s: times.append(
+        (time_ns, period_s)
+    )
+    controller_manager.switch(["low"], [], STRICT)
     for tick in range(1, 6):
-        it.cycle(tick * 10_000_000, 0.01)
+        controller_manager.cycle(tick * 10_000_000, 0.01)
     assert times == [(10_000_000, 0.02), (30_000_000, 0.02), (50_000_000, 0.02)]
 
 
 async def test_hardware_initial_states_are_applied(graph, logged):
     states = {"hardware_components_initial_state": {"inactive": ["arm"], "unconfigured": ["leg"]}}
-    it = manager(graph, CONTROL, states)
-    assert it.resources.components["arm"].state is INACTIVE
+    controller_manager = manager(graph, CONTROL, states)
+    assert controller_manager.resources.components["arm"].state is INACTIVE
     assert logged("WARN") == ["Hardware component 'leg' is unknown, therefore not set in 'unconfigured' state."]
 
 
 async def test_unsupported_hardware_is_replaced_by_mock(graph, logged):
-    it = manager(graph, CONTROL.replace("mock_components/GenericSystem", "acme/Driver"))
-    assert it.resources.components["arm"].state is ACTIVE
+    controller_manager = manager(graph, CONTROL.replace("mock_components/GenericSystem", "acme/Driver"))
+    assert controller_manager.resources.components["arm"].state is ACTIVE
     assert logged("WARN")[0].startswith("hardware 'arm': Linkwright does not support 'acme/Driver', so mock_components")
 
 
@@ -288,12 +290,12 @@ async def test_async_controllers_and_hardware_run_synchronously_with_notice(
 ):
     monkeypatch.setenv("ROS_DISTRO", distribution)
     text = CONTROL.replace("type='system'", "type='system' is_async='true'")
-    it = create_manager({"low": "t/Low"}, text, low={"is_async": True})
-    started(it, "low")
-    assert it.switch(["low"], [], STRICT)[0]
-    it.cycle(1, 0.01)
-    assert value(it, "hip/velocity") == 0.5
-    logged = [each for each in logged("INFO") if "is_async" in each]
+    controller_manager = create_manager({"low": "t/Low"}, text, low={"is_async": True})
+    started(controller_manager, "low")
+    assert controller_manager.switch(["low"], [], STRICT)[0]
+    controller_manager.cycle(1, 0.01)
+    assert value(controller_manager, "hip/velocity") == 0.5
+    logged = [line for line in logged("INFO") if "is_async" in line]
     assert (
         logged[0]
         == "hardware 'arm': is_async is not supported, so the hardware is read and written in the control loop"

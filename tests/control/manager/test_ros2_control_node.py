@@ -69,8 +69,8 @@ async def test_controllers_are_managed_by_services_and_topics(graph, clock, tmp_
     assert switched.ok, switched.message
     await advance(graph, clock, 2)
     assert list(states[-1].position) == [0.5, 0.0]
-    listed = (await ask(graph, node, "list_controllers")).controller
-    assert [(each.name, each.state, list(each.claimed_interfaces)) for each in listed] == [
+    controllers = (await ask(graph, node, "list_controllers")).controller
+    assert [(controller.name, controller.state, list(controller.claimed_interfaces)) for controller in controllers] == [
         ("broadcaster", "active", []),
         ("positions", "active", ["hip/position", "knee/position"]),
     ]
@@ -199,6 +199,6 @@ async def test_simulated_time_jump_is_not_an_overrun(graph, clock, tmp_path, log
 async def test_simulator_hardware_is_left_to_simulator(graph, tmp_path, logged, plugin):
     start(graph, tmp_path, CONTROL.replace("mock_components/GenericSystem", plugin))
     await graph.settle()
-    assert [each for each in logged("ERROR") if plugin in each]
+    assert [line for line in logged("ERROR") if plugin in line]
     services = graph.create_node("audience").get_service_names_and_types()
     assert not [name for name, _ in services if name.endswith("/list_controllers")]

@@ -17,9 +17,9 @@ positions:
 """
 
 
-async def run(graph, made, *words):
+async def run(graph, program, *words):
     """The status of a program."""
-    running = made(graph, NodeOptions(arguments=list(words)))
+    running = program(graph, NodeOptions(arguments=list(words)))
     await graph.settle()
     status = running.finished.result() if running.finished.done() else None
     running.close()
@@ -27,14 +27,14 @@ async def run(graph, made, *words):
 
 
 def states(running):
-    return {name: each.controller.state.label for name, each in running._manager.controllers.items()}
+    return {name: loaded.controller.state.label for name, loaded in running._manager.controllers.items()}
 
 
 async def test_controllers_are_spawned_and_unspawned(graph, tmp_path, logged):
     running = start(graph, tmp_path, CONTROL)
     assert await run(graph, Spawner, "broadcaster", "positions", "-c", "controller_manager") == 0
     assert states(running) == {"broadcaster": "active", "positions": "active"}
-    logged = [each for each in logged("INFO") if each.startswith(("Loaded", "Configured and"))]
+    logged = [line for line in logged("INFO") if line.startswith(("Loaded", "Configured and"))]
     assert logged == [
         "Loaded broadcaster",
         "Configured and activated broadcaster",

@@ -52,8 +52,8 @@ async def test_statistics_are_published_each_second_to_subscribers(graph, clock,
     assert facts["broadcaster.stats/execution_time/sample_count"] >= 99.0
     assert facts["arm.stats/read_cycle/periodicity/average"] == pytest.approx(100.0)
     assert facts["arm.stats/write_cycle/execution_time/min"] >= 0.0
-    for each in (subscription, listening):
-        node.destroy_subscription(each)
+    node.destroy_subscription(subscription)
+    node.destroy_subscription(listening)
     await advance(graph, clock, 150)
     assert loaded.timing is None
 

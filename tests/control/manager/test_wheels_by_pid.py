@@ -37,12 +37,12 @@ async def test_drive_turns_wheels_through_pid_controllers(graph):
         "use_stamped_vel": False,
     }
     text = robot("".join(joint(wheel, "velocity") for wheel in WHEELS), joints=WHEELS)
-    made = manager(graph, text, types, pid_left=pid("left"), pid_right=pid("right"), base=base)
+    controller_manager = manager(graph, text, types, pid_left=pid("left"), pid_right=pid("right"), base=base)
     for name in types:
-        assert made.load(name)
-        assert made.configure(name)
-    assert made.switch(["pid_left", "pid_right"], [], STRICT)[0]
-    assert made.switch(["base"], [], STRICT)[0]
+        assert controller_manager.load(name)
+        assert controller_manager.configure(name)
+    assert controller_manager.switch(["pid_left", "pid_right"], [], STRICT)[0]
+    assert controller_manager.switch(["base"], [], STRICT)[0]
     node = graph.create_node("driver")
     switch = get_service("std_srvs/srv/SetBool")
     for wheel in WHEELS:
@@ -53,6 +53,6 @@ async def test_drive_turns_wheels_through_pid_controllers(graph):
     for number in range(1, 301):
         twists.publish(command)
         await graph.settle()
-        made.cycle(number * 10_000_000, 0.01)
-    speeds = [state.value for state in made.resources.states([f"{wheel}/velocity" for wheel in WHEELS])]
+        controller_manager.cycle(number * 10_000_000, 0.01)
+    speeds = [state.value for state in controller_manager.resources.states([f"{wheel}/velocity" for wheel in WHEELS])]
     assert speeds == pytest.approx([0.3 / RADIUS] * 2, rel=0.01)

@@ -20,7 +20,9 @@ def test_command_is_sum_of_p_i_and_d_terms():
 
 
 def test_integral_term_is_bounded_with_and_without_clamping():
-    loose, clamped = (Pid(PidGains(i=1.0, i_min=-1.0, i_max=1.0, antiwindup=each)) for each in ("none", CLAMPED))
+    loose, clamped = (
+        Pid(PidGains(i=1.0, i_min=-1.0, i_max=1.0, antiwindup=antiwindup)) for antiwindup in ("none", CLAMPED)
+    )
     for pid in (loose, clamped):
         assert [pid.command(1.0, 1.0) for _ in range(5)] == [1.0] * 5
     assert [loose.command(-1.0, 1.0) for _ in range(5)] == [1.0, 1.0, 1.0, 1.0, 0.0]

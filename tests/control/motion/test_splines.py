@@ -36,7 +36,7 @@ def solution(start: list[float], end: list[float], duration: float) -> np.ndarra
     for time in (0.0, duration):
         for derivative in range(len(start)):
             unit = [np.polynomial.Polynomial.basis(power).deriv(derivative)(time) for power in range(order)]
-            rows.append([float(each) for each in unit])
+            rows.append([float(coefficient) for coefficient in unit])
     return np.linalg.solve(np.array(rows), np.array([*start, *end]))
 
 
@@ -53,7 +53,7 @@ def test_segment_of_positions_is_linear(p0: float, p1: float, duration: float):
 @given(*[numbers] * 6, durations, st.sampled_from([2, 3]))
 def test_segment_is_polynomial_through_both_points(p0, v0, a0, p1, v1, a1, duration, known):
     start, end = [p0, v0, a0][:known], [p1, v1, a1][:known]
-    segment = Segment(MotionState(*([each] for each in start)), MotionState(*([each] for each in end)), duration)
+    segment = Segment(MotionState(*([value] for value in start)), MotionState(*([value] for value in end)), duration)
     theory = np.polynomial.Polynomial(solution(start, end, duration))
     scale = 1.0 + max(map(abs, (p0, p1, v0, v1, a0, a1))) * max(1.0, duration, duration**-2)
     for share in (0.0, 0.1, 0.5, 0.9, 1.0):
@@ -86,7 +86,7 @@ def test_trajectory_starts_at_joint_state_and_ends_at_last_point():
 
 
 def test_trajectory_can_be_sampled_backwards():
-    trajectory = Trajectory([point(float(each), [float(each)]) for each in range(1, 6)])
+    trajectory = Trajectory([point(float(seconds), [float(seconds)]) for seconds in range(1, 6)])
     trajectory.begin(SECOND, MotionState([0.0]))
     assert [sampled(trajectory, time).state.positions[0] for time in (5.5, 1.5, 3.5)] == pytest.approx([4.5, 0.5, 2.5])
 
@@ -118,11 +118,11 @@ def test_missing_positions_and_velocities_are_integrated():
 )
 def test_trajectory_is_continuous_through_its_points(points, begin, known):
     times = np.cumsum([point[0] for point in points])
-    made = [
+    trajectory_points = [
         point(float(time), *([value] for value in values[:known]))
         for time, (_, *values) in zip(times, points, strict=True)
     ]
-    trajectory = Trajectory(made)
+    trajectory = Trajectory(trajectory_points)
     trajectory.begin(0, MotionState([begin], [0.0], [0.0]))
     assert sampled(trajectory, 0.0).state.positions == pytest.approx([begin])
     for time, (_, position, *_rest) in zip(times, points, strict=True):

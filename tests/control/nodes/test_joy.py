@@ -37,7 +37,7 @@ class Joystick:
         self.path.unlink()
         self.file = os.close(self.file)
 
-    def say(self, *events):
+    def send(self, *events):
         """Tell changes, each as kind, number and value."""
         for kind, number, value in events:
             os.write(self.file, struct.pack("=IhBB", 0, value, kind, number))
@@ -46,10 +46,10 @@ class Joystick:
 @pytest.fixture
 def joystick(tmp_path, monkeypatch):
     monkeypatch.setattr("linkwright.control.nodes.teleop.joystick_device.FOLDER", tmp_path)
-    each = Joystick(tmp_path / "js0")
-    yield each
-    if each.file is not None:
-        os.close(each.file)
+    joystick = Joystick(tmp_path / "js0")
+    yield joystick
+    if joystick.file is not None:
+        os.close(joystick.file)
 
 
 @pytest.fixture
@@ -68,24 +68,24 @@ async def start(stage):
         return running[-1]
 
     yield node
-    for each in running:
-        each.close()
+    for joy_node in running:
+        joy_node.close()
 
 
 async def test_axes_and_buttons_match_ros(joystick, stage, joy_messages, start):
     joystick.plug_in()
-    joystick.say((AXIS | INITIAL, 0, 0), (AXIS | INITIAL, 1, 0), (BUTTON | INITIAL, 0, 0), (BUTTON | INITIAL, 1, 0))
+    joystick.send((AXIS | INITIAL, 0, 0), (AXIS | INITIAL, 1, 0), (BUTTON | INITIAL, 0, 0), (BUTTON | INITIAL, 1, 0))
     node = start(deadzone=0.2, autorepeat_rate=0.0)
     await eventually(lambda: len(node._buttons) == 2)
     await stage.clock.advance(0.01)
-    assert [(list(each.axes), list(each.buttons)) for each in joy_messages] == [([0, 0], [0, 0])], (
+    assert [(list(message.axes), list(message.buttons)) for message in joy_messages] == [([0, 0], [0, 0])], (
         "one message of the start"
     )
-    joystick.say((BUTTON, 1, 1))
+    joystick.send((BUTTON, 1, 1))
     await eventually(lambda: len(joy_messages) == 2)
     assert list(joy_messages[-1].buttons) == [0, 1]
     assert joy_messages[-1].header.frame_id == "joy"
-    joystick.say((AXIS, 1, -32767), (AXIS, 0, 19661))
+    joystick.send((AXIS, 1, -32767), (AXIS, 0, 19661))
     await eventually(lambda: node._axes[0] != 0)
     await stage.clock.advance(0.01)
     assert list(joy_messages[-1].axes) == pytest.approx([-0.5, 1.0], abs=1e-4)
@@ -106,7 +106,7 @@ def test_deadzone_is_continuous():
 
 async def test_unchanged_state_is_republished_at_autorepeat_rate(joystick, stage, joy_messages, start):
     joystick.plug_in()
-    joystick.say((AXIS | INITIAL, 0, 0))
+    joystick.send((AXIS | INITIAL, 0, 0))
     node = start(autorepeat_rate=10.0)
     await eventually(lambda: len(node._axes) == 1)
     await stage.clock.advance(1.005)
@@ -117,10 +117,10 @@ async def test_sticky_buttons_toggle(joystick, stage, joy_messages, start):
     joystick.plug_in()
     start(sticky_buttons=True, autorepeat_rate=0.0)
     for count, value in enumerate((1, 0, 1), 1):
-        joystick.say((BUTTON, 0, value))
+        joystick.send((BUTTON, 0, value))
         if value:
             await eventually(lambda expected=(count + 1) // 2: len(joy_messages) == expected)
-    assert [list(each.buttons) for each in joy_messages] == [[1], [0]]
+    assert [list(message.buttons) for message in joy_messages] == [[1], [0]]
 
 
 async def test_missing_joystick_is_reported_once(joystick, stage, joy_messages, start, logged):
@@ -128,7 +128,7 @@ async def test_missing_joystick_is_reported_once(joystick, stage, joy_messages, 
     await stage.clock.advance(5.0)
     assert logged("WARN") == ["the joystick /dev/input/js0 is not connected; waiting for it"]
     joystick.plug_in()
-    joystick.say((BUTTON | INITIAL, 0, 1))
+    joystick.send((BUTTON | INITIAL, 0, 1))
     await stage.clock.advance(1.0)
     await eventually(lambda: node._buttons == [1])
     await stage.clock.advance(0.01)
@@ -138,7 +138,7 @@ async def test_missing_joystick_is_reported_once(joystick, stage, joy_messages, 
 async def test_disconnected_joystick_releases_axes_and_buttons(joystick, stage, joy_messages, start, logged):
     joystick.plug_in()
     start(autorepeat_rate=0.0)
-    joystick.say((BUTTON, 0, 1), (AXIS, 0, 32767))
+    joystick.send((BUTTON, 0, 1), (AXIS, 0, 32767))
     await eventually(lambda: joy_messages and list(joy_messages[-1].axes))
     joystick.pull_out()
     await eventually(lambda: "the joystick was disconnected; waiting for it" in logged("WARN"))
@@ -146,7 +146,7 @@ async def test_disconnected_joystick_releases_axes_and_buttons(joystick, stage, 
     assert (list(joy_messages[-1].axes), list(joy_messages[-1].buttons)) == ([0.0], [0])
     joystick.plug_in()
     await stage.clock.advance(1.0)
-    joystick.say((BUTTON, 2, 1))
+    joystick.send((BUTTON, 2, 1))
     await eventually(lambda: list(joy_messages[-1].buttons) == [0, 0, 1])
 
 
@@ -160,7 +160,7 @@ async def test_joy_linux_accepts_device_path(tmp_path, stage, joy_messages, star
     joystick = Joystick(tmp_path / "mine")
     joystick.plug_in()
     start(JoyLinuxNode, dev=str(joystick.path), coalesce_interval=0.0, autorepeat_rate=0.0)
-    joystick.say((AXIS, 0, -32767))
+    joystick.send((AXIS, 0, -32767))
     await eventually(lambda: joy_messages)
     assert list(joy_messages[0].axes) == [1.0]
     os.close(joystick.file)
@@ -248,7 +248,7 @@ async def test_lost_joy_publisher_stops_robot(stage, start, logged):
     pilot.velocities.clear()
     pilot.node.destroy_node()
     await stage.clock.advance(1.0)
-    assert [each.linear.x for each in pilot.velocities] == [0.0]
+    assert [twist.linear.x for twist in pilot.velocities] == [0.0]
     assert logged("WARN") == ["no node publishes '/joy' any more, so the robot is stopped"]
 
 
@@ -259,4 +259,4 @@ async def test_closing_node_stops_robot(stage):
     pilot.velocities.clear()
     node.close()
     await stage.graph.settle()
-    assert [each.linear.x for each in pilot.velocities] == [0.0]
+    assert [twist.linear.x for twist in pilot.velocities] == [0.0]

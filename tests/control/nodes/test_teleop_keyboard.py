@@ -71,14 +71,14 @@ class Driver:
 def start(stage, terminal):
     started = []
 
-    def driver(**given):
-        started.append(Driver(stage, *terminal, **given))
+    def driver(**options):
+        started.append(Driver(stage, *terminal, **options))
         return started[-1]
 
     yield driver
-    for each in started:
-        if not each.closed:
-            each.close()
+    for started_driver in started:
+        if not started_driver.closed:
+            started_driver.close()
 
 
 async def test_keys_match_teleop_twist_keyboard(start):

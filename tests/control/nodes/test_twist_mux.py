@@ -43,7 +43,7 @@ class Traffic:
         self.out.clear()
         publisher.publish(message)
         await self.stage.graph.settle()
-        return [getattr(each, "twist", each).linear.x for each in self.out]
+        return [getattr(message, "twist", message).linear.x for message in self.out]
 
     async def status_values(self):
         await self.stage.clock.advance(1.0)
@@ -125,9 +125,9 @@ async def test_diagnostics_report_masked_topics(stage, traffic):
 async def test_incomplete_topic_parameters_are_rejected(stage, topics, named):
     with pytest.raises(LinkwrightError) as raised:
         TwistMux(stage.graph, NodeOptions(parameters={"topics": topics}))
-    (found,) = raised.value.diagnostics
-    assert found.code == "NODE904"
-    assert f"'{named}'" in found.message
+    (diagnostic,) = raised.value.diagnostics
+    assert diagnostic.code == "NODE904"
+    assert f"'{named}'" in diagnostic.message
 
 
 async def test_missing_topics_are_reported_and_node_runs(stage, logged):
@@ -138,8 +138,8 @@ async def test_missing_topics_are_reported_and_node_runs(stage, logged):
 async def test_two_publishers_on_one_input_topic_are_reported(traffic):
     mux(traffic.stage)
     transport = RemoteTransport(traffic.stage.graph)
-    named = (("/tab_vel", "tab"), ("/joy_vel", "joy"), ("/joy_vel", "pad"))
-    tablet, joystick, other = (RemotePublisher(transport, topic, node) for topic, node in named)
+    topics_and_nodes = (("/tab_vel", "tab"), ("/joy_vel", "joy"), ("/joy_vel", "pad"))
+    tablet, joystick, other = (RemotePublisher(transport, topic, node) for topic, node in topics_and_nodes)
 
     async def drive(*sources):
         for _ in range(20):
@@ -150,7 +150,7 @@ async def test_two_publishers_on_one_input_topic_are_reported(traffic):
                 await traffic.stage.clock.advance(0.1)
 
     def logged():
-        return [each.text for each in traffic.stage.log if "several nodes drive the robot" in each.text]
+        return [record.text for record in traffic.stage.log if "several nodes drive the robot" in record.text]
 
     await drive(tablet, joystick)
     assert not logged()
@@ -170,9 +170,9 @@ async def test_lost_publisher_of_last_velocity_stops_robot(traffic):
     await traffic.stage.graph.settle()
     tablet.be_lost()
     await traffic.stage.graph.settle()
-    assert [each.linear.x for each in traffic.out] == [0.1, 0.3]
+    assert [twist.linear.x for twist in traffic.out] == [0.1, 0.3]
     joystick.be_lost()
     await traffic.stage.graph.settle()
-    assert [each.linear.x for each in traffic.out] == [0.1, 0.3, 0.0]
-    (logged,) = [each.text for each in traffic.stage.log if "was lost" in each.text]
+    assert [twist.linear.x for twist in traffic.out] == [0.1, 0.3, 0.0]
+    (logged,) = [record.text for record in traffic.stage.log if "was lost" in record.text]
     assert logged.endswith("a stop command is sent to '/cmd_vel_out'")

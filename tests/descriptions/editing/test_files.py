@@ -122,8 +122,8 @@ def test_files_outside_workspace_or_installed_are_rejected(tmp_path: Path) -> No
     installed.write_text("")
     (installed.parents[1] / "ament_index").mkdir()
     for path, why in ((other, "outside the workspace"), (ours, "this program"), (installed, "installed")):
-        found = workspace.refusal(os.path.realpath(path))
-        assert found is not None
-        assert found.code == "EDIT106"
-        assert path.name in found.message
-        assert why in found.message
+        refusal = workspace.refusal(os.path.realpath(path))
+        assert refusal is not None
+        assert refusal.code == "EDIT106"
+        assert path.name in refusal.message
+        assert why in refusal.message

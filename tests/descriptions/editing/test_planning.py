@@ -58,7 +58,7 @@ def changed_lines(before: str, after: str) -> list[str]:
 
 
 @pytest.mark.parametrize(
-    ("body", "joint", "asked", "line"),
+    ("body", "joint", "target", "line"),
     [
         ("", '<origin xyz="0  0 0.250"/>', (0, 0, 0.3), '<origin xyz="0  0 0.3"/>'),
         ("", '<origin xyz="0 0 0.250"/>', (0.1, 0, 0.25), '<origin xyz="0.1 0 0.250"/>'),
@@ -122,10 +122,10 @@ def changed_lines(before: str, after: str) -> list[str]:
     ],
 )
 def test_position_edit_changes_text_that_produced_it(
-    tmp_path: Path, body: str, joint: str, asked: tuple[float, ...], line: str
+    tmp_path: Path, body: str, joint: str, target: tuple[float, ...], line: str
 ) -> None:
     text = robot(body, joint)
-    after = edited(tmp_path, text, EditRequest("joint", "j", xyz=asked))
+    after = edited(tmp_path, text, EditRequest("joint", "j", xyz=target))
     assert changed_lines(text, after) == [line]
 
 
@@ -200,13 +200,13 @@ def test_macro_call_relying_on_default_gets_argument(tmp_path: Path) -> None:
 
 
 def test_edit_of_repeated_macro_text_is_rejected_with_side_effects(tmp_path: Path) -> None:
-    found = refused(tmp_path, WHEELS, EditRequest("joint", "left_joint", xyz=(0.1, 0.2, 0.3)))
-    assert found.code == "EDIT104"
-    assert "joint 'right_joint'" in found.message
-    assert found.span is not None
-    assert found.span.line == 5
-    assert [note.span.line for note in found.notes if note.span] == [8, 5]
-    assert "'0.05'" in found.notes[0].message
+    diagnostic = refused(tmp_path, WHEELS, EditRequest("joint", "left_joint", xyz=(0.1, 0.2, 0.3)))
+    assert diagnostic.code == "EDIT104"
+    assert "joint 'right_joint'" in diagnostic.message
+    assert diagnostic.span is not None
+    assert diagnostic.span.line == 5
+    assert [note.span.line for note in diagnostic.notes if note.span] == [8, 5]
+    assert "'0.05'" in diagnostic.notes[0].message
 
 
 def test_rejection_names_text_with_fewest_side_effects(tmp_path: Path) -> None:
@@ -214,10 +214,10 @@ def test_rejection_names_text_with_fewest_side_effects(tmp_path: Path) -> None:
     joint = '<origin xyz="${lift} 0 0"/><parent link="base"/><child link="tip"/>'
     more = f'<link name="tip"/>\n  <joint name="far" type="fixed">{joint}</joint>\n</robot>'
     text = WHEELS.replace("</robot>", more)
-    found = refused(tmp_path, text, EditRequest("joint", "left_joint", xyz=(0.1, 0.2, 0.3)))
-    assert "joint 'right_joint'" in found.message
-    assert "far" not in found.message
-    assert any("joint 'far'" in note.message for note in found.notes)
+    diagnostic = refused(tmp_path, text, EditRequest("joint", "left_joint", xyz=(0.1, 0.2, 0.3)))
+    assert "joint 'right_joint'" in diagnostic.message
+    assert "far" not in diagnostic.message
+    assert any("joint 'far'" in note.message for note in diagnostic.notes)
 
 
 SIDES = f"""<robot name="r" {XACRO}>
@@ -255,8 +255,8 @@ def test_together_option_edits_all_affected_elements(tmp_path: Path) -> None:
 def test_factor_selecting_side_is_kept(tmp_path: Path) -> None:
     text = WHEELS.replace('side="left" y="0.2"', 'side="left" y="1"').replace('y="${{-0.2}}"', 'y="-1"')
     text = text.replace("0.1 ${y}", "0.1 ${y * 0.3}").replace('y="${-0.2}"', 'y="-1"')
-    found = refused(tmp_path, text, EditRequest("joint", "left_joint", xyz=(0.1, 0.25, 0.1)))
-    assert any("selects a side" in note.message for note in found.notes)
+    diagnostic = refused(tmp_path, text, EditRequest("joint", "left_joint", xyz=(0.1, 0.25, 0.1)))
+    assert any("selects a side" in note.message for note in diagnostic.notes)
 
 
 def test_property_used_by_plugin_is_kept(tmp_path: Path) -> None:
@@ -319,36 +319,36 @@ def test_missing_elements_and_infinite_values_are_rejected(tmp_path: Path) -> No
 # --- every robot of the corpus ----------------------------------------------------------------------------------------
 
 
-def parts_of(found: Robot) -> list[tuple[Any, str, int]]:
-    parts: list[tuple[Any, str, int]] = [("joint", name, 0) for name in found.joints]
-    parts += [("axis", name, 0) for name, joint in found.joints.items() if joint.type not in WITHOUT_AXIS]
-    for link in found.links.values():
+def parts_of(robot_model: Robot) -> list[tuple[Any, str, int]]:
+    parts: list[tuple[Any, str, int]] = [("joint", name, 0) for name in robot_model.joints]
+    parts += [("axis", name, 0) for name, joint in robot_model.joints.items() if joint.type not in WITHOUT_AXIS]
+    for link in robot_model.links.values():
         parts += [("visual", link.name, i) for i in range(len(link.visuals))]
         parts += [("collision", link.name, i) for i in range(len(link.collisions))]
         parts += [("inertial", link.name, 0)] if link.inertial is not None else []
     return parts
 
 
-def with_edit(found: Robot, request: EditRequest) -> Robot:
+def with_edit(robot_model: Robot, request: EditRequest) -> Robot:
     """Return the robot that an edit should produce."""
     assert request.xyz is not None
     x, y, z = request.xyz
     name, i = request.name, request.index
     if request.part == "axis":
-        joint = replace(found.joints[name], axis=(x, y, z))
-        return replace(found, joints={**found.joints, name: joint})
+        joint = replace(robot_model.joints[name], axis=(x, y, z))
+        return replace(robot_model, joints={**robot_model.joints, name: joint})
     if request.part == "joint":
-        joint = replace(found.joints[name], origin=moved(found.joints[name].origin, request))
-        return replace(found, joints={**found.joints, name: joint})
-    link = found.links[name]
+        joint = replace(robot_model.joints[name], origin=moved(robot_model.joints[name].origin, request))
+        return replace(robot_model, joints={**robot_model.joints, name: joint})
+    link = robot_model.links[name]
     if request.part == "inertial":
         assert link.inertial is not None
         inertial = replace(link.inertial, origin=moved(link.inertial.origin, request))
-        return replace(found, links={**found.links, name: replace(link, inertial=inertial)})
+        return replace(robot_model, links={**robot_model.links, name: replace(link, inertial=inertial)})
     field = f"{request.part}s"
     shapes = list(getattr(link, field))
     shapes[i] = replace(shapes[i], origin=moved(shapes[i].origin, request))
-    return replace(found, links={**found.links, name: replace(link, **{field: tuple(shapes)})})
+    return replace(robot_model, links={**robot_model.links, name: replace(link, **{field: tuple(shapes)})})
 
 
 def moved(origin: Pose, request: EditRequest) -> Pose:
@@ -363,19 +363,21 @@ def rounded(value: Any) -> Any:
     if isinstance(value, float):
         return round(value, 7) + 0.0
     if isinstance(value, dict):
-        return {key: rounded(each) for key, each in value.items()}
+        return {key: rounded(member) for key, member in value.items()}
     return tuple(map(rounded, value)) if isinstance(value, (tuple, list)) else value
 
 
-def facts(found: Robot) -> Any:
-    joints = {name: (j.type, j.parent, j.child, j.origin.xyz, j.origin.rpy, j.axis) for name, j in found.joints.items()}
+def facts(robot_model: Robot) -> Any:
+    joints = {
+        name: (j.type, j.parent, j.child, j.origin.xyz, j.origin.rpy, j.axis) for name, j in robot_model.joints.items()
+    }
     links = {
         name: [[(s.name, s.origin.xyz, s.origin.rpy, repr(s.geometry)) for s in (*link.visuals, *link.collisions)]]
-        for name, link in found.links.items()
+        for name, link in robot_model.links.items()
     }
     masses = {
         name: (link.inertial.mass, link.inertial.origin.xyz, link.inertial.origin.rpy)
-        for name, link in found.links.items()
+        for name, link in robot_model.links.items()
         if link.inertial is not None
     }
     return rounded(joints), rounded(links), rounded(masses)
@@ -405,9 +407,9 @@ NUMBERS = st.integers(-2000, 2000).map(lambda number: number / 1000)
 
 def test_joint_without_axis_has_no_axis_to_edit(tmp_path: Path) -> None:
     text = robot("").replace('type="revolute"', 'type="floating"')
-    found = refused(tmp_path, text, EditRequest("axis", "j", xyz=(0, 0, 1)))
-    assert found.code == "EDIT101"
-    assert "'j' has no axis" in found.message
+    diagnostic = refused(tmp_path, text, EditRequest("axis", "j", xyz=(0, 0, 1)))
+    assert diagnostic.code == "EDIT101"
+    assert "'j' has no axis" in diagnostic.message
 
 
 @settings(max_examples=150, deadline=None, suppress_health_check=[HealthCheck.too_slow])
@@ -432,4 +434,4 @@ def test_expansion_changes_only_edited_values(data: st.DataObject) -> None:
     assert after.robot is not None
     assert facts(after.robot) == facts(with_edit(before.robot, request))
     assert list(unedited(after.document.root)) == list(unedited(before.document.root))
-    assert [each for path, each in plan.old_texts.items() if each == plan.texts[path]] == []
+    assert [text for path, text in plan.old_texts.items() if text == plan.texts[path]] == []

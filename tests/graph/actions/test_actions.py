@@ -62,13 +62,13 @@ async def test_goal_succeeds_with_feedback_and_result(stage):
     stage.serve()
     assert stage.client.server_is_ready()
     assert stage.client.wait_for_server(0.1)
-    seen = []
-    handle = await stage.send(4, feedback_callback=lambda message: seen.append(list(message.feedback.sequence)))
+    sequences = []
+    handle = await stage.send(4, feedback_callback=lambda message: sequences.append(list(message.feedback.sequence)))
     assert handle.accepted
     response = await handle.get_result_async()
     assert list(response.result.sequence) == [0, 1, 1, 2, 3]
     assert response.status == GoalStatus.SUCCEEDED
-    assert seen == [[0, 1], [0, 1, 1], [0, 1, 1, 2], [0, 1, 1, 2, 3]]
+    assert sequences == [[0, 1], [0, 1, 1], [0, 1, 1, 2], [0, 1, 1, 2, 3]]
     await stage.graph.settle()
     assert handle.status == GoalStatus.SUCCEEDED
 
@@ -112,9 +112,9 @@ async def test_goal_callback_rejects_goals(stage, log):
 async def test_duplicate_goal_uuid_is_rejected(stage):
     stage.defer()
     first = await stage.send()
-    again = await stage.send(goal_uuid=first.goal_id)
+    duplicate = await stage.send(goal_uuid=first.goal_id)
     assert first.accepted
-    assert not again.accepted
+    assert not duplicate.accepted
 
 
 async def test_goal_is_canceled(stage, clock):
@@ -258,18 +258,18 @@ async def test_goal_status_reaches_late_subscription(stage):
     handle = await stage.send()
     stage.handles[0].execute(lambda goal: (goal.succeed(), Fibonacci.Result())[1])
     await stage.graph.settle()
-    seen = []
+    statuses = []
     stage.client_node.create_subscription(
-        Fibonacci.Impl.GoalStatusMessage, "fibonacci/_action/status", seen.append, stage.client._status.qos_profile
+        Fibonacci.Impl.GoalStatusMessage, "fibonacci/_action/status", statuses.append, stage.client._status.qos_profile
     )
     await stage.graph.settle()
-    (status,) = seen[-1].status_list
+    (status,) = statuses[-1].status_list
     assert bytes(status.goal_info.goal_id.uuid) == bytes(handle.goal_id.uuid)
     assert status.status == GoalStatus.SUCCEEDED
 
 
-@pytest.mark.parametrize(("timeout", "kept"), [(10, [2, 2, 1, 0]), (-1, [2, 2, 2, 2])])
-async def test_results_expire_after_result_timeout(stage, clock, timeout, kept):
+@pytest.mark.parametrize(("timeout", "counts_by_time"), [(10, [2, 2, 1, 0]), (-1, [2, 2, 2, 2])])
+async def test_results_expire_after_result_timeout(stage, clock, timeout, counts_by_time):
     stage.serve(result_timeout=timeout)
     await (await stage.send()).get_result_async()
     await clock.advance(5.0)
@@ -278,7 +278,7 @@ async def test_results_expire_after_result_timeout(stage, clock, timeout, kept):
     for seconds in (0.0, 4.9, 0.2, 5.0):
         await clock.advance(seconds)
         counts.append(len(stage.server._goal_handles))
-    assert counts == kept
+    assert counts == counts_by_time
 
 
 async def test_invalid_callbacks_and_goal_types_are_rejected(stage):

@@ -17,19 +17,19 @@ Sent = tuple[float, str, float]
 """When, in seconds, by whom, how fast."""
 
 
-def stream(who: str, begin: float, end: float, rate: float, speed: float) -> list[Sent]:
+def stream(sender: str, begin: float, end: float, rate: float, speed: float) -> list[Sent]:
     """Commands that come regularly."""
-    return [(begin + number / rate, who, speed) for number in range(round((end - begin) * rate))]
+    return [(begin + number / rate, sender, speed) for number in range(round((end - begin) * rate))]
 
 
 def disputes(*streams: Iterable[Sent], dispute: DisputeDetector | None = None) -> list[tuple[float, set[object]]]:
     """When a dispute is told of, and who disputes."""
     dispute = dispute or DisputeDetector()
-    heard = []
-    for now, who, speed in sorted(each for stream in streams for each in stream):
-        if dispute.record_command(who, speed, now):
-            heard.append((now, set(dispute.parties)))
-    return heard
+    reports = []
+    for now, sender, speed in sorted(command for stream in streams for command in stream):
+        if dispute.record_command(sender, speed, now):
+            reports.append((now, set(dispute.parties)))
+    return reports
 
 
 @pytest.mark.parametrize(
@@ -41,7 +41,7 @@ def disputes(*streams: Iterable[Sent], dispute: DisputeDetector | None = None) -
         (stream("keys", 0, 60, 10, 0.0), stream("planner", 0.05, 60, 10, 0.0)),
         (stream("planner", 0, 60, 20, 0.5), [(20.01, "behaviors", 0.0), (40.01, "behaviors", 0.0)]),
         (stream("smoother", 0, 11.3, 20, 0.3), stream("behaviors", 10, 30, 10, -0.05)),
-        (stream("planner", 0, 60, 20, 0.5), [(10.0 * each, "keys", 0.1) for each in range(1, 6)]),
+        (stream("planner", 0, 60, 20, 0.5), [(10.0 * tap, "keys", 0.1) for tap in range(1, 6)]),
         (
             stream("planner", 0, 5, 20, 0.5),
             stream("behaviors", 5, 8, 10, -0.05),
@@ -57,8 +57,8 @@ def test_normal_command_patterns_are_not_reported(streams):
 
 @pytest.mark.parametrize(("first", "second"), [(10.0, 10.0), (1.0, 1.0), (50.0, 1.0), (100.0, 20.0)])
 def test_contradicting_publishers_are_reported_once(first, second):
-    ((when, who),) = disputes(stream("keys", 5, 60, first, 0.3), stream("planner", 10.003, 60, second, -0.1))
-    assert who == {"keys", "planner"}
+    ((when, senders),) = disputes(stream("keys", 5, 60, first, 0.3), stream("planner", 10.003, 60, second, -0.1))
+    assert senders == {"keys", "planner"}
     assert 12.9 <= when <= 14.1
 
 
@@ -67,21 +67,21 @@ def test_publisher_of_zero_commands_counts_as_driver():
 
 
 def test_third_driver_is_reported_and_all_again_after_a_break():
-    heard = disputes(
+    reports = disputes(
         stream("a", 0, 20, 10, 0.1),
         stream("b", 0.01, 20, 10, 0.2),
         stream("c", 10.02, 20, 10, 0.3),
         stream("a", 40, 50, 10, 0.1),
         stream("b", 40.01, 50, 10, 0.2),
     )
-    assert [who for _, who in heard] == [{"a", "b"}, {"a", "b", "c"}, {"a", "b"}]
+    assert [senders for _, senders in reports] == [{"a", "b"}, {"a", "b", "c"}, {"a", "b"}]
 
 
 def test_short_break_is_not_reported_again():
     bursts = [(0, 5), (9, 14), (18, 23)]
     streams = [
-        stream(who, begin + shift, end, 10, 0.1 + shift)
-        for who, shift in (("a", 0), ("b", 0.01))
+        stream(sender, begin + shift, end, 10, 0.1 + shift)
+        for sender, shift in (("a", 0), ("b", 0.01))
         for begin, end in bursts
     ]
     assert len(disputes(*streams)) == 1
@@ -118,7 +118,7 @@ def warned(graph: Known, message_type: type = Twist) -> list[str]:
     now = 0
     watch = DriverWatch(Logger("drive", lambda record: log.append(record.text), lambda: 0), graph, lambda: now)
     for tick in range(50):
-        for number, each in enumerate(graph.endpoints()):
+        for number, endpoint in enumerate(graph.endpoints()):
             now = tick * 100_000_000 + number
             message = message_type()
             if message_type is Stamped:
@@ -126,7 +126,7 @@ def warned(graph: Known, message_type: type = Twist) -> list[str]:
                 message.twist.linear.x = float(number)
             else:
                 message.linear.x = float(number)
-            watch.record_command(message, MessageInfo(0, 0, each.gid))
+            watch.record_command(message, MessageInfo(0, 0, endpoint.gid))
     return log
 
 

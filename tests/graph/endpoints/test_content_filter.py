@@ -83,16 +83,16 @@ def test_random_filter_expressions_are_parsed_or_rejected(expression):
 async def test_latched_messages_are_filtered(graph):
     node = graph.create_node("node")
     publisher = node.create_publisher(String, "topic", DESCRIPTION_QOS)
-    heard = []
+    messages = []
     for text in ("a", "b"):
         publisher.publish(String(data=text))
     options = ContentFilterOptions("data = 'a'")
-    node.create_subscription(String, "topic", heard.append, DESCRIPTION_QOS, content_filter_options=options)
+    node.create_subscription(String, "topic", messages.append, DESCRIPTION_QOS, content_filter_options=options)
     await graph.settle()
-    assert heard == []
+    assert messages == []
     publisher.publish(serialize(String(data="a")))
     await graph.settle()
-    assert heard == [String(data="a")]
+    assert messages == [String(data="a")]
 
 
 async def test_invalid_filter_creates_no_subscription(graph):

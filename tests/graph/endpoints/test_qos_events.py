@@ -167,7 +167,7 @@ async def test_liveliness_of_remote_publishers_is_counted(graph, node):
         subscription.set_remote_count(alive + not_alive)
         subscription.set_remote_liveliness(alive, not_alive)
     await graph.settle()
-    result = [(each.alive_count, each.not_alive_count, each.alive_count_change) for each in changed]
+    result = [(status.alive_count, status.not_alive_count, status.alive_count_change) for status in changed]
     assert result == [(2, 0, 2), (1, 1, -1), (0, 1, -1), (0, 0, 0)]
 
 

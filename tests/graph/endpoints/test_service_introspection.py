@@ -74,9 +74,11 @@ async def test_content_events_contain_request_and_response(graph, service, clien
         configure(endpoint, CONTENTS)
     await client.call_async(AddTwoInts.Request(a=1, b=2))
     await graph.settle()
-    sent, received, answered, got = events
-    assert [(each.request[0].a, each.request[0].b, each.response) for each in (sent, received)] == [(1, 2, [])] * 2
-    assert [(each.request, each.response[0].sum) for each in (answered, got)] == [([], 3)] * 2
+    request_sent, request_received, response_sent, response_received = events
+    assert [(event.request[0].a, event.request[0].b, event.response) for event in (request_sent, request_received)] == [
+        (1, 2, [])
+    ] * 2
+    assert [(event.request, event.response[0].sum) for event in (response_sent, response_received)] == [([], 3)] * 2
 
 
 async def test_introspection_can_be_enabled_on_service_only(graph, service, client, events):

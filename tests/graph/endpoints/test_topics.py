@@ -249,10 +249,10 @@ async def test_node_subscribing_to_both_types_causes_no_warning(graph, log):
     other.create_publisher(String, "topic", 1).publish(String(data="x"))
     other.create_publisher(Header, "topic", 1).publish(Header(frame_id="map"))
     await graph.settle()
-    assert [type(each) for each in received] == [String, Header]
+    assert [type(message) for message in received] == [String, Header]
     assert log == []
     other.create_subscription(Header, "topic", print, 1)
-    assert ["'/other' subscribes to std_msgs/msg/Header" in each.text for each in log] == [True]
+    assert ["'/other' subscribes to std_msgs/msg/Header" in record.text for record in log] == [True]
 
 
 async def test_publishing_another_message_type_is_rejected(graph):
@@ -263,10 +263,10 @@ async def test_publishing_another_message_type_is_rejected(graph):
 
 async def test_destroyed_publishers_and_subscriptions_are_silent(graph):
     talker, listener = graph.create_node("talker"), graph.create_node("listener")
-    kept, dropped = [], []
+    received, ignored = [], []
     publisher = talker.create_publisher(String, "topic", 10)
-    listener.create_subscription(String, "topic", kept.append, 10)
-    subscription = listener.create_subscription(String, "topic", dropped.append, 10)
+    listener.create_subscription(String, "topic", received.append, 10)
+    subscription = listener.create_subscription(String, "topic", ignored.append, 10)
     publisher.publish(String(data="sent"))
     listener.destroy_subscription(subscription)
     talker.destroy_node()
@@ -274,8 +274,8 @@ async def test_destroyed_publishers_and_subscriptions_are_silent(graph):
     with pytest.raises(InvalidHandleError, match="destruction was requested"):
         publisher.publish(String(data="too late"))
     await graph.settle()
-    assert texts(kept) == ["sent"]
-    assert dropped == []
+    assert texts(received) == ["sent"]
+    assert ignored == []
     assert graph.node_names() == ["/listener"]
     assert graph.count_publishers("/topic") == 0
     assert graph.count_subscribers("/topic") == 1

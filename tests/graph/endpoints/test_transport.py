@@ -103,13 +103,13 @@ async def test_internal_node_is_not_mirrored_but_heard_in_process(graph, transpo
     publisher = node.create_publisher(String, "topic", 1)
     if is_early:
         graph.attach(transport)
-    heard = []
+    messages = []
     listener = graph.create_node("listener")
-    listener.create_subscription(String, "topic", heard.append, 1)
+    listener.create_subscription(String, "topic", messages.append, 1)
     assert transport.open == ["listener", (EndpointKind.SUBSCRIPTION, "/topic")]
     publisher.publish(String(data="here"))
     await graph.settle()
-    assert [each.data for each in heard] == ["here"]
+    assert [message.data for message in messages] == ["here"]
     publisher.destroy()
     node.destroy_node()
     assert transport.open == ["listener", (EndpointKind.SUBSCRIPTION, "/topic")]
@@ -184,11 +184,11 @@ async def test_wait_for_all_acked_asks_transport(graph):
 
     publisher = graph.create_node("node").create_publisher(String, "topic", LATCHED)
     assert publisher.wait_for_all_acked()
-    asked = []
-    publisher.set_remote_sender(print, lambda seconds: asked.append(seconds) or False)
+    timeouts = []
+    publisher.set_remote_sender(print, lambda seconds: timeouts.append(seconds) or False)
     assert not publisher.wait_for_all_acked(Duration(seconds=2))
     assert not publisher.wait_for_all_acked(Duration(seconds=-1))
-    assert asked == [2.0, None]
+    assert timeouts == [2.0, None]
 
 
 async def test_incoming_bytes_are_deserialized_on_delivery(graph, log):
@@ -258,19 +258,19 @@ async def test_requests_use_transport_without_local_server(graph):
     node = graph.create_node("node")
     client = node.create_client(Trigger, "trigger")
     early = client.call_async(Trigger.Request())
-    asked, forgotten = [], []
+    answers, forgotten = [], []
 
     class RemoteServer:
         def send(self, request, answer, number):
-            asked.append(answer)
+            answers.append(answer)
             return lambda: forgotten.append(request)
 
     assert not client.service_is_ready()
     client.set_remote_service(RemoteServer())
     assert client.service_is_ready()
     late = client.call_async(Trigger.Request())
-    assert len(asked) == 2
-    for number, answer in enumerate(asked):
+    assert len(answers) == 2
+    for number, answer in enumerate(answers):
         answer(Trigger.Response(message=str(number)))
         answer(Trigger.Response(message="again"))
     assert ((await early).message, (await late).message) == ("0", "1")
@@ -279,7 +279,7 @@ async def test_requests_use_transport_without_local_server(graph):
     assert len(forgotten) == 1
     node.create_service(Trigger, "trigger", lambda _request, _response: Trigger.Response(message="here"))
     assert (await client.call_async(Trigger.Request())).message == "here"
-    assert len(asked) == 3
+    assert len(answers) == 3
 
 
 async def test_incoming_requests_are_answered(graph):

@@ -93,32 +93,32 @@ class TestWaiting:
         executor.spin_once(timeout_sec=0)
 
     def test_zero_timeout_runs_ready_callback(self, node, executor):
-        got = []
-        node.create_subscription(String, "chatter", got.append, 10)
+        received = []
+        node.create_subscription(String, "chatter", received.append, 10)
         node.create_publisher(String, "chatter", 10).publish(String(data="here"))
         executor.spin_once(timeout_sec=0)
-        assert [message.data for message in got] == ["here"]
+        assert [message.data for message in received] == ["here"]
 
     def test_spin_once_runs_one_callback(self, node, executor):
-        got = []
-        node.create_subscription(String, "chatter", got.append, 10)
+        received = []
+        node.create_subscription(String, "chatter", received.append, 10)
         publisher = node.create_publisher(String, "chatter", 10)
         publisher.publish(String(data="1"))
         publisher.publish(String(data="2"))
         executor.spin_once(timeout_sec=0)
-        assert len(got) == 1
+        assert len(received) == 1
         executor.spin_once(timeout_sec=0)
-        assert len(got) == 2
+        assert len(received) == 2
 
     def test_queue_keeps_messages_up_to_qos_depth(self, node, executor):
-        got = []
-        node.create_subscription(String, "chatter", lambda message: got.append(message.data), 3)
+        received = []
+        node.create_subscription(String, "chatter", lambda message: received.append(message.data), 3)
         publisher = node.create_publisher(String, "chatter", 10)
         for number in range(10):
             publisher.publish(String(data=str(number)))
         for _ in range(10):
             executor.spin_once(timeout_sec=0)
-        assert got == ["7", "8", "9"]
+        assert received == ["7", "8", "9"]
 
     def test_added_node_ends_wait(self, graph):
         node = graph.create_node("late")
@@ -134,13 +134,13 @@ class TestWaiting:
         assert not thread.is_alive()
 
     def test_message_from_another_thread_ends_wait(self, node, executor):
-        got = []
-        node.create_subscription(String, "chatter", got.append, 10)
+        received = []
+        node.create_subscription(String, "chatter", received.append, 10)
         publisher = node.create_publisher(String, "chatter", 10)
         thread = spun(executor)
         wait_until(lambda: is_waiting(thread))  # which has no end of its own
         publisher.publish(String())
-        wait_until(lambda: got)
+        wait_until(lambda: received)
         executor.shutdown()
         thread.join(SECONDS)
 
@@ -179,27 +179,27 @@ class TestNodes:
         assert called == []
 
     def test_pending_callbacks_wait_for_next_executor(self, node, executor):
-        got = []
-        node.create_subscription(String, "chatter", got.append, 10)
+        received = []
+        node.create_subscription(String, "chatter", received.append, 10)
         publisher = node.create_publisher(String, "chatter", 10)
         publisher.publish(String(data="1"))
         executor.remove_node(node)
         publisher.publish(String(data="2"))
         executor.spin_once(timeout_sec=0)
-        assert got == []
+        assert received == []
         with SingleThreadedExecutor() as other:
             other.add_node(node)
             other.spin_once(timeout_sec=0)
             other.spin_once(timeout_sec=0)
-        assert [message.data for message in got] == ["1", "2"]
+        assert [message.data for message in received] == ["1", "2"]
 
     def test_destroyed_subscription_is_not_run(self, node, executor):
-        got = []
-        subscription = node.create_subscription(String, "chatter", got.append, 10)
+        received = []
+        subscription = node.create_subscription(String, "chatter", received.append, 10)
         node.create_publisher(String, "chatter", 10).publish(String())
         node.destroy_subscription(subscription)
         executor.spin_once(timeout_sec=0)
-        assert got == []
+        assert received == []
 
 
 class TestFaults:
@@ -245,10 +245,10 @@ class TestFaults:
             executor.spin_once(timeout_sec=SECONDS)
 
     def test_spin_continues_after_exception(self, node, executor):
-        got = []
+        received = []
 
         def receive(message):
-            got.append(message.data)
+            received.append(message.data)
             if message.data == "bad":
                 raise ValueError
 
@@ -259,7 +259,7 @@ class TestFaults:
         with pytest.raises(ValueError):
             executor.spin_once(timeout_sec=0)
         executor.spin_once(timeout_sec=0)
-        assert got == ["bad", "good"]
+        assert received == ["bad", "good"]
 
 
 class TestShutdown:
@@ -385,23 +385,23 @@ class TestFutures:
         assert len(future._waiters) == 1
 
     def test_completed_future_runs_no_callbacks(self, node, executor):
-        got = []
-        node.create_subscription(String, "chatter", got.append, 10)
+        received = []
+        node.create_subscription(String, "chatter", received.append, 10)
         node.create_publisher(String, "chatter", 10).publish(String())
         future = Future()
         future.set_result(None)
         executor.spin_once_until_future_complete(future, timeout_sec=SECONDS)
-        assert got == []
+        assert received == []
 
 
 class TestGroups:
     def test_mutually_exclusive_group_runs_one_callback_at_a_time(self, node):
-        running, most = [], []
+        running, peaks = [], []
         group = MutuallyExclusiveCallbackGroup()
 
         def work(_message):
             running.append(1)
-            most.append(len(running))
+            peaks.append(len(running))
             time.sleep(0.01)
             running.pop()
 
@@ -413,17 +413,17 @@ class TestGroups:
             thread = spun(executor)
             for publisher in publishers * 5:
                 publisher.publish(String())
-            wait_until(lambda: len(most) == 15)
+            wait_until(lambda: len(peaks) == 15)
             executor.shutdown()
             thread.join(SECONDS)
-        assert max(most) == 1
+        assert max(peaks) == 1
 
     def test_default_group_is_mutually_exclusive(self, node):
-        most, running = [], []
+        peaks, running = [], []
 
         def work(_message):
             running.append(1)
-            most.append(len(running))
+            peaks.append(len(running))
             time.sleep(0.01)
             running.pop()
 
@@ -435,10 +435,10 @@ class TestGroups:
             thread = spun(executor)
             for publisher in publishers * 5:
                 publisher.publish(String())
-            wait_until(lambda: len(most) == 10)
+            wait_until(lambda: len(peaks) == 10)
             executor.shutdown()
             thread.join(SECONDS)
-        assert max(most) == 1
+        assert max(peaks) == 1
 
     def test_reentrant_group_runs_callback_concurrently(self, node):
         barrier = threading.Barrier(3, timeout=60.0)
@@ -460,18 +460,18 @@ class TestGroups:
             thread.join(SECONDS)
 
     def test_mutually_exclusive_group_keeps_message_order(self, node):
-        got = []
-        node.create_subscription(String, "chatter", lambda message: got.append(int(message.data)), 1000)
+        received = []
+        node.create_subscription(String, "chatter", lambda message: received.append(int(message.data)), 1000)
         publisher = node.create_publisher(String, "chatter", 1000)
         with MultiThreadedExecutor(4) as executor:
             executor.add_node(node)
             thread = spun(executor)
             for number in range(500):
                 publisher.publish(String(data=str(number)))
-            wait_until(lambda: len(got) == 500)
+            wait_until(lambda: len(received) == 500)
             executor.shutdown()
             thread.join(SECONDS)
-        assert got == list(range(500))
+        assert received == list(range(500))
 
     def test_coroutine_holds_mutually_exclusive_group_until_end(self, node, executor):
         future, order = Future(), []
@@ -495,17 +495,17 @@ class TestGroups:
         assert order == ["begins", "ends", "other"]
 
     def test_nested_spin_runs_other_groups(self, node, executor):
-        got = []
-        inner = node.create_guard_condition(lambda: got.append("inner"), callback_group=ReentrantCallbackGroup())
+        calls = []
+        inner = node.create_guard_condition(lambda: calls.append("inner"), callback_group=ReentrantCallbackGroup())
 
         def outer():
             inner.trigger()
             executor.spin_once(timeout_sec=SECONDS)
-            got.append("outer")
+            calls.append("outer")
 
         node.create_guard_condition(outer).trigger()
         executor.spin_once(timeout_sec=SECONDS)
-        assert got == ["inner", "outer"]
+        assert calls == ["inner", "outer"]
 
     def test_custom_callback_group_decides_execution(self, node, executor):
         class Every(MutuallyExclusiveCallbackGroup):
@@ -514,15 +514,15 @@ class TestGroups:
             def can_execute(self, entity):
                 return self.allowed and super().can_execute(entity)
 
-        group, got = Every(), []
-        guard = node.create_guard_condition(lambda: got.append(1), callback_group=group)
+        group, calls = Every(), []
+        guard = node.create_guard_condition(lambda: calls.append(1), callback_group=group)
         guard.trigger()
         executor.spin_once(timeout_sec=0)
-        assert got == []
+        assert calls == []
         group.allowed = True
         executor.wake()
         executor.spin_once(timeout_sec=0)
-        assert got == [1]
+        assert calls == [1]
 
     def test_callback_group_knows_members(self, node):
         group = ReentrantCallbackGroup()
@@ -534,14 +534,14 @@ class TestGroups:
 
 class TestOwnExecutors:
     def test_ready_callback_has_entity_and_node(self, node, executor):
-        got = []
-        subscription = node.create_subscription(String, "chatter", got.append, 10)
+        received = []
+        subscription = node.create_subscription(String, "chatter", received.append, 10)
         node.create_publisher(String, "chatter", 10).publish(String())
         handler, entity, its_node = executor.wait_for_ready_callbacks(timeout_sec=SECONDS)
         assert (entity, its_node) == (subscription, node)
-        assert got == []
+        assert received == []
         handler()
-        assert len(got) == 1
+        assert len(received) == 1
         assert handler.exception() is None
 
     def test_callback_exception_is_kept_in_handler(self, node, executor):
@@ -556,14 +556,14 @@ class TestOwnExecutors:
     def test_ready_callbacks_can_be_limited_to_nodes(self, graph, node, executor):
         other = graph.create_node("other")
         executor.add_node(other)
-        got = []
-        node.create_guard_condition(lambda: got.append("node")).trigger()
-        other.create_guard_condition(lambda: got.append("other")).trigger()
+        calls = []
+        node.create_guard_condition(lambda: calls.append("node")).trigger()
+        other.create_guard_condition(lambda: calls.append("other")).trigger()
         handler, _, its_node = executor.wait_for_ready_callbacks(timeout_sec=1.0, nodes=[other])
         assert its_node is other
         handler()
         executor.spin_once(timeout_sec=0)
-        assert got == ["other", "node"]
+        assert calls == ["other", "node"]
 
     def test_wait_end_raises_specific_exception(self, executor):
         with pytest.raises(TimeoutException):

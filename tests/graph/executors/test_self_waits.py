@@ -88,15 +88,15 @@ class Asking:
 def make_scene(monkeypatch: pytest.MonkeyPatch) -> Any:
     """Makes an `Asking`."""
     monkeypatch.setattr(self_waits, "_reported", set())
-    made: list[Asking] = []
+    scenes: list[Asking] = []
 
     def make(**options: Any) -> Asking:
-        made.append(Asking(**options))
-        return made[-1]
+        scenes.append(Asking(**options))
+        return scenes[-1]
 
     yield make
-    for each in made:
-        each.close()
+    for scene in scenes:
+        scene.close()
 
 
 def test_call_in_own_callback_group_is_reported_once_with_both_locations(make_scene) -> None:

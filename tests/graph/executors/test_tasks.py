@@ -136,10 +136,10 @@ class TestTaskInExecutor:
         assert order == [0, 1, 2, 3, 4]
 
     def test_created_task_ends_wait(self, executor):
-        done = []
-        threading.Timer(0.05, executor.create_task, [done.append, 1]).start()
+        calls = []
+        threading.Timer(0.05, executor.create_task, [calls.append, 1]).start()
         executor.spin_once(timeout_sec=60.0)
-        assert done == [1]
+        assert calls == [1]
 
     def test_coroutine_waits_for_future(self, executor):
         future = Future()
@@ -181,17 +181,17 @@ class TestTaskInExecutor:
         async def first():
             return 1
 
-        one = executor.create_task(first)
+        first_task = executor.create_task(first)
 
         async def second():
-            return await one + 1
+            return await first_task + 1
 
-        two = executor.create_task(second)
+        second_task = executor.create_task(second)
         executor.spin_once(timeout_sec=0)
         executor.spin_once(timeout_sec=0)
-        assert (one.done(), two.done()) == (True, False)
+        assert (first_task.done(), second_task.done()) == (True, False)
         executor.spin_once(timeout_sec=0)
-        assert two.result() == 2
+        assert second_task.result() == 2
 
     def test_task_can_await_later_task(self, executor):
         later = []
@@ -202,15 +202,15 @@ class TestTaskInExecutor:
         async def second():
             return 1
 
-        one = executor.create_task(first)
+        first_task = executor.create_task(first)
         later.append(executor.create_task(second))
-        executor.spin_until_future_complete(one, timeout_sec=60.0)
-        assert one.result() == 2
+        executor.spin_until_future_complete(first_task, timeout_sec=60.0)
+        assert first_task.result() == 2
 
     def test_executor_runs_done_callbacks(self, executor):
         order = []
         future = executor.create_future()
-        future.add_done_callback(lambda done: order.append(done.result()))
+        future.add_done_callback(lambda completed: order.append(completed.result()))
         future.set_result("done")
         assert order == []
         executor.spin_once(timeout_sec=0)

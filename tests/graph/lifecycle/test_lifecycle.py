@@ -109,8 +109,10 @@ async def test_failed_shutdown_sets_state(managed, answer, state):
 
 
 async def test_lifecycle_publisher_is_silent_unless_active(graph, managed):
-    heard = []
-    graph.create_node("listener").create_subscription(String, "/words", lambda message: heard.append(message.data), 10)
+    messages = []
+    graph.create_node("listener").create_subscription(
+        String, "/words", lambda message: messages.append(message.data), 10
+    )
     publisher = managed.create_lifecycle_publisher(String, "/words", 10)
 
     async def say(text):
@@ -126,7 +128,7 @@ async def test_lifecycle_publisher_is_silent_unless_active(graph, managed):
     await say("now")
     managed.trigger_deactivate()
     await say("too late")
-    assert heard == ["now"]
+    assert messages == ["now"]
     managed.destroy_lifecycle_publisher(publisher)
     with pytest.raises(TypeError, match="unexpected keyword argument 'publisher_class'"):
         managed.create_lifecycle_publisher(String, "/words", 10, publisher_class=object)
@@ -137,11 +139,11 @@ async def test_managed_entities_are_notified_until_one_fails(managed):
         def on_configure(self, state):
             return FAILURE
 
-    asked = []
+    labels = []
 
     class Counting(SimpleManagedEntity):
         def on_configure(self, state):
-            asked.append(state.label)
+            labels.append(state.label)
             return SUCCESS
 
         @SimpleManagedEntity.when_enabled
@@ -163,7 +165,7 @@ async def test_managed_entities_are_notified_until_one_fails(managed):
     managed.trigger_cleanup()
     managed.add_managed_entity(Stubborn())
     assert managed.trigger_configure() is FAILURE
-    assert asked == ["unconfigured", "unconfigured"]
+    assert labels == ["unconfigured", "unconfigured"]
 
 
 async def test_lifecycle_services_change_state(graph, managed, log):
@@ -199,12 +201,15 @@ async def test_lifecycle_services_change_state(graph, managed, log):
         (15, "errorprocessing"),
     ]
     available = (await ask("get_available_transitions", "GetAvailableTransitions")).available_transitions
-    assert [(each.transition.id, each.transition.label, each.goal_state.label) for each in available] == [
+    assert [
+        (description.transition.id, description.transition.label, description.goal_state.label)
+        for description in available
+    ] == [
         (4, "deactivate", "deactivating"),
         (7, "shutdown", "shuttingdown"),
     ]
     whole = (await ask("get_transition_graph", "GetAvailableTransitions")).available_transitions
-    assert [each.transition.id for each in whole] == [
+    assert [description.transition.id for description in whole] == [
         *(1, 10, 11, 12, 2, 20, 21, 22, 3, 30, 31, 32, 4, 40, 41, 42, 5, 6, 7, 50, 51, 52, 60, 61, 62),
     ]
     assert [(event.start_state.label, event.goal_state.label) for event in events] == [

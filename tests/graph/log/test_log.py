@@ -169,23 +169,23 @@ async def test_node_logs_are_published_on_rosout(graph, log, clock):
     node = graph.create_node("talker", namespace="/robot")
     node.get_logger().warning("before")
     node.get_logger().get_child("part").info("child")
-    heard = []
+    messages = []
     graph.create_node("listener").create_subscription(
-        get_message("rcl_interfaces/msg/Log"), "/rosout", heard.append, ROSOUT_QOS
+        get_message("rcl_interfaces/msg/Log"), "/rosout", messages.append, ROSOUT_QOS
     )
     node.get_logger().error("after")
     await graph.settle()
-    assert [(each.name, each.msg, each.level) for each in heard] == [
+    assert [(message.name, message.msg, message.level) for message in messages] == [
         ("robot.talker", "before", 30),
         ("robot.talker.part", "child", 20),
         ("robot.talker", "after", 40),
     ]
-    assert heard[0].file == __file__
-    assert heard[0].function == "test_node_logs_are_published_on_rosout"
-    assert heard[0].stamp.sec == clock.now_ns() // 10**9
+    assert messages[0].file == __file__
+    assert messages[0].function == "test_node_logs_are_published_on_rosout"
+    assert messages[0].stamp.sec == clock.now_ns() // 10**9
     graph.get_logger("other").info("not a node's")
     await graph.settle()
-    assert len(heard) == 3
+    assert len(messages) == 3
 
 
 async def test_node_can_disable_rosout(graph):

@@ -76,12 +76,12 @@ def run_of(seed):
             for topic in chance.sample("abcdef", 3):
                 publishers.append(node.create_publisher(String, topic, 10))
 
-                def heard(message, node=node, topic=topic):
+                def receive(message, node=node, topic=topic):
                     happened.append((clock.steady_ns(), node.get_name(), topic, message.data))
                     if len(message.data) < 4:
                         chance.choice(publishers).publish(String(data=message.data + topic))
 
-                node.create_subscription(String, topic, heard, chance.randint(1, 10))
+                node.create_subscription(String, topic, receive, chance.randint(1, 10))
             period = chance.choice((0.1, 0.25, 0.3))
             node.create_timer(period, lambda node=node: chance.choice(publishers).publish(String(data="")))
 
@@ -223,15 +223,15 @@ async def test_coroutine_exceptions_are_logged(graph, log):
 
 async def test_messages_from_other_threads_arrive_on_event_loop(graph):
     node = graph.create_node("node")
-    received, done = [], asyncio.Event()
+    received, all_received = [], asyncio.Event()
     here = threading.get_ident()
 
-    def heard(message):
+    def receive(message):
         received.append((message.data, threading.get_ident() == here))
         if len(received) == 4000:
-            done.set()
+            all_received.set()
 
-    node.create_subscription(String, "topic", heard, QoSProfile(history=HistoryPolicy.KEEP_ALL))
+    node.create_subscription(String, "topic", receive, QoSProfile(history=HistoryPolicy.KEEP_ALL))
     publisher = node.create_publisher(String, "topic", 10)
 
     def talk(name):
@@ -241,7 +241,7 @@ async def test_messages_from_other_threads_arrive_on_event_loop(graph):
     threads = [threading.Thread(target=talk, args=(name,)) for name in "abcd"]
     for thread in threads:
         thread.start()
-    await asyncio.wait_for(done.wait(), 20.0)
+    await asyncio.wait_for(all_received.wait(), 20.0)
     for thread in threads:
         thread.join()
     assert all(on_loop for _, on_loop in received)
@@ -252,10 +252,10 @@ async def test_messages_from_other_threads_arrive_on_event_loop(graph):
 async def test_timers_can_be_created_in_other_threads():
     graph = Graph(on_log=print)
     node = graph.create_node("node")
-    done = asyncio.Event()
+    called = asyncio.Event()
     loop = asyncio.get_running_loop()
-    timer = await loop.run_in_executor(None, lambda: node.create_timer(0.001, done.set))
-    await asyncio.wait_for(done.wait(), 5.0)
+    timer = await loop.run_in_executor(None, lambda: node.create_timer(0.001, called.set))
+    await asyncio.wait_for(called.wait(), 5.0)
     await loop.run_in_executor(None, timer.cancel)
     assert timer.is_canceled()
     await graph.close()
@@ -328,15 +328,15 @@ def test_blocking_subscriber_does_not_delay_others():
         blocked.set()
         gate.wait(60.0)
 
-    done = threading.Event()
+    all_received = threading.Event()
 
-    def heard(message):
+    def receive(message):
         received.append(message)
         if len(received) == 100:
-            done.set()
+            all_received.set()
 
     slow.create_subscription(String, "topic", block, 10)
-    quick.create_subscription(String, "topic", heard, 1000)
+    quick.create_subscription(String, "topic", receive, 1000)
     publisher = quick.create_publisher(String, "topic", 10)
     executor = MultiThreadedExecutor(2)
     executor.add_node(slow)
@@ -348,7 +348,7 @@ def test_blocking_subscriber_does_not_delay_others():
         assert blocked.wait(60.0)
         for _ in range(99):
             publisher.publish(String())
-        assert done.wait(60.0)
+        assert all_received.wait(60.0)
     finally:
         gate.set()
         executor.shutdown()

@@ -43,10 +43,10 @@ def test_future_can_be_canceled():
     future.cancel()
     assert (future.done(), future.cancelled(), future.ended()) == (False, True, True)
     assert received == [future]
-    done = Future()
-    done.set_result(1)
-    done.cancel()
-    assert not done.cancelled()
+    completed = Future()
+    completed.set_result(1)
+    completed.cancel()
+    assert not completed.cancelled()
 
 
 def test_done_callbacks_can_be_removed():

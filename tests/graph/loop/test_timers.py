@@ -161,16 +161,16 @@ def test_time_converts_to_message():
 
 async def test_system_timers_neither_drift_nor_run_early():
     graph = Graph(clock=SystemClock(), on_log=print)
-    done = asyncio.Event()
+    all_called = asyncio.Event()
     calls = []
 
     def tick(info: TimerInfo):
         calls.append((info.expected_call_time.nanoseconds, info.actual_call_time.nanoseconds))
         if len(calls) == 20:
-            done.set()
+            all_called.set()
 
     graph.create_node("node").create_timer(0.005, tick)
-    await asyncio.wait_for(done.wait(), 5.0)
+    await asyncio.wait_for(all_called.wait(), 5.0)
     await graph.close()
     # However late a busy machine makes the calls, each belongs to a beat of its own that had come.
     beats = [divmod(expected - calls[0][0], 5_000_000) for expected, _ in calls]

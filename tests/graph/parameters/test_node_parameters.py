@@ -90,9 +90,9 @@ async def test_override_of_wrong_type_is_rejected_with_hint(graph):
 def test_parameter_type_is_inferred_from_value(value, kind):
     parameter = Parameter("p", value=value)
     assert parameter.type_ is ParameterType[kind]
-    again = Parameter.from_parameter_msg(parameter.to_parameter_msg())
-    assert (again.name, again.type_) == ("p", parameter.type_)
-    assert again.value == ([b"x"] if value == b"x" else list(value) if isinstance(value, tuple) else value)
+    round_trip = Parameter.from_parameter_msg(parameter.to_parameter_msg())
+    assert (round_trip.name, round_trip.type_) == ("p", parameter.type_)
+    assert round_trip.value == ([b"x"] if value == b"x" else list(value) if isinstance(value, tuple) else value)
 
 
 @pytest.mark.parametrize("value", [[1, 1.0], [None], {}, object(), [[1]]])
@@ -185,7 +185,11 @@ async def test_statically_typed_parameter_can_be_uninitialized(graph):
 async def test_declare_parameters_prepends_namespace(graph):
     node = graph.create_node("node", parameters={"arm.a": 5})
     declared = node.declare_parameters("arm", [("a", 1), ("b", Parameter.Type.STRING), ("c", 2.0, DescriptorMessage())])
-    assert [(each.name, each.value) for each in declared] == [("arm.a", 5), ("arm.b", None), ("arm.c", 2.0)]
+    assert [(parameter.name, parameter.value) for parameter in declared] == [
+        ("arm.a", 5),
+        ("arm.b", None),
+        ("arm.c", 2.0),
+    ]
     with pytest.raises(TypeError, match="Invalid parameter tuple length at index 0"):
         node.declare_parameters("", [()])
     with pytest.raises(TypeError, match="First element 1 at index 1 in parameters list is not a str"):
@@ -200,7 +204,7 @@ async def test_declare_parameters_prepends_namespace(graph):
 async def test_last_of_duplicate_declarations_applies(graph):
     node = graph.create_node("node")
     declared = node.declare_parameters("", [("a", 1), ("b", 2), ("a", 3)])
-    assert [(each.name, each.value) for each in declared] == [("a", 3), ("b", 2), ("a", 3)]
+    assert [(parameter.name, parameter.value) for parameter in declared] == [("a", 3), ("b", 2), ("a", 3)]
     with pytest.raises(ParameterAlreadyDeclaredException, match=r"a.*b"):
         node.declare_parameters("", [("c", 1), ("a", 1), ("b", 1)])
     assert not node.has_parameter("c")
@@ -254,15 +258,18 @@ async def test_default_out_of_range_is_rejected(graph):
     assert not node.has_parameter("p")
 
 
-@pytest.mark.parametrize("made", [ParameterDescriptor, DescriptorMessage])
-async def test_descriptor_can_be_shared_by_parameters(graph, made):
+@pytest.mark.parametrize("descriptor_type", [ParameterDescriptor, DescriptorMessage])
+async def test_descriptor_can_be_shared_by_parameters(graph, descriptor_type):
     node = graph.create_node("sharing")
-    share = made(read_only=True)
-    node.declare_parameter("wide", 1.5, share)
-    node.declare_parameter("whole", 2, share)
+    descriptor = descriptor_type(read_only=True)
+    node.declare_parameter("wide", 1.5, descriptor)
+    node.declare_parameter("whole", 2, descriptor)
     described = node.describe_parameters(["wide", "whole"])
-    assert [(each.name, each.type, each.read_only) for each in described] == [("wide", 3, True), ("whole", 2, True)]
-    assert not share.name
+    assert [(description.name, description.type, description.read_only) for description in described] == [
+        ("wide", 3, True),
+        ("whole", 2, True),
+    ]
+    assert not descriptor.name
 
 
 async def test_descriptors_are_returned_and_replaced(graph):
@@ -310,7 +317,9 @@ async def test_set_callbacks_reject_with_reason(graph):
     node.declare_parameter("a", 1)
     node.declare_parameter("b", 1)
     node.add_on_set_parameters_callback(check)
-    node.add_post_set_parameters_callback(lambda given: applied.append([each.name for each in given]))
+    node.add_post_set_parameters_callback(
+        lambda parameters: applied.append([parameter.name for parameter in parameters])
+    )
     good, bad = Parameter("a", value=2), Parameter("b", value=-2)
     assert node.set_parameters([good, bad])[1].reason == "must not be negative"
     assert (node.get_parameter("a").value, node.get_parameter("b").value) == (2, 1)

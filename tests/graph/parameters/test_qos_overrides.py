@@ -11,14 +11,14 @@ START = "qos_overrides./chatter.publisher"
 
 async def test_parameters_override_qos_in_code(graph):
     node = graph.create_node("node", parameters={f"{START}.depth": 3, f"{START}.reliability": "best_effort"})
-    given = QoSProfile(depth=10)
-    profile = override_qos(node, "publisher", "/chatter", given, QoSOverridingOptions.with_default_policies())
+    default_profile = QoSProfile(depth=10)
+    profile = override_qos(node, "publisher", "/chatter", default_profile, QoSOverridingOptions.with_default_policies())
     assert (profile.depth, profile.reliability, profile.history) == (
         3,
         ReliabilityPolicy.BEST_EFFORT,
         HistoryPolicy.KEEP_LAST,
     )
-    assert (given.depth, given.reliability) == (10, ReliabilityPolicy.RELIABLE)
+    assert (default_profile.depth, default_profile.reliability) == (10, ReliabilityPolicy.RELIABLE)
     assert {name: node.get_parameter(f"{START}.{name}").value for name in ("history", "depth", "reliability")} == {
         "history": "keep_last",
         "depth": 3,
@@ -27,8 +27,10 @@ async def test_parameters_override_qos_in_code(graph):
     descriptor = node.describe_parameter(f"{START}.depth")
     assert descriptor.read_only
     assert descriptor.description == "depth for publisher `/chatter` with id `None`"
-    again = override_qos(node, "publisher", "/chatter", given, QoSOverridingOptions.with_default_policies())
-    assert again.depth == 3
+    second_profile = override_qos(
+        node, "publisher", "/chatter", default_profile, QoSOverridingOptions.with_default_policies()
+    )
+    assert second_profile.depth == 3
 
 
 async def test_all_policies_and_entity_id_are_supported(graph):

@@ -75,12 +75,12 @@ async def test_unknown_parameter_empties_response(graph, client):
 
 async def test_parameter_client_sets_parameters(graph, server, client):
     server.add_on_set_parameters_callback(
-        lambda given: SetParametersResult(all(each.value != 13 for each in given), "unlucky")
+        lambda parameters: SetParametersResult(all(parameter.value != 13 for parameter in parameters), "unlucky")
     )
     messages = []
     future = client.set_parameters(
         [Parameter("rate", value=1), Parameter("rate", value=13), Parameter("gone", value=1)],
-        callback=lambda done: messages.append(done.result()),
+        callback=lambda completed: messages.append(completed.result()),
     )
     results = (await answer(graph, future)).results
     assert [result.successful for result in results] == [True, False, False]

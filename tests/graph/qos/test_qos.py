@@ -160,8 +160,8 @@ class TestCompatibility:
     )
     def test_best_available_profile_is_compatible(self, reliability, durability):
         there = profile(reliability=reliability, durability=durability, deadline=seconds(3))
-        asked = best_available(BEST_AVAILABLE_QOS, [there], publisher=False)
-        assert (asked.reliability, asked.durability, asked.deadline) == (reliability, durability, seconds(3))
-        assert incompatible_policies(there, asked) == []
+        chosen = best_available(BEST_AVAILABLE_QOS, [there], publisher=False)
+        assert (chosen.reliability, chosen.durability, chosen.deadline) == (reliability, durability, seconds(3))
+        assert incompatible_policies(there, chosen) == []
         offered = best_available(BEST_AVAILABLE_QOS, [there], publisher=True)
         assert incompatible_policies(offered, there) == []

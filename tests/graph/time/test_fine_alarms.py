@@ -16,29 +16,29 @@ MILLISECOND = 1_000_000
 
 
 async def alarms() -> FineAlarms:
-    found = fine_alarms(asyncio.get_running_loop())
-    if found is None:
+    fine = fine_alarms(asyncio.get_running_loop())
+    if fine is None:
         pytest.skip("event loops of this system wait by the microsecond themselves")
-    return found
+    return fine
 
 
 async def test_alarms_are_called_in_order_and_never_early():
     fine, now_ns = await alarms(), time.monotonic_ns()
-    made = []
+    calls = []
     for late_ns in (3 * MILLISECOND, 400_000, 0, 400_000, -5):
         due_ns = now_ns + late_ns
-        fine.call_at(due_ns, lambda due_ns=due_ns: made.append((due_ns, time.monotonic_ns())))
-    assert made == []
-    await eventually(lambda: len(made) == 5)
-    assert [due_ns - now_ns for due_ns, _ in made] == [-5, 0, 400_000, 400_000, 3 * MILLISECOND]
-    assert all(called_ns >= due_ns for due_ns, called_ns in made)
+        fine.call_at(due_ns, lambda due_ns=due_ns: calls.append((due_ns, time.monotonic_ns())))
+    assert calls == []
+    await eventually(lambda: len(calls) == 5)
+    assert [due_ns - now_ns for due_ns, _ in calls] == [-5, 0, 400_000, 400_000, 3 * MILLISECOND]
+    assert all(called_ns >= due_ns for due_ns, called_ns in calls)
 
 
 def test_each_event_loop_has_its_own_alarms():
     async def called() -> None:
-        fine, made = await alarms(), asyncio.Event()
-        fine.call_at(time.monotonic_ns(), made.set)
-        await asyncio.wait_for(made.wait(), 20)
+        fine, was_called = await alarms(), asyncio.Event()
+        fine.call_at(time.monotonic_ns(), was_called.set)
+        await asyncio.wait_for(was_called.wait(), 20)
 
     for _ in range(20):  # most are made where the one before was
         asyncio.run(called())
@@ -46,45 +46,45 @@ def test_each_event_loop_has_its_own_alarms():
 
 
 async def test_alarm_canceled_by_earlier_alarm_is_not_called():
-    fine, made, later = await alarms(), [], []
+    fine, calls, later = await alarms(), [], []
 
     def cancel():
         later[0].cancel()
 
     due_ns = time.monotonic_ns()
     fine.call_at(due_ns, cancel)
-    later.append(fine.call_at(due_ns, lambda: made.append("second")))
-    fine.call_at(due_ns, lambda: made.append("third"))
-    await eventually(lambda: made)
-    assert made == ["third"]
+    later.append(fine.call_at(due_ns, lambda: calls.append("second")))
+    fine.call_at(due_ns, lambda: calls.append("third"))
+    await eventually(lambda: calls)
+    assert calls == ["third"]
 
 
 async def test_rescheduled_alarm_runs_in_next_loop_iteration():
-    fine, made = await alarms(), []
+    fine, calls = await alarms(), []
 
     def again():
-        made.append("alarm")
-        if len(made) < 9:
+        calls.append("alarm")
+        if len(calls) < 9:
             fine.call_at(time.monotonic_ns(), again)
-            asyncio.get_running_loop().call_soon(made.append, "other")
+            asyncio.get_running_loop().call_soon(calls.append, "other")
 
     fine.call_at(time.monotonic_ns(), again)
-    await eventually(lambda: len(made) == 9)
-    assert made == ["alarm", "other"] * 4 + ["alarm"]
+    await eventually(lambda: len(calls) == 9)
+    assert calls == ["alarm", "other"] * 4 + ["alarm"]
 
 
 async def test_exception_in_alarm_keeps_other_alarms():
-    fine, made = await alarms(), []
+    fine, calls = await alarms(), []
 
     def interrupted():
         raise SystemExit
 
     due_ns = time.monotonic_ns()
     fine.call_at(due_ns, interrupted)
-    fine.call_at(due_ns, lambda: made.append("next"))
+    fine.call_at(due_ns, lambda: calls.append("next"))
     with pytest.raises(SystemExit):
         fine.run()
-    await eventually(lambda: made)
+    await eventually(lambda: calls)
 
 
 async def test_short_waits_use_fine_alarms_and_long_waits_the_event_loop():
@@ -102,13 +102,13 @@ def test_event_loop_without_readers_uses_its_own_timers():
         def add_reader(self, *_):
             raise NotImplementedError
 
-    loop, made = Blind(), []
+    loop, calls = Blind(), []
     try:
         assert fine_alarms(loop) is None
         clock = SystemClock()
-        clock.call_at(loop, clock.steady_ns(), lambda: (made.append("called"), loop.stop()))
+        clock.call_at(loop, clock.steady_ns(), lambda: (calls.append("called"), loop.stop()))
         loop.run_forever()
-        assert made == ["called"]
+        assert calls == ["called"]
     finally:
         loop.close()
 

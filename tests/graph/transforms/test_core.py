@@ -61,9 +61,9 @@ def x_of(buffer, target, source, time=LATEST):
 
 def test_lookup_returns_pose_of_source_in_target(buffer):
     fill(buffer, stamped("map", "base", 1, x=1.0, yaw=pi / 2), stamped("base", "arm", 1, x=2.0))
-    found = buffer.lookup_transform_core("map", "arm", LATEST)
-    assert (found.header.frame_id, found.child_frame_id, found.header.stamp.sec) == ("map", "arm", 1)
-    translation, rotation = found.transform.translation, found.transform.rotation
+    transform = buffer.lookup_transform_core("map", "arm", LATEST)
+    assert (transform.header.frame_id, transform.child_frame_id, transform.header.stamp.sec) == ("map", "arm", 1)
+    translation, rotation = transform.transform.translation, transform.transform.rotation
     assert (translation.x, translation.y) == (pytest.approx(1.0), pytest.approx(2.0))
     assert rotation.z == pytest.approx(sqrt(0.5))
     back = buffer.lookup_transform_core("arm", "map", LATEST).transform.translation
@@ -134,9 +134,9 @@ def test_extrapolation_is_rejected_like_tf2(buffer):
 
 def test_latest_common_time_is_of_slowest_frame(buffer):
     fill(buffer, stamped("map", "base", 1, x=1.0), stamped("map", "base", 5, x=5.0), stamped("base", "arm", 3, x=10.0))
-    found = buffer.lookup_transform_core("map", "arm", LATEST)
-    assert found.header.stamp.sec == 3
-    assert found.transform.translation.x == pytest.approx(13.0)
+    transform = buffer.lookup_transform_core("map", "arm", LATEST)
+    assert transform.header.stamp.sec == 3
+    assert transform.transform.translation.x == pytest.approx(13.0)
     assert buffer.get_latest_common_time("map", "arm") == at(3)
     assert buffer.get_latest_common_time("arm", "base") == at(3)
     assert buffer.get_latest_common_time("base", "base") == at(5)
@@ -160,9 +160,9 @@ def test_static_transforms_hold_at_all_times(buffer):
 def test_time_travel_uses_fixed_frame(buffer):
     fill(buffer, *(stamped("world", "robot", time, x=float(time)) for time in range(1, 6)))
     fill(buffer, stamped("world", "other", 1, x=100.0), stamped("world", "other", 5, x=100.0))
-    found = buffer.lookup_transform_full_core("robot", at(4), "robot", at(1.5), "world")
-    assert found.transform.translation.x == pytest.approx(-2.5)
-    assert (found.header.frame_id, found.child_frame_id, found.header.stamp.sec) == ("robot", "robot", 4)
+    transform = buffer.lookup_transform_full_core("robot", at(4), "robot", at(1.5), "world")
+    assert transform.transform.translation.x == pytest.approx(-2.5)
+    assert (transform.header.frame_id, transform.child_frame_id, transform.header.stamp.sec) == ("robot", "robot", 4)
     assert buffer.can_transform_full_core("robot", at(4), "other", at(2), "world") == (True, "")
     possible, reason = buffer.can_transform_full_core("robot", at(40), "other", at(2), "world")
     assert not possible

@@ -34,9 +34,9 @@ def test_points_are_rotated_and_translated_and_vectors_rotated():
     point = message("PointStamped")
     point.point.x = 1.0
     before = deepcopy(TRANSFORM)
-    found = do_transform_point(point, TRANSFORM)
-    assert xyz(found.point) == (10.0, 1.0, 0.0)
-    assert (found.header.frame_id, found.header.stamp.sec) == ("map", 3)
+    transformed = do_transform_point(point, TRANSFORM)
+    assert xyz(transformed.point) == (10.0, 1.0, 0.0)
+    assert (transformed.header.frame_id, transformed.header.stamp.sec) == ("map", 3)
     vector = message("Vector3Stamped")
     vector.vector.x = 2.0
     assert xyz(do_transform_vector3(vector, TRANSFORM).vector) == (0.0, 2.0, 0.0)
@@ -47,11 +47,11 @@ def test_poses_are_transformed():
     pose = message("PoseStamped")
     pose.pose.position.y = 1.0
     pose.pose.orientation.z, pose.pose.orientation.w = sin(pi / 4), cos(pi / 4)
-    found = do_transform_pose_stamped(pose, TRANSFORM)
-    assert xyz(found.pose.position) == (9.0, 0.0, 0.0)
-    assert found.pose.orientation.z == pytest.approx(1.0)
-    assert do_transform_pose(pose, TRANSFORM) == found
-    assert do_transform_pose(pose.pose, TRANSFORM) == found.pose
+    transformed = do_transform_pose_stamped(pose, TRANSFORM)
+    assert xyz(transformed.pose.position) == (9.0, 0.0, 0.0)
+    assert transformed.pose.orientation.z == pytest.approx(1.0)
+    assert do_transform_pose(pose, TRANSFORM) == transformed
+    assert do_transform_pose(pose.pose, TRANSFORM) == transformed.pose
     pose.pose.orientation.z = pose.pose.orientation.w = 0.0
     assert do_transform_pose(pose.pose, TRANSFORM).orientation.z == pytest.approx(sin(pi / 4))
 
@@ -59,18 +59,20 @@ def test_poses_are_transformed():
 def test_covariances_rotate_with_pose():
     pose = message("PoseWithCovarianceStamped")
     pose.pose.covariance = np.diag([1.0, 2.0, 3.0, 4.0, 5.0, 6.0]).reshape(36)
-    found = do_transform_pose_with_covariance_stamped(pose, TRANSFORM)
-    assert np.diag(np.asarray(found.pose.covariance).reshape(6, 6)) == pytest.approx([2.0, 1.0, 3.0, 5.0, 4.0, 6.0])
-    assert xyz(found.pose.pose.position) == (10.0, 0.0, 0.0)
+    transformed = do_transform_pose_with_covariance_stamped(pose, TRANSFORM)
+    assert np.diag(np.asarray(transformed.pose.covariance).reshape(6, 6)) == pytest.approx(
+        [2.0, 1.0, 3.0, 5.0, 4.0, 6.0]
+    )
+    assert xyz(transformed.pose.pose.position) == (10.0, 0.0, 0.0)
     assert transform_covariance(pose.pose.covariance, TRANSFORM).shape == (36,)
 
 
 def test_wrenches_and_polygons_are_transformed():
     wrench = message("WrenchStamped")
     wrench.wrench.force.x, wrench.wrench.torque.y = 1.0, 1.0
-    found = do_transform_wrench(wrench, TRANSFORM)
-    assert xyz(found.wrench.force) == (0.0, 1.0, 0.0)
-    assert xyz(found.wrench.torque) == (-1.0, 0.0, 0.0)
+    transformed = do_transform_wrench(wrench, TRANSFORM)
+    assert xyz(transformed.wrench.force) == (0.0, 1.0, 0.0)
+    assert xyz(transformed.wrench.torque) == (-1.0, 0.0, 0.0)
     polygon = message("PolygonStamped")
     polygon.polygon.points = [get_message("geometry_msgs/msg/Point32")(x=1.0)]
     (point,) = do_transform_polygon_stamped(polygon, TRANSFORM).polygon.points

@@ -20,8 +20,8 @@ def test_lookup_waits_for_transform_from_another_thread():
     buffer = Buffer()
     timer = threading.Timer(0.05, lambda: buffer.set_transform(stamped("map", "base", 1, x=2.0), "me"))
     timer.start()
-    found = buffer.lookup_transform("map", "base", LATEST, timeout=Duration(seconds=SECONDS))
-    assert found.transform.translation.x == 2.0
+    transform = buffer.lookup_transform("map", "base", LATEST, timeout=Duration(seconds=SECONDS))
+    assert transform.transform.translation.x == 2.0
     timer.join()
 
 

@@ -33,7 +33,7 @@ def _signals() -> Iterator[None]:
 @pytest.fixture
 def start() -> Iterator[Start]:
     """Start a program that does not end by itself, in its own process group."""
-    made: list[subprocess.Popen[str]] = []
+    processes: list[subprocess.Popen[str]] = []
 
     def run(*ignored: str, **variables: str) -> subprocess.Popen[str]:
         lines = ["import signal", *(f"signal.signal(signal.{name}, signal.SIG_IGN)" for name in ignored)]
@@ -46,13 +46,13 @@ def start() -> Iterator[Start]:
             start_new_session=True,
             env={**os.environ, **variables},
         )
-        made.append(process)
+        processes.append(process)
         assert process.stdout is not None
         assert process.stdout.readline() == "up\n"
         return process
 
     yield run
-    for process in made:
+    for process in processes:
         process.kill()
         process.communicate(timeout=SECONDS)
 

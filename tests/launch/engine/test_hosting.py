@@ -39,8 +39,8 @@ def talker(**options: Any) -> Node:
 
 
 def prefixed(prefix: str, pattern: str) -> list[Any]:
-    given = {"launch-prefix": prefix, "launch-prefix-filter": pattern}
-    return [SetLaunchConfiguration(name, value) for name, value in given.items()]
+    configurations = {"launch-prefix": prefix, "launch-prefix-filter": pattern}
+    return [SetLaunchConfiguration(name, value) for name, value in configurations.items()]
 
 
 class TestProcessChoice:
@@ -49,11 +49,11 @@ class TestProcessChoice:
             OnProcessExit(on_exit=lambda event, _: LogInfo(msg=f"{event.process_name} {event.returncode}"))
         )
         speaks = ends_when(printed("] [tk]: Publishing: 'Hello World: 1'"))
-        done = await launch(talker(name="tk"), started, speaks, session_options={"isolate": True})
-        assert "[INFO] [talker-1]: process started with pid [" in done.err
-        assert "[talker-1] [INFO] [" in done.err
-        assert "] [tk]: Publishing: 'Hello World: 1'" in done.err
-        assert done.messages == ["talker-1 0"]
+        result = await launch(talker(name="tk"), started, speaks, session_options={"isolate": True})
+        assert "[INFO] [talker-1]: process started with pid [" in result.err
+        assert "[talker-1] [INFO] [" in result.err
+        assert "] [tk]: Publishing: 'Hello World: 1'" in result.err
+        assert result.messages == ["talker-1 0"]
 
     @pytest.mark.parametrize(
         ("options", "before"),
@@ -69,8 +69,8 @@ class TestProcessChoice:
     async def test_node_with_prefix_or_own_domain_runs_as_process(
         self, launch, options: Any, before: list[Any]
     ) -> None:
-        done = await launch(*before, talker(**options), ends_when(printed("[talker-1]: process started")))
-        assert "[INFO] [talker-1]: process started with pid [" in done.err
+        result = await launch(*before, talker(**options), ends_when(printed("[talker-1]: process started")))
+        assert "[INFO] [talker-1]: process started with pid [" in result.err
 
     @pytest.mark.parametrize(
         ("options", "before"),
@@ -82,8 +82,8 @@ class TestProcessChoice:
     async def test_irrelevant_options_keep_node_in_launcher_process(
         self, launch, options: Any, before: list[Any]
     ) -> None:
-        done = await launch(*before, talker(**options), ends_when(printed("[talker-1]: started in")))
-        assert "[INFO] [talker-1]: started in the launcher's process" in done.err
+        result = await launch(*before, talker(**options), ends_when(printed("[talker-1]: started in")))
+        assert "[INFO] [talker-1]: started in the launcher's process" in result.err
 
 
 class TestOutput:
@@ -98,18 +98,18 @@ class TestOutput:
             return all((folder / name).is_file() and text in (folder / name).read_text() for name, text in logs.items())
 
         quiet, loud = talker(output="own_log", exec_name="quiet"), talker(name="loud", output="both")
-        done = await launch(quiet, loud, ends_when(are_written))
-        assert are_written(done.session.context)
-        assert "[quiet-1] [INFO]" not in done.err
-        assert "[talker-2] [INFO] [" in done.err
+        result = await launch(quiet, loud, ends_when(are_written))
+        assert are_written(result.session.context)
+        assert "[quiet-1] [INFO]" not in result.err
+        assert "[talker-2] [INFO] [" in result.err
 
     async def test_finished_node_emits_process_exit(self, launch) -> None:
         node = Node(package="demo_nodes_py", executable="talker_qos", arguments=["--number_of_cycles", "1"])
-        done = await launch(
+        result = await launch(
             node, RegisterEventHandler(OnProcessExit(target_action=node, on_exit=[LogInfo(msg="over")]))
         )
-        assert done.messages == ["over"]
-        assert "[INFO] [talker_qos-1]: has finished cleanly" in done.err
+        assert result.messages == ["over"]
+        assert "[INFO] [talker_qos-1]: has finished cleanly" in result.err
         assert node.return_code == 0
 
     async def test_finished_node_respawns(self, launch) -> None:
@@ -121,24 +121,24 @@ class TestOutput:
             respawn_delay=0.1,
             respawn_max_retries=2,
         )
-        done = await launch(node)
-        assert done.err.count("started in the launcher's process") == 3
-        assert done.err.count("[talker_qos-1]: has finished cleanly") == 3
+        result = await launch(node)
+        assert result.err.count("started in the launcher's process") == 3
+        assert result.err.count("[talker_qos-1]: has finished cleanly") == 3
 
     async def test_pending_respawn_is_canceled_at_shutdown(self, launch) -> None:
         node = Node(
             package="demo_nodes_py", executable="talker_qos", arguments=["-n", "1"], respawn=True, respawn_delay=60.0
         )
         began = time.monotonic()
-        done = await launch(node, ends_when(printed("has finished cleanly")))
-        assert done.err.count("started in the launcher's process") == 1
+        result = await launch(node, ends_when(printed("has finished cleanly")))
+        assert result.err.count("started in the launcher's process") == 1
         assert time.monotonic() - began < 60.0
 
     async def test_invalid_node_arguments_fail_launch(self, launch) -> None:
         node = Node(package="demo_nodes_py", executable="talker_qos", arguments=["--number_of_cycles", "x"])
-        done = await launch(node)
-        assert "error[NODE602]" in done.err
-        assert not done.succeeded
+        result = await launch(node)
+        assert "error[NODE602]" in result.err
+        assert not result.succeeded
 
 
 class TestManyNodes:
@@ -159,45 +159,47 @@ class TestManyNodes:
             for number in range(500)
         ]
         last = OnProcessStart(target_action=nodes[-1], on_start=[OpaqueFunction(function=look), Shutdown()])
-        done = await launch(*nodes, RegisterEventHandler(last))
-        assert done.succeeded, done.err[-2000:]
-        assert done.err.count("has finished cleanly") == 500
+        result = await launch(*nodes, RegisterEventHandler(last))
+        assert result.succeeded, result.err[-2000:]
+        assert result.err.count("has finished cleanly") == 500
         assert up[0] >= 500
 
     async def test_event_loop_runs_between_node_starts(self, launch) -> None:
-        found: list[int] = []
+        counts: list[int] = []
 
         async def watch(context: LaunchContext) -> None:
-            while not found or found[-1] < 100:
-                found.append(sum(name.startswith("/n") for name in context.session.host.graph.node_names()))
+            while not counts or counts[-1] < 100:
+                counts.append(sum(name.startswith("/n") for name in context.session.host.graph.node_names()))
                 await asyncio.sleep(0)
             context.emit_event_sync(ShutdownEvent())
 
         nodes = [talker(name=f"n{number}") for number in range(100)]
         await launch(OpaqueCoroutine(coroutine=watch), *nodes)
-        assert all(later - before <= 1 for before, later in pairwise(found))
+        assert all(later - before <= 1 for before, later in pairwise(counts))
 
 
 class TestScope:
     async def test_set_ros_log_dir_sets_environment_variable(self, launch, tmp_path: Path) -> None:
-        done = await launch(
+        result = await launch(
             SetROSLogDir("inner"),
             LogInfo(msg=EnvironmentVariable("ROS_LOG_DIR")),
             SetROSLogDir("/elsewhere"),
             LogInfo(msg=EnvironmentVariable("ROS_LOG_DIR")),
         )
-        assert done.messages == [str(tmp_path / "ros_log" / "inner"), "/elsewhere"]
+        assert result.messages == [str(tmp_path / "ros_log" / "inner"), "/elsewhere"]
 
     async def test_ros_timer_runs_actions_after_period(self, launch) -> None:
         began = time.monotonic()
-        done = await launch(RosTimer(period=0.3, actions=[LogInfo(msg="now")]))
-        assert done.messages == ["now"]
+        result = await launch(RosTimer(period=0.3, actions=[LogInfo(msg="now")]))
+        assert result.messages == ["now"]
         assert time.monotonic() - began >= 0.3
 
     async def test_ros_timer_can_be_canceled(self, launch) -> None:
         timer = RosTimer(period=60.0, actions=[LogInfo(msg="never")])
-        done = await launch(timer, TimerAction(period=0.1, actions=[OpaqueFunction(function=lambda _: timer.cancel())]))
-        assert done.messages == []
+        result = await launch(
+            timer, TimerAction(period=0.1, actions=[OpaqueFunction(function=lambda _: timer.cancel())])
+        )
+        assert result.messages == []
 
     async def test_ros_timer_follows_simulated_time(self, launch) -> None:
         def publish(context: LaunchContext) -> None:
@@ -216,12 +218,12 @@ class TestScope:
 
             node.create_timer(0.05, tick)
 
-        done = await launch(
+        result = await launch(
             OpaqueFunction(function=publish),
             RosTimer(period=500.0, actions=[LogInfo(msg="simulated"), Shutdown()]),
             SetUseSimTime(True),
         )
-        assert done.messages == ["simulated"]
+        assert result.messages == ["simulated"]
 
 
 class TestNetwork:
@@ -249,11 +251,11 @@ class TestNetwork:
 
 
 async def test_requested_port_is_used_by_only_one_viewer(launch) -> None:
-    with socket.create_server(("127.0.0.1", 0)) as taken:
-        port = taken.getsockname()[1]
+    with socket.create_server(("127.0.0.1", 0)) as server:
+        port = server.getsockname()[1]
     two = [Node(package="rviz2", executable="rviz2", name=name) for name in ("one", "other")]
-    done = await launch(*two, ends_when(printed("Viewer: ", times=2)), session_options={"port": port})
-    assert done.succeeded, done.err
-    pages = re.findall(r"Viewer: http://127\.0\.0\.1:(\d+)/", done.out)
+    result = await launch(*two, ends_when(printed("Viewer: ", times=2)), session_options={"port": port})
+    assert result.succeeded, result.err
+    pages = re.findall(r"Viewer: http://127\.0\.0\.1:(\d+)/", result.out)
     assert str(port) in pages
     assert len(set(pages)) == 2

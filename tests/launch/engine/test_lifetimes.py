@@ -39,7 +39,7 @@ def sleeper(name: str) -> str:
 
 def marked_by(launcher: int) -> list[psutil.Process]:
     """Return the processes that a launcher has started, and their descendants."""
-    return [each for each in psutil.process_iter() if _is_marked(each, f"launcher_{launcher}")]
+    return [candidate for candidate in psutil.process_iter() if _is_marked(candidate, f"launcher_{launcher}")]
 
 
 def _is_marked(process: psutil.Process, mark: str) -> bool:
@@ -115,7 +115,7 @@ class TestKilled:
     @pytest.mark.slow
     def test_killed_launcher_leaves_no_process_at_any_time(self, begin: Callable[..., Running], write: Write) -> None:
         path = write("a.launch.py", launch_file(sleeper("a"), TALKER, sleeper("b")))
-        for delay in random.Random(4).sample([0.05 * each for each in range(1, 31)], 8):
+        for delay in random.Random(4).sample([0.05 * step for step in range(1, 31)], 8):
             running = begin(path)
             time.sleep(delay)
             running.process.kill()
@@ -131,15 +131,15 @@ class TestKilled:
             os.kill(pid, signal.SIGKILL)
 
         action = process(SLEEPS, respawn=True)
-        done = await launch(
+        result = await launch(
             action,
             TimerAction(period=0.5, actions=[OpaqueFunction(function=kill)]),
             TimerAction(period=1.0, actions=[OpaqueFunction(function=kill)]),
             TimerAction(period=1.5, actions=[Shutdown()]),
         )
         assert len(set(pids)) == 2
-        assert done.err.count("process started with pid") == 3
-        assert done.err.count("exit code -9") == 2
+        assert result.err.count("process started with pid") == 3
+        assert result.err.count("exit code -9") == 2
 
 
 class TestInterrupted:
@@ -151,7 +151,7 @@ class TestInterrupted:
         running.until("[b-3] up")
         whole = time.monotonic() - began
         running.end()
-        for delay in [whole * each / 16 for each in range(16)]:
+        for delay in [whole * step / 16 for step in range(16)]:
             running = begin(path)
             wait_until(lambda running=running: running.has_begun)
             time.sleep(delay)
@@ -190,18 +190,18 @@ class TestCounts:
         def look(_: Any) -> None:
             seen.append((threading.active_count(), len(me.children(recursive=True))))
 
-        done = await launch(
+        result = await launch(
             Node(package="demo_nodes_cpp", executable="talker"),
             Node(package="rviz2", executable="rviz2"),
             process(SLEEPS),
             process("print('done')"),
             TimerAction(period=1.5, actions=[OpaqueFunction(function=look), Shutdown()]),
         )
-        assert done.succeeded, done.err
+        assert result.succeeded, result.err
         assert seen[0][1] >= len(children) + 2  # the process and the guardian
 
         def left() -> list[object]:
-            ours = [each for each in threading.enumerate() if each not in threads and not _is_pooled(each)]
+            ours = [thread for thread in threading.enumerate() if thread not in threads and not _is_pooled(thread)]
             return [*ours, *(child for child in me.children(recursive=True) if child.pid not in children)]
 
         await eventually(lambda: not left(), what=lambda: f"left behind: {left()}")

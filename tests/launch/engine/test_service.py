@@ -212,12 +212,12 @@ def test_user_program_runs_launch_service(tmp_path: Path) -> None:
     start = (
         "import sys; from linkwright.standins import activate; activate(); import runpy; runpy.run_path(sys.argv[1])"
     )
-    done = subprocess.run(
+    result = subprocess.run(
         [sys.executable, "-c", start, str(program)], capture_output=True, text=True, timeout=60, check=False
     )
-    assert done.returncode == 0, done.stderr
-    assert "[echo-1] there" in done.stdout
-    assert "[INFO] [launch.user]: here" in done.stderr
+    assert result.returncode == 0, result.stderr
+    assert "[echo-1] there" in result.stdout
+    assert "[INFO] [launch.user]: here" in result.stderr
 
 
 def test_service_can_be_shut_down_between_loop_runs() -> None:

@@ -42,14 +42,14 @@ class Launched:
 
     async def when(self, condition: Callable[[Simulation], bool]) -> None:
         """Wait until a condition holds in the thread of the simulation."""
-        seen: list[bool] = []
+        outcomes: list[bool] = []
 
         def is_so() -> bool:
             for _, running in self._session.host._running.values():
                 if isinstance(running, Simulator):
                     server = running.server
-                    server.exchange.post(lambda server=server: seen.append(condition(server.simulation)))
-            return any(seen)
+                    server.exchange.post(lambda server=server: outcomes.append(condition(server.simulation)))
+            return any(outcomes)
 
         await eventually(is_so, what=self.err.getvalue)
 
@@ -86,15 +86,15 @@ async def launched(folder: Path) -> AsyncIterator[Launched]:
 
 async def test_launched_simulation_reloads_world_and_robot(write) -> None:
     files = write("a.world", world(FALLING)), write("arm.xacro", ARM.format(""))
-    async with launched(files[0].parent) as it:
-        await it.when(lambda simulation: set(simulation.scene.models) == {"ground", "falling", "one"})
+    async with launched(files[0].parent) as running:
+        await running.when(lambda simulation: set(simulation.scene.models) == {"ground", "falling", "one"})
         files[0].write_text(world(FALLING, box("new", "5 5 1 0 0 0")))
-        await it.when(lambda simulation: set(simulation.scene.models) == {"ground", "falling", "one", "new"})
+        await running.when(lambda simulation: set(simulation.scene.models) == {"ground", "falling", "one", "new"})
         files[1].write_text(ARM.format(MORE))
-        await it.when(lambda simulation: "one::more" in simulation.scene.bodies)
-        await it.when(lambda simulation: simulation.model_pose("one")[0] == 2.0)
+        await running.when(lambda simulation: "one::more" in simulation.scene.bodies)
+        await running.when(lambda simulation: simulation.model_pose("one")[0] == 2.0)
         files[1].write_text(ARM.format("<link"))
-        await eventually(lambda: "error[XML" in it.err.getvalue(), what=it.err.getvalue)
-        await it.when(lambda simulation: "one::more" in simulation.scene.bodies)
+        await eventually(lambda: "error[XML" in running.err.getvalue(), what=running.err.getvalue)
+        await running.when(lambda simulation: "one::more" in simulation.scene.bodies)
         files[1].write_text(ARM.format(""))
-        await it.when(lambda simulation: "one::more" not in simulation.scene.bodies)
+        await running.when(lambda simulation: "one::more" not in simulation.scene.bodies)

@@ -57,12 +57,12 @@ def test_unsaved_displays_are_stored_and_path_is_printed(
     assert [display.name for display in RvizConfig.load(file).walk()] == ["Grid", "Added"]
     text = f"unsaved changes to '{config}' are stored in '{file}': open that file in the page, or with 'rviz2"
     assert text in running.err
-    again = start(tmp_path / "a.launch.py")
-    again.until("Robot initialized")
-    assert "info[RVIZ302]" in again.err
-    assert str(file) in again.err
-    assert again.end()[0] == 130
-    assert "RVIZ301" not in again.err
+    restarted = start(tmp_path / "a.launch.py")
+    restarted.until("Robot initialized")
+    assert "info[RVIZ302]" in restarted.err
+    assert str(file) in restarted.err
+    assert restarted.end()[0] == 130
+    assert "RVIZ301" not in restarted.err
     assert list(recovery_folder.iterdir()) == [file]
 
 

@@ -159,7 +159,7 @@ def test_parse_if_substitutions_keeps_plain_values() -> None:
 
 @given(st.text(max_size=40))
 def test_escaped_text_round_trips(text: str) -> None:
-    escaped = "".join("\\" + each if each in "\\$" else each for each in text)
+    escaped = "".join("\\" + character if character in "\\$" else character for character in text)
     assert "".join(texts(escaped)) == text
 
 
@@ -176,7 +176,7 @@ def test_arbitrary_text_is_parsed_or_rejected_with_diagnostic(text: str) -> None
 @given(st.lists(st.text(alphabet="ab c'\"\\$()", max_size=6), max_size=4))
 def test_quoted_arguments_round_trip(words: list[str]) -> None:
     def quoted(word: str) -> str:
-        return "'" + "".join("\\" + each if each in "'\\$" else each for each in word) + "'"
+        return "'" + "".join("\\" + character if character in "'\\$" else character for character in word) + "'"
 
     [part] = (
         parse_substitution("$(said " + " ".join(map(quoted, words)) + ")") if words else [TextSubstitution(text="")]

@@ -101,7 +101,7 @@ def test_xml_and_yaml_files_create_same_actions(text: str) -> None:
     context.launch_configurations["skip"] = "true"
     assert group.visit(context) is None
     context.launch_configurations["skip"] = "0"
-    assert [type(each).__name__ for each in group.visit(context)] == [
+    assert [type(action).__name__ for action in group.visit(context)] == [
         "SetEnvironmentVariable",
         "UnsetEnvironmentVariable",
     ]
@@ -135,7 +135,7 @@ def test_newer_yaml_shorthand_is_accepted() -> None:
     argument, number, truth, group, include = description.entities
     context = LaunchContext()
     assert argument.choices == ["a", "b"]
-    assert [perform_substitutions(context, each.value) for each in (number, truth)] == ["3.5", "true"]
+    assert [perform_substitutions(context, action.value) for action in (number, truth)] == ["3.5", "true"]
     assert group.visit(context) is None
     assert "other.launch.py" in include.launch_description_source.location
 
@@ -150,7 +150,7 @@ def test_custom_tag_reads_typed_attributes() -> None:
             _, kwargs = super().parse(entity, parser)
             seen["times"] = entity.get_attr("times", data_type=int, can_be_str=False)
             seen["list"] = entity.get_attr("speeds", data_type=list[float], optional=True)
-            seen["axis"] = [each.get_attr("name") for each in entity.get_attr("axis", data_type=list[Entity])]
+            seen["axis"] = [axis.get_attr("name") for axis in entity.get_attr("axis", data_type=list[Entity])]
             return cls, kwargs
 
     inside = '<axis name="x"/><axis name="y"/>'

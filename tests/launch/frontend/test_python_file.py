@@ -231,9 +231,9 @@ class TestLinkedShareFolder:
         assert share != tmp_path / "arm"
         with pytest.raises(LinkwrightError) as caught:
             load_launch_file(share / "launch" / name)
-        (found,) = caught.value.diagnostics
-        assert found.span is not None
-        assert found.span.file == str(tmp_path / "arm" / "start" / name)
+        (diagnostic,) = caught.value.diagnostics
+        assert diagnostic.span is not None
+        assert diagnostic.span.file == str(tmp_path / "arm" / "start" / name)
 
     def test_launch_file_sees_its_installed_path(self, share: Path) -> None:
         with pytest.raises(LinkwrightError) as caught:

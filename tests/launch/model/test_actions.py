@@ -49,12 +49,12 @@ def say(*parts: object) -> LogInfo:
 
 
 async def test_conditions_control_execution(launch) -> None:
-    done = await launch(
+    result = await launch(
         LogInfo(msg="a", condition=IfCondition("true")),
         LogInfo(msg="b", condition=UnlessCondition("true")),
     )
-    assert done.messages == ["a"]
-    assert done.succeeded
+    assert result.messages == ["a"]
+    assert result.succeeded
 
 
 class TestDeclareLaunchArgument:
@@ -64,16 +64,16 @@ class TestDeclareLaunchArgument:
         assert (await launch(*entities, x="mine")).messages == ["mine"]
 
     async def test_required_argument_is_reported_if_missing(self, launch) -> None:
-        done = await launch(DeclareLaunchArgument("x", description="the x"), say("after"))
-        assert "error[LAUNCH114]: argument 'x' (the x) is required, but was not given" in done.err
-        assert "test_actions.py" in done.err
-        assert done.messages == []
-        assert not done.succeeded
+        result = await launch(DeclareLaunchArgument("x", description="the x"), say("after"))
+        assert "error[LAUNCH114]: argument 'x' (the x) is required, but was not given" in result.err
+        assert "test_actions.py" in result.err
+        assert result.messages == []
+        assert not result.succeeded
 
     async def test_value_must_be_one_of_choices(self, launch) -> None:
-        done = await launch(DeclareLaunchArgument("x", default_value="a", choices=["a", "b"]), x="c")
-        assert "error[LAUNCH112]: argument 'x' has the value 'c', which is not one of its choices" in done.err
-        assert "hint: choose from 'a', 'b'" in done.err
+        result = await launch(DeclareLaunchArgument("x", default_value="a", choices=["a", "b"]), x="c")
+        assert "error[LAUNCH112]: argument 'x' has the value 'c', which is not one of its choices" in result.err
+        assert "hint: choose from 'a', 'b'" in result.err
 
     def test_description_lists_choices(self) -> None:
         assert DeclareLaunchArgument("x").description == "no description given"
@@ -83,7 +83,7 @@ class TestDeclareLaunchArgument:
 
 
 async def test_launch_configurations_are_set_and_unset(launch) -> None:
-    done = await launch(
+    result = await launch(
         SetLaunchConfiguration("x", ["1", "2"]),
         say(LaunchConfiguration("x")),
         UnsetLaunchConfiguration("x"),
@@ -96,12 +96,12 @@ async def test_launch_configurations_are_set_and_unset(launch) -> None:
         PopLaunchConfigurations(),
         say(LaunchConfiguration("x")),
     )
-    assert done.messages == ["12", "none", "none3y", "3"]
+    assert result.messages == ["12", "none", "none3y", "3"]
 
 
 async def test_environment_variables_are_set_appended_and_unset(launch, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setenv("LW_A", "a")
-    done = await launch(
+    result = await launch(
         SetEnvironmentVariable("LW_B", "b"),
         AppendEnvironmentVariable("LW_A", "c"),
         AppendEnvironmentVariable("LW_A", "0", prepend=True, separator=","),
@@ -111,12 +111,12 @@ async def test_environment_variables_are_set_appended_and_unset(launch, monkeypa
         UnsetEnvironmentVariable("LW_B"),
         say(EnvironmentVariable("LW_B", default_value="gone")),
     )
-    assert done.messages == [f"0,a{os.pathsep}cbnew", "b", "gone"]
+    assert result.messages == [f"0,a{os.pathsep}cbnew", "b", "gone"]
 
 
 class TestGroupAction:
     async def test_scoped_group_restores_configurations_and_environment(self, launch) -> None:
-        done = await launch(
+        result = await launch(
             SetLaunchConfiguration("x", "outer"),
             GroupAction(
                 [
@@ -132,16 +132,16 @@ class TestGroupAction:
                 EnvironmentVariable("LW_G", default_value="-"),
             ),
         )
-        assert done.messages == ["inner", "outer--"]
+        assert result.messages == ["inner", "outer--"]
 
     async def test_unscoped_group_keeps_changes(self, launch) -> None:
-        done = await launch(
+        result = await launch(
             GroupAction([SetLaunchConfiguration("x", "inner")], scoped=False), say(LaunchConfiguration("x"))
         )
-        assert done.messages == ["inner"]
+        assert result.messages == ["inner"]
 
     async def test_group_without_forwarding_hides_outer_configurations(self, launch) -> None:
-        done = await launch(
+        result = await launch(
             SetLaunchConfiguration("x", "outer"),
             GroupAction(
                 [say(LaunchConfiguration("x", default="none"), LaunchConfiguration("y"))],
@@ -150,7 +150,7 @@ class TestGroupAction:
             ),
             say(LaunchConfiguration("x")),
         )
-        assert done.messages == ["noneouter", "outer"]
+        assert result.messages == ["noneouter", "outer"]
 
 
 class TestOpaqueFunction:
@@ -158,22 +158,22 @@ class TestOpaqueFunction:
         def function(context: LaunchContext, first: str, *, second: str) -> list[Action]:
             return [say(first, second, context.launch_configurations["x"])]
 
-        done = await launch(OpaqueFunction(function=function, args=["1"], kwargs={"second": "2"}), x="3")
-        assert done.messages == ["123"]
+        result = await launch(OpaqueFunction(function=function, args=["1"], kwargs={"second": "2"}), x="3")
+        assert result.messages == ["123"]
 
     async def test_exception_names_user_line(self, launch) -> None:
         def function(context: LaunchContext) -> None:
             raise ValueError("no such robot")  # the line
 
-        done = await launch(OpaqueFunction(function=function))
-        assert "error[LAUNCH104]: launch action OpaqueFunction raised ValueError: no such robot" in done.err
-        assert 'raise ValueError("no such robot")  # the line' in done.err
-        assert "Traceback" not in done.err
-        assert not done.succeeded
+        result = await launch(OpaqueFunction(function=function))
+        assert "error[LAUNCH104]: launch action OpaqueFunction raised ValueError: no such robot" in result.err
+        assert 'raise ValueError("no such robot")  # the line' in result.err
+        assert "Traceback" not in result.err
+        assert not result.succeeded
 
     async def test_non_action_result_is_rejected(self, launch) -> None:
-        done = await launch(OpaqueFunction(function=lambda _: [3]))
-        assert "expected launch actions, got 3 of type int" in done.err
+        result = await launch(OpaqueFunction(function=lambda _: [3]))
+        assert "expected launch actions, got 3 of type int" in result.err
 
 
 async def test_custom_action_returns_actions(launch) -> None:
@@ -186,60 +186,60 @@ async def test_custom_action_returns_actions(launch) -> None:
 
 class TestTimerAction:
     async def test_timers_run_in_order_of_period(self, launch) -> None:
-        done = await launch(
+        result = await launch(
             TimerAction(period=0.02, actions=[say("later")]),
             TimerAction(period=["0", ".01"], actions=[say("sooner")]),
             say("now"),
         )
-        assert done.messages == ["now", "sooner", "later"]
+        assert result.messages == ["now", "sooner", "later"]
 
     async def test_timer_can_be_canceled(self, launch) -> None:
         timer = TimerAction(period=10.0, actions=[say("never")])
-        done = await launch(
+        result = await launch(
             timer, TimerAction(period=0.01, actions=[OpaqueFunction(function=lambda _: timer.cancel())])
         )
-        assert done.messages == []
+        assert result.messages == []
 
     async def test_invalid_period_is_rejected(self, launch) -> None:
         with pytest.raises(ValueError, match="soon") as raised:
             TimerAction(period="soon", actions=[])
         assert raised.value.diagnostics[0].message == "the period 'soon' of a timer is not a number"
-        done = await launch(TimerAction(period=TextSubstitution(text="later"), actions=[]))
-        assert "the period 'later' of a timer is not a number" in done.err
+        result = await launch(TimerAction(period=TextSubstitution(text="later"), actions=[]))
+        assert "the period 'later' of a timer is not a number" in result.err
 
 
 class TestEvents:
     async def test_shutdown_handlers_receive_reason(self, launch) -> None:
-        done = await launch(
+        result = await launch(
             RegisterEventHandler(OnShutdown(on_shutdown=[say(LocalSubstitution("event.reason"))])),
             Shutdown(reason=["enough ", "of it"]),
             TimerAction(period=30.0, actions=[say("never")]),
         )
-        assert done.messages == ["enough of it"]
-        assert done.succeeded
+        assert result.messages == ["enough of it"]
+        assert result.succeeded
 
     async def test_emit_event_triggers_handler(self, launch) -> None:
         handler = OnShutdown(on_shutdown=lambda event, context: say("function ", event.reason))
-        done = await launch(
+        result = await launch(
             RegisterEventHandler(handler),
             EmitEvent(event=ShutdownEvent(reason="r")),
             TimerAction(period=9.0, actions=[]),
         )
-        assert done.messages == ["function r"]
+        assert result.messages == ["function r"]
 
     async def test_unregistered_handler_is_not_called(self, launch) -> None:
         handler = OnShutdown(on_shutdown=say("never"))
-        done = await launch(RegisterEventHandler(handler), UnregisterEventHandler(handler))
-        assert done.messages == []
+        result = await launch(RegisterEventHandler(handler), UnregisterEventHandler(handler))
+        assert result.messages == []
 
     async def test_exception_in_handler_is_reported_without_traceback(self, launch) -> None:
         def fail(event: object, context: LaunchContext) -> None:
             raise KeyError("oh")
 
-        done = await launch(RegisterEventHandler(OnShutdown(on_shutdown=fail)))
-        assert "an event handler raised KeyError: oh" in done.err
-        assert "Traceback" not in done.err
-        assert not done.succeeded
+        result = await launch(RegisterEventHandler(OnShutdown(on_shutdown=fail)))
+        assert "an event handler raised KeyError: oh" in result.err
+        assert "Traceback" not in result.err
+        assert not result.succeeded
 
     async def test_empty_launch_ends(self, launch) -> None:
         await asyncio.wait_for(launch(), 1.0)
@@ -262,7 +262,7 @@ def generate_launch_description():
 class TestIncludeLaunchDescription:
     async def test_include_passes_arguments_and_shares_configurations(self, launch, write: Write) -> None:
         inner = write("sub/inner.launch.py", INNER.replace("{default}", ""))
-        done = await launch(
+        result = await launch(
             SetLaunchConfiguration("fast", "9"),
             IncludeLaunchDescription(
                 PythonLaunchDescriptionSource([str(inner.parent), "/inner.launch.py"]),
@@ -270,7 +270,7 @@ class TestIncludeLaunchDescription:
             ),
             say(LaunchConfiguration("leaks"), LaunchConfiguration("speed")),
         )
-        assert done.messages == [f"inner 9 {inner.parent}", "yes9"]
+        assert result.messages == [f"inner 9 {inner.parent}", "yes9"]
 
     @pytest.mark.parametrize("source", [AnyLaunchDescriptionSource, str])
     async def test_any_source_and_path_are_accepted(
@@ -283,18 +283,18 @@ class TestIncludeLaunchDescription:
         inner = write("inner.launch.py", INNER.replace("{default}", ""))
         pairs: Any = {"speed": None}.items()
         never = IncludeLaunchDescription(str(inner), launch_arguments=pairs, condition=IfCondition("false"))
-        done = await launch(never, say("before"), IncludeLaunchDescription(str(inner), launch_arguments=pairs))
-        assert done.messages == ["before"]
-        assert "error[LAUNCH114]: the value of argument 'speed' is None, which is not a string" in done.err
-        assert not done.succeeded
+        result = await launch(never, say("before"), IncludeLaunchDescription(str(inner), launch_arguments=pairs))
+        assert result.messages == ["before"]
+        assert "error[LAUNCH114]: the value of argument 'speed' is None, which is not a string" in result.err
+        assert not result.succeeded
 
     async def test_missing_argument_is_reported_before_actions_run(self, launch, write: Write) -> None:
         inner = write("inner.launch.py", INNER.replace("{default}", ""))
-        done = await launch(IncludeLaunchDescription(str(inner), launch_arguments=[("sped", "1")]))
+        result = await launch(IncludeLaunchDescription(str(inner), launch_arguments=[("sped", "1")]))
         text = f"the included launch file '{inner}' requires argument 'speed', which is not given"
-        assert f"error[LAUNCH114]: {text}" in done.err
-        assert "did you mean 'speed' instead of 'sped'?" in done.err
-        assert done.messages == []
+        assert f"error[LAUNCH114]: {text}" in result.err
+        assert "did you mean 'speed' instead of 'sped'?" in result.err
+        assert result.messages == []
 
     @pytest.mark.parametrize(
         ("name", "text", "hint"),
@@ -315,27 +315,27 @@ class TestIncludeLaunchDescription:
         self, launch, write: Write, name: str, text: str, hint: str
     ) -> None:
         write("inner.launch.py", INNER.replace("{default}", ""))
-        done = await launch(IncludeLaunchDescription(str(write(name, text))))
-        assert "inner.launch.py' requires argument 'speed'" in done.err
-        assert f"hint: {hint}" in done.err
-        assert f"--> {write(name, text)}" in done.err
+        result = await launch(IncludeLaunchDescription(str(write(name, text))))
+        assert "inner.launch.py' requires argument 'speed'" in result.err
+        assert f"hint: {hint}" in result.err
+        assert f"--> {write(name, text)}" in result.err
 
     async def test_missing_argument_of_inline_description_is_reported(self, launch) -> None:
         inner = LaunchDescriptionSource(LaunchDescription([DeclareLaunchArgument("speed")]))
-        done = await launch(IncludeLaunchDescription(inner))
-        assert "the included launch description requires argument 'speed', which is not given" in done.err
-        assert "add ('speed', VALUE) to launch_arguments" in done.err
+        result = await launch(IncludeLaunchDescription(inner))
+        assert "the included launch description requires argument 'speed', which is not given" in result.err
+        assert "add ('speed', VALUE) to launch_arguments" in result.err
 
     async def test_error_in_included_file_names_that_file(self, launch, write: Write) -> None:
         inner = write("inner.launch.py", "def generate_launch_description():\n    return nothing\n")
-        done = await launch(IncludeLaunchDescription(str(inner)))
-        assert "raised NameError: name 'nothing' is not defined" in done.err
-        assert f"{inner.name}:2:" in done.err
+        result = await launch(IncludeLaunchDescription(str(inner)))
+        assert "raised NameError: name 'nothing' is not defined" in result.err
+        assert f"{inner.name}:2:" in result.err
 
     async def test_missing_included_file_names_including_line(self, launch, tmp_path: Path) -> None:
-        done = await launch(IncludeLaunchDescription(str(tmp_path / "none.launch.py")))
-        assert "error[LAUNCH101]" in done.err
-        assert "test_actions.py" in done.err
+        result = await launch(IncludeLaunchDescription(str(tmp_path / "none.launch.py")))
+        assert "error[LAUNCH101]" in result.err
+        assert "test_actions.py" in result.err
 
     async def test_this_launch_file_dir_is_restored_after_include(self, launch, write: Write) -> None:
         write("sub/inner.launch.py", INNER.replace("{default}", ", default_value='1'"))
@@ -353,8 +353,8 @@ def generate_launch_description():
     ])
 """,
         )
-        done = await launch(IncludeLaunchDescription(str(outer)))
-        assert done.messages == [f"inner 1 {outer.parent / 'sub'}", str(outer.parent)]
+        result = await launch(IncludeLaunchDescription(str(outer)))
+        assert result.messages == [f"inner 1 {outer.parent / 'sub'}", str(outer.parent)]
 
 
 def test_launch_arguments_of_description_are_listed(write: Write) -> None:
@@ -367,8 +367,8 @@ def test_launch_arguments_of_description_are_listed(write: Write) -> None:
             IncludeLaunchDescription([ThisLaunchFileDir(), "/unknown.launch.py"]),
         ]
     )
-    found = {argument.name: argument.conditionally_included for argument in description.get_launch_arguments()}
-    assert found == {"a": False, "b": True, "speed": False}
+    inclusion = {argument.name: argument.conditionally_included for argument in description.get_launch_arguments()}
+    assert inclusion == {"a": False, "b": True, "speed": False}
 
 
 def test_argument_given_by_include_is_not_listed(write: Write) -> None:

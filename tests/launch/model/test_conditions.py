@@ -15,9 +15,9 @@ from linkwright.diagnostics import LinkwrightError
 
 @pytest.fixture
 def context() -> LaunchContext:
-    made = LaunchContext()
-    made.launch_configurations.update(gui="True", mode="fast")
-    return made
+    context = LaunchContext()
+    context.launch_configurations.update(gui="True", mode="fast")
+    return context
 
 
 @pytest.mark.parametrize(

@@ -34,9 +34,9 @@ def test_constructor_signature_follows_declaration() -> None:
 
 
 def test_arguments_are_normalized_properties() -> None:
-    made = Between("a", ends=LaunchConfiguration("b"))
-    assert [each.describe() for each in made.text] == ["'a'"]
-    assert made.ends is not None
+    between = Between("a", ends=LaunchConfiguration("b"))
+    assert [substitution.describe() for substitution in between.text] == ["'a'"]
+    assert between.ends is not None
     assert Between("a").ends is None
 
 
@@ -71,9 +71,9 @@ def test_text_lists_are_normalized() -> None:
     class Row(DeclaredSubstitution):
         parts: TextLists = TextLists()
 
-    made = Row(["a", ["b", LaunchConfiguration("c")]])
-    assert [len(part) for part in made.parts] == [1, 2]
-    assert made.describe() == "Row('a', 'b' + LaunchConfig('c'))"
+    row = Row(["a", ["b", LaunchConfiguration("c")]])
+    assert [len(part) for part in row.parts] == [1, 2]
+    assert row.describe() == "Row('a', 'b' + LaunchConfig('c'))"
 
 
 @pytest.fixture

@@ -38,10 +38,10 @@ def test_handler_matches_event_type_and_target() -> None:
     assert not handler.matches(ProcessStarted(action=process, **ABOUT))  # type: ignore[arg-type]
     by_function = OnProcessExit(target_action=lambda action: action is process, on_exit=Mock())
     assert by_function.matches(exited(process))
-    one = LogInfo(msg="")
-    complete = OnExecutionComplete(target_action=one, on_completion=lambda *_: None)
-    assert complete.matches(ExecutionComplete(action=one))
-    assert not complete.matches(ExecutionComplete(action=LogInfo(msg="")))
+    log_action = LogInfo(msg="")
+    handler_of_action = OnExecutionComplete(target_action=log_action, on_completion=lambda *_: None)
+    assert handler_of_action.matches(ExecutionComplete(action=log_action))
+    assert not handler_of_action.matches(ExecutionComplete(action=LogInfo(msg="")))
 
 
 def test_functions_and_actions_are_handled() -> None:
@@ -68,7 +68,7 @@ def test_handle_once_unregisters_handler() -> None:
 
 @pytest.mark.parametrize(("number", "name"), [(0, "on_stdin"), (1, "on_stdout"), (2, "on_stderr")])
 def test_process_io_is_dispatched_by_stream(number: int, name: str) -> None:
-    functions = {each: Mock() for each in ("on_stdin", "on_stdout", "on_stderr")}
+    functions = {name: Mock() for name in ("on_stdin", "on_stdout", "on_stderr")}
     event = ProcessIO(action=None, text=b"x", fd=number, **ABOUT)  # type: ignore[arg-type]
     handler = OnProcessIO(**functions)
     assert handler.matches(event)

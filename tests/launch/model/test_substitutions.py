@@ -40,9 +40,9 @@ from linkwright.packages import PackageFinder, use_finder
 
 @pytest.fixture
 def context() -> LaunchContext:
-    made = LaunchContext()
-    made.launch_configurations.update(model="arm", gui="true", count="2")
-    return made
+    context = LaunchContext()
+    context.launch_configurations.update(model="arm", gui="true", count="2")
+    return context
 
 
 def text(substitution: Substitution, context: LaunchContext) -> str:

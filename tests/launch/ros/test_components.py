@@ -72,12 +72,13 @@ class TestRequests:
             SetParametersFromFile(str(path)),
             v="true",
         )
-        given = [(parameter.name, parameter.value) for parameter in request.parameters]
-        assert [name for name, _ in given] == ["a", "c", "d", "b.x", "c", "d"]
-        assert given[0][1].string_value == "text"
-        assert given[1][1].integer_value == 9  # a node's own name counts more than a pattern, whichever comes first
-        assert list(given[2][1].double_array_value) == [1.5]
-        assert given[3][1].bool_value is True
+        parameters = [(parameter.name, parameter.value) for parameter in request.parameters]
+        assert [name for name, _ in parameters] == ["a", "c", "d", "b.x", "c", "d"]
+        assert parameters[0][1].string_value == "text"
+        # A node's own name counts more than a pattern, whichever comes first.
+        assert parameters[1][1].integer_value == 9
+        assert list(parameters[2][1].double_array_value) == [1.5]
+        assert parameters[3][1].bool_value is True
 
     def test_extra_arguments_are_passed(self) -> None:
         request = load_request(talker(extra_arguments=[{"use_intra_process_comms": True}]))
@@ -125,7 +126,7 @@ class TestContainers:
                 get_node_name_count(context, name) for name in ("/ns/box", "/a/tk", "/robot_state_publisher")
             ]
 
-        done = await launch(
+        result = await launch(
             container(
                 talker(name="tk", namespace="a"),
                 ComposableNode(
@@ -147,23 +148,23 @@ class TestContainers:
                 Shutdown(),
             ),
         )
-        assert done.succeeded, done.err
+        assert result.succeeded, result.err
         assert {"/ns/box", "/a/tk", "/robot_state_publisher", "/fixed"} <= set(seen["nodes"])
         assert seen["counts"] == [1, 1, 1]
-        assert "Loaded node '/a/tk' in container '/ns/box'" in done.err
-        assert "[component_container-1] [INFO] [" in done.err
-        assert "] [robot_state_publisher]: Robot initialized" in done.err
-        assert "translation: ('1.500000', '0.000000', '0.000000')" in done.err
-        assert "[launch] [" not in done.err
+        assert "Loaded node '/a/tk' in container '/ns/box'" in result.err
+        assert "[component_container-1] [INFO] [" in result.err
+        assert "] [robot_state_publisher]: Robot initialized" in result.err
+        assert "translation: ('1.500000', '0.000000', '0.000000')" in result.err
+        assert "[launch] [" not in result.err
 
     async def test_components_are_loaded_into_container_by_name(self, launch) -> None:
         listener = ComposableNode(package="composition", plugin="composition::Listener", name="ear")
-        done = await launch(
+        result = await launch(
             LoadComposableNodes(target_container="box", composable_node_descriptions=[listener]),
             TimerAction(period=0.1, actions=[container()]),
             ends_when(printed("Loaded node")),
         )
-        assert "Loaded node '/ear' in container '/box'" in done.err
+        assert "Loaded node '/ear' in container '/box'" in result.err
 
     async def test_launch_scope_applies_to_components_loaded_later(self, launch) -> None:
         group = GroupAction(
@@ -173,28 +174,30 @@ class TestContainers:
                 container(talker(name=LaunchConfiguration("name"), namespace="n")),
             ]
         )
-        done = await launch(group, ends_when(printed("Loaded node")))
-        assert "Loaded node '/scope/n/inside' in container '/scope/box'" in done.err
+        result = await launch(group, ends_when(printed("Loaded node")))
+        assert "Loaded node '/scope/n/inside' in container '/scope/box'" in result.err
 
     async def test_unknown_plugin_suggests_name_and_line(self, launch) -> None:
         wrong = ComposableNode(package="composition", plugin="composition::Talkr", name="tk")
-        done = await launch(container(wrong, talker(name="other")), ends_when(printed("LAUNCH139", "Loaded node")))
-        assert "error[LAUNCH139]: Failed to load node 'tk' of type 'composition::Talkr' in container '/box'" in done.err
-        assert "did you mean 'composition::Talker'" in done.err
-        assert "test_components.py" in done.err
-        assert "Loaded node '/other' in container '/box'" in done.err
-        assert not done.succeeded
+        result = await launch(container(wrong, talker(name="other")), ends_when(printed("LAUNCH139", "Loaded node")))
+        assert (
+            "error[LAUNCH139]: Failed to load node 'tk' of type 'composition::Talkr' in container '/box'" in result.err
+        )
+        assert "did you mean 'composition::Talker'" in result.err
+        assert "test_components.py" in result.err
+        assert "Loaded node '/other' in container '/box'" in result.err
+        assert not result.succeeded
 
     async def test_shutdown_abandons_wait_for_container(self, launch) -> None:
-        done = await launch(
+        result = await launch(
             LoadComposableNodes(target_container="/nobody", composable_node_descriptions=[talker()]),
             TimerAction(period=0.1, actions=[Shutdown()]),
         )
-        assert "Abandoning wait for the '/nobody/_container/load_node' service, due to shutdown." in done.err
+        assert "Abandoning wait for the '/nobody/_container/load_node' service, due to shutdown." in result.err
 
     async def test_duplicate_node_names_are_reported(self, launch) -> None:
-        done = await launch(container(talker(name="box")), ends_when(printed("there are now at least")))
-        assert "there are now at least 2 nodes with the name /box created within this launch context" in done.err
+        result = await launch(container(talker(name="box")), ends_when(printed("there are now at least")))
+        assert "there are now at least 2 nodes with the name /box created within this launch context" in result.err
 
     async def test_container_lists_and_unloads_nodes(self, launch) -> None:
         answers: list[Any] = []
@@ -271,7 +274,7 @@ class TestContainers:
         prefix = real.parents[2]
         finder = PackageFinder(start=prefix, environment={"AMENT_PREFIX_PATH": str(prefix)})
         theirs = ComposableNode(package="camera", plugin="camera::Driver")
-        done = await launch(container(theirs, output="screen"), ends_when(printed("real --ros")), finder=finder)
-        assert "[component_container-1] real --ros-args -r __node:=box -r __ns:=/" in done.out
-        done = await launch(container(talker()), ends_when(printed("started in the launcher")), finder=finder)
-        assert "[component_container-1]: started in the launcher's process" in done.err
+        result = await launch(container(theirs, output="screen"), ends_when(printed("real --ros")), finder=finder)
+        assert "[component_container-1] real --ros-args -r __node:=box -r __ns:=/" in result.out
+        result = await launch(container(talker()), ends_when(printed("started in the launcher")), finder=finder)
+        assert "[component_container-1]: started in the launcher's process" in result.err

@@ -33,13 +33,13 @@ ARM = """arm:
 
 async def test_controller_log_messages_have_manager_process_prefix(launch: Any, write: Callable[[str, str], Path]):
     parameters = [str(write("controllers.yaml", FILE)), {"robot_description": robot(joint("hip") + joint("knee"))}]
-    done = await launch(
+    result = await launch(
         Node(package="controller_manager", executable="ros2_control_node", parameters=parameters),
         Node(package="controller_manager", executable="spawner", arguments=["arm"]),
         ends_when(printed("Configured and activated arm")),
     )
-    assert done.succeeded, done.err
-    (line,) = [line for line in done.err.splitlines() if "open_lop_control" in line]
+    assert result.succeeded, result.err
+    (line,) = [line for line in result.err.splitlines() if "open_lop_control" in line]
     assert re.match(r"\[ros2_control_node-1\] \[WARN\] \[[0-9.]+\] \[arm\]: ", line)
     assert line.endswith("'open_lop_control' is not a parameter of this controller; did you mean 'open_loop_control'?")
 
@@ -53,7 +53,7 @@ async def test_spawner_passes_on_parameter_files(launch: Any, write: Callable[[s
     )
     file = ParameterFile(str(write("controllers.yaml", controller)), allow_substs=True)
     description = {"robot_description": robot(joint("hip") + joint("knee"))}
-    done = await launch(
+    result = await launch(
         Node(package="controller_manager", executable="ros2_control_node", parameters=[description]),
         Node(
             package="controller_manager",
@@ -64,6 +64,6 @@ async def test_spawner_passes_on_parameter_files(launch: Any, write: Callable[[s
         ends_when(printed("Configured and activated arm")),
         joint="knee",
     )
-    assert done.succeeded, done.err
-    assert "left out" in done.err
-    assert "LAUNCH149" not in done.err
+    assert result.succeeded, result.err
+    assert "left out" in result.err
+    assert "LAUNCH149" not in result.err

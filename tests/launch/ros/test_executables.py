@@ -54,8 +54,8 @@ def arm(write: Write) -> Path:
 
 class TestSources:
     def test_entry_points_of_setup_py_are_read(self, arm: Path) -> None:
-        found = source_programs(arm)
-        assert found.entry_points == {
+        programs = source_programs(arm)
+        assert programs.entry_points == {
             "wave": EntryPoint("arm.wave", "main"),
             "nod": EntryPoint("arm.nod", "Nodder.run"),
             "shake": EntryPoint("arm.shake", "main"),
@@ -93,25 +93,25 @@ class TestSources:
         ).parent
         write("p/scripts/look.py", "")
         write("p/scripts/see.py", "")
-        found = source_programs(folder)
-        assert found.scripts == {"look.py": folder / "scripts/look.py", "seer": folder / "scripts/see.py"}
-        assert found.compiled == {"driver", "comp_node"}
+        programs = source_programs(folder)
+        assert programs.scripts == {"look.py": folder / "scripts/look.py", "seer": folder / "scripts/see.py"}
+        assert programs.compiled == {"driver", "comp_node"}
 
     def test_entry_point_runs_without_build(self, arm: Path, finder: PackageFinder) -> None:
-        found = find_executable(finder, arm.name, "wave")
-        assert found.origin is Origin.SOURCE
-        assert found.path is not None
-        assert found.path.parts[-3:] == ("lib", "arm", "wave")
-        done = subprocess.run([*found.command, "--fast"], capture_output=True, text=True, check=False)
-        assert done.returncode == 3, done.stderr
-        assert done.stdout == f"five fingers ['{found.path}', '--fast']\n"
+        executable = find_executable(finder, arm.name, "wave")
+        assert executable.origin is Origin.SOURCE
+        assert executable.path is not None
+        assert executable.path.parts[-3:] == ("lib", "arm", "wave")
+        result = subprocess.run([*executable.command, "--fast"], capture_output=True, text=True, check=False)
+        assert result.returncode == 3, result.stderr
+        assert result.stdout == f"five fingers ['{executable.path}', '--fast']\n"
 
     def test_generated_script_is_rewritten_only_if_changed(self, arm: Path, finder: PackageFinder) -> None:
         path = find_executable(finder, arm.name, "nod").path
         assert path is not None
-        made = path.stat().st_mtime_ns, path.stat().st_ino
+        identity = path.stat().st_mtime_ns, path.stat().st_ino
         assert find_executable(finder, arm.name, "nod").path == path
-        assert (path.stat().st_mtime_ns, path.stat().st_ino) == made
+        assert (path.stat().st_mtime_ns, path.stat().st_ino) == identity
         path.write_text("print('somebody else was here')")
         assert find_executable(finder, arm.name, "nod").path == path
         assert subprocess.run([path], capture_output=True, text=True, check=True).stdout == "nod\n"
@@ -172,7 +172,7 @@ class TestInstalled:
         write("ws/src/arm/package.xml", "<package><name>arm</name></package>")
         write("ws/src/arm/setup.py", SETUP)
         finder = PackageFinder(start=folder, environment={})
-        assert {name: each.path for name, each in executables_of(finder, "arm").items()} == {"wave": built}
+        assert {name: executable.path for name, executable in executables_of(finder, "arm").items()} == {"wave": built}
         assert find_executable(finder, "arm", "wave").command == [str(built)]
 
     def test_unsourced_workspace_environment_is_created(self, write: Write) -> None:
@@ -182,11 +182,11 @@ class TestInstalled:
         modules = write("ws/install/arm/lib/python3.11/site-packages/arm.py", "").parent
         prefix = share.parents[1]
         finder = PackageFinder(start=prefix.parents[1], environment={})
-        made = workspace_environment(finder, {"PYTHONPATH": "/own"})
-        assert made["AMENT_PREFIX_PATH"] == str(prefix)
-        folders = made["PYTHONPATH"].split(os.pathsep)
+        environment = workspace_environment(finder, {"PYTHONPATH": "/own"})
+        assert environment["AMENT_PREFIX_PATH"] == str(prefix)
+        folders = environment["PYTHONPATH"].split(os.pathsep)
         assert folders[:3] == ["/own", str(modules), "/ws/build/arm"]
-        assert made["LINKWRIGHT_START"] == str(prefix.parents[1])
+        assert environment["LINKWRIGHT_START"] == str(prefix.parents[1])
         sourced = workspace_environment(finder, {"AMENT_PREFIX_PATH": str(prefix)})
         assert str(modules) not in sourced.get("PYTHONPATH", "")
 
@@ -207,19 +207,19 @@ class TestInstalled:
 class TestBuiltinExecutables:
     def test_builtin_packages_and_executables_are_listed(self, finder: PackageFinder) -> None:
         assert {"robot_state_publisher", "tf2_ros", "rviz2", "rclcpp_components"} <= builtin_packages()
-        found = executables_of(finder, "robot_state_publisher")
-        assert str(found["robot_state_publisher"]) == "built into Linkwright"
+        executables = executables_of(finder, "robot_state_publisher")
+        assert str(executables["robot_state_publisher"]) == "built into Linkwright"
 
     def test_builtin_nodes_run_as_processes(self, finder: PackageFinder) -> None:
-        found = find_executable(finder, "tf2_ros", "static_transform_publisher")
-        assert found.command[1:] == ["-m", "linkwright.node_program", "tf2_ros", "static_transform_publisher"]
+        executable = find_executable(finder, "tf2_ros", "static_transform_publisher")
+        assert executable.command[1:] == ["-m", "linkwright.node_program", "tf2_ros", "static_transform_publisher"]
 
     def test_executable_in_package_returns_runnable_file(self, finder: PackageFinder) -> None:
         with use_finder(finder):
             path = ExecutableInPackage("static_transform_publisher", "tf2_ros").perform(LaunchContext())
-        done = subprocess.run([path, "--nonsense"], capture_output=True, text=True, check=False)
-        assert done.returncode == 1
-        assert "error parsing command line arguments" in done.stderr
+        result = subprocess.run([path, "--nonsense"], capture_output=True, text=True, check=False)
+        assert result.returncode == 1
+        assert "error parsing command line arguments" in result.stderr
 
 
 async def test_script_installed_by_cmake_imports_its_package(launch, write: Write, finder: PackageFinder) -> None:
@@ -233,13 +233,13 @@ async def test_script_installed_by_cmake_imports_its_package(launch, write: Writ
     write("ws/src/p/scripts/look.py", "import p\nprint(p.WORD)\n")  # neither made executable nor with a first line
     write("ws/src/p/scripts/list.sh", "#!/bin/sh\necho $0 $1\n")
     nodes = [Node(package="p", executable=name, arguments=["x"], output="screen") for name in ("look.py", "list.sh")]
-    done = await launch(*nodes, finder=finder)
-    assert "[look.py-1] seen" in done.out, done.err
-    assert "list.sh x" in done.out
+    result = await launch(*nodes, finder=finder)
+    assert "[look.py-1] seen" in result.out, result.err
+    assert "list.sh x" in result.out
 
 
 async def test_node_of_source_package_is_started(launch, arm: Path, finder: PackageFinder) -> None:
-    done = await launch(Node(package=arm.name, executable="wave", output="screen"), finder=finder)
-    assert "[wave-1] five fingers" in done.out
-    assert "[ERROR] [wave-1]: process has died [pid " in done.err
-    assert "exit code 3" in done.err
+    result = await launch(Node(package=arm.name, executable="wave", output="screen"), finder=finder)
+    assert "[wave-1] five fingers" in result.out
+    assert "[ERROR] [wave-1]: process has died [pid " in result.err
+    assert "exit code 3" in result.err

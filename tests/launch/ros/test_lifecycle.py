@@ -48,46 +48,46 @@ def managed(name: str = "one", **options: Any) -> LifecycleNode:
     return LifecycleNode(package="life", executable="node", name=name, namespace="", **options)
 
 
-def log_on_transition(text: str, **what: Any) -> RegisterEventHandler:
-    return RegisterEventHandler(OnStateTransition(entities=[LogInfo(msg=text)], **what))
+def log_on_transition(text: str, **filters: Any) -> RegisterEventHandler:
+    return RegisterEventHandler(OnStateTransition(entities=[LogInfo(msg=text)], **filters))
 
 
 async def test_change_state_triggers_transition_and_event(launch) -> None:
     node = managed()
-    wish = ChangeState(lifecycle_node_matcher=matches_action(node), transition_id=CONFIGURE)
-    done = await launch(
+    change_state = ChangeState(lifecycle_node_matcher=matches_action(node), transition_id=CONFIGURE)
+    result = await launch(
         node,
         managed("two"),
         log_on_transition("configured", target_lifecycle_node=node, transition="transition_success"),
         log_on_transition("inactive", goal_state="inactive", start_state="configuring"),
-        EmitEvent(event=wish),
+        EmitEvent(event=change_state),
         ends_when(printed("[launch.user]: inactive")),
     )
-    assert done.messages.count("inactive") == 1
-    assert done.messages.count("configured") == 1
+    assert result.messages.count("inactive") == 1
+    assert result.messages.count("configured") == 1
     assert node.current_state == "PRIMARY_STATE_INACTIVE"
 
 
 async def test_autostart_activates_node(launch) -> None:
     node = managed(autostart=True)
     active = log_on_transition("active", target_lifecycle_node=node, goal_state="active")
-    done = await launch(node, active, ends_when(printed("[launch.user]: active")))
-    assert done.messages == ["active"]
+    result = await launch(node, active, ends_when(printed("[launch.user]: active")))
+    assert result.messages == ["active"]
 
 
 async def test_lifecycle_transition_runs_sequence(launch) -> None:
     nodes = [managed("one"), managed("two")]
     row = LifecycleTransition(lifecycle_node_names=["one", "/two"], transition_ids=[CONFIGURE, "3", DEACTIVATE])
     off = log_on_transition("off", start_state="deactivating", goal_state="inactive")
-    done = await launch(*nodes, row, off, ends_when(printed("[launch.user]: off", times=2)))
-    assert done.messages == ["off", "off"]
+    result = await launch(*nodes, row, off, ends_when(printed("[launch.user]: off", times=2)))
+    assert result.messages == ["off", "off"]
 
 
 async def test_failed_transition_is_reported(launch) -> None:
     node = managed(parameters=[{"fails": True}])
-    wish = ChangeState(lifecycle_node_matcher=matches_node_name("one"), transition_id=CONFIGURE)
-    done = await launch(node, EmitEvent(event=wish), ends_when(printed("Failed to make transition")))
-    assert "Failed to make transition 'TRANSITION_CONFIGURE' for LifecycleNode '/one'" in done.err
+    change_state = ChangeState(lifecycle_node_matcher=matches_node_name("one"), transition_id=CONFIGURE)
+    result = await launch(node, EmitEvent(event=change_state), ends_when(printed("Failed to make transition")))
+    assert "Failed to make transition 'TRANSITION_CONFIGURE' for LifecycleNode '/one'" in result.err
 
 
 def test_node_matchers_use_full_names() -> None:

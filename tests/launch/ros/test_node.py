@@ -44,9 +44,9 @@ def ros(tmp_path: Path) -> PackageFinder:
 
 class TestProcessNodes:
     async def received_arguments(self, launch, ros: PackageFinder, *entities: Any) -> tuple[list[str], list[Any]]:
-        done = await launch(*entities, finder=ros)
-        assert done.succeeded, done.err
-        (line,) = done.out.splitlines()
+        result = await launch(*entities, finder=ros)
+        assert result.succeeded, result.err
+        (line,) = result.out.splitlines()
         words, files = json.loads(line.partition("] ")[2])
         return words, [yaml.safe_load(files[word]) for word in words if word in files]
 
@@ -122,12 +122,12 @@ class TestProcessNodes:
         path = write("p.yaml", "/**: {ros__parameters: {a: 1}}")
         gone = path.with_name("q.yaml")
         node = Node(package="arm", executable="tell", output="screen", parameters=[str(gone), str(path)])
-        done = await launch(node, finder=ros)
-        assert "q.yaml' does not exist" in done.err
-        assert "warning[LAUNCH133]" in done.err
-        assert "test_node.py" in done.err
-        assert json.loads(done.out.partition("] ")[2])[0] == ["--ros-args", "--params-file", str(path)]
-        assert done.succeeded
+        result = await launch(node, finder=ros)
+        assert "q.yaml' does not exist" in result.err
+        assert "warning[LAUNCH133]" in result.err
+        assert "test_node.py" in result.err
+        assert json.loads(result.out.partition("] ")[2])[0] == ["--ros-args", "--params-file", str(path)]
+        assert result.succeeded
 
     @pytest.mark.parametrize(
         ("text", "message"),
@@ -141,11 +141,11 @@ class TestProcessNodes:
         self, launch, ros: PackageFinder, write: Write, text: str, message: str
     ) -> None:
         path = write("p.yaml", text)
-        done = await launch(Node(package="arm", executable="tell", parameters=[str(path)]), finder=ros)
-        assert message in done.err
-        assert "p.yaml:1" in done.err
-        assert "process started" not in done.err
-        assert not done.succeeded
+        result = await launch(Node(package="arm", executable="tell", parameters=[str(path)]), finder=ros)
+        assert message in result.err
+        assert "p.yaml:1" in result.err
+        assert "process started" not in result.err
+        assert not result.succeeded
 
     @pytest.mark.parametrize(
         ("section", "node", "message"),
@@ -161,10 +161,10 @@ class TestProcessNodes:
         self, launch, ros: PackageFinder, write: Write, section: str, node: dict[str, str], message: str
     ) -> None:
         path = write("p.yaml", f"{section}: {{ros__parameters: {{a: 1}}}}" + "}" * section.count("{"))
-        done = await launch(Node(package="arm", executable="tell", parameters=[str(path)], **node), finder=ros)
-        assert ("warning[LAUNCH149]: parameter file" in done.err) is bool(message)
-        assert message in done.err
-        assert done.succeeded
+        result = await launch(Node(package="arm", executable="tell", parameters=[str(path)], **node), finder=ros)
+        assert ("warning[LAUNCH149]: parameter file" in result.err) is bool(message)
+        assert message in result.err
+        assert result.succeeded
 
     @pytest.mark.parametrize(
         ("package", "executable", "name"),
@@ -183,19 +183,21 @@ class TestProcessNodes:
         right = write("right.yaml", f"{name}: {{ros__parameters: {{a: 1}}}}\nother: {{ros__parameters: {{a: 2}}}}\n")
         wrong = write("wrong.yaml", f"{name}x: {{ros__parameters: {{b: 1}}}}\n")
         files = [str(right), str(wrong)]
-        done = await launch(Node(package=package, executable=executable, parameters=files))
+        result = await launch(Node(package=package, executable=executable, parameters=files))
         assert [plan.parameters for plan in planned] == [{"a": 1}]
-        assert done.err.count("warning[LAUNCH149]") == 1
-        assert f"parameter file '{wrong}' has no section for node '/{name}'" in done.err
+        assert result.err.count("warning[LAUNCH149]") == 1
+        assert f"parameter file '{wrong}' has no section for node '/{name}'" in result.err
 
     async def test_temporary_files_are_removed_after_launch(self, launch, ros: PackageFinder) -> None:
-        done = await launch(Node(package="arm", executable="tell", output="screen", parameters=[{"a": 1}]), finder=ros)
-        (path,) = {word for word in done.out.replace('"', " ").split() if word.endswith(".yaml")}
+        result = await launch(
+            Node(package="arm", executable="tell", output="screen", parameters=[{"a": 1}]), finder=ros
+        )
+        (path,) = {word for word in result.out.replace('"', " ").split() if word.endswith(".yaml")}
         assert not Path(path).exists()  # noqa: ASYNC240
 
     async def test_node_without_package_runs_executable(self, launch) -> None:
-        done = await launch(Node(executable=sys.executable, arguments=["-c", "print('here')"], output="screen"))
-        assert done.out.endswith("] here\n")
+        result = await launch(Node(executable=sys.executable, arguments=["-c", "print('here')"], output="screen"))
+        assert result.out.endswith("] here\n")
 
     @pytest.mark.parametrize(
         ("package", "executable", "message", "hint"),
@@ -211,12 +213,12 @@ class TestProcessNodes:
     async def test_unknown_executables_are_reported_with_hint(
         self, launch, ros: PackageFinder, package: str, executable: str, message: str, hint: str
     ) -> None:
-        done = await launch(Node(package=package, executable=executable), finder=ros)
-        assert "error[LAUNCH131]" in done.err
-        assert message in done.err
-        assert hint in done.err
-        assert "test_node.py" in done.err
-        assert not done.succeeded
+        result = await launch(Node(package=package, executable=executable), finder=ros)
+        assert "error[LAUNCH131]" in result.err
+        assert message in result.err
+        assert hint in result.err
+        assert "test_node.py" in result.err
+        assert not result.succeeded
 
 
 class TestHostedNodes:
@@ -228,29 +230,29 @@ class TestHostedNodes:
             namespace="robot",
             parameters=[{"robot_description": URDF}],
         )
-        done = await launch(
+        result = await launch(
             node,
             RegisterEventHandler(OnProcessStart(target_action=node, on_start=[LogInfo(msg="started")])),
             RegisterEventHandler(OnProcessExit(target_action=node, on_exit=[LogInfo(msg="exited")])),
             TimerAction(period=0.05, actions=[Shutdown(reason="done")]),
         )
-        assert done.messages == ["started", "exited"]
-        assert "[INFO] [robot_state_publisher-1]: started in the launcher's process" in done.err
-        assert "[robot_state_publisher-1] [INFO] [" in done.err
-        assert "] [robot.rsp]: Robot initialized" in done.err
+        assert result.messages == ["started", "exited"]
+        assert "[INFO] [robot_state_publisher-1]: started in the launcher's process" in result.err
+        assert "[robot_state_publisher-1] [INFO] [" in result.err
+        assert "] [robot.rsp]: Robot initialized" in result.err
         assert node.node_name == "/robot/rsp"
-        assert done.succeeded
+        assert result.succeeded
 
     async def test_node_that_fails_to_start_is_reported(self, launch) -> None:
-        done = await launch(
+        result = await launch(
             Node(package="robot_state_publisher", executable="robot_state_publisher", on_exit=[LogInfo(msg="gone")]),
             LogInfo(msg="others go on"),
         )
-        assert "error[NODE101]" in done.err
-        assert "FATAL" not in done.err, "that says the same"
-        assert "[ERROR] [robot_state_publisher-1]: node has not started" in done.err
-        assert done.messages == ["others go on", "gone"]
-        assert not done.succeeded
+        assert "error[NODE101]" in result.err
+        assert "FATAL" not in result.err, "that says the same"
+        assert "[ERROR] [robot_state_publisher-1]: node has not started" in result.err
+        assert result.messages == ["others go on", "gone"]
+        assert not result.succeeded
 
     async def test_shutdown_process_ends_one_node(self, launch) -> None:
         node = Node(
@@ -259,9 +261,9 @@ class TestHostedNodes:
             arguments=["--frame-id", "a", "--child-frame-id", "b"],
         )
         end = EmitEvent(event=ShutdownProcess(process_matcher=matches_action(node)))
-        done = await launch(node, TimerAction(period=0.02, actions=[end]))
-        assert "[INFO] [static_transform_publisher-1]: has finished cleanly" in done.err
-        assert done.succeeded
+        result = await launch(node, TimerAction(period=0.02, actions=[end]))
+        assert "[INFO] [static_transform_publisher-1]: has finished cleanly" in result.err
+        assert result.succeeded
 
     async def test_parameter_file_reaches_hosted_node(self, launch, write: Write) -> None:
         path = write("p.yaml", "robot_state_publisher: {ros__parameters: {publish_frequency: 30.0}}")

@@ -64,8 +64,8 @@ def tell(tmp_path: Path, **options: Any) -> Node:
 
 async def test_extension_changes_process_arguments(launch, install, tmp_path: Path) -> None:
     install(mine=Remapping)
-    done = await launch(tell(tmp_path))
-    words = json.loads(done.out.partition("] ")[2])
+    result = await launch(tell(tmp_path))
+    words = json.loads(result.out.partition("] ")[2])
     assert words == ["--ros-args", "-r", "__node:=other", "-r", "__ns:=/ns", "-r", "chatter:=mine"]
 
 
@@ -74,19 +74,19 @@ async def test_extension_changes_hosted_node(launch, install, tmp_path: Path) ->
     urdf = '<robot name="r"><link name="base"/></robot>'
     options: dict[str, Any] = {"parameters": [{"robot_description": urdf}], "namespace": "ns", "name": "given"}
     node = Node(package="robot_state_publisher", executable="robot_state_publisher", **options)
-    done = await launch(node, TimerAction(period=0.3, actions=[Shutdown()]))
-    assert "[robot_state_publisher-1] [INFO]" in done.err
-    assert "[ns.other]" in done.err
+    result = await launch(node, TimerAction(period=0.3, actions=[Shutdown()]))
+    assert "[robot_state_publisher-1] [INFO]" in result.err
+    assert "[ns.other]" in result.err
 
 
 async def test_extension_that_cannot_be_loaded_is_reported(launch, install, tmp_path: Path) -> None:
     install(broken=Broken)
-    done = await launch(tell(tmp_path))
-    assert not done.succeeded
-    assert "error[LAUNCH155]: the node extension 'broken' cannot be loaded: no license" in done.err
+    result = await launch(tell(tmp_path))
+    assert not result.succeeded
+    assert "error[LAUNCH155]: the node extension 'broken' cannot be loaded: no license" in result.err
 
 
 async def test_node_without_extensions_has_default_arguments(launch, install, tmp_path: Path) -> None:
     install()
-    done = await launch(tell(tmp_path))
-    assert json.loads(done.out.partition("] ")[2]) == ["--ros-args", "-r", "__node:=talker", "-r", "__ns:=/ns"]
+    result = await launch(tell(tmp_path))
+    assert json.loads(result.out.partition("] ")[2]) == ["--ros-args", "-r", "__node:=talker", "-r", "__ns:=/ns"]

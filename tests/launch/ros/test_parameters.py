@@ -23,9 +23,11 @@ Write = Callable[[str, str], Path]
 
 @pytest.fixture
 def context() -> LaunchContext:
-    made = LaunchContext()
-    made.launch_configurations.update(number="3", truth="true", word="on", text="a: b", model="<robot> a: b\n</robot>")
-    return made
+    context = LaunchContext()
+    context.launch_configurations.update(
+        number="3", truth="true", word="on", text="a: b", model="<robot> a: b\n</robot>"
+    )
+    return context
 
 
 def values(context: LaunchContext, *parameters: Any, node: str = "/talker") -> dict[str, Any]:
@@ -40,11 +42,11 @@ def message_of(error: BaseException) -> str:
 
 class TestParameters:
     def test_python_values_keep_their_types(self, context: LaunchContext) -> None:
-        given = {"a": 1, "b": 1.5, "c": True, "d": "true", "e": [1, 2], "f": ["x", "y"], "g": [1, 2.5], "h": ""}
-        assert values(context, given) == {**given, "g": [1.0, 2.5]}
+        parameters = {"a": 1, "b": 1.5, "c": True, "d": "true", "e": [1, 2], "f": ["x", "y"], "g": [1, 2.5], "h": ""}
+        assert values(context, parameters) == {**parameters, "g": [1.0, 2.5]}
 
     def test_substitutions_are_parsed_as_yaml(self, context: LaunchContext) -> None:
-        found = values(
+        parameters = values(
             context,
             {
                 "a": LaunchConfiguration("number"),
@@ -54,7 +56,7 @@ class TestParameters:
                 "e": [[LaunchConfiguration("number")], [TextSubstitution(text="4")]],
             },
         )
-        assert found == {"a": 3, "b": True, "c": True, "d": "/3", "e": [3, 4]}
+        assert parameters == {"a": 3, "b": True, "c": True, "d": "/3", "e": [3, 4]}
 
     @pytest.mark.parametrize(
         ("name", "kind", "value"),
@@ -72,9 +74,9 @@ class TestParameters:
         self, context: LaunchContext, name: str, kind: Any, value: Any
     ) -> None:
         context.launch_configurations["list"] = "[1, 2]"
-        found = values(context, {"p": ParameterValue(LaunchConfiguration(name), value_type=kind)})
-        assert found == {"p": value}
-        assert type(found["p"]) is type(value)
+        parameters = values(context, {"p": ParameterValue(LaunchConfiguration(name), value_type=kind)})
+        assert parameters == {"p": value}
+        assert type(parameters["p"]) is type(value)
 
     def test_value_of_wrong_type_is_rejected(self, context: LaunchContext) -> None:
         with pytest.raises(ValueError) as caught:
@@ -82,8 +84,8 @@ class TestParameters:
         assert "parameter 'p' is not of the requested type int" in message_of(caught.value)
 
     def test_nested_dictionaries_and_substituted_names_are_flattened(self, context: LaunchContext) -> None:
-        found = values(context, {"zeros": {"joint": 1.0, ("n", LaunchConfiguration("number")): 2.0}, "a.b": 1})
-        assert found == {"zeros.joint": 1.0, "zeros.n3": 2.0, "a.b": 1}
+        parameters = values(context, {"zeros": {"joint": 1.0, ("n", LaunchConfiguration("number")): 2.0}, "a.b": 1})
+        assert parameters == {"zeros.joint": 1.0, "zeros.n3": 2.0, "a.b": 1}
 
     def test_later_values_override_earlier(self, context: LaunchContext) -> None:
         assert values(context, {"a": 1, "b": 1}, {"a": 2}, Parameter("b", 3)) == {"a": 2, "b": 3}
@@ -140,12 +142,16 @@ class TestParameters:
         assert message in message_of(caught.value)
 
     def test_plain_strings_are_not_parsed_as_yaml(self, context: LaunchContext) -> None:
-        given = {"a": "1", "b": ["true", "2"], "c": "{x: y}"}
-        assert values(context, given) == given
+        parameters = {"a": "1", "b": ["true", "2"], "c": "{x: y}"}
+        assert values(context, parameters) == parameters
 
     def test_evaluated_parameters_keep_files_and_flatten_dictionaries(self, context: LaunchContext) -> None:
-        given = normalize_parameters(["/a.yaml", {"n": {"x": 1}, "l": [1, 2.5]}, Path("/b.yaml")])
-        assert evaluate_parameters(context, given) == (Path("/a.yaml"), {"n.x": 1, "l": (1.0, 2.5)}, Path("/b.yaml"))
+        parameters = normalize_parameters(["/a.yaml", {"n": {"x": 1}, "l": [1, 2.5]}, Path("/b.yaml")])
+        assert evaluate_parameters(context, parameters) == (
+            Path("/a.yaml"),
+            {"n.x": 1, "l": (1.0, 2.5)},
+            Path("/b.yaml"),
+        )
 
 
 class TestParameterFiles:
@@ -187,11 +193,11 @@ listener:
             "/**: {ros__parameters: {a: $(var number), b: $(env LW_NONE x), c: '$(var n$(var word) d)', "
             "d: $(find-pkg-share my_robot_description)}}",
         )
-        found = values(context, ParameterFile(path, allow_substs=True))
-        assert found["a"] == 3
-        assert found["b"] == "x"
-        assert found["c"] == "d"
-        assert found["d"].endswith("my_robot_description")
+        parameters = values(context, ParameterFile(path, allow_substs=True))
+        assert parameters["a"] == 3
+        assert parameters["b"] == "x"
+        assert parameters["c"] == "d"
+        assert parameters["d"].endswith("my_robot_description")
 
     @pytest.mark.parametrize(
         ("text", "message"),
@@ -219,11 +225,11 @@ listener:
 
     def test_file_with_substitutions_is_written_and_cleaned_up(self, context: LaunchContext, write: Write) -> None:
         file = ParameterFile(write("p.yaml", "/**: {ros__parameters: {a: $(var number)}}"), allow_substs=True)
-        made = file.evaluate(context)
-        assert file.param_file == made
-        assert made.read_text() == "/**: {ros__parameters: {a: 3}}"
+        path = file.evaluate(context)
+        assert file.param_file == path
+        assert path.read_text() == "/**: {ros__parameters: {a: 3}}"
         file.cleanup()
-        assert not made.exists()
+        assert not path.exists()
 
     def test_missing_parameter_file_raises_file_not_found(self, context: LaunchContext, tmp_path: Path) -> None:
         with pytest.raises(FileNotFoundError) as caught:

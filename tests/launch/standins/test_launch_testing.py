@@ -134,19 +134,19 @@ def run(tmp_path: Path):
 
 
 def test_active_and_post_shutdown_tests_run(run) -> None:
-    done = run(TALKER, "speed:=2")
-    assert done.returncode == 0, done.stderr
-    assert re.findall(r"Ran (\d) tests?", done.stderr) == ["3", "1"]
+    result = run(TALKER, "speed:=2")
+    assert result.returncode == 0, result.stderr
+    assert re.findall(r"Ran (\d) tests?", result.stderr) == ["3", "1"]
 
 
 def test_show_args_lists_arguments(run) -> None:
-    done = run(TALKER, "--show-args")
-    assert (done.returncode, "'speed':" in done.stdout) == (0, True), done.stderr
+    result = run(TALKER, "--show-args")
+    assert (result.returncode, "'speed':" in result.stdout) == (0, True), result.stderr
 
 
 def test_parametrized_launches_are_in_one_report(run, tmp_path: Path) -> None:
-    done = run(PARAMETRIZED, "--junit-xml", "report.xml", "--package-name", "mine")
-    assert done.returncode == 1, done.stderr
+    result = run(PARAMETRIZED, "--junit-xml", "report.xml", "--package-name", "mine")
+    assert result.returncode == 1, result.stderr
     report = ET.parse(tmp_path / "report.xml").getroot()
     assert report.attrib | {"time": ""} == {
         "name": "mine.test_it",
@@ -162,15 +162,15 @@ def test_parametrized_launches_are_in_one_report(run, tmp_path: Path) -> None:
 
 
 def test_launch_that_ends_early_fails_its_tests(run) -> None:
-    done = run(DIES)
-    assert done.returncode == 1
-    assert "Processes under test stopped before tests completed" in done.stdout
-    assert re.search(r"Process 'ends-1' exited with 5\n#+ 'ends-1' output #+\ndone\n", done.stdout)
+    result = run(DIES)
+    assert result.returncode == 1
+    assert "Processes under test stopped before tests completed" in result.stdout
+    assert re.search(r"Process 'ends-1' exited with 5\n#+ 'ends-1' output #+\ndone\n", result.stdout)
 
 
 def test_skipped_launch_skips_its_tests(run) -> None:
-    done = run(SKIPPED)
-    assert (done.returncode, "is skipped: not here" in done.stdout) == (0, True), done.stderr
+    result = run(SKIPPED)
+    assert (result.returncode, "is skipped: not here" in result.stdout) == (0, True), result.stderr
 
 
 @pytest.mark.parametrize(
@@ -182,9 +182,9 @@ def test_skipped_launch_skips_its_tests(run) -> None:
     ],
 )
 def test_marked_file_is_one_pytest_test(run, text: str, words: tuple[str, ...], outcome: str) -> None:
-    done = run(text, "pytest", *words)
-    assert outcome in done.stdout, done.stdout + done.stderr
-    assert ("only zero" in done.stdout) is ("failed" in outcome)
+    result = run(text, "pytest", *words)
+    assert outcome in result.stdout, result.stdout + result.stderr
+    assert ("only zero" in result.stdout) is ("failed" in outcome)
 
 
 @pytest.mark.parametrize(
@@ -196,9 +196,9 @@ def test_marked_file_is_one_pytest_test(run, text: str, words: tuple[str, ...], 
     ],
 )
 def test_invalid_file_and_arguments_are_reported(run, text: str, words: tuple[str, ...], message: str) -> None:
-    done = run(text, *words)
-    assert (done.returncode, message in done.stderr) == (2, True), done.stderr
-    assert "Traceback" not in done.stderr
+    result = run(text, *words)
+    assert (result.returncode, message in result.stderr) == (2, True), result.stderr
+    assert "Traceback" not in result.stderr
 
 
 @pytest.mark.parametrize(

@@ -30,15 +30,15 @@ TAGS = """
 @pytest.fixture
 def started(monkeypatch: pytest.MonkeyPatch) -> list[dict[str, Any]]:
     """Return the arguments from which nodes are created."""
-    made: list[dict[str, Any]] = []
+    arguments: list[dict[str, Any]] = []
     init = Node.__init__
 
     def note(self: Node, **words: Any) -> None:
-        made.append(words)
+        arguments.append(words)
         init(self, **words)
 
     monkeypatch.setattr(Node, "__init__", note)
-    return made
+    return arguments
 
 
 def test_gz_server_passes_world_file_or_string(started: list[dict[str, Any]]) -> None:
