@@ -8,15 +8,15 @@ import pytest
 
 from tests.page.test_files import package, write
 from tests.page.test_security import MESHED, raw
-from tests.viewer.scene import page, world
+from tests.viewer.scene import open_world, page
 
 
 @pytest.fixture
 async def served(tmp_path):
     share = package(tmp_path / "robot", "robot")
     write(share / "meshes" / "arm.stl", "solid arm")
-    async with world(packages={"robot": share}) as made:
-        yield made
+    async with open_world(packages={"robot": share}) as world:
+        yield world
 
 
 async def exported(client, kind: str = "glb") -> dict:

@@ -20,7 +20,7 @@ from linkwright.page.protocol.configuration import DisplayStatus, StatusRow
 from linkwright.page.server import MAX_MESSAGE_SIZE
 from tests.leaving import UPGRADE, ask_and_leave
 from tests.page.test_files import package, write
-from tests.viewer.scene import page, world
+from tests.viewer.scene import open_world, page
 from tests.waiting import SECONDS, eventually
 
 MESHED = """\
@@ -42,10 +42,10 @@ def robot(tmp_path) -> Path:
 
 @pytest.fixture
 async def served(robot):
-    async with world(packages={"robot": robot}) as made:
-        made.describe(MESHED)
-        await made.settle()
-        yield made
+    async with open_world(packages={"robot": robot}) as world:
+        world.describe(MESHED)
+        await world.settle()
+        yield world
 
 
 async def raw(viewer, target: str, *, host: str | None = None, method: str = "GET", token: bool = True, **headers):

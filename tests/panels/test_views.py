@@ -6,7 +6,7 @@ import yaml
 from linkwright.page.protocol.views_and_tools import View
 from linkwright.rviz import RvizConfig
 from linkwright.rviz.config.views import CURRENT_NAME, ORBIT, PITCH_LIMIT, VIEW_SCHEMAS, view_classes
-from tests.viewer.scene import page, world
+from tests.viewer.scene import open_world, page
 
 FLYING = """\
 Visualization Manager:
@@ -185,7 +185,7 @@ def test_view_can_be_saved_to_file_without_saved_views():
 
 
 async def test_pages_share_saved_views():
-    async with world() as made, page(made.viewer) as one, page(made.viewer) as other:
+    async with open_world() as world, page(world.viewer) as one, page(world.viewer) as other:
         opening = await one.opened()
         await other.opened()
         assert opening["saved_views"]["views"] == []
@@ -202,4 +202,4 @@ async def test_pages_share_saved_views():
         await one.send("remove_saved_view", id=saved["id"])
         await one.send("save_view", view=view | {"cls": "no/Such"})
         assert (await one.until("saved_views"))["views"] == []
-    assert "an invalid view" in made.logged()
+    assert "an invalid view" in world.logged()

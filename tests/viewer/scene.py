@@ -98,7 +98,7 @@ class World:
 
 
 @asynccontextmanager
-async def world(config: RvizConfig | None = None, **options) -> AsyncIterator[World]:
+async def open_world(config: RvizConfig | None = None, **options) -> AsyncIterator[World]:
     """Start a world, and close it at the end."""
     made = World(config, **options)
     await made.viewer.start()

@@ -11,7 +11,7 @@ import pytest
 from linkwright.loading import extensions
 from linkwright.rviz import RvizConfig
 from linkwright.rviz.displays import catalog
-from tests.viewer.scene import page, world
+from tests.viewer.scene import open_world, page
 
 MODULE = """\
 from linkwright.rviz.displays.geometry import PolygonDisplay
@@ -76,7 +76,7 @@ def config_with(cls: str) -> RvizConfig:
 
 
 async def test_display_of_another_package_is_created_and_offered(brought):
-    async with world(config_with("brought/Fence")) as w, page(w.viewer) as client:
+    async with open_world(config_with("brought/Fence")) as world, page(world.viewer) as client:
         first = await client.opened()
         (fence,) = [each for each in first["tree"]["displays"] if each["cls"] == "brought/Fence"]
         assert (fence["supported"], fence["drawing"]) == (True, "rviz_default_plugins/Polygon")
@@ -86,9 +86,9 @@ async def test_display_of_another_package_is_created_and_offered(brought):
 
 
 async def test_display_that_cannot_be_imported_is_kept_and_reported(brought):
-    async with world(config_with("brought/Broken")) as w:
-        assert not w.viewer.displays[-1].SUPPORTED
-        assert "'brought/Broken' cannot be imported: AttributeError" in w.logged()
+    async with open_world(config_with("brought/Broken")) as world:
+        assert not world.viewer.displays[-1].SUPPORTED
+        assert "'brought/Broken' cannot be imported: AttributeError" in world.logged()
 
 
 def test_built_in_display_cannot_be_replaced(brought):
@@ -96,11 +96,11 @@ def test_built_in_display_cannot_be_replaced(brought):
 
 
 async def test_page_feature_of_another_package_receives_messages(brought):
-    async with world() as w, page(w.viewer) as client:
+    async with open_world() as world, page(world.viewer) as client:
         await client.opened()
         await client.send("greet", name="you")
         assert (await client.until("greeting"))["text"] == "hello you"
-        assert "The page feature 'broken' cannot be loaded: AttributeError" in w.logged()
+        assert "The page feature 'broken' cannot be loaded: AttributeError" in world.logged()
 
 
 def test_extensions_match_installation_metadata():

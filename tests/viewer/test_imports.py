@@ -8,10 +8,10 @@ from pathlib import Path
 
 OPENING = """
 import asyncio, sys
-from tests.viewer.scene import page, world
+from tests.viewer.scene import open_world, page
 
 async def main():
-    async with world() as made, page(made.viewer) as client:
+    async with open_world() as made, page(made.viewer) as client:
         await client.opened()
         print(*sys.modules)
         await client.send("watch_node_graph", watched=True)

@@ -11,7 +11,7 @@ import pytest
 from linkwright.messages import get_message
 from linkwright.rviz import RvizConfig
 from tests.viewer.contents import contents
-from tests.viewer.scene import world
+from tests.viewer.scene import open_world
 
 GridMap = get_message("grid_map_msgs/msg/GridMap")
 Layer = get_message("std_msgs/msg/Float32MultiArray")
@@ -44,23 +44,23 @@ def grid(resolution: float = 1.0, **layers: list[list[float]]) -> Any:
 @asynccontextmanager
 async def shown(extra: str = ""):
     """A display, and a function that publishes a map and gives the content sent."""
-    async with world(config(extra)) as w:
-        w.move_arm()
-        publisher = w.graph.create_node("mapper").create_publisher(GridMap, "/grid_map", 10)
-        await w.settle()
+    async with open_world(config(extra)) as world:
+        world.move_arm()
+        publisher = world.graph.create_node("mapper").create_publisher(GridMap, "/grid_map", 10)
+        await world.settle()
 
         async def publish_and_settle(message: Any) -> dict[str, Any] | None:
             publisher.publish(message)
-            await w.settle()
-            found = contents(w.display("GridMap"))
+            await world.settle()
+            found = contents(world.display("GridMap"))
             return found[-1].fields if found else None
 
-        yield w, publish_and_settle
+        yield world, publish_and_settle
 
 
 async def test_grid_map_properties_match_rviz():
-    async with shown() as (w, _):
-        rows = {row.name: row.value for row in w.display("GridMap").row().properties}
+    async with shown() as (world, _):
+        rows = {row.name: row.value for row in world.display("GridMap").row().properties}
         assert rows == {
             "Topic": "/grid_map",
             "Alpha": 1.0,
@@ -74,12 +74,12 @@ async def test_grid_map_properties_match_rviz():
             "Invert Rainbow": False,
             "Autocompute Intensity Bounds": True,
         }
-    async with shown(", Use ColorMap: false") as (w, _):
-        assert {"Use ColorMap", "Min Color"} <= {row.name for row in w.display("GridMap").row().properties}
+    async with shown(", Use ColorMap: false") as (world, _):
+        assert {"Use ColorMap", "Min Color"} <= {row.name for row in world.display("GridMap").row().properties}
 
 
 async def test_first_cell_has_largest_x_and_y():
-    async with shown() as (w, publish_and_settle):
+    async with shown() as (world, publish_and_settle):
         made = grid(0.5, elevation=[[1, 2, 3], [4, 5, 6]])
         made.info.pose.position.x = 10.0
         content = await publish_and_settle(made)
@@ -87,7 +87,7 @@ async def test_first_cell_has_largest_x_and_y():
         points = content["points"].reshape(2, 3, 3)
         np.testing.assert_allclose(points[0, 0], [10.25, 0.5, 1])
         np.testing.assert_allclose(points[1, 2], [9.75, -0.5, 6])
-        assert w.status("GridMap")["Transform"] == ("ok", "Transform OK")
+        assert world.status("GridMap")["Transform"] == ("ok", "Transform OK")
 
 
 async def test_circular_buffer_start_index_is_applied():
@@ -110,11 +110,11 @@ async def test_nan_cells_are_not_drawn():
 
 
 async def test_rainbow_two_color_and_flat_color_modes():
-    async with shown() as (w, publish_and_settle):
+    async with shown() as (world, publish_and_settle):
         content = await publish_and_settle(grid(elevation=[[0, 10]], other=[[5, 0]]))
         first, last = content["colors"].reshape(-1, 4)[:, :3].tolist()
         assert (first, last) == ([204, 0, 255], [255, 0, 0])
-        display = w.display("GridMap")
+        display = world.display("GridMap")
 
         def colors() -> list[list[int]]:
             return contents(display)[-1].fields["colors"].reshape(-1, 4)[:, :3].tolist()
@@ -143,10 +143,10 @@ async def test_color_layer_is_unpacked():
 
 
 async def test_large_map_is_subsampled_with_warning():
-    async with shown() as (w, publish_and_settle):
+    async with shown() as (world, publish_and_settle):
         content = await publish_and_settle(grid(elevation=np.zeros((900, 900)).tolist()))
         assert (content["rows"], content["columns"]) == (450, 450)
-        assert w.status("GridMap")["Size"] == ("warn", "The map is large: 1 in 2 rows and columns is drawn")
+        assert world.status("GridMap")["Size"] == ("warn", "The map is large: 1 in 2 rows and columns is drawn")
 
 
 @pytest.mark.parametrize(
@@ -161,18 +161,18 @@ async def test_large_map_is_subsampled_with_warning():
     ],
 )
 async def test_invalid_grid_map_is_reported(broken, text):
-    async with shown() as (w, publish_and_settle):
+    async with shown() as (world, publish_and_settle):
         made = grid(elevation=[[1, 2], [3, 4]])
         for name, value in broken.items():
             setattr(made if name == "layers" else made.info, name, value)
         assert await publish_and_settle(made) is None
-        assert w.status("GridMap")["Message"] == ("error", text)
+        assert world.status("GridMap")["Message"] == ("error", text)
         assert await publish_and_settle(grid(elevation=[[1, 2], [3, 4]])) is not None
-        assert "Message" not in w.status("GridMap")
+        assert "Message" not in world.status("GridMap")
 
 
 async def test_grid_map_demo_file_is_saved_unchanged():
     text = config(", Unreliable: false, Use Rainbow: true, Min Intensity: 0, Color: 200; 200; 200").text()
-    async with world(RvizConfig.parse(text)) as w:
-        assert w.viewer.displays[0].row().supported
-        assert w.viewer.config.text() == text
+    async with open_world(RvizConfig.parse(text)) as world:
+        assert world.viewer.displays[0].row().supported
+        assert world.viewer.config.text() == text

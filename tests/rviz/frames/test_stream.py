@@ -86,12 +86,12 @@ class Rig:
 
 @asynccontextmanager
 async def running() -> AsyncIterator[Rig]:
-    made = Rig()
+    world = Rig()
     try:
-        yield made
+        yield world
     finally:
-        made.stream.close()
-        await made.graph.close()
+        world.stream.close()
+        await world.graph.close()
 
 
 def streaming(test):

@@ -11,7 +11,7 @@ from linkwright.graph import DurabilityPolicy, QoSProfile
 from linkwright.messages import get_message, get_service
 from linkwright.rviz.config.locations import recovery_folder
 from tests.sdf.editing.texts import BOX, PLAIN
-from tests.viewer.scene import page, world
+from tests.viewer.scene import open_world, page
 from tests.waiting import eventually
 
 STRING = get_message("std_msgs/msg/String")
@@ -27,8 +27,8 @@ POSE = [1, 2, 3, 0, 0, 0.5]
 class Simulation:
     """What a simulator is for those who model its world; keeps what it was asked."""
 
-    def __init__(self, made, path: Path | None, *, loads: bool) -> None:
-        self.node = made.graph.create_node("gazebo")
+    def __init__(self, world, path: Path | None, *, loads: bool) -> None:
+        self.node = world.graph.create_node("gazebo")
         if path is not None:
             self.node.declare_parameter("world", str(path))
         latched = QoSProfile(1, durability=DurabilityPolicy.TRANSIENT_LOCAL)
@@ -60,13 +60,13 @@ class Simulation:
 @asynccontextmanager
 async def modeling_session(path: Path | None = None, *, loads: bool = True):
     """A simulation whose world stands in a file, and a page that edits it."""
-    async with world() as made:
-        simulation = Simulation(made, path, loads=loads)
-        async with page(made.viewer) as client:
+    async with open_world() as world:
+        simulation = Simulation(world, path, loads=loads)
+        async with page(world.viewer) as client:
             await client.until("modeling_state", available=True)
             await client.send("set_modeling", active=True)
             client.state = await client.until("modeling_state", active=True)
-            yield simulation, client, made
+            yield simulation, client, world
 
 
 def write_world(tmp_path: Path, text: str = PLAIN) -> Path:
@@ -80,7 +80,7 @@ def change(name: str, **fields) -> dict:
 
 
 async def test_modeling_is_unavailable_without_simulation():
-    async with world() as made, page(made.viewer) as client:
+    async with open_world() as world, page(world.viewer) as client:
         state = (await client.opened())["modeling_state"]
         assert (state["available"], state["active"], state["entities"]) == (False, False, [])
         await client.send("set_modeling", active=True)
@@ -166,7 +166,7 @@ async def test_new_entity_gets_unused_name(tmp_path):
 
 
 async def test_pages_share_edited_world(tmp_path):
-    async with modeling_session(write_world(tmp_path)) as (_, client, made), page(made.viewer) as other:
+    async with modeling_session(write_world(tmp_path)) as (_, client, world), page(world.viewer) as other:
         assert (await other.opened())["modeling_state"]["active"] is True
         await client.send("delete_entities", names=["box"])
         assert len((await other.until("modeling_state", unsaved=True))["entities"]) == 2
@@ -230,11 +230,11 @@ async def test_externally_changed_file_is_reloaded_or_not_overwritten(tmp_path):
 
 async def test_unsaved_changes_are_kept_at_exit(tmp_path):
     path = write_world(tmp_path)
-    async with modeling_session(path) as (_, client, made):
-        assert made.viewer.keep_unsaved() == []
+    async with modeling_session(path) as (_, client, world):
+        assert world.viewer.keep_unsaved() == []
         await client.send("delete_entities", names=["box"])
         await client.until("modeling_state", unsaved=True)
-        (notice,) = made.viewer.keep_unsaved()
+        (notice,) = world.viewer.keep_unsaved()
     assert (notice.code, path.read_text()) == ("RVIZ301", PLAIN)
     kept = list(recovery_folder().glob("my-*.world"))
     assert [each.read_text() for each in kept if str(each) in notice.message] == [PLAIN.replace(BOX, "")]
