@@ -274,10 +274,10 @@ def test_malicious_students_on_cluster_affect_only_themselves(folder):
     folders = sorted(map(str, (folder / "students").iterdir()))
     words = ["learn", "grade", "--course", "course", "--ray", "local", "--json", "out.json", *LIMITS, *folders]
     environment = {**os.environ, "RAY_raylet_start_wait_time_s": "600"}
-    done = subprocess.run(
+    result = subprocess.run(
         [sys.executable, "-m", "linkwright", *words], env=environment, capture_output=True, text=True, check=False
     )
-    assert done.returncode == 0, done.stderr
+    assert result.returncode == 0, result.stderr
     data = json.loads((folder / "out.json").read_text())
     assert [student["points"] for student in data["students"]] == [4, 4, 1, 1]
     assert "limits" in data["protections"]

@@ -146,8 +146,8 @@ async def test_hints_are_shown_in_order_and_solution_keeps_replaced_file(tmp_pat
         assert len((await client.until("course_step"))["hints"]) == 2
         await client.send("take_solution")
         await until_passed(client)
-    (kept,) = (workspace / "replaced").rglob("robot.urdf")
-    assert kept.read_text() == WRONG
+    (backup,) = (workspace / "replaced").rglob("robot.urdf")
+    assert backup.read_text() == WRONG
     assert "solution: true" in (workspace / "learn.yaml").read_text()
 
 
