@@ -20,7 +20,7 @@ def codes_of(tmp_path):
             (tmp_path / file.replace("_dot_", ".")).write_text(content)
         (tmp_path / name).write_text(text)
         found = examine(tmp_path / name, settings=Settings(select=selectors)).diagnostics
-        return [each.code for each in found if each.code.startswith(selectors)]
+        return [finding.code for finding in found if finding.code.startswith(selectors)]
 
     return check
 
@@ -125,7 +125,7 @@ def test_relative_mesh_path_is_a_warning_in_package(tmp_path, files, severity):
     for name, text in files.items():
         (tmp_path / name).write_text(text)
     found = examine(path, settings=Settings(select=("LW421",))).diagnostics
-    assert [each.severity.value for each in found if each.code == "LW421"] == [severity]
+    assert [finding.severity.value for finding in found if finding.code == "LW421"] == [severity]
 
 
 @pytest.mark.parametrize(
@@ -170,7 +170,7 @@ def test_fixed_frame_of_another_robot_is_accepted(tmp_path, frame, codes):
     (tmp_path / "r.urdf").write_text(robot('<link name="base_link"/><link name="link3"/>'))
     (tmp_path / "r.rviz").write_text(f"Visualization Manager:\n  Global Options:\n    Fixed Frame: {frame}\n")
     found = examine_package(tmp_path, Settings(select=("LW849",))).diagnostics
-    assert [each.code for each in found] == codes
+    assert [finding.code for finding in found] == codes
 
 
 @pytest.mark.parametrize(("shape", "codes"), [("", []), ("c", ["LW410"])])
@@ -184,7 +184,7 @@ def test_visual_with_zero_size_is_an_info(tmp_path):
     flat = '<visual><geometry><box size="0.1 0 0.1"/></geometry></visual>'
     (tmp_path / "r.urdf").write_text(robot(f'<link name="a">{BOX.format(0)}{flat}</link>'))
     found = examine(tmp_path / "r.urdf", settings=Settings(select=("LW401",))).diagnostics
-    assert [each.severity.name for each in found if each.code == "LW401"] == ["INFO", "WARNING"]
+    assert [finding.severity.name for finding in found if finding.code == "LW401"] == ["INFO", "WARNING"]
 
 
 def test_dont_collapse_attribute_of_isaac_gym_is_recognized(codes_of):
@@ -231,7 +231,7 @@ def test_mesh_of_declared_missing_package_is_an_info(tmp_path, more, severity):
     (tmp_path / "package.xml").write_text(MANIFEST.format(more=more))
     (tmp_path / "r.urdf").write_text(robot(mesh))
     found = examine(tmp_path / "r.urdf", settings=Settings(select=("LW423",))).diagnostics
-    assert [each.severity.name for each in found if each.code == "LW423"] == [severity]
+    assert [finding.severity.name for finding in found if finding.code == "LW423"] == [severity]
 
 
 @pytest.mark.parametrize(("build", "codes"), [("ament_cmake", []), ("ament_python", ["LW827"])])
@@ -245,7 +245,7 @@ def test_setup_py_of_cmake_package_is_ignored(tmp_path, build, codes):
         "setup(name='p', packages=['p'], entry_points={'console_scripts': ['run = p.run:main']})\n"
     )
     found = examine_package(tmp_path, Settings(select=("LW827",))).diagnostics
-    assert [each.code for each in found] == codes
+    assert [finding.code for finding in found] == codes
 
 
 @pytest.mark.parametrize(
@@ -262,7 +262,7 @@ def test_webots_driver_needs_no_main(tmp_path, driver, codes):
         "setup(name='p', packages=['p'], entry_points={'console_scripts': ['run = p.run:main']})\n"
     )
     found = examine_package(tmp_path, Settings(select=("LW827",))).diagnostics
-    assert [each.code for each in found] == codes
+    assert [finding.code for finding in found] == codes
 
 
 @pytest.mark.parametrize("path", ["sdk", "sdk/cxx"])
@@ -287,7 +287,7 @@ def test_missing_installed_folder_that_git_ignores_is_accepted(tmp_path, ignored
         "install(DIRECTORY web/dist DESTINATION share/p)\nament_package()\n"
     )
     found = examine_package(tmp_path, Settings(select=("LW824",))).diagnostics
-    assert [each.code for each in found] == codes
+    assert [finding.code for finding in found] == codes
 
 
 _DOWNLOAD = 'set(net "${PROJECT_SOURCE_DIR}/nets/a.onnx")\nfile(DOWNLOAD "https://example.org/a.onnx" "${net}")\n'
@@ -309,7 +309,7 @@ def test_installed_folder_that_cmake_creates_is_accepted(tmp_path, before, codes
         "install(DIRECTORY nets DESTINATION share/p)\nament_package()\n"
     )
     found = examine_package(tmp_path, Settings(select=("LW824",))).diagnostics
-    assert [each.code for each in found] == codes
+    assert [finding.code for finding in found] == codes
 
 
 @pytest.mark.parametrize(
@@ -324,7 +324,7 @@ def test_installed_folder_that_cmake_creates_is_accepted(tmp_path, before, codes
 def test_repeated_dependency_is_an_info_or_error_beside_depend(tmp_path, lines, message):
     (tmp_path / "package.xml").write_text(MANIFEST.format(more=lines))
     found = examine_package(tmp_path, Settings(select=("LW809",))).diagnostics
-    assert [each.severity.value for each in found] == message
+    assert [finding.severity.value for finding in found] == message
 
 
 @pytest.mark.parametrize("name", ["iCub", "neo-mpo"])
@@ -332,7 +332,7 @@ def test_package_name_that_colcon_accepts_is_an_info(tmp_path, name):
     """Whoever published a package cannot rename it."""
     (tmp_path / "package.xml").write_text(MANIFEST.format(more="").replace("<name>p</name>", f"<name>{name}</name>"))
     found = examine_package(tmp_path, Settings(select=("LW805",))).diagnostics
-    assert [each.severity.value for each in found] == ["info"]
+    assert [finding.severity.value for finding in found] == ["info"]
 
 
 @pytest.mark.parametrize(
@@ -344,7 +344,7 @@ def test_empty_launch_file_is_an_info(tmp_path, text, message):
     (tmp_path / "launch").mkdir()
     (tmp_path / "launch" / "a.launch.py").write_text(text)
     found = examine_package(tmp_path, Settings(select=("LW841",))).diagnostics
-    assert [each.severity.value for each in found] == [message]
+    assert [finding.severity.value for finding in found] == [message]
 
 
 @pytest.mark.parametrize(
@@ -362,7 +362,7 @@ def test_tests_and_modules_named_like_launch_files_are_accepted(tmp_path, text, 
     for name in ("a_launch.py", *files):
         (tmp_path / "p" / name).write_text(text if name == "a_launch.py" else "")
     found = examine_package(tmp_path, Settings(select=("LW841",))).diagnostics
-    assert [each.code for each in found] == ["LW841"] * count
+    assert [finding.code for finding in found] == ["LW841"] * count
 
 
 @pytest.mark.parametrize(
@@ -401,7 +401,7 @@ def test_uninstalled_sibling_folders_are_one_finding(tmp_path):
         (tmp_path / "config" / name).mkdir(parents=True)
         (tmp_path / "config" / name / "arm.yaml").write_text("a: 1\n")
     found = examine_package(tmp_path, Settings(select=("LW822",))).diagnostics
-    assert [str(each.message) for each in found] == [
+    assert [str(finding.message) for finding in found] == [
         "setup.py does not install the folder 'config/default' (and 2 more)"
     ]
 
@@ -421,7 +421,7 @@ def test_circular_dependency_is_not_requested(tmp_path, needs, codes):
     packages = {name: tmp_path / name for name in ("p", "q", "helper")}
     settings = Settings(select=("LW724", "LW848"))
     found = examine(tmp_path / "p/r.urdf.xacro", packages=packages, settings=settings).diagnostics
-    assert [each.code for each in found] == [*codes, *(["LW848"] if codes else [])]
+    assert [finding.code for finding in found] == [*codes, *(["LW848"] if codes else [])]
 
 
 @pytest.mark.parametrize(
@@ -531,7 +531,7 @@ def test_uninstalled_file_that_no_launch_file_reads_is_an_info(tmp_path, file, l
         f"    os.path.join(get_package_share_directory('p'), {launch!r})\n"
     )
     found = examine_package(tmp_path, Settings(select=("LW822",))).diagnostics
-    assert [each.severity.name for each in found] == [severity]
+    assert [finding.severity.name for finding in found] == [severity]
 
 
 @pytest.mark.parametrize(
@@ -558,7 +558,7 @@ def test_program_in_data_files_is_an_executable(tmp_path, data, codes):
         "def generate_launch_description():\n    Node(package='p', executable='driver.py')\n"
     )
     found = examine_package(tmp_path, Settings(select=("LW844",))).diagnostics
-    assert [each.code for each in found] == codes
+    assert [finding.code for finding in found] == codes
 
 
 @pytest.mark.parametrize("big", ["a", "b"])
@@ -583,7 +583,7 @@ def test_missing_include_that_build_generates_is_an_info(tmp_path, cmake, severi
     include = '<xacro:include filename="$(find p)/urdf/arm.urdf"/>'
     (tmp_path / "r.urdf.xacro").write_text(robot(f'<link name="a"/>{include}', PREFIX))
     found = examine(tmp_path / "r.urdf.xacro", packages={"p": tmp_path}).diagnostics
-    assert [each.severity.name for each in found if each.code == "XML101"] == [severity]
+    assert [finding.severity.name for finding in found if finding.code == "XML101"] == [severity]
 
 
 @pytest.mark.parametrize(("name", "severity"), [("urdf/arm.xacro", "WARNING"), ("urdf/leg.xacro", "ERROR")])
@@ -612,7 +612,7 @@ def test_includes_relative_to_package_folder_are_one_finding_per_file(
     found = [
         diagnostic for diagnostic in examine(tmp_path / "urdf/r.urdf.xacro").diagnostics if diagnostic.code == "XML101"
     ]
-    assert [(each.severity.name, str(each.message).partition("(")[2]) for each in found] == [
+    assert [(finding.severity.name, str(finding.message).partition("(")[2]) for finding in found] == [
         ("WARNING", "and 2 more)"),
         ("ERROR", ""),
     ]
@@ -628,7 +628,7 @@ def test_mesh_package_declared_by_sibling_package_is_an_info(tmp_path, declaring
     links = (f'<link name="{name}">{mesh.format(name)}</link>' for name in ("arm_description", "far_description"))
     (tmp_path / "p/r.urdf").write_text(robot("".join(links)))
     found = examine(tmp_path / "p/r.urdf").diagnostics
-    assert [each.severity.name for each in found if each.code == "LW423"] == ["INFO", "WARNING"]
+    assert [finding.severity.name for finding in found if finding.code == "LW423"] == ["INFO", "WARNING"]
 
 
 def test_material_is_not_reported_beside_missing_include(codes_of):
@@ -715,7 +715,7 @@ def test_launched_file_missing_only_from_old_build_is_accepted(tmp_path, there, 
     launch += "    return os.path.join(share, 'launch', 'sensors.launch.py')\n"
     (tmp_path / "src/p/launch/a.launch.py").write_text(launch)
     found = examine_package(tmp_path / "src/p", Settings(select=("LW842",))).diagnostics
-    assert [each.code for each in found] == codes
+    assert [finding.code for finding in found] == codes
 
 
 @pytest.mark.parametrize(("izz", "codes"), [(1, ["LW324"]), (3, ["LW314"])])

@@ -49,7 +49,7 @@ def check(tmp_path, monkeypatch, capsys):
 
 
 def codes(found):
-    return [(each["severity"], each["code"]) for each in found]
+    return [(finding["severity"], finding["code"]) for finding in found]
 
 
 def test_failure_without_arguments_is_one_info(check):
@@ -122,7 +122,7 @@ def test_finding_of_some_argument_sets_names_them(check):
         "--select",
         "LW401",
     )
-    boxes = {each["file"].rpartition("/")[2]: each for each in found if each["code"] == "LW401"}
+    boxes = {finding["file"].rpartition("/")[2]: finding for finding in found if finding["code"] == "LW401"}
     assert list(boxes) == ["common.xacro", "small.xacro"]
     assert not any("this happens" in note["message"] for note in boxes["common.xacro"]["notes"])
     assert "this happens with type:=small" in [note["message"] for note in boxes["small.xacro"]["notes"]]
@@ -235,7 +235,7 @@ Command(['xacro ', path, ' name:=a', ' type:=', LaunchConfiguration('type')])
     parts = ["large_six", "large_seven", "small_six", "small_seven"]
     parts.remove(f"{chosen}_seven")
     files = {**both, "arm/launch/view.launch.py": launch, **{f"arm/urdf/{name}.xacro": PART for name in parts}}
-    assert [each["code"] for each in check(files) if each["severity"] != "info"] == codes_found
+    assert [finding["code"] for finding in check(files) if finding["severity"] != "info"] == codes_found
 
 
 @pytest.mark.parametrize(
@@ -340,12 +340,12 @@ def test_copied_inertia_hides_too_large_inertia_of_other_set(check):
 </robot>"""
     launch = LAUNCH.replace("'name': 'a', 'type': kind", "'arm': kind").format(kinds="'false', 'true'")
     files = {"arm/urdf/arm.urdf.xacro": robot, "arm/launch/view.launch.py": launch}
-    assert [each["code"] for each in check(files) if each["code"].startswith("LW3")] == ["LW315"]
+    assert [finding["code"] for finding in check(files) if finding["code"].startswith("LW3")] == ["LW315"]
     alone = {
         "arm/urdf/arm.urdf.xacro": robot.replace('default="false"', 'default="true"'),
         "arm/launch/view.launch.py": "",
     }
-    assert [each["code"] for each in check(alone) if each["code"].startswith("LW3")] == ["LW324"]
+    assert [finding["code"] for finding in check(alone) if finding["code"].startswith("LW3")] == ["LW324"]
 
 
 TURNED = """
@@ -390,4 +390,4 @@ def test_property_named_by_argument_value_of_one_set_is_used(check):
     properties = "".join(f'<xacro:property name="{name}" value="1"/>' for name in ("size", "width", "other"))
     files = given_kinds(f'{properties}<link name="l${{$(arg kind)}}"/>', "size", "width")
     found = check(files, ".", "--select", "LW701")
-    assert [each["message"] for each in found] == ["nothing uses the property 'other'"]
+    assert [finding["message"] for finding in found] == ["nothing uses the property 'other'"]

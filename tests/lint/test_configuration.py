@@ -17,7 +17,10 @@ def findings_of(tmp_path: Path, text: str, name: str = "linkwright.toml") -> lis
     file.write_text(text, encoding="utf-8")
     settings, found = read_settings(file)
     assert isinstance(settings, Settings)
-    return [f"{each.span.line}:{each.span.column} {each.code} {each.message} | {each.hint}" for each in found]
+    return [
+        f"{finding.span.line}:{finding.span.column} {finding.code} {finding.message} | {finding.hint}"
+        for finding in found
+    ]
 
 
 def test_all_settings_are_read_from_toml(tmp_path):

@@ -24,7 +24,7 @@ def severities(tmp_path, links):
     path = tmp_path / "r.urdf"
     path.write_text(f'<robot name="r"><link name="world"/>{links}</robot>')
     found = examine(path, settings=Settings(select=("LW315", "LW320"))).diagnostics
-    return [(each.code, each.severity.value) for each in found]
+    return [(finding.code, finding.severity.value) for finding in found]
 
 
 @pytest.mark.parametrize(

@@ -46,7 +46,7 @@ def element(text: str, *path: str) -> Element:
 
 def applied(text: str, fix: Fix | None) -> str:
     assert fix is not None
-    for edit in sorted(fix.edits, key=lambda each: -each.start):
+    for edit in sorted(fix.edits, key=lambda edit: -edit.start):
         text = text[: edit.start] + edit.replacement + text[edit.end :]
     return text
 
@@ -99,10 +99,10 @@ def test_expression_is_not_a_literal():
 
 
 def test_element_without_source_has_no_fix():
-    made = Element("a", {"x": "1"})
-    assert replace_value(made, "x", "2") is None
-    assert remove_element(made) is None
-    assert add_attribute(made, "y", "2") is None
+    element = Element("a", {"x": "1"})
+    assert replace_value(element, "x", "2") is None
+    assert remove_element(element) is None
+    assert add_attribute(element, "y", "2") is None
 
 
 def fix(path: Path, *, unsafe: bool = False, write: bool = True, select: tuple[str, ...] = ("LW2",)):

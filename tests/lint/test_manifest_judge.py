@@ -64,4 +64,4 @@ def test_manifest_errors_match_catkin_pkg(tmp_path, text):
     except InvalidPackage:
         is_refused = True
     found = examine_package(tmp_path, Settings(select=("LW8",))).diagnostics
-    assert has_errors(found) == is_refused, [each.message for each in found]
+    assert has_errors(found) == is_refused, [finding.message for finding in found]

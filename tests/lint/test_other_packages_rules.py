@@ -65,7 +65,7 @@ def robot(tmp_path):
 
 def test_plugin_rules_run_beside_built_in_rules(installed, robot):
     installed(RULES)
-    assert [each.code for each in check(robot)] == ["TEAM001"]
+    assert [finding.code for finding in check(robot)] == ["TEAM001"]
 
 
 def test_plugin_rules_are_selected_suppressed_and_explained(installed, robot):
@@ -74,7 +74,7 @@ def test_plugin_rules_are_selected_suppressed_and_explained(installed, robot):
     assert settings_for(robot)[1] == ()
     assert check(robot) == []
     (robot.parent / "linkwright.toml").write_text('select = ["TEAM"]\nseverity = { TEAM001 = "error" }')
-    assert [each.severity.value for each in check(robot)] == ["error"]
+    assert [finding.severity.value for finding in check(robot)] == ["error"]
     assert "Nobody finds it again" in str(find_page("team001"))
 
 

@@ -83,7 +83,7 @@ def test_cmake_comments_strings_and_variables_are_parsed():
     assert file.project is not None
     assert file.project.text == "robot"
     assert [directory.text for directory in file.directories] == ["urdf", "mesh files", "rviz/", "launch"]
-    assert [each.text for each in file.files] == ["scripts/run.py"]
+    assert [argument.text for argument in file.files] == ["scripts/run.py"]
     assert file.executables == {"driver", "run.py"}
     assert file.is_complete
     assert file.is_ament

@@ -39,14 +39,14 @@ FOUND = {
 def test_corpus_robots_have_only_expected_warnings(model):
     settings = Settings(select=RULES, ignore=("LW411", "LW424", "LW507", "LW508"))
     found = examine(model.path, arguments=model.arguments, packages=model.packages, settings=settings).diagnostics
-    warned = {each.code for each in found if each.severity.value != "info" and each.code.startswith(RULES)}
+    warned = {finding.code for finding in found if finding.severity.value != "info" and finding.code.startswith(RULES)}
     assert warned == FOUND.get(model.data["entry"], set())
 
 
 @pytest.mark.parametrize("path", sorted(PACKAGE.glob("urdf/mbot_*")), ids=lambda path: path.name)
 def test_mbot_has_no_shape_findings(path):
     found = examine(path, settings=Settings(select=RULES)).diagnostics
-    assert [each.message for each in found if each.code.startswith(RULES)] == []
+    assert [finding.message for finding in found if finding.code.startswith(RULES)] == []
 
 
 NUMBER = re.compile(r'(?<=["\s])-?\d+(?:\.\d+)?(?:e-?\d+)?(?=["\s])')

@@ -68,4 +68,4 @@ def test_unused_suppression_is_reported_with_any_selection(tmp_path):
         "  </joint> <!-- linkwright: ignore LW2 -->\n</robot>\n"
     )
     found = check(path, settings=Settings(select=("LW001",)))
-    assert [(each.code, each.span.line) for each in found] == [("LW001", 8)]
+    assert [(finding.code, finding.span.line) for finding in found] == [("LW001", 8)]
