@@ -123,15 +123,15 @@ async def test_hover_of_link_uses_facts_of_its_own_file(package):
         '<mass value="{1}"/><inertia ixx="1" iyy="1" izz="1" ixy="0" ixz="0" iyz="0"/></inertial></link>'
         "</xacro:macro></robot>"
     )
-    one = '<robot xmlns:xacro="http://www.ros.org/wiki/xacro" name="r">{}</robot>'
+    template = '<robot xmlns:xacro="http://www.ros.org/wiki/xacro" name="r">{}</robot>'
     included = "".join(f'<xacro:include filename="{name}.xacro"/>' for name in ("first", "second"))
     masses = {"first": 1.5, "second": 2.5, "third": 3.5}
     for name, mass in masses.items():
         (package / "urdf" / f"{name}.xacro").write_text(arm.format(name, mass))
-    (package / "urdf" / "a.urdf.xacro").write_text(one.format(f"{included}<xacro:second/>"))
-    (package / "urdf" / "b.urdf.xacro").write_text(one.format(f"{included}<xacro:first/>"))
+    (package / "urdf" / "a.urdf.xacro").write_text(template.format(f"{included}<xacro:second/>"))
+    (package / "urdf" / "b.urdf.xacro").write_text(template.format(f"{included}<xacro:first/>"))
     (package / "urdf" / "c.urdf.xacro").write_text(
-        one.format('<xacro:include filename="third.xacro"/><link name="elbow"/>')
+        template.format('<xacro:include filename="third.xacro"/><link name="elbow"/>')
     )
     shown = {}
     async with connected(package, types.ClientCapabilities()) as editor:

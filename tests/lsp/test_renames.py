@@ -71,7 +71,7 @@ async def test_references_to_renamed_file_are_updated(editor, package):
     edit = await editor.client.workspace_will_rename_files_async(types.RenameFilesParams([renamed]))
     (change,) = edit.document_changes
     assert change.text_document.uri == editor.uri("urdf/arm.urdf.xacro")
-    assert [each.new_text for each in change.edits] == ["sub/parts2.xacro"]
+    assert [edit.new_text for edit in change.edits] == ["sub/parts2.xacro"]
     assert any("view.launch.py:1 (parts.xacro)" in message for message in editor.messages)
 
 

@@ -23,7 +23,7 @@ def place(text: str, mark: str, after: int = 0) -> types.Position:
 def applied(text: str, edits) -> str:
     """Return a text with the edits of the server."""
     lines = text.splitlines(keepends=True)
-    for edit in sorted(edits, key=lambda each: each.range.start.line, reverse=True):
+    for edit in sorted(edits, key=lambda edit: edit.range.start.line, reverse=True):
         assert edit.range.start.character == edit.range.end.character == 0
         lines[edit.range.start.line : edit.range.end.line] = [edit.new_text]
     return "".join(lines)
@@ -73,11 +73,11 @@ async def test_folds_selections_and_linked_tags_are_returned(editor):
         lengths.append((end.line - start.line, end.character - start.character))
         selection = selection.parent
     written = ("continuous", 'type="continuous"', '<joint name="${name}_joint" type="continuous">')
-    assert lengths[:3] == [(0, len(each)) for each in written]
+    assert lengths[:3] == [(0, len(text)) for text in written]
     linked = await editor.client.text_document_linked_editing_range_async(
         types.LinkedEditingRangeParams(document, place(text, "<joint", 3))
     )
-    assert [each.start.line for each in linked.ranges] == [3, 7]
+    assert [linked_range.start.line for linked_range in linked.ranges] == [3, 7]
 
 
 async def test_code_action_fixes_finding(editor):

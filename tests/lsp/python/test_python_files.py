@@ -134,7 +134,7 @@ async def test_unsaved_text_reaches_servers(editor: Editor) -> None:
     text += "        self.get_logger().inf\n"
     editor.change(TALKER, text)
     found = await editor.until(TALKER, "F401", "missing-attribute")
-    assert "has no attribute `inf`" in {each.code: each.message for each in found}["missing-attribute"]
+    assert "has no attribute `inf`" in {finding.code: finding.message for finding in found}["missing-attribute"]
     assert "info" in await labels(editor, TALKER, place(text, "logger().inf", more=12))
     editor.change(TALKER, text.replace("().inf", "().info('说😀')"))
     await editor.until(TALKER, "F401")
@@ -178,12 +178,12 @@ async def test_ruff_formats_and_fixes(editor: Editor) -> None:
     context = types.CodeActionContext(found)
     asked = types.CodeActionParams(document, unused.range, context)
     actions = await editor.client.text_document_code_action_async(asked)
-    fixes = [each for each in actions or () if isinstance(each, types.CodeAction)]
-    fix_all = next(each for each in fixes if str(each.kind).startswith("source.fixAll"))
+    fixes = [action for action in actions or () if isinstance(action, types.CodeAction)]
+    fix_all = next(fix for fix in fixes if str(fix.kind).startswith("source.fixAll"))
     resolved = await editor.client.code_action_resolve_async(fix_all)
     assert "import os" not in str(resolved.edit)
     assert resolved.edit is not None
-    assert any("Remove unused import" in each.title for each in fixes)
+    assert any("Remove unused import" in fix.title for fix in fixes)
 
 
 async def test_launch_file_combines_linkwright_and_ty_completions(editor: Editor) -> None:
