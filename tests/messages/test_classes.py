@@ -328,7 +328,7 @@ def test_threads_get_same_class(interface_package):
     names = [f"{interface_package.name}/msg/Shared{number}" for number in range(20)] * 4
     with ThreadPoolExecutor(8) as pool:
         asked = [pool.submit(copy_context().run, get_message, name) for name in names]
-        classes = [each.result() for each in asked]
+        classes = [future.result() for future in asked]
     assert len(set(classes)) == 20
     assert all(issubclass(cls, Message) for cls in classes)
 

@@ -229,7 +229,7 @@ class TestWorkspace:
     def test_ros_1_types_are_reported(self, interface_package):
         interface_package.write("msg", "Old", "Header header\ntime stamp\nduration length\n")
         found = self.found(f"{interface_package.name}/msg/Old")
-        assert [each.code for each in found] == ["MSG117"] * 3
+        assert [diagnostic.code for diagnostic in found] == ["MSG117"] * 3
         assert found[0].hint == "use 'std_msgs/Header' in ROS 2"
 
     def test_package_can_define_its_own_header(self, interface_package):
@@ -243,8 +243,8 @@ class TestWorkspace:
         interface_package.write("msg", "Three", "One[] one\n")
         interface_package.write("msg", "Self", "Self[] me\n")
         name = interface_package.name
-        for each in ("One", "Two", "Three", "One"):
-            (found,) = self.found(f"{name}/msg/{each}")
+        for message_name in ("One", "Two", "Three", "One"):
+            (found,) = self.found(f"{name}/msg/{message_name}")
             assert found.code == "MSG116"
             assert "would contain itself" in found.message
         (found,) = self.found(f"{name}/msg/Self")
