@@ -50,9 +50,9 @@ class Case:
         with redirect_stdout(output), redirect_stderr(io.StringIO()):
             status = main(["check", "--format", "json", str(package / self.file), *self.arguments])
         found = json.loads(output.getvalue())["diagnostics"]
-        assert status == any(each["severity"] == "error" for each in found)
+        assert status == any(finding["severity"] == "error" for finding in found)
         return (
-            "\n".join(line for each in found for line in _lines(each, package))
+            "\n".join(line for finding in found for line in _lines(finding, package))
             .replace(f"{package}/", "")
             .replace(f"{folder}", "FOLDER")
         )
