@@ -49,20 +49,20 @@ def scene(graph, clock) -> Scene:
 
 @pytest.fixture
 def start(graph, scene):
-    made = []
+    nodes = []
 
     def start(name="global_costmap", parameters=GLOBAL, **more):
         options = NodeOptions()
         for key, value in {**parameters, **more}.items():
             options.parameters_of_others.set(f"/{name}/{name}", key, value)
         node = make_costmap(scene.node, graph, options, name)
-        made.append(node)
+        nodes.append(node)
         if node.trigger_configure() == TransitionCallbackReturn.SUCCESS:
             node.trigger_activate()
         return node
 
     yield start
-    for node in made:
+    for node in nodes:
         node.shut_down()
         node.destroy_node()
 
@@ -254,11 +254,11 @@ async def test_unsupported_layers_and_filters_are_reported_and_ignored(scene, st
             "keepout_filter.enabled": True,
         },
     )
-    logged = [each.text for each in log]
+    logged = [record.text for record in log]
     assert "layers of type my_package::Sonar are not supported: the costmap ignores 'sonar'" in logged
     assert "costmap filters are not supported: the costmap ignores keepout_filter" in logged
     assert "layers that 'plugins' does not name are ignored: obstacle_layer" in logged
-    assert not [each for each in logged if "is not a parameter" in each or "are not read" in each]
+    assert not [text for text in logged if "is not a parameter" in text or "are not read" in text]
 
 
 @pytest.mark.parametrize(
@@ -273,4 +273,4 @@ async def test_unsupported_layers_and_filters_are_reported_and_ignored(scene, st
 async def test_invalid_parameters_are_reported(scene, start, log, given, why):
     node = start(**given)
     assert not node.is_active
-    assert [each for each in log if why in each.text]
+    assert [record for record in log if why in record.text]

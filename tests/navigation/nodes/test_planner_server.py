@@ -66,22 +66,22 @@ class Goal:
 
 @pytest.fixture
 async def server(graph, scene):
-    made = []
+    nodes = []
 
     async def start(kind=PlannerServer, grid=None, costmap=None, **parameters):
         rules = ParameterRules()
         for key, value in {**COSTMAP, **(costmap or {})}.items():
             rules.set("/global_costmap/global_costmap", key, value)
         node = kind(graph, NodeOptions(parameters={"autostart_node": True, **parameters}, parameters_of_others=rules))
-        made.append(node)
+        nodes.append(node)
         scene.tell_map(walls() if grid is None else grid)
         scene.tell_pose()
         await scene.run(0.5)
         return node
 
     yield start
-    for each in made:
-        each.close()
+    for planner in nodes:
+        planner.close()
 
 
 @pytest.fixture
@@ -136,8 +136,8 @@ async def test_compute_path_through_poses_visits_all_poses(scene, server):
     found = poses_from_messages(result.path.poses)
     assert status == SUCCEEDED
     assert found[-1] == pytest.approx([3.0, 1.0, 2.0])
-    for each in goals[:2]:
-        x, y = each.pose.position.x, each.pose.position.y
+    for goal_pose in goals[:2]:
+        x, y = goal_pose.pose.position.x, goal_pose.pose.position.y
         assert np.hypot(found[:, 0] - x, found[:, 1] - y).min() < 1e-6
 
 
@@ -220,13 +220,13 @@ async def test_planners_are_chosen_by_name(jazzy, scene, server, log):
     smac = {"Smac.plugin": "nav2_smac_planner/SmacPlannerHybrid", "Smac.minimum_turning_radius": 0.4}
     near = {"Near.plugin": "nav2_navfn_planner::NavfnPlanner", "Near.tolerance": 0.0}
     await server(planner_plugins=["Smac", "Near"], **smac, **near)
-    logged = [each.text for each in log]
+    logged = [record.text for record in log]
     assert [
-        each
-        for each in logged
-        if each.startswith("nav2_smac_planner/SmacPlannerHybrid is not supported: plans of 'Smac'")
+        text
+        for text in logged
+        if text.startswith("nav2_smac_planner/SmacPlannerHybrid is not supported: plans of 'Smac'")
     ]
-    assert not [each for each in logged if "Near" in each and "is not supported" in each]
+    assert not [text for text in logged if "Near" in text and "is not supported" in text]
     by_wall = pose(0.15, 1.5)
     assert (await to_pose(scene, by_wall, planner_id="Smac").ended())[0] == SUCCEEDED
     status, result = await to_pose(scene, by_wall, planner_id="Near").ended()
@@ -249,7 +249,7 @@ async def test_nav2_bringup_parameters_load_without_warning(graph, log, kind):
     options = NodeOptions(arguments=["--ros-args", "--params-file", str(file)], parameters={"autostart_node": True})
     node = kind(graph, options)
     assert node.node.is_active
-    assert not [each.text for each in log if each.level >= LogLevel.WARN or "are not read" in each.text]
+    assert not [record.text for record in log if record.level >= LogLevel.WARN or "are not read" in record.text]
     node.close()
 
 

@@ -65,10 +65,10 @@ class Nav2:
         """Publish the states of goals, each accepted a second after the one before."""
         message = GoalStatusArray()
         for number, status in enumerate(statuses):
-            each = GoalStatus(status=status)
-            each.goal_info.stamp.sec = number
-            each.goal_info.goal_id.uuid = [number] * 16
-            message.status_list.append(each)
+            goal_status = GoalStatus(status=status)
+            goal_status.goal_info.stamp.sec = number
+            goal_status.goal_info.goal_id.uuid = [number] * 16
+            message.status_list.append(goal_status)
         self.status.publish(message)
 
     def progress(self, distance: float) -> None:
@@ -147,8 +147,8 @@ async def test_goal_failure_before_page_opened_is_not_shown():
         async with page(world.viewer) as client:
             await client.opened()
             nav2.goal(6, 5)
-            messages = [each for each in await client.drain(0.6) if isinstance(each, dict)]
-            assert not any(each["failed"] for each in messages if each["type"] == "goal_outcome")
+            messages = [message for message in await client.drain(0.6) if isinstance(message, dict)]
+            assert not any(message["failed"] for message in messages if message["type"] == "goal_outcome")
 
 
 async def test_buttons_command_both_managers_in_order_of_nav2():

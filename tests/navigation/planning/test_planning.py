@@ -28,7 +28,7 @@ def costmap(cells) -> Costmap:
 def drawn(*rows: str) -> Costmap:
     """A costmap of characters: # lethal, o inscribed, ? unknown, the last row is that of y = 0."""
     costs = {"#": LETHAL, "o": INSCRIBED, "?": UNKNOWN, ".": 0}
-    return costmap([[costs[each] for each in row] for row in reversed(rows)])
+    return costmap([[costs[character] for character in row] for row in reversed(rows)])
 
 
 def inflated(obstacles) -> Costmap:

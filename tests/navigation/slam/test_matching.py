@@ -26,7 +26,7 @@ EVERYWHERE = Search(
 @pytest.fixture(scope="module")
 def reference():
     rng = np.random.default_rng(3)
-    poses = np.array([[-4.0 + 0.4 * each, -3.0, 0.02 * each] for each in range(10)])
+    poses = np.array([[-4.0 + 0.4 * step, -3.0, 0.02 * step] for step in range(10)])
     return Reference([scan_at(WALLS, pose, rng=rng) for pose in poses], poses)
 
 
@@ -80,7 +80,7 @@ def test_branch_and_bound_matches_exhaustive_search(reference):
 def test_match_in_corridor_keeps_odometry_along_it():
     walls = np.array([[(-50, -1), (50, -1)], [(-50, 1), (50, 1)]], dtype=float)
     rng = np.random.default_rng(2)
-    poses = np.array([[0.2 * each, 0.0, 0.0] for each in range(5)])
+    poses = np.array([[0.2 * step, 0.0, 0.0] for step in range(5)])
     reference = Reference([scan_at(walls, pose, rng=rng, farthest=6) for pose in poses], poses)
     true, guess = np.array([1.3, 0.1, 0.05]), np.array([1.1, 0.0, 0.0])
     found = run_to_end(match_scan(reference, scan_at(walls, true, rng=rng, farthest=6), guess, Search()))
