@@ -50,7 +50,7 @@ async def test_unfetched_exports_expire(served):
     await served.settle()
     async with page(served.viewer) as client:
         ready = [await exported(client) for _ in range(6)]
-        assert [(await raw(served.viewer, each["url"]))[0] for each in ready] == [404, 404, 200, 200, 200, 200]
+        assert [(await raw(served.viewer, export["url"]))[0] for export in ready] == [404, 404, 200, 200, 200, 200]
 
 
 async def test_failed_export_reports_reason(served):

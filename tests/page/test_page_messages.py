@@ -37,8 +37,8 @@ def anything(kind: Any, name: str, chance: random.Random) -> Any:
     origin, arguments = typing.get_origin(kind), typing.get_args(kind)
     if isinstance(kind, type) and issubclass(kind, msgspec.Struct):
         hints = typing.get_type_hints(kind)
-        made = {field: anything(hints[field], field, chance) for field in kind.__struct_fields__}
-        return made | ({"type": kind.__struct_config__.tag} if issubclass(kind, PageMessage) else {})
+        fields = {field: anything(hints[field], field, chance) for field in kind.__struct_fields__}
+        return fields | ({"type": kind.__struct_config__.tag} if issubclass(kind, PageMessage) else {})
     if origin is typing.Literal:
         return chance.choice(arguments)
     if origin is list:

@@ -314,15 +314,15 @@ async def test_thousand_idle_connections_do_not_disturb_pages(served):
         assert (await raw(served.viewer, mesh_url(served.viewer)))[:2] == (200, "solid arm")
         await eventually(lambda: served.viewer._server.web._admission._count <= MAX_CONNECTIONS)
         assert memory() - before < 64 << 20
-        for each in knocking:
-            each.close()
+        for connection in knocking:
+            connection.close()
         await is_served(client)
 
 
 async def test_web_sockets_beyond_maximum_are_rejected(served):
     address = served.viewer.url.replace("/?", "/ws?")
     statuses: list[int] = []
-    kept: list[aiohttp.ClientWebSocketResponse | None] = []
+    sockets: list[aiohttp.ClientWebSocketResponse | None] = []
     async with page(served.viewer) as client, aiohttp.ClientSession(connector=aiohttp.TCPConnector(limit=0)) as session:
 
         async def connect() -> aiohttp.ClientWebSocketResponse | None:
@@ -336,7 +336,7 @@ async def test_web_sockets_beyond_maximum_are_rejected(served):
 
         await client.opened()
         for _ in range(10):
-            kept += await asyncio.gather(*(connect() for _ in range(100)))
+            sockets += await asyncio.gather(*(connect() for _ in range(100)))
             await is_served(client)
         assert set(statuses) <= {0, 503}
         assert len(statuses) >= 1000 - MAX_PAGES

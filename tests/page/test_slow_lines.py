@@ -234,8 +234,8 @@ async def test_four_pages_drop_only_stale_frames():
             assert len(quick.delays) > 270  # of 300
             assert np.percentile([delay for _, delay in quick.delays[:-1]], 95) < 0.2
         assert len(slow.delays) < len(a.delays)
-        for each in (a, b, c, slow):
-            assert each.x == x  # the last place arrives everywhere
+        for client in (a, b, c, slow):
+            assert client.x == x  # the last place arrives everywhere
 
 
 class Hand:

@@ -60,12 +60,12 @@ class Sender:
             return REFUSED if "problem" in message else answer.status, message
 
     async def announce(self, name: str, files: dict[str, int]) -> tuple[int, dict[str, str]]:
-        listed = [{"name": each, "size": size} for each, size in files.items()]
+        listed = [{"name": name, "size": size} for name, size in files.items()]
         return await self.ask("POST", "recordings", json={"name": name, "files": listed})
 
     async def send(self, name: str, files: dict[str, bytes]) -> tuple[int, dict[str, str]]:
         """Send a whole recording, and return the last answer."""
-        status, answer = await self.announce(name, {each: len(data) for each, data in files.items()})
+        status, answer = await self.announce(name, {name: len(data) for name, data in files.items()})
         if status != 200:
             return status, answer
         key = answer["key"]
