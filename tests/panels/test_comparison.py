@@ -119,7 +119,7 @@ async def test_page_receives_differences_with_links(tmp_path):
         assert marks(message, "old") == {"camera": "removed"}
         assert marks(message, "new") == {"lidar": "added", "lower": "changed", "upper": "changed"}
         assert message["joints"] == {"turn": "spin"}, "a joint that turned and slides now follows nothing"
-        items = {(each["subject"], each["name"], each["property"]): each for each in message["items"]}
+        items = {(item["subject"], item["name"], item["property"]): item for item in message["items"]}
         mass = items["link", "lower", "inertial mass"]
         assert (mass["old"], mass["new"], mass["unit"], mass["element"]) == ("1", "2", "kg", "lower")
         assert (mass["old_place"]["line"], mass["new_place"]["line"]) == (3, 3)
@@ -130,7 +130,7 @@ async def test_page_receives_differences_with_links(tmp_path):
         joint = items["joint", "mount", ""]
         assert (joint["element_kind"], joint["element"], joint["in_old"]) == ("joint", "mount", True)
         assert items["joint", "spin", "name"]["kind"] == "renamed"
-        friction = next(each for each in message["items"] if each["subject"] == "extension")
+        friction = next(item for item in message["items"] if item["subject"] == "extension")
         assert (friction["element_kind"], friction["element"], friction["in_old"]) == ("link", "lower", False)
 
 
@@ -200,7 +200,9 @@ async def test_exported_comparison_contains_no_paths(tmp_path):
         await client.until("compared_descriptions")
         manager = both.world.viewer.manager
         result = next(
-            each for each in both.world.viewer.configuration_messages(manager) if isinstance(each, ComparedDescriptions)
+            message
+            for message in both.world.viewer.configuration_messages(manager)
+            if isinstance(message, ComparedDescriptions)
         )
         bare = without_paths(result)
         assert (bare.old.label, bare.new.label) == ("old.urdf", "new.urdf")

@@ -25,13 +25,13 @@ async def test_configuration_is_saved_and_reopened(tmp_path):
         assert yaml.safe_load(path.read_text())["Visualization Manager"]["Displays"][0]["Alpha"] == 0.25
         await client.send("new_configuration", discard=False)
         tree = await client.until("tree")
-        assert [each["name"] for each in tree["displays"]] == ["Grid"]
+        assert [display["name"] for display in tree["displays"]] == ["Grid"]
         state = await client.until("configuration", path=None)
         assert (state["opened"], state["unsaved"], state["undo"]) == (2, False, None)
         await client.send("open_configuration", path=str(path), discard=False)
         tree = await client.until("tree")
-        assert [each["name"] for each in tree["displays"]] == ["Grid", "Marks", "Clicks", "Radar"]
-        assert {each["id"] for each in tree["displays"]}.isdisjoint({f"display-{n}" for n in range(1, 6)})
+        assert [display["name"] for display in tree["displays"]] == ["Grid", "Marks", "Clicks", "Radar"]
+        assert {display["id"] for display in tree["displays"]}.isdisjoint({f"display-{n}" for n in range(1, 6)})
     assert not list(tmp_path.glob(".*rviz*"))
 
 

@@ -205,7 +205,7 @@ async def test_robot_with_all_meshes_missing_is_reported(files):
         for shapes, codes in ((mesh, ["VIEW207"]), (box + mesh, []), (mesh, ["VIEW207"])):
             world.describe(f'<robot name="r"><link name="base">{shapes}</link></robot>')
             message = await client.until("diagnostics")
-            assert [each["code"] for each in message["items"]] == codes
+            assert [item["code"] for item in message["items"]] == codes
         (note,) = message["items"][0]["notes"]
         assert "gone.stl" in note["message"]
 

@@ -83,7 +83,7 @@ async def test_link_parts_have_numbers_and_locations(file: Path) -> None:
         await client.until("description_changed")
         answer = await parts(client, "mast")
         assert answer["why_not"] == ""
-        found = [(each["part"], each["name"], each["title"], each["xyz"], each["rpy"]) for each in answer["parts"]]
+        found = [(part["part"], part["name"], part["title"], part["xyz"], part["rpy"]) for part in answer["parts"]]
         assert found == [
             ("joint", "turn", "continuous", [0, 0, 0.25], [0, 0, 0.5]),
             ("axis", "turn", "continuous", [0, 0, 1], []),
@@ -91,14 +91,14 @@ async def test_link_parts_have_numbers_and_locations(file: Path) -> None:
             ("collision", "mast", "mast.stl", [0, 0, 0], [0, 0, 0]),
             ("inertial", "mast", "1.5 kg", [0, 0, 0.4], [0, 0, 0]),
         ]
-        assert [each["written"] for each in answer["parts"]] == [
+        assert [part["written"] for part in answer["parts"]] == [
             'xyz="0 0 ${height}" rpy="0 0 0.5"',
             'xyz="0 0 1"',
             'xyz="0 0 0.5"',
             "",
             'xyz="0 0 0.4"',
         ]
-        assert {(each["file"], each["line"]) for each in answer["parts"][:2]} == {(str(file), 19)}
+        assert {(part["file"], part["line"]) for part in answer["parts"][:2]} == {(str(file), 19)}
 
 
 async def test_sdf_robot_cannot_be_edited(tmp_path: Path) -> None:
@@ -196,11 +196,11 @@ async def test_description_without_file_cannot_be_edited(file: Path) -> None:
 
 
 async def test_page_on_another_machine_cannot_edit(file: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    made = Page.__init__
+    initialize = Page.__init__
 
     def elsewhere(self: Page, *words: Any, is_local: bool = False, **named: Any) -> None:
         assert is_local, "the page of the test is on this machine"
-        made(self, *words, is_local=False, **named)
+        initialize(self, *words, is_local=False, **named)
 
     monkeypatch.setattr(Page, "__init__", elsewhere)
     async with open_world() as world, page(world.viewer) as client:

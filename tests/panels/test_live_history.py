@@ -99,10 +99,10 @@ async def test_pending_messages_are_stored_when_history_is_read():
         assert not live.has_playback
         began, end = live.span_ns
         assert began <= end
-        kept = [
+        positions = [
             deserialize(data, TFMessage).batch.poses[0, 0] for _, _, data in live.history.messages_between(began, end)
         ]
-        assert kept == [0.0, 1.0, 2.0]
+        assert positions == [0.0, 1.0, 2.0]
         assert live.size > 0
 
 

@@ -51,7 +51,7 @@ def test_panels_on_collapsed_window_side_are_not_shown():
 
 def test_rviz1_panel_names_are_recognized_and_unnamed_entries_skipped():
     former = ("Displays, Name: Displays", "Time, Name: Zeit", "Views")
-    config = parsed(panels="Panels:\n" + "".join(f"  - {{Class: rviz/{each}}}\n" for each in former))
+    config = parsed(panels="Panels:\n" + "".join(f"  - {{Class: rviz/{name}}}\n" for name in former))
     assert config.panels.shown == ["displays", "time"]
     config.panels.show(["displays", "time", "selection", "transformation"])
     assert config.panels.shown == ["displays", "time", "selection"]

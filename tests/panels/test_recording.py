@@ -124,7 +124,7 @@ async def test_pages_share_recording_that_outlives_its_page():
             world.move_arm(2.0)
             await world.settle()
             await late.send("stop_recording")
-            assert [each["path"] for each in (await wait_for_end(late))["files"]] == [state["path"]]
+            assert [file["path"] for file in (await wait_for_end(late))["files"]] == [state["path"]]
 
 
 @skipping
@@ -152,7 +152,7 @@ async def test_recordings_within_one_second_get_unique_names(folder: Path):
             await wait_for_end(client)
             paths.add(state["path"])
         assert len(paths) == 3
-        assert {str(folder / each) for each in made_in(folder)} == paths
+        assert {str(folder / name) for name in made_in(folder)} == paths
 
 
 @skipping

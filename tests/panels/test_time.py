@@ -95,27 +95,27 @@ def test_displayed_time_stops_while_paused():
 
 
 async def test_pause_stops_frames_and_messages_for_all_pages():
-    async with open_world(config()) as world, page(world.viewer) as one, page(world.viewer) as other:
+    async with open_world(config()) as world, page(world.viewer) as first, page(world.viewer) as second:
         node = world.graph.create_node("clicker")
         points = node.create_publisher(POINT, "/p", 10)
-        await one.opened()
-        await other.opened()
+        await first.opened()
+        await second.opened()
         world.move_arm(x=1.0)
-        await arrived(one, "tip", 1.0)
-        await other.send("set_time", paused=True, mode="Off", source="")
-        assert (await one.until("time_state"))["paused"] is True
-        await one.drain()
+        await arrived(first, "tip", 1.0)
+        await second.send("set_time", paused=True, mode="Off", source="")
+        assert (await first.until("time_state"))["paused"] is True
+        await first.drain()
         world.move_arm(x=2.0)
         world.move_arm(x=3.0)
         points.publish(point(0.25, time.time()))
         await world.settle()
-        drained = await one.drain()
-        assert all(isinstance(each, dict) for each in drained)  # neither transforms nor data
+        drained = await first.drain()
+        assert all(isinstance(message, dict) for message in drained)  # neither transforms nor data
         async with page(world.viewer) as late:
             assert (await late.opened())["time_state"]["paused"] is True
             await arrived(late, "tip", 1.0)
-        await one.send("set_time", paused=False, mode="Off", source="")
-        await arrived(one, "tip", 3.0)
+        await first.send("set_time", paused=False, mode="Off", source="")
+        await arrived(first, "tip", 3.0)
         display = world.display("PointStamped")
         assert len(display.data()) == 1
 
@@ -201,13 +201,17 @@ async def test_reset_clears_displays_and_dynamic_frames():
 async def test_clock_is_sent_only_to_watching_pages():
     async with open_world() as world, page(world.viewer) as client:
         await client.opened()
-        assert not [each for each in await client.drain() if isinstance(each, dict) and each["type"] == "clock"]
+        assert not [
+            message for message in await client.drain() if isinstance(message, dict) and message["type"] == "clock"
+        ]
         await client.send("watch_clock", watching=True)
         clock = await client.until("clock")
         assert abs(clock["ros"] - time.time()) < 5
         assert clock["running"] is True
         assert 0 <= clock["wall"] - clock["wall_start"] < 5
-        assert not [each for each in await client.drain() if isinstance(each, dict) and each["type"] == "clock"]
+        assert not [
+            message for message in await client.drain() if isinstance(message, dict) and message["type"] == "clock"
+        ]
         await client.send("set_time", paused=True, mode="Off", source="")
         assert (await client.until("clock"))["running"] is False
 

@@ -58,7 +58,7 @@ async def test_page_receives_timeline_and_playback_starts(tmp_path):
     async with shown(tmp_path) as world, page(world.viewer) as client:
         timeline = await client.until("timeline")
         assert (timeline["name"], timeline["start"], timeline["end"]) == ("drive", START, START + 10)
-        assert {each["name"]: sum(each["counts"]) for each in timeline["topics"]} == {"/p": 11, "/tf": 11}
+        assert {topic["name"]: sum(topic["counts"]) for topic in timeline["topics"]} == {"/p": 11, "/tf": 11}
         await client.until("playhead", playing=True)
         await arrived(client, "tip", 3)
         await client.until("playhead", playing=False, position=START + 10)
@@ -105,7 +105,7 @@ async def test_recorded_simulation_has_no_simulation_bar(tmp_path):
                 for message in client.messages
                 if isinstance(message, dict) and message["type"] == "simulation_status"
             ]
-            assert not any(each["present"] for each in messages)
+            assert not any(message["present"] for message in messages)
 
 
 @skipping

@@ -73,7 +73,7 @@ def test_file_without_tools_uses_defaults():
     assert "Tools" not in config.text()
     config.tools.remove(config.tools.entries[0].id)
     config.tools.add("rviz_default_plugins/Measure")
-    assert [each["Class"] for each in tools_of(config)] == [*list(DEFAULT_TOOLS)[1:], "rviz_default_plugins/Measure"]
+    assert [tool["Class"] for tool in tools_of(config)] == [*list(DEFAULT_TOOLS)[1:], "rviz_default_plugins/Measure"]
     with pytest.raises(ValueError, match="no tool"):
         config.tools.add("no/Such")
     while len(config.tools.entries) < 100:
@@ -124,17 +124,17 @@ async def test_tools_publish_poses_and_points_in_fixed_frame(config):
 
 
 async def test_tool_topic_can_be_changed_and_invalid_topic_is_rejected(config):
-    async with open_world(config) as world, page(world.viewer) as one, page(world.viewer) as other:
-        goal = (await one.opened())["tools"]["tools"][1]
-        await other.opened()
+    async with open_world(config) as world, page(world.viewer) as first, page(world.viewer) as second:
+        goal = (await first.opened())["tools"]["tools"][1]
+        await second.opened()
         topic = f"{goal['id']}/Topic"
         assert rows_by_id(goal["properties"])[topic]["value"] == "/move_base_simple/goal"
-        await one.send("set_tool_property", id=topic, value="/elsewhere")
-        assert (await other.until("tool_property_changed"))["value"] == "/elsewhere"
-        await one.send("set_tool_property", id=topic, value="not a name!")
-        assert (await one.until("tool_property_changed", value="/elsewhere"))["id"] == topic
+        await first.send("set_tool_property", id=topic, value="/elsewhere")
+        assert (await second.until("tool_property_changed"))["value"] == "/elsewhere"
+        await first.send("set_tool_property", id=topic, value="not a name!")
+        assert (await first.until("tool_property_changed", value="/elsewhere"))["id"] == topic
         heard = listen(world, "geometry_msgs/msg/PoseStamped", "/elsewhere")
-        await one.send("pose_chosen", tool=goal["id"], x=3.0, y=4.0, yaw=0.0)
+        await first.send("pose_chosen", tool=goal["id"], x=3.0, y=4.0, yaw=0.0)
         await eventually(lambda: heard)
         await world.settle()
     assert len(heard) == 1
@@ -142,16 +142,16 @@ async def test_tool_topic_can_be_changed_and_invalid_topic_is_rejected(config):
 
 
 async def test_tools_are_added_and_removed_on_all_pages(config):
-    async with open_world(config) as world, page(world.viewer) as one, page(world.viewer) as other:
-        tools = (await one.opened())["tools"]["tools"]
-        await other.opened()
-        await one.send("add_tool", cls="rviz_default_plugins/Measure")
-        added = (await other.until("tools"))["tools"]
+    async with open_world(config) as world, page(world.viewer) as first, page(world.viewer) as second:
+        tools = (await first.opened())["tools"]["tools"]
+        await second.opened()
+        await first.send("add_tool", cls="rviz_default_plugins/Measure")
+        added = (await second.until("tools"))["tools"]
         assert [tool["name"] for tool in added] == [*(tool["name"] for tool in tools), "Measure"]
-        await other.send("remove_tool", id=tools[0]["id"])
-        await one.until("tools")
-        assert [tool["id"] for tool in (await one.until("tools"))["tools"]] == [tool["id"] for tool in added[1:]]
-    assert [each["Class"].rpartition("/")[2] for each in tools_of(config)] == [
+        await second.send("remove_tool", id=tools[0]["id"])
+        await first.until("tools")
+        assert [tool["id"] for tool in (await first.until("tools"))["tools"]] == [tool["id"] for tool in added[1:]]
+    assert [tool["Class"].rpartition("/")[2] for tool in tools_of(config)] == [
         "SetGoal",
         "GoalTool",
         "SetInitialPose",

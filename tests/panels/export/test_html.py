@@ -151,8 +151,8 @@ async def test_html_contains_markers():
         world.graph.create_node("marks").create_publisher(type(marker), topic, 10).publish(marker)
         await world.settle()
         world.viewer.manager.fit_to_robot(2.0, 0.0)
-        taken = snapshot_of(world.viewer, world.viewer.manager)
-    logged = recorded(export_snapshot(taken, "html").decode())
+        snapshot = snapshot_of(world.viewer, world.viewer.manager)
+    logged = recorded(export_snapshot(snapshot, "html").decode())
     assert logged["awaits_size"] is False  # a page had measured the robot
     assert logged["spacing"] is None
     frames = [base64.b64decode(frame) for frame in logged["frames"]]

@@ -69,11 +69,11 @@ async def test_topic_list_follows_graph():
         node.create_publisher(FLOAT, "/speed", 10)
         while True:
             listed = await client.until("topic_list")
-            row = next((each for each in listed["topics"] if each["name"] == "/speed"), None)
+            row = next((topic for topic in listed["topics"] if topic["name"] == "/speed"), None)
             if row:
                 break
         assert row == {"name": "/speed", "types": ["std_msgs/msg/Float64"], "publishers": 1, "subscribers": 0}
-        names = [each["name"] for each in listed["topics"]]
+        names = [topic["name"] for topic in listed["topics"]]
         assert names == sorted(names)
 
 
@@ -81,7 +81,7 @@ async def test_topic_list_is_sent_immediately():
     async with opened() as (_, client):
         await client.send("watch_topics", listed=True, measured=[], opened=[])
         listed = await client.until("topic_list")
-        assert "/tf" in [each["name"] for each in listed["topics"]]
+        assert "/tf" in [topic["name"] for topic in listed["topics"]]
 
 
 async def test_topic_is_subscribed_only_while_page_watches():
@@ -93,7 +93,7 @@ async def test_topic_is_subscribed_only_while_page_watches():
         talking = asyncio.create_task(talk(publisher, 0.02))
         message = await client.until("topic_message")
         assert message["topic"] == "/speed"
-        assert [(each["name"], each["kind"]) for each in message["fields"]] == [("data", "double")]
+        assert [(field["name"], field["kind"]) for field in message["fields"]] == [("data", "double")]
         assert abs(message["received"] - time.time()) < 5
         # How fast a busy machine gets to publish is its own affair; the arithmetic is that of graph/introspection.
         while True:
@@ -133,15 +133,15 @@ async def test_closed_page_leaves_no_subscriptions():
 
 
 async def test_two_pages_share_subscription():
-    async with opened() as (world, one), page(world.viewer) as two:
+    async with opened() as (world, first), page(world.viewer) as second:
         world.graph.create_node("talker").create_publisher(FLOAT, "/speed", 10).publish(FLOAT())
-        for client in (one, two):
+        for client in (first, second):
             await client.send("watch_topics", listed=False, measured=["/speed"], opened=[])
         await eventually(lambda: subscriptions(world, "/speed") == 1)
-        await one.send("watch_topics", listed=False, measured=[], opened=[])
-        await two.send("watch_topics", listed=True, measured=["/speed"], opened=[])
-        await one.send("watch_topics", listed=True, measured=[], opened=[])
-        for client in (one, two):
+        await first.send("watch_topics", listed=False, measured=[], opened=[])
+        await second.send("watch_topics", listed=True, measured=["/speed"], opened=[])
+        await first.send("watch_topics", listed=True, measured=[], opened=[])
+        for client in (first, second):
             await client.until("topic_list")  # what was asked for before is done
         assert subscriptions(world, "/speed") == 1
 
@@ -219,7 +219,7 @@ async def test_fast_topic_is_sent_completely_in_few_frames():
         while sum(frame.shape[1] for frame in frames) < sent:
             frames.append((await samples(client))[5])
         assert len(frames) <= 31 * elapsed + 2
-        assert np.concatenate(frames, axis=1)[2].tolist() == [float(each) for each in range(sent)]
+        assert np.concatenate(frames, axis=1)[2].tolist() == [float(number) for number in range(sent)]
 
 
 async def test_invalid_field_paths_are_reported():
@@ -236,7 +236,7 @@ async def test_topic_appearing_later_is_plotted():
     async with opened() as (world, client):
         series = [{"id": 1, "topic": "/later", "path": "data"}, {"id": 2, "topic": "/later", "path": "wrong"}]
         await client.send("watch_series", series=series)
-        assert [each["error"] for each in (await client.until("series_states"))["states"]] == [None, None]
+        assert [state["error"] for state in (await client.until("series_states"))["states"]] == [None, None]
         publisher = world.graph.create_node("talker").create_publisher(FLOAT, "/later", 10)
         assert (await client.until("series_states"))["states"][1]["error"]
         publisher.publish(FLOAT(data=3.0))
@@ -269,7 +269,7 @@ async def test_node_graph_follows_changes():
         world.graph.create_node("listener").create_subscription(FLOAT, "/left/speed", lambda _: None, 10)
         while True:
             now = await client.until("node_graph")
-            topic = next((each for each in now["topics"] if each["name"] == "/left/speed"), None)
+            topic = next((topic for topic in now["topics"] if topic["name"] == "/left/speed"), None)
             if topic and topic["subscribers"]:
                 break
         assert {"/left/talker", "/listener"} <= set(now["nodes"])
@@ -443,55 +443,55 @@ async def drive(client: Client, x: float, turn: float = 0.0) -> None:
 @pytest.mark.parametrize("kind", [TWIST, TWIST_STAMPED])
 async def test_teleop_pad_publishes_type_of_subscription(kind):
     async with opened() as (world, client):
-        taken = []
-        world.graph.create_node("base").create_subscription(kind, "/cmd_vel", taken.append, 10)
+        messages = []
+        world.graph.create_node("base").create_subscription(kind, "/cmd_vel", messages.append, 10)
         target = {"topic": "cmd_vel", "kind": "auto", "frame_id": "base_link"}
         await client.send("aim_teleop", target=target)
         state = await client.until("teleop_state")
         name = kind.TYPE_NAME.rpartition("/")[2]
         assert (state["topic"], state["kind"], state["subscribers"]) == ("/cmd_vel", name, 1)
         await drive(client, 0.5, -1.0)
-        await eventually(lambda: taken)
-        twist = taken[0] if kind is TWIST else taken[0].twist
+        await eventually(lambda: messages)
+        twist = messages[0] if kind is TWIST else messages[0].twist
         assert (twist.linear.x, twist.angular.z) == (0.5, -1.0)
         if kind is TWIST_STAMPED:
-            assert taken[0].header.frame_id == "base_link"
-            assert abs(taken[0].header.stamp.sec - time.time()) < 5
+            assert messages[0].header.frame_id == "base_link"
+            assert abs(messages[0].header.stamp.sec - time.time()) < 5
 
 
 @skipping
 async def test_teleop_stops_robot_when_page_is_silent_or_closed():
     async with open_world() as world:
-        taken = []
+        speeds = []
         node = world.graph.create_node("base")
-        node.create_subscription(TWIST, "/cmd_vel", lambda message: taken.append(message.linear.x), 10)
+        node.create_subscription(TWIST, "/cmd_vel", lambda message: speeds.append(message.linear.x), 10)
         async with page(world.viewer) as client:
             await client.opened()
             await client.send("aim_teleop", target={"topic": "/cmd_vel", "kind": "auto", "frame_id": ""})
             await drive(client, 0.5)
-            await eventually(lambda: taken == [0.5, 0.0])
+            await eventually(lambda: speeds == [0.5, 0.0])
             await asyncio.sleep(0.5)
-            assert taken == [0.5, 0.0], "zero is published once"
+            assert speeds == [0.5, 0.0], "zero is published once"
             await drive(client, 0.25)
-            await eventually(lambda: len(taken) == 3)
+            await eventually(lambda: len(speeds) == 3)
             left = asyncio.get_running_loop().time()
-        await eventually(lambda: taken == [0.5, 0.0, 0.25, 0.0])
+        await eventually(lambda: speeds == [0.5, 0.0, 0.25, 0.0])
         assert asyncio.get_running_loop().time() - left < 0.3, "long before a page that stays counts as silent"
 
 
 @skipping
 async def test_teleop_keeps_robot_moving_and_ends_with_zero():
     async with opened() as (world, client):
-        taken = []
+        speeds = []
         node = world.graph.create_node("base")
-        node.create_subscription(TWIST, "/cmd_vel", lambda message: taken.append(message.linear.x), 10)
+        node.create_subscription(TWIST, "/cmd_vel", lambda message: speeds.append(message.linear.x), 10)
         await client.send("aim_teleop", target={"topic": "/cmd_vel", "kind": "Twist", "frame_id": ""})
         for _ in range(12):
             await drive(client, 1.0)
             await asyncio.sleep(0.05)
         await drive(client, 0.0)
-        await eventually(lambda: len(taken) == 13)
-        assert taken == [1.0] * 12 + [0.0]
+        await eventually(lambda: len(speeds) == 13)
+        assert speeds == [1.0] * 12 + [0.0]
 
 
 async def test_teleop_ignores_topics_of_other_types():

@@ -113,7 +113,7 @@ async def test_requests_without_permission_are_rejected(tmp_path: Path) -> None:
 async def test_page_without_permission_receives_no_terminal_messages() -> None:
     async with open_world() as world, page(world.viewer) as client:
         await client.until("frame_table")
-        assert not any(isinstance(each, dict) and each["type"] == "terminals" for each in client.messages)
+        assert not any(isinstance(message, dict) and message["type"] == "terminals" for message in client.messages)
 
 
 async def test_pages_on_other_machines_are_rejected(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
