@@ -92,13 +92,13 @@ def main() -> None:
     limit = time.monotonic() + 60
     while time.monotonic() < limit and not all(writer.get_matched_subscriptions() for writer in writers.values()):
         time.sleep(0.02)
-    print("matched", *(name for name, each in writers.items() if each.get_matched_subscriptions()), flush=True)
+    print("matched", *(name for name, writer in writers.items() if writer.get_matched_subscriptions()), flush=True)
     shout(lottery, 7400 + 250 * number + 10)
-    for name, each in writers.items():
+    for name, data_writer in writers.items():
         written = 0
         for body in bodies(lottery) + announcements(participant.guid.bytes):
             with suppress(DDSException):  # Cyclone refuses some by itself
-                each.write(each.data_type(body))
+                data_writer.write(data_writer.data_type(body))
                 written += 1
         print("written", name, written, flush=True)
     time.sleep(0.5)

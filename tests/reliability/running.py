@@ -107,13 +107,13 @@ class Running:
 
     def left_behind(self) -> list[psutil.Process]:
         """Processes that it started and that live on, wherever they are now, itself included."""
-        return [each for each in psutil.process_iter() if _is_marked(each, self.mark)]
+        return [process for process in psutil.process_iter() if _is_marked(process, self.mark)]
 
     def clean_up(self) -> None:
         """Let nothing outlive the test, and close what was open."""
-        for each in self.left_behind():
+        for process in self.left_behind():
             with suppress(psutil.Error):
-                each.kill()
+                process.kill()
         self.process.wait(60.0)
         self._reader.join(60.0)
         assert self.process.stdout is not None
@@ -190,8 +190,8 @@ class Machine:
         return self._started[-1]
 
     def clean_up(self) -> None:
-        for each in self._started:
-            each.clean_up()
+        for running in self._started:
+            running.clean_up()
 
 
 def program(text: str) -> str:

@@ -218,7 +218,7 @@ def test_interrupted_recording_is_complete(machine: Machine) -> None:
     from rosbags.typesys import Stores, get_typestore
 
     with AnyReader([bag], default_typestore=get_typestore(Stores.ROS2_HUMBLE)) as reader:
-        numbers = [reader.deserialize(data, each.msgtype).data for each, _, data in reader.messages()]
+        numbers = [reader.deserialize(data, connection.msgtype).data for connection, _, data in reader.messages()]
     assert numbers == list(range(numbers[0], numbers[0] + len(numbers)))
 
 
