@@ -74,7 +74,7 @@ def changes_of(repository, compare):
         repository.commit({f"arm/launch/{name}": text})
         repository.write({f"arm/launch/{name}": text.replace(old, new)})
         result = compare(repository)
-        return [sentence for each in result.subjects for sentence in sentences(each)], breaking(result)
+        return [sentence for subject in result.subjects for sentence in sentences(subject)], breaking(result)
 
     return run
 

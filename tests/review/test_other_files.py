@@ -391,8 +391,8 @@ PLUGINS = """<library path="arm_hardware">
 
 def test_removed_plugin_class_is_breaking(repository, compare):
     repository.commit({"a/arm_plugins.xml": PLUGINS})
-    one = PLUGINS.replace('name="arm/Gripper"', 'name="arm/Hand"')
-    repository.commit({"a/arm_plugins.xml": None, "a/plugins/hardware.xml": one})
+    plugins = PLUGINS.replace('name="arm/Gripper"', 'name="arm/Hand"')
+    repository.commit({"a/arm_plugins.xml": None, "a/plugins/hardware.xml": plugins})
     result = compare(repository, "HEAD~1..HEAD")
     assert breaking(result) == ["plugin class 'arm/Gripper' removed"]
     found = subject(result, "a/plugins/hardware.xml")
