@@ -105,7 +105,7 @@ async def test_displays_of_own_page_have_separate_recovery_file(tmp_path):
         await change(client)
         await own.set(f"{first['tree']['displays'][0]['id']}/Alpha", 0.125)
         await own.until("configuration", unsaved=True)
-        assert [each.code for each in world.viewer.keep_unsaved()] == ["RVIZ301", "RVIZ301"]
+        assert [diagnostic.code for diagnostic in world.viewer.keep_unsaved()] == ["RVIZ301", "RVIZ301"]
     shared, single = (
         recovery_files()
         if len(recovery_files()[0].stem) < len(recovery_files()[1].stem)
@@ -121,11 +121,11 @@ def test_configurations_have_separate_recovery_files(tmp_path, monkeypatch):
     for file in files:
         file.parent.mkdir()
         file.write_text(text)
-    one, other = (recovery_file(RvizConfig.load(file)) for file in files)
-    assert one != other
-    assert one.name.startswith("x-")
+    first, second = (recovery_file(RvizConfig.load(file)) for file in files)
+    assert first != second
+    assert first.name.startswith("x-")
     monkeypatch.chdir(tmp_path / "a")
-    assert recovery_file(RvizConfig.load("x.rviz")) == one
+    assert recovery_file(RvizConfig.load("x.rviz")) == first
     assert recovery_file(RvizConfig.parse(text, "from my computer.rviz")).name.startswith("from my computer-")
 
 

@@ -161,7 +161,7 @@ async def test_points_remain_for_decay_time():
         publisher.publish(colored_cloud(1))
         publisher.publish(colored_cloud(2))
         await world.settle()
-        assert [len(each) for each in shown(display)] == [1, 2]
+        assert [len(cloud) for cloud in shown(display)] == [1, 2]
         assert world.status("PointCloud2")["Points"][1].startswith("Showing [")
         await eventually(lambda: shown(display) == [])
         none = ("ok", "Showing [0] points from [0] messages")
@@ -177,10 +177,10 @@ async def test_zero_decay_time_keeps_only_newest_message():
             publisher.publish(colored_cloud(count))
         await world.settle()
         display.set_property(("Decay Time",), 0)
-        assert [len(each) for each in shown(display)] == [3]
+        assert [len(cloud) for cloud in shown(display)] == [3]
         publisher.publish(colored_cloud(4))
         await world.settle()
-        assert [len(each) for each in shown(display)] == [4]
+        assert [len(cloud) for cloud in shown(display)] == [4]
 
 
 async def test_page_receives_fields_of_selected_point():

@@ -32,28 +32,28 @@ def publish(world, topic: str, *messages) -> None:
 
 
 def box(x: float = 1.0):
-    made = get_message("vision_msgs/msg/BoundingBox3D")()
-    made.center.position.x = x
-    made.size.x, made.size.y, made.size.z = 0.5, 1.0, 2.0
-    return made
+    message = get_message("vision_msgs/msg/BoundingBox3D")()
+    message.center.position.x = x
+    message.size.x, message.size.y, message.size.z = 0.5, 1.0, 2.0
+    return message
 
 
 def result(name: str, score: float):
-    made = HYPOTHESIS()
-    made.hypothesis.class_id, made.hypothesis.score = name, score
-    return made
+    message = HYPOTHESIS()
+    message.hypothesis.class_id, message.hypothesis.score = name, score
+    return message
 
 
 def detection(*results, frame: str = "tip"):
-    made = get_message("vision_msgs/msg/Detection3D")(bbox=box(), results=list(results))
-    made.header.frame_id = frame
-    return made
+    message = get_message("vision_msgs/msg/Detection3D")(bbox=box(), results=list(results))
+    message.header.frame_id = frame
+    return message
 
 
 def array(*detections):
-    made = get_message("vision_msgs/msg/Detection3DArray")(detections=list(detections))
-    made.header.frame_id = "tip"
-    return made
+    message = get_message("vision_msgs/msg/Detection3DArray")(detections=list(detections))
+    message.header.frame_id = "tip"
+    return message
 
 
 async def shown(cls: str, message, extra: str = "") -> dict:
@@ -65,7 +65,7 @@ async def shown(cls: str, message, extra: str = "") -> dict:
         return content.fields | {"frame": content.frame}
 
 
-@pytest.mark.parametrize(("cls", "wrap"), [("Detection3DArray", array), ("Detection3D", lambda each: each)])
+@pytest.mark.parametrize(("cls", "wrap"), [("Detection3DArray", array), ("Detection3D", lambda message: message)])
 async def test_detections_are_boxes_with_likeliest_class_and_score(cls, wrap):
     fields = await shown(cls, wrap(detection(result("ball", 0.25), result("person", 0.75))))
     assert fields["poses"].tolist() == [1, 0, 0, 0, 0, 0, 1]
@@ -135,18 +135,18 @@ def test_class_named_after_color_has_it_unless_overridden():
 
 
 def image(seconds: int):
-    made = get_message("sensor_msgs/msg/Image")(height=1, width=1, encoding="mono8", step=1, data=[seconds])
-    made.header.stamp = Time(sec=seconds, nanosec=0)
-    return made
+    message = get_message("sensor_msgs/msg/Image")(height=1, width=1, encoding="mono8", step=1, data=[seconds])
+    message.header.stamp = Time(sec=seconds, nanosec=0)
+    return message
 
 
 def found(seconds: int, *results):
-    one = get_message("vision_msgs/msg/Detection2D")(results=list(results))
-    one.bbox.center.position.x, one.bbox.center.position.y = 10.0, 20.0
-    one.bbox.size_x, one.bbox.size_y = 4.0, 6.0
-    made = get_message("vision_msgs/msg/Detection2DArray")(detections=[one])
-    made.header.stamp = Time(sec=seconds, nanosec=0)
-    return made
+    marked = get_message("vision_msgs/msg/Detection2D")(results=list(results))
+    marked.bbox.center.position.x, marked.bbox.center.position.y = 10.0, 20.0
+    marked.bbox.size_x, marked.bbox.size_y = 4.0, 6.0
+    message = get_message("vision_msgs/msg/Detection2DArray")(detections=[marked])
+    message.header.stamp = Time(sec=seconds, nanosec=0)
+    return message
 
 
 async def test_image_is_shown_with_matching_detections(monkeypatch):

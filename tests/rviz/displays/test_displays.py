@@ -44,10 +44,10 @@ def test_display_classes_are_found_by_unique_names():
 def test_data_displays_are_imported_lazily():
     """The program answers a browser sooner without them."""
     code = "import sys, linkwright.viewer.viewer; print(*sys.modules)"
-    done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
+    result = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
     rooms = ("clouds", "image_compression", "markers", "displays.base.topic_display")
-    assert not {f"linkwright.rviz.{room}" for room in rooms} & set(done.stdout.split())
-    assert not {"PIL", "cyclonedds", "rosbags", "linkwright.inertia"} & set(done.stdout.split())
+    assert not {f"linkwright.rviz.{room}" for room in rooms} & set(result.stdout.split())
+    assert not {"PIL", "cyclonedds", "rosbags", "linkwright.inertia"} & set(result.stdout.split())
 
 
 # --- Grid ----------------------------------------------------------------------------------------------------------

@@ -27,22 +27,22 @@ def publisher(world, cls: str):
 
 
 def message(cls: str, frame: str = "tip", **fields):
-    made = get_message(cls)(**fields)
-    made.header.frame_id = frame
-    return made
+    instance = get_message(cls)(**fields)
+    instance.header.frame_id = frame
+    return instance
 
 
 def pose(x: float, y: float = 0.0, w: float = 1.0):
-    made = get_message("geometry_msgs/msg/Pose")()
-    made.position.x, made.position.y, made.orientation.w = float(x), float(y), float(w)
-    return made
+    instance = get_message("geometry_msgs/msg/Pose")()
+    instance.position.x, instance.position.y, instance.orientation.w = float(x), float(y), float(w)
+    return instance
 
 
 def odometry(x: float, w: float = 1.0):
-    made = message("nav_msgs/msg/Odometry")
-    made.pose.pose = pose(x, w=w)
-    made.pose.covariance = np.eye(6).ravel() * 0.25
-    return made
+    instance = message("nav_msgs/msg/Odometry")
+    instance.pose.pose = pose(x, w=w)
+    instance.pose.covariance = np.eye(6).ravel() * 0.25
+    return instance
 
 
 def rows(world, cls: str) -> dict[str, object]:
@@ -155,10 +155,10 @@ async def test_pose_is_sent_with_pose_of_its_frame():
 async def test_pose_with_covariance_sends_covariance():
     async with open_world(config("PoseWithCovariance")) as world:
         world.move_arm()
-        made = message("geometry_msgs/msg/PoseWithCovarianceStamped")
-        made.pose.pose = pose(1)
-        made.pose.covariance = np.arange(36.0)
-        publisher(world, "PoseWithCovariance").publish(made)
+        estimate = message("geometry_msgs/msg/PoseWithCovarianceStamped")
+        estimate.pose.pose = pose(1)
+        estimate.pose.covariance = np.arange(36.0)
+        publisher(world, "PoseWithCovariance").publish(estimate)
         await world.settle()
         (content,) = contents(world.display("PoseWithCovariance"))
         assert content.fields["covariances"].tolist() == list(range(36))
@@ -261,10 +261,10 @@ async def test_path_buffer_length_keeps_last_paths():
 async def test_polygon_is_sent_as_corners():
     async with open_world(config("Polygon")) as world:
         world.move_arm()
-        made = message("geometry_msgs/msg/PolygonStamped")
+        polygon = message("geometry_msgs/msg/PolygonStamped")
         corner = get_message("geometry_msgs/msg/Point32")
-        made.polygon.points = [corner(x=0.0, y=0.0, z=0.0), corner(x=1.0, y=0.0, z=0.0), corner(x=0.0, y=1.0, z=0.0)]
-        publisher(world, "Polygon").publish(made)
+        polygon.polygon.points = [corner(x=0.0, y=0.0, z=0.0), corner(x=1.0, y=0.0, z=0.0), corner(x=0.0, y=1.0, z=0.0)]
+        publisher(world, "Polygon").publish(polygon)
         await world.settle()
         (content,) = contents(world.display("Polygon"))
         assert content.fields["points"].tolist() == [0, 0, 0, 1, 0, 0, 0, 1, 0]
@@ -284,8 +284,8 @@ async def test_polygon_is_sent_as_corners():
 async def test_range_length_is_zero_if_invalid(measured, least, most, shown):
     async with open_world(config("Range")) as world:
         world.move_arm()
-        made = message("sensor_msgs/msg/Range", range=measured, min_range=least, max_range=most, field_of_view=0.2)
-        publisher(world, "Range").publish(made)
+        reading = message("sensor_msgs/msg/Range", range=measured, min_range=least, max_range=most, field_of_view=0.2)
+        publisher(world, "Range").publish(reading)
         await world.settle()
         (content,) = contents(world.display("Range"))
         assert content.fields["range"] == pytest.approx(shown)
@@ -303,22 +303,22 @@ async def test_range_length_is_zero_if_invalid(measured, least, most, shown):
 async def test_linear_and_angular_vectors_are_sent(cls, part, linear, angular):
     async with open_world(config(cls)) as world:
         world.move_arm()
-        made = message(world.display(cls).MESSAGE)
-        getattr(getattr(made, part), linear).x = 1.5
-        getattr(getattr(made, part), angular).z = -2.0
+        vectors = message(world.display(cls).MESSAGE)
+        getattr(getattr(vectors, part), linear).x = 1.5
+        getattr(getattr(vectors, part), angular).z = -2.0
         out = publisher(world, cls)
-        out.publish(made)
+        out.publish(vectors)
         await world.settle()
         (content,) = contents(world.display(cls))
         assert (content.fields["linear"], content.fields["angular"]) == ([1.5, 0, 0], [0, 0, -2.0])
-        getattr(getattr(made, part), linear).y = math.nan
-        out.publish(made)
+        getattr(getattr(vectors, part), linear).y = math.nan
+        out.publish(vectors)
         await world.settle()
         assert world.status(cls)["Message"] == INVALID
         if cls != "Wrench":
             return
         world.display(cls).set_property(("Accept NaN Values",), True)
-        out.publish(made)
+        out.publish(vectors)
         await world.settle()
         assert "Message" not in world.status(cls)
 
@@ -327,19 +327,19 @@ async def test_linear_and_angular_vectors_are_sent(cls, part, linear, angular):
 async def test_nonfinite_values_are_rejected(cls):
     async with open_world(config(cls)) as world:
         world.move_arm()
-        made = message(world.display(cls).MESSAGE)
+        instance = message(world.display(cls).MESSAGE)
         bad = pose(math.nan)
         if cls == "Pose":
-            made.pose = bad
+            instance.pose = bad
         elif cls == "PoseArray":
-            made.poses = [bad]
+            instance.poses = [bad]
         elif cls == "Path":
-            made.poses = [message("geometry_msgs/msg/PoseStamped", pose=bad)]
+            instance.poses = [message("geometry_msgs/msg/PoseStamped", pose=bad)]
         elif cls == "Polygon":
-            made.polygon.points = [get_message("geometry_msgs/msg/Point32")(x=math.inf)]
+            instance.polygon.points = [get_message("geometry_msgs/msg/Point32")(x=math.inf)]
         else:
-            made.pose.pose = bad
-        publisher(world, cls).publish(made)
+            instance.pose.pose = bad
+        publisher(world, cls).publish(instance)
         await world.settle()
         assert world.status(cls)["Message"] == INVALID
         assert contents(world.display(cls)) == []

@@ -29,16 +29,16 @@ def config(extra: str = "") -> RvizConfig:
 def grid(resolution: float = 1.0, **layers: list[list[float]]) -> Any:
     """A map of layers; rows go along -x, columns along -y, as in grid_map."""
     (rows, columns) = np.shape(next(iter(layers.values())))
-    made = GridMap(layers=list(layers))
-    made.header.frame_id = "base"
-    made.info.resolution = resolution
-    made.info.length_x, made.info.length_y = rows * resolution, columns * resolution
+    grid_map = GridMap(layers=list(layers))
+    grid_map.header.frame_id = "base"
+    grid_map.info.resolution = resolution
+    grid_map.info.length_x, grid_map.info.length_y = rows * resolution, columns * resolution
     for cells in layers.values():
         numbers = np.asarray(cells, dtype=np.float32).T.reshape(-1)
         layer = Layer(data=numbers.tolist())
         layer.layout.dim = [Dimension(label="column_index", size=columns), Dimension(label="row_index", size=rows)]
-        made.data.append(layer)
-    return made
+        grid_map.data.append(layer)
+    return grid_map
 
 
 @asynccontextmanager
@@ -80,9 +80,9 @@ async def test_grid_map_properties_match_rviz():
 
 async def test_first_cell_has_largest_x_and_y():
     async with shown() as (world, publish_and_settle):
-        made = grid(0.5, elevation=[[1, 2, 3], [4, 5, 6]])
-        made.info.pose.position.x = 10.0
-        content = await publish_and_settle(made)
+        grid_map = grid(0.5, elevation=[[1, 2, 3], [4, 5, 6]])
+        grid_map.info.pose.position.x = 10.0
+        content = await publish_and_settle(grid_map)
         assert (content["rows"], content["columns"]) == (2, 3)
         points = content["points"].reshape(2, 3, 3)
         np.testing.assert_allclose(points[0, 0], [10.25, 0.5, 1])
@@ -92,20 +92,20 @@ async def test_first_cell_has_largest_x_and_y():
 
 async def test_circular_buffer_start_index_is_applied():
     async with shown() as (_, publish_and_settle):
-        made = grid(elevation=[[4, 3], [2, 1]])
-        made.outer_start_index = made.inner_start_index = 1
-        content = await publish_and_settle(made)
+        grid_map = grid(elevation=[[4, 3], [2, 1]])
+        grid_map.outer_start_index = grid_map.inner_start_index = 1
+        content = await publish_and_settle(grid_map)
         assert content["points"].reshape(-1, 3)[:, 2].tolist() == [1, 2, 3, 4]
 
 
 async def test_nan_cells_are_not_drawn():
     async with shown() as (_, publish_and_settle):
-        made = grid(elevation=[[1, NAN], [2, 3]], certain=[[1, 1], [1, NAN]])
-        content = await publish_and_settle(made)
+        grid_map = grid(elevation=[[1, NAN], [2, 3]], certain=[[1, 1], [1, NAN]])
+        content = await publish_and_settle(grid_map)
         assert content["colors"].reshape(-1, 4)[:, 3].tolist() == [255, 0, 255, 255]
         assert np.isfinite(content["points"]).all()
-        made.basic_layers = ["certain"]
-        content = await publish_and_settle(made)
+        grid_map.basic_layers = ["certain"]
+        content = await publish_and_settle(grid_map)
         assert content["colors"].reshape(-1, 4)[:, 3].tolist() == [255, 0, 255, 0]
 
 
@@ -162,10 +162,10 @@ async def test_large_map_is_subsampled_with_warning():
 )
 async def test_invalid_grid_map_is_reported(broken, text):
     async with shown() as (world, publish_and_settle):
-        made = grid(elevation=[[1, 2], [3, 4]])
+        grid_map = grid(elevation=[[1, 2], [3, 4]])
         for name, value in broken.items():
-            setattr(made if name == "layers" else made.info, name, value)
-        assert await publish_and_settle(made) is None
+            setattr(grid_map if name == "layers" else grid_map.info, name, value)
+        assert await publish_and_settle(grid_map) is None
         assert world.status("GridMap")["Message"] == ("error", text)
         assert await publish_and_settle(grid(elevation=[[1, 2], [3, 4]])) is not None
         assert "Message" not in world.status("GridMap")

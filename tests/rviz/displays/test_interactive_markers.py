@@ -222,7 +222,7 @@ def test_rotation_control_has_ring(mode, shades):
     radii = np.linalg.norm(ring.points, axis=1)
     assert sorted({round(float(radius), 6) for radius in radii}) == [0.5, 0.65]
     assert len(ring.points) == 36 * 6
-    assert sorted({round(float(each), 6) for each in ring.colors[:, 2]}) == shades
+    assert sorted({round(float(shade), 6) for shade in ring.colors[:, 2]}) == shades
     assert len(ring.colors) in (0, 72)
 
 
@@ -233,7 +233,7 @@ def test_menu_control_without_markers_is_view_facing_text():
     shape = read(message)
     (control,) = shape.controls
     assert (control.orientation_mode, control.markers[0].text) == ("view_facing", "Options")
-    assert [(each.id, each.parent, each.title) for each in shape.menu] == [(1, 0, "Go"), (2, 1, "Home")]
+    assert [(entry.id, entry.parent, entry.title) for entry in shape.menu] == [(1, 0, "Go"), (2, 1, "Home")]
 
 
 def test_controls_with_same_name_get_unique_names():

@@ -38,15 +38,15 @@ Visualization Manager:
 def message(cls: str, stamp_ns: int) -> Any:
     """What a driver publishes: stamped now, in a frame that moves."""
     if cls == "LaserScan":
-        made = scan([1.0, 2.0, 3.0])
+        instance = scan([1.0, 2.0, 3.0])
     elif cls == "PointCloud2":
-        made = cloud(xyz([(1, 0, 0), (0, 1, 0)]))
+        instance = cloud(xyz([(1, 0, 0), (0, 1, 0)]))
     else:
-        made = get_message("nav_msgs/msg/Odometry")()
-        made.pose.pose.orientation.w = 1.0
-    made.header.frame_id = "base"
-    made.header.stamp.sec, made.header.stamp.nanosec = divmod(stamp_ns, 1_000_000_000)
-    return made
+        instance = get_message("nav_msgs/msg/Odometry")()
+        instance.pose.pose.orientation.w = 1.0
+    instance.header.frame_id = "base"
+    instance.header.stamp.sec, instance.header.stamp.nanosec = divmod(stamp_ns, 1_000_000_000)
+    return instance
 
 
 def levels_of(display: ViewerDisplay, monkeypatch: pytest.MonkeyPatch) -> dict[str, list[str]]:

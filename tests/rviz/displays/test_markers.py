@@ -65,7 +65,7 @@ class Watcher:
             self.markers.clear()
         for identity in content["gone"]:
             self.markers.pop(identity, None)
-        self.markers.update({each["id"]: each for each in content["markers"]})
+        self.markers.update({marker["id"]: marker for marker in content["markers"]})
         return content
 
 

@@ -37,9 +37,9 @@ def octomap(last: list[int], frame: str = "base") -> Any:
     """A map of half a meter with the eight smallest cells at the corner of the middle, in the first octant."""
     inner = [struct.pack("<H", INNER << 14), *[struct.pack("<H", INNER)] * 14]
     leaves = struct.pack("<H", sum(state << 2 * child for child, state in enumerate(last)))
-    made = Octomap(binary=True, id="OcTree", resolution=0.5, data=signed(b"".join([*inner, leaves])))
-    made.header.frame_id = frame
-    return made
+    message = Octomap(binary=True, id="OcTree", resolution=0.5, data=signed(b"".join([*inner, leaves])))
+    message.header.frame_id = frame
+    return message
 
 
 async def test_octomap_cells_follow_properties():

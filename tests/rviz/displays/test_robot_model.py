@@ -245,7 +245,7 @@ async def test_repeated_description_changes_nothing():
         async with page(world.viewer) as client:
             await client.opened()
             world.describe(ARM)
-            assert [each for each in await client.drain() if isinstance(each, dict)] == []
+            assert [message for message in await client.drain() if isinstance(message, dict)] == []
 
 
 @pytest.mark.parametrize(

@@ -53,8 +53,11 @@ def point_at(stamp_ns: int, frame: str) -> PointStamped:
 def points(world) -> list[list[float]]:
     """Of the frames that a page would be sent, in the fixed frame, oldest first."""
     shown = sorted(contents(world.display("PointStamped")), key=lambda content: content.key)
-    assert all(each.fields["kind"] == "point_marks" for each in shown)
-    return [(each.fields["positions"] @ rotation_matrix(each.pose[3:]).T + each.pose[:3]).tolist() for each in shown]
+    assert all(content.fields["kind"] == "point_marks" for content in shown)
+    return [
+        (content.fields["positions"] @ rotation_matrix(content.pose[3:]).T + content.pose[:3]).tolist()
+        for content in shown
+    ]
 
 
 async def test_point_is_drawn_at_its_pose_in_fixed_frame():

@@ -86,7 +86,7 @@ async def test_world_links_are_sent_with_shapes_and_poses():
     async with open_world(config("world")) as world:
         await Simulation(world).describe(WORLD)
         ground, base, tip = sent(world, "world_scene").fields["links"]
-        assert [each["name"] for each in (ground, base, tip)] == ["ground::link", "robot::base", "robot::arm::tip"]
+        assert [link["name"] for link in (ground, base, tip)] == ["ground::link", "robot::base", "robot::arm::tip"]
         (plane,) = ground["visuals"]
         assert (plane["kind"], plane["size"], plane["color"]) == ("plane", [10.0, 20.0], [0.7, 0.7, 0.7, 1.0])
         body, ear = base["visuals"]
@@ -94,7 +94,9 @@ async def test_world_links_are_sent_with_shapes_and_poses():
         assert body["repaints"]
         assert (ear["kind"], ear["size"]) == ("cone", [0.1, 0.3])
         assert ear["position"] == pytest.approx([0, 0, 1.5])
-        assert [(each["kind"], each["size"]) for each in base["collisions"]] == [("ellipsoid", [1.0, 2.0, 3.0])]
+        assert [(collision["kind"], collision["size"]) for collision in base["collisions"]] == [
+            ("ellipsoid", [1.0, 2.0, 3.0])
+        ]
         assert positions(world) == [[0, 0, 0], [1, 2, 0.5], [1, 3, 0]]
         assert world.status("World")["World"] == ("ok", "2 models, 3 links")
 
@@ -267,7 +269,7 @@ async def test_pbr_surface_is_sent_with_material(tmp_path):
     metal = f"<metalness>1</metalness><roughness>0.2</roughness><normal_map>{bumps}</normal_map>"
     lamp = f"<emissive_map>{bumps}</emissive_map><ambient_occlusion_map>{bumps}</ambient_occlusion_map>"
     facts = {"plain": albedo, "metal": albedo + metal, "lamp": albedo + lamp}
-    visuals = "".join(visual.format(name, each) for name, each in facts.items())
+    visuals = "".join(visual.format(name, surface) for name, surface in facts.items())
     text = f"<sdf version='1.9'><model name='ball'><link name='l'>{visuals}</link></model></sdf>"
     async with open_world(config("world")) as world:
         await Simulation(world).describe(text, links=1)

@@ -96,7 +96,7 @@ async def test_display_choices_are_sent():
     async with opened() as (_, client):
         await client.send("ask_display_choices")
         message = (await client.until("display_choices"))["classes"]
-        classes = {each["cls"]: each["messages"] for each in message}
+        classes = {choice["cls"]: choice["messages"] for choice in message}
         assert classes["rviz_default_plugins/PointStamped"] == ["geometry_msgs/msg/PointStamped"]
         assert classes["rviz_default_plugins/Grid"] == []
         assert list(classes)[-1] == "rviz_common/Group"
@@ -106,7 +106,7 @@ async def test_display_is_added_and_undone():
     async with opened() as (world, client):
         await client.send("add_display", cls="rviz_default_plugins/Axes", name="Axes", group="display-2", topic=None)
         tree = await client.until("tree")
-        assert [(each["name"], each["group"], each["id"]) for each in tree["displays"]][3] == (
+        assert [(display["name"], display["group"], display["id"]) for display in tree["displays"]][3] == (
             "Axes",
             "display-2",
             "display-5",
@@ -194,7 +194,7 @@ async def test_displays_are_duplicated_with_contents():
     async with opened() as (world, client):
         await client.send("duplicate_displays", displays=["display-2", "display-3", "display-4"])
         tree = await client.until("tree")
-        assert [(each["name"], each["group"]) for each in tree["displays"]] == [
+        assert [(display["name"], display["group"]) for display in tree["displays"]] == [
             ("Grid", None),
             ("Marks", None),
             ("Clicks", "display-2"),
@@ -282,7 +282,7 @@ async def test_displays_are_grouped():
     async with opened() as (world, client):
         await client.send("group_displays", displays=["display-1", "display-3", "display-4"], name="All")
         tree = await client.until("tree")
-        assert [(each["name"], each["group"]) for each in tree["displays"]] == [
+        assert [(display["name"], display["group"]) for display in tree["displays"]] == [
             ("All", None),
             ("Grid", "display-5"),
             ("Clicks", "display-5"),

@@ -23,7 +23,7 @@ async def test_pages_share_displays():
     async with opened() as (world, first), page(world.viewer) as second:
         await second.opened()
         await first.send("remove_displays", displays=["display-1"])
-        assert [each["name"] for each in (await second.until("tree"))["displays"]] == ["Marks", "Clicks", "Radar"]
+        assert [display["name"] for display in (await second.until("tree"))["displays"]] == ["Marks", "Clicks", "Radar"]
         await second.send("undo")
         assert len((await first.until("tree", global_level="warn"))["displays"]) == 3
         assert len((await first.until("tree"))["displays"]) == 4
@@ -36,7 +36,7 @@ async def test_page_may_have_own_displays(monkeypatch):
         async with own_page(world) as own:
             opening = await own.opened()
             assert (opening["configuration"]["own"], opening["configuration"]["path"]) == (True, None)
-            ids = [each["id"] for each in opening["tree"]["displays"]]
+            ids = [display["id"] for display in opening["tree"]["displays"]]
             assert ids == [f"display-{n}" for n in range(5, 9)]
             assert publisher.get_subscription_count() == 2
             await shared.drain()
@@ -50,11 +50,11 @@ async def test_page_may_have_own_displays(monkeypatch):
             assert world.viewer._node.get_parameter("fixed_frame").value == "base"
         async with own_page(world) as again:  # it was loaded anew
             opening = await again.opened()
-            assert [each["id"] for each in opening["tree"]["displays"]] == ids
+            assert [display["id"] for display in opening["tree"]["displays"]] == ids
         await eventually(lambda: publisher.get_subscription_count() == 1)
         async with own_page(world) as later:
             opening = await later.opened()
-            assert [each["id"] for each in opening["tree"]["displays"]] != ids
+            assert [display["id"] for display in opening["tree"]["displays"]] != ids
 
 
 async def test_number_of_lingering_own_displays_is_limited(monkeypatch):

@@ -12,7 +12,16 @@ from linkwright.messages import get_message
 from linkwright.page.files import MeshIndex
 from linkwright.rviz.displays.moveit.robot import PosableRobot, UnusableStateError
 from linkwright.rviz.displays.moveit.trajectory import display_seconds, read_motion
-from tests.rviz.displays.moveit.arm import ARM, ObjectColor, attached, config, scene, state, thing, trajectory
+from tests.rviz.displays.moveit.arm import (
+    ARM,
+    ObjectColor,
+    attached,
+    collision_object,
+    config,
+    scene,
+    state,
+    trajectory,
+)
 from tests.viewer.contents import shown_markers
 from tests.viewer.scene import open_world
 from tests.waiting import eventually
@@ -146,7 +155,7 @@ async def test_color_and_trail_are_shown():
         assert len([name for name in shown_markers(display) if name.endswith("/hand")]) == 3
         display.set_property(("Show Trail",), False)
         display.set_property(("Color Enabled",), False)
-        (gray,) = [each["color"] for name, each in shown_markers(display).items() if name.endswith("/base")]
+        (gray,) = [marker["color"] for name, marker in shown_markers(display).items() if name.endswith("/base")]
         assert gray == [0.5, 0.5, 0.5, 0.5]
 
 
@@ -185,7 +194,7 @@ async def test_robot_state_highlights_links():
         red.color.r = red.color.a = 1.0
         nobody = ObjectColor(id="foot")
         message = DisplayRobotState(state=state(shoulder=math.pi / 2), highlight_links=[red, nobody])
-        message.state.attached_collision_objects = [attached("hand", thing("cup", frame="hand"))]
+        message.state.attached_collision_objects = [attached("hand", collision_object("cup", frame="hand"))]
         drawn = await publish_and_settle(message)
         assert drawn["Robot State/hand"]["color"] == [1, 0, 0, 1]
         assert drawn["Robot State/base"]["color"] == [0.5, 0.5, 0.5, 1]
@@ -211,7 +220,7 @@ async def test_motion_planning_shows_scene_trajectory_and_queries():
         display = world.display("MotionPlanning")
         node = world.graph.create_node("move_group")
         scenes = node.create_publisher("moveit_msgs/msg/PlanningScene", "/monitored_planning_scene", 10)
-        scenes.publish(scene(thing("shelf"), robot=state(shoulder=0.0)))
+        scenes.publish(scene(collision_object("shelf"), robot=state(shoulder=0.0)))
         await eventually(lambda: "Scene Robot/hand" in shown_markers(display))
         drawn = await publish_and_settle(trajectory(math.pi / 2))
         assert {"Scene Geometry/shelf", "Planned Path/base", "Goal State/hand"} <= set(drawn)

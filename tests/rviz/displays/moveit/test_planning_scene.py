@@ -17,13 +17,13 @@ from tests.rviz.displays.moveit.arm import (
     ObjectColor,
     SolidPrimitive,
     attached,
+    collision_object,
     config,
     pose,
     primitive,
     scene,
     signed,
     state,
-    thing,
 )
 from tests.viewer.contents import shown_markers
 from tests.viewer.scene import open_world
@@ -100,7 +100,7 @@ async def test_robot_state_of_scene_overrides_tf():
 
 async def test_primitives_planes_and_meshes_are_drawn():
     async with planning_scene_world() as (world, talker):
-        many = thing(
+        many = collision_object(
             "many",
             primitive(SolidPrimitive.BOX, 1, 2, 3),
             primitive(SolidPrimitive.SPHERE, 0.5),
@@ -117,7 +117,7 @@ async def test_primitives_planes_and_meshes_are_drawn():
         many.meshes = [mesh]
         many.planes = [get_message("shape_msgs/msg/Plane")(coef=[0.0, 0.0, 2.0, -2.0])]
         shown = await talker.publish_scene(scene(many))
-        kinds = {name: each["shape"] for name, each in shown.items()}
+        kinds = {name: marker["shape"] for name, marker in shown.items()}
         assert kinds == {
             "Scene Geometry/many": "cube",
             "Scene Geometry/many primitive 1": "sphere",
@@ -139,38 +139,38 @@ async def test_primitives_planes_and_meshes_are_drawn():
 
 async def test_objects_are_added_moved_appended_and_removed():
     async with planning_scene_world() as (world, talker):
-        assert list(await talker.publish_scene(scene(thing("a"), thing("b")))) == [
+        assert list(await talker.publish_scene(scene(collision_object("a"), collision_object("b")))) == [
             "Scene Geometry/a",
             "Scene Geometry/b",
         ]
-        moved = await talker.publish_scene(scene(thing("a", at=pose(z=2.0), operation=MOVE), diff=True))
+        moved = await talker.publish_scene(scene(collision_object("a", at=pose(z=2.0), operation=MOVE), diff=True))
         assert moved["Scene Geometry/a"]["pose"][:3] == [0, 0, 2]
-        grown = await talker.publish_scene(scene(thing("b", primitive(2, 1), operation=APPEND), diff=True))
+        grown = await talker.publish_scene(scene(collision_object("b", primitive(2, 1), operation=APPEND), diff=True))
         assert "Scene Geometry/b primitive 1" in grown
-        left = await talker.publish_scene(scene(thing("b", operation=REMOVE), diff=True))
+        left = await talker.publish_scene(scene(collision_object("b", operation=REMOVE), diff=True))
         assert list(left) == ["Scene Geometry/a"]
-        await talker.publish_scene(scene(thing("nobody", operation=MOVE), diff=True))
+        await talker.publish_scene(scene(collision_object("nobody", operation=MOVE), diff=True))
         assert world.status("PlanningScene")["nobody"] == (
             "error",
             "Object 'nobody' cannot be moved, because it does not exist",
         )
-        assert await talker.publish_scene(scene(thing("", operation=REMOVE), diff=True)) == {}
-        assert list(await talker.publish_scene(scene(thing("c")))) == ["Scene Geometry/c"]
+        assert await talker.publish_scene(scene(collision_object("", operation=REMOVE), diff=True)) == {}
+        assert list(await talker.publish_scene(scene(collision_object("c")))) == ["Scene Geometry/c"]
         assert "nobody" not in world.status("PlanningScene")
 
 
 async def test_attached_object_moves_with_its_link():
     async with planning_scene_world() as (_, talker):
         robot = state(shoulder=0.0, wrist=0.0)
-        robot.attached_collision_objects = [attached("hand", thing("cup", frame="hand", at=pose(x=0.1)))]
-        shown = await talker.publish_scene(scene(thing("cup"), robot=robot))
+        robot.attached_collision_objects = [attached("hand", collision_object("cup", frame="hand", at=pose(x=0.1)))]
+        shown = await talker.publish_scene(scene(collision_object("cup"), robot=robot))
         assert shown["Scene Robot holds/cup"]["pose"][:3] == pytest.approx([0.1, 0, 1])
         assert shown["Scene Robot holds/cup"]["color"] == pytest.approx([150 / 255, 50 / 255, 150 / 255, 1])
         assert "Scene Geometry/cup" not in shown
         shown = await talker.publish_scene(scene(robot=state(shoulder=0.0, wrist=1.0), diff=True))
         assert shown["Scene Robot holds/cup"]["pose"][:3] == pytest.approx([0.1, 0, 2])
         let_go = state()
-        let_go.attached_collision_objects = [attached("hand", thing("cup", operation=REMOVE))]
+        let_go.attached_collision_objects = [attached("hand", collision_object("cup", operation=REMOVE))]
         assert "Scene Robot holds/cup" not in await talker.publish_scene(scene(robot=let_go, diff=True))
 
 
@@ -178,7 +178,7 @@ async def test_objects_have_colors_of_scene():
     async with planning_scene_world() as (_, talker):
         color = ObjectColor(id="a")
         color.color.b, color.color.a = 1.0, 0.25
-        shown = await talker.publish_scene(scene(thing("a"), thing("b"), object_colors=[color]))
+        shown = await talker.publish_scene(scene(collision_object("a"), collision_object("b"), object_colors=[color]))
         assert shown["Scene Geometry/a"]["color"] == [0, 0, 1, 0.25]
         assert shown["Scene Geometry/b"]["color"][3] == 0.9
 
@@ -210,7 +210,7 @@ async def test_octomap_cells_follow_render_properties():
 
 async def test_changed_properties_take_effect_at_once():
     async with planning_scene_world() as (world, talker):
-        await talker.publish_scene(scene(thing("a"), robot=state(shoulder=0.0)))
+        await talker.publish_scene(scene(collision_object("a"), robot=state(shoulder=0.0)))
         display = world.display("PlanningScene")
         display.set_property(("Scene Geometry", "Scene Color"), "#ff0000")
         display.set_property(("Scene Robot", "Robot Alpha"), 0.5)
@@ -236,7 +236,7 @@ async def test_full_scene_is_requested_when_move_group_appears():
 
         def give(request, response):
             asked.append(request.components.components)
-            response.scene = scene(thing("shelf"), robot=state(shoulder=1.0), name="kitchen")
+            response.scene = scene(collision_object("shelf"), robot=state(shoulder=1.0), name="kitchen")
             return response
 
         node.create_service(get_service("moveit_msgs/srv/GetPlanningScene"), "/get_planning_scene", give)
@@ -268,20 +268,25 @@ async def test_move_group_namespace_selects_service_and_description():
 
 async def test_invalid_scenes_are_reported_and_next_valid_one_is_drawn():
     async with planning_scene_world() as (world, talker):
-        nan = thing("nan", at=pose(x=math.nan))
-        short = thing("short", primitive(SolidPrimitive.BOX, 1, 1))
-        kind = thing("kind", primitive(9, 1, 1, 1))
-        poses = thing("poses")
+        nan = collision_object("nan", at=pose(x=math.nan))
+        short = collision_object("short", primitive(SolidPrimitive.BOX, 1, 1))
+        kind = collision_object("kind", primitive(9, 1, 1, 1))
+        poses = collision_object("poses")
         poses.primitive_poses = [pose(), pose()]
-        mesh = thing("mesh")
+        mesh = collision_object("mesh")
         mesh.meshes = [get_message("shape_msgs/msg/Mesh")()]
         mesh.meshes[0].triangles = [get_message("shape_msgs/msg/MeshTriangle")(vertex_indices=[0, 1, 7])]
-        plane = thing("plane")
+        plane = collision_object("plane")
         plane.planes = [get_message("shape_msgs/msg/Plane")(coef=[0.0, 0.0, 0.0, 1.0])]
         robot = state(shoulder=0.0, elbow=1.0)
-        robot.attached_collision_objects = [attached("foot", thing("ball", frame="foot")), attached("hand", thing("e"))]
+        robot.attached_collision_objects = [
+            attached("foot", collision_object("ball", frame="foot")),
+            attached("hand", collision_object("e")),
+        ]
         robot.attached_collision_objects[1].object.primitives = []
-        shown = await talker.publish_scene(scene(nan, short, kind, poses, mesh, plane, thing("good"), robot=robot))
+        shown = await talker.publish_scene(
+            scene(nan, short, kind, poses, mesh, plane, collision_object("good"), robot=robot)
+        )
         assert [name for name in shown if name.startswith("Scene Geometry")] == ["Scene Geometry/good"]
         status = world.status("PlanningScene")
         assert status["nan"] == ("error", "Contains invalid floating point values (nans or infs)")
@@ -296,7 +301,7 @@ async def test_invalid_scenes_are_reported_and_next_valid_one_is_drawn():
         assert status["ball"] == ("error", "The robot has no link 'foot' for the attached object 'ball'")
         assert status["e"] == ("error", "The attached object 'e' has no shapes")
         assert status["Joints"] == ("warn", "The robot has no joint 'elbow'")
-        await talker.publish_scene(scene(thing("good", frame="nowhere"), robot=state(shoulder=math.inf)))
+        await talker.publish_scene(scene(collision_object("good", frame="nowhere"), robot=state(shoulder=math.inf)))
         status = world.status("PlanningScene")
         assert status["State"] == ("error", "The position of joint 'shoulder' must be finite, but is inf")
         assert status["Transform"] == ("error", "No transform from [nowhere] to [base]")
@@ -304,13 +309,13 @@ async def test_invalid_scenes_are_reported_and_next_valid_one_is_drawn():
         uneven.joint_state.position = []
         await talker.publish_scene(scene(robot=uneven))
         assert world.status("PlanningScene")["State"] == ("error", "The state has 1 joints, but 0 positions")
-        await talker.publish_scene(scene(thing("good"), robot=state(shoulder=0.5)))
+        await talker.publish_scene(scene(collision_object("good"), robot=state(shoulder=0.5)))
         assert set(world.status("PlanningScene")) == {"Topic", "URDF", "Transform"}
 
 
 async def test_objects_are_drawn_before_robot_description_arrives():
     async with planning_scene_world(text="") as (world, talker):
-        shown = await talker.publish_scene(scene(thing("a"), robot=state(shoulder=1.0)))
+        shown = await talker.publish_scene(scene(collision_object("a"), robot=state(shoulder=1.0)))
         assert list(shown) == ["Scene Geometry/a"]
         assert world.status("PlanningScene")["URDF"] == (
             "warn",
@@ -339,10 +344,10 @@ async def test_virtual_joint_places_root_link():
 
 async def test_page_receives_only_changed_objects():
     async with planning_scene_world() as (world, talker):
-        await talker.publish_scene(scene(thing("a"), thing("b"), robot=state(shoulder=0.0)))
+        await talker.publish_scene(scene(collision_object("a"), collision_object("b"), robot=state(shoulder=0.0)))
         (store,) = world.display("PlanningScene").data()
         _, seen = store.since(0)
-        await talker.publish_scene(scene(thing("a"), thing("b"), robot=state(shoulder=0.0)))
+        await talker.publish_scene(scene(collision_object("a"), collision_object("b"), robot=state(shoulder=0.0)))
         assert store.since(seen)[0] is None
 
 
