@@ -43,7 +43,7 @@ pytestmark = pytest.mark.skipif(not ITEMS, reason="the collection of worlds is n
 
 def examined(item):
     path = WORLDS / item["entry"]
-    folders = dict.fromkeys(str(WORLDS / each) for each in item["model_paths"])
+    folders = dict.fromkeys(str(WORLDS / path) for path in item["model_paths"])
     finder = PackageFinder(start=path.parent, environment={})
     return examine_world(
         path, packages=finder, environment={"GAZEBO_MODEL_PATH": os.pathsep.join(folders), "HOME": "/nowhere"}
@@ -77,7 +77,7 @@ def test_corpus_model_poses_match_known_facts(item):
     assert found.sdf is not None
     world = with_saved_state(found.sdf.worlds[0])
     frames = Frames(world)
-    known = {each["name"]: each for each in item["facts"]["top_level_models"] if not each.get("pose_attributes")}
+    known = {model["name"]: model for model in item["facts"]["top_level_models"] if not model.get("pose_attributes")}
     for model in world.models:
         if model.name in known:
             pose = known[model.name]["pose"]
@@ -85,10 +85,12 @@ def test_corpus_model_poses_match_known_facts(item):
             place = frames.pose(model.name)
             sign = 1.0 if sum(a * b for a, b in zip(place[3:], expected[3:], strict=True)) > 0 else -1.0
             assert place[:3] == pytest.approx(expected[:3], abs=1e-9)
-            assert [sign * each for each in place[3:]] == pytest.approx(expected[3:], abs=1e-9)
+            assert [sign * angle for angle in place[3:]] == pytest.approx(expected[3:], abs=1e-9)
     there = {model.name for model in (*world.models, *world.lights)}
     left_out = {include.uri for include in world.includes}
-    assert {name for name, each in known.items() if each.get("include") not in left_out and not _is_ours(each)} <= there
+    assert {
+        name for name, model in known.items() if model.get("include") not in left_out and not _is_ours(model)
+    } <= there
 
 
 @pytest.mark.parametrize("item", FILES)

@@ -191,7 +191,7 @@ def test_collision_surface_and_gazebo_elements_are_merged():
         friction = model_from_robot(robot, lump_fixed_joints=False).model.links[0].collisions[0].surface.friction
         assert friction is not None
         assert (friction.mu, friction.mu2) == (0.1, 0.6)
-    assert [each.text() for each in robot.extensions[0].walk() if each.tag == "mu"] == ["0.5"]
+    assert [element.text() for element in robot.extensions[0].walk() if element.tag == "mu"] == ["0.5"]
 
 
 def test_sensors_and_plugins_keep_locations():
@@ -239,7 +239,7 @@ def test_invalid_gazebo_elements_are_reported_with_location():
         "<plugin filename='p.so'/>\n</gazebo></robot>"
     )
     found = model_from_robot(examine(text).robot, lump_fixed_joints=False).diagnostics
-    assert [(each.code, each.span.line, str(each.message)) for each in found] == [
+    assert [(diagnostic.code, diagnostic.span.line, str(diagnostic.message)) for diagnostic in found] == [
         ("SDF121", 3, "<mu1> of collision 'a' is not a number: 'much'"),
         ("SDF121", 4, "<update_rate> of sensor 's' is not a number: 'fast'"),
         ("SDF150", 5, "<plugin> in <link> is not read"),
@@ -328,9 +328,9 @@ def test_massless_links_are_omitted_only_when_lumping():
         + joint("f", "footprint", "base")
         + joint("g", "base", "ghost", kind="continuous") + joint("h", "ghost", "tip", kind="continuous")
     )  # fmt: skip
-    kept = model_from_robot(robot, lump_fixed_joints=False)
-    assert [link.name for link in kept.model.links] == ["footprint", "base", "ghost", "tip"]
-    assert [diagnostic.code for diagnostic in kept.diagnostics] == ["SDF172"]
+    unlumped = model_from_robot(robot, lump_fixed_joints=False)
+    assert [link.name for link in unlumped.model.links] == ["footprint", "base", "ghost", "tip"]
+    assert [diagnostic.code for diagnostic in unlumped.diagnostics] == ["SDF172"]
     lumped = model_from_robot(robot, lump_fixed_joints=True)
     assert [link.name for link in lumped.model.links] == ["footprint"]
     assert [(diagnostic.code, str(diagnostic.message)) for diagnostic in lumped.diagnostics] == [
@@ -409,7 +409,7 @@ def test_corpus_robots_are_converted(entry, arguments, packages, facts):
             sensors = [sensor for link in model.links for sensor in link.sensors]
             assert len(model.links) == facts["links"] - ("world" in robot.links)
             assert len(model.joints) == sum(facts["joints"].values())
-            assert {sensor.name for sensor in sensors} == {each["name"] for each in facts["sensors"]}
+            assert {sensor.name for sensor in sensors} == {sensor["name"] for sensor in facts["sensors"]}
             written = sum(element.tag == "plugin" for gazebo in robot.extensions if "reference" not in gazebo.attributes
                           for element in gazebo.elements())  # fmt: skip
             assert len(model.plugins) == written
@@ -426,7 +426,7 @@ def test_kept_massless_link_gets_negligible_mass():
         '<joint name="bd" type="continuous"><parent link="b"/><child link="d"/></joint></robot>'
     )
     a, b, c, d = model_from_robot(examine(text).robot, lump_fixed_joints=False).model.links
-    assert [each.inertial.mass for each in (a, b, c)] == [1e-6, 2.0, 1e-6]
+    assert [link.inertial.mass for link in (a, b, c)] == [1e-6, 2.0, 1e-6]
     assert d.inertial is None
 
 

@@ -49,7 +49,7 @@ def test_model_is_found_in_packages(tmp_path):
     )
     addresses = ["model://in_assets", "model://in_more", "model://in_models", "model://two/any", "package://two/any"]
     addresses += ["two/any", "two/any/model.sdf", f"file://{tmp_path}/two/any/model.sdf"]
-    names = [f"<include><uri>{each}</uri><name>m{at}</name></include>" for at, each in enumerate(addresses)]
+    names = [f"<include><uri>{address}</uri><name>m{at}</name></include>" for at, address in enumerate(addresses)]
     found = examined(tmp_path, "".join(names))
     assert found.diagnostics == ()
     assert len(models(found)) == len(addresses)
@@ -113,9 +113,11 @@ def test_missing_gazebo_classic_media_is_info(tmp_path, address, severity):
 
 def test_newest_supported_model_version_is_used(tmp_path):
     config = "<model>{}</model>".format(
-        "".join(f'<sdf version="{each}">{each}.sdf</sdf>' for each in ("1.4", "1.12", "1.99", "1.5"))
+        "".join(f'<sdf version="{version}">{version}.sdf</sdf>' for version in ("1.4", "1.12", "1.99", "1.5"))
     )
-    write(tmp_path, {"m/model.config": config, **{f"m/{each}.sdf": BOX for each in ("1.4", "1.12", "1.99", "1.5")}})
+    write(
+        tmp_path, {"m/model.config": config, **{f"m/{version}.sdf": BOX for version in ("1.4", "1.12", "1.99", "1.5")}}
+    )
     assert model_file(tmp_path / "m") == tmp_path / "m" / "1.12.sdf"
     assert isinstance(model_file(tmp_path), Missing)
 
@@ -436,7 +438,7 @@ def test_unknown_elements_and_missing_models_are_reported_once(tmp_path):
     inside = f'<mine/><mine/><yours/>{gone}{gone}{box}<model name="m"><static>1</static><mine/></model>'
     found = examined(tmp_path, inside, GZ_SIM_RESOURCE_PATH=str(tmp_path))
     texts = [str(diagnostic.message) for diagnostic in found.diagnostics if diagnostic.code in ("SDF150", "SDF160")]
-    assert [each.split(":")[0] for each in texts] == [
+    assert [text.split(":")[0] for text in texts] == [
         "<mine> in <world> is not read",
         "<yours> in <world> is not read",
         "<mine> in <model> is not read",

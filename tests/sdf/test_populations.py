@@ -15,7 +15,7 @@ BOX = "<box><size>4 2 0.5</size></box><model_count>4</model_count>"
 
 def places(inside: str, pose: str = "10 20 0 0 0 0") -> list[tuple[float, float, float]]:
     text = f'<population name="p"><pose>{pose}</pose>{MODEL}{inside}</population>'
-    return [each.pose.pose.xyz for each in models_of(world(text).populations[0])]
+    return [model.pose.pose.xyz for model in models_of(world(text).populations[0])]
 
 
 def spread(kind: str, more: str = "") -> str:
@@ -71,6 +71,6 @@ def test_population_can_include_models_and_names_them(tmp_path):
     found = examined(tmp_path, f'<population name="p">{model}{BOX}</population>', GAZEBO_MODEL_PATH=str(tmp_path))
     assert found.diagnostics == ()
     assert found.sdf is not None
-    made = found.sdf.worlds[0].models
-    assert [each.name for each in made] == [f"sip_clone_{index}" for index in range(4)]
-    assert all(each.models[0].links for each in made)
+    clones = found.sdf.worlds[0].models
+    assert [clone.name for clone in clones] == [f"sip_clone_{index}" for index in range(4)]
+    assert all(clone.models[0].links for clone in clones)

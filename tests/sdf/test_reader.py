@@ -42,7 +42,7 @@ def rules(rule: ElementRule, seen: dict[int, ElementRule]) -> dict[int, ElementR
 MADE = [rule for rule in rules(SDF, {}).values() if is_dataclass(rule.make)]
 
 
-@pytest.mark.parametrize("rule", MADE, ids=[f"{each.tag}{number}" for number, each in enumerate(MADE)])
+@pytest.mark.parametrize("rule", MADE, ids=[f"{rule.tag}{number}" for number, rule in enumerate(MADE)])
 def test_empty_element_has_class_defaults(rule: ElementRule):
     """The defaults of the table, which are SDF's, and those of the classes are the same ones."""
     element = Element(rule.tag, {attribute.name: "n" for attribute in rule.attributes if attribute.required})
@@ -472,9 +472,9 @@ def test_sdf_1_0_attributes_are_read():
     assert not found.scene.shadows
     assert found.physics[0].gravity == (0.0, 0.0, -1.6)
     assert found.physics[0].real_time_update_rate == 500
-    (made,) = found.models
-    assert made.pose.pose.xyz == (1.0, 2.0, 3.0)
-    link = made.links[0]
+    (model,) = found.models
+    assert model.pose.pose.xyz == (1.0, 2.0, 3.0)
+    link = model.links[0]
     assert link.gravity is False
     assert link.velocity_decay.angular == 0.2
     assert link.inertial is not None
@@ -491,14 +491,14 @@ def test_sdf_1_0_attributes_are_read():
     camera = link.sensors[0].cameras[0]
     assert camera.horizontal_fov == 1.1
     assert camera.image.width == 32
-    joint = made.joints[0]
+    joint = model.joints[0]
     assert (joint.parent, joint.child) == ("a", "b")
     assert joint.axis is not None
     assert joint.axis.xyz == (0.0, 1.0, 0.0)
     assert joint.axis.limit.upper == 1.0
     assert found.lights[0].pose.pose.xyz == (0.0, 0.0, 10.0)
-    assert made.plugins[0].element is not None
-    assert made.plugins[0].element.first("origin") is not None
+    assert model.plugins[0].element is not None
+    assert model.plugins[0].element.first("origin") is not None
 
 
 def test_invalid_sdf_1_0_attribute_is_reported():
@@ -516,10 +516,10 @@ def test_frame_in_any_element_with_pose_is_accepted():
     model(f'<link name="a">{frame}<visual name="v">{frame}{box}</visual></link>')
 
 
-@pytest.mark.parametrize(("text", "taken"), [("0x0002", 2), ("0XFF", 255), ("2.5", 2), ("7 8", 7)])
-def test_integers_are_parsed_like_libsdformat(text, taken):
+@pytest.mark.parametrize(("text", "expected"), [("0x0002", 2), ("0XFF", 255), ("2.5", 2), ("7 8", 7)])
+def test_integers_are_parsed_like_libsdformat(text, expected):
     collision = f'<collision name="c"><max_contacts>{text}</max_contacts></collision>'
     document, _ = parse_as_gazebo(
         f'<sdf version="1.9"><model name="m"><link name="a">{collision}</link></model></sdf>', "m"
     )
-    assert read(document).sdf.models[0].links[0].collisions[0].max_contacts == taken
+    assert read(document).sdf.models[0].links[0].collisions[0].max_contacts == expected

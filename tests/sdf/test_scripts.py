@@ -37,7 +37,7 @@ def material_of(folder, inside):
 
 
 def script(name, *uris):
-    return f"<script>{''.join(f'<uri>{each}</uri>' for each in uris)}<name>{name}</name></script>"
+    return f"<script>{''.join(f'<uri>{uri}</uri>' for uri in uris)}<name>{name}</name></script>"
 
 
 def test_gazebo_materials_have_their_colors(tmp_path):

@@ -158,9 +158,9 @@ def _placed(robot: Robot, root: Transform) -> dict[str, Transform]:
     """Where the frames of links stand, with all joints at zero."""
     places, left = {robot.root: root}, list(robot.joints.values())
     while left:
-        each = next(each for each in left if each.parent in places)
-        left.remove(each)
-        places[each.child] = compose(places[each.parent], transform_of(each.origin))
+        joint = next(joint for joint in left if joint.parent in places)
+        left.remove(joint)
+        places[joint.child] = compose(places[joint.parent], transform_of(joint.origin))
     return places
 
 
@@ -172,8 +172,8 @@ def test_urdf_survives_conversion_to_sdf_and_back():
     first, second = _placed(before, IDENTITY), _placed(after, IDENTITY)
     for name, place in first.items():
         assert second[name] == pytest.approx(place, abs=1e-9)
-    assert {each.name: each.type for each in before.joints.values()} == {
-        each.name: each.type for each in after.joints.values()
+    assert {joint.name: joint.type for joint in before.joints.values()} == {
+        joint.name: joint.type for joint in after.joints.values()
     }
     written = read_urdf(parse_as_urdfdom(save(after), "robot.urdf")[0]).robot
     assert (list(written.links), list(written.joints)) == (list(after.links), list(after.joints))
@@ -188,7 +188,7 @@ def test_visuals_of_shared_models_keep_poses():
             continue
         reading, model = robot_from_sdf(sdf, sdf.models[0].element), sdf.models[0]
         if reading.robot is None:
-            assert [each.code for each in reading.diagnostics] == ["SDF180"]
+            assert [diagnostic.code for diagnostic in reading.diagnostics] == ["SDF180"]
             continue
         robots += 1
         frames = Frames(model)

@@ -40,10 +40,10 @@ def read_back(text):
     return sdf
 
 
-def again(thing):
+def again(entity):
     """A world or model after writing and reading."""
-    sdf = read_back(save(thing))
-    return sdf.worlds[0] if isinstance(thing, World) else sdf.models[0]
+    sdf = read_back(save(entity))
+    return sdf.worlds[0] if isinstance(entity, World) else sdf.models[0]
 
 
 def same(kind, make):
