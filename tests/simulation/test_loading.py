@@ -130,7 +130,7 @@ async def test_physics_gravity_light_and_plugins_are_updated(tmp_path):
         assert simulation.model_pose("one")[2] == 9.0
         assert [light.name for light in simulation.world.lights] == ["sun"]
         assert simulation.world.scene.ambient[:3] == (1, 0, 0)
-        await eventually(lambda: any("libnobody_knows" in each.msg for each in log))
+        await eventually(lambda: any("libnobody_knows" in message.msg for message in log))
         await load(it, tmp_path, box("one", "0 0 9 0 0 0"))
         await steps(it, 100)
         assert simulation.model_pose("one")[2] < 9.0

@@ -240,7 +240,7 @@ async def test_service_failure_without_message_field_is_logged(tmp_path):
         assert not (await it.ask("gazebo_msgs/srv/GetEntityState", "/get_entity_state", name="on")).success
         await it.ask("gazebo_msgs/srv/LinkRequest", "/clear_link_wrenches", link_name="wheel")
         assert (await it.ask("gazebo_msgs/srv/GetEntityState", "/get_entity_state", name="one")).success
-        assert [each.text for each in it.log if each.level == LogLevel.ERROR] == [
+        assert [record.text for record in it.log if record.level == LogLevel.ERROR] == [
             (
                 "/set_entity_state: 'ground_plane' is fixed to the world "
                 "(delete it, and spawn it again at the intended pose)"

@@ -42,14 +42,14 @@ def test_pendulum_of_two_models_has_textbook_period(parent):
 
 
 def test_models_fixed_to_each_other_move_as_one():
-    one, other = box("one", "0 0 9 0 0 0"), box("two", "1.5 0 9 0 0 0")
-    simulation = simulated(other, one, joint("fixed", "one", "two"), gravity="0 0 0")
+    first, second = box("one", "0 0 9 0 0 0"), box("two", "1.5 0 9 0 0 0")
+    simulation = simulated(second, first, joint("fixed", "one", "two"), gravity="0 0 0")
     simulation.set_model_velocity("one", (0.0, 0.0, 0.0), (0.0, 0.0, pi / 2))
     simulation.advance(1_000_000_000)
-    one, two = (np.array(simulation.model_pose(name)) for name in ("one", "two"))
-    assert np.linalg.norm(two[:3] - one[:3]) == pytest.approx(1.5, abs=1e-9)
-    assert two[3:] == pytest.approx(one[3:], abs=1e-9)
-    assert abs(one[5]) > 0.5, "both turn"
+    first, second = (np.array(simulation.model_pose(name)) for name in ("one", "two"))
+    assert np.linalg.norm(second[:3] - first[:3]) == pytest.approx(1.5, abs=1e-9)
+    assert second[3:] == pytest.approx(first[3:], abs=1e-9)
+    assert abs(first[5]) > 0.5, "both turn"
 
 
 def test_prismatic_world_joint_stops_at_limits_for_either_child():

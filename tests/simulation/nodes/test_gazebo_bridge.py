@@ -60,7 +60,7 @@ def test_malformed_bridge_argument_is_rejected(word):
 
 
 def test_shipped_bridge_file_is_read():
-    topics = {each.gz_topic: each for each in read_bridge_file(str(GAZEBO_PACKAGE / "config" / "bridge.yaml"))}
+    topics = {entry.gz_topic: entry for entry in read_bridge_file(str(GAZEBO_PACKAGE / "config" / "bridge.yaml"))}
     assert topics["kinect/image"].ros_topic == "kinect/image_raw"
     assert topics["cmd_vel"].direction == "ROS_TO_GZ"
 
@@ -298,5 +298,5 @@ async def test_lost_publisher_stops_drive_behind_bridge(stage, ros_type):
     driver.send(message)
     driver.be_lost()
     await stage.graph.settle()
-    assert [each.linear.x for each in driven] == [0.3, 0.0]
+    assert [twist.linear.x for twist in driven] == [0.3, 0.0]
     bridge.close()

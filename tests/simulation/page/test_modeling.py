@@ -54,7 +54,7 @@ class Simulation:
         return self.asked[-1][1].world_resource
 
     def count(self, name: str) -> int:
-        return [each for each, _ in self.asked].count(name)
+        return [service for service, _ in self.asked].count(name)
 
 
 @asynccontextmanager
@@ -93,7 +93,7 @@ async def test_modeling_pauses_and_resets_simulation(tmp_path):
         assert [name for name, _ in simulation.asked] == ["/pause_physics", "/reset_simulation"]
         assert client.state["file"] == str(path)
         assert not client.state["unsaved"]
-        assert [(each["name"], each["kind"]) for each in client.state["entities"]] == [
+        assert [(entity["name"], entity["kind"]) for entity in client.state["entities"]] == [
             ("ground_plane", "model"),
             ("box", "model"),
             ("lamp", "light"),
@@ -133,7 +133,7 @@ async def test_modeling_messages_edit_entities(tmp_path):
 
         async def names(kind: str, **fields) -> list[str]:
             await client.send(kind, **fields)
-            return [each["name"] for each in (await client.until("modeling_state"))["entities"]]
+            return [entity["name"] for entity in (await client.until("modeling_state"))["entities"]]
 
         for shape in ("box", "cylinder", "sphere", "wall", "ramp"):
             assert shape in (await names("add_entity", shape=shape, address="", pose=POSE, size=[]))[-1]
@@ -150,7 +150,7 @@ async def test_modeling_messages_edit_entities(tmp_path):
         assert "box_2" in await names("ungroup_entity", name="pile")
         changes = [change("wall", size=[1, 2, 3], color=[0, 0, 1, 1]), change("ramp", new_name="slope", static=False)]
         await client.send("change_entities", changes=changes)
-        entities = {each["name"]: each for each in (await client.until("modeling_state"))["entities"]}
+        entities = {entity["name"]: entity for entity in (await client.until("modeling_state"))["entities"]}
         assert (entities["wall"]["size"], entities["wall"]["color"]) == ([1, 2, 3], [0, 0, 1, 1])
         assert (entities["slope"]["shape"], entities["slope"]["static"]) == ("ramp", False)
         await client.send("ask_models")
@@ -160,7 +160,7 @@ async def test_modeling_messages_edit_entities(tmp_path):
 
 async def test_new_entity_gets_unused_name(tmp_path):
     async with modeling_session(write_world(tmp_path, PLAIN.replace(BOX, ""))) as (_, client, _):
-        assert [each["name"] for each in client.state["entities"]] == ["ground_plane", "lamp"]
+        assert [entity["name"] for entity in client.state["entities"]] == ["ground_plane", "lamp"]
         await client.send("add_entity", shape="box", address="", pose=POSE, size=[])
         assert (await client.until("modeling_state", unsaved=True))["entities"][-1]["name"] == "box_2"
 
@@ -236,5 +236,5 @@ async def test_unsaved_changes_are_kept_at_exit(tmp_path):
         await client.until("modeling_state", unsaved=True)
         (notice,) = world.viewer.keep_unsaved()
     assert (notice.code, path.read_text()) == ("RVIZ301", PLAIN)
-    kept = list(recovery_folder().glob("my-*.world"))
-    assert [each.read_text() for each in kept if str(each) in notice.message] == [PLAIN.replace(BOX, "")]
+    files = list(recovery_folder().glob("my-*.world"))
+    assert [file.read_text() for file in files if str(file) in notice.message] == [PLAIN.replace(BOX, "")]

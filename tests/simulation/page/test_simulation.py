@@ -59,8 +59,8 @@ class Simulation:
         return response
 
     async def request(self, name: str, count: int = 1):
-        await eventually(lambda: [each for each, _ in self.asked].count(name) >= count)
-        return [request for each, request in self.asked if each == name][-1]
+        await eventually(lambda: [service for service, _ in self.asked].count(name) >= count)
+        return [request for service, request in self.asked if service == name][-1]
 
 
 @asynccontextmanager
