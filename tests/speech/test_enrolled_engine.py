@@ -50,14 +50,14 @@ def results_of(engine, samples, block=BLOCK):
 
 
 def final_texts(engine, samples):
-    return [one.text for one in results_of(engine, samples) if one.final]
+    return [result.text for result in results_of(engine, samples) if result.final]
 
 
 @pytest.mark.parametrize("name", WORDS)
 @pytest.mark.parametrize(("speed", "pitch", "level"), [(0.9, 122, 1000), (1.1, 117, 8000), (1.0, 120, 300)])
 def test_word_is_recognized_at_other_speed_pitch_and_level(engine, name, speed, pitch, level):
     samples = say(WORDS[name], speed=speed, pitch=pitch, level=level, silence=0.8, seed=9)
-    (found,) = [one for one in results_of(engine, samples) if one.final]
+    (found,) = [result for result in results_of(engine, samples) if result.final]
     assert found.text == name
     assert 0.5 < found.confidence <= 1.0
     assert abs(found.start - 0.8) < 0.15
@@ -121,7 +121,7 @@ def test_words_are_recognized_in_babble(path):
         for seed in range(1, 4):
             engine = EnrolledEngine(EngineOptions(tuple(WORDS), model=path))
             found = results_of(engine, in_babble(WORDS[name], seed)) + list(engine.finish())
-            text = {one.text for one in found if one.final} - {""}
+            text = {result.text for result in found if result.final} - {""}
             assert text <= {name}
             right.append(text == {name})
     assert sum(right) >= 10
@@ -130,12 +130,12 @@ def test_words_are_recognized_in_babble(path):
 @pytest.mark.parametrize("phones", OTHERS)
 def test_unknown_word_is_not_recognized_in_babble(engine, phones):
     found = results_of(engine, in_babble(phones, 1)) + list(engine.finish())
-    assert {one.text for one in found} <= {""}
+    assert {result.text for result in found} <= {""}
 
 
 def test_babble_alone_is_not_recognized(engine):
     sound = np.rint(300 * babble(20.0, np.random.default_rng(4))).astype(np.int16)
-    assert not [one.text for one in results_of(engine, sound) if one.text]
+    assert not [result.text for result in results_of(engine, sound) if result.text]
 
 
 @pytest.mark.parametrize("phones", OTHERS)
@@ -146,17 +146,17 @@ def test_unknown_word_gives_empty_text(engine, phones):
 @pytest.mark.parametrize("phones", ["s.to.s", "s.to.t", "s.to.f", ".pae.s"])
 def test_word_differing_in_one_sound_is_not_recognized(engine, phones):
     samples = say(phones, level=2000, silence=0.8, seed=9)
-    assert [one.text for one in results_of(engine, samples) if one.text] == []
+    assert [result.text for result in results_of(engine, samples) if result.text] == []
 
 
 def test_similar_utterance_reports_nearest_word(engine, path):
     in_noise = say(WORDS["turn left"], speed=1.05, level=2000, noise=1000, silence=0.8, seed=1)
-    (found,) = [one for one in results_of(engine, in_noise) if one.final]
+    (found,) = [result for result in results_of(engine, in_noise) if result.final]
     assert (found.text, found.nearest) == ("", "turn left")
     others = EnrolledEngine(EngineOptions(("stop", "back"), model=path))  # a word that is no phrase is not told
-    (found,) = [one for one in results_of(others, in_noise) if one.final]
+    (found,) = [result for result in results_of(others, in_noise) if result.final]
     assert (found.text, found.nearest) == ("", "")
-    (found,) = [one for one in results_of(others, say(OTHERS[0], silence=0.8, seed=11)) if one.final]
+    (found,) = [result for result in results_of(others, say(OTHERS[0], silence=0.8, seed=11)) if result.final]
     assert (found.text, found.nearest) == ("", "")
 
 
@@ -171,7 +171,7 @@ def test_sound_without_speech_is_not_recognized(engine, kind):
         "click": 20_000.0 * (np.arange(len(at)) % RATE < 30) + rng.normal(size=len(at)),
         "chirp": 3000 * np.sin(2 * np.pi * (200 * at + 300 * at**2)) + rng.normal(size=len(at)),
     }[kind]
-    assert not [one.text for one in results_of(engine, sound.astype(np.int16)) if one.text]
+    assert not [result.text for result in results_of(engine, sound.astype(np.int16)) if result.text]
 
 
 def test_partial_is_reported_within_300_ms_of_word(engine):
@@ -180,7 +180,7 @@ def test_partial_is_reported_within_300_ms_of_word(engine):
     known = None
     for at in range(0, len(samples), BLOCK):
         found = engine.hear(samples[at : at + BLOCK])
-        if known is None and any(one.text == "stop" for one in found):
+        if known is None and any(result.text == "stop" for result in found):
             known = at + BLOCK
             assert not found[0].final
     assert known is not None
@@ -203,7 +203,7 @@ def test_finish_ends_utterance(engine):
 @pytest.mark.parametrize("block", [37, 480, 16_000])
 def test_results_do_not_depend_on_block_size(engine, block):
     sound = np.concatenate([say(WORDS[name], silence=0.6, seed=15) for name in ("forward", "stop")])
-    assert [one.text for one in results_of(engine, sound, block) if one.final] == ["forward", "stop"]
+    assert [result.text for result in results_of(engine, sound, block) if result.final] == ["forward", "stop"]
 
 
 def test_enrolled_words_outside_phrases_are_not_reported(path):
@@ -220,7 +220,7 @@ def test_phrases_are_reported_with_requested_spelling(path):
 def test_long_speech_is_not_recognized(engine):
     sound = np.concatenate([say(WORDS[name], silence=0.0, seed=16) for name in list(WORDS) * 4])
     found = results_of(engine, np.concatenate((say("a", level=1.0), sound, np.zeros(RATE, np.int16))))
-    assert [one.text for one in found if one.final] == [""]
+    assert [result.text for result in found if result.final] == [""]
 
 
 def test_single_enrolled_word_is_recognized(words, tmp_path):

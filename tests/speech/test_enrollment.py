@@ -85,10 +85,10 @@ def test_unsuitable_recording_is_rejected_with_reason(samples, code):
     assert words.names == ()
 
 
-@pytest.mark.parametrize("kept", [slice(9_200, None), slice(0, 12_000)], ids=["beginning", "end"])
-def test_truncated_word_is_rejected(kept):
+@pytest.mark.parametrize("part", [slice(9_200, None), slice(0, 12_000)], ids=["beginning", "end"])
+def test_truncated_word_is_rejected(part):
     words = Words()
-    (finding,) = enroll(words, "forward", say(WORDS["forward"])[kept])
+    (finding,) = enroll(words, "forward", say(WORDS["forward"])[part])
     assert (finding.code, finding.severity) == ("VOICE211", Severity.ERROR)
     assert words.names == ()
 

@@ -28,10 +28,10 @@ def _own_file(tmp_path, monkeypatch):
 async def opened() -> AsyncIterator[tuple[Client, Client]]:
     """Two pages that see the words, the first with its microphone open."""
     async with open_world() as world, page(world.viewer) as client, page(world.viewer) as other:
-        for each in (client, other):
-            await each.opened()
-            await each.send("watch_words", watched=True)
-            assert (await each.until("voice_words"))["words"] == []
+        for client_page in (client, other):
+            await client_page.opened()
+            await client_page.send("watch_words", watched=True)
+            assert (await client_page.until("voice_words"))["words"] == []
         await client.send("talk", mode="ready")
         yield client, other
 
