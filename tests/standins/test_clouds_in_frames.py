@@ -15,12 +15,12 @@ from tf_transformations import quaternion_from_euler
 @pytest.fixture
 def turned():
     """One meter along x, and a quarter of a turn around z."""
-    made = TransformStamped(child_frame_id="lidar")
-    made.header.frame_id = "base"
-    made.transform.translation.x = 1.0
-    rotation = made.transform.rotation
+    transform = TransformStamped(child_frame_id="lidar")
+    transform.header.frame_id = "base"
+    transform.transform.translation.x = 1.0
+    rotation = transform.transform.rotation
     rotation.x, rotation.y, rotation.z, rotation.w = quaternion_from_euler(0, 0, np.pi / 2)
-    return made
+    return transform
 
 
 def test_transform_points_applies_transform(turned):

@@ -288,7 +288,7 @@ class TestSmallModules:
         line = ["program", "-d", "--ros-args", "-r", "a:=b", "--", "--foo"]
         assert remove_ros_args(line) == ["program", "-d", "--foo"]
         assert remove_ros_args([]) == []
-        assert [timeout_sec_to_nsec(each) for each in (None, -1, 0, 1.5)] == [-1, -1, 0, 1_500_000_000]
+        assert [timeout_sec_to_nsec(timeout) for timeout in (None, -1, 0, 1.5)] == [-1, -1, 0, 1_500_000_000]
         has_dds = find_spec("cyclonedds") is not None
         assert get_rmw_implementation_identifier() == ("rmw_cyclonedds_cpp" if has_dds else "rmw_zenoh_cpp")
 

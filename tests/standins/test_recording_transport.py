@@ -22,8 +22,8 @@ pytestmark = needs_rosbags
 @pytest.fixture
 def node():
     rclpy.init(args=[])
-    made = rclpy.create_node("other")
-    yield made
+    node = rclpy.create_node("other")
+    yield node
     rclpy.shutdown()
 
 
