@@ -29,10 +29,10 @@ def backwards(scenario, until=None):
     """A runner in this process that begins with the last row, and is interrupted before a row."""
 
     def run(runs, report):
-        for each in reversed(runs):
-            if each.row == until:
+        for planned_run in reversed(runs):
+            if planned_run.row == until:
                 raise KeyboardInterrupt
-            report(run_once(scenario, each))
+            report(run_once(scenario, planned_run))
 
     return run
 
