@@ -195,9 +195,9 @@ sys.exit(main())
 """
     command = [sys.executable, "-c", program, verb, str(robot)]
     environment = {name: value for name, value in os.environ.items() if name != "PYTHONIOENCODING"}
-    done = subprocess.run(command, env={**environment, "LINKWRIGHT_LANG": "zh"}, capture_output=True, check=False)
-    assert done.returncode == 0, done.stderr
-    assert NAMES in done.stdout.decode("utf-8")
+    result = subprocess.run(command, env={**environment, "LINKWRIGHT_LANG": "zh"}, capture_output=True, check=False)
+    assert result.returncode == 0, result.stderr
+    assert NAMES in result.stdout.decode("utf-8")
 
 
 def test_requested_output_encoding_is_kept(monkeypatch, tmp_path):
