@@ -100,13 +100,13 @@ class World:
 @asynccontextmanager
 async def open_world(config: RvizConfig | None = None, **options) -> AsyncIterator[World]:
     """Start a world, and close it at the end."""
-    made = World(config, **options)
-    await made.viewer.start()
+    world = World(config, **options)
+    await world.viewer.start()
     try:
-        yield made
+        yield world
     finally:
-        await made.viewer.close()
-        await made.graph.close()
+        await world.viewer.close()
+        await world.graph.close()
 
 
 @dataclass

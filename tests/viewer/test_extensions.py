@@ -78,7 +78,7 @@ def config_with(cls: str) -> RvizConfig:
 async def test_display_of_another_package_is_created_and_offered(brought):
     async with open_world(config_with("brought/Fence")) as world, page(world.viewer) as client:
         first = await client.opened()
-        (fence,) = [each for each in first["tree"]["displays"] if each["cls"] == "brought/Fence"]
+        (fence,) = [display for display in first["tree"]["displays"] if display["cls"] == "brought/Fence"]
         assert (fence["supported"], fence["drawing"]) == (True, "rviz_default_plugins/Polygon")
         await client.send("ask_display_choices")
         offered = (await client.until("display_choices"))["classes"]

@@ -105,12 +105,12 @@ async def test_known_frames_are_offered_as_options():
 
 
 async def test_property_change_is_sent_to_all_pages():
-    async with open_world() as world, page(world.viewer) as one, page(world.viewer) as other:
-        await one.opened()
-        await other.opened()
-        await one.set("display-2/Alpha", 0.5)
-        await one.set("global/Background Color", "#FFFFFF")
-        for client in (one, other):
+    async with open_world() as world, page(world.viewer) as first, page(world.viewer) as second:
+        await first.opened()
+        await second.opened()
+        await first.set("display-2/Alpha", 0.5)
+        await first.set("global/Background Color", "#FFFFFF")
+        for client in (first, second):
             assert (await client.until("property_changed", id="display-2/Alpha"))["value"] == 0.5
             assert (await client.until("property_changed", id="global/Background Color"))["value"] == "#ffffff"
         assert "Background Color: 255; 255; 255" in world.viewer.config.text()
@@ -388,12 +388,12 @@ async def test_page_and_hashed_assets_are_served(tmp_path, monkeypatch):
             assert "Content-Encoding" not in answer.headers
             assert await answer.text() == "export {}"
         (tmp_path / "assets" / "index-abc.js").unlink()  # as the build leaves them
-        for taken, encoding in (("gzip", "gzip"), ("identity", None)):
-            async with session.get(f"{base}assets/index-abc.js", headers={"Accept-Encoding": taken}) as answer:
+        for accepted, encoding in (("gzip", "gzip"), ("identity", None)):
+            async with session.get(f"{base}assets/index-abc.js", headers={"Accept-Encoding": accepted}) as answer:
                 assert answer.headers.get("Content-Encoding") == encoding
                 assert answer.headers["Vary"] == "Accept-Encoding"
                 assert await answer.text() == "export {}"
-                known = {"Accept-Encoding": taken, "If-None-Match": answer.headers["ETag"]}
+                known = {"Accept-Encoding": accepted, "If-None-Match": answer.headers["ETag"]}
             async with session.get(f"{base}assets/index-abc.js", headers=known) as answer:
                 assert (answer.status, await answer.read()) == (304, b"")
         async with session.get(f"{base}assets/gone.js") as answer:
