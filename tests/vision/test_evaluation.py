@@ -29,9 +29,9 @@ def found(*rows, names=NAMES):
 
 
 def test_intersection_over_union_of_boxes():
-    one = np.array([[0, 0, 10, 10]], np.float32)
+    box = np.array([[0, 0, 10, 10]], np.float32)
     others = np.array([[0, 0, 10, 10], [5, 0, 15, 10], [20, 20, 30, 30], [0, 0, 5, 5]], np.float32)
-    assert intersection_over_union(one, others)[0] == pytest.approx([1, 1 / 3, 0, 0.25])
+    assert intersection_over_union(box, others)[0] == pytest.approx([1, 1 / 3, 0, 0.25])
 
 
 def test_perfect_detections_have_map_1():
@@ -112,6 +112,6 @@ def test_evaluation_does_not_depend_on_order_of_detections(places, chance):
     truth = [objects((0, 5, 5, 25, 25), (1, 40, 40, 60, 60))]
     mixed = rows[:]
     chance.shuffle(mixed)
-    one, other = evaluate(NAMES, truth, [found(*rows)]), evaluate(NAMES, truth, [found(*mixed)])
-    assert (one.map50, one.map) == (other.map50, other.map)
-    assert 0 <= one.map <= one.map50 <= 1
+    first, second = evaluate(NAMES, truth, [found(*rows)]), evaluate(NAMES, truth, [found(*mixed)])
+    assert (first.map50, first.map) == (second.map50, second.map)
+    assert 0 <= first.map <= first.map50 <= 1

@@ -53,11 +53,11 @@ def by_hand(path, image, rows, cols, padded=None):
     return session.run(None, {"images": tensor})[0].astype(np.float32), scales, left, top
 
 
-def overlap(one, two):
-    width = min(one[2], two[2]) - max(one[0], two[0])
-    height = min(one[3], two[3]) - max(one[1], two[1])
+def overlap(first, second):
+    width = min(first[2], second[2]) - max(first[0], second[0])
+    height = min(first[3], second[3]) - max(first[1], second[1])
     common = max(0, width) * max(0, height)
-    whole = (one[2] - one[0]) * (one[3] - one[1]) + (two[2] - two[0]) * (two[3] - two[1]) - common
+    whole = (first[2] - first[0]) * (first[3] - first[1]) + (second[2] - second[0]) * (second[3] - second[1]) - common
     return common / whole
 
 
@@ -65,27 +65,27 @@ def slowly(rows, classes, limits, objectness=False):
     """Boxes, one after the other: (score, class, corners in the input)."""
     found = []
     for row in rows:
-        scores = [float(row[4 + objectness + each]) * (float(row[4]) if objectness else 1) for each in range(classes)]
+        scores = [float(row[4 + objectness + index]) * (float(row[4]) if objectness else 1) for index in range(classes)]
         best = max(range(classes), key=scores.__getitem__)
         if scores[best] >= limits.threshold:
             x, y, w, h = map(float, row[:4])
             found.append((scores[best], best, (x - w / 2, y - h / 2, x + w / 2, y + h / 2)))
-    found.sort(key=lambda each: -each[0])
-    kept = []
-    for each in found:
-        if all(other[1] != each[1] or overlap(other[2], each[2]) <= limits.iou for other in kept):
-            kept.append(each)
-    return kept[: limits.max_detections]
+    found.sort(key=lambda detection: -detection[0])
+    selected = []
+    for detection in found:
+        if all(other[1] != detection[1] or overlap(other[2], detection[2]) <= limits.iou for other in selected):
+            selected.append(detection)
+    return selected[: limits.max_detections]
 
 
-def check(found, kept, image, scale, left, top, tolerance=1e-3):
-    assert len(found) == len(kept) > 3
+def check(found, expected, image, scale, left, top, tolerance=1e-3):
+    assert len(found) == len(expected) > 3
     height, width = image.shape[:2]
-    for index, (score, which, box) in enumerate(kept):
-        placed = [(each - (left, top)[axis % 2]) / scale[axis % 2] for axis, each in enumerate(box)]
+    for index, (score, which, box) in enumerate(expected):
+        placed = [(coordinate - (left, top)[axis % 2]) / scale[axis % 2] for axis, coordinate in enumerate(box)]
         limits = [width, height, width, height]
         assert found.boxes[index] == pytest.approx(
-            [min(max(each, 0), limit) for each, limit in zip(placed, limits, strict=True)], abs=tolerance
+            [min(max(coordinate, 0), limit) for coordinate, limit in zip(placed, limits, strict=True)], abs=tolerance
         )
         assert found.scores[index] == pytest.approx(score, abs=1e-5)
         assert found.classes[index] == which

@@ -47,18 +47,18 @@ class ColorDetector:
 
 def detection(header: Any, left: float, top: float, right: float, bottom: float, name: str, score: float = 0.9) -> Any:
     """A vision_msgs/msg/Detection2D of a box."""
-    made = get_message("vision_msgs/msg/Detection2D")(header=header)
-    made.bbox.center.position.x, made.bbox.center.position.y = (left + right) / 2, (top + bottom) / 2
-    made.bbox.size_x, made.bbox.size_y = float(right - left), float(bottom - top)
+    message = get_message("vision_msgs/msg/Detection2D")(header=header)
+    message.bbox.center.position.x, message.bbox.center.position.y = (left + right) / 2, (top + bottom) / 2
+    message.bbox.size_x, message.bbox.size_y = float(right - left), float(bottom - top)
     result = get_message("vision_msgs/msg/ObjectHypothesisWithPose")()
     result.hypothesis.class_id, result.hypothesis.score = name, score
-    made.results = [result]
-    return made
+    message.results = [result]
+    return message
 
 
 def yolo_detection(left: float, top: float, right: float, bottom: float, name: str, score: float) -> Any:
     """A yolo_msgs/msg/Detection of a box, of class 4."""
-    made = get_message("yolo_msgs/msg/Detection")(class_id=4, class_name=name, score=score)
-    made.bbox.center.position.x, made.bbox.center.position.y = (left + right) / 2, (top + bottom) / 2
-    made.bbox.size.x, made.bbox.size.y = float(right - left), float(bottom - top)
-    return made
+    message = get_message("yolo_msgs/msg/Detection")(class_id=4, class_name=name, score=score)
+    message.bbox.center.position.x, message.bbox.center.position.y = (left + right) / 2, (top + bottom) / 2
+    message.bbox.size.x, message.bbox.size.y = float(right - left), float(bottom - top)
+    return message

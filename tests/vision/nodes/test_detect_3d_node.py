@@ -56,8 +56,8 @@ def depth(test, values, encoding="32FC1", **more):
 def boxes(test, *given, frame="camera"):
     array = get_message("vision_msgs/msg/Detection2DArray")(header=header(frame))
     array.detections = [detection(array.header, *box, "ball") for box in given]
-    for number, each in enumerate(array.detections):
-        each.id = str(number + 7)
+    for number, array_detection in enumerate(array.detections):
+        array_detection.id = str(number + 7)
     test.publish("/detections", array)
     test.settle()
 
@@ -79,15 +79,15 @@ def test_depth_image_gives_positions_in_target_frame(test, encoding, factor, div
     camera(test, "/depth_info")
     depth(test, WALL * factor, encoding)
     boxes(test, BOX)
-    (each,) = found.last.detections
-    at, size = each.bbox.center.position, each.bbox.size
+    (detection,) = found.last.detections
+    at, size = detection.bbox.center.position, detection.bbox.size
     assert (at.x, at.y, at.z) == pytest.approx((2.1, 0.0, 0.5), abs=0.02)
     assert (size.y, size.z) == pytest.approx((0.16, 0.16), abs=0.01)
-    assert found.last.header.frame_id == each.header.frame_id == "base_link"
-    assert each.id == "7"
-    assert each.results[0].hypothesis.class_id == "ball"
-    assert each.results[0].pose.pose.position.x == at.x
-    turn = each.bbox.center.orientation
+    assert found.last.header.frame_id == detection.header.frame_id == "base_link"
+    assert detection.id == "7"
+    assert detection.results[0].hypothesis.class_id == "ball"
+    assert detection.results[0].pose.pose.position.x == at.x
+    turn = detection.bbox.center.orientation
     assert abs(turn.w) == pytest.approx(1.0), "x of the box is along the view, z is up"
     _, box, label = markers.last.markers
     assert (box.type, box.scale.y) == (box.CUBE, size.y)
@@ -107,10 +107,10 @@ def test_objects_are_placed_on_ground_without_depth(test):
     _, found, _ = start(test, ground_frame="base_link")
     camera(test, "/camera_info")
     boxes(test, (295.0, 320.0, 345.0, 365.0), (300.0, 100.0, 340.0, 140.0))
-    (each,) = found.last.detections
-    assert each.id == "7", "the other one is above the horizon"
-    assert each.bbox.center.position.x == pytest.approx(2.1, abs=0.02)
-    assert each.bbox.center.position.z == pytest.approx(0.09, abs=0.02)
+    (detection,) = found.last.detections
+    assert detection.id == "7", "the other one is above the horizon"
+    assert detection.bbox.center.position.x == pytest.approx(2.1, abs=0.02)
+    assert detection.bbox.center.position.z == pytest.approx(0.09, abs=0.02)
     assert warnings(test) == []
 
 
@@ -126,7 +126,7 @@ def test_empty_detections_are_published_and_delete_markers(test):
     _, found, markers = start(test)
     boxes(test)
     assert found.last.detections == []
-    assert [each.action for each in markers.last.markers] == [markers.last.markers[0].DELETEALL]
+    assert [marker.action for marker in markers.last.markers] == [markers.last.markers[0].DELETEALL]
 
 
 def test_missing_inputs_are_reported(test):
@@ -167,12 +167,12 @@ def test_yolo_ros_messages_and_parameters_are_supported(test):
     array.detections[0].id = "7"
     test.publish("/detections", array)
     test.settle()
-    (each,) = found.last.detections
-    at, size = each.bbox3d.center.position, each.bbox3d.size
+    (detection,) = found.last.detections
+    at, size = detection.bbox3d.center.position, detection.bbox3d.size
     assert (at.x, at.y, at.z) == pytest.approx((2.1, 0.0, 0.5), abs=0.02)
     assert (size.y, size.z) == pytest.approx((0.16, 0.16), abs=0.01)
-    assert found.last.header.frame_id == each.bbox3d.frame_id == "base_link"
-    assert (each.id, each.class_name, each.bbox.center.position.x) == ("7", "ball", 320.0)
+    assert found.last.header.frame_id == detection.bbox3d.frame_id == "base_link"
+    assert (detection.id, detection.class_name, detection.bbox.center.position.x) == ("7", "ball", 320.0)
     assert array.detections[0].bbox3d.frame_id == "", "what others hear, too, stays as it is"
     _, box, label = markers.last.markers
     assert (box.scale.y, label.text) == (size.y, "ball 7 2.0 m")

@@ -17,8 +17,8 @@ def found(*objects):
     if not objects:
         return Detections.empty(NAMES)
     boxes = [[x - size / 2, y - size / 2, x + size / 2, y + size / 2] for x, y, size, *_ in objects]
-    scores = [thing[3] if len(thing) > 3 else 0.9 for thing in objects]
-    classes = [thing[4] if len(thing) > 4 else 0 for thing in objects]
+    scores = [entry[3] if len(entry) > 3 else 0.9 for entry in objects]
+    classes = [entry[4] if len(entry) > 4 else 0 for entry in objects]
     return Detections(np.array(boxes, np.float32), np.array(scores, np.float32), np.array(classes, np.int32), NAMES)
 
 

@@ -86,7 +86,7 @@ def test_bfloat16_training_matches_float32_within_rounding(shapes, tmp_path):
         )
         training_loop.run(received.append)
         assert all(parameter.dtype == torch.float32 for parameter in training_loop.network.parameters())
-        losses.append([each.losses for each in received])
+        losses.append([report.losses for report in received])
     exact, rounded = np.array(losses)
     assert (exact != rounded).any()
     assert rounded == pytest.approx(exact, rel=0.2)
@@ -219,12 +219,12 @@ def test_training_starts_from_weights_file_and_card_names_it(shapes, tmp_path, c
     begun = tmp_path / "first" / "first.onnx"
     assert main([*words, "-o", str(tmp_path / "second"), "--weights", str(begun), "--rate", "1e-9"]) == 0
     capsys.readouterr()
-    session = [
+    sessions = [
         onnxruntime.InferenceSession(file, providers=["CPUExecutionProvider"])
         for file in (begun, tmp_path / "second" / "detector.onnx")
     ]
     image = np.random.default_rng(0).random((1, 3, 96, 96), np.float32)
-    first, second = (each.run(None, {"images": image})[0][0, :4] for each in session)
+    first, second = (session.run(None, {"images": image})[0][0, :4] for session in sessions)
     assert np.abs(first - second).max() < 1.0  # pixels
     assert "| started from | first.onnx, sha256 " in (tmp_path / "second" / "detector.md").read_text(encoding="utf-8")
 
@@ -287,7 +287,7 @@ def test_training_until_ctrl_c_is_kept(shapes, tmp_path):
     assert result.was_interrupted
     assert result.network.is_file()
     assert "2 of 4" in result.card.read_text(encoding="utf-8")
-    assert tuple(each.name for each in result.reports[0].evaluation.classes) == NAMES
+    assert tuple(entry.name for entry in result.reports[0].evaluation.classes) == NAMES
 
 
 @pytest.mark.parametrize("shape", [(8, 16, 3, 3), (48, 16, 1, 1)])

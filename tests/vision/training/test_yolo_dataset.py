@@ -44,9 +44,9 @@ def test_dataset_is_read(shapes):
 
 
 def test_boxes_match_colored_shapes(shapes):
-    for each in open_dataset(shapes).read("train"):
-        left, top, right, bottom = np.rint(each.boxes[0] * 96).astype(int)
-        red = read_image(each)[..., 0] > 200
+    for labeled_image in open_dataset(shapes).read("train"):
+        left, top, right, bottom = np.rint(labeled_image.boxes[0] * 96).astype(int)
+        red = read_image(labeled_image)[..., 0] > 200
         assert (np.flatnonzero(red.any(0))[[0, -1]] == (left, right - 1)).all()
         assert (np.flatnonzero(red.any(1))[[0, -1]] == (top, bottom - 1)).all()
 
@@ -168,9 +168,9 @@ def test_augmentation_keeps_boxes_around_objects(shapes):
 
 def test_augmentation_is_deterministic_for_seed(shapes):
     labeled_images = read_labeled_images(open_dataset(shapes).read("train"), 96, 96)
-    one, other = (augment(labeled_images, 0, VIEW, np.random.default_rng(5)) for _ in range(2))
-    assert (one[0] == other[0]).all()
-    assert (one[1] == other[1]).all()
+    first, second = (augment(labeled_images, 0, VIEW, np.random.default_rng(5)) for _ in range(2))
+    assert (first[0] == second[0]).all()
+    assert (first[1] == second[1]).all()
 
 
 def test_last_epochs_use_whole_images(shapes):
@@ -188,7 +188,7 @@ def test_last_epochs_use_whole_images(shapes):
 
 def test_images_of_rare_classes_are_sampled_more_often():
     def image(*classes):
-        return np.array([[each, 0, 0, 9, 9] for each in classes], np.float32).reshape(-1, 5)
+        return np.array([[class_number, 0, 0, 9, 9] for class_number in classes], np.float32).reshape(-1, 5)
 
     objects = (*[image(0)] * 16, *[image(1, 0)] * 8, image(2), image(-4, 0), image())
     labeled_images = LabeledImages(np.zeros((len(objects), 1, 1, 3), np.uint8), objects)
@@ -197,6 +197,6 @@ def test_images_of_rare_classes_are_sampled_more_often():
     assert times[24] == pytest.approx(np.sqrt(8))
     assert times[25:] == pytest.approx(1)  # what is to be ignored, or nothing
     chosen = [repeated_indices(times, np.random.default_rng(seed)) for seed in range(200)]
-    counts = np.mean([np.bincount(each, minlength=len(objects)) for each in chosen], 0)
+    counts = np.mean([np.bincount(indices, minlength=len(objects)) for indices in chosen], 0)
     assert counts[:24] == pytest.approx(1)
     assert counts[24] == pytest.approx(np.sqrt(8), abs=0.15)
