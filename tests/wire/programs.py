@@ -130,7 +130,7 @@ def serve(answers: dict[str, Callable[..., Any]]) -> None:
 
 def linkwright(*words: str) -> tuple[str, str, int]:
     """What a command prints, its errors and its exit status."""
-    done = subprocess.run(
+    result = subprocess.run(
         [sys.executable, "-m", "linkwright", *words], capture_output=True, text=True, timeout=60, check=False
     )
-    return done.stdout, done.stderr, done.returncode
+    return result.stdout, result.stderr, result.returncode

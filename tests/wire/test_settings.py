@@ -28,7 +28,7 @@ def test_default_range_is_own_machine():
     document = elements(settings)
     assert document["General/MulticastTimeToLive"] == ["0"]
     assert document["General/MulticastRecvNetworkInterfaceAddresses"] == ["127.0.0.1"]
-    peers = [each["address"] for each in document["Discovery/Peers/Peer"]]
+    peers = [peer["address"] for peer in document["Discovery/Peers/Peer"]]
     assert peers == ["127.0.0.1", *own_addresses()[:3]]
 
 
