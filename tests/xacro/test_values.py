@@ -16,7 +16,7 @@ def values(text: str, **arguments: str) -> dict[str, tuple[str, ...]]:
     """Return the values of each text with expressions, by its position."""
     whole = f"{HEAD}{text}</robot>"
     found = evaluated_expressions(Inputs("r.xacro", arguments, text=whole))
-    return {whole[each.start : each.end]: each.values for each in found}
+    return {whole[part.start : part.end]: part.values for part in found}
 
 
 def test_values_of_each_macro_call_are_listed():
@@ -30,7 +30,7 @@ def test_evaluation_has_call_and_names():
         '<link name="l${n * w}"/></xacro:macro>\n<xacro:m n="3"/></robot>'
     )
     found = evaluated_expressions(Inputs("r.xacro", {}, text=text))
-    (part,) = (each for each in found if text[each.start : each.end] == "${n * w}")
+    (part,) = (part for part in found if text[part.start : part.end] == "${n * w}")
     (evaluation,) = part.evaluations
     assert evaluation.value == "6"
     assert evaluation.names == (("n", "3"), ("w", "2"))
