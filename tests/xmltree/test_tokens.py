@@ -28,7 +28,9 @@ def attributes(text: str) -> list[tuple[str, str | None, str]]:
 def test_tokens_cover_all_characters(text: str):
     found = [*tokens(text)]
     assert "".join(token.text for token in found) == text
-    assert [token.start for token in found] == [sum(len(each.text) for each in found[:at]) for at in range(len(found))]
+    assert [token.start for token in found] == [
+        sum(len(earlier.text) for earlier in found[:at]) for at in range(len(found))
+    ]
 
 
 @given(MARKUP)
