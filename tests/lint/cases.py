@@ -51,8 +51,8 @@ class Case:
             (folder / name).parent.mkdir(parents=True, exist_ok=True)
             (folder / name).write_text(text, encoding="utf-8")
         main = folder / next(iter(self.files))
-        found = examine(main, settings=self._settings(main)).diagnostics
-        wanted = [finding for finding in found if finding.code.startswith(self.selectors)]
+        findings = examine(main, settings=self._settings(main)).diagnostics
+        wanted = [finding for finding in findings if finding.code.startswith(self.selectors)]
         return "".join(f"{line}\n" for finding in wanted for line in _lines(finding, folder, main))
 
     def fixed_text(self, folder: Path) -> str:

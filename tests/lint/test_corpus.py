@@ -24,10 +24,10 @@ def test_corpus_robots_have_no_joint_or_structure_errors(model: Model) -> None:
 
 @pytest.mark.parametrize("corpus", CORPORA, ids=lambda corpus: corpus.folder.name)
 def test_corpus_robots_have_few_joint_and_structure_findings(corpus: Corpus) -> None:
-    found = {
+    codes = {
         (diagnostic.code, diagnostic.span)
         for model in corpus.models
         for diagnostic in look(model, Settings()).diagnostics
         if diagnostic.code.startswith(("LW1", "LW2"))
     }
-    assert len(found) < 20
+    assert len(codes) < 20

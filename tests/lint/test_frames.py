@@ -29,10 +29,10 @@ def test_link_placements_match_kinematics(first, second):
     robot = Robot("r", "a", links, joints, {})
     tree = KinematicTree(robot)
     matrices = tree.forward(np.zeros(1))
-    for name, found in placements(robot).items():
+    for name, link_placement in placements(robot).items():
         matrix = matrices[tree.link_index(name)]
-        np.testing.assert_allclose(found.rotation, matrix[:3, :3], atol=1e-9)
-        np.testing.assert_allclose(found.position, matrix[:3, 3], atol=1e-9)
+        np.testing.assert_allclose(link_placement.rotation, matrix[:3, :3], atol=1e-9)
+        np.testing.assert_allclose(link_placement.position, matrix[:3, 3], atol=1e-9)
 
 
 @given(_POSES, _POSES)

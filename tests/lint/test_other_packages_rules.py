@@ -89,10 +89,10 @@ def test_plugin_rules_are_selected_suppressed_and_explained(installed, robot):
 )
 def test_unusable_plugin_rules_are_one_warning(installed, robot, text, reason):
     installed(text)
-    (found,) = check(robot)
-    assert (found.code, found.severity.value) == ("LINT301", "warning")
-    assert found.message.startswith("the rules of 'team_rules' cannot be used: ")
-    assert reason in found.message
+    (finding,) = check(robot)
+    assert (finding.code, finding.severity.value) == ("LINT301", "warning")
+    assert finding.message.startswith("the rules of 'team_rules' cannot be used: ")
+    assert reason in finding.message
 
 
 BROKEN = '''

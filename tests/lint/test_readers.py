@@ -150,13 +150,13 @@ def test_launch_reader_never_raises(text):
 
 
 def test_mentions_of_text_are_found():
-    found = mentions("${a + xacro.arg('b')}/$(find c)/$(arg d)${[x for x in e.f]}$${g}")
-    assert {"a", "e", "f"} <= found.names
-    assert "g" not in found.names
-    assert found.arguments == {"b", "d"}
-    assert found.packages == (("c", 29),)
-    assert not found.is_open
-    assert not found.arguments_open
+    names = mentions("${a + xacro.arg('b')}/$(find c)/$(arg d)${[x for x in e.f]}$${g}")
+    assert {"a", "e", "f"} <= names.names
+    assert "g" not in names.names
+    assert names.arguments == {"b", "d"}
+    assert names.packages == (("c", 29),)
+    assert not names.is_open
+    assert not names.arguments_open
 
 
 @pytest.mark.parametrize("text", ["${$(arg a)_radius}", "${a$(arg b)}", "${$(env X)}"])

@@ -42,9 +42,9 @@ def test_two_findings_at_one_location_are_both_reported(tmp_path):
     )
     (tmp_path / "setup.py").write_text("from setuptools import setup\nsetup(name='p', data_files=[])\n")
     (tmp_path / "robot.urdf").write_text('<robot name="r"><link name="a"/></robot>')
-    found = check(tmp_path / "robot.urdf", settings=Settings(select=("LW826",)))
-    assert [finding.code for finding in found] == ["LW826", "LW826"]
-    assert str(found[0].hint).startswith("create an empty file 'resource/p', and add ")
+    findings = check(tmp_path / "robot.urdf", settings=Settings(select=("LW826",)))
+    assert [finding.code for finding in findings] == ["LW826", "LW826"]
+    assert str(findings[0].hint).startswith("create an empty file 'resource/p', and add ")
     (tmp_path / "resource").mkdir()
     (tmp_path / "resource" / "p").touch()
     assert str(check(tmp_path / "robot.urdf", settings=Settings(select=("LW826",)))[0].hint).startswith("add ")

@@ -22,8 +22,8 @@ def at(text: str) -> types.Position:
 async def test_references_are_found_in_all_files(editor):
     editor.open(FILE)
     asked = types.ReferenceParams(types.ReferenceContext(True), editor.document(FILE), at('<link name="b'))
-    found = await editor.client.text_document_references_async(asked)
-    assert sorted(place.uri.rpartition("/")[2] for place in found) == ["arm.urdf.xacro", "parts.xacro"]
+    references = await editor.client.text_document_references_async(asked)
+    assert sorted(place.uri.rpartition("/")[2] for place in references) == ["arm.urdf.xacro", "parts.xacro"]
 
 
 async def test_rename_edits_open_files_with_versions(editor):

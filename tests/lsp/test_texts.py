@@ -84,9 +84,9 @@ async def test_code_action_fixes_finding(editor):
     (editor.folder / "linkwright.toml").write_text('select = ["LW221"]\n')
     text = (editor.folder / "urdf/parts.xacro").read_text().replace('xyz="0 0 1"', 'xyz="0 0 2"')
     editor.open("urdf/parts.xacro", text)
-    (found,) = await editor.until("urdf/parts.xacro", "LW221")
-    context = types.CodeActionContext([found], only=["quickfix", "source"])
-    asked = types.CodeActionParams(editor.document("urdf/parts.xacro"), found.range, context)
+    (finding,) = await editor.until("urdf/parts.xacro", "LW221")
+    context = types.CodeActionContext([finding], only=["quickfix", "source"])
+    asked = types.CodeActionParams(editor.document("urdf/parts.xacro"), finding.range, context)
     fix, everything, ignoring = await editor.client.text_document_code_action_async(asked)
     for action in (fix, everything):
         (change,) = action.edit.document_changes

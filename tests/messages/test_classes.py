@@ -316,10 +316,10 @@ def test_unknown_or_malformed_interface_name_is_rejected(getter, name, message, 
     get_service("std_srvs/srv/SetBool")  # what is known already is no other kind either
     with pytest.raises(InterfaceNotFoundError) as caught:
         getter(name)
-    (found,) = caught.value.diagnostics
-    assert found.code in {"MSG101", "MSG102"}
-    assert message in found.message
-    assert hint in (found.hint or "")
+    (diagnostic,) = caught.value.diagnostics
+    assert diagnostic.code in {"MSG101", "MSG102"}
+    assert message in diagnostic.message
+    assert hint in (diagnostic.hint or "")
 
 
 def test_threads_get_same_class(interface_package):

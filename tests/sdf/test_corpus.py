@@ -58,9 +58,9 @@ def _is_ours(known) -> bool:
 @pytest.mark.parametrize("item", FILES)
 def test_corpus_world_contents_match_known_facts(item):
     facts = item["facts"]
-    found = examined(item)
-    assert found.sdf is not None
-    world = found.sdf.worlds[0]
+    reading = examined(item)
+    assert reading.sdf is not None
+    world = reading.sdf.worlds[0]
     links = list(placed_links(world))
     collisions = Counter(NAMES[type(collision.geometry)] for place in links for collision in place.link.collisions)
     visuals = Counter(NAMES[type(visual.geometry)] for place in links for visual in place.link.visuals)
@@ -73,9 +73,9 @@ def test_corpus_world_contents_match_known_facts(item):
 
 @pytest.mark.parametrize("item", FILES)
 def test_corpus_model_poses_match_known_facts(item):
-    found = examined(item)
-    assert found.sdf is not None
-    world = with_saved_state(found.sdf.worlds[0])
+    reading = examined(item)
+    assert reading.sdf is not None
+    world = with_saved_state(reading.sdf.worlds[0])
     frames = Frames(world)
     known = {model["name"]: model for model in item["facts"]["top_level_models"] if not model.get("pose_attributes")}
     for model in world.models:

@@ -134,10 +134,10 @@ def joint(parent: str, child: str, name: str = "j") -> str:
 def test_model_unsuitable_as_robot_is_rejected_once_with_location(inside, start, words):
     reading = reading_of(inside, start)
     assert reading.robot is None
-    (found,) = reading.diagnostics
-    assert found.code == "SDF180"
-    assert words in str(found.message)
-    assert found.span is not None
+    (diagnostic,) = reading.diagnostics
+    assert diagnostic.code == "SDF180"
+    assert words in str(diagnostic.message)
+    assert diagnostic.span is not None
 
 
 def test_canonical_link_becomes_root():
@@ -196,7 +196,7 @@ def test_visuals_of_shared_models_keep_poses():
         for link in model.links:
             for before, after in zip(link.visuals, reading.robot.links[link.name].visuals, strict=True):
                 wanted = compose(frames.pose(link.name), frames.in_link(before.pose, link.name))
-                found = compose(places[link.name], transform_of(after.origin))
-                assert found[:3] == pytest.approx(wanted[:3], abs=1e-9)
-                assert abs(sum(a * b for a, b in zip(found[3:], wanted[3:], strict=True))) == pytest.approx(1.0)
+                link_pose = compose(places[link.name], transform_of(after.origin))
+                assert link_pose[:3] == pytest.approx(wanted[:3], abs=1e-9)
+                assert abs(sum(a * b for a, b in zip(link_pose[3:], wanted[3:], strict=True))) == pytest.approx(1.0)
     assert robots > 0
