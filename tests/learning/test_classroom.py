@@ -227,7 +227,7 @@ def test_lesson_tests_report_mistakes(tmp_path, capsys, file, old, new, problem)
         edit(folder / "01-one-link" / "checks.py", "def is_cube(work):", "def is_cube(work):\n    return")
     course = load_course(folder)
     problems = [str(result.problem) for result in run_lesson_tests(course, course.lessons[0]) if result.problem]
-    assert any(problem in found for found in problems), problems
+    assert any(problem in text for text in problems), problems
 
 
 @pytest.fixture(params=["forked", "fresh"])

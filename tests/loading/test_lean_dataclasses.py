@@ -63,28 +63,28 @@ def answers(library: Any, options: dict[str, int]) -> list[object]:
     point, path, named, nothing = (class_by_name[name] for name in ("Point", "Path", "Named", "Nothing"))
     objects = [point(1), point(1.0, y=2), point(3, 4), path(), path([point(1)], place="here"), named(1, 2, "tip")]
     objects += [class_by_name["Derived"](1), nothing()]
-    found: list[object] = [*map(repr, objects), [[first == other for other in objects] for first in objects]]
+    results: list[object] = [*map(repr, objects), [[first == other for other in objects] for first in objects]]
     for instance in objects:
-        found.append(dataclasses.asdict(instance))
-        found.append(repr(library.replace(instance)))
-        found.append(repr(dataclasses.replace(instance)))
-        found.append(repr(copy.deepcopy(instance)))
-        found.append([(field.name, field.init, field.repr, field.compare) for field in dataclasses.fields(instance)])
-        found += [outcome(lambda instance=instance: hash(instance) == hash(copy.copy(instance)))]
+        results.append(dataclasses.asdict(instance))
+        results.append(repr(library.replace(instance)))
+        results.append(repr(dataclasses.replace(instance)))
+        results.append(repr(copy.deepcopy(instance)))
+        results.append([(field.name, field.init, field.repr, field.compare) for field in dataclasses.fields(instance)])
+        results += [outcome(lambda instance=instance: hash(instance) == hash(copy.copy(instance)))]
         mine = copy.copy(instance)
         if isinstance(instance, (class_by_name["Derived"], nothing)):
             continue  # `dataclasses` fails there with a TypeError about super()
-        found += [
+        results += [
             outcome(lambda mine=mine: setattr(mine, mine.__match_args__[0], 5)),
             outcome(lambda mine=mine: delattr(mine, mine.__match_args__[0])),
         ]
-        found.append(outcome(lambda mine=mine: setattr(mine, "new", 5)) is None)
-        found += [hasattr(instance, "__dict__"), type(instance).__match_args__]
-    found += [point.shared, objects[1].sum, repr(library.replace(objects[2], x=0)), vars(point).get("y") == 2.0]
-    found += [outcome(point), outcome(lambda: point(1, 2, 3)), outcome(lambda: point(1, z=3))]
-    found += [path().points is path().points, outcome(lambda: library.replace(path(), count=3))[1]]
-    found += [outcome(lambda: library.replace(point(1), z=3))]
-    return found
+        results.append(outcome(lambda mine=mine: setattr(mine, "new", 5)) is None)
+        results += [hasattr(instance, "__dict__"), type(instance).__match_args__]
+    results += [point.shared, objects[1].sum, repr(library.replace(objects[2], x=0)), vars(point).get("y") == 2.0]
+    results += [outcome(point), outcome(lambda: point(1, 2, 3)), outcome(lambda: point(1, z=3))]
+    results += [path().points is path().points, outcome(lambda: library.replace(path(), count=3))[1]]
+    results += [outcome(lambda: library.replace(point(1), z=3))]
+    return results
 
 
 def outcome(call: Any) -> Any:

@@ -179,8 +179,8 @@ def test_embedder_ignores_malformed_or_remote_addresses(address):
 
 
 def test_embedder_has_origin_and_path_of_address():
-    found = Embedder.of({VARIABLE: "http://localhost:7448/programs/a-b_c"})
-    assert found == Embedder("http://localhost:7448", "/programs/a-b_c")
+    embedder = Embedder.of({VARIABLE: "http://localhost:7448/programs/a-b_c"})
+    assert embedder == Embedder("http://localhost:7448", "/programs/a-b_c")
 
 
 async def test_closing_server_does_not_wait_for_programs(tmp_path, monkeypatch):

@@ -71,8 +71,8 @@ class Compared:
         return path
 
     def show_old(self) -> None:
-        found = examine(self.pair.old.path)
-        self.publish_old(self.world.library.store(found, old_description_key(found), self.pair.old.finder))
+        examination = examine(self.pair.old.path)
+        self.publish_old(self.world.library.store(examination, old_description_key(examination), self.pair.old.finder))
 
     def show_new(self) -> None:
         self.world.describe(self.world.library.store(examine(self.pair.new.path)))

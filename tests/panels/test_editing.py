@@ -62,8 +62,8 @@ def gone(file: Path) -> None:
 
 async def ask(client: Any, kind: str, answer: str, **fields: Any) -> dict[str, Any]:
     await client.send(kind, **fields)
-    found: dict[str, Any] = await client.until(answer)
-    return found
+    reply: dict[str, Any] = await client.until(answer)
+    return reply
 
 
 async def parts(client: Any, link: str) -> dict[str, Any]:
@@ -83,8 +83,8 @@ async def test_link_parts_have_numbers_and_locations(file: Path) -> None:
         await client.until("description_changed")
         answer = await parts(client, "mast")
         assert answer["why_not"] == ""
-        found = [(part["part"], part["name"], part["title"], part["xyz"], part["rpy"]) for part in answer["parts"]]
-        assert found == [
+        part_facts = [(part["part"], part["name"], part["title"], part["xyz"], part["rpy"]) for part in answer["parts"]]
+        assert part_facts == [
             ("joint", "turn", "continuous", [0, 0, 0.25], [0, 0, 0.5]),
             ("axis", "turn", "continuous", [0, 0, 1], []),
             ("visual", "mast", "pole", [0, 0, 0.5], [0, 0, 0]),

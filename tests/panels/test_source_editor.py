@@ -44,8 +44,8 @@ def write(path: Path, text: str) -> None:
 
 async def ask(client: Any, kind: str, answer: str, **fields: Any) -> dict[str, Any]:
     await client.send(kind, **fields)
-    found: dict[str, Any] = await client.until(answer)
-    return found
+    reply: dict[str, Any] = await client.until(answer)
+    return reply
 
 
 async def opened(world: Any, client: Any, file: Path) -> dict[str, Any]:

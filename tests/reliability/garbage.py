@@ -38,11 +38,11 @@ def writer(participant: DomainParticipant, topic: str, kind: type, qos: Qos) -> 
 
 def bodies(lottery: random.Random) -> list[bytes]:
     """Bytes that are hardly any message, each with an encapsulation header that Cyclone lets through."""
-    found = [HEADER + lottery.randbytes(4 * lottery.randrange(1, 40)) for _ in range(ROUNDS)]
-    found += [HEADER + struct.pack("<I", length) + bytes(4) for length in (2**32 - 1, 2**31, 10_000_000, 0)]
-    found += [HEADER + struct.pack("<I", 3) + bytes([0xFF, byte, 0, 0]) for byte in range(1, 60)]
-    found += [HEADER + b"\2\0\0\0\xff\0\0\0", HEADER]
-    return found
+    packets = [HEADER + lottery.randbytes(4 * lottery.randrange(1, 40)) for _ in range(ROUNDS)]
+    packets += [HEADER + struct.pack("<I", length) + bytes(4) for length in (2**32 - 1, 2**31, 10_000_000, 0)]
+    packets += [HEADER + struct.pack("<I", 3) + bytes([0xFF, byte, 0, 0]) for byte in range(1, 60)]
+    packets += [HEADER + b"\2\0\0\0\xff\0\0\0", HEADER]
+    return packets
 
 
 def announcements(participant: bytes) -> list[bytes]:

@@ -81,8 +81,8 @@ class Running:
 
     def last_number(self, word: str) -> int:
         """The number behind a word in the last line that begins with it; -1 when there is none."""
-        found = [line.split() for line in tuple(self.lines) if line.split()[:1] == [word]]
-        return int(found[-1][1]) if found else -1
+        rows = [line.split() for line in tuple(self.lines) if line.split()[:1] == [word]]
+        return int(rows[-1][1]) if rows else -1
 
     def wait_for(self, text: str, seconds: float = SECONDS, times: int = 1) -> None:
         """Wait until a text has come in so many lines."""

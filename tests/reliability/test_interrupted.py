@@ -211,9 +211,9 @@ def test_interrupted_recording_is_complete(machine: Machine) -> None:
     status = recorder.interrupt()
     assert status in (0, 130), recorder.text
     info = machine.verb("bag", "info", bag)
-    found = re.search(r"Topic: /chatter .*Count: (\d+)", info)
-    assert found, info
-    assert int(found[1]) >= 40, info
+    match = re.search(r"Topic: /chatter .*Count: (\d+)", info)
+    assert match, info
+    assert int(match[1]) >= 40, info
     from rosbags.highlevel import AnyReader  # there is no wheel for Python 3.15, nor DDS
     from rosbags.typesys import Stores, get_typestore
 

@@ -52,9 +52,9 @@ class Program(Node):
 def count(path) -> int:
     """How many messages a recording has that is whole."""
     with BagReader(path) as bag:
-        found = sum(1 for _ in bag.messages())
+        message_count = sum(1 for _ in bag.messages())
         assert not bag.findings
-    return found
+    return message_count
 
 
 @pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM])

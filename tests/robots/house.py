@@ -28,10 +28,10 @@ STEP = 0.1
 
 def flat(nested: dict[str, Any], prefix: str = "") -> dict[str, Any]:
     """Parameters by names with dots."""
-    found: dict[str, Any] = {}
+    parameters: dict[str, Any] = {}
     for name, value in nested.items():
-        found.update(flat(value, f"{prefix}{name}.") if isinstance(value, dict) else {prefix + name: value})
-    return found
+        parameters.update(flat(value, f"{prefix}{name}.") if isinstance(value, dict) else {prefix + name: value})
+    return parameters
 
 
 class House(SteppedSimulation):

@@ -73,8 +73,8 @@ def of(kind: type, name: str) -> SearchStrategy[Any]:
     if Element in (hint, *get_args(hint)):
         return st.none()
     usual = next(field.default for field in dataclasses.fields(kind) if field.name == name)
-    found = _values(hint)
-    return found if usual is dataclasses.MISSING else st.just(usual) | found
+    strategy = _values(hint)
+    return strategy if usual is dataclasses.MISSING else st.just(usual) | strategy
 
 
 def _values(hint: Any) -> SearchStrategy[Any]:

@@ -46,11 +46,11 @@ def bouncing_model(
 
 
 def heights(simulation: Simulation, milliseconds: int) -> list[float]:
-    found = []
+    link_heights = []
     for _ in range(milliseconds):
         simulation.advance(MILLISECOND)
-        found.append(simulation.link_pose("b::l")[2] - RADIUS)
-    return found
+        link_heights.append(simulation.link_pose("b::l")[2] - RADIUS)
+    return link_heights
 
 
 def bounce_height(simulation: Simulation, height: float) -> float:
@@ -58,10 +58,10 @@ def bounce_height(simulation: Simulation, height: float) -> float:
     fall = sqrt(2 * height / G) + 0.005
     while simulation.seconds < fall:
         simulation.advance(MILLISECOND)
-    found = 0.0
+    highest = 0.0
     while simulation.seconds < 2 * fall:
-        found = max(found, heights(simulation, 1)[0])
-    return found
+        highest = max(highest, heights(simulation, 1)[0])
+    return highest
 
 
 @pytest.mark.parametrize("step", [0.0005, 0.001, 0.002])

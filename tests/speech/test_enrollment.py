@@ -41,10 +41,10 @@ def test_words_file_round_trip_is_exact(tmp_path):
     words = enrolled()
     path = tmp_path / "a" / "words.json"
     words.write(path)
-    found = Words.read(path)
-    assert found.names == words.names
+    words_read = Words.read(path)
+    assert words_read.names == words.names
     for name in words.names:
-        for ours, theirs in zip(words.takes(name), found.takes(name), strict=True):
+        for ours, theirs in zip(words.takes(name), words_read.takes(name), strict=True):
             assert np.array_equal(ours.powers, theirs.powers)
             assert np.array_equal(ours.noise, theirs.noise)
 

@@ -276,8 +276,8 @@ class TestSmallModules:
         publisher = node.create_publisher(String, "chatter", 1)
         timer = threading.Timer(0.05, publisher.publish, [String(data="here")])
         timer.start()
-        found, message = wait_for_message(String, node, "chatter", time_to_wait=3.0)
-        assert (found, message.data) == (True, "here")
+        is_received, message = wait_for_message(String, node, "chatter", time_to_wait=3.0)
+        assert (is_received, message.data) == (True, "here")
         assert wait_for_message(String, node, "chatter", time_to_wait=0.02) == (False, None)
         assert wait_for_message(String, node, "chatter", 0.02) == (False, None)
         assert list(node.subscriptions) == []

@@ -54,10 +54,10 @@ def test_names_that_ros_does_not_export_cannot_be_imported(module, name):
 def test_origins_are_names_of_other_tables():
     """So that a table's mistake is not hidden by what the module of another one imports."""
     for name, module in MODULES.items():
-        for attribute, found in module.names.items():
-            other = MODULES.get(found.origin)
-            if other is not None and found.origin != name:
-                assert found.name in other.names or found.name in other.submodules, f"{name}: {attribute}"
+        for attribute, origin in module.names.items():
+            other = MODULES.get(origin.origin)
+            if other is not None and origin.origin != name:
+                assert origin.name in other.names or origin.name in other.submodules, f"{name}: {attribute}"
 
 
 class TestModules:
@@ -66,9 +66,9 @@ class TestModules:
 
         import launch
 
-        found = {iter_module.name: iter_module.ispkg for iter_module in pkgutil.iter_modules(launch.__path__)}
-        assert found["actions"] is True
-        assert found["launch_service"] is False
+        submodules = {iter_module.name: iter_module.ispkg for iter_module in pkgutil.iter_modules(launch.__path__)}
+        assert submodules["actions"] is True
+        assert submodules["launch_service"] is False
         walked = [walk_package.name for walk_package in pkgutil.walk_packages(launch.__path__, "launch.")]
         assert {"launch.actions.timer_action", "launch.events.process.process_exited"} <= set(walked)
         assert {"launch", "rclpy"} <= {iter_module.name for iter_module in pkgutil.iter_modules([modules.FOLDER])}

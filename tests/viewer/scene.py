@@ -193,8 +193,8 @@ async def page(viewer: Viewer, more: str = "") -> AsyncIterator[Client]:
 
 def rows_by_id(properties: list[dict]) -> dict[str, dict]:
     """Return all property rows, including nested ones."""
-    found = {}
+    rows = {}
     for row in properties:
-        found[row["id"]] = row
-        found |= rows_by_id(row["children"])
-    return found
+        rows[row["id"]] = row
+        rows |= rows_by_id(row["children"])
+    return rows

@@ -104,9 +104,9 @@ async def test_page_feature_of_another_package_receives_messages(brought):
 
 
 def test_extensions_match_installation_metadata():
-    for group, found in extensions._all_groups().items():
+    for group, entries in extensions._all_groups().items():
         declared = {(entry.name, entry.value) for entry in entry_points(group=group)}
-        assert {(entry.name, entry.value) for entry in found.values()} == declared
+        assert {(entry.name, entry.value) for entry in entries.values()} == declared
 
 
 def test_entry_points_support_nested_attributes_and_extras():

@@ -40,11 +40,11 @@ class Program:
         **environment: str,
     ) -> None:
         repository = FOLDER.parents[1]
-        found = {} if folder is None else {"PYTHONPATH": str(repository)}
+        variables = {} if folder is None else {"PYTHONPATH": str(repository)}
         self.process = subprocess.Popen(
             [*within, python, "-m", f"tests.wire.{name}", *words],
             cwd=folder or repository,
-            env={**os.environ, **found, **environment},
+            env={**os.environ, **variables, **environment},
             stdin=subprocess.PIPE,
             stdout=subprocess.PIPE,
             stderr=subprocess.PIPE,

@@ -202,11 +202,11 @@ class RosPeer:
 
         def gids() -> list[str]:
             nonlocal offset
-            found = []
+            gid_list = []
             for _ in range(number()):
-                found.append(data[offset : offset + self.gid_size].hex())
+                gid_list.append(data[offset : offset + self.gid_size].hex())
                 offset += self.gid_size
-            return found
+            return gid_list
 
         return [[string(), string(), gids(), gids()] for _ in range(number())]
 

@@ -72,11 +72,11 @@ def peer(programs):
                 rules += [rule for pair in crossed for rule in (pair, pair[::-1])]
             words = ["--ros-args", *(word for rule in rules for word in ("-r", ":=".join(rule)))]
         if side == "ours":
-            found = {"PYTHONPATH": environment()["PYTHONPATH"]}
+            variables = {"PYTHONPATH": environment()["PYTHONPATH"]}
         else:
-            found = {"PYTHONPATH": f"{TYPES}/python", "LD_LIBRARY_PATH": f"{TYPES}/lib"} if TYPES else {}
-            found["python"] = PYTHON
-        return programs(program, side, *words, RMW_IMPLEMENTATION=RMW[side], **found)
+            variables = {"PYTHONPATH": f"{TYPES}/python", "LD_LIBRARY_PATH": f"{TYPES}/lib"} if TYPES else {}
+            variables["python"] = PYTHON
+        return programs(program, side, *words, RMW_IMPLEMENTATION=RMW[side], **variables)
 
     return start
 

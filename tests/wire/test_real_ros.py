@@ -201,7 +201,7 @@ def test_endpoints_have_node_and_type_hash(processes, real_node):
     us = processes("ours")
     us.node.create_publisher(String, "/named", 10)
     real = real_node()
-    published = real.ask_until(lambda found: "/named" in found, "published_by", "ours")
+    published = real.ask_until(lambda publishers: "/named" in publishers, "published_by", "ours")
     assert published["/named"] == ["std_msgs/msg/String"]
     (message,) = real.ask("hashes", "/named")
     assert type_hash(String).removeprefix("RIHS01_") in message

@@ -135,9 +135,9 @@ async def test_scan_waits_for_its_transform(scene, start):
     assert node.costmap.cost_at(np.array([1.5, 1.0])) == FREE
     scene.tell_pose(x=1.0)  # the robot has moved since the last transform, and the scan is between both
     await scene.run(0.3)
-    found = np.argwhere(node.costmap.grid.cells[15:25, 20:50] == LETHAL)
-    assert len(found) == 1
-    assert 1.5 < (found[0, 1] + 20) * 0.05 < 2.0
+    obstacle_cells = np.argwhere(node.costmap.grid.cells[15:25, 20:50] == LETHAL)
+    assert len(obstacle_cells) == 1
+    assert 1.5 < (obstacle_cells[0, 1] + 20) * 0.05 < 2.0
 
 
 async def test_local_costmap_moves_with_robot(scene, start):

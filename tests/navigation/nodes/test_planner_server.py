@@ -103,12 +103,12 @@ async def test_compute_path_to_pose_returns_and_publishes_path(scene, server):
     scene.node.create_subscription(get_message("nav_msgs/msg/Path"), "/plan", plans.append, 1)
     status, result = await to_pose(scene, pose(3.0, 2.0, 1.0)).ended()
     assert status == SUCCEEDED
-    found = poses_from_messages(result.path.poses)
-    assert found[0, :2] == pytest.approx(scene.pose[:2])
-    assert found[-1] == pytest.approx([3.0, 2.0, 1.0])
+    path_poses = poses_from_messages(result.path.poses)
+    assert path_poses[0, :2] == pytest.approx(scene.pose[:2])
+    assert path_poses[-1] == pytest.approx([3.0, 2.0, 1.0])
     assert result.path.header.frame_id == "map"
-    assert len(plans[-1].poses) == len(found)
-    length = np.hypot(*np.diff(found[:, :2], axis=0).T).sum()
+    assert len(plans[-1].poses) == len(path_poses)
+    length = np.hypot(*np.diff(path_poses[:, :2], axis=0).T).sum()
     assert length == pytest.approx(hypot(2.0, 1.0), rel=0.05)
 
 
@@ -123,9 +123,9 @@ async def test_start_pose_and_goal_frame_are_respected(scene, server):
     await server()
     start = pose(0.5, 2.5)
     status, result = await to_pose(scene, pose(1.5, 0.0, frame="base_link"), start=start, use_start=True).ended()
-    found = poses_from_messages(result.path.poses)
+    path_poses = poses_from_messages(result.path.poses)
     assert status == SUCCEEDED
-    assert found[[0, -1], :2] == pytest.approx(np.array([[0.5, 2.5], [2.5, 1.0]]))
+    assert path_poses[[0, -1], :2] == pytest.approx(np.array([[0.5, 2.5], [2.5, 1.0]]))
 
 
 async def test_compute_path_through_poses_visits_all_poses(scene, server):
@@ -133,12 +133,12 @@ async def test_compute_path_through_poses_visits_all_poses(scene, server):
     goals = [pose(1.0, 2.0), pose(3.0, 2.0), pose(3.0, 1.0, 2.0)]
     goal = Goal(scene, "ComputePathThroughPoses", "compute_path_through_poses", {"goals": goals})
     status, result = await goal.ended()
-    found = poses_from_messages(result.path.poses)
+    path_poses = poses_from_messages(result.path.poses)
     assert status == SUCCEEDED
-    assert found[-1] == pytest.approx([3.0, 1.0, 2.0])
+    assert path_poses[-1] == pytest.approx([3.0, 1.0, 2.0])
     for goal_pose in goals[:2]:
         x, y = goal_pose.pose.position.x, goal_pose.pose.position.y
-        assert np.hypot(found[:, 0] - x, found[:, 1] - y).min() < 1e-6
+        assert np.hypot(path_poses[:, 0] - x, path_poses[:, 1] - y).min() < 1e-6
 
 
 def divided():
@@ -307,10 +307,10 @@ async def test_path_is_smoothed(scene, server):
     status, result = await smooth(scene, CORNER, check_for_collisions=True).ended()
     assert status == SUCCEEDED
     assert result.was_completed
-    found = poses_from_messages(result.path.poses)
-    assert found[[0, -1], :2] == pytest.approx(np.array(CORNER)[[0, -1], :2])
-    assert np.hypot(found[20, 0] - 2.0, found[20, 1] - 1.0) > 0.01
-    assert np.abs(np.diff(found[:-1, 2])).max() < 1.0
+    path_poses = poses_from_messages(result.path.poses)
+    assert path_poses[[0, -1], :2] == pytest.approx(np.array(CORNER)[[0, -1], :2])
+    assert np.hypot(path_poses[20, 0] - 2.0, path_poses[20, 1] - 1.0) > 0.01
+    assert np.abs(np.diff(path_poses[:-1, 2])).max() < 1.0
 
 
 async def test_smoothing_failures_have_error_code_and_message(jazzy, scene, server):

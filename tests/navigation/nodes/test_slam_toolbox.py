@@ -106,9 +106,9 @@ def planar(transform: Any) -> np.ndarray:
 
 def map_to_odom(tf: Any) -> Any:
     """The last transform that the node published."""
-    found = [transform for message in tf for transform in message.transforms if transform.header.frame_id == "map"]
-    assert found[-1].child_frame_id == "odom"
-    return found[-1]
+    transforms = [transform for message in tf for transform in message.transforms if transform.header.frame_id == "map"]
+    assert transforms[-1].child_frame_id == "odom"
+    return transforms[-1]
 
 
 def is_a_map(message: Any) -> bool:

@@ -33,8 +33,8 @@ def built(tmp_path, monkeypatch):
 
 
 def recorded(text: str) -> dict:
-    (found,) = re.findall(r'<script type="application/json" id="recorded">(.*?)</script>', text, re.DOTALL)
-    return json.loads(found)
+    (recording_text,) = re.findall(r'<script type="application/json" id="recorded">(.*?)</script>', text, re.DOTALL)
+    return json.loads(recording_text)
 
 
 def page(text: str) -> str:

@@ -43,12 +43,12 @@ async def talk(publisher, period: float) -> None:
 def frame_of(data: bytes) -> dict[int, np.ndarray]:
     kind, count, *_ = struct.unpack_from("<IIII", data)
     assert kind == 3
-    at, found = 16, {}
+    at, samples_by_series = 16, {}
     for _ in range(count):
         identity, length = struct.unpack_from("<II", data, at)
-        found[identity] = np.frombuffer(data, "<f8", 3 * length, at + 8).reshape(3, length)
+        samples_by_series[identity] = np.frombuffer(data, "<f8", 3 * length, at + 8).reshape(3, length)
         at += 8 + 24 * length
-    return found
+    return samples_by_series
 
 
 async def samples(client: Client) -> dict[int, np.ndarray]:
@@ -196,10 +196,10 @@ async def test_samples_contain_both_times_and_all_values():
         message = JOINT_STATE(name=["a", "b"], position=[1.0, 2.5], velocity=[-1.0, 0.0])
         message.header.stamp.sec = 100
         publisher.publish(message)
-        found = await samples(client)
-        assert found[1][1:].tolist() == [[100.0], [2.5]]
-        assert found[2][2].tolist() == [-1.0]
-        assert abs(found[1][0, 0] - time.time()) < 5
+        sample_arrays = await samples(client)
+        assert sample_arrays[1][1:].tolist() == [[100.0], [2.5]]
+        assert sample_arrays[2][2].tolist() == [-1.0]
+        assert abs(sample_arrays[1][0, 0] - time.time()) < 5
 
 
 @skipping

@@ -6,8 +6,8 @@ from linkwright.panels.monitor.topics import message_tree
 
 
 def row(rows: list[MessageField], *path: str) -> MessageField:
-    found = next(row for row in rows if row.name == path[0])
-    return row(found.children, *path[1:]) if path[1:] else found
+    row_of_path = next(row for row in rows if row.name == path[0])
+    return row(row_of_path.children, *path[1:]) if path[1:] else row_of_path
 
 
 def test_message_tree_has_types_and_values():

@@ -87,8 +87,8 @@ async def state(client: Any, *, of: int = 1, **fields: Any) -> dict[str, Any]:
 
 
 def leader_of(world: World, number: int = 1) -> int:
-    found = world.viewer.add_feature(TerminalFeature)._terminals[number]
-    return found._pty._process.pid  # type: ignore[attr-defined,no-any-return]
+    terminal = world.viewer.add_feature(TerminalFeature)._terminals[number]
+    return terminal._pty._process.pid  # type: ignore[attr-defined,no-any-return]
 
 
 async def test_terminal_runs_commands_in_folder(tmp_path: Path) -> None:

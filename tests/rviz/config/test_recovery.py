@@ -144,9 +144,9 @@ async def test_unwritable_recovery_folder_is_reported(tmp_path, monkeypatch):
 def test_recovery_file_name_contains_configuration_name(tmp_path, name):
     file = tmp_path / name
     file.write_text(RvizConfig.default().text())
-    found = recovery_file(RvizConfig.load(file))
-    assert found.name.startswith(file.stem + "-")
-    assert found.suffix == ".rviz"
+    recovered_file = recovery_file(RvizConfig.load(file))
+    assert recovered_file.name.startswith(file.stem + "-")
+    assert recovered_file.suffix == ".rviz"
 
 
 @pytest.mark.parametrize("name", ["../../x", "/etc/x.rviz", "a\0b", "..", "", "x" * 5000, "C:\\x:y?.rviz", "\n"])

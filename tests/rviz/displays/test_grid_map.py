@@ -52,8 +52,8 @@ async def shown(extra: str = ""):
         async def publish_and_settle(message: Any) -> dict[str, Any] | None:
             publisher.publish(message)
             await world.settle()
-            found = contents(world.display("GridMap"))
-            return found[-1].fields if found else None
+            grid_contents = contents(world.display("GridMap"))
+            return grid_contents[-1].fields if grid_contents else None
 
         yield world, publish_and_settle
 

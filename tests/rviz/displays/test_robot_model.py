@@ -131,8 +131,8 @@ async def test_joint_checkbox_sets_links_below_and_follows_them():
 
         def boxes() -> dict[str, object]:
             paths = (("Links", "base"), ("Links", "tip"), ("Links", "mark"), ("Joints", "turn"), ("Joints", "fix"))
-            found = {path[1]: display.properties.get(*path) for path in paths}
-            return {**found, "all": display.properties.get("Links", "All Links Enabled")}
+            property_values = {path[1]: display.properties.get(*path) for path in paths}
+            return {**property_values, "all": display.properties.get("Links", "All Links Enabled")}
 
         on = dict.fromkeys(boxes(), True)
         assert boxes() == on

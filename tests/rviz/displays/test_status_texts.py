@@ -27,14 +27,14 @@ def _is_plain(text: ast.expr) -> bool:
 
 
 def _statuses(folder: Path) -> list[tuple[str, ast.expr]]:
-    found = []
+    statuses = []
     for path in sorted(folder.rglob("*.py")):
         for node in ast.walk(ast.parse(path.read_text(encoding="utf-8"))):
             if isinstance(node, ast.Call):
                 place = _TEXT_OF.get(node.func.attr if isinstance(node.func, ast.Attribute) else ast.unparse(node.func))
                 if place is not None and len(node.args) > place:
-                    found.append((f"{path.relative_to(RVIZ)}:{node.lineno}", node.args[place]))
-    return found
+                    statuses.append((f"{path.relative_to(RVIZ)}:{node.lineno}", node.args[place]))
+    return statuses
 
 
 def test_all_statuses_are_translatable_phrases():

@@ -271,9 +271,9 @@ async def test_compressed_images_are_published_while_subscribed(stage, encoding,
     (frame,) = compressed
     assert frame.format.startswith(f"{encoding}; jpeg compressed")
     shown = images.open(BytesIO(bytes(frame.data)))
-    found = shown.getpixel((4, 4))
+    shown_pixel = shown.getpixel((4, 4))
     expected = [120] if encoding == "mono8" else [200, 100, 50]
-    assert list(found if isinstance(found, tuple) else (found,)) == pytest.approx(expected, abs=6)
+    assert list(shown_pixel if isinstance(shown_pixel, tuple) else (shown_pixel,)) == pytest.approx(expected, abs=6)
 
 
 @pytest.mark.parametrize(

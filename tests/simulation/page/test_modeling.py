@@ -139,8 +139,8 @@ async def test_modeling_messages_edit_entities(tmp_path):
             assert shape in (await names("add_entity", shape=shape, address="", pose=POSE, size=[]))[-1]
         for light in ("point_light", "directional_light", "spot_light"):
             await names("add_entity", shape=light, address="", pose=POSE, size=[])
-        found = await names("add_entity", shape="model", address="model://sun", pose=POSE, size=[])
-        assert found == [
+        entity_names = await names("add_entity", shape="model", address="model://sun", pose=POSE, size=[])
+        assert entity_names == [
             *("ground_plane", "box", "lamp", "box_2", "cylinder", "sphere", "wall", "ramp"),
             *("point_light", "directional_light", "spot_light", "sun"),
         ]
@@ -154,8 +154,8 @@ async def test_modeling_messages_edit_entities(tmp_path):
         assert (entities["wall"]["size"], entities["wall"]["color"]) == ([1, 2, 3], [0, 0, 1, 1])
         assert (entities["slope"]["shape"], entities["slope"]["static"]) == ("ramp", False)
         await client.send("ask_models")
-        found = (await client.until("model_choices"))["models"]
-        assert {"name": "sun", "address": "model://sun"} in found
+        model_choices = (await client.until("model_choices"))["models"]
+        assert {"name": "sun", "address": "model://sun"} in model_choices
 
 
 async def test_new_entity_gets_unused_name(tmp_path):

@@ -483,10 +483,10 @@ async def test_bounding_boxes_enclose_labeled_models():
     text = carrier(sensor("boundingbox_camera", f"<topic>boxes</topic>{EYE}"))
     async with served(*world, text) as (server, graph, _):
         boxes, image = await last_messages(server, graph, "/boxes", "/boxes_image")
-        found = {detection.results[0].hypothesis.class_id: detection.bbox for detection in boxes.detections}
-        assert sorted(found) == ["7", "9"]
+        bounding_boxes = {detection.results[0].hypothesis.class_id: detection.bbox for detection in boxes.detections}
+        assert sorted(bounding_boxes) == ["7", "9"]
         # 1.5 m away and 0.4 m wide, at a focal length of 32 pixels: 8.5 pixels, 10.7 from the middle of the picture.
-        left, right = found["7"], found["9"]
+        left, right = bounding_boxes["7"], bounding_boxes["9"]
         assert (left.center.position.x, left.size_x) == (pytest.approx(21.3, abs=1), pytest.approx(8.5, abs=1))
         assert (right.center.position.x, right.size_y) == (pytest.approx(42.7, abs=1), pytest.approx(8.5, abs=1))
         assert ((pixels_of(image) == (0, 255, 0)).all(axis=-1)).sum() > 20

@@ -41,8 +41,8 @@ def test_stamps_follow_the_clock():
 
 def test_lost_blocks_are_reported_as_gap():
     stamps = stamped(10.0 + 0.1 * np.arange(20))
-    found = missing(stamps[:10] + stamps[12:])
-    assert np.allclose(found, [0.0] * 10 + [0.2] + [0.0] * 7, atol=0.005)
+    gap_list = missing(stamps[:10] + stamps[12:])
+    assert np.allclose(gap_list, [0.0] * 10 + [0.2] + [0.0] * 7, atol=0.005)
 
 
 def test_restarted_stream_has_no_gap():
@@ -57,21 +57,21 @@ def test_restarted_stream_has_no_gap():
 
 
 def test_loss_reported_by_source_is_a_gap():
-    stamps, gaps, found = SampleStamps(), SoundGaps(), []
+    stamps, gaps, gap_list = SampleStamps(), SoundGaps(), []
     for index in range(100):
         lost = 0.4 if index >= 10 and index % 10 == 0 else 0.0
-        found.append(gaps.measure_gap(stamps.stamp(BLOCK, round((10.0 + 0.1 * index) * SECOND), lost), BLOCK))
-    assert [number for number, gap in enumerate(found) if gap] == list(range(10, 100, 10))
-    assert np.allclose([gap for gap in found if gap], 0.4, atol=0.005)
+        gap_list.append(gaps.measure_gap(stamps.stamp(BLOCK, round((10.0 + 0.1 * index) * SECOND), lost), BLOCK))
+    assert [number for number, gap in enumerate(gap_list) if gap] == list(range(10, 100, 10))
+    assert np.allclose([gap for gap in gap_list if gap], 0.4, atol=0.005)
 
 
 def test_small_losses_are_accumulated_and_hide_no_large_one():
     stamps, gaps = SampleStamps(), SoundGaps()
     losses = {10: 0.01, 11: 0.04, 12: 0.03, 13: 0.5, 20: 0.02}
     result = [stamps.stamp(BLOCK, round((10.0 + 0.1 * index) * SECOND), losses.get(index, 0.0)) for index in range(30)]
-    found = [gaps.measure_gap(stamp, BLOCK) for stamp in result]
-    assert [number for number, gap in enumerate(found) if gap] == [12, 13]
-    assert np.allclose([found[12], found[13]], [0.08, 0.5], atol=0.005)
+    gap_list = [gaps.measure_gap(stamp, BLOCK) for stamp in result]
+    assert [number for number, gap in enumerate(gap_list) if gap] == [12, 13]
+    assert np.allclose([gap_list[12], gap_list[13]], [0.08, 0.5], atol=0.005)
 
 
 def test_small_jumps_of_arrival_stamps_are_not_gaps():

@@ -158,9 +158,9 @@ def test_worker_processes_give_identical_files(source, tmp_path):
 
 def test_splits_have_requested_shares():
     options = replace(OPTIONS, splits=(0.5, 0.3, 0.2))
-    found = [split_of(index, options) for index in range(200)]
-    assert [found.count(split) for split in SPLITS] == [100, 60, 40]
-    assert [split_of(index, options) for index in range(200)] == found
+    splits = [split_of(index, options) for index in range(200)]
+    assert [splits.count(split) for split in SPLITS] == [100, 60, 40]
+    assert [split_of(index, options) for index in range(200)] == splits
     assert {split_of(index, replace(OPTIONS, splits=(1.0, 0.0, 0.0))) for index in range(50)} == {"train"}
 
 

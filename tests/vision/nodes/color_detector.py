@@ -37,12 +37,12 @@ class ColorDetector:
         pixels = decode_image(image, self._ranges).pixels[:, :, :3]
         names = classify_colors(pixels.reshape(-1, 3)).reshape(pixels.shape[:2])
         rows, columns = np.nonzero(names == self._color)
-        found = self._array(header=image.header)
+        array = self._array(header=image.header)
         if len(rows) >= _LEAST_PIXELS:
             left, right = np.percentile(columns, [1, 99])
             top, bottom = np.percentile(rows, [1, 99])
-            found.detections.append(detection(image.header, left, top, right + 1, bottom + 1, self._name))
-        self._publisher.publish(found)
+            array.detections.append(detection(image.header, left, top, right + 1, bottom + 1, self._name))
+        self._publisher.publish(array)
 
 
 def detection(header: Any, left: float, top: float, right: float, bottom: float, name: str, score: float = 0.9) -> Any:

@@ -170,8 +170,8 @@ def test_loaded_weights_match_exported_network(exported):
     other, file = exported
     network, image = Network(Shape(3, 4)), torch.rand(1, 3, 64, 64)
     load_weights(network, ("disc", "square", "bar"), file, [torch.rand(8, 3, 64, 64)])
-    for found, wanted in zip(output_of(network, image), output_of(other, image), strict=True):
-        assert torch.allclose(found, wanted, rtol=0.02, atol=0.1)  # the file's weights have 16 bits
+    for output, wanted in zip(output_of(network, image), output_of(other, image), strict=True):
+        assert torch.allclose(output, wanted, rtol=0.02, atol=0.1)  # the file's weights have 16 bits
 
 
 def test_loaded_network_has_measured_batch_statistics(exported):
@@ -180,8 +180,8 @@ def test_loaded_network_has_measured_batch_statistics(exported):
     load_weights(network, ("disc", "square", "bar"), file, [images])
     with torch.no_grad():
         _, wanted = network.eval()(images)
-        _, found = network.train()(images)
-    assert (found - wanted).abs().mean() < 0.2 * wanted.std()
+        _, training_output = network.train()(images)
+    assert (training_output - wanted).abs().mean() < 0.2 * wanted.std()
 
 
 def test_loaded_class_weights_are_matched_by_name(exported):
@@ -295,7 +295,7 @@ def test_orthogonalized_gradient_has_equal_singular_values(shape):
     torch.manual_seed(0)
     gradient = torch.randn(shape) * torch.logspace(-3, 0, shape[0])[:, None, None, None]
     spread = torch.linalg.svdvals(gradient.flatten(1))
-    found = torch.linalg.svdvals(orthogonalize(gradient).flatten(1))
+    singular_values = torch.linalg.svdvals(orthogonalize(gradient).flatten(1))
     assert spread.max() > 10 * spread.min()
-    assert found.min() > 0.4
-    assert found.max() < 1.3
+    assert singular_values.min() > 0.4
+    assert singular_values.max() < 1.3

@@ -92,9 +92,9 @@ def test_yaml_file_is_accepted_as_dataset_path(shapes):
 )
 def test_malformed_dataset_is_reported(tmp_path, content, message):
     (tmp_path / "data.yaml").write_text(content)
-    found = problem(open_dataset, tmp_path)
-    assert found.code == "VISION302"
-    assert message in str(found.message)
+    diagnostic = problem(open_dataset, tmp_path)
+    assert diagnostic.code == "VISION302"
+    assert message in str(diagnostic.message)
 
 
 def test_missing_and_empty_folders_are_rejected(tmp_path):
@@ -103,9 +103,9 @@ def test_missing_and_empty_folders_are_rejected(tmp_path):
 
 
 def test_missing_split_is_reported(shapes):
-    found = problem(open_dataset(shapes).read, "test")
-    assert found.code == "VISION303"
-    assert "'train' and 'val'" in str(found.hint)
+    diagnostic = problem(open_dataset(shapes).read, "test")
+    assert diagnostic.code == "VISION303"
+    assert "'train' and 'val'" in str(diagnostic.hint)
 
 
 def test_split_without_images_is_reported(shapes):
@@ -128,18 +128,18 @@ def test_split_without_images_is_reported(shapes):
 def test_invalid_label_is_reported_with_location(shapes, line, message):
     text = shapes / "labels" / "train" / "001.txt"
     text.write_text(f"0 0.5 0.5 0.1 0.1\n{line}\n")
-    found = problem(open_dataset(shapes).read, "train")
-    assert found.code == "VISION304"
-    assert message in str(found.message)
-    assert found.span is not None
-    assert found.span.line == 2
+    diagnostic = problem(open_dataset(shapes).read, "train")
+    assert diagnostic.code == "VISION304"
+    assert message in str(diagnostic.message)
+    assert diagnostic.span is not None
+    assert diagnostic.span.line == 2
 
 
 def test_unreadable_image_is_reported(shapes):
     dataset = open_dataset(shapes)
     (shapes / "images" / "train" / "001.png").write_bytes(b"none")
-    found = problem(read_labeled_images, dataset.read("train"), 96, 96)
-    assert (found.code, "001.png" in str(found.message)) == ("VISION305", True)
+    diagnostic = problem(read_labeled_images, dataset.read("train"), 96, 96)
+    assert (diagnostic.code, "001.png" in str(diagnostic.message)) == ("VISION305", True)
 
 
 def test_images_are_letterboxed_with_gray(shapes):
