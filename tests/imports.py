@@ -21,5 +21,5 @@ def rooms_of(loaded: set[str]) -> set[str]:
 
 def _modules(code: str) -> set[str]:
     program = f"import sys; {code}; print(*sys.modules, file=sys.stderr)"
-    done = subprocess.run([sys.executable, "-c", program], check=True, capture_output=True, text=True)
-    return set(done.stderr.splitlines()[-1].split())
+    result = subprocess.run([sys.executable, "-c", program], check=True, capture_output=True, text=True)
+    return set(result.stderr.splitlines()[-1].split())

@@ -42,5 +42,5 @@ def install(folder: Path, *others: str, extra: str = "all", project: Path = REPO
 
 def _uv(*words: str) -> None:
     uv = Path(shutil.which(os.environ.get("UV") or "uv") or REPOSITORY / ".build" / "uv" / "bin" / "uv").absolute()
-    done = subprocess.run([uv, *words, "--quiet"], capture_output=True, text=True, check=False, cwd="/")
-    assert done.returncode == 0, f"uv {' '.join(words)}:\n{done.stdout}{done.stderr}"
+    result = subprocess.run([uv, *words, "--quiet"], capture_output=True, text=True, check=False, cwd="/")
+    assert result.returncode == 0, f"uv {' '.join(words)}:\n{result.stdout}{result.stderr}"

@@ -40,8 +40,8 @@ def test_container_runs_makefile_demo_as_non_root(container):
 
 
 def test_dockerignore_keeps_files_needed_by_build():
-    taken = (REPOSITORY / ".dockerignore").read_text(encoding="utf-8").splitlines()
-    allowed = {line[1:] for line in taken if line.startswith("!")}
+    lines = (REPOSITORY / ".dockerignore").read_text(encoding="utf-8").splitlines()
+    allowed = {line[1:] for line in lines if line.startswith("!")}
     included = PYPROJECT["tool"]["hatch"]["build"]["targets"]["sdist"]["include"]
     needed = {path.partition("/")[0] for path in included} - {"CHANGELOG.md", "SECURITY.md"}
     assert needed | {"pyproject.toml", "uv.lock", "LICENSE"} <= allowed

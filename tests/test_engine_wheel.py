@@ -24,9 +24,9 @@ def engine(tmp_path_factory) -> Path:
 
 def test_engine_wheel_is_small_and_runs_its_commands(engine, tmp_path):
     words = [engine / "bin" / "python", "-I", REPOSITORY / "tools" / "try_installation.py", __version__, "--engine"]
-    done = subprocess.run(words, capture_output=True, text=True, cwd=tmp_path, check=False)
-    assert done.returncode == 0, done.stderr
-    assert "six commands" in done.stdout
+    result = subprocess.run(words, capture_output=True, text=True, cwd=tmp_path, check=False)
+    assert result.returncode == 0, result.stderr
+    assert "six commands" in result.stdout
     assert sum(path.stat().st_size for path in engine.rglob("*") if path.is_file()) < MOST_BYTES
 
 
@@ -35,7 +35,7 @@ def test_engine_wheel_reports_same_findings_as_full_package(engine, package):
     found = []
     for python in (engine / "bin" / "python", sys.executable):
         words = [python, "-I", "-m", "linkwright", "check", "--format", "json", "--select", "ALL", package]
-        done = subprocess.run(words, capture_output=True, text=True, cwd=REPOSITORY / "robots", check=False)
-        assert done.returncode in (0, 1), done.stderr
-        found.append((done.returncode, done.stdout))
+        result = subprocess.run(words, capture_output=True, text=True, cwd=REPOSITORY / "robots", check=False)
+        assert result.returncode in (0, 1), result.stderr
+        found.append((result.returncode, result.stdout))
     assert found[0] == found[1]

@@ -22,8 +22,8 @@ def test_public_names_are_documented_callables(name):
 
 def test_importing_linkwright_loads_no_submodules():
     program = "import sys, linkwright; print(*sorted(m for m in sys.modules if m.startswith('linkwright.')))"
-    done = subprocess.run([sys.executable, "-c", program], capture_output=True, text=True, check=True)
-    assert done.stdout.split() == ["linkwright._version"]
+    result = subprocess.run([sys.executable, "-c", program], capture_output=True, text=True, check=True)
+    assert result.stdout.split() == ["linkwright._version"]
 
 
 def test_unknown_name_raises_attribute_error():

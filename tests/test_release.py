@@ -135,8 +135,8 @@ def test_bill_of_materials_lists_python_and_npm_packages(bill):
         (digest,) = components[name]["hashes"]
         assert digest["alg"] == "SHA-512"
         assert len(digest["content"]) == 128
-    depending = {each["ref"]: each.get("dependsOn", []) for each in whole["dependencies"]}
-    assert set(depending["linkwright==0.1.0"]) == {each["bom-ref"] for each in whole["components"]}
+    depending = {dependency["ref"]: dependency.get("dependsOn", []) for dependency in whole["dependencies"]}
+    assert set(depending["linkwright==0.1.0"]) == {component["bom-ref"] for component in whole["components"]}
     assert set(depending) == {"linkwright==0.1.0", *depending["linkwright==0.1.0"]}
 
 

@@ -16,7 +16,7 @@ from linkwright.rviz.displays import catalog
 from tests.docs.pages import DOCS, blocks
 from tests.toml_files import read_toml
 from tests.viewer.contents import shown_markers
-from tests.viewer.scene import page, world
+from tests.viewer.scene import open_world, page
 
 PAGES = (DOCS / "own-displays.md", DOCS / "zh" / "own-displays.md")
 CLASS = "street_displays/TrackedObjects"
@@ -86,7 +86,7 @@ def test_example_display_has_at_most_60_lines():
 
 
 async def test_example_display_draws_and_removes_tracked_objects(street):
-    async with world(RvizConfig.parse(CONFIG)) as w, page(w.viewer) as client:
+    async with open_world(RvizConfig.parse(CONFIG)) as w, page(w.viewer) as client:
         await client.opened()
         await client.send("ask_display_choices")
         offered = (await client.until("display_choices"))["classes"]
@@ -130,13 +130,13 @@ async def test_example_display_draws_and_removes_tracked_objects(street):
 
 
 async def test_configuration_with_example_display_is_saved_unchanged(street):
-    async with world(RvizConfig.parse(CONFIG)) as w:
+    async with open_world(RvizConfig.parse(CONFIG)) as w:
         assert w.viewer.displays[0].SUPPORTED
         assert w.viewer.config.text() == CONFIG
 
 
 async def test_the_objects_are_drawn_as_points_with_a_channel(street):
-    async with world(RvizConfig.parse(CONFIG.replace(CLASS, POINTS_CLASS))) as w:
+    async with open_world(RvizConfig.parse(CONFIG.replace(CLASS, POINTS_CLASS))) as w:
         publisher = w.graph.create_node("perception").create_publisher("street_msgs/msg/TrackedObjects", "/objects", 10)
         w.move({("base", "street"): (0, 0, 1, 0, 0, 0, 1)}, static=True)
         await w.settle()

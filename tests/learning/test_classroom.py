@@ -61,8 +61,8 @@ def test_hints_are_shown_in_order_and_solution_keeps_replaced_file(workspace, ca
     assert "### How" in learn(capsys, "hint")[1]
     status, out, _ = learn(capsys, "solution")
     assert (status, out) == (0, "robot.urdf\n")
-    (kept,) = (workspace / "replaced").rglob("robot.urdf")
-    assert kept.read_text() == "mine"
+    (backup,) = (workspace / "replaced").rglob("robot.urdf")
+    assert backup.read_text() == "mine"
     assert (workspace / "replaced" / "COLCON_IGNORE").is_file()  # a copy of a package is not one more package
     text = (workspace / "learn.yaml").read_text()
     assert "hints: 2" in text
@@ -105,8 +105,8 @@ def test_catch_up_takes_over_earlier_steps(workspace, capsys, grown_course):
 
     assert learn(capsys, "catch-up", "b/two", "--yes")[0] == 0
     assert (workspace / "all.txt").read_text() == "b/one"
-    (kept,) = (workspace / "replaced").rglob("all.txt")
-    assert kept.read_text() == "mine"
+    (backup,) = (workspace / "replaced").rglob("all.txt")
+    assert backup.read_text() == "mine"
     _, out, _ = learn(capsys, "list")
     assert "  ✓ one: One\n  → two: Two\n\nb: L\n  → one: One\n    two: Two\n" in out
     assert "taken over from the course" in out
@@ -118,8 +118,8 @@ def test_files_replaced_twice_in_one_second_are_both_kept(workspace, capsys, gro
     for text in ("first", "second"):
         (workspace / "all.txt").write_text(text)
         assert learn(capsys, "catch-up", "b/two", "--course", grown_course, "--yes")[0] == 0
-    kept = {path.read_text() for path in (workspace / "replaced").rglob("all.txt")}
-    assert kept == {"first", "second"}
+    backups = {path.read_text() for path in (workspace / "replaced").rglob("all.txt")}
+    assert backups == {"first", "second"}
 
 
 def test_failed_check_names_unfinished_earlier_steps(workspace, capsys, grown_course, tmp_path):
@@ -227,7 +227,7 @@ def test_lesson_tests_report_mistakes(tmp_path, capsys, file, old, new, problem)
         edit(folder / "01-one-link" / "checks.py", "def is_cube(work):", "def is_cube(work):\n    return")
     course = load_course(folder)
     problems = [str(result.problem) for result in run_lesson_tests(course, course.lessons[0]) if result.problem]
-    assert any(problem in found for found in problems), problems
+    assert any(problem in text for text in problems), problems
 
 
 @pytest.fixture(params=["forked", "fresh"])

@@ -51,12 +51,12 @@ def test_headings_divide_lesson_into_steps_and_hints(tmp_path):
     (tmp_path / "lesson.md").write_text(TEXT, encoding="utf-8")
     text = read_lesson_text(tmp_path / "lesson.md")
     assert (text.title, text.introduction) == ("First", "Intro with `code`.")
-    one, two = text.steps
-    assert (one.id, one.title, one.unit, one.line) == ("one", "One", None, 5)
-    assert one.body.startswith("Body.\n\n```markdown\n## Not a step {#no}")
-    assert one.body.endswith("### Try it\n\nMore.")
-    assert one.hints == ("### Look\n\nHere.", "### How\n\nSo.")
-    assert (two.id, two.unit, two.hints) == ("two", "m/s", ())
+    first, second = text.steps
+    assert (first.id, first.title, first.unit, first.line) == ("one", "One", None, 5)
+    assert first.body.startswith("Body.\n\n```markdown\n## Not a step {#no}")
+    assert first.body.endswith("### Try it\n\nMore.")
+    assert first.hints == ("### Look\n\nHere.", "### How\n\nSo.")
+    assert (second.id, second.unit, second.hints) == ("two", "m/s", ())
 
 
 def test_course_has_steps_in_all_languages(tmp_path):

@@ -16,7 +16,7 @@ from linkwright.learning.page.exercise_guide import ExerciseGuide
 from linkwright.learning.page.feature import CourseFeature
 from linkwright.messages import String
 from tests.learning.simulator import FakeSimulator
-from tests.viewer.scene import page, world
+from tests.viewer.scene import open_world, page
 
 STATE = {
     "figure": 23.42,
@@ -29,16 +29,16 @@ STATE = {
 
 @asynccontextmanager
 async def exercise_page(program: Path, name: str = "follow_line") -> AsyncIterator[tuple[Any, Any]]:
-    async with world() as scene:
-        context = scene.viewer.context
+    async with open_world() as world:
+        context = world.viewer.context
         guide = ExerciseGuide(find_exercise(name), program, context.pages.publish, context.node)
-        scene.viewer.add_feature(CourseFeature).show(guide)
-        async with page(scene.viewer) as client:
-            yield scene, client
+        world.viewer.add_feature(CourseFeature).show(guide)
+        async with page(world.viewer) as client:
+            yield world, client
 
 
 async def test_exercise_page_shows_text_and_judge_status(tmp_path):
-    async with exercise_page(tmp_path / "mine.py") as (scene, client):
+    async with exercise_page(tmp_path / "mine.py") as (world, client):
         opened = await client.opened()
         assert opened["course"]["folder"] == str(tmp_path)
         assert opened["course"]["file"] == str(tmp_path / "mine.py")
@@ -47,7 +47,7 @@ async def test_exercise_page_shows_text_and_judge_status(tmp_path):
         assert opened["step_checks"]["checks"][0]["title"]["en"] == (
             "the world has not sent the state of the judge yet"
         )
-        publisher = scene.graph.create_node("judge").create_publisher(String, "/judge/status", 10)
+        publisher = world.graph.create_node("judge").create_publisher(String, "/judge/status", 10)
         publisher.publish(String(data=json.dumps(STATE)))
         (check,) = (await client.until("step_checks"))["checks"]
         assert check["title"] == {"en": "lap time 23.4 s", "zh": "一圈的时间 23.4 s"}
@@ -81,12 +81,12 @@ async def test_judge_failure_is_reported_and_world_pauses_while_judging(tmp_path
     program = tmp_path / "mine.py"
     program.touch()
     monkeypatch.setattr("linkwright.learning.page.exercise_guide.sys.executable", "/bin/false")
-    async with exercise_page(program) as (scene, client):
-        simulator = FakeSimulator(scene.graph)
-        await scene.settle()
+    async with exercise_page(program) as (world, client):
+        simulator = FakeSimulator(world.graph)
+        await world.settle()
         await client.send("check_step")
         while not (message := (await client.until("course_problem"))["message"]):
             pass
         assert message.startswith("the program cannot be judged")
-        await scene.settle()
+        await world.settle()
     assert simulator.calls == ["pause", "resume"]

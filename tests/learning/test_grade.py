@@ -274,10 +274,10 @@ def test_malicious_students_on_cluster_affect_only_themselves(folder):
     folders = sorted(map(str, (folder / "students").iterdir()))
     words = ["learn", "grade", "--course", "course", "--ray", "local", "--json", "out.json", *LIMITS, *folders]
     environment = {**os.environ, "RAY_raylet_start_wait_time_s": "600"}
-    done = subprocess.run(
+    result = subprocess.run(
         [sys.executable, "-m", "linkwright", *words], env=environment, capture_output=True, text=True, check=False
     )
-    assert done.returncode == 0, done.stderr
+    assert result.returncode == 0, result.stderr
     data = json.loads((folder / "out.json").read_text())
     assert [student["points"] for student in data["students"]] == [4, 4, 1, 1]
     assert "limits" in data["protections"]
@@ -301,10 +301,10 @@ def test_unusual_folders_have_notes(folder, capsys):
     (students / "file.zip").write_text("")
     (students / "packed").mkdir()
     (students / "packed/workspace.tar.gz").write_text("")
-    status, found, _ = grade(folder, "--html", "out.html")
+    status, report, _ = grade(folder, "--html", "out.html")
     assert status == 1
     assert Path("out.html").read_text(encoding="utf-8").count("not graded") == 6
-    notes = {name: " / ".join(note["en"] for note in student["notes"]) for name, student in found.items()}
+    notes = {name: " / ".join(note["en"] for note in student["notes"]) for name, student in report.items()}
     assert notes["nested"] == "the workspace is the folder 'inner' in it"
     assert notes["links"] == "1 link was left out / 1 pipe, socket or device was left out"
     assert notes["other"] == "learn.yaml belongs to the course 'robot' and was not used"
@@ -313,7 +313,7 @@ def test_unusual_folders_have_notes(folder, capsys):
     assert notes["file.txt"] == "it is a file and not the folder of a student"
     assert notes["file.zip"] == "it is an archive; unpack it first"
     assert notes["packed"] == "the folder contains only the archive 'workspace.tar.gz'; unpack it first"
-    points = {name: student["points"] for name, student in found.items()}
+    points = {name: student["points"] for name, student in report.items()}
     not_graded = {"file.txt": 0, "file.zip": 0, "packed": 0}
     assert points == {"nested": 4, "links": 0, "other": 4, "yaml": 4, "without": 4, **not_graded}
     assert "unpack it first" in capsys.readouterr().out

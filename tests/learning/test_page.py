@@ -19,7 +19,7 @@ from linkwright.learning.page.course_guide import CourseGuide
 from linkwright.learning.page.feature import CourseFeature
 from linkwright.learning.page.step_html import step_html
 from linkwright.page.program_pages import ProgramPages
-from tests.viewer.scene import page, world
+from tests.viewer.scene import open_world, page
 
 ROBOT = find_course("example") / "01-one-link/solution/one-link/robot.urdf"
 WRONG = '<robot name="r"><link name="bux"/></robot>'
@@ -33,20 +33,20 @@ class Shown:
 
 
 def show_course(
-    scene: Any, room: Classroom, on_changed: Callable[[Path | None], object], programs: ProgramPages | None = None
+    world: Any, room: Classroom, on_changed: Callable[[Path | None], object], programs: ProgramPages | None = None
 ) -> None:
-    context = scene.viewer.context
+    context = world.viewer.context
     guide = CourseGuide(room, context.pages.publish, context.node.get_logger(), on_changed, programs or ProgramPages())
-    scene.viewer.add_feature(CourseFeature).show(guide)
+    world.viewer.add_feature(CourseFeature).show(guide)
 
 
 @asynccontextmanager
 async def classroom(workspace: Path, shown: Shown | None = None) -> AsyncIterator[Any]:
     workspace.mkdir(exist_ok=True)  # noqa: ASYNC240 - nothing else runs
-    async with world() as scene:
+    async with open_world() as world:
         room = open_classroom(workspace, "example")
-        show_course(scene, room, (shown or Shown()).paths.append)
-        async with page(scene.viewer) as client:
+        show_course(world, room, (shown or Shown()).paths.append)
+        async with page(world.viewer) as client:
             yield client
 
 
@@ -80,14 +80,14 @@ async def test_saved_file_is_checked_and_progress_is_shown(tmp_path):
 
 
 async def test_opened_page_receives_course_step_and_last_results(tmp_path):
-    async with world() as scene:
+    async with open_world() as world:
         workspace = tmp_path / "ws"
         workspace.mkdir()
         room = open_classroom(workspace, "example")
-        show_course(scene, room, lambda _: None)
-        async with page(scene.viewer) as client:
+        show_course(world, room, lambda _: None)
+        async with page(world.viewer) as client:
             await results(client)
-        async with page(scene.viewer) as client:
+        async with page(world.viewer) as client:
             opened = await client.opened()
     assert opened["course"]["folder"] == str(workspace)
     assert opened["course_step"]["title"] == {"en": "A box", "zh": "一个方块"}
@@ -125,9 +125,9 @@ async def test_slow_checks_pause_worlds_and_quick_checks_do_not(tmp_path, monkey
     programs = ProgramPages()
     monkeypatch.setattr(programs, "pause_worlds", lambda: paused.append(True))
     monkeypatch.setattr(programs, "resume_worlds", lambda: paused.append(False))
-    async with world() as scene:
-        show_course(scene, open_classroom(workspace, str(course)), lambda _: None, programs)
-        async with page(scene.viewer) as client:
+    async with open_world() as world:
+        show_course(world, open_classroom(workspace, str(course)), lambda _: None, programs)
+        async with page(world.viewer) as client:
             while not (await results(client))["checks"]:
                 pass
         while_open = list(paused)
@@ -146,8 +146,8 @@ async def test_hints_are_shown_in_order_and_solution_keeps_replaced_file(tmp_pat
         assert len((await client.until("course_step"))["hints"]) == 2
         await client.send("take_solution")
         await until_passed(client)
-    (kept,) = (workspace / "replaced").rglob("robot.urdf")
-    assert kept.read_text() == WRONG
+    (backup,) = (workspace / "replaced").rglob("robot.urdf")
+    assert backup.read_text() == WRONG
     assert "solution: true" in (workspace / "learn.yaml").read_text()
 
 

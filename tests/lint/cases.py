@@ -51,9 +51,9 @@ class Case:
             (folder / name).parent.mkdir(parents=True, exist_ok=True)
             (folder / name).write_text(text, encoding="utf-8")
         main = folder / next(iter(self.files))
-        found = examine(main, settings=self._settings(main)).diagnostics
-        wanted = [each for each in found if each.code.startswith(self.selectors)]
-        return "".join(f"{line}\n" for each in wanted for line in _lines(each, folder, main))
+        findings = examine(main, settings=self._settings(main)).diagnostics
+        wanted = [finding for finding in findings if finding.code.startswith(self.selectors)]
+        return "".join(f"{line}\n" for finding in wanted for line in _lines(finding, folder, main))
 
     def fixed_text(self, folder: Path) -> str:
         """Return the checked file, written by `run`, after all its fixes."""

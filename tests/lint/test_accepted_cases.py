@@ -19,8 +19,8 @@ def codes_of(tmp_path):
         for file, content in files.items():
             (tmp_path / file.replace("_dot_", ".")).write_text(content)
         (tmp_path / name).write_text(text)
-        found = examine(tmp_path / name, settings=Settings(select=selectors)).diagnostics
-        return [each.code for each in found if each.code.startswith(selectors)]
+        findings = examine(tmp_path / name, settings=Settings(select=selectors)).diagnostics
+        return [finding.code for finding in findings if finding.code.startswith(selectors)]
 
     return check
 
@@ -124,8 +124,8 @@ def test_relative_mesh_path_is_a_warning_in_package(tmp_path, files, severity):
     path.write_text(robot('<link name="a"><visual><geometry><mesh filename="a.stl"/></geometry></visual></link>'))
     for name, text in files.items():
         (tmp_path / name).write_text(text)
-    found = examine(path, settings=Settings(select=("LW421",))).diagnostics
-    assert [each.severity.value for each in found if each.code == "LW421"] == [severity]
+    findings = examine(path, settings=Settings(select=("LW421",))).diagnostics
+    assert [finding.severity.value for finding in findings if finding.code == "LW421"] == [severity]
 
 
 @pytest.mark.parametrize(
@@ -160,8 +160,8 @@ def test_unused_parameter_shared_with_other_macros_is_accepted(codes_of, more, c
 def test_sibling_name_is_not_suggested_for_unused_property(tmp_path, unused, hint):
     properties = "".join(f'<xacro:property name="{name}" value="1"/>' for name in (unused, "image_pz"))
     (tmp_path / "r.urdf.xacro").write_text(robot(properties + '<link name="l${image_pz}"/>', PREFIX))
-    (found,) = examine(tmp_path / "r.urdf.xacro", settings=Settings(select=("LW701",))).diagnostics
-    assert str(found.hint).startswith(hint)
+    (finding,) = examine(tmp_path / "r.urdf.xacro", settings=Settings(select=("LW701",))).diagnostics
+    assert str(finding.hint).startswith(hint)
 
 
 @pytest.mark.parametrize(("frame", "codes"), [("link", []), ("base_lnk", ["LW849"])])
@@ -169,8 +169,8 @@ def test_fixed_frame_of_another_robot_is_accepted(tmp_path, frame, codes):
     (tmp_path / "package.xml").write_text("<package format='3'><name>p</name></package>")
     (tmp_path / "r.urdf").write_text(robot('<link name="base_link"/><link name="link3"/>'))
     (tmp_path / "r.rviz").write_text(f"Visualization Manager:\n  Global Options:\n    Fixed Frame: {frame}\n")
-    found = examine_package(tmp_path, Settings(select=("LW849",))).diagnostics
-    assert [each.code for each in found] == codes
+    findings = examine_package(tmp_path, Settings(select=("LW849",))).diagnostics
+    assert [finding.code for finding in findings] == codes
 
 
 @pytest.mark.parametrize(("shape", "codes"), [("", []), ("c", ["LW410"])])
@@ -183,8 +183,8 @@ def test_link_between_colliding_links_needs_no_collision(codes_of, shape, codes)
 def test_visual_with_zero_size_is_an_info(tmp_path):
     flat = '<visual><geometry><box size="0.1 0 0.1"/></geometry></visual>'
     (tmp_path / "r.urdf").write_text(robot(f'<link name="a">{BOX.format(0)}{flat}</link>'))
-    found = examine(tmp_path / "r.urdf", settings=Settings(select=("LW401",))).diagnostics
-    assert [each.severity.name for each in found if each.code == "LW401"] == ["INFO", "WARNING"]
+    findings = examine(tmp_path / "r.urdf", settings=Settings(select=("LW401",))).diagnostics
+    assert [finding.severity.name for finding in findings if finding.code == "LW401"] == ["INFO", "WARNING"]
 
 
 def test_dont_collapse_attribute_of_isaac_gym_is_recognized(codes_of):
@@ -230,8 +230,8 @@ def test_mesh_of_declared_missing_package_is_an_info(tmp_path, more, severity):
     mesh = '<link name="l"><visual><geometry><mesh filename="package://far/a.stl"/></geometry></visual></link>'
     (tmp_path / "package.xml").write_text(MANIFEST.format(more=more))
     (tmp_path / "r.urdf").write_text(robot(mesh))
-    found = examine(tmp_path / "r.urdf", settings=Settings(select=("LW423",))).diagnostics
-    assert [each.severity.name for each in found if each.code == "LW423"] == [severity]
+    findings = examine(tmp_path / "r.urdf", settings=Settings(select=("LW423",))).diagnostics
+    assert [finding.severity.name for finding in findings if finding.code == "LW423"] == [severity]
 
 
 @pytest.mark.parametrize(("build", "codes"), [("ament_cmake", []), ("ament_python", ["LW827"])])
@@ -244,8 +244,8 @@ def test_setup_py_of_cmake_package_is_ignored(tmp_path, build, codes):
         "from setuptools import setup\n"
         "setup(name='p', packages=['p'], entry_points={'console_scripts': ['run = p.run:main']})\n"
     )
-    found = examine_package(tmp_path, Settings(select=("LW827",))).diagnostics
-    assert [each.code for each in found] == codes
+    findings = examine_package(tmp_path, Settings(select=("LW827",))).diagnostics
+    assert [finding.code for finding in findings] == codes
 
 
 @pytest.mark.parametrize(
@@ -261,8 +261,8 @@ def test_webots_driver_needs_no_main(tmp_path, driver, codes):
         "from setuptools import setup\n"
         "setup(name='p', packages=['p'], entry_points={'console_scripts': ['run = p.run:main']})\n"
     )
-    found = examine_package(tmp_path, Settings(select=("LW827",))).diagnostics
-    assert [each.code for each in found] == codes
+    findings = examine_package(tmp_path, Settings(select=("LW827",))).diagnostics
+    assert [finding.code for finding in findings] == codes
 
 
 @pytest.mark.parametrize("path", ["sdk", "sdk/cxx"])
@@ -273,8 +273,8 @@ def test_missing_folder_of_submodule_hints_at_git_submodule_update(tmp_path, pat
         "project(p)\nfind_package(ament_cmake REQUIRED)\n"
         "install(DIRECTORY sdk/cxx/include DESTINATION include)\nament_package()\n"
     )
-    (found,) = examine_package(tmp_path, Settings(select=("LW824",))).diagnostics
-    assert str(found.hint) == f"'{path}' is a Git submodule: run git submodule update --init"
+    (finding,) = examine_package(tmp_path, Settings(select=("LW824",))).diagnostics
+    assert str(finding.hint) == f"'{path}' is a Git submodule: run git submodule update --init"
 
 
 @pytest.mark.parametrize(("ignored", "codes"), [("dist/", []), ("*.log", ["LW824"])])
@@ -286,8 +286,8 @@ def test_missing_installed_folder_that_git_ignores_is_accepted(tmp_path, ignored
         "project(p)\nfind_package(ament_cmake REQUIRED)\n"
         "install(DIRECTORY web/dist DESTINATION share/p)\nament_package()\n"
     )
-    found = examine_package(tmp_path, Settings(select=("LW824",))).diagnostics
-    assert [each.code for each in found] == codes
+    findings = examine_package(tmp_path, Settings(select=("LW824",))).diagnostics
+    assert [finding.code for finding in findings] == codes
 
 
 _DOWNLOAD = 'set(net "${PROJECT_SOURCE_DIR}/nets/a.onnx")\nfile(DOWNLOAD "https://example.org/a.onnx" "${net}")\n'
@@ -308,8 +308,8 @@ def test_installed_folder_that_cmake_creates_is_accepted(tmp_path, before, codes
         f"project(p)\nfind_package(ament_cmake REQUIRED)\n{before}"
         "install(DIRECTORY nets DESTINATION share/p)\nament_package()\n"
     )
-    found = examine_package(tmp_path, Settings(select=("LW824",))).diagnostics
-    assert [each.code for each in found] == codes
+    findings = examine_package(tmp_path, Settings(select=("LW824",))).diagnostics
+    assert [finding.code for finding in findings] == codes
 
 
 @pytest.mark.parametrize(
@@ -323,16 +323,16 @@ def test_installed_folder_that_cmake_creates_is_accepted(tmp_path, before, codes
 )
 def test_repeated_dependency_is_an_info_or_error_beside_depend(tmp_path, lines, message):
     (tmp_path / "package.xml").write_text(MANIFEST.format(more=lines))
-    found = examine_package(tmp_path, Settings(select=("LW809",))).diagnostics
-    assert [each.severity.value for each in found] == message
+    findings = examine_package(tmp_path, Settings(select=("LW809",))).diagnostics
+    assert [finding.severity.value for finding in findings] == message
 
 
 @pytest.mark.parametrize("name", ["iCub", "neo-mpo"])
 def test_package_name_that_colcon_accepts_is_an_info(tmp_path, name):
     """Whoever published a package cannot rename it."""
     (tmp_path / "package.xml").write_text(MANIFEST.format(more="").replace("<name>p</name>", f"<name>{name}</name>"))
-    found = examine_package(tmp_path, Settings(select=("LW805",))).diagnostics
-    assert [each.severity.value for each in found] == ["info"]
+    findings = examine_package(tmp_path, Settings(select=("LW805",))).diagnostics
+    assert [finding.severity.value for finding in findings] == ["info"]
 
 
 @pytest.mark.parametrize(
@@ -343,8 +343,8 @@ def test_empty_launch_file_is_an_info(tmp_path, text, message):
     (tmp_path / "package.xml").write_text(MANIFEST.format(more=""))
     (tmp_path / "launch").mkdir()
     (tmp_path / "launch" / "a.launch.py").write_text(text)
-    found = examine_package(tmp_path, Settings(select=("LW841",))).diagnostics
-    assert [each.severity.value for each in found] == [message]
+    findings = examine_package(tmp_path, Settings(select=("LW841",))).diagnostics
+    assert [finding.severity.value for finding in findings] == [message]
 
 
 @pytest.mark.parametrize(
@@ -361,8 +361,8 @@ def test_tests_and_modules_named_like_launch_files_are_accepted(tmp_path, text, 
     (tmp_path / "p").mkdir()
     for name in ("a_launch.py", *files):
         (tmp_path / "p" / name).write_text(text if name == "a_launch.py" else "")
-    found = examine_package(tmp_path, Settings(select=("LW841",))).diagnostics
-    assert [each.code for each in found] == ["LW841"] * count
+    findings = examine_package(tmp_path, Settings(select=("LW841",))).diagnostics
+    assert [finding.code for finding in findings] == ["LW841"] * count
 
 
 @pytest.mark.parametrize(
@@ -400,8 +400,8 @@ def test_uninstalled_sibling_folders_are_one_finding(tmp_path):
     for name in ("default", "fake", "schema"):
         (tmp_path / "config" / name).mkdir(parents=True)
         (tmp_path / "config" / name / "arm.yaml").write_text("a: 1\n")
-    found = examine_package(tmp_path, Settings(select=("LW822",))).diagnostics
-    assert [str(each.message) for each in found] == [
+    findings = examine_package(tmp_path, Settings(select=("LW822",))).diagnostics
+    assert [str(finding.message) for finding in findings] == [
         "setup.py does not install the folder 'config/default' (and 2 more)"
     ]
 
@@ -420,8 +420,8 @@ def test_circular_dependency_is_not_requested(tmp_path, needs, codes):
     (tmp_path / "p/launch/a.launch.py").write_text("def generate_launch_description():\n    Node(package='q')\n")
     packages = {name: tmp_path / name for name in ("p", "q", "helper")}
     settings = Settings(select=("LW724", "LW848"))
-    found = examine(tmp_path / "p/r.urdf.xacro", packages=packages, settings=settings).diagnostics
-    assert [each.code for each in found] == [*codes, *(["LW848"] if codes else [])]
+    findings = examine(tmp_path / "p/r.urdf.xacro", packages=packages, settings=settings).diagnostics
+    assert [finding.code for finding in findings] == [*codes, *(["LW848"] if codes else [])]
 
 
 @pytest.mark.parametrize(
@@ -463,8 +463,8 @@ def test_collision_apart_hint_names_center_of_offset_mesh(tmp_path, origin, hint
     seen = '<visual><origin xyz="0 0 0.1"/><geometry><mesh filename="a.stl"/></geometry></visual>'
     felt = f'<collision><origin xyz="{origin}"/><geometry><box size="0.1 0.1 0.1"/></geometry></collision>'
     (tmp_path / "r.urdf").write_text(robot(f'<link name="a">{seen}{felt}</link>'))
-    (found,) = examine(tmp_path / "r.urdf", settings=Settings(select=("LW412",))).diagnostics
-    assert str(found.hint).startswith(hint)
+    (finding,) = examine(tmp_path / "r.urdf", settings=Settings(select=("LW412",))).diagnostics
+    assert str(finding.hint).startswith(hint)
 
 
 @pytest.mark.parametrize(("size", "codes"), [(60, ["LW433"]), (40, ["LW412", "LW413"])])
@@ -473,8 +473,8 @@ def test_mesh_in_millimeters_is_reported_once(codes_of, size, codes):
     seen = '<visual><geometry><mesh filename="a.stl"/></geometry></visual>'
     felt = '<collision><geometry><box size="0.1 0.1 0.1"/></geometry></collision>'
     text = robot(f'<link name="a">{seen}{felt}</link>')
-    found = codes_of(text, "LW412", "LW413", "LW433", a_dot_stl=f"solid a\n{facet}\nendsolid a\n")
-    assert sorted(found) == codes
+    finding_codes = codes_of(text, "LW412", "LW413", "LW433", a_dot_stl=f"solid a\n{facet}\nendsolid a\n")
+    assert sorted(finding_codes) == codes
 
 
 @pytest.mark.parametrize(("far", "codes"), [(25, ["LW405"]), (2.5, ["LW412"])])
@@ -503,8 +503,8 @@ def test_mesh_path_in_ros_installation_is_reported_once(tmp_path, address, hint)
     path = tmp_path / "r.urdf"
     mesh = f'<visual><geometry><mesh filename="{address}"/></geometry></visual>'
     path.write_text(robot(f'<link name="a">{mesh}</link>'))
-    (found,) = examine(path, settings=Settings(select=("LW422", "LW424"))).diagnostics
-    assert (found.code, str(found.hint)) == ("LW422", hint)
+    (finding,) = examine(path, settings=Settings(select=("LW422", "LW424"))).diagnostics
+    assert (finding.code, str(finding.hint)) == ("LW422", hint)
 
 
 @pytest.mark.parametrize(
@@ -530,8 +530,8 @@ def test_uninstalled_file_that_no_launch_file_reads_is_an_info(tmp_path, file, l
         "def generate_launch_description():\n"
         f"    os.path.join(get_package_share_directory('p'), {launch!r})\n"
     )
-    found = examine_package(tmp_path, Settings(select=("LW822",))).diagnostics
-    assert [each.severity.name for each in found] == [severity]
+    findings = examine_package(tmp_path, Settings(select=("LW822",))).diagnostics
+    assert [finding.severity.name for finding in findings] == [severity]
 
 
 @pytest.mark.parametrize(
@@ -557,8 +557,8 @@ def test_program_in_data_files_is_an_executable(tmp_path, data, codes):
         "from launch_ros.actions import Node\n\n\n"
         "def generate_launch_description():\n    Node(package='p', executable='driver.py')\n"
     )
-    found = examine_package(tmp_path, Settings(select=("LW844",))).diagnostics
-    assert [each.code for each in found] == codes
+    findings = examine_package(tmp_path, Settings(select=("LW844",))).diagnostics
+    assert [finding.code for finding in findings] == codes
 
 
 @pytest.mark.parametrize("big", ["a", "b"])
@@ -582,8 +582,8 @@ def test_missing_include_that_build_generates_is_an_info(tmp_path, cmake, severi
     (tmp_path / "urdf").mkdir()
     include = '<xacro:include filename="$(find p)/urdf/arm.urdf"/>'
     (tmp_path / "r.urdf.xacro").write_text(robot(f'<link name="a"/>{include}', PREFIX))
-    found = examine(tmp_path / "r.urdf.xacro", packages={"p": tmp_path}).diagnostics
-    assert [each.severity.name for each in found if each.code == "XML101"] == [severity]
+    findings = examine(tmp_path / "r.urdf.xacro", packages={"p": tmp_path}).diagnostics
+    assert [finding.severity.name for finding in findings if finding.code == "XML101"] == [severity]
 
 
 @pytest.mark.parametrize(("name", "severity"), [("urdf/arm.xacro", "WARNING"), ("urdf/leg.xacro", "ERROR")])
@@ -593,11 +593,11 @@ def test_include_relative_to_package_folder_is_a_warning(tmp_path, name, severit
     (tmp_path / "urdf/arm.xacro").write_text("<robot/>")
     text = robot(f'<link name="a"/><xacro:include filename="{name}"/>', PREFIX)
     (tmp_path / "urdf/r.urdf.xacro").write_text(text)
-    (found,) = (
+    (finding,) = (
         diagnostic for diagnostic in examine(tmp_path / "urdf/r.urdf.xacro").diagnostics if diagnostic.code == "XML101"
     )
-    assert found.severity.name == severity
-    assert ("write 'arm.xacro'" in (found.hint or "")) is (severity == "WARNING")
+    assert finding.severity.name == severity
+    assert ("write 'arm.xacro'" in (finding.hint or "")) is (severity == "WARNING")
 
 
 def test_includes_relative_to_package_folder_are_one_finding_per_file(
@@ -609,10 +609,10 @@ def test_includes_relative_to_package_folder_are_one_finding_per_file(
         (tmp_path / f"urdf/{name}.xacro").write_text("<robot/>")
     includes = "".join(f'<xacro:include filename="urdf/{name}.xacro"/>' for name in ("arm", "leg", "head", "tail"))
     (tmp_path / "urdf/r.urdf.xacro").write_text(robot(f'<link name="a"/>{includes}', PREFIX))
-    found = [
+    findings = [
         diagnostic for diagnostic in examine(tmp_path / "urdf/r.urdf.xacro").diagnostics if diagnostic.code == "XML101"
     ]
-    assert [(each.severity.name, str(each.message).partition("(")[2]) for each in found] == [
+    assert [(finding.severity.name, str(finding.message).partition("(")[2]) for finding in findings] == [
         ("WARNING", "and 2 more)"),
         ("ERROR", ""),
     ]
@@ -627,8 +627,8 @@ def test_mesh_package_declared_by_sibling_package_is_an_info(tmp_path, declaring
     mesh = '<visual><geometry><mesh filename="package://{}/a.stl"/></geometry></visual>'
     links = (f'<link name="{name}">{mesh.format(name)}</link>' for name in ("arm_description", "far_description"))
     (tmp_path / "p/r.urdf").write_text(robot("".join(links)))
-    found = examine(tmp_path / "p/r.urdf").diagnostics
-    assert [each.severity.name for each in found if each.code == "LW423"] == ["INFO", "WARNING"]
+    findings = examine(tmp_path / "p/r.urdf").diagnostics
+    assert [finding.severity.name for finding in findings if finding.code == "LW423"] == ["INFO", "WARNING"]
 
 
 def test_material_is_not_reported_beside_missing_include(codes_of):
@@ -651,8 +651,8 @@ def test_misplaced_zero_origin_is_accepted(codes_of, xyz, codes):
 
 def test_misplaced_material_hint_names_visual(tmp_path):
     (tmp_path / "r.urdf").write_text(robot('<link name="base"><material name="red"/></link>'))
-    (found,) = examine(tmp_path / "r.urdf", settings=Settings(select=("LW105",))).diagnostics
-    assert found.hint == "put it directly in <visual>"
+    (finding,) = examine(tmp_path / "r.urdf", settings=Settings(select=("LW105",))).diagnostics
+    assert finding.hint == "put it directly in <visual>"
 
 
 @pytest.mark.parametrize(
@@ -694,8 +694,8 @@ def test_unused_parameter_of_empty_macro_is_accepted(codes_of, body, codes):
 def test_shipped_package_is_suggested_only_for_misspelled_name(tmp_path, name, hint):
     mesh = f'<link name="l"><visual><geometry><mesh filename="package://{name}/a.stl"/></geometry></visual></link>'
     (tmp_path / "r.urdf").write_text(robot(mesh))
-    (found,) = (diagnostic for diagnostic in examine(tmp_path / "r.urdf").diagnostics if diagnostic.code == "LW423")
-    assert ("my_robot_description" in (found.hint or "")) is hint
+    (finding,) = (diagnostic for diagnostic in examine(tmp_path / "r.urdf").diagnostics if diagnostic.code == "LW423")
+    assert ("my_robot_description" in (finding.hint or "")) is hint
 
 
 @pytest.mark.parametrize(("there", "codes"), [("launch/sensors.launch.py", []), ("launch/other.launch.py", ["LW842"])])
@@ -714,8 +714,8 @@ def test_launched_file_missing_only_from_old_build_is_accepted(tmp_path, there, 
     launch = "import os\n\n\ndef generate_launch_description():\n    share = get_package_share_directory('q')\n"
     launch += "    return os.path.join(share, 'launch', 'sensors.launch.py')\n"
     (tmp_path / "src/p/launch/a.launch.py").write_text(launch)
-    found = examine_package(tmp_path / "src/p", Settings(select=("LW842",))).diagnostics
-    assert [each.code for each in found] == codes
+    findings = examine_package(tmp_path / "src/p", Settings(select=("LW842",))).diagnostics
+    assert [finding.code for finding in findings] == codes
 
 
 @pytest.mark.parametrize(("izz", "codes"), [(1, ["LW324"]), (3, ["LW314"])])

@@ -48,12 +48,12 @@ def check(tmp_path, monkeypatch, capsys):
     return run
 
 
-def codes(found):
-    return [(each["severity"], each["code"]) for each in found]
+def codes(findings):
+    return [(finding["severity"], finding["code"]) for finding in findings]
 
 
 def test_failure_without_arguments_is_one_info(check):
-    found = check(
+    findings = check(
         {
             "arm/urdf/arm.urdf.xacro": ARM,
             "arm/urdf/small.xacro": PART,
@@ -61,13 +61,13 @@ def test_failure_without_arguments_is_one_info(check):
             "arm/launch/view.launch.py": LAUNCH.format(kinds="'small', 'big'"),
         }
     )
-    assert codes(found) == [("info", "LINT303")]
-    assert found[0]["message"] == "'arm.urdf.xacro' needs the arguments 'name' and 'type'"
-    assert [note["message"] for note in found[0]["notes"]] == [
+    assert codes(findings) == [("info", "LINT303")]
+    assert findings[0]["message"] == "'arm.urdf.xacro' needs the arguments 'name' and 'type'"
+    assert [note["message"] for note in findings[0]["notes"]] == [
         "for instance, a caller passes name:=a type:=small here",
         "the file is checked with 2 sets of values",
     ]
-    assert found[0]["notes"][0]["file"].endswith("view.launch.py")
+    assert findings[0]["notes"][0]["file"].endswith("view.launch.py")
 
 
 PLAIN = f'<robot name="r"><link name="base_link">{CAN}</link></robot>'
@@ -88,20 +88,20 @@ def generate_launch_description():
     [(EXPANDS, []), (EXPANDS.replace("xacro", "document"), [("error", "LW114")])],
 )
 def test_urdf_file_expanded_by_launch_file_may_contain_xacro(check, launch, expected):
-    found = check({"arm/urdf/arm.urdf": PLAIN, "arm/urdf/can.stl": "", "arm/launch/view.launch.py": launch})
-    assert [code for code in codes(found) if code[1] == "LW114"] == expected
+    findings = check({"arm/urdf/arm.urdf": PLAIN, "arm/urdf/can.stl": "", "arm/launch/view.launch.py": launch})
+    assert [code for code in codes(findings) if code[1] == "LW114"] == expected
 
 
 def test_failing_launch_value_is_an_error_with_argument_set(check):
-    found = check(
+    findings = check(
         {
             "arm/urdf/arm.urdf.xacro": ARM,
             "arm/urdf/small.xacro": PART,
             "arm/launch/view.launch.py": LAUNCH.format(kinds="'small', 'lost'"),
         }
     )
-    assert codes(found) == [("info", "LINT303"), ("error", "XML101")]
-    assert "this happens with type:=lost" in [note["message"] for note in found[1]["notes"]]
+    assert codes(findings) == [("info", "LINT303"), ("error", "XML101")]
+    assert "this happens with type:=lost" in [note["message"] for note in findings[1]["notes"]]
 
 
 def test_finding_of_some_argument_sets_names_them(check):
@@ -110,7 +110,7 @@ def test_finding_of_some_argument_sets_names_them(check):
     joint = '<joint name="j" type="fixed"><parent link="base_link"/><child link="{name}"/></joint>'
     common = f"<robot>{flaw.format(name='c')}{joint.format(name='c')}</robot>"
     arm = ARM.replace("</robot>", '<xacro:include filename="common.xacro"/></robot>')
-    found = check(
+    findings = check(
         {
             "arm/urdf/arm.urdf.xacro": arm,
             "arm/urdf/common.xacro": common,
@@ -122,14 +122,14 @@ def test_finding_of_some_argument_sets_names_them(check):
         "--select",
         "LW401",
     )
-    boxes = {each["file"].rpartition("/")[2]: each for each in found if each["code"] == "LW401"}
+    boxes = {finding["file"].rpartition("/")[2]: finding for finding in findings if finding["code"] == "LW401"}
     assert list(boxes) == ["common.xacro", "small.xacro"]
     assert not any("this happens" in note["message"] for note in boxes["common.xacro"]["notes"])
     assert "this happens with type:=small" in [note["message"] for note in boxes["small.xacro"]["notes"]]
 
 
 def test_configured_arguments_override_launch_files(check):
-    found = check(
+    findings = check(
         {
             "arm/urdf/arm.urdf.xacro": ARM,
             "arm/urdf/small.xacro": PART,
@@ -137,24 +137,24 @@ def test_configured_arguments_override_launch_files(check):
             "linkwright.toml": '[arguments]\n"arm/urdf/arm.urdf.xacro" = { name = "a", type = "small" }\n',
         }
     )
-    assert found == []
+    assert findings == []
 
 
 def test_undeclared_argument_is_info_for_folder_and_error_for_file(check):
     files = {"arm/urdf/arm.urdf.xacro": f'<robot {XACRO} name="r"><link name="$(arg prefix)base_link"/></robot>'}
-    found = check(files)
-    assert codes(found) == [("info", "LINT303")]
-    assert found[0]["hints"] == ['give values in linkwright.toml: [arguments] "arm.urdf.xacro" = { prefix = "..." }']
+    findings = check(files)
+    assert codes(findings) == [("info", "LINT303")]
+    assert findings[0]["hints"] == ['give values in linkwright.toml: [arguments] "arm.urdf.xacro" = { prefix = "..." }']
     assert codes(check(files, "arm/urdf/arm.urdf.xacro")) == [("error", "XAC211")]
 
 
 def test_include_named_by_argument_used_too_early_is_not_an_error(check):
     text = f"""<robot {XACRO} name="$(arg model)"><xacro:arg name="model" default="r"/>
 <xacro:include filename="$(arg model)/arm.xacro"/><xacro:include filename="{{}}.xacro"/></robot>"""
-    found = check({"arm/urdf/arm.urdf.xacro": text.format("hand"), "arm/urdf/hand.xacro": PART})
-    assert codes(found) == [("info", "LINT303")]
-    found = check({"arm/urdf/arm.urdf.xacro": text.format("none")})
-    assert codes(found) == [("info", "LINT303"), ("error", "XML101")]
+    findings = check({"arm/urdf/arm.urdf.xacro": text.format("hand"), "arm/urdf/hand.xacro": PART})
+    assert codes(findings) == [("info", "LINT303")]
+    findings = check({"arm/urdf/arm.urdf.xacro": text.format("none")})
+    assert codes(findings) == [("info", "LINT303"), ("error", "XML101")]
 
 
 def test_misspelled_argument_stays_an_error(check):
@@ -171,15 +171,15 @@ from ament_index_python.packages import get_package_share_path
 def test_expands():
     xacro.process_file(get_package_share_path('arm') / 'urdf/arm.urdf.xacro')
 """
-    found = check({"arm/urdf/arm.urdf.xacro": ARM, "arm/test/test_arm.py": test})
-    assert {code for severity, code in codes(found) if severity == "error"} == {"XAC211", "XML101"}
+    findings = check({"arm/urdf/arm.urdf.xacro": ARM, "arm/test/test_arm.py": test})
+    assert {code for severity, code in codes(findings) if severity == "error"} == {"XAC211", "XML101"}
 
 
 def test_runtime_values_are_named(check):
     launch = LAUNCH.format(kinds="'small'").replace("'type': kind", "'type': ask()")
-    found = check({"arm/urdf/arm.urdf.xacro": ARM, "arm/launch/view.launch.py": launch})
-    assert codes(found) == [("info", "LINT303")]
-    assert found[0]["arguments"]["names"] == "'type'"
+    findings = check({"arm/urdf/arm.urdf.xacro": ARM, "arm/launch/view.launch.py": launch})
+    assert codes(findings) == [("info", "LINT303")]
+    assert findings[0]["arguments"]["names"] == "'type'"
 
 
 def test_command_line_arguments_replace_all_other_sets(check):
@@ -213,8 +213,8 @@ def generate_launch_description():
         "LaunchConfiguration('type'), LaunchConfiguration('dof')",
         "LaunchConfiguration('type'), ' dof:=', LaunchConfiguration('dof')" + derived,
     )
-    found = check({**files, "arm/urdf/six_6.xacro": PART, "arm/urdf/seven_7.xacro": PART})
-    assert codes(found) == [("info", "LINT303")]
+    findings = check({**files, "arm/urdf/six_6.xacro": PART, "arm/urdf/seven_7.xacro": PART})
+    assert codes(findings) == [("info", "LINT303")]
 
 
 @pytest.mark.parametrize(("chosen", "codes_found"), [("large", ["XML101"]), ("small", [])])
@@ -235,7 +235,7 @@ Command(['xacro ', path, ' name:=a', ' type:=', LaunchConfiguration('type')])
     parts = ["large_six", "large_seven", "small_six", "small_seven"]
     parts.remove(f"{chosen}_seven")
     files = {**both, "arm/launch/view.launch.py": launch, **{f"arm/urdf/{name}.xacro": PART for name in parts}}
-    assert [each["code"] for each in check(files) if each["severity"] != "info"] == codes_found
+    assert [finding["code"] for finding in check(files) if finding["severity"] != "info"] == codes_found
 
 
 @pytest.mark.parametrize(
@@ -270,8 +270,8 @@ def test_missing_package_is_a_warning_if_declared_nearby(check, needs, beside, s
         f"""<robot {XACRO} name="r"><xacro:include filename="$(find far)/far.xacro"/><link name="base_link"/></robot>"""
     )
     manifest, other = MANIFEST.format(name="arm", needs=needs), MANIFEST.format(name="bringup", needs=beside)
-    found = check({"arm/package.xml": manifest, "bringup/package.xml": other, "arm/urdf/arm.urdf.xacro": robot})
-    assert (severity, "PKG101") in codes(found)
+    findings = check({"arm/package.xml": manifest, "bringup/package.xml": other, "arm/urdf/arm.urdf.xacro": robot})
+    assert (severity, "PKG101") in codes(findings)
 
 
 SIDED = f"""<robot {XACRO} name="r">
@@ -285,16 +285,16 @@ SIDED = f"""<robot {XACRO} name="r">
 
 
 def test_compared_values_are_tried_for_missing_argument(check):
-    found = check({"arm/urdf/arm.urdf.xacro": SIDED}, ".", "--ignore", "LW102")
-    assert codes(found) == [("info", "LINT303")]
-    assert found[0]["message"] == "'arm.urdf.xacro' needs the argument 'side'"
-    assert found[0]["notes"][0]["message"] == "for instance, side:=left expands the file"
+    findings = check({"arm/urdf/arm.urdf.xacro": SIDED}, ".", "--ignore", "LW102")
+    assert codes(findings) == [("info", "LINT303")]
+    assert findings[0]["message"] == "'arm.urdf.xacro' needs the argument 'side'"
+    assert findings[0]["notes"][0]["message"] == "for instance, side:=left expands the file"
     assert codes(check({"arm/urdf/arm.urdf.xacro": SIDED}, "arm/urdf/arm.urdf.xacro")) == [("error", "XAC201")]
 
 
 def test_error_that_no_compared_value_fixes_remains(check):
-    found = check({"arm/urdf/arm.urdf.xacro": SIDED.replace("0 ${mount} 0", "0 ${lost} 0")})
-    assert codes(found) == [("error", "XAC201")]
+    findings = check({"arm/urdf/arm.urdf.xacro": SIDED.replace("0 ${mount} 0", "0 ${lost} 0")})
+    assert codes(findings) == [("error", "XAC201")]
 
 
 FILED = f"""<robot {XACRO} name="r">
@@ -306,11 +306,11 @@ FILED = f"""<robot {XACRO} name="r">
 
 
 def test_failure_with_empty_default_requires_argument(check):
-    found = check({"arm/urdf/arm.urdf.xacro": FILED.format(default="", more="")})
-    assert codes(found) == [("info", "LINT303")]
-    assert found[0]["arguments"]["names"] == "'limits'"
-    found = check({"arm/urdf/arm.urdf.xacro": FILED.format(default="", more='<link name="${lost}"/>')})
-    assert codes(found) == [("info", "LINT303"), ("error", "XAC201")]
+    findings = check({"arm/urdf/arm.urdf.xacro": FILED.format(default="", more="")})
+    assert codes(findings) == [("info", "LINT303")]
+    assert findings[0]["arguments"]["names"] == "'limits'"
+    findings = check({"arm/urdf/arm.urdf.xacro": FILED.format(default="", more='<link name="${lost}"/>')})
+    assert codes(findings) == [("info", "LINT303"), ("error", "XAC201")]
     assert ("error", "XAC506") in codes(check({"arm/urdf/arm.urdf.xacro": FILED.format(default="a.yaml", more="")}))
 
 
@@ -340,12 +340,12 @@ def test_copied_inertia_hides_too_large_inertia_of_other_set(check):
 </robot>"""
     launch = LAUNCH.replace("'name': 'a', 'type': kind", "'arm': kind").format(kinds="'false', 'true'")
     files = {"arm/urdf/arm.urdf.xacro": robot, "arm/launch/view.launch.py": launch}
-    assert [each["code"] for each in check(files) if each["code"].startswith("LW3")] == ["LW315"]
+    assert [finding["code"] for finding in check(files) if finding["code"].startswith("LW3")] == ["LW315"]
     alone = {
         "arm/urdf/arm.urdf.xacro": robot.replace('default="false"', 'default="true"'),
         "arm/launch/view.launch.py": "",
     }
-    assert [each["code"] for each in check(alone) if each["code"].startswith("LW3")] == ["LW324"]
+    assert [finding["code"] for finding in check(alone) if finding["code"].startswith("LW3")] == ["LW324"]
 
 
 TURNED = """
@@ -378,9 +378,9 @@ def test_rules_run_once_for_sets_with_same_robot(check, monkeypatch, velocity, o
             type(rule), "check", lambda self, subject, own=rule.check: ran.append(self.code) or list(own(subject))
         )
     files = given_kinds(TURNED.format(velocity=velocity), "1", "2", "3")
-    found = check(files, ".", "--select", "LW206,LW701")
-    assert codes(found) == [("warning", "LW206")]
-    notes = [note["message"] for note in found[0]["notes"]]
+    findings = check(files, ".", "--select", "LW206,LW701")
+    assert codes(findings) == [("warning", "LW206")]
+    notes = [note["message"] for note in findings[0]["notes"]]
     assert ("this happens with kind:=3" in notes) is (of_robot > 1)
     assert (ran.count("LW206"), ran.count("LW701")) == (of_robot, 1)
 
@@ -389,5 +389,5 @@ def test_property_named_by_argument_value_of_one_set_is_used(check):
     """What is used may hang on the values of arguments, although the files are the same."""
     properties = "".join(f'<xacro:property name="{name}" value="1"/>' for name in ("size", "width", "other"))
     files = given_kinds(f'{properties}<link name="l${{$(arg kind)}}"/>', "size", "width")
-    found = check(files, ".", "--select", "LW701")
-    assert [each["message"] for each in found] == ["nothing uses the property 'other'"]
+    findings = check(files, ".", "--select", "LW701")
+    assert [finding["message"] for finding in findings] == ["nothing uses the property 'other'"]

@@ -15,9 +15,12 @@ from linkwright.lint.settings import Settings
 def findings_of(tmp_path: Path, text: str, name: str = "linkwright.toml") -> list[str]:
     file = tmp_path / name
     file.write_text(text, encoding="utf-8")
-    settings, found = read_settings(file)
+    settings, findings = read_settings(file)
     assert isinstance(settings, Settings)
-    return [f"{each.span.line}:{each.span.column} {each.code} {each.message} | {each.hint}" for each in found]
+    return [
+        f"{finding.span.line}:{finding.span.column} {finding.code} {finding.message} | {finding.hint}"
+        for finding in findings
+    ]
 
 
 def test_all_settings_are_read_from_toml(tmp_path):
@@ -38,8 +41,8 @@ def test_all_settings_are_read_from_toml(tmp_path):
         farthest = 100
         """
     )
-    settings, found = settings_for(tmp_path / "urdf" / "robot.urdf")
-    assert found == ()
+    settings, findings = settings_for(tmp_path / "urdf" / "robot.urdf")
+    assert findings == ()
     assert settings.select == ("LW1", "LW201")
     assert settings.selects("LW104")
     assert not settings.selects("LW103")
@@ -129,8 +132,8 @@ def test_mistakes_are_reported_with_location(tmp_path, text, expected):
 
 
 def test_malformed_toml_is_reported_with_location(tmp_path):
-    (found,) = findings_of(tmp_path, "ignore = []\nselect = LW201\n")
-    assert found.startswith("2:10 LINT101 this is not TOML: ")
+    (finding,) = findings_of(tmp_path, "ignore = []\nselect = LW201\n")
+    assert finding.startswith("2:10 LINT101 this is not TOML: ")
 
 
 def test_mistakes_in_pyproject_are_located_in_its_table(tmp_path):
@@ -141,9 +144,9 @@ def test_mistakes_in_pyproject_are_located_in_its_table(tmp_path):
 def test_valid_settings_apply_beside_mistake(tmp_path):
     file = tmp_path / "linkwright.toml"
     file.write_text('ignore = ["LW1", "nonsense"]\n')
-    settings, found = read_settings(file)
+    settings, findings = read_settings(file)
     assert settings.ignore == ("LW1",)
-    assert len(found) == 1
+    assert len(findings) == 1
 
 
 @pytest.mark.parametrize(
@@ -163,8 +166,8 @@ def test_arguments_are_read_as_sets_for_matching_files(tmp_path):
         "*.world.xacro" = { size = 2.5 }
         """
     )
-    settings, found = settings_for(tmp_path / "urdf")
-    assert found == ()
+    settings, findings = settings_for(tmp_path / "urdf")
+    assert findings == ()
     assert settings.arguments_of(tmp_path / "urdf/arm.urdf.xacro") == (
         {"arm": "left"},
         {"arm": "right", "gripper": "true", "dof": "7"},

@@ -19,15 +19,15 @@ def test_corpus_robots_have_no_joint_or_structure_errors(model: Model) -> None:
     findings = [diagnostic for diagnostic in checked.diagnostics if isinstance(diagnostic, Finding)]
     assert all(finding.span is not None for finding in findings if finding.element is not None)
     on_joints_and_structure = [finding for finding in findings if finding.code.startswith(("LW1", "LW2"))]
-    assert not [each for each in on_joints_and_structure if each.severity is Severity.ERROR]
+    assert not [finding for finding in on_joints_and_structure if finding.severity is Severity.ERROR]
 
 
 @pytest.mark.parametrize("corpus", CORPORA, ids=lambda corpus: corpus.folder.name)
 def test_corpus_robots_have_few_joint_and_structure_findings(corpus: Corpus) -> None:
-    found = {
+    codes = {
         (diagnostic.code, diagnostic.span)
         for model in corpus.models
         for diagnostic in look(model, Settings()).diagnostics
         if diagnostic.code.startswith(("LW1", "LW2"))
     }
-    assert len(found) < 20
+    assert len(codes) < 20

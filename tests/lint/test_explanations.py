@@ -23,8 +23,8 @@ _BOX = '<box size="0.1 0.1 0.1"/>'
 def severities(tmp_path, links):
     path = tmp_path / "r.urdf"
     path.write_text(f'<robot name="r"><link name="world"/>{links}</robot>')
-    found = examine(path, settings=Settings(select=("LW315", "LW320"))).diagnostics
-    return [(each.code, each.severity.value) for each in found]
+    findings = examine(path, settings=Settings(select=("LW315", "LW320"))).diagnostics
+    return [(finding.code, finding.severity.value) for finding in findings]
 
 
 @pytest.mark.parametrize(

@@ -36,17 +36,17 @@ ROBOT = """<?xml version="1.0"?>
 
 
 def element(text: str, *path: str) -> Element:
-    found = parse(text, "robot.urdf").root
+    root = parse(text, "robot.urdf").root
     for tag in path:
-        inner = found.first(tag)
+        inner = root.first(tag)
         assert inner is not None
-        found = inner
-    return found
+        root = inner
+    return root
 
 
 def applied(text: str, fix: Fix | None) -> str:
     assert fix is not None
-    for edit in sorted(fix.edits, key=lambda each: -each.start):
+    for edit in sorted(fix.edits, key=lambda edit: -edit.start):
         text = text[: edit.start] + edit.replacement + text[edit.end :]
     return text
 
@@ -61,9 +61,9 @@ def applied(text: str, fix: Fix | None) -> str:
     ],
 )
 def test_element_range_covers_whole_element(text, expected):
-    found = element_range(element(text, "a"))
-    assert found is not None
-    assert text[slice(*found)] == expected
+    span = element_range(element(text, "a"))
+    assert span is not None
+    assert text[slice(*span)] == expected
 
 
 def test_attribute_value_is_replaced_between_quotes():
@@ -93,16 +93,16 @@ def test_element_alone_on_line_is_removed_with_line():
 
 def test_expression_is_not_a_literal():
     text = '<r><a x="${1 + 1}" y="2" z="&lt;"/></r>'
-    found = element(text, "a")
-    assert [is_literal(found, name) for name in "xyz"] == [False, True, False]
-    assert replace_value(found, "x", "3") is None
+    parsed = element(text, "a")
+    assert [is_literal(parsed, name) for name in "xyz"] == [False, True, False]
+    assert replace_value(parsed, "x", "3") is None
 
 
 def test_element_without_source_has_no_fix():
-    made = Element("a", {"x": "1"})
-    assert replace_value(made, "x", "2") is None
-    assert remove_element(made) is None
-    assert add_attribute(made, "y", "2") is None
+    element = Element("a", {"x": "1"})
+    assert replace_value(element, "x", "2") is None
+    assert remove_element(element) is None
+    assert add_attribute(element, "y", "2") is None
 
 
 def fix(path: Path, *, unsafe: bool = False, write: bool = True, select: tuple[str, ...] = ("LW2",)):

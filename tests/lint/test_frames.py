@@ -29,21 +29,21 @@ def test_link_placements_match_kinematics(first, second):
     robot = Robot("r", "a", links, joints, {})
     tree = KinematicTree(robot)
     matrices = tree.forward(np.zeros(1))
-    for name, found in placements(robot).items():
+    for name, link_placement in placements(robot).items():
         matrix = matrices[tree.link_index(name)]
-        np.testing.assert_allclose(found.rotation, matrix[:3, :3], atol=1e-9)
-        np.testing.assert_allclose(found.position, matrix[:3, 3], atol=1e-9)
+        np.testing.assert_allclose(link_placement.rotation, matrix[:3, :3], atol=1e-9)
+        np.testing.assert_allclose(link_placement.position, matrix[:3, 3], atol=1e-9)
 
 
 @given(_POSES, _POSES)
 def test_seen_from_and_inside_are_inverse(first, second):
-    one, other = placement(first), placement(second)
-    back = one.seen_from(other).inside(other)
-    np.testing.assert_allclose(back.position, one.position, atol=1e-9)
-    assert angle_between(back.rotation, one.rotation) == pytest.approx(0.0, abs=1e-6)
+    first_placement, second_placement = placement(first), placement(second)
+    back = first_placement.seen_from(second_placement).inside(second_placement)
+    np.testing.assert_allclose(back.position, first_placement.position, atol=1e-9)
+    assert angle_between(back.rotation, first_placement.rotation) == pytest.approx(0.0, abs=1e-6)
 
 
 def test_angle_between_rotations_is_computed():
-    one, other = rotation(Pose(rpy=(0.3, 0.0, 0.0))), rotation(Pose(rpy=(0.5, 0.0, 0.0)))
-    assert angle_between(one, other) == pytest.approx(0.2)
-    assert angle_between(product(one, transposed(one)), rotation(Pose())) == pytest.approx(0.0)
+    first, second = rotation(Pose(rpy=(0.3, 0.0, 0.0))), rotation(Pose(rpy=(0.5, 0.0, 0.0)))
+    assert angle_between(first, second) == pytest.approx(0.2)
+    assert angle_between(product(first, transposed(first)), rotation(Pose())) == pytest.approx(0.0)

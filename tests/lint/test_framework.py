@@ -98,8 +98,8 @@ def test_findings_are_in_order_of_text(tmp_path):
         '    <axis xyz="0 0 2"/>\n    <parent link="a"/>\n    <child link="c"/>\n'
         '    <limit lower="1" upper="-1" effort="1" velocity="1"/>\n  </joint>\n</robot>\n'
     )
-    found = check(path, settings=Settings(select=("LW2",)))
-    assert [each.code for each in found] == ["LW221", "URDF150", "LW201"]
+    findings = check(path, settings=Settings(select=("LW2",)))
+    assert [finding.code for finding in findings] == ["LW221", "URDF150", "LW201"]
 
 
 def test_unreadable_description_is_reported_and_not_raised(tmp_path):
@@ -107,7 +107,7 @@ def test_unreadable_description_is_reported_and_not_raised(tmp_path):
     assert only.code == "XML101"
     path = tmp_path / "robot.urdf.xacro"
     path.write_text('<robot name="r" xmlns:xacro="http://www.ros.org/wiki/xacro"><link name="${nothing}"/></robot>')
-    assert [each.code for each in check(path)] == ["XAC201"]
+    assert [finding.code for finding in check(path)] == ["XAC201"]
 
 
 def test_structure_rules_have_description_scope():
@@ -118,7 +118,7 @@ def test_reader_error_is_reported_unless_ignored(tmp_path):
     path = tmp_path / "robot.urdf"
     path.write_text('<robot name="r"/>\n')
     for settings in (Settings(), Settings(select=()), Settings(select=("LW2",))):
-        assert [each.code for each in check(path, settings=settings)] == ["URDF106"]
+        assert [finding.code for finding in check(path, settings=settings)] == ["URDF106"]
     assert check(path, settings=Settings(ignore=("URDF",))) == []
     assert check(path, settings=Settings(per_file_ignores=(("robot.*", ("URDF106",)),))) == []
     (result,) = check(path, settings=Settings(severity={"URDF1": Severity.INFO}))
@@ -144,12 +144,12 @@ def test_reader_error_is_reported_unless_ignored(tmp_path):
 def test_errors_of_all_rooms_can_be_ignored_and_change_severity(tmp_path, name, text, code):
     path = tmp_path / name
     path.write_text(text)
-    found = [each for each in check(path) if each.code.startswith(code)]
-    assert found
-    assert found[0].severity is Severity.ERROR
-    assert not [each for each in check(path, settings=Settings(ignore=(code,))) if each.code.startswith(code)]
+    findings = [finding for finding in check(path) if finding.code.startswith(code)]
+    assert findings
+    assert findings[0].severity is Severity.ERROR
+    assert not [finding for finding in check(path, settings=Settings(ignore=(code,))) if finding.code.startswith(code)]
     changed = check(path, settings=Settings(severity={code: Severity.WARNING}))
-    assert {each.severity for each in changed if each.code.startswith(code)} == {Severity.WARNING}
+    assert {finding.severity for finding in changed if finding.code.startswith(code)} == {Severity.WARNING}
 
 
 def test_text_is_checked_like_file(tmp_path, monkeypatch):

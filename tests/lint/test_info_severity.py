@@ -31,8 +31,8 @@ def severity_of(tmp_path):
 
     def check(code, inside):
         (tmp_path / "r.urdf").write_text(f'<robot name="r"><link name="base"/>{inside}</robot>')
-        found = examine(tmp_path / "r.urdf", settings=Settings(select=(code,))).diagnostics
-        (only,) = [each for each in found if each.code == code]
+        findings = examine(tmp_path / "r.urdf", settings=Settings(select=(code,))).diagnostics
+        (only,) = [finding for finding in findings if finding.code == code]
         return only.severity.name
 
     return check
@@ -86,8 +86,8 @@ def test_opposing_wheels_are_warning_only_if_driven(severity_of, more, severity)
 
 @pytest.mark.parametrize(("triangles", "severity"), [(40_000, "INFO"), (40_001, "WARNING")])
 def test_collision_mesh_above_40000_triangles_is_a_warning(severity_of, tmp_path, triangles, severity):
-    one = struct.pack("<12fH", *([0.0] * 3), 0, 0, 0, 1, 0, 0, 0, 1, 1, 0)
-    (tmp_path / "a.stl").write_bytes(bytes(80) + struct.pack("<I", triangles) + one * triangles)
+    triangle = struct.pack("<12fH", *([0.0] * 3), 0, 0, 0, 1, 0, 0, 0, 1, 1, 0)
+    (tmp_path / "a.stl").write_bytes(bytes(80) + struct.pack("<I", triangles) + triangle * triangles)
     mesh = '<link name="a"><collision><geometry><mesh filename="a.stl"/></geometry></collision></link>'
     joint = '<joint name="j" type="fixed"><parent link="base"/><child link="a"/></joint>'
     assert severity_of("LW435", mesh + joint) == severity
@@ -119,8 +119,8 @@ def test_footprint_that_is_whole_body_is_an_info(severity_of, more, severity):
 )
 def test_malformed_xml_comment_in_world_is_an_info(tmp_path, name, text, severity):
     (tmp_path / name).write_text(text)
-    found = examine(tmp_path / name, settings=Settings()).diagnostics
-    assert [each.severity.name for each in found if each.code == "XML206"] == [severity]
+    findings = examine(tmp_path / name, settings=Settings()).diagnostics
+    assert [finding.severity.name for finding in findings if finding.code == "XML206"] == [severity]
 
 
 @pytest.mark.parametrize(("second", "severity"), [("0.8 0.8 0.8 1", "INFO"), ("0.7 0.7 0.9 1", "WARNING")])
@@ -157,8 +157,8 @@ def test_unused_property_of_dimension_table_is_an_info(tmp_path, names, used, se
     links = "".join(f'<link name="l_${{{name}}}_{name}"/>' for name in others[:used])
     prefix = 'xmlns:xacro="http://www.ros.org/wiki/xacro"'
     (tmp_path / "r.urdf.xacro").write_text(f'<robot name="r" {prefix}>{text}{links}</robot>')
-    found = examine(tmp_path / "r.urdf.xacro", settings=Settings(select=("LW701",))).diagnostics
-    assert [each.severity.name for each in found if f"'{first}'" in str(each.message)] == [severity]
+    findings = examine(tmp_path / "r.urdf.xacro", settings=Settings(select=("LW701",))).diagnostics
+    assert [finding.severity.name for finding in findings if f"'{first}'" in str(finding.message)] == [severity]
 
 
 @pytest.mark.parametrize(("depends", "severity"), [("gazebo_ros", "INFO"), ("ros_gz_sim", "WARNING")])
@@ -167,8 +167,8 @@ def test_world_named_world_is_an_info_for_gazebo_classic(tmp_path, depends, seve
     (tmp_path / "package.xml").write_text(manifest)
     (tmp_path / "worlds").mkdir()
     (tmp_path / "worlds" / "w.world").write_text('<sdf version="1.6"><world name="world"/></sdf>')
-    found = examine(tmp_path / "worlds" / "w.world").diagnostics
-    assert [each.severity.name for each in found if each.code == "SDF111"] == [severity]
+    findings = examine(tmp_path / "worlds" / "w.world").diagnostics
+    assert [finding.severity.name for finding in findings if finding.code == "SDF111"] == [severity]
 
 
 @pytest.mark.parametrize(("beside", "severity"), [('<mujoco model="r"/>', "INFO"), ("<launch/>", "WARNING")])

@@ -63,5 +63,5 @@ def test_manifest_errors_match_catkin_pkg(tmp_path, text):
         is_refused = False
     except InvalidPackage:
         is_refused = True
-    found = examine_package(tmp_path, Settings(select=("LW8",))).diagnostics
-    assert has_errors(found) == is_refused, [each.message for each in found]
+    findings = examine_package(tmp_path, Settings(select=("LW8",))).diagnostics
+    assert has_errors(findings) == is_refused, [finding.message for finding in findings]

@@ -65,7 +65,7 @@ def robot(tmp_path):
 
 def test_plugin_rules_run_beside_built_in_rules(installed, robot):
     installed(RULES)
-    assert [each.code for each in check(robot)] == ["TEAM001"]
+    assert [finding.code for finding in check(robot)] == ["TEAM001"]
 
 
 def test_plugin_rules_are_selected_suppressed_and_explained(installed, robot):
@@ -74,7 +74,7 @@ def test_plugin_rules_are_selected_suppressed_and_explained(installed, robot):
     assert settings_for(robot)[1] == ()
     assert check(robot) == []
     (robot.parent / "linkwright.toml").write_text('select = ["TEAM"]\nseverity = { TEAM001 = "error" }')
-    assert [each.severity.value for each in check(robot)] == ["error"]
+    assert [finding.severity.value for finding in check(robot)] == ["error"]
     assert "Nobody finds it again" in str(find_page("team001"))
 
 
@@ -89,10 +89,10 @@ def test_plugin_rules_are_selected_suppressed_and_explained(installed, robot):
 )
 def test_unusable_plugin_rules_are_one_warning(installed, robot, text, reason):
     installed(text)
-    (found,) = check(robot)
-    assert (found.code, found.severity.value) == ("LINT301", "warning")
-    assert found.message.startswith("the rules of 'team_rules' cannot be used: ")
-    assert reason in found.message
+    (finding,) = check(robot)
+    assert (finding.code, finding.severity.value) == ("LINT301", "warning")
+    assert finding.message.startswith("the rules of 'team_rules' cannot be used: ")
+    assert reason in finding.message
 
 
 BROKEN = '''

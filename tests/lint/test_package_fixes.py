@@ -44,7 +44,7 @@ def fixed(folder: Path, build_file: str, text: str, *, selected: tuple[str, ...]
     checker = Checker(folders=[folder])
 
     def findings(_: str | None = None):
-        return [one for one in checker.check_package(folder, None, None)[0] if one.code in selected]
+        return [finding for finding in checker.check_package(folder, None, None)[0] if finding.code in selected]
 
     assert findings()
     fix_file(folder / "package.xml", findings)
@@ -128,6 +128,6 @@ def test_first_dependency_is_added_after_license(tmp_path):
         '<robot name="a" xmlns:xacro="http://www.ros.org/wiki/xacro">\n'
         '  <xacro:include filename="$(find wheels)/w.xacro"/>\n  <link name="a"/>\n</robot>\n'
     )
-    fix_file(main, lambda _: [one for one in examine(main).diagnostics if one.code == "LW724"])
+    fix_file(main, lambda _: [finding for finding in examine(main).diagnostics if finding.code == "LW724"])
     changed = (tmp_path / "arm" / "package.xml").read_text()
     assert "  <license>Apache-2.0</license>\n  <exec_depend>wheels</exec_depend>\n" in changed

@@ -88,20 +88,20 @@ def with_slips(folder: Path) -> Path:
 @pytest.mark.parametrize("which", ["ours", *(["published"] if PUBLISHED.is_dir() else [])])
 def test_tutorial_package_has_known_findings(which, tmp_path):
     package = PUBLISHED if which == "published" else with_slips(tmp_path)
-    found = {(diagnostic.code, diagnostic.message) for diagnostic in examine_package(package, _ALL).diagnostics}
-    assert ("LW821", "the pattern 'urdf/sensors/*.*' in setup.py matches no file") in found
-    assert ("LW808", "the e-mail address 'lll@todo.todo' is a placeholder") in found
-    assert any(code == "LW848" for code, _ in found)
+    findings = {(diagnostic.code, diagnostic.message) for diagnostic in examine_package(package, _ALL).diagnostics}
+    assert ("LW821", "the pattern 'urdf/sensors/*.*' in setup.py matches no file") in findings
+    assert ("LW808", "the e-mail address 'lll@todo.todo' is a placeholder") in findings
+    assert any(code == "LW848" for code, _ in findings)
 
 
 def test_package_is_found_by_nearest_manifest_upward(tmp_path):
     (tmp_path / "package.xml").write_text("<package>")
     (tmp_path / "urdf").mkdir()
-    found = find_package(tmp_path / "urdf" / "robot.urdf")
-    assert found is not None
-    assert found.folder == tmp_path
-    assert found.manifest is None
-    assert found.name == tmp_path.name
+    package = find_package(tmp_path / "urdf" / "robot.urdf")
+    assert package is not None
+    assert package.folder == tmp_path
+    assert package.manifest is None
+    assert package.name == tmp_path.name
 
 
 def test_package_files_exclude_hidden_build_and_nested_package_files(tmp_path):

@@ -20,7 +20,7 @@ def codes(tmp_path):
     def found(body: str) -> list[str]:
         path = tmp_path / "robot.xacro"
         path.write_text(f'<robot name="r" xmlns:xacro="http://www.ros.org/wiki/xacro">\n{body}\n</robot>')
-        return [each.code for each in check(path)]
+        return [finding.code for finding in check(path)]
 
     return found
 
@@ -51,7 +51,7 @@ def test_suppression_is_not_reported_as_unused_beside_xacro_error(tmp_path):
         '<robot name="r" xmlns:xacro="http://www.ros.org/wiki/xacro">\n'
         "<!-- linkwright: ignore LW102 -->\n<xacro:whel/></robot>"
     )
-    assert [each.code for each in check(path)] == ["XAC401"]
+    assert [finding.code for finding in check(path)] == ["XAC401"]
 
 
 def test_element_rules_hold_for_partial_descriptions():

@@ -83,7 +83,7 @@ def test_cmake_comments_strings_and_variables_are_parsed():
     assert file.project is not None
     assert file.project.text == "robot"
     assert [directory.text for directory in file.directories] == ["urdf", "mesh files", "rviz/", "launch"]
-    assert [each.text for each in file.files] == ["scripts/run.py"]
+    assert [argument.text for argument in file.files] == ["scripts/run.py"]
     assert file.executables == {"driver", "run.py"}
     assert file.is_complete
     assert file.is_ament
@@ -150,13 +150,13 @@ def test_launch_reader_never_raises(text):
 
 
 def test_mentions_of_text_are_found():
-    found = mentions("${a + xacro.arg('b')}/$(find c)/$(arg d)${[x for x in e.f]}$${g}")
-    assert {"a", "e", "f"} <= found.names
-    assert "g" not in found.names
-    assert found.arguments == {"b", "d"}
-    assert found.packages == (("c", 29),)
-    assert not found.is_open
-    assert not found.arguments_open
+    names = mentions("${a + xacro.arg('b')}/$(find c)/$(arg d)${[x for x in e.f]}$${g}")
+    assert {"a", "e", "f"} <= names.names
+    assert "g" not in names.names
+    assert names.arguments == {"b", "d"}
+    assert names.packages == (("c", 29),)
+    assert not names.is_open
+    assert not names.arguments_open
 
 
 @pytest.mark.parametrize("text", ["${$(arg a)_radius}", "${a$(arg b)}", "${$(env X)}"])

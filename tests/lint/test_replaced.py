@@ -15,7 +15,7 @@ _XACRO = """\
 def test_rule_replaces_xacro_warning(tmp_path):
     path = tmp_path / "robot.xacro"
     path.write_text(_XACRO)
-    codes = {each.code for each in check(path, settings=Settings())}
+    codes = {finding.code for finding in check(path, settings=Settings())}
     assert "LW714" in codes
     assert "XAC507" not in codes
 
@@ -23,7 +23,7 @@ def test_rule_replaces_xacro_warning(tmp_path):
 def test_xacro_warning_remains_if_rule_is_disabled(tmp_path):
     path = tmp_path / "robot.xacro"
     path.write_text(_XACRO)
-    codes = {each.code for each in check(path, settings=Settings(ignore=("LW714",)))}
+    codes = {finding.code for finding in check(path, settings=Settings(ignore=("LW714",)))}
     assert "XAC507" in codes
     assert "LW714" not in codes
 
@@ -31,7 +31,7 @@ def test_xacro_warning_remains_if_rule_is_disabled(tmp_path):
 def test_rule_replaces_another_rule(tmp_path):
     path = tmp_path / "robot.urdf"
     path.write_text('<robot name="r"><link name="a"><if value="1"/></link></robot>')
-    codes = [each.code for each in check(path, settings=Settings(select=("LW1", "LW7")))]
+    codes = [finding.code for finding in check(path, settings=Settings(select=("LW1", "LW7")))]
     assert codes.count("LW720") == 1
     assert "LW107" not in codes
 
@@ -42,9 +42,9 @@ def test_two_findings_at_one_location_are_both_reported(tmp_path):
     )
     (tmp_path / "setup.py").write_text("from setuptools import setup\nsetup(name='p', data_files=[])\n")
     (tmp_path / "robot.urdf").write_text('<robot name="r"><link name="a"/></robot>')
-    found = check(tmp_path / "robot.urdf", settings=Settings(select=("LW826",)))
-    assert [each.code for each in found] == ["LW826", "LW826"]
-    assert str(found[0].hint).startswith("create an empty file 'resource/p', and add ")
+    findings = check(tmp_path / "robot.urdf", settings=Settings(select=("LW826",)))
+    assert [finding.code for finding in findings] == ["LW826", "LW826"]
+    assert str(findings[0].hint).startswith("create an empty file 'resource/p', and add ")
     (tmp_path / "resource").mkdir()
     (tmp_path / "resource" / "p").touch()
     assert str(check(tmp_path / "robot.urdf", settings=Settings(select=("LW826",)))[0].hint).startswith("add ")

@@ -38,15 +38,17 @@ FOUND = {
 @pytest.mark.parametrize("model", MODELS, ids=str)
 def test_corpus_robots_have_only_expected_warnings(model):
     settings = Settings(select=RULES, ignore=("LW411", "LW424", "LW507", "LW508"))
-    found = examine(model.path, arguments=model.arguments, packages=model.packages, settings=settings).diagnostics
-    warned = {each.code for each in found if each.severity.value != "info" and each.code.startswith(RULES)}
+    findings = examine(model.path, arguments=model.arguments, packages=model.packages, settings=settings).diagnostics
+    warned = {
+        finding.code for finding in findings if finding.severity.value != "info" and finding.code.startswith(RULES)
+    }
     assert warned == FOUND.get(model.data["entry"], set())
 
 
 @pytest.mark.parametrize("path", sorted(PACKAGE.glob("urdf/mbot_*")), ids=lambda path: path.name)
 def test_mbot_has_no_shape_findings(path):
-    found = examine(path, settings=Settings(select=RULES)).diagnostics
-    assert [each.message for each in found if each.code.startswith(RULES)] == []
+    findings = examine(path, settings=Settings(select=RULES)).diagnostics
+    assert [finding.message for finding in findings if finding.code.startswith(RULES)] == []
 
 
 NUMBER = re.compile(r'(?<=["\s])-?\d+(?:\.\d+)?(?:e-?\d+)?(?=["\s])')
@@ -64,7 +66,7 @@ def test_shape_rules_survive_extreme_numbers(seed, tmp_path, capsys):
     path = tmp_path / next(iter(case.files))
     share = chance.choice((0.05, 0.2, 0.6))
     text = path.read_text(encoding="utf-8")
-    path.write_text(NUMBER.sub(lambda found: chance.choice(EXTREME) if chance.random() < share else found[0], text))
+    path.write_text(NUMBER.sub(lambda match: chance.choice(EXTREME) if chance.random() < share else match[0], text))
     examine(path, settings=Settings(select=RULES))
     assert main(["inertia", str(path), "--format", chance.choice(("text", "json"))]) in (0, 1)
     capsys.readouterr()

@@ -26,9 +26,9 @@ def finding(tmp_path, rule, written, there):
     parts = f'<link name="base">{body}</link><link name="{there}_link"/>{JOINT.format(there)}'
     path = tmp_path / "r.urdf"
     path.write_text(f'<robot name="r">{parts}{REFERENCES[rule].format(written)}</robot>')
-    (found,) = examine(path, settings=Settings(select=(rule.split()[0],))).diagnostics
-    assert isinstance(found, Finding)
-    return found
+    (finding,) = examine(path, settings=Settings(select=(rule.split()[0],))).diagnostics
+    assert isinstance(finding, Finding)
+    return finding
 
 
 @pytest.mark.parametrize("rule", REFERENCES)
@@ -52,5 +52,5 @@ def test_hint_never_suggests_number_of_sibling(tmp_path, rule, written, there):
     ],
 )
 def test_misspelled_name_is_fixed_with_name_of_same_kind(tmp_path, rule, written, meant):
-    found = finding(tmp_path, rule, written, "elbow")
-    assert [edit.replacement for edit in found.fix.edits] == [meant]
+    sibling_finding = finding(tmp_path, rule, written, "elbow")
+    assert [edit.replacement for edit in sibling_finding.fix.edits] == [meant]

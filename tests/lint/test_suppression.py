@@ -67,5 +67,5 @@ def test_unused_suppression_is_reported_with_any_selection(tmp_path):
         '    <axis xyz="0 0 2"/> <!-- linkwright: ignore LW221 -->\n'
         "  </joint> <!-- linkwright: ignore LW2 -->\n</robot>\n"
     )
-    found = check(path, settings=Settings(select=("LW001",)))
-    assert [(each.code, each.span.line) for each in found] == [("LW001", 8)]
+    findings = check(path, settings=Settings(select=("LW001",)))
+    assert [(finding.code, finding.span.line) for finding in findings] == [("LW001", 8)]

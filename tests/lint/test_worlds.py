@@ -24,8 +24,8 @@ def findings_of(tmp_path, monkeypatch):
     def check(inside):
         path = tmp_path / "w.world"
         path.write_text(f'<sdf version="1.9"><world name="w">\n{inside}\n</world></sdf>')
-        found = examine(path).diagnostics
-        return [(each.code, each.span.line, str(each.message)) for each in found]
+        findings = examine(path).diagnostics
+        return [(finding.code, finding.span.line, str(finding.message)) for finding in findings]
 
     return check
 
@@ -103,9 +103,9 @@ def test_shapes_without_size_are_one_finding_per_model(findings_of):
 def test_missing_mesh_is_reported_once(findings_of, tmp_path):
     visual = '<visual name="v{}"><geometry><mesh>\n<uri>meshes/a.stl</uri></mesh></geometry></visual>'
     model = link(GOOD + visual.format(1) + visual.format(2))
-    found = findings_of(model)
-    assert [each[:2] for each in found] == [("SDF162", 3)]
-    assert found[0][2].startswith("'meshes/a.stl' of visual 'v1' is left out: ")
+    findings = findings_of(model)
+    assert [finding[:2] for finding in findings] == [("SDF162", 3)]
+    assert findings[0][2].startswith("'meshes/a.stl' of visual 'v1' is left out: ")
     (tmp_path / "meshes").mkdir()
     (tmp_path / "meshes/a.stl").touch()
     assert findings_of(model) == []
@@ -151,8 +151,8 @@ def _items():
 @pytest.mark.parametrize("item", _items())
 def test_real_worlds_have_no_lint_findings(item, monkeypatch):
     path = WORLDS / item["entry"]
-    folders = dict.fromkeys(str(WORLDS / each) for each in item.get("model_paths", ()))
+    folders = dict.fromkeys(str(WORLDS / path) for path in item.get("model_paths", ()))
     monkeypatch.setenv("GAZEBO_MODEL_PATH", os.pathsep.join(folders))
     monkeypatch.setenv("HOME", "/nowhere")
-    found = examine(path, packages=PackageFinder(start=path.parent, environment={})).diagnostics
-    assert [each for each in found if each.code.startswith("LW") or each.code == "SDF122"] == []
+    findings = examine(path, packages=PackageFinder(start=path.parent, environment={})).diagnostics
+    assert [finding for finding in findings if finding.code.startswith("LW") or finding.code == "SDF122"] == []

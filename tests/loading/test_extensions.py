@@ -46,5 +46,5 @@ def test_duplicate_extension_names_keep_first(installed) -> None:
         linkwright=["y = linkwright.y:y"],
         other=["a = other:a"],
     )
-    found = extensions.extensions("linkwright.things")
-    assert [entry.value for entry in found.values()] == ["linkwright.y:y", "brought:a"]
+    entries = extensions.extensions("linkwright.things")
+    assert [entry.value for entry in entries.values()] == ["linkwright.y:y", "brought:a"]

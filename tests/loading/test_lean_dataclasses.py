@@ -54,37 +54,37 @@ def classes(library: Any, options: dict[str, int]) -> dict[str, Any]:
     class Nothing:
         pass
 
-    return {each.__name__: each for each in (Point, Path, Named, Derived, Nothing)}
+    return {cls.__name__: cls for cls in (Point, Path, Named, Derived, Nothing)}
 
 
 def answers(library: Any, options: dict[str, int]) -> list[object]:
     """Return the results of operations on objects of the classes."""
-    made = classes(library, options)
-    point, path, named, nothing = made["Point"], made["Path"], made["Named"], made["Nothing"]
+    class_by_name = classes(library, options)
+    point, path, named, nothing = (class_by_name[name] for name in ("Point", "Path", "Named", "Nothing"))
     objects = [point(1), point(1.0, y=2), point(3, 4), path(), path([point(1)], place="here"), named(1, 2, "tip")]
-    objects += [made["Derived"](1), nothing()]
-    found: list[object] = [*map(repr, objects), [[one == other for other in objects] for one in objects]]
-    for each in objects:
-        found.append(dataclasses.asdict(each))
-        found.append(repr(library.replace(each)))
-        found.append(repr(dataclasses.replace(each)))
-        found.append(repr(copy.deepcopy(each)))
-        found.append([(field.name, field.init, field.repr, field.compare) for field in dataclasses.fields(each)])
-        found += [outcome(lambda each=each: hash(each) == hash(copy.copy(each)))]
-        mine = copy.copy(each)
-        if isinstance(each, (made["Derived"], nothing)):
+    objects += [class_by_name["Derived"](1), nothing()]
+    results: list[object] = [*map(repr, objects), [[first == other for other in objects] for first in objects]]
+    for instance in objects:
+        results.append(dataclasses.asdict(instance))
+        results.append(repr(library.replace(instance)))
+        results.append(repr(dataclasses.replace(instance)))
+        results.append(repr(copy.deepcopy(instance)))
+        results.append([(field.name, field.init, field.repr, field.compare) for field in dataclasses.fields(instance)])
+        results += [outcome(lambda instance=instance: hash(instance) == hash(copy.copy(instance)))]
+        mine = copy.copy(instance)
+        if isinstance(instance, (class_by_name["Derived"], nothing)):
             continue  # `dataclasses` fails there with a TypeError about super()
-        found += [
+        results += [
             outcome(lambda mine=mine: setattr(mine, mine.__match_args__[0], 5)),
             outcome(lambda mine=mine: delattr(mine, mine.__match_args__[0])),
         ]
-        found.append(outcome(lambda mine=mine: setattr(mine, "new", 5)) is None)
-        found += [hasattr(each, "__dict__"), type(each).__match_args__]
-    found += [point.shared, objects[1].sum, repr(library.replace(objects[2], x=0)), vars(point).get("y") == 2.0]
-    found += [outcome(point), outcome(lambda: point(1, 2, 3)), outcome(lambda: point(1, z=3))]
-    found += [path().points is path().points, outcome(lambda: library.replace(path(), count=3))[1]]
-    found += [outcome(lambda: library.replace(point(1), z=3))]
-    return found
+        results.append(outcome(lambda mine=mine: setattr(mine, "new", 5)) is None)
+        results += [hasattr(instance, "__dict__"), type(instance).__match_args__]
+    results += [point.shared, objects[1].sum, repr(library.replace(objects[2], x=0)), vars(point).get("y") == 2.0]
+    results += [outcome(point), outcome(lambda: point(1, 2, 3)), outcome(lambda: point(1, z=3))]
+    results += [path().points is path().points, outcome(lambda: library.replace(path(), count=3))[1]]
+    results += [outcome(lambda: library.replace(point(1), z=3))]
+    return results
 
 
 def outcome(call: Any) -> Any:
@@ -181,5 +181,5 @@ def test_lean_dataclass_does_not_import_dataclasses():
         "@dataclass(frozen=True, slots=True)\nclass Point:\n    x: int\n"
         "print(Point(1), 'dataclasses' in sys.modules, 'inspect' in sys.modules)"
     )
-    done = subprocess.run([sys.executable, "-c", code], check=True, capture_output=True, text=True)
-    assert done.stdout == "Point(x=1) False False\n"
+    result = subprocess.run([sys.executable, "-c", code], check=True, capture_output=True, text=True)
+    assert result.stdout == "Point(x=1) False False\n"

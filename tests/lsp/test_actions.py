@@ -47,9 +47,9 @@ def applied(text: str, edit: types.WorkspaceEdit) -> str:
     """Return a text with the edit of its file."""
     positions = TextPositions(text)
     (change,) = edit.document_changes
-    for one in sorted(change.edits, key=lambda one: positions.offset(one.range.start), reverse=True):
-        start, end = positions.offset(one.range.start), positions.offset(one.range.end)
-        text = text[:start] + one.new_text + text[end:]
+    for text_edit in sorted(change.edits, key=lambda text_edit: positions.offset(text_edit.range.start), reverse=True):
+        start, end = positions.offset(text_edit.range.start), positions.offset(text_edit.range.end)
+        text = text[:start] + text_edit.new_text + text[end:]
     return text
 
 

@@ -14,8 +14,8 @@ from tests.lsp.test_hints import FILE, PARTS_FILE, at
 
 
 async def content(editor, uri: str) -> str:
-    found = await editor.client.workspace_text_document_content_async(types.TextDocumentContentParams(uri))
-    return found.text
+    content = await editor.client.workspace_text_document_content_async(types.TextDocumentContentParams(uri))
+    return content.text
 
 
 def test_expansion_uri_contains_description_and_arguments(tmp_path: Path):
@@ -45,17 +45,17 @@ async def test_implementation_request_links_element_and_expansions(editor_with_p
     editor.open(FILE, text)
     editor.open(PARTS_FILE)
     place = at(PARTS, "<axis")
-    found = await editor.client.text_document_implementation_async(
+    implementations = await editor.client.text_document_implementation_async(
         types.ImplementationParams(editor.document(PARTS_FILE), place)
     )
-    assert len(found) == 2
-    uri = found[0].uri
+    assert len(implementations) == 2
+    uri = implementations[0].uri
     expansion = await content(editor, uri)
     lines = expansion.splitlines()
-    assert [lines[location.range.start.line].strip() for location in found] == ['<axis xyz="0 0 1"/>'] * 2
+    assert [lines[location.range.start.line].strip() for location in implementations] == ['<axis xyz="0 0 1"/>'] * 2
     assert '<link name="lower"/>' in expansion
     (source,) = await editor.client.text_document_definition_async(
-        types.DefinitionParams(types.TextDocumentIdentifier(uri), found[1].range.start)
+        types.DefinitionParams(types.TextDocumentIdentifier(uri), implementations[1].range.start)
     )
     assert source.uri == editor.uri(PARTS_FILE)
     assert source.range.start.line == place.line

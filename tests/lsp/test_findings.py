@@ -18,10 +18,10 @@ async def test_finding_appears_while_typing_and_disappears_when_fixed(editor):
     editor.open(MAIN_FILE)
     await editor.until(MAIN_FILE)
     editor.change(MAIN_FILE, MAIN.replace("xacro:bar", "xacro:barr"))
-    (found,) = await editor.until(MAIN_FILE, "XAC401")
-    assert (found.range.start.line, found.range.start.character) == (3, 2)
-    assert found.message.startswith("there is no macro 'barr'\n")
-    assert "did you mean" in found.message
+    (finding,) = await editor.until(MAIN_FILE, "XAC401")
+    assert (finding.range.start.line, finding.range.start.character) == (3, 2)
+    assert finding.message.startswith("there is no macro 'barr'\n")
+    assert "did you mean" in finding.message
     editor.change(MAIN_FILE, MAIN)
     await editor.until(MAIN_FILE)
 
@@ -30,16 +30,16 @@ async def test_finding_in_included_file_names_include(editor):
     editor.open(PARTS_FILE)
     await editor.until(PARTS_FILE)
     editor.change(PARTS_FILE, PARTS.replace('link="base"', 'link="bsae"'))
-    (found,) = await editor.until(PARTS_FILE, "URDF150")
-    assert found.range.start.line == 4
-    calls = [related.location for related in found.related_information]
+    (finding,) = await editor.until(PARTS_FILE, "URDF150")
+    assert finding.range.start.line == 4
+    calls = [related.location for related in finding.related_information]
     assert (editor.uri(MAIN_FILE), 3) in [(call.uri, call.range.start.line) for call in calls]
 
 
 async def test_malformed_xml_is_reported_at_unclosed_tag(editor):
     editor.open(MAIN_FILE, MAIN.replace("</robot>", ""))
-    (found,) = await editor.until(MAIN_FILE, "XML202")
-    assert found.range.start.line == 0
+    (finding,) = await editor.until(MAIN_FILE, "XML202")
+    assert finding.range.start.line == 0
 
 
 async def test_python_file_outside_packages_is_not_parsed_as_xml(editor, tmp_path_factory):
@@ -54,15 +54,15 @@ async def test_python_file_outside_packages_is_not_parsed_as_xml(editor, tmp_pat
 async def test_positions_count_utf_16_code_units(editor):
     before = "  <!-- 🤖机器人 --> "
     editor.open(MAIN_FILE, MAIN.replace('  <link name="base"/>', before + '<xacro:nothing/><link name="base"/>'))
-    (found,) = await editor.until(MAIN_FILE, "XAC401")
-    assert found.range.start.character == len(before.encode("utf-16-le")) // 2 == len(before) + 1
+    (finding,) = await editor.until(MAIN_FILE, "XAC401")
+    assert finding.range.start.character == len(before.encode("utf-16-le")) // 2 == len(before) + 1
 
 
 async def test_manifest_is_checked(editor):
     text = (editor.folder / "package.xml").read_text()
     editor.open("package.xml", text.replace("<license>Apache-2.0</license>", ""))
-    (found,) = await editor.until("package.xml", "LW802")
-    assert "license" in found.message
+    (finding,) = await editor.until("package.xml", "LW802")
+    assert "license" in finding.message
 
 
 async def test_large_file_gets_only_findings(editor):
@@ -83,10 +83,10 @@ async def test_newest_text_of_large_file_is_checked(editor):
     editor.open(MAIN_FILE, text.replace("xacro:bar", "xacro:barr"))
     for number in range(5):
         editor.change(MAIN_FILE, text.replace("xacro:bar", f"xacro:bar{number}"))
-    (found,) = await editor.until(MAIN_FILE, "XAC401")
-    while "'bar4'" not in found.message:
+    (finding,) = await editor.until(MAIN_FILE, "XAC401")
+    while "'bar4'" not in finding.message:
         editor.diagnostics.clear()
-        (found,) = await editor.until(MAIN_FILE, "XAC401")
+        (finding,) = await editor.until(MAIN_FILE, "XAC401")
 
 
 async def test_burst_of_edits_of_large_file_leaves_no_processes(editor):

@@ -39,11 +39,11 @@ def opened(editor, name: str, text: str) -> types.TextDocumentPositionParams:
 )
 async def test_best_completion_comes_first(editor, name, text, first):
     asked = opened(editor, name, text)
-    found = await editor.client.text_document_completion_async(
+    completions = await editor.client.text_document_completion_async(
         types.CompletionParams(asked.text_document, asked.position)
     )
     typed = "float" if name.endswith(".msg") else ""
-    shown = [item for item in sorted(found, key=lambda item: item.sort_text) if item.label.startswith(typed)]
+    shown = [item for item in sorted(completions, key=lambda item: item.sort_text) if item.label.startswith(typed)]
     assert shown[0].label == first
 
 
@@ -51,10 +51,10 @@ async def test_hover_and_definition_of_launch_argument_are_found(editor):
     asked = opened(editor, "launch/a.launch.xml", XML)
     hover = await editor.client.text_document_hover_async(types.HoverParams(asked.text_document, asked.position))
     assert "Show it" in hover.contents.value
-    (found,) = await editor.client.text_document_definition_async(
+    (definition,) = await editor.client.text_document_definition_async(
         types.DefinitionParams(asked.text_document, asked.position)
     )
-    assert found.range == types.Range(types.Position(1, 13), types.Position(1, 14))
+    assert definition.range == types.Range(types.Position(1, 13), types.Position(1, 14))
 
 
 async def test_links_and_symbols_of_launch_files_are_found(editor):
@@ -65,17 +65,17 @@ async def test_links_and_symbols_of_launch_files_are_found(editor):
     (link,) = await editor.client.text_document_document_link_async(types.DocumentLinkParams(asked.text_document))
     assert link.target == editor.uri("launch/other.launch.py")
     asked = opened(editor, "launch/b.launch.py", PYTHON)
-    found = await editor.client.text_document_document_symbol_async(types.DocumentSymbolParams(asked.text_document))
-    assert [symbol.name for symbol in found] == ["arg speed", "Node arm"]
+    symbols = await editor.client.text_document_document_symbol_async(types.DocumentSymbolParams(asked.text_document))
+    assert [symbol.name for symbol in symbols] == ["arg speed", "Node arm"]
 
 
 async def test_references_and_highlights_of_launch_argument_are_found(editor):
     asked = opened(editor, "launch/a.launch.xml", XML)
-    found = await editor.client.text_document_references_async(
+    references = await editor.client.text_document_references_async(
         types.ReferenceParams(types.ReferenceContext(include_declaration=True), asked.text_document, asked.position)
     )
-    assert [place.range.start.line for place in found] == [1, 2]
-    found = await editor.client.text_document_document_highlight_async(
+    assert [place.range.start.line for place in references] == [1, 2]
+    references = await editor.client.text_document_document_highlight_async(
         types.DocumentHighlightParams(asked.text_document, asked.position)
     )
-    assert [place.range.start.line for place in found] == [1, 2]
+    assert [place.range.start.line for place in references] == [1, 2]

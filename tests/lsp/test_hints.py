@@ -25,20 +25,20 @@ async def test_inlay_hints_show_expression_values(editor):
     text = MAIN.replace("</robot>", '  <xacro:bar name="lower" length="${0.2 + 0.1}"/>\n</robot>')
     editor.open(FILE, text)
     editor.open(PARTS_FILE)
-    found = await editor.client.text_document_inlay_hint_async(types.InlayHintParams(editor.document(FILE), ALL))
-    assert [hint.label for hint in found] == ["= 0.30000000000000004"]
-    found = await editor.client.text_document_inlay_hint_async(types.InlayHintParams(editor.document(PARTS_FILE), ALL))
+    hints = await editor.client.text_document_inlay_hint_async(types.InlayHintParams(editor.document(FILE), ALL))
+    assert [hint.label for hint in hints] == ["= 0.30000000000000004"]
+    hints = await editor.client.text_document_inlay_hint_async(types.InlayHintParams(editor.document(PARTS_FILE), ALL))
     expected = [(2, "= upper | lower"), (3, "= upper_joint | lower_joint"), (5, "= upper | lower")]
-    assert [(hint.position.line, hint.label) for hint in found] == expected
+    assert [(hint.position.line, hint.label) for hint in hints] == expected
 
 
 async def test_inlay_hints_are_limited_to_requested_lines(editor):
     editor.open(PARTS_FILE)
     lines = types.Range(types.Position(3, 0), types.Position(4, 0))
-    found = await editor.client.text_document_inlay_hint_async(
+    hints = await editor.client.text_document_inlay_hint_async(
         types.InlayHintParams(editor.document(PARTS_FILE), lines)
     )
-    assert [hint.position.line for hint in found] == [3]
+    assert [hint.position.line for hint in hints] == [3]
 
 
 async def test_inlay_hints_name_block_parameters_of_macro_call(editor):
@@ -49,8 +49,8 @@ async def test_inlay_hints_name_block_parameters_of_macro_call(editor):
         1,
     )
     editor.open(FILE, text)
-    found = await editor.client.text_document_inlay_hint_async(types.InlayHintParams(editor.document(FILE), ALL))
-    assert [hint.label for hint in found if hint.kind is types.InlayHintKind.Parameter] == ["*pose:", "**rest:"]
+    hints = await editor.client.text_document_inlay_hint_async(types.InlayHintParams(editor.document(FILE), ALL))
+    assert [hint.label for hint in hints if hint.kind is types.InlayHintKind.Parameter] == ["*pose:", "**rest:"]
 
 
 async def test_hover_lists_value_for_each_macro_call(editor):
@@ -59,8 +59,8 @@ async def test_hover_lists_value_for_each_macro_call(editor):
     editor.open(PARTS_FILE)
 
     async def hover(name: str, place: types.Position) -> str:
-        found = await editor.client.text_document_hover_async(types.HoverParams(editor.document(name), place))
-        return found.contents.value
+        hover = await editor.client.text_document_hover_async(types.HoverParams(editor.document(name), place))
+        return hover.contents.value
 
     assert "`${2 * 0.1}` = `0.2`" in await hover(FILE, at(text, "${2 "))
     values = await hover(PARTS_FILE, at(PARTS, "${na"))
@@ -94,24 +94,24 @@ async def test_code_lens_uses_client_commands(editor_with_commands):
 async def test_colors_are_found_and_written_in_file_notation(editor):
     text = MAIN.replace("<link", '<material name="m"><color rgba="1 0.5 0 1"/></material>\n  <link', 1)
     editor.open(FILE, text)
-    (found,) = await editor.client.text_document_document_color_async(types.DocumentColorParams(editor.document(FILE)))
-    assert found.color == types.Color(1.0, 0.5, 0.0, 1.0)
-    asked = types.ColorPresentationParams(editor.document(FILE), types.Color(0.123456, 0.0, 1.0, 1.0), found.range)
+    (color,) = await editor.client.text_document_document_color_async(types.DocumentColorParams(editor.document(FILE)))
+    assert color.color == types.Color(1.0, 0.5, 0.0, 1.0)
+    asked = types.ColorPresentationParams(editor.document(FILE), types.Color(0.123456, 0.0, 1.0, 1.0), color.range)
     (presented,) = await editor.client.text_document_color_presentation_async(asked)
-    assert presented.text_edit == types.TextEdit(found.range, "0.1235 0 1 1")
+    assert presented.text_edit == types.TextEdit(color.range, "0.1235 0 1 1")
 
 
 async def test_semantic_tokens_classify_names(editor):
     editor.open(PARTS_FILE)
-    found = await editor.client.text_document_semantic_tokens_full_async(
+    tokens = await editor.client.text_document_semantic_tokens_full_async(
         types.SemanticTokensParams(editor.document(PARTS_FILE))
     )
     line = column = 0
     kinds = [*HighlightKind]
     seen = []
     lines = PARTS.splitlines()
-    for start in range(0, len(found.data), 5):
-        line_step, step, length, kind, modifiers = found.data[start : start + 5]
+    for start in range(0, len(tokens.data), 5):
+        line_step, step, length, kind, modifiers = tokens.data[start : start + 5]
         line, column = line + line_step, step if line_step else column + step
         seen.append((lines[line][column : column + length], kinds[kind].value, modifiers))
     assert seen[:2] == [("bar", "macro", 1), ("name", "parameter", 1)]
@@ -130,8 +130,8 @@ async def test_includes_and_meshes_are_links_and_definitions(editor, package):
         1,
     )
     editor.open(FILE, text)
-    found = await editor.client.text_document_document_link_async(types.DocumentLinkParams(editor.document(FILE)))
-    assert [link.target for link in found] == [editor.uri(PARTS_FILE), (package / "meshes" / "a.stl").as_uri()]
+    links = await editor.client.text_document_document_link_async(types.DocumentLinkParams(editor.document(FILE)))
+    assert [link.target for link in links] == [editor.uri(PARTS_FILE), (package / "meshes" / "a.stl").as_uri()]
     (place,) = await editor.client.text_document_definition_async(
         types.DefinitionParams(editor.document(FILE), at(text, "parts.x"))
     )
@@ -142,8 +142,8 @@ async def test_workspace_symbols_match_subset_of_letters(editor):
     editor.open(FILE)
 
     async def find(query: str) -> list[str]:
-        found = await editor.client.workspace_symbol_async(types.WorkspaceSymbolParams(query))
-        return [symbol.name for symbol in found]
+        symbols = await editor.client.workspace_symbol_async(types.WorkspaceSymbolParams(query))
+        return [symbol.name for symbol in symbols]
 
     assert await find("bs") == ["base"]
     assert await find("BAR") == ["bar"]
@@ -152,10 +152,10 @@ async def test_workspace_symbols_match_subset_of_letters(editor):
 
 async def test_uses_of_name_are_highlighted(editor):
     editor.open(PARTS_FILE)
-    found = await editor.client.text_document_document_highlight_async(
+    highlights = await editor.client.text_document_document_highlight_async(
         types.DocumentHighlightParams(editor.document(PARTS_FILE), at(PARTS, "${na"))
     )
-    assert [(use.range.start.line, use.kind) for use in found] == [
+    assert [(use.range.start.line, use.kind) for use in highlights] == [
         (1, types.DocumentHighlightKind.Write),
         *[(line, types.DocumentHighlightKind.Read) for line in (2, 3, 5)],
     ]

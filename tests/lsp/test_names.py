@@ -16,8 +16,8 @@ async def complete(editor, text: str, name: str = FILE) -> list[str]:
     before = text[: text.index(CURSOR)]
     editor.open(name, text.replace(CURSOR, ""))
     at = types.Position(before.count("\n"), len(before) - before.rfind("\n") - 1)
-    found = await editor.client.text_document_completion_async(types.CompletionParams(editor.document(name), at))
-    return [item.label for item in found]
+    completions = await editor.client.text_document_completion_async(types.CompletionParams(editor.document(name), at))
+    return [item.label for item in completions]
 
 
 async def look(editor, request, kind):
@@ -50,9 +50,9 @@ async def look(editor, request, kind):
     ],
 )
 async def test_completions_depend_on_context(editor, typed, offered, not_offered):
-    found = set(await complete(editor, MAIN.replace("<xacro:bar", typed + "\n  <xacro:bar", 1)))
-    assert offered <= found
-    assert not not_offered & found
+    completions = set(await complete(editor, MAIN.replace("<xacro:bar", typed + "\n  <xacro:bar", 1)))
+    assert offered <= completions
+    assert not not_offered & completions
 
 
 async def test_world_elements_are_completed_in_world(editor):
@@ -61,8 +61,8 @@ async def test_world_elements_are_completed_in_world(editor):
 
 async def test_hover_explains_elements_attributes_and_names(editor):
     async def hover(at: types.Position) -> str:
-        found = await editor.client.text_document_hover_async(types.HoverParams(editor.document(FILE), at))
-        return "" if found is None else found.contents.value
+        hover = await editor.client.text_document_hover_async(types.HoverParams(editor.document(FILE), at))
+        return "" if hover is None else hover.contents.value
 
     assert "`<link>`" in await look(editor, "<lin", hover)
     assert "**macro bar**" in await look(editor, "<xacro:ba", hover)
@@ -77,8 +77,8 @@ async def test_definition_is_found_in_included_file(editor):
     async def define(at: types.Position):
         asked = types.DefinitionParams(editor.document(FILE), at)
         return [
-            (found.uri.rpartition("/")[2], found.range.start.line)
-            for found in await editor.client.text_document_definition_async(asked)
+            (definition.uri.rpartition("/")[2], definition.range.start.line)
+            for definition in await editor.client.text_document_definition_async(asked)
         ]
 
     assert await look(editor, "<xacro:ba", define) == [("parts.xacro", 1)]
@@ -101,8 +101,8 @@ async def test_hover_describes_links_joints_meshes_and_packages(editor, package)
     async def hover(name: str, text: str, place: str) -> str:
         before = text[: text.index(place) + len(place)]
         at = types.Position(before.count("\n"), len(before) - before.rfind("\n") - 1)
-        found = await editor.client.text_document_hover_async(types.HoverParams(editor.document(name), at))
-        return "" if found is None else found.contents.value
+        hover = await editor.client.text_document_hover_async(types.HoverParams(editor.document(name), at))
+        return "" if hover is None else hover.contents.value
 
     base = await hover(FILE, text, 'link name="ba')
     assert "- root of the link tree" in base
@@ -123,15 +123,15 @@ async def test_hover_of_link_uses_facts_of_its_own_file(package):
         '<mass value="{1}"/><inertia ixx="1" iyy="1" izz="1" ixy="0" ixz="0" iyz="0"/></inertial></link>'
         "</xacro:macro></robot>"
     )
-    one = '<robot xmlns:xacro="http://www.ros.org/wiki/xacro" name="r">{}</robot>'
+    template = '<robot xmlns:xacro="http://www.ros.org/wiki/xacro" name="r">{}</robot>'
     included = "".join(f'<xacro:include filename="{name}.xacro"/>' for name in ("first", "second"))
     masses = {"first": 1.5, "second": 2.5, "third": 3.5}
     for name, mass in masses.items():
         (package / "urdf" / f"{name}.xacro").write_text(arm.format(name, mass))
-    (package / "urdf" / "a.urdf.xacro").write_text(one.format(f"{included}<xacro:second/>"))
-    (package / "urdf" / "b.urdf.xacro").write_text(one.format(f"{included}<xacro:first/>"))
+    (package / "urdf" / "a.urdf.xacro").write_text(template.format(f"{included}<xacro:second/>"))
+    (package / "urdf" / "b.urdf.xacro").write_text(template.format(f"{included}<xacro:first/>"))
     (package / "urdf" / "c.urdf.xacro").write_text(
-        one.format('<xacro:include filename="third.xacro"/><link name="elbow"/>')
+        template.format('<xacro:include filename="third.xacro"/><link name="elbow"/>')
     )
     shown = {}
     async with connected(package, types.ClientCapabilities()) as editor:
@@ -152,16 +152,16 @@ async def test_hover_of_material_shows_color(editor):
     editor.open(FILE, text)
     before = text[: text.rindex("orange") + 2]
     at = types.Position(before.count("\n"), len(before) - before.rfind("\n") - 1)
-    found = await editor.client.text_document_hover_async(types.HoverParams(editor.document(FILE), at))
-    assert "**material orange** = `1 0.5 0 1`" in found.contents.value
+    hover = await editor.client.text_document_hover_async(types.HoverParams(editor.document(FILE), at))
+    assert "**material orange** = `1 0.5 0 1`" in hover.contents.value
 
 
 async def test_completion_items_have_filter_text(editor):
     """Neovim offers an item with an edit and without a filter text whatever is typed."""
     editor.open(FILE, MAIN.replace("<link", "<li"))
     asked = types.CompletionParams(editor.document(FILE), types.Position(2, 5))
-    found = await editor.client.text_document_completion_async(asked)
-    assert {item.filter_text for item in found} >= {"link", "xacro:bar"}
+    completions = await editor.client.text_document_completion_async(asked)
+    assert {item.filter_text for item in completions} >= {"link", "xacro:bar"}
 
 
 async def test_editor_without_snippets_gets_sorted_plain_text(editor):
@@ -169,12 +169,12 @@ async def test_editor_without_snippets_gets_sorted_plain_text(editor):
     before = text[: text.index(CURSOR)]
     editor.open(FILE, text.replace(CURSOR, ""))
     at = types.Position(before.count("\n"), len(before) - before.rfind("\n") - 1)
-    found = await editor.client.text_document_completion_async(types.CompletionParams(editor.document(FILE), at))
-    first = found[0]
+    completions = await editor.client.text_document_completion_async(types.CompletionParams(editor.document(FILE), at))
+    first = completions[0]
     assert (first.label, first.text_edit.new_text, first.filter_text) == ("parent", "<parent", "<parent")
     assert first.insert_text_format == types.InsertTextFormat.PlainText
-    assert [item.sort_text for item in found] == sorted(item.sort_text for item in found)
-    assert len({item.label for item in found}) == len(found)
+    assert [item.sort_text for item in completions] == sorted(item.sort_text for item in completions)
+    assert len({item.label for item in completions}) == len(completions)
 
 
 async def test_macro_link_is_completed_while_text_is_invalid(editor):

@@ -22,8 +22,8 @@ def at(text: str) -> types.Position:
 async def test_references_are_found_in_all_files(editor):
     editor.open(FILE)
     asked = types.ReferenceParams(types.ReferenceContext(True), editor.document(FILE), at('<link name="b'))
-    found = await editor.client.text_document_references_async(asked)
-    assert sorted(place.uri.rpartition("/")[2] for place in found) == ["arm.urdf.xacro", "parts.xacro"]
+    references = await editor.client.text_document_references_async(asked)
+    assert sorted(place.uri.rpartition("/")[2] for place in references) == ["arm.urdf.xacro", "parts.xacro"]
 
 
 async def test_rename_edits_open_files_with_versions(editor):
@@ -71,7 +71,7 @@ async def test_references_to_renamed_file_are_updated(editor, package):
     edit = await editor.client.workspace_will_rename_files_async(types.RenameFilesParams([renamed]))
     (change,) = edit.document_changes
     assert change.text_document.uri == editor.uri("urdf/arm.urdf.xacro")
-    assert [each.new_text for each in change.edits] == ["sub/parts2.xacro"]
+    assert [edit.new_text for edit in change.edits] == ["sub/parts2.xacro"]
     assert any("view.launch.py:1 (parts.xacro)" in message for message in editor.messages)
 
 

@@ -39,9 +39,9 @@ async def message(socket, kind: str, **wanted) -> dict:
     """Return the next message of a kind from a page's socket, with some content."""
     async with asyncio.timeout(SECONDS):
         async for received in socket:
-            found = json.loads(received.data) if isinstance(received.data, str) else {}
-            if found.get("type") == kind and all(found.get(key) == value for key, value in wanted.items()):
-                return found
+            message = json.loads(received.data) if isinstance(received.data, str) else {}
+            if message.get("type") == kind and all(message.get(key) == value for key, value in wanted.items()):
+                return message
     raise AssertionError(f"the page was closed without '{kind}'")
 
 

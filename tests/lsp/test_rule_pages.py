@@ -14,16 +14,16 @@ BROKEN = MAIN.replace('  <link name="base"/>', '  <link name="base"/>\n  <xacro:
 async def test_finding_code_links_to_rule_page(package):
     async with connected(package, OPENS_PAGES) as editor:
         editor.open(FILE, BROKEN)
-        (found,) = await editor.until(FILE, "XAC401")
-        asked = types.TextDocumentContentParams(found.code_description.href)
+        (finding,) = await editor.until(FILE, "XAC401")
+        asked = types.TextDocumentContentParams(finding.code_description.href)
         page = await editor.client.workspace_text_document_content_async(asked)
         assert page.text.startswith("# XAC401: ")
 
 
 async def test_editor_without_virtual_documents_gets_no_link(editor):
     editor.open(FILE, BROKEN)
-    (found,) = await editor.until(FILE, "XAC401")
-    assert found.code_description is None
+    (finding,) = await editor.until(FILE, "XAC401")
+    assert finding.code_description is None
 
 
 @pytest.mark.parametrize(

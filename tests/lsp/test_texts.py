@@ -23,7 +23,7 @@ def place(text: str, mark: str, after: int = 0) -> types.Position:
 def applied(text: str, edits) -> str:
     """Return a text with the edits of the server."""
     lines = text.splitlines(keepends=True)
-    for edit in sorted(edits, key=lambda each: each.range.start.line, reverse=True):
+    for edit in sorted(edits, key=lambda edit: edit.range.start.line, reverse=True):
         assert edit.range.start.character == edit.range.end.character == 0
         lines[edit.range.start.line : edit.range.end.line] = [edit.new_text]
     return "".join(lines)
@@ -73,20 +73,20 @@ async def test_folds_selections_and_linked_tags_are_returned(editor):
         lengths.append((end.line - start.line, end.character - start.character))
         selection = selection.parent
     written = ("continuous", 'type="continuous"', '<joint name="${name}_joint" type="continuous">')
-    assert lengths[:3] == [(0, len(each)) for each in written]
+    assert lengths[:3] == [(0, len(text)) for text in written]
     linked = await editor.client.text_document_linked_editing_range_async(
         types.LinkedEditingRangeParams(document, place(text, "<joint", 3))
     )
-    assert [each.start.line for each in linked.ranges] == [3, 7]
+    assert [linked_range.start.line for linked_range in linked.ranges] == [3, 7]
 
 
 async def test_code_action_fixes_finding(editor):
     (editor.folder / "linkwright.toml").write_text('select = ["LW221"]\n')
     text = (editor.folder / "urdf/parts.xacro").read_text().replace('xyz="0 0 1"', 'xyz="0 0 2"')
     editor.open("urdf/parts.xacro", text)
-    (found,) = await editor.until("urdf/parts.xacro", "LW221")
-    context = types.CodeActionContext([found], only=["quickfix", "source"])
-    asked = types.CodeActionParams(editor.document("urdf/parts.xacro"), found.range, context)
+    (finding,) = await editor.until("urdf/parts.xacro", "LW221")
+    context = types.CodeActionContext([finding], only=["quickfix", "source"])
+    asked = types.CodeActionParams(editor.document("urdf/parts.xacro"), finding.range, context)
     fix, everything, ignoring = await editor.client.text_document_code_action_async(asked)
     for action in (fix, everything):
         (change,) = action.edit.document_changes

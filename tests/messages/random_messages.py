@@ -32,8 +32,8 @@ def _value(kind: FieldType, draw: random.Random) -> Any:
     if kind.container is not Container.ONE:
         most = min(kind.size or 3, 3)
         count = kind.size if kind.container is Container.ARRAY else draw.randint(0, most)
-        one = FieldType(kind.base, kind.string_bound)
-        return [_value(one, draw) for _ in range(count or 0)]
+        element_type = FieldType(kind.base, kind.string_bound)
+        return [_value(element_type, draw) for _ in range(count or 0)]
     if kind.primitive is None:
         return _message(get_message(kind.base), draw)
     return _primitive(kind, kind.primitive, draw)
@@ -69,11 +69,13 @@ def rosbags_object(message: Any) -> Any:
 def _rosbags_value(kind: FieldType, value: Any) -> Any:
     primitive = kind.primitive
     if primitive is None:
-        return rosbags_object(value) if kind.container is Container.ONE else [rosbags_object(each) for each in value]
+        return (
+            rosbags_object(value) if kind.container is Container.ONE else [rosbags_object(element) for element in value]
+        )
     if kind.container is Container.ONE:
         return value[0] if primitive.python is bytes else value
     if primitive.python is str:
         return list(value)
     if primitive.python is bytes:
-        return np.array([each[0] for each in value], np.uint8)
+        return np.array([byte[0] for byte in value], np.uint8)
     return np.array(value, bool if primitive.python is bool else primitive.dtype)

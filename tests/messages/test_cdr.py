@@ -225,11 +225,11 @@ def test_deserialized_messages_are_mutable_and_independent():
 
 
 def test_cached_names_survive_other_names_in_between():
-    one = serialize(JointState(name=["a", "b"]))
+    data = serialize(JointState(name=["a", "b"]))
     other = serialize(JointState(name=["a", "c"]))
     longer = serialize(JointState(name=["a", "b", "d" * 100]))
     for _ in range(3):
-        assert deserialize(one, JointState).name == ["a", "b"]
+        assert deserialize(data, JointState).name == ["a", "b"]
         assert deserialize(other, JointState).name == ["a", "c"]
         assert deserialize(longer, JointState).name == ["a", "b", "d" * 100]
 

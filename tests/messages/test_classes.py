@@ -316,10 +316,10 @@ def test_unknown_or_malformed_interface_name_is_rejected(getter, name, message, 
     get_service("std_srvs/srv/SetBool")  # what is known already is no other kind either
     with pytest.raises(InterfaceNotFoundError) as caught:
         getter(name)
-    (found,) = caught.value.diagnostics
-    assert found.code in {"MSG101", "MSG102"}
-    assert message in found.message
-    assert hint in (found.hint or "")
+    (diagnostic,) = caught.value.diagnostics
+    assert diagnostic.code in {"MSG101", "MSG102"}
+    assert message in diagnostic.message
+    assert hint in (diagnostic.hint or "")
 
 
 def test_threads_get_same_class(interface_package):
@@ -328,7 +328,7 @@ def test_threads_get_same_class(interface_package):
     names = [f"{interface_package.name}/msg/Shared{number}" for number in range(20)] * 4
     with ThreadPoolExecutor(8) as pool:
         asked = [pool.submit(copy_context().run, get_message, name) for name in names]
-        classes = [each.result() for each in asked]
+        classes = [future.result() for future in asked]
     assert len(set(classes)) == 20
     assert all(issubclass(cls, Message) for cls in classes)
 

@@ -118,10 +118,10 @@ def test_header_auto_sets_stamp_when_sent():
 def test_wrong_value_is_reported(name, values, code, message, hint):
     with pytest.raises(FieldValueError) as caught:
         message_of(get_message(f"sensor_msgs/msg/{name}"), values)
-    (found,) = caught.value.diagnostics
-    assert found.code == code
-    assert message in found.message
-    assert hint in (found.hint or "")
+    (diagnostic,) = caught.value.diagnostics
+    assert diagnostic.code == code
+    assert message in diagnostic.message
+    assert hint in (diagnostic.hint or "")
     assert isinstance(caught.value, AttributeError if code == "MSG301" else TypeError)
 
 

@@ -228,9 +228,9 @@ class TestWorkspace:
 
     def test_ros_1_types_are_reported(self, interface_package):
         interface_package.write("msg", "Old", "Header header\ntime stamp\nduration length\n")
-        found = self.found(f"{interface_package.name}/msg/Old")
-        assert [each.code for each in found] == ["MSG117"] * 3
-        assert found[0].hint == "use 'std_msgs/Header' in ROS 2"
+        diagnostics = self.found(f"{interface_package.name}/msg/Old")
+        assert [diagnostic.code for diagnostic in diagnostics] == ["MSG117"] * 3
+        assert diagnostics[0].hint == "use 'std_msgs/Header' in ROS 2"
 
     def test_package_can_define_its_own_header(self, interface_package):
         interface_package.write("msg", "Header", "int8 x\n")
@@ -243,19 +243,19 @@ class TestWorkspace:
         interface_package.write("msg", "Three", "One[] one\n")
         interface_package.write("msg", "Self", "Self[] me\n")
         name = interface_package.name
-        for each in ("One", "Two", "Three", "One"):
-            (found,) = self.found(f"{name}/msg/{each}")
-            assert found.code == "MSG116"
-            assert "would contain itself" in found.message
-        (found,) = self.found(f"{name}/msg/Self")
-        assert found.message == f"'{name}/msg/Self' would contain itself: it is part of {name}/msg/Self"
+        for message_name in ("One", "Two", "Three", "One"):
+            (diagnostic,) = self.found(f"{name}/msg/{message_name}")
+            assert diagnostic.code == "MSG116"
+            assert "would contain itself" in diagnostic.message
+        (diagnostic,) = self.found(f"{name}/msg/Self")
+        assert diagnostic.message == f"'{name}/msg/Self' would contain itself: it is part of {name}/msg/Self"
 
     def test_error_in_nested_type_is_reported_at_its_file(self, interface_package):
         interface_package.write("msg", "Outer", "Inner inner\n")
         interface_package.write("msg", "Inner", "int32 X\n")
-        (found,) = self.found(f"{interface_package.name}/msg/Outer")
-        assert found.code == "MSG112"
-        assert str(found.span).endswith("Inner.msg:1:7")
+        (diagnostic,) = self.found(f"{interface_package.name}/msg/Outer")
+        assert diagnostic.code == "MSG112"
+        assert str(diagnostic.span).endswith("Inner.msg:1:7")
 
     def test_unreadable_interface_files_are_reported(self, interface_package):
         path = interface_package.write("msg", "Latin", "")
@@ -372,10 +372,10 @@ class TestIdl:
     def test_unsupported_idl_is_rejected(self, text, code, message):
         with pytest.raises(DefinitionError) as caught:
             self.parsed(text)
-        (found,) = caught.value.diagnostics
-        assert found.code == code
-        assert message in found.message
-        assert found.span is not None
+        (diagnostic,) = caught.value.diagnostics
+        assert diagnostic.code == code
+        assert message in diagnostic.message
+        assert diagnostic.span is not None
 
     @given(st.lists(st.sampled_from(IDL.split()), max_size=40))
     def test_any_idl_is_parsed_or_rejected(self, words):

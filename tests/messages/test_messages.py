@@ -20,7 +20,7 @@ from linkwright.messages import (
     Vector3,
 )
 
-TYPES = [each for name in messages.__all__ if hasattr(each := getattr(messages, name), "TYPE_NAME")]
+TYPES = [message_type for name in messages.__all__ if hasattr(message_type := getattr(messages, name), "TYPE_NAME")]
 
 
 def test_constructor_takes_keyword_arguments_only():
@@ -31,7 +31,7 @@ def test_constructor_takes_keyword_arguments_only():
         TFMessage([])
 
 
-@pytest.mark.parametrize("message_type", TYPES, ids=lambda each: each.__name__)
+@pytest.mark.parametrize("message_type", TYPES, ids=lambda message_type: message_type.__name__)
 def test_type_name_ends_with_class_name(message_type):
     package, kind, name = message_type.TYPE_NAME.split("/")
     assert package
@@ -39,7 +39,7 @@ def test_type_name_ends_with_class_name(message_type):
     assert name == message_type.__name__
 
 
-@pytest.mark.parametrize("message_type", TYPES, ids=lambda each: each.__name__)
+@pytest.mark.parametrize("message_type", TYPES, ids=lambda message_type: message_type.__name__)
 def test_messages_reject_unknown_attributes(message_type):
     with pytest.raises(AttributeError):
         message_type().no_such_field = 1

@@ -33,9 +33,9 @@ class TestJazzy:
         monkeypatch.setenv("ROS_DISTRO", "jazzy")
 
     def test_results_of_actions_have_error_codes(self):
-        found = texts("nav2_msgs")
-        assert all("error_code" in text for name, text in found.items() if name.startswith("action/"))
-        assert "progress_checker_id" in found["action/FollowPath"]
+        interface_texts = texts("nav2_msgs")
+        assert all("error_code" in text for name, text in interface_texts.items() if name.startswith("action/"))
+        assert "progress_checker_id" in interface_texts["action/FollowPath"]
 
     def test_humble_and_jazzy_interfaces_are_available(self):
         assert {"action/DockRobot", "action/NavigateToPose", "msg/Costmap", "srv/GetCost"} <= set(names("nav2_msgs"))

@@ -25,7 +25,7 @@ def test_new_interface_is_found_within_a_second(tmp_path, monkeypatch):
     for _ in range(3):
         now[0] += 0.4
         try:
-            found = types.definition("new_msgs/msg/New")
+            definition = types.definition("new_msgs/msg/New")
         except InterfaceNotFoundError:
-            found = None
-    assert found is not None
+            definition = None
+    assert definition is not None

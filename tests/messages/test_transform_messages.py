@@ -84,7 +84,7 @@ def test_batch_serializes_like_its_transforms(count):
 
 def test_frame_names_of_equal_length_are_distinguished():
     first, second = chain(20, prefix="left"), chain(20, prefix="rite")
-    data = [serialize(TFMessage(batch=each)) for each in (first, second)]
+    data = [serialize(TFMessage(batch=batch)) for batch in (first, second)]
     assert len(data[0]) == len(data[1])
     for _ in range(3):
         assert deserialize(data[0], TFMessage).batch.children == first.children

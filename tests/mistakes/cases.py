@@ -49,10 +49,10 @@ class Case:
         output = io.StringIO()
         with redirect_stdout(output), redirect_stderr(io.StringIO()):
             status = main(["check", "--format", "json", str(package / self.file), *self.arguments])
-        found = json.loads(output.getvalue())["diagnostics"]
-        assert status == any(each["severity"] == "error" for each in found)
+        findings = json.loads(output.getvalue())["diagnostics"]
+        assert status == any(finding["severity"] == "error" for finding in findings)
         return (
-            "\n".join(line for each in found for line in _lines(each, package))
+            "\n".join(line for finding in findings for line in _lines(finding, package))
             .replace(f"{package}/", "")
             .replace(f"{folder}", "FOLDER")
         )
@@ -88,26 +88,26 @@ def _change(path: Path, change: str) -> None:
     path.write_text(text, encoding="utf-8")
 
 
-def _lines(found: dict[str, Any], package: Path) -> list[str]:
-    lines = [f"{_place(found)} {found['severity']} {found['code']} [{_marked(found)}] {found['message']}"]
-    for note in found["notes"]:
+def _lines(finding: dict[str, Any], package: Path) -> list[str]:
+    lines = [f"{_place(finding)} {finding['severity']} {finding['code']} [{_marked(finding)}] {finding['message']}"]
+    for note in finding["notes"]:
         place = f" ({note['file']}:{note['line']}:{note['column']})" if note["file"] else ""
         lines.append(f"  note: {note['message']}{place}")
-    lines += [f"  hint: {hint}" for hint in found["hints"]]
+    lines += [f"  hint: {hint}" for hint in finding["hints"]]
     return lines
 
 
-def _place(found: dict[str, Any]) -> str:
-    if found["file"] is None:
+def _place(finding: dict[str, Any]) -> str:
+    if finding["file"] is None:
         return "-"
-    return f"{found['file']}:{found['line']}:{found['column']}"
+    return f"{finding['file']}:{finding['line']}:{finding['column']}"
 
 
-def _marked(found: dict[str, Any]) -> str:
+def _marked(finding: dict[str, Any]) -> str:
     """The text that a finding marks, with its further lines left out."""
-    if found["file"] is None or not Path(found["file"]).is_file():
+    if finding["file"] is None or not Path(finding["file"]).is_file():
         return ""
-    lines = Path(found["file"]).read_text(encoding="utf-8").splitlines()
-    line = lines[found["line"] - 1] if found["line"] <= len(lines) else ""
-    end = found["end_column"] - 1 if found["end_line"] == found["line"] else len(line)
-    return line[found["column"] - 1 : end]
+    lines = Path(finding["file"]).read_text(encoding="utf-8").splitlines()
+    line = lines[finding["line"] - 1] if finding["line"] <= len(lines) else ""
+    end = finding["end_column"] - 1 if finding["end_line"] == finding["line"] else len(line)
+    return line[finding["column"] - 1 : end]

@@ -15,7 +15,7 @@ from tests.full_disk import full_disk, needs_limits
 from tests.model_files.shop import ARCHIVE, FILES, PACKED, SINGLE, archive
 
 
-def silent(done, total):
+def silent(received, total):
     pass
 
 
@@ -37,12 +37,12 @@ def below(folder):
 def test_archive_is_downloaded_unpacked_and_verified(shop, home):
     entry = shop.of(PACKED, "toy.zip", ARCHIVE)
     seen = []
-    place = install(entry, None, None, lambda done, total: seen.append((done, total)))
+    place = install(entry, None, None, lambda received, total: seen.append((received, total)))
     assert place == home / "toy-1.0" == find_model(entry)
     assert {name: (place / name).read_bytes() for name in FILES} == FILES
     assert below(home) == {f"toy-1.0/{name}" for name in FILES}
     assert seen[-1] == (len(ARCHIVE), len(ARCHIVE))
-    assert [done for done, _ in seen] == sorted(done for done, _ in seen)
+    assert [received for received, _ in seen] == sorted(received for received, _ in seen)
 
 
 def test_single_file_model_is_installed_and_removed(shop, home):
@@ -235,7 +235,7 @@ def test_uncreatable_folder_is_reported(tmp_path):
 def test_keyboard_interrupt_keeps_partial_download(shop, home):
     entry = shop.of(PACKED, "toy.zip", ARCHIVE)
 
-    def interrupt(done, total):
+    def interrupt(received, total):
         raise KeyboardInterrupt
 
     with pytest.raises(KeyboardInterrupt):

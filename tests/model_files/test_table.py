@@ -17,8 +17,8 @@ def test_table_entries_have_address_license_and_checksums(entry):
     assert entry.license == "Apache-2.0"
     assert entry.sha256 or entry.files
     assert bool(entry.folder) == bool(entry.files)
-    for each in (entry.sha256, *entry.files.values()):
-        assert each is None or re.fullmatch("[0-9a-f]{64}", each)
+    for checksum in (entry.sha256, *entry.files.values()):
+        assert checksum is None or re.fullmatch("[0-9a-f]{64}", checksum)
     for name in entry.files:
         assert ".." not in name.split("/")
         assert not name.startswith("/")

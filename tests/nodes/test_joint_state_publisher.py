@@ -97,7 +97,7 @@ async def test_initial_positions_respect_limits_and_zeros(stage, text, parameter
 
 class TestLimits:
     def ranges(self, publisher):
-        return {name: (each.lower, each.upper) for name, each in publisher.joints.layout.ranges.items()}
+        return {name: (limits.lower, limits.upper) for name, limits in publisher.joints.layout.ranges.items()}
 
     async def test_limits_by_joint_type(self, stage):
         publisher = stage.joint_state_publisher()
@@ -124,8 +124,8 @@ class TestLimits:
         }
         links = {name: Link(name) for name in ("base", *joints)}
         layout = make_layout(Robot("robot", "base", links, joints, {}), JointSettings())
-        found = {name: (each.lower, each.upper) for name, each in layout.ranges.items()}
-        assert found == {"wide": (-pi, pi), "up": (1.0, 3.0), "down": (-1.0, 1.0)}
+        ranges = {name: (limits.lower, limits.upper) for name, limits in layout.ranges.items()}
+        assert ranges == {"wide": (-pi, pi), "up": (1.0, 3.0), "down": (-1.0, 1.0)}
         assert [joint.zero for joint in layout.free] == [0.0, 2.0, 0.0]
 
     async def test_joints_with_missing_limits_are_skipped(self, stage, logged):

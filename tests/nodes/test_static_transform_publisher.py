@@ -68,7 +68,7 @@ async def test_static_transform_is_latched(stage, logged):
     )
     await stage.graph.settle()
     np.testing.assert_allclose(stage.buffer.lookup("map", "camera"), [1, 2, 7, 0, 0, 0, 1])
-    names = [each.node.get_name() for each in (first, second)]
+    names = [publisher.node.get_name() for publisher in (first, second)]
     assert all(re.fullmatch(r"static_transform_publisher_[A-Za-z0-9]{16}", name) for name in names)
     assert names[0] != names[1]
     assert logged("WARN") == ["Old-style arguments are deprecated; see --help for new-style arguments"]

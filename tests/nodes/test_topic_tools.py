@@ -83,7 +83,9 @@ async def test_relay_adopts_qos_of_source_and_ends_with_it(test):
     number = get_message("std_msgs/msg/Int32")
     test.node.create_publisher(number, "chatter", 10)
     await test.settle()
-    assert [each.topic_type for each in test.graph.get_publishers_info_by_topic("/copy")] == ["std_msgs/msg/Int32"]
+    assert [endpoint.topic_type for endpoint in test.graph.get_publishers_info_by_topic("/copy")] == [
+        "std_msgs/msg/Int32"
+    ]
 
 
 async def test_lazy_relay_subscribes_only_if_output_has_subscribers(test):

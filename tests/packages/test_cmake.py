@@ -18,9 +18,9 @@ def rules(text: str, package: Path | None = None) -> CMakeFile:
 
 def copied(text: str, package: Path) -> dict[str, str]:
     """Return the source and destination of all copied files; nothing may be unknown."""
-    found = rules(text, package)
-    assert found.is_complete, found.unknown
-    return {file.source: file.destination for file in found.installed(package)}
+    install_rules = rules(text, package)
+    assert install_rules.is_complete, install_rules.unknown
+    return {file.source: file.destination for file in install_rules.installed(package)}
 
 
 @pytest.fixture
@@ -42,8 +42,8 @@ def test_install_directory_keeps_folder_name(package: Path) -> None:
 
 
 def test_trailing_slash_installs_folder_content(package: Path) -> None:
-    found = copied('install(DIRECTORY "launch/" DESTINATION share/arm/start)', package)
-    assert found == {"launch/show.launch.py": "share/arm/start/show.launch.py"}
+    copies = copied('install(DIRECTORY "launch/" DESTINATION share/arm/start)', package)
+    assert copies == {"launch/show.launch.py": "share/arm/start/show.launch.py"}
 
 
 def test_install_patterns_select_files(package: Path) -> None:
@@ -67,8 +67,8 @@ def test_install_patterns_select_files(package: Path) -> None:
 )
 def test_excluded_missing_folder_is_not_required(package: Path, more: str, is_required: bool) -> None:
     # As file(INSTALL) of CMake 3.25 does: what no pattern takes is passed over, there or not.
-    found = rules(f"install(DIRECTORY include/ DESTINATION include {more})")
-    assert [item.text for item in found.required] == (["include/"] if is_required else [])
+    install_rules = rules(f"install(DIRECTORY include/ DESTINATION include {more})")
+    assert [item.text for item in install_rules.required] == (["include/"] if is_required else [])
 
 
 def test_install_programs_and_rename(package: Path) -> None:
@@ -81,18 +81,18 @@ def test_install_programs_and_rename(package: Path) -> None:
 
 
 def test_interfaces_and_python_packages_are_found() -> None:
-    found = rules(
+    install_rules = rules(
         'set(messages "msg/A.msg" msg/C.msg)\n'
         'rosidl_generate_interfaces(${PROJECT_NAME} ${messages} "srv/B.srv" DEPENDENCIES std_msgs)\n'
         "ament_python_install_package(${PROJECT_NAME})"
     )
-    assert found.interfaces == ["msg/A.msg", "msg/C.msg", "srv/B.srv"]
-    assert found.modules == ["arm"]
+    assert install_rules.interfaces == ["msg/A.msg", "msg/C.msg", "srv/B.srv"]
+    assert install_rules.modules == ["arm"]
 
 
 def test_auto_package_installs_to_share(package: Path) -> None:
-    found = read_cmake(SourceText("CMakeLists.txt", "project(arm)\nament_auto_package(INSTALL_TO_SHARE launch)\n"))
-    assert [file.destination for file in found.installed(package)] == ["share/arm/launch/show.launch.py"]
+    cmake = read_cmake(SourceText("CMakeLists.txt", "project(arm)\nament_auto_package(INSTALL_TO_SHARE launch)\n"))
+    assert [file.destination for file in cmake.installed(package)] == ["share/arm/launch/show.launch.py"]
 
 
 @pytest.mark.parametrize(
@@ -159,28 +159,28 @@ def test_subdirectories_and_included_files_are_read(package: Path) -> None:
         "urdf/arm.urdf": "share/arm/robots/arm.urdf",
         "urdf/parts/hand.xacro": "share/arm/parts/hand.xacro",
     }
-    found = rules(text, package)
-    assert found.span(found.files[1]).file == str(package / "urdf" / "CMakeLists.txt")
+    install_rules = rules(text, package)
+    assert install_rules.span(install_rules.files[1]).file == str(package / "urdf" / "CMakeLists.txt")
 
 
 def test_configured_files_are_installed(package: Path) -> None:
     (package / "limits.yaml.in").write_text("@PROJECT_NAME@: ${SPEED}@MISSING@\n")
-    found = rules(
+    install_rules = rules(
         "set(SPEED 2)\nconfigure_file(limits.yaml.in ${CMAKE_CURRENT_BINARY_DIR}/limits.yaml)\n"
         "install(FILES ${CMAKE_CURRENT_BINARY_DIR}/limits.yaml DESTINATION share/arm)",
         package,
     )
-    (file,) = found.installed(package)
+    (file,) = install_rules.installed(package)
     assert (file.source, file.destination) == ("limits.yaml.in", "share/arm/limits.yaml")
     assert file.text(package) == "arm: 2\n"
 
 
 def test_compiled_targets_are_listed_and_other_rules_read(package: Path) -> None:
     text = "add_executable(move src/move.cpp)\nadd_library(kinematics SHARED k.cpp)\nadd_library(headers INTERFACE)\n"
-    found = rules(text + "install(DIRECTORY launch DESTINATION share/arm)", package)
-    assert found.compiled == ["move", "kinematics"]
-    assert found.executables == {"move"}
-    assert [file.source for file in found.installed(package)] == ["launch/show.launch.py"]
+    install_rules = rules(text + "install(DIRECTORY launch DESTINATION share/arm)", package)
+    assert install_rules.compiled == ["move", "kinematics"]
+    assert install_rules.executables == {"move"}
+    assert [file.source for file in install_rules.installed(package)] == ["launch/show.launch.py"]
 
 
 @pytest.mark.parametrize(
@@ -396,9 +396,9 @@ _DONE_BY_CMAKE = [
 
 @pytest.mark.parametrize(("text", "destinations"), _DONE_BY_CMAKE)
 def test_supported_cmake_commands_match_cmake(package: Path, text: str, destinations: list[str]) -> None:
-    found = rules(text, package)
-    assert found.is_complete, found.unknown
-    assert sorted(file.destination for file in found.installed(package)) == destinations
+    install_rules = rules(text, package)
+    assert install_rules.is_complete, install_rules.unknown
+    assert sorted(file.destination for file in install_rules.installed(package)) == destinations
 
 
 @pytest.mark.parametrize(
@@ -417,14 +417,14 @@ def test_undecidable_condition_reads_all_branches(package: Path, condition: str)
 
 def test_files_generated_by_build_are_installed(package: Path) -> None:
     (package / "robot.urdf.in").write_text("@NAME@")
-    found = rules(
+    install_rules = rules(
         "foreach(NAME a b)\n  configure_file(robot.urdf.in ${PROJECT_BINARY_DIR}/made/${NAME}.urdf)\nendforeach()\n"
         'file(WRITE ${PROJECT_BINARY_DIR}/note "arm ")\nfile(APPEND ${PROJECT_BINARY_DIR}/note "is built")\n'
         "install(DIRECTORY ${PROJECT_BINARY_DIR}/made DESTINATION share/arm)\n"
         "install(FILES ${PROJECT_BINARY_DIR}/note DESTINATION share/arm)",
         package,
     )
-    written = {file.destination: file.text(package) for file in found.installed(package)}
+    written = {file.destination: file.text(package) for file in install_rules.installed(package)}
     assert written == {"share/arm/made/a.urdf": "a", "share/arm/made/b.urdf": "b", "share/arm/note": "arm is built"}
 
 
@@ -432,14 +432,14 @@ def test_ament_commands_install_files(package: Path) -> None:
     for name in ("hooks/arm.dsv.in", "hooks/more.sh", "plugins/arm.xml"):
         (package / name).parent.mkdir(exist_ok=True)
         (package / name).write_text("set;ROBOT;@PROJECT_NAME@" if name.endswith(".in") else "")
-    found = rules(
+    install_rules = rules(
         'ament_environment_hooks("${CMAKE_CURRENT_SOURCE_DIR}/hooks/${PROJECT_NAME}.dsv.in" hooks/more.sh)\n'
         'ament_index_register_resource(robots CONTENT "urdf/arm.urdf")\n'
         "pluginlib_export_plugin_description_file(controllers plugins/arm.xml)\n"
         "ament_python_install_module(scripts/run.py)",
         package,
     )
-    files = {file.destination: file for file in found.installed(package)}
+    files = {file.destination: file for file in install_rules.installed(package)}
     index = "share/ament_index/resource_index"
     assert sorted(files) == [
         f"{index}/controllers__pluginlib__plugin/arm",
@@ -451,13 +451,13 @@ def test_ament_commands_install_files(package: Path) -> None:
     assert files["share/arm/environment/arm.dsv"].text(package) == "set;ROBOT;arm"
     assert files[f"{index}/robots/arm"].text(package) == "urdf/arm.urdf"
     assert files[f"{index}/controllers__pluginlib__plugin/arm"].text(package) == "share/arm/arm.xml\n"
-    assert found.hooks == ["share/arm/environment/arm.dsv", "share/arm/environment/more.sh"]
-    assert found.modules == ["scripts/run.py"]
+    assert install_rules.hooks == ["share/arm/environment/arm.dsv", "share/arm/environment/more.sh"]
+    assert install_rules.modules == ["scripts/run.py"]
 
 
 def test_xacro_add_files_is_reported_as_unknown(package: Path) -> None:
-    found = rules("xacro_add_files(urdf/arm.urdf.xacro INSTALL DESTINATION urdf)", package)
-    assert found.unknown == ["'urdf/arm.urdf' would have to be made by xacro"]
+    install_rules = rules("xacro_add_files(urdf/arm.urdf.xacro INSTALL DESTINATION urdf)", package)
+    assert install_rules.unknown == ["'urdf/arm.urdf' would have to be made by xacro"]
 
 
 @pytest.mark.parametrize(
@@ -469,5 +469,5 @@ def test_xacro_add_files_is_reported_as_unknown(package: Path) -> None:
     ],
 )
 def test_exponentially_growing_values_are_rejected(text: str, package: Path) -> None:
-    found = rules(f"project(arm)\n{text}install(DIRECTORY launch DESTINATION share/arm)\n", package)
-    assert found.unknown
+    install_rules = rules(f"project(arm)\n{text}install(DIRECTORY launch DESTINATION share/arm)\n", package)
+    assert install_rules.unknown

@@ -43,9 +43,9 @@ def test_prefixes_are_searched_in_order(tmp_path: Path) -> None:
     overlay = install(tmp_path / "overlay", "arm")
     install(tmp_path / "ros", "arm")
     underlay = install(tmp_path / "ros", "gripper")
-    found = finder(tmp_path, tmp_path / "overlay", tmp_path / "ros")
-    assert found.share("arm") == overlay
-    assert found.share("gripper") == underlay
+    package_finder = finder(tmp_path, tmp_path / "overlay", tmp_path / "ros")
+    assert package_finder.share("arm") == overlay
+    assert package_finder.share("gripper") == underlay
 
 
 def test_installed_package_without_index_marker_is_found(tmp_path: Path) -> None:
@@ -55,13 +55,13 @@ def test_installed_package_without_index_marker_is_found(tmp_path: Path) -> None
 
 def test_prefix_lookup_does_not_scan_sources(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     install(tmp_path / "ros", "arm")
-    found = finder(tmp_path, tmp_path / "ros")
+    package_finder = finder(tmp_path, tmp_path / "ros")
 
     def forbidden(*_: object) -> None:
         raise AssertionError("the source tree is scanned")
 
     monkeypatch.setattr(os, "scandir", forbidden)
-    assert found.share("arm").name == "arm"
+    assert package_finder.share("arm").name == "arm"
 
 
 @pytest.mark.parametrize("merged", [True, False])
@@ -80,12 +80,12 @@ def test_packages_of_current_prefix_are_found_by_markers(tmp_path: Path) -> None
     make_source(share, "arm_descriptions")  # addresses say the marker's name
     (share / "urdf").mkdir()
     other = install(tmp_path / "ros", "meshes")
-    found = finder(share / "urdf")
-    assert found.share("arm-data") == share
-    assert found.share("meshes") == other
-    assert found.packages()["arm-data"] == share
+    package_finder = finder(share / "urdf")
+    assert package_finder.share("arm-data") == share
+    assert package_finder.share("meshes") == other
+    assert package_finder.packages()["arm-data"] == share
     with pytest.raises(PackageNotFoundError) as caught:
-        found.share("nobody")
+        package_finder.share("nobody")
     assert any(str(tmp_path / "ros") in str(note) for note in caught.value.diagnostics[0].notes)
 
 
@@ -129,18 +129,18 @@ def test_current_package_and_its_siblings_are_found(tmp_path: Path) -> None:
     arm = make_source(tmp_path / "repo" / "arm", "arm")
     gripper = make_source(tmp_path / "repo" / "gripper", "gripper")
     (arm / "urdf").mkdir()
-    found = finder(arm / "urdf")
-    assert found.share("arm") == arm
-    assert found.share("gripper") == gripper
+    package_finder = finder(arm / "urdf")
+    assert package_finder.share("arm") == arm
+    assert package_finder.share("gripper") == gripper
 
 
 def test_start_folders_are_searched_in_order(tmp_path: Path) -> None:
     first = make_source(tmp_path / "a" / "arm", "arm")
     make_source(tmp_path / "b" / "arm", "arm")
     only_there = make_source(tmp_path / "b" / "gripper", "gripper")
-    found = PackageFinder(start=[tmp_path / "a", tmp_path / "b"], environment={})
-    assert found.share("arm") == first
-    assert found.share("gripper") == only_there
+    package_finder = PackageFinder(start=[tmp_path / "a", tmp_path / "b"], environment={})
+    assert package_finder.share("arm") == first
+    assert package_finder.share("gripper") == only_there
 
 
 def _no_scan_below(folder: Path, root: Path) -> SourceScan:
@@ -170,9 +170,9 @@ def test_unknown_package_error_lists_searched_folders_and_similar_names(tmp_path
     nameless = tmp_path / "ws" / "src" / "broken"
     nameless.mkdir()
     (nameless / "package.xml").write_text("<package/>")
-    found = finder(tmp_path / "ws", tmp_path / "ros")
+    package_finder = finder(tmp_path / "ws", tmp_path / "ros")
     with pytest.raises(PackageNotFoundError) as caught:
-        found.share("turtlebot_description")
+        package_finder.share("turtlebot_description")
     (diagnostic,) = caught.value.diagnostics
     notes = "\n".join(note.message for note in diagnostic.notes)
     assert diagnostic.code == "PKG101"
@@ -304,11 +304,11 @@ class TestResolve:
 
 @pytest.mark.parametrize("name", ["launch_ros", "rclpy", "std_msgs", "robot_state_publisher", "rviz2", "xacro"])
 def test_stand_in_packages_have_share_folder_unless_installed(tmp_path: Path, name: str) -> None:
-    found = finder(tmp_path)
-    share = found.share(name)
+    package_finder = finder(tmp_path)
+    share = package_finder.share(name)
     assert is_substitute(share)
     assert share.name == name
-    assert name not in found.packages()
+    assert name not in package_finder.packages()
     own = install(tmp_path / "ros", name)
     assert finder(tmp_path, tmp_path / "ros").share(name) == own
 
@@ -325,11 +325,11 @@ def test_entry_points_provide_substitutes_for_packages(tmp_path: Path, monkeypat
     monkeypatch.syspath_prepend(tmp_path / "site")
     extensions._all_groups.cache_clear()
     try:
-        found = finder(tmp_path / "ws")
-        assert found.share("sea_ros") == module / "share" / "sea_ros"
-        assert is_substitute(found.share("sea_ros"))
+        package_finder = finder(tmp_path / "ws")
+        assert package_finder.share("sea_ros") == module / "share" / "sea_ros"
+        assert is_substitute(package_finder.share("sea_ros"))
         assert not is_substitute(tmp_path / "share" / "sea_ros")
         with pytest.warns(UserWarning, match="'my_sea' provides no substitute for 'lost_ros'"):
-            assert "sea_ros" in found.packages()
+            assert "sea_ros" in package_finder.packages()
     finally:
         extensions._all_groups.cache_clear()

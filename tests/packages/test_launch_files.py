@@ -20,8 +20,8 @@ def test_launch_files_are_found_below_share_folder(tmp_path: Path):
     for path in ("launch/b.launch.py", "launch/sub/a.launch.xml", "c.launch.yaml", "launch/d.py"):
         (tmp_path / path).parent.mkdir(parents=True, exist_ok=True)
         (tmp_path / path).touch()
-    found = [path.relative_to(tmp_path).as_posix() for path in launch_files_below(tmp_path)]
-    assert found == ["c.launch.yaml", "launch/b.launch.py", "launch/sub/a.launch.xml"]
+    paths = [path.relative_to(tmp_path).as_posix() for path in launch_files_below(tmp_path)]
+    assert paths == ["c.launch.yaml", "launch/b.launch.py", "launch/sub/a.launch.xml"]
 
 
 def test_build_hidden_and_deep_folders_are_skipped(tmp_path: Path):

@@ -20,6 +20,6 @@ def test_launch_file_gets_module_of_its_own_package(tmp_path: Path, asking: str)
         (tmp_path / name / "CMakeLists.txt").write_text("ament_python_install_package(scripts)")
         (tmp_path / name / "package.xml").write_text(f"<package><name>{name}</name></package>")
     (tmp_path / asking / "launch").mkdir()
-    found = find_module(PackageFinder(start=tmp_path, environment={}), "scripts", tmp_path / asking / "launch")
-    assert found is not None
-    assert found.origin == str(tmp_path / asking / "scripts" / "__init__.py")
+    module = find_module(PackageFinder(start=tmp_path, environment={}), "scripts", tmp_path / asking / "launch")
+    assert module is not None
+    assert module.origin == str(tmp_path / asking / "scripts" / "__init__.py")

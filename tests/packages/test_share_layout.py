@@ -128,8 +128,8 @@ def test_only_moved_folders_are_searched(write: Callable[..., Path], monkeypatch
 
     monkeypatch.setattr(Path, "rglob", rglob)
     cmake = read_cmake(SourceText("CMakeLists.txt", STAYING), package)
-    found = {file.destination: file.source for file in cmake.moved(package, "share/arm")}
-    assert found == {"share/arm/base.stl": "meshes/base.stl", "share/arm/rviz/other.rviz": "rviz/arm.rviz"}
+    sources = {file.destination: file.source for file in cmake.moved(package, "share/arm")}
+    assert sources == {"share/arm/base.stl": "meshes/base.stl", "share/arm/rviz/other.rviz": "rviz/arm.rviz"}
     assert read == ["meshes"]
 
 

@@ -8,15 +8,15 @@ import pytest
 
 from tests.page.test_files import package, write
 from tests.page.test_security import MESHED, raw
-from tests.viewer.scene import page, world
+from tests.viewer.scene import open_world, page
 
 
 @pytest.fixture
 async def served(tmp_path):
     share = package(tmp_path / "robot", "robot")
     write(share / "meshes" / "arm.stl", "solid arm")
-    async with world(packages={"robot": share}) as made:
-        yield made
+    async with open_world(packages={"robot": share}) as world:
+        yield world
 
 
 async def exported(client, kind: str = "glb") -> dict:
@@ -50,7 +50,7 @@ async def test_unfetched_exports_expire(served):
     await served.settle()
     async with page(served.viewer) as client:
         ready = [await exported(client) for _ in range(6)]
-        assert [(await raw(served.viewer, each["url"]))[0] for each in ready] == [404, 404, 200, 200, 200, 200]
+        assert [(await raw(served.viewer, export["url"]))[0] for export in ready] == [404, 404, 200, 200, 200, 200]
 
 
 async def test_failed_export_reports_reason(served):

@@ -15,10 +15,10 @@ SERVER = "import sys; from linkwright.page.http_server import web; import aiohtt
 
 
 def output_of(code: str) -> list[str]:
-    done = subprocess.run(
+    result = subprocess.run(
         [sys.executable, "-W", "error", "-c", SERVER + code], capture_output=True, text=True, check=True
     )
-    return done.stdout.split()
+    return result.stdout.split()
 
 
 def test_server_does_not_load_client():
@@ -49,14 +49,14 @@ def test_server_that_needs_whole_package_loads_it(tmp_path):
     code = (
         f"import sys; sys.path.insert(0, {str(tmp_path)!r}); from linkwright.page.http_server import web; print(web.A)"
     )
-    done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
-    assert done.stdout.split() == ["2"]
+    result = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
+    assert result.stdout.split() == ["2"]
 
 
 def test_already_loaded_package_is_kept():
     code = "import aiohttp.web; given = aiohttp.web; from linkwright.page.http_server import web; print(web is given)"
-    done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
-    assert done.stdout.split() == ["True"]
+    result = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
+    assert result.stdout.split() == ["True"]
 
 
 def test_server_error_is_logged(caplog):

@@ -11,26 +11,26 @@ from linkwright.page.server import url_of
 
 
 @pytest.fixture
-def taken():
+def occupied_port():
     with socket.socket() as other:
         other.bind(("127.0.0.1", 0))
         other.listen()
         yield other.getsockname()[1]
 
 
-def test_port_in_use_is_reported_with_hint(taken):
+def test_port_in_use_is_reported_with_hint(occupied_port):
     with pytest.raises(LinkwrightError) as caught:
-        listen("127.0.0.1", taken)
+        listen("127.0.0.1", occupied_port)
     (diagnostic,) = caught.value.diagnostics
     assert diagnostic.code == "VIEW101"
-    assert str(taken) in diagnostic.message
+    assert str(occupied_port) in diagnostic.message
     assert "--port" in diagnostic.hint
 
 
-def test_next_free_port_is_used_by_default(taken, monkeypatch):
-    monkeypatch.setattr(page_server, "DEFAULT_PORT", taken)
+def test_next_free_port_is_used_by_default(occupied_port, monkeypatch):
+    monkeypatch.setattr(page_server, "DEFAULT_PORT", occupied_port)
     with listen("127.0.0.1", None) as listener:
-        assert listener.getsockname()[1] > taken
+        assert listener.getsockname()[1] > occupied_port
 
 
 def test_servers_do_not_share_a_port():

@@ -14,7 +14,7 @@ from linkwright.page.protocol.configuration import SetProperty
 from linkwright.page.protocol.message import PageMessage, Received
 from linkwright.rviz import RvizConfig
 from tests.viewer.configured import TEXT
-from tests.viewer.scene import page, world
+from tests.viewer.scene import open_world, page
 
 DISPLAYS = "".join(
     f"    - {{Class: rviz_default_plugins/{name}, Enabled: true, Name: {name}}}\n"
@@ -37,8 +37,8 @@ def anything(kind: Any, name: str, chance: random.Random) -> Any:
     origin, arguments = typing.get_origin(kind), typing.get_args(kind)
     if isinstance(kind, type) and issubclass(kind, msgspec.Struct):
         hints = typing.get_type_hints(kind)
-        made = {field: anything(hints[field], field, chance) for field in kind.__struct_fields__}
-        return made | ({"type": kind.__struct_config__.tag} if issubclass(kind, PageMessage) else {})
+        fields = {field: anything(hints[field], field, chance) for field in kind.__struct_fields__}
+        return fields | ({"type": kind.__struct_config__.tag} if issubclass(kind, PageMessage) else {})
     if origin is typing.Literal:
         return chance.choice(arguments)
     if origin is list:
@@ -61,15 +61,15 @@ def anything(kind: Any, name: str, chance: random.Random) -> Any:
 async def test_viewer_survives_random_page_messages(seed, tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)
     chance = random.Random(seed)
-    async with world(RvizConfig.parse(CONFIGURATION)) as made, page(made.viewer) as client:
+    async with open_world(RvizConfig.parse(CONFIGURATION)) as world, page(world.viewer) as client:
         await client.opened()
-        made.move_arm()
+        world.move_arm()
         for _ in range(30):
             sent = [anything(chance.choice(MESSAGES), "", chance) for _ in range(20)]
             for message in sent:
                 await client.socket.send_json(message)
             await client.drain(0.01)
-            failures = [line for line in made.logged().splitlines() if "failed" in line or "Traceback" in line]
+            failures = [line for line in world.logged().splitlines() if "failed" in line or "Traceback" in line]
             assert failures == [], sent
         await client.send("ask_configuration_text")
         text = (await client.until("configuration_text"))["text"]

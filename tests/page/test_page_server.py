@@ -36,14 +36,14 @@ async def test_page_is_served_before_viewer_and_socket_waits_for_it():
         async with browser.get(address_of(server, "nothing")) as answer:
             assert answer.status == 404
         assert not waiting.done()
-        made = World(server=server)
-        await made.viewer.start()
-        assert made.viewer.url == server.url
+        world = World(server=server)
+        await world.viewer.start()
+        assert world.viewer.url == server.url
         socket = await waiting
         assert (await socket.receive_json())["type"] == "hello"
         await socket.close()
-        await made.viewer.close()
-        await made.graph.close()
+        await world.viewer.close()
+        await world.graph.close()
 
 
 async def test_request_without_token_is_rejected_at_once():
@@ -66,12 +66,12 @@ async def test_waiting_page_gets_503_when_server_closes():
 
 
 async def test_server_without_uploads_has_no_recordings_url():
-    made = World()
-    await made.viewer.start()
-    address = made.viewer.url.replace("/?", "/recordings?")
+    world = World()
+    await world.viewer.start()
+    address = world.viewer.url.replace("/?", "/recordings?")
     try:
         async with aiohttp.ClientSession() as browser, browser.post(address, json={}) as answer:
             assert answer.status == 404
     finally:
-        await made.viewer.close()
-        await made.graph.close()
+        await world.viewer.close()
+        await world.graph.close()

@@ -26,15 +26,15 @@ FRAMES = "frame-src http://127.0.0.1:* http://localhost:*"
 @asynccontextmanager
 async def classroom(folder: Path, command: tuple[str, ...] = ("/bin/sh", "-i")) -> AsyncIterator[World]:
     """Start a viewer whose page has terminals."""
-    made = World(server=PageServer("127.0.0.1", 0, only_loopback=True))
-    await made.viewer.start()
-    server = made.viewer._server
-    made.viewer.add_feature(TerminalFeature).enable(folder, command, programs=server.program_pages)
+    world = World(server=PageServer("127.0.0.1", 0, only_loopback=True))
+    await world.viewer.start()
+    server = world.viewer._server
+    world.viewer.add_feature(TerminalFeature).enable(folder, command, programs=server.program_pages)
     try:
-        yield made
+        yield world
     finally:
-        await made.viewer.close()
-        await made.graph.close()
+        await world.viewer.close()
+        await world.graph.close()
 
 
 @asynccontextmanager
@@ -48,9 +48,9 @@ async def program() -> AsyncIterator[PageServer]:
         await server.close()
 
 
-def environment(made: World) -> dict[str, str]:
-    origin = made.viewer.url.partition("/?")[0]
-    return made.viewer._server.program_pages.variables(origin)
+def environment(world: World) -> dict[str, str]:
+    origin = world.viewer.url.partition("/?")[0]
+    return world.viewer._server.program_pages.variables(origin)
 
 
 async def policy(server: PageServer) -> str:
@@ -64,16 +64,16 @@ async def status_of(address: str, line: bytes, **headers: str) -> int:
 
 
 async def test_program_page_is_shown_until_program_ends(tmp_path):
-    async with classroom(tmp_path) as made, page(made.viewer) as client, program() as server:
+    async with classroom(tmp_path) as world, page(world.viewer) as client, program() as server:
         await client.send("watch_program_pages")
         assert (await client.until("program_pages"))["pages"] == []
         assert "frame-ancestors 'none'" in await policy(server)
-        assert await server.embed(environment(made), "a world")
+        assert await server.embed(environment(world), "a world")
         shown = await client.until("program_pages")
         assert shown["pages"] == [{"id": 1, "title": "a world", "url": server.url}]
-        assert f"frame-ancestors {made.viewer.url.partition('/?')[0]};" in f"{await policy(server)};"
-        assert FRAMES in await policy(made.viewer._server)
-        assert "frame-ancestors 'none'" in await policy(made.viewer._server)
+        assert f"frame-ancestors {world.viewer.url.partition('/?')[0]};" in f"{await policy(server)};"
+        assert FRAMES in await policy(world.viewer._server)
+        assert "frame-ancestors 'none'" in await policy(world.viewer._server)
         await server.close()
         assert (await client.until("program_pages"))["pages"] == []
 
@@ -85,11 +85,11 @@ async def test_a_program_pauses_its_world_until_it_may_resume(tmp_path):
         asked.append(must_pause)
         return must_pause
 
-    async with classroom(tmp_path) as made, page(made.viewer), program() as server, program() as other:
-        programs = made.viewer._server.program_pages
-        assert await server.embed(environment(made), "a world")
+    async with classroom(tmp_path) as world, page(world.viewer), program() as server, program() as other:
+        programs = world.viewer._server.program_pages
+        assert await server.embed(environment(world), "a world")
         server.on_pause(pause)
-        assert await other.embed(environment(made), "a page without a world")
+        assert await other.embed(environment(world), "a page without a world")
         programs.pause_worlds()
         await eventually(lambda: programs.is_world_paused)
         assert asked == [True]
@@ -106,25 +106,25 @@ async def test_a_program_pauses_its_world_until_it_may_resume(tmp_path):
 async def test_a_world_resumes_when_the_page_that_paused_it_is_gone(tmp_path):
     asked = []
     async with program() as server:
-        async with classroom(tmp_path) as made, page(made.viewer):
-            assert await server.embed(environment(made), "a world")
+        async with classroom(tmp_path) as world, page(world.viewer):
+            assert await server.embed(environment(world), "a world")
             server.on_pause(lambda must_pause: asked.append(must_pause) or must_pause)
-            made.viewer._server.program_pages.pause_worlds()
+            world.viewer._server.program_pages.pause_worlds()
             await eventually(lambda: asked == [True])
         await eventually(lambda: asked == [True, False])
 
 
 async def test_terminal_has_variable_with_page_address(tmp_path):
     command = ("/bin/sh", "-c", f"echo ${VARIABLE}")
-    async with classroom(tmp_path, command) as made, page(made.viewer) as client:
+    async with classroom(tmp_path, command) as world, page(world.viewer) as client:
         await client.send("open_terminal", columns=200, rows=24)
         output = await client.until("terminal_output", is_replay=False)
-        assert output["text"].strip() == environment(made)[VARIABLE]
+        assert output["text"].strip() == environment(world)[VARIABLE]
 
 
 async def test_wrong_key_and_foreign_origin_are_rejected(tmp_path):
-    async with classroom(tmp_path) as made, page(made.viewer), program() as server:
-        address = environment(made)[VARIABLE]
+    async with classroom(tmp_path) as world, page(world.viewer), program() as server:
+        address = environment(world)[VARIABLE]
         line = json.dumps({"title": "", "url": server.url}).encode() + b"\n"
         assert await status_of(address[:-1], line) == 401
         assert await status_of(address, line, Origin="http://evil.example") == 403
@@ -132,31 +132,31 @@ async def test_wrong_key_and_foreign_origin_are_rejected(tmp_path):
             assert await status_of(address, json.dumps({"title": "", "url": url}).encode() + b"\n") == 400
         for nonsense in (b"", b"[]", b"{", b"x" * 100_000, b"[" * 60_000 + b"\n"):
             assert await status_of(address, nonsense) == 400
-        token = urlsplit(made.viewer.url).query
+        token = urlsplit(world.viewer.url).query
         assert await status_of(f"{address.rpartition('/')[0]}/?{token}", line) in (401, 404, 405)
 
 
 async def test_page_without_terminals_receives_no_program_pages(tmp_path, monkeypatch):
     monkeypatch.setattr("linkwright.page.server.may_be_own_user", lambda _: False)
-    async with classroom(tmp_path) as made, page(made.viewer) as client, program() as server:
+    async with classroom(tmp_path) as world, page(world.viewer) as client, program() as server:
         await client.send("watch_program_pages")
         assert "browser of the user" in (await client.until("terminals", folder=""))["why_not"]
-        assert not await server.embed(environment(made), "")
+        assert not await server.embed(environment(world), "")
         assert "frame-ancestors 'none'" in await policy(server)
 
 
 async def test_program_is_not_embedded_without_open_page(tmp_path):
     async with program() as server:
-        async with classroom(tmp_path) as made:
-            variables = environment(made)
+        async with classroom(tmp_path) as world:
+            variables = environment(world)
             assert not await server.embed(variables, "")
         assert not await server.embed(variables, "")
         assert not server.is_embedded
 
 
 async def test_page_with_terminals_is_never_embedded(tmp_path):
-    async with classroom(tmp_path) as made, page(made.viewer), classroom(tmp_path) as other:
-        assert not await other.viewer._server.embed(environment(made), "")
+    async with classroom(tmp_path) as world, page(world.viewer), classroom(tmp_path) as other:
+        assert not await other.viewer._server.embed(environment(world), "")
         assert "frame-ancestors 'none'" in await policy(other.viewer._server)
 
 
@@ -179,14 +179,14 @@ def test_embedder_ignores_malformed_or_remote_addresses(address):
 
 
 def test_embedder_has_origin_and_path_of_address():
-    found = Embedder.of({VARIABLE: "http://localhost:7448/programs/a-b_c"})
-    assert found == Embedder("http://localhost:7448", "/programs/a-b_c")
+    embedder = Embedder.of({VARIABLE: "http://localhost:7448/programs/a-b_c"})
+    assert embedder == Embedder("http://localhost:7448", "/programs/a-b_c")
 
 
 async def test_closing_server_does_not_wait_for_programs(tmp_path, monkeypatch):
     monkeypatch.setattr("linkwright.page.server._CLOSE_TIMEOUT", 600.0)
-    async with classroom(tmp_path) as made, program() as server:
-        async with page(made.viewer):
-            assert await server.embed(environment(made), "")
-        await asyncio.wait_for(made.viewer._server.close(), SECONDS)
-        assert made.viewer._server.program_pages.pages == []
+    async with classroom(tmp_path) as world, program() as server:
+        async with page(world.viewer):
+            assert await server.embed(environment(world), "")
+        await asyncio.wait_for(world.viewer._server.close(), SECONDS)
+        assert world.viewer._server.program_pages.pages == []

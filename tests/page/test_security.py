@@ -20,7 +20,7 @@ from linkwright.page.protocol.configuration import DisplayStatus, StatusRow
 from linkwright.page.server import MAX_MESSAGE_SIZE
 from tests.leaving import UPGRADE, ask_and_leave
 from tests.page.test_files import package, write
-from tests.viewer.scene import page, world
+from tests.viewer.scene import open_world, page
 from tests.waiting import SECONDS, eventually
 
 MESHED = """\
@@ -42,10 +42,10 @@ def robot(tmp_path) -> Path:
 
 @pytest.fixture
 async def served(robot):
-    async with world(packages={"robot": robot}) as made:
-        made.describe(MESHED)
-        await made.settle()
-        yield made
+    async with open_world(packages={"robot": robot}) as world:
+        world.describe(MESHED)
+        await world.settle()
+        yield world
 
 
 async def raw(viewer, target: str, *, host: str | None = None, method: str = "GET", token: bool = True, **headers):
@@ -314,15 +314,15 @@ async def test_thousand_idle_connections_do_not_disturb_pages(served):
         assert (await raw(served.viewer, mesh_url(served.viewer)))[:2] == (200, "solid arm")
         await eventually(lambda: served.viewer._server.web._admission._count <= MAX_CONNECTIONS)
         assert memory() - before < 64 << 20
-        for each in knocking:
-            each.close()
+        for connection in knocking:
+            connection.close()
         await is_served(client)
 
 
 async def test_web_sockets_beyond_maximum_are_rejected(served):
     address = served.viewer.url.replace("/?", "/ws?")
     statuses: list[int] = []
-    kept: list[aiohttp.ClientWebSocketResponse | None] = []
+    sockets: list[aiohttp.ClientWebSocketResponse | None] = []
     async with page(served.viewer) as client, aiohttp.ClientSession(connector=aiohttp.TCPConnector(limit=0)) as session:
 
         async def connect() -> aiohttp.ClientWebSocketResponse | None:
@@ -336,7 +336,7 @@ async def test_web_sockets_beyond_maximum_are_rejected(served):
 
         await client.opened()
         for _ in range(10):
-            kept += await asyncio.gather(*(connect() for _ in range(100)))
+            sockets += await asyncio.gather(*(connect() for _ in range(100)))
             await is_served(client)
         assert set(statuses) <= {0, 503}
         assert len(statuses) >= 1000 - MAX_PAGES

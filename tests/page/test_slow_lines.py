@@ -16,7 +16,7 @@ from linkwright.page.protocol.message import PIECE_KIND
 from linkwright.rviz import RvizConfig
 from tests.skipping import skipping
 from tests.viewer.contents import unpack as unpack_content
-from tests.viewer.scene import unpack, world
+from tests.viewer.scene import open_world, unpack
 from tests.viewer.throttle import slow_line
 from tests.waiting import eventually
 
@@ -120,15 +120,15 @@ async def watching(url: str, *, answers: bool = True, busy: float = 0.0):
             await asyncio.gather(task, return_exceptions=True)
 
 
-async def publish_all(w, seconds: float, *, rate: float = 50.0, points: int = 100_000) -> None:
+async def publish_all(world, seconds: float, *, rate: float = 50.0, points: int = 100_000) -> None:
     """Publish the robot's transform with x = time at a rate, and a cloud and an image ten times a second."""
     now = asyncio.get_running_loop().time
-    node = w.graph.create_node("senses")
+    node = world.graph.create_node("senses")
     clouds = node.create_publisher(get_message("sensor_msgs/msg/PointCloud2"), "/cloud", 1)
     images = node.create_publisher(get_message("sensor_msgs/msg/Image"), "/image", 1)
     one_cloud, one_image = cloud(points), image(1280, 720)
     for turn in range(round(seconds * rate)):
-        w.move({("base", "tip"): (now(), 0, 0, 0, 0, 0, 1)})
+        world.move({("base", "tip"): (now(), 0, 0, 0, 0, 0, 1)})
         if turn % int(rate / 10) == 0:
             clouds.publish(one_cloud)
             images.publish(one_image)
@@ -141,10 +141,10 @@ async def publish_all(w, seconds: float, *, rate: float = 50.0, points: int = 10
 @skipping
 async def test_robot_keeps_moving_over_one_megabit(answers, latest, seconds):
     """Of a page that acknowledges nothing, as other programs, less is known."""
-    async with world(RvizConfig.parse(FILE)) as w, slow_line(w.viewer.url, MEGABIT) as url:
+    async with open_world(RvizConfig.parse(FILE)) as world, slow_line(world.viewer.url, MEGABIT) as url:
         async with watching(url, answers=answers) as watcher:
             began = watcher.now()
-            await publish_all(w, seconds)
+            await publish_all(world, seconds)
         settled = [delay for at, delay in watcher.delays if at - began > 2.0]
         assert len(settled) > 10
         assert max(settled) < latest
@@ -158,8 +158,8 @@ async def test_robot_keeps_moving_over_one_megabit(answers, latest, seconds):
 
 @skipping
 async def test_fast_connection_receives_full_data():
-    async with world(RvizConfig.parse(FILE)) as w, watching(w.viewer.url) as watcher:
-        await publish_all(w, 1.5)
+    async with open_world(RvizConfig.parse(FILE)) as world, watching(world.viewer.url) as watcher:
+        await publish_all(world, 1.5)
         assert watcher.of("cloud_points")[-1]["step"] == 1
         assert watcher.of("cloud_points")[-1]["positions"].size == 300_000
         assert watcher.of("image_frame")[-1]["encoding"] == "rgb"
@@ -167,8 +167,10 @@ async def test_fast_connection_receives_full_data():
 
 @skipping
 async def test_single_cloud_is_completed_on_fast_connection():
-    async with world(RvizConfig.parse(FILE)) as w, watching(w.viewer.url) as watcher:
-        clouds = w.graph.create_node("senses").create_publisher(get_message("sensor_msgs/msg/PointCloud2"), "/cloud", 1)
+    async with open_world(RvizConfig.parse(FILE)) as world, watching(world.viewer.url) as watcher:
+        clouds = world.graph.create_node("senses").create_publisher(
+            get_message("sensor_msgs/msg/PointCloud2"), "/cloud", 1
+        )
         await eventually(lambda: watcher.sizes)
         clouds.publish(cloud(100_000))
         await eventually(lambda: watcher.of("cloud_points") and watcher.of("cloud_points")[-1]["step"] == 1)
@@ -176,8 +178,10 @@ async def test_single_cloud_is_completed_on_fast_connection():
 
 @skipping
 async def test_thinned_cloud_is_completed_when_page_is_idle():
-    async with world(RvizConfig.parse(FILE)) as w, watching(w.viewer.url, busy=0.2) as watcher:
-        clouds = w.graph.create_node("senses").create_publisher(get_message("sensor_msgs/msg/PointCloud2"), "/cloud", 1)
+    async with open_world(RvizConfig.parse(FILE)) as world, watching(world.viewer.url, busy=0.2) as watcher:
+        clouds = world.graph.create_node("senses").create_publisher(
+            get_message("sensor_msgs/msg/PointCloud2"), "/cloud", 1
+        )
         await eventually(lambda: watcher.sizes)
         clouds.publish(cloud(20_000))
         await eventually(lambda: bool(watcher.of("cloud_points")))
@@ -190,11 +194,13 @@ async def test_thinned_cloud_is_completed_when_page_is_idle():
 @skipping
 async def test_cloud_over_slow_connection_does_not_delay_transforms():
     async with (
-        world(RvizConfig.parse(FILE)) as w,
-        slow_line(w.viewer.url, 2 * MEGABIT) as url,
+        open_world(RvizConfig.parse(FILE)) as world,
+        slow_line(world.viewer.url, 2 * MEGABIT) as url,
         watching(url) as watcher,
     ):
-        clouds = w.graph.create_node("senses").create_publisher(get_message("sensor_msgs/msg/PointCloud2"), "/cloud", 1)
+        clouds = world.graph.create_node("senses").create_publisher(
+            get_message("sensor_msgs/msg/PointCloud2"), "/cloud", 1
+        )
         await eventually(lambda: watcher.sizes > 0)
         clouds.publish(cloud(20_000))
         await eventually(lambda: watcher.of("cloud_points"))
@@ -202,7 +208,7 @@ async def test_cloud_over_slow_connection_does_not_delay_transforms():
         x = 0.0
         while watcher.of("cloud_points")[-1]["step"] > 1:
             x += 1.0
-            w.move({("base", "tip"): (x, 0, 0, 0, 0, 0, 1)})
+            world.move({("base", "tip"): (x, 0, 0, 0, 0, 0, 1)})
             moved = x
             await eventually(lambda moved=moved: watcher.x == moved)
         assert watcher.of("cloud_points")[-1]["positions"].size == 60_000
@@ -212,24 +218,24 @@ async def test_cloud_over_slow_connection_does_not_delay_transforms():
 @skipping
 async def test_four_pages_drop_only_stale_frames():
     """At 100 Hz; one of the pages is slow, and no page waits for another."""
-    async with world(RvizConfig.parse(FILE.replace("Rate: 50", "Rate: 100"))) as w:
+    async with open_world(RvizConfig.parse(FILE.replace("Rate: 50", "Rate: 100"))) as world:
         async with (
-            slow_line(w.viewer.url, 25_000.0) as url,
-            watching(w.viewer.url) as a,
-            watching(w.viewer.url) as b,
-            watching(w.viewer.url) as c,
+            slow_line(world.viewer.url, 25_000.0) as url,
+            watching(world.viewer.url) as a,
+            watching(world.viewer.url) as b,
+            watching(world.viewer.url) as c,
             watching(url) as slow,
         ):
-            await publish_all(w, 3.0, rate=100.0, points=10_000)
+            await publish_all(world, 3.0, rate=100.0, points=10_000)
             x = 123.25
-            w.move({("base", "tip"): (x, 0, 0, 0, 0, 0, 1)})
+            world.move({("base", "tip"): (x, 0, 0, 0, 0, 0, 1)})
             await eventually(lambda: slow.x == x)
         for quick in (a, b, c):
             assert len(quick.delays) > 270  # of 300
             assert np.percentile([delay for _, delay in quick.delays[:-1]], 95) < 0.2
         assert len(slow.delays) < len(a.delays)
-        for each in (a, b, c, slow):
-            assert each.x == x  # the last place arrives everywhere
+        for client in (a, b, c, slow):
+            assert client.x == x  # the last place arrives everywhere
 
 
 class Hand:

@@ -60,12 +60,12 @@ class Sender:
             return REFUSED if "problem" in message else answer.status, message
 
     async def announce(self, name: str, files: dict[str, int]) -> tuple[int, dict[str, str]]:
-        listed = [{"name": each, "size": size} for each, size in files.items()]
+        listed = [{"name": name, "size": size} for name, size in files.items()]
         return await self.ask("POST", "recordings", json={"name": name, "files": listed})
 
     async def send(self, name: str, files: dict[str, bytes]) -> tuple[int, dict[str, str]]:
         """Send a whole recording, and return the last answer."""
-        status, answer = await self.announce(name, {each: len(data) for each, data in files.items()})
+        status, answer = await self.announce(name, {name: len(data) for name, data in files.items()})
         if status != 200:
             return status, answer
         key = answer["key"]
@@ -77,16 +77,16 @@ class Sender:
 
 @asynccontextmanager
 async def upload_server() -> AsyncIterator[tuple[World, Sender]]:
-    made = World()
-    guests = GuestRecordings(made.viewer)
-    made.viewer.make_guests = lambda: guests
-    await made.viewer.start()
+    world = World()
+    guests = GuestRecordings(world.viewer)
+    world.viewer.make_guests = lambda: guests
+    await world.viewer.start()
     try:
         async with aiohttp.ClientSession() as session:
-            yield made, Sender(session, made.viewer.url)
+            yield world, Sender(session, world.viewer.url)
     finally:
-        await made.viewer.close()
-        await made.graph.close()
+        await world.viewer.close()
+        await world.graph.close()
 
 
 @asynccontextmanager
@@ -114,7 +114,7 @@ def left(scratch: Path) -> list[str]:
 @skipping
 async def test_uploaded_folder_is_shown_with_own_timeline_and_graph(tmp_path: Path):
     files = contents(recorded(tmp_path))
-    async with upload_server() as (made, sender):
+    async with upload_server() as (world, sender):
         status, answer = await sender.send("drive", files)
         assert status == 200, answer
         async with recording_page(sender, answer["recording"]) as client:
@@ -122,7 +122,7 @@ async def test_uploaded_folder_is_shown_with_own_timeline_and_graph(tmp_path: Pa
             timeline = await client.until("timeline")
             assert (timeline["name"], timeline["live"], timeline["end"] - timeline["start"]) == ("drive", False, 10)
             await client.until("playhead", playing=True)
-        assert "/p" not in dict(made.viewer.context.node.get_topic_names_and_types()), "it is in a graph of its own"
+        assert "/p" not in dict(world.viewer.context.node.get_topic_names_and_types()), "it is in a graph of its own"
         async with recording_page(sender, "no-such-recording") as client:
             assert (await client.until("hello"))["title"] == ""
 
@@ -203,14 +203,14 @@ async def test_rejection_is_translated_to_page_language():
 @skipping
 async def test_recording_of_program_is_shown_and_kept(tmp_path: Path):
     (path,) = recorded(tmp_path).glob("*.mcap")
-    async with upload_server() as (made, sender):
-        url = made.viewer.context.downloads.offer_repeatedly(path).lstrip("/")
+    async with upload_server() as (world, sender):
+        url = world.viewer.context.downloads.offer_repeatedly(path).lstrip("/")
         status, answer = await sender.ask("POST", url)
         assert status == 200, answer
         async with recording_page(sender, answer["recording"]) as client:
             assert not (await client.until("timeline"))["live"]
         await asyncio.sleep(4 * SECONDS)
-        assert made.viewer.guests.audience(answer["recording"]) is None
+        assert world.viewer.guests.audience(answer["recording"]) is None
         assert path.exists()
         path.write_bytes(b"not a recording")
         assert (await sender.ask("POST", url))[0] == REFUSED

@@ -16,7 +16,7 @@ from linkwright.messages import Header, JointState
 from linkwright.page.protocol.comparison import ComparedDescriptions
 from linkwright.panels.comparison.feature import add_old_robot, without_paths
 from linkwright.rviz import RvizConfig
-from tests.viewer.scene import Client, World, page, world
+from tests.viewer.scene import Client, World, open_world, page
 from tests.waiting import eventually
 
 OLD = """\
@@ -53,12 +53,12 @@ NEW = """\
 class Compared:
     """A viewer that compares two files."""
 
-    def __init__(self, made: World, folder: Path, old: str, new: str) -> None:
-        self.made = made
+    def __init__(self, world: World, folder: Path, old: str, new: str) -> None:
+        self.world = world
         self.pair = file_pair(self.write(folder, "old.urdf", old), self.write(folder, "new.urdf", new), {})
-        node = made.graph.create_node("old_robot_state_publisher")
-        self.publish_old = made.viewer.attach_comparison(self.pair, node)
-        self.joint_states = made.graph.create_node("joints").create_publisher(
+        node = world.graph.create_node("old_robot_state_publisher")
+        self.publish_old = world.viewer.attach_comparison(self.pair, node)
+        self.joint_states = world.graph.create_node("joints").create_publisher(
             JointState, "joint_states", SENSOR_DATA_QOS
         )
         self.show_old()
@@ -71,25 +71,25 @@ class Compared:
         return path
 
     def show_old(self) -> None:
-        found = examine(self.pair.old.path)
-        self.publish_old(self.made.library.store(found, old_description_key(found), self.pair.old.finder))
+        examination = examine(self.pair.old.path)
+        self.publish_old(self.world.library.store(examination, old_description_key(examination), self.pair.old.finder))
 
     def show_new(self) -> None:
-        self.made.describe(self.made.library.store(examine(self.pair.new.path)))
+        self.world.describe(self.world.library.store(examine(self.pair.new.path)))
 
     def move(self, **positions: float) -> None:
-        stamp = self.made.graph.timebase.now_ns()
+        stamp = self.world.graph.timebase.now_ns()
         message = JointState(header=Header(), name=list(positions), position=list(positions.values()))
         message.header.stamp = type(message.header.stamp).from_nanoseconds(stamp)
         self.joint_states.publish(message)
 
     def pose(self, frame: str) -> np.ndarray | None:
         """Return the pose of a frame in `base`: x y z qx qy qz qw."""
-        names, poses = self.made.viewer.manager.opening_state()[1].names, None
+        names, poses = self.world.viewer.manager.opening_state()[1].names, None
         if frame in names:
             from linkwright.page.protocol.message import unpack_transforms
 
-            frames = self.made.viewer.manager.opening_state()[2]
+            frames = self.world.viewer.manager.opening_state()[2]
             poses = unpack_transforms(next(frame for frame in frames if isinstance(frame, bytes)))[1][
                 names.index(frame)
             ]
@@ -100,9 +100,9 @@ class Compared:
 async def compared(folder: Path, old: str = OLD, new: str = NEW) -> AsyncIterator[tuple[Compared, Client]]:
     config = RvizConfig.for_model("base")
     add_old_robot(config, "old.urdf")
-    async with world(config) as made:
-        both = Compared(made, folder, old, new)
-        async with page(made.viewer) as client:
+    async with open_world(config) as world:
+        both = Compared(world, folder, old, new)
+        async with page(world.viewer) as client:
             yield both, client
 
 
@@ -113,13 +113,13 @@ def marks(message: dict, side: str) -> dict[str, str]:
 async def test_page_receives_differences_with_links(tmp_path):
     async with compared(tmp_path) as (both, client):
         message = await client.until("compared_descriptions")
-        displays = [display.id for display in both.made.viewer.displays if display.CLASS.endswith("RobotModel")]
+        displays = [display.id for display in both.world.viewer.displays if display.CLASS.endswith("RobotModel")]
         assert [message["new"]["display"], message["old"]["display"]] == displays
         assert message["new"]["label"].endswith("new.urdf")
         assert marks(message, "old") == {"camera": "removed"}
         assert marks(message, "new") == {"lidar": "added", "lower": "changed", "upper": "changed"}
         assert message["joints"] == {"turn": "spin"}, "a joint that turned and slides now follows nothing"
-        items = {(each["subject"], each["name"], each["property"]): each for each in message["items"]}
+        items = {(item["subject"], item["name"], item["property"]): item for item in message["items"]}
         mass = items["link", "lower", "inertial mass"]
         assert (mass["old"], mass["new"], mass["unit"], mass["element"]) == ("1", "2", "kg", "lower")
         assert (mass["old_place"]["line"], mass["new_place"]["line"]) == (3, 3)
@@ -130,7 +130,7 @@ async def test_page_receives_differences_with_links(tmp_path):
         joint = items["joint", "mount", ""]
         assert (joint["element_kind"], joint["element"], joint["in_old"]) == ("joint", "mount", True)
         assert items["joint", "spin", "name"]["kind"] == "renamed"
-        friction = next(each for each in message["items"] if each["subject"] == "extension")
+        friction = next(item for item in message["items"] if item["subject"] == "extension")
         assert (friction["element_kind"], friction["element"], friction["in_old"]) == ("link", "lower", False)
 
 
@@ -184,7 +184,7 @@ async def test_source_text_of_both_descriptions_can_be_requested(tmp_path):
             file = str(tmp_path / name)
             await client.send("ask_description_text", display=message[side]["display"], file=file)
             assert (await client.until("description_text", file=file))["text"] == NEW
-        assert both.made.library.packages(both.made.display("RobotModel").text) is None
+        assert both.world.library.packages(both.world.display("RobotModel").text) is None
 
 
 async def test_removed_old_display_is_reported_as_empty(tmp_path):
@@ -192,15 +192,17 @@ async def test_removed_old_display_is_reported_as_empty(tmp_path):
         message = await client.until("compared_descriptions")
         await client.send("remove_displays", displays=[message["old"]["display"]])
         assert (await client.until("compared_descriptions"))["old"]["display"] == ""
-        assert both.made.viewer.manager.display(message["old"]["display"]) is None
+        assert both.world.viewer.manager.display(message["old"]["display"]) is None
 
 
 async def test_exported_comparison_contains_no_paths(tmp_path):
     async with compared(tmp_path) as (both, client):
         await client.until("compared_descriptions")
-        manager = both.made.viewer.manager
+        manager = both.world.viewer.manager
         result = next(
-            each for each in both.made.viewer.configuration_messages(manager) if isinstance(each, ComparedDescriptions)
+            message
+            for message in both.world.viewer.configuration_messages(manager)
+            if isinstance(message, ComparedDescriptions)
         )
         bare = without_paths(result)
         assert (bare.old.label, bare.new.label) == ("old.urdf", "new.urdf")

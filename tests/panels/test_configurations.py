@@ -25,20 +25,20 @@ async def test_configuration_is_saved_and_reopened(tmp_path):
         assert yaml.safe_load(path.read_text())["Visualization Manager"]["Displays"][0]["Alpha"] == 0.25
         await client.send("new_configuration", discard=False)
         tree = await client.until("tree")
-        assert [each["name"] for each in tree["displays"]] == ["Grid"]
+        assert [display["name"] for display in tree["displays"]] == ["Grid"]
         state = await client.until("configuration", path=None)
         assert (state["opened"], state["unsaved"], state["undo"]) == (2, False, None)
         await client.send("open_configuration", path=str(path), discard=False)
         tree = await client.until("tree")
-        assert [each["name"] for each in tree["displays"]] == ["Grid", "Marks", "Clicks", "Radar"]
-        assert {each["id"] for each in tree["displays"]}.isdisjoint({f"display-{n}" for n in range(1, 6)})
+        assert [display["name"] for display in tree["displays"]] == ["Grid", "Marks", "Clicks", "Radar"]
+        assert {display["id"] for display in tree["displays"]}.isdisjoint({f"display-{n}" for n in range(1, 6)})
     assert not list(tmp_path.glob(".*rviz*"))
 
 
 async def test_unsaved_changes_are_not_discarded_without_confirmation(tmp_path):
     path = tmp_path / "a.rviz"
     path.write_text(TEXT, encoding="utf-8")
-    async with opened() as (made, client):
+    async with opened() as (world, client):
         await client.set("display-1/Alpha", 0.25)
         await client.until("configuration", unsaved=True)
         for kind, fields in (
@@ -48,7 +48,7 @@ async def test_unsaved_changes_are_not_discarded_without_confirmation(tmp_path):
         ):
             await client.send(kind, discard=False, **fields)
             assert (await client.until("configuration_refused"))["question"] == "unsaved"
-        assert made.viewer.manager.opened == 1
+        assert world.viewer.manager.opened == 1
         await client.send("open_configuration", path=str(path), discard=True)
         assert (await client.until("configuration", opened=2))["unsaved"] is False
 
@@ -56,7 +56,7 @@ async def test_unsaved_changes_are_not_discarded_without_confirmation(tmp_path):
 async def test_existing_file_is_not_replaced_without_confirmation(tmp_path):
     path, other = tmp_path / "a.rviz", tmp_path / "b.rviz"
     other.write_text("precious", encoding="utf-8")
-    async with opened(path=path) as (made, client):
+    async with opened(path=path) as (world, client):
         await client.send("save_configuration", path=str(other), replace=False)
         assert (await client.until("configuration_refused"))["question"] == "exists"
         assert other.read_text() == "precious"
@@ -65,7 +65,7 @@ async def test_existing_file_is_not_replaced_without_confirmation(tmp_path):
         assert (await client.until("configuration_refused"))["question"] == "changed_on_disk"
         await client.send("save_configuration", path=str(other), replace=True)
         await client.until("configuration_saved", path=str(other))
-        assert made.viewer.config.path == other
+        assert world.viewer.config.path == other
         assert RvizConfig.load(other).displays
         await client.send("save_configuration", path="below/c.rviz", replace=False)
         assert "cannot write" in (await client.until("configuration_refused"))["message"]
@@ -87,12 +87,12 @@ async def test_only_rviz_files_are_opened_and_saved(tmp_path, name):
 
 async def test_unreadable_configuration_is_reported_and_changes_nothing(tmp_path):
     (tmp_path / "bad.rviz").write_text("a: [1\n", encoding="utf-8")
-    async with opened(path=tmp_path / "a.rviz") as (made, client):
+    async with opened(path=tmp_path / "a.rviz") as (world, client):
         await client.send("open_configuration", path="bad.rviz", discard=True)
         assert "bad.rviz:2" in (await client.until("configuration_refused"))["message"]
         await client.send("load_configuration", name="mine.rviz", text="- 1\n", discard=True)
         assert "mine.rviz" in (await client.until("configuration_refused"))["message"]
-        assert (made.viewer.manager.opened, len(names(made))) == (1, 4)
+        assert (world.viewer.manager.opened, len(names(world))) == (1, 4)
 
 
 async def test_configuration_is_loaded_from_text():
@@ -105,11 +105,11 @@ async def test_configuration_is_loaded_from_text():
 
 
 async def test_configuration_is_reverted(tmp_path):
-    async with opened(path=tmp_path / "a.rviz") as (made, client):
+    async with opened(path=tmp_path / "a.rviz") as (world, client):
         await edit(client, "remove_displays", displays=["display-1"])
         await client.send("revert_configuration")
         state = await client.until("configuration", opened=2)
-        assert (state["unsaved"], names(made)) == (False, ["Grid", "Marks", "Clicks", "Radar"])
+        assert (state["unsaved"], names(world)) == (False, ["Grid", "Marks", "Clicks", "Radar"])
 
 
 async def test_folders_are_listed(tmp_path):
@@ -209,7 +209,7 @@ Window Geometry:
 
 
 async def test_rviz1_configuration_keeps_its_format():
-    async with opened(ROS_1) as (made, client):
+    async with opened(ROS_1) as (world, client):
         displays = client.first["tree"]["displays"]
         assert [display["cls"] for display in displays][:5] == [
             "rviz_default_plugins/Grid",
@@ -218,13 +218,13 @@ async def test_rviz1_configuration_keeps_its_format():
             "rviz_default_plugins/RobotModel",
             "rviz_default_plugins/TF",
         ]
-        assert "RVIZ" not in made.logged()
-        assert "used" not in made.logged()
+        assert "RVIZ" not in world.logged()
+        assert "used" not in world.logged()
         qos = QoSProfile(depth=1, reliability=ReliabilityPolicy.BEST_EFFORT)
-        publisher = made.graph.create_node("clicks").create_publisher(PointStamped, "/clicked_point", qos)
+        publisher = world.graph.create_node("clicks").create_publisher(PointStamped, "/clicked_point", qos)
         assert publisher.get_subscription_count() == 1
-        assert made.display("RobotModel").properties.text("Description Topic") == "my_robot"
-        assert made.viewer.config.text() == ROS_1
+        assert world.display("RobotModel").properties.text("Description Topic") == "my_robot"
+        assert world.viewer.config.text() == ROS_1
         await client.set("display-3/Topic/Depth", 9)
         await client.until("configuration", unsaved=True)
-        assert made.viewer.config.text() == ROS_1.replace("Queue Size: 7", "Queue Size: 9")
+        assert world.viewer.config.text() == ROS_1.replace("Queue Size: 7", "Queue Size: 9")

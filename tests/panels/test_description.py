@@ -10,7 +10,7 @@ import pytest
 from linkwright.descriptions import examine
 from linkwright.diagnostics import LinkwrightError
 from linkwright.rviz import RvizConfig
-from tests.viewer.scene import ARM, page, world
+from tests.viewer.scene import ARM, open_world, page
 
 WHEELED = """\
 <robot name="wheeled" xmlns:xacro="http://www.ros.org/wiki/xacro">
@@ -59,9 +59,9 @@ def files(tmp_path):
     return tmp_path
 
 
-def describe(scene, folder: Path) -> str:
-    text = scene.library.store(examine(folder / "robot.xacro"))
-    scene.describe(text)
+def describe(world, folder: Path) -> str:
+    text = world.library.store(examine(folder / "robot.xacro"))
+    world.describe(text)
     return text
 
 
@@ -79,8 +79,8 @@ def lines(text: str, written: dict) -> str:
 
 
 async def test_description_has_links_and_joints_with_locations(files):
-    async with world() as scene, page(scene.viewer) as client:
-        text = describe(scene, files)
+    async with open_world() as world, page(world.viewer) as client:
+        text = describe(world, files)
         message = await ask(client, "ask_description", "description", display=DISPLAY)
     assert (message["name"], message["root"]) == ("wheeled", "base")
     links = {link["name"]: link for link in message["links"]}
@@ -107,8 +107,8 @@ async def test_description_has_links_and_joints_with_locations(files):
 
 
 async def test_inertia_is_shown_as_equivalent_box(files):
-    async with world() as scene, page(scene.viewer) as client:
-        describe(scene, files)
+    async with open_world() as world, page(world.viewer) as client:
+        describe(world, files)
         message = await ask(client, "ask_description", "description", display=DISPLAY)
     base, left, _ = (link["inertia"] for link in message["links"])
     assert (base["mass"], base["center"]) == (6, [0, 0, 0.1])
@@ -118,8 +118,8 @@ async def test_inertia_is_shown_as_equivalent_box(files):
 
 
 async def test_implausible_inertias_are_reported_for_each_link_of_macro(files):
-    async with world() as scene, page(scene.viewer) as client:
-        describe(scene, files)
+    async with open_world() as world, page(world.viewer) as client:
+        describe(world, files)
         message = await ask(client, "ask_inertia", "inertia_findings", display=DISPLAY)
     broken = [finding["link"] for finding in message["findings"] if finding["code"] == "LW314"]
     assert broken == ["left_wheel", "right_wheel"]
@@ -128,8 +128,8 @@ async def test_implausible_inertias_are_reported_for_each_link_of_macro(files):
 
 async def test_texts_are_sent_only_for_files_of_description(files):
     (files / "secret.txt").write_text("secret")
-    async with world() as scene, page(scene.viewer) as client:
-        text = describe(scene, files)
+    async with open_world() as world, page(world.viewer) as client:
+        text = describe(world, files)
         message = await ask(client, "ask_description", "description", display=DISPLAY)
         assert [Path(name).name for name in message["files"]] == ["robot.xacro", "wheel.xacro", "sizes.yaml"]
 
@@ -150,28 +150,28 @@ async def test_texts_are_sent_only_for_files_of_description(files):
 
 
 async def test_edit_is_reported_with_changed_links_and_joints(files):
-    async with world() as scene, page(scene.viewer) as client:
-        describe(scene, files)
+    async with open_world() as world, page(world.viewer) as client:
+        describe(world, files)
         first = await client.until("description_changed")
         assert (first["links"], first["joints"]) == ([], [])
         (files / "wheel.xacro").write_text(WHEEL.replace('radius="0.1"', 'radius="0.2"'))
-        describe(scene, files)
+        describe(world, files)
         second = await client.until("description_changed")
         assert (second["links"], second["joints"]) == (["left_wheel", "right_wheel"], [])
         (files / "robot.xacro").write_text(
             WHEELED.replace("-0.2", "-0.3").replace('  <link name="base"', '\n<link name="base"')
         )
-        describe(scene, files)
+        describe(world, files)
         third = await client.until("description_changed")
         assert (third["links"], third["joints"]) == ([], ["right_wheel_joint"])
         assert first["revision"] < second["revision"] < third["revision"]
 
 
 async def test_opened_page_is_notified_of_description():
-    async with world() as scene:
-        scene.describe(ARM)
-        await scene.settle()
-        async with page(scene.viewer) as client:
+    async with open_world() as world:
+        world.describe(ARM)
+        await world.settle()
+        async with page(world.viewer) as client:
             message = await client.until("description_changed", display=DISPLAY)
             assert (message["links"], message["joints"]) == ([], [])
             details = await ask(client, "ask_description", "description", display=DISPLAY)
@@ -183,16 +183,16 @@ async def test_opened_page_is_notified_of_description():
 
 
 async def test_text_with_errors_is_sent_instead_of_shown_robot(files):
-    async with world() as scene, page(scene.viewer) as client:
-        describe(scene, files)
+    async with open_world() as world, page(world.viewer) as client:
+        describe(world, files)
         (files / "robot.xacro").write_text(WHEELED.replace('side="left"', 'sid="left"'))
         with pytest.raises(LinkwrightError) as caught:
             examine(files / "robot.xacro")
-        scene.viewer.show_diagnostics(caught.value.diagnostics)
+        world.viewer.show_diagnostics(caught.value.diagnostics)
         file = str(files / "robot.xacro")
         message = await ask(client, "ask_description_text", "description_text", display=DISPLAY, file=file)
         assert 'sid="left"' in message["text"]
-        scene.viewer.show_diagnostics([])
+        world.viewer.show_diagnostics([])
         message = await ask(client, "ask_description_text", "description_text", display=DISPLAY, file=file)
         assert message["text"] == WHEELED
 
@@ -200,18 +200,18 @@ async def test_text_with_errors_is_sent_instead_of_shown_robot(files):
 async def test_robot_with_all_meshes_missing_is_reported(files):
     box = '<visual><geometry><box size="1 1 1"/></geometry></visual>'
     mesh = f'<visual><geometry><mesh filename="file://{files}/gone.stl"/></geometry></visual>'
-    async with world() as scene, page(scene.viewer) as client:
+    async with open_world() as world, page(world.viewer) as client:
         assert (await client.until("diagnostics"))["items"] == []
         for shapes, codes in ((mesh, ["VIEW207"]), (box + mesh, []), (mesh, ["VIEW207"])):
-            scene.describe(f'<robot name="r"><link name="base">{shapes}</link></robot>')
+            world.describe(f'<robot name="r"><link name="base">{shapes}</link></robot>')
             message = await client.until("diagnostics")
-            assert [each["code"] for each in message["items"]] == codes
+            assert [item["code"] for item in message["items"]] == codes
         (note,) = message["items"][0]["notes"]
         assert "gone.stl" in note["message"]
 
 
 async def test_requests_for_unknown_display_are_ignored():
-    async with world(RvizConfig.for_model("base")) as scene, page(scene.viewer) as client:
+    async with open_world(RvizConfig.for_model("base")) as world, page(world.viewer) as client:
         answer = await ask(client, "ask_description_text", "description_text", display="display-99", file="/etc/passwd")
         assert answer["text"] is None
         await client.send("ask_description", display="display-99")
@@ -221,16 +221,16 @@ async def test_requests_for_unknown_display_are_ignored():
 
 
 async def test_page_with_own_displays_receives_only_their_descriptions(files):
-    async with world() as scene, page(scene.viewer) as shared:
-        describe(scene, files)
+    async with open_world() as world, page(world.viewer) as shared:
+        describe(world, files)
         answer = await shared.until("description_changed")
-        async with page(SimpleNamespace(url=f"{scene.viewer.url}&own=of-my-own")) as alone:
+        async with page(SimpleNamespace(url=f"{world.viewer.url}&own=of-my-own")) as alone:
             mine = await alone.until("description_changed")
             assert mine["display"] != answer["display"]
             await alone.send("ask_description", display=answer["display"])  # which it does not see
             details = await ask(alone, "ask_description", "description", display=mine["display"])
             assert details["display"] == mine["display"]
-            describe(scene, files)
+            describe(world, files)
             rest = await shared.drain()
     kinds = [
         message["display"] for message in rest if isinstance(message, dict) and "description_changed" in message["type"]

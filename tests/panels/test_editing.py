@@ -9,7 +9,7 @@ import pytest
 
 from linkwright.descriptions import examine
 from linkwright.page.audience import Page
-from tests.viewer.scene import ARM, page, world
+from tests.viewer.scene import ARM, open_world, page
 
 ROBOT = """\
 <robot name="r" xmlns:xacro="http://www.ros.org/wiki/xacro">
@@ -44,8 +44,8 @@ def file(tmp_path: Path) -> Path:
     return path
 
 
-def describe(scene: Any, file: Path) -> None:
-    scene.describe(scene.library.store(examine(file)))
+def describe(world: Any, file: Path) -> None:
+    world.describe(world.library.store(examine(file)))
 
 
 def content(file: Path) -> str:
@@ -62,8 +62,8 @@ def gone(file: Path) -> None:
 
 async def ask(client: Any, kind: str, answer: str, **fields: Any) -> dict[str, Any]:
     await client.send(kind, **fields)
-    found: dict[str, Any] = await client.until(answer)
-    return found
+    reply: dict[str, Any] = await client.until(answer)
+    return reply
 
 
 async def parts(client: Any, link: str) -> dict[str, Any]:
@@ -78,27 +78,27 @@ async def preview(client: Any, number: int, part: str, name: str, **fields: Any)
 
 
 async def test_link_parts_have_numbers_and_locations(file: Path) -> None:
-    async with world() as scene, page(scene.viewer) as client:
-        describe(scene, file)
+    async with open_world() as world, page(world.viewer) as client:
+        describe(world, file)
         await client.until("description_changed")
         answer = await parts(client, "mast")
         assert answer["why_not"] == ""
-        found = [(each["part"], each["name"], each["title"], each["xyz"], each["rpy"]) for each in answer["parts"]]
-        assert found == [
+        part_facts = [(part["part"], part["name"], part["title"], part["xyz"], part["rpy"]) for part in answer["parts"]]
+        assert part_facts == [
             ("joint", "turn", "continuous", [0, 0, 0.25], [0, 0, 0.5]),
             ("axis", "turn", "continuous", [0, 0, 1], []),
             ("visual", "mast", "pole", [0, 0, 0.5], [0, 0, 0]),
             ("collision", "mast", "mast.stl", [0, 0, 0], [0, 0, 0]),
             ("inertial", "mast", "1.5 kg", [0, 0, 0.4], [0, 0, 0]),
         ]
-        assert [each["written"] for each in answer["parts"]] == [
+        assert [part["written"] for part in answer["parts"]] == [
             'xyz="0 0 ${height}" rpy="0 0 0.5"',
             'xyz="0 0 1"',
             'xyz="0 0 0.5"',
             "",
             'xyz="0 0 0.4"',
         ]
-        assert {(each["file"], each["line"]) for each in answer["parts"][:2]} == {(str(file), 19)}
+        assert {(part["file"], part["line"]) for part in answer["parts"][:2]} == {(str(file), 19)}
 
 
 async def test_sdf_robot_cannot_be_edited(tmp_path: Path) -> None:
@@ -107,8 +107,8 @@ async def test_sdf_robot_cannot_be_edited(tmp_path: Path) -> None:
     file.write_text(
         f'<sdf version="1.9"><model name="crate"><link name="base"><visual name="v">{box}</visual></link></model></sdf>'
     )
-    async with world() as scene, page(scene.viewer) as client:
-        describe(scene, file)
+    async with open_world() as world, page(world.viewer) as client:
+        describe(world, file)
         await client.until("description_changed")
         answer = await parts(client, "base")
         assert "described in SDF" in answer["why_not"]
@@ -118,8 +118,8 @@ async def test_sdf_robot_cannot_be_edited(tmp_path: Path) -> None:
 
 
 async def test_edit_is_previewed_written_and_undone(file: Path) -> None:
-    async with world() as scene, page(scene.viewer) as client:
-        describe(scene, file)
+    async with open_world() as world, page(world.viewer) as client:
+        describe(world, file)
         await client.until("description_changed")
         shown = await preview(client, 7, "joint", "turn", xyz=[0, 0, 0.3])
         assert (shown["number"], shown["refusal"], shown["also"]) == (7, None, [])
@@ -142,8 +142,8 @@ async def test_edit_is_previewed_written_and_undone(file: Path) -> None:
 
 
 async def test_only_previewed_edit_is_written(file: Path) -> None:
-    async with world() as scene, page(scene.viewer) as client:
-        describe(scene, file)
+    async with open_world() as world, page(world.viewer) as client:
+        describe(world, file)
         await client.until("description_changed")
         await preview(client, 1, "joint", "turn", xyz=[0, 0, 0.3])
         assert (await ask(client, "apply_edit", "edit_written", number=2))["refusal"]["code"] == "EDIT101"
@@ -151,8 +151,8 @@ async def test_only_previewed_edit_is_written(file: Path) -> None:
 
 
 async def test_edit_with_side_effects_requires_together_option(file: Path) -> None:
-    async with world() as scene, page(scene.viewer) as client:
-        describe(scene, file)
+    async with open_world() as world, page(world.viewer) as client:
+        describe(world, file)
         await client.until("description_changed")
         refused = await preview(client, 1, "joint", "left_joint", xyz=[0, 0, 0.2])
         assert refused["files"] == []
@@ -164,8 +164,8 @@ async def test_edit_with_side_effects_requires_together_option(file: Path) -> No
 
 
 async def test_file_changed_after_preview_is_not_overwritten(file: Path) -> None:
-    async with world() as scene, page(scene.viewer) as client:
-        describe(scene, file)
+    async with open_world() as world, page(world.viewer) as client:
+        describe(world, file)
         await client.until("description_changed")
         await preview(client, 1, "joint", "turn", xyz=[0, 0, 0.3])
         write(file, ROBOT + "<!-- mine -->")
@@ -174,8 +174,8 @@ async def test_file_changed_after_preview_is_not_overwritten(file: Path) -> None
 
 
 async def test_malformed_or_missing_file_is_reported_and_editing_continues(file: Path) -> None:
-    async with world() as scene, page(scene.viewer) as client:
-        describe(scene, file)
+    async with open_world() as world, page(world.viewer) as client:
+        describe(world, file)
         await client.until("description_changed")
         write(file, "<robot")
         assert (await preview(client, 1, "joint", "turn", xyz=[0, 0, 1]))["refusal"]["code"].startswith("XML")
@@ -187,8 +187,8 @@ async def test_malformed_or_missing_file_is_reported_and_editing_continues(file:
 
 
 async def test_description_without_file_cannot_be_edited(file: Path) -> None:
-    async with world() as scene, page(scene.viewer) as client:
-        scene.describe(ARM)
+    async with open_world() as world, page(world.viewer) as client:
+        world.describe(ARM)
         await client.until("description_changed")
         answer = await parts(client, "base")
         assert "linkwright view FILE" in answer["why_not"]
@@ -196,15 +196,15 @@ async def test_description_without_file_cannot_be_edited(file: Path) -> None:
 
 
 async def test_page_on_another_machine_cannot_edit(file: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    made = Page.__init__
+    initialize = Page.__init__
 
     def elsewhere(self: Page, *words: Any, is_local: bool = False, **named: Any) -> None:
         assert is_local, "the page of the test is on this machine"
-        made(self, *words, is_local=False, **named)
+        initialize(self, *words, is_local=False, **named)
 
     monkeypatch.setattr(Page, "__init__", elsewhere)
-    async with world() as scene, page(scene.viewer) as client:
-        describe(scene, file)
+    async with open_world() as world, page(world.viewer) as client:
+        describe(world, file)
         await client.until("description_changed")
         assert "open on the machine with the files" in (await parts(client, "mast"))["why_not"]
         assert (await preview(client, 1, "joint", "turn", xyz=[0, 0, 1]))["refusal"]["code"] == "EDIT109"

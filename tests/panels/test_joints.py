@@ -32,9 +32,9 @@ GRIPPER = """\
 
 @pytest.fixture
 async def graph():
-    made = Graph(on_log=lambda _: None)
-    yield made
-    await made.close()
+    graph = Graph(on_log=lambda _: None)
+    yield graph
+    await graph.close()
 
 
 @pytest.fixture

@@ -8,45 +8,45 @@ from linkwright.graph import DESCRIPTION_QOS
 from linkwright.messages import String, TFMessage, deserialize
 from tests.panels.test_time import arrived, config
 from tests.skipping import skipping
-from tests.viewer.scene import World, page, world
+from tests.viewer.scene import World, open_world, page
 
 KEPT = 10_000_000
 
 
-def moved(made: World, x: float) -> int:
+def moved(world: World, x: float) -> int:
     """Publish the position of the arm, and return the time in nanoseconds."""
-    made.move({("base", "tip"): (x, 0, 0, 0, 0, 0, 1)})
-    return made.graph.timebase.now_ns()
+    world.move({("base", "tip"): (x, 0, 0, 0, 0, 0, 1)})
+    return world.graph.timebase.now_ns()
 
 
-async def filled(made: World) -> list[float]:
+async def filled(world: World) -> list[float]:
     """Publish five positions of a frame, one each second, and return the times halfway between, in seconds."""
     between = []
     for x in range(5):
-        moved(made, float(x))
+        moved(world, float(x))
         await asyncio.sleep(0.5)
-        between.append(made.graph.timebase.now_ns() / 1e9)
+        between.append(world.graph.timebase.now_ns() / 1e9)
         await asyncio.sleep(0.5)
     return between
 
 
 @skipping
 async def test_live_view_pauses_seeks_and_returns_to_live():
-    async with world(config(), history=KEPT) as made, page(made.viewer) as client:
+    async with open_world(config(), history=KEPT) as world, page(world.viewer) as client:
         timeline = await client.until("timeline")
         assert timeline["live"]
         await client.until("playhead", live=True)
-        between = await filled(made)
+        between = await filled(world)
         await arrived(client, "tip", 4)
         await client.send("play", playing=False)
         await client.until("playhead", live=False, playing=False)
-        moved(made, 9.0)
+        moved(world, 9.0)
         for number in (1, 3, 0):
             await client.send("seek_time", position=between[number])
             await arrived(client, "tip", number)
         await client.send("step_time", forward=True)
         await arrived(client, "tip", 1)
-        clock = made.viewer.context.node.get_clock()
+        clock = world.viewer.context.node.get_clock()
         assert between[0] < clock.now().nanoseconds / 1e9 < between[1], "the viewer's clock is that of what is shown"
         await client.send("go_live")
         await client.until("playhead", live=True)
@@ -56,9 +56,9 @@ async def test_live_view_pauses_seeks_and_returns_to_live():
 
 @skipping
 async def test_playback_of_history_reaches_live():
-    async with world(config(), history=KEPT) as made, page(made.viewer) as client:
+    async with open_world(config(), history=KEPT) as world, page(world.viewer) as client:
         await client.until("playhead", live=True)
-        between = await filled(made)
+        between = await filled(world)
         await client.send("seek_time", position=between[0])
         await client.until("playhead", live=False)
         await client.send("set_playback", speed=10, loop=False)
@@ -69,64 +69,64 @@ async def test_playback_of_history_reaches_live():
 
 @skipping
 async def test_subscription_during_pause_receives_past_latched_message():
-    async with world(config(), history=KEPT) as made, page(made.viewer) as client:
-        made.describe("<robot name='early'/>")
+    async with open_world(config(), history=KEPT) as world, page(world.viewer) as client:
+        world.describe("<robot name='early'/>")
         heard: list[str] = []
-        node = made.viewer.context.node
+        node = world.viewer.context.node
         node.create_subscription("std_msgs/msg/String", "robot_description", lambda _: None, DESCRIPTION_QOS)
-        await made.settle()
+        await world.settle()
         await client.send("play", playing=False)
         await client.until("playhead", live=False)
-        made.describe("<robot name='late'/>")
+        world.describe("<robot name='late'/>")
         node.create_subscription(
             "std_msgs/msg/String", "robot_description", lambda message: heard.append(message.data), DESCRIPTION_QOS
         )
         await asyncio.sleep(1.0)
-        await made.settle()
+        await world.settle()
         assert heard == ["<robot name='early'/>"]
         await client.send("go_live")
         await client.until("playhead", live=True)
-        await made.settle()
+        await world.settle()
         assert heard[-1] == "<robot name='late'/>"
 
 
 async def test_pending_messages_are_stored_when_history_is_read():
-    async with world(config(), history=KEPT) as made:
-        live = made.viewer.live
+    async with open_world(config(), history=KEPT) as world:
+        live = world.viewer.live
         for x in range(3):
-            moved(made, float(x))
+            moved(world, float(x))
         assert live.size == 0
         assert not live.has_playback
         began, end = live.span_ns
         assert began <= end
-        kept = [
+        positions = [
             deserialize(data, TFMessage).batch.poses[0, 0] for _, _, data in live.history.messages_between(began, end)
         ]
-        assert kept == [0.0, 1.0, 2.0]
+        assert positions == [0.0, 1.0, 2.0]
         assert live.size > 0
 
 
 async def test_pending_messages_are_stored_in_batches():
-    async with world(config(), history=KEPT) as made:
+    async with open_world(config(), history=KEPT) as world:
         for x in range(20):
-            moved(made, float(x))
-        assert made.viewer.live.size > 0
+            moved(world, float(x))
+        assert world.viewer.live.size > 0
 
 
 async def test_unserializable_message_is_reported_and_others_are_stored():
-    async with world(config(), history=KEPT) as made:
-        began = moved(made, 1.0)
+    async with open_world(config(), history=KEPT) as world:
+        began = moved(world, 1.0)
         wrong = String()
         wrong._data = 7  # as no setter would let it be
-        made.viewer.context.node.create_subscription(String, "words", lambda _: None, 10)
-        made.graph.create_node("speaker").create_publisher(String, "words", 10).publish(wrong)
-        end = moved(made, 2.0)
-        assert [topic for topic, _, _ in made.viewer.live.history.messages_between(began, end)] == ["/tf", "/tf"]
-        assert any("keeping a message of '/words' failed" in record.text for record in made.log)
+        world.viewer.context.node.create_subscription(String, "words", lambda _: None, 10)
+        world.graph.create_node("speaker").create_publisher(String, "words", 10).publish(wrong)
+        end = moved(world, 2.0)
+        assert [topic for topic, _, _ in world.viewer.live.history.messages_between(began, end)] == ["/tf", "/tf"]
+        assert any("keeping a message of '/words' failed" in record.text for record in world.log)
 
 
 @skipping
 async def test_viewer_without_history_stores_nothing():
-    async with world(config()) as made, page(made.viewer) as client:
+    async with open_world(config()) as world, page(world.viewer) as client:
         assert "timeline" not in await client.opened()
-        assert made.viewer.context.node.handle.message_filter is None
+        assert world.viewer.context.node.handle.message_filter is None

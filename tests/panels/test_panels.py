@@ -51,7 +51,7 @@ def test_panels_on_collapsed_window_side_are_not_shown():
 
 def test_rviz1_panel_names_are_recognized_and_unnamed_entries_skipped():
     former = ("Displays, Name: Displays", "Time, Name: Zeit", "Views")
-    config = parsed(panels="Panels:\n" + "".join(f"  - {{Class: rviz/{each}}}\n" for each in former))
+    config = parsed(panels="Panels:\n" + "".join(f"  - {{Class: rviz/{name}}}\n" for name in former))
     assert config.panels.shown == ["displays", "time"]
     config.panels.show(["displays", "time", "selection", "transformation"])
     assert config.panels.shown == ["displays", "time", "selection"]
@@ -135,13 +135,13 @@ def test_first_of_duplicate_docks_applies():
 async def test_pages_open_with_panels_of_file_and_last_change_is_saved(tmp_path):
     path = tmp_path / "a.rviz"
     text = RVIZ_PANELS + DISPLAYS + window_state(**FIRST_OF_RVIZ)
-    async with opened(text, path) as (made, client):
+    async with opened(text, path) as (world, client):
         assert client.first["panels"]["shown"] == ["displays", "views"]
         assert client.first["panels"]["opened"] == client.first["configuration"]["opened"] == 1
         await client.send("show_panels", shown=["displays", "views"])
         await client.send("show_panels", shown=["displays", "time"])
         assert (await client.until("configuration"))["unsaved"]
-        assert made.viewer.config.panels.shown == ["displays", "time"]
+        assert world.viewer.config.panels.shown == ["displays", "time"]
         await client.send("save_configuration", path=None, replace=False)
         await client.until("configuration_saved")
         assert RvizConfig.load(path).panels.shown == ["displays", "time"]
@@ -153,20 +153,20 @@ async def test_pages_open_with_panels_of_file_and_last_change_is_saved(tmp_path)
 
 async def test_panel_changes_do_not_affect_other_pages(tmp_path):
     path = tmp_path / "a.rviz"
-    async with opened(RVIZ_PANELS + DISPLAYS, path) as (made, client), page(made.viewer) as other:
+    async with opened(RVIZ_PANELS + DISPLAYS, path) as (world, client), page(world.viewer) as other:
         await other.opened()
         await client.send("show_panels", shown=[])
         await other.until("configuration", unsaved=True)
         assert "panels" not in [message["type"] for message in await other.drain() if isinstance(message, dict)]
-        async with page(made.viewer) as late:
+        async with page(world.viewer) as late:
             assert (await late.opened())["panels"]["shown"] == []
 
 
 async def test_panel_changes_without_file_are_not_unsaved_edits(tmp_path):
-    async with opened(RVIZ_PANELS + DISPLAYS) as (made, client):
+    async with opened(RVIZ_PANELS + DISPLAYS) as (world, client):
         await client.send("show_panels", shown=["time"])
         await client.drain(0.03)
-        assert not made.viewer.manager.history.has_unsaved_edits
+        assert not world.viewer.manager.history.has_unsaved_edits
         await client.send("save_configuration", path=str(tmp_path / "a.rviz"), replace=False)
         await client.until("configuration_saved")
     assert RvizConfig.load(tmp_path / "a.rviz").panels.shown == ["time"]

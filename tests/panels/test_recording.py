@@ -20,7 +20,7 @@ from tests.panels.test_live_history import KEPT, filled
 from tests.panels.test_time import config
 from tests.recordings import needs_rosbags
 from tests.skipping import skipping
-from tests.viewer.scene import Client, World, page, world
+from tests.viewer.scene import Client, World, open_world, page
 
 pytestmark = needs_rosbags
 
@@ -45,8 +45,8 @@ def mcap(recording: str) -> Path:
     return file
 
 
-def feature(made: World) -> RecordingFeature:
-    return made.viewer.add_feature(RecordingFeature)
+def feature(world: World) -> RecordingFeature:
+    return world.viewer.add_feature(RecordingFeature)
 
 
 async def start_recording(client: Client, *topics: str) -> dict:
@@ -73,13 +73,13 @@ async def saved(client: Client, start: float | None = None, end: float | None = 
 
 @skipping
 async def test_all_topics_are_recorded_and_file_can_be_opened(folder: Path):
-    async with world() as made, page(made.viewer) as client:
+    async with open_world() as world, page(world.viewer) as client:
         assert not (await client.until("recording_state"))["path"]
         state = await start_recording(client)
-        await made.settle()
+        await world.settle()
         for x in range(5):
-            made.move_arm(float(x))
-            await made.settle()
+            world.move_arm(float(x))
+            await world.settle()
             await asyncio.sleep(0.5)
         logged = await client.until("recording_state")
         assert logged["length"] >= 0
@@ -94,12 +94,12 @@ async def test_all_topics_are_recorded_and_file_can_be_opened(folder: Path):
 
 @skipping
 async def test_only_selected_topics_are_recorded():
-    async with world() as made, page(made.viewer) as client:
+    async with open_world() as world, page(world.viewer) as client:
         await start_recording(client, TF)
-        await made.settle()
-        made.move_arm(1.0)
-        made.describe("<robot name='r'/>")
-        await made.settle()
+        await world.settle()
+        world.move_arm(1.0)
+        world.describe("<robot name='r'/>")
+        await world.settle()
         await client.send("stop_recording")
         (file,) = (await wait_for_end(client))["files"]
         with BagReader(file["path"]) as bag:
@@ -108,32 +108,32 @@ async def test_only_selected_topics_are_recorded():
 
 @skipping
 async def test_pages_share_recording_that_outlives_its_page():
-    async with world() as made:
-        async with page(made.viewer) as other:
-            async with page(made.viewer) as client:
+    async with open_world() as world:
+        async with page(world.viewer) as other:
+            async with page(world.viewer) as client:
                 state = await start_recording(client)
                 while (seen := await other.until("recording_state"))["path"] != state["path"]:
                     pass
                 await other.send("record_topics", topics=[])
-            made.move_arm(1.0)
-            await made.settle()
+            world.move_arm(1.0)
+            await world.settle()
             await asyncio.sleep(2.0)
             assert (await other.until("recording_state"))["path"] == seen["path"]
-        async with page(made.viewer) as late:
+        async with page(world.viewer) as late:
             assert (await late.until("recording_state"))["path"] == state["path"]
-            made.move_arm(2.0)
-            await made.settle()
+            world.move_arm(2.0)
+            await world.settle()
             await late.send("stop_recording")
-            assert [each["path"] for each in (await wait_for_end(late))["files"]] == [state["path"]]
+            assert [file["path"] for file in (await wait_for_end(late))["files"]] == [state["path"]]
 
 
 @skipping
 async def test_program_exit_finishes_recording():
-    async with world() as made, page(made.viewer) as client:
+    async with open_world() as world, page(world.viewer) as client:
         state = await start_recording(client, TF)
-        await made.settle()
-        made.move_arm(1.0)
-        await made.settle()
+        await world.settle()
+        world.move_arm(1.0)
+        await world.settle()
     with BagReader(state["path"]) as bag:
         assert not bag.findings
         assert len(list(bag.messages())) == 1
@@ -141,23 +141,23 @@ async def test_program_exit_finishes_recording():
 
 @skipping
 async def test_recordings_within_one_second_get_unique_names(folder: Path):
-    async with world() as made, page(made.viewer) as client:
+    async with open_world() as world, page(world.viewer) as client:
         paths = set()
         for _ in range(3):
             state = await start_recording(client, TF)
-            await made.settle()
-            made.move_arm(1.0)
-            await made.settle()
+            await world.settle()
+            world.move_arm(1.0)
+            await world.settle()
             await client.send("stop_recording")
             await wait_for_end(client)
             paths.add(state["path"])
         assert len(paths) == 3
-        assert {str(folder / each) for each in made_in(folder)} == paths
+        assert {str(folder / name) for name in made_in(folder)} == paths
 
 
 @skipping
 async def test_empty_recording_is_deleted(folder: Path):
-    async with world() as made, page(made.viewer) as client:
+    async with open_world() as world, page(world.viewer) as client:
         await start_recording(client, "/nobody")
         await client.send("stop_recording")
         state = await wait_for_end(client)
@@ -169,19 +169,19 @@ async def test_empty_recording_is_deleted(folder: Path):
 @skipping
 @needs_limits
 async def test_full_disk_stops_recording_and_keeps_messages():
-    async with world() as made, page(made.viewer) as client:
+    async with open_world() as world, page(world.viewer) as client:
         await start_recording(client, "/long")
-        node = made.graph.create_node("talker")
+        node = world.graph.create_node("talker")
         publisher = node.create_publisher(STRING, "/long", 10)
         await asyncio.sleep(0.5)
-        await made.settle()
+        await world.settle()
         publisher.publish(publisher.msg_type(data="first"))
-        await made.settle()
+        await world.settle()
         await asyncio.sleep(1.5)
         with full_disk(20_000):
             for _ in range(2000):
                 publisher.publish(publisher.msg_type(data="x" * 1000))
-                await made.settle()
+                await world.settle()
             await asyncio.sleep(2.0)
             state = await wait_for_end(client)
         assert " stopped: " in state["problem"]
@@ -200,11 +200,11 @@ class Usage(NamedTuple):
 
 @skipping
 async def test_recording_stops_when_little_disk_space_is_left(monkeypatch: pytest.MonkeyPatch, folder: Path):
-    async with world() as made, page(made.viewer) as client:
+    async with open_world() as world, page(world.viewer) as client:
         state = await start_recording(client, TF)
-        await made.settle()
-        made.move_arm(1.0)
-        await made.settle()
+        await world.settle()
+        world.move_arm(1.0)
+        await world.settle()
         monkeypatch.setattr(module.shutil, "disk_usage", lambda _: Usage(10**12, 10**12, 10**8))
         stopped = await wait_for_end(client)
         assert "less than 256 MB left" in stopped["problem"]
@@ -219,8 +219,8 @@ async def test_recording_stops_when_little_disk_space_is_left(monkeypatch: pytes
 
 @skipping
 async def test_unwritable_folder_is_reported(folder: Path):
-    async with world() as made, page(made.viewer) as client:
-        feature(made).folder = folder / "gone" / "away"
+    async with open_world() as world, page(world.viewer) as client:
+        feature(world).folder = folder / "gone" / "away"
         (folder / "gone").write_text("a file in its place")
         await client.send("record_topics", topics=[])
         while not (state := await client.until("recording_state"))["problem"]:
@@ -230,18 +230,18 @@ async def test_unwritable_folder_is_reported(folder: Path):
 
 @skipping
 async def test_simulated_time_reset_stops_recording():
-    async with world() as made, page(made.viewer) as client:
-        made.viewer.context.node.set_parameters([Parameter("use_sim_time", value=True)])
-        clock = made.graph.create_node("simulator").create_publisher("rosgraph_msgs/msg/Clock", "/clock", 10)
+    async with open_world() as world, page(world.viewer) as client:
+        world.viewer.context.node.set_parameters([Parameter("use_sim_time", value=True)])
+        clock = world.graph.create_node("simulator").create_publisher("rosgraph_msgs/msg/Clock", "/clock", 10)
         state = await start_recording(client, TF)
         for second in (100, 101, 102):
             clock.publish(clock.msg_type(clock=Time(sec=second)))
-            await made.settle()
+            await world.settle()
             await asyncio.sleep(0.2)
-            made.move_arm(1.0)
-            await made.settle()
+            world.move_arm(1.0)
+            await world.settle()
         clock.publish(clock.msg_type(clock=Time(sec=1)))
-        await made.settle()
+        await world.settle()
         stopped = await wait_for_end(client)
         assert "simulated time was reset" in stopped["problem"]
         with BagReader(state["path"]) as bag:
@@ -250,10 +250,10 @@ async def test_simulated_time_reset_stops_recording():
 
 @skipping
 async def test_history_and_part_of_history_are_saved():
-    async with world(config(), history=KEPT) as made, page(made.viewer) as client:
+    async with open_world(config(), history=KEPT) as world, page(world.viewer) as client:
         await client.until("recording_state")
-        made.move({("tip", "mark"): (0, 0, 0, 0, 0, 0, 1)}, static=True)
-        between = await filled(made)
+        world.move({("tip", "mark"): (0, 0, 0, 0, 0, 0, 1)}, static=True)
+        between = await filled(world)
         (whole,) = (await saved(client))["files"]
         with BagReader(whole["path"]) as bag:
             assert len(list(bag.messages([TF]))) == 5
@@ -271,19 +271,19 @@ async def test_history_and_part_of_history_are_saved():
 
 @skipping
 async def test_saved_simulation_history_starts_at_last_time_reset():
-    async with world(config(), history=KEPT) as made, page(made.viewer) as client:
+    async with open_world(config(), history=KEPT) as world, page(world.viewer) as client:
         await client.until("recording_state")
-        made.viewer.context.node.set_parameters([Parameter("use_sim_time", value=True)])
-        clock = made.graph.create_node("simulator").create_publisher("rosgraph_msgs/msg/Clock", "/clock", 10)
-        await made.settle()
-        made.move({("tip", "mark"): (0, 0, 0, 0, 0, 0, 1)}, static=True)
-        await made.settle()
+        world.viewer.context.node.set_parameters([Parameter("use_sim_time", value=True)])
+        clock = world.graph.create_node("simulator").create_publisher("rosgraph_msgs/msg/Clock", "/clock", 10)
+        await world.settle()
+        world.move({("tip", "mark"): (0, 0, 0, 0, 0, 0, 1)}, static=True)
+        await world.settle()
         for second in (50, 51, 52, 3, 4):
             clock.publish(clock.msg_type(clock=Time(sec=second)))
-            await made.settle()
+            await world.settle()
             await asyncio.sleep(0.2)
-            made.move_arm(float(second))
-            await made.settle()
+            world.move_arm(float(second))
+            await world.settle()
             await asyncio.sleep(0.2)
         (file,) = (await saved(client))["files"]
         with BagReader(file["path"]) as bag:
@@ -294,16 +294,16 @@ async def test_saved_simulation_history_starts_at_last_time_reset():
 
 @skipping
 async def test_recording_can_be_downloaded_completely_and_repeatedly():
-    async with world() as made, page(made.viewer) as client:
+    async with open_world() as world, page(world.viewer) as client:
         await start_recording(client, TF)
-        await made.settle()
+        await world.settle()
         for x in range(2000):
-            made.move_arm(float(x))
-            await made.settle()
+            world.move_arm(float(x))
+            await world.settle()
         await client.send("stop_recording")
         (file,) = (await wait_for_end(client))["files"]
         path = mcap(file["path"])
-        address = made.viewer.url.split(f"?{TOKEN_PARAMETER}")[0].rstrip("/") + file["url"]
+        address = world.viewer.url.split(f"?{TOKEN_PARAMETER}")[0].rstrip("/") + file["url"]
         async with aiohttp.ClientSession() as session:
             for _ in range(2):
                 async with session.get(address) as answer:
@@ -319,7 +319,7 @@ async def test_recording_can_be_downloaded_completely_and_repeatedly():
 async def test_recording_is_disabled_during_playback(folder: Path):
     from tests.panels.test_timeline import shown
 
-    async with shown(folder) as made, page(made.viewer) as client:
+    async with shown(folder) as world, page(world.viewer) as client:
         assert not (await client.until("recording_state"))["possible"]
         await client.send("record_topics", topics=[])
         await client.send("play", playing=False)

@@ -15,7 +15,7 @@ from linkwright.diagnostics import extras
 from linkwright.page.audience import Page
 from linkwright.panels.source_editor.feature import SourceEditorFeature
 from linkwright.panels.source_editor.files import SourceFiles, with_line_ends
-from tests.viewer.scene import ARM, page, world
+from tests.viewer.scene import ARM, open_world, page
 
 ROBOT = '<robot name="r">\n  <link name="base"/>\n</robot>\n'
 
@@ -44,12 +44,12 @@ def write(path: Path, text: str) -> None:
 
 async def ask(client: Any, kind: str, answer: str, **fields: Any) -> dict[str, Any]:
     await client.send(kind, **fields)
-    found: dict[str, Any] = await client.until(answer)
-    return found
+    reply: dict[str, Any] = await client.until(answer)
+    return reply
 
 
-async def opened(scene: Any, client: Any, file: Path) -> dict[str, Any]:
-    scene.describe(scene.library.store(examine(file)))
+async def opened(world: Any, client: Any, file: Path) -> dict[str, Any]:
+    world.describe(world.library.store(examine(file)))
     await client.until("description_changed")
     return await ask(client, "open_editor", "editor_opened", file=str(file))
 
@@ -61,8 +61,8 @@ async def save(client: Any, path: Path, version: int, text: str) -> dict[str, An
 
 
 async def test_source_file_is_read_written_and_undone(file: Path) -> None:
-    async with world() as scene, page(scene.viewer) as client:
-        answer = await opened(scene, client, file)
+    async with open_world() as world, page(world.viewer) as client:
+        answer = await opened(world, client, file)
         assert (answer["folder"], answer["why_not"]) == (str(file.parents[3]), "")
         shown = await ask(client, "ask_source_file", "source_file", path=str(file))
         assert (shown["text"], shown["version"], shown["why_not"]) == (ROBOT, 1, "")
@@ -77,8 +77,8 @@ async def test_source_file_is_read_written_and_undone(file: Path) -> None:
 
 
 async def test_external_change_is_sent_and_not_overwritten(file: Path) -> None:
-    async with world() as scene, page(scene.viewer) as client:
-        await opened(scene, client, file)
+    async with open_world() as world, page(world.viewer) as client:
+        await opened(world, client, file)
         await ask(client, "ask_source_file", "source_file", path=str(file))
         write(file, ROBOT + "<!-- theirs -->")
         refused = await save(client, file, 1, "mine")
@@ -95,8 +95,8 @@ async def test_folder_is_listed_and_file_is_created(file: Path) -> None:
     (folder / "build").mkdir()
     (folder / ".git").mkdir()
     (folder / "arm.stl").write_bytes(b"")
-    async with world() as scene, page(scene.viewer) as client:
-        await opened(scene, client, file)
+    async with open_world() as world, page(world.viewer) as client:
+        await opened(world, client, file)
         listed = await ask(client, "ask_source_folder", "source_folder", path=str(folder))
         assert (listed["folders"], listed["files"]) == (["urdf"], ["package.xml"])
         new = folder / "config" / "arm.yaml"
@@ -109,8 +109,8 @@ async def test_folder_is_listed_and_file_is_created(file: Path) -> None:
 
 async def test_missing_file_is_created_with_first_text(file: Path) -> None:
     new, other = (file.parents[1] / "launch" / name for name in ("new.launch.py", "other.launch.py"))
-    async with world() as scene, page(scene.viewer) as client:
-        await opened(scene, client, file)
+    async with open_world() as world, page(world.viewer) as client:
+        await opened(world, client, file)
         begun = await ask(client, "ask_source_file", "source_file", path=str(new))
         assert (begun["text"], begun["is_new"]) == (None, True)
         assert not new.parent.exists()
@@ -131,8 +131,8 @@ async def test_files_outside_sources_are_neither_read_nor_created(file: Path, pa
     (workspace / ".git").mkdir()
     (workspace / ".git" / "config").write_text("secret")
     path = path.format(ws=workspace)
-    async with world() as scene, page(scene.viewer) as client:
-        await opened(scene, client, file)
+    async with open_world() as world, page(world.viewer) as client:
+        await opened(world, client, file)
         shown = await ask(client, "ask_source_file", "source_file", path=path)
         assert shown["text"] is None
         assert "outside the workspace" in shown["why_not"]
@@ -149,8 +149,8 @@ def test_symlink_out_of_workspace_is_not_followed(file: Path, tmp_path: Path) ->
 
 
 async def test_workspace_can_be_edited_without_description(tmp_path: Path) -> None:
-    async with world() as scene, page(scene.viewer) as client:
-        scene.viewer.add_feature(SourceEditorFeature).edit_workspace(tmp_path)
+    async with open_world() as world, page(world.viewer) as client:
+        world.viewer.add_feature(SourceEditorFeature).edit_workspace(tmp_path)
         answer = await ask(client, "open_editor", "editor_opened", file=str(tmp_path))
         assert (answer["folder"], answer["why_not"]) == (real(tmp_path), "")
         new = tmp_path / "src" / "new.py"
@@ -163,29 +163,29 @@ async def test_workspace_can_be_edited_without_description(tmp_path: Path) -> No
 async def test_page_on_another_machine_cannot_edit(file: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(Page, "is_local", False, raising=False)
     monkeypatch.setattr("linkwright.page.server.is_local_connection", lambda _: False)
-    async with world() as scene, page(scene.viewer) as client:
-        answer = await opened(scene, client, file)
+    async with open_world() as world, page(world.viewer) as client:
+        answer = await opened(world, client, file)
         assert "only in pages that are open on the machine" in answer["why_not"]
 
 
 async def test_missing_lsp_extra_is_reported(file: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setitem(extras.EXTRAS, "lsp", "no_such_module")
-    async with world() as scene, page(scene.viewer) as client:
-        answer = await opened(scene, client, file)
+    async with open_world() as world, page(world.viewer) as client:
+        answer = await opened(world, client, file)
         assert answer["why_not"].startswith("the editor needs the language server: run ")
 
 
 async def test_description_without_file_cannot_be_edited() -> None:
-    async with world() as scene, page(scene.viewer) as client:
-        scene.describe(ARM)
+    async with open_world() as world, page(world.viewer) as client:
+        world.describe(ARM)
         await client.until("description_changed")
         answer = await ask(client, "open_editor", "editor_opened", file="<robot_description>")
         assert "linkwright view FILE" in answer["why_not"]
 
 
 async def test_language_server_answers_through_page(file: Path) -> None:
-    async with world() as scene, page(scene.viewer) as client:
-        answer = await opened(scene, client, file)
+    async with open_world() as world, page(world.viewer) as client:
+        answer = await opened(world, client, file)
         request = {"jsonrpc": "2.0", "id": 1, "method": "initialize"}
         params = {"processId": None, "rootUri": answer["uri"], "capabilities": {}}
         await client.send("ask_language_server", content=json.dumps({**request, "params": params}))

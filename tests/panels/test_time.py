@@ -10,7 +10,7 @@ from linkwright.messages import get_message
 from linkwright.rviz import RvizConfig
 from linkwright.rviz.frames.stream import TimeControl
 from tests.skipping import skipping
-from tests.viewer.scene import page, world
+from tests.viewer.scene import open_world, page
 
 POINT = "geometry_msgs/msg/PointStamped"
 CONFIG = {
@@ -95,28 +95,28 @@ def test_displayed_time_stops_while_paused():
 
 
 async def test_pause_stops_frames_and_messages_for_all_pages():
-    async with world(config()) as made, page(made.viewer) as one, page(made.viewer) as other:
-        node = made.graph.create_node("clicker")
+    async with open_world(config()) as world, page(world.viewer) as first, page(world.viewer) as second:
+        node = world.graph.create_node("clicker")
         points = node.create_publisher(POINT, "/p", 10)
-        await one.opened()
-        await other.opened()
-        made.move_arm(x=1.0)
-        await arrived(one, "tip", 1.0)
-        await other.send("set_time", paused=True, mode="Off", source="")
-        assert (await one.until("time_state"))["paused"] is True
-        await one.drain()
-        made.move_arm(x=2.0)
-        made.move_arm(x=3.0)
+        await first.opened()
+        await second.opened()
+        world.move_arm(x=1.0)
+        await arrived(first, "tip", 1.0)
+        await second.send("set_time", paused=True, mode="Off", source="")
+        assert (await first.until("time_state"))["paused"] is True
+        await first.drain()
+        world.move_arm(x=2.0)
+        world.move_arm(x=3.0)
         points.publish(point(0.25, time.time()))
-        await made.settle()
-        drained = await one.drain()
-        assert all(isinstance(each, dict) for each in drained)  # neither transforms nor data
-        async with page(made.viewer) as late:
+        await world.settle()
+        drained = await first.drain()
+        assert all(isinstance(message, dict) for message in drained)  # neither transforms nor data
+        async with page(world.viewer) as late:
             assert (await late.opened())["time_state"]["paused"] is True
             await arrived(late, "tip", 1.0)
-        await one.send("set_time", paused=False, mode="Off", source="")
-        await arrived(one, "tip", 3.0)
-        display = made.display("PointStamped")
+        await first.send("set_time", paused=False, mode="Off", source="")
+        await arrived(first, "tip", 3.0)
+        display = world.display("PointStamped")
         assert len(display.data()) == 1
 
 
@@ -135,7 +135,7 @@ Visualization Manager:
 async def test_rviz1_time_panel_is_read_and_keeps_its_format():
     text = PANEL.replace("    Experimental: true\n", "").replace("rviz_common", "rviz")
     file = RvizConfig.parse(text)
-    async with world(file) as made, page(made.viewer) as client:
+    async with open_world(file) as world, page(world.viewer) as client:
         state = (await client.opened())["time_state"]
         assert (state["mode"], state["source"]) == ("Exact", "Clicks")
         await client.send("set_time", paused=False, mode="Approximate", source="Clicks")
@@ -145,7 +145,7 @@ async def test_rviz1_time_panel_is_read_and_keeps_its_format():
 
 async def test_time_panel_of_file_is_read_and_written():
     file = RvizConfig.parse(PANEL)
-    async with world(file) as made, page(made.viewer) as client:
+    async with open_world(file) as world, page(world.viewer) as client:
         state = (await client.opened())["time_state"]
         assert (state["mode"], state["source"], state["paused"]) == ("Exact", "Clicks", False)
         assert file.text() == PANEL
@@ -156,24 +156,24 @@ async def test_time_panel_of_file_is_read_and_written():
 
 @skipping
 async def test_exact_synchronization_shows_frames_at_message_times():
-    async with world(config()) as made, page(made.viewer) as client:
-        node = made.graph.create_node("clicker")
+    async with open_world(config()) as world, page(world.viewer) as client:
+        node = world.graph.create_node("clicker")
         points = node.create_publisher(POINT, "/p", 10)
         await client.opened()
         points.publish(point(0.0, time.time()))
         assert (await client.until("time_state"))["sources"] == ["Clicks"]
         await client.send("set_time", paused=False, mode="Exact", source="Clicks")
         await client.until("time_state", mode="Exact")
-        now_ns = made.graph.timebase.now_ns
+        now_ns = world.graph.timebase.now_ns
         stamps = []
         for x in (0.0, 1.0):
-            made.move_arm(x=x)
+            world.move_arm(x=x)
             stamps.append(now_ns() / 1e9)
             await asyncio.sleep(0.1)
         points.publish(point(0.0, (stamps[0] + stamps[1]) / 2))
-        await made.settle()
+        await world.settle()
         await client.drain()
-        made.move_arm(x=2.0)  # the newest, yet the frame is shown where it was half way
+        world.move_arm(x=2.0)  # the newest, yet the frame is shown where it was half way
         points.publish(point(0.0, (stamps[0] + stamps[1]) / 2))
         await client.drain()
         frames = [message for message in client.messages if not isinstance(message, dict) and hasattr(message, "poses")]
@@ -182,57 +182,61 @@ async def test_exact_synchronization_shows_frames_at_message_times():
 
 
 async def test_reset_clears_displays_and_dynamic_frames():
-    async with world(config()) as made, page(made.viewer) as client:
-        node = made.graph.create_node("clicker")
+    async with open_world(config()) as world, page(world.viewer) as client:
+        node = world.graph.create_node("clicker")
         points = node.create_publisher(POINT, "/p", 10)
         await client.opened()
-        made.move_arm(x=1.0)
+        world.move_arm(x=1.0)
         points.publish(point(0.25, time.time()))
-        await made.settle()
-        assert len(made.display("PointStamped").data()) == 1
+        await world.settle()
+        assert len(world.display("PointStamped").data()) == 1
         await client.send("reset_time")
         await client.until("time_reset")
-        assert made.display("PointStamped").data() == []
-        frames = made.viewer.manager.frames
+        assert world.display("PointStamped").data() == []
+        frames = world.viewer.manager.frames
         assert "mark" in frames.names
         assert "base" not in frames.names
 
 
 async def test_clock_is_sent_only_to_watching_pages():
-    async with world() as made, page(made.viewer) as client:
+    async with open_world() as world, page(world.viewer) as client:
         await client.opened()
-        assert not [each for each in await client.drain() if isinstance(each, dict) and each["type"] == "clock"]
+        assert not [
+            message for message in await client.drain() if isinstance(message, dict) and message["type"] == "clock"
+        ]
         await client.send("watch_clock", watching=True)
         clock = await client.until("clock")
         assert abs(clock["ros"] - time.time()) < 5
         assert clock["running"] is True
         assert 0 <= clock["wall"] - clock["wall_start"] < 5
-        assert not [each for each in await client.drain() if isinstance(each, dict) and each["type"] == "clock"]
+        assert not [
+            message for message in await client.drain() if isinstance(message, dict) and message["type"] == "clock"
+        ]
         await client.send("set_time", paused=True, mode="Off", source="")
         assert (await client.until("clock"))["running"] is False
 
 
 async def test_simulated_time_is_followed_and_resets_when_jumping_back():
-    async with world() as made, page(made.viewer) as client:
+    async with open_world() as world, page(world.viewer) as client:
         await client.opened()
         await client.send("watch_clock", watching=True)
         await client.until("clock")
-        viewer_node = made.viewer.manager.context.node
+        viewer_node = world.viewer.manager.context.node
         from linkwright.graph import Parameter
 
         viewer_node.set_parameters([Parameter("use_sim_time", value=True)])
-        clocks = made.graph.create_node("simulator").create_publisher("rosgraph_msgs/msg/Clock", "/clock", 10)
+        clocks = world.graph.create_node("simulator").create_publisher("rosgraph_msgs/msg/Clock", "/clock", 10)
         message = get_message("rosgraph_msgs/msg/Clock")()
         for seconds in (50, 51):
             message.clock.sec = seconds
             clocks.publish(message)
-            await made.settle()
+            await world.settle()
             clock = await client.until("clock", ros=float(seconds), running=False)
             assert clock["ros_start"] == 50  # not the zero from before anybody told the time
         message.clock.sec = 10
         await client.drain()
         clocks.publish(message)
-        await made.settle()
+        await world.settle()
         await client.until("time_reset")
         clock = await client.until("clock")
         assert np.isclose(clock["ros"] - clock["ros_start"], 0.0, atol=0.5)

@@ -14,7 +14,7 @@ from linkwright.graph import DEFAULT_QOS, Parameter
 from linkwright.messages import TFMessage, TransformBatch, serialize
 from tests.panels.test_time import POINT, arrived, config, point
 from tests.skipping import skipping
-from tests.viewer.scene import World, page, world
+from tests.viewer.scene import World, open_world, page
 
 START = 1_700_000_000
 SECOND = 1_000_000_000
@@ -42,23 +42,23 @@ async def shown(folder: Path, **other: str) -> AsyncIterator[World]:
     for file in path.iterdir():
         for word, instead in other.items():
             file.write_bytes(file.read_bytes().replace(word.encode(), instead.encode()))
-    async with world(config()) as made:
+    async with open_world(config()) as world:
         with BagReader(path) as bag:
-            made.viewer.context.node.set_parameters([Parameter("use_sim_time", value=True)])
-            player = made.graph.create_node("player")
+            world.viewer.context.node.set_parameters([Parameter("use_sim_time", value=True)])
+            player = world.graph.create_node("player")
             output = PublishedRecording(player, bag)
-            playback = Playback(player.handle, bag, output, made.viewer.on_playback_error)
-            made.viewer.attach_recording(playback, bag)
-            yield made
+            playback = Playback(player.handle, bag, output, world.viewer.on_playback_error)
+            world.viewer.attach_recording(playback, bag)
+            yield world
             playback.close()
 
 
 @skipping
 async def test_page_receives_timeline_and_playback_starts(tmp_path):
-    async with shown(tmp_path) as made, page(made.viewer) as client:
+    async with shown(tmp_path) as world, page(world.viewer) as client:
         timeline = await client.until("timeline")
         assert (timeline["name"], timeline["start"], timeline["end"]) == ("drive", START, START + 10)
-        assert {each["name"]: sum(each["counts"]) for each in timeline["topics"]} == {"/p": 11, "/tf": 11}
+        assert {topic["name"]: sum(topic["counts"]) for topic in timeline["topics"]} == {"/p": 11, "/tf": 11}
         await client.until("playhead", playing=True)
         await arrived(client, "tip", 3)
         await client.until("playhead", playing=False, position=START + 10)
@@ -66,7 +66,7 @@ async def test_page_receives_timeline_and_playback_starts(tmp_path):
 
 @skipping
 async def test_seek_shows_data_of_that_time(tmp_path):
-    async with shown(tmp_path) as made, page(made.viewer) as client:
+    async with shown(tmp_path) as world, page(world.viewer) as client:
         await client.until("playhead", playing=True)
         await client.send("play", playing=False)
         await client.until("playhead", playing=False)
@@ -81,7 +81,7 @@ async def test_seek_shows_data_of_that_time(tmp_path):
 
 @skipping
 async def test_playback_speed_and_loop_are_set(tmp_path):
-    async with shown(tmp_path) as made, page(made.viewer) as client:
+    async with shown(tmp_path) as world, page(world.viewer) as client:
         await client.until("playhead", playing=True)
         await client.send("set_playback", speed=5, loop=True)
         await client.until("playhead", speed=5, loop=True)
@@ -93,10 +93,10 @@ async def test_playback_speed_and_loop_are_set(tmp_path):
 
 @skipping
 async def test_recorded_simulation_has_no_simulation_bar(tmp_path):
-    async with shown(tmp_path) as made:
-        node = made.graph.create_node("recorded_simulation")
+    async with shown(tmp_path) as world:
+        node = world.graph.create_node("recorded_simulation")
         state = node.create_publisher("simulation_interfaces/msg/SimulationState", "/simulation_state", 1)
-        async with page(made.viewer) as client:
+        async with page(world.viewer) as client:
             assert (await client.until("simulation_status"))["present"] is False
             state.publish(state.msg_type(state=1))
             await client.until("playhead", playing=False, position=START + 10)
@@ -105,13 +105,13 @@ async def test_recorded_simulation_has_no_simulation_bar(tmp_path):
                 for message in client.messages
                 if isinstance(message, dict) and message["type"] == "simulation_status"
             ]
-            assert not any(each["present"] for each in messages)
+            assert not any(message["present"] for message in messages)
 
 
 @skipping
 async def test_topics_of_unknown_type_are_reported(tmp_path):
     # What the recording carries for the type that nobody has is of no use either.
-    async with shown(tmp_path, Point="Paint", float64="flaot64") as made, page(made.viewer) as client:
+    async with shown(tmp_path, Point="Paint", float64="flaot64") as world, page(world.viewer) as client:
         message = await client.until("playhead", playing=True)
         assert message["problem"] == (
             "topics of 'drive' are left out because the definitions of their types are missing or invalid: "
@@ -122,7 +122,7 @@ async def test_topics_of_unknown_type_are_reported(tmp_path):
 
 @skipping
 async def test_viewer_without_recording_has_no_timeline():
-    async with world() as made, page(made.viewer) as client:
+    async with open_world() as world, page(world.viewer) as client:
         assert "timeline" not in await client.opened()
         await client.send("play", playing=True)
         await client.send("seek_time", position=1)

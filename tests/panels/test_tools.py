@@ -9,7 +9,7 @@ from linkwright.graph import ActionServer
 from linkwright.messages import get_action
 from linkwright.rviz import RvizConfig
 from linkwright.rviz.config.tools import DEFAULT_TOOLS, TOOL_KINDS, tool_name
-from tests.viewer.scene import page, rows_by_id, world
+from tests.viewer.scene import open_world, page, rows_by_id
 from tests.waiting import eventually
 
 FILE = """\
@@ -73,7 +73,7 @@ def test_file_without_tools_uses_defaults():
     assert "Tools" not in config.text()
     config.tools.remove(config.tools.entries[0].id)
     config.tools.add("rviz_default_plugins/Measure")
-    assert [each["Class"] for each in tools_of(config)] == [*list(DEFAULT_TOOLS)[1:], "rviz_default_plugins/Measure"]
+    assert [tool["Class"] for tool in tools_of(config)] == [*list(DEFAULT_TOOLS)[1:], "rviz_default_plugins/Measure"]
     with pytest.raises(ValueError, match="no tool"):
         config.tools.add("no/Such")
     while len(config.tools.entries) < 100:
@@ -89,27 +89,27 @@ def config() -> RvizConfig:
     return config
 
 
-def listen(made, kind: str, topic: str) -> list:
+def listen(world, kind: str, topic: str) -> list:
     heard: list = []
-    node = made.graph.create_node("listener")
+    node = world.graph.create_node("listener")
     node.create_subscription(kind, topic, heard.append, 10)
     return heard
 
 
 async def test_tools_publish_poses_and_points_in_fixed_frame(config):
-    async with world(config) as made, page(made.viewer) as client:
+    async with open_world(config) as world, page(world.viewer) as client:
         point, goal, unknown, pose = (await client.opened())["tools"]["tools"]
         assert [tool["supported"] for tool in (point, goal, unknown, pose)] == [True, True, False, True]
-        poses = listen(made, "geometry_msgs/msg/PoseWithCovarianceStamped", "/first")
-        goals = listen(made, "geometry_msgs/msg/PoseStamped", "/move_base_simple/goal")
-        points = listen(made, "geometry_msgs/msg/PointStamped", "/clicked_point")
+        poses = listen(world, "geometry_msgs/msg/PoseWithCovarianceStamped", "/first")
+        goals = listen(world, "geometry_msgs/msg/PoseStamped", "/move_base_simple/goal")
+        points = listen(world, "geometry_msgs/msg/PointStamped", "/clicked_point")
         await client.send("pose_chosen", tool=pose["id"], x=1.0, y=-2.0, yaw=math.pi / 2)
         await client.send("pose_chosen", tool=goal["id"], x=3.0, y=4.0, yaw=0.0)
         await client.send("point_chosen", tool=point["id"], x=0.5, y=0.25, z=-1.0)
         await client.send("point_chosen", tool=goal["id"], x=0.0, y=0.0, z=0.0)
         await client.send("pose_chosen", tool=unknown["id"], x=1.0, y=-2.0, yaw=0.0)
         await eventually(lambda: poses and goals and points)
-        await made.settle()
+        await world.settle()
     (estimate,), (target,), (clicked,) = poses, goals, points
     assert estimate.header.frame_id == target.header.frame_id == clicked.header.frame_id == "odom"
     assert estimate.header.stamp.sec > 0
@@ -120,38 +120,38 @@ async def test_tools_publish_poses_and_points_in_fixed_frame(config):
     assert sum(map(bool, covariance)) == 3
     assert (target.pose.position.x, target.pose.position.y, target.pose.orientation.w) == (3.0, 4.0, 1.0)
     assert (clicked.point.x, clicked.point.y, clicked.point.z) == (0.5, 0.25, -1.0)
-    assert "Setting estimate pose: Frame:odom, Position(1, -2, 0)" in made.logged()
+    assert "Setting estimate pose: Frame:odom, Position(1, -2, 0)" in world.logged()
 
 
 async def test_tool_topic_can_be_changed_and_invalid_topic_is_rejected(config):
-    async with world(config) as made, page(made.viewer) as one, page(made.viewer) as other:
-        goal = (await one.opened())["tools"]["tools"][1]
-        await other.opened()
+    async with open_world(config) as world, page(world.viewer) as first, page(world.viewer) as second:
+        goal = (await first.opened())["tools"]["tools"][1]
+        await second.opened()
         topic = f"{goal['id']}/Topic"
         assert rows_by_id(goal["properties"])[topic]["value"] == "/move_base_simple/goal"
-        await one.send("set_tool_property", id=topic, value="/elsewhere")
-        assert (await other.until("tool_property_changed"))["value"] == "/elsewhere"
-        await one.send("set_tool_property", id=topic, value="not a name!")
-        assert (await one.until("tool_property_changed", value="/elsewhere"))["id"] == topic
-        heard = listen(made, "geometry_msgs/msg/PoseStamped", "/elsewhere")
-        await one.send("pose_chosen", tool=goal["id"], x=3.0, y=4.0, yaw=0.0)
+        await first.send("set_tool_property", id=topic, value="/elsewhere")
+        assert (await second.until("tool_property_changed"))["value"] == "/elsewhere"
+        await first.send("set_tool_property", id=topic, value="not a name!")
+        assert (await first.until("tool_property_changed", value="/elsewhere"))["id"] == topic
+        heard = listen(world, "geometry_msgs/msg/PoseStamped", "/elsewhere")
+        await first.send("pose_chosen", tool=goal["id"], x=3.0, y=4.0, yaw=0.0)
         await eventually(lambda: heard)
-        await made.settle()
+        await world.settle()
     assert len(heard) == 1
     assert tools_of(config)[1]["Topic"] == "/elsewhere"
 
 
 async def test_tools_are_added_and_removed_on_all_pages(config):
-    async with world(config) as made, page(made.viewer) as one, page(made.viewer) as other:
-        tools = (await one.opened())["tools"]["tools"]
-        await other.opened()
-        await one.send("add_tool", cls="rviz_default_plugins/Measure")
-        added = (await other.until("tools"))["tools"]
+    async with open_world(config) as world, page(world.viewer) as first, page(world.viewer) as second:
+        tools = (await first.opened())["tools"]["tools"]
+        await second.opened()
+        await first.send("add_tool", cls="rviz_default_plugins/Measure")
+        added = (await second.until("tools"))["tools"]
         assert [tool["name"] for tool in added] == [*(tool["name"] for tool in tools), "Measure"]
-        await other.send("remove_tool", id=tools[0]["id"])
-        await one.until("tools")
-        assert [tool["id"] for tool in (await one.until("tools"))["tools"]] == [tool["id"] for tool in added[1:]]
-    assert [each["Class"].rpartition("/")[2] for each in tools_of(config)] == [
+        await second.send("remove_tool", id=tools[0]["id"])
+        await first.until("tools")
+        assert [tool["id"] for tool in (await first.until("tools"))["tools"]] == [tool["id"] for tool in added[1:]]
+    assert [tool["Class"].rpartition("/")[2] for tool in tools_of(config)] == [
         "SetGoal",
         "GoalTool",
         "SetInitialPose",
@@ -169,11 +169,11 @@ Visualization Manager:
 
 async def test_nav2_goal_uses_action_and_logs_missing_server():
     config = RvizConfig.parse(NAV2)
-    async with world(config) as made, page(made.viewer) as opened:
+    async with open_world(config) as world, page(world.viewer) as opened:
         (tool,) = (await opened.opened())["tools"]["tools"]
         assert (tool["name"], tool["supported"], tool["properties"]) == ("Nav2 Goal", True, [])
         await opened.send("pose_chosen", tool=tool["id"], x=1.0, y=2.0, yaw=0.0)
-        await eventually(lambda: "navigate_to_pose action server is not available" in made.logged())
+        await eventually(lambda: "navigate_to_pose action server is not available" in world.logged())
         goals = []
 
         def drive(handle):
@@ -181,9 +181,9 @@ async def test_nav2_goal_uses_action_and_logs_missing_server():
             handle.succeed()
             return get_action("nav2_msgs/action/NavigateToPose").Result()
 
-        navigator = made.graph.create_node("bt_navigator")
+        navigator = world.graph.create_node("bt_navigator")
         ActionServer(navigator, "nav2_msgs/action/NavigateToPose", "navigate_to_pose", drive)
-        await made.settle()
+        await world.settle()
         await opened.send("pose_chosen", tool=tool["id"], x=3.0, y=4.0, yaw=math.pi)
         await eventually(lambda: goals)
     (goal,) = goals

@@ -6,7 +6,7 @@ import yaml
 from linkwright.page.protocol.views_and_tools import View
 from linkwright.rviz import RvizConfig
 from linkwright.rviz.config.views import CURRENT_NAME, ORBIT, PITCH_LIMIT, VIEW_SCHEMAS, view_classes
-from tests.viewer.scene import page, world
+from tests.viewer.scene import open_world, page
 
 FLYING = """\
 Visualization Manager:
@@ -46,7 +46,11 @@ def config_of(view: str) -> RvizConfig:
 
 def default_view(cls: str = ORBIT) -> View:
     """Return the default view of a class, as a page creates it."""
-    return next(View(each.cls, CURRENT_NAME, each.defaults) for each in view_classes() if each.cls == cls)
+    return next(
+        View(view_class.cls, CURRENT_NAME, view_class.defaults)
+        for view_class in view_classes()
+        if view_class.cls == cls
+    )
 
 
 def test_negative_scale_is_kept():
@@ -57,7 +61,7 @@ def test_negative_scale_is_kept():
 
 
 def test_view_classes_and_properties_match_rviz():
-    classes = {each.cls.rpartition("/")[2]: each for each in view_classes()}
+    classes = {view_class.cls.rpartition("/")[2]: view_class for view_class in view_classes()}
     assert list(classes) == ["FPS", "Orbit", "ThirdPersonFollower", "TopDownOrtho", "XYOrbit"]
     rows = [row.name for row in classes["Orbit"].properties]
     assert rows[:3] == ["Near Clip Distance", "Invert Z Axis", "Target Frame"]
@@ -167,7 +171,7 @@ def test_saved_views_are_renamed_changed_and_removed():
     added = config.views.save(config.views.current)
     config.views.remove(unknown)
     saved = yaml.safe_load(config.text())["Visualization Manager"]["Views"]["Saved"]
-    assert [(each["Class"].rpartition("/")[2], each["Name"]) for each in saved] == [
+    assert [(view["Class"].rpartition("/")[2], view["Name"]) for view in saved] == [
         ("TopDownOrtho", "map"),
         ("FPS", "Current View"),
     ]
@@ -185,21 +189,21 @@ def test_view_can_be_saved_to_file_without_saved_views():
 
 
 async def test_pages_share_saved_views():
-    async with world() as made, page(made.viewer) as one, page(made.viewer) as other:
-        opening = await one.opened()
-        await other.opened()
+    async with open_world() as world, page(world.viewer) as first, page(world.viewer) as second:
+        opening = await first.opened()
+        await second.opened()
         assert opening["saved_views"]["views"] == []
-        assert [each["cls"] for each in opening["view_classes"]["classes"]] == list(VIEW_SCHEMAS)
+        assert [view_class["cls"] for view_class in opening["view_classes"]["classes"]] == list(VIEW_SCHEMAS)
         view = opening["view_state"]["view"] | {"name": "mine"}
-        await one.send("save_view", view=view)
-        (saved,) = (await other.until("saved_views"))["views"]
+        await first.send("save_view", view=view)
+        (saved,) = (await second.until("saved_views"))["views"]
         assert saved["view"] == view
         changed = view | {"name": "ours", "values": view["values"] | {"Distance": 4.0}}
-        await other.send("change_saved_view", id=saved["id"], view=changed)
-        await one.until("saved_views")
-        assert (await one.until("saved_views"))["views"] == [saved | {"view": changed}]
-        await one.send("remove_saved_view", id=saved["id"])
-        await one.send("remove_saved_view", id=saved["id"])
-        await one.send("save_view", view=view | {"cls": "no/Such"})
-        assert (await one.until("saved_views"))["views"] == []
-    assert "an invalid view" in made.logged()
+        await second.send("change_saved_view", id=saved["id"], view=changed)
+        await first.until("saved_views")
+        assert (await first.until("saved_views"))["views"] == [saved | {"view": changed}]
+        await first.send("remove_saved_view", id=saved["id"])
+        await first.send("remove_saved_view", id=saved["id"])
+        await first.send("save_view", view=view | {"cls": "no/Such"})
+        assert (await first.until("saved_views"))["views"] == []
+    assert "an invalid view" in world.logged()

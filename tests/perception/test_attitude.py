@@ -62,18 +62,20 @@ def test_attitude_at_rest_without_direction_is_none():
 @pytest.mark.parametrize("world", WorldFrame)
 def test_madgwick_converges_from_large_error(world):
     orientation = quaternion_from_rpy((0.4, -0.3, 1.0))
-    each = MadgwickFilter(gain=0.5, world=world)
+    attitude_filter = MadgwickFilter(gain=0.5, world=world)
     for _ in range(1000):
-        each.update((0.0, 0.0, 0.0), acceleration_at_rest(orientation, world), field(orientation, world), 0.01)
-    assert angle_between(each.orientation, orientation) < 0.01
+        attitude_filter.update(
+            (0.0, 0.0, 0.0), acceleration_at_rest(orientation, world), field(orientation, world), 0.01
+        )
+    assert angle_between(attitude_filter.orientation, orientation) < 0.01
 
 
 def test_madgwick_without_magnetometer_finds_roll_and_pitch():
     orientation = quaternion_from_rpy((0.4, -0.3, 0.0))
-    each = MadgwickFilter(gain=0.5)
+    attitude_filter = MadgwickFilter(gain=0.5)
     for _ in range(500):
-        each.update((0.0, 0.0, 0.0), acceleration_at_rest(orientation), None, 0.01)
-    assert rpy_from_quaternion(each.orientation)[:2] == pytest.approx((0.4, -0.3), abs=0.01)
+        attitude_filter.update((0.0, 0.0, 0.0), acceleration_at_rest(orientation), None, 0.01)
+    assert rpy_from_quaternion(attitude_filter.orientation)[:2] == pytest.approx((0.4, -0.3), abs=0.01)
 
 
 FILTERS = pytest.mark.parametrize("kind", [MadgwickFilter, ComplementaryFilter])
@@ -81,35 +83,35 @@ FILTERS = pytest.mark.parametrize("kind", [MadgwickFilter, ComplementaryFilter])
 
 @FILTERS
 def test_gyroscope_rotates_attitude(kind):
-    each = kind()
+    attitude_filter = kind()
     for _ in range(1000):
-        each.update((0.0, 0.0, 0.5), (0.0, 0.0, GRAVITY), None, 0.002)
-    assert rpy_from_quaternion(each.orientation) == pytest.approx((0.0, 0.0, 1.0), abs=1e-3)
+        attitude_filter.update((0.0, 0.0, 0.5), (0.0, 0.0, GRAVITY), None, 0.002)
+    assert rpy_from_quaternion(attitude_filter.orientation) == pytest.approx((0.0, 0.0, 1.0), abs=1e-3)
 
 
 def test_madgwick_estimates_gyroscope_drift():
-    each = MadgwickFilter(gain=0.2, zeta=0.1)
+    attitude_filter = MadgwickFilter(gain=0.2, zeta=0.1)
     for _ in range(6000):
-        each.update((0.1, 0.0, 0.0), (0.0, 0.0, GRAVITY), None, 0.01)
-    assert each.drift[0] == pytest.approx(0.1, abs=0.02)
-    assert abs(rpy_from_quaternion(each.orientation)[0]) < 0.05
+        attitude_filter.update((0.1, 0.0, 0.0), (0.0, 0.0, GRAVITY), None, 0.01)
+    assert attitude_filter.drift[0] == pytest.approx(0.1, abs=0.02)
+    assert abs(rpy_from_quaternion(attitude_filter.orientation)[0]) < 0.05
 
 
 def test_complementary_filter_finds_attitude_and_north():
     orientation = quaternion_from_rpy((0.3, -0.2, 0.8))
-    each = ComplementaryFilter(gain_acc=0.05, gain_mag=0.05)
+    attitude_filter = ComplementaryFilter(gain_acc=0.05, gain_mag=0.05)
     for _ in range(500):
-        each.update(
+        attitude_filter.update(
             (0.0, 0.0, 0.0), acceleration_at_rest(orientation, WorldFrame.NWU), field(orientation, WorldFrame.NWU), 0.01
         )
-    assert angle_between(each.orientation, orientation) < 0.01
+    assert angle_between(attitude_filter.orientation, orientation) < 0.01
 
 
 def test_complementary_filter_estimates_bias_at_rest():
-    each = ComplementaryFilter()
+    attitude_filter = ComplementaryFilter()
     for _ in range(1500):
-        each.update((0.0, 0.0, 0.05), (0.0, 0.0, GRAVITY), None, 0.01)
-    assert each.bias[2] == pytest.approx(0.05, abs=1e-3)
+        attitude_filter.update((0.0, 0.0, 0.05), (0.0, 0.0, GRAVITY), None, 0.01)
+    assert attitude_filter.bias[2] == pytest.approx(0.05, abs=1e-3)
     still = ComplementaryFilter(do_bias_estimation=False)
     still.update((0.0, 0.0, 0.05), (0.0, 0.0, GRAVITY), None, 0.01)
     assert still.bias == (0.0, 0.0, 0.0)
@@ -118,14 +120,14 @@ def test_complementary_filter_estimates_bias_at_rest():
 def test_adaptive_gain_ignores_linear_acceleration():
     careful, trusting = ComplementaryFilter(gain_acc=0.05), ComplementaryFilter(gain_acc=0.05, do_adaptive_gain=False)
     for _ in range(100):
-        for each in (careful, trusting):
-            each.update((0.0, 0.0, 0.0), (8.0, 0.0, GRAVITY), None, 0.01)
+        for attitude_filter in (careful, trusting):
+            attitude_filter.update((0.0, 0.0, 0.0), (8.0, 0.0, GRAVITY), None, 0.01)
     assert abs(rpy_from_quaternion(careful.orientation)[1]) < 1e-9
     assert abs(rpy_from_quaternion(trusting.orientation)[1]) > 0.5
 
 
 def test_madgwick_converges_from_half_turn():
-    each = MadgwickFilter(gain=1.0, orientation=quaternion_from_rpy((pi - 0.1, 0.0, 0.0)))
+    attitude_filter = MadgwickFilter(gain=1.0, orientation=quaternion_from_rpy((pi - 0.1, 0.0, 0.0)))
     for _ in range(2000):
-        each.update((0.0, 0.0, 0.0), (0.0, 0.0, GRAVITY), None, 0.005)
-    assert abs(rpy_from_quaternion(each.orientation)[0]) < 0.02
+        attitude_filter.update((0.0, 0.0, 0.0), (0.0, 0.0, GRAVITY), None, 0.005)
+    assert abs(rpy_from_quaternion(attitude_filter.orientation)[0]) < 0.02

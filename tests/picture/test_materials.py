@@ -122,11 +122,11 @@ def test_mesh_sizes_and_colors_match_page(tmp_path: Path) -> None:
     wrong = {}
     for name, (_, _, _, _, (least, most), color, opacity) in GOLDEN.items():
         surface = drawn[name]
-        found = "#" + "".join(f"{round(value * 255):02x}" for value in surface.color)
+        hex_color = "#" + "".join(f"{round(value * 255):02x}" for value in surface.color)
         low, high = surface.points.min(axis=0).tolist(), surface.points.max(axis=0).tolist()
         is_in_place = low == pytest.approx(least, abs=1e-5) and high == pytest.approx(most, abs=1e-5)
-        if not is_in_place or found != color or surface.alpha != pytest.approx(opacity):
-            wrong[name] = (low, high, found, surface.alpha)
+        if not is_in_place or hex_color != color or surface.alpha != pytest.approx(opacity):
+            wrong[name] = (low, high, hex_color, surface.alpha)
     assert wrong == {}
 
 

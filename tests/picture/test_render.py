@@ -94,8 +94,8 @@ def test_two_robots_share_camera() -> None:
     small, large = scene(ONE), scene(urdf(link("base", '<box size="3 3 3"/>', RED)))
     camera = camera_for(VIEWS["front"], (480, 360), small, large)
     covered = [
-        int((render(each, style=Style(transparent=True), camera=camera)[:, :, 3] == 255).sum())
-        for each in (small, large)
+        int((render(scene, style=Style(transparent=True), camera=camera)[:, :, 3] == 255).sum())
+        for scene in (small, large)
     ]
     assert covered[1] == pytest.approx(9 * covered[0], rel=0.1)
 

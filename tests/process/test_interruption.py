@@ -27,7 +27,7 @@ PROGRAM = """
 
 
 def test_ctrl_c_in_destructor_is_raised_again() -> None:
-    done = subprocess.run(
+    result = subprocess.run(
         [sys.executable, "-c", textwrap.dedent(PROGRAM)], capture_output=True, text=True, timeout=60, check=False
     )
-    assert (done.stdout, done.stderr) == ("caught\n", "")
+    assert (result.stdout, result.stderr) == ("caught\n", "")

@@ -35,6 +35,6 @@ def machine(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Iterator[Machine
     """Processes in a domain of this worker's; none of them outlives the test."""
     for name in ROS_VARIABLES:
         monkeypatch.delenv(name, raising=False)
-    made = Machine(tmp_path, own_domain())
-    yield made
-    made.clean_up()
+    machine = Machine(tmp_path, own_domain())
+    yield machine
+    machine.clean_up()

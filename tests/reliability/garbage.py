@@ -38,11 +38,11 @@ def writer(participant: DomainParticipant, topic: str, kind: type, qos: Qos) -> 
 
 def bodies(lottery: random.Random) -> list[bytes]:
     """Bytes that are hardly any message, each with an encapsulation header that Cyclone lets through."""
-    found = [HEADER + lottery.randbytes(4 * lottery.randrange(1, 40)) for _ in range(ROUNDS)]
-    found += [HEADER + struct.pack("<I", length) + bytes(4) for length in (2**32 - 1, 2**31, 10_000_000, 0)]
-    found += [HEADER + struct.pack("<I", 3) + bytes([0xFF, byte, 0, 0]) for byte in range(1, 60)]
-    found += [HEADER + b"\2\0\0\0\xff\0\0\0", HEADER]
-    return found
+    packets = [HEADER + lottery.randbytes(4 * lottery.randrange(1, 40)) for _ in range(ROUNDS)]
+    packets += [HEADER + struct.pack("<I", length) + bytes(4) for length in (2**32 - 1, 2**31, 10_000_000, 0)]
+    packets += [HEADER + struct.pack("<I", 3) + bytes([0xFF, byte, 0, 0]) for byte in range(1, 60)]
+    packets += [HEADER + b"\2\0\0\0\xff\0\0\0", HEADER]
+    return packets
 
 
 def announcements(participant: bytes) -> list[bytes]:
@@ -92,13 +92,13 @@ def main() -> None:
     limit = time.monotonic() + 60
     while time.monotonic() < limit and not all(writer.get_matched_subscriptions() for writer in writers.values()):
         time.sleep(0.02)
-    print("matched", *(name for name, each in writers.items() if each.get_matched_subscriptions()), flush=True)
+    print("matched", *(name for name, writer in writers.items() if writer.get_matched_subscriptions()), flush=True)
     shout(lottery, 7400 + 250 * number + 10)
-    for name, each in writers.items():
+    for name, data_writer in writers.items():
         written = 0
         for body in bodies(lottery) + announcements(participant.guid.bytes):
             with suppress(DDSException):  # Cyclone refuses some by itself
-                each.write(each.data_type(body))
+                data_writer.write(data_writer.data_type(body))
                 written += 1
         print("written", name, written, flush=True)
     time.sleep(0.5)

@@ -81,8 +81,8 @@ class Running:
 
     def last_number(self, word: str) -> int:
         """The number behind a word in the last line that begins with it; -1 when there is none."""
-        found = [line.split() for line in tuple(self.lines) if line.split()[:1] == [word]]
-        return int(found[-1][1]) if found else -1
+        rows = [line.split() for line in tuple(self.lines) if line.split()[:1] == [word]]
+        return int(rows[-1][1]) if rows else -1
 
     def wait_for(self, text: str, seconds: float = SECONDS, times: int = 1) -> None:
         """Wait until a text has come in so many lines."""
@@ -107,13 +107,13 @@ class Running:
 
     def left_behind(self) -> list[psutil.Process]:
         """Processes that it started and that live on, wherever they are now, itself included."""
-        return [each for each in psutil.process_iter() if _is_marked(each, self.mark)]
+        return [process for process in psutil.process_iter() if _is_marked(process, self.mark)]
 
     def clean_up(self) -> None:
         """Let nothing outlive the test, and close what was open."""
-        for each in self.left_behind():
+        for process in self.left_behind():
             with suppress(psutil.Error):
-                each.kill()
+                process.kill()
         self.process.wait(60.0)
         self._reader.join(60.0)
         assert self.process.stdout is not None
@@ -190,8 +190,8 @@ class Machine:
         return self._started[-1]
 
     def clean_up(self) -> None:
-        for each in self._started:
-            each.clean_up()
+        for running in self._started:
+            running.clean_up()
 
 
 def program(text: str) -> str:

@@ -86,7 +86,7 @@ def test_process_in_background_launch_can_be_interrupted_alone(background: Machi
     action = f"ExecuteProcess(cmd=[sys.executable, {str(path)!r}], output='screen')"
     running = background.launch(background.write("a.launch.py", launch_file(action)))
     running.wait_for("speaks")
-    (child,) = [each for each in running.left_behind() if "speaker.py" in " ".join(each.cmdline())]
+    (child,) = [process for process in running.left_behind() if "speaker.py" in " ".join(process.cmdline())]
     child.send_signal(signal.SIGINT)
     assert running.wait() == 0, running.text
     assert "process has finished cleanly" in running.text

@@ -211,14 +211,14 @@ def test_interrupted_recording_is_complete(machine: Machine) -> None:
     status = recorder.interrupt()
     assert status in (0, 130), recorder.text
     info = machine.verb("bag", "info", bag)
-    found = re.search(r"Topic: /chatter .*Count: (\d+)", info)
-    assert found, info
-    assert int(found[1]) >= 40, info
+    match = re.search(r"Topic: /chatter .*Count: (\d+)", info)
+    assert match, info
+    assert int(match[1]) >= 40, info
     from rosbags.highlevel import AnyReader  # there is no wheel for Python 3.15, nor DDS
     from rosbags.typesys import Stores, get_typestore
 
     with AnyReader([bag], default_typestore=get_typestore(Stores.ROS2_HUMBLE)) as reader:
-        numbers = [reader.deserialize(data, each.msgtype).data for each, _, data in reader.messages()]
+        numbers = [reader.deserialize(data, connection.msgtype).data for connection, _, data in reader.messages()]
     assert numbers == list(range(numbers[0], numbers[0] + len(numbers)))
 
 

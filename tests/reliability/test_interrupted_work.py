@@ -68,8 +68,8 @@ def test_busy_command_ends_on_interrupt(words: list[str], tmp_path: Path) -> Non
 def _work(process: psutil.Process) -> float:
     """Seconds of the processor that a process and its children took until now."""
     total = 0.0
-    for each in (process, *process.children(recursive=True)):
+    for worker in (process, *process.children(recursive=True)):
         with suppress(psutil.NoSuchProcess):
-            used = each.cpu_times()
+            used = worker.cpu_times()
             total += used.user + used.system
     return total

@@ -45,7 +45,7 @@ def test_killed_node_is_respawned_and_heard_again(machine: Machine) -> None:
     listener.wait_for("heard", times=3)
     for round_number in (1, 2):
         before = listener.count("heard")
-        (victim,) = [each for each in launch.left_behind() if str(path) in " ".join(_words(each))]
+        (victim,) = [process for process in launch.left_behind() if str(path) in " ".join(_words(process))]
         victim.kill()
         launch.wait_for("has died", times=round_number)
         launch.wait_for("process started with pid", times=round_number + 1)

@@ -114,8 +114,8 @@ def test_process_without_dds_works_in_isolation(machine: Machine) -> None:
         ),
     )
     alone, seen = machine.launch(path, LINKWRIGHT_DDS="0"), machine.launch(path)
-    for each in (alone, seen):
-        each.wait_for("I heard: ", times=3)
+    for process in (alone, seen):
+        process.wait_for("I heard: ", times=3)
     sockets = psutil.Process(alone.process.pid).net_connections("udp")
     assert sockets == []
     assert machine.verb("node", "list").split() == ["/listener", "/talker"]

@@ -52,9 +52,9 @@ class Program(Node):
 def count(path) -> int:
     """How many messages a recording has that is whole."""
     with BagReader(path) as bag:
-        found = sum(1 for _ in bag.messages())
+        message_count = sum(1 for _ in bag.messages())
         assert not bag.findings
-    return found
+    return message_count
 
 
 @pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM])
@@ -76,8 +76,8 @@ def test_bag_record_is_complete_after_any_signal(machine: Machine, storage: str,
     recording.wait_for("Subscribed to topic '/chatter'")
     folder = machine.folder / "bag"
     wait_until(lambda: sum(path.stat().st_size for path in folder.iterdir()) > 1_000_000, what=lambda: recording.text)
-    for each in signals:
-        recording.process.send_signal(each)
+    for stop_signal in signals:
+        recording.process.send_signal(stop_signal)
         time.sleep(0.35)  # later than what counts as one keypress
         if recording.process.poll() is not None:
             break

@@ -42,8 +42,8 @@ def compare() -> Compare:
 
 def subject(result: Review, path: str) -> Subject:
     """Return the subject with a path."""
-    (found,) = [subject for subject in result.subjects if subject.path == path]
-    return found
+    (review_subject,) = [subject for subject in result.subjects if subject.path == path]
+    return review_subject
 
 
 def sentences(subject: Subject) -> list[str]:

@@ -35,9 +35,9 @@ WITHOUT_DEFAULT = ARM.replace('  <xacro:arg name="tool" default="none"/>\n', "")
 def test_mappings_of_process_file_are_tried(package, compare):
     package.commit({"arm_description/launch/arm.launch.py": LAUNCH, PATH: WITHOUT_DEFAULT})
     package.write({PATH: WITHOUT_DEFAULT.replace('xyz="0 0 0.2"', 'xyz="0 0 0.3"')})
-    found = subject(compare(package), PATH)
-    assert found.cases == ["tool:=none", "tool:=probe"]
-    assert sentences(found) == ["joint 'probe_joint': origin xyz 0 0 0.2 -> 0 0 0.3 m (moved by 0.1 m)"]
+    review_subject = subject(compare(package), PATH)
+    assert review_subject.cases == ["tool:=none", "tool:=probe"]
+    assert sentences(review_subject) == ["joint 'probe_joint': origin xyz 0 0 0.2 -> 0 0 0.3 m (moved by 0.1 m)"]
 
 
 def test_argument_without_value_in_a_condition_is_tried_as_false_and_true(package, compare):
@@ -49,9 +49,9 @@ def test_argument_without_value_in_a_condition_is_tried_as_false_and_true(packag
     assert '<xacro:if value="$(arg has_probe)">' in text
     package.commit({PATH: text})
     package.write({PATH: text.replace('xyz="0 0 0.2"', 'xyz="0 0 0.3"')})
-    found = subject(compare(package), PATH)
-    assert found.cases == ["has_probe:=false", "has_probe:=true"]
-    (change,) = found.changes
+    review_subject = subject(compare(package), PATH)
+    assert review_subject.cases == ["has_probe:=false", "has_probe:=true"]
+    (change,) = review_subject.changes
     assert change.cases == ("has_probe:=true",)
 
 
@@ -63,9 +63,9 @@ def test_part_behind_a_switch_is_compared_with_its_opposite(package, compare):
     )
     package.write({"arm_description/urdf/sim.xacro": part.replace("cmd_vel", "drive/cmd_vel")})
     result = compare(package)
-    ((found, change),) = result.breaking_changes
+    ((changed_subject, change),) = result.breaking_changes
     assert str(change.sentence) == "extension 'gazebo': plugin drive topic cmd_vel -> drive/cmd_vel"
-    assert (found.cases, change.cases) == (["", "sim:=true"], ("sim:=true",))
+    assert (changed_subject.cases, change.cases) == (["", "sim:=true"], ("sim:=true",))
 
 
 def test_started_robot_that_another_one_includes_is_compared(package, compare):
@@ -96,9 +96,9 @@ def test_paths_in_values_lead_to_the_files_of_each_version(package, compare):
     }
     package.commit(files)
     package.commit({PATH: text.replace('xyz="0 0 0.2"', 'xyz="0 0 0.3"')})
-    (found,) = compare(package, "HEAD~1..HEAD").subjects
-    assert found.cases == ["settings:=./arm_description/config/a.yaml"]
-    assert sentences(found) == ["joint probe_joint origin xyz: 0 0 0.2 -> 0 0 0.3"]
+    (review_subject,) = compare(package, "HEAD~1..HEAD").subjects
+    assert review_subject.cases == ["settings:=./arm_description/config/a.yaml"]
+    assert sentences(review_subject) == ["joint probe_joint origin xyz: 0 0 0.2 -> 0 0 0.3"]
 
 
 def test_paths_in_reports_are_relative(package, compare):
@@ -107,8 +107,10 @@ def test_paths_in_reports_are_relative(package, compare):
     )
     package.commit({PATH: text})
     package.commit({PATH: text.replace("a.yaml", "b.yaml")})
-    found = subject(compare(package, "HEAD~1..HEAD"), PATH)
-    assert sentences(found) == ["extension 'gazebo': plugin p config arm_description/a.yaml -> arm_description/b.yaml"]
+    review_subject = subject(compare(package, "HEAD~1..HEAD"), PATH)
+    assert sentences(review_subject) == [
+        "extension 'gazebo': plugin p config arm_description/a.yaml -> arm_description/b.yaml"
+    ]
 
 
 def test_set_that_only_some_combinations_can_read_is_no_problem(package, compare):
@@ -125,9 +127,9 @@ def test_set_that_only_some_combinations_can_read_is_no_problem(package, compare
     )
     package.write({PATH: text.replace('xyz="0 0 0.2"', 'xyz="0 0 0.3"')})
     result = compare(package)
-    found = subject(result, PATH)
-    assert found.cases == ["tool:=probe"]
-    assert found.problems == []
+    review_subject = subject(result, PATH)
+    assert review_subject.cases == ["tool:=probe"]
+    assert review_subject.problems == []
     assert breaking(result) == []
 
 

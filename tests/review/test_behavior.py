@@ -60,14 +60,14 @@ def test_equal_results_are_not_reported(compared):
 
 
 def test_difference_beyond_noise_is_reported(compared):
-    found = compared({"NOISE": "0.1"}, {"NOISE": "0.1", "OFFSET": "0.5"})
-    (sentence,) = sentences(found)
+    comparison = compared({"NOISE": "0.1"}, {"NOISE": "0.1", "OFFSET": "0.5"})
+    (sentence,) = sentences(comparison)
     assert sentence == "lap: mean 7.548 -> 8.048, difference 0.5 to 0.5"
 
 
 def test_difference_within_noise_is_marked(compared):
-    found = compared({"NOISE": "0.1"}, {"NOISE": "(random.random(), random.random(), 0.1)[2]"})
-    (sentence,) = sentences(found)
+    comparison = compared({"NOISE": "0.1"}, {"NOISE": "(random.random(), random.random(), 0.1)[2]"})
+    (sentence,) = sentences(comparison)
     assert sentence.endswith(", within the noise")
 
 
@@ -80,9 +80,9 @@ def test_violated_bound_is_breaking(compared):
 
 
 def test_runs_that_fail_are_breaking(compared):
-    found = compared({}, {"FAILS": "True"})
-    assert str(found.changes[0].sentence) == "0 -> 4 of 20 runs failed"
-    assert found.changes[0].reason is not None
+    comparison = compared({}, {"FAILS": "True"})
+    assert str(comparison.changes[0].sentence) == "0 -> 4 of 20 runs failed"
+    assert comparison.changes[0].reason is not None
 
 
 def test_changed_texts_are_counted_over_seeds(compared):
@@ -107,12 +107,12 @@ def drive(speed, gain, seed):
 def test_paths_are_compared_for_each_listed_parameter(package, compare_scenario):
     package.commit({"tests/drive.py": PATHS.replace("OFFSET", "0.0")})
     package.commit({"tests/drive.py": PATHS.replace("OFFSET", "0.01")})
-    found = compare_scenario()
-    assert sentences(found) == [
+    scenario_comparison = compare_scenario()
+    assert sentences(scenario_comparison) == [
         "track, speed=2.0: paths up to 2.4 m apart (seed 2, after 4 s), median of 3 runs 1.6 m",
         "track, speed=1.0: paths up to 1.2 m apart (seed 2, after 4 s), median of 3 runs 0.8 m",
     ]
-    assert [comparison.parameters for comparison in found.paths] == ["speed=2.0", "speed=1.0"]
+    assert [comparison.parameters for comparison in scenario_comparison.paths] == ["speed=2.0", "speed=1.0"]
 
 
 def test_paths_are_in_all_reports_with_the_same_bytes_twice(package, compare_scenario):

@@ -33,9 +33,9 @@ def collisions(compare, repository, text: str) -> list[str]:
 
 
 def test_wider_joint_limits_report_new_self_collision(solid, compare):
-    (found,) = collisions(compare, solid, SOLID.replace('lower="-1.5" upper="1.5"', 'lower="-3" upper="3"'))
-    assert found.startswith("links 'upper' and 'lower' can collide: in ")
-    assert found.endswith(" % of 300 configurations, in none before")
+    (collision,) = collisions(compare, solid, SOLID.replace('lower="-1.5" upper="1.5"', 'lower="-3" upper="3"'))
+    assert collision.startswith("links 'upper' and 'lower' can collide: in ")
+    assert collision.endswith(" % of 300 configurations, in none before")
 
 
 def test_collision_at_home_is_reported(solid, compare):

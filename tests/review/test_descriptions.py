@@ -27,12 +27,12 @@ def generate_launch_description():
 def test_changed_macro_changes_robots_that_include_it(package, compare):
     package.write({"arm_description/urdf/segment.xacro": MACRO.replace("length:=0.5", "length:=0.6")})
     result = compare(package)
-    (found,) = [item for item in result.subjects if item.kind.value == "description"]
-    assert found.path == PATH
-    assert "joint 'upper_joint': origin xyz 0 0 0.5 -> 0 0 0.6 m (moved by 0.1 m)" in sentences(found)
-    change = next(change for change in found.changes if "upper_joint" in change.sentence)
+    (review_subject,) = [item for item in result.subjects if item.kind.value == "description"]
+    assert review_subject.path == PATH
+    assert "joint 'upper_joint': origin xyz 0 0 0.5 -> 0 0 0.6 m (moved by 0.1 m)" in sentences(review_subject)
+    change = next(change for change in review_subject.changes if "upper_joint" in change.sentence)
     assert (change.location.file, change.location.line) == ("arm_description/urdf/segment.xacro", 14)
-    figures = {str(figure.name): (figure.old, figure.new, figure.unit) for figure in found.figures}
+    figures = {str(figure.name): (figure.old, figure.new, figure.unit) for figure in review_subject.figures}
     assert figures["size"] == ("0.1 x 0.1 x 1.5", "0.1 x 0.1 x 1.8", "m")
     assert float(figures["reach of 'lower'"][1]) == pytest.approx(1.8, abs=0.05)
     assert result.breaking_changes == []
@@ -59,9 +59,9 @@ def test_equal_robot_is_not_reported(package, compare):
 def test_argument_sets_of_callers_are_compared(package, compare):
     package.commit({"arm_description/launch/arm.launch.py": LAUNCH})
     package.write({PATH: ARM.replace('xyz="0 0 0.2"', 'xyz="0 0 0.3"')})
-    found = subject(compare(package), PATH)
-    assert found.cases == ["tool:=probe"]
-    assert sentences(found) == ["joint 'probe_joint': origin xyz 0 0 0.2 -> 0 0 0.3 m (moved by 0.1 m)"]
+    review_subject = subject(compare(package), PATH)
+    assert review_subject.cases == ["tool:=probe"]
+    assert sentences(review_subject) == ["joint 'probe_joint': origin xyz 0 0 0.2 -> 0 0 0.3 m (moved by 0.1 m)"]
 
 
 def test_change_with_some_arguments_names_them(package, compare):
@@ -72,9 +72,9 @@ def test_change_with_some_arguments_names_them(package, compare):
         }
     )
     package.write({PATH: ARM.replace('xyz="0 0 0.2"', 'xyz="0 0 0.3"')})
-    found = subject(compare(package), PATH)
-    assert found.cases == ["tool:=probe", "tool:=none"]
-    assert [change.cases for change in found.changes] == [("tool:=probe",)]
+    review_subject = subject(compare(package), PATH)
+    assert review_subject.cases == ["tool:=probe", "tool:=none"]
+    assert [change.cases for change in review_subject.changes] == [("tool:=probe",)]
 
 
 FOOTPRINT = """<link name="base_footprint"/>
@@ -128,16 +128,16 @@ LIFTED = """<link name="foot"/><joint name="foot_joint" type="fixed"><parent lin
 
 def test_added_root_link_changes_no_figure_of_the_rest(package, compare):
     package.write({PATH: ARM.replace('<link name="base_link"/>', LIFTED)})
-    found = subject(compare(package), PATH)
-    assert {str(figure.name) for figure in found.figures} == {"links", "joints"}
+    review_subject = subject(compare(package), PATH)
+    assert {str(figure.name) for figure in review_subject.figures} == {"links", "joints"}
 
 
 def test_removed_root_link_changes_no_figure_of_the_rest(package, compare):
     package.commit({PATH: ARM.replace('<link name="base_link"/>', LIFTED)})
     package.write({PATH: ARM})
-    found = subject(compare(package), PATH)
-    assert {str(figure.name) for figure in found.figures} == {"links", "joints"}
-    assert sentences(found)[0] == (
+    review_subject = subject(compare(package), PATH)
+    assert {str(figure.name) for figure in review_subject.figures} == {"links", "joints"}
+    assert sentences(review_subject)[0] == (
         "root link 'foot' -> 'base_link' (both robots are compared in the frame of 'base_link')"
     )
 

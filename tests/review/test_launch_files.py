@@ -74,7 +74,7 @@ def changes_of(repository, compare):
         repository.commit({f"arm/launch/{name}": text})
         repository.write({f"arm/launch/{name}": text.replace(old, new)})
         result = compare(repository)
-        return [sentence for each in result.subjects for sentence in sentences(each)], breaking(result)
+        return [sentence for subject in result.subjects for sentence in sentences(subject)], breaking(result)
 
     return run
 
@@ -108,8 +108,8 @@ def changes_of(repository, compare):
     ],
 )  # fmt: skip
 def test_actions_in_python_are_compared(changes_of, old, new, expected, is_breaking):
-    found, found_breaking = changes_of("arm.launch.py", PYTHON, old, new)
-    assert found == [expected]
+    changes, found_breaking = changes_of("arm.launch.py", PYTHON, old, new)
+    assert changes == [expected]
     assert bool(found_breaking) is is_breaking
 
 
@@ -150,13 +150,13 @@ def test_difference_at_the_end_of_a_long_value_is_shown(changes_of):
 def test_other_code_is_reported_besides_actions(changes_of):
     text = PYTHON.replace("    return Launch", "    print('starting')\n    return Launch")
     changed = text.replace('"models"', '"worlds"').replace("'starting'", "'started'")
-    found, _ = changes_of("arm.launch.py", text, text, changed)
-    assert found[1:] == ["other code: print('starting') -> print('started')"]
+    changes, _ = changes_of("arm.launch.py", text, text, changed)
+    assert changes[1:] == ["other code: print('starting') -> print('started')"]
 
 
 def test_launch_file_with_name_of_a_test_is_compared(changes_of):
-    found, _ = changes_of("test_arm.launch.py", PYTHON, '"models"', '"worlds"')
-    assert len(found) == 1
+    changes, _ = changes_of("test_arm.launch.py", PYTHON, '"models"', '"worlds"')
+    assert len(changes) == 1
 
 
 @pytest.mark.parametrize(
@@ -175,8 +175,8 @@ def test_launch_file_with_name_of_a_test_is_compared(changes_of):
     ],
 )  # fmt: skip
 def test_actions_in_xml_are_compared(changes_of, old, new, expected, is_breaking):
-    found, found_breaking = changes_of("arm.launch", XML, old, new)
-    assert expected in found
+    changes, found_breaking = changes_of("arm.launch", XML, old, new)
+    assert expected in changes
     assert bool(found_breaking) is is_breaking
 
 
@@ -194,8 +194,8 @@ def test_actions_in_xml_are_compared(changes_of, old, new, expected, is_breaking
     ],
 )  # fmt: skip
 def test_actions_in_yaml_are_compared(changes_of, old, new, expected, is_breaking):
-    found, found_breaking = changes_of("arm.launch.yaml", YAML, old, new)
-    assert found == [expected]
+    changes, found_breaking = changes_of("arm.launch.yaml", YAML, old, new)
+    assert changes == [expected]
     assert bool(found_breaking) is is_breaking
 
 
@@ -297,16 +297,16 @@ def test_actions_of_loops_over_lists_are_compared(changes_of, old, new, expected
 def test_name_that_is_assigned_again_has_the_value_before_the_action(changes_of):
     text = LOOPS.replace("    ld = Launch", "    side = 'a'\n    side = side + '_arm'\n    ld = Launch")
     text = text.replace('    for side in ["left", "right"]:\n        ld', "    ld")
-    found, _ = changes_of("arm.launch.py", text, "side = 'a'", "side = 'b'")
-    assert found[0] == "node 'arm/driver': namespace a + _arm -> b + _arm"
+    changes, _ = changes_of("arm.launch.py", text, "side = 'a'", "side = 'b'")
+    assert changes[0] == "node 'arm/driver': namespace a + _arm -> b + _arm"
 
 
 def test_name_with_values_in_branches_stays_a_name(changes_of):
     text = LOOPS.replace(
         'for side in ["left", "right"]:', "side = 'a'\n    if PARAMETERS:\n        side = 'b'\n    if 1:"
     )
-    found, _ = changes_of("arm.launch.py", text, "side = 'a'", "side = 'c'")
-    assert found == ["other code: side = 'a' -> side = 'c'"]
+    changes, _ = changes_of("arm.launch.py", text, "side = 'a'", "side = 'c'")
+    assert changes == ["other code: side = 'a' -> side = 'c'"]
 
 
 def test_command_of_a_process_is_a_change(changes_of):
@@ -314,8 +314,8 @@ def test_command_of_a_process_is_a_change(changes_of):
 def generate_launch_description():
     return LaunchDescription([ExecuteProcess(cmd=["gz", "sim", "-r", "house.sdf"], output="screen")])
 """
-    found, _ = changes_of("arm.launch.py", text, "house", "yard")
-    assert found == ["process 'gz': command [gz, sim, -r, house.sdf] -> [gz, sim, -r, yard.sdf]"]
+    changes, _ = changes_of("arm.launch.py", text, "house", "yard")
+    assert changes == ["process 'gz': command [gz, sim, -r, house.sdf] -> [gz, sim, -r, yard.sdf]"]
 
 
 @pytest.mark.parametrize(("old", "new"), [("/tf", "tf"), ("tf", "/tf")])
@@ -350,6 +350,6 @@ def test_action_under_a_new_name_is_replaced(changes_of, old, new, expected):
 
 
 def test_program_of_the_same_package_is_not_a_replacement(changes_of):
-    found, found_breaking = changes_of("arm.launch.py", PYTHON, 'executable="teleop"', 'executable="keyboard"')
-    assert found == ["node 'arm/keyboard' added", "node 'arm/teleop' removed"]
-    assert found_breaking == found[1:]
+    changes, found_breaking = changes_of("arm.launch.py", PYTHON, 'executable="teleop"', 'executable="keyboard"')
+    assert changes == ["node 'arm/keyboard' added", "node 'arm/teleop' removed"]
+    assert found_breaking == changes[1:]

@@ -37,12 +37,12 @@ def notes(result) -> list[str]:
 def test_rest_of_robot_is_compared_with_one_note(sensor, compare):
     sensor.write({PATH: WITH_SENSOR.replace('xyz="0 0 0.1"', 'xyz="0 0 0.2"')})
     result = compare(sensor)
-    found = subject(result, PATH)
-    assert sentences(found) == ["joint 'bracket_joint': origin xyz 0 0 0.1 -> 0 0 0.2 m (moved by 0.1 m)"]
-    assert [str(problem.text) for problem in found.problems] == [
+    review_subject = subject(result, PATH)
+    assert sentences(review_subject) == ["joint 'bracket_joint': origin xyz 0 0 0.1 -> 0 0 0.2 m (moved by 0.1 m)"]
+    assert [str(problem.text) for problem in review_subject.problems] == [
         "values that need definitions of missing files are not compared: 'cover'"
     ]
-    assert found.figures == []
+    assert review_subject.figures == []
     assert notes(result) == [
         f"'{PATH}' is compared without the packages and files that neither version has: 'lidar_description'"
     ]
@@ -124,8 +124,8 @@ def test_unreadable_robots_that_did_not_change_are_counted_in_a_note(package, co
     package.commit({PATH: broken, "arm_description/urdf/second.urdf.xacro": broken})
     package.write({"arm_description/urdf/segment.xacro": MACRO.replace('mass value="2"', 'mass value="3"')})
     result = compare(package)
-    (found,) = result.subjects
-    assert found.path == "arm_description/urdf/segment.xacro"
+    (review_subject,) = result.subjects
+    assert review_subject.path == "arm_description/urdf/segment.xacro"
     (note,) = notes(result)
     assert note.startswith("2 files that the changes may affect are not compared, such as ")
     assert "the property 'missing' is not defined" in note

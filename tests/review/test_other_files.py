@@ -310,8 +310,12 @@ def test_settings_of_tools_are_other_files(package, compare):
 def test_manifest_changes_are_reported(package, compare):
     text = PACKAGE_XML.replace("1.0.0", "1.1.0").replace("<exec_depend>xacro", "<exec_depend>urdf")
     package.write({"arm_description/package.xml": text})
-    found = subject(compare(package), "arm_description/package.xml")
-    assert sentences(found) == ["version: 1.0.0 -> 1.1.0", "exec_depend urdf added", "exec_depend xacro removed"]
+    review_subject = subject(compare(package), "arm_description/package.xml")
+    assert sentences(review_subject) == [
+        "version: 1.0.0 -> 1.1.0",
+        "exec_depend urdf added",
+        "exec_depend xacro removed",
+    ]
 
 
 def test_renamed_package_is_breaking(package, compare):
@@ -362,14 +366,14 @@ def test_renamed_meshes_of_a_folder_are_one_breaking_line(repository, compare):
         {f"a/meshes/{name}-1.stl": None for name in names}
         | {f"a/meshes/{name}.stl": _stl(size) for size, name in enumerate(names, 1)}
     )
-    (found,) = compare(repository, "HEAD~1..HEAD").subjects
-    assert found.path == "a/meshes/"
-    (change,) = found.changes
+    (review_subject,) = compare(repository, "HEAD~1..HEAD").subjects
+    assert review_subject.path == "a/meshes/"
+    (change,) = review_subject.changes
     assert (
         str(change.sentence) == "3 meshes renamed: arm-1.stl -> arm.stl, lid-1.stl -> lid.stl, wheel-1.stl -> wheel.stl"
     )
     assert str(change.reason) == "descriptions of other packages that name the file do not find it"
-    assert not found.problems
+    assert not review_subject.problems
 
 
 def test_removed_and_added_meshes_are_grouped(repository, compare):
@@ -391,13 +395,13 @@ PLUGINS = """<library path="arm_hardware">
 
 def test_removed_plugin_class_is_breaking(repository, compare):
     repository.commit({"a/arm_plugins.xml": PLUGINS})
-    one = PLUGINS.replace('name="arm/Gripper"', 'name="arm/Hand"')
-    repository.commit({"a/arm_plugins.xml": None, "a/plugins/hardware.xml": one})
+    plugins = PLUGINS.replace('name="arm/Gripper"', 'name="arm/Hand"')
+    repository.commit({"a/arm_plugins.xml": None, "a/plugins/hardware.xml": plugins})
     result = compare(repository, "HEAD~1..HEAD")
     assert breaking(result) == ["plugin class 'arm/Gripper' removed"]
-    found = subject(result, "a/plugins/hardware.xml")
-    assert sentences(found) == ["plugin class 'arm/Hand' added"]
-    assert found.changes[0].location.line == 3
+    review_subject = subject(result, "a/plugins/hardware.xml")
+    assert sentences(review_subject) == ["plugin class 'arm/Hand' added"]
+    assert review_subject.changes[0].location.line == 3
 
 
 def test_changed_base_class_of_plugin_is_breaking(repository, compare):
@@ -412,8 +416,8 @@ def test_fields_have_their_lines(repository, compare):
     text = "# state\nint32 count\n---\nstring name\n---\nfloat32 count\n"
     repository.commit({"a/action/Move.action": text})
     repository.write({"a/action/Move.action": text.replace("float32 count", "float32 share\nfloat64 count")})
-    found = subject(compare(repository), "a/action/Move.action")
-    assert [(str(change.sentence), change.location.line) for change in found.changes] == [
+    review_subject = subject(compare(repository), "a/action/Move.action")
+    assert [(str(change.sentence), change.location.line) for change in review_subject.changes] == [
         ("field 'feedback share' of type float32 added", 6),
         ("field 'feedback count': float32 -> float64", 7),
     ]

@@ -65,21 +65,21 @@ def changes_of(repository, compare):
     ],
 )  # fmt: skip
 def test_names_that_controllers_offer_are_breaking(changes_of, old, new, expected, is_breaking):
-    found, found_breaking = changes_of(CONTROLLERS, CONTROLLERS.replace(old, new))
-    assert found == [expected]
+    changes, found_breaking = changes_of(CONTROLLERS, CONTROLLERS.replace(old, new))
+    assert changes == [expected]
     assert bool(found_breaking) is is_breaking
 
 
 def test_renamed_controller_is_compared_with_the_old_one(changes_of):
     text = CONTROLLERS.replace("    base:\n", "    drive:\n").replace("\nbase:\n", "\ndrive:\n").replace("0.4", "0.5")
-    found, found_breaking = changes_of(CONTROLLERS, text)
-    assert found == [
+    changes, found_breaking = changes_of(CONTROLLERS, text)
+    assert changes == [
         "base renamed to drive",
         "drive.ros__parameters.wheel_separation 0.4 -> 0.5",
         "controller_manager.ros__parameters.drive.type diff_drive_controller/DiffDriveController added",
         "controller_manager.ros__parameters.base.type diff_drive_controller/DiffDriveController removed",
     ]
-    assert found_breaking == found[3:]
+    assert found_breaking == changes[3:]
 
 
 @pytest.mark.parametrize(
@@ -98,6 +98,6 @@ def test_renamed_controller_is_compared_with_the_old_one(changes_of):
     ],
 )  # fmt: skip
 def test_bridges_are_compared_by_topic(changes_of, old, new, expected, is_breaking):
-    found, found_breaking = changes_of(BRIDGES, BRIDGES.replace(old, new))
-    assert found == [expected]
+    changes, found_breaking = changes_of(BRIDGES, BRIDGES.replace(old, new))
+    assert changes == [expected]
     assert bool(found_breaking) is is_breaking

@@ -73,8 +73,8 @@ def test_uncalled_macro_is_compared_as_it_is_written(library, compare, old, new,
     library.write({TOOL: GRIPPER.replace(old, new, 1)})
     changes = {str(change.sentence): change for change in subject(compare(library), TOOL).changes}
     assert sentence in changes
-    found = changes[sentence].reason
-    assert (None if found is None else str(found)) == reason
+    sentence_reason = changes[sentence].reason
+    assert (None if sentence_reason is None else str(sentence_reason)) == reason
 
 
 @pytest.mark.parametrize(
@@ -95,8 +95,8 @@ def test_other_writing_of_an_uncalled_macro_is_no_change(library, compare, old, 
 
 def test_element_that_a_robot_shows_is_reported_once(package, compare):
     package.write({SEGMENT: MACRO.replace('mass value="2"', 'mass value="3"')})
-    (found,) = compare(package).subjects
-    assert found.path == ROBOT
+    (review_subject,) = compare(package).subjects
+    assert review_subject.path == ROBOT
 
 
 def test_element_behind_a_false_condition_is_reported(package, compare):
@@ -128,8 +128,8 @@ def test_renamed_frame_of_an_uncalled_macro_is_breaking(library, compare):
 def test_topic_that_another_tag_keeps_is_not_lost(library, compare, new, reason):
     library.write({TOOL: GRIPPER.replace("<topicName>image</topicName>", new)})
     changes = {str(change.sentence): change.reason for change in subject(compare(library), TOOL).changes}
-    found = changes["macro 'gripper': gazebo ${name} sensor camera plugin driver topicName removed"]
-    assert (None if found is None else str(found)) == reason
+    sensor_change = changes["macro 'gripper': gazebo ${name} sensor camera plugin driver topicName removed"]
+    assert (None if sensor_change is None else str(sensor_change)) == reason
 
 
 def test_removed_plugin_of_an_uncalled_macro_is_breaking_if_it_names_topics(library, compare):
@@ -200,9 +200,9 @@ def test_robot_that_cannot_be_expanded_is_compared_as_it_is_written(package, com
     text = ARM.replace('name="tool" default="none"/>', 'name="tool" default="none"/>\n  <xacro:elsewhere/>')
     package.commit({ROBOT: text})
     package.write({ROBOT: text.replace('xyz="0 0 0.2"', 'xyz="0 0 0.3"')})
-    found = subject(compare(package), ROBOT)
-    assert "joint probe_joint origin xyz: 0 0 0.2 -> 0 0 0.3" in sentences(found)
-    assert found.problems
+    review_subject = subject(compare(package), ROBOT)
+    assert "joint probe_joint origin xyz: 0 0 0.2 -> 0 0 0.3" in sentences(review_subject)
+    assert review_subject.problems
 
 
 def test_part_that_is_no_xml_any_more_is_breaking(package, compare):

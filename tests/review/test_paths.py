@@ -43,14 +43,14 @@ def test_largest_differences_come_first():
         ("robot", "speed=1"): [("0", line(1.0), line(1.1))],
         ("robot", "speed=2"): [("0", line(2.0), line(2.5))],
     }
-    assert [found.parameters for found in differing_paths(groups)] == ["speed=2", "speed=1"]
+    assert [difference.parameters for difference in differing_paths(groups)] == ["speed=2", "speed=1"]
 
 
 def test_typical_pair_is_the_median_and_the_farthest_is_always_shown():
-    found = comparison(*((line(1.0), line(1.0 + 0.01 * number)) for number in range(40)))
-    assert found.typical.distance == pytest.approx(0.19 * 4.0)
-    assert found.farthest in found.shown
-    assert len(found.shown) == 25
+    path_comparison = comparison(*((line(1.0), line(1.0 + 0.01 * number)) for number in range(40)))
+    assert path_comparison.typical.distance == pytest.approx(0.19 * 4.0)
+    assert path_comparison.farthest in path_comparison.shown
+    assert len(path_comparison.shown) == 25
 
 
 def test_plot_has_the_same_scale_on_both_axes_and_each_path():
@@ -72,7 +72,7 @@ def test_plot_of_a_robot_that_stood_still_has_a_frame():
 
 
 def test_path_names_are_escaped():
-    found = PathComparison("<b>'", "n=<i>", [path_pair("<s>", line(1.0), line(2.0))])
-    plot = path_plot(found)
+    path_comparison = PathComparison("<b>'", "n=<i>", [path_pair("<s>", line(1.0), line(2.0))])
+    plot = path_plot(path_comparison)
     assert not re.search("<(b|i|s)>", plot)
     assert "aria-label='paths of both versions, &lt;b&gt;&#x27;, n=&lt;i&gt;'" in plot

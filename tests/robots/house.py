@@ -28,10 +28,10 @@ STEP = 0.1
 
 def flat(nested: dict[str, Any], prefix: str = "") -> dict[str, Any]:
     """Parameters by names with dots."""
-    found: dict[str, Any] = {}
+    parameters: dict[str, Any] = {}
     for name, value in nested.items():
-        found.update(flat(value, f"{prefix}{name}.") if isinstance(value, dict) else {prefix + name: value})
-    return found
+        parameters.update(flat(value, f"{prefix}{name}.") if isinstance(value, dict) else {prefix + name: value})
+    return parameters
 
 
 class House(SteppedSimulation):
@@ -69,10 +69,10 @@ class House(SteppedSimulation):
             self.advance(STEP)
             model, data = self.simulation.model, self.simulation.data
             for first, second in np.array(data.contact.geom[: data.ncon]).reshape(-1, 2):
-                names = [str(model.geom(int(each)).name) for each in (first, second)]
+                names = [str(model.geom(int(geometry)).name) for geometry in (first, second)]
                 if any("mbot" in name for name in names):
                     other = next((name for name in names if "mbot" not in name), "itself")
-                    if not any(each in other for each in ("ground", "floor")):
+                    if not any(surface in other for surface in ("ground", "floor")):
                         self.touched.add(other)
 
     def send(self, x: float, y: float, yaw: float = 0.0) -> list[Any]:

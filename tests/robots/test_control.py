@@ -227,9 +227,9 @@ def test_parameter_file_matches_declared_parameters(load: Any, name: str) -> Non
         test.init_rclpy()
         module = load(name)
         (kind,) = [
-            each
-            for each in vars(module).values()
-            if isinstance(each, type) and each.__module__ == module.__name__ and hasattr(each, "drive")
+            member
+            for member in vars(module).values()
+            if isinstance(member, type) and member.__module__ == module.__name__ and hasattr(member, "drive")
         ]
         node = kind()
         expected = text[name]["ros__parameters"]

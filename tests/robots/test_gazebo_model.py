@@ -121,7 +121,7 @@ def height(robot: Robot, link: str) -> float:
 
 def extents(robot: Robot) -> dict[str, tuple[float, float]]:
     """The lowest and the highest point of each link's collision above the ground, in meters."""
-    found = {}
+    extents_by_link = {}
     for link in robot.links.values():
         for collision in link.collisions:
             middle = height(robot, link.name) + collision.origin.xyz[2]
@@ -134,5 +134,5 @@ def extents(robot: Robot) -> dict[str, tuple[float, float]]:
             else:
                 assert isinstance(shape, Cylinder)
                 half = shape.length / 2
-            found[link.name] = (middle - half, middle + half)
-    return found
+            extents_by_link[link.name] = (middle - half, middle + half)
+    return extents_by_link

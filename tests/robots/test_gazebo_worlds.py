@@ -118,7 +118,7 @@ def test_maze_cells_are_reachable_and_one_is_exit() -> None:
 
 
 def test_bridge_covers_all_robot_topics() -> None:
-    bridged = {each["gz_topic_name"]: each for each in bridge()}
+    bridged = {entry["gz_topic_name"]: entry for entry in bridge()}
     robot = load(
         PACKAGE / "urdf" / "mbot_gazebo.xacro",
         arguments={"camera": "true", "kinect": "true", "laser": "true", "simulator": "gz"},
@@ -131,7 +131,7 @@ def test_bridge_covers_all_robot_topics() -> None:
     }
     topics = (topics - {"kinect"}) | {f"kinect/{name}" for name in ("image", "depth_image", "points", "camera_info")}
     assert set(bridged) == topics | {"clock", "camera/camera_info"}
-    assert {name for name, each in bridged.items() if each["direction"] == "ROS_TO_GZ"} == {"cmd_vel"}
+    assert {name for name, entry in bridged.items() if entry["direction"] == "ROS_TO_GZ"} == {"cmd_vel"}
 
 
 def bridge() -> list[dict[str, Any]]:
@@ -144,7 +144,7 @@ def test_rviz_topics_are_bridged(name: str) -> None:
     text = (GAZEBO_PACKAGE / "rviz" / f"{name}.rviz").read_text(encoding="utf-8")
     displays = yaml.safe_load(text)["Visualization Manager"]["Displays"]
     shown = {display["Topic"]["Value"].lstrip("/") for display in displays if "Topic" in display}
-    assert shown <= {each["ros_topic_name"] for each in bridge()}
+    assert shown <= {entry["ros_topic_name"] for entry in bridge()}
     assert "odom" in shown
 
 

@@ -57,8 +57,8 @@ def _triples(source: ET.Element) -> np.ndarray:
 
 @pytest.fixture(scope="module")
 def geometries(collada: ET.Element) -> dict[str, Geometry]:
-    found = [Geometry(element) for element in collada.iterfind("c:library_geometries/c:geometry", COLLADA)]
-    return {geometry.name: geometry for geometry in found}
+    geometries = [Geometry(element) for element in collada.iterfind("c:library_geometries/c:geometry", COLLADA)]
+    return {geometry.name: geometry for geometry in geometries}
 
 
 def test_file_matches_generator_output(tool: ModuleType) -> None:

@@ -68,15 +68,15 @@ def test_launch_files_declare_expected_arguments(name: str) -> None:
     declared = [
         node for node in ast.walk(tree) if isinstance(node, ast.Call) and _name(node) == "DeclareLaunchArgument"
     ]
-    found = {}
+    defaults = {}
     for call in declared:
         values = {word.arg: word.value for word in call.keywords}
         # The default's last string constant: the value itself, or the file's name at the end of a path.
         strings = [node.value for node in ast.walk(values["default_value"]) if isinstance(node, ast.Constant)]
-        found[ast.literal_eval(call.args[0])] = next(text for text in strings if text not in ("urdf", "rviz"))
+        defaults[ast.literal_eval(call.args[0])] = next(text for text in strings if text not in ("urdf", "rviz"))
         if ast.literal_eval(call.args[0]) == "gui":
             assert ast.literal_eval(values["choices"]) == ["true", "false"]
-    assert found == LAUNCH_FILES[name]
+    assert defaults == LAUNCH_FILES[name]
 
 
 @pytest.mark.parametrize("name", LAUNCH_FILES)

@@ -29,9 +29,9 @@ def test_commands_are_built_in_commands_with_rooms():
     built_in, ours = read_command_file(DEFAULT_FILE), read_command_file(COMMANDS)
     assert ours.commands == built_in.commands
     assert set(ours.places) - set(built_in.places) == {"kitchen", "bedroom", "study"}
-    found = ours.match_command("go to the kitchen")
-    assert found is not None
-    assert found.values == {"place": "kitchen"}
+    match = ours.match_command("go to the kitchen")
+    assert match is not None
+    assert match.values == {"place": "kitchen"}
     assert "去厨房" in ours.phrases("zh")
 
 

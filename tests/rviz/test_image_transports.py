@@ -29,7 +29,7 @@ from tests.viewer.packed_images import (
     rvl,
     sized_rvl,
 )
-from tests.viewer.scene import world
+from tests.viewer.scene import open_world
 
 CameraInfo = get_message("sensor_msgs/msg/CameraInfo")
 MILLIMETERS = np.array([[0, 1000, 1001], [65535, 0, 1]], np.uint16)
@@ -201,67 +201,69 @@ async def test_depth_cloud_follows_transport_hints(packing):
         "Color_Image_Topic": "/color/image",
         "Color_Transport_Hint": "compressed",
     }
-    async with world(clouds.config("DepthCloud", **topics)) as w:
-        node = w.graph.create_node("camera")
+    async with open_world(clouds.config("DepthCloud", **topics)) as world:
+        node = world.graph.create_node("camera")
         info(node)
         depths = node.create_publisher(CompressedImage, "/depth/image/compressedDepth", 5)
         colors = node.create_publisher(CompressedImage, "/color/image/compressed", 5)
         depths.publish(depth_message(np.array([[2000, 4000]], np.uint16), packing))
         colors.publish(packed("rgb8; jpeg compressed bgr8", jpeg((0, 0, 250), 2, 1)))
-        await w.settle()
-        display = w.display("DepthCloud")
+        await world.settle()
+        display = world.display("DepthCloud")
         (content,) = contents(display)
         assert content.fields["positions"].reshape(-1, 3).tolist() == [[0, 0, 2], [2, 0, 4]]
         assert np.allclose(clouds.colors(display), [[0, 0, 250, 255]] * 2, atol=4)
-        status = w.status("DepthCloud")
+        status = world.status("DepthCloud")
         assert status["Message"] == ("ok", "Ok")
         assert (status["Depth Image Size"], status["Image Size"]) == (("ok", "2 x 1"), ("ok", "2 x 1"))
 
 
 async def test_depth_topic_may_name_its_transport():
-    async with world(clouds.config("DepthCloud", Depth_Map_Topic="/depth/image/compressedDepth")) as w:
-        node = w.graph.create_node("camera")
+    async with open_world(clouds.config("DepthCloud", Depth_Map_Topic="/depth/image/compressedDepth")) as world:
+        node = world.graph.create_node("camera")
         info(node)
         depths = node.create_publisher(CompressedImage, "/depth/image/compressedDepth", 5)
         depths.publish(depth_message(np.array([[2.0, np.nan]])))
-        await w.settle()
-        (content,) = contents(w.display("DepthCloud"))
+        await world.settle()
+        (content,) = contents(world.display("DepthCloud"))
         ((x, y, z),) = content.fields["positions"].reshape(-1, 3).tolist()
         assert (x, y, round(z, 2)) == (0.0, 0.0, 2.0)
 
 
 async def test_malformed_depth_image_status_is_cleared_by_valid_image():
     topics = {"Depth_Map_Topic": "/depth/image", "Depth_Map_Transport_Hint": "compressedDepth"}
-    async with world(clouds.config("DepthCloud", **topics)) as w:
-        node = w.graph.create_node("camera")
+    async with open_world(clouds.config("DepthCloud", **topics)) as world:
+        node = world.graph.create_node("camera")
         info(node)
         depths = node.create_publisher(CompressedImage, "/depth/image/compressedDepth", 5)
         depths.publish(packed("16UC1; compressedDepth png", header() + b"\x89PNG\r\n\x1a\n"))
-        await w.settle()
-        status = w.status("DepthCloud")
+        await world.settle()
+        status = world.status("DepthCloud")
         assert {name for name, (level, _) in status.items() if level == "error"} == {"Message"}
         assert status["Message"][1].startswith("Error updating depth cloud: The PNG cannot be read: ")
         depths.publish(depth_message(np.array([[2000, 4000]], np.uint16)))
-        await w.settle()
-        assert w.status("DepthCloud")["Message"] == ("ok", "Ok")
+        await world.settle()
+        assert world.status("DepthCloud")["Message"] == ("ok", "Ok")
 
 
 async def test_depth_cloud_reports_unsupported_theora_transport():
     topics = {"Depth_Map_Topic": "/depth/image", "Color_Image_Topic": "/c", "Color_Transport_Hint": "theora"}
-    async with world(clouds.config("DepthCloud", **topics)) as w:
+    async with open_world(clouds.config("DepthCloud", **topics)) as world:
         text = "Images of transport 'theora' are not supported: choose raw, compressed or compressedDepth"
-        assert w.status("DepthCloud") == {"Color Transport Hint": ("error", text)}
-        w.display("DepthCloud").set_property(("Color Transport Hint",), "compressed")
-        await w.settle()
-        assert "Color Transport Hint" not in w.status("DepthCloud")
+        assert world.status("DepthCloud") == {"Color Transport Hint": ("error", text)}
+        world.display("DepthCloud").set_property(("Color Transport Hint",), "compressed")
+        await world.settle()
+        assert "Color Transport Hint" not in world.status("DepthCloud")
 
 
 async def test_image_display_shows_depths_in_gray():
-    async with world(images.config("Image", "/camera/depth/compressedDepth")) as w:
-        display = w.display("Image")
-        publisher = w.graph.create_node("camera").create_publisher(CompressedImage, "/camera/depth/compressedDepth", 5)
+    async with open_world(images.config("Image", "/camera/depth/compressedDepth")) as world:
+        display = world.display("Image")
+        publisher = world.graph.create_node("camera").create_publisher(
+            CompressedImage, "/camera/depth/compressedDepth", 5
+        )
         publisher.publish(depth_message(np.array([[0, 500, 1000]], np.uint16), "rvl"))
-        await w.settle()
+        await world.settle()
         (content,) = contents(display)
         fields = content.fields
         assert (fields["encoding"], fields["width"], fields["height"]) == ("gray", 3, 1)
@@ -271,33 +273,33 @@ async def test_image_display_shows_depths_in_gray():
         display.set_property(("Max Value",), 2000.0)
         assert contents(display)[0].fields["data"].tolist() == [0, 63, 127]
         publisher.publish(packed("16UC1; compressedDepth rvl", header() + bytes(8)))
-        await w.settle()
+        await world.settle()
         text = "The header of the RVL depth image declares 0 x 0 pixels; 1 to 16777216 are supported"
-        assert w.status("Image")["Image"] == ("error", text)
+        assert world.status("Image")["Image"] == ("error", text)
 
 
 async def test_compressed_16_bit_images_have_range():
-    async with world(images.config("Image", "/camera/depth/compressed")) as w:
-        publisher = w.graph.create_node("camera").create_publisher(CompressedImage, "/camera/depth/compressed", 5)
+    async with open_world(images.config("Image", "/camera/depth/compressed")) as world:
+        publisher = world.graph.create_node("camera").create_publisher(CompressedImage, "/camera/depth/compressed", 5)
         publisher.publish(packed("16UC1; png compressed ", png(np.array([[0, 500, 1000]], np.uint16))))
-        await w.settle()
-        assert contents(w.display("Image"))[0].fields["data"].tolist() == [0, 127, 255]
+        await world.settle()
+        assert contents(world.display("Image"))[0].fields["data"].tolist() == [0, 127, 255]
 
 
 async def test_camera_display_shows_compressed_depths():
-    async with world(images.config("Camera", "/camera/depth/compressedDepth")) as w:
-        node = w.graph.create_node("camera")
+    async with open_world(images.config("Camera", "/camera/depth/compressedDepth")) as world:
+        node = world.graph.create_node("camera")
         node.create_publisher(CameraInfo, "/camera/camera_info", 5).publish(images.info(2, 1))
         publisher = node.create_publisher(CompressedImage, "/camera/depth/compressedDepth", 5)
         publisher.publish(depth_message(np.array([[0, 9]], np.uint16)))
-        await w.settle()
-        (content,) = contents(w.display("Camera"))
+        await world.settle()
+        (content,) = contents(world.display("Camera"))
         assert content.fields["data"].tolist() == [0, 255]
         assert content.fields["camera"]["focal_x"] == 100.0
 
 
 @pytest.mark.parametrize("cls", ["Image", "Camera"])
 async def test_theora_image_status_names_supported_topics(cls):
-    async with world(images.config(cls, "/camera/image/theora")) as w:
+    async with open_world(images.config(cls, "/camera/image/theora")) as world:
         text = "Images of transport 'theora' are not supported: choose /camera/image or /camera/image/compressed"
-        assert w.status(cls)["Topic"] == ("error", text)
+        assert world.status(cls)["Topic"] == ("error", text)

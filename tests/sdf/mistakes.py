@@ -15,6 +15,6 @@ def describe(text: str) -> str:
     with tempfile.TemporaryDirectory() as folder:
         path = Path(folder, "w.world")
         path.write_text(text, encoding="utf-8")
-        found = examine_world(path, environment={"HOME": folder}).diagnostics
-        lines = [line for each in sorted_by_location(found, str(path)) for line in lines_of(each)]
+        diagnostics = examine_world(path, environment={"HOME": folder}).diagnostics
+        lines = [line for diagnostic in sorted_by_location(diagnostics, str(path)) for line in lines_of(diagnostic)]
         return "\n".join(lines).replace(folder, "FOLDER")

@@ -24,7 +24,9 @@ from linkwright.xmltree import Element
 
 NUMBERS = st.floats(-1e12, 1e12, allow_nan=False)
 WORDS = st.text(st.sampled_from("abz_ é<>&\"'0"), min_size=1, max_size=6).filter(lambda text: text == text.strip())
-QUATERNIONS = st.tuples(*[st.floats(-1.0, 1.0)] * 4).filter(lambda q: sum(each * each for each in q) > 0.01)
+QUATERNIONS = st.tuples(*[st.floats(-1.0, 1.0)] * 4).filter(
+    lambda q: sum(component * component for component in q) > 0.01
+)
 _METAL = ("roughness_map", "metalness_map", "roughness", "metalness")
 _SPECULAR = ("specular_map", "glossiness_map", "glossiness")
 
@@ -71,8 +73,8 @@ def of(kind: type, name: str) -> SearchStrategy[Any]:
     if Element in (hint, *get_args(hint)):
         return st.none()
     usual = next(field.default for field in dataclasses.fields(kind) if field.name == name)
-    found = _values(hint)
-    return found if usual is dataclasses.MISSING else st.just(usual) | found
+    strategy = _values(hint)
+    return strategy if usual is dataclasses.MISSING else st.just(usual) | strategy
 
 
 def _values(hint: Any) -> SearchStrategy[Any]:

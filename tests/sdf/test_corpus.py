@@ -43,7 +43,7 @@ pytestmark = pytest.mark.skipif(not ITEMS, reason="the collection of worlds is n
 
 def examined(item):
     path = WORLDS / item["entry"]
-    folders = dict.fromkeys(str(WORLDS / each) for each in item["model_paths"])
+    folders = dict.fromkeys(str(WORLDS / path) for path in item["model_paths"])
     finder = PackageFinder(start=path.parent, environment={})
     return examine_world(
         path, packages=finder, environment={"GAZEBO_MODEL_PATH": os.pathsep.join(folders), "HOME": "/nowhere"}
@@ -58,9 +58,9 @@ def _is_ours(known) -> bool:
 @pytest.mark.parametrize("item", FILES)
 def test_corpus_world_contents_match_known_facts(item):
     facts = item["facts"]
-    found = examined(item)
-    assert found.sdf is not None
-    world = found.sdf.worlds[0]
+    reading = examined(item)
+    assert reading.sdf is not None
+    world = reading.sdf.worlds[0]
     links = list(placed_links(world))
     collisions = Counter(NAMES[type(collision.geometry)] for place in links for collision in place.link.collisions)
     visuals = Counter(NAMES[type(visual.geometry)] for place in links for visual in place.link.visuals)
@@ -73,11 +73,11 @@ def test_corpus_world_contents_match_known_facts(item):
 
 @pytest.mark.parametrize("item", FILES)
 def test_corpus_model_poses_match_known_facts(item):
-    found = examined(item)
-    assert found.sdf is not None
-    world = with_saved_state(found.sdf.worlds[0])
+    reading = examined(item)
+    assert reading.sdf is not None
+    world = with_saved_state(reading.sdf.worlds[0])
     frames = Frames(world)
-    known = {each["name"]: each for each in item["facts"]["top_level_models"] if not each.get("pose_attributes")}
+    known = {model["name"]: model for model in item["facts"]["top_level_models"] if not model.get("pose_attributes")}
     for model in world.models:
         if model.name in known:
             pose = known[model.name]["pose"]
@@ -85,10 +85,12 @@ def test_corpus_model_poses_match_known_facts(item):
             place = frames.pose(model.name)
             sign = 1.0 if sum(a * b for a, b in zip(place[3:], expected[3:], strict=True)) > 0 else -1.0
             assert place[:3] == pytest.approx(expected[:3], abs=1e-9)
-            assert [sign * each for each in place[3:]] == pytest.approx(expected[3:], abs=1e-9)
+            assert [sign * angle for angle in place[3:]] == pytest.approx(expected[3:], abs=1e-9)
     there = {model.name for model in (*world.models, *world.lights)}
     left_out = {include.uri for include in world.includes}
-    assert {name for name, each in known.items() if each.get("include") not in left_out and not _is_ours(each)} <= there
+    assert {
+        name for name, model in known.items() if model.get("include") not in left_out and not _is_ours(model)
+    } <= there
 
 
 @pytest.mark.parametrize("item", FILES)

@@ -14,8 +14,8 @@ LINKS = '<link name="a"/><link name="b"><pose>1 0 0 0 0 0</pose></link>'
 TURN = f"0 0 0 0 0 {pi / 2}"
 
 
-def near(found: Transform, *xyz: float) -> bool:
-    return found[:3] == pytest.approx(xyz, abs=1e-12)
+def near(transform: Transform, *xyz: float) -> bool:
+    return transform[:3] == pytest.approx(xyz, abs=1e-12)
 
 
 def test_link_pose_is_relative_to_model_or_named_frame():
@@ -84,8 +84,8 @@ def test_model_frame_is_attached_to_canonical_link():
 
 
 def test_placement_frame_is_placed_at_model_pose():
-    found = world(f"""<model name="m" placement_frame="b"><pose>5 0 0 0 0 {pi / 2}</pose>{LINKS}</model>""")
-    frames = Frames(found)
+    parsed_world = world(f"""<model name="m" placement_frame="b"><pose>5 0 0 0 0 {pi / 2}</pose>{LINKS}</model>""")
+    frames = Frames(parsed_world)
     assert near(frames.pose("m"), 5, -1, 0)
     assert near(frames.pose("m::b"), 5, 0, 0)
 
@@ -118,12 +118,14 @@ def test_unknown_frames_are_errors():
 
 
 def test_world_links_have_poses_and_static_flag():
-    found = world(
+    parsed_world = world(
         f"""<model name="m"><pose>0 0 1 0 0 0</pose>{LINKS}</model>
         <model name="s"><static>1</static><pose relative_to="m">0 1 0 0 0 0</pose><model name="i">
         <pose>0 0 1 0 0 0</pose><link name="l"/></model></model>"""
     )
-    assert [(placed_link.name, placed_link.pose[:3], placed_link.static) for placed_link in placed_links(found)] == [
+    assert [
+        (placed_link.name, placed_link.pose[:3], placed_link.static) for placed_link in placed_links(parsed_world)
+    ] == [
         ("m::a", (0, 0, 1), False),
         ("m::b", (1, 0, 1), False),
         ("s::i::l", (0, 1, 2), True),

@@ -71,13 +71,13 @@ def test_links_are_placed_at_joints():
 )
 def test_movable_joint_has_axis_limits_and_dynamics(kind, expected, lower, upper):
     inside = f'<axis xyz="0 1 0"/>{LIMIT}<dynamics damping="0.5" friction="0.25"/>'
-    found = converted(link("a") + link("b") + joint("j", "a", "b", kind=kind, inside=inside)).joints[0]
-    assert found.type == expected
-    assert found.axis is not None
-    assert found.axis.xyz == (0.0, 1.0, 0.0)
-    limit = found.axis.limit
+    converted_joint = converted(link("a") + link("b") + joint("j", "a", "b", kind=kind, inside=inside)).joints[0]
+    assert converted_joint.type == expected
+    assert converted_joint.axis is not None
+    assert converted_joint.axis.xyz == (0.0, 1.0, 0.0)
+    limit = converted_joint.axis.limit
     assert (limit.lower, limit.upper, limit.effort, limit.velocity) == (lower, upper, 3.0, 4.0)
-    assert (found.axis.dynamics.damping, found.axis.dynamics.friction) == (0.5, 0.25)
+    assert (converted_joint.axis.dynamics.damping, converted_joint.axis.dynamics.friction) == (0.5, 0.25)
 
 
 def test_mimic_joint_is_converted():
@@ -163,17 +163,17 @@ def test_gazebo_elements_apply_to_links_and_collisions():
         "canonicalBody": "a",
     }  # fmt: skip
     shown = "".join(f"<{word}>{text}</{word}>" for word, text in words.items())
-    found = converted(link("a", SHAPED + f'<collision name="own">{BOX}</collision>')
+    converted_model = converted(link("a", SHAPED + f'<collision name="own">{BOX}</collision>')
                       + f'<gazebo reference="a">{shown}</gazebo>').links[0]  # fmt: skip
-    for collision in found.collisions:
+    for collision in converted_model.collisions:
         friction, contact = collision.surface.friction, collision.surface.contact
         assert friction is not None
         assert contact is not None
         assert (friction.mu, friction.mu2, friction.direction) == (0.1, 0.2, (1.0, 0.0, 0.0))
         assert (contact.kp, contact.kd, contact.min_depth, contact.max_vel) == (1000.0, 2.0, 0.003, 4.0)
         assert (collision.max_contacts, collision.laser_retro) == (5, 6.0)
-    assert (found.self_collide, found.gravity) == (True, False)
-    assert (found.velocity_decay.linear, found.velocity_decay.angular) == (0.7, 0.7)
+    assert (converted_model.self_collide, converted_model.gravity) == (True, False)
+    assert (converted_model.velocity_decay.linear, converted_model.velocity_decay.angular) == (0.7, 0.7)
 
 
 def test_gazebo_value_attribute_is_read_and_last_element_applies():
@@ -191,7 +191,7 @@ def test_collision_surface_and_gazebo_elements_are_merged():
         friction = model_from_robot(robot, lump_fixed_joints=False).model.links[0].collisions[0].surface.friction
         assert friction is not None
         assert (friction.mu, friction.mu2) == (0.1, 0.6)
-    assert [each.text() for each in robot.extensions[0].walk() if each.tag == "mu"] == ["0.5"]
+    assert [element.text() for element in robot.extensions[0].walk() if element.tag == "mu"] == ["0.5"]
 
 
 def test_sensors_and_plugins_keep_locations():
@@ -217,12 +217,12 @@ def test_gazebo_elements_and_sensors_apply_to_joints():
         '<sensor name="ft" type="force_torque"/></gazebo>'
     )
     turning = joint("j", "a", "b", kind="revolute", inside=LIMIT + '<dynamics damping="2"/>')
-    found = converted(link("a") + link("b") + turning + text).joints[0]
-    assert found.axis is not None
-    dynamics = found.axis.dynamics
+    converted_joint = converted(link("a") + link("b") + turning + text).joints[0]
+    assert converted_joint.axis is not None
+    dynamics = converted_joint.axis.dynamics
     assert (dynamics.spring_stiffness, dynamics.spring_reference, dynamics.damping) == (3.0, 0.5, 2.0)
-    assert found.provide_feedback
-    assert [sensor.type for sensor in found.sensors] == ["force_torque"]
+    assert converted_joint.provide_feedback
+    assert [sensor.type for sensor in converted_joint.sensors] == ["force_torque"]
 
 
 def test_gazebo_joint_can_close_loop():
@@ -238,8 +238,8 @@ def test_invalid_gazebo_elements_are_reported_with_location():
         '<sensor name="s" type="camera"><update_rate>fast</update_rate></sensor>\n'
         "<plugin filename='p.so'/>\n</gazebo></robot>"
     )
-    found = model_from_robot(examine(text).robot, lump_fixed_joints=False).diagnostics
-    assert [(each.code, each.span.line, str(each.message)) for each in found] == [
+    diagnostics = model_from_robot(examine(text).robot, lump_fixed_joints=False).diagnostics
+    assert [(diagnostic.code, diagnostic.span.line, str(diagnostic.message)) for diagnostic in diagnostics] == [
         ("SDF121", 3, "<mu1> of collision 'a' is not a number: 'much'"),
         ("SDF121", 4, "<update_rate> of sensor 's' is not a number: 'fast'"),
         ("SDF150", 5, "<plugin> in <link> is not read"),
@@ -316,10 +316,10 @@ def test_child_of_lumped_link_is_attached_to_merged_link():
 @pytest.mark.parametrize(("word", "kind"), [("preserveFixedJoint", "fixed"), ("disableFixedJointLumping", "revolute")])
 def test_fixed_joint_can_be_preserved(word, kind):
     text = f'<gazebo reference="j"><{word}>true</{word}></gazebo>'
-    found = converted(link("a") + link("b") + joint("j", "a", "b") + text, lump=True).joints[0]
-    assert found.type == kind
-    if found.axis is not None:
-        assert (found.axis.limit.lower, found.axis.limit.upper) == (0.0, 0.0)
+    converted_joint = converted(link("a") + link("b") + joint("j", "a", "b") + text, lump=True).joints[0]
+    assert converted_joint.type == kind
+    if converted_joint.axis is not None:
+        assert (converted_joint.axis.limit.lower, converted_joint.axis.limit.upper) == (0.0, 0.0)
 
 
 def test_massless_links_are_omitted_only_when_lumping():
@@ -328,9 +328,9 @@ def test_massless_links_are_omitted_only_when_lumping():
         + joint("f", "footprint", "base")
         + joint("g", "base", "ghost", kind="continuous") + joint("h", "ghost", "tip", kind="continuous")
     )  # fmt: skip
-    kept = model_from_robot(robot, lump_fixed_joints=False)
-    assert [link.name for link in kept.model.links] == ["footprint", "base", "ghost", "tip"]
-    assert [diagnostic.code for diagnostic in kept.diagnostics] == ["SDF172"]
+    unlumped = model_from_robot(robot, lump_fixed_joints=False)
+    assert [link.name for link in unlumped.model.links] == ["footprint", "base", "ghost", "tip"]
+    assert [diagnostic.code for diagnostic in unlumped.diagnostics] == ["SDF172"]
     lumped = model_from_robot(robot, lump_fixed_joints=True)
     assert [link.name for link in lumped.model.links] == ["footprint"]
     assert [(diagnostic.code, str(diagnostic.message)) for diagnostic in lumped.diagnostics] == [
@@ -409,7 +409,7 @@ def test_corpus_robots_are_converted(entry, arguments, packages, facts):
             sensors = [sensor for link in model.links for sensor in link.sensors]
             assert len(model.links) == facts["links"] - ("world" in robot.links)
             assert len(model.joints) == sum(facts["joints"].values())
-            assert {sensor.name for sensor in sensors} == {each["name"] for each in facts["sensors"]}
+            assert {sensor.name for sensor in sensors} == {sensor["name"] for sensor in facts["sensors"]}
             written = sum(element.tag == "plugin" for gazebo in robot.extensions if "reference" not in gazebo.attributes
                           for element in gazebo.elements())  # fmt: skip
             assert len(model.plugins) == written
@@ -426,7 +426,7 @@ def test_kept_massless_link_gets_negligible_mass():
         '<joint name="bd" type="continuous"><parent link="b"/><child link="d"/></joint></robot>'
     )
     a, b, c, d = model_from_robot(examine(text).robot, lump_fixed_joints=False).model.links
-    assert [each.inertial.mass for each in (a, b, c)] == [1e-6, 2.0, 1e-6]
+    assert [link.inertial.mass for link in (a, b, c)] == [1e-6, 2.0, 1e-6]
     assert d.inertial is None
 
 

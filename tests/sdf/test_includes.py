@@ -19,18 +19,18 @@ def sdf(inside: str, version: str = "1.9") -> str:
 BOX = sdf('<model name="box"><link name="l"/></model>')
 
 
-def models(found) -> list[str]:
-    return [model.name for model in found.sdf.worlds[0].models]
+def models(reading) -> list[str]:
+    return [model.name for model in reading.sdf.worlds[0].models]
 
 
 def test_model_is_found_through_each_environment_variable(tmp_path):
     for variable in ("GAZEBO_MODEL_PATH", "GZ_SIM_RESOURCE_PATH", "IGN_GAZEBO_RESOURCE_PATH", "SDF_PATH"):
         write(tmp_path, {f"{variable}/box/model.sdf": BOX.replace("box", variable)})
-        found = examined(
+        reading = examined(
             tmp_path, "<include><uri>model://box</uri></include>", **{variable: f"/nowhere:{tmp_path / variable}"}
         )
-        assert (models(found), found.diagnostics) == ([variable], ())
-        assert found.files[1] == tmp_path / variable / "box" / "model.sdf"
+        assert (models(reading), reading.diagnostics) == ([variable], ())
+        assert reading.files[1] == tmp_path / variable / "box" / "model.sdf"
 
 
 def test_model_is_found_in_packages(tmp_path):
@@ -49,10 +49,10 @@ def test_model_is_found_in_packages(tmp_path):
     )
     addresses = ["model://in_assets", "model://in_more", "model://in_models", "model://two/any", "package://two/any"]
     addresses += ["two/any", "two/any/model.sdf", f"file://{tmp_path}/two/any/model.sdf"]
-    names = [f"<include><uri>{each}</uri><name>m{at}</name></include>" for at, each in enumerate(addresses)]
-    found = examined(tmp_path, "".join(names))
-    assert found.diagnostics == ()
-    assert len(models(found)) == len(addresses)
+    names = [f"<include><uri>{address}</uri><name>m{at}</name></include>" for at, address in enumerate(addresses)]
+    reading = examined(tmp_path, "".join(names))
+    assert reading.diagnostics == ()
+    assert len(models(reading)) == len(addresses)
 
 
 @pytest.mark.parametrize(
@@ -71,8 +71,8 @@ def test_model_is_found_through_package_hook_or_export(tmp_path, file, text):
     files = {"one/package.xml": "<package><name>one</name></package>", "one/assets/box/model.sdf": BOX}
     written = f"<package><name>one</name>{text}</package>" if file == "package.xml" else text
     write(tmp_path, {**files, f"one/{file}": written})
-    found = examined(tmp_path, "<include><uri>model://box</uri></include>")
-    assert (models(found), found.diagnostics) == (["box"], ())
+    reading = examined(tmp_path, "<include><uri>model://box</uri></include>")
+    assert (models(reading), reading.diagnostics) == (["box"], ())
 
 
 def test_share_folder_hook_is_used_and_unreadable_hook_ignored(tmp_path):
@@ -106,16 +106,18 @@ def test_relative_file_uri_is_found_in_search_path(tmp_path):
 
 @pytest.mark.parametrize(("address", "severity"), [("media/models/walk.dae", "INFO"), ("meshes/walk.dae", "WARNING")])
 def test_missing_gazebo_classic_media_is_info(tmp_path, address, severity):
-    found = ResourceFinder(PackageFinder(start=tmp_path, environment={}), {}).file(f"file://{address}", tmp_path)
-    assert isinstance(found, Missing)
-    assert found.severity.name == severity
+    missing = ResourceFinder(PackageFinder(start=tmp_path, environment={}), {}).file(f"file://{address}", tmp_path)
+    assert isinstance(missing, Missing)
+    assert missing.severity.name == severity
 
 
 def test_newest_supported_model_version_is_used(tmp_path):
     config = "<model>{}</model>".format(
-        "".join(f'<sdf version="{each}">{each}.sdf</sdf>' for each in ("1.4", "1.12", "1.99", "1.5"))
+        "".join(f'<sdf version="{version}">{version}.sdf</sdf>' for version in ("1.4", "1.12", "1.99", "1.5"))
     )
-    write(tmp_path, {"m/model.config": config, **{f"m/{each}.sdf": BOX for each in ("1.4", "1.12", "1.99", "1.5")}})
+    write(
+        tmp_path, {"m/model.config": config, **{f"m/{version}.sdf": BOX for version in ("1.4", "1.12", "1.99", "1.5")}}
+    )
     assert model_file(tmp_path / "m") == tmp_path / "m" / "1.12.sdf"
     assert isinstance(model_file(tmp_path), Missing)
 
@@ -139,28 +141,28 @@ def test_fuel_models_are_found_in_gz_cache(tmp_path):
         ("https://fuel.ignitionrobotics.org/1.0/someone/models/Old", "box"),
         ("https://fuel.gazebosim.org/1.0/OpenRobotics/models/Ground Plane", "ground_plane"),
     ):
-        found = examined(tmp_path, f"<include><uri>{address}</uri></include>")
-        assert (models(found), found.diagnostics) == ([name], ())
+        reading = examined(tmp_path, f"<include><uri>{address}</uri></include>")
+        assert (models(reading), reading.diagnostics) == ([name], ())
 
 
 def test_built_in_sun_and_ground_plane_are_included(tmp_path):
     inside = "<include><uri>model://sun</uri></include><include><uri>model://ground_plane</uri></include>"
-    found = examined(tmp_path, inside)
-    assert found.sdf is not None
-    world = found.sdf.worlds[0]
+    reading = examined(tmp_path, inside)
+    assert reading.sdf is not None
+    world = reading.sdf.worlds[0]
     assert [light.name for light in world.lights] == ["sun"]
     assert [(model.name, model.static) for model in world.models] == [("ground_plane", True)]
 
 
 def test_include_overrides_name_pose_and_static(tmp_path):
     write(tmp_path, {"box/model.sdf": sdf('<model name="box"><pose>1 1 1 0 0 0</pose><link name="l"/></model>')})
-    found = examined(
+    reading = examined(
         tmp_path,
         """<include><uri>box</uri></include><include><uri>box</uri><name>other</name><pose>0 0 2 0 0 0</pose>
         <static>true</static><plugin filename="p"/></include>""",
     )
-    assert found.sdf is not None
-    first, second = found.sdf.worlds[0].models
+    assert reading.sdf is not None
+    first, second = reading.sdf.worlds[0].models
     assert (first.name, first.pose.pose.xyz, first.static, first.plugins) == ("box", (1, 1, 1), False, ())
     assert (second.name, second.pose.pose.xyz, second.static) == ("other", (0, 0, 2), True)
     assert [plugin.filename for plugin in second.plugins] == ["p"]
@@ -179,10 +181,10 @@ def test_nested_includes_are_placed(tmp_path):
         },
     )
     inside = "<include><uri>model://car</uri><pose>5 0 0 0 0 0</pose></include>"
-    found = examined(tmp_path, inside, GZ_SIM_RESOURCE_PATH=str(tmp_path / "models"))
-    assert found.diagnostics == ()
-    assert found.sdf is not None
-    places = {placed_link.name: placed_link.pose[:3] for placed_link in placed_links(found.sdf.worlds[0])}
+    reading = examined(tmp_path, inside, GZ_SIM_RESOURCE_PATH=str(tmp_path / "models"))
+    assert reading.diagnostics == ()
+    assert reading.sdf is not None
+    places = {placed_link.name: placed_link.pose[:3] for placed_link in placed_links(reading.sdf.worlds[0])}
     assert places == {"car::body": (5, 0, 0), "car::left::rim": (5, 1, 0)}
 
 
@@ -198,14 +200,14 @@ def test_merged_include_joins_enclosing_model(tmp_path):
             )
         },
     )
-    found = examined(
+    reading = examined(
         tmp_path,
         """<model name="m"><link name="base"/><include merge="true"><uri>mast</uri><pose>0 0 5 0 0 0</pose></include>
         <joint name="j" type="fixed"><parent>base</parent><child>pole</child></joint></model>""",
     )
-    assert found.diagnostics == ()
-    assert found.sdf is not None
-    model = found.sdf.worlds[0].models[0]
+    assert reading.diagnostics == ()
+    assert reading.sdf is not None
+    model = reading.sdf.worlds[0].models[0]
     assert [link.name for link in model.links] == ["base", "pole", "lamp"]
     frames = Frames(model)
     assert frames.pose("pole")[:3] == pytest.approx((-1, 0, 6))
@@ -217,36 +219,36 @@ def test_merged_include_joins_enclosing_model(tmp_path):
 
 def test_failed_include_in_merged_model_is_reported_once(tmp_path):
     write(tmp_path, {"mast/model.sdf": sdf('<model name="mast"><include><uri>model://pole</uri></include></model>')})
-    found = examined(
+    reading = examined(
         tmp_path,
         """<model name="m"><include merge="true"><uri>mast</uri></include>
         <joint name="j" type="fixed"><parent>world</parent><child>pole::link</child></joint></model>""",
     )
-    assert [diagnostic.code for diagnostic in found.diagnostics] == ["SDF160"]
+    assert [diagnostic.code for diagnostic in reading.diagnostics] == ["SDF160"]
 
 
 def test_missing_placement_frame_of_merged_model_is_reported(tmp_path):
     write(tmp_path, {"mast/model.sdf": sdf('<model name="mast" placement_frame="foot"><link name="pole"/></model>')})
-    found = examined(
+    reading = examined(
         tmp_path,
         """<model name="m"><link name="base"/><include merge="true"><uri>mast</uri><pose>0 0 5 0 0 0</pose></include>
         </model>""",
     )
-    assert [diagnostic.code for diagnostic in found.diagnostics] == ["SDF141"]
-    assert found.sdf is not None
-    assert Frames(found.sdf.worlds[0].models[0]).pose("pole")[:3] == (0, 0, 5)
+    assert [diagnostic.code for diagnostic in reading.diagnostics] == ["SDF141"]
+    assert reading.sdf is not None
+    assert Frames(reading.sdf.worlds[0].models[0]).pose("pole")[:3] == (0, 0, 5)
 
 
 def test_lights_and_actors_can_be_included(tmp_path):
     write(tmp_path, {"lamp/model.sdf": sdf('<light name="lamp" type="point"/>')})
     write(tmp_path, {"walker/model.sdf": sdf('<actor name="walker"/>')})
-    found = examined(
+    reading = examined(
         tmp_path,
         """<include><uri>lamp</uri><name>l</name><pose>0 0 3 0 0 0</pose></include>
         <include><uri>walker</uri></include>""",
     )
-    assert found.sdf is not None
-    world = found.sdf.worlds[0]
+    assert reading.sdf is not None
+    world = reading.sdf.worlds[0]
     assert [(light.name, light.pose.pose.xyz) for light in world.lights] == [("l", (0, 0, 3))]
     assert [actor.name for actor in world.actors] == ["walker"]
 
@@ -261,15 +263,15 @@ def test_failed_includes_are_reported_once_and_rest_is_kept(tmp_path):
             "doubtful/model.sdf": sdf('<model name="d"><link name="l"/><lnk name="k"/></model>'),
         },
     )
-    found = examined(
+    reading = examined(
         tmp_path,
         "<include><uri>again</uri></include><include><uri>broken</uri></include><include><uri>nothing</uri></include>"
         "<include><uri>doubtful</uri></include><include><uri>doubtful</uri><name>e</name></include>"
         '<model name="m"><static>1</static></model>',
     )
-    assert sorted(diagnostic.code for diagnostic in found.diagnostics) == ["SDF150", "SDF160", "SDF161", "XML203"]
-    assert models(found) == ["m", "again", "d", "e"]
-    doubtful = next(diagnostic for diagnostic in found.diagnostics if diagnostic.code == "SDF150")
+    assert sorted(diagnostic.code for diagnostic in reading.diagnostics) == ["SDF150", "SDF160", "SDF161", "XML203"]
+    assert models(reading) == ["m", "again", "d", "e"]
+    doubtful = next(diagnostic for diagnostic in reading.diagnostics if diagnostic.code == "SDF150")
     assert doubtful.span is not None
     assert doubtful.span.file.endswith("doubtful/model.sdf")
     assert doubtful.notes[-1].span is not None
@@ -277,12 +279,12 @@ def test_failed_includes_are_reported_once_and_rest_is_kept(tmp_path):
 
 
 def test_names_in_missing_model_are_not_reported(tmp_path):
-    found = examined(
+    reading = examined(
         tmp_path,
         """<model name="m"><link name="l"/><include><uri>model://arm</uri><name>arm</name></include>
         <joint name="j" type="fixed"><parent>l</parent><child>arm::base</child></joint></model>""",
     )
-    assert [diagnostic.code for diagnostic in found.diagnostics] == ["SDF160"]
+    assert [diagnostic.code for diagnostic in reading.diagnostics] == ["SDF160"]
 
 
 def test_missing_file_of_known_or_renamed_model_is_warning(tmp_path):
@@ -290,9 +292,9 @@ def test_missing_file_of_known_or_renamed_model_is_warning(tmp_path):
     finder = ResourceFinder(PackageFinder(start=tmp_path, environment={}), {"GZ_SIM_RESOURCE_PATH": str(tmp_path)})
     facts = {}
     for address in ("model://box/meshes/b.stl", "model://old_box/meshes/a.stl", "model://far/meshes/b.stl"):
-        found = finder.file(address, tmp_path / "box")
-        assert isinstance(found, Missing)
-        facts[address.split("/")[2]] = (found.severity.name, str(found.hint))
+        missing = finder.file(address, tmp_path / "box")
+        assert isinstance(missing, Missing)
+        facts[address.split("/")[2]] = (missing.severity.name, str(missing.hint))
     assert facts == {
         "box": ("WARNING", "choose from a.stl"),
         "old_box": ("WARNING", "the folder that contains 'meshes/a.stl' is named 'box'"),
@@ -305,9 +307,9 @@ def test_similar_model_name_is_not_reported_as_misspelled(tmp_path, name):
     """Gazebo has many models; what shares a word with one that is here is one of those."""
     write(tmp_path, {"box/model.sdf": BOX, "suv/model.sdf": BOX})
     finder = ResourceFinder(PackageFinder(start=tmp_path, environment={}), {"GZ_SIM_RESOURCE_PATH": str(tmp_path)})
-    found = finder.file(f"model://{name}", tmp_path)
-    assert isinstance(found, Missing)
-    assert found.severity.name == "INFO"
+    missing = finder.file(f"model://{name}", tmp_path)
+    assert isinstance(missing, Missing)
+    assert missing.severity.name == "INFO"
     sun = finder.file("model://sub", tmp_path)
     assert isinstance(sun, Missing)
     assert sun.severity.name == "INFO"
@@ -341,16 +343,16 @@ def test_model_is_found_from_each_folder_of_package(tmp_path, address, found):
 def test_misspelled_model_is_warning(tmp_path):
     write(tmp_path, {"crate/model.sdf": BOX})
     finder = ResourceFinder(PackageFinder(start=tmp_path, environment={}), {"GZ_SIM_RESOURCE_PATH": str(tmp_path)})
-    found = finder.file("model://craet", tmp_path)
-    assert isinstance(found, Missing)
-    assert (found.severity.name, str(found.hint)) == ("WARNING", "did you mean 'crate'?")
+    missing = finder.file("model://craet", tmp_path)
+    assert isinstance(missing, Missing)
+    assert (missing.severity.name, str(missing.hint)) == ("WARNING", "did you mean 'crate'?")
 
 
 def test_misspelled_uri_scheme_is_reported(tmp_path):
     finder = ResourceFinder(PackageFinder(start=tmp_path, environment={}), {})
-    found = finder.file("models://boat/meshes/hull.dae", tmp_path)
-    assert isinstance(found, Missing)
-    assert str(found.hint) == "did you mean 'model'?"
+    missing = finder.file("models://boat/meshes/hull.dae", tmp_path)
+    assert isinstance(missing, Missing)
+    assert str(missing.hint) == "did you mean 'model'?"
 
 
 @pytest.mark.parametrize("ending", [".jinja", ".em", ".erb", ".xacro"])
@@ -370,17 +372,17 @@ def test_missing_file_of_built_in_model_is_info(tmp_path):
     ours = finder.model("model://person_standing", tmp_path)
     assert isinstance(ours, Path)
     for beside, severity in ((tmp_path, "INFO"), (ours.parent, "WARNING")):
-        found = finder.file("model://person_standing/meshes/no.dae", beside)
-        assert isinstance(found, Missing)
-        assert found.severity.name == severity
+        missing = finder.file("model://person_standing/meshes/no.dae", beside)
+        assert isinstance(missing, Missing)
+        assert missing.severity.name == severity
 
 
 def test_file_uri_with_wrong_case_suggests_file(tmp_path):
     write(tmp_path, {"models/lamp/meshes/lamp_visual.DAE": ""})
     finder = ResourceFinder(PackageFinder(start=tmp_path, environment={}), {})
-    found = finder.file("file://models/lamp/meshes/Lamp_visual.DAE", tmp_path / "models" / "lamp")
-    assert isinstance(found, Missing)
-    assert str(found.hint) == "did you mean 'lamp_visual.DAE'?"
+    missing = finder.file("file://models/lamp/meshes/Lamp_visual.DAE", tmp_path / "models" / "lamp")
+    assert isinstance(missing, Missing)
+    assert str(missing.hint) == "did you mean 'lamp_visual.DAE'?"
 
 
 def test_number_of_included_models_is_limited(tmp_path, monkeypatch):
@@ -389,8 +391,8 @@ def test_number_of_included_models_is_limited(tmp_path, monkeypatch):
     twice = "<include><uri>model://m{0}</uri><name>a</name></include><include><uri>model://m{0}</uri><name>b</name></include>"
     files = {f"m{at}/model.sdf": sdf(f'<model name="m{at}">{twice.format(at + 1)}</model>') for at in range(30)}
     write(tmp_path, {**files, "m30/model.sdf": BOX})
-    found = examined(tmp_path, "<include><uri>model://m0</uri></include>", GZ_SIM_RESOURCE_PATH=str(tmp_path))
-    assert [diagnostic.code for diagnostic in found.diagnostics].count("SDF161") == 1
+    reading = examined(tmp_path, "<include><uri>model://m0</uri></include>", GZ_SIM_RESOURCE_PATH=str(tmp_path))
+    assert [diagnostic.code for diagnostic in reading.diagnostics].count("SDF161") == 1
 
 
 @pytest.mark.parametrize("name", ["w.sdf.xacro", "w.sdf", "w.world"])
@@ -404,27 +406,27 @@ def test_world_is_expanded_with_xacro(tmp_path, name):
         <static>1</static></model></world></sdf>""",
         encoding="utf-8",
     )
-    found = examine_world(path, arguments={"n": "6"}, environment={})
-    assert found.diagnostics == ()
-    assert found.sdf is not None
-    assert found.sdf.worlds[0].models[0].pose.pose.xyz == (0, 0, 3)
+    reading = examine_world(path, arguments={"n": "6"}, environment={})
+    assert reading.diagnostics == ()
+    assert reading.sdf is not None
+    assert reading.sdf.worlds[0].models[0].pose.pose.xyz == (0, 0, 3)
 
 
 def test_all_available_models_are_listed(tmp_path):
     write(tmp_path, {"a/one/model.sdf": BOX, "b/one/model.sdf": BOX, "b/two/model.config": "<model/>", "b/x/y.txt": ""})
     environment = {"GZ_SIM_RESOURCE_PATH": f"{tmp_path / 'a'}:{tmp_path / 'b'}"}
     finder = ResourceFinder(PackageFinder(start=tmp_path, environment={}), environment)
-    found = finder.models()
-    assert (found["one"], found["two"]) == (tmp_path / "a" / "one", tmp_path / "b" / "two")
-    assert {"ground_plane", "sun"} <= set(found)
-    assert "x" not in found
+    models_found = finder.models()
+    assert (models_found["one"], models_found["two"]) == (tmp_path / "a" / "one", tmp_path / "b" / "two")
+    assert {"ground_plane", "sun"} <= set(models_found)
+    assert "x" not in models_found
 
 
 def test_invalid_uri_is_missing(tmp_path):
     finder = ResourceFinder(PackageFinder(start=tmp_path, environment={}), {"HOME": str(tmp_path)})
     for address in ("model://", "package://nowhere/a", "https://example.org/a", "ftp://a/b", "a.sdf", "/no/a.sdf", ""):
-        found = finder.file(address, tmp_path)
-        assert isinstance(found, Missing) or found == tmp_path, address
+        file = finder.file(address, tmp_path)
+        assert isinstance(file, Missing) or file == tmp_path, address
     assert isinstance(finder.model("", Path(tmp_path)), Missing)
 
 
@@ -434,9 +436,9 @@ def test_unknown_elements_and_missing_models_are_reported_once(tmp_path):
     write(tmp_path, {"box/model.sdf": other})
     box = "<include><uri>model://box</uri></include>"
     inside = f'<mine/><mine/><yours/>{gone}{gone}{box}<model name="m"><static>1</static><mine/></model>'
-    found = examined(tmp_path, inside, GZ_SIM_RESOURCE_PATH=str(tmp_path))
-    texts = [str(diagnostic.message) for diagnostic in found.diagnostics if diagnostic.code in ("SDF150", "SDF160")]
-    assert [each.split(":")[0] for each in texts] == [
+    reading = examined(tmp_path, inside, GZ_SIM_RESOURCE_PATH=str(tmp_path))
+    texts = [str(diagnostic.message) for diagnostic in reading.diagnostics if diagnostic.code in ("SDF150", "SDF160")]
+    assert [text.split(":")[0] for text in texts] == [
         "<mine> in <world> is not read",
         "<yours> in <world> is not read",
         "<mine> in <model> is not read",

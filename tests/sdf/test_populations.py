@@ -15,7 +15,7 @@ BOX = "<box><size>4 2 0.5</size></box><model_count>4</model_count>"
 
 def places(inside: str, pose: str = "10 20 0 0 0 0") -> list[tuple[float, float, float]]:
     text = f'<population name="p"><pose>{pose}</pose>{MODEL}{inside}</population>'
-    return [each.pose.pose.xyz for each in models_of(world(text).populations[0])]
+    return [model.pose.pose.xyz for model in models_of(world(text).populations[0])]
 
 
 def spread(kind: str, more: str = "") -> str:
@@ -41,18 +41,18 @@ def test_row_starts_at_side_of_box(kind, expected):
 
 @pytest.mark.parametrize("kind", ["random", "uniform"])
 def test_random_models_are_inside_box_and_reproducible(kind):
-    found = places(BOX + spread(kind))
-    assert len(set(found)) == 4
-    assert all(8 <= x <= 12 and 19 <= y <= 21 and -0.25 <= z <= 0.25 for x, y, z in found)
-    assert places(BOX + spread(kind)) == found
+    positions = places(BOX + spread(kind))
+    assert len(set(positions)) == 4
+    assert all(8 <= x <= 12 and 19 <= y <= 21 and -0.25 <= z <= 0.25 for x, y, z in positions)
+    assert places(BOX + spread(kind)) == positions
 
 
 @pytest.mark.parametrize("kind", ["random", "uniform"])
 def test_random_models_are_inside_cylinder_above_base(kind):
     cylinder = "<cylinder><radius>2</radius><length>1</length></cylinder><model_count>50</model_count>"
-    found = places(cylinder + spread(kind))
-    assert len(set(found)) == 50
-    assert all(hypot(x - 10, y - 20) <= 2 and 0 <= z <= 1 for x, y, z in found)
+    positions = places(cylinder + spread(kind))
+    assert len(set(positions)) == 50
+    assert all(hypot(x - 10, y - 20) <= 2 and 0 <= z <= 1 for x, y, z in positions)
 
 
 def test_box_rotates_about_corner_like_gazebo():
@@ -68,9 +68,9 @@ def test_population_without_distribution_is_empty(inside):
 def test_population_can_include_models_and_names_them(tmp_path):
     write(tmp_path, {"can/model.sdf": '<sdf version="1.6"><model name="can"><link name="l"/></model></sdf>'})
     model = '<model name="sip"><include><uri>model://can</uri></include></model>'
-    found = examined(tmp_path, f'<population name="p">{model}{BOX}</population>', GAZEBO_MODEL_PATH=str(tmp_path))
-    assert found.diagnostics == ()
-    assert found.sdf is not None
-    made = found.sdf.worlds[0].models
-    assert [each.name for each in made] == [f"sip_clone_{index}" for index in range(4)]
-    assert all(each.models[0].links for each in made)
+    reading = examined(tmp_path, f'<population name="p">{model}{BOX}</population>', GAZEBO_MODEL_PATH=str(tmp_path))
+    assert reading.diagnostics == ()
+    assert reading.sdf is not None
+    clones = reading.sdf.worlds[0].models
+    assert [clone.name for clone in clones] == [f"sip_clone_{index}" for index in range(4)]
+    assert all(clone.models[0].links for clone in clones)

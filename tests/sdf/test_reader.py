@@ -42,17 +42,17 @@ def rules(rule: ElementRule, seen: dict[int, ElementRule]) -> dict[int, ElementR
 MADE = [rule for rule in rules(SDF, {}).values() if is_dataclass(rule.make)]
 
 
-@pytest.mark.parametrize("rule", MADE, ids=[f"{each.tag}{number}" for number, each in enumerate(MADE)])
+@pytest.mark.parametrize("rule", MADE, ids=[f"{rule.tag}{number}" for number, rule in enumerate(MADE)])
 def test_empty_element_has_class_defaults(rule: ElementRule):
     """The defaults of the table, which are SDF's, and those of the classes are the same ones."""
     element = Element(rule.tag, {attribute.name: "n" for attribute in rule.attributes if attribute.required})
-    found = reader_of(rule, NEWEST).read(element, element, SdfReport())
+    element_object = reader_of(rule, NEWEST).read(element, element, SdfReport())
     own = {field.name: field.default for field in fields(rule.make) if field.default is not MISSING}
     if isinstance(rule.default, rule.make):
         own = {name: getattr(rule.default, name) for name in own}
     own.pop("element", None)
     written = {attribute.target for attribute in rule.attributes if attribute.required}
-    assert {name: getattr(found, name) for name in own if name not in written} == {
+    assert {name: getattr(element_object, name) for name in own if name not in written} == {
         name: value for name, value in own.items() if name not in written
     }
 
@@ -311,19 +311,19 @@ def test_equal_plugins_stay_separate():
 
 
 def test_world_is_read():
-    found = world(
+    parsed_world = world(
         """<gravity>0 0 -1.6</gravity><wind><linear_velocity>1 0 0</linear_velocity></wind>
         <physics type="ode"/><physics type="dart" default="1"><max_step_size>.004</max_step_size></physics>
         <scene><shadows>0</shadows></scene><spherical_coordinates><latitude_deg>48</latitude_deg>
         </spherical_coordinates><frame name="f"/><model name="o"><model name="i"><link name="l"/></model></model>"""
     )
-    assert gravity_of(found) == (0, 0, -1.6)
-    assert found.wind == (1, 0, 0)
-    assert physics_of(found).max_step_size == 0.004
-    assert found.scene.shadows is False
-    assert found.spherical_coordinates is not None
-    assert found.spherical_coordinates.latitude_deg == 48
-    assert found.models[0].models[0].links[0].name == "l"
+    assert gravity_of(parsed_world) == (0, 0, -1.6)
+    assert parsed_world.wind == (1, 0, 0)
+    assert physics_of(parsed_world).max_step_size == 0.004
+    assert parsed_world.scene.shadows is False
+    assert parsed_world.spherical_coordinates is not None
+    assert parsed_world.spherical_coordinates.latitude_deg == 48
+    assert parsed_world.models[0].models[0].links[0].name == "l"
 
 
 def test_gravity_falls_back_to_physics():
@@ -352,9 +352,9 @@ def test_text_after_root_is_ignored_with_warning():
 def test_empty_file_hints_at_sdf_root():
     with pytest.raises(LinkwrightError) as error:
         parse_as_gazebo(" ", "w.sdf")
-    (found,) = error.value.diagnostics
-    assert found.code == "XML105"
-    assert "<sdf" in str(found.hint)
+    (diagnostic,) = error.value.diagnostics
+    assert diagnostic.code == "XML105"
+    assert "<sdf" in str(diagnostic.hint)
 
 
 def test_sdf_elements_without_effect_are_accepted():
@@ -401,10 +401,10 @@ def test_bare_ampersand_and_latin1_bytes_are_read():
     assert [warning.code for warning in warnings] == ["XML104", "XML206"]
     sdf = read(document).sdf
     assert sdf is not None
-    found = sdf.worlds[0]
-    assert found.name == "a & b"
-    assert found.plugins[0].name == "ü"
-    assert found.plugins[0].element.first("y").text() == "1 & 2 & 3"
+    parsed_world = sdf.worlds[0]
+    assert parsed_world.name == "a & b"
+    assert parsed_world.plugins[0].name == "ü"
+    assert parsed_world.plugins[0].element.first("y").text() == "1 & 2 & 3"
 
 
 def test_malformed_polyline_points_are_omitted():
@@ -467,14 +467,14 @@ def test_sdf_1_0_attributes_are_read():
     reading = read(document)
     assert reading.diagnostics == ()
     assert reading.sdf is not None
-    (found,) = reading.sdf.worlds
-    assert found.scene.ambient == (1.0, 0.0, 0.0, 1.0)
-    assert not found.scene.shadows
-    assert found.physics[0].gravity == (0.0, 0.0, -1.6)
-    assert found.physics[0].real_time_update_rate == 500
-    (made,) = found.models
-    assert made.pose.pose.xyz == (1.0, 2.0, 3.0)
-    link = made.links[0]
+    (parsed_world,) = reading.sdf.worlds
+    assert parsed_world.scene.ambient == (1.0, 0.0, 0.0, 1.0)
+    assert not parsed_world.scene.shadows
+    assert parsed_world.physics[0].gravity == (0.0, 0.0, -1.6)
+    assert parsed_world.physics[0].real_time_update_rate == 500
+    (model,) = parsed_world.models
+    assert model.pose.pose.xyz == (1.0, 2.0, 3.0)
+    link = model.links[0]
     assert link.gravity is False
     assert link.velocity_decay.angular == 0.2
     assert link.inertial is not None
@@ -491,23 +491,23 @@ def test_sdf_1_0_attributes_are_read():
     camera = link.sensors[0].cameras[0]
     assert camera.horizontal_fov == 1.1
     assert camera.image.width == 32
-    joint = made.joints[0]
+    joint = model.joints[0]
     assert (joint.parent, joint.child) == ("a", "b")
     assert joint.axis is not None
     assert joint.axis.xyz == (0.0, 1.0, 0.0)
     assert joint.axis.limit.upper == 1.0
-    assert found.lights[0].pose.pose.xyz == (0.0, 0.0, 10.0)
-    assert made.plugins[0].element is not None
-    assert made.plugins[0].element.first("origin") is not None
+    assert parsed_world.lights[0].pose.pose.xyz == (0.0, 0.0, 10.0)
+    assert model.plugins[0].element is not None
+    assert model.plugins[0].element.first("origin") is not None
 
 
 def test_invalid_sdf_1_0_attribute_is_reported():
     text = OLD.replace('<box size="1 2 3"/>', '<box size="1 2"/>')
     document, _ = parse_as_gazebo(text, "old.world")
-    (found,) = read(document).diagnostics
-    assert found.code == "SDF121"
-    assert found.span is not None
-    assert text.splitlines()[found.span.line - 1][found.span.column - 1 :].startswith("<box")
+    (diagnostic,) = read(document).diagnostics
+    assert diagnostic.code == "SDF121"
+    assert diagnostic.span is not None
+    assert text.splitlines()[diagnostic.span.line - 1][diagnostic.span.column - 1 :].startswith("<box")
 
 
 def test_frame_in_any_element_with_pose_is_accepted():
@@ -516,10 +516,10 @@ def test_frame_in_any_element_with_pose_is_accepted():
     model(f'<link name="a">{frame}<visual name="v">{frame}{box}</visual></link>')
 
 
-@pytest.mark.parametrize(("text", "taken"), [("0x0002", 2), ("0XFF", 255), ("2.5", 2), ("7 8", 7)])
-def test_integers_are_parsed_like_libsdformat(text, taken):
+@pytest.mark.parametrize(("text", "expected"), [("0x0002", 2), ("0XFF", 255), ("2.5", 2), ("7 8", 7)])
+def test_integers_are_parsed_like_libsdformat(text, expected):
     collision = f'<collision name="c"><max_contacts>{text}</max_contacts></collision>'
     document, _ = parse_as_gazebo(
         f'<sdf version="1.9"><model name="m"><link name="a">{collision}</link></model></sdf>', "m"
     )
-    assert read(document).sdf.models[0].links[0].collisions[0].max_contacts == taken
+    assert read(document).sdf.models[0].links[0].collisions[0].max_contacts == expected

@@ -23,22 +23,22 @@ def test_world_without_state_is_unchanged():
 
 
 def test_state_sets_poses_of_models_and_links():
-    found = places(
+    positions = places(
         MODEL
         + f"""<state world_name="w"><model name="m"><pose>1 0 0 0 0 {pi / 2}</pose>
         <link name="b"><pose>4 5 6 0 0 0</pose></link></model></state>"""
     )
-    assert found["m::a"] == (1, 0, 0)
-    assert found["m::b"] == pytest.approx((4, 5, 6))
+    assert positions["m::a"] == (1, 0, 0)
+    assert positions["m::b"] == pytest.approx((4, 5, 6))
 
 
 def test_last_state_applies_and_other_models_keep_poses():
     other = MODEL.replace('"m"', '"n"')
-    found = places(
+    positions = places(
         f"""{MODEL}{other}<state><model name="m"><pose>1 0 0 0 0 0</pose></model></state>
         <state><model name="m"><pose>2 0 0 0 0 0</pose></model></state>"""
     )
-    assert (found["m::a"], found["n::a"]) == ((2, 0, 0), (9, 9, 9))
+    assert (positions["m::a"], positions["n::a"]) == ((2, 0, 0), (9, 9, 9))
 
 
 def test_state_applies_to_nested_models_and_lights():

@@ -31,13 +31,13 @@ VISUAL = '<model name="m"><link name="l"><visual name="v">{}</visual></link></mo
 
 def material_of(folder, inside):
     """The material of a visual in a world in a folder."""
-    found = examined(folder, VISUAL.format(f"<material>{inside}</material>"))
-    assert found.diagnostics == ()
-    return found.sdf.worlds[0].models[0].links[0].visuals[0].material
+    reading = examined(folder, VISUAL.format(f"<material>{inside}</material>"))
+    assert reading.diagnostics == ()
+    return reading.sdf.worlds[0].models[0].links[0].visuals[0].material
 
 
 def script(name, *uris):
-    return f"<script>{''.join(f'<uri>{each}</uri>' for each in uris)}<name>{name}</name></script>"
+    return f"<script>{''.join(f'<uri>{uri}</uri>' for uri in uris)}<name>{name}</name></script>"
 
 
 def test_gazebo_materials_have_their_colors(tmp_path):
@@ -72,10 +72,10 @@ def test_model_script_has_colors_and_texture(tmp_path):
 
 
 def test_script_is_read_up_to_errors():
-    found = read_script(SCRIPT)
-    assert list(found) == ["Box/Base", "Box/Child", "Box/Wrong"]
-    assert found["Box/Wrong"].diffuse is None
-    assert read_script("material A") == {"A": found["Box/Wrong"]}
+    script = read_script(SCRIPT)
+    assert list(script) == ["Box/Base", "Box/Child", "Box/Wrong"]
+    assert script["Box/Wrong"].diffuse is None
+    assert read_script("material A") == {"A": script["Box/Wrong"]}
 
 
 @given(
@@ -95,8 +95,8 @@ def test_missing_texture_and_folder_as_script_are_ignored(tmp_path):
 def test_nested_models_get_script_colors(tmp_path):
     inner = VISUAL.format(f"<material>{script('Gazebo/Red')}</material>")
     (tmp_path / "m.sdf").write_text(f'<sdf version="1.9"><model name="o">{inner}</model></sdf>')
-    found = examine_world(tmp_path / "m.sdf", environment={"HOME": "/nowhere"})
-    assert found.sdf is not None
-    material = found.sdf.models[0].models[0].links[0].visuals[0].material
+    reading = examine_world(tmp_path / "m.sdf", environment={"HOME": "/nowhere"})
+    assert reading.sdf is not None
+    material = reading.sdf.models[0].models[0].links[0].visuals[0].material
     assert material is not None
     assert material.diffuse == (1, 0, 0, 1)

@@ -134,10 +134,10 @@ def joint(parent: str, child: str, name: str = "j") -> str:
 def test_model_unsuitable_as_robot_is_rejected_once_with_location(inside, start, words):
     reading = reading_of(inside, start)
     assert reading.robot is None
-    (found,) = reading.diagnostics
-    assert found.code == "SDF180"
-    assert words in str(found.message)
-    assert found.span is not None
+    (diagnostic,) = reading.diagnostics
+    assert diagnostic.code == "SDF180"
+    assert words in str(diagnostic.message)
+    assert diagnostic.span is not None
 
 
 def test_canonical_link_becomes_root():
@@ -158,9 +158,9 @@ def _placed(robot: Robot, root: Transform) -> dict[str, Transform]:
     """Where the frames of links stand, with all joints at zero."""
     places, left = {robot.root: root}, list(robot.joints.values())
     while left:
-        each = next(each for each in left if each.parent in places)
-        left.remove(each)
-        places[each.child] = compose(places[each.parent], transform_of(each.origin))
+        joint = next(joint for joint in left if joint.parent in places)
+        left.remove(joint)
+        places[joint.child] = compose(places[joint.parent], transform_of(joint.origin))
     return places
 
 
@@ -172,8 +172,8 @@ def test_urdf_survives_conversion_to_sdf_and_back():
     first, second = _placed(before, IDENTITY), _placed(after, IDENTITY)
     for name, place in first.items():
         assert second[name] == pytest.approx(place, abs=1e-9)
-    assert {each.name: each.type for each in before.joints.values()} == {
-        each.name: each.type for each in after.joints.values()
+    assert {joint.name: joint.type for joint in before.joints.values()} == {
+        joint.name: joint.type for joint in after.joints.values()
     }
     written = read_urdf(parse_as_urdfdom(save(after), "robot.urdf")[0]).robot
     assert (list(written.links), list(written.joints)) == (list(after.links), list(after.joints))
@@ -188,7 +188,7 @@ def test_visuals_of_shared_models_keep_poses():
             continue
         reading, model = robot_from_sdf(sdf, sdf.models[0].element), sdf.models[0]
         if reading.robot is None:
-            assert [each.code for each in reading.diagnostics] == ["SDF180"]
+            assert [diagnostic.code for diagnostic in reading.diagnostics] == ["SDF180"]
             continue
         robots += 1
         frames = Frames(model)
@@ -196,7 +196,7 @@ def test_visuals_of_shared_models_keep_poses():
         for link in model.links:
             for before, after in zip(link.visuals, reading.robot.links[link.name].visuals, strict=True):
                 wanted = compose(frames.pose(link.name), frames.in_link(before.pose, link.name))
-                found = compose(places[link.name], transform_of(after.origin))
-                assert found[:3] == pytest.approx(wanted[:3], abs=1e-9)
-                assert abs(sum(a * b for a, b in zip(found[3:], wanted[3:], strict=True))) == pytest.approx(1.0)
+                link_pose = compose(places[link.name], transform_of(after.origin))
+                assert link_pose[:3] == pytest.approx(wanted[:3], abs=1e-9)
+                assert abs(sum(a * b for a, b in zip(link_pose[3:], wanted[3:], strict=True))) == pytest.approx(1.0)
     assert robots > 0

@@ -86,4 +86,4 @@ def test_walk_passes_through_all_waypoints(steps, tension, seconds):
     walk = Walk(Script(loop=False, trajectories=(trajectory,)))
     for time, (_, x, y, _yaw) in zip(times, steps, strict=True):
         assert at(walk, time) == pytest.approx((x, y), abs=1e-6)
-    assert sqrt(sum(each * each for each in walk.pose(seconds)[3:])) == pytest.approx(1.0)
+    assert sqrt(sum(component * component for component in walk.pose(seconds)[3:])) == pytest.approx(1.0)

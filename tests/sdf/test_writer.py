@@ -40,10 +40,10 @@ def read_back(text):
     return sdf
 
 
-def again(thing):
+def again(entity):
     """A world or model after writing and reading."""
-    sdf = read_back(save(thing))
-    return sdf.worlds[0] if isinstance(thing, World) else sdf.models[0]
+    sdf = read_back(save(entity))
+    return sdf.worlds[0] if isinstance(entity, World) else sdf.models[0]
 
 
 def same(kind, make):
@@ -143,9 +143,9 @@ def test_old_axis_is_written_in_model_frame():
 def test_quaternion_is_preserved():
     half = 0.5**0.5
     pose = f'<pose rotation_format="quat_xyzw">1 2 3 0 0 {half} {half}</pose>'
-    found = model(f'<link name="a">{pose}</link>')
-    assert found.links[0].pose.pose.quaternion == (0.0, 0.0, half, half)
-    assert again(found) == found
+    parsed_model = model(f'<link name="a">{pose}</link>')
+    assert parsed_model.links[0].pose.pose.quaternion == (0.0, 0.0, half, half)
+    assert again(parsed_model) == parsed_model
     assert again(Model("m", RawPose(Pose((1.0, 2.0, 3.0), (0.1, 0.2, 0.3))))).pose.pose.rpy == (0.1, 0.2, 0.3)
 
 
@@ -165,6 +165,6 @@ def normalized(sdf):
 def test_corpus_worlds_and_models_are_read_back(entry):
     path = WORLDS / entry
     finder = PackageFinder(start=path.parent, environment={})
-    found = examine_world(path, packages=finder, environment={"HOME": "/nowhere"})
-    assert found.sdf is not None
-    assert normalized(read_back(save(found.sdf))) == normalized(replace(found.sdf, version="1.11"))
+    reading = examine_world(path, packages=finder, environment={"HOME": "/nowhere"})
+    assert reading.sdf is not None
+    assert normalized(read_back(save(reading.sdf))) == normalized(replace(reading.sdf, version="1.11"))

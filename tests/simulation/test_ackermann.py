@@ -62,7 +62,7 @@ def plugin(more: str = "") -> str:
 
 async def test_car_drives_straight_with_correct_odometry():
     async with served(GROUND, car(plugin())) as (server, graph, log):
-        odometry, distance = (Recording(graph, server.node, each) for each in ("/odom", "/distance"))
+        odometry, distance = (Recording(graph, server.node, topic) for topic in ("/odom", "/distance"))
         await drive(server, graph, 0.5)
         begin = server.simulation.model_pose("car")
         await drive(server, graph, 0.5, seconds=2.0)
@@ -93,4 +93,4 @@ async def test_car_turns_according_to_steering(forward):
 async def test_wheel_without_round_collision_is_reported():
     async with served(GROUND, car(plugin(), "<box><size>0.2 0.2 0.05</size></box>")) as (server, _, log):
         assert not server.plugins("car")
-        assert [each.text for each in log if "needs a collision that is a cylinder or a sphere" in each.text]
+        assert [record.text for record in log if "needs a collision that is a cylinder or a sphere" in record.text]

@@ -81,12 +81,12 @@ async def test_forces_of_several_plugins_add_up():
 async def test_unknown_force_frame_is_rejected():
     async with served(pushed("<force_frame>map</force_frame>")) as (server, _, log):
         assert not server.plugins("crate")
-        assert [each.text for each in log if "<force_frame> must be" in each.text]
+        assert [record.text for record in log if "<force_frame> must be" in record.text]
 
 
 async def test_model_and_link_states_are_published():
     async with served(GROUND, robot(), STATE) as (server, graph, log):
-        models, links = (Recording(graph, server.node, f"/world/{each}") for each in ("model_states", "link_states"))
+        models, links = (Recording(graph, server.node, f"/world/{name}") for name in ("model_states", "link_states"))
         server.advance(SECOND)
         await graph.settle()
         assert len(models) == len(links) == 10
@@ -111,7 +111,7 @@ async def test_state_services_are_in_plugin_namespace():
         state.name = "ground"
         answer = await ask(graph, server, "gazebo_msgs/srv/SetEntityState", "/world/set_entity_state", state=state)
         assert not answer.success
-        assert [each.text for each in log] == [
+        assert [record.text for record in log] == [
             "get_entity_state: there is no model or link 'who'",
             "set_entity_state: 'ground' is fixed to the world (delete it, and spawn it again at the intended pose)",
         ]
@@ -207,4 +207,4 @@ async def test_joint_pose_trajectory_jumps_between_points():
         publisher.publish(message)
         await graph.settle()
         server.advance(SECOND)
-        assert [each.text for each in log] == ["plugin 'poses': there is no movable joint 'elbow'"]
+        assert [record.text for record in log] == ["plugin 'poses': there is no movable joint 'elbow'"]

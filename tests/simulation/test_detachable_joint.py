@@ -13,7 +13,7 @@ from tests.simulation.worlds import GROUND, box, model
 
 STATE, DETACH, ATTACH = (
     "/model/load/detachable_joint/state",
-    *(f"/model/carrier/detachable_joint/{each}" for each in ("detach", "attach")),
+    *(f"/model/carrier/detachable_joint/{action}" for action in ("detach", "attach")),
 )
 POST = '<joint name="post" type="fixed"><parent>world</parent><child>link</child></joint>'
 LOAD = box("load", "0.05 0 1.75 0 0.2 0", "0.2 0.2 0.2", 2.0)
@@ -94,7 +94,7 @@ async def test_initial_attach_and_topic_names_can_be_configured():
 async def test_late_model_is_attached_and_missing_model_reported_once():
     async with served(GROUND, carrier()) as (server, _, log):
         server.advance(SECOND // 5)
-        assert [each.text for each in log] == [
+        assert [record.text for record in log] == [
             "plugin 'gz::sim::systems::DetachableJoint': there is no link 'load::link'"
         ]
         server.spawn(model(LOAD), "load", (0.05, 0.0, 1.75, 0.0, 0.0, 0.0, 1.0))
@@ -122,10 +122,10 @@ async def test_reset_attaches_load_again():
 async def test_missing_link_and_parameters_are_reported():
     async with served(GROUND, carrier().replace("<parent_link>link", "<parent_link>hand"), LOAD) as (server, _, log):
         assert not server.plugins("carrier")
-        assert ["'hand'" in each.text for each in log] == [True]
+        assert ["'hand'" in record.text for record in log] == [True]
     async with served(GROUND, carrier().replace("child_link>", "link_of_child>"), LOAD) as (server, _, log):
         assert not server.plugins("carrier")
-        assert any("'child_link'" in each.text for each in log)
+        assert any("'child_link'" in record.text for record in log)
 
 
 async def test_replaced_model_keeps_attachment_state():

@@ -70,7 +70,7 @@ async def test_robot_drives_straight_with_correct_odometry(plugin):
         odometry = driven.odometry.last
         assert odometry.pose.pose.position.x == pytest.approx(driven.pose[0], abs=1e-2)
         assert odometry.twist.twist.linear.x == pytest.approx(0.5, abs=1e-2)
-        assert not [each for each in log if each.level > 20]
+        assert not [record for record in log if record.level > 20]
 
 
 @pytest.mark.parametrize("plugin", [classic(), gz()], ids=["classic", "gz"])
@@ -121,7 +121,7 @@ async def test_reset_stops_robot_at_start():
 async def test_invalid_parameters_are_reported(plugin, words):
     async with served(GROUND, robot(plugin)) as (server, _, log):
         assert server.plugins("mbot") == ()
-        assert any(words in each.text for each in log)
+        assert any(words in record.text for record in log)
 
 
 async def test_wheel_transforms_are_published_if_enabled():

@@ -121,7 +121,7 @@ async def test_failing_plugin_stops_without_affecting_others(where):
         await _pass(server, graph)
         assert len(recordings[0]) == 20  # both plugins beside it
         server.delete("mbot")
-        errors = [each.text for each in log if each.level >= LogLevel.ERROR]
+        errors = [record.text for record in log if record.level >= LogLevel.ERROR]
         expected = "TypeError" if where == PUBLISHING else f"FaultError: {where}"
         assert [expected in error for error in errors] == [True], errors
         assert errors[0].startswith("test.world:14:"), "where it is declared"
@@ -185,4 +185,4 @@ async def test_sensor_survives_changing_subscriptions(text, monkeypatch):
         monkeypatch.setattr(Publisher, "get_subscription_count", lambda _: chance.randrange(2))
         server.advance(4 * SECOND)
         assert len(server.plugins("robot")) == 1
-        assert not [each.text for each in log if each.level >= LogLevel.ERROR]
+        assert not [record.text for record in log if record.level >= LogLevel.ERROR]

@@ -55,5 +55,5 @@ def test_model_without_collisions_is_reported():
     for name, link in (("seen", visual), ("still", f"{visual}<gravity>false</gravity>")):
         simulation.spawn(model(f'<model name="{name}"><link name="link">{link}</link></model>'), name)
     simulation.spawn(model(box("crate", "0 0 2 0 0 0", "0.2 0.2 0.2")), "crate")
-    assert [each.code for each in collision_warnings(simulation, "seen")] == ["SIM143"]
+    assert [diagnostic.code for diagnostic in collision_warnings(simulation, "seen")] == ["SIM143"]
     assert collision_warnings(simulation, "still") == collision_warnings(simulation, "crate") == []

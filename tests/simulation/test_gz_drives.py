@@ -65,7 +65,7 @@ def test_speed_limits_apply_to_velocity_acceleration_and_jerk():
 
 async def test_car_drives_commanded_circle_with_correct_odometry():
     async with served(GROUND, car(steering())) as (server, graph, log):
-        odometry, transforms = (Recording(graph, server.node, each) for each in ("/odom", "/tf"))
+        odometry, transforms = (Recording(graph, server.node, topic) for topic in ("/odom", "/tf"))
         await drive(server, graph, 0.5, turning=0.3, seconds=2.0)
         begin = yaw_of(server.simulation.model_pose("car"))
         await drive(server, graph, 0.5, turning=0.3, seconds=1.0)
@@ -113,7 +113,9 @@ async def test_car_without_wheel_joints_is_reported():
     none = steering().replace("<left_joint>rear_left_joint</left_joint>", "")
     async with served(GROUND, car(none)) as (server, _, log):
         assert not server.plugins("car")
-        assert [each.text for each in log if "needs wheel joints on both sides, and positive dimensions" in each.text]
+        assert [
+            record.text for record in log if "needs wheel joints on both sides, and positive dimensions" in record.text
+        ]
 
 
 @pytest.mark.parametrize(

@@ -134,7 +134,7 @@ def broken_models(draw: st.DrawFn) -> str:
     """A model of parts that mostly fit together, with values that mostly do not."""
     parts = draw(st.lists(st.sampled_from(_PARTS), min_size=1, max_size=6))
     filled = [part.format(*(draw(st.sampled_from(_NUMBERS)) for _ in range(part.count("{}")))) for part in parts]
-    filled = [f'<link name="{each}">{part}</link>' if "<visual" in part else part for each, part in enumerate(filled)]
+    filled = [f'<link name="{index}">{part}</link>' if "<visual" in part else part for index, part in enumerate(filled)]
     return f'<model name="m">{"".join(filled)}</model>'
 
 

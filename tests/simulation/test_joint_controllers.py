@@ -97,7 +97,7 @@ async def test_velocity_controller_reaches_commanded_velocity(more):
 async def test_second_joint_axis_is_rejected():
     async with served(arm(position("<joint_index>1</joint_index>"))) as (server, _, log):
         assert not server.plugins("arm")
-        assert [each.text for each in log if "only the first axis" in each.text]
+        assert [record.text for record in log if "only the first axis" in record.text]
 
 
 async def test_arm_on_fixed_base_is_held():

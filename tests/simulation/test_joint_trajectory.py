@@ -49,7 +49,7 @@ async def test_joints_hold_each_point_until_next_is_due():
         server.advance(3 * SECOND)
         assert server.simulation.joint_state("arm::shoulder")[0] == pytest.approx(0.5, abs=5e-3)
         await follow(graph, server, trajectory((0.0, 0.2), (3.0, -0.4), (6.0, 1.0)), 2.9)
-        assert [each.data for each in progress] == pytest.approx([1 / 3, 2 / 3])
+        assert [message.data for message in progress] == pytest.approx([1 / 3, 2 / 3])
         assert server.simulation.joint_state("arm::shoulder")[0] == pytest.approx(-0.4, abs=5e-3)
         server.advance(4 * SECOND)
         await graph.settle()
@@ -66,7 +66,7 @@ async def test_header_start_time_delays_trajectory():
     async with served(arm(controller(more))) as (server, graph, _):
         progress = Recording(graph, server.node, f"{TOPIC}_progress")
         await follow(graph, server, trajectory((0.0, 0.1), (1.0, 0.3), stamp=2), 2.5)
-        assert [each.data for each in progress] == [0.5, 1.0]
+        assert [message.data for message in progress] == [0.5, 1.0]
 
 
 async def test_efforts_alone_are_applied_without_gains():
@@ -83,7 +83,7 @@ async def test_efforts_alone_are_applied_without_gains():
 async def test_unknown_joint_is_reported_and_empty_trajectory_ends_current():
     async with served(arm(controller())) as (server, graph, log):
         await follow(graph, server, trajectory((0.0, 1.0), name="elbow"), 0.1)
-        assert [each.text for each in log] == [
+        assert [record.text for record in log] == [
             "plugin 'gz::sim::systems::JointTrajectoryController' does not control a joint named elbow"
         ]
         await follow(graph, server, trajectory((3.0, 0.4), (8.0, 1.0)), 2.9)

@@ -25,25 +25,25 @@ def text(*parts: str) -> str:
     return f'<sdf version="1.7"><world name="test">{GROUND}{"".join(parts)}</world></sdf>'
 
 
-async def load(it, tmp_path, *parts: str, content: str = "", **flags: bool):
+async def load(session, tmp_path, *parts: str, content: str = "", **flags: bool):
     """Load another text for the file of the world."""
     resource = get_message("simulation_interfaces/msg/Resource")
     world = resource(uri=str(tmp_path / "a.world"), resource_string=content or text(*parts))
-    return await it.ask("simulation_interfaces/srv/LoadWorld", "/load_world", world_resource=world, **flags)
+    return await session.ask("simulation_interfaces/srv/LoadWorld", "/load_world", world_resource=world, **flags)
 
 
-async def steps(it, count: int) -> None:
+async def steps(session, count: int) -> None:
     """Let time pass."""
-    await it.ask("simulation_interfaces/srv/StepSimulation", "/step_simulation", steps=count)
+    await session.ask("simulation_interfaces/srv/StepSimulation", "/step_simulation", steps=count)
 
 
 async def test_unchanged_models_keep_moving(tmp_path):
     falling, other = box("one", "0 0 9 0 0 0"), box("two", "3 0 9 0 0 0")
-    async with simulator(tmp_path, falling, other) as it:
-        simulation = it.simulator.server.simulation
-        await steps(it, 100)
+    async with simulator(tmp_path, falling, other) as session:
+        simulation = session.simulator.server.simulation
+        await steps(session, 100)
         before = simulation.model_pose("one"), *map(tuple, simulation.link_velocity("one::link"))
-        answer = await load(it, tmp_path, "\n<!-- here -->", falling.replace("9 0 0 0", " 9.0  0 0 0"), other)
+        answer = await load(session, tmp_path, "\n<!-- here -->", falling.replace("9 0 0 0", " 9.0  0 0 0"), other)
         assert (answer.result.result, answer.result.error_message) == (answer.result.RESULT_OK, "")
         assert (answer.world.name, answer.world.world_resource.uri) == ("test", str(tmp_path / "a.world"))
         assert (simulation.model_pose("one"), *map(tuple, simulation.link_velocity("one::link"))) == before
@@ -52,102 +52,102 @@ async def test_unchanged_models_keep_moving(tmp_path):
 
 
 async def test_relocated_model_is_moved_and_starts_there(tmp_path):
-    async with simulator(tmp_path, box("one", "0 0 9 0 0 0"), box("two", "3 0 9 0 0 0")) as it:
-        simulation = it.simulator.server.simulation
-        await steps(it, 100)
+    async with simulator(tmp_path, box("one", "0 0 9 0 0 0"), box("two", "3 0 9 0 0 0")) as session:
+        simulation = session.simulator.server.simulation
+        await steps(session, 100)
         before = simulation.model_pose("two"), *map(tuple, simulation.link_velocity("two::link"))
-        await load(it, tmp_path, box("one", "0 1 5 0 0 0"), box("two", "3 0 9 0 0 0"))
+        await load(session, tmp_path, box("one", "0 1 5 0 0 0"), box("two", "3 0 9 0 0 0"))
         assert simulation.model_pose("one")[:3] == (0, 1, 5)
         assert not simulation.link_velocity("one::link")[0].any()
         assert (simulation.model_pose("two"), *map(tuple, simulation.link_velocity("two::link"))) == before
-        await steps(it, 100)
-        await it.ask("std_srvs/srv/Empty", "/reset_world")
+        await steps(session, 100)
+        await session.ask("std_srvs/srv/Empty", "/reset_world")
         assert simulation.model_pose("one")[:3] == (0, 1, 5)
         assert simulation.model_pose("two")[:3] == (3, 0, 9)
 
 
 async def test_relocated_fixed_model_keeps_joint_positions(tmp_path):
-    async with simulator(tmp_path, SPIN.format(more="")) as it:
-        simulation = it.simulator.server.simulation
+    async with simulator(tmp_path, SPIN.format(more="")) as session:
+        simulation = session.simulator.server.simulation
         simulation.set_joint_position("arm::turn", 0.7)
-        await load(it, tmp_path, SPIN.format(more="").replace("5 5 1 0", "6 5 1 0"))
+        await load(session, tmp_path, SPIN.format(more="").replace("5 5 1 0", "6 5 1 0"))
         assert simulation.joint_state("arm::turn")[0] == pytest.approx(0.7)
         assert simulation.model_pose("arm")[:3] == (6, 5, 1)
         assert simulation.link_pose("arm::tip")[:3] == pytest.approx((6, 5, 1.5))
 
 
 async def test_changed_model_is_replaced_at_current_pose(tmp_path):
-    async with simulator(tmp_path, box("one", "0 0 9 0 0.3 0"), SPIN.format(more="")) as it:
-        simulation = it.simulator.server.simulation
+    async with simulator(tmp_path, box("one", "0 0 9 0 0.3 0"), SPIN.format(more="")) as session:
+        simulation = session.simulator.server.simulation
         simulation.set_model_velocity("one", (1.0, 2.0, 0.0), (0.0, 0.0, 3.0))
         simulation.set_joint_position("arm::turn", 0.7)
-        await steps(it, 100)
+        await steps(session, 100)
         before = simulation.model_pose("one"), simulation.link_velocity("one::link")
         turned = simulation.joint_state("arm::turn")
         hand = '<link name="hand"/><joint name="hold" type="fixed"><parent>tip</parent><child>hand</child></joint>'
-        await load(it, tmp_path, box("one", "0 0 9 0 0.3 0", size="1 1 2"), SPIN.format(more=hand))
+        await load(session, tmp_path, box("one", "0 0 9 0 0.3 0", size="1 1 2"), SPIN.format(more=hand))
         assert simulation.model_pose("one") == pytest.approx(before[0], abs=1e-12)
         for now, then in zip(simulation.link_velocity("one::link"), before[1], strict=True):
             assert now == pytest.approx(then, abs=1e-12)
         assert simulation.joint_state("arm::turn") == turned
         assert "arm::hand" in simulation.scene.bodies
-        await it.ask("std_srvs/srv/Empty", "/reset_world")
+        await session.ask("std_srvs/srv/Empty", "/reset_world")
         assert simulation.model_pose("one")[:3] == (0, 0, 9)
 
 
 async def test_changed_and_relocated_model_uses_new_pose(tmp_path):
-    async with simulator(tmp_path, box("one", "0 0 9 0 0 0")) as it:
-        await steps(it, 100)
-        await load(it, tmp_path, box("one", "0 4 9 0 0 0", size="1 1 2"))
-        assert it.simulator.server.simulation.model_pose("one")[:3] == (0, 4, 9)
+    async with simulator(tmp_path, box("one", "0 0 9 0 0 0")) as session:
+        await steps(session, 100)
+        await load(session, tmp_path, box("one", "0 4 9 0 0 0", size="1 1 2"))
+        assert session.simulator.server.simulation.model_pose("one")[:3] == (0, 4, 9)
 
 
 async def test_models_are_added_and_removed_and_spawned_ones_kept(tmp_path):
-    async with simulator(tmp_path, box("one", "0 0 9 0 0 0"), box("two", "3 0 9 0 0 0")) as it:
-        descriptions = it.hear("std_msgs/msg/String", "/world_description", LATCHED)
+    async with simulator(tmp_path, box("one", "0 0 9 0 0 0"), box("two", "3 0 9 0 0 0")) as session:
+        descriptions = session.hear("std_msgs/msg/String", "/world_description", LATCHED)
         xml = f'<sdf version="1.7">{box("spawned", "0 0 0 0 0 0")}</sdf>'
-        await it.ask("gazebo_msgs/srv/SpawnEntity", "/spawn_entity", name="spawned", xml=xml)
-        await it.ask("gazebo_msgs/srv/DeleteEntity", "/delete_entity", name="one")
-        await load(it, tmp_path, box("one", "0 0 9 0 0 0"), box("three", "6 0 9 0 0 0"))
-        names = set(it.simulator.server.simulation.scene.models)
+        await session.ask("gazebo_msgs/srv/SpawnEntity", "/spawn_entity", name="spawned", xml=xml)
+        await session.ask("gazebo_msgs/srv/DeleteEntity", "/delete_entity", name="one")
+        await load(session, tmp_path, box("one", "0 0 9 0 0 0"), box("three", "6 0 9 0 0 0"))
+        names = set(session.simulator.server.simulation.scene.models)
         assert names == {"ground_plane", "spawned", "one", "three"}
         await eventually(lambda: bool(descriptions) and "three" in descriptions[-1].data)
         assert "two" not in descriptions[-1].data
 
 
 async def test_physics_gravity_light_and_plugins_are_updated(tmp_path):
-    async with simulator(tmp_path, box("one", "0 0 9 0 0 0"), real_time_factor=0.0) as it:
-        simulation = it.simulator.server.simulation
-        log = it.hear("rcl_interfaces/msg/Log", "/rosout")
+    async with simulator(tmp_path, box("one", "0 0 9 0 0 0"), real_time_factor=0.0) as session:
+        simulation = session.simulator.server.simulation
+        log = session.hear("rcl_interfaces/msg/Log", "/rosout")
         physics = (
             '<physics type="ode"><max_step_size>0.002</max_step_size><real_time_factor>2</real_time_factor></physics>'
         )
         sun = '<light name="sun" type="directional"/><scene><ambient>1 0 0 1</ambient></scene>'
         state = '<plugin name="state" filename="libnobody_knows.so"/>'
-        await load(it, tmp_path, "<gravity>0 0 0</gravity>", physics, sun, state, box("one", "0 0 9 0 0 0"))
-        await steps(it, 500)
+        await load(session, tmp_path, "<gravity>0 0 0</gravity>", physics, sun, state, box("one", "0 0 9 0 0 0"))
+        await steps(session, 500)
         assert simulation.time == 1_000_000_000
         assert simulation.model_pose("one")[2] == 9.0
         assert [light.name for light in simulation.world.lights] == ["sun"]
         assert simulation.world.scene.ambient[:3] == (1, 0, 0)
-        await eventually(lambda: any("libnobody_knows" in each.msg for each in log))
-        await load(it, tmp_path, box("one", "0 0 9 0 0 0"))
-        await steps(it, 100)
+        await eventually(lambda: any("libnobody_knows" in message.msg for message in log))
+        await load(session, tmp_path, box("one", "0 0 9 0 0 0"))
+        await steps(session, 100)
         assert simulation.model_pose("one")[2] < 9.0
 
 
 async def test_plugins_restart_only_with_changed_models(tmp_path):
-    async with simulator(tmp_path, robot(joint_states())) as it:
-        server = it.simulator.server
+    async with simulator(tmp_path, robot(joint_states())) as session:
+        server = session.simulator.server
         before = server.plugins("mbot")
         assert before
-        await load(it, tmp_path, robot(joint_states()), box("one", "9 9 1 0 0 0"))
+        await load(session, tmp_path, robot(joint_states()), box("one", "9 9 1 0 0 0"))
         assert server.plugins("mbot") == before
-        await load(it, tmp_path, robot(joint_states(more="<ros><namespace>/new</namespace></ros>")))
+        await load(session, tmp_path, robot(joint_states(more="<ros><namespace>/new</namespace></ros>")))
         (plugin,) = server.plugins("mbot")
         assert plugin not in before
-        heard = it.hear("sensor_msgs/msg/JointState", "/new/joint_states")
-        await steps(it, 1000)
+        heard = session.hear("sensor_msgs/msg/JointState", "/new/joint_states")
+        await steps(session, 1000)
         await eventually(lambda: bool(heard))
 
 
@@ -164,14 +164,14 @@ async def test_plugins_restart_only_with_changed_models(tmp_path):
     ],
 )
 async def test_invalid_world_changes_nothing(tmp_path, content, result, message):
-    async with simulator(tmp_path, box("one", "0 0 9 0 0 0")) as it:
-        simulation = it.simulator.server.simulation
+    async with simulator(tmp_path, box("one", "0 0 9 0 0 0")) as session:
+        simulation = session.simulator.server.simulation
         xml = f'<sdf version="1.7">{box("spawned", "0 0 0 0 0 0")}</sdf>'
-        await it.ask("gazebo_msgs/srv/SpawnEntity", "/spawn_entity", name="spawned", xml=xml)
-        await steps(it, 100)
+        await session.ask("gazebo_msgs/srv/SpawnEntity", "/spawn_entity", name="spawned", xml=xml)
+        await steps(session, 100)
         simulation.refresh()
         before = simulation.world, simulation.revision, simulation.data.qpos.tolist(), simulation.data.qvel.tolist()
-        answer = await load(it, tmp_path, content=content, fail_on_unsupported_element=True)
+        answer = await load(session, tmp_path, content=content, fail_on_unsupported_element=True)
         assert answer.result.result == result
         assert message in answer.result.error_message
         simulation.refresh()
@@ -180,23 +180,23 @@ async def test_invalid_world_changes_nothing(tmp_path, content, result, message)
 
 
 async def test_missing_assets_can_be_ignored(tmp_path):
-    async with simulator(tmp_path) as it:
+    async with simulator(tmp_path) as session:
         missing = "<include><uri>model://nowhere_at_all</uri></include>"
-        answer = await load(it, tmp_path, missing, ignore_missing_or_unsupported_assets=True)
+        answer = await load(session, tmp_path, missing, ignore_missing_or_unsupported_assets=True)
         assert answer.result.result == answer.result.RESULT_OK
-        answer = await load(it, tmp_path, missing, box("one", "0 0 9 0 0 0"))
+        answer = await load(session, tmp_path, missing, box("one", "0 0 9 0 0 0"))
         assert answer.result.result == answer.result.RESULT_OK, "it was missing before, too"
 
 
 async def test_missing_world_and_unknown_file_are_reported(tmp_path):
-    async with simulator(tmp_path) as it:
-        answer = await it.ask("simulation_interfaces/srv/LoadWorld", "/load_world")
+    async with simulator(tmp_path) as session:
+        answer = await session.ask("simulation_interfaces/srv/LoadWorld", "/load_world")
         assert (answer.result.result, answer.result.error_message) == (
             answer.NO_RESOURCE,
             "no world was specified (pass the path of a world file, or the text of a world)",
         )
         resource = get_message("simulation_interfaces/msg/Resource")(uri="no_such")
-        answer = await it.ask("simulation_interfaces/srv/LoadWorld", "/load_world", world_resource=resource)
+        answer = await session.ask("simulation_interfaces/srv/LoadWorld", "/load_world", world_resource=resource)
         assert answer.result.result == answer.result.RESULT_NOT_FOUND
 
 
@@ -205,21 +205,21 @@ DRIVE = """<plugin name="drive" filename="libgazebo_ros_diff_drive.so"><left_joi
 
 
 async def test_changed_robot_is_replaced_in_place_and_drives(tmp_path):
-    async with simulator(tmp_path, robot(DRIVE)) as it:
-        simulation = it.simulator.server.simulation
-        command = it.node.create_publisher(get_message("geometry_msgs/msg/Twist"), "/cmd_vel", 10)
-        await steps(it, 100)
+    async with simulator(tmp_path, robot(DRIVE)) as session:
+        simulation = session.simulator.server.simulation
+        command = session.node.create_publisher(get_message("geometry_msgs/msg/Twist"), "/cmd_vel", 10)
+        await steps(session, 100)
         simulation.set_model_pose("mbot", (2.0, 1.0, 0.11, 0.0, 0.0, 0.0, 1.0))
-        await steps(it, 10)
+        await steps(session, 10)
         before, wheel = simulation.model_pose("mbot"), simulation.joint_state("mbot::left_joint")
         mast = "<link name='mast'/><joint name='m' type='fixed'><parent>base_link</parent><child>mast</child></joint>"
-        await load(it, tmp_path, robot(DRIVE, mast))
+        await load(session, tmp_path, robot(DRIVE, mast))
         assert simulation.model_pose("mbot") == pytest.approx(before, abs=1e-9)
         assert simulation.joint_state("mbot::left_joint") == pytest.approx(wheel, abs=1e-9)
         twist = get_message("geometry_msgs/msg/Twist")()
         twist.linear.x = 0.5
         command.publish(twist)
-        await steps(it, 2000)
+        await steps(session, 2000)
         assert simulation.model_pose("mbot")[0] > before[0] + 0.5
 
 
@@ -232,34 +232,34 @@ MAST = "<link name='mast'/><joint name='m' type='fixed'><parent>base_link</paren
 
 @pytest.mark.parametrize("drive", [CLASSIC, GZ])
 async def test_unchanged_drive_keeps_odometry_and_command(tmp_path, drive):
-    async with simulator(tmp_path, robot(drive)) as it:
-        simulation = it.simulator.server.simulation
-        command = it.node.create_publisher(get_message("geometry_msgs/msg/Twist"), "/cmd_vel", 10)
-        heard = it.hear("nav_msgs/msg/Odometry", "/odom")
+    async with simulator(tmp_path, robot(drive)) as session:
+        simulation = session.simulator.server.simulation
+        command = session.node.create_publisher(get_message("geometry_msgs/msg/Twist"), "/cmd_vel", 10)
+        heard = session.hear("nav_msgs/msg/Odometry", "/odom")
         twist = get_message("geometry_msgs/msg/Twist")()
         twist.linear.x = 0.5
         command.publish(twist)
-        await steps(it, 2000)
+        await steps(session, 2000)
         before = simulation.model_pose("mbot")[0]
         assert before > 0.5
-        await load(it, tmp_path, robot(drive, MAST))
+        await load(session, tmp_path, robot(drive, MAST))
         heard.clear()
-        await steps(it, 1000)
+        await steps(session, 1000)
         await eventually(lambda: bool(heard))
         assert simulation.model_pose("mbot")[0] > before + 0.3
         assert heard[-1].pose.pose.position.x == pytest.approx(simulation.model_pose("mbot")[0], abs=0.05)
 
 
 async def test_changed_drive_starts_again(tmp_path):
-    async with simulator(tmp_path, robot(CLASSIC)) as it:
-        command = it.node.create_publisher(get_message("geometry_msgs/msg/Twist"), "/cmd_vel", 10)
+    async with simulator(tmp_path, robot(CLASSIC)) as session:
+        command = session.node.create_publisher(get_message("geometry_msgs/msg/Twist"), "/cmd_vel", 10)
         twist = get_message("geometry_msgs/msg/Twist")()
         twist.linear.x = 0.5
         command.publish(twist)
-        await steps(it, 2000)
-        heard = it.hear("nav_msgs/msg/Odometry", "/odom")
-        await load(it, tmp_path, robot(CLASSIC.replace("0.38", "0.4"), MAST))
+        await steps(session, 2000)
+        heard = session.hear("nav_msgs/msg/Odometry", "/odom")
+        await load(session, tmp_path, robot(CLASSIC.replace("0.38", "0.4"), MAST))
         heard.clear()
-        await steps(it, 1000)
+        await steps(session, 1000)
         await eventually(lambda: bool(heard))
         assert abs(heard[-1].pose.pose.position.x) < 0.1

@@ -45,7 +45,7 @@ def forward(speed: float):
 
 def warnings(log) -> list[str]:
     """What was warned of."""
-    return [each.text for each in log if each.level >= LogLevel.WARN]
+    return [record.text for record in log if record.level >= LogLevel.WARN]
 
 
 @pytest.mark.parametrize("model", DRIVES.values(), ids=DRIVES.keys())

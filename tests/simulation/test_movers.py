@@ -39,7 +39,7 @@ def planar(more: str = "") -> str:
 
 async def test_planar_move_drives_in_any_direction_with_robot_frame_odometry():
     async with served(GROUND, moving_box(planar(), f"0 0 0.1 0 0 {pi / 2}")) as (server, graph, log):
-        odometry, transforms = (Recording(graph, server.node, each) for each in ("/odom", "/tf"))
+        odometry, transforms = (Recording(graph, server.node, topic) for topic in ("/odom", "/tf"))
         await drive(server, graph, 0.5, 0.25)
         x, y, _, *_ = server.simulation.model_pose("mbot")
         assert (x, y) == pytest.approx((-0.25, 0.5), abs=2e-3)
@@ -68,7 +68,7 @@ async def test_planar_move_of_static_model_is_reported():
     async with served(GROUND, text) as (server, _, log):
         server.advance(SECOND // 10)
         assert not server.plugins("mbot")
-        assert [each.text for each in log if "fixed to the world" in each.text]
+        assert [record.text for record in log if "fixed to the world" in record.text]
 
 
 async def test_skid_steering_accepts_ros_1_parameters():
@@ -79,7 +79,7 @@ async def test_skid_steering_accepts_ros_1_parameters():
         "<wheelDiameter>0.12</wheelDiameter><broadcastTF>false</broadcastTF></plugin>"
     )
     async with served(GROUND, robot(plugin)) as (server, graph, log):
-        odometry, transforms = (Recording(graph, server.node, each) for each in ("/odom", "/tf"))
+        odometry, transforms = (Recording(graph, server.node, topic) for topic in ("/odom", "/tf"))
         await drive(server, graph, 0.5, seconds=1.0)
         begin = server.simulation.model_pose("mbot")[0]
         await drive(server, graph, 0.5, seconds=1.0)
@@ -98,7 +98,7 @@ async def test_p3d_publishes_pose_in_world_or_other_link_frame():
 
     plugins = [p3d("truth", "<xyz_offset>0 0 1</xyz_offset>"), p3d("inside", "<frame_name>base_link</frame_name>")]
     async with served(GROUND, robot(*plugins, planar())) as (server, graph, log):
-        truth, inside = (Recording(graph, server.node, each) for each in ("/truth", "/inside"))
+        truth, inside = (Recording(graph, server.node, topic) for topic in ("/truth", "/inside"))
         await drive(server, graph, 0.5)
         link = server.simulation.link_pose("mbot::left_wheel")
         odometry = truth.last

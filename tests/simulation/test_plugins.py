@@ -95,9 +95,9 @@ def test_systems_listed_as_built_in_are_simulated():
 async def test_unsupported_gz_system_is_reported_with_alternative(name):
     plugin = f'<plugin name="a" filename="gz-sim-{name}-system"/>'
     async with served(robot(plugin)) as (_, __, log):
-        logged, *instead = [each.text for each in log]
+        logged, *instead = [record.text for record in log]
         assert logged == f"plugins and sensors that are not simulated: gz-sim-{name}-system"
-        assert [each.split(", use ")[0] for each in instead] == [f"instead of gz-sim-{name}-system"] * (
+        assert [text.split(", use ")[0] for text in instead] == [f"instead of gz-sim-{name}-system"] * (
             name not in WITHOUT_ALTERNATIVE
         )
 
@@ -171,14 +171,14 @@ async def test_advance_delivers_messages_published_until_then():
         server.advance(SECOND)
         await graph.settle()
         assert len(recording) == 10
-        assert [(each.header.stamp.sec, each.header.stamp.nanosec) for each in recording][-1] == (1, 0)
+        assert [(message.header.stamp.sec, message.header.stamp.nanosec) for message in recording][-1] == (1, 0)
         assert recording.last.name == ["left_joint", "right_joint"]
         assert not log
         assert ("joints", "/") in graph.get_node_names_and_namespaces()
 
 
 async def test_deferred_message_is_created_once_on_delivery():
-    graph, exchange, made = Graph(), Exchange(), []
+    graph, exchange, messages = Graph(), Exchange(), []
     node = graph.create_node("robot")
     topics = ("/model/robot/where", "/where")
     output = Output(
@@ -189,15 +189,15 @@ async def test_deferred_message_is_created_once_on_delivery():
     recordings = [Recording(graph, node, topic) for topic in topics]
 
     def text(number: int, word: str):
-        made.append(get_message("std_msgs/msg/String")(data=f"{number} {word}"))
-        return made[-1]
+        messages.append(get_message("std_msgs/msg/String")(data=f"{number} {word}"))
+        return messages[-1]
 
     send = output.deferred_publisher(text)
     send(1, "one")
-    assert not made
+    assert not messages
     exchange.deliver()
     await graph.settle()
-    assert [each.data for each in made] == ["1 one"]
+    assert [message.data for message in messages] == ["1 one"]
     assert [recording.last.data for recording in recordings] == ["1 one", "1 one"]
     await graph.close()
 
@@ -205,14 +205,14 @@ async def test_deferred_message_is_created_once_on_delivery():
 async def test_plugin_with_duplicate_node_name_is_not_loaded():
     async with served(GROUND, robot(joint_states()), robot(joint_states(), name="two")) as (server, _, log):
         assert [len(server.plugins(name)) for name in ("mbot", "two")] == [1, 0]
-        assert [each.text for each in log if "another plugin already uses the node name '/joints'" in each.text]
+        assert [record.text for record in log if "another plugin already uses the node name '/joints'" in record.text]
 
 
 async def test_unsimulated_plugins_are_reported_once():
     unknown = '<plugin name="a" filename="libvacuum.so"/>'
     known = '<plugin name="b" filename="gz-sim-physics-system"/>'
     async with served(robot(unknown, known), robot(unknown, name="two")) as (_, __, log):
-        logged = [each.text for each in log if "not simulated" in each.text]
+        logged = [record.text for record in log if "not simulated" in record.text]
         assert logged == ["plugins and sensors that are not simulated: libvacuum.so"]
 
 
@@ -267,4 +267,4 @@ async def test_warnings_and_errors_are_logged_once_in_order():
     warning = Diagnostic("SIM100", "odd", severity=Severity.WARNING)
     async with served(GROUND) as (server, _, log):
         server.report([warning, Diagnostic("SIM100", "wrong"), warning])
-        assert [(each.level, each.text) for each in log] == [(LogLevel.WARN, "odd"), (LogLevel.ERROR, "wrong")]
+        assert [(record.level, record.text) for record in log] == [(LogLevel.WARN, "odd"), (LogLevel.ERROR, "wrong")]

@@ -26,15 +26,15 @@ async def test_link_poses_are_published_as_separate_messages():
         server.advance(SECOND)
         await graph.settle()
         assert len(recording) == 5 * 10
-        assert [each.child_frame_id for each in recording][-5:] == [
+        assert [transform.child_frame_id for transform in recording][-5:] == [
             "mbot/base_link",
             "mbot/left_wheel",
             "mbot/right_wheel",
             "mbot/front_caster",
             "mbot/back_caster",
         ]
-        assert {each.header.frame_id for each in recording} == {"mbot"}
-        assert [_translation(each) for each in recording][-4] == pytest.approx((0.0, 0.19, -0.05), abs=1e-3)
+        assert {transform.header.frame_id for transform in recording} == {"mbot"}
+        assert [_translation(transform) for transform in recording][-4] == pytest.approx((0.0, 0.19, -0.05), abs=1e-3)
         assert recording.last.header.stamp.sec == 1
         assert not log
 
@@ -47,7 +47,7 @@ async def test_static_poses_have_separate_topic():
         "<static_update_frequency>1</static_update_frequency>"
     )
     async with served(GROUND, robot(poses(more))) as (server, graph, log):
-        moving, resting = (Recording(graph, server.node, f"/model/mbot/{each}") for each in ("pose", "pose_static"))
+        moving, resting = (Recording(graph, server.node, f"/model/mbot/{topic}") for topic in ("pose", "pose_static"))
         server.advance(SECOND)
         await graph.settle()
         assert (len(moving), len(resting)) == (50, 1)
@@ -97,7 +97,7 @@ async def test_static_model_publishes_poses():
         recording = Recording(graph, server.node, "/model/one/pose")
         server.advance(SECOND // 1000)
         await graph.settle()
-        assert [(each.child_frame_id, _translation(each)) for each in recording] == [
+        assert [(transform.child_frame_id, _translation(transform)) for transform in recording] == [
             ("one", pytest.approx((0.0, 0.0, 1.0))),
             ("one/link", pytest.approx((0.0, 0.0, 0.0))),
         ]

@@ -138,7 +138,7 @@ def test_overlapping_models_are_reported_deepest_first():
 
 
 def test_excess_overlaps_are_counted():
-    simulation = simulated(GROUND, *[free_body(f"b{each}", "box", f"{2 * each} 0 0.2 0 0 0") for each in range(11)])
+    simulation = simulated(GROUND, *[free_body(f"b{index}", "box", f"{2 * index} 0 0.2 0 0 0") for index in range(11)])
     result = overlaps(simulation)
     assert len(result) == 9
     assert str(result[-1].message) == "3 other pairs of models overlap"

@@ -33,7 +33,9 @@ def floor(coefficient: float = 1.0) -> str:
     )
 
 
-def thing(pose: str, coefficient: float, shape: str = BALL, mass: float = 2.0, more: str = "", name: str = "b") -> str:
+def bouncing_model(
+    pose: str, coefficient: float, shape: str = BALL, mass: float = 2.0, more: str = "", name: str = "b"
+) -> str:
     moment = 0.4 * mass * RADIUS**2
     return (
         f'<model name="{name}"><pose>{pose}</pose><link name="l"><inertial><mass>{mass}</mass><inertia>'
@@ -44,22 +46,22 @@ def thing(pose: str, coefficient: float, shape: str = BALL, mass: float = 2.0, m
 
 
 def heights(simulation: Simulation, milliseconds: int) -> list[float]:
-    found = []
+    link_heights = []
     for _ in range(milliseconds):
         simulation.advance(MILLISECOND)
-        found.append(simulation.link_pose("b::l")[2] - RADIUS)
-    return found
+        link_heights.append(simulation.link_pose("b::l")[2] - RADIUS)
+    return link_heights
 
 
 def bounce_height(simulation: Simulation, height: float) -> float:
-    """How high a thing comes after it has hit for the first time."""
+    """How high a model comes after it has hit for the first time."""
     fall = sqrt(2 * height / G) + 0.005
     while simulation.seconds < fall:
         simulation.advance(MILLISECOND)
-    found = 0.0
+    highest = 0.0
     while simulation.seconds < 2 * fall:
-        found = max(found, heights(simulation, 1)[0])
-    return found
+        highest = max(highest, heights(simulation, 1)[0])
+    return highest
 
 
 @pytest.mark.parametrize("step", [0.0005, 0.001, 0.002])
@@ -67,26 +69,26 @@ def bounce_height(simulation: Simulation, height: float) -> float:
 @pytest.mark.parametrize("height", [0.3, 1.0, 3.0])
 @pytest.mark.parametrize("coefficient", [0.2, 0.5, 0.9])
 def test_bounce_height_matches_restitution_coefficient(coefficient: float, height: float, shape: str, step: float):
-    simulation = simulated(floor(), thing(f"0 0 {height + RADIUS} 0 0 0", coefficient, shape), step=step)
+    simulation = simulated(floor(), bouncing_model(f"0 0 {height + RADIUS} 0 0 0", coefficient, shape), step=step)
     assert bounce_height(simulation, height) == pytest.approx(coefficient**2 * height, rel=0.05)
 
 
 def test_restitution_of_two_surfaces_is_their_product():
     start = f"0 0 {1 + RADIUS} 0 0 0"
-    assert sqrt(bounce_height(simulated(floor(0.8), thing(start, 0.8)), 1.0)) == pytest.approx(0.64, abs=0.02)
-    assert bounce_height(simulated(floor(0.0), thing(start, 0.8)), 1.0) < 0.01
-    slow = thing(start, 0.8, more="<threshold>6</threshold>")  # it hits at 4.4 m/s
+    assert sqrt(bounce_height(simulated(floor(0.8), bouncing_model(start, 0.8)), 1.0)) == pytest.approx(0.64, abs=0.02)
+    assert bounce_height(simulated(floor(0.0), bouncing_model(start, 0.8)), 1.0) < 0.01
+    slow = bouncing_model(start, 0.8, more="<threshold>6</threshold>")  # it hits at 4.4 m/s
     assert bounce_height(simulated(floor(), slow), 1.0) < 0.01
 
 
 def test_bouncing_body_comes_to_rest():
-    simulation = simulated(floor(), thing(f"0 0 {0.3 + RADIUS} 0.2 0.3 0", 0.5, BLOCK))
+    simulation = simulated(floor(), bouncing_model(f"0 0 {0.3 + RADIUS} 0.2 0.3 0", 0.5, BLOCK))
     assert max(abs(b - a) for a, b in pairwise(heights(simulation, 5000)[-1000:])) < 1e-6
     assert simulation.link_pose("b::l")[2] == pytest.approx(RADIUS, abs=1e-3)
 
 
 def test_obliquely_bouncing_ball_starts_rolling():
-    simulation = simulated(floor(), thing(f"0 0 {1 + RADIUS} 0 0 0", 0.5))
+    simulation = simulated(floor(), bouncing_model(f"0 0 {1 + RADIUS} 0 0 0", 0.5))
     simulation.set_model_velocity("b", (1.0, 0.0, 0.0), (0.0, 0.0, 0.0))
     heights(simulation, 600)
     (x, _, _), (_, turn, _) = simulation.link_velocity("b::l")
@@ -95,16 +97,18 @@ def test_obliquely_bouncing_ball_starts_rolling():
 
 
 def test_equal_balls_exchange_velocities():
-    simulation = simulated(thing("0 0 1 0 0 0", 1.0, name="a"), thing("0.5 0 1 0 0 0", 1.0, name="b"), gravity="0 0 0")
+    simulation = simulated(
+        bouncing_model("0 0 1 0 0 0", 1.0, name="a"), bouncing_model("0.5 0 1 0 0 0", 1.0, name="b"), gravity="0 0 0"
+    )
     simulation.set_model_velocity("a", (2.0, 0.0, 0.0), (0.0, 0.0, 0.0))
     simulation.advance(400 * MILLISECOND)
-    speeds = [simulation.link_velocity(f"{each}::l")[0][0] for each in "ab"]
+    speeds = [simulation.link_velocity(f"{name}::l")[0][0] for name in "ab"]
     assert speeds == pytest.approx([0.0, 2.0], abs=0.02)
 
 
 def test_bounces_are_bitwise_reproducible():
     def run() -> bytes:
-        simulation = simulated(floor(), thing("0 0 0.7 0.3 0.2 0", 0.8, BLOCK))
+        simulation = simulated(floor(), bouncing_model("0 0 0.7 0.3 0.2 0", 0.8, BLOCK))
         simulation.advance(NANOSECONDS_PER_SECOND)
         return bytes(simulation.data.qpos.tobytes())
 

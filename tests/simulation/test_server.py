@@ -74,39 +74,39 @@ PYRAMID = {"URDF": "<pyramid> in <geometry>", "SDF": "the <geometry> of visual '
 
 @pytest.mark.parametrize("language", SHAPES)
 async def test_model_with_unknown_shape_is_rejected_with_reason(tmp_path, language):
-    async with simulator(tmp_path) as it:
+    async with simulator(tmp_path) as session:
         text = SHAPES[language].format("<pyramid/>")
-        answer = await it.ask("gazebo_msgs/srv/SpawnEntity", "/spawn_entity", name="one", xml=text)
+        answer = await session.ask("gazebo_msgs/srv/SpawnEntity", "/spawn_entity", name="one", xml=text)
         assert not answer.success
         assert PYRAMID[language] in answer.status_message
         assert "is not a shape" in answer.status_message
-        assert "one" not in it.simulator.server.simulation.scene.models
+        assert "one" not in session.simulator.server.simulation.scene.models
 
 
 @pytest.mark.parametrize("shape", ["", "<box/>", '<cylinder radius="1"/>', '<box size="1 a 1"/>'])
 async def test_robot_with_shape_without_dimensions_is_rejected(tmp_path, shape):
-    async with simulator(tmp_path) as it:
+    async with simulator(tmp_path) as session:
         text = SHAPES["URDF"].format(shape)
-        answer = await it.ask("gazebo_msgs/srv/SpawnEntity", "/spawn_entity", name="one", xml=text)
+        answer = await session.ask("gazebo_msgs/srv/SpawnEntity", "/spawn_entity", name="one", xml=text)
         assert not answer.success
         assert "of link 'base'" in answer.status_message
 
 
 async def test_models_are_spawned_and_deleted_by_services(tmp_path):
-    async with simulator(tmp_path) as it:
+    async with simulator(tmp_path) as session:
         sent = {"name": "one", "xml": URDF, "robot_namespace": ""}
         pose = get_message("geometry_msgs/msg/Pose")()
         pose.position.z = 4.0
-        answer = await it.ask("gazebo_msgs/srv/SpawnEntity", "/spawn_entity", initial_pose=pose, **sent)
+        answer = await session.ask("gazebo_msgs/srv/SpawnEntity", "/spawn_entity", initial_pose=pose, **sent)
         assert (answer.success, answer.status_message) == (True, "SpawnEntity: Successfully spawned entity [one]")
-        answer = await it.ask("gazebo_msgs/srv/GetModelList", "/get_model_list")
+        answer = await session.ask("gazebo_msgs/srv/GetModelList", "/get_model_list")
         assert sorted(answer.model_names) == ["ground_plane", "one"]
-        answer = await it.ask("gazebo_msgs/srv/GetEntityState", "/get_entity_state", name="one")
+        answer = await session.ask("gazebo_msgs/srv/GetEntityState", "/get_entity_state", name="one")
         assert answer.success
         assert answer.state.pose.position.z == 4.0
-        answer = await it.ask("gazebo_msgs/srv/DeleteEntity", "/delete_entity", name="one")
+        answer = await session.ask("gazebo_msgs/srv/DeleteEntity", "/delete_entity", name="one")
         assert answer.success
-        answer = await it.ask("gazebo_msgs/srv/DeleteEntity", "/delete_entity", name="one")
+        answer = await session.ask("gazebo_msgs/srv/DeleteEntity", "/delete_entity", name="one")
         assert (answer.success, answer.status_message) == (False, "there is no model 'one'")
 
 
@@ -121,71 +121,71 @@ async def test_models_are_spawned_and_deleted_by_services(tmp_path):
     ],
 )
 async def test_invalid_spawn_request_is_rejected_with_reason(tmp_path, xml, reason):
-    async with simulator(tmp_path, box("one", "0 0 1 0 0 0")) as it:
-        answer = await it.ask("gazebo_msgs/srv/SpawnEntity", "/spawn_entity", name="one", xml=xml)
+    async with simulator(tmp_path, box("one", "0 0 1 0 0 0")) as session:
+        answer = await session.ask("gazebo_msgs/srv/SpawnEntity", "/spawn_entity", name="one", xml=xml)
         assert not answer.success
         assert reason in answer.status_message
-        answer = await it.ask("gazebo_msgs/srv/GetModelList", "/get_model_list")
+        answer = await session.ask("gazebo_msgs/srv/GetModelList", "/get_model_list")
         assert sorted(answer.model_names) == ["ground_plane", "one"]
 
 
 async def test_step_service_advances_paused_simulation(tmp_path):
-    async with simulator(tmp_path, box("one", "0 0 9 0 0 0"), publish_rate=100.0) as it:
-        clock = it.hear("rosgraph_msgs/msg/Clock", "/clock", CLOCK_QOS)
-        answer = await it.ask("simulation_interfaces/srv/StepSimulation", "/step_simulation", steps=25)
+    async with simulator(tmp_path, box("one", "0 0 9 0 0 0"), publish_rate=100.0) as session:
+        clock = session.hear("rosgraph_msgs/msg/Clock", "/clock", CLOCK_QOS)
+        answer = await session.ask("simulation_interfaces/srv/StepSimulation", "/step_simulation", steps=25)
         assert answer.result.result == answer.result.RESULT_OK
-        assert it.simulator.server.simulation.time == 25_000_000
+        assert session.simulator.server.simulation.time == 25_000_000
         await eventually(lambda: bool(clock))
         assert clock[-1].clock.nanosec == 20_000_000
-        await it.ask("std_srvs/srv/Empty", "/reset_world")
-        assert it.simulator.server.simulation.time == 0
+        await session.ask("std_srvs/srv/Empty", "/reset_world")
+        assert session.simulator.server.simulation.time == 0
 
 
 @pytest.mark.parametrize("pause", [True, False])
 async def test_paused_start_logs_how_to_unpause(tmp_path, pause):
-    async with simulator(tmp_path, pause=pause) as it:
-        assert any("/unpause_physics" in record.text for record in it.log) is pause
+    async with simulator(tmp_path, pause=pause) as session:
+        assert any("/unpause_physics" in record.text for record in session.log) is pause
 
 
 async def test_simulation_runs_in_thread_and_ends_after_duration(tmp_path):
-    async with simulator(tmp_path, robot(joint_states()), pause=False, seconds=1.0) as it:
-        states = it.hear("simulation_interfaces/msg/SimulationState", "/simulation_state", LATCHED)
-        heard = it.hear("sensor_msgs/msg/JointState", "/joint_states")
-        await eventually(it.simulator.finished.done)
-        assert it.simulator.server.simulation.time == 1_000_000_000
+    async with simulator(tmp_path, robot(joint_states()), pause=False, seconds=1.0) as session:
+        states = session.hear("simulation_interfaces/msg/SimulationState", "/simulation_state", LATCHED)
+        heard = session.hear("sensor_msgs/msg/JointState", "/joint_states")
+        await eventually(session.simulator.finished.done)
+        assert session.simulator.server.simulation.time == 1_000_000_000
         await eventually(lambda: bool(states) and states[-1].state == states[-1].STATE_PAUSED)
         await eventually(lambda: bool(heard) and heard[-1].header.stamp.sec == 1)
-        answer = await it.ask("simulation_interfaces/srv/StepSimulation", "/step_simulation", steps=1)
+        answer = await session.ask("simulation_interfaces/srv/StepSimulation", "/step_simulation", steps=1)
         assert answer.result.result == answer.result.RESULT_OK
 
 
 async def test_failed_simulation_ends_before_its_duration(tmp_path):
     falling = "<gravity>0 0 -1e14</gravity>" + box("one", "0 0 9 0 0 0")
-    async with simulator(tmp_path, falling, pause=False, seconds=1.0) as it:
-        await eventually(it.simulator.finished.done)
-        assert it.simulator.finished.result() == 1
+    async with simulator(tmp_path, falling, pause=False, seconds=1.0) as session:
+        await eventually(session.simulator.finished.done)
+        assert session.simulator.finished.result() == 1
 
 
 async def test_running_simulation_rejects_steps(tmp_path):
-    async with simulator(tmp_path, pause=False) as it:
-        answer = await it.ask("simulation_interfaces/srv/StepSimulation", "/step_simulation", steps=1)
+    async with simulator(tmp_path, pause=False) as session:
+        answer = await session.ask("simulation_interfaces/srv/StepSimulation", "/step_simulation", steps=1)
         assert answer.result.result == answer.result.RESULT_INCORRECT_STATE
-        await it.ask("std_srvs/srv/Empty", "/pause_physics")
-        assert it.simulator.runner.is_paused
-        await it.ask("std_srvs/srv/Empty", "/unpause_physics")
-        assert not it.simulator.runner.is_paused
+        await session.ask("std_srvs/srv/Empty", "/pause_physics")
+        assert session.simulator.runner.is_paused
+        await session.ask("std_srvs/srv/Empty", "/unpause_physics")
+        assert not session.simulator.runner.is_paused
 
 
 async def test_unstable_simulation_is_paused(tmp_path):
-    async with simulator(tmp_path, box("one", "0 0 9 0 0 0"), pause=False) as it:
+    async with simulator(tmp_path, box("one", "0 0 9 0 0 0"), pause=False) as session:
         wrench = get_message("geometry_msgs/msg/Wrench")()
         wrench.force.x = float("inf")
         duration = get_message("builtin_interfaces/msg/Duration")(sec=-1)
-        answer = await it.ask(
+        answer = await session.ask(
             "gazebo_msgs/srv/ApplyLinkWrench", "/apply_link_wrench", link_name="link", wrench=wrench, duration=duration
         )
         assert not answer.success
-        answer = await it.ask(
+        answer = await session.ask(
             "gazebo_msgs/srv/ApplyLinkWrench",
             "/apply_link_wrench",
             link_name="one::link",
@@ -193,37 +193,37 @@ async def test_unstable_simulation_is_paused(tmp_path):
             duration=duration,
         )
         assert answer.success
-        await eventually(lambda: it.simulator.runner.is_paused)
+        await eventually(lambda: session.simulator.runner.is_paused)
 
 
 async def test_wrench_acts_for_its_duration(tmp_path):
-    async with simulator(tmp_path, box("one", "0 0 90 0 0 0", mass=2.0)) as it:
+    async with simulator(tmp_path, box("one", "0 0 90 0 0 0", mass=2.0)) as session:
         wrench = get_message("geometry_msgs/msg/Wrench")()
         wrench.force.x = 4.0
         duration = get_message("builtin_interfaces/msg/Duration")(nanosec=100_000_000)
-        await it.ask(
+        await session.ask(
             "gazebo_msgs/srv/ApplyLinkWrench",
             "/apply_link_wrench",
             link_name="one::link",
             wrench=wrench,
             duration=duration,
         )
-        await it.ask("simulation_interfaces/srv/StepSimulation", "/step_simulation", steps=200)
-        state = (await it.ask("gazebo_msgs/srv/GetEntityState", "/get_entity_state", name="one")).state
+        await session.ask("simulation_interfaces/srv/StepSimulation", "/step_simulation", steps=200)
+        state = (await session.ask("gazebo_msgs/srv/GetEntityState", "/get_entity_state", name="one")).state
         assert state.twist.linear.x == pytest.approx(0.2, abs=1e-9)
 
 
 async def test_set_entity_state_sets_pose_and_velocity(tmp_path):
-    async with simulator(tmp_path, box("one", "0 0 9 0 0 0")) as it:
+    async with simulator(tmp_path, box("one", "0 0 9 0 0 0")) as session:
         state = get_message("gazebo_msgs/msg/EntityState")(name="one")
         state.pose.position.x, state.pose.orientation.z, state.pose.orientation.w = 3.0, 1.0, 0.0
         state.twist.linear.x, state.twist.angular.z = 1.0, 2.0
-        assert (await it.ask("gazebo_msgs/srv/SetEntityState", "/set_entity_state", state=state)).success
-        message = (await it.ask("gazebo_msgs/srv/GetEntityState", "/get_entity_state", name="one")).state
+        assert (await session.ask("gazebo_msgs/srv/SetEntityState", "/set_entity_state", state=state)).success
+        message = (await session.ask("gazebo_msgs/srv/GetEntityState", "/get_entity_state", name="one")).state
         assert (message.pose.position.x, message.pose.orientation.z) == (3.0, 1.0)
         assert (message.twist.linear.x, message.twist.angular.z) == pytest.approx((1.0, 2.0))
         message = (
-            await it.ask(
+            await session.ask(
                 "gazebo_msgs/srv/GetEntityState", "/get_entity_state", name="ground_plane", reference_frame="one"
             )
         ).state
@@ -233,14 +233,14 @@ async def test_set_entity_state_sets_pose_and_velocity(tmp_path):
 async def test_service_failure_without_message_field_is_logged(tmp_path):
     ends = "<parent>one::link</parent><child>two::link</child>"
     hinge = f'<joint name="hinge" type="revolute">{ends}<axis><xyz>0 0 1</xyz></axis></joint>'
-    async with simulator(tmp_path, box("one", "0 0 9 0 0 0"), box("two", "3 0 9 0 0 0"), hinge) as it:
+    async with simulator(tmp_path, box("one", "0 0 9 0 0 0"), box("two", "3 0 9 0 0 0"), hinge) as session:
         for name in ("ground_plane", "two", "three"):
             state = get_message("gazebo_msgs/msg/EntityState")(name=name)
-            assert not (await it.ask("gazebo_msgs/srv/SetEntityState", "/set_entity_state", state=state)).success
-        assert not (await it.ask("gazebo_msgs/srv/GetEntityState", "/get_entity_state", name="on")).success
-        await it.ask("gazebo_msgs/srv/LinkRequest", "/clear_link_wrenches", link_name="wheel")
-        assert (await it.ask("gazebo_msgs/srv/GetEntityState", "/get_entity_state", name="one")).success
-        assert [each.text for each in it.log if each.level == LogLevel.ERROR] == [
+            assert not (await session.ask("gazebo_msgs/srv/SetEntityState", "/set_entity_state", state=state)).success
+        assert not (await session.ask("gazebo_msgs/srv/GetEntityState", "/get_entity_state", name="on")).success
+        await session.ask("gazebo_msgs/srv/LinkRequest", "/clear_link_wrenches", link_name="wheel")
+        assert (await session.ask("gazebo_msgs/srv/GetEntityState", "/get_entity_state", name="one")).success
+        assert [record.text for record in session.log if record.level == LogLevel.ERROR] == [
             (
                 "/set_entity_state: 'ground_plane' is fixed to the world "
                 "(delete it, and spawn it again at the intended pose)"
@@ -253,9 +253,9 @@ async def test_service_failure_without_message_field_is_logged(tmp_path):
 
 
 async def test_late_subscriber_gets_world_with_spawned_models(tmp_path):
-    async with simulator(tmp_path) as it:
-        await it.ask("gazebo_msgs/srv/SpawnEntity", "/spawn_entity", name="late", xml=URDF)
-        worlds = it.hear("std_msgs/msg/String", "/world_description", LATCHED)
+    async with simulator(tmp_path) as session:
+        await session.ask("gazebo_msgs/srv/SpawnEntity", "/spawn_entity", name="late", xml=URDF)
+        worlds = session.hear("std_msgs/msg/String", "/world_description", LATCHED)
         await eventually(lambda: bool(worlds) and 'name="late"' in worlds[-1].data)
         assert 'name="ground_plane"' in worlds[-1].data
 
@@ -263,8 +263,8 @@ async def test_late_subscriber_gets_world_with_spawned_models(tmp_path):
 async def test_world_with_robot_is_serialized_once_at_start(tmp_path, monkeypatch):
     written: list[str] = []
     monkeypatch.setattr(reports, "save_world", lambda *world: written.append(save_world(*world)) or written[-1])
-    async with simulator(tmp_path, robot_description=URDF, robot_name="first") as it:
-        worlds = it.hear("std_msgs/msg/String", "/world_description", LATCHED)
+    async with simulator(tmp_path, robot_description=URDF, robot_name="first") as session:
+        worlds = session.hear("std_msgs/msg/String", "/world_description", LATCHED)
         await eventually(lambda: bool(worlds))
         assert [world.data for world in worlds] == written
         assert 'name="first"' in written[0]
@@ -273,13 +273,15 @@ async def test_world_with_robot_is_serialized_once_at_start(tmp_path, monkeypatc
 async def test_only_changed_models_are_serialized_again(tmp_path, monkeypatch):
     written: list[str] = []
     monkeypatch.setattr(reports, "save_model_of_world", lambda model: written.append(model.name) or saved(model))
-    async with simulator(tmp_path, box("one", "1 0 9 0 0 0")) as it:
-        worlds = it.hear("std_msgs/msg/String", "/world_description", LATCHED)
+    async with simulator(tmp_path, box("one", "1 0 9 0 0 0")) as session:
+        worlds = session.hear("std_msgs/msg/String", "/world_description", LATCHED)
         assert written == ["one", "ground_plane"]
         for name in ("two", "three"):
-            await it.ask("gazebo_msgs/srv/SpawnEntity", "/spawn_entity", name=name, xml=URDF)
-        await it.ask("gazebo_msgs/srv/DeleteEntity", "/delete_entity", name="two")
-        await it.ask("gazebo_msgs/srv/SpawnEntity", "/spawn_entity", name="two", xml=URDF.replace("1 1 1", "2 2 2"))
+            await session.ask("gazebo_msgs/srv/SpawnEntity", "/spawn_entity", name=name, xml=URDF)
+        await session.ask("gazebo_msgs/srv/DeleteEntity", "/delete_entity", name="two")
+        await session.ask(
+            "gazebo_msgs/srv/SpawnEntity", "/spawn_entity", name="two", xml=URDF.replace("1 1 1", "2 2 2")
+        )
         await eventually(lambda: bool(worlds) and "<size>2 2 2</size>" in worlds[-1].data)
         assert written == ["one", "ground_plane", "two", "three", "two"]
         assert [line for line in worlds[-1].data.splitlines() if line.startswith("    <model")] == [
@@ -295,13 +297,13 @@ async def test_actors_and_roads_are_described_as_models(tmp_path):
         "</script></actor>"
     )
     road = '<road name="lane"><point>0 0 0</point><point>4 0 0</point></road>'
-    async with simulator(tmp_path, actor, road) as it:
-        worlds = it.hear("std_msgs/msg/String", "/world_description", LATCHED)
+    async with simulator(tmp_path, actor, road) as session:
+        worlds = session.hear("std_msgs/msg/String", "/world_description", LATCHED)
         await eventually(lambda: bool(worlds))
         assert '<model name="walker">' in worlds[-1].data
         assert '<model name="lane">' in worlds[-1].data
         assert "<actor" not in worlds[-1].data
-        poses = it.hear("tf2_msgs/msg/TFMessage", "/world_poses")
+        poses = session.hear("tf2_msgs/msg/TFMessage", "/world_poses")
         await eventually(lambda: bool(poses))
         [transform] = poses[-1].transforms
         assert transform.child_frame_id == "walker::head"
@@ -309,8 +311,8 @@ async def test_actors_and_roads_are_described_as_models(tmp_path):
 
 
 async def test_world_poses_contain_movable_links_only(tmp_path):
-    async with simulator(tmp_path, box("one", "1 0 9 0 0 0")) as it:
-        poses = it.hear("tf2_msgs/msg/TFMessage", "/world_poses")
+    async with simulator(tmp_path, box("one", "1 0 9 0 0 0")) as session:
+        poses = session.hear("tf2_msgs/msg/TFMessage", "/world_poses")
         await eventually(lambda: bool(poses))
         [transform] = poses[-1].transforms
         assert (transform.header.frame_id, transform.child_frame_id) == ("world", f"one{SEPARATOR}link")
@@ -319,37 +321,37 @@ async def test_world_poses_contain_movable_links_only(tmp_path):
 
 async def test_robot_can_be_spawned_at_start(tmp_path):
     there = {"robot_description": URDF, "robot_name": "r", "robot_pose": [1.0, 2.0, 0.5, 0.0, 0.0, 0.0]}
-    async with simulator(tmp_path, **there) as it:
-        assert it.simulator.server.simulation.model_pose("r")[:3] == (1.0, 2.0, 0.5)
+    async with simulator(tmp_path, **there) as session:
+        assert session.simulator.server.simulation.model_pose("r")[:3] == (1.0, 2.0, 0.5)
 
 
 async def test_findings_of_model_last_while_it_is_in_world(tmp_path):
     seen = URDF.replace("collision>", "visual>")
-    async with simulator(tmp_path, robot_description=seen, robot_name="first", pause=False) as it:
-        server = it.simulator.server
+    async with simulator(tmp_path, robot_description=seen, robot_name="first", pause=False) as session:
+        server = session.simulator.server
         messages: list[list[str]] = []
         server.on_findings.append(lambda: messages.append([finding.code for finding in server.findings]))
         [finding] = server.findings
         assert (finding.code, finding.span.line) == ("SIM143", 1)
-        it.simulator.services.replace_model(seen.replace('mass value="1"', 'mass value="2"'), "first")
+        session.simulator.services.replace_model(seen.replace('mass value="1"', 'mass value="2"'), "first")
         await eventually(lambda: messages == [[], ["SIM143"]])
-        it.simulator.services.replace_model(URDF, "first")
+        session.simulator.services.replace_model(URDF, "first")
         await eventually(lambda: messages[2:] == [[]])
-        await it.ask("gazebo_msgs/srv/SpawnEntity", "/spawn_entity", name="second", xml=seen)
+        await session.ask("gazebo_msgs/srv/SpawnEntity", "/spawn_entity", name="second", xml=seen)
         assert [finding.code for finding in server.findings] == ["SIM143"]
-        await it.ask("gazebo_msgs/srv/DeleteEntity", "/delete_entity", name="second")
+        await session.ask("gazebo_msgs/srv/DeleteEntity", "/delete_entity", name="second")
         assert server.findings == []
 
 
 async def test_world_can_be_given_as_text_or_ros_gz_parameter(tmp_path):
     text = f'<sdf version="1.7"><world name="told">{box("crate", "0 0 1 0 0 0")}</world></sdf>'
-    async with simulator(tmp_path, world_sdf_string=text) as it:
-        answer = await it.ask("gazebo_msgs/srv/GetModelList", "/get_model_list")
+    async with simulator(tmp_path, world_sdf_string=text) as session:
+        answer = await session.ask("gazebo_msgs/srv/GetModelList", "/get_model_list")
         assert answer.model_names == ["crate"]
     path = tmp_path / "other.sdf"
     path.write_text(text.replace("crate", "chest"), encoding="utf-8")
-    async with simulator(tmp_path, world_sdf_file=str(path)) as it:
-        answer = await it.ask("gazebo_msgs/srv/GetModelList", "/get_model_list")
+    async with simulator(tmp_path, world_sdf_file=str(path)) as session:
+        answer = await session.ask("gazebo_msgs/srv/GetModelList", "/get_model_list")
         assert answer.model_names == ["chest"]
 
 

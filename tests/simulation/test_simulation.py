@@ -111,7 +111,7 @@ def test_instability_is_reported_with_link():
     simulation.push("two::link", (0.0, 1e300, 0.0))
     with pytest.raises(UnstableError, match="'two::link'"):
         simulation.advance(NANOSECONDS_PER_SECOND)
-    assert all(isfinite(each) for name in ("one", "two") for each in simulation.model_pose(name))
+    assert all(isfinite(coordinate) for name in ("one", "two") for coordinate in simulation.model_pose(name))
 
 
 def test_nan_force_is_reported_with_link():

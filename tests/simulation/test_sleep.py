@@ -95,7 +95,7 @@ def test_sleeping_body_falls_when_gravity_is_set():
 
 def test_stacked_boxes_fall_asleep_in_place():
     simulation = simulated(
-        GROUND, *[box(f"b{each}", f"0 0 {0.1 + 0.2 * each} 0 0 0", "0.2 0.2 0.2") for each in range(4)]
+        GROUND, *[box(f"b{index}", f"0 0 {0.1 + 0.2 * index} 0 0 0", "0.2 0.2 0.2") for index in range(4)]
     )
     simulation.advance(2 * NANOSECONDS_PER_SECOND)
     assert are_asleep(simulation)

@@ -97,9 +97,9 @@ def test_collision_conserves_momentum():
     simulation.push("one::link", (0.0, 0.0, 0.0))
     assert simulation.link_velocity("one::link")[0][0] == pytest.approx(1.0)
     simulation.advance(2 * NANOSECONDS_PER_SECOND)
-    one, two = (simulation.link_velocity(f"{name}::link")[0][0] for name in ("one", "two"))
-    assert two > 0.5
-    assert 2.0 * one + 1.0 * two == pytest.approx(2.0, abs=1e-6)
+    first, second = (simulation.link_velocity(f"{name}::link")[0][0] for name in ("one", "two"))
+    assert second > 0.5
+    assert 2.0 * first + 1.0 * second == pytest.approx(2.0, abs=1e-6)
 
 
 def test_four_bar_linkage_stays_closed():

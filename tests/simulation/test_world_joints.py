@@ -42,14 +42,14 @@ def test_pendulum_of_two_models_has_textbook_period(parent):
 
 
 def test_models_fixed_to_each_other_move_as_one():
-    one, other = box("one", "0 0 9 0 0 0"), box("two", "1.5 0 9 0 0 0")
-    simulation = simulated(other, one, joint("fixed", "one", "two"), gravity="0 0 0")
+    first, second = box("one", "0 0 9 0 0 0"), box("two", "1.5 0 9 0 0 0")
+    simulation = simulated(second, first, joint("fixed", "one", "two"), gravity="0 0 0")
     simulation.set_model_velocity("one", (0.0, 0.0, 0.0), (0.0, 0.0, pi / 2))
     simulation.advance(1_000_000_000)
-    one, two = (np.array(simulation.model_pose(name)) for name in ("one", "two"))
-    assert np.linalg.norm(two[:3] - one[:3]) == pytest.approx(1.5, abs=1e-9)
-    assert two[3:] == pytest.approx(one[3:], abs=1e-9)
-    assert abs(one[5]) > 0.5, "both turn"
+    first, second = (np.array(simulation.model_pose(name)) for name in ("one", "two"))
+    assert np.linalg.norm(second[:3] - first[:3]) == pytest.approx(1.5, abs=1e-9)
+    assert second[3:] == pytest.approx(first[3:], abs=1e-9)
+    assert abs(first[5]) > 0.5, "both turn"
 
 
 def test_prismatic_world_joint_stops_at_limits_for_either_child():
@@ -131,15 +131,15 @@ def test_sensor_in_world_joint_is_reported_as_unsimulated():
 async def test_attached_model_falls_when_its_parent_is_deleted(tmp_path):
     parts = box("base", "0 0 9 0 0 0"), box("load", "0 0 7.5 0 0 0")
     joints = joint("fixed", "world", "base", name="anchor"), joint("fixed", "base", "load", name="rope")
-    async with simulator(tmp_path, *parts, *joints) as it:
-        simulation = it.simulator.server.simulation
-        await steps(it, 200)
+    async with simulator(tmp_path, *parts, *joints) as session:
+        simulation = session.simulator.server.simulation
+        await steps(session, 200)
         assert simulation.model_pose("load")[2] == 7.5
-        await it.ask("gazebo_msgs/srv/DeleteEntity", "/delete_entity", name="base")
+        await session.ask("gazebo_msgs/srv/DeleteEntity", "/delete_entity", name="base")
         assert simulation.model_pose("load")[2] == 7.5
-        await steps(it, 200)
+        await steps(session, 200)
         assert simulation.model_pose("load")[2] == pytest.approx(7.5 - 0.5 * 9.8 * 0.04, abs=0.01)
-        await it.ask("std_srvs/srv/Empty", "/reset_world")
+        await session.ask("std_srvs/srv/Empty", "/reset_world")
         assert simulation.model_pose("load")[2] == 7.5
 
 
@@ -147,19 +147,19 @@ async def test_load_world_updates_world_joints(tmp_path):
     base, weight = box("base", "0 0 9 0 0 0"), BAR.format(name="bob", pose="1 0 9 0 0 0")
     anchor = joint("fixed", "world", "base", name="anchor")
     swing = joint("revolute", "base", "bob", HINGE.format(at="base"), name="swing")
-    async with simulator(tmp_path, base, weight, anchor, swing) as it:
-        simulation = it.simulator.server.simulation
-        await steps(it, 300)
+    async with simulator(tmp_path, base, weight, anchor, swing) as session:
+        simulation = session.simulator.server.simulation
+        await steps(session, 300)
         turned = simulation.joint_state("swing")
         assert turned[0] > 0.1
-        await load(it, tmp_path, base.replace("<mass>", "<mass>1"), weight, anchor, swing)
+        await load(session, tmp_path, base.replace("<mass>", "<mass>1"), weight, anchor, swing)
         assert simulation.joint_state("swing") == turned, "what hangs on what has changed goes on"
-        await load(it, tmp_path, box("base", "3 0 9 0 0 0"), weight.replace("1 0 9", "4 0 9"), anchor, swing)
+        await load(session, tmp_path, box("base", "3 0 9 0 0 0"), weight.replace("1 0 9", "4 0 9"), anchor, swing)
         assert simulation.model_pose("base")[:3] == (3, 0, 9)
         assert simulation.joint_state("swing") == turned
-        await load(it, tmp_path, base, weight, anchor)
+        await load(session, tmp_path, base, weight, anchor)
         assert simulation.moves_freely("bob")
-        await load(it, tmp_path, base, weight, anchor, swing)
+        await load(session, tmp_path, base, weight, anchor, swing)
         assert not simulation.moves_freely("bob")
 
 

@@ -62,7 +62,7 @@ def loaded(path: Path) -> Simulation:
 
 def box(name: str, pose: str, size: str = "1 1 1", mass: float = 1.0, surface: str = "") -> str:
     """A box that moves; its inertia is that of a solid box."""
-    x, y, z = (float(each) for each in size.split())
+    x, y, z = (float(length) for length in size.split())
     inertia = (
         f"<ixx>{mass * (y * y + z * z) / 12}</ixx><iyy>{mass * (x * x + z * z) / 12}</iyy>"
         f"<izz>{mass * (x * x + y * y) / 12}</izz>"

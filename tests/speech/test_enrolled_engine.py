@@ -22,13 +22,13 @@ OTHERS = ("mumi", "faso.t", "ri.tamu", "om", "se.pifu", "tatata", "u", "moramifu
 
 @pytest.fixture(scope="module")
 def words():
-    found = Words()
+    words = Words()
     for name, phones in WORDS.items():
         for number in range(3):
             assert (
-                enroll(found, name, say(phones, speed=0.95 + 0.05 * number, pitch=115 + 5 * number, seed=number)) == ()
+                enroll(words, name, say(phones, speed=0.95 + 0.05 * number, pitch=115 + 5 * number, seed=number)) == ()
             )
-    return found
+    return words
 
 
 @pytest.fixture
@@ -43,25 +43,25 @@ def engine(path):
 
 
 def results_of(engine, samples, block=BLOCK):
-    found = []
+    results = []
     for at in range(0, len(samples), block):
-        found += engine.hear(samples[at : at + block])
-    return found
+        results += engine.hear(samples[at : at + block])
+    return results
 
 
 def final_texts(engine, samples):
-    return [one.text for one in results_of(engine, samples) if one.final]
+    return [result.text for result in results_of(engine, samples) if result.final]
 
 
 @pytest.mark.parametrize("name", WORDS)
 @pytest.mark.parametrize(("speed", "pitch", "level"), [(0.9, 122, 1000), (1.1, 117, 8000), (1.0, 120, 300)])
 def test_word_is_recognized_at_other_speed_pitch_and_level(engine, name, speed, pitch, level):
     samples = say(WORDS[name], speed=speed, pitch=pitch, level=level, silence=0.8, seed=9)
-    (found,) = [one for one in results_of(engine, samples) if one.final]
-    assert found.text == name
-    assert 0.5 < found.confidence <= 1.0
-    assert abs(found.start - 0.8) < 0.15
-    assert abs(found.end - (len(samples) / RATE - 0.8)) < 0.15
+    (result_of_word,) = [result for result in results_of(engine, samples) if result.final]
+    assert result_of_word.text == name
+    assert 0.5 < result_of_word.confidence <= 1.0
+    assert abs(result_of_word.start - 0.8) < 0.15
+    assert abs(result_of_word.end - (len(samples) / RATE - 0.8)) < 0.15
 
 
 @pytest.mark.parametrize("name", WORDS)
@@ -88,8 +88,8 @@ def heard_in_a_room(engine, phones, number):
 
 def test_word_is_recognized_two_meters_away_in_room(engine):
     result = [(name, heard_in_a_room(engine, WORDS[name], number)) for name in WORDS for number in range(3)]
-    assert all(set(found) <= {name, ""} for name, found in result)
-    assert sum(found == [name] for name, found in result) >= 13
+    assert all(set(texts) <= {name, ""} for name, texts in result)
+    assert sum(texts == [name] for name, texts in result) >= 13
 
 
 @pytest.mark.parametrize("phones", OTHERS)
@@ -120,8 +120,8 @@ def test_words_are_recognized_in_babble(path):
     for name in ("forward", "turn left", "turn right", "stop"):
         for seed in range(1, 4):
             engine = EnrolledEngine(EngineOptions(tuple(WORDS), model=path))
-            found = results_of(engine, in_babble(WORDS[name], seed)) + list(engine.finish())
-            text = {one.text for one in found if one.final} - {""}
+            results = results_of(engine, in_babble(WORDS[name], seed)) + list(engine.finish())
+            text = {result.text for result in results if result.final} - {""}
             assert text <= {name}
             right.append(text == {name})
     assert sum(right) >= 10
@@ -129,13 +129,13 @@ def test_words_are_recognized_in_babble(path):
 
 @pytest.mark.parametrize("phones", OTHERS)
 def test_unknown_word_is_not_recognized_in_babble(engine, phones):
-    found = results_of(engine, in_babble(phones, 1)) + list(engine.finish())
-    assert {one.text for one in found} <= {""}
+    results = results_of(engine, in_babble(phones, 1)) + list(engine.finish())
+    assert {result.text for result in results} <= {""}
 
 
 def test_babble_alone_is_not_recognized(engine):
     sound = np.rint(300 * babble(20.0, np.random.default_rng(4))).astype(np.int16)
-    assert not [one.text for one in results_of(engine, sound) if one.text]
+    assert not [result.text for result in results_of(engine, sound) if result.text]
 
 
 @pytest.mark.parametrize("phones", OTHERS)
@@ -146,18 +146,18 @@ def test_unknown_word_gives_empty_text(engine, phones):
 @pytest.mark.parametrize("phones", ["s.to.s", "s.to.t", "s.to.f", ".pae.s"])
 def test_word_differing_in_one_sound_is_not_recognized(engine, phones):
     samples = say(phones, level=2000, silence=0.8, seed=9)
-    assert [one.text for one in results_of(engine, samples) if one.text] == []
+    assert [result.text for result in results_of(engine, samples) if result.text] == []
 
 
 def test_similar_utterance_reports_nearest_word(engine, path):
     in_noise = say(WORDS["turn left"], speed=1.05, level=2000, noise=1000, silence=0.8, seed=1)
-    (found,) = [one for one in results_of(engine, in_noise) if one.final]
-    assert (found.text, found.nearest) == ("", "turn left")
+    (final_result,) = [result for result in results_of(engine, in_noise) if result.final]
+    assert (final_result.text, final_result.nearest) == ("", "turn left")
     others = EnrolledEngine(EngineOptions(("stop", "back"), model=path))  # a word that is no phrase is not told
-    (found,) = [one for one in results_of(others, in_noise) if one.final]
-    assert (found.text, found.nearest) == ("", "")
-    (found,) = [one for one in results_of(others, say(OTHERS[0], silence=0.8, seed=11)) if one.final]
-    assert (found.text, found.nearest) == ("", "")
+    (final_result,) = [result for result in results_of(others, in_noise) if result.final]
+    assert (final_result.text, final_result.nearest) == ("", "")
+    (final_result,) = [result for result in results_of(others, say(OTHERS[0], silence=0.8, seed=11)) if result.final]
+    assert (final_result.text, final_result.nearest) == ("", "")
 
 
 @pytest.mark.parametrize("kind", ["silence", "noise", "hum", "click", "chirp"])
@@ -171,7 +171,7 @@ def test_sound_without_speech_is_not_recognized(engine, kind):
         "click": 20_000.0 * (np.arange(len(at)) % RATE < 30) + rng.normal(size=len(at)),
         "chirp": 3000 * np.sin(2 * np.pi * (200 * at + 300 * at**2)) + rng.normal(size=len(at)),
     }[kind]
-    assert not [one.text for one in results_of(engine, sound.astype(np.int16)) if one.text]
+    assert not [result.text for result in results_of(engine, sound.astype(np.int16)) if result.text]
 
 
 def test_partial_is_reported_within_300_ms_of_word(engine):
@@ -179,10 +179,10 @@ def test_partial_is_reported_within_300_ms_of_word(engine):
     end = len(samples) - int(0.8 * RATE)
     known = None
     for at in range(0, len(samples), BLOCK):
-        found = engine.hear(samples[at : at + BLOCK])
-        if known is None and any(one.text == "stop" for one in found):
+        results = engine.hear(samples[at : at + BLOCK])
+        if known is None and any(result.text == "stop" for result in results):
             known = at + BLOCK
-            assert not found[0].final
+            assert not results[0].final
     assert known is not None
     assert known - end <= 0.3 * RATE
 
@@ -195,15 +195,15 @@ def test_templates_are_computed_before_first_word(engine, monkeypatch):
 def test_finish_ends_utterance(engine):
     samples = say(WORDS["back"], silence=0.5, seed=14)
     results_of(engine, samples[: -int(0.45 * RATE)])
-    (found,) = engine.finish()
-    assert (found.text, found.final) == ("back", True)
+    (final_result,) = engine.finish()
+    assert (final_result.text, final_result.final) == ("back", True)
     assert engine.finish() == []
 
 
 @pytest.mark.parametrize("block", [37, 480, 16_000])
 def test_results_do_not_depend_on_block_size(engine, block):
     sound = np.concatenate([say(WORDS[name], silence=0.6, seed=15) for name in ("forward", "stop")])
-    assert [one.text for one in results_of(engine, sound, block) if one.final] == ["forward", "stop"]
+    assert [result.text for result in results_of(engine, sound, block) if result.final] == ["forward", "stop"]
 
 
 def test_enrolled_words_outside_phrases_are_not_reported(path):
@@ -219,8 +219,8 @@ def test_phrases_are_reported_with_requested_spelling(path):
 
 def test_long_speech_is_not_recognized(engine):
     sound = np.concatenate([say(WORDS[name], silence=0.0, seed=16) for name in list(WORDS) * 4])
-    found = results_of(engine, np.concatenate((say("a", level=1.0), sound, np.zeros(RATE, np.int16))))
-    assert [one.text for one in found if one.final] == [""]
+    results = results_of(engine, np.concatenate((say("a", level=1.0), sound, np.zeros(RATE, np.int16))))
+    assert [result.text for result in results if result.final] == [""]
 
 
 def test_single_enrolled_word_is_recognized(words, tmp_path):

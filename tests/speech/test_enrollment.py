@@ -41,10 +41,10 @@ def test_words_file_round_trip_is_exact(tmp_path):
     words = enrolled()
     path = tmp_path / "a" / "words.json"
     words.write(path)
-    found = Words.read(path)
-    assert found.names == words.names
+    words_read = Words.read(path)
+    assert words_read.names == words.names
     for name in words.names:
-        for ours, theirs in zip(words.takes(name), found.takes(name), strict=True):
+        for ours, theirs in zip(words.takes(name), words_read.takes(name), strict=True):
             assert np.array_equal(ours.powers, theirs.powers)
             assert np.array_equal(ours.noise, theirs.noise)
 
@@ -85,10 +85,10 @@ def test_unsuitable_recording_is_rejected_with_reason(samples, code):
     assert words.names == ()
 
 
-@pytest.mark.parametrize("kept", [slice(9_200, None), slice(0, 12_000)], ids=["beginning", "end"])
-def test_truncated_word_is_rejected(kept):
+@pytest.mark.parametrize("part", [slice(9_200, None), slice(0, 12_000)], ids=["beginning", "end"])
+def test_truncated_word_is_rejected(part):
     words = Words()
-    (finding,) = enroll(words, "forward", say(WORDS["forward"])[kept])
+    (finding,) = enroll(words, "forward", say(WORDS["forward"])[part])
     assert (finding.code, finding.severity) == ("VOICE211", Severity.ERROR)
     assert words.names == ()
 

@@ -100,16 +100,16 @@ def test_missing_wav_is_reported(tmp_path):
 
 @pytest.mark.parametrize("rate", [8_000, 11_025, 22_050, 44_100, 48_000, 96_000])
 def test_resampling_keeps_tone(rate):
-    found = resample(tone(1000, rate), rate)
-    assert abs(len(found) - RATE // 2) <= 2
+    resampled = resample(tone(1000, rate), rate)
+    assert abs(len(resampled) - RATE // 2) <= 2
     middle = slice(500, 7000)
-    assert np.abs(found / 32768 - tone(1000)[: len(found)])[middle].max() < 1e-3
+    assert np.abs(resampled / 32768 - tone(1000)[: len(resampled)])[middle].max() < 1e-3
 
 
 @pytest.mark.parametrize("hertz", [8_200, 9_000, 12_000, 20_000])
 def test_resampling_does_not_alias(hertz):
-    found = resample(tone(hertz, 48_000), 48_000) / 32768
-    assert np.sqrt(np.mean(found[500:7000] ** 2)) < 1e-3
+    resampled = resample(tone(hertz, 48_000), 48_000) / 32768
+    assert np.sqrt(np.mean(resampled[500:7000] ** 2)) < 1e-3
 
 
 @pytest.mark.parametrize("length", [50, 777, 4410])
@@ -117,9 +117,9 @@ def test_streamed_resampling_matches_whole(length):
     values = np.random.default_rng(1).normal(size=20_000) / 10
     resampler = Resampler(44_100)
     parts = [resampler.feed(values[at : at + length]) for at in range(0, len(values), length)]
-    found = np.concatenate((*parts, resampler.flush()))
+    resampled = np.concatenate((*parts, resampler.flush()))
     whole = resample(values, 44_100)
-    assert np.abs(found[: len(whole)].astype(int) - whole).max() <= 1
+    assert np.abs(resampled[: len(whole)].astype(int) - whole).max() <= 1
 
 
 def test_resampling_clips_values_and_silences_nan():
@@ -188,8 +188,8 @@ def test_steady_noise_is_not_speech(level):
 def test_sudden_noise_counts_as_speech_for_at_most_two_seconds():
     rng = np.random.default_rng(3)
     levels = np.where(np.arange(8 * RATE) < 2 * RATE, 5.0, 300.0)
-    found = voice_activity(np.rint(levels * rng.normal(size=8 * RATE)).astype(np.int16))
-    assert not found[450:].any()
+    activity = voice_activity(np.rint(levels * rng.normal(size=8 * RATE)).astype(np.int16))
+    assert not activity[450:].any()
 
 
 def floor_and_unsteady_noise(samples):

@@ -25,7 +25,7 @@ CASES = {
         "list of numpy's": list(PIXELS),
         "tuple": (1, 2),
         "range": range(3),
-        "generator": (each for each in (1, 2)),
+        "generator": (number for number in (1, 2)),
         "too large": [256],
         "array": array("B", [1, 2]),
         "array of another type": array("b", [1, 2]),

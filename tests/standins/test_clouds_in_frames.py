@@ -15,12 +15,12 @@ from tf_transformations import quaternion_from_euler
 @pytest.fixture
 def turned():
     """One meter along x, and a quarter of a turn around z."""
-    made = TransformStamped(child_frame_id="lidar")
-    made.header.frame_id = "base"
-    made.transform.translation.x = 1.0
-    rotation = made.transform.rotation
+    transform = TransformStamped(child_frame_id="lidar")
+    transform.header.frame_id = "base"
+    transform.transform.translation.x = 1.0
+    rotation = transform.transform.rotation
     rotation.x, rotation.y, rotation.z, rotation.w = quaternion_from_euler(0, 0, np.pi / 2)
-    return made
+    return transform
 
 
 def test_transform_points_applies_transform(turned):
@@ -36,8 +36,8 @@ def test_transformed_cloud_keeps_other_fields(turned):
     moved = do_transform_cloud(cloud, turned)
     assert moved.header.frame_id == "base"
     assert (moved.width, moved.point_step, list(moved.fields)) == (2, 16, fields)
-    found = [list(read_point) for read_point in point_cloud2.read_points(moved)]
-    np.testing.assert_allclose(found, [[1, 1, 0, 7], [1, 0, 2, 8]], atol=1e-6)
+    points = [list(read_point) for read_point in point_cloud2.read_points(moved)]
+    np.testing.assert_allclose(points, [[1, 1, 0, 7], [1, 0, 2, 8]], atol=1e-6)
 
 
 def test_buffer_transforms_clouds(turned, monkeypatch):

@@ -21,9 +21,11 @@ BASE = {"PATH": os.environ["PATH"], "LINKWRIGHT_DDS": "0"}
 def outcomes(python=sys.executable, command=(PROGRAM,), **variables):
     """What came of each assignment: the text of an AssertionError, the name of another error, or type and values."""
     environment = {**BASE, **variables} if python == PYTHON else process.environment({**BASE, **variables})
-    done = subprocess.run([python, *command], env=environment, check=False, capture_output=True, text=True, timeout=120)
-    assert done.returncode == 0, done.stderr
-    return json.loads(done.stdout)
+    result = subprocess.run(
+        [python, *command], env=environment, check=False, capture_output=True, text=True, timeout=120
+    )
+    assert result.returncode == 0, result.stderr
+    return json.loads(result.stdout)
 
 
 def refused(came):

@@ -33,12 +33,12 @@ MANIFEST = """<?xml version="1.0"?>
 
 def run(program, folder):
     """What a program prints that runs in a folder."""
-    done = subprocess.run(
+    result = subprocess.run(
         [sys.executable, "-c", PREAMBLE + textwrap.dedent(program)],
         cwd=folder, capture_output=True, text=True, check=False, timeout=60,
     )  # fmt: skip
-    assert done.returncode == 0, done.stderr
-    return done.stdout
+    assert result.returncode == 0, result.stderr
+    return result.stdout
 
 
 @pytest.fixture
@@ -118,12 +118,12 @@ def test_workspace_package_is_importable_without_build(workspace, below):
 @pytest.mark.parametrize("line", ["from my_msgs.msg import Wrong", "import my_msgs.msg._wrong"])
 def test_malformed_interface_file_raises_one_traceback(workspace, line):
     program = textwrap.dedent(PREAMBLE) + f"{line}\n"
-    done = subprocess.run(
+    result = subprocess.run(
         [sys.executable, "-c", program], cwd=workspace, capture_output=True, text=True, check=False, timeout=60
     )
-    assert done.returncode == 1
-    assert done.stderr.count("Traceback") == 1
-    last = done.stderr.splitlines()[-1]
+    assert result.returncode == 1
+    assert result.stderr.count("Traceback") == 1
+    last = result.stderr.splitlines()[-1]
     assert last.startswith("ImportError: ")
     assert last.endswith("Wrong.msg:1:7: 'X' is not a valid name for a field")
 

@@ -38,7 +38,7 @@ def package(tmp_path: Path) -> Path:
 def plain_pytest(package: Path, *words: str, **variables: str) -> tuple[int, str]:
     """The status and output of ``python -m pytest``, without what a shell of Linkwright sets."""
     environment = {name: value for name, value in os.environ.items() if name not in ("PYTHONPATH", "LINKWRIGHT_SITE")}
-    done = subprocess.run(
+    result = subprocess.run(
         [sys.executable, "-m", "pytest", "-q", "-rs", "-p", "no:cacheprovider", "-p", "no:asyncio", *words],
         cwd=package,
         env={**environment, "COLUMNS": "200", **variables},
@@ -47,7 +47,7 @@ def plain_pytest(package: Path, *words: str, **variables: str) -> tuple[int, str
         timeout=240,
         check=False,
     )
-    return done.returncode, done.stdout + done.stderr
+    return result.returncode, result.stdout + result.stderr
 
 
 def hide(folder: Path, *names: str) -> str:

@@ -35,21 +35,21 @@ class Matches(list):
 
     def __init__(self, synchronizer):
         super().__init__()
-        synchronizer.registerCallback(lambda *messages: self.append([stamp(each) for each in messages]))
+        synchronizer.registerCallback(lambda *messages: self.append([stamp(message) for message in messages]))
 
 
 def test_time_synchronizer_matches_node_subscribers(node):
-    got = []
+    matches = []
     picture = Subscriber(node, Image, "image", qos_profile=5)
     camera = Subscriber(node, CameraInfo, "camera_info")
-    TimeSynchronizer([picture, camera], 10).registerCallback(lambda *each: got.append(each), "more")
+    TimeSynchronizer([picture, camera], 10).registerCallback(lambda *messages: matches.append(messages), "more")
     assert (picture.getTopic(), picture.topic_name, camera.qos_profile.depth) == ("image", "/image", 10)
     sent = image(2.5), CameraInfo(header=Header(stamp=Time(seconds=2.5).to_msg()))
     node.create_publisher(Image, "image", 1).publish(sent[0])
     node.create_publisher(CameraInfo, "camera_info", 1).publish(sent[1])
     rclpy.spin_once(node, timeout_sec=1.0)
     rclpy.spin_once(node, timeout_sec=1.0)
-    assert got == [(*sent, "more")]
+    assert matches == [(*sent, "more")]
     with pytest.raises(AttributeError):
         picture.nothing  # noqa: B018
 
@@ -57,24 +57,24 @@ def test_time_synchronizer_matches_node_subscribers(node):
 def test_time_synchronizer_requires_equal_stamps():
     left, right = SimpleFilter(), SimpleFilter()
     synchronizer = TimeSynchronizer([left, right], queue_size=2)
-    got = Matches(synchronizer)
+    matches = Matches(synchronizer)
     for seconds in (1, 2, 3):
         left.signalMessage(image(seconds))
     right.signalMessage(image(1))
-    assert got == []
+    assert matches == []
     right.signalMessage(image(3))
     right.signalMessage(image(2))
-    assert got == [[3, 3], [2, 2]]
-    assert [list(each) for each in synchronizer.queues] == [[], [10**9]]
+    assert matches == [[3, 3], [2, 2]]
+    assert [list(queue) for queue in synchronizer.queues] == [[], [10**9]]
 
 
 def test_callback_may_signal_its_own_filter():
     source = SimpleFilter()
     synchronizer = TimeSynchronizer([source], 1)
-    got = Matches(synchronizer)
-    synchronizer.registerCallback(lambda each: source.signalMessage(image(2)) if stamp(each) < 2 else None)
+    matches = Matches(synchronizer)
+    synchronizer.registerCallback(lambda message: source.signalMessage(image(2)) if stamp(message) < 2 else None)
     source.signalMessage(image(1))
-    assert got == [[1], [2]]
+    assert matches == [[1], [2]]
 
 
 @pytest.mark.parametrize(
@@ -83,56 +83,58 @@ def test_callback_may_signal_its_own_filter():
 )
 def test_approximate_synchronizer_matches_within_slop(slop, expected):
     left, right = SimpleFilter(), SimpleFilter()
-    got = Matches(ApproximateTimeSynchronizer([left, right], 10, slop))
+    matches = Matches(ApproximateTimeSynchronizer([left, right], 10, slop))
     left.signalMessage(image(1.0))
     left.signalMessage(image(0.8))
     right.signalMessage(image(1.1))
     right.signalMessage(image(1.3))
     left.signalMessage(image(1.5))
-    assert got == expected
+    assert matches == expected
 
 
 def test_three_topics_are_matched_within_slop():
     inputs = [SimpleFilter() for _ in range(3)]
-    got = Matches(ApproximateTimeSynchronizer(inputs, 10, 0.15))
+    matches = Matches(ApproximateTimeSynchronizer(inputs, 10, 0.15))
     inputs[0].signalMessage(image(0.9))
     inputs[0].signalMessage(image(1.05))
     inputs[1].signalMessage(image(1.1))
     inputs[2].signalMessage(image(1.0))
-    assert got == [[1.05, 1.1, 1.0]]
+    assert matches == [[1.05, 1.1, 1.0]]
 
 
 def test_messages_without_header_need_sync_arrival_time(node, capfd):
     plain, other = SimpleFilter(), SimpleFilter()
-    got = []
-    ApproximateTimeSynchronizer([plain, other], 10, 0.1).registerCallback(lambda *each: got.append(each))
+    matches = []
+    ApproximateTimeSynchronizer([plain, other], 10, 0.1).registerCallback(lambda *messages: matches.append(messages))
     plain.signalMessage(String(data="now"))
-    assert got == []
+    assert matches == []
     assert "[message_filters_approx]: can not use message filters messages without" in capfd.readouterr().err
-    ApproximateTimeSynchronizer([plain, other], 10, 60.0, True).registerCallback(lambda *each: got.append(each))
+    ApproximateTimeSynchronizer([plain, other], 10, 60.0, True).registerCallback(
+        lambda *messages: matches.append(messages)
+    )
     plain.signalMessage(String(data="now"))
     other.signalMessage(String(data="too"))
-    assert got == [(String(data="now"), String(data="too"))]
+    assert matches == [(String(data="now"), String(data="too"))]
 
 
 def test_sync_arrival_time_ignores_stamps():
     left, right = SimpleFilter(), SimpleFilter()
-    got = Matches(ApproximateTimeSynchronizer([left, right], 10, 60.0, sync_arrival_time=True))
+    matches = Matches(ApproximateTimeSynchronizer([left, right], 10, 60.0, sync_arrival_time=True))
     left.signalMessage(image(1))
     right.signalMessage(image(1000))
-    assert got == [[1, 1000]]
+    assert matches == [[1, 1000]]
 
 
 def test_cache_keeps_last_messages():
     source = SimpleFilter()
     cache = Cache(source, cache_size=3)
-    got = Matches(cache)
+    matches = Matches(cache)
     assert (cache.getLast(), cache.getOldestTime(), cache.getLatestTime()) == (None, None, None)
     for seconds in (1, 2, 3, 4):
         source.signalMessage(image(seconds))
-    assert got == [[1], [2], [3], [4]]
+    assert matches == [[1], [2], [3], [4]]
     assert (cache.getOldestTime(), cache.getLastestTime()) == (at(2), at(4))
-    assert [stamp(each) for each in cache.getInterval(at(1.5), at(3))] == [2, 3]
+    assert [stamp(message) for message in cache.getInterval(at(1.5), at(3))] == [2, 3]
     assert stamp(cache.getElemAfterTime(at(2.5))) == 3
     assert stamp(cache.getElemBeforeTime(at(2.5))) == 2
     assert cache.getElemAfterTime(at(5)) is cache.getElemBeforeTime(at(1)) is None

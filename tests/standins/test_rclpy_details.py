@@ -121,8 +121,8 @@ class TestParameters:
 
     def test_parameter_event_handler_calls_matching_callbacks(self, node):
         handler, received = ParameterEventHandler(node), []
-        first = handler.add_parameter_callback("a", "", lambda each: received.append(("first", each.name)))
-        handler.add_parameter_callback("a", "node", lambda each: received.append(("second", each.name)))
+        first = handler.add_parameter_callback("a", "", lambda parameter: received.append(("first", parameter.name)))
+        handler.add_parameter_callback("a", "node", lambda parameter: received.append(("second", parameter.name)))
         everything = handler.add_parameter_event_callback(lambda event: received.append(("event", event.node)))
         assert set(handler._callbacks.parameter_callbacks) == {("a", "/ns/node")}
         event = ParameterEvent(node="/ns/node", new_parameters=[Parameter("a", value=1).to_parameter_msg()])
@@ -155,7 +155,7 @@ class TestParameters:
         profile = QoSProfile(depth=10)
         _declare_qos_parameters(kind, node, "/topic", profile, QoSOverridingOptions.with_default_policies())
         declared = node.get_parameters_by_prefix("qos_overrides")
-        assert {name: each.value for name, each in declared.items()} == {
+        assert {name: parameter.value for name, parameter in declared.items()} == {
             f"/topic.{word}.depth": 3,
             f"/topic.{word}.history": "keep_last",
             f"/topic.{word}.reliability": "reliable",

@@ -42,7 +42,7 @@ class TestMessageSnapshots:
 
     def test_reused_message_is_published_as_snapshot(self, node):
         heard, message = [], String()
-        node.create_subscription(String, "topic", lambda each: heard.append(each.data), 10)
+        node.create_subscription(String, "topic", lambda message: heard.append(message.data), 10)
         publisher = node.create_publisher(String, "topic", 10)
         for word in ("one", "two", "three"):
             message.data = word
@@ -97,7 +97,7 @@ class TestMessageSnapshots:
         ActionServer(node, Fibonacci, "fibonacci", execute)
         client = ActionClient(node, Fibonacci, "fibonacci")
         sent = client.send_goal_async(
-            Fibonacci.Goal(order=4), feedback_callback=lambda each: heard.append(each.feedback.sequence.tolist())
+            Fibonacci.Goal(order=4), feedback_callback=lambda message: heard.append(message.feedback.sequence.tolist())
         )
         rclpy.spin_until_future_complete(node, sent, timeout_sec=60)
         result = sent.result().get_result_async()

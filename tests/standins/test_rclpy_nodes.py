@@ -97,15 +97,15 @@ class TestMinimal:
         listener.destroy_node()
 
     def test_node_without_subclass_publishes_and_subscribes(self, ros):
-        got = []
+        texts = []
         node = rclpy.create_node("minimal")
         publisher = node.create_publisher(String, "topic", 10)
-        subscription = node.create_subscription(String, "topic", lambda msg: got.append(msg.data), 10)
+        subscription = node.create_subscription(String, "topic", lambda msg: texts.append(msg.data), 10)
         assert subscription.topic_name == "/topic"
-        while rclpy.ok() and len(got) < 3:
+        while rclpy.ok() and len(texts) < 3:
             publisher.publish(String(data="hi"))
             rclpy.spin_once(node, timeout_sec=SECONDS)
-        assert got == ["hi"] * 3
+        assert texts == ["hi"] * 3
         node.destroy_node()
 
     def test_timer_callback_can_be_a_closure(self, node):
@@ -226,7 +226,7 @@ class TestMinimal:
         seen = []
         node.create_service(AddTwoInts, "add", _sum)
         future = node.create_client(AddTwoInts, "add").call_async(AddTwoInts.Request(a=1, b=1))
-        future.add_done_callback(lambda done: seen.append(done.result().sum))
+        future.add_done_callback(lambda future: seen.append(future.result().sum))
         end = time.monotonic() + SECONDS
         while not seen and time.monotonic() < end:
             rclpy.spin_once(node, timeout_sec=0.1)
@@ -411,27 +411,27 @@ class TestNode:
         assert "/ns/tested/get_parameters" in services
 
     def test_callback_receives_message_info(self, node):
-        got = []
-        node.create_subscription(String, "chatter", lambda msg, info: got.append((msg.data, info)), 1)
+        deliveries = []
+        node.create_subscription(String, "chatter", lambda msg, info: deliveries.append((msg.data, info)), 1)
         node.create_publisher(String, "chatter", 1).publish(String(data="x"))
         rclpy.spin_once(node, timeout_sec=SECONDS)
-        assert got[0][0] == "x"
-        assert got[0][1].source_timestamp > 0
+        assert deliveries[0][0] == "x"
+        assert deliveries[0][1].source_timestamp > 0
 
     def test_raw_subscription_receives_bytes(self, node):
-        got = []
-        node.create_subscription(String, "chatter", got.append, 1, raw=True)
+        payloads = []
+        node.create_subscription(String, "chatter", payloads.append, 1, raw=True)
         node.create_publisher(String, "chatter", 1).publish(String(data="x"))
         rclpy.spin_once(node, timeout_sec=SECONDS)
-        assert got == [b"\x00\x01\x00\x00\x02\x00\x00\x00x\x00"]
+        assert payloads == [b"\x00\x01\x00\x00\x02\x00\x00\x00x\x00"]
 
     def test_late_subscription_receives_latched_message(self, node):
-        got = []
+        texts = []
         profile = QoSProfile(depth=1, durability=QoSDurabilityPolicy.TRANSIENT_LOCAL)
         node.create_publisher(String, "latched", profile).publish(String(data="kept"))
-        node.create_subscription(String, "latched", lambda msg: got.append(msg.data), profile)
+        node.create_subscription(String, "latched", lambda msg: texts.append(msg.data), profile)
         rclpy.spin_once(node, timeout_sec=SECONDS)
-        assert got == ["kept"]
+        assert texts == ["kept"]
 
     def test_nodes_and_publishers_are_context_managers(self, ros):
         with rclpy.create_node("managed") as node, node.create_publisher(String, "chatter", 1):
@@ -442,12 +442,12 @@ class TestNode:
     def test_log_messages_are_published_on_rosout(self, node):
         from rcl_interfaces.msg import Log
 
-        got = []
-        node.create_subscription(Log, "/rosout", got.append, 10)
+        messages = []
+        node.create_subscription(Log, "/rosout", messages.append, 10)
         node.get_logger().warning("careful")
         rclpy.spin_once(node, timeout_sec=SECONDS)
-        assert (got[0].name, got[0].msg, got[0].level) == ("ns.tested", "careful", logging.WARNING)
-        assert got[0].file == __file__
+        assert (messages[0].name, messages[0].msg, messages[0].level) == ("ns.tested", "careful", logging.WARNING)
+        assert messages[0].file == __file__
 
     def test_deprecated_policy_names_warn(self):
         with pytest.warns(UserWarning, match="Use ReliabilityPolicy.BEST_EFFORT instead"):

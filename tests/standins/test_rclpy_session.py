@@ -276,8 +276,8 @@ class TestSmallModules:
         publisher = node.create_publisher(String, "chatter", 1)
         timer = threading.Timer(0.05, publisher.publish, [String(data="here")])
         timer.start()
-        found, message = wait_for_message(String, node, "chatter", time_to_wait=3.0)
-        assert (found, message.data) == (True, "here")
+        is_received, message = wait_for_message(String, node, "chatter", time_to_wait=3.0)
+        assert (is_received, message.data) == (True, "here")
         assert wait_for_message(String, node, "chatter", time_to_wait=0.02) == (False, None)
         assert wait_for_message(String, node, "chatter", 0.02) == (False, None)
         assert list(node.subscriptions) == []
@@ -288,7 +288,7 @@ class TestSmallModules:
         line = ["program", "-d", "--ros-args", "-r", "a:=b", "--", "--foo"]
         assert remove_ros_args(line) == ["program", "-d", "--foo"]
         assert remove_ros_args([]) == []
-        assert [timeout_sec_to_nsec(each) for each in (None, -1, 0, 1.5)] == [-1, -1, 0, 1_500_000_000]
+        assert [timeout_sec_to_nsec(timeout) for timeout in (None, -1, 0, 1.5)] == [-1, -1, 0, 1_500_000_000]
         has_dds = find_spec("cyclonedds") is not None
         assert get_rmw_implementation_identifier() == ("rmw_cyclonedds_cpp" if has_dds else "rmw_zenoh_cpp")
 

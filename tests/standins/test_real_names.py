@@ -31,11 +31,11 @@ print(json.dumps(lacking))
 @pytest.mark.parametrize("package", ["rclpy", "ament_index_python", "rosidl_parser"])
 def test_real_modules_have_names_of_tables(package):
     asked = {
-        module.name: [name for name, found in module.names.items() if found.since not in AFTER_JAZZY]
+        module.name: [name for name, origin in module.names.items() if origin.since not in AFTER_JAZZY]
         for module in table.read(package).values()
         if module.since not in AFTER_JAZZY
     }
-    done = subprocess.run(
+    result = subprocess.run(
         [PYTHON, "-c", LOOK],
         input=json.dumps(asked),
         env={**os.environ, "PYTHONPATH": ""},
@@ -44,4 +44,4 @@ def test_real_modules_have_names_of_tables(package):
         check=True,
         timeout=120,
     )
-    assert set(json.loads(done.stdout)) - GONE_SINCE_HUMBLE == set()
+    assert set(json.loads(result.stdout)) - GONE_SINCE_HUMBLE == set()

@@ -22,8 +22,8 @@ pytestmark = needs_rosbags
 @pytest.fixture
 def node():
     rclpy.init(args=[])
-    made = rclpy.create_node("other")
-    yield made
+    node = rclpy.create_node("other")
+    yield node
     rclpy.shutdown()
 
 
@@ -45,11 +45,11 @@ def write(path: Path, *, writer=None, **options) -> Path:
 def words(path: Path) -> list[str]:
     reader = rosbag2_py.SequentialReader()
     reader.open_uri(str(path))
-    found = []
+    texts = []
     while reader.has_next():
         _, data, _ = reader.read_next()
-        found.append(deserialize_message(data, String).data)
-    return found
+        texts.append(deserialize_message(data, String).data)
+    return texts
 
 
 WORDS = [f"word {number}" for number in range(4)]

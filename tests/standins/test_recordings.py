@@ -142,7 +142,7 @@ def test_metadata_is_read_without_messages(tmp_path):
     assert (metadata.message_count, metadata.storage_identifier) == (8, "mcap")
     assert metadata.starting_time.nanoseconds == 1000
     assert metadata.duration.nanoseconds == 35
-    words = next(each for each in metadata.topics_with_message_count if each.topic_metadata.name == "/words")
+    words = next(topic for topic in metadata.topics_with_message_count if topic.topic_metadata.name == "/words")
     assert words.message_count == 4
     assert [profile.depth for profile in words.topic_metadata.offered_qos_profiles] == [3]
 
@@ -151,9 +151,9 @@ def test_metadata_is_written_and_read(tmp_path):
     write(tmp_path / "bag")
     reader, metadata_io = opened(tmp_path / "bag"), rosbag2_py.MetadataIo()
     metadata = metadata_io.read_metadata(str(tmp_path / "bag"))
-    for each in metadata.topics_with_message_count:
-        (known,) = (topic for topic in reader.get_all_topics_and_types() if topic.name == each.topic_metadata.name)
-        assert each.topic_metadata == dataclasses.replace(known, id=0)
+    for entry in metadata.topics_with_message_count:
+        (known,) = (topic for topic in reader.get_all_topics_and_types() if topic.name == entry.topic_metadata.name)
+        assert entry.topic_metadata == dataclasses.replace(known, id=0)
     assert [(file.path, file.message_count) for file in metadata.files] == [("bag_0.mcap", 8)]
     assert reader.get_metadata().files == metadata.files
     assert metadata_io.deserialize_metadata(metadata_io.serialize_metadata(metadata)).files == metadata.files

@@ -44,7 +44,7 @@ def test_bytes_are_converted_to_yaml_csv_and_dict():
 
 
 def test_values_are_converted_and_truncated():
-    assert [_convert_value(each, truncate_length=0) for each in (5, 4.5, True)] == [5, 4.5, True]
+    assert [_convert_value(value, truncate_length=0) for value in (5, 4.5, True)] == [5, 4.5, True]
     assert _convert_value(("123", "456", "789"), truncate_length=2) == ("12...", "45...", "...")
     assert _convert_value([1, 2, 3], truncate_length=0) == ["..."]
     assert _convert_value(b"hello", truncate_length=4) == "hell..."

@@ -35,8 +35,8 @@ class Servers(Node):
                 f"{which}_costmap/clear_entirely_{which}_costmap",
                 lambda _request, response, which=which: self.cleared.append(which) or response,
             )
-        kept = QoSProfile(depth=1, durability=DurabilityPolicy.TRANSIENT_LOCAL)
-        self.estimate = self.create_publisher(PoseWithCovarianceStamped, "amcl_pose", kept)
+        latched_qos = QoSProfile(depth=1, durability=DurabilityPolicy.TRANSIENT_LOCAL)
+        self.estimate = self.create_publisher(PoseWithCovarianceStamped, "amcl_pose", latched_qos)
         self.told = []
         self.create_subscription(PoseWithCovarianceStamped, "initialpose", self.on_initial_pose, 10)
         ActionServer(
@@ -148,7 +148,7 @@ def test_failed_and_canceled_goals_are_reported(navigator):
 def test_navigator_spins_plans_and_clears_costmaps(navigator, servers):
     assert navigator.spin(spin_dist=1.57, time_allowance=10)
     assert finished(navigator) == TaskResult.SUCCEEDED
-    assert [each.pose.position.x for each in navigator.getPath(pose(0.0), pose(2.0)).poses] == [0.0, 2.0]
+    assert [waypoint.pose.position.x for waypoint in navigator.getPath(pose(0.0), pose(2.0)).poses] == [0.0, 2.0]
     navigator.clearAllCostmaps()
     assert servers.cleared == ["local", "global"]
     navigator.destroyNode()

@@ -21,8 +21,8 @@ NAMES = {package: {name for module in table.read(package).values() for name in m
 @pytest.mark.parametrize("name", MODULES)
 def test_table_names_can_be_imported(name):
     module = importlib.import_module(name)
-    for each in [*MODULES[name].names, *MODULES[name].submodules]:
-        assert hasattr(module, each), f"from {name} import {each}"
+    for attribute in [*MODULES[name].names, *MODULES[name].submodules]:
+        assert hasattr(module, attribute), f"from {name} import {attribute}"
 
 
 @pytest.mark.parametrize("name", [name for name, module in MODULES.items() if not module.others])
@@ -30,8 +30,8 @@ def test_names_missing_from_table_are_not_exported(name):
     module = importlib.import_module(name)
     described = MODULES[name]
     elsewhere = NAMES[name.partition(".")[0]] - described.names.keys() - set(described.submodules)
-    for each in {*elsewhere, *described.absent, "NoSuchName"}:
-        assert not hasattr(module, each), f"from {name} import {each}"
+    for attribute in {*elsewhere, *described.absent, "NoSuchName"}:
+        assert not hasattr(module, attribute), f"from {name} import {attribute}"
 
 
 @pytest.mark.parametrize(
@@ -54,10 +54,10 @@ def test_names_that_ros_does_not_export_cannot_be_imported(module, name):
 def test_origins_are_names_of_other_tables():
     """So that a table's mistake is not hidden by what the module of another one imports."""
     for name, module in MODULES.items():
-        for each, found in module.names.items():
-            other = MODULES.get(found.origin)
-            if other is not None and found.origin != name:
-                assert found.name in other.names or found.name in other.submodules, f"{name}: {each}"
+        for attribute, origin in module.names.items():
+            other = MODULES.get(origin.origin)
+            if other is not None and origin.origin != name:
+                assert origin.name in other.names or origin.name in other.submodules, f"{name}: {attribute}"
 
 
 class TestModules:
@@ -66,9 +66,9 @@ class TestModules:
 
         import launch
 
-        found = {iter_module.name: iter_module.ispkg for iter_module in pkgutil.iter_modules(launch.__path__)}
-        assert found["actions"] is True
-        assert found["launch_service"] is False
+        submodules = {iter_module.name: iter_module.ispkg for iter_module in pkgutil.iter_modules(launch.__path__)}
+        assert submodules["actions"] is True
+        assert submodules["launch_service"] is False
         walked = [walk_package.name for walk_package in pkgutil.walk_packages(launch.__path__, "launch.")]
         assert {"launch.actions.timer_action", "launch.events.process.process_exited"} <= set(walked)
         assert {"launch", "rclpy"} <= {iter_module.name for iter_module in pkgutil.iter_modules([modules.FOLDER])}
@@ -127,8 +127,8 @@ class TestReading:
             "setup: here.begin\n"
             "[one.two] since jazzy\n"
         )
-        one = read["one"]
-        assert one.names == {
+        module = read["one"]
+        assert module.names == {
             "A": table.Name("here", "A"),
             "B": table.Name("here", "C"),
             "D": table.Name("here", "D"),
@@ -136,10 +136,10 @@ class TestReading:
             "os": table.Name("import", "os"),
             "F": table.Name("value", "('x', 1)"),
         }
-        assert one.absent == {"G": table.Remark("why", "为什么")}
-        assert one.differs == {"A": table.Remark("how", "如何")}
-        assert (one.setup, one.submodules, read["one.two"].since) == ("here.begin", ["two"], "jazzy")
-        assert modules.value_of(one, "F") == ("x", 1)
+        assert module.absent == {"G": table.Remark("why", "为什么")}
+        assert module.differs == {"A": table.Remark("how", "如何")}
+        assert (module.setup, module.submodules, read["one.two"].since) == ("here.begin", ["two"], "jazzy")
+        assert modules.value_of(module, "F") == ("x", 1)
 
     @pytest.mark.parametrize("text", ["[one]\nno line\n", "here: A\n"])
     def test_malformed_line_is_rejected(self, text):

@@ -80,13 +80,13 @@ class FrameListener(Node):
 
     def on_timer(self):
         try:
-            found = self.tf_buffer.lookup_transform("world", self.target_frame, rclpy.time.Time())
+            transform = self.tf_buffer.lookup_transform("world", self.target_frame, rclpy.time.Time())
         except tf2_ros.TransformException as error:
             self.misses.append(str(error))
             return
         command = Twist()
-        command.linear.x = math.hypot(found.transform.translation.x, found.transform.translation.y)
-        rotation = found.transform.rotation
+        command.linear.x = math.hypot(transform.transform.translation.x, transform.transform.translation.y)
+        rotation = transform.transform.rotation
         command.angular.z = euler_from_quaternion([rotation.x, rotation.y, rotation.z, rotation.w])[2]
         self.commands.append(command)
         self.done.set_result(None)
@@ -124,39 +124,39 @@ class TestTopics:
 
     def test_lookup_waits_in_callback_of_same_node(self, node):
         """The listener's callbacks are in a reentrant group, so a second thread takes them meanwhile."""
-        buffer, found = Buffer(), []
+        buffer, transforms = Buffer(), []
         TransformListener(buffer, node)
         broadcaster = TransformBroadcaster(node)
 
         def look():
             timer.cancel()
             threading.Timer(0.05, broadcaster.sendTransform, [transform("a", "b", Time(seconds=5))]).start()
-            found.append(buffer.lookup_transform("a", "b", Time(), timeout=Duration(seconds=2.0)))
+            transforms.append(buffer.lookup_transform("a", "b", Time(), timeout=Duration(seconds=2.0)))
 
         timer = node.create_timer(0.01, look)
         with MultiThreadedExecutor(2) as executor:
             executor.add_node(node)
             thread = threading.Thread(target=executor.spin, daemon=True)
             thread.start()
-            wait_until(lambda: found)
+            wait_until(lambda: transforms)
             executor.shutdown()
             thread.join(60.0)
-        assert found[0].transform.translation.x == 1.0
+        assert transforms[0].transform.translation.x == 1.0
 
     def test_lookup_is_awaited_in_coroutine(self, node):
-        buffer, found = Buffer(), []
+        buffer, transforms = Buffer(), []
         TransformListener(buffer, node)
 
         async def look():
             timer.cancel()
-            found.append(await buffer.lookup_transform_async("a", "b", Time()))
+            transforms.append(await buffer.lookup_transform_async("a", "b", Time()))
 
         timer = node.create_timer(0.01, look)
         spin(node)
-        assert found == []
+        assert transforms == []
         TransformBroadcaster(node).sendTransform(transform("a", "b", Time(seconds=5)))
         spin(node)
-        assert found[0].child_frame_id == "b"
+        assert transforms[0].child_frame_id == "b"
 
 
 class TestBuffer:
@@ -285,5 +285,5 @@ def test_importing_conversion_package_registers_types(package, type_name):
         f"import {package}, tf2_ros\nfrom {module} import {name}\nprint(tf2_ros.TransformRegistration().get({name}))"
     )
     command = process.python_command(["-c", program])
-    done = subprocess.run(command, env=process.environment(), capture_output=True, text=True, check=True)
-    assert "do_transform_" in done.stdout
+    result = subprocess.run(command, env=process.environment(), capture_output=True, text=True, check=True)
+    assert "do_transform_" in result.stdout

@@ -54,7 +54,9 @@ def drive(noise, friction, seed):
 
 def ran(path: Path, workers: int) -> dict[int, object]:
     outcomes = {}
-    run_locally(path, plan_runs(load_scenario(path)), workers, lambda each: outcomes.setdefault(each.row, each))
+    run_locally(
+        path, plan_runs(load_scenario(path)), workers, lambda outcome: outcomes.setdefault(outcome.row, outcome)
+    )
     return outcomes
 
 
@@ -63,8 +65,8 @@ def test_results_are_identical_in_any_process_and_order(tmp_path):
     scenario = load_scenario(path)
     here = {run.row: run_once(scenario, run) for run in reversed(plan_runs(scenario))}
     assert ran(path, 2) == here
-    assert all(not each.error for each in here.values())
-    assert len({each.results["a"] for each in here.values()}) == 4
+    assert all(not outcome.error for outcome in here.values())
+    assert len({outcome.results["a"] for outcome in here.values()}) == 4
 
 
 @pytest.mark.skipif(sys.platform == "win32", reason="there are no signals there")

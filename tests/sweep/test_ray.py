@@ -47,8 +47,10 @@ def test_ray_cluster_completes_table_after_losing_worker(tmp_path):
         "LOST": str(lost),
         "RAY_raylet_start_wait_time_s": "600",
     }
-    done = subprocess.run([sys.executable, "-c", TWO], cwd=tmp_path, env=environment, capture_output=True, check=False)
-    assert done.returncode == 0, done.stderr
+    result = subprocess.run(
+        [sys.executable, "-c", TWO], cwd=tmp_path, env=environment, capture_output=True, check=False
+    )
+    assert result.returncode == 0, result.stderr
     assert lost.exists()
     rows = path.with_suffix(".csv").read_text()
     assert rows == "row,n,seed,square,error\n1,1,0,1,\n2,2,0,4,\n3,3,0,9,\n4,4,0,16,\n"
@@ -58,9 +60,9 @@ def test_unreachable_ray_cluster_is_an_error(tmp_path):
     with socket.socket() as unused:
         unused.bind(("127.0.0.1", 0))  # and nobody else can listen there
         address = f"127.0.0.1:{unused.getsockname()[1]}"
-        for each in (address, f"ray://{address}"):
+        for cluster in (address, f"ray://{address}"):
             with pytest.raises(LinkwrightError, match="refused") as raised:
-                run_on_ray(write(tmp_path), [], each, ignore)
+                run_on_ray(write(tmp_path), [], cluster, ignore)
             assert raised.value.diagnostics[0].code == "SWEEP114"
 
 

@@ -120,8 +120,8 @@ def test_invalid_scenario_is_one_error(tmp_path, monkeypatch, message, text):
     monkeypatch.chdir(tmp_path)
     with pytest.raises(LinkwrightError) as raised:
         loaded(tmp_path, text)
-    (found,) = raised.value.diagnostics
-    assert f"{found.code} {found.span or ''} {found.message}" == message
+    (diagnostic,) = raised.value.diagnostics
+    assert f"{diagnostic.code} {diagnostic.span or ''} {diagnostic.message}" == message
 
 
 @pytest.mark.parametrize("name", ["none.py", "drive.yaml", "."])

@@ -29,10 +29,10 @@ def backwards(scenario, until=None):
     """A runner in this process that begins with the last row, and is interrupted before a row."""
 
     def run(runs, report):
-        for each in reversed(runs):
-            if each.row == until:
+        for planned_run in reversed(runs):
+            if planned_run.row == until:
                 raise KeyboardInterrupt
-            report(run_once(scenario, each))
+            report(run_once(scenario, planned_run))
 
     return run
 
@@ -176,7 +176,7 @@ class Page(HTMLParser):
         self.text.write(data)
 
     def count(self, tag, **attributes):
-        return sum(name == tag and attributes.items() <= found.items() for name, found in self.tags)
+        return sum(name == tag and attributes.items() <= tag_attributes.items() for name, tag_attributes in self.tags)
 
 
 def test_summary_has_plots_and_no_external_resources(tmp_path):
@@ -186,7 +186,7 @@ def test_summary_has_plots_and_no_external_resources(tmp_path):
     assert page.count("circle") == 6 * 6
     assert page.count("tr", id="row-6") == 1
     assert page.count("a", href="#row-6") == 6
-    assert not [found for _, found in page.tags if {"src", "action"} & found.keys()]
+    assert not [tag_attributes for _, tag_attributes in page.tags if {"src", "action"} & tag_attributes.keys()]
     assert page.count("link") == page.count("script") == 0
     assert "6 runs" in page.text.getvalue()
 

@@ -97,7 +97,7 @@ def test_commands_run(elsewhere, tmp_path):
 def test_viewer_serves_page_and_ctrl_c_ends_it(elsewhere):
     viewer = elsewhere("view", ROBOT, "--no-open")
     try:
-        address = next(found[0] for line in viewer.stdout if (found := re.search(r"http://\S+", line)))
+        address = next(match[0] for line in viewer.stdout if (match := re.search(r"http://\S+", line)))
         with urllib.request.urlopen(address, timeout=60) as answer:
             assert b"<script" in answer.read()
     finally:
@@ -133,9 +133,9 @@ def test_world_is_simulated(elsewhere):
     ],
 )
 def test_file_urls_with_drive_letter_are_absolute_on_windows(address, path):
-    found = absolute_path(address, with_drives=True)
-    assert found == path
-    assert PureWindowsPath(found).is_absolute()
+    path_with_drive = absolute_path(address, with_drives=True)
+    assert path_with_drive == path
+    assert PureWindowsPath(path_with_drive).is_absolute()
 
 
 def test_drive_letter_is_a_folder_on_other_systems():
@@ -195,9 +195,9 @@ sys.exit(main())
 """
     command = [sys.executable, "-c", program, verb, str(robot)]
     environment = {name: value for name, value in os.environ.items() if name != "PYTHONIOENCODING"}
-    done = subprocess.run(command, env={**environment, "LINKWRIGHT_LANG": "zh"}, capture_output=True, check=False)
-    assert done.returncode == 0, done.stderr
-    assert NAMES in done.stdout.decode("utf-8")
+    result = subprocess.run(command, env={**environment, "LINKWRIGHT_LANG": "zh"}, capture_output=True, check=False)
+    assert result.returncode == 0, result.stderr
+    assert NAMES in result.stdout.decode("utf-8")
 
 
 def test_requested_output_encoding_is_kept(monkeypatch, tmp_path):

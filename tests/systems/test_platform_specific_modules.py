@@ -93,10 +93,10 @@ KNOWN: dict[str, str] = {
 
 @pytest.mark.slow  # reads all of the source, which is the same with each Python
 def test_modules_with_platform_specific_code_are_listed() -> None:
-    found = {
+    modules_of_file = {
         path.relative_to(ROOT).as_posix(): " ".join(sorted(set(used(path)))) for path in sorted(ROOT.rglob("*.py"))
     }
-    assert {path: names for path, names in found.items() if names} == KNOWN
+    assert {path: names for path, names in modules_of_file.items() if names} == KNOWN
 
 
 @pytest.mark.parametrize("path", sorted(path for path, names in KNOWN.items() if set(names.split()) & set(MODULES)))

@@ -91,8 +91,8 @@ def _driven(seed: int) -> tuple[list[bytes], list[float]]:
         test.drive(0.3, 0.5)
         test.advance(0.5)
         assert imu.messages
-        poses = [each.pose.pose.position.x for each in odometry]
-        return [np.asarray([each.linear_acceleration.x]).tobytes() for each in imu], poses
+        poses = [message.pose.pose.position.x for message in odometry]
+        return [np.asarray([message.linear_acceleration.x]).tobytes() for message in imu], poses
 
 
 def test_same_seed_gives_identical_run_and_other_seed_other_noise():

@@ -97,8 +97,8 @@ def check(root: Element) -> None:
     robot = reading.robot
     elements_of_links = [element for element in root.elements("link") if "name" in element.attributes]
     written = sum(1 for link in elements_of_links for tag in ("visual", "collision") for _ in link.elements(tag))
-    kept = sum(len(link.visuals) + len(link.collisions) for link in robot.links.values())
-    assert written == kept or has_errors(reading.diagnostics)
+    shape_count = sum(len(link.visuals) + len(link.collisions) for link in robot.links.values())
+    assert written == shape_count or has_errors(reading.diagnostics)
     assert robot.root in robot.links
     to_gv(robot)
     tree_text(robot)

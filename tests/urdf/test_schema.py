@@ -121,8 +121,8 @@ def test_malformed_values_are_reported(version, path, attribute: AttributeRule):
     if attribute.name == "quat_xyzw":
         element.attributes.pop("rpy")
     element.attributes[attribute.name] = "nonsense"
-    found = read(Document(robot)).diagnostics
-    assert any("'nonsense'" in diagnostic.message for diagnostic in found)
+    diagnostics = read(Document(robot)).diagnostics
+    assert any("'nonsense'" in diagnostic.message for diagnostic in diagnostics)
 
 
 @pytest.mark.parametrize(

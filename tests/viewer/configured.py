@@ -9,7 +9,7 @@ import yaml
 
 from linkwright.messages import get_message
 from linkwright.rviz import RvizConfig
-from tests.viewer.scene import page, world
+from tests.viewer.scene import open_world, page
 
 PointStamped = get_message("geometry_msgs/msg/PointStamped")
 
@@ -47,17 +47,17 @@ async def opened(text: str = TEXT, path: Path | None = None):
     if path is not None:
         path.write_text(text, encoding="utf-8")  # noqa: ASYNC240 - a test may wait
         config = RvizConfig.load(path)
-    async with world(config) as made, page(made.viewer) as client:
+    async with open_world(config) as world, page(world.viewer) as client:
         client.first = await client.opened()
-        yield made, client
+        yield world, client
 
 
-def names(made) -> list[str]:
-    return [display.config.name for display in made.viewer.displays]
+def names(world) -> list[str]:
+    return [display.config.name for display in world.viewer.displays]
 
 
-def entries(made) -> list[dict]:
-    return yaml.safe_load(made.viewer.config.text())["Visualization Manager"]["Displays"]
+def entries(world) -> list[dict]:
+    return yaml.safe_load(world.viewer.config.text())["Visualization Manager"]["Displays"]
 
 
 async def edit(client, kind: str, **fields) -> dict:

@@ -35,8 +35,8 @@ def unpack(frame: bytes) -> Content:
             name, offset, count = value["$"]
             return np.frombuffer(frame, _TYPES[name], count, start + offset)
         if isinstance(value, dict):
-            return {name: plain(each) for name, each in value.items()}
-        return [plain(each) for each in value] if isinstance(value, list) else value
+            return {name: plain(field) for name, field in value.items()}
+        return [plain(element) for element in value] if isinstance(value, list) else value
 
     fields = {name: plain(value) for name, value in header["content"].items()}
     return Content(header["key"], header["frame"], header["pose"], header["stamp"], fields)
@@ -51,4 +51,4 @@ def shown_markers(display: Any) -> dict[str, dict[str, Any]]:
     """Return the markers of a display by their IDs, as a page that opens now receives them."""
     (store,) = display.data()
     frame, _ = store.since(0)
-    return {} if frame is None else {each["id"]: each for each in unpack(frame).fields["markers"]}
+    return {} if frame is None else {marker["id"]: marker for marker in unpack(frame).fields["markers"]}

@@ -98,15 +98,15 @@ class World:
 
 
 @asynccontextmanager
-async def world(config: RvizConfig | None = None, **options) -> AsyncIterator[World]:
+async def open_world(config: RvizConfig | None = None, **options) -> AsyncIterator[World]:
     """Start a world, and close it at the end."""
-    made = World(config, **options)
-    await made.viewer.start()
+    world = World(config, **options)
+    await world.viewer.start()
     try:
-        yield made
+        yield world
     finally:
-        await made.viewer.close()
-        await made.graph.close()
+        await world.viewer.close()
+        await world.graph.close()
 
 
 @dataclass
@@ -193,8 +193,8 @@ async def page(viewer: Viewer, more: str = "") -> AsyncIterator[Client]:
 
 def rows_by_id(properties: list[dict]) -> dict[str, dict]:
     """Return all property rows, including nested ones."""
-    found = {}
+    rows = {}
     for row in properties:
-        found[row["id"]] = row
-        found |= rows_by_id(row["children"])
-    return found
+        rows[row["id"]] = row
+        rows |= rows_by_id(row["children"])
+    return rows

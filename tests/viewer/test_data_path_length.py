@@ -19,10 +19,10 @@ MOST = {"opening": 160, "slider": 21}
 
 @cache
 def _files() -> dict[str, list[str]]:
-    done = subprocess.run(
+    result = subprocess.run(
         [sys.executable, "-m", "tests.viewer.ways"], capture_output=True, text=True, cwd=REPOSITORY, check=True
     )
-    files: dict[str, list[str]] = json.loads(done.stdout)
+    files: dict[str, list[str]] = json.loads(result.stdout)
     return files
 
 

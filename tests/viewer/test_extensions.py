@@ -11,7 +11,7 @@ import pytest
 from linkwright.loading import extensions
 from linkwright.rviz import RvizConfig
 from linkwright.rviz.displays import catalog
-from tests.viewer.scene import page, world
+from tests.viewer.scene import open_world, page
 
 MODULE = """\
 from linkwright.rviz.displays.geometry import PolygonDisplay
@@ -76,9 +76,9 @@ def config_with(cls: str) -> RvizConfig:
 
 
 async def test_display_of_another_package_is_created_and_offered(brought):
-    async with world(config_with("brought/Fence")) as w, page(w.viewer) as client:
+    async with open_world(config_with("brought/Fence")) as world, page(world.viewer) as client:
         first = await client.opened()
-        (fence,) = [each for each in first["tree"]["displays"] if each["cls"] == "brought/Fence"]
+        (fence,) = [display for display in first["tree"]["displays"] if display["cls"] == "brought/Fence"]
         assert (fence["supported"], fence["drawing"]) == (True, "rviz_default_plugins/Polygon")
         await client.send("ask_display_choices")
         offered = (await client.until("display_choices"))["classes"]
@@ -86,9 +86,9 @@ async def test_display_of_another_package_is_created_and_offered(brought):
 
 
 async def test_display_that_cannot_be_imported_is_kept_and_reported(brought):
-    async with world(config_with("brought/Broken")) as w:
-        assert not w.viewer.displays[-1].SUPPORTED
-        assert "'brought/Broken' cannot be imported: AttributeError" in w.logged()
+    async with open_world(config_with("brought/Broken")) as world:
+        assert not world.viewer.displays[-1].SUPPORTED
+        assert "'brought/Broken' cannot be imported: AttributeError" in world.logged()
 
 
 def test_built_in_display_cannot_be_replaced(brought):
@@ -96,17 +96,17 @@ def test_built_in_display_cannot_be_replaced(brought):
 
 
 async def test_page_feature_of_another_package_receives_messages(brought):
-    async with world() as w, page(w.viewer) as client:
+    async with open_world() as world, page(world.viewer) as client:
         await client.opened()
         await client.send("greet", name="you")
         assert (await client.until("greeting"))["text"] == "hello you"
-        assert "The page feature 'broken' cannot be loaded: AttributeError" in w.logged()
+        assert "The page feature 'broken' cannot be loaded: AttributeError" in world.logged()
 
 
 def test_extensions_match_installation_metadata():
-    for group, found in extensions._all_groups().items():
+    for group, entries in extensions._all_groups().items():
         declared = {(entry.name, entry.value) for entry in entry_points(group=group)}
-        assert {(entry.name, entry.value) for entry in found.values()} == declared
+        assert {(entry.name, entry.value) for entry in entries.values()} == declared
 
 
 def test_entry_points_support_nested_attributes_and_extras():

@@ -8,10 +8,10 @@ from pathlib import Path
 
 OPENING = """
 import asyncio, sys
-from tests.viewer.scene import page, world
+from tests.viewer.scene import open_world, page
 
 async def main():
-    async with world() as made, page(made.viewer) as client:
+    async with open_world() as made, page(made.viewer) as client:
         await client.opened()
         print(*sys.modules)
         await client.send("watch_node_graph", watched=True)
@@ -24,8 +24,8 @@ asyncio.run(main())
 
 def test_panels_and_displays_are_imported_on_demand():
     root = Path(__file__).parents[2]
-    done = subprocess.run([sys.executable, "-c", OPENING], capture_output=True, text=True, cwd=root, check=True)
-    opened, watching = (set(line.split()) for line in done.stdout.splitlines())
+    result = subprocess.run([sys.executable, "-c", OPENING], capture_output=True, text=True, cwd=root, check=True)
+    opened, watching = (set(line.split()) for line in result.stdout.splitlines())
     panels, displays = "linkwright.panels", "linkwright.rviz.displays"
     late = {f"{panels}.monitor.{name}" for name in ("node_graph", "parameters", "plots", "teleop", "topics")}
     late |= {f"{displays}.{name}" for name in ("image", "map", "marker", "point_clouds")}
@@ -50,6 +50,6 @@ asyncio.run(main())
 
 def test_page_is_served_before_robot_modules_are_imported():
     root = Path(__file__).parents[2]
-    done = subprocess.run([sys.executable, "-c", GIVING_OUT], capture_output=True, text=True, cwd=root, check=True)
+    result = subprocess.run([sys.executable, "-c", GIVING_OUT], capture_output=True, text=True, cwd=root, check=True)
     rooms = {f"linkwright.{room}" for room in ("graph", "messages", "urdf", "viewer.viewer", "page.protocol")}
-    assert not set(done.stdout.split()) & {*rooms, "numpy", "yaml", "msgspec"}
+    assert not set(result.stdout.split()) & {*rooms, "numpy", "yaml", "msgspec"}

@@ -27,17 +27,17 @@ from linkwright.rviz import RvizConfig
 from linkwright.viewer import Viewer
 from tests.places import TUTORIAL_PACKAGES, without_meshes
 from tests.skipping import graph_clock, skipping
-from tests.viewer.scene import ARM, World, page, world
+from tests.viewer.scene import ARM, World, open_world, page
 
 Clock = get_message("rosgraph_msgs/msg/Clock")
 
 
 async def test_opened_page_receives_messages_in_order():
-    async with world(title="arm") as made:
-        made.describe(ARM)
-        made.move_arm(1.0)
-        await made.settle()
-        async with page(made.viewer) as client:
+    async with open_world(title="arm") as world:
+        world.describe(ARM)
+        world.move_arm(1.0)
+        await world.settle()
+        async with page(world.viewer) as client:
             transforms = await client.transforms()
             kinds = [message["type"] for message in client.messages[:-1]]
             first, table = client.messages[0], client.messages[-2]
@@ -62,11 +62,11 @@ async def test_opened_page_receives_messages_in_order():
 
 
 async def test_transforms_are_relative_to_fixed_frame():
-    async with world() as made, page(made.viewer) as client:
+    async with open_world() as world, page(world.viewer) as client:
         await client.opened()
-        made.move_arm(1.0)
+        world.move_arm(1.0)
         names = (await client.until("frame_table"))["names"]
-        made.move_arm(2.0)
+        world.move_arm(2.0)
         while (await client.transforms()).poses[names.index("tip")][0] != 2.0:
             pass
         await client.set("global/Fixed Frame", "/tip")
@@ -75,7 +75,7 @@ async def test_transforms_are_relative_to_fixed_frame():
 
 
 async def test_fixed_frame_status_matches_rviz():
-    async with world(RvizConfig.for_model("map")) as made, page(made.viewer) as client:
+    async with open_world(RvizConfig.for_model("map")) as world, page(world.viewer) as client:
         opening = await client.opened()
         assert opening["tree"]["global_status"] == [
             {
@@ -84,7 +84,7 @@ async def test_fixed_frame_status_matches_rviz():
                 "text": "No tf data.  Actual error: Frame [map] does not exist",
             }
         ]
-        made.move_arm()
+        world.move_arm()
         status = await client.until("display_status", display="global")
         assert (status["level"], status["status"][0]["text"]) == ("error", "Frame [map] does not exist")
         await client.set("global/Fixed Frame", "base")
@@ -93,31 +93,31 @@ async def test_fixed_frame_status_matches_rviz():
 
 
 async def test_known_frames_are_offered_as_options():
-    async with world() as made, page(made.viewer) as client:
+    async with open_world() as world, page(world.viewer) as client:
         await client.opened()
-        made.move_arm()
+        world.move_arm()
         offered = await client.until("property_changed", id="global/Fixed Frame")
         assert offered["options"] == ["base", "mark", "tip"]
         offered = await client.until("property_changed", id="display-1/Reference Frame")
         assert offered["options"] == ["<Fixed Frame>", "base", "mark", "tip"]
-    options = made.viewer.config.options.rows()[0].options
+    options = world.viewer.config.options.rows()[0].options
     assert options == ["base", "mark", "tip"]
 
 
 async def test_property_change_is_sent_to_all_pages():
-    async with world() as made, page(made.viewer) as one, page(made.viewer) as other:
-        await one.opened()
-        await other.opened()
-        await one.set("display-2/Alpha", 0.5)
-        await one.set("global/Background Color", "#FFFFFF")
-        for client in (one, other):
+    async with open_world() as world, page(world.viewer) as first, page(world.viewer) as second:
+        await first.opened()
+        await second.opened()
+        await first.set("display-2/Alpha", 0.5)
+        await first.set("global/Background Color", "#FFFFFF")
+        for client in (first, second):
             assert (await client.until("property_changed", id="display-2/Alpha"))["value"] == 0.5
             assert (await client.until("property_changed", id="global/Background Color"))["value"] == "#ffffff"
-        assert "Background Color: 255; 255; 255" in made.viewer.config.text()
+        assert "Background Color: 255; 255; 255" in world.viewer.config.text()
 
 
 async def test_rejected_value_is_answered_with_current_value():
-    async with world() as made, page(made.viewer) as client:
+    async with open_world() as world, page(world.viewer) as client:
         await client.opened()
         for identity, value, standing in (
             ("display-2/Alpha", "much", 1.0),
@@ -135,8 +135,8 @@ async def test_rejected_value_is_answered_with_current_value():
 
 async def test_pages_open_with_view_of_file():
     config = RvizConfig.for_model("base")
-    async with world(config) as made:
-        async with page(made.viewer) as client:
+    async with open_world(config) as world:
+        async with page(world.viewer) as client:
             state = (await client.opened())["view_state"]
             view = state["view"]
             assert (view["values"]["Distance"], state["whole_robot"]) == (3.0, True)
@@ -144,15 +144,15 @@ async def test_pages_open_with_view_of_file():
             await client.send("view_changed", view=view | {"values": {"Focal Point": 1.0}})
             await client.set("display-1/Alpha", 1.0)
             await client.until("property_changed")
-        async with page(made.viewer) as client:
+        async with page(world.viewer) as client:
             state = (await client.opened())["view_state"]
             assert (state["view"]["values"]["Distance"], state["whole_robot"]) == (3.0, True)
     assert RvizConfig.parse(config.text()).views.current.values["Distance"] == 7.0
-    assert "an invalid view" in made.logged()
+    assert "an invalid view" in world.logged()
 
 
 async def test_measured_robot_sets_size_of_grid_and_axes():
-    async with world(RvizConfig.for_model("base")) as made, page(made.viewer) as client:
+    async with open_world(RvizConfig.for_model("base")) as world, page(world.viewer) as client:
         await client.opened()
         await client.send("robot_measured", diagonal=100.0, ground=-2.5)
         cells = await client.until("property_changed", id="display-1/Cell Size")
@@ -168,9 +168,9 @@ async def test_diagnostics_are_shown_with_line_and_cleared():
     source = SourceText("/some/r.xacro", "<robot>\n  <xacro:whel/>\n</robot>\n")
     span = source.span(10, 21)
     diagnostic = Diagnostic("XAC101", "unknown macro", span, notes=(Note("called", span),), hint="did", source=source)
-    async with world() as made, page(made.viewer) as client:
+    async with open_world() as world, page(world.viewer) as client:
         await client.opened()
-        made.viewer.show_diagnostics([diagnostic, Diagnostic("X1", "no place")])
+        world.viewer.show_diagnostics([diagnostic, Diagnostic("X1", "no place")])
         items = (await client.until("diagnostics"))["items"]
         assert items[0] == {
             "code": "XAC101",
@@ -186,18 +186,18 @@ async def test_diagnostics_are_shown_with_line_and_cleared():
             "hints": ["did"],
         }
         assert items[1]["file"] is None
-        async with page(made.viewer) as late:
+        async with page(world.viewer) as late:
             assert len((await late.opened())["diagnostics"]["items"]) == 2
-        made.viewer.show_diagnostics([])
+        world.viewer.show_diagnostics([])
         assert (await client.until("diagnostics"))["items"] == []
 
 
 async def test_configuration_errors_are_logged():
     text = "Visualization Manager:\n  Global Options: {Frame Rate: often}\n  Displays:\n    - {Name: x}\n"
-    async with world(RvizConfig.parse(text, "a.rviz")) as made:
-        made.viewer.config.options.rows()
-    assert "a.rviz:2:32: 'Frame Rate': an integer is expected, not 'often'; 30 is used instead" in made.logged()
-    assert "a.rviz:4:7: a display without a 'Class' is ignored" in made.logged()
+    async with open_world(RvizConfig.parse(text, "a.rviz")) as world:
+        world.viewer.config.options.rows()
+    assert "a.rviz:2:32: 'Frame Rate': an integer is expected, not 'often'; 30 is used instead" in world.logged()
+    assert "a.rviz:4:7: a display without a 'Class' is ignored" in world.logged()
 
 
 @skipping
@@ -234,31 +234,31 @@ async def test_joint_slider_moves_joint_in_page():
 
 
 async def test_close_notifies_page_and_leaves_graph():
-    async with world() as made:
-        async with page(made.viewer) as client:
+    async with open_world() as world:
+        async with page(world.viewer) as client:
             await client.opened()
-            closing = asyncio.ensure_future(made.viewer.close())
+            closing = asyncio.ensure_future(world.viewer.close())
             with pytest.raises(ConnectionError):
                 await client.until("nothing")
             await closing
             assert client.socket.close_code == 1001
-        assert made.graph.node_names() == ["/publishers"]
+        assert world.graph.node_names() == ["/publishers"]
         with pytest.raises(aiohttp.ClientError):
             async with aiohttp.ClientSession() as session:
-                await session.get(made.viewer.url)
+                await session.get(world.viewer.url)
 
 
 async def test_viewer_can_be_closed_repeatedly_after_graph():
-    async with world() as made:
-        await made.graph.close()
-        await made.viewer.close()
-        await made.viewer.close()
+    async with open_world() as world:
+        await world.graph.close()
+        await world.viewer.close()
+        await world.viewer.close()
 
 
 @skipping
 async def test_unresponsive_page_does_not_delay_close():
-    async with world() as made:
-        address = urlsplit(made.viewer.url)
+    async with open_world() as world:
+        address = urlsplit(world.viewer.url)
         reader, writer = await asyncio.open_connection(address.hostname, address.port)
         head = (
             f"GET /ws?{address.query} HTTP/1.1",
@@ -272,25 +272,25 @@ async def test_unresponsive_page_does_not_delay_close():
         await reader.readuntil(b"\r\n\r\n")
         now = asyncio.get_running_loop().time
         start = now()
-        await made.viewer.close()
+        await world.viewer.close()
         assert now() - start < 1.5
         writer.close()
 
 
 async def test_listening_on_all_interfaces_is_logged():
-    async with world(host="0.0.0.0") as made:
-        assert "anyone who can reach it" in made.logged()
-        assert made.viewer.url.startswith("http://127.0.0.1:")
-    async with world() as made:
-        assert made.logged() == ""
+    async with open_world(host="0.0.0.0") as world:
+        assert "anyone who can reach it" in world.logged()
+        assert world.viewer.url.startswith("http://127.0.0.1:")
+    async with open_world() as world:
+        assert world.logged() == ""
 
 
 async def test_port_in_use_leaves_no_node():
-    async with world() as made:
-        port = urlsplit(made.viewer.url).port
+    async with open_world() as world:
+        port = urlsplit(world.viewer.url).port
         second = Viewer(
-            made.graph,
-            library=made.library,
+            world.graph,
+            library=world.library,
             finder=PackageFinder(),
             config=RvizConfig.default(),
             port=port,
@@ -299,7 +299,7 @@ async def test_port_in_use_leaves_no_node():
         with pytest.raises(LinkwrightError) as caught:
             await second.start()
         assert caught.value.diagnostics[0].code == "VIEW101"
-        assert "/second" not in made.graph.node_names()
+        assert "/second" not in world.graph.node_names()
 
 
 @pytest.mark.parametrize("times", [1, 2])
@@ -307,8 +307,8 @@ async def test_port_in_use_leaves_no_node():
 async def test_canceled_start_leaves_no_node_or_socket(steps, times, monkeypatch):
     listeners = []
     monkeypatch.setattr(page_server, "listen", lambda host, port: listeners.append(listen(host, port)) or listeners[0])
-    made = World()
-    start = asyncio.ensure_future(made.viewer.start())
+    world = World()
+    start = asyncio.ensure_future(world.viewer.start())
     for _ in range(steps):
         await asyncio.sleep(0)
     broken_off = start.cancel()
@@ -317,10 +317,10 @@ async def test_canceled_start_leaves_no_node_or_socket(steps, times, monkeypatch
         start.cancel()
     await asyncio.wait([start])
     if not broken_off:  # it had started: ended as ever
-        await made.viewer.close()
+        await world.viewer.close()
     assert listeners[0].fileno() == -1
-    assert made.graph.node_names() == ["/publishers"]
-    await made.graph.close()
+    assert world.graph.node_names() == ["/publishers"]
+    await world.graph.close()
 
 
 async def test_failed_feature_start_closes_socket(monkeypatch):
@@ -330,12 +330,12 @@ async def test_failed_feature_start_closes_socket(monkeypatch):
     listeners = []
     monkeypatch.setattr(page_server, "listen", lambda host, port: listeners.append(listen(host, port)) or listeners[0])
     monkeypatch.setattr(JointsFeature, "start", fail)
-    made = World()
+    world = World()
     with pytest.raises(OSError, match="the disk is full"):
-        await made.viewer.start()
+        await world.viewer.start()
     assert listeners[0].fileno() == -1
-    assert made.graph.node_names() == ["/publishers"]
-    await made.graph.close()
+    assert world.graph.node_names() == ["/publishers"]
+    await world.graph.close()
 
 
 async def test_failed_feature_close_closes_socket(monkeypatch):
@@ -343,20 +343,20 @@ async def test_failed_feature_close_closes_socket(monkeypatch):
         raise OSError("the disk is full")
 
     monkeypatch.setattr(JointsFeature, "close", fail)
-    made = World()
-    await made.viewer.start()
-    address = urlsplit(made.viewer.url)
+    world = World()
+    await world.viewer.start()
+    address = urlsplit(world.viewer.url)
     with pytest.raises(OSError, match="the disk is full"):
-        await made.viewer.close()
+        await world.viewer.close()
     with pytest.raises(ConnectionRefusedError):
         await asyncio.open_connection(address.hostname, address.port)
-    assert made.graph.node_names() == ["/publishers"]
-    await made.graph.close()
+    assert world.graph.node_names() == ["/publishers"]
+    await world.graph.close()
 
 
 async def test_missing_page_build_is_explained(tmp_path, monkeypatch):
     monkeypatch.setattr(server, "WebServer", partial(server.WebServer, page_folder=tmp_path))
-    async with world() as made, aiohttp.ClientSession() as session, session.get(made.viewer.url) as answer:
+    async with open_world() as world, aiohttp.ClientSession() as session, session.get(world.viewer.url) as answer:
         assert answer.status == 503
         assert "make page" in await answer.text()
 
@@ -366,9 +366,9 @@ async def test_page_and_hashed_assets_are_served(tmp_path, monkeypatch):
     (tmp_path / "index.html").write_text("<!doctype html><title>x</title>", encoding="utf-8")
     (tmp_path / "assets" / "index-abc.js").write_text("export {}", encoding="utf-8")
     monkeypatch.setattr(server, "WebServer", partial(server.WebServer, page_folder=tmp_path))
-    async with world() as made, aiohttp.ClientSession() as session:
-        base = made.viewer.url.partition("?")[0]
-        async with session.get(made.viewer.url) as answer:
+    async with open_world() as world, aiohttp.ClientSession() as session:
+        base = world.viewer.url.partition("?")[0]
+        async with session.get(world.viewer.url) as answer:
             assert answer.status == 200
             assert answer.headers["Cache-Control"] == "no-cache"
             assert await answer.text() == "<!doctype html><title>x</title>"
@@ -388,12 +388,12 @@ async def test_page_and_hashed_assets_are_served(tmp_path, monkeypatch):
             assert "Content-Encoding" not in answer.headers
             assert await answer.text() == "export {}"
         (tmp_path / "assets" / "index-abc.js").unlink()  # as the build leaves them
-        for taken, encoding in (("gzip", "gzip"), ("identity", None)):
-            async with session.get(f"{base}assets/index-abc.js", headers={"Accept-Encoding": taken}) as answer:
+        for accepted, encoding in (("gzip", "gzip"), ("identity", None)):
+            async with session.get(f"{base}assets/index-abc.js", headers={"Accept-Encoding": accepted}) as answer:
                 assert answer.headers.get("Content-Encoding") == encoding
                 assert answer.headers["Vary"] == "Accept-Encoding"
                 assert await answer.text() == "export {}"
-                known = {"Accept-Encoding": taken, "If-None-Match": answer.headers["ETag"]}
+                known = {"Accept-Encoding": accepted, "If-None-Match": answer.headers["ETag"]}
             async with session.get(f"{base}assets/index-abc.js", headers=known) as answer:
                 assert (answer.status, await answer.read()) == (304, b"")
         async with session.get(f"{base}assets/gone.js") as answer:
@@ -415,10 +415,10 @@ async def test_page_and_hashed_assets_are_served(tmp_path, monkeypatch):
 async def test_tutorial_models_are_shown(package, model, links, tmp_path):
     share = without_meshes(package, tmp_path)
     config = RvizConfig.load(share / "rviz" / "urdf.rviz")
-    async with world(config, packages={"my_robot_description": share}) as made:
-        made.describe((share / "urdf" / f"{model}.urdf").read_text(encoding="utf-8"))
-        await made.settle()
-        async with page(made.viewer) as client:
+    async with open_world(config, packages={"my_robot_description": share}) as world:
+        world.describe((share / "urdf" / f"{model}.urdf").read_text(encoding="utf-8"))
+        await world.settle()
+        async with page(world.viewer) as client:
             opening = await client.opened()
     assert len(opening["robot_scene"]["links"]) == links
     view = opening["view_state"]["view"]["values"]
@@ -426,7 +426,7 @@ async def test_tutorial_models_are_shown(package, model, links, tmp_path):
     alpha = next(row for row in opening["tree"]["displays"][1]["properties"] if row["name"] == "Alpha")
     assert alpha["value"] == 0.8
     if model == "mbot_with_kinect":
-        assert str(share / "meshes" / "kinect.dae") in made.status("RobotModel")["kinect_link"][1]
+        assert str(share / "meshes" / "kinect.dae") in world.status("RobotModel")["kinect_link"][1]
 
 
 async def test_viewer_node_applies_node_options():
@@ -436,18 +436,18 @@ async def test_viewer_node_applies_node_options():
         parameters={"use_sim_time": True, "fixed_frame": "tip"},
         arguments=["--ros-args", "-r", "robot_description:=other"],
     )
-    async with world(options=options) as made:
-        (name,) = [node_name for node_name in made.graph.node_names() if node_name.endswith("/eyes")]
+    async with open_world(options=options) as world:
+        (name,) = [node_name for node_name in world.graph.node_names() if node_name.endswith("/eyes")]
         assert name == "/robot/eyes"
-        assert made.viewer.manager.fixed_frame == "tip"
-        assert made.viewer.manager.time.now_ns() == 0  # no /clock yet
-        clock = made.graph.create_node("clock").create_publisher(Clock, "/clock", CLOCK_QOS)
+        assert world.viewer.manager.fixed_frame == "tip"
+        assert world.viewer.manager.time.now_ns() == 0  # no /clock yet
+        clock = world.graph.create_node("clock").create_publisher(Clock, "/clock", CLOCK_QOS)
         clock.publish(Clock(clock=Time(sec=12)))
-        await made.settle()
-        assert made.viewer.manager.time.now_ns() == 12_000_000_000
+        await world.settle()
+        assert world.viewer.manager.time.now_ns() == 12_000_000_000
 
 
 async def test_unknown_ros_argument_is_rejected():
     with pytest.raises(LinkwrightError, match="--no-such"):
-        async with world(options=NodeOptions(arguments=["--ros-args", "--no-such"])):
+        async with open_world(options=NodeOptions(arguments=["--ros-args", "--no-such"])):
             pass

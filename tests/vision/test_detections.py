@@ -8,13 +8,13 @@ from linkwright.vision.detections import Detections
 
 
 def test_detections_have_names():
-    found = Detections(
+    detections = Detections(
         np.array([[0, 0, 2, 2], [1, 1, 3, 3]], np.float32),
         np.array([0.9, 0.8], np.float32),
         np.array([1, 0], np.int32),
         ("ball", "box"),
     )
-    assert [found.name(index) for index in range(len(found))] == ["box", "ball"]
+    assert [detections.name(index) for index in range(len(detections))] == ["box", "ball"]
 
 
 def test_empty_detections_have_length_zero():

@@ -56,9 +56,9 @@ def wire(request: pytest.FixtureRequest) -> str:
 @pytest.fixture
 def router_port() -> int:
     """A port that nobody listens at: no router of this machine takes part in a test."""
-    with socket.socket() as taken:
-        taken.bind(("127.0.0.1", 0))
-        return int(taken.getsockname()[1])
+    with socket.socket() as listener:
+        listener.bind(("127.0.0.1", 0))
+        return int(listener.getsockname()[1])
 
 
 @pytest.fixture
@@ -117,15 +117,15 @@ def processes(wire: str, request: pytest.FixtureRequest) -> Iterator[Callable[..
     pytest.importorskip(PACKAGES[wire], reason=f"there is no {wire} here")
     if wire == "zenoh":
         request.getfixturevalue("zenoh_variables")
-    made: list[Process] = []
+    processes: list[Process] = []
 
     def make(name: str, **options: bool) -> Process:
-        made.append(Process(name, wire=wire, **options))
-        return made[-1]
+        processes.append(Process(name, wire=wire, **options))
+        return processes[-1]
 
     yield make
-    for each in made:
-        each.close()
+    for process in processes:
+        process.close()
 
 
 @pytest.fixture
@@ -138,5 +138,5 @@ def programs() -> Iterator[Callable[..., Program]]:
         return started[-1]
 
     yield start
-    for each in started:
-        each.end()
+    for program in started:
+        program.end()

@@ -69,7 +69,7 @@ class ManagedPeer(LifecycleNode):
         goals = [result_of(client.send_goal_async(Fibonacci.Goal(order=number % 5 + 2))) for number in range(count)]
         results = [result_of(goal.get_result_async()).result for goal in goals]
         client.destroy()
-        return sum(list(each.sequence) == fibonacci(number % 5 + 2) for number, each in enumerate(results))
+        return sum(list(result.sequence) == fibonacci(number % 5 + 2) for number, result in enumerate(results))
 
     def watch(self, node: str) -> None:
         self.create_subscription(
@@ -129,8 +129,8 @@ class ManagedPeer(LifecycleNode):
 
     def _on_parameters(self, event: ParameterEvent) -> None:
         for kind in ("new", "changed", "deleted"):
-            for each in getattr(event, f"{kind}_parameters"):
-                self.events.append([event.node, kind, each.name, each.value.double_value])
+            for parameter in getattr(event, f"{kind}_parameters"):
+                self.events.append([event.node, kind, parameter.name, parameter.value.double_value])
 
     def _called(self, kind: Any, name: str, request: Any) -> Any:
         client = self.create_client(kind, name)

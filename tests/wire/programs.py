@@ -40,11 +40,11 @@ class Program:
         **environment: str,
     ) -> None:
         repository = FOLDER.parents[1]
-        found = {} if folder is None else {"PYTHONPATH": str(repository)}
+        variables = {} if folder is None else {"PYTHONPATH": str(repository)}
         self.process = subprocess.Popen(
             [*within, python, "-m", f"tests.wire.{name}", *words],
             cwd=folder or repository,
-            env={**os.environ, **found, **environment},
+            env={**os.environ, **variables, **environment},
             stdin=subprocess.PIPE,
             stdout=subprocess.PIPE,
             stderr=subprocess.PIPE,
@@ -130,7 +130,7 @@ def serve(answers: dict[str, Callable[..., Any]]) -> None:
 
 def linkwright(*words: str) -> tuple[str, str, int]:
     """What a command prints, its errors and its exit status."""
-    done = subprocess.run(
+    result = subprocess.run(
         [sys.executable, "-m", "linkwright", *words], capture_output=True, text=True, timeout=60, check=False
     )
-    return done.stdout, done.stderr, done.returncode
+    return result.stdout, result.stderr, result.returncode

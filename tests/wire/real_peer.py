@@ -76,7 +76,7 @@ class RealPeer:
 
     def hashes(self, topic: str) -> list[str]:
         """Of the types of its publishers."""
-        return [str(each.topic_type_hash) for each in self.node.get_publishers_info_by_topic(topic)]
+        return [str(endpoint.topic_type_hash) for endpoint in self.node.get_publishers_info_by_topic(topic)]
 
     def publish(self, text: str) -> None:
         self.publishers[""].publish(String(data=text))
@@ -143,8 +143,8 @@ class RealPeer:
         """Set it, and whether that was done, and what it is then."""
         client = AsyncParameterClient(self.node, node)
         assert client.wait_for_services(60)
-        done = result_of(client.set_parameters([Parameter(name, value=value)])).results[0].successful
-        return [done, result_of(client.get_parameters([name])).values[0].double_value]
+        is_successful = result_of(client.set_parameters([Parameter(name, value=value)])).results[0].successful
+        return [is_successful, result_of(client.get_parameters([name])).values[0].double_value]
 
     def received(self, topic: str) -> list[str]:
         return [message.data for message in self.heard[topic]]

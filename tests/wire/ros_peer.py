@@ -114,12 +114,12 @@ class RosPeer:
         return "written"
 
     def received(self) -> list[str]:
-        samples = [each for each in self.subscription.take(100) if hasattr(each, "cdr")]
+        samples = [sample for sample in self.subscription.take(100) if hasattr(sample, "cdr")]
         return [sample.cdr[8:].split(b"\0")[0].decode() for sample in samples]
 
     def answer(self) -> int:
         """Answer the requests that have come; how many those were."""
-        requests = [each for each in self.requests.take(100) if hasattr(each, "cdr")]
+        requests = [sample for sample in self.requests.take(100) if hasattr(sample, "cdr")]
         for request in requests:
             head, wanted = request.cdr[4:20], request.cdr[20]
             self.replies.write(
@@ -132,7 +132,7 @@ class RosPeer:
         self.asking.write(self.asking.data_type(b"\0\1\0\0" + head + bytes([value, 0, 0, 0])))
 
     def replies_to_calls(self) -> list[list[Any]]:
-        samples = [each for each in self.answers.take(100) if hasattr(each, "cdr")]
+        samples = [sample for sample in self.answers.take(100) if hasattr(sample, "cdr")]
         return [
             [*struct.unpack_from("<Qq", sample.cdr, 4), bool(sample.cdr[20]), sample.cdr[28:].split(b"\0")[0].decode()]
             for sample in samples
@@ -140,20 +140,20 @@ class RosPeer:
 
     def nodes(self) -> list[Any]:
         """What is heard in ``ros_discovery_info`` with gids of the distribution's size."""
-        for each in self.info_reader.take(100):
-            if hasattr(each, "cdr"):
-                self.heard[each.cdr[4:20].hex()] = self._decode(each.cdr[4:])
+        for sample in self.info_reader.take(100):
+            if hasattr(sample, "cdr"):
+                self.heard[sample.cdr[4:20].hex()] = self._decode(sample.cdr[4:])
         return [node for nodes in self.heard.values() for node in nodes]
 
     def seen(self) -> dict[str, Any]:
         """The endpoints of others: DDS topic -> type, USER_DATA, GUID, whether it writes."""
         for reader, writes in ((self.publications, True), (self.subscriptions, False)):
-            for each in reader.take(500):
-                if each.sample_info.instance_state != 16:
-                    self.endpoints.pop(each.key.bytes.hex(), None)
-                elif each.participant_key != self.participant.guid:
-                    data = each.qos[Policy.Userdata].data.decode() if Policy.Userdata in each.qos else ""
-                    self.endpoints[each.key.bytes.hex()] = [each.topic_name, each.type_name, data, writes]
+            for sample in reader.take(500):
+                if sample.sample_info.instance_state != 16:
+                    self.endpoints.pop(sample.key.bytes.hex(), None)
+                elif sample.participant_key != self.participant.guid:
+                    data = sample.qos[Policy.Userdata].data.decode() if Policy.Userdata in sample.qos else ""
+                    self.endpoints[sample.key.bytes.hex()] = [sample.topic_name, sample.type_name, data, writes]
         return self.endpoints
 
     def _qos(self, facts: str, lasting: bool) -> Qos:
@@ -202,11 +202,11 @@ class RosPeer:
 
         def gids() -> list[str]:
             nonlocal offset
-            found = []
+            gid_list = []
             for _ in range(number()):
-                found.append(data[offset : offset + self.gid_size].hex())
+                gid_list.append(data[offset : offset + self.gid_size].hex())
                 offset += self.gid_size
-            return found
+            return gid_list
 
         return [[string(), string(), gids(), gids()] for _ in range(number())]
 

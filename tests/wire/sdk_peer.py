@@ -43,13 +43,13 @@ class SdkPeer:
         for number in range(first, first + count):
             self.publisher.publish(data=str(number))
 
-    def call(self, clients: int, each: int) -> list[list[str | None]]:
+    def call(self, clients: int, calls_per_client: int) -> list[list[str | None]]:
         """What several clients are told, each of which asks so many times, all at once."""
         messages: list[list[str | None]] = [[] for _ in range(clients)]
 
         def ask(which: int) -> None:
             client = ROS2ServiceClient("/flip", node_name=f"{self.name}_{which}", **FLIP)
-            for number in range(each):
+            for number in range(calls_per_client):
                 response = client.call(data=number % 2 == 1)
                 messages[which].append(None if response is None else f"{response.success} {response.message}")
             client.close()

@@ -88,16 +88,16 @@ def test_unresponsive_reader_delays_topic_once():
 def test_queued_samples_are_written_after_acknowledgment(processes, monkeypatch):
     a, b = processes("a"), processes("b")
     monkeypatch.setattr(a.transport._remote, "is_read_by_fast", lambda topic: True)
-    got: list[int] = []
+    numbers: list[int] = []
     newest = QoSProfile(1)
-    b.node.create_subscription(UInt8MultiArray, "pictures", lambda message: got.append(message.data[0]), 10)
+    b.node.create_subscription(UInt8MultiArray, "pictures", lambda message: numbers.append(message.data[0]), 10)
     publisher = a.node.create_publisher(UInt8MultiArray, "pictures", newest)
     b.spin_until(lambda: publisher.get_subscription_count() == 1)
     for number in range(1, 21):
         publisher.publish(UInt8MultiArray(data=bytes([number]) * 1_000_000))
-    b.spin_until(lambda: got and got[-1] == 20)
-    assert got == sorted(got)
+    b.spin_until(lambda: numbers and numbers[-1] == 20)
+    assert numbers == sorted(numbers)
     publisher.publish(UInt8MultiArray(data=bytes([21]) * 1_000_000))
     publisher.publish(UInt8MultiArray(data=bytes([22]) * 1_000_000))
     assert publisher.wait_for_all_acked()
-    b.spin_until(lambda: got[-1] == 22)
+    b.spin_until(lambda: numbers[-1] == 22)

@@ -21,7 +21,7 @@ pytestmark = pytest.mark.skipif(not TOOL.exists(), reason="the tool is not insta
 @pytest.fixture
 def tool(domain, monkeypatch):
     def run(*words: str) -> str:
-        done = subprocess.run(
+        result = subprocess.run(
             [str(TOOL), *words, "--suppress-progress-bar", "-r", "1s"],
             capture_output=True,
             text=True,
@@ -29,7 +29,7 @@ def tool(domain, monkeypatch):
             check=True,
             env={"CYCLONEDDS_URI": CONFIGURATIONS["localhost"], "COLUMNS": "200", "PATH": "/usr/bin", "HOME": "/tmp"},
         )
-        return re.sub(r"\x1b\[[0-9;]*m", "", done.stdout)
+        return re.sub(r"\x1b\[[0-9;]*m", "", result.stdout)
 
     return run
 

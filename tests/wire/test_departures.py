@@ -83,7 +83,7 @@ def test_participant_of_ended_process_is_lost_before_lease_expires(monkeypatch):
     scene.after(1.0)
     assert not scene.lost
     scene.after(2 * GRACE)
-    assert [each.name for each in scene.lost] == ["/chatter"]
+    assert [endpoint.name for endpoint in scene.lost] == ["/chatter"]
     scene.remote.remove_participant(PARTICIPANT)
     assert scene.after(2 * WITHDRAWAL_TIMEOUT_S) is None
     assert len(scene.lost) == 1
@@ -108,32 +108,32 @@ def test_destroyed_publisher_and_leaving_process_are_not_lost(processes, program
     us = processes("ours")
     lost: list[EndpointInfo] = []
     us.node.create_subscription(String, "/other", lambda _: None, 10).watch_lost(lost.append)
-    them, marker = processes("theirs"), programs("our_program", "marker")
-    publisher = them.node.create_publisher(String, "/other", 10)
-    them.node.create_publisher(String, "/other", 10)
+    peer, marker = processes("theirs"), programs("our_program", "marker")
+    publisher = peer.node.create_publisher(String, "/other", 10)
+    peer.node.create_publisher(String, "/other", 10)
     us.spin_until(lambda: us.node.count_publishers("/other") == 2)
     publisher.destroy()
     us.spin_until(lambda: us.node.count_publishers("/other") == 1)
-    them.close()
+    peer.close()
     us.spin_until(lambda: us.node.count_publishers("/other") == 0)
     us.node.create_subscription("rcl_interfaces/msg/Log", "/rosout", lambda _: None, 10).watch_lost(lost.append)
     us.spin_until(lambda: us.node.count_publishers("/rosout") == 2)
     marker.kill()
     us.spin_until(lambda: lost)  # after those that left, if these were told, too
-    assert {each.node.name for each in lost} == {"marker"}, lost
+    assert {endpoint.node.name for endpoint in lost} == {"marker"}, lost
 
 
 def test_program_that_ends_with_uncaught_exception_is_lost(processes, monkeypatch):
     us = processes("ours")
     lost: list[EndpointInfo] = []
     us.node.create_subscription(String, "/other", lambda _: None, 10).watch_lost(lost.append)
-    them = processes("theirs")
-    them.node.create_publisher(String, "/other", 10)
+    peer = processes("theirs")
+    peer.node.create_publisher(String, "/other", 10)
     us.spin_until(lambda: us.node.count_publishers("/other") == 1)
     monkeypatch.setattr(sys, "last_value", ValueError("nobody caught it"), raising=False)
-    them.transport.close()  # as at the end of the program
+    peer.transport.close()  # as at the end of the program
     us.spin_until(lambda: lost)
-    assert [each.node.name for each in lost] == ["theirs"]
+    assert [endpoint.node.name for endpoint in lost] == ["theirs"]
 
 
 @pytest.mark.parametrize(

@@ -116,7 +116,7 @@ def test_numpy_and_unused_cyclonedds_modules_are_not_imported():
         from cyclonedds.pub import DataWriter
         print(cyclonedds.pub.DataWriter is DataWriter, cyclonedds.core is core, hasattr(cyclonedds, "nothing"))
     """
-    done = subprocess.run(
+    result = subprocess.run(
         [sys.executable, "-c", textwrap.dedent(code)], capture_output=True, text=True, check=False, timeout=SECONDS
     )
-    assert (done.stdout, done.stderr) == ("[]\nTrue True False\n", "")
+    assert (result.stdout, result.stderr) == ("[]\nTrue True False\n", "")

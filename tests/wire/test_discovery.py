@@ -123,8 +123,8 @@ def test_fifty_nodes_with_services_are_discovered(processes, programs):
     for number in range(50):
         us.graph.create_node(f"node_{number}")
     other = programs("our_program", "other")
-    found = other.ask_until(lambda found: len(found) == 52, "nodes", seconds=20)
-    assert "node_49" in found
+    names = other.ask_until(lambda names: len(names) == 52, "nodes", seconds=20)
+    assert "node_49" in names
 
 
 def test_type_hash_of_fast_dds_request_is_not_service_hash():

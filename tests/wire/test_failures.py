@@ -43,15 +43,15 @@ def flip(request, response):
 @both_wires
 def test_failing_message_does_not_affect_others(processes):
     a, b = processes("a"), processes("b")
-    got = []
-    subscription = b.node.create_subscription(String, "chatter", lambda message: got.append(message.data), 10)
+    texts = []
+    subscription = b.node.create_subscription(String, "chatter", lambda message: texts.append(message.data), 10)
     subscription.receive = Once(subscription.receive)
     publisher = a.node.create_publisher(String, "chatter", 10)
     a.spin_until(lambda: publisher.get_subscription_count() == 1)
     for word in ("one", "two", "three"):
         publisher.publish(String(data=word))
-    b.spin_until(lambda: len(got) == 2)
-    assert got == ["two", "three"]
+    b.spin_until(lambda: len(texts) == 2)
+    assert texts == ["two", "three"]
     assert len(warnings_of(b, "callback of topic '/chatter' failed:")) == 1
 
 
@@ -109,10 +109,10 @@ def test_unserializable_latched_message_is_reported_and_others_sent(processes):
         publisher.publish(message)
     a.join()
     b = processes("b")
-    got = []
-    b.node.create_subscription(String, "described", lambda message: got.append(message.data), LASTING)
-    b.spin_until(lambda: len(got) == 2)
-    assert got == ["one", "three"]
+    texts = []
+    b.node.create_subscription(String, "described", lambda message: texts.append(message.data), LASTING)
+    b.spin_until(lambda: len(texts) == 2)
+    assert texts == ["one", "three"]
     assert [text for text in a.warnings() if text.startswith("sending the messages of topic '/described' failed:")]
 
 

@@ -33,17 +33,17 @@ def texts(log):
 
 
 def delivers_locally(graph) -> bool:
-    got = []
+    messages = []
     node = graph.create_node("alone")
-    node.create_subscription(String, "chatter", got.append, 10)
+    node.create_subscription(String, "chatter", messages.append, 10)
     node.create_publisher(String, "chatter", 10).publish(String())
     return graph.count_publishers("/chatter") == 1
 
 
 def test_import_does_not_load_cyclonedds():
     code = "import sys, linkwright.wire.dds; print('cyclonedds' in sys.modules)"
-    done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
-    assert done.stdout == "False\n"
+    result = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
+    assert result.stdout == "False\n"
 
 
 def test_linkwright_dds_0_keeps_process_offline(graph, log, monkeypatch):
@@ -102,11 +102,11 @@ def test_invalid_discovery_range_is_reported_and_falls_back_to_machine(graph, lo
 
 @with_dds
 def test_domain_without_free_ports_is_reported(graph, log, domain, capfd):
-    with ExitStack() as taken:
+    with ExitStack() as stack:
         for index in range(max_participants(domain) + 1):
-            each = taken.enter_context(socket.socket(socket.AF_INET, socket.SOCK_DGRAM))
+            udp_socket = stack.enter_context(socket.socket(socket.AF_INET, socket.SOCK_DGRAM))
             with suppress(OSError):
-                each.bind(("", 7410 + 250 * domain + 2 * index))
+                udp_socket.bind(("", 7410 + 250 * domain + 2 * index))
         transport = join(graph)
         assert not transport.wait_until_ready(10)
     assert transport.problem.diagnostics[0].code == "DDS103"

@@ -88,7 +88,7 @@ def test_domain_joined_after_close_is_left_again(processes, monkeypatch):
 
 @pytest.mark.parametrize("seconds", [0.0, 0.05, 0.1, 0.15, 0.2])
 def test_program_that_ends_while_joining_prints_nothing(seconds):
-    done = run(
+    result = run(
         f"""
         import asyncio, time
         from linkwright.graph import Graph
@@ -101,7 +101,7 @@ def test_program_that_ends_while_joining_prints_nothing(seconds):
         asyncio.run(main())
         """
     )
-    assert (done.returncode, done.stdout, done.stderr) == (0, "", "")
+    assert (result.returncode, result.stdout, result.stderr) == (0, "", "")
 
 
 def test_close_ends_wait_for_discovery(processes):
@@ -122,20 +122,20 @@ def test_close_ends_wait_for_discovery(processes):
 
 def test_reliable_messages_sent_before_close_arrive(processes):
     b = processes("b")
-    got: list[int] = []
+    numbers: list[int] = []
     deep = QoSProfile(500)
-    b.node.create_subscription("std_msgs/msg/Int32", "chatter", lambda message: got.append(message.data), deep)
+    b.node.create_subscription("std_msgs/msg/Int32", "chatter", lambda message: numbers.append(message.data), deep)
     a = processes("a")
     publisher = a.node.create_publisher("std_msgs/msg/Int32", "chatter", deep)
     a.spin_until(lambda: publisher.get_subscription_count() == 1)
     for number in range(300):
         publisher.publish(get_message("std_msgs/msg/Int32")(data=number))
     a.close()
-    b.spin_until(lambda: len(got) == 300)
+    b.spin_until(lambda: len(numbers) == 300)
 
 
 def test_program_without_close_ends(domain):
-    done = run(
+    result = run(
         """
         from linkwright.graph import Graph
         from linkwright.wire.dds import join
@@ -146,11 +146,11 @@ def test_program_without_close_ends(domain):
         assert transport.wait_until_ready(60)
         """
     )
-    assert (done.returncode, done.stderr) == (0, "")
+    assert (result.returncode, result.stderr) == (0, "")
 
 
 def test_failing_program_ends(domain):
-    done = run(
+    result = run(
         """
         from linkwright.graph import Graph
         from linkwright.wire.dds import join
@@ -159,11 +159,11 @@ def test_failing_program_ends(domain):
         raise SystemExit(3)
         """
     )
-    assert (done.returncode, done.stderr) == (3, "")
+    assert (result.returncode, result.stderr) == (3, "")
 
 
 def test_packets_that_are_not_dds_print_nothing_to_stderr(domain):
-    done = run(
+    result = run(
         """
         import os, socket, time
         from linkwright.graph import Graph
@@ -180,7 +180,7 @@ def test_packets_that_are_not_dds_print_nothing_to_stderr(domain):
         graph.close_threadsafe()
         """
     )
-    assert (done.returncode, done.stderr) == (0, "")
+    assert (result.returncode, result.stderr) == (0, "")
 
 
 @pytest.mark.skipif(not hasattr(os, "fork"), reason="there is no fork here")

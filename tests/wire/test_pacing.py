@@ -169,12 +169,12 @@ def test_image_is_sent_packet_by_packet_before_cyclone(processes, monkeypatch):
         listening.settimeout(60)
         monkeypatch.setattr("linkwright.wire.dds.remote._FAST_DDS", b"\x01\x10")
         monkeypatch.setattr(Engine, "_fast_address", lambda *_: listening.getsockname())
-        us, them = processes("ours"), processes("theirs")
-        got = []
-        subscription = them.node.create_subscription(Image, "/picture", got.append, QoSProfile(depth=10))
+        us, peer = processes("ours"), processes("theirs")
+        messages = []
+        subscription = peer.node.create_subscription(Image, "/picture", messages.append, QoSProfile(depth=10))
         publisher = us.node.create_publisher(Image, "/picture", QoSProfile(depth=10))
         us.spin_until(lambda: publisher.get_subscription_count() == us.node.count_subscribers("/picture") == 1)
-        them.spin_until(lambda: subscription.get_publisher_count() == 1)
+        peer.spin_until(lambda: subscription.get_publisher_count() == 1)
         images = [Image(data=os.urandom(100_000)), Image(data=b"small"), Image(data=os.urandom(70_000))]
         fragments = []
         for image, packets in zip(images, (2, 0, 2), strict=True):
@@ -182,8 +182,8 @@ def test_image_is_sent_packet_by_packet_before_cyclone(processes, monkeypatch):
             for _ in range(packets):
                 fragments += parse(listening.recv(0x1_0000), subscription.gid[:12])
         assert publisher.wait_for_all_acked()
-        them.spin_until(lambda: len(got) == 3)
-        assert got == images
+        peer.spin_until(lambda: len(messages) == 3)
+        assert messages == images
     assert [(text.number, text.first) for text in fragments] == [(1, 1), (1, 2), (3, 1), (3, 2)]
     assert {text.writer for text in fragments} == {publisher.gid}
     paced = b"".join(text.payload for text in fragments[:2])

@@ -66,8 +66,8 @@ def test_simultaneous_goals_get_their_own_results(peers, asking, asked):
 def test_managed_node_changes_states(peers, asking, asked):
     answers, asks = peers(asked), peers(asking)
     asks.ask("watch", asked)
-    for each in (asks, answers):
-        each.ask_until(lambda known: known == [1, 1], "ends_of", f"/{asked}/transition_event")
+    for peer in (asks, answers):
+        peer.ask_until(lambda known: known == [1, 1], "ends_of", f"/{asked}/transition_event")
     assert asks.ask("state", asked) == "unconfigured"
     assert asks.ask("possible", asked) == ["configure", "shutdown"]
     for transition, state in (("configure", "inactive"), ("activate", "active"), ("deactivate", "inactive")):
@@ -84,8 +84,8 @@ def test_managed_node_changes_states(peers, asking, asked):
 @pytest.mark.parametrize(("asking", "asked"), SIDES)
 def test_parameter_events_are_received(peers, asking, asked):
     hears, tells = peers(asking), peers(asked)
-    for each in (hears, tells):
-        each.ask_until(lambda known: known == [2, 2], "ends_of", "/parameter_events")
+    for peer in (hears, tells):
+        peer.ask_until(lambda known: known == [2, 2], "ends_of", "/parameter_events")
     tells.ask("declare", "speed", 1.5)
     tells.ask("set", "speed", 2.5)
     events = hears.ask_until(lambda events: len(events) >= 2, "events_of", asked, "speed")

@@ -48,15 +48,15 @@ class Bridge:
 
 @pytest.fixture
 def bridge():
-    made = []
+    bridges = []
 
     def start():
-        made.append(Bridge())
-        return made[-1]
+        bridges.append(Bridge())
+        return bridges[-1]
 
     yield start
-    for each in made:
-        each.kill()
+    for bridge in bridges:
+        bridge.kill()
 
 
 @pytest.fixture
@@ -72,11 +72,11 @@ def peer(programs):
                 rules += [rule for pair in crossed for rule in (pair, pair[::-1])]
             words = ["--ros-args", *(word for rule in rules for word in ("-r", ":=".join(rule)))]
         if side == "ours":
-            found = {"PYTHONPATH": environment()["PYTHONPATH"]}
+            variables = {"PYTHONPATH": environment()["PYTHONPATH"]}
         else:
-            found = {"PYTHONPATH": f"{TYPES}/python", "LD_LIBRARY_PATH": f"{TYPES}/lib"} if TYPES else {}
-            found["python"] = PYTHON
-        return programs(program, side, *words, RMW_IMPLEMENTATION=RMW[side], **found)
+            variables = {"PYTHONPATH": f"{TYPES}/python", "LD_LIBRARY_PATH": f"{TYPES}/lib"} if TYPES else {}
+            variables["python"] = PYTHON
+        return programs(program, side, *words, RMW_IMPLEMENTATION=RMW[side], **variables)
 
     return start
 
@@ -164,8 +164,8 @@ def test_images_arrive_in_order(bridge, peer, saying, hearing):
     sides = start_both_sides(peer, "real_peer")
     show_until_seen(sides[saying], sides[hearing])
     sides[saying].ask("publish_images", IMAGES, RATE)
-    got = sides[hearing].ask_until(lambda numbers: IMAGES - 1 in numbers, "received_images")
-    assert got[-IMAGES:] == list(range(IMAGES))
+    indices = sides[hearing].ask_until(lambda numbers: IMAGES - 1 in numbers, "received_images")
+    assert indices[-IMAGES:] == list(range(IMAGES))
 
 
 @pytest.mark.parametrize("killed", RMW)

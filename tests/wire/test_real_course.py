@@ -58,11 +58,11 @@ def run(workspace):
         return started[-1]
 
     yield start
-    for each in started:
-        each.kill()
-        each.wait()
-        assert each.stderr is not None
-        each.stderr.close()
+    for process in started:
+        process.kill()
+        process.wait()
+        assert process.stderr is not None
+        process.stderr.close()
 
 
 @pytest.fixture

@@ -44,7 +44,7 @@ def test_thousand_mixed_calls_from_three_clients_are_answered(peers, server):
             threads.submit(client.ask_slowly, "storm", server, share, name)
             for name, client in zip(CLIENTS, clients, strict=True)
         ]
-        assert [each.result() for each in asking] == [share] * len(clients)
+        assert [future.result() for future in asking] == [share] * len(clients)
 
 
 @pytest.mark.parametrize(("asks", "answers"), [("theirs", "ours"), ("ours", "theirs")])
@@ -52,8 +52,8 @@ def test_goals_are_canceled_and_preempted_under_load(peers, asks, answers):
     client, server, other = peers(asks), peers(answers), peers(f"{asks}_2")
     client.ask("chatter", RATE, answers)
     server.ask("chatter", RATE, asks)
-    for each in (client, server):
-        each.ask_until(lambda heard: heard > RATE, "heard")
+    for peer in (client, server):
+        peer.ask_until(lambda heard: heard > RATE, "heard")
     with ThreadPoolExecutor(1) as threads:
         storm = threads.submit(other.ask_slowly, "storm", answers, CALLS // 4, "other")
         ends = client.ask_slowly("goals", answers, GOALS)

@@ -74,8 +74,8 @@ def test_incompatible_qos_is_reported_on_both_sides(peers, says, hears, offered,
     publishes, subscribes = peers(says), peers(hears)
     publishes.ask("publisher", "/topic", offered)
     subscribes.ask("subscription", "/topic", requested)
-    for each in (publishes, subscribes):
-        assert each.ask_until(bool, "told", "/topic") == [["incompatible", int(policy)]]
+    for peer in (publishes, subscribes):
+        assert peer.ask_until(bool, "told", "/topic") == [["incompatible", int(policy)]]
 
 
 @pytest.mark.parametrize(("says", "hears"), SIDES)
@@ -91,8 +91,8 @@ def test_only_compatible_qos_profiles_match(peers, says, hears):
     for topic in fits:
         publishes.ask("keep_saying", topic, 1.0)
     for topic, fit in fits.items():
-        for each in (publishes, subscribes):
-            answer = each.ask_until(partial(has_event, "matched" if fit else "incompatible"), "told", topic)
+        for peer in (publishes, subscribes):
+            answer = peer.ask_until(partial(has_event, "matched" if fit else "incompatible"), "told", topic)
             assert not has_event("incompatible" if fit else "matched", answer)
     for topic, fit in fits.items():
         if fit:
@@ -102,7 +102,7 @@ def test_only_compatible_qos_profiles_match(peers, says, hears):
 
 def has_event(kind, events):
     """Whether an event of a kind is among those that an endpoint was told of."""
-    return kind in [each for each, *_ in events]
+    return kind in [event for event, *_ in events]
 
 
 @pytest.mark.parametrize(("says", "hears"), SIDES)
@@ -131,12 +131,12 @@ def test_missed_deadline_is_reported_on_both_sides(peers, says, hears):
     publishes.ask_until(lambda counts: set(counts.values()) == {1}, "listeners")
     publishes.ask("keep_saying", "/topic", 0.1)
     subscribes.ask_until(lambda heard: len(heard) > 40, "heard", "/topic")
-    for each in (publishes, subscribes):
-        assert missed(each, "/topic") == 0
+    for peer in (publishes, subscribes):
+        assert missed(peer, "/topic") == 0
     publishes.ask("fall_silent", "/topic")
-    for each in (publishes, subscribes):
-        each.ask_until(lambda text: [kind for kind, *_ in text].count("deadline") >= 2, "told", "/topic")
-        assert missed(each, "/silent") == 0
+    for peer in (publishes, subscribes):
+        peer.ask_until(lambda text: [kind for kind, *_ in text].count("deadline") >= 2, "told", "/topic")
+        assert missed(peer, "/silent") == 0
 
 
 def missed(peer, topic):

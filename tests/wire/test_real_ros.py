@@ -97,8 +97,8 @@ def test_late_node_sees_everything_after_wait_for_discovery(processes, real_node
 
 def test_topics_work_in_both_directions(processes, real_node):
     us = processes("ours")
-    got: list[str] = []
-    us.node.create_subscription(String, "/from_ros", lambda message: got.append(message.data), 10)
+    texts: list[str] = []
+    us.node.create_subscription(String, "/from_ros", lambda message: texts.append(message.data), 10)
     publisher = us.node.create_publisher(String, "/to_ros", 10)
     real = real_node()
     us.spin_until(lambda: publisher.get_subscription_count() == 1)
@@ -107,31 +107,31 @@ def test_topics_work_in_both_directions(processes, real_node):
     assert real.ask_until(bool, "received", "to_ros") == ["hej"]
     for number in range(3):
         real.ask("publish", f"från {number}")
-    us.spin_until(lambda: len(got) == 3)
-    assert got == ["från 0", "från 1", "från 2"]
+    us.spin_until(lambda: len(texts) == 3)
+    assert texts == ["från 0", "från 1", "från 2"]
 
 
 def test_types_with_sequences_work_in_both_directions(processes, real_node):
     """Cyclone cannot read what Fast DDS 3 says of these."""
     us = processes("ours")
     real = real_node()
-    got = []
-    us.node.create_subscription(JointState, "/states_from_ros", got.append, 10)
+    messages = []
+    us.node.create_subscription(JointState, "/states_from_ros", messages.append, 10)
     publisher = us.node.create_publisher(JointState, "/states_to_ros", 10)
     us.spin_until(lambda: publisher.get_subscription_count() == 1)
     us.spin_until(lambda: us.node.count_publishers("/states_from_ros") == 1)
     publisher.publish(JointState(name=["a", "b"], position=[0.5, 1.5]))
     assert real.ask_until(bool, "received_states") == [[["a", "b"], [0.5, 1.5]]]
     real.ask("publish_state", ["left", "right"], [0.25])
-    us.spin_until(lambda: got)
-    assert (got[0].name, list(got[0].position), list(got[0].velocity)) == (["left", "right"], [0.25], [])
+    us.spin_until(lambda: messages)
+    assert (messages[0].name, list(messages[0].position), list(messages[0].velocity)) == (["left", "right"], [0.25], [])
 
 
 def test_images_at_30_hz_arrive_complete_in_both_directions(processes, real_node):
     us = processes("ours")
     real = real_node()
-    got: list[int] = []
-    us.node.create_subscription(Image, "/images_from_ros", lambda image: got.append(int(image.header.frame_id)), 50)
+    numbers: list[int] = []
+    us.node.create_subscription(Image, "/images_from_ros", lambda image: numbers.append(int(image.header.frame_id)), 50)
     publisher = us.node.create_publisher(Image, "/images_to_ros", 50)
     us.spin_until(lambda: publisher.get_subscription_count() == 1)
     us.spin_until(lambda: us.node.count_publishers("/images_from_ros") == 1)
@@ -145,8 +145,8 @@ def test_images_at_30_hz_arrive_complete_in_both_directions(processes, real_node
         due += 1 / 30
         while time.monotonic() < due:
             us.executor.spin_once(timeout_sec=max(0.0, due - time.monotonic()))
-    us.spin_until(lambda: len(got) == IMAGES)
-    assert got == list(range(IMAGES))
+    us.spin_until(lambda: len(numbers) == IMAGES)
+    assert numbers == list(range(IMAGES))
     assert real.ask_until(lambda images: len(images) == IMAGES, "received_images") == list(range(IMAGES))
 
 
@@ -192,16 +192,16 @@ def test_late_subscriber_gets_latched_message(processes, real_node):
     real = real_node()
     assert real.ask_until(bool, "received", "lasting_to_ros") == ["said before"]
     late = processes("late")
-    got: list[str] = []
-    late.node.create_subscription(String, "/lasting_from_ros", lambda message: got.append(message.data), LASTING)
-    late.spin_until(lambda: got == ["said before"])
+    texts: list[str] = []
+    late.node.create_subscription(String, "/lasting_from_ros", lambda message: texts.append(message.data), LASTING)
+    late.spin_until(lambda: texts == ["said before"])
 
 
 def test_endpoints_have_node_and_type_hash(processes, real_node):
     us = processes("ours")
     us.node.create_publisher(String, "/named", 10)
     real = real_node()
-    published = real.ask_until(lambda found: "/named" in found, "published_by", "ours")
+    published = real.ask_until(lambda publishers: "/named" in publishers, "published_by", "ours")
     assert published["/named"] == ["std_msgs/msg/String"]
     (message,) = real.ask("hashes", "/named")
     assert type_hash(String).removeprefix("RIHS01_") in message
@@ -232,8 +232,8 @@ def test_killed_real_node_disappears_before_lease_expires(processes, real_node):
 
 def test_killed_real_node_is_received_again_after_restart(processes, real_node):
     us = processes("ours")
-    got: list[str] = []
-    us.node.create_subscription(String, "/from_ros", lambda message: got.append(message.data), 10)
+    texts: list[str] = []
+    us.node.create_subscription(String, "/from_ros", lambda message: texts.append(message.data), 10)
     publisher = us.node.create_publisher(String, "/to_ros", 10)
     first = real_node()
     us.spin_until(lambda: publisher.get_subscription_count() == 1)
@@ -246,7 +246,7 @@ def test_killed_real_node_is_received_again_after_restart(processes, real_node):
     assert time.monotonic() - began < 1.0
     assert again.ask_until(lambda heard: len(heard) == 8, "received", "to_ros") == list("01234567")
     again.ask("publish", "back")
-    us.spin_until(lambda: got == ["back"])
+    us.spin_until(lambda: texts == ["back"])
 
 
 def test_killed_linkwright_node_disappears_and_successor_is_received(processes, programs, real_node):

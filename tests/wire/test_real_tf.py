@@ -32,8 +32,8 @@ pytestmark = pytest.mark.skipif(
 @pytest.fixture
 def theirs(programs):
     """Starts a program with the real rclpy and the types."""
-    found = {"PYTHONPATH": f"{TYPES}/python", "LD_LIBRARY_PATH": f"{TYPES}/lib"}
-    return lambda name: programs(name, "theirs", python=PYTHON, RMW_IMPLEMENTATION="rmw_fastrtps_cpp", **found)
+    variables = {"PYTHONPATH": f"{TYPES}/python", "LD_LIBRARY_PATH": f"{TYPES}/lib"}
+    return lambda name: programs(name, "theirs", python=PYTHON, RMW_IMPLEMENTATION="rmw_fastrtps_cpp", **variables)
 
 
 def transform(parent, child, x):
@@ -90,8 +90,8 @@ def test_messages_and_services_of_custom_package(programs, tmp_path, says, hears
         if side == "ours":
             search = os.pathsep.join([environment()["PYTHONPATH"], str(Path(__file__).parents[2])])
             return programs("typed_peer", side, folder=tmp_path, PYTHONPATH=search)
-        found = {"PYTHONPATH": f"{TYPES}/python", "LD_LIBRARY_PATH": f"{TYPES}/lib"}
-        return programs("typed_peer", side, python=PYTHON, RMW_IMPLEMENTATION="rmw_fastrtps_cpp", **found)
+        variables = {"PYTHONPATH": f"{TYPES}/python", "LD_LIBRARY_PATH": f"{TYPES}/lib"}
+        return programs("typed_peer", side, python=PYTHON, RMW_IMPLEMENTATION="rmw_fastrtps_cpp", **variables)
 
     both = {side: start(side) for side in ("theirs", "ours")}
     types = ["wire_msgs/msg/Part", "wire_msgs/msg/Whole"]

@@ -64,8 +64,8 @@ def test_older_gid_size_is_used_with_mixed_distributions(processes, programs):
 
 def test_topics_work_in_both_directions(processes, programs, distribution):
     us = processes("ours")
-    got: list[str] = []
-    us.node.create_subscription(String, "/from_ros", lambda message: got.append(message.data), 10)
+    texts: list[str] = []
+    us.node.create_subscription(String, "/from_ros", lambda message: texts.append(message.data), 10)
     publisher = us.node.create_publisher(String, "/to_ros", 10)
     peer = programs("ros_peer", distribution, "real_node", "localhost")
     us.spin_until(lambda: publisher.get_subscription_count() == 1)
@@ -74,8 +74,8 @@ def test_topics_work_in_both_directions(processes, programs, distribution):
     assert peer.ask_until(bool, "received") == ["hej"]
     for number in range(3):
         peer.ask("publish", f"från {number}")
-    us.spin_until(lambda: len(got) == 3)
-    assert got == ["från 0", "från 1", "från 2"]
+    us.spin_until(lambda: len(texts) == 3)
+    assert texts == ["från 0", "från 1", "från 2"]
 
 
 def test_service_answers_ros_client(processes, programs, distribution):
@@ -111,7 +111,7 @@ def test_endpoints_announce_type_hashes_and_client_ids(processes, programs):
     us.node.create_client(SetBool, "/asking")
     peer = programs("ros_peer", "jazzy", "real_node", "localhost")
     wanted = {"rt/named", "rq/askedRequest", "rr/askedReply", "rq/askingRequest", "rr/askingReply"}
-    seen = peer.ask_until(lambda seen: wanted <= {each[0] for each in seen.values()}, "seen")
+    seen = peer.ask_until(lambda seen: wanted <= {endpoint[0] for endpoint in seen.values()}, "seen")
     facts = {topic: (kind, data) for topic, kind, data, _ in seen.values()}
     assert facts["rt/named"] == ("std_msgs::msg::dds_::String_", f"typehash={type_hash(String)};")
     for key, topics in (

@@ -93,12 +93,12 @@ def test_parameters_of_remote_node_are_read_and_set(processes):
     b.node.declare_parameter("speed", 1.5)
     parameters = AsyncParameterClient(a.node, "/b")
 
-    def done(future):
+    def result_of(future):
         a.spin_until(lambda: b.executor.spin_once(timeout_sec=0.01) or future.done())
         return future.result()
 
-    assert "speed" in done(parameters.list_parameters()).result.names
-    assert done(parameters.get_parameters(["speed"])).values[0].double_value == 1.5
+    assert "speed" in result_of(parameters.list_parameters()).result.names
+    assert result_of(parameters.get_parameters(["speed"])).values[0].double_value == 1.5
 
 
 @both_wires
@@ -121,13 +121,13 @@ def test_remote_action_is_executed(processes):
     b.spin_until(lambda: b.node.count_subscribers("/count/_action/feedback"))
     feedback = []
 
-    def done(future):
+    def result_of(future):
         a.spin_until(lambda: b.executor.spin_once(timeout_sec=0.01) or future.done())
         return future.result()
 
-    handle = done(client.send_goal_async(Fibonacci.Goal(order=4), feedback_callback=feedback.append))
+    handle = result_of(client.send_goal_async(Fibonacci.Goal(order=4), feedback_callback=feedback.append))
     assert handle.accepted
-    result = done(handle.get_result_async())
+    result = result_of(handle.get_result_async())
     assert list(result.result.sequence) == [0, 1, 1, 2, 3]
     a.spin_until(lambda: len(feedback) == 3)
     client.destroy()

@@ -11,15 +11,15 @@ from linkwright.wire.dds.settings import Range, own_addresses, read_settings
 
 def elements(settings):
     """What the preferred configuration says: path -> texts and attributes."""
-    found = {}
+    settings_by_path = {}
 
     def walk(element, path):
-        found.setdefault(path, []).append(element.text or element.attrib)
+        settings_by_path.setdefault(path, []).append(element.text or element.attrib)
         for child in element:
             walk(child, f"{path}/{child.tag}" if path else child.tag)
 
     walk(ET.fromstring(settings.configurations[0].split(",")[0]).find("Domain"), "")
-    return found
+    return settings_by_path
 
 
 def test_default_range_is_own_machine():
@@ -28,7 +28,7 @@ def test_default_range_is_own_machine():
     document = elements(settings)
     assert document["General/MulticastTimeToLive"] == ["0"]
     assert document["General/MulticastRecvNetworkInterfaceAddresses"] == ["127.0.0.1"]
-    peers = [each["address"] for each in document["Discovery/Peers/Peer"]]
+    peers = [peer["address"] for peer in document["Discovery/Peers/Peer"]]
     assert peers == ["127.0.0.1", *own_addresses()[:3]]
 
 

@@ -36,9 +36,9 @@ def hosts() -> Iterator[Hosts]:
     reason = why_not()
     if reason:
         pytest.skip(reason)
-    made = Hosts()
-    yield made
-    made.close()
+    hosts = Hosts()
+    yield hosts
+    hosts.close()
 
 
 def test_late_and_returning_static_peer_is_discovered(hosts):

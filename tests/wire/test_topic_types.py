@@ -73,11 +73,11 @@ TOGETHER = """
     NAMES += ["visualization_msgs/msg/MarkerArray", "trajectory_msgs/msg/JointTrajectory", "tf2_msgs/msg/TFMessage"]
 
     def graph(name, types):
-        made = Graph(threads=True)
-        node = made.create_node(name)
+        graph = Graph(threads=True)
+        node = graph.create_node(name)
         for type_name in types:
             node.create_publisher(get_message(type_name), f"/{name}/{type_name}", 1)
-        return made
+        return graph
 
     for _ in range(120):
         graphs = [graph("one", NAMES), graph("other", reversed(NAMES))]
@@ -90,7 +90,7 @@ TOGETHER = """
 
 def output_of(program: str) -> str:
     """Of a process that ends well though freed memory is overwritten: what still looks at it goes wrong at once."""
-    done = subprocess.run(
+    result = subprocess.run(
         [sys.executable, "-X", "faulthandler", "-c", textwrap.dedent(program)],
         capture_output=True,
         text=True,
@@ -98,8 +98,8 @@ def output_of(program: str) -> str:
         check=False,
         env={**os.environ, "MALLOC_PERTURB_": "165"},
     )
-    assert (done.returncode, done.stderr) == (0, "")
-    return done.stdout
+    assert (result.returncode, result.stderr) == (0, "")
+    return result.stdout
 
 
 @pytest.fixture

@@ -25,20 +25,20 @@ EVERYTHING = QoSProfile(history=HistoryPolicy.KEEP_ALL)
 @both_wires
 def test_message_is_delivered_once_between_processes(processes):
     a, b = processes("a"), processes("b")
-    got: list[str] = []
+    texts: list[str] = []
     for process in (a, b):
-        process.node.create_subscription(String, "chatter", lambda message: got.append(message.data), 10)
+        process.node.create_subscription(String, "chatter", lambda message: texts.append(message.data), 10)
     publisher = a.node.create_publisher(String, "chatter", 10)
     b.spin_until(lambda: publisher.get_subscription_count() == 2)
     publisher.publish(String(data="hej"))
-    b.spin_until(lambda: len(got) == 1)
-    a.spin_until(lambda: len(got) == 2)
+    b.spin_until(lambda: len(texts) == 1)
+    a.spin_until(lambda: len(texts) == 2)
     publisher.publish(String(data="end"))
-    b.spin_until(lambda: got.count("end") == 1)
-    a.spin_until(lambda: got.count("end") == 2)
+    b.spin_until(lambda: texts.count("end") == 1)
+    a.spin_until(lambda: texts.count("end") == 2)
     a.executor.spin_once(timeout_sec=0.05)
     b.executor.spin_once(timeout_sec=0.05)
-    assert got == ["hej", "hej", "end", "end"]
+    assert texts == ["hej", "hej", "end", "end"]
 
 
 @both_wires
@@ -63,13 +63,13 @@ def test_late_subscriber_gets_messages_latched_before_join(processes):
     a.join()
     publisher.publish(String(data="five"))
     b = processes("b")
-    got: list[str] = []
-    b.node.create_subscription(String, "described", lambda message: got.append(message.data), LASTING)
-    b.spin_until(lambda: len(got) == 3)
-    assert got == ["three", "four", "five"]
+    texts: list[str] = []
+    b.node.create_subscription(String, "described", lambda message: texts.append(message.data), LASTING)
+    b.spin_until(lambda: len(texts) == 3)
+    assert texts == ["three", "four", "five"]
     publisher.publish(String(data="six"))
-    b.spin_until(lambda: len(got) == 4)
-    assert got[3:] == ["six"]
+    b.spin_until(lambda: len(texts) == 4)
+    assert texts[3:] == ["six"]
 
 
 @both_wires
@@ -77,43 +77,43 @@ def test_latched_message_of_same_process_is_delivered_once(processes):
     a, b = processes("a"), processes("b")
     publisher = a.node.create_publisher(String, "described", LASTING)
     publisher.publish(String(data="one"))
-    got: list[str] = []
+    texts: list[str] = []
     for process in (a, b):
-        process.node.create_subscription(String, "described", lambda message: got.append(message.data), LASTING)
-    a.spin_until(lambda: len(got) == 1)
-    b.spin_until(lambda: len(got) == 2)
+        process.node.create_subscription(String, "described", lambda message: texts.append(message.data), LASTING)
+    a.spin_until(lambda: len(texts) == 1)
+    b.spin_until(lambda: len(texts) == 2)
     publisher.publish(String(data="two"))
-    a.spin_until(lambda: got.count("two") == 1)
-    b.spin_until(lambda: got.count("two") == 2)
-    assert got == ["one", "one", "two", "two"]
+    a.spin_until(lambda: texts.count("two") == 1)
+    b.spin_until(lambda: texts.count("two") == 2)
+    assert texts == ["one", "one", "two", "two"]
 
 
 @both_wires
 def test_keep_all_messages_arrive_after_publisher_closes(processes):
     a, b = processes("a"), processes("b")
-    got: list[str] = []
-    b.node.create_subscription(String, "chatter", lambda message: got.append(message.data), EVERYTHING)
+    texts: list[str] = []
+    b.node.create_subscription(String, "chatter", lambda message: texts.append(message.data), EVERYTHING)
     publisher = a.node.create_publisher(String, "chatter", EVERYTHING)
     a.spin_until(lambda: publisher.get_subscription_count() == 1)
     for number in range(2000):
         publisher.publish(String(data=str(number)))
     a.close()
-    b.spin_until(lambda: len(got) == 2000)
-    assert got == [str(number) for number in range(2000)]
+    b.spin_until(lambda: len(texts) == 2000)
+    assert texts == [str(number) for number in range(2000)]
 
 
 @both_wires
 def test_messages_of_new_publisher_reach_known_subscriber(processes):
     a, b = processes("a"), processes("b")
-    got: list[str] = []
-    b.node.create_subscription(String, "chatter", lambda message: got.append(message.data), 10)
+    texts: list[str] = []
+    b.node.create_subscription(String, "chatter", lambda message: texts.append(message.data), 10)
     a.spin_until(lambda: a.node.count_subscribers("chatter") == 1)
     publisher = a.node.create_publisher(String, "chatter", 10)
     for word in ("one", "two", "three"):
         publisher.publish(String(data=word))
     assert publisher.wait_for_all_acked(Duration(seconds=5))
-    b.spin_until(lambda: len(got) == 3)
-    assert got == ["one", "two", "three"]
+    b.spin_until(lambda: len(texts) == 3)
+    assert texts == ["one", "two", "three"]
 
 
 @both_wires
@@ -138,15 +138,15 @@ def test_callbacks_get_message_info(processes, wire):
 
 def test_raw_subscription_gets_serialized_bytes(processes):
     a, b = processes("a"), processes("b")
-    got: list[bytes] = []
-    b.node.create_subscription(String, "chatter", got.append, 10, raw=True)
+    payloads: list[bytes] = []
+    b.node.create_subscription(String, "chatter", payloads.append, 10, raw=True)
     publisher = a.node.create_publisher(String, "chatter", 10)
     a.spin_until(lambda: publisher.get_subscription_count() == 1)
     data = serialize(String(data="abcd"))
     publisher.publish(data)
-    b.spin_until(lambda: got)
-    assert got[0].rstrip(b"\0") == data.rstrip(b"\0")
-    assert len(got[0]) % 4 == 0
+    b.spin_until(lambda: payloads)
+    assert payloads[0].rstrip(b"\0") == data.rstrip(b"\0")
+    assert len(payloads[0]) % 4 == 0
 
 
 def test_incompatible_qos_is_reported_on_both_sides(processes):
@@ -191,20 +191,20 @@ def test_qos_of_remote_endpoints_is_available(processes):
 def test_topic_can_avoid_ros_namespace_conventions(processes):
     a, b = processes("a"), processes("b")
     plain = QoSProfile(10, avoid_ros_namespace_conventions=True)
-    got: list[str] = []
-    b.node.create_subscription(String, "/plain", lambda message: got.append(message.data), plain)
-    b.node.create_subscription(String, "/plain", lambda message: got.append("ros"), 10)
+    texts: list[str] = []
+    b.node.create_subscription(String, "/plain", lambda message: texts.append(message.data), plain)
+    b.node.create_subscription(String, "/plain", lambda message: texts.append("ros"), 10)
     publisher = a.node.create_publisher(String, "/plain", plain)
     a.spin_until(lambda: publisher.get_subscription_count() == 1)
     publisher.publish(String(data="hej"))
-    b.spin_until(lambda: got)
-    assert got == ["hej"]
+    b.spin_until(lambda: texts)
+    assert texts == ["hej"]
 
 
 def test_malformed_samples_are_dropped_counted_and_reported_once(processes, programs):
     us = processes("ours")
-    got: list[str] = []
-    subscription = us.node.create_subscription(String, "/from_ros", lambda message: got.append(message.data), 10)
+    texts: list[str] = []
+    subscription = us.node.create_subscription(String, "/from_ros", lambda message: texts.append(message.data), 10)
     peer = programs("ros_peer", "humble", "real_node", "localhost")
     us.spin_until(lambda: us.node.count_publishers("/from_ros") == 1)
     us.spin_until(lambda: subscription.get_publisher_count() == 1)
@@ -212,8 +212,8 @@ def test_malformed_samples_are_dropped_counted_and_reported_once(processes, prog
     for _ in range(3):
         assert peer.ask("publish_bytes", not_utf8) == "written"
     peer.ask("publish", "fine")
-    us.spin_until(lambda: got)
-    assert got == ["fine"]
+    us.spin_until(lambda: texts)
+    assert texts == ["fine"]
     assert subscription.malformed_count == 3
     (warning,) = us.warnings()
     assert "Dropped a malformed message of topic '/from_ros'" in warning
@@ -222,14 +222,14 @@ def test_malformed_samples_are_dropped_counted_and_reported_once(processes, prog
 @pytest.mark.parametrize("size", [1, 70_000, 3_000_000])
 def test_messages_of_any_size_arrive(processes, size):
     a, b = processes("a"), processes("b")
-    got: list[int] = []
-    b.node.create_subscription(String, "chatter", lambda message: got.append(len(message.data)), EVERYTHING)
+    sizes: list[int] = []
+    b.node.create_subscription(String, "chatter", lambda message: sizes.append(len(message.data)), EVERYTHING)
     publisher = a.node.create_publisher(String, "chatter", EVERYTHING)
     a.spin_until(lambda: publisher.get_subscription_count() == 1)
     for _ in range(5):
         publisher.publish(String(data="x" * size))
-    b.spin_until(lambda: len(got) == 5)
-    assert got == [size] * 5
+    b.spin_until(lambda: len(sizes) == 5)
+    assert sizes == [size] * 5
 
 
 @pytest.mark.skipif(platform.libc_ver()[0] != "glibc", reason="other C libraries decide by themselves")
@@ -256,14 +256,14 @@ def test_image_publisher_reuses_memory(processes):
 
 def test_reliable_flood_loses_no_messages(processes, programs):
     us = processes("ours")
-    got: list[int] = []
-    us.node.create_subscription("std_msgs/msg/Int32", "flood", lambda message: got.append(message.data), EVERYTHING)
+    numbers: list[int] = []
+    us.node.create_subscription("std_msgs/msg/Int32", "flood", lambda message: numbers.append(message.data), EVERYTHING)
     sender = programs("our_program", "sender")
     assert sender.ask_until(bool, "subscribers", "/flood")
     count = 20_000
     sender.ask("flood", "/flood", count)
-    us.spin_until(lambda: len(got) == count)
-    assert got == list(range(count))
+    us.spin_until(lambda: len(numbers) == count)
+    assert numbers == list(range(count))
 
 
 def test_lost_liveliness_of_remote_publisher_is_reported(processes):
@@ -287,10 +287,10 @@ def test_lost_liveliness_of_remote_publisher_is_reported(processes):
 
 
 def test_best_available_qos_considers_remote_endpoints(processes):
-    us, them = processes("us"), processes("them")
+    us, peer = processes("us"), processes("them")
     best = QoSPresetProfiles.BEST_AVAILABLE.value
-    them.node.create_publisher(String, "/scan", QoSPresetProfiles.SENSOR_DATA.value)
-    them.node.create_subscription(String, "/command", print, QoSProfile(1, deadline=Duration(seconds=2)))
+    peer.node.create_publisher(String, "/scan", QoSPresetProfiles.SENSOR_DATA.value)
+    peer.node.create_subscription(String, "/command", print, QoSProfile(1, deadline=Duration(seconds=2)))
     us.spin_until(lambda: us.node.count_publishers("/scan") == us.node.count_subscribers("/command") == 1)
     us.node.create_subscription(String, "/scan", print, best)
     us.node.create_publisher(String, "/command", best)

@@ -40,7 +40,7 @@ class TfPeer(Node):
         return self._heard[topic]
 
     def hashes(self, topic: str) -> list[str]:
-        return [str(each.topic_type_hash) for each in self.get_publishers_info_by_topic(topic)]
+        return [str(endpoint.topic_type_hash) for endpoint in self.get_publishers_info_by_topic(topic)]
 
     def _transform(self, parent: str, child: str, x: float) -> TransformStamped:
         transform = TransformStamped(child_frame_id=child)

@@ -15,7 +15,7 @@ from rclpy.node import Node
 from rclpy.qos import DurabilityPolicy, QoSProfile
 
 from tests.wire.node_program import SECONDS, result_of, serve_node
-from tests.wire.values import digest, interface, large, made, plain
+from tests.wire.values import digest, interface, large, message_from_seed, plain
 
 LASTING = QoSProfile(depth=20, durability=DurabilityPolicy.TRANSIENT_LOCAL)
 
@@ -36,7 +36,7 @@ class TypedPeer(Node):
         return dict(interface(name).get_fields_and_field_types())
 
     def meant(self, name: str, seeds: int) -> list[Any]:
-        return [plain(made(interface(name), seed)) for seed in range(seeds)]
+        return [plain(message_from_seed(interface(name), seed)) for seed in range(seeds)]
 
     def hear(self, types: list[str]) -> None:
         for name in types:
@@ -47,13 +47,13 @@ class TypedPeer(Node):
         for name in types:
             publisher = self._said[name] = self.create_publisher(interface(name), _topic(name), LASTING)
             for seed in range(seeds):
-                publisher.publish(made(interface(name), seed))
+                publisher.publish(message_from_seed(interface(name), seed))
 
     def counts(self) -> dict[str, int]:
         return {name: len(heard) for name, heard in self._heard.items()}
 
     def heard(self, name: str) -> list[Any]:
-        return [plain(each) for each in self._heard[name]]
+        return [plain(message) for message in self._heard[name]]
 
     def hear_large(self, topic: str) -> None:
         """What comes on a topic of images: its number, its size and the sum of its bytes."""
@@ -74,7 +74,7 @@ class TypedPeer(Node):
         return self._large
 
     def answer(self, services: list[str]) -> None:
-        """Serve: the answer to the request number n is made of the seed n."""
+        """Serve: the answer to the request number n has the values of the seed n."""
         for name in services:
             self.create_service(interface(name), _topic(name), self._server(name))
 
@@ -84,14 +84,16 @@ class TypedPeer(Node):
     def meant_by(self, name: str, seeds: int) -> list[Any]:
         """Requests and answers."""
         kind = interface(name)
-        return [[plain(made(part, seed)) for seed in range(seeds)] for part in (kind.Request, kind.Response)]
+        return [
+            [plain(message_from_seed(part, seed)) for seed in range(seeds)] for part in (kind.Request, kind.Response)
+        ]
 
     def ask(self, name: str, seeds: int) -> list[Any]:
         """The answers to requests one after another."""
         kind = interface(name)
         client = self.create_client(kind, _topic(name))
         assert client.wait_for_service(SECONDS)
-        answers = [plain(result_of(client.call_async(made(kind.Request, seed)))) for seed in range(seeds)]
+        answers = [plain(result_of(client.call_async(message_from_seed(kind.Request, seed)))) for seed in range(seeds)]
         self.destroy_client(client)
         return answers
 
@@ -104,9 +106,9 @@ class TypedPeer(Node):
             until = time.monotonic() + SECONDS / 2
             while not self.count_subscribers(f"{_topic(name)}/_action/feedback") and time.monotonic() < until:
                 time.sleep(0.01)  # what is said before the client's subscription is known is lost
-            goal.publish_feedback(made(kind.Feedback, 4))
+            goal.publish_feedback(message_from_seed(kind.Feedback, 4))
             goal.succeed()
-            return made(kind.Result, 5)
+            return message_from_seed(kind.Result, 5)
 
         ActionServer(self, kind, _topic(name), execute)
 
@@ -122,15 +124,18 @@ class TypedPeer(Node):
             feedback.append(plain(text.feedback))
             came.set()
 
-        goal = result_of(client.send_goal_async(made(kind.Goal, 3), feedback_callback=hear))
+        goal = result_of(client.send_goal_async(message_from_seed(kind.Goal, 3), feedback_callback=hear))
         result = plain(result_of(goal.get_result_async()).result)
         came.wait(SECONDS)
-        meant = [plain(made(part, seed)) for part, seed in ((kind.Goal, 3), (kind.Feedback, 4), (kind.Result, 5))]
+        meant = [
+            plain(message_from_seed(part, seed))
+            for part, seed in ((kind.Goal, 3), (kind.Feedback, 4), (kind.Result, 5))
+        ]
         return [feedback, result, meant]
 
     def hashes(self, name: str) -> list[str]:
         """As the publishers of its topic tell them."""
-        return [str(each.topic_type_hash) for each in self.get_publishers_info_by_topic(_topic(name))]
+        return [str(endpoint.topic_type_hash) for endpoint in self.get_publishers_info_by_topic(_topic(name))]
 
     def _images(self, topic: str) -> Any:
         if topic not in self._said:
@@ -142,7 +147,7 @@ class TypedPeer(Node):
 
         def answer(request: Any, _: Any) -> Any:
             asked.append(plain(request))
-            return made(interface(name).Response, len(asked) - 1)
+            return message_from_seed(interface(name).Response, len(asked) - 1)
 
         return answer
 

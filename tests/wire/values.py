@@ -20,7 +20,7 @@ _TEXT = re.compile(r"w?string(?:<(\d+)>)?$")
 _FLOATS = {"float": ("<f", 3.0e38), "double": ("<d", 1.0e308)}
 
 
-def made(message_type: Any, seed: int) -> Any:
+def message_from_seed(message_type: Any, seed: int) -> Any:
     """A message whose values follow from its type and a seed."""
     message = message_type()
     if seed != DEFAULTS:
@@ -41,7 +41,7 @@ def plain(value: Any) -> Any:
     if hasattr(value, "tolist"):  # array.array and numpy arrays
         return plain(value.tolist())
     if isinstance(value, (list, tuple)):
-        return [plain(each) for each in value]
+        return [plain(element) for element in value]
     return float(value).hex() if isinstance(value, float) else int(value)
 
 

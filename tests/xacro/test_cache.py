@@ -14,13 +14,13 @@ def test_cache_size_stays_below_bound() -> None:
 
 def test_cyclic_access_beyond_capacity_has_hits() -> None:
     cache: BoundedCache[int, int] = BoundedCache(100, lambda *_: 1)
-    found = 0
+    hits = 0
     for _ in range(10):
         for number in range(150):
-            found += number in cache.values
+            hits += number in cache.values
             if number not in cache.values:
                 cache.store(number, number)
-    assert found > 9 * 50
+    assert hits > 9 * 50
 
 
 def test_replaced_entry_is_counted_once() -> None:

@@ -216,7 +216,11 @@ def test_file_that_is_not_utf_8_has_one_warning(tmp_path: Path) -> None:
     )
     expansion = expand(tmp_path / "main.xacro")
     assert [element.attributes["v"] for element in expansion.document.root.elements()] == ["é", "é", "é"]
-    assert [(found.code, found.span.file.rpartition("/")[2]) for found in expansion.diagnostics if found.span] == [
+    assert [
+        (diagnostic.code, diagnostic.span.file.rpartition("/")[2])
+        for diagnostic in expansion.diagnostics
+        if diagnostic.span
+    ] == [
         ("XAC905", "latin.xacro"),
         ("XAC905", "wide.yaml"),
     ]

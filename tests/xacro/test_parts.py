@@ -33,46 +33,46 @@ def links(expansion: Expansion) -> list[str]:
 
 
 def problems(expansion: Expansion) -> list[str]:
-    return [found.code for found in expansion.problems]
+    return [problem.code for problem in expansion.problems]
 
 
 def test_parts_of_valid_description_are_complete(tmp_path):
     body = '<xacro:property name="a" value="1"/><link name="l${a}"><inertial><mass value="${a}"/></inertial></link>'
     whole = parts(tmp_path, body)
-    found = expand_parts(Inputs(str(tmp_path / "robot.xacro"), {}), LinkwrightError(Diagnostic("XAC201", "")))
-    assert found.problems == ()
-    assert write_element(found.document.root) == write_element(whole.document.root)
+    expansion = expand_parts(Inputs(str(tmp_path / "robot.xacro"), {}), LinkwrightError(Diagnostic("XAC201", "")))
+    assert expansion.problems == ()
+    assert write_element(expansion.document.root) == write_element(whole.document.root)
 
 
 def test_element_with_failed_attribute_omits_its_ancestors(tmp_path):
-    found = parts(tmp_path, '<link name="a"><visual><origin xyz="${nowhere} 0 0"/></visual></link><link name="b"/>')
-    assert links(found) == ["b"]
-    assert problems(found) == ["XAC201"]
+    expansion = parts(tmp_path, '<link name="a"><visual><origin xyz="${nowhere} 0 0"/></visual></link><link name="b"/>')
+    assert links(expansion) == ["b"]
+    assert problems(expansion) == ["XAC201"]
 
 
 def test_all_mistakes_are_reported(tmp_path):
-    found = parts(
+    expansion = parts(
         tmp_path,
         '<link name="${1/0}"/><xacro:wheel/><link name="a"/><xacro:insert_block name="b"/><link name="${x}"/>',
     )
-    assert links(found) == ["a"]
-    assert problems(found) == ["XAC202", "XAC401", "XAC406", "XAC201"]
+    assert links(expansion) == ["a"]
+    assert problems(expansion) == ["XAC202", "XAC401", "XAC406", "XAC201"]
 
 
 def test_failed_text_omits_its_element(tmp_path):
-    found = parts(tmp_path, '<gazebo><a>${nowhere}</a></gazebo><link name="a"/>')
-    assert [element.tag for element in found.document.root.elements()] == ["link"]
+    expansion = parts(tmp_path, '<gazebo><a>${nowhere}</a></gazebo><link name="a"/>')
+    assert [element.tag for element in expansion.document.root.elements()] == ["link"]
 
 
 def test_failed_call_omits_element_around_it(tmp_path):
-    found = parts(tmp_path, '<link name="a"><xacro:shape/></link><link name="b"/>')
-    assert links(found) == ["b"]
+    expansion = parts(tmp_path, '<link name="a"><xacro:shape/></link><link name="b"/>')
+    assert links(expansion) == ["b"]
 
 
 def test_failure_in_macro_body_omits_element_around_call(tmp_path):
     macro = '<xacro:macro name="m"><xacro:none/><visual/></xacro:macro>'
-    found = parts(tmp_path, f'{macro}<link name="a"><xacro:m/></link><link name="b"/>')
-    assert links(found) == ["b"]
+    expansion = parts(tmp_path, f'{macro}<link name="a"><xacro:m/></link><link name="b"/>')
+    assert links(expansion) == ["b"]
 
 
 def test_failure_in_block_omits_element_that_inserts_it(tmp_path):
@@ -85,51 +85,51 @@ def test_failure_in_block_omits_element_that_inserts_it(tmp_path):
 
 def test_call_without_its_failed_block_is_omitted_without_report(tmp_path):
     macro = '<xacro:macro name="m" params="*block"><link name="a"/></xacro:macro>'
-    found = parts(tmp_path, f'{macro}<xacro:m><xacro:none/></xacro:m><link name="b"/>')
-    assert links(found) == ["b"]
-    assert problems(found) == ["XAC401"]
+    expansion = parts(tmp_path, f'{macro}<xacro:m><xacro:none/></xacro:m><link name="b"/>')
+    assert links(expansion) == ["b"]
+    assert problems(expansion) == ["XAC401"]
 
 
 class TestConsequences:
     def test_names_of_missing_include_are_not_reported(self, tmp_path):
-        found = parts(
+        expansion = parts(
             tmp_path,
             '<xacro:include filename="none.xacro"/><link name="${prefix}a"/><xacro:wheel/><link name="b"/>',
         )
-        assert links(found) == ["b"]
-        assert problems(found) == ["XML101"]
+        assert links(expansion) == ["b"]
+        assert problems(expansion) == ["XML101"]
 
     def test_all_missing_files_are_reported(self, tmp_path):
         includes = '<xacro:include filename="none.xacro"/><xacro:include filename="$(cwd)/nor_this.xacro"/>'
         assert problems(parts(tmp_path, includes)) == ["XML101", "XML101"]
 
     def test_malformed_expressions_are_reported(self, tmp_path):
-        found = parts(tmp_path, '<xacro:include filename="none.xacro"/><link name="${1 +}"/>')
-        assert problems(found) == ["XML101", "XAC102"]
+        expansion = parts(tmp_path, '<xacro:include filename="none.xacro"/><link name="${1 +}"/>')
+        assert problems(expansion) == ["XML101", "XAC102"]
 
     def test_elements_with_uncertain_values_are_omitted(self, tmp_path):
         mass = '<link name="a"><inertial><mass value="${m}"/></inertial></link>'
-        found = parts(
+        expansion = parts(
             tmp_path,
             f'<xacro:property name="m" value="0"/><xacro:if value="${{x}}"><xacro:property name="m" value="1"/>'
             f'</xacro:if>{mass}<link name="b"/>',
         )
-        assert links(found) == ["b"]
-        assert problems(found) == ["XAC201"]
+        assert links(expansion) == ["b"]
+        assert problems(expansion) == ["XAC201"]
 
     def test_conditions_on_uncertain_values_are_omitted(self, tmp_path):
         body = '<xacro:include filename="none.xacro"/><xacro:unless value="${m}"><link name="a"/></xacro:unless>'
         assert links(parts(tmp_path, f'<xacro:property name="m" value="0"/>{body}<link name="b"/>')) == ["b"]
 
     def test_missing_macro_leaves_outer_properties_certain(self, tmp_path):
-        found = parts(tmp_path, '<xacro:property name="m" value="1"/><xacro:wheeel/><link name="a${m}"/>')
-        assert links(found) == ["a1"]
+        expansion = parts(tmp_path, '<xacro:property name="m" value="1"/><xacro:wheeel/><link name="a${m}"/>')
+        assert links(expansion) == ["a1"]
 
     def test_missing_macro_may_set_properties_of_parent_scope(self, tmp_path):
         macro = '<xacro:macro name="m"><xacro:property name="x" value="2" scope="parent"/></xacro:macro>'
-        found = parts(tmp_path, f'{macro}<xacro:property name="x" value="1"/><xacro:n/><link name="a${{x}}"/>')
-        assert links(found) == []
-        assert problems(found) == ["XAC401"]
+        expansion = parts(tmp_path, f'{macro}<xacro:property name="x" value="1"/><xacro:n/><link name="a${{x}}"/>')
+        assert links(expansion) == []
+        assert problems(expansion) == ["XAC401"]
 
     def test_warnings_that_may_be_consequences_are_omitted(self, tmp_path):
         warning = '<xacro:property name="none" remove="true"/>'
@@ -154,9 +154,9 @@ class TestUnreadableParts:
 
 
 def test_included_file_with_mistake_keeps_other_parts(tmp_path):
-    found = parts(
+    expansion = parts(
         tmp_path,
         '<xacro:include filename="part.xacro"/><link name="c"/>',
         part='<link name="a"/><link name="${x}"/><link name="b"/>',
     )
-    assert links(found) == ["a", "b", "c"]
+    assert links(expansion) == ["a", "b", "c"]

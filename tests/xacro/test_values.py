@@ -15,8 +15,8 @@ HEAD = '<robot name="r" xmlns:xacro="http://www.ros.org/wiki/xacro">'
 def values(text: str, **arguments: str) -> dict[str, tuple[str, ...]]:
     """Return the values of each text with expressions, by its position."""
     whole = f"{HEAD}{text}</robot>"
-    found = evaluated_expressions(Inputs("r.xacro", arguments, text=whole))
-    return {whole[each.start : each.end]: each.values for each in found}
+    expressions = evaluated_expressions(Inputs("r.xacro", arguments, text=whole))
+    return {whole[part.start : part.end]: part.values for part in expressions}
 
 
 def test_values_of_each_macro_call_are_listed():
@@ -29,8 +29,8 @@ def test_evaluation_has_call_and_names():
         f'{HEAD}<xacro:property name="w" value="2"/><xacro:macro name="m" params="n">'
         '<link name="l${n * w}"/></xacro:macro>\n<xacro:m n="3"/></robot>'
     )
-    found = evaluated_expressions(Inputs("r.xacro", {}, text=text))
-    (part,) = (each for each in found if text[each.start : each.end] == "${n * w}")
+    expressions = evaluated_expressions(Inputs("r.xacro", {}, text=text))
+    (part,) = (part for part in expressions if text[part.start : part.end] == "${n * w}")
     (evaluation,) = part.evaluations
     assert evaluation.value == "6"
     assert evaluation.names == (("n", "3"), ("w", "2"))
@@ -67,17 +67,17 @@ def test_expression_with_side_effect_is_evaluated_once():
     text = (
         '<xacro:property name="items" value="${[1, 2, 3]}"/><link name="l${items.pop(0)}"/><link name="k${items[0]}"/>'
     )
-    found = values(text)
-    assert "${items.pop(0)}" not in found
-    assert found["${items[0]}"] == ("2",)
+    expression_values = values(text)
+    assert "${items.pop(0)}" not in expression_values
+    assert expression_values["${items[0]}"] == ("2",)
 
 
 def test_included_files_have_values(tmp_path: Path):
     (tmp_path / "part.xacro").write_text(f'{HEAD}<link name="${{p}}"/></robot>')
     main = tmp_path / "main.xacro"
     main.write_text(f'{HEAD}<xacro:property name="p" value="x"/><xacro:include filename="part.xacro"/></robot>')
-    (found,) = evaluated_expressions(Inputs(str(main), {}))
-    assert (Path(found.file).name, found.values) == ("part.xacro", ("'x'",))
+    (expression,) = evaluated_expressions(Inputs(str(main), {}))
+    assert (Path(expression.file).name, expression.values) == ("part.xacro", ("'x'",))
 
 
 def test_macro_parameter_list_has_no_value():

@@ -13,10 +13,10 @@ from linkwright.xmltree import Overlay, parse, parse_file, reader
 def finding_of(text: str | bytes) -> tuple[str, str, int, int, str | None]:
     with pytest.raises(LinkwrightError) as caught:
         parse(text, "robot.urdf")
-    (found,) = caught.value.diagnostics
-    assert found.span is not None
-    assert found.source is not None
-    return found.code, found.message, found.span.line, found.span.column, found.hint
+    (diagnostic,) = caught.value.diagnostics
+    assert diagnostic.span is not None
+    assert diagnostic.source is not None
+    return diagnostic.code, diagnostic.message, diagnostic.span.line, diagnostic.span.column, diagnostic.hint
 
 
 AMPERSAND = "write '&amp;' for the character '&'"
@@ -74,10 +74,10 @@ CASES = [
 def test_mistakes_have_expected_findings(
     text: str, code: str, message: str, line: int, column: int, hint: str | None
 ) -> None:
-    found = finding_of(text)
-    assert found[:4] == (code, message, line, column)
+    fault = finding_of(text)
+    assert fault[:4] == (code, message, line, column)
     if hint is not None:
-        assert found[4] == hint
+        assert fault[4] == hint
 
 
 def test_mismatched_tag_notes_opening_tag() -> None:
@@ -226,10 +226,10 @@ def test_git_lfs_pointer_is_recognized(name: str, tmp_path: Path) -> None:
     path.write_bytes(b"version https://git-lfs.github.com/spec/v1\noid sha256:4d7a\nsize 12345\n")
     with pytest.raises(LinkwrightError) as caught:
         parse_file(path)
-    (found,) = caught.value.diagnostics
-    assert found.code == "XML106"
-    assert "Git LFS pointer" in found.message
-    assert "git lfs pull" in (found.hint or "")
+    (diagnostic,) = caught.value.diagnostics
+    assert diagnostic.code == "XML106"
+    assert "Git LFS pointer" in diagnostic.message
+    assert "git lfs pull" in (diagnostic.hint or "")
     text = path.read_text()
     for read in (lambda: parse(text, "<stdin>"), lambda: Overlay({path: text}).read(str(path))):
         with pytest.raises(LinkwrightError, match="Git LFS pointer"):

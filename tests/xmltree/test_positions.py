@@ -12,12 +12,12 @@ TAG = """<joint\n\tname = "a b"\n  type='fixed' note="type='x' &lt;1&gt;\r\n2"/>
 @pytest.mark.parametrize(("name", "value"), [("name", "a b"), ("type", "fixed"), ("note", "type='x' &lt;1&gt;\r\n2")])
 def test_attribute_name_and_value_ranges_are_found(name: str, value: str) -> None:
     text = f"<robot>é{TAG}</robot>"
-    found = attribute_value_range(text, 8, name)
-    assert found is not None
-    assert text[slice(*found)] == value
-    found = attribute_name_range(text, 8, name)
-    assert found is not None
-    assert text[slice(*found)] == name
+    span = attribute_value_range(text, 8, name)
+    assert span is not None
+    assert text[slice(*span)] == value
+    span = attribute_name_range(text, 8, name)
+    assert span is not None
+    assert text[slice(*span)] == name
 
 
 @pytest.mark.parametrize("name", ["absent", "joint", "x", "1"])

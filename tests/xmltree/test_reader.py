@@ -14,10 +14,10 @@ from linkwright.xmltree import Comment, Element, ProcessingInstruction, Text, pa
 
 
 def nodes(element: Element) -> list[Element | Text | Comment | ProcessingInstruction]:
-    found: list[Element | Text | Comment | ProcessingInstruction] = [element]
+    tree_nodes: list[Element | Text | Comment | ProcessingInstruction] = [element]
     for child in element.children:
-        found.extend(nodes(child) if isinstance(child, Element) else [child])
-    return found
+        tree_nodes.extend(nodes(child) if isinstance(child, Element) else [child])
+    return tree_nodes
 
 
 def test_names_attributes_and_children_are_preserved() -> None:

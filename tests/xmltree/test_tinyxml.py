@@ -22,13 +22,13 @@ def test_many_consecutive_comments_are_read(before):
 @pytest.mark.parametrize("text", [f"{MANY}words\n{MANY}<robot/>", f"<?xml version='1.0'?>{MANY}words <robot/>{MANY}"])
 def test_text_between_comments_before_root_is_reported(text):
     _, warnings = parse_as_tinyxml(text, "r.urdf", phrase("readers"))
-    (found,) = warnings
-    assert found.span is not None
-    assert text.splitlines()[found.span.line - 1][found.span.column - 1 :].startswith("words")
+    (warning,) = warnings
+    assert warning.span is not None
+    assert text.splitlines()[warning.span.line - 1][warning.span.column - 1 :].startswith("words")
 
 
 def test_declaration_after_comments_is_reported():
     _, warnings = parse_as_gazebo(f'{MANY}<?xml version="1.0"?><sdf/>{MANY}', "w.sdf")
-    (found,) = warnings
-    assert found.span is not None
-    assert (found.span.line, found.span.column) == (61, 1)
+    (warning,) = warnings
+    assert warning.span is not None
+    assert (warning.span.line, warning.span.column) == (61, 1)

@@ -26,9 +26,11 @@ def attributes(text: str) -> list[tuple[str, str | None, str]]:
 
 @given(MARKUP)
 def test_tokens_cover_all_characters(text: str):
-    found = [*tokens(text)]
-    assert "".join(token.text for token in found) == text
-    assert [token.start for token in found] == [sum(len(each.text) for each in found[:at]) for at in range(len(found))]
+    token_list = [*tokens(text)]
+    assert "".join(token.text for token in token_list) == text
+    assert [token.start for token in token_list] == [
+        sum(len(earlier.text) for earlier in token_list[:at]) for at in range(len(token_list))
+    ]
 
 
 @given(MARKUP)
@@ -94,5 +96,5 @@ def test_incomplete_attributes_are_found(text, expected):
 @pytest.mark.parametrize("piece", ["<", "<!", "<![", '<a b="', "<!--", "<a '", "<a b=", '"', "<!DOCTYPE ["])
 def test_tokenizing_hostile_text_takes_linear_time(piece: str):
     """A quadratic pattern would take minutes, and the test would run into its time limit."""
-    found = [token.attributes() for token in tokens("<a " + piece * 200_000)]
-    assert found
+    attributes = [token.attributes() for token in tokens("<a " + piece * 200_000)]
+    assert attributes

@@ -128,8 +128,8 @@ def test_package_missing_from_requirements_is_reported(pack: Path, capsys: pytes
     before = path.read_text()
     path.write_text("".join(line for line in before.splitlines(keepends=True) if not line.startswith("pure")))
     sums = (pack / "SHA256SUMS").read_text().splitlines()
-    kept = [line for line in sums if not line.endswith("windows-py3.13.txt")]
-    (pack / "SHA256SUMS").write_text("\n".join(kept) + "\n")
+    lines = [line for line in sums if not line.endswith("windows-py3.13.txt")]
+    (pack / "SHA256SUMS").write_text("\n".join(lines) + "\n")
     assert main(["learn", "pack", "--check", str(pack)]) == 1
     errors = capsys.readouterr().err
     assert "Windows, Python 3.13: no wheel for 'pure', which windows_only-1.0-py3-none-any.whl needs" in errors
@@ -257,36 +257,36 @@ def install(pack: Path, home: Path, *words: str, **variables: str) -> subprocess
 
 def test_installer_installs_and_runs_linkwright(installable: Path, tmp_path: Path) -> None:
     home = tmp_path / "home of a learner"
-    done = install(installable, home)
-    assert (done.returncode, done.stderr) == (0, "")
-    assert f". '{home}/linkwright/bin/activate'" in done.stdout
-    assert "Linkwright 已安装" in done.stdout
+    result = install(installable, home)
+    assert (result.returncode, result.stderr) == (0, "")
+    assert f". '{home}/linkwright/bin/activate'" in result.stdout
+    assert "Linkwright 已安装" in result.stdout
     again = install(installable, home)
     assert (again.returncode, again.stderr) == (0, "")
 
 
 def test_installer_rejects_damaged_wheel(installable: Path, tmp_path: Path) -> None:
     write_wheel(installable / "wheels", "pure", requires=["other"])
-    done = install(installable, tmp_path / "home")
-    assert done.returncode == 1
-    assert "THESE PACKAGES DO NOT MATCH THE HASHES" in done.stderr
-    assert "这一步失败了" in done.stderr
+    result = install(installable, tmp_path / "home")
+    assert result.returncode == 1
+    assert "THESE PACKAGES DO NOT MATCH THE HASHES" in result.stderr
+    assert "这一步失败了" in result.stderr
 
 
 def test_installer_refuses_folder_that_is_not_an_environment(installable: Path, tmp_path: Path) -> None:
     (tmp_path / "home" / "linkwright").mkdir(parents=True)
     (tmp_path / "home" / "linkwright" / "homework.urdf").write_text("mine")
-    done = install(installable, tmp_path / "home")
-    assert done.returncode == 1
-    assert "exists and is not an environment of Python" in done.stderr
-    assert "不是 Python 环境" in done.stderr
+    result = install(installable, tmp_path / "home")
+    assert result.returncode == 1
+    assert "exists and is not an environment of Python" in result.stderr
+    assert "不是 Python 环境" in result.stderr
 
 
 def test_installer_names_targets_of_pack(pack: Path, tmp_path: Path) -> None:
     shutil.rmtree(pack / "requirements")
-    done = install(pack, tmp_path / "home")
-    assert done.returncode == 1
-    assert "It has: windows, linux-x86_64; Python 3.12, 3.13." in done.stderr
+    result = install(pack, tmp_path / "home")
+    assert result.returncode == 1
+    assert "It has: windows, linux-x86_64; Python 3.12, 3.13." in result.stderr
 
 
 def test_installer_gives_advice_without_python(pack: Path, tmp_path: Path) -> None:
@@ -297,10 +297,10 @@ def test_installer_gives_advice_without_python(pack: Path, tmp_path: Path) -> No
     tools.mkdir()
     for name in ("dirname", "uname", "cat", "sh"):
         (tools / name).symlink_to(shutil.which(name) or "")
-    done = install(pack, tmp_path / "home", PATH=str(tools), PYTHON="")
-    assert done.returncode == 1
-    assert "There is no Python that fits" in done.stderr
-    assert "没有合适的 Python" in done.stderr
+    result = install(pack, tmp_path / "home", PATH=str(tools), PYTHON="")
+    assert result.returncode == 1
+    assert "There is no Python that fits" in result.stderr
+    assert "没有合适的 Python" in result.stderr
 
 
 def test_installer_unpacks_python_archive_if_python_is_missing(pack: Path, tmp_path: Path) -> None:
@@ -320,8 +320,8 @@ def test_installer_unpacks_python_archive_if_python_is_missing(pack: Path, tmp_p
         (tools / name).symlink_to(shutil.which(name) or "")
     script = (pack / "install.sh").read_text().replace("/usr/local/bin/", "/nowhere/")
     (pack / "install.sh").write_text(script)
-    done = install(pack, tmp_path / "home", PATH=str(tools), PYTHON="")
-    assert done.stdout == f"started {pack}/install.py\n"
+    result = install(pack, tmp_path / "home", PATH=str(tools), PYTHON="")
+    assert result.stdout == f"started {pack}/install.py\n"
 
 
 def test_pack_json_has_version_systems_and_missing_parts(pack: Path) -> None:

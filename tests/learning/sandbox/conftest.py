@@ -30,10 +30,10 @@ def student(class_folder: Path) -> Path:
 
 def processes_with(word: str) -> list[int]:
     """The numbers of the processes that have a word among their arguments."""
-    found = []
+    process_numbers = []
     for process in Path("/proc").iterdir():
         if process.name.isdecimal():
             with contextlib.suppress(OSError):
                 if word.encode() in (process / "cmdline").read_bytes():
-                    found.append(int(process.name))
-    return found
+                    process_numbers.append(int(process.name))
+    return process_numbers

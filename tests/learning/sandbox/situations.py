@@ -129,12 +129,12 @@ def _take_away(name: str) -> None:
     _deny(denied, allow_user_namespace=namespaces == "user", deny_landlock=not has_landlock)
 
 
-def _keep_capabilities(kept: int) -> None:
+def _keep_capabilities(mask: int) -> None:
     for number in range(41):
-        if not kept >> number & 1:
+        if not mask >> number & 1:
             libc().prctl(24, ctypes.c_ulong(number), 0, 0, 0)
     header = (ctypes.c_uint32 * 2)(0x20080522, 0)
-    low, high = kept & 0xFFFFFFFF, kept >> 32
+    low, high = mask & 0xFFFFFFFF, mask >> 32
     data = (ctypes.c_uint32 * 6)(low, low, 0, high, high, 0)
     assert libc().capset(ctypes.byref(header), ctypes.byref(data)) == 0
 

@@ -168,8 +168,8 @@ def test_run_cannot_leave_sandbox(situation: str, student: Path) -> None:
     if not outcome.protections:
         assert outcome.status == -9
         return
-    done = {name for name, was_done in json.loads(outcome.stdout).items() if was_done}
-    assert done <= _possible(outcome.protections)
+    breaches = {name for name, was_done in json.loads(outcome.stdout).items() if was_done}
+    assert breaches <= _possible(outcome.protections)
     if Protection.WRITE in outcome.protections:
         assert (neighbor / "secret").read_text() == "secret"
         assert sorted(path.name for path in student.parent.iterdir()) == ["neighbor", "server", "student"]

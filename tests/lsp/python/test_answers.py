@@ -36,9 +36,9 @@ def test_first_non_empty_answer_applies(empty: Any) -> None:
 def test_completions_of_all_servers_are_combined_without_duplicates() -> None:
     own = [edit(5, 8, "package="), edit(5, 8, "parameters=")]
     typed = {"isIncomplete": True, "items": [{"label": "package="}, {"label": "pacing"}]}
-    found = complete((OWN, own), (TY, typed))
-    assert [item["label"] for item in found["items"]] == ["package=", "parameters=", "pacing"]
-    assert found["isIncomplete"]
+    completions = complete((OWN, own), (TY, typed))
+    assert [item["label"] for item in completions["items"]] == ["package=", "parameters=", "pacing"]
+    assert completions["isIncomplete"]
 
 
 def test_string_completed_by_linkwright_has_no_other_completions() -> None:
@@ -49,8 +49,8 @@ def test_string_completed_by_linkwright_has_no_other_completions() -> None:
 def test_list_defaults_apply_only_to_items_of_that_list() -> None:
     place = {"start": {"line": 0, "character": 5}, "end": {"line": 0, "character": 8}}
     own = {"itemDefaults": {"editRange": place, "insertTextFormat": 2}, "items": [{"label": "package="}]}
-    found = complete((OWN, own), (TY, [{"label": "pacing"}]))
-    assert found["items"] == [
+    completions = complete((OWN, own), (TY, [{"label": "pacing"}]))
+    assert completions["items"] == [
         {"label": "package=", "insertTextFormat": 2, "textEdit": {"range": place, "newText": "package="}},
         {"label": "pacing"},
     ]
@@ -59,14 +59,14 @@ def test_list_defaults_apply_only_to_items_of_that_list() -> None:
 def test_code_action_is_resolved_by_its_server_with_its_data() -> None:
     own, fix = {"title": "own", "data": 1}, {"title": "fix", "data": {"id": 2}}
     command = {"title": "run", "command": "ruff.applyAutofix"}
-    found = combined(
+    actions = combined(
         "textDocument/codeAction", [(OWN, [own]), (TY, [{"title": "a"}]), (RUFF, [fix, command])], TEXT, {}
     )
-    assert [action["title"] for action in found] == ["own", "a", "fix"]
-    assert found[0] == own
-    assert [server_of_action(action) for action in found] == [None, (TY, {"title": "a"}), (RUFF, fix)]
+    assert [action["title"] for action in actions] == ["own", "a", "fix"]
+    assert actions[0] == own
+    assert [server_of_action(action) for action in actions] == [None, (TY, {"title": "a"}), (RUFF, fix)]
 
 
 def test_code_actions_are_marked_without_linkwright_answer() -> None:
-    found = combined("textDocument/codeAction", [(RUFF, [{"title": "fix"}])], TEXT, {})
-    assert server_of_action(found[0]) == (RUFF, {"title": "fix"})
+    actions = combined("textDocument/codeAction", [(RUFF, [{"title": "fix"}])], TEXT, {})
+    assert server_of_action(actions[0]) == (RUFF, {"title": "fix"})

@@ -44,9 +44,9 @@ def test_findings_move_with_text_until_next_check() -> None:
     text.set_findings("ty", [finding(WORD, 7, 12)])
     text.set_findings("ruff", [finding(WORD, 0, 1)])
     text.change(2, [{"text": "# 😀\n" + WORD}])
-    assert [each["range"] for each in text.findings()] == [place(2, 0, 5), place(1, 0, 1)]
+    assert [finding["range"] for finding in text.findings()] == [place(2, 0, 5), place(1, 0, 1)]
     text.change(3, [{"range": place(2, 0, 0), "text": "the_"}, {"range": place(1, 0, 0), "text": "😀\n"}])
-    assert [each["range"] for each in text.findings()] == [place(3, 4, 9), place(2, 0, 1)]
+    assert [finding["range"] for finding in text.findings()] == [place(3, 4, 9), place(2, 0, 1)]
     text.set_findings("ty", [])
     assert text.findings() == text.findings_of("ruff")
 

@@ -100,29 +100,31 @@ def place(text: str, wanted: str, more: int = 0) -> types.Position:
     return types.Position(before.count("\n"), len(line.encode("utf-16-le")) // 2)
 
 
-def written(text: str, found: types.Range) -> str:
+def written(text: str, place: types.Range) -> str:
     """Return the text of a range in one line."""
-    units = text.splitlines()[found.start.line].encode("utf-16-le")
-    return units[2 * found.start.character : 2 * found.end.character].decode("utf-16-le")
+    units = text.splitlines()[place.start.line].encode("utf-16-le")
+    return units[2 * place.start.character : 2 * place.end.character].decode("utf-16-le")
 
 
 async def hover(editor: Editor, name: str, position: types.Position) -> str:
-    found = await editor.client.text_document_hover_async(types.HoverParams(editor.document(name), position))
-    assert found is not None
-    assert isinstance(found.contents, types.MarkupContent)
-    return found.contents.value
+    hover = await editor.client.text_document_hover_async(types.HoverParams(editor.document(name), position))
+    assert hover is not None
+    assert isinstance(hover.contents, types.MarkupContent)
+    return hover.contents.value
 
 
 async def labels(editor: Editor, name: str, position: types.Position) -> list[str]:
-    found = await editor.client.text_document_completion_async(types.CompletionParams(editor.document(name), position))
-    items = found.items if isinstance(found, types.CompletionList) else found or []
+    completions = await editor.client.text_document_completion_async(
+        types.CompletionParams(editor.document(name), position)
+    )
+    items = completions.items if isinstance(completions, types.CompletionList) else completions or []
     return [item.label for item in items]
 
 
 async def test_ros_and_workspace_modules_are_found(editor: Editor) -> None:
     editor.open(TALKER, language="python")
-    found = await editor.until(TALKER, "F401", "F401")
-    assert {written(NODE, finding.range) for finding in found} == {"os", "LaunchNode"}
+    findings = await editor.until(TALKER, "F401", "F401")
+    assert {written(NODE, finding.range) for finding in findings} == {"os", "LaunchNode"}
     assert "A node in the graph" in await hover(editor, TALKER, place(NODE, "Node)"))
     assert "Count" in await hover(editor, TALKER, place(NODE, "Count\n"))
     assert "create_publisher" in await hover(editor, TALKER, place(NODE, "create_publisher", more=3))
@@ -133,8 +135,8 @@ async def test_unsaved_text_reaches_servers(editor: Editor) -> None:
     text = NODE.replace("import os\n", "").replace("LaunchNode", "_").replace("; ", "\n        ")
     text += "        self.get_logger().inf\n"
     editor.change(TALKER, text)
-    found = await editor.until(TALKER, "F401", "missing-attribute")
-    assert "has no attribute `inf`" in {each.code: each.message for each in found}["missing-attribute"]
+    findings = await editor.until(TALKER, "F401", "missing-attribute")
+    assert "has no attribute `inf`" in {finding.code: finding.message for finding in findings}["missing-attribute"]
     assert "info" in await labels(editor, TALKER, place(text, "logger().inf", more=12))
     editor.change(TALKER, text.replace("().inf", "().info('说😀')"))
     await editor.until(TALKER, "F401")
@@ -155,9 +157,9 @@ async def test_changed_workspace_message_is_reloaded(editor: Editor, workspace: 
 async def test_name_is_renamed_in_all_files_and_definition_is_found(editor: Editor, workspace: Path) -> None:
     editor.open(TALKER, language="python")
     document, position = editor.document(TALKER), place(NODE, "half(", more=1)
-    found = await editor.client.text_document_definition_async(types.DefinitionParams(document, position))
-    assert isinstance(found, list)
-    assert [location.uri for location in found if isinstance(location, types.Location)] == [
+    definitions = await editor.client.text_document_definition_async(types.DefinitionParams(document, position))
+    assert isinstance(definitions, list)
+    assert [location.uri for location in definitions if isinstance(location, types.Location)] == [
         (workspace / "src/my_package/my_package/speed.py").as_uri()
     ]
     edit = await editor.client.text_document_rename_async(types.RenameParams(document, position, "halved"))
@@ -173,17 +175,17 @@ async def test_ruff_formats_and_fixes(editor: Editor) -> None:
     edits = await editor.client.text_document_formatting_async(types.DocumentFormattingParams(document, options))
     assert edits is not None
     assert 'super().__init__("说话😀")\n        self.publisher' in "".join(edit.new_text for edit in edits)
-    found = await editor.until(TALKER, "F401", "F401")
-    unused = next(finding for finding in found if finding.range.start.line == 0)
-    context = types.CodeActionContext(found)
+    findings = await editor.until(TALKER, "F401", "F401")
+    unused = next(finding for finding in findings if finding.range.start.line == 0)
+    context = types.CodeActionContext(findings)
     asked = types.CodeActionParams(document, unused.range, context)
     actions = await editor.client.text_document_code_action_async(asked)
-    fixes = [each for each in actions or () if isinstance(each, types.CodeAction)]
-    fix_all = next(each for each in fixes if str(each.kind).startswith("source.fixAll"))
+    fixes = [action for action in actions or () if isinstance(action, types.CodeAction)]
+    fix_all = next(fix for fix in fixes if str(fix.kind).startswith("source.fixAll"))
     resolved = await editor.client.code_action_resolve_async(fix_all)
     assert "import os" not in str(resolved.edit)
     assert resolved.edit is not None
-    assert any("Remove unused import" in each.title for each in fixes)
+    assert any("Remove unused import" in fix.title for fix in fixes)
 
 
 async def test_launch_file_combines_linkwright_and_ty_completions(editor: Editor) -> None:
@@ -210,8 +212,8 @@ async def test_killed_server_restarts_with_unsaved_text(editor: Editor) -> None:
     (await children_of(editor))["ty"].kill()
     text = NODE + "        self.speed = half(self.limit)\n        self.speed.real.y\n"
     editor.change(TALKER, text)
-    found = await editor.until(TALKER, "F401", "F401", "missing-attribute")
-    await eventually(lambda: "`y`" in str(editor.diagnostics), what=found)
+    findings = await editor.until(TALKER, "F401", "F401", "missing-attribute")
+    await eventually(lambda: "`y`" in str(editor.diagnostics), what=findings)
     assert editor.messages == []
 
 

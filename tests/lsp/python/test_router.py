@@ -106,7 +106,7 @@ class Connection:
             is_findings = message.get("method") == "textDocument/publishDiagnostics"
             return is_findings and len(message["params"]["diagnostics"]) == count
 
-        return [each["message"] for each in self.editor.until(is_published)["params"]["diagnostics"]]
+        return [finding["message"] for finding in self.editor.until(is_published)["params"]["diagnostics"]]
 
 
 def is_shown_message(message: Message) -> bool:
@@ -121,14 +121,14 @@ def program(name: str, text: str = SERVER) -> Program:
 
 @pytest.fixture
 def connect(tmp_path: Path) -> Iterator[Callable[..., Connection]]:
-    made: list[Connection] = []
+    connections: list[Connection] = []
 
     def connected(*programs: Program) -> Connection:
-        made.append(Connection(list(programs), tmp_path))
-        return made[-1]
+        connections.append(Connection(list(programs), tmp_path))
+        return connections[-1]
 
     yield connected
-    for connection in made:
+    for connection in connections:
         connection.router.close()
 
 

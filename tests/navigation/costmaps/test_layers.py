@@ -142,7 +142,7 @@ def test_rays_clear_only_cells_they_pass():
     assert marked == [[10, 10], [20, 25], [25, 25], [30, 20]]
     eye.layer.layer_grid.cells[:] = LETHAL
     eye.see((2.55, 2.05))
-    assert np.argwhere(eye.layer.layer_grid.cells != LETHAL).tolist() == [[20, each] for each in range(20, 25)]
+    assert np.argwhere(eye.layer.layer_grid.cells != LETHAL).tolist() == [[20, column] for column in range(20, 25)]
 
 
 def test_maximum_ranges_limit_marking_and_clearing():

@@ -29,7 +29,7 @@ def only(*names):
 
 
 def names_of(used):
-    return {State(index).name for index, each in enumerate(used) if each}
+    return {State(index).name for index, is_used in enumerate(used) if is_used}
 
 
 def test_pose_and_covariance_are_transformed_to_world():

@@ -47,8 +47,8 @@ def test_resampling_follows_weights() -> None:
     particles.set_particles(np.array([(0.25, 0.25, 0.01), (3.25, 0.25, 0.01), (6.25, 0.25, 0.01)]))
     particles.update_weights(np.array([1.0, 0.0, 3.0]))
     particles.resample(_nowhere)
-    found, counts = np.unique(particles.particles[:, 0], return_counts=True)
-    assert found.tolist() == [0.25, 6.25]
+    identifiers, counts = np.unique(particles.particles[:, 0], return_counts=True)
+    assert identifiers.tolist() == [0.25, 6.25]
     assert counts[1] / counts.sum() == pytest.approx(0.75, abs=0.05)
 
 

@@ -104,7 +104,7 @@ class Drift:
 
 def faces(models: tuple[str, ...] = ("walls",), height: float = 0.2) -> np.ndarray:
     """The upright faces of boxes of models of the house at a height, of shape (n, 2, 2): from right to left, seen."""
-    found = []
+    segments = []
     for model in read_world(str(HOUSE)).world.models:
         for link in model.links if model.name in models else ():
             for collision in link.collisions:
@@ -115,8 +115,8 @@ def faces(models: tuple[str, ...] = ("walls",), height: float = 0.2) -> np.ndarr
                 half = np.array(size[:2]) / 2
                 corners = [(-half[0], -half[1]), (half[0], -half[1]), (half[0], half[1]), (-half[0], half[1])]
                 corners = [(x + a * cos(yaw) - b * sin(yaw), y + a * sin(yaw) + b * cos(yaw)) for a, b in corners]
-                found += list(pairwise([*corners, corners[0]]))
-    return np.array(found)
+                segments += list(pairwise([*corners, corners[0]]))
+    return np.array(segments)
 
 
 def distances(faces: np.ndarray, points: np.ndarray) -> np.ndarray:

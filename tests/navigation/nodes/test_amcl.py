@@ -74,9 +74,9 @@ class House:
     def error(self) -> tuple[float, float]:
         """How far, in meters and radians, the transforms have the robot from where it is."""
         true = self.test.robot_pose()
-        found, _ = self.buffer.lookup("map", "base_footprint", 0)
-        turn = rpy_from_quaternion(found[3:])[2] - rpy_from_quaternion(true[3:])[2]
-        return hypot(found[0] - true[0], found[1] - true[1]), abs(atan2(sin(turn), cos(turn)))
+        transform, _ = self.buffer.lookup("map", "base_footprint", 0)
+        turn = rpy_from_quaternion(transform[3:])[2] - rpy_from_quaternion(true[3:])[2]
+        return hypot(transform[0] - true[0], transform[1] - true[1]), abs(atan2(sin(turn), cos(turn)))
 
     def drive(self, corners: list[tuple[float, float]], speed: float = 0.5) -> None:
         """Drive from corner to corner, by where the robot really is."""

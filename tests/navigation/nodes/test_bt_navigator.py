@@ -41,7 +41,7 @@ class Planner:
             handle.abort()
             return result
         goal = handle.request
-        poses = [each.pose.position for each in (goal.goals if hasattr(goal, "goals") else [goal.goal])]
+        poses = [pose.pose.position for pose in (goal.goals if hasattr(goal, "goals") else [goal.goal])]
         result.path = path_message(line(self.scene.pose[:2], *[(pose.x, pose.y) for pose in poses]))
         handle.succeed()
         return result
@@ -71,7 +71,7 @@ async def test_navigate_to_pose_reaches_goal_with_feedback(scene):
     assert await goal.ends(60.0) == GoalStatus.SUCCEEDED
     assert scene.distance_to(3.0, 1.0) < 0.26
     assert scene.velocity == ZERO_VELOCITY
-    left = [each.distance_remaining for each in goal.feedback]
+    left = [feedback.distance_remaining for feedback in goal.feedback]
     assert max(left) == pytest.approx(2.0, abs=0.2)
     assert left[-1] < 0.4
     assert goal.feedback[-1].number_of_recoveries == 0
@@ -92,7 +92,7 @@ async def test_navigate_through_poses_visits_all_poses(scene):
     await goal.send(poses=[pose_stamped(2.0, 1.0), pose_stamped(2.0, 2.0), pose_stamped(3.0, 2.0)])
     assert await goal.ends(90.0) == GoalStatus.SUCCEEDED
     assert scene.distance_to(3.0, 2.0) < 0.26
-    assert {each.number_of_poses_remaining for each in goal.feedback} >= {1, 2, 3}
+    assert {feedback.number_of_poses_remaining for feedback in goal.feedback} >= {1, 2, 3}
 
 
 async def test_canceling_stops_robot(scene):
@@ -154,7 +154,7 @@ async def test_goal_without_frame_aborts_without_recoveries(scene, log):
     await goal.send(pose=pose_stamped(2.0, 1.0, frame=""))
     assert await goal.ends(10.0) == GoalStatus.ABORTED
     assert any("the goal has no frame_id, such as map" in record.text for record in log)
-    assert all(each.number_of_recoveries == 0 for each in goal.feedback)
+    assert all(feedback.number_of_recoveries == 0 for feedback in goal.feedback)
 
 
 async def test_empty_pose_list_is_rejected(scene):
@@ -179,7 +179,7 @@ async def test_waypoints_are_followed_and_missed_ones_are_reported(scene):
     await goal.send(poses=[pose_stamped(2.0, 1.0), pose_stamped(2.0, 2.0)])
     assert await goal.ends(90.0) == GoalStatus.SUCCEEDED
     assert list(goal.answer.result.missed_waypoints) == []
-    assert {each.current_waypoint for each in goal.feedback} == {0, 1}
+    assert {feedback.current_waypoint for feedback in goal.feedback} == {0, 1}
     scene.planner.failures = 2
     await goal.send(poses=[pose_stamped(1.0, 3.5), pose_stamped(2.0, 1.0)])
     assert await goal.ends(90.0) == GoalStatus.SUCCEEDED

@@ -51,15 +51,15 @@ def scene(graph, clock):
 
 @pytest.fixture
 def monitor(graph, scene):
-    made = []
+    monitors = []
 
     def make(**parameters):
-        made.append(CollisionMonitor(graph, NodeOptions(parameters={**SCAN, **parameters})))
-        return made[-1].node
+        monitors.append(CollisionMonitor(graph, NodeOptions(parameters={**SCAN, **parameters})))
+        return monitors[-1].node
 
     yield make
-    for each in made:
-        each.close()
+    for monitor in monitors:
+        monitor.close()
 
 
 async def test_velocity_passes_in_free_space(scene, monitor):
@@ -80,7 +80,7 @@ async def test_robot_stops_for_obstacle_in_zone_and_resumes(scene, monitor, log)
     await scene.run(1.0)
     assert scene.velocity.x == pytest.approx(0.4)
     assert [(state.action_type, state.polygon_name) for state in states[-2:]] == [(1, "stop"), (0, "")]
-    assert any(each.text == "Robot to stop due to stop" for each in log)
+    assert any(record.text == "Robot to stop due to stop" for record in log)
     assert node.lifecycle_state == ACTIVE
 
 
@@ -243,7 +243,7 @@ async def test_invalid_parameter_is_reported_and_node_stays_unconfigured(scene, 
     node = monitor(**{**STOP, name: value})
     await scene.run(0.5)
     assert node.lifecycle_state == UNCONFIGURED
-    errors = [each.text for each in log if each.level == LogLevel.ERROR]
+    errors = [record.text for record in log if record.level == LogLevel.ERROR]
     assert any("NODE433" in error and name in error for error in errors)
     assert scene.speeds == []
 

@@ -48,7 +48,7 @@ PATH = line((1.0, 1.0), (2.5, 1.0), (2.5, 2.0))
 @pytest.fixture
 async def start(graph, clock):
     """Starts the server with parameters; the scene and the action."""
-    made = []
+    servers = []
 
     async def start(**parameters):
         scene = DrivingScene(graph, clock)
@@ -56,12 +56,12 @@ async def start(graph, clock):
         for name, value in LOCAL.items():
             options.parameters_of_others.set("/local_costmap/local_costmap", name, value)
         server = ControllerServer(graph, options)
-        made.append(server)
+        servers.append(server)
         await scene.run(1.0)
         return scene, Asked(scene, "FollowPath", "follow_path"), server
 
     yield start
-    for server in made:
+    for server in servers:
         server.close()
 
 
@@ -74,7 +74,7 @@ async def test_path_is_followed_to_end(start, parameters):
     assert abs(scene.pose[2] - pi / 2) < 0.26
     assert scene.velocity == ZERO_VELOCITY
     assert goal.feedback[0].distance_to_goal == pytest.approx(2.5, abs=0.15)
-    assert max(each.speed for each in goal.feedback) > 0.15
+    assert max(feedback.speed for feedback in goal.feedback) > 0.15
 
 
 async def test_canceling_stops_robot(start):

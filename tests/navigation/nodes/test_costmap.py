@@ -49,29 +49,29 @@ def scene(graph, clock) -> Scene:
 
 @pytest.fixture
 def start(graph, scene):
-    made = []
+    nodes = []
 
     def start(name="global_costmap", parameters=GLOBAL, **more):
         options = NodeOptions()
         for key, value in {**parameters, **more}.items():
             options.parameters_of_others.set(f"/{name}/{name}", key, value)
         node = make_costmap(scene.node, graph, options, name)
-        made.append(node)
+        nodes.append(node)
         if node.trigger_configure() == TransitionCallbackReturn.SUCCESS:
             node.trigger_activate()
         return node
 
     yield start
-    for node in made:
+    for node in nodes:
         node.shut_down()
         node.destroy_node()
 
 
-async def call(scene, service, kind, **fields):
+async def call(world, service, kind, **fields):
     kind = get_service(f"nav2_msgs/srv/{kind}")
-    client = scene.node.create_client(kind, service)
+    client = world.node.create_client(kind, service)
     future = client.call_async(kind.Request(**fields))
-    await scene.graph.settle()
+    await world.graph.settle()
     assert future.done()
     return future.result()
 
@@ -135,9 +135,9 @@ async def test_scan_waits_for_its_transform(scene, start):
     assert node.costmap.cost_at(np.array([1.5, 1.0])) == FREE
     scene.tell_pose(x=1.0)  # the robot has moved since the last transform, and the scan is between both
     await scene.run(0.3)
-    found = np.argwhere(node.costmap.grid.cells[15:25, 20:50] == LETHAL)
-    assert len(found) == 1
-    assert 1.5 < (found[0, 1] + 20) * 0.05 < 2.0
+    obstacle_cells = np.argwhere(node.costmap.grid.cells[15:25, 20:50] == LETHAL)
+    assert len(obstacle_cells) == 1
+    assert 1.5 < (obstacle_cells[0, 1] + 20) * 0.05 < 2.0
 
 
 async def test_local_costmap_moves_with_robot(scene, start):
@@ -254,11 +254,11 @@ async def test_unsupported_layers_and_filters_are_reported_and_ignored(scene, st
             "keepout_filter.enabled": True,
         },
     )
-    logged = [each.text for each in log]
+    logged = [record.text for record in log]
     assert "layers of type my_package::Sonar are not supported: the costmap ignores 'sonar'" in logged
     assert "costmap filters are not supported: the costmap ignores keepout_filter" in logged
     assert "layers that 'plugins' does not name are ignored: obstacle_layer" in logged
-    assert not [each for each in logged if "is not a parameter" in each or "are not read" in each]
+    assert not [text for text in logged if "is not a parameter" in text or "are not read" in text]
 
 
 @pytest.mark.parametrize(
@@ -273,4 +273,4 @@ async def test_unsupported_layers_and_filters_are_reported_and_ignored(scene, st
 async def test_invalid_parameters_are_reported(scene, start, log, given, why):
     node = start(**given)
     assert not node.is_active
-    assert [each for each in log if why in each.text]
+    assert [record for record in log if why in record.text]

@@ -122,9 +122,9 @@ class Stack:
 
 @pytest.fixture
 async def stack(graph: Graph, clock: JumpClock, log: list[LogRecord]) -> AsyncIterator[Stack]:
-    made = Stack(graph, clock, log)
-    yield made
-    made.close()
+    stack = Stack(graph, clock, log)
+    yield stack
+    stack.close()
 
 
 async def test_nodes_are_configured_and_activated_in_order(stack: Stack) -> None:
@@ -190,7 +190,10 @@ async def test_commands_transition_up_in_order_and_down_in_reverse(stack: Stack)
         assert await stack.command(number)
         assert stack.states() == {"a": state, "b": state}
         assert await stack.is_active() is (state == "active")
-    assert [each for each in stack.did if each.startswith("deactivate")][:2] == ["deactivate b", "deactivate a"]
+    assert [transition for transition in stack.did if transition.startswith("deactivate")][:2] == [
+        "deactivate b",
+        "deactivate a",
+    ]
     assert stack.errors() == []
 
 

@@ -29,8 +29,8 @@ def _files(folder: Path, name: str = "house", cells: np.ndarray[Any, Any] = _CEL
 
 async def _call(graph: Graph, kind: str, service: str, **fields: object) -> Any:
     node = graph.create_node("asks")
-    made = get_service(kind)
-    future = node.create_client(made, service).call_async(made.Request(**fields))
+    service_type = get_service(kind)
+    future = node.create_client(service_type, service).call_async(service_type.Request(**fields))
     await eventually(future.done)
     node.destroy_node()
     return future.result()
@@ -69,7 +69,7 @@ async def test_load_map_service_replaces_map(graph: Graph, log: list[LogRecord],
 
     answer = await load(other)
     assert (answer.result, answer.map.info.width) == (0, 2)
-    assert [each.info.width for each in maps] == [3, 2]
+    assert [grid.info.width for grid in maps] == [3, 2]
     broken = tmp_path / "broken.yaml"
     broken.write_text("image: other.pgm\n")
     (tmp_path / "other.pgm").write_bytes(b"P5 1")

@@ -66,22 +66,22 @@ class Goal:
 
 @pytest.fixture
 async def server(graph, scene):
-    made = []
+    nodes = []
 
     async def start(kind=PlannerServer, grid=None, costmap=None, **parameters):
         rules = ParameterRules()
         for key, value in {**COSTMAP, **(costmap or {})}.items():
             rules.set("/global_costmap/global_costmap", key, value)
         node = kind(graph, NodeOptions(parameters={"autostart_node": True, **parameters}, parameters_of_others=rules))
-        made.append(node)
+        nodes.append(node)
         scene.tell_map(walls() if grid is None else grid)
         scene.tell_pose()
         await scene.run(0.5)
         return node
 
     yield start
-    for each in made:
-        each.close()
+    for planner in nodes:
+        planner.close()
 
 
 @pytest.fixture
@@ -103,12 +103,12 @@ async def test_compute_path_to_pose_returns_and_publishes_path(scene, server):
     scene.node.create_subscription(get_message("nav_msgs/msg/Path"), "/plan", plans.append, 1)
     status, result = await to_pose(scene, pose(3.0, 2.0, 1.0)).ended()
     assert status == SUCCEEDED
-    found = poses_from_messages(result.path.poses)
-    assert found[0, :2] == pytest.approx(scene.pose[:2])
-    assert found[-1] == pytest.approx([3.0, 2.0, 1.0])
+    path_poses = poses_from_messages(result.path.poses)
+    assert path_poses[0, :2] == pytest.approx(scene.pose[:2])
+    assert path_poses[-1] == pytest.approx([3.0, 2.0, 1.0])
     assert result.path.header.frame_id == "map"
-    assert len(plans[-1].poses) == len(found)
-    length = np.hypot(*np.diff(found[:, :2], axis=0).T).sum()
+    assert len(plans[-1].poses) == len(path_poses)
+    length = np.hypot(*np.diff(path_poses[:, :2], axis=0).T).sum()
     assert length == pytest.approx(hypot(2.0, 1.0), rel=0.05)
 
 
@@ -123,9 +123,9 @@ async def test_start_pose_and_goal_frame_are_respected(scene, server):
     await server()
     start = pose(0.5, 2.5)
     status, result = await to_pose(scene, pose(1.5, 0.0, frame="base_link"), start=start, use_start=True).ended()
-    found = poses_from_messages(result.path.poses)
+    path_poses = poses_from_messages(result.path.poses)
     assert status == SUCCEEDED
-    assert found[[0, -1], :2] == pytest.approx(np.array([[0.5, 2.5], [2.5, 1.0]]))
+    assert path_poses[[0, -1], :2] == pytest.approx(np.array([[0.5, 2.5], [2.5, 1.0]]))
 
 
 async def test_compute_path_through_poses_visits_all_poses(scene, server):
@@ -133,12 +133,12 @@ async def test_compute_path_through_poses_visits_all_poses(scene, server):
     goals = [pose(1.0, 2.0), pose(3.0, 2.0), pose(3.0, 1.0, 2.0)]
     goal = Goal(scene, "ComputePathThroughPoses", "compute_path_through_poses", {"goals": goals})
     status, result = await goal.ended()
-    found = poses_from_messages(result.path.poses)
+    path_poses = poses_from_messages(result.path.poses)
     assert status == SUCCEEDED
-    assert found[-1] == pytest.approx([3.0, 1.0, 2.0])
-    for each in goals[:2]:
-        x, y = each.pose.position.x, each.pose.position.y
-        assert np.hypot(found[:, 0] - x, found[:, 1] - y).min() < 1e-6
+    assert path_poses[-1] == pytest.approx([3.0, 1.0, 2.0])
+    for goal_pose in goals[:2]:
+        x, y = goal_pose.pose.position.x, goal_pose.pose.position.y
+        assert np.hypot(path_poses[:, 0] - x, path_poses[:, 1] - y).min() < 1e-6
 
 
 def divided():
@@ -220,13 +220,13 @@ async def test_planners_are_chosen_by_name(jazzy, scene, server, log):
     smac = {"Smac.plugin": "nav2_smac_planner/SmacPlannerHybrid", "Smac.minimum_turning_radius": 0.4}
     near = {"Near.plugin": "nav2_navfn_planner::NavfnPlanner", "Near.tolerance": 0.0}
     await server(planner_plugins=["Smac", "Near"], **smac, **near)
-    logged = [each.text for each in log]
+    logged = [record.text for record in log]
     assert [
-        each
-        for each in logged
-        if each.startswith("nav2_smac_planner/SmacPlannerHybrid is not supported: plans of 'Smac'")
+        text
+        for text in logged
+        if text.startswith("nav2_smac_planner/SmacPlannerHybrid is not supported: plans of 'Smac'")
     ]
-    assert not [each for each in logged if "Near" in each and "is not supported" in each]
+    assert not [text for text in logged if "Near" in text and "is not supported" in text]
     by_wall = pose(0.15, 1.5)
     assert (await to_pose(scene, by_wall, planner_id="Smac").ended())[0] == SUCCEEDED
     status, result = await to_pose(scene, by_wall, planner_id="Near").ended()
@@ -249,7 +249,7 @@ async def test_nav2_bringup_parameters_load_without_warning(graph, log, kind):
     options = NodeOptions(arguments=["--ros-args", "--params-file", str(file)], parameters={"autostart_node": True})
     node = kind(graph, options)
     assert node.node.is_active
-    assert not [each.text for each in log if each.level >= LogLevel.WARN or "are not read" in each.text]
+    assert not [record.text for record in log if record.level >= LogLevel.WARN or "are not read" in record.text]
     node.close()
 
 
@@ -270,16 +270,16 @@ async def test_costmap_in_container_has_parameters_of_process(scene, graph):
     container.close()
 
 
-async def test_is_path_valid_checks_costmap(scene, server):
+async def test_is_path_valid_checks_costmap(world, server):
     await server(costmap={"map_topic": "/map"})
     service = get_service("nav2_msgs/srv/IsPathValid")
-    client = scene.node.create_client(service, "is_path_valid")
+    client = world.node.create_client(service, "is_path_valid")
     stamp = get_message("builtin_interfaces/msg/Time")()
 
     async def ask(*points):
         path = path_message(np.array([(x, y, 0.0) for x, y in points]).reshape(-1, 3), "map", stamp)
         future = client.call_async(service.Request(path=path))
-        await scene.graph.settle()
+        await world.graph.settle()
         return future.result()
 
     assert (await ask((1.0, 1.0), (2.0, 1.0))).is_valid
@@ -307,10 +307,10 @@ async def test_path_is_smoothed(scene, server):
     status, result = await smooth(scene, CORNER, check_for_collisions=True).ended()
     assert status == SUCCEEDED
     assert result.was_completed
-    found = poses_from_messages(result.path.poses)
-    assert found[[0, -1], :2] == pytest.approx(np.array(CORNER)[[0, -1], :2])
-    assert np.hypot(found[20, 0] - 2.0, found[20, 1] - 1.0) > 0.01
-    assert np.abs(np.diff(found[:-1, 2])).max() < 1.0
+    path_poses = poses_from_messages(result.path.poses)
+    assert path_poses[[0, -1], :2] == pytest.approx(np.array(CORNER)[[0, -1], :2])
+    assert np.hypot(path_poses[20, 0] - 2.0, path_poses[20, 1] - 1.0) > 0.01
+    assert np.abs(np.diff(path_poses[:-1, 2])).max() < 1.0
 
 
 async def test_smoothing_failures_have_error_code_and_message(jazzy, scene, server):

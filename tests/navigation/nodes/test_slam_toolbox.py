@@ -106,9 +106,9 @@ def planar(transform: Any) -> np.ndarray:
 
 def map_to_odom(tf: Any) -> Any:
     """The last transform that the node published."""
-    found = [transform for message in tf for transform in message.transforms if transform.header.frame_id == "map"]
-    assert found[-1].child_frame_id == "odom"
-    return found[-1]
+    transforms = [transform for message in tf for transform in message.transforms if transform.header.frame_id == "map"]
+    assert transforms[-1].child_frame_id == "odom"
+    return transforms[-1]
 
 
 def is_a_map(message: Any) -> bool:
@@ -267,7 +267,7 @@ def test_robot_is_localized_in_saved_map(test, tmp_path):
     assert is_a_map(maps.last)
     robot, back = Robot(test), along([(-2, -3), (0, -3), (2, -2.8)], step=0.25)
     robot.go(back, drifting(relative_pose(back[0], back), 1.05, 0.03))
-    where = [relative_pose(PATH[0], each) for each in back]
+    where = [relative_pose(PATH[0], pose) for pose in back]
     at = poses.last.pose.pose.position
     assert min(np.hypot(at.x - pose[0], at.y - pose[1]) for pose in where[-3:]) < 0.05
     initial = get_message("geometry_msgs/msg/PoseWithCovarianceStamped")()

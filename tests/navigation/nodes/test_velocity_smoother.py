@@ -51,7 +51,7 @@ class Line:
         await self.stage.graph.settle()
 
     def speeds(self):
-        return [round(getattr(each, "twist", each).linear.x, 6) for each in self.out]
+        return [round(getattr(message, "twist", message).linear.x, 6) for message in self.out]
 
 
 @pytest.fixture
@@ -68,33 +68,33 @@ async def line(stage):
 
 
 async def test_step_command_becomes_ramp_within_limits(line, stage):
-    one = line()
-    await one.send(0.8)
+    smoother = line()
+    await smoother.send(0.8)
     await stage.clock.advance(0.3)
-    assert one.speeds() == [0.125, 0.25, 0.375, 0.5, 0.5, 0.5]
+    assert smoother.speeds() == [0.125, 0.25, 0.375, 0.5, 0.5, 0.5]
 
 
 async def test_command_ends_after_velocity_timeout(line, stage, logged):
-    one = line(velocity_timeout=0.2)
-    await one.send(0.25)
+    smoother = line(velocity_timeout=0.2)
+    await smoother.send(0.25)
     await stage.clock.advance(2.0)
-    assert one.speeds() == [0.125, 0.25, 0.25, 0.25, 0.125, 0.0]
+    assert smoother.speeds() == [0.125, 0.25, 0.25, 0.25, 0.125, 0.0]
     assert logged("INFO")[-1:] == [
         "no command was received for 0.2 s (velocity_timeout), and the last one was not a stop, so the robot is stopped"
     ]
 
 
 async def test_timeout_after_stop_command_is_not_logged(line, stage, logged):
-    one = line(velocity_timeout=0.2)
-    await one.send(0.25)
+    smoother = line(velocity_timeout=0.2)
+    await smoother.send(0.25)
     await stage.clock.advance(0.1)
-    await one.send(0.0)
+    await smoother.send(0.0)
     await stage.clock.advance(2.0)
-    assert not [each for each in logged("INFO") if "velocity_timeout" in each]
+    assert not [text for text in logged("INFO") if "velocity_timeout" in text]
 
 
 async def test_lost_command_publisher_stops_robot_and_is_reported(line, stage, logged):
-    one = line(velocity_timeout=10.0, enable_stamped_cmd_vel=False)
+    smoother = line(velocity_timeout=10.0, enable_stamped_cmd_vel=False)
     driver = RemotePublisher(RemoteTransport(stage.graph), "/cmd_vel")
     message = TWIST()
     message.linear.x = 0.25
@@ -102,8 +102,8 @@ async def test_lost_command_publisher_stops_robot_and_is_reported(line, stage, l
     await stage.clock.advance(0.2)
     driver.be_lost()
     await stage.clock.advance(1.0)
-    assert one.speeds()[3] == 0.25
-    assert one.speeds()[-1] == 0.0
+    assert smoother.speeds()[3] == 0.25
+    assert smoother.speeds()[-1] == 0.0
     assert logged("WARN") == [
         (
             "'/driver', which sent the commands on '/cmd_vel', was lost (killed, crashed or out of reach); "
@@ -113,62 +113,62 @@ async def test_lost_command_publisher_stops_robot_and_is_reported(line, stage, l
 
 
 async def test_velocities_within_deadband_are_zero(line, stage):
-    one = line(deadband_velocity=[0.2, 0.0, 0.0])
-    await one.send(0.3)
+    smoother = line(deadband_velocity=[0.2, 0.0, 0.0])
+    await smoother.send(0.3)
     await stage.clock.advance(0.15)
-    assert one.speeds() == [0.0, 0.25, 0.3]
+    assert smoother.speeds() == [0.0, 0.25, 0.3]
 
 
 async def test_closed_loop_starts_from_measured_velocity(line, stage):
-    one = line(feedback="CLOSED_LOOP")
+    smoother = line(feedback="CLOSED_LOOP")
     message = ODOMETRY()
     message.twist.twist.linear.x = 0.2
-    one.odometry.publish(message)
-    await one.send(0.5)
+    smoother.odometry.publish(message)
+    await smoother.send(0.5)
     await stage.clock.advance(0.06)
-    assert one.speeds() == [0.325]
+    assert smoother.speeds() == [0.325]
 
 
 async def test_six_axes_may_be_limited(line, stage):
     six = {name: [sign] * 6 for name, sign in (("max_velocity", 1.0), ("min_velocity", -1.0))}
     six |= {"max_accel": [2.0] * 6, "max_decel": [-2.0] * 6, "deadband_velocity": [0.0] * 6}
-    one = line(**six)
-    await one.send(1.0, 1.0)
+    smoother = line(**six)
+    await smoother.send(1.0, 1.0)
     await stage.clock.advance(0.06)
-    assert (one.out[0].linear.x, one.out[0].angular.z) == pytest.approx((0.1, 0.1))
+    assert (smoother.out[0].linear.x, smoother.out[0].angular.z) == pytest.approx((0.1, 0.1))
 
 
 @pytest.mark.parametrize("kind", [TWIST, STAMPED])
 async def test_twist_and_twist_stamped_pass_without_warning(line, stage, logged, kind):
-    one = line(kind=kind)
-    await one.send(0.5)
+    smoother = line(kind=kind)
+    await smoother.send(0.5)
     await stage.clock.advance(0.06)
-    assert one.speeds() == [0.125]
+    assert smoother.speeds() == [0.125]
     assert logged("WARN") == []
 
 
 async def test_nan_commands_are_ignored_with_error(line, stage, logged):
-    one = line()
-    await one.send(float("nan"))
+    smoother = line()
+    await smoother.send(float("nan"))
     await stage.clock.advance(0.5)
-    assert one.out == []
+    assert smoother.out == []
     assert "NaNs" in logged("ERROR")[0]
 
 
 async def test_velocity_smoother_is_a_managed_node(line, stage):
-    one = line(autostart_node=False)
-    await one.send(0.5)
+    smoother = line(autostart_node=False)
+    await smoother.send(0.5)
     await stage.clock.advance(0.5)
-    assert one.out == []
-    node = one.node.node
+    assert smoother.out == []
+    node = smoother.node.node
     node.trigger_configure()
     node.trigger_activate()
-    await one.send(0.5)
+    await smoother.send(0.5)
     await stage.clock.advance(0.21)
-    assert one.speeds()[-1] == 0.5
+    assert smoother.speeds()[-1] == 0.5
     node.trigger_deactivate()
     await stage.clock.advance(1.0)
-    assert one.speeds()[-1] == 0.0
+    assert smoother.speeds()[-1] == 0.0
     node.trigger_cleanup()
     assert "/cmd_vel_smoothed" not in {
         endpoint.name for endpoint in stage.graph.endpoints() if endpoint.node.name != "audience"
@@ -190,11 +190,11 @@ async def test_invalid_parameters_are_reported(line, logged, wrong, text):
 
 
 async def test_parameters_can_change_at_runtime(line, stage):
-    one = line()
-    assert await stage.set(one.node, max_velocity=[0.25, 0.0, 1.0]) == [(True, "")]
-    await one.send(0.5)
+    smoother = line()
+    assert await stage.set(smoother.node, max_velocity=[0.25, 0.0, 1.0]) == [(True, "")]
+    await smoother.send(0.5)
     await stage.clock.advance(0.3)
-    assert one.speeds()[-1] == 0.25
-    ((done, reason),) = await stage.set(one.node, max_accel=[-1.0, 0.0, 0.0])
-    assert not done
+    assert smoother.speeds()[-1] == 0.25
+    ((successful, reason),) = await stage.set(smoother.node, max_accel=[-1.0, 0.0, 0.0])
+    assert not successful
     assert reason == "max_accel must not be negative"

@@ -8,7 +8,7 @@ from typing import Any
 from linkwright.graph import DurabilityPolicy, Graph, QoSProfile
 from linkwright.messages import get_message, get_service
 from linkwright.rviz import RvizConfig
-from tests.viewer.scene import page, world
+from tests.viewer.scene import open_world, page
 
 FILE = """\
 Panels:
@@ -65,10 +65,10 @@ class Nav2:
         """Publish the states of goals, each accepted a second after the one before."""
         message = GoalStatusArray()
         for number, status in enumerate(statuses):
-            each = GoalStatus(status=status)
-            each.goal_info.stamp.sec = number
-            each.goal_info.goal_id.uuid = [number] * 16
-            message.status_list.append(each)
+            goal_status = GoalStatus(status=status)
+            goal_status.goal_info.stamp.sec = number
+            goal_status.goal_info.goal_id.uuid = [number] * 16
+            message.status_list.append(goal_status)
         self.status.publish(message)
 
     def progress(self, distance: float) -> None:
@@ -83,12 +83,12 @@ class Nav2:
 @asynccontextmanager
 async def navigation_page():
     """nav2, and a page that shows the panel."""
-    async with world() as w:
-        nav2 = Nav2(w.graph)
-        async with page(w.viewer) as client:
+    async with open_world() as world:
+        nav2 = Nav2(world.graph)
+        async with page(world.viewer) as client:
             await client.opened()
             await client.send("watch_navigation", open=True)
-            yield w, nav2, client
+            yield world, nav2, client
 
 
 async def test_manager_states_are_shown():
@@ -99,7 +99,7 @@ async def test_manager_states_are_shown():
 
 
 async def test_panel_without_nav2_shows_unknown_and_rejects_commands():
-    async with world() as w, page(w.viewer) as client:
+    async with open_world() as world, page(world.viewer) as client:
         await client.opened()
         await client.send("watch_navigation", open=True)
         first = await client.until("navigation_state")
@@ -126,12 +126,12 @@ async def test_goal_progress_is_shown_until_next_goal():
 
 
 async def test_goal_failure_is_shown_with_error_until_next_goal():
-    async with world() as w:
-        nav2 = Nav2(w.graph)
-        async with page(w.viewer) as client:
+    async with open_world() as world:
+        nav2 = Nav2(world.graph)
+        async with page(world.viewer) as client:
             await client.opened()
             nav2.goal(2)
-            w.graph.create_node("camera").get_logger().error("no light")
+            world.graph.create_node("camera").get_logger().error("no light")
             nav2.log.error("Goal failed: the goal is in an obstacle")
             nav2.goal(6)
             message = await client.until("goal_outcome", failed=True)
@@ -141,14 +141,14 @@ async def test_goal_failure_is_shown_with_error_until_next_goal():
 
 
 async def test_goal_failure_before_page_opened_is_not_shown():
-    async with world() as w:
-        nav2 = Nav2(w.graph)
+    async with open_world() as world:
+        nav2 = Nav2(world.graph)
         nav2.goal(6)
-        async with page(w.viewer) as client:
+        async with page(world.viewer) as client:
             await client.opened()
             nav2.goal(6, 5)
-            messages = [each for each in await client.drain(0.6) if isinstance(each, dict)]
-            assert not any(each["failed"] for each in messages if each["type"] == "goal_outcome")
+            messages = [message for message in await client.drain(0.6) if isinstance(message, dict)]
+            assert not any(message["failed"] for message in messages if message["type"] == "goal_outcome")
 
 
 async def test_buttons_command_both_managers_in_order_of_nav2():
@@ -188,11 +188,11 @@ async def test_goal_is_canceled_by_cancel_and_reset():
 
 
 async def test_closed_panel_has_no_subscriptions():
-    async with navigation_page() as (w, _, client):
+    async with navigation_page() as (world, _, client):
         await client.until("navigation_state", navigation="active")
         await client.send("watch_navigation", open=False)
         await client.drain()
-        assert w.viewer.context.node.count_subscribers("/navigate_to_pose/_action/feedback") == 0
+        assert world.viewer.context.node.count_subscribers("/navigate_to_pose/_action/feedback") == 0
 
 
 def test_panel_of_rviz_file_is_recognized_and_kept():

@@ -28,7 +28,7 @@ def costmap(cells) -> Costmap:
 def drawn(*rows: str) -> Costmap:
     """A costmap of characters: # lethal, o inscribed, ? unknown, the last row is that of y = 0."""
     costs = {"#": LETHAL, "o": INSCRIBED, "?": UNKNOWN, ".": 0}
-    return costmap([[costs[each] for each in row] for row in reversed(rows)])
+    return costmap([[costs[character] for character in row] for row in reversed(rows)])
 
 
 def inflated(obstacles) -> Costmap:
@@ -74,8 +74,8 @@ def dijkstra(price: np.ndarray, source: tuple[int, int]) -> np.ndarray:
     graph = load_scipy("sparse").coo_matrix(
         (np.concatenate(weights), (np.concatenate(begins), np.concatenate(ends))), shape=(number.size, number.size)
     )
-    found = load_scipy("sparse.csgraph").dijkstra(graph.tocsr(), directed=False, indices=number[source])
-    return np.asarray(found).reshape(rows, columns)
+    path_costs = load_scipy("sparse.csgraph").dijkstra(graph.tocsr(), directed=False, indices=number[source])
+    return np.asarray(path_costs).reshape(rows, columns)
 
 
 def rooms(seed: int, size: int = 60) -> np.ndarray:
@@ -285,34 +285,34 @@ def bend(points: np.ndarray) -> float:
 
 
 def test_smoothing_rounds_corner_and_keeps_ends():
-    found, complete = smooth_path(corner(), Smoothing())
+    smooth_poses, complete = smooth_path(corner(), Smoothing())
     assert complete
-    assert bend(found) < 0.5 * bend(corner())
-    assert found[[0, -1]] == pytest.approx(corner()[[0, -1]])
+    assert bend(smooth_poses) < 0.5 * bend(corner())
+    assert smooth_poses[[0, -1]] == pytest.approx(corner()[[0, -1]])
 
 
 def test_smoothing_matches_relaxation():
-    found, _ = smooth_path(corner(), Smoothing(do_refinement=False))
+    smooth_poses, _ = smooth_path(corner(), Smoothing(do_refinement=False))
     relaxed, given = corner(), corner()
     for _ in range(500):
         middle = relaxed[:-2] + relaxed[2:]
         relaxed[1:-1] += 0.2 * (given[1:-1] - relaxed[1:-1]) + 0.3 * (middle - 2.0 * relaxed[1:-1])
-    assert found == pytest.approx(relaxed, abs=1e-9)
+    assert smooth_poses == pytest.approx(relaxed, abs=1e-9)
 
 
 def test_smoothing_avoids_obstacles():
     scene = costmap(np.zeros((25, 25)))
     scene.grid.cells[1:10, 10:20] = LETHAL  # within the corner
-    found, complete = smooth_path(corner(), Smoothing(), scene)
+    smooth_poses, complete = smooth_path(corner(), Smoothing(), scene)
     assert not complete
-    assert (scene.cost_at(found) == 0).all()
+    assert (scene.cost_at(smooth_poses) == 0).all()
 
 
 def test_smoothing_keeps_cusps():
     there = np.column_stack((np.arange(0.0, 1.0, 0.1), np.zeros(10)))
     back = np.column_stack((np.arange(0.8, 0.0, -0.1), np.linspace(0.02, 0.3, 8)))
     points = np.concatenate((there, back))
-    found, _ = smooth_path(points, Smoothing())
-    assert found[9] == pytest.approx(points[9])
+    smooth_poses, _ = smooth_path(points, Smoothing())
+    assert smooth_poses[9] == pytest.approx(points[9])
     loose, _ = smooth_path(points, Smoothing(enforce_path_inversion=False))
     assert loose[9] != pytest.approx(points[9])

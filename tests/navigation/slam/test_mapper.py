@@ -24,14 +24,14 @@ def mapped(walls, path, odometry, settings=None, farthest=12.0, count=180):
     """A mapper that was shown a path, what came of its scans, and where they were really taken."""
     mapper = Mapper(settings or MapperSettings(), OccupancyMap(0.05))
     rng = np.random.default_rng(9)
-    outcomes, taken = [], []
+    outcomes, true_poses = [], []
     for number, (pose, text) in enumerate(zip(path, odometry, strict=True)):
         stamp_ns = number * HALF_A_SECOND
         if mapper.should_process(text, stamp_ns):
             scan = scan_at(walls, pose, stamp_ns, rng, count, farthest)
             outcomes.append(run_to_end(mapper.process(scan, text)))
-            taken.append(pose)
-    return mapper, outcomes, np.array(taken)
+            true_poses.append(pose)
+    return mapper, outcomes, np.array(true_poses)
 
 
 def furthest(errors):
@@ -42,8 +42,8 @@ def furthest(errors):
 def test_apartment_is_mapped_despite_odometry_drift(yaw_per_meter):
     path = AROUND_IT
     odometry = drifting(path, 1.03, yaw_per_meter, 0.02, np.random.default_rng(1))
-    mapper, outcomes, taken = mapped(house(), path, odometry)
-    errors = relative_pose(taken, mapper.graph.poses)
+    mapper, outcomes, true_poses = mapped(house(), path, odometry)
+    errors = relative_pose(true_poses, mapper.graph.poses)
     assert furthest(errors) < 0.02
     assert np.abs(errors[:, 2]).max() < 0.004
     assert all(outcome.is_matched for outcome in outcomes[1:])
@@ -51,7 +51,7 @@ def test_apartment_is_mapped_despite_odometry_drift(yaw_per_meter):
 
 
 def test_loop_is_closed_after_odometry_slip_in_corridor():
-    walls = np.array([wall for each in (box(0, 0, 18, 12), box(0, 0, 13, 7)) for wall in each], dtype=float)
+    walls = np.array([wall for rectangle in (box(0, 0, 18, 12), box(0, 0, 13, 7)) for wall in rectangle], dtype=float)
     path = along([(-7, -4.8), (7.6, -4.8), (7.7, 4.8), (-7.7, 4.8), (-7.7, -4.8), (-4, -4.8)], step=0.2, turn=0.2)
     odometry = [path[0]]
     for before, after in pairwise(path):
@@ -60,17 +60,17 @@ def test_loop_is_closed_after_odometry_slip_in_corridor():
         odometry.append(compose(odometry[-1], step))
     odometry = np.array(odometry)
     _, without, _ = mapped(walls, path, odometry, MapperSettings(do_loop_closing=False), farthest=4.0)
-    mapper, outcomes, taken = mapped(
+    mapper, outcomes, true_poses = mapped(
         walls, path, odometry, MapperSettings(loop_match_minimum_chain_size=5), farthest=4.0
     )
     assert sum(outcome.loop_count for outcome in outcomes) >= 1
-    count = len(taken)
-    first = int(np.argmin(np.hypot(*(taken[: count // 2] - taken[-1])[:, :2].T)))
-    true = relative_pose(taken[first], taken[-1])
+    count = len(true_poses)
+    first = int(np.argmin(np.hypot(*(true_poses[: count // 2] - true_poses[-1])[:, :2].T)))
+    true = relative_pose(true_poses[first], true_poses[-1])
     result = relative_pose(mapper.graph.poses[first], mapper.graph.poses[-1])
     assert result == pytest.approx(true, abs=0.06)
     assert not any(outcome.loop_count for outcome in without)
-    assert furthest((without[-1].pose - taken[-1])[None]) > 0.8
+    assert furthest((without[-1].pose - true_poses[-1])[None]) > 0.8
 
 
 def test_scans_are_processed_after_travel_or_rotation():
@@ -89,7 +89,7 @@ def test_scans_are_processed_after_travel_or_rotation():
 def test_empty_world_follows_odometry_and_has_no_map():
     empty = PlanarScan(np.zeros((0, 2)), np.zeros((0, 2)), np.zeros(2), 0)
     mapper = Mapper(MapperSettings(), OccupancyMap(0.05))
-    poses = np.array([[0.5 * each, 0.1 * each, 0.2 * each] for each in range(30)])
+    poses = np.array([[0.5 * step, 0.1 * step, 0.2 * step] for step in range(30)])
     for pose in poses:
         outcome = run_to_end(mapper.process(empty, pose))
         assert not outcome.is_matched
@@ -128,9 +128,9 @@ def test_second_session_continues_map():
     path = along([(4, 2.5), (4, 3), (-4, 3), (-4, -3)])
     odometry = drifting(relative_pose(path[0], path), 1.02, 0.03)
     rng = np.random.default_rng(4)
-    taken = []
+    true_poses = []
     for number, (pose, text) in enumerate(zip(path, odometry, strict=True)):
         if mapper.should_process(text, number * HALF_A_SECOND):
             run_to_end(mapper.process(scan_at(walls, pose, number * HALF_A_SECOND, rng, 180), text))
-            taken.append(pose)
-    assert furthest(relative_pose(np.array(taken), mapper.graph.poses[count:])) < 0.03
+            true_poses.append(pose)
+    assert furthest(relative_pose(np.array(true_poses), mapper.graph.poses[count:])) < 0.03

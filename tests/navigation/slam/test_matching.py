@@ -26,7 +26,7 @@ EVERYWHERE = Search(
 @pytest.fixture(scope="module")
 def reference():
     rng = np.random.default_rng(3)
-    poses = np.array([[-4.0 + 0.4 * each, -3.0, 0.02 * each] for each in range(10)])
+    poses = np.array([[-4.0 + 0.4 * step, -3.0, 0.02 * step] for step in range(10)])
     return Reference([scan_at(WALLS, pose, rng=rng) for pose in poses], poses)
 
 
@@ -36,13 +36,13 @@ def reference():
 def test_scan_is_matched_within_millimeters(reference, away):
     true = np.array([-1.8, -2.9, 0.4])
     scan = scan_at(WALLS, true, rng=np.random.default_rng(5))
-    found = run_to_end(match_scan(reference, scan, true + away, Search()))
-    error = relative_pose(true, found.pose)
+    match = run_to_end(match_scan(reference, scan, true + away, Search()))
+    error = relative_pose(true, match.pose)
     assert np.hypot(error[0], error[1]) < 0.005
     assert abs(error[2]) < 0.002
-    assert found.response > 0.7
-    assert found.inliers > 0.8
-    deviations = np.sqrt(np.diag(np.linalg.inv(found.information)))
+    assert match.response > 0.7
+    assert match.inliers > 0.8
+    deviations = np.sqrt(np.diag(np.linalg.inv(match.information)))
     assert (np.abs(error) < 4 * deviations).all()
     assert deviations.max() < 0.02
 
@@ -50,8 +50,8 @@ def test_scan_is_matched_within_millimeters(reference, away):
 def test_loop_search_corrects_error_of_meters(reference):
     true = np.array([-1.8, -2.9, 0.4])
     scan = scan_at(WALLS, true, rng=np.random.default_rng(6))
-    found = run_to_end(match_scan(reference, scan, true + np.array([1.9, 1.2, -0.3]), EVERYWHERE))
-    assert relative_pose(true, found.pose) == pytest.approx([0, 0, 0], abs=0.006)
+    match = run_to_end(match_scan(reference, scan, true + np.array([1.9, 1.2, -0.3]), EVERYWHERE))
+    assert relative_pose(true, match.pose) == pytest.approx([0, 0, 0], abs=0.006)
 
 
 def test_branch_and_bound_matches_exhaustive_search(reference):
@@ -80,13 +80,13 @@ def test_branch_and_bound_matches_exhaustive_search(reference):
 def test_match_in_corridor_keeps_odometry_along_it():
     walls = np.array([[(-50, -1), (50, -1)], [(-50, 1), (50, 1)]], dtype=float)
     rng = np.random.default_rng(2)
-    poses = np.array([[0.2 * each, 0.0, 0.0] for each in range(5)])
+    poses = np.array([[0.2 * step, 0.0, 0.0] for step in range(5)])
     reference = Reference([scan_at(walls, pose, rng=rng, farthest=6) for pose in poses], poses)
     true, guess = np.array([1.3, 0.1, 0.05]), np.array([1.1, 0.0, 0.0])
-    found = run_to_end(match_scan(reference, scan_at(walls, true, rng=rng, farthest=6), guess, Search()))
-    assert found.pose[0] == pytest.approx(guess[0], abs=0.01)
-    assert found.pose[1:] == pytest.approx(true[1:], abs=0.005)
-    assert found.information[0, 0] < 1e-2 * found.information[1, 1]
+    match = run_to_end(match_scan(reference, scan_at(walls, true, rng=rng, farthest=6), guess, Search()))
+    assert match.pose[0] == pytest.approx(guess[0], abs=0.01)
+    assert match.pose[1:] == pytest.approx(true[1:], abs=0.005)
+    assert match.information[0, 0] < 1e-2 * match.information[1, 1]
 
 
 def test_empty_scan_is_not_matched(reference):
@@ -102,8 +102,8 @@ def test_other_side_of_thin_wall_does_not_shift_match():
     seen = np.array([[-0.5, 2.0, 0.0], [0.5, 2.0, 0.0]])  # from above the wall
     reference = Reference([scan_at(walls, pose) for pose in seen], seen)
     scan = scan_at(walls, np.array([0.0, 0.0, 0.0]))  # from below it
-    found = run_to_end(match_scan(reference, scan, np.zeros(3), Search(dimension=0.2)))
-    assert found.pose == pytest.approx([0, 0, 0], abs=0.01)
+    match = run_to_end(match_scan(reference, scan, np.zeros(3), Search(dimension=0.2)))
+    assert match.pose == pytest.approx([0, 0, 0], abs=0.01)
 
 
 def test_rotated_scan_is_found_with_larger_angle_search(reference):

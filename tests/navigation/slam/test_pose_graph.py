@@ -33,7 +33,7 @@ def weighted_residuals(graph, poses):
     """The deviation of each edge, in standard deviations."""
     left = relative_pose(np.array(graph.measured), relative_pose(poses[graph.first], poses[graph.second]))
     left[:, 2] = wrap_angles(left[:, 2])
-    return left * np.sqrt([np.diag(each) for each in graph.information])
+    return left * np.sqrt([np.diag(matrix) for matrix in graph.information])
 
 
 def errors(graph):

@@ -17,8 +17,8 @@ protocol_types = load_tool("protocol_types")
 
 def test_page_types_match_server_types():
     script = REPOSITORY / "tools" / "protocol_types.py"
-    done = subprocess.run([sys.executable, str(script), "--check"], capture_output=True, text=True, check=False)
-    assert done.returncode == 0, done.stderr
+    result = subprocess.run([sys.executable, str(script), "--check"], capture_output=True, text=True, check=False)
+    assert result.returncode == 0, result.stderr
 
 
 def test_stale_type_files_are_found_and_removed(tmp_path, monkeypatch, capsys):

@@ -26,7 +26,7 @@ def test_glb_links_are_nodes_at_joint_poses():
 
 
 def test_glb_shapes_have_size_and_color():
-    drawn = {each.link: each for each in Glb(export_snapshot(snapshot(GRIPPER), "glb")).drawn}
+    drawn = {primitive.link: primitive for primitive in Glb(export_snapshot(snapshot(GRIPPER), "glb")).drawn}
     assert (drawn["base"].color, drawn["base"].opacity) == ("#0080ff", 0.75)
     np.testing.assert_allclose(drawn["base"].bounds, ((-0.5, -1, -0.25), (0.5, 1, 0.25)), atol=1e-6)
     assert (drawn["arm"].color, drawn["arm"].opacity) == ("#ff0000", 1.0)  # RViz's red
@@ -54,7 +54,10 @@ def test_glb_triangles_face_outward():
 
 
 def test_glb_meshes_match_size_and_color_of_page(tmp_path):
-    drawn = {each.link: each for each in Glb(export_snapshot(snapshot(robot_of(golden_links(tmp_path))), "glb")).drawn}
+    drawn = {
+        primitive.link: primitive
+        for primitive in Glb(export_snapshot(snapshot(robot_of(golden_links(tmp_path))), "glb")).drawn
+    }
     wrong = {}
     for name, (_, _, _, _, (least, most), color, opacity) in GOLDEN.items():
         result = drawn[name]

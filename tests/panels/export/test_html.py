@@ -19,7 +19,7 @@ from linkwright.rviz import RvizConfig
 from tests.browser.golden import link, mesh, robot_of
 from tests.browser.mesh_writers import dae, glb, obj, png, stl_binary
 from tests.panels.export.robots import GRIPPER, snapshot
-from tests.viewer.scene import ARM, world
+from tests.viewer.scene import ARM, open_world
 
 
 @pytest.fixture(autouse=True)
@@ -33,8 +33,8 @@ def built(tmp_path, monkeypatch):
 
 
 def recorded(text: str) -> dict:
-    (found,) = re.findall(r'<script type="application/json" id="recorded">(.*?)</script>', text, re.DOTALL)
-    return json.loads(found)
+    (recording_text,) = re.findall(r'<script type="application/json" id="recorded">(.*?)</script>', text, re.DOTALL)
+    return json.loads(recording_text)
 
 
 def page(text: str) -> str:
@@ -142,17 +142,17 @@ async def test_html_contains_markers():
     """Markers and the like, as they are now."""
     config = RvizConfig.for_model("base")
     config.insert(config.new_display("rviz_default_plugins/Marker", "Marker"))
-    async with world(config) as w:
-        w.describe(ARM)
-        w.move_arm()
+    async with open_world(config) as world:
+        world.describe(ARM)
+        world.move_arm()
         marker = get_message("visualization_msgs/msg/Marker")()
         marker.header.frame_id, marker.type, marker.scale.x, marker.color.a = "base", 1, 1.0, 1.0
-        topic = w.display("Marker").properties.text("Topic")
-        w.graph.create_node("marks").create_publisher(type(marker), topic, 10).publish(marker)
-        await w.settle()
-        w.viewer.manager.fit_to_robot(2.0, 0.0)
-        taken = snapshot_of(w.viewer, w.viewer.manager)
-    logged = recorded(export_snapshot(taken, "html").decode())
+        topic = world.display("Marker").properties.text("Topic")
+        world.graph.create_node("marks").create_publisher(type(marker), topic, 10).publish(marker)
+        await world.settle()
+        world.viewer.manager.fit_to_robot(2.0, 0.0)
+        snapshot = snapshot_of(world.viewer, world.viewer.manager)
+    logged = recorded(export_snapshot(snapshot, "html").decode())
     assert logged["awaits_size"] is False  # a page had measured the robot
     assert logged["spacing"] is None
     frames = [base64.b64decode(frame) for frame in logged["frames"]]

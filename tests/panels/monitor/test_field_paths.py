@@ -30,9 +30,9 @@ def joint_state():
     ],
 )
 def test_field_path_returns_number_or_none(path, value):
-    found = FieldPath(path)
-    found.check(JOINT_STATE)
-    assert found.value(joint_state()) == value
+    field_path = FieldPath(path)
+    field_path.check(JOINT_STATE)
+    assert field_path.value(joint_state()) == value
 
 
 def test_field_path_reads_nested_messages():
@@ -40,18 +40,18 @@ def test_field_path_reads_nested_messages():
     message.twist.twist.linear.x = 0.25
     message.pose.covariance[35] = 3.0
     for path, value in (("twist.twist.linear.x", 0.25), ("pose.covariance[35]", 3.0)):
-        found = FieldPath(path)
-        found.check(ODOMETRY)
-        assert found.value(message) == value
+        field_path = FieldPath(path)
+        field_path.check(ODOMETRY)
+        assert field_path.value(message) == value
 
 
 def test_array_elements_are_selected_by_frame_id():
     message = TF(transforms=[get_message("geometry_msgs/msg/TransformStamped")() for _ in range(2)])
     message.transforms[1].child_frame_id = "base_link"
     message.transforms[1].transform.translation.x = 4.0
-    found = FieldPath("transforms[base_link].transform.translation.x")
-    found.check(TF)
-    assert found.value(message) == 4.0
+    field_path = FieldPath("transforms[base_link].transform.translation.x")
+    field_path.check(TF)
+    assert field_path.value(message) == 4.0
 
 
 def test_trajectory_points_are_selected_by_joint_name():
@@ -63,9 +63,9 @@ def test_trajectory_points_are_selected_by_joint_name():
 def test_booleans_and_bytes_are_numbers():
     assert FieldPath("data").value(get_message("std_msgs/msg/Bool")(data=True)) == 1.0
     status = get_message("diagnostic_msgs/msg/DiagnosticStatus")(name="motor", level=b"\x02")
-    found = FieldPath("status[motor].level")
-    found.check(DIAGNOSTICS)
-    assert found.value(DIAGNOSTICS(status=[status])) == 2.0
+    field_path = FieldPath("status[motor].level")
+    field_path.check(DIAGNOSTICS)
+    assert field_path.value(DIAGNOSTICS(status=[status])) == 2.0
 
 
 @pytest.mark.parametrize("text", ["", ".x", "x.", "x..y", "x[", "x[]", "x[1]y", "1x", "x y"])

@@ -14,7 +14,7 @@ from linkwright.graph.parameters.parameter import Range
 from linkwright.graph.qos.profile import ROSOUT_QOS, DurabilityPolicy, ReliabilityPolicy
 from linkwright.messages import get_message
 from tests.skipping import skipping
-from tests.viewer.scene import Client, World, page, world
+from tests.viewer.scene import Client, World, open_world, page
 from tests.waiting import eventually
 
 FLOAT = get_message("std_msgs/msg/Float64")
@@ -25,13 +25,13 @@ TWIST_STAMPED = get_message("geometry_msgs/msg/TwistStamped")
 
 @asynccontextmanager
 async def opened() -> AsyncIterator[tuple[World, Client]]:
-    async with world() as made, page(made.viewer) as client:
+    async with open_world() as world, page(world.viewer) as client:
         await client.opened()
-        yield made, client
+        yield world, client
 
 
-def subscriptions(made: World, topic: str) -> int:
-    return made.graph.count_subscribers(topic)
+def subscriptions(world: World, topic: str) -> int:
+    return world.graph.count_subscribers(topic)
 
 
 async def talk(publisher, period: float) -> None:
@@ -43,12 +43,12 @@ async def talk(publisher, period: float) -> None:
 def frame_of(data: bytes) -> dict[int, np.ndarray]:
     kind, count, *_ = struct.unpack_from("<IIII", data)
     assert kind == 3
-    at, found = 16, {}
+    at, samples_by_series = 16, {}
     for _ in range(count):
         identity, length = struct.unpack_from("<II", data, at)
-        found[identity] = np.frombuffer(data, "<f8", 3 * length, at + 8).reshape(3, length)
+        samples_by_series[identity] = np.frombuffer(data, "<f8", 3 * length, at + 8).reshape(3, length)
         at += 8 + 24 * length
-    return found
+    return samples_by_series
 
 
 async def samples(client: Client) -> dict[int, np.ndarray]:
@@ -62,18 +62,18 @@ async def samples(client: Client) -> dict[int, np.ndarray]:
 
 
 async def test_topic_list_follows_graph():
-    async with opened() as (made, client):
+    async with opened() as (world, client):
         await client.send("watch_topics", listed=True, measured=[], opened=[])
         await client.until("topic_list")
-        node = made.graph.create_node("talker")
+        node = world.graph.create_node("talker")
         node.create_publisher(FLOAT, "/speed", 10)
         while True:
             listed = await client.until("topic_list")
-            row = next((each for each in listed["topics"] if each["name"] == "/speed"), None)
+            row = next((topic for topic in listed["topics"] if topic["name"] == "/speed"), None)
             if row:
                 break
         assert row == {"name": "/speed", "types": ["std_msgs/msg/Float64"], "publishers": 1, "subscribers": 0}
-        names = [each["name"] for each in listed["topics"]]
+        names = [topic["name"] for topic in listed["topics"]]
         assert names == sorted(names)
 
 
@@ -81,19 +81,19 @@ async def test_topic_list_is_sent_immediately():
     async with opened() as (_, client):
         await client.send("watch_topics", listed=True, measured=[], opened=[])
         listed = await client.until("topic_list")
-        assert "/tf" in [each["name"] for each in listed["topics"]]
+        assert "/tf" in [topic["name"] for topic in listed["topics"]]
 
 
 async def test_topic_is_subscribed_only_while_page_watches():
-    async with opened() as (made, client):
-        publisher = made.graph.create_node("talker").create_publisher(FLOAT, "/speed", 10)
-        assert subscriptions(made, "/speed") == 0
+    async with opened() as (world, client):
+        publisher = world.graph.create_node("talker").create_publisher(FLOAT, "/speed", 10)
+        assert subscriptions(world, "/speed") == 0
         await client.send("watch_topics", listed=False, measured=["/speed"], opened=["/speed"])
-        await eventually(lambda: subscriptions(made, "/speed") == 1)
+        await eventually(lambda: subscriptions(world, "/speed") == 1)
         talking = asyncio.create_task(talk(publisher, 0.02))
         message = await client.until("topic_message")
         assert message["topic"] == "/speed"
-        assert [(each["name"], each["kind"]) for each in message["fields"]] == [("data", "double")]
+        assert [(field["name"], field["kind"]) for field in message["fields"]] == [("data", "double")]
         assert abs(message["received"] - time.time()) < 5
         # How fast a busy machine gets to publish is its own affair; the arithmetic is that of graph/introspection.
         while True:
@@ -103,14 +103,14 @@ async def test_topic_is_subscribed_only_while_page_watches():
         assert traffic["rate"] <= 60
         talking.cancel()
         await client.send("watch_topics", listed=False, measured=[], opened=[])
-        await eventually(lambda: subscriptions(made, "/speed") == 0)
+        await eventually(lambda: subscriptions(world, "/speed") == 0)
 
 
 async def test_closed_page_leaves_no_subscriptions():
-    async with world() as made:
-        made.graph.create_node("talker").create_publisher(FLOAT, "/speed", 10)
-        before = {name: subscriptions(made, name) for name in ("/rosout", "/parameter_events", "/speed")}
-        async with page(made.viewer) as client:
+    async with open_world() as world:
+        world.graph.create_node("talker").create_publisher(FLOAT, "/speed", 10)
+        before = {name: subscriptions(world, name) for name in ("/rosout", "/parameter_events", "/speed")}
+        async with page(world.viewer) as client:
             await client.opened()
             await client.send("watch_topics", listed=True, measured=["/speed"], opened=["/speed"])
             await client.send("watch_series", series=[{"id": 1, "topic": "/speed", "path": "data"}])
@@ -120,47 +120,47 @@ async def test_closed_page_leaves_no_subscriptions():
             await client.send("watch_log", watched=True)
             target = {"topic": "/cmd_vel", "kind": "auto", "frame_id": ""}
             await client.send("aim_teleop", target=target)
-            await eventually(lambda: subscriptions(made, "/speed") == 3)
-            await eventually(lambda: made.graph.count_publishers("/cmd_vel") == 1)
-            assert subscriptions(made, "/rosout") == before["/rosout"] + 1
-            assert subscriptions(made, "/parameter_events") == before["/parameter_events"] + 1
-            assert made.graph._watchers
-        await eventually(lambda: subscriptions(made, "/speed") == 0)
-        assert {name: subscriptions(made, name) for name in before} == before
-        assert made.graph.count_publishers("/cmd_vel") == 0
-        assert made.graph.count_clients("/talker/get_parameters") == 0
-        assert not made.graph._watchers
+            await eventually(lambda: subscriptions(world, "/speed") == 3)
+            await eventually(lambda: world.graph.count_publishers("/cmd_vel") == 1)
+            assert subscriptions(world, "/rosout") == before["/rosout"] + 1
+            assert subscriptions(world, "/parameter_events") == before["/parameter_events"] + 1
+            assert world.graph._watchers
+        await eventually(lambda: subscriptions(world, "/speed") == 0)
+        assert {name: subscriptions(world, name) for name in before} == before
+        assert world.graph.count_publishers("/cmd_vel") == 0
+        assert world.graph.count_clients("/talker/get_parameters") == 0
+        assert not world.graph._watchers
 
 
 async def test_two_pages_share_subscription():
-    async with opened() as (made, one), page(made.viewer) as two:
-        made.graph.create_node("talker").create_publisher(FLOAT, "/speed", 10).publish(FLOAT())
-        for client in (one, two):
+    async with opened() as (world, first), page(world.viewer) as second:
+        world.graph.create_node("talker").create_publisher(FLOAT, "/speed", 10).publish(FLOAT())
+        for client in (first, second):
             await client.send("watch_topics", listed=False, measured=["/speed"], opened=[])
-        await eventually(lambda: subscriptions(made, "/speed") == 1)
-        await one.send("watch_topics", listed=False, measured=[], opened=[])
-        await two.send("watch_topics", listed=True, measured=["/speed"], opened=[])
-        await one.send("watch_topics", listed=True, measured=[], opened=[])
-        for client in (one, two):
+        await eventually(lambda: subscriptions(world, "/speed") == 1)
+        await first.send("watch_topics", listed=False, measured=[], opened=[])
+        await second.send("watch_topics", listed=True, measured=["/speed"], opened=[])
+        await first.send("watch_topics", listed=True, measured=[], opened=[])
+        for client in (first, second):
             await client.until("topic_list")  # what was asked for before is done
-        assert subscriptions(made, "/speed") == 1
+        assert subscriptions(world, "/speed") == 1
 
 
 async def test_latched_message_is_shown():
-    async with opened() as (made, client):
+    async with opened() as (world, client):
         lasting = QoSProfile(depth=1, durability=DurabilityPolicy.TRANSIENT_LOCAL)
-        made.graph.create_node("talker").create_publisher(FLOAT, "/map_scale", lasting).publish(FLOAT(data=0.05))
+        world.graph.create_node("talker").create_publisher(FLOAT, "/map_scale", lasting).publish(FLOAT(data=0.05))
         await client.send("watch_topics", listed=False, measured=[], opened=["/map_scale"])
         message = await client.until("topic_message")
         assert message["fields"][0]["value"] == "0.05"
 
 
 async def test_best_effort_publisher_is_received():
-    async with opened() as (made, client):
-        node = made.graph.create_node("talker")
+    async with opened() as (world, client):
+        node = world.graph.create_node("talker")
         node.create_publisher(FLOAT, "/speed", 10)
         await client.send("watch_topics", listed=False, measured=[], opened=["/speed"])
-        await eventually(lambda: subscriptions(made, "/speed") == 1)
+        await eventually(lambda: subscriptions(world, "/speed") == 1)
         weak = node.create_publisher(FLOAT, "/speed", QoSProfile(depth=1, reliability=ReliabilityPolicy.BEST_EFFORT))
         await eventually(lambda: weak.get_subscription_count() == 1)
         weak.publish(FLOAT(data=7.0))
@@ -168,8 +168,8 @@ async def test_best_effort_publisher_is_received():
 
 
 async def test_unknown_and_mixed_topic_types_are_reported():
-    async with opened() as (made, client):
-        node = made.graph.create_node("talker")
+    async with opened() as (world, client):
+        node = world.graph.create_node("talker")
         node.create_publisher(FLOAT, "/mixed", 10)
         node.create_publisher(TWIST, "/mixed", 10)
         node.create_publisher("no_such_msgs/msg/Thing", "/strange", 10)
@@ -185,29 +185,29 @@ async def test_unknown_and_mixed_topic_types_are_reported():
 
 
 async def test_samples_contain_both_times_and_all_values():
-    async with opened() as (made, client):
-        publisher = made.graph.create_node("talker").create_publisher(JOINT_STATE, "/joint_states", 10)
+    async with opened() as (world, client):
+        publisher = world.graph.create_node("talker").create_publisher(JOINT_STATE, "/joint_states", 10)
         series = [
             {"id": 1, "topic": "/joint_states", "path": "position[b]"},
             {"id": 2, "topic": "/joint_states", "path": "velocity[0]"},
         ]
         await client.send("watch_series", series=series)
-        await eventually(lambda: subscriptions(made, "/joint_states") == 1)
+        await eventually(lambda: subscriptions(world, "/joint_states") == 1)
         message = JOINT_STATE(name=["a", "b"], position=[1.0, 2.5], velocity=[-1.0, 0.0])
         message.header.stamp.sec = 100
         publisher.publish(message)
-        found = await samples(client)
-        assert found[1][1:].tolist() == [[100.0], [2.5]]
-        assert found[2][2].tolist() == [-1.0]
-        assert abs(found[1][0, 0] - time.time()) < 5
+        sample_arrays = await samples(client)
+        assert sample_arrays[1][1:].tolist() == [[100.0], [2.5]]
+        assert sample_arrays[2][2].tolist() == [-1.0]
+        assert abs(sample_arrays[1][0, 0] - time.time()) < 5
 
 
 @skipping
 async def test_fast_topic_is_sent_completely_in_few_frames():
-    async with opened() as (made, client):
-        publisher = made.graph.create_node("talker").create_publisher(FLOAT, "/fast", 1000)
+    async with opened() as (world, client):
+        publisher = world.graph.create_node("talker").create_publisher(FLOAT, "/fast", 1000)
         await client.send("watch_series", series=[{"id": 5, "topic": "/fast", "path": "data"}])
-        await eventually(lambda: subscriptions(made, "/fast") == 1)
+        await eventually(lambda: subscriptions(world, "/fast") == 1)
         now = asyncio.get_running_loop().time
         started, sent = now(), 1000
         for number in range(sent):
@@ -219,12 +219,12 @@ async def test_fast_topic_is_sent_completely_in_few_frames():
         while sum(frame.shape[1] for frame in frames) < sent:
             frames.append((await samples(client))[5])
         assert len(frames) <= 31 * elapsed + 2
-        assert np.concatenate(frames, axis=1)[2].tolist() == [float(each) for each in range(sent)]
+        assert np.concatenate(frames, axis=1)[2].tolist() == [float(number) for number in range(sent)]
 
 
 async def test_invalid_field_paths_are_reported():
-    async with opened() as (made, client):
-        made.graph.create_node("talker").create_publisher(FLOAT, "/speed", 10)
+    async with opened() as (world, client):
+        world.graph.create_node("talker").create_publisher(FLOAT, "/speed", 10)
         series = [{"id": 1, "topic": "/speed", "path": "dat"}, {"id": 2, "topic": "/speed", "path": "..."}]
         await client.send("watch_series", series=series)
         first, second = (await client.until("series_states"))["states"]
@@ -233,19 +233,19 @@ async def test_invalid_field_paths_are_reported():
 
 
 async def test_topic_appearing_later_is_plotted():
-    async with opened() as (made, client):
+    async with opened() as (world, client):
         series = [{"id": 1, "topic": "/later", "path": "data"}, {"id": 2, "topic": "/later", "path": "wrong"}]
         await client.send("watch_series", series=series)
-        assert [each["error"] for each in (await client.until("series_states"))["states"]] == [None, None]
-        publisher = made.graph.create_node("talker").create_publisher(FLOAT, "/later", 10)
+        assert [state["error"] for state in (await client.until("series_states"))["states"]] == [None, None]
+        publisher = world.graph.create_node("talker").create_publisher(FLOAT, "/later", 10)
         assert (await client.until("series_states"))["states"][1]["error"]
         publisher.publish(FLOAT(data=3.0))
         assert (await samples(client))[1][2].tolist() == [3.0]
 
 
 async def test_topic_fields_are_sent_again_with_element_names():
-    async with opened() as (made, client):
-        publisher = made.graph.create_node("talker").create_publisher(JOINT_STATE, "/joint_states", 10)
+    async with opened() as (world, client):
+        publisher = world.graph.create_node("talker").create_publisher(JOINT_STATE, "/joint_states", 10)
         await client.send("ask_fields", topic="/joint_states")
         first = await client.until("topic_fields")
         assert first["kind"] == "sensor_msgs/msg/JointState"
@@ -253,23 +253,23 @@ async def test_topic_fields_are_sent_again_with_element_names():
         publisher.publish(JOINT_STATE(name=["elbow"], position=[1.0]))
         second = await client.until("topic_fields")
         assert {"path": "position[elbow]", "kind": "double"} in second["fields"]
-        assert subscriptions(made, "/joint_states") == 0
+        assert subscriptions(world, "/joint_states") == 0
 
 
 # --- the node graph ------------------------------------------------------------------------------------------------
 
 
 async def test_node_graph_follows_changes():
-    async with opened() as (made, client):
+    async with opened() as (world, client):
         await client.send("watch_node_graph", watched=True)
         first = await client.until("node_graph")
         assert "/rviz2" in first["nodes"]
-        node = made.graph.create_node("talker", namespace="/left")
+        node = world.graph.create_node("talker", namespace="/left")
         node.create_publisher(FLOAT, "speed", 10)
-        made.graph.create_node("listener").create_subscription(FLOAT, "/left/speed", lambda _: None, 10)
+        world.graph.create_node("listener").create_subscription(FLOAT, "/left/speed", lambda _: None, 10)
         while True:
             now = await client.until("node_graph")
-            topic = next((each for each in now["topics"] if each["name"] == "/left/speed"), None)
+            topic = next((topic for topic in now["topics"] if topic["name"] == "/left/speed"), None)
             if topic and topic["subscribers"]:
                 break
         assert {"/left/talker", "/listener"} <= set(now["nodes"])
@@ -280,8 +280,8 @@ async def test_node_graph_follows_changes():
 # --- parameters ----------------------------------------------------------------------------------------------------
 
 
-def tuned(made: World):
-    node = made.graph.create_node("tuned")
+def tuned(world: World):
+    node = world.graph.create_node("tuned")
     limits = ParameterDescriptor(description="how fast", floating_point_range=[Range(0.0, 2.0, 0.5)])
     node.declare_parameter("speed.most", 1.5, limits)
     node.declare_parameter("fixed", 7, ParameterDescriptor(read_only=True))
@@ -291,8 +291,8 @@ def tuned(made: World):
 
 
 async def test_parameters_are_shown_with_descriptors():
-    async with opened() as (made, client):
-        tuned(made)
+    async with opened() as (world, client):
+        tuned(world)
         await client.send("watch_parameters", listed=True, node="/tuned")
         assert "/tuned" in (await client.until("parameter_nodes"))["nodes"]
         shown = await client.until("node_parameters")
@@ -316,8 +316,8 @@ async def test_parameters_are_shown_with_descriptors():
 
 
 async def test_invalid_node_name_has_no_parameters():
-    async with opened() as (made, client):
-        tuned(made)
+    async with opened() as (world, client):
+        tuned(world)
         await client.send("watch_parameters", listed=True, node="no name")
         answer = await client.until("node_parameters", node="no name")
         assert answer["parameters"] == []
@@ -327,12 +327,12 @@ async def test_invalid_node_name_has_no_parameters():
         )
         await client.send("watch_parameters", listed=False, node="/tuned")
         assert (await client.until("node_parameters", node="/tuned"))["error"] is None
-        assert "failed" not in made.logged()
+        assert "failed" not in world.logged()
 
 
 async def test_parameters_are_set_or_rejected_with_reason():
-    async with opened() as (made, client):
-        node = tuned(made)
+    async with opened() as (world, client):
+        node = tuned(world)
         await client.send("watch_parameters", listed=False, node="/tuned")
         await client.until("node_parameters")
 
@@ -355,8 +355,8 @@ async def test_parameters_are_set_or_rejected_with_reason():
 
 
 async def test_parameter_changes_by_other_nodes_are_shown():
-    async with opened() as (made, client):
-        node = tuned(made)
+    async with opened() as (world, client):
+        node = tuned(world)
         await client.send("watch_parameters", listed=False, node="/tuned")
         await client.until("node_parameters")
         node.set_parameters([Parameter("speed.most", value=2.0)])
@@ -371,8 +371,8 @@ async def test_parameter_changes_by_other_nodes_are_shown():
 
 
 async def test_parameters_are_dumped_as_yaml():
-    async with opened() as (made, client):
-        tuned(made)
+    async with opened() as (world, client):
+        tuned(world)
         await client.send("watch_parameters", listed=False, node="/tuned")
         await client.send("dump_parameters", node="/tuned")
         dump = await client.until("parameter_dump")
@@ -385,8 +385,8 @@ async def test_parameters_are_dumped_as_yaml():
 
 
 async def test_log_begins_with_past_messages():
-    async with opened() as (made, client):
-        node = made.graph.create_node("talker")
+    async with opened() as (world, client):
+        node = world.graph.create_node("talker")
         node.get_logger().warning("before")
         await client.send("watch_log", watched=True)
         lines = (await client.until("log_lines"))["lines"]
@@ -400,16 +400,16 @@ async def test_log_begins_with_past_messages():
 
 
 async def test_log_contains_messages_logged_while_hidden():
-    async with opened() as (made, client):
-        log = made.graph.create_node("talker").get_logger()
-        node = made.viewer.context.node
+    async with opened() as (world, client):
+        log = world.graph.create_node("talker").get_logger()
+        node = world.viewer.context.node
         await eventually(lambda: node.count_subscribers("/rosout") > 0)  # before any page shows a log
         log.info("first")
         await client.send("watch_log", watched=True)
         lines = (await client.until("log_lines"))["lines"]
         assert "first" in [line["message"] for line in lines]
         await client.send("watch_log", watched=False)
-        await made.graph.settle()
+        await world.graph.settle()
         log.info("second")
         await client.send("watch_log", watched=True)
         assert [line["message"] for line in (await client.until("log_lines"))["lines"]] == ["second"]
@@ -417,16 +417,16 @@ async def test_log_contains_messages_logged_while_hidden():
 
 @skipping
 async def test_log_flood_is_truncated_and_counted():
-    async with opened() as (made, client):
-        made.graph.create_node("first").get_logger().info("of the past")
+    async with opened() as (world, client):
+        world.graph.create_node("first").get_logger().info("of the past")
         await client.send("watch_log", watched=True)
         await client.until("log_lines")
-        publisher = made.graph.create_node("flood").create_publisher("rcl_interfaces/msg/Log", "/rosout", ROSOUT_QOS)
+        publisher = world.graph.create_node("flood").create_publisher("rcl_interfaces/msg/Log", "/rosout", ROSOUT_QOS)
         log = get_message("rcl_interfaces/msg/Log")
         for burst in range(30):
             for number in range(100):
                 publisher.publish(log(level=20, name="flood", msg=f"{burst * 100 + number}"))
-            await made.graph.settle()
+            await world.graph.settle()
         messages = [message for message in await client.drain(0.4) if isinstance(message, dict)]
         batches = [message for message in messages if message["type"] == "log_lines"]
         assert sum(len(batch["lines"]) + batch["missed"] for batch in batches) == 3000
@@ -442,71 +442,71 @@ async def drive(client: Client, x: float, turn: float = 0.0) -> None:
 
 @pytest.mark.parametrize("kind", [TWIST, TWIST_STAMPED])
 async def test_teleop_pad_publishes_type_of_subscription(kind):
-    async with opened() as (made, client):
-        taken = []
-        made.graph.create_node("base").create_subscription(kind, "/cmd_vel", taken.append, 10)
+    async with opened() as (world, client):
+        messages = []
+        world.graph.create_node("base").create_subscription(kind, "/cmd_vel", messages.append, 10)
         target = {"topic": "cmd_vel", "kind": "auto", "frame_id": "base_link"}
         await client.send("aim_teleop", target=target)
         state = await client.until("teleop_state")
         name = kind.TYPE_NAME.rpartition("/")[2]
         assert (state["topic"], state["kind"], state["subscribers"]) == ("/cmd_vel", name, 1)
         await drive(client, 0.5, -1.0)
-        await eventually(lambda: taken)
-        twist = taken[0] if kind is TWIST else taken[0].twist
+        await eventually(lambda: messages)
+        twist = messages[0] if kind is TWIST else messages[0].twist
         assert (twist.linear.x, twist.angular.z) == (0.5, -1.0)
         if kind is TWIST_STAMPED:
-            assert taken[0].header.frame_id == "base_link"
-            assert abs(taken[0].header.stamp.sec - time.time()) < 5
+            assert messages[0].header.frame_id == "base_link"
+            assert abs(messages[0].header.stamp.sec - time.time()) < 5
 
 
 @skipping
 async def test_teleop_stops_robot_when_page_is_silent_or_closed():
-    async with world() as made:
-        taken = []
-        node = made.graph.create_node("base")
-        node.create_subscription(TWIST, "/cmd_vel", lambda message: taken.append(message.linear.x), 10)
-        async with page(made.viewer) as client:
+    async with open_world() as world:
+        speeds = []
+        node = world.graph.create_node("base")
+        node.create_subscription(TWIST, "/cmd_vel", lambda message: speeds.append(message.linear.x), 10)
+        async with page(world.viewer) as client:
             await client.opened()
             await client.send("aim_teleop", target={"topic": "/cmd_vel", "kind": "auto", "frame_id": ""})
             await drive(client, 0.5)
-            await eventually(lambda: taken == [0.5, 0.0])
+            await eventually(lambda: speeds == [0.5, 0.0])
             await asyncio.sleep(0.5)
-            assert taken == [0.5, 0.0], "zero is published once"
+            assert speeds == [0.5, 0.0], "zero is published once"
             await drive(client, 0.25)
-            await eventually(lambda: len(taken) == 3)
+            await eventually(lambda: len(speeds) == 3)
             left = asyncio.get_running_loop().time()
-        await eventually(lambda: taken == [0.5, 0.0, 0.25, 0.0])
+        await eventually(lambda: speeds == [0.5, 0.0, 0.25, 0.0])
         assert asyncio.get_running_loop().time() - left < 0.3, "long before a page that stays counts as silent"
 
 
 @skipping
 async def test_teleop_keeps_robot_moving_and_ends_with_zero():
-    async with opened() as (made, client):
-        taken = []
-        node = made.graph.create_node("base")
-        node.create_subscription(TWIST, "/cmd_vel", lambda message: taken.append(message.linear.x), 10)
+    async with opened() as (world, client):
+        speeds = []
+        node = world.graph.create_node("base")
+        node.create_subscription(TWIST, "/cmd_vel", lambda message: speeds.append(message.linear.x), 10)
         await client.send("aim_teleop", target={"topic": "/cmd_vel", "kind": "Twist", "frame_id": ""})
         for _ in range(12):
             await drive(client, 1.0)
             await asyncio.sleep(0.05)
         await drive(client, 0.0)
-        await eventually(lambda: len(taken) == 13)
-        assert taken == [1.0] * 12 + [0.0]
+        await eventually(lambda: len(speeds) == 13)
+        assert speeds == [1.0] * 12 + [0.0]
 
 
 async def test_teleop_ignores_topics_of_other_types():
-    async with opened() as (made, client):
-        made.graph.create_node("base").create_publisher(FLOAT, "/cmd_vel", 10)
+    async with opened() as (world, client):
+        world.graph.create_node("base").create_publisher(FLOAT, "/cmd_vel", 10)
         await client.send("aim_teleop", target={"topic": "/cmd_vel", "kind": "auto", "frame_id": ""})
         assert (await client.until("teleop_state"))["error"] == "the topic carries std_msgs/msg/Float64"
-        assert made.graph.count_publishers("/cmd_vel") == 1
+        assert world.graph.count_publishers("/cmd_vel") == 1
         await client.send("aim_teleop", target={"topic": "1 + 1", "kind": "auto", "frame_id": ""})
         assert "not a valid topic name" in (await client.until("teleop_state"))["error"]
 
 
 async def test_teleop_type_follows_later_subscription():
-    async with opened() as (made, client):
+    async with opened() as (world, client):
         await client.send("aim_teleop", target={"topic": "/cmd_vel", "kind": "auto", "frame_id": ""})
         assert (await client.until("teleop_state"))["kind"] == "Twist"
-        made.graph.create_node("base").create_subscription(TWIST_STAMPED, "/cmd_vel", lambda _: None, 10)
+        world.graph.create_node("base").create_subscription(TWIST_STAMPED, "/cmd_vel", lambda _: None, 10)
         assert (await client.until("teleop_state"))["kind"] == "TwistStamped"

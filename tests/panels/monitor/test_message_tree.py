@@ -6,15 +6,15 @@ from linkwright.panels.monitor.topics import message_tree
 
 
 def row(rows: list[MessageField], *path: str) -> MessageField:
-    found = next(row for row in rows if row.name == path[0])
-    return row(found.children, *path[1:]) if path[1:] else found
+    row_of_path = next(row for row in rows if row.name == path[0])
+    return row(row_of_path.children, *path[1:]) if path[1:] else row_of_path
 
 
 def test_message_tree_has_types_and_values():
     message = get_message("sensor_msgs/msg/JointState")(name=["a"], position=[0.5])
     message.header.frame_id = "base"
     tree = message_tree(message)
-    assert [each.name for each in tree] == ["header", "name", "position", "velocity", "effort"]
+    assert [field.name for field in tree] == ["header", "name", "position", "velocity", "effort"]
     assert row(tree, "header").kind == "std_msgs/Header"
     assert row(tree, "header", "frame_id").value == "base"
     assert (row(tree, "position").kind, row(tree, "position").value) == ("sequence<double>", "[0.5]")

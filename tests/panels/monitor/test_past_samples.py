@@ -10,7 +10,7 @@ from tests.panels.test_live_history import KEPT
 from tests.panels.test_time import config
 from tests.panels.test_timeline import START, shown
 from tests.skipping import skipping
-from tests.viewer.scene import page, world
+from tests.viewer.scene import open_world, page
 from tests.waiting import eventually
 
 FLOAT = get_message("std_msgs/msg/Float64")
@@ -25,15 +25,15 @@ async def plotted(client, values: list[float]) -> None:
 
 @skipping
 async def test_plots_follow_time_back_and_are_complete_in_live_mode():
-    async with world(config(), history=KEPT) as made, page(made.viewer) as client:
-        publisher = made.graph.create_node("talker").create_publisher(FLOAT, "/speed", 10)
+    async with open_world(config(), history=KEPT) as world, page(world.viewer) as client:
+        publisher = world.graph.create_node("talker").create_publisher(FLOAT, "/speed", 10)
         await client.send("watch_series", series=SERIES, seconds=30)
-        await eventually(lambda: subscriptions(made, "/speed") == 1)
+        await eventually(lambda: subscriptions(world, "/speed") == 1)
         between = []
         for number in range(5):
             publisher.publish(FLOAT(data=float(number)))
             await asyncio.sleep(0.5)
-            between.append(made.graph.timebase.now_ns() / 1e9)
+            between.append(world.graph.timebase.now_ns() / 1e9)
             await asyncio.sleep(0.5)
         await client.send("seek_time", position=between[2])
         await plotted(client, [0.0, 1.0, 2.0])
@@ -49,21 +49,21 @@ async def test_plots_follow_time_back_and_are_complete_in_live_mode():
 
 @skipping
 async def test_added_series_begins_with_stored_samples():
-    async with world(config(), history=KEPT) as made, page(made.viewer) as client:
-        publisher = made.graph.create_node("talker").create_publisher(FLOAT, "/speed", 10)
+    async with open_world(config(), history=KEPT) as world, page(world.viewer) as client:
+        publisher = world.graph.create_node("talker").create_publisher(FLOAT, "/speed", 10)
         await client.send("watch_series", series=SERIES, seconds=30)
-        await eventually(lambda: subscriptions(made, "/speed") == 1)
+        await eventually(lambda: subscriptions(world, "/speed") == 1)
         for number in range(3):
             publisher.publish(FLOAT(data=float(number)))
             await asyncio.sleep(0.5)
-        async with page(made.viewer) as late:
+        async with page(world.viewer) as late:
             await late.send("watch_series", series=SERIES, seconds=30)
             await plotted(late, [0.0, 1.0, 2.0])
 
 
 @skipping
 async def test_plots_of_recording_show_samples_before_playback_time(tmp_path):
-    async with shown(tmp_path) as made, page(made.viewer) as client:
+    async with shown(tmp_path) as world, page(world.viewer) as client:
         await client.until("playhead", playing=True)
         await client.send("play", playing=False)
         await client.until("playhead", playing=False)

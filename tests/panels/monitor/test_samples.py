@@ -16,11 +16,11 @@ def test_samples_are_taken_once_in_order():
     queue = SampleQueue()
     queue.add(1.0, math.nan, 5.0)
     queue.add(2.0, 1.5, 6.0)
-    taken = queue.take()
-    assert taken[0].tolist() == [1.0, 2.0]
-    assert taken[2].tolist() == [5.0, 6.0]
-    assert math.isnan(taken[1, 0])
-    assert taken[1, 1] == 1.5
+    samples = queue.take()
+    assert samples[0].tolist() == [1.0, 2.0]
+    assert samples[2].tolist() == [5.0, 6.0]
+    assert math.isnan(samples[1, 0])
+    assert samples[1, 1] == 1.5
     assert queue.take().shape == (3, 0)
 
 
@@ -29,21 +29,21 @@ def test_unread_sample_queue_is_limited_and_keeps_extremes():
     for number in range(100_000):
         queue.add(number, number, 1e6 if number == 31_415 else float(number % 100))
         assert len(queue) < 5000
-    taken = queue.take()
-    assert taken.shape[1] <= MAX_SENT
-    assert 1e6 in taken[2]
-    assert (np.diff(taken[0]) > 0).all()
+    samples = queue.take()
+    assert samples.shape[1] <= MAX_SENT
+    assert 1e6 in samples[2]
+    assert (np.diff(samples[0]) > 0).all()
 
 
 @given(st.lists(st.floats(allow_infinity=False, width=32), min_size=1, max_size=400), st.sampled_from([2, 4, 10, 64]))
 def test_thinning_keeps_minimum_and_maximum(values, most):
     samples = np.array([np.arange(len(values)), np.arange(len(values)), values], dtype=np.float64)
-    kept = thin_out(samples, most)
-    assert kept.shape[1] <= max(most, min(len(values), most))
-    assert (np.diff(kept[0]) > 0).all()
+    thinned = thin_out(samples, most)
+    assert thinned.shape[1] <= max(most, min(len(values), most))
+    assert (np.diff(thinned[0]) > 0).all()
     if not np.isnan(values).all():
-        assert np.nanmin(kept[2]) == np.nanmin(samples[2])
-        assert np.nanmax(kept[2]) == np.nanmax(samples[2])
+        assert np.nanmin(thinned[2]) == np.nanmin(samples[2])
+        assert np.nanmax(thinned[2]) == np.nanmax(samples[2])
 
 
 def test_sample_frame_is_packed():

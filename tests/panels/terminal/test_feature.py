@@ -20,7 +20,7 @@ from linkwright.panels.terminal import feature as terminals
 from linkwright.panels.terminal.feature import MAX_TERMINALS, TerminalFeature
 from linkwright.panels.terminal.process_session import session_processes
 from linkwright.panels.terminal.terminal import MAX_UNACKNOWLEDGED
-from tests.viewer.scene import World, page, world
+from tests.viewer.scene import World, open_world, page
 from tests.waiting import SECONDS, wait_until
 
 pytestmark = pytest.mark.skipif(sys.platform == "win32", reason="pseudoterminals of POSIX")
@@ -66,9 +66,9 @@ class Reader:
 
 @asynccontextmanager
 async def enabled(folder: Path, command: tuple[str, ...] = SHELL) -> AsyncIterator[World]:
-    async with world() as scene:
-        scene.viewer.add_feature(TerminalFeature).enable(folder, command)
-        yield scene
+    async with open_world() as world:
+        world.viewer.add_feature(TerminalFeature).enable(folder, command)
+        yield world
 
 
 async def open_terminal(client: Any) -> Reader:
@@ -86,13 +86,13 @@ async def state(client: Any, *, of: int = 1, **fields: Any) -> dict[str, Any]:
                 return item  # type: ignore[no-any-return]
 
 
-def leader_of(scene: World, number: int = 1) -> int:
-    found = scene.viewer.add_feature(TerminalFeature)._terminals[number]
-    return found._pty._process.pid  # type: ignore[attr-defined,no-any-return]
+def leader_of(world: World, number: int = 1) -> int:
+    terminal = world.viewer.add_feature(TerminalFeature)._terminals[number]
+    return terminal._pty._process.pid  # type: ignore[attr-defined,no-any-return]
 
 
 async def test_terminal_runs_commands_in_folder(tmp_path: Path) -> None:
-    async with enabled(tmp_path) as scene, page(scene.viewer) as client:
+    async with enabled(tmp_path) as world, page(world.viewer) as client:
         assert (await client.until("terminals"))["folder"] == str(tmp_path)
         reader = await open_terminal(client)
         await reader.type("pwd -P; echo 'Wort 小车'; echo $TERM $COLORTERM\r")
@@ -100,54 +100,54 @@ async def test_terminal_runs_commands_in_folder(tmp_path: Path) -> None:
 
 
 async def test_requests_without_permission_are_rejected(tmp_path: Path) -> None:
-    async with world() as scene, page(scene.viewer) as client:
+    async with open_world() as world, page(world.viewer) as client:
         await client.send("open_terminal", **SIZE)
         refused = await client.until("terminals")
         assert "--terminal" in refused["why_not"]
         assert (refused["folder"], refused["terminals"]) == ("", [])
         await client.send("write_terminal", terminal=1, text="touch /tmp/x\r", is_binary=False)
         assert "--terminal" in (await client.until("terminals"))["why_not"]
-        assert scene.viewer.add_feature(TerminalFeature)._terminals == {}
+        assert world.viewer.add_feature(TerminalFeature)._terminals == {}
 
 
 async def test_page_without_permission_receives_no_terminal_messages() -> None:
-    async with world() as scene, page(scene.viewer) as client:
+    async with open_world() as world, page(world.viewer) as client:
         await client.until("frame_table")
-        assert not any(isinstance(each, dict) and each["type"] == "terminals" for each in client.messages)
+        assert not any(isinstance(message, dict) and message["type"] == "terminals" for message in client.messages)
 
 
 async def test_pages_on_other_machines_are_rejected(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(server, "is_local_connection", lambda _: False)
-    async with enabled(tmp_path) as scene, page(scene.viewer) as client:
+    async with enabled(tmp_path) as world, page(world.viewer) as client:
         await client.until("terminals")
         await client.send("open_terminal", **SIZE)
         assert "on the machine of the program" in (await client.until("terminals"))["why_not"]
-        assert scene.viewer.add_feature(TerminalFeature)._terminals == {}
+        assert world.viewer.add_feature(TerminalFeature)._terminals == {}
 
 
 async def test_pages_of_other_users_are_rejected(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(server, "may_be_own_user", lambda _: False)
-    async with enabled(tmp_path) as scene, page(scene.viewer) as client:
+    async with enabled(tmp_path) as world, page(world.viewer) as client:
         await client.until("terminals")
         await client.send("open_terminal", **SIZE)
         assert "the user who started the program" in (await client.until("terminals"))["why_not"]
         await client.send("write_terminal", terminal=1, text="touch x\r", is_binary=False)
         assert "the user who started the program" in (await client.until("terminals"))["why_not"]
-        assert scene.viewer.add_feature(TerminalFeature)._terminals == {}
+        assert world.viewer.add_feature(TerminalFeature)._terminals == {}
 
 
 @pytest.mark.parametrize("query", ["", "?token=wrong"])
 async def test_websocket_requires_token(tmp_path: Path, query: str) -> None:
-    async with enabled(tmp_path) as scene, aiohttp.ClientSession() as browser:
-        plain = scene.viewer.url.partition("?")[0]
+    async with enabled(tmp_path) as world, aiohttp.ClientSession() as browser:
+        plain = world.viewer.url.partition("?")[0]
         with pytest.raises(aiohttp.WSServerHandshakeError) as refused:
             await browser.ws_connect(f"{plain}ws{query}")
         assert refused.value.status == 401
 
 
 async def test_websocket_rejects_other_origins(tmp_path: Path) -> None:
-    async with enabled(tmp_path) as scene, aiohttp.ClientSession() as browser:
-        address = scene.viewer.url.replace("/?", "/ws?")
+    async with enabled(tmp_path) as world, aiohttp.ClientSession() as browser:
+        address = world.viewer.url.replace("/?", "/ws?")
         with pytest.raises(aiohttp.WSServerHandshakeError) as refused:
             await browser.ws_connect(address, origin="http://evil.example")
         assert refused.value.status == 403
@@ -172,7 +172,7 @@ async def test_terminal_requires_loopback_address(host: str) -> None:
 
 
 async def test_exited_shell_is_shown_and_restarted(tmp_path: Path) -> None:
-    async with enabled(tmp_path) as scene, page(scene.viewer) as client:
+    async with enabled(tmp_path) as world, page(world.viewer) as client:
         reader = await open_terminal(client)
         await reader.type("echo first; exit 4\r")
         await state(client, status=4)
@@ -183,11 +183,11 @@ async def test_exited_shell_is_shown_and_restarted(tmp_path: Path) -> None:
 
 
 async def test_another_page_attaches_with_last_output(tmp_path: Path) -> None:
-    async with enabled(tmp_path) as scene, page(scene.viewer) as first:
+    async with enabled(tmp_path) as world, page(world.viewer) as first:
         reader = await open_terminal(first)
         await reader.type("echo remem'ber'\r")
         await reader.until("remember\r\n")
-        async with page(scene.viewer) as second:
+        async with page(world.viewer) as second:
             assert (await second.until("terminals"))["terminals"][0]["shown"] == "elsewhere"
             await second.send("show_terminal", terminal=1, columns=90, rows=20)
             other = Reader(second)
@@ -203,12 +203,12 @@ async def test_another_page_attaches_with_last_output(tmp_path: Path) -> None:
 
 
 async def test_reloaded_page_shows_terminal_again(tmp_path: Path) -> None:
-    async with enabled(tmp_path) as scene:
-        async with page(scene.viewer) as client:
+    async with enabled(tmp_path) as world:
+        async with page(world.viewer) as client:
             reader = await open_terminal(client)
             await reader.type("x=4''2\r")
             await reader.until("x=4")
-        async with page(scene.viewer) as client:
+        async with page(world.viewer) as client:
             await state(client, shown="nowhere")
             await client.send("show_terminal", terminal=1, **SIZE)
             reader = Reader(client)
@@ -217,12 +217,12 @@ async def test_reloaded_page_shows_terminal_again(tmp_path: Path) -> None:
 
 
 async def test_endless_output_waits_for_acknowledgment(tmp_path: Path) -> None:
-    async with enabled(tmp_path) as scene, page(scene.viewer) as client:
+    async with enabled(tmp_path) as world, page(world.viewer) as client:
         reader = await open_terminal(client)
         reader.acknowledges = False
         await reader.type("yes\r")
         numbers = [(await reader.next())["number"] for _ in range(MAX_UNACKNOWLEDGED)]
-        terminal = scene.viewer.add_feature(TerminalFeature)._terminals[1]
+        terminal = world.viewer.add_feature(TerminalFeature)._terminals[1]
         await asyncio.sleep(0.1)
         assert terminal._sent == numbers[-1]
         size = terminal._history._size
@@ -236,12 +236,12 @@ async def test_endless_output_waits_for_acknowledgment(tmp_path: Path) -> None:
 
 
 async def test_programs_continue_without_page(tmp_path: Path) -> None:
-    async with enabled(tmp_path) as scene:
-        async with page(scene.viewer) as client:
+    async with enabled(tmp_path) as world:
+        async with page(world.viewer) as client:
             reader = await open_terminal(client)
             await reader.type("seq 300000; touch finished\r")
         await asyncio.to_thread(wait_until, (tmp_path / "finished").exists, SECONDS)
-        async with page(scene.viewer) as client:
+        async with page(world.viewer) as client:
             await client.send("show_terminal", terminal=1, **SIZE)
             reader = Reader(client)
             await reader.until("\r\n300000\r\n")
@@ -249,11 +249,11 @@ async def test_programs_continue_without_page(tmp_path: Path) -> None:
 
 
 async def test_closing_terminal_ends_its_programs(tmp_path: Path) -> None:
-    async with enabled(tmp_path) as scene, page(scene.viewer) as client:
+    async with enabled(tmp_path) as world, page(world.viewer) as client:
         reader = await open_terminal(client)
         await reader.type("sleep 1000 & sleep 1000 & echo do'ne'\r")
         await reader.until("done\r\n")
-        leader = leader_of(scene)
+        leader = leader_of(world)
         await client.send("close_terminal", terminal=1)
         while (await client.until("terminals"))["terminals"]:
             pass
@@ -261,17 +261,17 @@ async def test_closing_terminal_ends_its_programs(tmp_path: Path) -> None:
 
 
 async def test_closing_server_ends_all_programs(tmp_path: Path) -> None:
-    async with enabled(tmp_path) as scene, page(scene.viewer) as client:
+    async with enabled(tmp_path) as world, page(world.viewer) as client:
         reader = await open_terminal(client)
         await reader.type("trap '' HUP; (trap '' HUP; sleep 1000) & echo do'ne'\r")
         await reader.until("done\r\n")
-        leader = leader_of(scene)
+        leader = leader_of(world)
         assert list(session_processes(leader))
     assert list(session_processes(leader)) == []
 
 
 async def test_number_of_terminals_is_limited(tmp_path: Path) -> None:
-    async with enabled(tmp_path, ("/bin/sleep", "1000")) as scene, page(scene.viewer) as client:
+    async with enabled(tmp_path, ("/bin/sleep", "1000")) as world, page(world.viewer) as client:
         for _ in range(MAX_TERMINALS + 1):
             await client.send("open_terminal", **SIZE)
         refused = await client.until(
@@ -281,7 +281,7 @@ async def test_number_of_terminals_is_limited(tmp_path: Path) -> None:
 
 
 async def test_shell_start_failure_is_reported(tmp_path: Path) -> None:
-    async with enabled(tmp_path / "gone") as scene, page(scene.viewer) as client:
+    async with enabled(tmp_path / "gone") as world, page(world.viewer) as client:
         await client.until("terminals")
         await client.send("open_terminal", **SIZE)
         assert "No such file" in (await client.until("terminals"))["why_not"]
@@ -292,7 +292,7 @@ async def test_missing_package_is_named(tmp_path: Path, monkeypatch: pytest.Monk
         raise ModuleNotFoundError("no winpty", name="winpty")
 
     monkeypatch.setattr(terminals, "open_pty", fail)
-    async with enabled(tmp_path) as scene, page(scene.viewer) as client:
+    async with enabled(tmp_path) as world, page(world.viewer) as client:
         await client.until("terminals")
         await client.send("open_terminal", **SIZE)
         assert "[learn]" in (await client.until("terminals"))["why_not"]
@@ -300,18 +300,18 @@ async def test_missing_package_is_named(tmp_path: Path, monkeypatch: pytest.Monk
 
 async def test_unread_input_is_limited(tmp_path: Path) -> None:
     script = "stty raw -echo; echo ready; exec sleep 1000"
-    async with enabled(tmp_path, ("/bin/sh", "-c", script)) as scene, page(scene.viewer) as client:
+    async with enabled(tmp_path, ("/bin/sh", "-c", script)) as world, page(world.viewer) as client:
         reader = await open_terminal(client)
         await reader.until("ready")
         for _ in range(5):
             await reader.type("x" * 300_000)
         assert (await client.until("terminal_input_lost"))["size"] == 300_000
-        assert scene.viewer.add_feature(TerminalFeature)._terminals[1]._pty.unwritten_size <= 1024 * 1024
+        assert world.viewer.add_feature(TerminalFeature)._terminals[1]._pty.unwritten_size <= 1024 * 1024
 
 
 async def test_binary_input_reaches_program_as_bytes(tmp_path: Path) -> None:
     script = "stty raw -echo; echo ready; head -c 2 | od -An -tu1"
-    async with enabled(tmp_path, ("/bin/sh", "-c", script)) as scene, page(scene.viewer) as client:
+    async with enabled(tmp_path, ("/bin/sh", "-c", script)) as world, page(world.viewer) as client:
         reader = await open_terminal(client)
         await reader.until("ready")
         await client.send("write_terminal", terminal=1, text="\xff\x80", is_binary=True)
@@ -320,7 +320,7 @@ async def test_binary_input_reaches_program_as_bytes(tmp_path: Path) -> None:
 
 async def test_split_utf8_character_arrives_complete(tmp_path: Path) -> None:
     script = r"stty raw; printf '\346'; read -r a; printf '\234\272<'"
-    async with enabled(tmp_path, ("/bin/sh", "-c", script)) as scene, page(scene.viewer) as client:
+    async with enabled(tmp_path, ("/bin/sh", "-c", script)) as world, page(world.viewer) as client:
         reader = await open_terminal(client)
         await reader.type("\n")
         await reader.until("机<")
@@ -328,8 +328,8 @@ async def test_split_utf8_character_arrives_complete(tmp_path: Path) -> None:
 
 async def test_terminal_has_commands_of_linkwright_shell(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setenv("SHELL", "/bin/sh")
-    async with world() as scene, page(scene.viewer) as client:
-        scene.viewer.add_feature(TerminalFeature).enable(tmp_path)
+    async with open_world() as world, page(world.viewer) as client:
+        world.viewer.add_feature(TerminalFeature).enable(tmp_path)
         reader = await open_terminal(client)
         await reader.type("command -v ros2; command -v linkwright\r")
         await reader.until("/ros2\r\n")

@@ -7,10 +7,10 @@ from linkwright.panels.terminal.history import LINES, TerminalHistory
 
 
 def history(*parts: str) -> str:
-    made = TerminalHistory()
+    history = TerminalHistory()
     for part in parts:
-        made.add(part)
-    return made.text()
+        history.add(part)
+    return history.text()
 
 
 def test_short_output_is_returned_unchanged() -> None:
@@ -32,26 +32,30 @@ def test_terminal_modes_survive_long_output() -> None:
 
 
 def test_output_without_newlines_uses_limited_memory() -> None:
-    made = TerminalHistory()
-    made.add("\x1b[?1000h")
+    history = TerminalHistory()
+    history.add("\x1b[?1000h")
     for _ in range(400):
-        made.add("x" * 10_000)
-        assert made._size <= 1024 * 1024 + 10_000
-    assert made.text().startswith("\x1b[?1000h")
-    assert len(made.text()) <= 512 * 1024 + 100
+        history.add("x" * 10_000)
+        assert history._size <= 1024 * 1024 + 10_000
+    assert history.text().startswith("\x1b[?1000h")
+    assert len(history.text()) <= 512 * 1024 + 100
 
 
 def test_terminal_modes_are_found_in_dropped_output() -> None:
-    made = TerminalHistory()
-    made.add("\x1b[?1h\n")
-    made.add(("y" * 1000 + "\n") * 2000)
-    assert made.text().startswith("\x1b[?1hy")
+    history = TerminalHistory()
+    history.add("\x1b[?1h\n")
+    history.add(("y" * 1000 + "\n") * 2000)
+    assert history.text().startswith("\x1b[?1hy")
 
 
 def test_shell_environment_gets_utf8_locale() -> None:
     assert terminal_environment({})["LC_CTYPE"] in ("C.UTF-8", "UTF-8")
     assert "LC_CTYPE" not in terminal_environment({"LANG": "zh_CN.UTF-8"})
     assert "LC_CTYPE" not in terminal_environment({"LC_ALL": "C"})
-    made = terminal_environment({"TERM": "dumb", "COLUMNS": "3", "PATH": "/bin"})
-    assert (made["TERM"], made["COLORTERM"], made["PATH"]) == ("xterm-256color", "truecolor", "/bin")
-    assert "COLUMNS" not in made
+    environment = terminal_environment({"TERM": "dumb", "COLUMNS": "3", "PATH": "/bin"})
+    assert (environment["TERM"], environment["COLORTERM"], environment["PATH"]) == (
+        "xterm-256color",
+        "truecolor",
+        "/bin",
+    )
+    assert "COLUMNS" not in environment

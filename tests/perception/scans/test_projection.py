@@ -12,27 +12,27 @@ CAMERA = Pinhole(focal_length=4.0, center_column=2.0, center_row=1.5)
 
 
 def test_flat_depth_image_becomes_straight_wall():
-    made, rays = scan_from_depths(np.full((3, 5), 2.0), CAMERA, 1, 0.1, 10.0)
+    distances, rays = scan_from_depths(np.full((3, 5), 2.0), CAMERA, 1, 0.1, 10.0)
     assert (rays.angle_min, rays.angle_max) == (pytest.approx(-atan(0.5)), pytest.approx(atan(0.5)))
     assert rays.angle_increment == pytest.approx(atan(0.5) / 2)
     # The rays of the scan are apart by the same angle, those of the picture are not: two of these meet in the first.
-    assert made[[0, 2, 4]] == pytest.approx([hypot(2.0, 0.5), 2.0, hypot(2.0, 1.0)])
+    assert distances[[0, 2, 4]] == pytest.approx([hypot(2.0, 0.5), 2.0, hypot(2.0, 1.0)])
 
 
 def test_left_of_image_is_end_of_scan_and_nearest_row_is_used():
     depths = np.full((3, 5), 9.0)
     depths[0, 0], depths[1, 0], depths[1, 4] = 1.0, 2.0, 3.0
-    made, _ = scan_from_depths(depths, CAMERA, 2, 0.1, 20.0)
-    assert made[-1] == pytest.approx(hypot(1.0, 0.5))
-    assert made[0] == pytest.approx(hypot(3.0, 1.5))
+    distances, _ = scan_from_depths(depths, CAMERA, 2, 0.1, 20.0)
+    assert distances[-1] == pytest.approx(hypot(1.0, 0.5))
+    assert distances[0] == pytest.approx(hypot(3.0, 1.5))
 
 
 def test_invalid_depths_become_nan_or_inf_ranges():
     depths = np.array([[nan, inf, 50.0, 0.2, 2.0]] * 3)
-    made, _ = scan_from_depths(depths, CAMERA, 1, 0.45, 10.0)
-    assert np.isnan(made[-1])
-    assert np.isposinf(made).sum() == 1
-    assert np.isfinite(made).tolist() == [True, False, False, False, False]
+    distances, _ = scan_from_depths(depths, CAMERA, 1, 0.45, 10.0)
+    assert np.isnan(distances[-1])
+    assert np.isposinf(distances).sum() == 1
+    assert np.isfinite(distances).tolist() == [True, False, False, False, False]
 
 
 def test_scan_height_above_image_height_is_an_error():
@@ -50,8 +50,8 @@ def test_nearest_point_within_heights_is_used_for_each_ray():
             [nan, 0.0, 0.0],
         ]
     )  # fmt: skip
-    made = scan_from_points(points, rays, 0.0, 1.0, inf)
-    assert list(made) == ranges([inf, hypot(3.0, 0.1), hypot(1.0, 0.1), inf])
+    distances = scan_from_points(points, rays, 0.0, 1.0, inf)
+    assert list(distances) == ranges([inf, hypot(3.0, 0.1), hypot(1.0, 0.1), inf])
 
 
 def test_point_at_maximum_angle_is_ignored():

@@ -47,12 +47,12 @@ def nowhere(target, source, time_ns):
     return None
 
 
-def ranges(made):
-    return pytest.approx(np.array(made, np.float32), nan_ok=True)
+def ranges(expected):
+    return pytest.approx(np.array(expected, np.float32), nan_ok=True)
 
 
-def applied(each, given, lookup=nowhere):
-    return list(each.apply(given, lookup).ranges)
+def applied(scan_filter, given, lookup=nowhere):
+    return list(scan_filter.apply(given, lookup).ranges)
 
 
 def test_range_filter_replaces_ranges_beyond_thresholds():
@@ -75,20 +75,20 @@ def test_interpolation_filter_fills_gaps_with_mean():
 
 
 def test_mask_filter_removes_rays_of_its_frame():
-    each = MaskFilter({"laser": [0, 2, 99], "other": [1]})
-    assert applied(each, scan(1.0, 2.0, 3.0)) == ranges([nan, 2.0, nan])
+    scan_filter = MaskFilter({"laser": [0, 2, 99], "other": [1]})
+    assert applied(scan_filter, scan(1.0, 2.0, 3.0)) == ranges([nan, 2.0, nan])
 
 
 def test_array_filter_applies_median_and_mean_of_last_scans():
     median = {"filter1": {"type": "filters/MultiChannelMedianFilterFloat", "params": {"number_of_observations": 3}}}
     mean = {"filter1": {"type": "filters/MultiChannelMeanFilterFloat", "params": {"number_of_observations": 2}}}
-    each = ArrayFilter(median, mean)
-    each.apply(scan(1.0, 5.0, intensities=(1.0, 1.0)), nowhere)
-    each.apply(scan(9.0, 6.0, intensities=(2.0, 4.0)), nowhere)
-    last = each.apply(scan(2.0, 7.0, intensities=(4.0, 8.0)), nowhere)
+    scan_filter = ArrayFilter(median, mean)
+    scan_filter.apply(scan(1.0, 5.0, intensities=(1.0, 1.0)), nowhere)
+    scan_filter.apply(scan(9.0, 6.0, intensities=(2.0, 4.0)), nowhere)
+    last = scan_filter.apply(scan(2.0, 7.0, intensities=(4.0, 8.0)), nowhere)
     assert list(last.ranges) == ranges([2.0, 6.0])
     assert list(last.intensities) == ranges([3.0, 6.0])
-    assert list(each.apply(scan(8.0), nowhere).ranges) == ranges([8.0])
+    assert list(scan_filter.apply(scan(8.0), nowhere).ranges) == ranges([8.0])
     with pytest.raises(
         LinkwrightError, match="filter 'Magic' does not exist for arrays, or does not support 1 observations"
     ):
@@ -97,18 +97,22 @@ def test_array_filter_applies_median_and_mean_of_last_scans():
 
 def test_angular_bounds_filter_crops_scan():
     given = scan(0.0, 1.0, 2.0, 3.0, 4.0, intensities=range(5), time_increment=0.5)
-    made = AngularBoundsFilter(0.05, 0.35).apply(given, nowhere)
-    assert list(made.ranges) == ranges([1.0, 2.0, 3.0])
-    assert list(made.intensities) == ranges([1.0, 2.0, 3.0])
-    assert (made.angle_min, made.angle_max, made.stamp_ns) == (pytest.approx(0.1), pytest.approx(0.3), 5_500_000_000)
+    result = AngularBoundsFilter(0.05, 0.35).apply(given, nowhere)
+    assert list(result.ranges) == ranges([1.0, 2.0, 3.0])
+    assert list(result.intensities) == ranges([1.0, 2.0, 3.0])
+    assert (result.angle_min, result.angle_max, result.stamp_ns) == (
+        pytest.approx(0.1),
+        pytest.approx(0.3),
+        5_500_000_000,
+    )
     assert AngularBoundsFilter(2.0, 3.0).apply(scan(1.0), nowhere) is None
 
 
 def test_angular_bounds_in_place_filter_removes_rays():
     given = scan(1.0, 2.0, 3.0, intensities=(7.0, 8.0, 9.0))
-    made = AngularBoundsInPlaceFilter(0.05, 0.15).apply(given, nowhere)
-    assert list(made.ranges) == ranges([1.0, 11.0, 3.0])
-    assert list(made.intensities) == ranges([7.0, 0.0, 9.0])
+    result = AngularBoundsInPlaceFilter(0.05, 0.15).apply(given, nowhere)
+    assert list(result.ranges) == ranges([1.0, 11.0, 3.0])
+    assert list(result.intensities) == ranges([7.0, 0.0, 9.0])
 
 
 def test_sector_filter_may_cross_pi():
@@ -146,12 +150,12 @@ def test_footprint_and_polygon_filters_remove_inner_points():
 
 
 def test_shadows_filter_removes_points_between_edge_and_wall():
-    each = ScanShadowsFilter(min_angle=10.0, max_angle=170.0, window=1, neighbors=1)
+    scan_filter = ScanShadowsFilter(min_angle=10.0, max_angle=170.0, window=1, neighbors=1)
     near, wall = [1.0] * 5, [3.0] * 5
-    made = applied(each, scan(*near, 2.0, *wall, increment=0.01))
-    assert made == ranges([1.0] * 5 + [nan, nan] + [3.0] * 4)
+    distances = applied(scan_filter, scan(*near, 2.0, *wall, increment=0.01))
+    assert distances == ranges([1.0] * 5 + [nan, nan] + [3.0] * 4)
     flat = scan(*(1.0 / np.cos(np.arange(-5, 6) * 0.01)), angle_min=-0.05, increment=0.01)
-    assert not np.isnan(applied(each, flat)).any()
+    assert not np.isnan(applied(scan_filter, flat)).any()
     starts = ScanShadowsFilter(10.0, 170.0, 1, 0, remove_shadow_start_point=True)
     assert np.flatnonzero(np.isnan(applied(starts, scan(*near, 2.0, *wall, increment=0.01)))).tolist() == [4, 5, 6]
     with pytest.raises(LinkwrightError, match=r"min_angle \(95\) must be 0 to 90 degrees, and max_angle \(170\)"):
@@ -167,21 +171,21 @@ def test_speckle_filter_removes_points_without_near_ranges():
 
 
 def test_speckle_filter_by_radius_counts_near_points():
-    each = SpeckleFilter(filter_type=1, max_range_difference=0.2, filter_window=2)
+    scan_filter = SpeckleFilter(filter_type=1, max_range_difference=0.2, filter_window=2)
     given = scan(1.0, 1.0, 1.0, 1.9, 1.0, nan, nan, 1.5, nan, nan, increment=0.05)
-    made = applied(each, given)
-    assert np.isnan(made[7])
-    assert made[1] == 1.0
+    distances = applied(scan_filter, given)
+    assert np.isnan(distances[7])
+    assert distances[1] == 1.0
 
 
 @settings(max_examples=60)
 @given(st.lists(st.sampled_from([0.5, 1.0, 1.05, 1.5, 3.0, inf, nan]), min_size=5, max_size=12), st.integers(1, 3))
 def test_speckle_filter_matches_reference_loop(values, window):
-    made = applied(SpeckleFilter(filter_window=window), scan(*values))
-    kept = [value > 2.0 for value in values]
+    distances = applied(SpeckleFilter(filter_window=window), scan(*values))
+    mask = [value > 2.0 for value in values]
     for start in range(len(values) - window + 1):
         group = values[start : start + window]
         alike = all(value == group[0] or abs(value - group[0]) <= 0.1 for value in group)
         if alike and not any(np.isnan(group)) and (window == 1 or not np.isinf(group).any()):
-            kept[start : start + window] = [True] * window
-    assert made == ranges([value if keep else nan for value, keep in zip(values, kept, strict=True)])
+            mask[start : start + window] = [True] * window
+    assert distances == ranges([value if keep else nan for value, keep in zip(values, mask, strict=True)])

@@ -56,8 +56,8 @@ def xyz(points, *extra: tuple[str, str]) -> np.ndarray:
 
 
 def colors(points: Points, pose=None, **settings) -> list[tuple[int, ...]]:
-    found, _ = colored(points, ColorSettings(**settings), pose)
-    return [tuple(int(part) for part in row) for row in found]
+    color_values, _ = colored(points, ColorSettings(**settings), pose)
+    return [tuple(int(part) for part in row) for row in color_values]
 
 
 # --- PointCloud2 -----------------------------------------------------------------------------------------------------
@@ -166,17 +166,17 @@ def test_equal_and_missing_intensities_give_one_color():
 def test_nonfinite_intensities_are_ignored():
     values = np.array([np.nan, 0.0, np.inf, 2.0])
     points = Points(np.zeros((4, 3), np.float32), {"intensity": values})
-    found, bounds = colored(points, ColorSettings())
+    color_values, bounds = colored(points, ColorSettings())
     assert bounds == (0.0, 2.0)
-    assert [tuple(row) for row in found.tolist()] == [RED, RED, MAGENTA, MAGENTA]
+    assert [tuple(row) for row in color_values.tolist()] == [RED, RED, MAGENTA, MAGENTA]
 
 
 def test_axis_color_uses_fixed_frame_or_cloud_frame():
     points = Points(np.array([[0, 0, 0], [1, 0, 0]], np.float32))
     upright = np.array([0, 0, 10, 0, -math.sqrt(0.5), 0, math.sqrt(0.5)])  # x points up
-    found, bounds = colored(points, ColorSettings("AxisColor"), upright)
+    color_values, bounds = colored(points, ColorSettings("AxisColor"), upright)
     np.testing.assert_allclose(bounds, (10.0, 11.0), atol=1e-5)
-    assert [tuple(row) for row in found.tolist()] == [RED, MAGENTA]
+    assert [tuple(row) for row in color_values.tolist()] == [RED, MAGENTA]
     assert colors(points, upright, transformer="AxisColor", in_fixed_frame=False) == [RED, RED]
     assert colors(points, upright, transformer="AxisColor", in_fixed_frame=False, axis=0) == [RED, MAGENTA]
 

@@ -24,11 +24,11 @@ async def change(client, alpha: float = 0.25) -> None:
 
 async def test_unsaved_changes_are_recovered_on_next_start(tmp_path):
     path = tmp_path / "a.rviz"
-    async with opened(path=path) as (made, client):
+    async with opened(path=path) as (world, client):
         text = path.read_text()
         await change(client)
-        (notice,) = made.viewer.keep_unsaved()
-        edited = made.viewer.config.text()
+        (notice,) = world.viewer.keep_unsaved()
+        edited = world.viewer.config.text()
     (recovered,) = recovery_files()
     assert (notice.code, path.read_text(), recovered.read_text()) == ("RVIZ301", text, edited)
     assert f"'{path}'" in notice.message
@@ -43,29 +43,29 @@ async def test_unsaved_changes_are_recovered_on_next_start(tmp_path):
 
 async def test_saving_removes_recovery_file(tmp_path):
     path = tmp_path / "a.rviz"
-    async with opened(path=path) as (made, client):
+    async with opened(path=path) as (world, client):
         await change(client)
-        made.viewer.keep_unsaved()
+        world.viewer.keep_unsaved()
         assert len(recovery_files()) == 1
         await client.send("save_configuration", path=None, replace=False)
         await client.until("configuration_saved")
         assert recovery_files() == []
         assert (await client.until("configuration", unsaved=False))["recent"] == [str(path)]
-        assert made.viewer.keep_unsaved() == []
+        assert world.viewer.keep_unsaved() == []
 
 
 async def test_saving_recovered_file_elsewhere_removes_recovery_file(tmp_path):
     path = tmp_path / "a.rviz"
-    async with opened(path=path) as (made, client):
+    async with opened(path=path) as (world, client):
         await change(client)
-        made.viewer.keep_unsaved()
+        world.viewer.keep_unsaved()
         (recovered,) = recovery_files()
         await client.send("open_configuration", path=str(recovered), discard=True)
         await client.until("configuration", path=str(recovered))
-        assert made.viewer.keep_unsaved() == []
+        assert world.viewer.keep_unsaved() == []
         await client.send("add_display", cls="rviz_default_plugins/Axes", name="More", group=None, topic=None)
         await client.until("configuration", unsaved=True)
-        made.viewer.keep_unsaved()
+        world.viewer.keep_unsaved()
         assert recovery_files() == [recovered]
         assert "Name: More" in recovered.read_text()
         await client.send("save_configuration", path=str(path), replace=True)
@@ -76,36 +76,36 @@ async def test_saving_recovered_file_elsewhere_removes_recovery_file(tmp_path):
 
 async def test_no_recovery_file_without_edits(tmp_path):
     path = tmp_path / "a.rviz"
-    async with opened(path=path) as (made, client):
-        assert made.viewer.keep_unsaved() == []
+    async with opened(path=path) as (world, client):
+        assert world.viewer.keep_unsaved() == []
         await change(client)
         await edit(client, "undo")
-        assert made.viewer.keep_unsaved() == []
+        assert world.viewer.keep_unsaved() == []
         # Edited back by hand.
         await client.send("show_panels", shown=["time"])
         await client.until("configuration", unsaved=True)
         await client.send("show_panels", shown=[])
         await client.drain(0.03)
-        assert made.viewer.manager.history.has_unsaved_edits
-        assert made.viewer.keep_unsaved() == []
+        assert world.viewer.manager.history.has_unsaved_edits
+        assert world.viewer.keep_unsaved() == []
     assert not recovery_folder().exists()
 
 
 async def test_untitled_displays_are_kept_for_recovery(tmp_path):
-    async with opened() as (made, client):
+    async with opened() as (world, client):
         await change(client)
-        (notice,) = made.viewer.keep_unsaved()
+        (notice,) = world.viewer.keep_unsaved()
     assert [path.name for path in recovery_files()] == ["untitled.rviz"]
     assert notice.message.startswith("unsaved displays are stored in")
 
 
 async def test_displays_of_own_page_have_separate_recovery_file(tmp_path):
-    async with opened(path=tmp_path / "a.rviz") as (made, client), own_page(made) as own:
+    async with opened(path=tmp_path / "a.rviz") as (world, client), own_page(world) as own:
         first = await own.opened()
         await change(client)
         await own.set(f"{first['tree']['displays'][0]['id']}/Alpha", 0.125)
         await own.until("configuration", unsaved=True)
-        assert [each.code for each in made.viewer.keep_unsaved()] == ["RVIZ301", "RVIZ301"]
+        assert [diagnostic.code for diagnostic in world.viewer.keep_unsaved()] == ["RVIZ301", "RVIZ301"]
     shared, single = (
         recovery_files()
         if len(recovery_files()[0].stem) < len(recovery_files()[1].stem)
@@ -121,11 +121,11 @@ def test_configurations_have_separate_recovery_files(tmp_path, monkeypatch):
     for file in files:
         file.parent.mkdir()
         file.write_text(text)
-    one, other = (recovery_file(RvizConfig.load(file)) for file in files)
-    assert one != other
-    assert one.name.startswith("x-")
+    first, second = (recovery_file(RvizConfig.load(file)) for file in files)
+    assert first != second
+    assert first.name.startswith("x-")
     monkeypatch.chdir(tmp_path / "a")
-    assert recovery_file(RvizConfig.load("x.rviz")) == one
+    assert recovery_file(RvizConfig.load("x.rviz")) == first
     assert recovery_file(RvizConfig.parse(text, "from my computer.rviz")).name.startswith("from my computer-")
 
 
@@ -133,10 +133,10 @@ async def test_unwritable_recovery_folder_is_reported(tmp_path, monkeypatch):
     blocked = tmp_path / "blocked"
     blocked.write_text("no folder")
     path = tmp_path / "a.rviz"
-    async with opened(path=path) as (made, client):
+    async with opened(path=path) as (world, client):
         await change(client)
         monkeypatch.setenv("XDG_STATE_HOME", str(blocked))
-        (notice,) = made.viewer.keep_unsaved()
+        (notice,) = world.viewer.keep_unsaved()
     assert notice.code == "RVIZ104"
 
 
@@ -144,9 +144,9 @@ async def test_unwritable_recovery_folder_is_reported(tmp_path, monkeypatch):
 def test_recovery_file_name_contains_configuration_name(tmp_path, name):
     file = tmp_path / name
     file.write_text(RvizConfig.default().text())
-    found = recovery_file(RvizConfig.load(file))
-    assert found.name.startswith(file.stem + "-")
-    assert found.suffix == ".rviz"
+    recovered_file = recovery_file(RvizConfig.load(file))
+    assert recovered_file.name.startswith(file.stem + "-")
+    assert recovered_file.suffix == ".rviz"
 
 
 @pytest.mark.parametrize("name", ["../../x", "/etc/x.rviz", "a\0b", "..", "", "x" * 5000, "C:\\x:y?.rviz", "\n"])

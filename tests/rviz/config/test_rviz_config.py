@@ -85,13 +85,13 @@ def sized(config, diagonal, ground=0.0):
 
 def test_grid_and_axes_are_resized_for_mesh_size():
     size = ModelSize(0.5, 0.2)
-    found = {("Grid", "Cell Size"): 100.0, ("TF", "Marker Scale"): 12.0}
-    assert sized(RvizConfig.for_model("base_link", size=size), 100.0) == found
+    sizes = {("Grid", "Cell Size"): 100.0, ("TF", "Marker Scale"): 12.0}
+    assert sized(RvizConfig.for_model("base_link", size=size), 100.0) == sizes
     # A single link of one mesh has no size without it.
-    assert sized(RvizConfig.for_model("base_link"), 100.0) == {**found, ("TF", "Marker Scale"): 50.0}
+    assert sized(RvizConfig.for_model("base_link"), 100.0) == {**sizes, ("TF", "Marker Scale"): 50.0}
     config = RvizConfig.for_model("base_link", size=size)
-    assert sized(config.copy(), 100.0) == found
-    assert sized(config, 100.0) == found
+    assert sized(config.copy(), 100.0) == sizes
+    assert sized(config, 100.0) == sizes
     assert sized(config, 200.0) == {}  # only once: somebody looks at it
 
 
@@ -101,8 +101,8 @@ def test_model_without_size_resizes_nothing(diagonal):
 
 
 def test_grid_is_at_lowest_point_of_robot():
-    found = sized(RvizConfig.for_model("base_link", size=ModelSize(0.5, 0.2)), 1.0, -0.12345)
-    assert found == {("Grid", "Cell Size"): 1.0, ("TF", "Marker Scale"): 0.5, ("Grid", "Offset", "Z"): -0.1235}
+    sized_config = sized(RvizConfig.for_model("base_link", size=ModelSize(0.5, 0.2)), 1.0, -0.12345)
+    assert sized_config == {("Grid", "Cell Size"): 1.0, ("TF", "Marker Scale"): 0.5, ("Grid", "Offset", "Z"): -0.1235}
     config = RvizConfig.for_model("base_link")
     config.displays[0].section.put(("Offset", "Z"), "1", nested=True)
     assert ("Grid", "Offset", "Z") not in sized(config, 1.0, -0.5)

@@ -19,7 +19,7 @@ TEXT = PropertySpec("Text", "string", "")
 
 
 @pytest.mark.parametrize(
-    ("spec", "value", "taken"),
+    ("spec", "value", "expected"),
     [
         (ALPHA, 0.25, 0.25),
         (ALPHA, 1, 1.0),
@@ -36,10 +36,10 @@ TEXT = PropertySpec("Text", "string", "")
         (TEXT, "", ""),
     ],
 )
-def test_valid_values_are_accepted_and_clamped(spec, value, taken):
-    got = accept(spec, value)
-    assert got == taken
-    assert type(got) is type(taken)
+def test_valid_values_are_accepted_and_clamped(spec, value, expected):
+    accepted = accept(spec, value)
+    assert accepted == expected
+    assert type(accepted) is type(expected)
 
 
 @pytest.mark.parametrize(

@@ -11,7 +11,7 @@ from linkwright.messages import TFMessage, TransformStamped, get_message
 from linkwright.rviz import RvizConfig
 from tests.rviz.clouds.test_clouds import LaserScan, cloud, depth_image, scan, xyz
 from tests.viewer.contents import contents
-from tests.viewer.scene import page, world
+from tests.viewer.scene import open_world, page
 from tests.waiting import eventually
 
 Temperature = get_message("sensor_msgs/msg/Temperature")
@@ -60,16 +60,16 @@ def store_rows(display) -> dict[str, dict]:
 
 
 async def test_cloud_is_sent_with_pose_of_its_frame():
-    async with world(config()) as w:
-        publisher = w.graph.create_node("lidar").create_publisher(PointCloud2, "/points", 5)
-        w.move({("base", "lidar"): (1, 2, 3, 0, 0, 0, 1)}, static=True)
+    async with open_world(config()) as world:
+        publisher = world.graph.create_node("lidar").create_publisher(PointCloud2, "/points", 5)
+        world.move({("base", "lidar"): (1, 2, 3, 0, 0, 0, 1)}, static=True)
         publisher.publish(cloud(xyz([(1, 0, 0)]), "lidar"))
-        await w.settle()
-        (content,) = contents(w.display("PointCloud2"))
+        await world.settle()
+        (content,) = contents(world.display("PointCloud2"))
         assert content.fields["kind"] == "cloud_points"
         assert content.fields["positions"].tolist() == [1, 0, 0]
         assert content.pose == [1, 2, 3, 0, 0, 0, 1]
-        assert w.status("PointCloud2") == {
+        assert world.status("PointCloud2") == {
             "Topic": ("ok", "1 messages received"),
             "Transform": ("ok", "Transform OK"),
             "Points": ("ok", "Showing [1] points from [1] messages"),
@@ -77,21 +77,21 @@ async def test_cloud_is_sent_with_pose_of_its_frame():
 
 
 async def test_cloud_with_rgb_field_is_shown_in_color():
-    async with world(config()) as w:
-        publisher = w.graph.create_node("lidar").create_publisher(PointCloud2, "/points", 5)
+    async with open_world(config()) as world:
+        publisher = world.graph.create_node("lidar").create_publisher(PointCloud2, "/points", 5)
         publisher.publish(colored_cloud())
-        await w.settle()
-        display = w.display("PointCloud2")
+        await world.settle()
+        display = world.display("PointCloud2")
         assert display.properties.text("Color Transformer") == "RGB8"
         assert colors(display) == [[0x10, 0x20, 0x30, 255]] * 2
-        assert w.viewer.config.text() == config().text()  # nobody asked for that: the file is as it was
+        assert world.viewer.config.text() == config().text()  # nobody asked for that: the file is as it was
 
 
 async def test_color_transformers_are_limited_to_fields_of_cloud():
-    async with world(config()) as w, page(w.viewer) as client:
-        publisher = w.graph.create_node("lidar").create_publisher(PointCloud2, "/points", 5)
+    async with open_world(config()) as world, page(world.viewer) as client:
+        publisher = world.graph.create_node("lidar").create_publisher(PointCloud2, "/points", 5)
         publisher.publish(cloud(xyz([(0, 0, 0)], ("intensity", "f4"))))
-        await w.settle()
+        await world.settle()
         message = await client.until("display_properties")
         rows = {row["name"]: row for row in message["properties"]}
         assert rows["Color Transformer"]["options"] == ["AxisColor", "FlatColor", "Intensity"]
@@ -99,8 +99,8 @@ async def test_color_transformers_are_limited_to_fields_of_cloud():
 
 
 async def test_property_rows_follow_color_transformer():
-    async with world(config(Color_Transformer="Intensity")) as w:
-        display = w.display("PointCloud2")
+    async with open_world(config(Color_Transformer="Intensity")) as world:
+        display = world.display("PointCloud2")
         names = set(store_rows(display))
         assert {"Channel Name", "Use rainbow", "Invert Rainbow", "Autocompute Intensity Bounds"} <= names
         assert names.isdisjoint({"Min Color", "Min Intensity", "Axis", "Color"})
@@ -116,11 +116,11 @@ async def test_property_rows_follow_color_transformer():
 
 
 async def test_color_change_redraws_last_message():
-    async with world(config(Color_Transformer="Intensity")) as w:
-        publisher = w.graph.create_node("lidar").create_publisher(PointCloud2, "/points", 5)
+    async with open_world(config(Color_Transformer="Intensity")) as world:
+        publisher = world.graph.create_node("lidar").create_publisher(PointCloud2, "/points", 5)
         publisher.publish(colored_cloud())
-        await w.settle()
-        display = w.display("PointCloud2")
+        await world.settle()
+        display = world.display("PointCloud2")
         assert colors(display) == [[255, 0, 0, 255], [255, 0, 255, 255]]
         display.set_property(("Invert Rainbow",), True)
         assert colors(display) == [[255, 0, 255, 255], [255, 0, 0, 255]]
@@ -129,67 +129,67 @@ async def test_color_change_redraws_last_message():
 
 
 async def test_computed_bounds_initialize_manual_bounds():
-    async with world(config(Color_Transformer="Intensity")) as w:
-        publisher = w.graph.create_node("lidar").create_publisher(PointCloud2, "/points", 5)
+    async with open_world(config(Color_Transformer="Intensity")) as world:
+        publisher = world.graph.create_node("lidar").create_publisher(PointCloud2, "/points", 5)
         publisher.publish(colored_cloud(6))
-        await w.settle()
-        display = w.display("PointCloud2")
+        await world.settle()
+        display = world.display("PointCloud2")
         display.set_property(("Autocompute Intensity Bounds",), False)
         assert (display.properties.number("Min Intensity"), display.properties.number("Max Intensity")) == (0.0, 5.0)
 
 
 async def test_malformed_message_is_reported_and_last_cloud_remains():
-    async with world(config()) as w:
-        publisher = w.graph.create_node("lidar").create_publisher(PointCloud2, "/points", 5)
+    async with open_world(config()) as world:
+        publisher = world.graph.create_node("lidar").create_publisher(PointCloud2, "/points", 5)
         publisher.publish(colored_cloud())
         broken = colored_cloud()
         broken.width = 7
         publisher.publish(broken)
-        await w.settle()
-        level, text = w.status("PointCloud2")["Message"]
+        await world.settle()
+        level, text = world.status("PointCloud2")["Message"]
         assert (level, text[:20]) == ("error", "Data size (40 bytes)")
-        assert len(shown(w.display("PointCloud2"))[0]) == 2
+        assert len(shown(world.display("PointCloud2"))[0]) == 2
         publisher.publish(colored_cloud(3))
-        await w.settle()
-        assert "Message" not in w.status("PointCloud2")
+        await world.settle()
+        assert "Message" not in world.status("PointCloud2")
 
 
 async def test_points_remain_for_decay_time():
-    async with world(config(Decay_Time="0.3")) as w:
-        publisher = w.graph.create_node("lidar").create_publisher(PointCloud2, "/points", 5)
-        display = w.display("PointCloud2")
+    async with open_world(config(Decay_Time="0.3")) as world:
+        publisher = world.graph.create_node("lidar").create_publisher(PointCloud2, "/points", 5)
+        display = world.display("PointCloud2")
         publisher.publish(colored_cloud(1))
         publisher.publish(colored_cloud(2))
-        await w.settle()
-        assert [len(each) for each in shown(display)] == [1, 2]
-        assert w.status("PointCloud2")["Points"][1].startswith("Showing [")
+        await world.settle()
+        assert [len(cloud) for cloud in shown(display)] == [1, 2]
+        assert world.status("PointCloud2")["Points"][1].startswith("Showing [")
         await eventually(lambda: shown(display) == [])
         none = ("ok", "Showing [0] points from [0] messages")
-        await eventually(lambda: w.status("PointCloud2")["Points"] == none)
+        await eventually(lambda: world.status("PointCloud2")["Points"] == none)
 
 
 async def test_zero_decay_time_keeps_only_newest_message():
-    async with world(config(Decay_Time="60")) as w, page(w.viewer) as client:
+    async with open_world(config(Decay_Time="60")) as world, page(world.viewer) as client:
         await client.opened()
-        publisher = w.graph.create_node("lidar").create_publisher(PointCloud2, "/points", 5)
-        display = w.display("PointCloud2")
+        publisher = world.graph.create_node("lidar").create_publisher(PointCloud2, "/points", 5)
+        display = world.display("PointCloud2")
         for count in (1, 2, 3):
             publisher.publish(colored_cloud(count))
-        await w.settle()
+        await world.settle()
         display.set_property(("Decay Time",), 0)
-        assert [len(each) for each in shown(display)] == [3]
+        assert [len(cloud) for cloud in shown(display)] == [3]
         publisher.publish(colored_cloud(4))
-        await w.settle()
-        assert [len(each) for each in shown(display)] == [4]
+        await world.settle()
+        assert [len(cloud) for cloud in shown(display)] == [4]
 
 
 async def test_page_receives_fields_of_selected_point():
-    async with world(config()) as w, page(w.viewer) as client:
+    async with open_world(config()) as world, page(world.viewer) as client:
         await client.opened()
-        publisher = w.graph.create_node("lidar").create_publisher(PointCloud2, "/points", 5)
+        publisher = world.graph.create_node("lidar").create_publisher(PointCloud2, "/points", 5)
         publisher.publish(colored_cloud())
-        await w.settle()
-        identity = w.display("PointCloud2").id
+        await world.settle()
+        identity = world.display("PointCloud2").id
         await client.send("ask_point", display=identity, key="", index=7)
         await client.send("ask_point", display=identity, key="", index=1)
         answer = await client.until("point_fields")
@@ -197,14 +197,14 @@ async def test_page_receives_fields_of_selected_point():
 
 
 async def test_laser_scan_is_shown():
-    async with world(config("LaserScan")) as w:
-        publisher = w.graph.create_node("laser").create_publisher(LaserScan, "/points", 5)
+    async with open_world(config("LaserScan")) as world:
+        publisher = world.graph.create_node("laser").create_publisher(LaserScan, "/points", 5)
         message = scan([1.0, 2.0], [1.0, 2.0])
         message.header.frame_id = "base"
         publisher.publish(message)
-        await w.settle()
-        np.testing.assert_allclose(shown(w.display("LaserScan"))[0], [[1, 0, 0], [0, 2, 0]], atol=1e-6)
-        assert w.display("LaserScan").properties.text("Color Transformer") == "Intensity"
+        await world.settle()
+        np.testing.assert_allclose(shown(world.display("LaserScan"))[0], [[1, 0, 0], [0, 2, 0]], atol=1e-6)
+        assert world.display("LaserScan").properties.text("Color Transformer") == "Intensity"
 
 
 @pytest.mark.parametrize(
@@ -222,33 +222,33 @@ async def test_laser_scan_is_shown():
     ],
 )
 async def test_scan_without_valid_rays_is_reported_unless_all_out_of_range(ranges, expected):
-    async with world(config("LaserScan")) as w:
-        publisher = w.graph.create_node("laser").create_publisher(LaserScan, "/points", 5)
+    async with open_world(config("LaserScan")) as world:
+        publisher = world.graph.create_node("laser").create_publisher(LaserScan, "/points", 5)
         message = scan(ranges)
         message.header.frame_id = "base"
         publisher.publish(message)
-        await w.settle()
-        level, text = w.status("LaserScan").get("Values", (None, ""))
+        await world.settle()
+        level, text = world.status("LaserScan").get("Values", (None, ""))
         assert (level, text.partition(":")[0]) == (("warn", expected.partition(":")[0]) if expected else (None, ""))
         message.ranges = [1.0, 2.0]
         publisher.publish(message)
-        await w.settle()
-        assert "Values" not in w.status("LaserScan")
+        await world.settle()
+        assert "Values" not in world.status("LaserScan")
 
 
 async def test_cloud_of_nan_points_is_reported():
-    async with world(config()) as w:
-        publisher = w.graph.create_node("lidar").create_publisher(PointCloud2, "/points", 5)
+    async with open_world(config()) as world:
+        publisher = world.graph.create_node("lidar").create_publisher(PointCloud2, "/points", 5)
         message = colored_cloud()
         message.data = b"\xff" * len(message.data)
         publisher.publish(message)
-        await w.settle()
-        assert w.status("PointCloud2")["Values"] == ("warn", "All 2 points are NaN or infinite")
+        await world.settle()
+        assert world.status("PointCloud2")["Values"] == ("warn", "All 2 points are NaN or infinite")
 
 
 async def test_scan_of_moving_scanner_is_deskewed():
-    async with world(config("LaserScan")) as w:
-        node = w.graph.create_node("laser")
+    async with open_world(config("LaserScan")) as world:
+        node = world.graph.create_node("laser")
         publisher = node.create_publisher(LaserScan, "/points", 5)
         tf = node.create_publisher(TFMessage, "/tf", 10)
         for second, x in ((100, 0.0), (102, 4.0)):
@@ -258,13 +258,13 @@ async def test_scan_of_moving_scanner_is_deskewed():
             transform.transform.translation.x = x
             transform.transform.rotation.w = 1.0
             tf.publish(TFMessage(transforms=[transform]))
-        await w.settle()
+        await world.settle()
         message = scan([1.0, 1.0, 1.0], time_increment=1.0, angle_increment=0.0)
         message.header.frame_id, message.header.stamp.sec = "laser", 100
         publisher.publish(message)
-        await w.settle()
-        np.testing.assert_allclose(shown(w.display("LaserScan"))[0], [[1, 0, 0], [3, 0, 0], [5, 0, 0]], atol=1e-6)
-        assert contents(w.display("LaserScan"))[0].pose == [0, 0, 0, 0, 0, 0, 1]
+        await world.settle()
+        np.testing.assert_allclose(shown(world.display("LaserScan"))[0], [[1, 0, 0], [3, 0, 0], [5, 0, 0]], atol=1e-6)
+        assert contents(world.display("LaserScan"))[0].pose == [0, 0, 0, 0, 0, 0, 1]
 
 
 @pytest.mark.parametrize(
@@ -277,14 +277,14 @@ async def test_scan_of_moving_scanner_is_deskewed():
     ],
 )
 async def test_scalar_message_is_a_colored_point(cls, field, value, color):
-    async with world(config(cls)) as w:
+    async with open_world(config(cls)) as world:
         message_type = get_message(f"sensor_msgs/msg/{cls}")
-        publisher = w.graph.create_node("sensor").create_publisher(message_type, "/points", 5)
+        publisher = world.graph.create_node("sensor").create_publisher(message_type, "/points", 5)
         message = message_type(**{field: value})
         message.header.frame_id = "base"
         publisher.publish(message)
-        await w.settle()
-        display = w.display(cls)
+        await world.settle()
+        display = world.display(cls)
         assert shown(display) == [[[0, 0, 0]]]
         assert colors(display) == [color]
         names = set(store_rows(display))
@@ -293,8 +293,8 @@ async def test_scalar_message_is_a_colored_point(cls, field, value, color):
 
 
 async def test_hidden_properties_of_file_are_applied():
-    async with world(config("Temperature", Color_Transformer="FlatColor")) as w:
-        display = w.display("Temperature")
+    async with open_world(config("Temperature", Color_Transformer="FlatColor")) as world:
+        display = world.display("Temperature")
         assert display.properties.text("Color Transformer") == "FlatColor"
         assert "Color Transformer" not in store_rows(display)
 
@@ -313,21 +313,24 @@ def placed(message, frame: str = "base"):
 
 async def test_depth_image_is_shown_once_camera_info_arrives():
     topics = {"Depth_Map_Topic": "/depth/image", "Size_(m)": "0.5"}
-    async with world(config("DepthCloud", **topics)) as w:
-        node = w.graph.create_node("camera")
+    async with open_world(config("DepthCloud", **topics)) as world:
+        node = world.graph.create_node("camera")
         depths = node.create_publisher(Image, "/depth/image", 5)
         infos = node.create_publisher(CameraInfo, "/depth/camera_info", 5)
         depths.publish(placed(depth_image([[2.0, 4.0]])))
-        await w.settle()
-        display = w.display("DepthCloud")
+        await world.settle()
+        display = world.display("DepthCloud")
         assert contents(display) == []
-        assert w.status("DepthCloud")["Depth Camera Info"] == ("warn", "No CameraInfo received on [/depth/camera_info]")
+        assert world.status("DepthCloud")["Depth Camera Info"] == (
+            "warn",
+            "No CameraInfo received on [/depth/camera_info]",
+        )
         infos.publish(camera_info(2, 1))
-        await w.settle()
+        await world.settle()
         (content,) = contents(display)
         assert content.fields["positions"].reshape(-1, 3).tolist() == [[0, 0, 2], [2, 0, 4]]
         assert content.fields["pixel"] == 0.5
-        assert w.status("DepthCloud")["Depth Image Size"] == ("ok", "2 x 1")
+        assert world.status("DepthCloud")["Depth Image Size"] == ("ok", "2 x 1")
         display.set_property(("Auto Size", "Auto Size Factor"), 3.0)
         assert contents(display)[0].fields["pixel"] == 1.5
         display.set_property(("Auto Size",), False)
@@ -336,30 +339,30 @@ async def test_depth_image_is_shown_once_camera_info_arrives():
 
 async def test_depth_image_waits_for_color_image():
     topics = {"Depth_Map_Topic": "/depth/image", "Color_Image_Topic": "/color/image"}
-    async with world(config("DepthCloud", **topics)) as w:
-        node = w.graph.create_node("camera")
+    async with open_world(config("DepthCloud", **topics)) as world:
+        node = world.graph.create_node("camera")
         depths = node.create_publisher(Image, "/depth/image", 5)
         color = node.create_publisher(Image, "/color/image", 5)
         node.create_publisher(CameraInfo, "/depth/camera_info", 5).publish(camera_info(2, 1))
         depths.publish(placed(depth_image([[2.0, 4.0]])))
-        await w.settle()
-        display = w.display("DepthCloud")
+        await world.settle()
+        display = world.display("DepthCloud")
         assert contents(display) == []
         image = Image(width=2, height=1, step=6, encoding="rgb8", data=bytes([1, 2, 3, 4, 5, 6]))
         color.publish(placed(image, "other"))
-        await w.settle()
+        await world.settle()
         assert colors(display) == [[1, 2, 3, 255], [4, 5, 6, 255]]
         text = "Depth image frame id [base] doesn't match color image frame id [other]"
-        assert w.status("DepthCloud")["Message"] == ("warn", text)
+        assert world.status("DepthCloud")["Message"] == ("warn", text)
 
 
 async def test_depth_image_and_camera_info_size_mismatch_is_reported():
-    async with world(config("DepthCloud", Depth_Map_Topic="/depth/image")) as w:
-        node = w.graph.create_node("camera")
+    async with open_world(config("DepthCloud", Depth_Map_Topic="/depth/image")) as world:
+        node = world.graph.create_node("camera")
         node.create_publisher(CameraInfo, "/depth/camera_info", 5).publish(camera_info(5, 5))
         node.create_publisher(Image, "/depth/image", 5).publish(placed(depth_image([[2.0, 4.0]])))
-        await w.settle()
-        level, text = w.status("DepthCloud")["Message"]
+        await world.settle()
+        level, text = world.status("DepthCloud")["Message"]
         assert (level, text.split(":")[0]) == ("error", "Error updating depth cloud")
 
 
@@ -371,32 +374,32 @@ def legacy_cloud(*points: tuple[float, float, float], intensity: list[float]) ->
 
 
 async def test_legacy_point_cloud_is_shown():
-    async with world(config("PointCloud", Color_Transformer="Intensity", Channel_Name="intensity")) as w:
-        publisher = w.graph.create_node("lidar").create_publisher(PointCloud, "/points", 5)
+    async with open_world(config("PointCloud", Color_Transformer="Intensity", Channel_Name="intensity")) as world:
+        publisher = world.graph.create_node("lidar").create_publisher(PointCloud, "/points", 5)
         publisher.publish(
             legacy_cloud((1.0, 0.0, 0.0), (float("nan"), 0.0, 0.0), (2.0, 0.0, 0.0), intensity=[0.0, 5.0, 1.0])
         )
-        await w.settle()
-        display = w.display("PointCloud")
+        await world.settle()
+        display = world.display("PointCloud")
         assert shown(display) == [[[1, 0, 0], [2, 0, 0]]]
         first, second = colors(display)
         assert first != second
 
 
 async def test_channel_of_wrong_length_is_reported():
-    async with world(config("PointCloud")) as w:
-        publisher = w.graph.create_node("lidar").create_publisher(PointCloud, "/points", 5)
+    async with open_world(config("PointCloud")) as world:
+        publisher = world.graph.create_node("lidar").create_publisher(PointCloud, "/points", 5)
         publisher.publish(legacy_cloud((1.0, 0.0, 0.0), intensity=[1.0, 2.0]))
-        await w.settle()
-        assert w.status("PointCloud")["Message"] == (
+        await world.settle()
+        assert world.status("PointCloud")["Message"] == (
             "error",
             "Channel 'intensity' has 2 values for 1 points.  Dropping message.",
         )
 
 
 async def test_depth_topics_are_filtered_by_name_unless_disabled():
-    async with world(config("DepthCloud")) as w:
-        display = w.display("DepthCloud")
+    async with open_world(config("DepthCloud")) as world:
+        display = world.display("DepthCloud")
         rows = store_rows(display)
         assert (rows["Depth Map Topic"].topics.words, rows["CameraInfo Topic"].topics.messages) == (
             ["depth"],

@@ -11,7 +11,7 @@ from linkwright.messages import Time, get_message
 from linkwright.rviz import RvizConfig
 from linkwright.rviz.displays.class_colors import class_color, read_class_colors
 from tests.viewer.contents import contents
-from tests.viewer.scene import world
+from tests.viewer.scene import open_world
 from tests.waiting import eventually
 
 HYPOTHESIS = get_message("vision_msgs/msg/ObjectHypothesisWithPose")
@@ -25,47 +25,47 @@ def config(cls: str, extra: str = "") -> RvizConfig:
     )
 
 
-def publish(w, topic: str, *messages) -> None:
-    publisher = w.graph.create_node("talker").create_publisher(type(messages[0]), topic, 10)
+def publish(world, topic: str, *messages) -> None:
+    publisher = world.graph.create_node("talker").create_publisher(type(messages[0]), topic, 10)
     for message in messages:
         publisher.publish(message)
 
 
 def box(x: float = 1.0):
-    made = get_message("vision_msgs/msg/BoundingBox3D")()
-    made.center.position.x = x
-    made.size.x, made.size.y, made.size.z = 0.5, 1.0, 2.0
-    return made
+    message = get_message("vision_msgs/msg/BoundingBox3D")()
+    message.center.position.x = x
+    message.size.x, message.size.y, message.size.z = 0.5, 1.0, 2.0
+    return message
 
 
 def result(name: str, score: float):
-    made = HYPOTHESIS()
-    made.hypothesis.class_id, made.hypothesis.score = name, score
-    return made
+    message = HYPOTHESIS()
+    message.hypothesis.class_id, message.hypothesis.score = name, score
+    return message
 
 
 def detection(*results, frame: str = "tip"):
-    made = get_message("vision_msgs/msg/Detection3D")(bbox=box(), results=list(results))
-    made.header.frame_id = frame
-    return made
+    message = get_message("vision_msgs/msg/Detection3D")(bbox=box(), results=list(results))
+    message.header.frame_id = frame
+    return message
 
 
 def array(*detections):
-    made = get_message("vision_msgs/msg/Detection3DArray")(detections=list(detections))
-    made.header.frame_id = "tip"
-    return made
+    message = get_message("vision_msgs/msg/Detection3DArray")(detections=list(detections))
+    message.header.frame_id = "tip"
+    return message
 
 
 async def shown(cls: str, message, extra: str = "") -> dict:
-    async with world(config(f"{PLUGINS}/{cls}", extra)) as w:
-        w.move_arm()
-        publish(w, "/topic", message)
-        await w.settle()
-        (content,) = contents(w.display(cls))
+    async with open_world(config(f"{PLUGINS}/{cls}", extra)) as world:
+        world.move_arm()
+        publish(world, "/topic", message)
+        await world.settle()
+        (content,) = contents(world.display(cls))
         return content.fields | {"frame": content.frame}
 
 
-@pytest.mark.parametrize(("cls", "wrap"), [("Detection3DArray", array), ("Detection3D", lambda each: each)])
+@pytest.mark.parametrize(("cls", "wrap"), [("Detection3DArray", array), ("Detection3D", lambda message: message)])
 async def test_detections_are_boxes_with_likeliest_class_and_score(cls, wrap):
     fields = await shown(cls, wrap(detection(result("ball", 0.25), result("person", 0.75))))
     assert fields["poses"].tolist() == [1, 0, 0, 0, 0, 0, 1]
@@ -92,11 +92,11 @@ async def test_bounding_box_array_has_no_classes():
 
 
 async def test_nonfinite_boxes_are_rejected():
-    async with world(config(f"{PLUGINS}/BoundingBox3D")) as w:
-        publish(w, "/topic", box(float("nan")))
-        await w.settle()
-        assert contents(w.display("BoundingBox3D")) == []
-        assert "invalid floating point" in " ".join(text for _, text in w.status("BoundingBox3D").values())
+    async with open_world(config(f"{PLUGINS}/BoundingBox3D")) as world:
+        publish(world, "/topic", box(float("nan")))
+        await world.settle()
+        assert contents(world.display("BoundingBox3D")) == []
+        assert "invalid floating point" in " ".join(text for _, text in world.status("BoundingBox3D").values())
 
 
 async def test_class_colors_are_read_from_file(tmp_path):
@@ -110,8 +110,8 @@ async def test_class_colors_are_read_from_file(tmp_path):
 async def test_file_without_colors_is_reported(tmp_path, text):
     path = tmp_path / "colors.yaml"
     path.write_text(text)
-    async with world(config(f"{PLUGINS}/Detection3DArray", f", ConfigPath: {path}")) as w:
-        level, status = w.status("Detection3DArray")["ConfigPath"]
+    async with open_world(config(f"{PLUGINS}/Detection3DArray", f", ConfigPath: {path}")) as world:
+        level, status = world.status("Detection3DArray")["ConfigPath"]
         assert level == "error"
         assert str(path) in status
     with pytest.raises(ValueError, match=r"cannot read"):
@@ -135,30 +135,30 @@ def test_class_named_after_color_has_it_unless_overridden():
 
 
 def image(seconds: int):
-    made = get_message("sensor_msgs/msg/Image")(height=1, width=1, encoding="mono8", step=1, data=[seconds])
-    made.header.stamp = Time(sec=seconds, nanosec=0)
-    return made
+    message = get_message("sensor_msgs/msg/Image")(height=1, width=1, encoding="mono8", step=1, data=[seconds])
+    message.header.stamp = Time(sec=seconds, nanosec=0)
+    return message
 
 
 def found(seconds: int, *results):
-    one = get_message("vision_msgs/msg/Detection2D")(results=list(results))
-    one.bbox.center.position.x, one.bbox.center.position.y = 10.0, 20.0
-    one.bbox.size_x, one.bbox.size_y = 4.0, 6.0
-    made = get_message("vision_msgs/msg/Detection2DArray")(detections=[one])
-    made.header.stamp = Time(sec=seconds, nanosec=0)
-    return made
+    marked = get_message("vision_msgs/msg/Detection2D")(results=list(results))
+    marked.bbox.center.position.x, marked.bbox.center.position.y = 10.0, 20.0
+    marked.bbox.size_x, marked.bbox.size_y = 4.0, 6.0
+    message = get_message("vision_msgs/msg/Detection2DArray")(detections=[marked])
+    message.header.stamp = Time(sec=seconds, nanosec=0)
+    return message
 
 
 async def test_image_is_shown_with_matching_detections(monkeypatch):
     monkeypatch.setattr("linkwright.rviz.displays.detection_image._PATIENCE", 1e9)
-    async with world(config("linkwright/Detections", ", Detections Topic: {Value: /found}")) as w:
-        node = w.graph.create_node("camera")
+    async with open_world(config("linkwright/Detections", ", Detections Topic: {Value: /found}")) as world:
+        node = world.graph.create_node("camera")
         camera = node.create_publisher("sensor_msgs/msg/Image", "/topic", 10)
         detector = node.create_publisher("vision_msgs/msg/Detection2DArray", "/found", 10)
 
         async def now() -> list:
-            await w.settle()
-            facts = {content.fields["kind"]: content for content in contents(w.display("Detections"))}
+            await world.settle()
+            facts = {content.fields["kind"]: content for content in contents(world.display("Detections"))}
             shown, boxes = facts.get("image_frame"), facts.get("image_boxes")
             return [shown and shown.stamp, boxes and boxes.stamp, boxes and boxes.fields["of_image"]]
 
@@ -171,7 +171,9 @@ async def test_image_is_shown_with_matching_detections(monkeypatch):
         assert await now() == [1.0, 1.0, False]
         detector.publish(found(2, result("ball", 0.5)))
         assert await now() == [2.0, 2.0, True]
-        (boxes,) = [content for content in contents(w.display("Detections")) if content.fields["kind"] == "image_boxes"]
+        (boxes,) = [
+            content for content in contents(world.display("Detections")) if content.fields["kind"] == "image_boxes"
+        ]
         assert boxes.fields["boxes"].tolist() == [10, 20, 4, 6, 0]
         assert (boxes.fields["names"], boxes.fields["scores"].tolist()) == (["ball"], [0.5])
         assert np.array_equal(boxes.fields["colors"], class_color("ball", {}))
@@ -179,24 +181,24 @@ async def test_image_is_shown_with_matching_detections(monkeypatch):
 
 async def test_images_are_shown_without_waiting_if_detector_is_silent(monkeypatch):
     monkeypatch.setattr("linkwright.rviz.displays.detection_image._PATIENCE", -1.0)
-    async with world(config("linkwright/Detections", ", Detections Topic: {Value: /found}")) as w:
-        publish(w, "/found", found(1, result("ball", 0.5)))
-        publish(w, "/topic", image(5))
-        await w.settle()
-        assert [content.fields["kind"] for content in contents(w.display("Detections"))] == ["image_frame"]
+    async with open_world(config("linkwright/Detections", ", Detections Topic: {Value: /found}")) as world:
+        publish(world, "/found", found(1, result("ball", 0.5)))
+        publish(world, "/topic", image(5))
+        await world.settle()
+        assert [content.fields["kind"] for content in contents(world.display("Detections"))] == ["image_frame"]
 
 
 # --- the threshold -----------------------------------------------------------------------------------------------
 
 
-async def threshold_status(w) -> tuple[str, str]:
+async def threshold_status(world) -> tuple[str, str]:
     """What the display says of its threshold, once it does."""
-    await eventually(lambda: "Threshold" in w.status("Detections"))
-    return w.status("Detections")["Threshold"]
+    await eventually(lambda: "Threshold" in world.status("Detections"))
+    return world.status("Detections")["Threshold"]
 
 
-def detecting(w, **parameters):
-    node = w.graph.create_node("yolo_node", namespace="/yolo")
+def detecting(world, **parameters):
+    node = world.graph.create_node("yolo_node", namespace="/yolo")
     for name, value in parameters.items():
         node.declare_parameter(name.replace("__", "."), value)
     node.create_publisher("vision_msgs/msg/Detection2DArray", "/found", 10)
@@ -205,11 +207,11 @@ def detecting(w, **parameters):
 
 @pytest.mark.parametrize("name", ["threshold", "confidence_threshold", "detection__threshold"])
 async def test_threshold_sets_parameter_of_detector_node(name):
-    async with world(config("linkwright/Detections", ", Detections Topic: {Value: /found}")) as w:
-        node = detecting(w, **{name: 0.5})
-        w.display("Detections").set_property(("Threshold",), 0.7)
+    async with open_world(config("linkwright/Detections", ", Detections Topic: {Value: /found}")) as world:
+        node = detecting(world, **{name: 0.5})
+        world.display("Detections").set_property(("Threshold",), 0.7)
         shown = name.replace("__", ".")
-        assert await threshold_status(w) == ("ok", f"Parameter '{shown}' of /yolo/yolo_node")
+        assert await threshold_status(world) == ("ok", f"Parameter '{shown}' of /yolo/yolo_node")
         assert node.get_parameter(shown).value == pytest.approx(0.7)
 
 
@@ -218,32 +220,32 @@ async def test_threshold_sets_parameter_of_detector_node(name):
     [({}, "ok", "has no parameter 'threshold'"), ({"threshold": "much"}, "warn", "rejects 'threshold'")],
 )
 async def test_threshold_filters_in_page_without_detector_parameter(parameters, level, words):
-    async with world(config("linkwright/Detections", ", Detections Topic: {Value: /found}")) as w:
-        detecting(w, **parameters)
-        w.display("Detections").set_property(("Threshold",), 0.7)
-        answer, text = await threshold_status(w)
+    async with open_world(config("linkwright/Detections", ", Detections Topic: {Value: /found}")) as world:
+        detecting(world, **parameters)
+        world.display("Detections").set_property(("Threshold",), 0.7)
+        answer, text = await threshold_status(world)
         assert (answer, words in text) == (level, True)
 
 
 async def test_rejected_threshold_and_missing_node_are_reported():
-    async with world(config("linkwright/Detections", ", Detections Topic: {Value: /found}")) as w:
-        display = w.display("Detections")
+    async with open_world(config("linkwright/Detections", ", Detections Topic: {Value: /found}")) as world:
+        display = world.display("Detections")
         display.set_property(("Threshold",), 0.7)
-        assert "0 nodes publish /found" in (await threshold_status(w))[1]
-        node = detecting(w, threshold=0.5)
+        assert "0 nodes publish /found" in (await threshold_status(world))[1]
+        node = detecting(world, threshold=0.5)
         node.add_on_set_parameters_callback(lambda _: SetParametersResult(False, "never"))
         display.set_property(("Threshold",), 0.6)
-        await eventually(lambda: "rejects 'threshold': never" in w.status("Detections")["Threshold"][1])
+        await eventually(lambda: "rejects 'threshold': never" in world.status("Detections")["Threshold"][1])
         assert node.get_parameter("threshold").value == 0.5
 
 
 async def test_last_of_many_thresholds_is_set():
-    async with world(config("linkwright/Detections", ", Detections Topic: {Value: /found}")) as w:
-        node = detecting(w, threshold=0.5)
+    async with open_world(config("linkwright/Detections", ", Detections Topic: {Value: /found}")) as world:
+        node = detecting(world, threshold=0.5)
         values: list[float] = []
         node.add_post_set_parameters_callback(lambda given: values.append(given[0].value))
         for value in (0.1, 0.2, 0.3, 0.9):
-            w.display("Detections").set_property(("Threshold",), value)
-        assert (await threshold_status(w))[0] == "ok"
+            world.display("Detections").set_property(("Threshold",), value)
+        assert (await threshold_status(world))[0] == "ok"
         assert values[-1] == pytest.approx(0.9)
         assert len(values) < 4

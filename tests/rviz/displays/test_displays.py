@@ -7,7 +7,7 @@ import pytest
 
 from linkwright.rviz import RvizConfig
 from linkwright.rviz.displays.catalog import display_classes, has_display
-from tests.viewer.scene import ARM, IDENTITY, page, rows_by_id, world
+from tests.viewer.scene import ARM, IDENTITY, open_world, page, rows_by_id
 
 
 def config(displays: str, fixed_frame: str = "base") -> RvizConfig:
@@ -19,8 +19,8 @@ def config(displays: str, fixed_frame: str = "base") -> RvizConfig:
 GRID = "    - {Class: rviz_default_plugins/Grid, Enabled: true}\n"
 
 
-async def opened(made):
-    async with page(made.viewer) as client:
+async def opened(world):
+    async with page(world.viewer) as client:
         return await client.opened()
 
 
@@ -44,18 +44,18 @@ def test_display_classes_are_found_by_unique_names():
 def test_data_displays_are_imported_lazily():
     """The program answers a browser sooner without them."""
     code = "import sys, linkwright.viewer.viewer; print(*sys.modules)"
-    done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
+    result = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
     rooms = ("clouds", "image_compression", "markers", "displays.base.topic_display")
-    assert not {f"linkwright.rviz.{room}" for room in rooms} & set(done.stdout.split())
-    assert not {"PIL", "cyclonedds", "rosbags", "linkwright.inertia"} & set(done.stdout.split())
+    assert not {f"linkwright.rviz.{room}" for room in rooms} & set(result.stdout.split())
+    assert not {"PIL", "cyclonedds", "rosbags", "linkwright.inertia"} & set(result.stdout.split())
 
 
 # --- Grid ----------------------------------------------------------------------------------------------------------
 
 
 async def test_grid_properties_and_defaults_match_rviz():
-    async with world(config(GRID)) as made:
-        (grid,) = (await opened(made))["tree"]["displays"]
+    async with open_world(config(GRID)) as world:
+        (grid,) = (await opened(world))["tree"]["displays"]
     assert (grid["id"], grid["name"], grid["enabled"], grid["supported"]) == ("display-1", "Grid", True, True)
     values = {row["name"]: row["value"] for row in grid["properties"]}
     assert values == {
@@ -75,7 +75,7 @@ async def test_grid_properties_and_defaults_match_rviz():
 
 
 async def test_line_width_is_shown_only_for_billboards():
-    async with world(config(GRID)) as made, page(made.viewer) as client:
+    async with open_world(config(GRID)) as world, page(world.viewer) as client:
         opening = await client.opened()
         assert "display-1/Line Style/Line Width" not in rows_by_id(opening["tree"]["displays"][0]["properties"])
         await client.set("display-1/Line Style", "Billboards")
@@ -84,12 +84,12 @@ async def test_line_width_is_shown_only_for_billboards():
 
 
 async def test_grid_in_unknown_frame_is_reported():
-    async with world(config(GRID)) as made, page(made.viewer) as client:
+    async with open_world(config(GRID)) as world, page(world.viewer) as client:
         await client.opened()
         await client.set("display-1/Reference Frame", "/tip")
         status = await client.until("display_status", display="display-1")
         assert (status["level"], status["status"][0]["text"]) == ("error", "Could not transform from [tip] to [base]")
-        made.move_arm()
+        world.move_arm()
         status = await client.until("display_status", display="display-1")
         assert (status["level"], status["status"][0]["text"]) == ("ok", "Transform OK")
 
@@ -102,10 +102,12 @@ def tf(more: str = "") -> str:
 
 
 async def test_tf_display_lists_frames():
-    async with world(config(tf(", Frames: {All Enabled: false, tip: {Value: false}, gone: {Value: false}}"))) as made:
-        made.move_arm()
-        await made.settle()
-        display = (await opened(made))["tree"]["displays"][0]
+    async with open_world(
+        config(tf(", Frames: {All Enabled: false, tip: {Value: false}, gone: {Value: false}}"))
+    ) as world:
+        world.move_arm()
+        await world.settle()
+        display = (await opened(world))["tree"]["displays"][0]
     rows = {row["name"]: row for row in display["properties"]}
     assert rows["Frame Timeout"]["value"] == 15.0
     frames = {row["name"]: row["value"] for row in rows["Frames"]["children"]}
@@ -120,22 +122,22 @@ async def test_tf_display_lists_frames():
 
 
 async def test_tf_frame_checkboxes_are_saved():
-    async with world(config(tf())) as made, page(made.viewer) as client:
-        made.move_arm()
+    async with open_world(config(tf())) as world, page(world.viewer) as client:
+        world.move_arm()
         await rows_with(client, "display-1/Frames/mark")
         await client.set("display-1/Frames/tip", False)
         assert (await client.until("property_changed", id="display-1/Frames/tip"))["value"] is False
         await client.set("display-1/Frames/All Enabled", False)
         rows = rows_by_id((await client.until("display_properties"))["properties"])
         assert [rows[f"display-1/Frames/{name}"]["value"] for name in ("base", "mark", "tip")] == [False] * 3
-        section = made.viewer.config.displays[0].section
+        section = world.viewer.config.displays[0].section
         assert section.scalar("Frames", "base").text == "false"
         assert section.section("Frames", "base").keys() == ["Value"]
 
 
 async def test_disabled_frame_unchecks_all_enabled():
-    async with world(config(tf())) as made, page(made.viewer) as client:
-        made.move_arm()
+    async with open_world(config(tf())) as world, page(world.viewer) as client:
+        world.move_arm()
         properties = (await client.until("display_properties", display="display-1"))["properties"]
         rows = rows_by_id(properties)
         assert rows["display-1/Frames/tip"]["details"] == "frame"
@@ -143,14 +145,14 @@ async def test_disabled_frame_unchecks_all_enabled():
         await client.set("display-1/Frames/tip", False)
         assert (await client.until("property_changed", id="display-1/Frames/All Enabled"))["value"] is False
         await client.until("property_changed", id="display-1/Frames/tip")
-        assert made.display("TF").properties.get("Frames", "base") is True
+        assert world.display("TF").properties.get("Frames", "base") is True
 
 
 async def test_tf_frames_without_transform_are_reported():
-    async with world(config(tf(), fixed_frame="map")) as made:
-        made.move_arm()
-        await made.settle()
-        display = (await opened(made))["tree"]["displays"][0]
+    async with open_world(config(tf(), fixed_frame="map")) as world:
+        world.move_arm()
+        await world.settle()
+        display = (await opened(world))["tree"]["displays"][0]
     assert display["level"] == "warn"
     assert {row["text"] for row in display["status"]} == {
         f"No transform from [{name}] to [map]" for name in ("base", "mark", "tip")
@@ -158,8 +160,8 @@ async def test_tf_frames_without_transform_are_reported():
 
 
 async def test_tf_filters_choose_frames():
-    async with world(config(tf())) as made, page(made.viewer) as client:
-        made.move_arm()
+    async with open_world(config(tf())) as world, page(world.viewer) as client:
+        world.move_arm()
         await rows_with(client, "display-1/Frames/mark")
 
         async def frames_with(name: str, text: str) -> list[str]:
@@ -180,23 +182,23 @@ async def test_tf_filters_choose_frames():
 
 async def test_slow_tf_filter_is_disabled_and_reported():
     long = "a" * 200 + "!"
-    async with world(config(tf(", Filter (whitelist): (a|aa)+$"))) as made:
-        made.move({("base", long): IDENTITY})
-        await made.settle()
-        (display,) = (await opened(made))["tree"]["displays"]
+    async with open_world(config(tf(", Filter (whitelist): (a|aa)+$"))) as world:
+        world.move({("base", long): IDENTITY})
+        await world.settle()
+        (display,) = (await opened(world))["tree"]["displays"]
         text = "This expression is not used: matching it with the frame names takes too long"
         assert display["status"][0] == {"name": "Filter (whitelist)", "level": "error", "text": text}
         assert {row["name"] for row in display["status"][1:]} == {"base", long}
-        made.display("TF").set_property(("Filter (whitelist)",), "^b")
-        assert set(made.status("TF")) == {"base"}
+        world.display("TF").set_property(("Filter (whitelist)",), "^b")
+        assert set(world.status("TF")) == {"base"}
 
 
 async def test_long_frame_chain_is_shown():
     poses = {(f"f{number}", f"f{number + 1}"): IDENTITY for number in range(400)}
-    async with world(config(tf(), fixed_frame="f0")) as made:
-        made.move(poses)
-        await made.settle()
-        display = (await opened(made))["tree"]["displays"][0]
+    async with open_world(config(tf(), fixed_frame="f0")) as world:
+        world.move(poses)
+        await world.settle()
+        display = (await opened(world))["tree"]["displays"][0]
     assert len(display["status"]) == 401
     tree = display["properties"][-1]
     depth = 0
@@ -211,20 +213,20 @@ async def test_long_frame_chain_is_shown():
 
 async def test_unsupported_displays_are_listed_and_kept():
     text = "    - {Class: my_plugins/Radar, Enabled: true, Name: Radar, Size (m): 0.05}\n"
-    async with world(config(text)) as made:
-        (radar,) = (await opened(made))["tree"]["displays"]
+    async with open_world(config(text)) as world:
+        (radar,) = (await opened(world))["tree"]["displays"]
         assert (radar["supported"], radar["level"], radar["properties"]) == (False, "warn", [])
         assert "my_plugins/Radar" in radar["status"][0]["text"]
-        assert "Size (m): 0.05" in made.viewer.config.text()
+        assert "Size (m): 0.05" in world.viewer.config.text()
 
 
 @pytest.mark.parametrize("cls", ["Grid", "TF", "RobotModel", "LaserScan"])
 async def test_disabled_display_has_no_status_until_enabled(cls):
-    async with world(config(f"    - {{Class: rviz_default_plugins/{cls}, Value: true}}\n")) as made:
-        made.describe(ARM)
-        made.move_arm()
-        await made.settle()
-        async with page(made.viewer) as client:
+    async with open_world(config(f"    - {{Class: rviz_default_plugins/{cls}, Value: true}}\n")) as world:
+        world.describe(ARM)
+        world.move_arm()
+        await world.settle()
+        async with page(world.viewer) as client:
             before = (await client.opened())["tree"]["displays"][0]["status"]
             assert before
             await client.set("display-1/Enabled", False)

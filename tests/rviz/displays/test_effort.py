@@ -10,7 +10,7 @@ import pytest
 from linkwright.messages import get_message
 from linkwright.rviz import RvizConfig
 from tests.viewer.contents import contents
-from tests.viewer.scene import world
+from tests.viewer.scene import open_world
 
 JointState = get_message("sensor_msgs/msg/JointState")
 
@@ -37,17 +37,17 @@ def state(**efforts: float):
     return JointState(name=list(efforts), position=[0.0] * len(efforts), effort=list(efforts.values()))
 
 
-async def described(w):
-    w.describe(CRANE)
-    w.move({("base", "arm"): (0, 0, 1, 0, 0, 0, 1), ("arm", "hook"): (1, 0, 0, 0, 0, 0, 1)}, static=True)
-    await w.settle()
-    return w.graph.create_node("talker").create_publisher(JointState, "/joint_states", 10)
+async def described(world):
+    world.describe(CRANE)
+    world.move({("base", "arm"): (0, 0, 1, 0, 0, 0, 1), ("arm", "hook"): (1, 0, 0, 0, 0, 0, 1)}, static=True)
+    await world.settle()
+    return world.graph.create_node("talker").create_publisher(JointState, "/joint_states", 10)
 
 
 async def test_effort_properties_match_rviz():
-    async with world(config()) as w:
-        await described(w)
-        rows = {row.name: row for row in w.display("Effort").row().properties}
+    async with open_world(config()) as world:
+        await described(world)
+        rows = {row.name: row for row in world.display("Effort").row().properties}
         assert {name: row.value for name, row in rows.items()} == {
             "Topic": "/joint_states",
             "Alpha": 1.0,
@@ -60,15 +60,15 @@ async def test_effort_properties_match_rviz():
         }
         (lift,) = rows["Joints"].children
         assert (lift.name, lift.value, lift.details) == ("lift", True, "effort")
-        assert w.status("Effort")["URDF"] == ("ok", "Robot model parsed Ok")
+        assert world.status("Effort")["URDF"] == ("ok", "Robot model parsed Ok")
 
 
 async def test_effort_ring_is_perpendicular_to_joint_axis():
-    async with world(config()) as w:
-        out = await described(w)
+    async with open_world(config()) as world:
+        out = await described(world)
         out.publish(state(lift=-5.0, spin=1.0, slide=2.0))
-        await w.settle()
-        (content,) = contents(w.display("Effort"))
+        await world.settle()
+        (content,) = contents(world.display("Effort"))
         assert (content.frame, content.pose) == ("", None)
         assert content.fields["joints"] == ["lift"]
         assert (content.fields["efforts"].tolist(), content.fields["limits"].tolist()) == ([-5], [10])
@@ -76,7 +76,7 @@ async def test_effort_ring_is_perpendicular_to_joint_axis():
         assert (x, y, z) == (0, 0, 1)
         half = math.sqrt(0.5)
         np.testing.assert_allclose(turn, [-half, 0, 0, half], atol=1e-6)
-        assert w.status("Effort")["lift"] == ("ok", "OK")
+        assert world.status("Effort")["lift"] == ("ok", "OK")
 
 
 @pytest.mark.parametrize(
@@ -87,34 +87,34 @@ async def test_effort_ring_is_perpendicular_to_joint_axis():
     ],
 )
 async def test_invalid_joint_states_are_reported(message, row, text):
-    async with world(config()) as w:
-        out = await described(w)
+    async with open_world(config()) as world:
+        out = await described(world)
         out.publish(message)
-        await w.settle()
-        level, status = w.status("Effort")[row]
+        await world.settle()
+        level, status = world.status("Effort")[row]
         assert (level, text in status) == ("error", True)
 
 
 async def test_no_rings_without_robot_description():
-    async with world(config()) as w:
-        out = w.graph.create_node("talker").create_publisher(JointState, "/joint_states", 10)
+    async with open_world(config()) as world:
+        out = world.graph.create_node("talker").create_publisher(JointState, "/joint_states", 10)
         out.publish(state(lift=1.0))
-        await w.settle()
-        assert w.status("Effort")["Message"] == ("error", "Robot model might not be loaded yet")
-        w.describe("<robot name='broken'/>")
-        await w.settle()
-        assert w.status("Effort")["URDF"] == ("error", "Unable to parse robot model description!")
+        await world.settle()
+        assert world.status("Effort")["Message"] == ("error", "Robot model might not be loaded yet")
+        world.describe("<robot name='broken'/>")
+        await world.settle()
+        assert world.status("Effort")["URDF"] == ("error", "Unable to parse robot model description!")
 
 
 async def test_message_waits_for_transform_of_frame():
-    async with world(config(", TF Prefix: one")) as w:
-        out = await described(w)
+    async with open_world(config(", TF Prefix: one")) as world:
+        out = await described(world)
         out.publish(state(lift=1.0))
-        await w.settle()
-        assert contents(w.display("Effort")) == []
-        level, text = w.status("Effort")["Transform"]
+        await world.settle()
+        assert contents(world.display("Effort")) == []
+        level, text = world.status("Effort")["Transform"]
         assert (level, "[one/arm]" in text) == ("error", True)
-        w.display("Effort").set_property(("TF Prefix",), "")
+        world.display("Effort").set_property(("TF Prefix",), "")
         out.publish(state(lift=1.0))
-        await w.settle()
-        assert len(contents(w.display("Effort"))) == 1
+        await world.settle()
+        assert len(contents(world.display("Effort"))) == 1

@@ -11,7 +11,7 @@ import pytest
 from linkwright.messages import get_message
 from linkwright.rviz import RvizConfig
 from tests.viewer.contents import contents
-from tests.viewer.scene import world
+from tests.viewer.scene import open_world
 
 GridMap = get_message("grid_map_msgs/msg/GridMap")
 Layer = get_message("std_msgs/msg/Float32MultiArray")
@@ -29,38 +29,38 @@ def config(extra: str = "") -> RvizConfig:
 def grid(resolution: float = 1.0, **layers: list[list[float]]) -> Any:
     """A map of layers; rows go along -x, columns along -y, as in grid_map."""
     (rows, columns) = np.shape(next(iter(layers.values())))
-    made = GridMap(layers=list(layers))
-    made.header.frame_id = "base"
-    made.info.resolution = resolution
-    made.info.length_x, made.info.length_y = rows * resolution, columns * resolution
+    grid_map = GridMap(layers=list(layers))
+    grid_map.header.frame_id = "base"
+    grid_map.info.resolution = resolution
+    grid_map.info.length_x, grid_map.info.length_y = rows * resolution, columns * resolution
     for cells in layers.values():
         numbers = np.asarray(cells, dtype=np.float32).T.reshape(-1)
         layer = Layer(data=numbers.tolist())
         layer.layout.dim = [Dimension(label="column_index", size=columns), Dimension(label="row_index", size=rows)]
-        made.data.append(layer)
-    return made
+        grid_map.data.append(layer)
+    return grid_map
 
 
 @asynccontextmanager
 async def shown(extra: str = ""):
     """A display, and a function that publishes a map and gives the content sent."""
-    async with world(config(extra)) as w:
-        w.move_arm()
-        publisher = w.graph.create_node("mapper").create_publisher(GridMap, "/grid_map", 10)
-        await w.settle()
+    async with open_world(config(extra)) as world:
+        world.move_arm()
+        publisher = world.graph.create_node("mapper").create_publisher(GridMap, "/grid_map", 10)
+        await world.settle()
 
         async def publish_and_settle(message: Any) -> dict[str, Any] | None:
             publisher.publish(message)
-            await w.settle()
-            found = contents(w.display("GridMap"))
-            return found[-1].fields if found else None
+            await world.settle()
+            grid_contents = contents(world.display("GridMap"))
+            return grid_contents[-1].fields if grid_contents else None
 
-        yield w, publish_and_settle
+        yield world, publish_and_settle
 
 
 async def test_grid_map_properties_match_rviz():
-    async with shown() as (w, _):
-        rows = {row.name: row.value for row in w.display("GridMap").row().properties}
+    async with shown() as (world, _):
+        rows = {row.name: row.value for row in world.display("GridMap").row().properties}
         assert rows == {
             "Topic": "/grid_map",
             "Alpha": 1.0,
@@ -74,47 +74,47 @@ async def test_grid_map_properties_match_rviz():
             "Invert Rainbow": False,
             "Autocompute Intensity Bounds": True,
         }
-    async with shown(", Use ColorMap: false") as (w, _):
-        assert {"Use ColorMap", "Min Color"} <= {row.name for row in w.display("GridMap").row().properties}
+    async with shown(", Use ColorMap: false") as (world, _):
+        assert {"Use ColorMap", "Min Color"} <= {row.name for row in world.display("GridMap").row().properties}
 
 
 async def test_first_cell_has_largest_x_and_y():
-    async with shown() as (w, publish_and_settle):
-        made = grid(0.5, elevation=[[1, 2, 3], [4, 5, 6]])
-        made.info.pose.position.x = 10.0
-        content = await publish_and_settle(made)
+    async with shown() as (world, publish_and_settle):
+        grid_map = grid(0.5, elevation=[[1, 2, 3], [4, 5, 6]])
+        grid_map.info.pose.position.x = 10.0
+        content = await publish_and_settle(grid_map)
         assert (content["rows"], content["columns"]) == (2, 3)
         points = content["points"].reshape(2, 3, 3)
         np.testing.assert_allclose(points[0, 0], [10.25, 0.5, 1])
         np.testing.assert_allclose(points[1, 2], [9.75, -0.5, 6])
-        assert w.status("GridMap")["Transform"] == ("ok", "Transform OK")
+        assert world.status("GridMap")["Transform"] == ("ok", "Transform OK")
 
 
 async def test_circular_buffer_start_index_is_applied():
     async with shown() as (_, publish_and_settle):
-        made = grid(elevation=[[4, 3], [2, 1]])
-        made.outer_start_index = made.inner_start_index = 1
-        content = await publish_and_settle(made)
+        grid_map = grid(elevation=[[4, 3], [2, 1]])
+        grid_map.outer_start_index = grid_map.inner_start_index = 1
+        content = await publish_and_settle(grid_map)
         assert content["points"].reshape(-1, 3)[:, 2].tolist() == [1, 2, 3, 4]
 
 
 async def test_nan_cells_are_not_drawn():
     async with shown() as (_, publish_and_settle):
-        made = grid(elevation=[[1, NAN], [2, 3]], certain=[[1, 1], [1, NAN]])
-        content = await publish_and_settle(made)
+        grid_map = grid(elevation=[[1, NAN], [2, 3]], certain=[[1, 1], [1, NAN]])
+        content = await publish_and_settle(grid_map)
         assert content["colors"].reshape(-1, 4)[:, 3].tolist() == [255, 0, 255, 255]
         assert np.isfinite(content["points"]).all()
-        made.basic_layers = ["certain"]
-        content = await publish_and_settle(made)
+        grid_map.basic_layers = ["certain"]
+        content = await publish_and_settle(grid_map)
         assert content["colors"].reshape(-1, 4)[:, 3].tolist() == [255, 0, 255, 0]
 
 
 async def test_rainbow_two_color_and_flat_color_modes():
-    async with shown() as (w, publish_and_settle):
+    async with shown() as (world, publish_and_settle):
         content = await publish_and_settle(grid(elevation=[[0, 10]], other=[[5, 0]]))
         first, last = content["colors"].reshape(-1, 4)[:, :3].tolist()
         assert (first, last) == ([204, 0, 255], [255, 0, 0])
-        display = w.display("GridMap")
+        display = world.display("GridMap")
 
         def colors() -> list[list[int]]:
             return contents(display)[-1].fields["colors"].reshape(-1, 4)[:, :3].tolist()
@@ -143,10 +143,10 @@ async def test_color_layer_is_unpacked():
 
 
 async def test_large_map_is_subsampled_with_warning():
-    async with shown() as (w, publish_and_settle):
+    async with shown() as (world, publish_and_settle):
         content = await publish_and_settle(grid(elevation=np.zeros((900, 900)).tolist()))
         assert (content["rows"], content["columns"]) == (450, 450)
-        assert w.status("GridMap")["Size"] == ("warn", "The map is large: 1 in 2 rows and columns is drawn")
+        assert world.status("GridMap")["Size"] == ("warn", "The map is large: 1 in 2 rows and columns is drawn")
 
 
 @pytest.mark.parametrize(
@@ -161,18 +161,18 @@ async def test_large_map_is_subsampled_with_warning():
     ],
 )
 async def test_invalid_grid_map_is_reported(broken, text):
-    async with shown() as (w, publish_and_settle):
-        made = grid(elevation=[[1, 2], [3, 4]])
+    async with shown() as (world, publish_and_settle):
+        grid_map = grid(elevation=[[1, 2], [3, 4]])
         for name, value in broken.items():
-            setattr(made if name == "layers" else made.info, name, value)
-        assert await publish_and_settle(made) is None
-        assert w.status("GridMap")["Message"] == ("error", text)
+            setattr(grid_map if name == "layers" else grid_map.info, name, value)
+        assert await publish_and_settle(grid_map) is None
+        assert world.status("GridMap")["Message"] == ("error", text)
         assert await publish_and_settle(grid(elevation=[[1, 2], [3, 4]])) is not None
-        assert "Message" not in w.status("GridMap")
+        assert "Message" not in world.status("GridMap")
 
 
 async def test_grid_map_demo_file_is_saved_unchanged():
     text = config(", Unreliable: false, Use Rainbow: true, Min Intensity: 0, Color: 200; 200; 200").text()
-    async with world(RvizConfig.parse(text)) as w:
-        assert w.viewer.displays[0].row().supported
-        assert w.viewer.config.text() == text
+    async with open_world(RvizConfig.parse(text)) as world:
+        assert world.viewer.displays[0].row().supported
+        assert world.viewer.config.text() == text

@@ -14,7 +14,7 @@ from linkwright.page.protocol.images import ImageSize
 from linkwright.rviz import RvizConfig
 from tests.images.test_images import Image, image
 from tests.viewer.contents import contents
-from tests.viewer.scene import page, world
+from tests.viewer.scene import open_world, page
 from tests.waiting import eventually
 
 CameraInfo = get_message("sensor_msgs/msg/CameraInfo")
@@ -55,27 +55,27 @@ def names(display) -> set[str]:
 
 
 async def test_image_is_sent():
-    async with world(config("Image")) as w:
-        publisher = w.graph.create_node("camera").create_publisher(Image, "/camera/image", 5)
+    async with open_world(config("Image")) as world:
+        publisher = world.graph.create_node("camera").create_publisher(Image, "/camera/image", 5)
         publisher.publish(small_image(1, 2, 3))
-        await w.settle()
-        (content,) = contents(w.display("Image"))
+        await world.settle()
+        (content,) = contents(world.display("Image"))
         fields = content.fields
         assert (fields["kind"], fields["encoding"], fields["width"], fields["height"]) == ("image_frame", "gray", 3, 1)
         assert fields["data"].tolist() == [1, 2, 3]
         assert fields["camera"] is None
-        assert w.status("Image") == {"Topic": ("ok", "1 messages received")}
+        assert world.status("Image") == {"Topic": ("ok", "1 messages received")}
 
 
 async def test_image_is_reduced_to_panel_size():
-    async with world(config("Image")) as w:
-        display = w.display("Image")
+    async with open_world(config("Image")) as world:
+        display = world.display("Image")
 
         async def sizes() -> list[tuple[int, int]]:
-            await w.settle()
+            await world.settle()
             return [(content.fields["columns"], content.fields["rows"]) for content in contents(display)]
 
-        publisher = w.graph.create_node("camera").create_publisher(Image, "/camera/image", 5)
+        publisher = world.graph.create_node("camera").create_publisher(Image, "/camera/image", 5)
         publisher.publish(image("mono8", 64, 48, bytes(64 * 48)))
         assert await sizes() == [(64, 48)]
         display.receive(ImageSize(display.id, 30, 18))
@@ -86,12 +86,12 @@ async def test_image_is_reduced_to_panel_size():
 
 
 async def test_nothing_is_sent_while_panel_is_hidden():
-    async with world(config("Image")) as w:
-        display = w.display("Image")
+    async with open_world(config("Image")) as world:
+        display = world.display("Image")
         display.receive(ImageSize(display.id, 0, 0))
-        publisher = w.graph.create_node("camera").create_publisher(Image, "/camera/image", 5)
+        publisher = world.graph.create_node("camera").create_publisher(Image, "/camera/image", 5)
         publisher.publish(small_image(1, 2, 3))
-        await w.settle()
+        await world.settle()
         assert contents(display) == []
         display.receive(ImageSize(display.id, 3, 1))
         (content,) = contents(display)
@@ -99,19 +99,19 @@ async def test_nothing_is_sent_while_panel_is_hidden():
 
 
 async def test_hidden_panel_unsubscribes_after_one_image():
-    async with world(config("Image")) as w:
-        display = w.display("Image")
-        publisher = w.graph.create_node("camera").create_publisher(Image, "/camera/image", 5)
+    async with open_world(config("Image")) as world:
+        display = world.display("Image")
+        publisher = world.graph.create_node("camera").create_publisher(Image, "/camera/image", 5)
         assert publisher.get_subscription_count() == 1
         display.receive(ImageSize(display.id, 0, 0))
         publisher.publish(small_image(1, 2, 3))
-        await w.settle()
+        await world.settle()
         assert publisher.get_subscription_count() == 0
         display.receive(ImageSize(display.id, 3, 1))
         assert publisher.get_subscription_count() == 1
-        assert w.status("Image")["Topic"] == ("ok", "1 messages received"), "what came before is still shown"
+        assert world.status("Image")["Topic"] == ("ok", "1 messages received"), "what came before is still shown"
         publisher.publish(small_image(4, 5, 6))
-        await w.settle()
+        await world.settle()
         (content,) = contents(display)
         assert content.fields["data"].tolist() == [4, 5, 6]
         display.receive(ImageSize(display.id, 0, 0))
@@ -123,19 +123,19 @@ async def test_hidden_panel_unsubscribes_after_one_image():
 
 
 async def test_panel_of_closed_page_is_ignored():
-    async with world(config("Image")) as w:
-        publisher = w.graph.create_node("camera").create_publisher(Image, "/camera/image", 5)
+    async with open_world(config("Image")) as world:
+        publisher = world.graph.create_node("camera").create_publisher(Image, "/camera/image", 5)
         publisher.publish(small_image(1, 2, 3))
-        async with page(w.viewer) as only:
-            await only.send("image_size", display=w.display("Image").id, width=30, height=18)
-            await eventually(lambda: w.display("Image")._panel)
+        async with page(world.viewer) as only:
+            await only.send("image_size", display=world.display("Image").id, width=30, height=18)
+            await eventually(lambda: world.display("Image")._panel)
             assert publisher.get_subscription_count() == 1
         await eventually(lambda: publisher.get_subscription_count() == 0)
 
 
 async def test_largest_panel_determines_image_size(monkeypatch):
-    async with world(config("Image")) as w, page(w.viewer) as first:
-        display = w.display("Image")
+    async with open_world(config("Image")) as world, page(world.viewer) as first:
+        display = world.display("Image")
         messages: list[ImageSize] = []
         monkeypatch.setattr(display, "receive", messages.append)
 
@@ -144,30 +144,30 @@ async def test_largest_panel_determines_image_size(monkeypatch):
 
         await first.send("image_size", display=display.id, width=30, height=18)
         await wait_for_size(30, 18)
-        async with page(w.viewer) as second:
+        async with page(world.viewer) as second:
             await second.send("image_size", display=display.id, width=20, height=50)
             await wait_for_size(30, 50)
         await wait_for_size(30, 18)
 
 
 async def test_unsupported_encoding_is_reported():
-    async with world(config("Image")) as w:
-        publisher = w.graph.create_node("camera").create_publisher(Image, "/camera/image", 5)
+    async with open_world(config("Image")) as world:
+        publisher = world.graph.create_node("camera").create_publisher(Image, "/camera/image", 5)
         publisher.publish(image("64FC1", 1, 1, bytes(8)))
-        await w.settle()
-        assert w.status("Image")["Image"] == ("error", "Unsupported image encoding [64FC1]")
+        await world.settle()
+        assert world.status("Image")["Image"] == ("error", "Unsupported image encoding [64FC1]")
         publisher.publish(small_image(1))
-        await w.settle()
-        assert "Image" not in w.status("Image")
+        await world.settle()
+        assert "Image" not in world.status("Image")
 
 
 async def test_range_properties_are_shown_for_16_bit_images():
-    async with world(config("Image")) as w:
-        display = w.display("Image")
+    async with open_world(config("Image")) as world:
+        display = world.display("Image")
         assert names(display) == {"Topic"}
-        publisher = w.graph.create_node("camera").create_publisher(Image, "/camera/image", 5)
+        publisher = world.graph.create_node("camera").create_publisher(Image, "/camera/image", 5)
         publisher.publish(image("16UC1", 2, 1, np.array([0, 1000], "<u2").tobytes()))
-        await w.settle()
+        await world.settle()
         assert names(display) == {"Topic", "Normalize Range", "Median window"}
         assert contents(display)[0].fields["data"].tolist() == [0, 255]
         display.set_property(("Normalize Range",), False)
@@ -177,48 +177,48 @@ async def test_range_properties_are_shown_for_16_bit_images():
 
 
 async def test_compressed_image_is_sent_unchanged():
-    async with world(config("Image", "/camera/image/compressed")) as w:
-        publisher = w.graph.create_node("camera").create_publisher(CompressedImage, "/camera/image/compressed", 5)
+    async with open_world(config("Image", "/camera/image/compressed")) as world:
+        publisher = world.graph.create_node("camera").create_publisher(CompressedImage, "/camera/image/compressed", 5)
         data = b"\xff\xd8\xff\xe0" + bytes(30)
         publisher.publish(CompressedImage(format="jpeg", data=data))
-        await w.settle()
-        (content,) = contents(w.display("Image"))
+        await world.settle()
+        (content,) = contents(world.display("Image"))
         assert content.fields["encoding"] == "file"
         assert content.fields["data"].tobytes() == data
-        assert w.status("Image")["Image"] == ("error", "The image file is truncated")
+        assert world.status("Image")["Image"] == ("error", "The image file is truncated")
         publisher.publish(CompressedImage(format="jpeg", data=data + b"\xff\xd9"))
-        await w.settle()
-        assert "Image" not in w.status("Image")
+        await world.settle()
+        assert "Image" not in world.status("Image")
         publisher.publish(CompressedImage(format="h264", data=b"0000"))
-        await w.settle()
+        await world.settle()
         text = "Browsers do not support the image format 'h264'"
-        assert w.status("Image")["Image"] == ("error", text)
+        assert world.status("Image")["Image"] == ("error", text)
 
 
 @pytest.mark.parametrize("comes_first", ["publisher", "display"])
 async def test_compressed_images_are_accepted_on_any_topic(comes_first):
     data = b"\xff\xd8\xff\xe0\xff\xd9"
-    async with world(config("Image", "" if comes_first == "publisher" else "/front/jpeg")) as w:
-        publisher = w.graph.create_node("camera").create_publisher(CompressedImage, "/front/jpeg", 5)
-        display = w.display("Image")
+    async with open_world(config("Image", "" if comes_first == "publisher" else "/front/jpeg")) as world:
+        publisher = world.graph.create_node("camera").create_publisher(CompressedImage, "/front/jpeg", 5)
+        display = world.display("Image")
         if comes_first == "publisher":
             display.set_property(("Topic",), "/front/jpeg")
         await eventually(lambda: publisher.get_subscription_count() == 1)
         publisher.publish(CompressedImage(format="jpeg", data=data))
-        await w.settle()
+        await world.settle()
         assert contents(display)[0].fields["data"].tobytes() == data
-        assert w.status("Image")["Topic"] == ("ok", "1 messages received")
+        assert world.status("Image")["Topic"] == ("ok", "1 messages received")
 
 
 async def test_compressed_depths_are_accepted_on_any_topic():
-    async with world(config("Image", "/front/depths")) as w:
-        publisher = w.graph.create_node("camera").create_publisher(CompressedImage, "/front/depths", 5)
+    async with open_world(config("Image", "/front/depths")) as world:
+        publisher = world.graph.create_node("camera").create_publisher(CompressedImage, "/front/depths", 5)
         await eventually(lambda: publisher.get_subscription_count() == 1)
         file = BytesIO()
         PIL.Image.fromarray(np.array([[0, 1000]], np.uint16)).save(file, "png")
         publisher.publish(CompressedImage(format="16UC1; compressedDepth png", data=bytes(12) + file.getvalue()))
-        await w.settle()
-        assert contents(w.display("Image"))[0].fields["data"].tolist() == [0, 255]
+        await world.settle()
+        assert contents(world.display("Image"))[0].fields["data"].tolist() == [0, 255]
 
 
 def info(width: int = 4, height: int = 2, **fields):
@@ -230,18 +230,18 @@ def info(width: int = 4, height: int = 2, **fields):
 
 
 async def test_camera_display_waits_for_camera_info():
-    async with world(config("Camera")) as w:
-        node = w.graph.create_node("camera")
+    async with open_world(config("Camera")) as world:
+        node = world.graph.create_node("camera")
         images = node.create_publisher(Image, "/camera/image", 5)
         infos = node.create_publisher(CameraInfo, "/camera/camera_info", 5)
-        w.move({("base", "eye"): (1, 2, 3, 0, 0, 0, 1)}, static=True)
+        world.move({("base", "eye"): (1, 2, 3, 0, 0, 0, 1)}, static=True)
         images.publish(small_image(1, 2, frame="eye"))
-        await w.settle()
+        await world.settle()
         text = "No CameraInfo received on [/camera/camera_info]. Topic may not exist."
-        assert w.status("Camera")["Camera Info"] == ("warn", text)
+        assert world.status("Camera")["Camera Info"] == ("warn", text)
         infos.publish(info())
-        await w.settle()
-        (content,) = contents(w.display("Camera"))
+        await world.settle()
+        (content,) = contents(world.display("Camera"))
         assert content.pose == [1, 2, 3, 0, 0, 0, 1]
         assert content.fields["camera"] == {
             "width": 4.0,
@@ -253,21 +253,21 @@ async def test_camera_display_waits_for_camera_info():
             "offset_x": 0.1,
             "offset_y": 0.0,
         }
-        assert w.status("Camera")["Camera Info"] == ("ok", "OK")
+        assert world.status("Camera")["Camera Info"] == ("ok", "OK")
 
 
 async def test_malformed_camera_info_is_reported():
-    async with world(config("Camera")) as w:
-        node = w.graph.create_node("camera")
+    async with open_world(config("Camera")) as world:
+        node = world.graph.create_node("camera")
         images = node.create_publisher(Image, "/camera/image", 5)
         infos = node.create_publisher(CameraInfo, "/camera/camera_info", 5)
 
         async def status(message) -> tuple[str, str]:
             infos.publish(message)
             images.publish(small_image(1, 2))
-            await w.settle()
-            assert contents(w.display("Camera"))[0].fields["camera"] is None
-            return w.status("Camera")["Camera Info"]
+            await world.settle()
+            assert contents(world.display("Camera"))[0].fields["camera"] is None
+            return world.status("Camera")["Camera Info"]
 
         bad = info()
         bad.p[0] = math.nan
@@ -278,14 +278,14 @@ async def test_malformed_camera_info_is_reported():
         empty = info(0, 0)
         infos.publish(empty)
         images.publish(small_image())
-        await w.settle()
-        assert w.status("Camera")["Camera Info"][1].startswith("Could not determine width/height of image")
+        await world.settle()
+        assert world.status("Camera")["Camera Info"][1].startswith("Could not determine width/height of image")
 
 
 async def test_other_displays_can_be_hidden_from_camera():
-    async with world(config("Camera")) as w, page(w.viewer) as client:
+    async with open_world(config("Camera")) as world, page(world.viewer) as client:
         await client.opened()
-        display = w.display("Camera")
+        display = world.display("Camera")
 
         def boxes() -> list:
             (row,) = (row for row in display.properties.rows() if row.name == "Visibility")
@@ -294,5 +294,5 @@ async def test_other_displays_can_be_hidden_from_camera():
         assert boxes() == [("Floor", []), ("Sensors", ["Wall"])]
         display.set_property(("Visibility", "Sensors", "Wall"), False)
         assert not display.properties.flag("Visibility", "Sensors", "Wall")
-        w.viewer.manager.tree.rename(w.viewer.displays[0], "Ground")
+        world.viewer.manager.tree.rename(world.viewer.displays[0], "Ground")
         assert boxes()[0] == ("Ground", [])

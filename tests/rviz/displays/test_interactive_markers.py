@@ -15,7 +15,7 @@ from linkwright.rviz import RvizConfig
 from linkwright.rviz.markers import BadMarkerError
 from linkwright.rviz.markers.interactive import read_interactive_marker
 from tests.viewer.contents import contents
-from tests.viewer.scene import world
+from tests.viewer.scene import open_world
 from tests.waiting import eventually
 
 InteractiveMarker = get_message("visualization_msgs/msg/InteractiveMarker")
@@ -92,60 +92,60 @@ async def connected(world) -> None:
 
 
 async def test_interactive_markers_are_added_moved_and_removed():
-    async with world(RvizConfig.parse(FILE)) as w:
-        server = Server(w.graph, marker("one", x=1))
-        await connected(w)
-        assert shown(w)["interactive_marker one"]["pose"] == [1, 0, 0, 0, 0, 0, 1]
+    async with open_world(RvizConfig.parse(FILE)) as world:
+        server = Server(world.graph, marker("one", x=1))
+        await connected(world)
+        assert shown(world)["interactive_marker one"]["pose"] == [1, 0, 0, 0, 0, 0, 1]
         server.update(markers=[marker("two", x=2)])
-        await w.settle()
-        assert sorted(shown(w)) == ["interactive_marker one", "interactive_marker two"]
+        await world.settle()
+        assert sorted(shown(world)) == ["interactive_marker one", "interactive_marker two"]
         moved = Pose(name="two")
         moved.pose.position.x = 5.0
         server.update(poses=[moved])
-        await w.settle()
-        assert shown(w)["interactive_marker_moved two"]["pose"] == [5, 0, 0, 0, 0, 0, 1]
+        await world.settle()
+        assert shown(world)["interactive_marker_moved two"]["pose"] == [5, 0, 0, 0, 0, 0, 1]
         server.update(erases=["two"])
-        await w.settle()
-        assert sorted(shown(w)) == ["interactive_marker one"]
+        await world.settle()
+        assert sorted(shown(world)) == ["interactive_marker one"]
 
 
 async def test_updates_wait_while_time_is_paused():
-    async with world(RvizConfig.parse(FILE)) as w:
-        server = Server(w.graph, marker("one"))
-        await connected(w)
-        w.viewer.manager.set_time(paused=True, mode="Off", source="")
+    async with open_world(RvizConfig.parse(FILE)) as world:
+        server = Server(world.graph, marker("one"))
+        await connected(world)
+        world.viewer.manager.set_time(paused=True, mode="Off", source="")
         server.update(markers=[marker("two")])
         server.update(erases=["one"])
-        await w.settle()
-        assert sorted(shown(w)) == ["interactive_marker one"]
-        w.viewer.manager.set_time(paused=False, mode="Off", source="")
-        assert sorted(shown(w)) == ["interactive_marker two"]
+        await world.settle()
+        assert sorted(shown(world)) == ["interactive_marker one"]
+        world.viewer.manager.set_time(paused=False, mode="Off", source="")
+        assert sorted(shown(world)) == ["interactive_marker two"]
 
 
 async def test_lost_update_requests_markers_again():
-    async with world(RvizConfig.parse(FILE)) as w:
-        server = Server(w.graph, marker("one"))
-        await connected(w)
+    async with open_world(RvizConfig.parse(FILE)) as world:
+        server = Server(world.graph, marker("one"))
+        await connected(world)
         server.markers = {"three": marker("three")}
         server.sequence = 7
         server.keep_alive()
-        await w.settle()
-        assert shown(w) == {}
-        await connected(w)
-        assert sorted(shown(w)) == ["interactive_marker three"]
+        await world.settle()
+        assert shown(world) == {}
+        await connected(world)
+        assert sorted(shown(world)) == ["interactive_marker three"]
 
 
 async def test_feedback_of_user_is_published_to_server():
-    async with world(RvizConfig.parse(FILE)) as w:
-        server = Server(w.graph, marker("one", frame="base"))
-        await connected(w)
-        (display,) = w.viewer.displays
+    async with open_world(RvizConfig.parse(FILE)) as world:
+        server = Server(world.graph, marker("one", frame="base"))
+        await connected(world)
+        (display,) = world.viewer.displays
         pose = [1.0, 2.0, 3.0, 0.0, 0.0, 0.0, 1.0]
         display.receive(MarkerFeedback(display.id, "one", "grip", "pose_update", pose, 0, [0.5, 0.0, 0.0]))
         display.receive(MarkerFeedback(display.id, "one", "grip", "menu_select", pose, 4, []))
         display.receive(MarkerFeedback(display.id, "none", "grip", "mouse_up", pose, 0, []))
         display.receive(MarkerFeedback(display.id, "one", "grip", "mouse_up", pose[:3], 0, []))
-        await w.settle()
+        await world.settle()
         first, second = server.feedback
         assert (first.event_type, first.marker_name, first.control_name) == (Feedback.POSE_UPDATE, "one", "grip")
         assert (first.pose.position.x, first.pose.position.z, first.mouse_point.x) == (1, 3, 0.5)
@@ -156,38 +156,38 @@ async def test_feedback_of_user_is_published_to_server():
 
 
 async def test_display_waits_for_missing_server_with_warning():
-    async with world(RvizConfig.parse(FILE)) as w:
+    async with open_world(RvizConfig.parse(FILE)) as world:
         missing = ("warn", "Service is not available: /handles/get_interactive_markers")
-        await eventually(lambda: status(w).get("Interactive Marker Client") == missing)
-        Server(w.graph, marker("one"))
-        await connected(w)
+        await eventually(lambda: status(world).get("Interactive Marker Client") == missing)
+        Server(world.graph, marker("one"))
+        await connected(world)
 
 
 async def test_empty_namespace_is_reported():
-    async with world(RvizConfig.parse(FILE.replace("/handles", '""'))) as w:
-        assert status(w)["Interactive Marker Client"] == ("error", "Error connecting: empty namespace")
+    async with open_world(RvizConfig.parse(FILE.replace("/handles", '""'))) as world:
+        assert status(world)["Interactive Marker Client"] == ("error", "Error connecting: empty namespace")
 
 
 async def test_marker_appears_once_its_frame_is_known():
-    async with world(RvizConfig.parse(FILE)) as w:
-        Server(w.graph, marker("one", frame="tip"))
-        await connected(w)
-        assert shown(w) == {}
-        assert status(w)["one"][0] == "error"
-        w.move({("base", "tip"): (1, 0, 0, 0, 0, 0, 1)}, static=True)
-        await w.settle()
-        assert sorted(shown(w)) == ["interactive_marker one"]
-        assert "one" not in status(w)
+    async with open_world(RvizConfig.parse(FILE)) as world:
+        Server(world.graph, marker("one", frame="tip"))
+        await connected(world)
+        assert shown(world) == {}
+        assert status(world)["one"][0] == "error"
+        world.move({("base", "tip"): (1, 0, 0, 0, 0, 0, 1)}, static=True)
+        await world.settle()
+        assert sorted(shown(world)) == ["interactive_marker one"]
+        assert "one" not in status(world)
 
 
 async def test_disabled_display_unsubscribes_from_server():
-    async with world(RvizConfig.parse(FILE)) as w:
-        server = Server(w.graph, marker("one"))
-        await connected(w)
-        (display,) = w.viewer.displays
+    async with open_world(RvizConfig.parse(FILE)) as world:
+        server = Server(world.graph, marker("one"))
+        await connected(world)
+        (display,) = world.viewer.displays
         display.set_checked(False)
         display.on_enabled_changed()
-        assert shown(w) == {}
+        assert shown(world) == {}
         assert server._updates.get_subscription_count() == 0
 
 
@@ -222,7 +222,7 @@ def test_rotation_control_has_ring(mode, shades):
     radii = np.linalg.norm(ring.points, axis=1)
     assert sorted({round(float(radius), 6) for radius in radii}) == [0.5, 0.65]
     assert len(ring.points) == 36 * 6
-    assert sorted({round(float(each), 6) for each in ring.colors[:, 2]}) == shades
+    assert sorted({round(float(shade), 6) for shade in ring.colors[:, 2]}) == shades
     assert len(ring.colors) in (0, 72)
 
 
@@ -233,7 +233,7 @@ def test_menu_control_without_markers_is_view_facing_text():
     shape = read(message)
     (control,) = shape.controls
     assert (control.orientation_mode, control.markers[0].text) == ("view_facing", "Options")
-    assert [(each.id, each.parent, each.title) for each in shape.menu] == [(1, 0, "Go"), (2, 1, "Home")]
+    assert [(entry.id, entry.parent, entry.title) for entry in shape.menu] == [(1, 0, "Go"), (2, 1, "Home")]
 
 
 def test_controls_with_same_name_get_unique_names():

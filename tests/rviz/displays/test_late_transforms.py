@@ -14,7 +14,7 @@ from linkwright.rviz import RvizConfig
 from linkwright.rviz.displays.base.display import ViewerDisplay
 from tests.rviz.clouds.test_clouds import cloud, scan, xyz
 from tests.skipping import skipping
-from tests.viewer.scene import World, world
+from tests.viewer.scene import World, open_world
 
 SECONDS = 10.0
 TF_PERIOD = 1 / 20
@@ -38,15 +38,15 @@ Visualization Manager:
 def message(cls: str, stamp_ns: int) -> Any:
     """What a driver publishes: stamped now, in a frame that moves."""
     if cls == "LaserScan":
-        made = scan([1.0, 2.0, 3.0])
+        instance = scan([1.0, 2.0, 3.0])
     elif cls == "PointCloud2":
-        made = cloud(xyz([(1, 0, 0), (0, 1, 0)]))
+        instance = cloud(xyz([(1, 0, 0), (0, 1, 0)]))
     else:
-        made = get_message("nav_msgs/msg/Odometry")()
-        made.pose.pose.orientation.w = 1.0
-    made.header.frame_id = "base"
-    made.header.stamp.sec, made.header.stamp.nanosec = divmod(stamp_ns, 1_000_000_000)
-    return made
+        instance = get_message("nav_msgs/msg/Odometry")()
+        instance.pose.pose.orientation.w = 1.0
+    instance.header.frame_id = "base"
+    instance.header.stamp.sec, instance.header.stamp.nanosec = divmod(stamp_ns, 1_000_000_000)
+    return instance
 
 
 def levels_of(display: ViewerDisplay, monkeypatch: pytest.MonkeyPatch) -> dict[str, list[str]]:
@@ -71,19 +71,19 @@ async def every(period: float, call: Callable[[], object]) -> None:
         await asyncio.sleep(period)
 
 
-async def drive(w: World, tf_delay: float) -> None:
+async def drive(world: World, tf_delay: float) -> None:
     """A robot whose transforms come at 20 Hz, later than the messages of its sensors."""
-    driver, now_ns = w.graph.create_node("driver"), w.graph.timebase.now_ns
+    driver, now_ns = world.graph.create_node("driver"), world.graph.timebase.now_ns
     publishers = {cls: driver.create_publisher(type(message(cls, 0)), f"/{cls}", 10) for cls in SENSORS}
     here = {("odom", "base"): (0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 1.0)}
-    w.move(here)
-    await w.settle()
+    world.move(here)
+    await world.settle()
 
     def sense(cls: str) -> None:
         publishers[cls].publish(message(cls, now_ns()))
 
     def move_later() -> None:
-        asyncio.get_running_loop().call_later(tf_delay, w.move, here)
+        asyncio.get_running_loop().call_later(tf_delay, world.move, here)
 
     sensing = (every(period, partial(sense, cls)) for cls, period in SENSORS.items())
     await asyncio.gather(*sensing, every(TF_PERIOD, move_later))
@@ -92,11 +92,11 @@ async def drive(w: World, tf_delay: float) -> None:
 @skipping
 @pytest.mark.parametrize("tf_delay", [0.03, 0.2])
 async def test_displays_with_late_transforms_have_ok_status(tf_delay, monkeypatch):
-    async with world(RvizConfig.parse(FILE)) as w:
-        facts = {cls: levels_of(w.display(cls), monkeypatch) for cls in SENSORS}
-        await drive(w, tf_delay)
-        await w.settle()
+    async with open_world(RvizConfig.parse(FILE)) as world:
+        facts = {cls: levels_of(world.display(cls), monkeypatch) for cls in SENSORS}
+        await drive(world, tf_delay)
+        await world.settle()
         for cls, rows in facts.items():
             assert {"Topic", "Transform"} <= rows.keys(), cls
             assert {name: levels for name, levels in rows.items() if levels != ["ok"]} == {}, cls
-            assert w.display(cls).data()
+            assert world.display(cls).data()

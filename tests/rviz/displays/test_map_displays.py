@@ -12,7 +12,7 @@ from linkwright.messages import get_message
 from linkwright.rviz import RvizConfig
 from tests.skipping import skipping
 from tests.viewer.contents import contents
-from tests.viewer.scene import page, world
+from tests.viewer.scene import open_world, page
 from tests.waiting import eventually
 
 OccupancyGrid = get_message("nav_msgs/msg/OccupancyGrid")
@@ -57,18 +57,18 @@ def cells(display) -> list[list[int]]:
 
 
 async def test_map_is_sent_and_follows_its_frame():
-    async with world(config()) as w, page(w.viewer) as client:
+    async with open_world(config()) as world, page(world.viewer) as client:
         await client.opened()
-        publisher = w.graph.create_node("map").create_publisher(OccupancyGrid, "/map", 1)
-        assert w.status("Map")["Message"] == ("warn", "No map received")
+        publisher = world.graph.create_node("map").create_publisher(OccupancyGrid, "/map", 1)
+        assert world.status("Map")["Message"] == ("warn", "No map received")
         publisher.publish(grid(data=[0, 100, -1, 50, -128, 127]))
-        await w.settle()
-        (content,) = contents(w.display("Map"))
+        await world.settle()
+        (content,) = contents(world.display("Map"))
         assert (content.frame, content.pose) == ("base", None)
         assert content.fields["kind"] == "occupancy_map"
         assert content.fields["origin"] == [-1, 0, 0, 0, 0, 0, 1]
-        assert cells(w.display("Map")) == [[0, 100, -1], [50, -128, 127]]
-        assert w.status("Map") == {
+        assert cells(world.display("Map")) == [[0, 100, -1], [50, -128, 127]]
+        assert world.status("Map") == {
             "Topic": ("ok", "1 messages received"),
             "Message": ("ok", "Map received"),
             "Update Topic": ("ok", "OK"),
@@ -78,11 +78,11 @@ async def test_map_is_sent_and_follows_its_frame():
 
 
 async def test_map_metadata_is_shown_in_read_only_rows():
-    async with world(config()) as w:
-        publisher = w.graph.create_node("map").create_publisher(OccupancyGrid, "/map", 1)
+    async with open_world(config()) as world:
+        publisher = world.graph.create_node("map").create_publisher(OccupancyGrid, "/map", 1)
         publisher.publish(grid())
-        await w.settle()
-        rows = {row.name: row for row in w.display("Map").properties.rows()}
+        await world.settle()
+        rows = {row.name: row for row in world.display("Map").properties.rows()}
         assert [(rows[name].value, rows[name].read_only) for name in ("Resolution", "Width", "Height")] == [
             (0.5, True),
             (3, True),
@@ -90,71 +90,71 @@ async def test_map_metadata_is_shown_in_read_only_rows():
         ]
         assert [child.value for child in rows["Position"].children] == [-1.0, 0.0, 0.0]
         assert [child.value for child in rows["Orientation"].children] == [0.0, 0.0, 0.0, 1.0]
-        assert "Resolution" not in w.viewer.manager.config.text()
+        assert "Resolution" not in world.viewer.manager.config.text()
 
 
 async def test_map_updates_change_part_of_map():
-    async with world(config()) as w:
-        node = w.graph.create_node("map")
+    async with open_world(config()) as world:
+        node = world.graph.create_node("map")
         publisher = node.create_publisher(OccupancyGrid, "/map", 1)
         updates = node.create_publisher(OccupancyGridUpdate, "/map_updates", 5)
         updates.publish(update(0, 0, 1, 1, [7]))  # before there is a map
         original = grid()
         publisher.publish(original)
-        await w.settle()
+        await world.settle()
         updates.publish(update(1, 0, 2, 2, [10, 20, 30, 40]))
-        await eventually(lambda: cells(w.display("Map")) == [[0, 10, 20], [3, 30, 40]])
-        assert w.status("Map")["Update"] == ("ok", "Update OK")
+        await eventually(lambda: cells(world.display("Map")) == [[0, 10, 20], [3, 30, 40]])
+        assert world.status("Map")["Update"] == ("ok", "Update OK")
         assert list(original.data) == [0, 1, 2, 3, 4, 5]
         updates.publish(update(2, 0, 2, 1, [1, 1]))
-        await w.settle()
-        assert w.status("Map")["Update"] == ("error", "Update area outside of original map area.")
+        await world.settle()
+        assert world.status("Map")["Update"] == ("error", "Update area outside of original map area.")
         updates.publish(update(0, 0, 2, 2, [1, 1]))
-        await w.settle()
-        assert w.status("Map")["Update"][1].startswith("Data size doesn't match width*height")
-        assert cells(w.display("Map")) == [[0, 10, 20], [3, 30, 40]]
+        await world.settle()
+        assert world.status("Map")["Update"][1].startswith("Data size doesn't match width*height")
+        assert cells(world.display("Map")) == [[0, 10, 20], [3, 30, 40]]
 
 
 @skipping
 async def test_map_updates_wait_while_time_is_paused():
-    async with world(config()) as w:
-        node = w.graph.create_node("map")
+    async with open_world(config()) as world:
+        node = world.graph.create_node("map")
         maps, updates = (
             node.create_publisher(OccupancyGrid, "/map", 1),
             node.create_publisher(OccupancyGridUpdate, "/map_updates", 5),
         )
         maps.publish(grid(data=[0] * 6))
-        await w.settle()
-        w.viewer.manager.set_time(paused=True, mode="Off", source="")
+        await world.settle()
+        world.viewer.manager.set_time(paused=True, mode="Off", source="")
         updates.publish(update(0, 0, 1, 1, [99]))
         await asyncio.sleep(0.2)
-        assert cells(w.display("Map")) == [[0, 0, 0], [0, 0, 0]]
-        w.viewer.manager.set_time(paused=False, mode="Off", source="")
-        await eventually(lambda: cells(w.display("Map")) == [[99, 0, 0], [0, 0, 0]])
+        assert cells(world.display("Map")) == [[0, 0, 0], [0, 0, 0]]
+        world.viewer.manager.set_time(paused=False, mode="Off", source="")
+        await eventually(lambda: cells(world.display("Map")) == [[99, 0, 0], [0, 0, 0]])
 
 
 async def test_updated_map_survives_fixed_frame_change():
-    async with world(config()) as w:
-        node = w.graph.create_node("map")
-        w.move({("base", "other"): (1, 0, 0, 0, 0, 0, 1)}, static=True)
+    async with open_world(config()) as world:
+        node = world.graph.create_node("map")
+        world.move({("base", "other"): (1, 0, 0, 0, 0, 0, 1)}, static=True)
         node.create_publisher(OccupancyGrid, "/map", 1).publish(grid())
-        await w.settle()
+        await world.settle()
         node.create_publisher(OccupancyGridUpdate, "/map_updates", 5).publish(update(0, 0, 1, 1, [99]))
-        await eventually(lambda: cells(w.display("Map"))[0] == [99, 1, 2])
-        w.viewer.manager.set_fixed_frame("other")
-        await w.settle()
-        assert cells(w.display("Map"))[0] == [99, 1, 2]
+        await eventually(lambda: cells(world.display("Map"))[0] == [99, 1, 2])
+        world.viewer.manager.set_fixed_frame("other")
+        await world.settle()
+        assert cells(world.display("Map"))[0] == [99, 1, 2]
 
 
 async def test_invalid_maps_are_reported_with_messages_of_rviz():
-    async with world(config()) as w:
-        publisher = w.graph.create_node("map").create_publisher(OccupancyGrid, "/map", 1)
+    async with open_world(config()) as world:
+        publisher = world.graph.create_node("map").create_publisher(OccupancyGrid, "/map", 1)
 
         async def status(message) -> tuple[str, str]:
             publisher.publish(message)
-            await w.settle()
-            assert contents(w.display("Map")) == []
-            return w.status("Map")["Map"]
+            await world.settle()
+            assert contents(world.display("Map")) == []
+            return world.status("Map")["Map"]
 
         assert await status(grid(0, 4)) == ("error", "Map is zero-sized (0x4)")
         text = "Data size doesn't match width*height: width = 3, height = 2, data size = 1"
@@ -165,22 +165,22 @@ async def test_invalid_maps_are_reported_with_messages_of_rviz():
 
 
 async def test_update_topic_follows_map_topic():
-    async with world(config()) as w:
-        display = w.display("Map")
+    async with open_world(config()) as world:
+        display = world.display("Map")
         display.set_property(("Topic",), "/other")
         assert display.properties.text("Update Topic") == "/other_updates"
         display.set_property(("Update Topic",), "/mine")
-        node = w.graph.create_node("map")
+        node = world.graph.create_node("map")
         node.create_publisher(OccupancyGrid, "/other", 1).publish(grid())
-        await w.settle()
+        await world.settle()
         node.create_publisher(OccupancyGridUpdate, "/mine", 5).publish(update(0, 0, 1, 1, [55]))
         await eventually(lambda: cells(display)[0][0] == 55)
 
 
 async def test_default_update_topic_is_not_written_to_file():
-    async with world(config()) as w, page(w.viewer) as client:
+    async with open_world(config()) as world, page(world.viewer) as client:
         await client.opened()
-        manager, display = w.viewer.manager, w.display("Map")
+        manager, display = world.viewer.manager, world.display("Map")
         text = manager.config.text()
         assert display.properties.text("Update Topic") == "/map_updates"
         await client.send("set_property", id=f"{display.id}/Topic", value="/other")
@@ -196,29 +196,29 @@ async def test_default_update_topic_is_not_written_to_file():
 
 
 async def test_use_timestamp_keeps_map_at_its_stamp():
-    async with world(config()) as w:
-        node = w.graph.create_node("map")
+    async with open_world(config()) as world:
+        node = world.graph.create_node("map")
         publisher = node.create_publisher(
             OccupancyGrid, "/map", QoSProfile(depth=1, durability=DurabilityPolicy.TRANSIENT_LOCAL)
         )
-        w.move({("base", "map"): (1, 2, 0, 0, 0, 0, 1)}, static=True)
-        display = w.display("Map")
+        world.move({("base", "map"): (1, 2, 0, 0, 0, 0, 1)}, static=True)
+        display = world.display("Map")
         publisher.publish(grid(frame="map"))
-        await w.settle()
+        await world.settle()
         assert contents(display)[0].pose is None
         display.set_property(("Use Timestamp",), True)
         assert contents(display)[0].pose == [1, 2, 0, 0, 0, 0, 1]
 
 
 async def test_map_without_frame_is_in_map_frame():
-    async with world(config()) as w:
-        publisher = w.graph.create_node("map").create_publisher(OccupancyGrid, "/map", 1)
+    async with open_world(config()) as world:
+        publisher = world.graph.create_node("map").create_publisher(OccupancyGrid, "/map", 1)
         publisher.publish(grid(frame=""))
-        await w.settle()
-        assert w.status("Map")["Transform"][1].startswith("Could not transform from [map] to [base]")
-        w.move({("base", "map"): (0, 0, 0, 0, 0, 0, 1)}, static=True)
-        await w.settle()
-        assert contents(w.display("Map"))[0].frame == "map"
+        await world.settle()
+        assert world.status("Map")["Transform"][1].startswith("Could not transform from [map] to [base]")
+        world.move({("base", "map"): (0, 0, 0, 0, 0, 0, 1)}, static=True)
+        await world.settle()
+        assert contents(world.display("Map"))[0].frame == "map"
 
 
 # --- GridCells -------------------------------------------------------------------------------------------------------
@@ -231,26 +231,26 @@ def cell_grid(*positions: float, width: float = 0.5, height: float = 0.25):
 
 
 async def test_grid_cells_are_sent():
-    async with world(config("GridCells")) as w:
-        publisher = w.graph.create_node("map").create_publisher(GridCells, "/map", 1)
+    async with open_world(config("GridCells")) as world:
+        publisher = world.graph.create_node("map").create_publisher(GridCells, "/map", 1)
         publisher.publish(cell_grid(1.0, 2.0))
-        await w.settle()
-        (content,) = contents(w.display("GridCells"))
+        await world.settle()
+        (content,) = contents(world.display("GridCells"))
         fields = content.fields
         assert fields["positions"].tolist() == [1, 0, 0, 2, 0, 0]
         assert (fields["kind"], fields["width"], fields["height"]) == ("cell_grid", 0.5, 0.25)
 
 
 async def test_invalid_grid_cells_are_reported_with_messages_of_rviz():
-    async with world(config("GridCells")) as w:
-        publisher = w.graph.create_node("map").create_publisher(GridCells, "/map", 1)
+    async with open_world(config("GridCells")) as world:
+        publisher = world.graph.create_node("map").create_publisher(GridCells, "/map", 1)
 
         async def status(message) -> tuple[str, str]:
             publisher.publish(cell_grid(1.0))
             publisher.publish(message)
-            await w.settle()
-            assert contents(w.display("GridCells")) == []
-            return w.status("GridCells")["Topic"]
+            await world.settle()
+            assert contents(world.display("GridCells")) == []
+            return world.status("GridCells")["Topic"]
 
         text = "Message contained invalid floating point values (nans or infs)"
         assert await status(cell_grid(math.nan)) == ("error", text)

@@ -13,7 +13,7 @@ from linkwright.page.files import MeshIndex
 from linkwright.rviz import RvizConfig
 from linkwright.rviz.markers import BadMarkerError, MarkerStore, read_marker
 from tests.viewer.contents import unpack
-from tests.viewer.scene import world
+from tests.viewer.scene import open_world
 from tests.waiting import eventually
 
 Marker = get_message("visualization_msgs/msg/Marker")
@@ -65,13 +65,13 @@ class Watcher:
             self.markers.clear()
         for identity in content["gone"]:
             self.markers.pop(identity, None)
-        self.markers.update({each["id"]: each for each in content["markers"]})
+        self.markers.update({marker["id"]: marker for marker in content["markers"]})
         return content
 
 
-def publisher_and_watcher(w, message_type=Marker):
-    publisher = w.graph.create_node("marks").create_publisher(message_type, "/marks", 10)
-    (display,) = w.viewer.displays
+def publisher_and_watcher(world, message_type=Marker):
+    publisher = world.graph.create_node("marks").create_publisher(message_type, "/marks", 10)
+    (display,) = world.viewer.displays
     (store,) = display.data()
     return publisher, Watcher(store), display
 
@@ -81,11 +81,11 @@ def status(display) -> dict[str, tuple[str, str]]:
 
 
 async def test_marker_stays_where_its_frame_was():
-    async with world(RvizConfig.parse(FILE.format(cls="Marker"))) as w:
-        publisher, page, _ = publisher_and_watcher(w)
-        w.move({("base", "tip"): (1, 2, 3, 0, 0, 2**-0.5, 2**-0.5)}, static=True)
+    async with open_world(RvizConfig.parse(FILE.format(cls="Marker"))) as world:
+        publisher, page, _ = publisher_and_watcher(world)
+        world.move({("base", "tip"): (1, 2, 3, 0, 0, 2**-0.5, 2**-0.5)}, static=True)
         publisher.publish(marker(7, frame="tip", x=1))
-        await w.settle()
+        await world.settle()
         page.look()
         (shown,) = page.markers.values()
         assert (shown["id"], shown["shape"], shown["frame"]) == ("a/7", "cube", "")
@@ -93,78 +93,78 @@ async def test_marker_stays_where_its_frame_was():
 
 
 async def test_frame_locked_marker_follows_its_frame():
-    async with world(RvizConfig.parse(FILE.format(cls="Marker"))) as w:
-        publisher, page, _ = publisher_and_watcher(w)
-        w.move({("base", "tip"): (1, 0, 0, 0, 0, 0, 1)}, static=True)
+    async with open_world(RvizConfig.parse(FILE.format(cls="Marker"))) as world:
+        publisher, page, _ = publisher_and_watcher(world)
+        world.move({("base", "tip"): (1, 0, 0, 0, 0, 0, 1)}, static=True)
         publisher.publish(marker(frame="tip", x=1, frame_locked=True))
-        await w.settle()
+        await world.settle()
         page.look()
         assert page.markers["a/0"]["frame"] == "tip"
         assert page.markers["a/0"]["pose"] == [1, 0, 0, 0, 0, 0, 1]
 
 
 async def test_marker_appears_once_its_frame_is_known():
-    async with world(RvizConfig.parse(FILE.format(cls="Marker"))) as w:
-        publisher, page, display = publisher_and_watcher(w)
+    async with open_world(RvizConfig.parse(FILE.format(cls="Marker"))) as world:
+        publisher, page, display = publisher_and_watcher(world)
         publisher.publish(marker(frame="tip"))
-        await w.settle()
+        await world.settle()
         page.look()
         assert page.markers == {}
         level, text = status(display)["a/0"]
         assert level == "error"
         assert text.startswith("For frame [tip]: No transform to fixed frame [base].  TF error: [")
-        w.move({("base", "tip"): (1, 0, 0, 0, 0, 0, 1)}, static=True)
-        await w.settle()
+        world.move({("base", "tip"): (1, 0, 0, 0, 0, 0, 1)}, static=True)
+        await world.settle()
         page.look()
         assert list(page.markers) == ["a/0"]
         assert "a/0" not in status(display)
 
 
 async def test_filter_size_limits_markers_waiting_for_frames():
-    async with world(RvizConfig.parse(FILE.format(cls="Marker"))) as w:
-        publisher, page, display = publisher_and_watcher(w)
+    async with open_world(RvizConfig.parse(FILE.format(cls="Marker"))) as world:
+        publisher, page, display = publisher_and_watcher(world)
         display.set_property(("Topic", "Filter size"), 2)
         publisher.publish(marker(0))
         for number in (1, 2, 3, 1, 4):
             publisher.publish(marker(number, frame="later"))
-            await w.settle()
+            await world.settle()
         assert set(status(display)) >= {"a/1", "a/4"}
         assert not {"a/2", "a/3"} & set(status(display))
-        w.move({("base", "later"): (1, 0, 0, 0, 0, 0, 1)}, static=True)
-        await w.settle()
+        world.move({("base", "later"): (1, 0, 0, 0, 0, 0, 1)}, static=True)
+        await world.settle()
         page.look()
         assert sorted(page.markers) == ["a/0", "a/1", "a/4"]
 
 
 async def test_markers_are_deleted_individually_and_all():
-    async with world(RvizConfig.parse(FILE.format(cls="MarkerArray"))) as w:
-        publisher, page, _ = publisher_and_watcher(w, MarkerArray)
+    async with open_world(RvizConfig.parse(FILE.format(cls="MarkerArray"))) as world:
+        publisher, page, _ = publisher_and_watcher(world, MarkerArray)
         publisher.publish(MarkerArray(markers=[marker(n, ns=ns) for ns in "ab" for n in range(3)]))
-        await w.settle()
+        await world.settle()
         assert page.look()["everything"] is True
         assert len(page.markers) == 6
         publisher.publish(MarkerArray(markers=[marker(1, action=Marker.DELETE)]))
-        await w.settle()
+        await world.settle()
         change = page.look()
         assert (change["everything"], change["gone"], change["markers"]) == (False, ["a/1"], [])
         publisher.publish(MarkerArray(markers=[marker(0, ns="b", action=Marker.DELETEALL)]))
-        await w.settle()
+        await world.settle()
         page.look()
         assert sorted(page.markers) == ["a/0", "a/2"]
         publisher.publish(MarkerArray(markers=[marker(0, ns="", action=Marker.DELETEALL), marker(9)]))
-        await w.settle()
+        await world.settle()
         page.look()
         assert list(page.markers) == ["a/9"]
 
 
 async def test_marker_disappears_after_lifetime():
-    async with world(RvizConfig.parse(FILE.format(cls="Marker"))) as w:
-        publisher, page, _ = publisher_and_watcher(w)
+    async with open_world(RvizConfig.parse(FILE.format(cls="Marker"))) as world:
+        publisher, page, _ = publisher_and_watcher(world)
         mortal = marker(1)
         mortal.lifetime.nanosec = 1_000_000
         publisher.publish(mortal)
         publisher.publish(marker(2))
-        await w.settle()
+        await world.settle()
         page.look()
         assert sorted(page.markers) == ["a/1", "a/2"]
 
@@ -176,11 +176,11 @@ async def test_marker_disappears_after_lifetime():
 
 
 async def test_namespace_checkboxes_follow_file():
-    async with world(RvizConfig.parse(FILE.format(cls="Marker"))) as w:
-        publisher, _, display = publisher_and_watcher(w)
+    async with open_world(RvizConfig.parse(FILE.format(cls="Marker"))) as world:
+        publisher, _, display = publisher_and_watcher(world)
         publisher.publish(marker(ns="seen"))
         publisher.publish(marker(ns="hidden"))
-        await w.settle()
+        await world.settle()
         (row,) = [row for row in display.properties.rows() if row.name == "Namespaces"]
         assert {child.name: child.value for child in row.children} == {"seen": True, "hidden": False}
         display.set_property(("Namespaces",), False)
@@ -189,10 +189,10 @@ async def test_namespace_checkboxes_follow_file():
 
 
 async def test_duplicate_markers_in_message_are_reported():
-    async with world(RvizConfig.parse(FILE.format(cls="MarkerArray"))) as w:
-        publisher, page, display = publisher_and_watcher(w, MarkerArray)
+    async with open_world(RvizConfig.parse(FILE.format(cls="MarkerArray"))) as world:
+        publisher, page, display = publisher_and_watcher(world, MarkerArray)
         publisher.publish(MarkerArray(markers=[marker(1, x=1), marker(1, x=2)]))
-        await w.settle()
+        await world.settle()
         assert status(display)["Duplicate Marker Check"] == (
             "error",
             "Multiple Markers in the same MarkerArray message had the same ns and id: (a, 1)",
@@ -202,11 +202,11 @@ async def test_duplicate_markers_in_message_are_reported():
 
 
 async def test_late_page_receives_all_markers():
-    async with world(RvizConfig.parse(FILE.format(cls="Marker"))) as w:
-        publisher, page, display = publisher_and_watcher(w)
+    async with open_world(RvizConfig.parse(FILE.format(cls="Marker"))) as world:
+        publisher, page, display = publisher_and_watcher(world)
         for number in range(3):
             publisher.publish(marker(number))
-            await w.settle()
+            await world.settle()
             page.look()
         late = Watcher(display.data()[0])
         late.look()

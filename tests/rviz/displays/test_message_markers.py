@@ -12,7 +12,7 @@ from linkwright.rviz.config.schema import FIXED_FRAME, PropertySpec, topic_spec
 from linkwright.rviz.displays import catalog
 from linkwright.rviz.displays.marker import MessageMarkersDisplay
 from tests.viewer.contents import shown_markers
-from tests.viewer.scene import world
+from tests.viewer.scene import open_world
 
 Float64 = get_message("std_msgs/msg/Float64")
 Marker = get_message("visualization_msgs/msg/Marker")
@@ -58,33 +58,33 @@ def installed(monkeypatch):
     monkeypatch.setattr(catalog, "_display_class", lambda cls: Gauge)
 
 
-async def publish_level(w: Any) -> Any:
-    await w.settle()
-    w.graph.create_node("tank").create_publisher(Float64, "/level", 10).publish(Float64(data=2.0))
-    await w.settle()
-    (display,) = w.viewer.displays
+async def publish_level(world: Any) -> Any:
+    await world.settle()
+    world.graph.create_node("tank").create_publisher(Float64, "/level", 10).publish(Float64(data=2.0))
+    await world.settle()
+    (display,) = world.viewer.displays
     return display
 
 
 @pytest.mark.parametrize("has_frame", [True, False])
 async def test_without_a_header_markers_are_in_the_fixed_frame_and_follow_its_change(has_frame):
-    async with world(RvizConfig.parse(FILE)) as w:
-        display = await publish_level(w)
+    async with open_world(RvizConfig.parse(FILE)) as world:
+        display = await publish_level(world)
         display.set_property(("Use Frame",), has_frame)
         (shown,) = shown_markers(display).values()
         assert shown["pose"][:3] == [0, 0, 0]
-        w.move({("base", "tank"): (1, 0, 0, 0, 0, 0, 1)}, static=True)
-        await w.settle()
-        w.viewer.manager.set_fixed_frame("tank")
-        await w.settle()
+        world.move({("base", "tank"): (1, 0, 0, 0, 0, 0, 1)}, static=True)
+        await world.settle()
+        world.viewer.manager.set_fixed_frame("tank")
+        await world.settle()
         (shown,) = shown_markers(display).values()
         assert shown["pose"][:3] == [0, 0, 0]
 
 
 async def test_a_property_can_place_the_markers_in_another_frame():
-    async with world(RvizConfig.parse(FILE)) as w:
-        w.move({("base", "tank"): (1, 0, 0, 0, 0, 0, 1)}, static=True)
-        display = await publish_level(w)
+    async with open_world(RvizConfig.parse(FILE)) as world:
+        world.move({("base", "tank"): (1, 0, 0, 0, 0, 0, 1)}, static=True)
+        display = await publish_level(world)
         display.set_property(("Frame",), "tank")
         (shown,) = shown_markers(display).values()
         assert shown["pose"][:3] == [1, 0, 0]

@@ -9,7 +9,7 @@ from linkwright.messages import get_message
 from linkwright.rviz import RvizConfig
 from tests.rviz.displays.moveit.arm import signed
 from tests.viewer.contents import shown_markers
-from tests.viewer.scene import world
+from tests.viewer.scene import open_world
 
 Octomap = get_message("octomap_msgs/msg/Octomap")
 FILE = """\
@@ -37,23 +37,23 @@ def octomap(last: list[int], frame: str = "base") -> Any:
     """A map of half a meter with the eight smallest cells at the corner of the middle, in the first octant."""
     inner = [struct.pack("<H", INNER << 14), *[struct.pack("<H", INNER)] * 14]
     leaves = struct.pack("<H", sum(state << 2 * child for child, state in enumerate(last)))
-    made = Octomap(binary=True, id="OcTree", resolution=0.5, data=signed(b"".join([*inner, leaves])))
-    made.header.frame_id = frame
-    return made
+    message = Octomap(binary=True, id="OcTree", resolution=0.5, data=signed(b"".join([*inner, leaves])))
+    message.header.frame_id = frame
+    return message
 
 
 async def test_octomap_cells_follow_properties():
-    async with world(RvizConfig.parse(FILE)) as w:
-        w.move_arm()
-        publisher = w.graph.create_node("mapper").create_publisher(Octomap, "/octomap", 10)
-        await w.settle()
+    async with open_world(RvizConfig.parse(FILE)) as world:
+        world.move_arm()
+        publisher = world.graph.create_node("mapper").create_publisher(Octomap, "/octomap", 10)
+        await world.settle()
         publisher.publish(octomap([OCCUPIED, FREE, 0, 0, OCCUPIED, 0, 0, 0]))
-        await w.settle()
-        (display,) = w.viewer.displays
+        await world.settle()
+        (display,) = world.viewer.displays
         (marker,) = shown_markers(display).values()
         assert (marker["frame"], marker["scale"]) == ("base", [0.5, 0.5, 0.5])
         assert sorted(marker["points"].reshape(-1, 3).tolist()) == [[0.25, 0.25, 0.25], [0.25, 0.25, 0.75]]
-        assert w.status("OccupancyGrid")["Transform"] == ("ok", "Transform OK")
+        assert world.status("OccupancyGrid")["Transform"] == ("ok", "Transform OK")
 
         def cells() -> int:
             return sum(len(shown_marker["points"]) // 3 for shown_marker in shown_markers(display).values())
@@ -68,23 +68,23 @@ async def test_octomap_cells_follow_properties():
 
 
 async def test_invalid_octomaps_and_frames_are_reported():
-    async with world(RvizConfig.parse(FILE)) as w:
-        w.move_arm()
-        publisher = w.graph.create_node("mapper").create_publisher(Octomap, "/octomap", 10)
-        await w.settle()
+    async with open_world(RvizConfig.parse(FILE)) as world:
+        world.move_arm()
+        publisher = world.graph.create_node("mapper").create_publisher(Octomap, "/octomap", 10)
+        await world.settle()
         publisher.publish(Octomap(binary=True, id="OcTree", resolution=0.5, data=[1]))
-        await w.settle()
-        status = w.status("OccupancyGrid")
+        await world.settle()
+        status = world.status("OccupancyGrid")
         assert status["Octomap"] == ("error", "The data of the octomap ends too early, after 1 bytes")
         publisher.publish(octomap([OCCUPIED] * 8, frame="nowhere"))
-        await w.settle()
-        status = w.status("OccupancyGrid")
+        await world.settle()
+        status = world.status("OccupancyGrid")
         assert "Octomap" not in status
         assert status["Transform"] == ("error", "No transform from [nowhere] to [base]")
 
 
 async def test_octomap_file_is_saved_unchanged():
-    async with world(RvizConfig.parse(FILE)) as w:
-        assert w.viewer.displays[0].row().supported
-        assert w.viewer.config.warnings == []
-        assert w.viewer.config.text() == FILE
+    async with open_world(RvizConfig.parse(FILE)) as world:
+        assert world.viewer.displays[0].row().supported
+        assert world.viewer.config.warnings == []
+        assert world.viewer.config.text() == FILE

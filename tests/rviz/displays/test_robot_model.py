@@ -8,7 +8,7 @@ from linkwright.graph import DESCRIPTION_QOS
 from linkwright.messages import String
 from linkwright.rviz import RvizConfig
 from tests.page.test_files import package, write
-from tests.viewer.scene import ARM, World, page, rows_by_id, world
+from tests.viewer.scene import ARM, World, open_world, page, rows_by_id
 
 MESHED = ARM.replace('<box size="1 2 3"/>', '<mesh filename="package://robot/meshes/arm.stl"/>')
 
@@ -22,44 +22,44 @@ def config(extra: str = "") -> RvizConfig:
     )
 
 
-async def opened(made):
-    async with page(made.viewer) as client:
+async def opened(world):
+    async with page(world.viewer) as client:
         return await client.opened()
 
 
 async def test_robot_model_waits_for_description():
-    async with world(config()) as made:
-        opening = await opened(made)
+    async with open_world(config()) as world:
+        opening = await opened(world)
     assert opening["robot_scene"]["links"] == []
-    assert made.status("RobotModel") == {"Topic": ("warn", "No messages received")}
+    assert world.status("RobotModel") == {"Topic": ("warn", "No messages received")}
 
 
 async def test_description_becomes_scene_with_rows_and_status():
-    async with world(config()) as made:
-        made.describe(ARM)
-        await made.settle()
-        opening = await opened(made)
+    async with open_world(config()) as world:
+        world.describe(ARM)
+        await world.settle()
+        opening = await opened(world)
         scene = opening["robot_scene"]
         assert (scene["display"], scene["name"], scene["revision"]) == ("display-1", "arm", 1)
         assert [link["name"] for link in scene["links"]] == ["base", "tip", "mark"]
-        assert made.status("RobotModel") == {
+        assert world.status("RobotModel") == {
             "Topic": ("ok", "OK"),
             "URDF": ("ok", "URDF parsed OK"),
             "base": ("ok", "Transform OK"),
             "mark": ("error", "No transform from [mark] to [base]"),
             "tip": ("error", "No transform from [tip] to [base]"),
         }
-        made.move_arm()
-        await made.settle()
-        await opened(made)
-        assert {text for _, text in made.status("RobotModel").values()} == {"OK", "URDF parsed OK", "Transform OK"}
+        world.move_arm()
+        await world.settle()
+        await opened(world)
+        assert {text for _, text in world.status("RobotModel").values()} == {"OK", "URDF parsed OK", "Transform OK"}
 
 
 async def test_robot_model_properties_match_rviz():
-    async with world(config()) as made:
-        made.describe(ARM)
-        await made.settle()
-        properties = (await opened(made))["tree"]["displays"][0]["properties"]
+    async with open_world(config()) as world:
+        world.describe(ARM)
+        await world.settle()
+        properties = (await opened(world))["tree"]["displays"][0]["properties"]
     values = {row["name"]: row["value"] for row in properties}
     assert values == {
         "Visual Enabled": True,
@@ -96,10 +96,10 @@ async def test_robot_model_properties_match_rviz():
 
 
 async def test_link_properties_are_read_from_file():
-    async with world(config(", Alpha: 0.8, Links: {tip: {Alpha: 0.25, Value: false}}")) as made:
-        made.describe(ARM)
-        await made.settle()
-        rows = rows_by_id((await opened(made))["tree"]["displays"][0]["properties"])
+    async with open_world(config(", Alpha: 0.8, Links: {tip: {Alpha: 0.25, Value: false}}")) as world:
+        world.describe(ARM)
+        await world.settle()
+        rows = rows_by_id((await opened(world))["tree"]["displays"][0]["properties"])
     assert rows["display-1/Alpha"]["value"] == 0.8
     assert rows["display-1/Links/tip"]["value"] is False
     assert rows["display-1/Links/tip/Alpha"]["value"] == 0.25
@@ -107,32 +107,32 @@ async def test_link_properties_are_read_from_file():
 
 
 async def test_all_links_enabled_sets_all_links():
-    async with world(config()) as made:
-        made.describe(ARM)
-        await made.settle()
-        async with page(made.viewer) as client:
+    async with open_world(config()) as world:
+        world.describe(ARM)
+        await world.settle()
+        async with page(world.viewer) as client:
             await client.opened()
             await client.set("display-1/Links/All Links Enabled", False)
             for name in ("Links/base", "Links/tip", "Joints/turn"):
                 assert (await client.until("property_changed", id=f"display-1/{name}"))["value"] is False
-            assert made.viewer.config.displays[0].section.scalar("Links", "tip").text == "false"
+            assert world.viewer.config.displays[0].section.scalar("Links", "tip").text == "false"
 
 
 async def test_joint_checkbox_sets_links_below_and_follows_them():
-    async with world(config(", Links: {Link Tree Style: Tree of links and joints}")) as made:
-        made.describe(
+    async with open_world(config(", Links: {Link Tree Style: Tree of links and joints}")) as world:
+        world.describe(
             ARM.replace(
                 '<link name="mark"/>',
                 '<link name="mark"><visual><geometry><sphere radius="1"/></geometry></visual></link>',
             )
         )
-        await made.settle()
-        display = made.display("RobotModel")
+        await world.settle()
+        display = world.display("RobotModel")
 
         def boxes() -> dict[str, object]:
             paths = (("Links", "base"), ("Links", "tip"), ("Links", "mark"), ("Joints", "turn"), ("Joints", "fix"))
-            found = {path[1]: display.properties.get(*path) for path in paths}
-            return {**found, "all": display.properties.get("Links", "All Links Enabled")}
+            property_values = {path[1]: display.properties.get(*path) for path in paths}
+            return {**property_values, "all": display.properties.get("Links", "All Links Enabled")}
 
         on = dict.fromkeys(boxes(), True)
         assert boxes() == on
@@ -149,18 +149,18 @@ async def test_joint_checkbox_sets_links_below_and_follows_them():
 
 @pytest.mark.parametrize("box", ["Joints/turn", "Links/All Links Enabled", "Links/base"])
 async def test_undo_reverts_all_links_set_by_checkbox(box):
-    async with world(config(", Links: {tip: {Value: false}}")) as made:
-        made.describe(ARM)
-        await made.settle()
-        display = made.display("RobotModel")
+    async with open_world(config(", Links: {tip: {Value: false}}")) as world:
+        world.describe(ARM)
+        await world.settle()
+        display = world.display("RobotModel")
         paths = (("Links", "base"), ("Links", "tip"), ("Joints", "turn"), ("Links", "All Links Enabled"))
 
         def boxes() -> list[object]:
             return [display.properties.get(*path) for path in paths]
 
-        before, text = boxes(), made.viewer.config.text()
+        before, text = boxes(), world.viewer.config.text()
         assert before == [True, False, False, False]
-        async with page(made.viewer) as client:
+        async with page(world.viewer) as client:
             await client.opened()
             value = not display.properties.get(*box.split("/"))
             await client.set(f"display-1/{box}", value)
@@ -169,29 +169,29 @@ async def test_undo_reverts_all_links_set_by_checkbox(box):
             await client.send("undo")
             await client.until("display_properties", display="display-1")
             assert boxes() == before
-            assert made.viewer.config.text() == text
+            assert world.viewer.config.text() == text
 
 
 async def test_link_checkboxes_do_not_change_file_on_load():
     text = ", Links: {All Links Enabled: true, tip: {Value: false}}"
-    async with world(config(text)) as made:
-        before = made.viewer.config.text()
-        made.describe(ARM)
-        await made.settle()
-        display = made.display("RobotModel")
+    async with open_world(config(text)) as world:
+        before = world.viewer.config.text()
+        world.describe(ARM)
+        await world.settle()
+        display = world.display("RobotModel")
         assert display.properties.get("Joints", "turn") is False
         assert display.properties.get("Links", "All Links Enabled") is False
-        assert made.viewer.config.text() == before
+        assert world.viewer.config.text() == before
 
 
 async def test_joint_and_mass_properties_come_from_description():
     heavy = '<inertial><mass value="2"/><inertia ixx="1" iyy="1" izz="1" ixy="0" ixz="0" iyz="0"/></inertial>'
     limited = '<axis xyz="0 0 1"/><origin xyz="0 0 1"/><limit lower="-1" upper="2" effort="1" velocity="1"/>'
-    async with world(config()) as made:
+    async with open_world(config()) as world:
         text = ARM.replace('type="continuous"', 'type="revolute"').replace('<axis xyz="0 0 1"/>', limited)
-        made.describe(text.replace('<link name="mark"/>', f'<link name="mark">{heavy}</link>'))
-        await made.settle()
-        scene = (await opened(made))["robot_scene"]
+        world.describe(text.replace('<link name="mark"/>', f'<link name="mark">{heavy}</link>'))
+        await world.settle()
+        scene = (await opened(world))["robot_scene"]
     turn, fix = scene["joints"]
     assert turn == {
         "name": "turn",
@@ -212,11 +212,11 @@ async def test_joint_and_mass_properties_come_from_description():
 
 
 async def test_new_description_replaces_robot_and_frames():
-    async with world(config()) as made, page(made.viewer) as client:
-        made.describe(ARM)
-        made.move_arm()
+    async with open_world(config()) as world, page(world.viewer) as client:
+        world.describe(ARM)
+        world.move_arm()
         await client.until("robot_scene", revision=1)
-        made.describe(ARM.replace('"mark"', '"point"'))
+        world.describe(ARM.replace('"mark"', '"point"'))
         scene = await client.until("robot_scene", revision=2)
         assert [link["name"] for link in scene["links"]] == ["base", "tip", "point"]
         await client.drain()  # the table of frames may come before or after
@@ -227,25 +227,25 @@ async def test_new_description_replaces_robot_and_frames():
 
 
 async def test_new_description_waits_while_time_is_paused():
-    async with world(config()) as made:
-        made.describe(ARM)
-        await made.settle()
-        made.viewer.manager.set_time(paused=True, mode="Off", source="")
-        made.describe(ARM.replace('"mark"', '"point"'))
-        await made.settle()
-        assert "mark" in made.display("RobotModel").robot.links
-        made.viewer.manager.set_time(paused=False, mode="Off", source="")
-        assert "point" in made.display("RobotModel").robot.links
+    async with open_world(config()) as world:
+        world.describe(ARM)
+        await world.settle()
+        world.viewer.manager.set_time(paused=True, mode="Off", source="")
+        world.describe(ARM.replace('"mark"', '"point"'))
+        await world.settle()
+        assert "mark" in world.display("RobotModel").robot.links
+        world.viewer.manager.set_time(paused=False, mode="Off", source="")
+        assert "point" in world.display("RobotModel").robot.links
 
 
 async def test_repeated_description_changes_nothing():
-    async with world(config()) as made:
-        made.describe(ARM)
-        await made.settle()
-        async with page(made.viewer) as client:
+    async with open_world(config()) as world:
+        world.describe(ARM)
+        await world.settle()
+        async with page(world.viewer) as client:
             await client.opened()
-            made.describe(ARM)
-            assert [each for each in await client.drain() if isinstance(each, dict)] == []
+            world.describe(ARM)
+            assert [message for message in await client.drain() if isinstance(message, dict)] == []
 
 
 @pytest.mark.parametrize(
@@ -257,26 +257,26 @@ async def test_repeated_description_changes_nothing():
     ],
 )
 async def test_invalid_description_keeps_last_robot(text, rows):
-    async with world(config()) as made:
-        made.describe(ARM)
-        await made.settle()
-        made.describe(text)
-        await made.settle()
-        status = made.status("RobotModel")
+    async with open_world(config()) as world:
+        world.describe(ARM)
+        await world.settle()
+        world.describe(text)
+        await world.settle()
+        status = world.status("RobotModel")
         assert rows.items() <= status.items()
         assert "base" in status
-        assert len((await opened(made))["robot_scene"]["links"]) == 3
-        made.describe(ARM)
-        await made.settle()
-        assert made.status("RobotModel")["URDF"] == ("ok", "URDF parsed OK")
+        assert len((await opened(world))["robot_scene"]["links"]) == 3
+        world.describe(ARM)
+        await world.settle()
+        assert world.status("RobotModel")["URDF"] == ("ok", "URDF parsed OK")
 
 
 async def test_tf_prefix_is_prepended_to_frames():
-    async with world(config(", TF Prefix: one")) as made:
-        made.describe(ARM)
-        await made.settle()
-        assert made.status("RobotModel")["tip"][1] == "No transform from [one/tip] to [base]"
-        async with page(made.viewer) as client:
+    async with open_world(config(", TF Prefix: one")) as world:
+        world.describe(ARM)
+        await world.settle()
+        assert world.status("RobotModel")["tip"][1] == "No transform from [one/tip] to [base]"
+        async with page(world.viewer) as client:
             await client.opened()
             await client.set("display-1/TF Prefix", "")
             scene = await client.until("robot_scene")
@@ -287,27 +287,27 @@ async def test_tf_prefix_is_prepended_to_frames():
     "topic", ["Value: /robot_description, Durability Policy: Volatile", "Value: robot_description"]
 )
 async def test_latched_description_is_received_with_any_topic_settings(topic):
-    made = World(config(f", Description Topic: {{{topic}}}"))
-    made.describe(ARM)
-    await made.settle()
-    await made.viewer.start()
-    await made.settle()
-    assert "base" in made.status("RobotModel")
-    await made.viewer.close()
-    await made.graph.close()
+    world = World(config(f", Description Topic: {{{topic}}}"))
+    world.describe(ARM)
+    await world.settle()
+    await world.viewer.start()
+    await world.settle()
+    assert "base" in world.status("RobotModel")
+    await world.viewer.close()
+    await world.graph.close()
 
 
 async def test_changed_description_topic_is_subscribed():
-    async with world(config()) as made, page(made.viewer) as client:
+    async with open_world(config()) as world, page(world.viewer) as client:
         await client.opened()
         await client.set("display-1/Description Topic", "/other")
         await client.until("property_changed", id="display-1/Description Topic")
-        assert made.graph.count_subscribers("/robot_description") == 0
-        assert made.graph.count_subscribers("/other") == 1
+        assert world.graph.count_subscribers("/robot_description") == 0
+        assert world.graph.count_subscribers("/other") == 1
         for topic, text in (("", "Empty topic name"), ("a b", "'a b' is not a valid topic name")):
             await client.set("display-1/Description Topic", topic)
             await client.until("property_changed", id="display-1/Description Topic")
-            level, status = made.status("RobotModel")["Topic"]
+            level, status = world.status("RobotModel")["Topic"]
             assert (level, text in status) == ("error", True)
             assert status.startswith("Error subscribing: ")
 
@@ -318,20 +318,20 @@ async def test_description_may_come_from_xacro_file(tmp_path):
         '<robot name="r" xmlns:xacro="http://www.ros.org/wiki/xacro">\n  <link name="${\'ba\' + \'se\'}"/>\n</robot>\n',
     )
     async with (
-        world(config(f", Description Source: File, Description File: {path}")) as made,
-        page(made.viewer) as client,
+        open_world(config(f", Description Source: File, Description File: {path}")) as world,
+        page(world.viewer) as client,
     ):
         scene = await client.until("robot_scene", revision=1)
         (link,) = scene["links"]
         assert (link["name"], link["place"]["file"], link["place"]["line"]) == ("base", str(path), 2)
         await client.set("display-1/Description File", str(tmp_path / "gone.urdf"))
         await client.until("display_status", level="error")
-        rows = made.status("RobotModel")
+        rows = world.status("RobotModel")
         assert rows["URDF"][0] == "error"
         assert any("gone.urdf" in text for _, text in rows.values())
         await client.set("display-1/Description File", "")
         await client.until("property_changed", id="display-1/Description File")
-        assert made.status("RobotModel")["Description File"] == ("error", "No Description File is set")
+        assert world.status("RobotModel")["Description File"] == ("error", "No Description File is set")
         await client.set("display-1/Description Source", "Topic")
         rows = {row["name"] for row in (await client.until("display_properties"))["properties"]}
         assert "Description Topic" in rows
@@ -340,29 +340,29 @@ async def test_description_may_come_from_xacro_file(tmp_path):
 
 async def test_missing_mesh_is_reported_in_status_and_once_in_log(tmp_path: Path):
     share = package(tmp_path / "robot", "robot")
-    async with world(config(), packages={"robot": share}) as made:
-        made.describe(MESHED)
-        await made.settle()
-        made.describe(MESHED + "<!-- saved again -->")
-        await made.settle()
-        level, text = made.status("RobotModel")["base"]
+    async with open_world(config(), packages={"robot": share}) as world:
+        world.describe(MESHED)
+        await world.settle()
+        world.describe(MESHED + "<!-- saved again -->")
+        await world.settle()
+        level, text = world.status("RobotModel")["base"]
         assert level == "error"
         assert "'package://robot/meshes/arm.stl'" in text
         assert str(share / "meshes" / "arm.stl") in text
-        assert made.logged().count(str(share / "meshes" / "arm.stl")) == 1
+        assert world.logged().count(str(share / "meshes" / "arm.stl")) == 1
         write(share / "meshes" / "arm.stl")
-        made.describe(MESHED)
-        await made.settle()
-        assert made.status("RobotModel")["base"] == ("ok", "Transform OK")
+        world.describe(MESHED)
+        await world.settle()
+        assert world.status("RobotModel")["base"] == ("ok", "Transform OK")
 
 
 async def test_mesh_errors_of_pages_are_shown_in_status(tmp_path):
     share = package(tmp_path / "robot", "robot")
     write(share / "meshes" / "arm.stl")
-    async with world(config(), packages={"robot": share}) as made:
-        made.describe(MESHED)
-        await made.settle()
-        async with page(made.viewer) as client:
+    async with open_world(config(), packages={"robot": share}) as world:
+        world.describe(MESHED)
+        await world.settle()
+        async with page(world.viewer) as client:
             url = (await client.opened())["robot_scene"]["links"][0]["visuals"][0]["url"]
 
             async def report_mesh_error(error, address=url, link="base"):
@@ -378,73 +378,73 @@ async def test_mesh_errors_of_pages_are_shown_in_status(tmp_path):
             await report_mesh_error(None)
             status = await client.until("display_status")
             assert next(row for row in status["status"] if row["name"] == "base")["level"] == "ok"
-            assert made.logged().count("not an STL file") == 1
-            assert "stale" not in made.logged()
+            assert world.logged().count("not an STL file") == 1
+            assert "stale" not in world.logged()
 
 
-def published(made: World, node: str, text: str):
+def published(world: World, node: str, text: str):
     """A node that publishes a description."""
-    publisher = made.graph.create_node(node)
+    publisher = world.graph.create_node(node)
     publisher.create_publisher(String, "robot_description", DESCRIPTION_QOS).publish(String(data=text))
     return publisher
 
 
 async def test_status_names_publisher_of_shown_description():
     other = ARM.replace('name="arm"', 'name="other"')
-    async with world(config()) as made:
-        first = published(made, "first", ARM)
-        await made.settle()
-        assert made.status("RobotModel")["Topic"] == ("ok", "OK")
-        second = published(made, "second", ARM)
-        await made.settle()
-        level, text = made.status("RobotModel")["Topic"]
+    async with open_world(config()) as world:
+        first = published(world, "first", ARM)
+        await world.settle()
+        assert world.status("RobotModel")["Topic"] == ("ok", "OK")
+        second = published(world, "second", ARM)
+        await world.settle()
+        level, text = world.status("RobotModel")["Topic"]
         assert (level, "of /second is shown; /first" in text) == ("ok", True)
-        assert "replaces that of" not in made.logged()
-        published(made, "third", other)
-        await made.settle()
-        level, text = made.status("RobotModel")["Topic"]
+        assert "replaces that of" not in world.logged()
+        published(world, "third", other)
+        await world.settle()
+        level, text = world.status("RobotModel")["Topic"]
         assert (level, "of /third is shown; /first, /second also publish" in text) == ("warn", True)
-        assert "The description of /third replaces that of /second" in made.logged()
+        assert "The description of /third replaces that of /second" in world.logged()
         for node in (first, second):
             node.destroy_node()
 
 
 async def test_description_publisher_change_is_reported_after_gid_change():
     """Then publishers have other GIDs than when their first messages came."""
-    async with world(config()) as made:
-        first = made.graph.create_node("first")
+    async with open_world(config()) as world:
+        first = world.graph.create_node("first")
         publisher = first.create_publisher(String, "robot_description", DESCRIPTION_QOS)
         publisher.publish(String(data=ARM))
-        await made.settle()
+        await world.settle()
         publisher.gid = bytes(range(16))
-        second = published(made, "second", ARM.replace('name="arm"', 'name="other"'))
-        await made.settle()
-        level, text = made.status("RobotModel")["Topic"]
+        second = published(world, "second", ARM.replace('name="arm"', 'name="other"'))
+        await world.settle()
+        level, text = world.status("RobotModel")["Topic"]
         assert (level, "of /second is shown; /first also publish" in text) == ("warn", True)
         publisher.publish(String(data=ARM))
-        await made.settle()
-        assert "of /first is shown; /second also publish" in made.status("RobotModel")["Topic"][1]
+        await world.settle()
+        assert "of /first is shown; /second also publish" in world.status("RobotModel")["Topic"][1]
         second.destroy_node()
 
 
 async def test_description_from_vanished_node_is_reported():
-    async with world(config()) as made:
-        published(made, "first", ARM)
-        await made.settle()
-        second = published(made, "second", ARM.replace('name="arm"', 'name="other"'))
+    async with open_world(config()) as world:
+        published(world, "first", ARM)
+        await world.settle()
+        second = published(world, "second", ARM.replace('name="arm"', 'name="other"'))
         second.destroy_node()
-        await made.settle()
-        assert made.display("RobotModel").robot.name == "other"
-        level, text = made.status("RobotModel")["Topic"]
+        await world.settle()
+        assert world.display("RobotModel").robot.name == "other"
+        level, text = world.status("RobotModel")["Topic"]
         assert (level, "of an unknown node is shown; /first also publish" in text) == ("warn", True)
 
 
 async def test_description_from_restarted_node_replaces_without_warning():
-    async with world(config()) as made:
-        first = published(made, "first", ARM)
-        await made.settle()
+    async with open_world(config()) as world:
+        first = published(world, "first", ARM)
+        await world.settle()
         first.destroy_node()
-        published(made, "first", ARM.replace('name="arm"', 'name="other"'))
-        await made.settle()
-        assert made.display("RobotModel").robot.name == "other"
-        assert "replaces that of" not in made.logged()
+        published(world, "first", ARM.replace('name="arm"', 'name="other"'))
+        await world.settle()
+        assert world.display("RobotModel").robot.name == "other"
+        assert "replaces that of" not in world.logged()

@@ -8,7 +8,7 @@ from pathlib import Path
 import linkwright.rviz
 from linkwright.diagnostics import Diagnostic, phrase
 from tests.rviz.displays.test_topic_display import config
-from tests.viewer.scene import page, world
+from tests.viewer.scene import open_world, page
 
 RVIZ = Path(linkwright.rviz.__file__).parent
 _TEXT_OF = {"set_status_row": 2, "refuse": 0, "_refuse": 1, "StatusRow": 2}
@@ -27,14 +27,14 @@ def _is_plain(text: ast.expr) -> bool:
 
 
 def _statuses(folder: Path) -> list[tuple[str, ast.expr]]:
-    found = []
+    statuses = []
     for path in sorted(folder.rglob("*.py")):
         for node in ast.walk(ast.parse(path.read_text(encoding="utf-8"))):
             if isinstance(node, ast.Call):
                 place = _TEXT_OF.get(node.func.attr if isinstance(node.func, ast.Attribute) else ast.unparse(node.func))
                 if place is not None and len(node.args) > place:
-                    found.append((f"{path.relative_to(RVIZ)}:{node.lineno}", node.args[place]))
-    return found
+                    statuses.append((f"{path.relative_to(RVIZ)}:{node.lineno}", node.args[place]))
+    return statuses
 
 
 def test_all_statuses_are_translatable_phrases():
@@ -49,12 +49,12 @@ async def test_statuses_are_sent_in_language_of_page():
         "en": "No messages received: the topic has no publisher",
     }
     wrong = {"zh": "订阅出错：话题名为空", "en": "Error subscribing: Empty topic name"}
-    async with world(config()) as w:
+    async with open_world(config()) as world:
         for language, text in silent.items():
-            async with page(w.viewer, f"&language={language}") as client:
+            async with page(world.viewer, f"&language={language}") as client:
                 (display,) = (await client.opened())["tree"]["displays"]
                 assert [row["text"] for row in display["status"]] == [text]
-        async with page(w.viewer, "&language=zh-CN") as chinese, page(w.viewer) as other:
+        async with page(world.viewer, "&language=zh-CN") as chinese, page(world.viewer) as other:
             await chinese.opened()
             await other.opened()
             await other.set(f"{display['id']}/Topic", "")
@@ -64,9 +64,13 @@ async def test_statuses_are_sent_in_language_of_page():
 
 
 async def test_findings_are_sent_in_language_of_page():
-    async with world(config()) as w, page(w.viewer, "&language=zh") as chinese, page(w.viewer) as other:
+    async with (
+        open_world(config()) as world,
+        page(world.viewer, "&language=zh") as chinese,
+        page(world.viewer) as other,
+    ):
         await chinese.opened()
         await other.opened()
-        w.viewer.show_diagnostics([Diagnostic("URDF101", phrase("URDF is empty"))])
+        world.viewer.show_diagnostics([Diagnostic("URDF101", phrase("URDF is empty"))])
         texts = [(await client.until("diagnostics"))["items"][0]["message"] for client in (chinese, other)]
         assert texts == ["URDF 是空的", "URDF is empty"]

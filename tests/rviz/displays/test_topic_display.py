@@ -14,7 +14,7 @@ from linkwright.messages import get_message
 from linkwright.rviz import RvizConfig
 from tests.skipping import skipping
 from tests.viewer.contents import contents
-from tests.viewer.scene import world
+from tests.viewer.scene import open_world
 from tests.waiting import eventually
 
 PointStamped = get_message("geometry_msgs/msg/PointStamped")
@@ -53,124 +53,127 @@ def point_at(stamp_ns: int, frame: str) -> PointStamped:
 def points(world) -> list[list[float]]:
     """Of the frames that a page would be sent, in the fixed frame, oldest first."""
     shown = sorted(contents(world.display("PointStamped")), key=lambda content: content.key)
-    assert all(each.fields["kind"] == "point_marks" for each in shown)
-    return [(each.fields["positions"] @ rotation_matrix(each.pose[3:]).T + each.pose[:3]).tolist() for each in shown]
+    assert all(content.fields["kind"] == "point_marks" for content in shown)
+    return [
+        (content.fields["positions"] @ rotation_matrix(content.pose[3:]).T + content.pose[:3]).tolist()
+        for content in shown
+    ]
 
 
 async def test_point_is_drawn_at_its_pose_in_fixed_frame():
-    async with world(config()) as w:
-        publisher = w.graph.create_node("clicks").create_publisher(PointStamped, "/clicked_point", 5)
-        assert w.status("PointStamped") == {"Topic": ("warn", "No messages received: the topic has no publisher")}
-        w.move({("base", "tip"): (1, 2, 3, 0, 0, 2**-0.5, 2**-0.5)}, static=True)
+    async with open_world(config()) as world:
+        publisher = world.graph.create_node("clicks").create_publisher(PointStamped, "/clicked_point", 5)
+        assert world.status("PointStamped") == {"Topic": ("warn", "No messages received: the topic has no publisher")}
+        world.move({("base", "tip"): (1, 2, 3, 0, 0, 2**-0.5, 2**-0.5)}, static=True)
         publisher.publish(point(1.0, "tip"))
-        await w.settle()
-        np.testing.assert_allclose(points(w), [[1, 3, 3]], atol=1e-6)
-        assert w.status("PointStamped") == {
+        await world.settle()
+        np.testing.assert_allclose(points(world), [[1, 3, 3]], atol=1e-6)
+        assert world.status("PointStamped") == {
             "Topic": ("ok", "1 messages received"),
             "Transform": ("ok", "Transform OK"),
         }
 
 
 async def test_message_waits_for_its_transform():
-    async with world(config()) as w:
-        publisher = w.graph.create_node("clicks").create_publisher(PointStamped, "/clicked_point", 5)
+    async with open_world(config()) as world:
+        publisher = world.graph.create_node("clicks").create_publisher(PointStamped, "/clicked_point", 5)
         publisher.publish(point(1.0, "tip"))
-        await w.settle()
-        assert w.display("PointStamped").data() == []
-        level, text = w.status("PointStamped")["Transform"]
+        await world.settle()
+        assert world.display("PointStamped").data() == []
+        level, text = world.status("PointStamped")["Transform"]
         assert (level, text.split(":")[0]) == ("error", "Could not transform from [tip] to [base]")
-        w.move({("base", "tip"): (1, 0, 0, 0, 0, 0, 1)}, static=True)
-        await w.settle()
-        assert points(w) == [[2, 0, 0]]
-        assert w.status("PointStamped")["Transform"] == ("ok", "Transform OK")
+        world.move({("base", "tip"): (1, 0, 0, 0, 0, 0, 1)}, static=True)
+        await world.settle()
+        assert points(world) == [[2, 0, 0]]
+        assert world.status("PointStamped")["Transform"] == ("ok", "Transform OK")
 
 
 @skipping
 async def test_slightly_late_transforms_are_not_an_error():
     """Drivers publish their data before tf has the pose of that moment: that is how it is, not a fault."""
-    async with world(config()) as w:
-        publisher = w.graph.create_node("clicks").create_publisher(PointStamped, "/clicked_point", 5)
-        w.move({("base", "tip"): (0, 0, 0, 0, 0, 0, 1)})
+    async with open_world(config()) as world:
+        publisher = world.graph.create_node("clicks").create_publisher(PointStamped, "/clicked_point", 5)
+        world.move({("base", "tip"): (0, 0, 0, 0, 0, 0, 1)})
         for _ in range(30):
-            publisher.publish(point_at(w.graph.timebase.now_ns() + 50_000_000, "tip"))
-            await w.settle()
-            assert w.status("PointStamped").get("Transform") in (None, ("ok", "Transform OK"))
+            publisher.publish(point_at(world.graph.timebase.now_ns() + 50_000_000, "tip"))
+            await world.settle()
+            assert world.status("PointStamped").get("Transform") in (None, ("ok", "Transform OK"))
             await asyncio.sleep(0.1)
-            assert w.status("PointStamped").get("Transform") in (None, ("ok", "Transform OK"))
-            w.move({("base", "tip"): (1, 0, 0, 0, 0, 0, 1)})
-            await w.settle()
-            assert w.status("PointStamped")["Transform"] == ("ok", "Transform OK")
-        assert len(points(w)) == 1
+            assert world.status("PointStamped").get("Transform") in (None, ("ok", "Transform OK"))
+            world.move({("base", "tip"): (1, 0, 0, 0, 0, 0, 1)})
+            await world.settle()
+            assert world.status("PointStamped")["Transform"] == ("ok", "Transform OK")
+        assert len(points(world)) == 1
 
 
 @skipping
 async def test_missing_transforms_are_an_error():
-    async with world(config()) as w:
-        publisher = w.graph.create_node("clicks").create_publisher(PointStamped, "/clicked_point", 5)
-        w.move({("base", "tip"): (0, 0, 0, 0, 0, 0, 1)})
-        publisher.publish(point_at(w.graph.timebase.now_ns() + 50_000_000, "tip"))
-        await w.settle()
-        assert "Transform" not in w.status("PointStamped")
+    async with open_world(config()) as world:
+        publisher = world.graph.create_node("clicks").create_publisher(PointStamped, "/clicked_point", 5)
+        world.move({("base", "tip"): (0, 0, 0, 0, 0, 0, 1)})
+        publisher.publish(point_at(world.graph.timebase.now_ns() + 50_000_000, "tip"))
+        await world.settle()
+        assert "Transform" not in world.status("PointStamped")
         await asyncio.sleep(2.0)
-        level, text = w.status("PointStamped")["Transform"]
+        level, text = world.status("PointStamped")["Transform"]
         assert level == "error"
         assert "extrapolation" in text
-        w.move({("base", "tip"): (1, 0, 0, 0, 0, 0, 1)})
-        await w.settle()
-        assert w.status("PointStamped")["Transform"] == ("ok", "Transform OK")
+        world.move({("base", "tip"): (1, 0, 0, 0, 0, 0, 1)})
+        await world.settle()
+        assert world.status("PointStamped")["Transform"] == ("ok", "Transform OK")
         await asyncio.sleep(2.0)
-        assert w.status("PointStamped")["Transform"] == ("ok", "Transform OK")
+        assert world.status("PointStamped")["Transform"] == ("ok", "Transform OK")
 
 
 async def test_fixed_frame_change_transforms_last_message_again():
-    async with world(config()) as w:
-        publisher = w.graph.create_node("clicks").create_publisher(PointStamped, "/clicked_point", 5)
-        w.move({("base", "tip"): (1, 0, 0, 0, 0, 0, 1)}, static=True)
+    async with open_world(config()) as world:
+        publisher = world.graph.create_node("clicks").create_publisher(PointStamped, "/clicked_point", 5)
+        world.move({("base", "tip"): (1, 0, 0, 0, 0, 0, 1)}, static=True)
         publisher.publish(point(1.0))
-        await w.settle()
-        assert points(w) == [[1, 0, 0]]
-        w.viewer.manager.set_fixed_frame("tip")
-        await w.settle()
-        assert points(w) == [[0, 0, 0]]
+        await world.settle()
+        assert points(world) == [[1, 0, 0]]
+        world.viewer.manager.set_fixed_frame("tip")
+        await world.settle()
+        assert points(world) == [[0, 0, 0]]
 
 
 @pytest.mark.parametrize(("length", "expected"), [(1, [[3, 0, 0]]), (3, [[1, 0, 0], [2, 0, 0], [3, 0, 0]])])
 async def test_history_length_limits_number_of_points(length, expected):
-    async with world(config(f"      History Length: {length}\n")) as w:
-        publisher = w.graph.create_node("clicks").create_publisher(PointStamped, "/clicked_point", 5)
+    async with open_world(config(f"      History Length: {length}\n")) as world:
+        publisher = world.graph.create_node("clicks").create_publisher(PointStamped, "/clicked_point", 5)
         for x in (1.0, 2.0, 3.0):
             publisher.publish(point(x))
-        await w.settle()
-        assert points(w) == expected
+        await world.settle()
+        assert points(world) == expected
 
 
 async def test_nan_point_is_reported():
-    async with world(config()) as w:
-        publisher = w.graph.create_node("clicks").create_publisher(PointStamped, "/clicked_point", 5)
+    async with open_world(config()) as world:
+        publisher = world.graph.create_node("clicks").create_publisher(PointStamped, "/clicked_point", 5)
         publisher.publish(point(float("nan")))
-        await w.settle()
-        assert w.status("PointStamped")["Message"][0] == "error"
-        assert w.display("PointStamped").data() == []
+        await world.settle()
+        assert world.status("PointStamped")["Message"][0] == "error"
+        assert world.display("PointStamped").data() == []
 
 
 async def test_disabled_display_unsubscribes_from_topic():
-    async with world(config()) as w:
-        publisher = w.graph.create_node("clicks").create_publisher(PointStamped, "/clicked_point", 5)
-        display = w.display("PointStamped")
+    async with open_world(config()) as world:
+        publisher = world.graph.create_node("clicks").create_publisher(PointStamped, "/clicked_point", 5)
+        display = world.display("PointStamped")
         assert publisher.get_subscription_count() == 1
-        w.viewer.manager.tree.check(display, False)
+        world.viewer.manager.tree.check(display, False)
         assert publisher.get_subscription_count() == 0
         assert display.data() == []
-        w.viewer.manager.tree.check(display, True)
+        world.viewer.manager.tree.check(display, True)
         assert publisher.get_subscription_count() == 1
 
 
 async def test_incompatible_qos_is_reported():
-    async with world(config()) as w:
+    async with open_world(config()) as world:
         best_effort = QoSProfile(5, reliability=ReliabilityPolicy.BEST_EFFORT)
-        w.graph.create_node("clicks").create_publisher(PointStamped, "/clicked_point", best_effort)
-        await w.settle()
-        level, text = w.status("PointStamped")["Topic"]
+        world.graph.create_node("clicks").create_publisher(PointStamped, "/clicked_point", best_effort)
+        await world.settle()
+        level, text = world.status("PointStamped")["Topic"]
         assert level == "warn"
         assert "RELIABILITY" in text
 
@@ -180,12 +183,12 @@ async def test_qos_is_read_from_file():
     text = text.replace(
         "        Value: /clicked_point\n", "        Durability Policy: Transient Local\n        Value: /p\n"
     )
-    async with world(RvizConfig.parse(text)) as w:
+    async with open_world(RvizConfig.parse(text)) as world:
         lasting = QoSProfile(1, durability=DurabilityPolicy.TRANSIENT_LOCAL)
-        publisher = w.graph.create_node("clicks").create_publisher(PointStamped, "/p", lasting)
+        publisher = world.graph.create_node("clicks").create_publisher(PointStamped, "/p", lasting)
         publisher.publish(point(4.0))
-        await w.settle()
-        assert points(w) == [[4, 0, 0]]
+        await world.settle()
+        assert points(world) == [[4, 0, 0]]
 
 
 async def test_failing_message_is_reported_and_next_one_is_shown(monkeypatch):
@@ -194,34 +197,34 @@ async def test_failing_message_is_reported_and_next_one_is_shown(monkeypatch):
             raise ZeroDivisionError("no such point")
         self.send_marks(message, pose)
 
-    async with world(config()) as w:
-        display = w.display("PointStamped")
+    async with open_world(config()) as world:
+        display = world.display("PointStamped")
         kind = type(display)
         monkeypatch.setattr(kind, "send_marks", kind.process_message, raising=False)
         monkeypatch.setattr(kind, "process_message", fail)
-        publisher = w.graph.create_node("clicks").create_publisher(PointStamped, "/clicked_point", 5)
+        publisher = world.graph.create_node("clicks").create_publisher(PointStamped, "/clicked_point", 5)
         for x in (-1.0, -2.0):
             publisher.publish(point(x, "tip"))
         publisher.publish(point(-3.0))
-        w.move({("base", "tip"): (1, 2, 3, 0, 0, 0, 1)}, static=True)
-        await w.settle()
-        assert w.status("PointStamped")["Failure"] == ("error", "The message could not be shown: no such point")
-        assert w.logged().count("'Clicks' failed") == 1
+        world.move({("base", "tip"): (1, 2, 3, 0, 0, 0, 1)}, static=True)
+        await world.settle()
+        assert world.status("PointStamped")["Failure"] == ("error", "The message could not be shown: no such point")
+        assert world.logged().count("'Clicks' failed") == 1
         publisher.publish(point(3.0))
-        await w.settle()
-        assert "Failure" not in w.status("PointStamped")
-        assert points(w) == [[3.0, 0.0, 0.0]]
+        await world.settle()
+        assert "Failure" not in world.status("PointStamped")
+        assert points(world) == [[3.0, 0.0, 0.0]]
 
 
 async def test_final_message_count_is_shown(monkeypatch):
     monkeypatch.setattr("linkwright.rviz.displays.base.topic_display._COUNT_PERIOD", 0.05)
-    async with world(config()) as w:
-        publisher = w.graph.create_node("clicks").create_publisher(PointStamped, "/clicked_point", 10)
+    async with open_world(config()) as world:
+        publisher = world.graph.create_node("clicks").create_publisher(PointStamped, "/clicked_point", 10)
         for x in range(4):
             publisher.publish(point(float(x)))
 
         def status() -> tuple[str, str]:
-            level, text = w.status("PointStamped")["Topic"]
+            level, text = world.status("PointStamped")["Topic"]
             return level, text.split(" at ")[0]
 
         await eventually(lambda: status() == ("ok", "4 messages received"))
@@ -229,13 +232,13 @@ async def test_final_message_count_is_shown(monkeypatch):
 
 async def test_silent_topic_status_names_publishers_and_alternatives(monkeypatch):
     monkeypatch.setattr("linkwright.rviz.displays.base.topic_display._COUNT_PERIOD", 0.05)
-    async with world(config()) as w:
+    async with open_world(config()) as world:
 
         def status() -> str:
-            return w.status("PointStamped")["Topic"][1].removeprefix("No messages received: ")
+            return world.status("PointStamped")["Topic"][1].removeprefix("No messages received: ")
 
         assert status() == "the topic has no publisher"
-        node = w.graph.create_node("clicks")
+        node = world.graph.create_node("clicks")
         node.create_publisher(PointStamped, "/other", 5)
         there = "the topic has no publisher, but geometry_msgs/msg/PointStamped is published on /other"
         await eventually(lambda: status() == there, what=status)
@@ -248,24 +251,24 @@ async def test_silent_topic_status_names_publishers_and_alternatives(monkeypatch
 
 async def test_topic_type_mismatch_is_reported(monkeypatch):
     monkeypatch.setattr("linkwright.rviz.displays.base.topic_display._COUNT_PERIOD", 0.05)
-    async with world(RvizConfig.parse(FILE.replace("/clicked_point", "/words"))) as w:
-        w.graph.create_node("speaker").create_publisher(get_message("std_msgs/msg/String"), "/words", 1)
+    async with open_world(RvizConfig.parse(FILE.replace("/clicked_point", "/words"))) as world:
+        world.graph.create_node("speaker").create_publisher(get_message("std_msgs/msg/String"), "/words", 1)
         message = (
             "warn",
             "No messages received: the topic carries std_msgs/msg/String, not geometry_msgs/msg/PointStamped",
         )
-        await eventually(lambda: w.status("PointStamped")["Topic"] == message)
+        await eventually(lambda: world.status("PointStamped")["Topic"] == message)
 
 
 @skipping
 async def test_stamps_of_another_clock_are_reported():
-    async with world(config()) as w:
-        publisher = w.graph.create_node("clicks").create_publisher(PointStamped, "/clicked_point", 5)
-        w.move({("base", "tip"): (0, 0, 0, 0, 0, 0, 1)})
-        publisher.publish(point_at(w.graph.timebase.now_ns() + 60_000_000_000, "tip"))
-        await w.settle()
+    async with open_world(config()) as world:
+        publisher = world.graph.create_node("clicks").create_publisher(PointStamped, "/clicked_point", 5)
+        world.move({("base", "tip"): (0, 0, 0, 0, 0, 0, 1)})
+        publisher.publish(point_at(world.graph.timebase.now_ns() + 60_000_000_000, "tip"))
+        await world.settle()
         await asyncio.sleep(2)
-        level, text = w.status("PointStamped")["Transform"]
+        level, text = world.status("PointStamped")["Transform"]
         assert level == "error"
         assert text.startswith("The message's stamp is 60 s after the local time: check the clocks of both computers")
 
@@ -279,14 +282,14 @@ async def test_stamps_of_another_clock_are_reported():
 )
 async def test_qos_mismatch_status_names_property_to_change(policy, remedy):
     wanted = {"Reliability Policy": "Reliable", "Durability Policy": "Transient Local"}
-    async with world(config()) as w:
-        display = w.display("PointStamped")
+    async with open_world(config()) as world:
+        display = world.display("PointStamped")
         for row, value in wanted.items():
             if row.split()[0] in remedy:
                 display.set_property(("Topic", row), value)
-        w.graph.create_node("clicks").create_publisher(PointStamped, "/clicked_point", policy)
-        await w.settle()
-        level, text = w.status("PointStamped")["Topic"]
+        world.graph.create_node("clicks").create_publisher(PointStamped, "/clicked_point", policy)
+        await world.settle()
+        level, text = world.status("PointStamped")["Topic"]
         assert (level, f"{remedy} below Topic" in text) == ("warn", True), text
 
 
@@ -296,9 +299,9 @@ async def test_waiting_displays_query_only_publisher_endpoints(monkeypatch):
     monkeypatch.setattr(Endpoint, "info", lambda self: (described.append(self.kind), info(self))[1])
     entry = FILE[FILE.index("    - Class") : FILE.index("  Global")]
     many = "".join(entry.replace("/clicked_point", f"/point{i}") for i in range(40))
-    async with world(RvizConfig.parse(FILE.replace(entry, many))) as w:
-        other = w.graph.create_node("other").create_publisher(PointStamped, "/point7x", 10)
-        shown = [display for display in w.viewer.displays if display.CLASS.endswith("PointStamped")]
+    async with open_world(RvizConfig.parse(FILE.replace(entry, many))) as world:
+        other = world.graph.create_node("other").create_publisher(PointStamped, "/point7x", 10)
+        shown = [display for display in world.viewer.displays if display.CLASS.endswith("PointStamped")]
         assert len(shown) == 40
         await eventually(lambda: "/point7x" in shown[7].status[0].text)
         assert described.count(EndpointKind.SUBSCRIPTION) == 0
@@ -312,8 +315,8 @@ async def test_waiting_displays_query_only_publisher_endpoints(monkeypatch):
 
 async def test_path_display_has_no_warning_once_planner_publishes():
     path = RvizConfig.parse(FILE.replace("PointStamped", "Path").replace("/clicked_point", "/plan"))
-    async with world(path) as w:
-        assert w.status("Path")["Topic"][0] == "warn", "the topic has no publisher"
-        w.graph.create_node("planner").create_publisher("nav_msgs/msg/Path", "/plan", 5)
+    async with open_world(path) as world:
+        assert world.status("Path")["Topic"][0] == "warn", "the topic has no publisher"
+        world.graph.create_node("planner").create_publisher("nav_msgs/msg/Path", "/plan", 5)
         awaited = ("ok", "No messages received: no message arrived yet from planner")
-        await eventually(lambda: w.status("Path")["Topic"] == awaited)
+        await eventually(lambda: world.status("Path")["Topic"] == awaited)

@@ -12,7 +12,7 @@ from linkwright.graph import DESCRIPTION_QOS, SENSOR_DATA_QOS, TF_QOS
 from linkwright.messages import Header, String, TFMessage, TransformBatch, get_message
 from linkwright.rviz import RvizConfig
 from tests.viewer.contents import contents
-from tests.viewer.scene import IDENTITY, page, world
+from tests.viewer.scene import IDENTITY, open_world, page
 from tests.waiting import eventually
 
 SCAN = get_message("sensor_msgs/msg/LaserScan")
@@ -50,43 +50,43 @@ def config(fixed: str) -> RvizConfig:
 class Simulation:
     """Says a world, and where its links are."""
 
-    def __init__(self, made) -> None:
-        self.made = made
-        node = made.graph.create_node("simulation")
+    def __init__(self, world) -> None:
+        self.world = world
+        node = world.graph.create_node("simulation")
         self.description = node.create_publisher(String, "/world_description", DESCRIPTION_QOS)
         self.poses = node.create_publisher(TFMessage, "/world_poses", TF_QOS)
 
     async def describe(self, text: str, links: int = 3) -> None:
         self.description.publish(String(data=text))
-        await eventually(lambda: links_of(self.made) == links)
+        await eventually(lambda: links_of(self.world) == links)
 
     async def move(self, **poses: tuple[float, ...]) -> None:
         names = tuple(name.replace("__", "::") for name in poses)
         array = np.array(list(poses.values()), dtype=np.float64).reshape(-1, 7)
-        stamp = self.made.graph.timebase.now_ns()
+        stamp = self.world.graph.timebase.now_ns()
         batch = TransformBatch(("world",) * len(names), names, stamp, array)
         self.poses.publish(TFMessage(batch=batch))
-        await self.made.settle()
+        await self.world.settle()
 
 
-def sent(made, kind: str):
-    return next((content for content in contents(made.display("World")) if content.fields["kind"] == kind), None)
+def sent(world, kind: str):
+    return next((content for content in contents(world.display("World")) if content.fields["kind"] == kind), None)
 
 
-def links_of(made) -> int:
-    scene = sent(made, "world_scene")
+def links_of(world) -> int:
+    scene = sent(world, "world_scene")
     return len(scene.fields["links"]) if scene else 0
 
 
-def positions(made) -> list[list[float]]:
-    return sent(made, "world_poses").fields["poses"].reshape(-1, 7)[:, :3].round(6).tolist()
+def positions(world) -> list[list[float]]:
+    return sent(world, "world_poses").fields["poses"].reshape(-1, 7)[:, :3].round(6).tolist()
 
 
 async def test_world_links_are_sent_with_shapes_and_poses():
-    async with world(config("world")) as made:
-        await Simulation(made).describe(WORLD)
-        ground, base, tip = sent(made, "world_scene").fields["links"]
-        assert [each["name"] for each in (ground, base, tip)] == ["ground::link", "robot::base", "robot::arm::tip"]
+    async with open_world(config("world")) as world:
+        await Simulation(world).describe(WORLD)
+        ground, base, tip = sent(world, "world_scene").fields["links"]
+        assert [link["name"] for link in (ground, base, tip)] == ["ground::link", "robot::base", "robot::arm::tip"]
         (plane,) = ground["visuals"]
         assert (plane["kind"], plane["size"], plane["color"]) == ("plane", [10.0, 20.0], [0.7, 0.7, 0.7, 1.0])
         body, ear = base["visuals"]
@@ -94,102 +94,104 @@ async def test_world_links_are_sent_with_shapes_and_poses():
         assert body["repaints"]
         assert (ear["kind"], ear["size"]) == ("cone", [0.1, 0.3])
         assert ear["position"] == pytest.approx([0, 0, 1.5])
-        assert [(each["kind"], each["size"]) for each in base["collisions"]] == [("ellipsoid", [1.0, 2.0, 3.0])]
-        assert positions(made) == [[0, 0, 0], [1, 2, 0.5], [1, 3, 0]]
-        assert made.status("World")["World"] == ("ok", "2 models, 3 links")
+        assert [(collision["kind"], collision["size"]) for collision in base["collisions"]] == [
+            ("ellipsoid", [1.0, 2.0, 3.0])
+        ]
+        assert positions(world) == [[0, 0, 0], [1, 2, 0.5], [1, 3, 0]]
+        assert world.status("World")["World"] == ("ok", "2 models, 3 links")
 
 
 async def test_link_poses_follow_names_and_survive_new_description():
-    async with world(config("world")) as made:
-        simulation = Simulation(made)
+    async with open_world(config("world")) as world:
+        simulation = Simulation(world)
         await simulation.describe(WORLD)
         await simulation.move(robot__base=(5, 5, 5, 0, 0, 0, 1), nobody__link=(9, 9, 9, 0, 0, 0, 1))
-        assert positions(made) == [[0, 0, 0], [5, 5, 5], [1, 3, 0]]
+        assert positions(world) == [[0, 0, 0], [5, 5, 5], [1, 3, 0]]
         more = WORLD.replace("</world>", '<model name="ball"><link name="link"/></model></world>')
         await simulation.describe(more, links=4)
-        await eventually(lambda: len(positions(made)) == 4)
-        assert positions(made) == [[0, 0, 0], [5, 5, 5], [1, 3, 0], [0, 0, 0]]
-        assert sent(made, "world_poses").fields["revision"] == sent(made, "world_scene").fields["revision"] == 2
+        await eventually(lambda: len(positions(world)) == 4)
+        assert positions(world) == [[0, 0, 0], [5, 5, 5], [1, 3, 0], [0, 0, 0]]
+        assert sent(world, "world_poses").fields["revision"] == sent(world, "world_scene").fields["revision"] == 2
 
 
 async def test_static_models_follow_new_description():
-    async with world(config("world")) as made:
-        simulation = Simulation(made)
+    async with open_world(config("world")) as world:
+        simulation = Simulation(world)
         await simulation.describe(WORLD)
         await simulation.move(robot__base=(5, 5, 5, 0, 0, 0, 1))
         lower = WORLD.replace("<static>true</static>", "<static>true</static><pose>0 0 -1 0 0 0</pose>")
         await simulation.describe(lower)
-        await eventually(lambda: positions(made) == [[0, 0, -1], [5, 5, 5], [1, 3, 0]])
+        await eventually(lambda: positions(world) == [[0, 0, -1], [5, 5, 5], [1, 3, 0]])
         await simulation.describe(lower.replace("<pose>1 2 0 0 0 0</pose>", "<static>true</static>"))
-        await eventually(lambda: positions(made) == [[0, 0, -1], [0, 0, 0.5], [0, 1, 0]])
+        await eventually(lambda: positions(world) == [[0, 0, -1], [0, 0, 0.5], [0, 1, 0]])
 
 
 async def test_world_is_placed_by_robot_frame_without_world_frame():
-    async with world(config("odom")) as made:
-        simulation = Simulation(made)
+    async with open_world(config("odom")) as world:
+        simulation = Simulation(world)
         await simulation.describe(WORLD)
-        assert made.status("World")["Frame"][0] == "warn"
-        made.move({("odom", "base"): (0, 0, 0.5, *IDENTITY[3:])})
-        await eventually(lambda: sent(made, "world_poses").pose is not None)
-        assert sent(made, "world_poses").pose == pytest.approx([-1, -2, 0, 0, 0, 0, 1])
+        assert world.status("World")["Frame"][0] == "warn"
+        world.move({("odom", "base"): (0, 0, 0.5, *IDENTITY[3:])})
+        await eventually(lambda: sent(world, "world_poses").pose is not None)
+        assert sent(world, "world_poses").pose == pytest.approx([-1, -2, 0, 0, 0, 0, 1])
         half = math.sqrt(0.5)
-        made.move({("odom", "base"): (3, 0, 0.5, 0, 0, half, half)})
-        await made.settle()
+        world.move({("odom", "base"): (3, 0, 0.5, 0, 0, half, half)})
+        await world.settle()
         await simulation.move(robot__base=(1, 2, 0.5, 0, 0, 0, 1))  # where it was when tf had it there
-        assert made.status("World")["Frame"] == (
+        assert world.status("World")["Frame"] == (
             "ok",
             "tf has no frame 'world': the world is placed so that 'base' has the same pose in both",
         )
 
 
 async def test_world_without_transforms_has_own_frame_and_no_warning():
-    async with world(config("world")) as made, page(made.viewer) as opened:
-        await Simulation(made).describe(WORLD)
+    async with open_world(config("world")) as world, page(world.viewer) as opened:
+        await Simulation(world).describe(WORLD)
         await opened.until("display_status", display="global", level="ok")
-        assert made.status("World")["Frame"] == ("ok", "The world is placed at the frame 'world'")
-        made.move({("odom", "base"): (3, 0, 0.5, *IDENTITY[3:])})
-        own = made.viewer.context.transforms.placed_frame
+        assert world.status("World")["Frame"] == ("ok", "The world is placed at the frame 'world'")
+        world.move({("odom", "base"): (3, 0, 0.5, *IDENTITY[3:])})
+        own = world.viewer.context.transforms.placed_frame
         await eventually(lambda: (frame := own("world")) is not None and frame.parent == "odom")
 
 
 async def test_tf_frames_are_placed_in_world_as_fixed_frame():
-    async with world(config("world")) as made, page(made.viewer):
-        simulation = Simulation(made)
+    async with open_world(config("world")) as world, page(world.viewer):
+        simulation = Simulation(world)
         await simulation.describe(WORLD)
-        made.move({("odom", "base"): (3, 0, 0.5, *IDENTITY[3:])})
-        await made.settle()
+        world.move({("odom", "base"): (3, 0, 0.5, *IDENTITY[3:])})
+        await world.settle()
         await simulation.move(robot__base=(1, 2, 0.5, 0, 0, 0, 1))
         await simulation.move(robot__base=(1, 2, 0.5, 0, 0, 0, 1))
-        assert sent(made, "world_poses").frame == "world"
+        assert sent(world, "world_poses").frame == "world"
         text = "tf has no frame 'world': the frames of tf are placed so that 'base' has the same pose in both"
-        await eventually(lambda: made.status("World")["Frame"] == ("ok", text))
-        transforms = made.viewer.context.transforms
+        await eventually(lambda: world.status("World")["Frame"] == ("ok", text))
+        transforms = world.viewer.context.transforms
         await eventually(lambda: transforms.placed_frame("world").parent == "odom")
         assert transforms.pose("world", "base", 0) == pytest.approx([1, 2, 0.5, 0, 0, 0, 1])
         assert transforms.pose("world", "odom", 0) == pytest.approx([-2, 2, 0, 0, 0, 0, 1])
         frame, known = transforms.in_known_frame("world", IDENTITY)
         assert (frame, known) == ("odom", pytest.approx([2, -2, 0, 0, 0, 0, 1]))
-        await eventually(lambda: "base" in made.viewer.manager.frames.placed)
+        await eventually(lambda: "base" in world.viewer.manager.frames.placed)
 
-        made.move({("map", "world"): IDENTITY}, static=True)
-        await eventually(lambda: made.status("World")["Frame"] == ("ok", "The world is placed at the frame 'world'"))
+        world.move({("map", "world"): IDENTITY}, static=True)
+        await eventually(lambda: world.status("World")["Frame"] == ("ok", "The world is placed at the frame 'world'"))
         assert transforms.placed_frame("world") is None
 
 
 async def test_world_frame_of_tf_places_world():
-    async with world(config("map")) as made:
-        made.move({("map", "world"): (1, 0, 0, *IDENTITY[3:])}, static=True)
-        await Simulation(made).describe(WORLD)
-        await eventually(lambda: sent(made, "world_poses").frame == "world")
-        assert sent(made, "world_poses").pose is None
+    async with open_world(config("map")) as world:
+        world.move({("map", "world"): (1, 0, 0, *IDENTITY[3:])}, static=True)
+        await Simulation(world).describe(WORLD)
+        await eventually(lambda: sent(world, "world_poses").frame == "world")
+        assert sent(world, "world_poses").pose is None
 
 
 async def test_static_poses_are_sent_once():
-    async with world(config("world")) as made:
-        simulation = Simulation(made)
+    async with open_world(config("world")) as world:
+        simulation = Simulation(world)
         await simulation.describe(WORLD)
         await simulation.move(robot__base=(1, 1, 1, 0, 0, 0, 1))
-        display = made.display("World")
+        display = world.display("World")
         before = display.data()[-1]
         await simulation.move(robot__base=(1, 1, 1, 0, 0, 0, 1))
         assert display.data()[-1] is before
@@ -208,13 +210,13 @@ LOST = "<link name='l'><pose relative_to='x'/></link>"
     ],
 )
 async def test_invalid_description_is_reported_and_last_world_remains(text, message):
-    async with world(config("world")) as made:
-        simulation = Simulation(made)
+    async with open_world(config("world")) as world:
+        simulation = Simulation(world)
         await simulation.describe(WORLD)
         simulation.description.publish(String(data=text))
-        await eventually(lambda: made.status("World")["World"][0] == "error")
-        assert message in made.status("World")["World"][1]
-        assert links_of(made) == 3
+        await eventually(lambda: world.status("World")["World"][0] == "error")
+        assert message in world.status("World")["World"][1]
+        assert links_of(world) == 3
 
 
 async def test_model_files_are_served_and_missing_ones_reported(tmp_path):
@@ -225,18 +227,18 @@ async def test_model_files_are_served_and_missing_ones_reported(tmp_path):
     visual = "<visual name='{}'><geometry><mesh><uri>{}</uri></mesh></geometry></visual>"
     shapes = visual.format("a", (model / "meshes/crate.stl").as_uri()) + visual.format("b", "file:///nowhere.stl")
     text = f"<sdf version='1.9'><model name='crate'><link name='link'>{shapes}</link></model></sdf>"
-    async with world(config("world")) as made:
-        await Simulation(made).describe(text, links=1)
-        (link,) = sent(made, "world_scene").fields["links"]
+    async with open_world(config("world")) as world:
+        await Simulation(world).describe(text, links=1)
+        (link,) = sent(world, "world_scene").fields["links"]
         (shape,) = link["visuals"]
         key, relative = shape["url"].partition("?")[0].removeprefix("/mesh/").split("/", 1)
-        meshes = made.viewer.context.meshes
+        meshes = world.viewer.context.meshes
         assert relative == "meshes/crate.stl"
         assert meshes.file(key, "materials/textures/wood.png") == model / "materials/textures/wood.png"
         assert meshes.file(key, "meshes/wood.png") == model / "materials/textures/wood.png"  # as Gazebo looks for it
         with pytest.raises(Exception, match="only meshes and images"):
             meshes.file(key, "secret.txt")
-        level, status = made.status("World")["Files"]
+        level, status = world.status("World")["Files"]
         assert level == "error"
         assert "crate::link: Could not load 'file:///nowhere.stl'" in status
 
@@ -248,14 +250,14 @@ async def test_heightmap_heights_are_sent_and_limited(tmp_path):
     visual = f"<visual name='v'><geometry>{ground.format((tmp_path / 'hill.png').as_uri())}</geometry></visual>"
     visual += f"<visual name='w'><geometry>{ground.format('file:///nowhere.png')}</geometry></visual>"
     text = f"<sdf version='1.9'><model name='hill'><link name='l'>{visual}</link></model></sdf>"
-    async with world(config("world")) as made:
-        await Simulation(made).describe(text, links=1)
-        (link,) = sent(made, "world_scene").fields["links"]
+    async with open_world(config("world")) as world:
+        await Simulation(world).describe(text, links=1)
+        (link,) = sent(world, "world_scene").fields["links"]
         (hill,) = link["visuals"]
         assert (hill["kind"], hill["columns"], hill["url"]) == ("heightmap", 257, None)
         heights = hill["heights"].reshape(2, 257)
         assert heights[1, [0, 128, 256]].tolist() == pytest.approx([0.0, 0.5, 1.0], abs=2e-3)
-        assert "file:///nowhere.png" in made.status("World")["Files"][1]
+        assert "file:///nowhere.png" in world.status("World")["Files"][1]
 
 
 async def test_pbr_surface_is_sent_with_material(tmp_path):
@@ -267,11 +269,11 @@ async def test_pbr_surface_is_sent_with_material(tmp_path):
     metal = f"<metalness>1</metalness><roughness>0.2</roughness><normal_map>{bumps}</normal_map>"
     lamp = f"<emissive_map>{bumps}</emissive_map><ambient_occlusion_map>{bumps}</ambient_occlusion_map>"
     facts = {"plain": albedo, "metal": albedo + metal, "lamp": albedo + lamp}
-    visuals = "".join(visual.format(name, each) for name, each in facts.items())
+    visuals = "".join(visual.format(name, surface) for name, surface in facts.items())
     text = f"<sdf version='1.9'><model name='ball'><link name='l'>{visuals}</link></model></sdf>"
-    async with world(config("world")) as made:
-        await Simulation(made).describe(text, links=1)
-        (link,) = sent(made, "world_scene").fields["links"]
+    async with open_world(config("world")) as world:
+        await Simulation(world).describe(text, links=1)
+        (link,) = sent(world, "world_scene").fields["links"]
         plain, shining, lamp = link["visuals"]
         assert lamp["surface"]["emissive_map"] == lamp["surface"]["occlusion_map"] == plain["texture"]
         assert plain["surface"] is None
@@ -284,9 +286,9 @@ async def test_gazebo_material_scripts_are_recognized():
     script = "<material><script><name>Gazebo/Red</name></script></material>"
     visual = f"<visual name='v'><geometry><sphere><radius>1</radius></sphere></geometry>{script}</visual>"
     text = f"<sdf version='1.9'><model name='ball'><link name='l'>{visual}</link></model></sdf>"
-    async with world(config("world")) as made:
-        await Simulation(made).describe(text, links=1)
-        (link,) = sent(made, "world_scene").fields["links"]
+    async with open_world(config("world")) as world:
+        await Simulation(world).describe(text, links=1)
+        (link,) = sent(world, "world_scene").fields["links"]
         assert link["visuals"][0]["color"] == [1.0, 0.0, 0.0, 1.0]
 
 
@@ -305,9 +307,9 @@ LIGHTS = """\
 
 
 async def test_world_lights_are_sent_with_pose_and_properties():
-    async with world(config("world")) as made:
-        await Simulation(made).describe(LIGHTS, links=1)
-        scene = sent(made, "world_scene").fields
+    async with open_world(config("world")) as world:
+        await Simulation(world).describe(LIGHTS, links=1)
+        scene = sent(world, "world_scene").fields
         assert (scene["ambient"], scene["background"], scene["shadows"]) == ([0.1, 0.2, 0.3], [0.7, 0.7, 0.7], False)
         sun, bulb = scene["lights"]
         assert (sun["kind"], sun["link"], sun["direction"], sun["color"]) == (
@@ -334,13 +336,13 @@ SKY = """<world name="yard"><scene><sky><time>{}</time><clouds/></sky>
     ],
 )
 async def test_sky_and_fog_are_sent(time, type_, daylight, fog):
-    async with world(config("world")) as made:
-        await Simulation(made).describe(WORLD)
-        scene = sent(made, "world_scene").fields
+    async with open_world(config("world")) as world:
+        await Simulation(world).describe(WORLD)
+        scene = sent(world, "world_scene").fields
         assert (scene["daylight"], scene["fog"]) == (None, None)
-        await Simulation(made).describe(WORLD.replace('<world name="yard">', SKY.format(time, type_)))
-        await eventually(lambda: sent(made, "world_scene").fields["revision"] == 2)
-        scene = sent(made, "world_scene").fields
+        await Simulation(world).describe(WORLD.replace('<world name="yard">', SKY.format(time, type_)))
+        await eventually(lambda: sent(world, "world_scene").fields["revision"] == 2)
+        scene = sent(world, "world_scene").fields
         assert (scene["daylight"], scene["fog"]) == (daylight, fog)
 
 
@@ -357,52 +359,52 @@ SEEING = """
 </world>"""
 
 
-def subscribed_topics(made) -> set[str]:
+def subscribed_topics(world) -> set[str]:
     names = ("/world_rays", "/world_rays/others")
-    return {name for name in names if made.graph.create_node("asking").count_subscribers(name)}
+    return {name for name in names if world.graph.create_node("asking").count_subscribers(name)}
 
 
 async def test_lidar_scans_are_subscribed_while_rays_are_drawn():
-    async with world(config("world")) as made:
-        simulation = Simulation(made)
+    async with open_world(config("world")) as world:
+        simulation = Simulation(world)
         await simulation.describe(WORLD)
-        assert subscribed_topics(made) == set()
+        assert subscribed_topics(world) == set()
         await simulation.describe(WORLD.replace("</world>", SEEING), links=4)
-        laser, spare = sent(made, "world_scene").fields["lidars"]
+        laser, spare = sent(world, "world_scene").fields["lidars"]
         assert (laser["name"], laser["link"], laser["visualized"]) == ("scout::head::laser", "scout::head", True)
         assert (laser["position"], laser["nearest"], laser["farthest"]) == ([0.1, 0.0, 0.0], 0.2, 20.0)
         assert (laser["vertical"]["count"], laser["vertical"]["step"]) == (16, pytest.approx(0.04))
         assert (laser["horizontal"]["count"], laser["horizontal"]["step"]) == (44, pytest.approx(0.046))
         assert (spare["visualized"], spare["farthest"]) == (False, 30.0)
-        assert subscribed_topics(made) == {"/world_rays"}
-        rays = made.graph.create_node("rays").create_publisher(SCAN, "/world_rays", SENSOR_DATA_QOS)
+        assert subscribed_topics(world) == {"/world_rays"}
+        rays = world.graph.create_node("rays").create_publisher(SCAN, "/world_rays", SENSOR_DATA_QOS)
         ranges = np.arange(32_000, dtype=np.float32)
         rays.publish(SCAN(header=Header(frame_id="scout::head::laser"), ranges=ranges))
         rays.publish(SCAN(header=Header(frame_id="scout::head::laser"), ranges=ranges[:7]))
         rays.publish(SCAN(header=Header(frame_id="nobody"), ranges=ranges))
-        await made.settle()
-        shown = sent(made, "world_rays").fields
+        await world.settle()
+        shown = sent(world, "world_rays").fields
         assert shown["lidar"] == "scout::head::laser"
         assert shown["ranges"].reshape(16, 44)[1, :3].tolist() == [2000.0, 2023.0, 2046.0]
 
-        revision = sent(made, "world_scene").fields["revision"]  # of a recording the world is told again
+        revision = sent(world, "world_scene").fields["revision"]  # of a recording the world is told again
         simulation.description.publish(String(data=WORLD.replace("</world>", SEEING)))
-        await eventually(lambda: sent(made, "world_scene").fields["revision"] > revision)
-        assert sent(made, "world_rays") is not None
-        made.display("World").on_time_reset()
-        assert sent(made, "world_rays") is None
+        await eventually(lambda: sent(world, "world_scene").fields["revision"] > revision)
+        assert sent(world, "world_rays") is not None
+        world.display("World").on_time_reset()
+        assert sent(world, "world_rays") is None
 
-        made.display("World").set_property(("Lidar Rays",), "All")
-        assert subscribed_topics(made) == {"/world_rays", "/world_rays/others"}
-        made.display("World").set_property(("Lidar Rays",), "None")
-        assert subscribed_topics(made) == set()
-        assert sent(made, "world_rays") is None
+        world.display("World").set_property(("Lidar Rays",), "All")
+        assert subscribed_topics(world) == {"/world_rays", "/world_rays/others"}
+        world.display("World").set_property(("Lidar Rays",), "None")
+        assert subscribed_topics(world) == set()
+        assert sent(world, "world_rays") is None
 
 
 async def test_cameras_are_sent_with_field_of_view():
-    async with world(config("world")) as made:
-        await Simulation(made).describe(WORLD.replace("</world>", SEEING), links=4)
-        (camera,) = sent(made, "world_scene").fields["cameras"]
+    async with open_world(config("world")) as world:
+        await Simulation(world).describe(WORLD.replace("</world>", SEEING), links=4)
+        (camera,) = sent(world, "world_scene").fields["cameras"]
         assert (camera["name"], camera["visualized"]) == ("scout::head::eye", False)
         assert [camera[side] for side in ("left", "right", "up", "down")] == pytest.approx([1, 1, 0.5, 0.5])
         assert (camera["near"], camera["far"]) == (0.5, 8.0)

@@ -73,25 +73,25 @@ class Rig:
     def ages(self, name: str) -> list[float]:
         """The ages of a frame in all transforms sent with the last table."""
         table = self.stream.current_frames[0]
-        return [each.ages[table.names.index(name)] for each in self.sent() if each.revision == table.revision]
+        return [message.ages[table.names.index(name)] for message in self.sent() if message.revision == table.revision]
 
     def kinds(self) -> list[str]:
-        kinds = [type(each).__name__ for each in self.said]
+        kinds = [type(message).__name__ for message in self.said]
         self.said.clear()
         return kinds
 
     def sent(self) -> list:
-        return [each for each in self.said if type(each).__name__ == "Transforms"]
+        return [message for message in self.said if type(message).__name__ == "Transforms"]
 
 
 @asynccontextmanager
 async def running() -> AsyncIterator[Rig]:
-    made = Rig()
+    world = Rig()
     try:
-        yield made
+        yield world
     finally:
-        made.stream.close()
-        await made.graph.close()
+        world.stream.close()
+        await world.graph.close()
 
 
 def streaming(test):

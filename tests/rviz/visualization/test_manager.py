@@ -9,7 +9,7 @@ from linkwright.messages import get_message
 from linkwright.rviz import RvizConfig
 from linkwright.rviz.visualization import display_tree
 from tests.viewer.configured import TEXT, PointStamped, edit, entries, names, opened, undo
-from tests.viewer.scene import ARM, page, world
+from tests.viewer.scene import ARM, open_world, page
 
 String = get_message("std_msgs/msg/String")
 
@@ -27,25 +27,25 @@ async def test_groups_contain_display_rows():
 
 
 async def test_disabled_group_disables_its_displays():
-    async with opened() as (made, client):
-        publisher = made.graph.create_node("clicks").create_publisher(PointStamped, "/clicked_point", 5)
+    async with opened() as (world, client):
+        publisher = world.graph.create_node("clicks").create_publisher(PointStamped, "/clicked_point", 5)
         assert publisher.get_subscription_count() == 1
         await client.set("display-2/Enabled", False)
         await client.until("configuration", unsaved=True)
         assert publisher.get_subscription_count() == 0
-        assert made.display("PointStamped").config.checked
-        assert "Enabled: false" in made.viewer.config.text()
+        assert world.display("PointStamped").config.checked
+        assert "Enabled: false" in world.viewer.config.text()
         state = await undo(client)
         assert publisher.get_subscription_count() == 1
         assert (state["unsaved"], state["undo"], state["redo"]) == (False, None, {"kind": "disable", "name": "Marks"})
-        assert made.viewer.config.text() == TEXT
+        assert world.viewer.config.text() == TEXT
 
 
 @pytest.mark.parametrize("box", ["", "Enabled: true", "Value: true", "Enabled: true, Value: false", "Enabled: no"])
 async def test_undo_of_checkbox_restores_file(box):
     text = f"Visualization Manager:\n  Displays:\n    - {{Class: rviz_default_plugins/Axes, {box}}}\n"
-    async with world(RvizConfig.parse(text)) as made:
-        manager = made.viewer.manager
+    async with open_world(RvizConfig.parse(text)) as world:
+        manager = world.viewer.manager
         (display,) = manager.displays
         was = display.config.checked
         manager.tree.check(display, not was)
@@ -69,8 +69,8 @@ FRAMES = """Visualization Manager:
 
 
 async def test_fade_time_is_shortest_of_tf_displays():
-    async with world(RvizConfig.parse(FRAMES)) as made:
-        manager = made.viewer.manager
+    async with open_world(RvizConfig.parse(FRAMES)) as world:
+        manager = world.viewer.manager
         stream, tree = manager._stream, manager.tree
         group, grouped, alone = manager.displays
         assert stream.fade_time == 5
@@ -96,22 +96,22 @@ async def test_display_choices_are_sent():
     async with opened() as (_, client):
         await client.send("ask_display_choices")
         message = (await client.until("display_choices"))["classes"]
-        classes = {each["cls"]: each["messages"] for each in message}
+        classes = {choice["cls"]: choice["messages"] for choice in message}
         assert classes["rviz_default_plugins/PointStamped"] == ["geometry_msgs/msg/PointStamped"]
         assert classes["rviz_default_plugins/Grid"] == []
         assert list(classes)[-1] == "rviz_common/Group"
 
 
 async def test_display_is_added_and_undone():
-    async with opened() as (made, client):
+    async with opened() as (world, client):
         await client.send("add_display", cls="rviz_default_plugins/Axes", name="Axes", group="display-2", topic=None)
         tree = await client.until("tree")
-        assert [(each["name"], each["group"], each["id"]) for each in tree["displays"]][3] == (
+        assert [(display["name"], display["group"], display["id"]) for display in tree["displays"]][3] == (
             "Axes",
             "display-2",
             "display-5",
         )
-        assert entries(made)[1]["Displays"][1] == {
+        assert entries(world)[1]["Displays"][1] == {
             "Class": "rviz_default_plugins/Axes",
             "Enabled": True,
             "Name": "Axes",
@@ -119,9 +119,9 @@ async def test_display_is_added_and_undone():
         }
         state = await undo(client)
         assert (state["undo"], state["redo"]["name"], state["unsaved"]) == (None, "Axes", False)
-        assert made.viewer.config.text() == TEXT
+        assert world.viewer.config.text() == TEXT
         await undo(client, "redo")
-        assert [display.id for display in made.viewer.displays] == [
+        assert [display.id for display in world.viewer.displays] == [
             "display-1",
             "display-2",
             "display-3",
@@ -131,22 +131,22 @@ async def test_display_is_added_and_undone():
 
 
 async def test_display_for_topic_uses_qos_of_publishers():
-    async with opened() as (made, client):
+    async with opened() as (world, client):
         qos = QoSProfile(depth=1, reliability=ReliabilityPolicy.BEST_EFFORT)
-        publisher = made.graph.create_node("sensor").create_publisher(PointStamped, "/found", qos)
+        publisher = world.graph.create_node("sensor").create_publisher(PointStamped, "/found", qos)
         await client.send("ask_display_choices")
         topics = (await client.until("display_choices"))["topics"]
         cls = "rviz_default_plugins/PointStamped"
         assert {"topic": "/found", "message": "geometry_msgs/msg/PointStamped", "classes": [cls]} in topics
         await edit(client, "add_display", cls=cls, name="Found", group=None, topic="/found")
         assert publisher.get_subscription_count() == 1
-        assert entries(made)[-1]["Topic"] == {"Reliability Policy": "Best Effort", "Value": "/found"}
+        assert entries(world)[-1]["Topic"] == {"Reliability Policy": "Best Effort", "Value": "/found"}
 
 
 async def test_robot_model_is_added_by_description_topic():
-    async with opened() as (made, client):
+    async with opened() as (world, client):
         qos = QoSProfile(depth=1, durability=DurabilityPolicy.TRANSIENT_LOCAL)
-        node = made.graph.create_node("robot_state_publisher")
+        node = world.graph.create_node("robot_state_publisher")
         publisher = node.create_publisher(String, "/other/robot_description", qos)
         publisher.publish(String(data='<robot name="other"><link name="base"/></robot>'))
         await client.send("ask_display_choices")
@@ -155,46 +155,46 @@ async def test_robot_model_is_added_by_description_topic():
         cls = "rviz_default_plugins/RobotModel"
         assert cls in offered["classes"]
         await edit(client, "add_display", cls=cls, name="Other", group=None, topic="/other/robot_description")
-        assert entries(made)[-1]["Description Topic"]["Value"] == "/other/robot_description"
+        assert entries(world)[-1]["Description Topic"]["Value"] == "/other/robot_description"
         assert publisher.get_subscription_count() == 1
 
 
 async def test_removed_displays_unsubscribe_and_undo_restores_them():
-    async with opened() as (made, client):
-        publisher = made.graph.create_node("clicks").create_publisher(PointStamped, "/clicked_point", 5)
+    async with opened() as (world, client):
+        publisher = world.graph.create_node("clicks").create_publisher(PointStamped, "/clicked_point", 5)
         await client.set("display-3/Alpha", 0.25)
         await client.until("property_changed", id="display-3/Alpha")
-        text = made.viewer.config.text()
+        text = world.viewer.config.text()
         await edit(client, "remove_displays", displays=["display-2", "display-3"])
-        assert names(made) == ["Grid", "Radar"]
+        assert names(world) == ["Grid", "Radar"]
         assert publisher.get_subscription_count() == 0
         await undo(client)
-        assert names(made) == ["Grid", "Marks", "Clicks", "Radar"]
+        assert names(world) == ["Grid", "Marks", "Clicks", "Radar"]
         assert publisher.get_subscription_count() == 1
-        assert made.viewer.config.text() == text
+        assert world.viewer.config.text() == text
         await undo(client)  # the edit before, of a display that is another object now
-        assert made.viewer.displays[2].properties.number("Alpha") == 0.5
-        assert made.viewer.config.text() == TEXT
+        assert world.viewer.displays[2].properties.number("Alpha") == 0.5
+        assert world.viewer.config.text() == TEXT
 
 
 async def test_removed_robot_model_is_restored_by_undo():
-    async with world(RvizConfig.for_model("base")) as made, page(made.viewer) as client:
+    async with open_world(RvizConfig.for_model("base")) as world, page(world.viewer) as client:
         await client.opened()
-        made.describe(ARM)
+        world.describe(ARM)
         await client.until("robot_scene", revision=1)
         await client.send("remove_displays", displays=["display-2"])
         await client.until("tree")
         await client.send("undo")
         await client.until("robot_scene")
-        await made.settle()
-        assert len(made.display("RobotModel").scene.links) == 3
+        await world.settle()
+        assert len(world.display("RobotModel").scene.links) == 3
 
 
 async def test_displays_are_duplicated_with_contents():
-    async with opened() as (made, client):
+    async with opened() as (world, client):
         await client.send("duplicate_displays", displays=["display-2", "display-3", "display-4"])
         tree = await client.until("tree")
-        assert [(each["name"], each["group"]) for each in tree["displays"]] == [
+        assert [(display["name"], display["group"]) for display in tree["displays"]] == [
             ("Grid", None),
             ("Marks", None),
             ("Clicks", "display-2"),
@@ -203,19 +203,19 @@ async def test_displays_are_duplicated_with_contents():
             ("Radar", None),
             ("Radar", None),
         ]
-        assert entries(made)[1] == entries(made)[2]
-        assert entries(made)[3] == entries(made)[4]
+        assert entries(world)[1] == entries(world)[2]
+        assert entries(world)[3] == entries(world)[4]
         await undo(client)
-        assert made.viewer.config.text() == TEXT
+        assert world.viewer.config.text() == TEXT
 
 
 async def test_displays_are_renamed():
-    async with opened() as (made, client):
+    async with opened() as (world, client):
         await client.send("rename_display", display="display-4", name="  Far   radar ")
         assert (await client.until("tree"))["displays"][3]["name"] == "Far radar"
         assert (await client.until("configuration"))["undo"] == {"kind": "rename", "name": "Far radar"}
         await undo(client)
-        assert made.viewer.config.text() == TEXT
+        assert world.viewer.config.text() == TEXT
         await client.send("rename_display", display="display-4", name=" ")
         assert (await client.until("configuration_refused"))["question"] is None
 
@@ -240,26 +240,26 @@ async def test_displays_are_renamed():
     ],
 )
 async def test_displays_are_moved(displays, group, before, expected):
-    async with opened() as (made, client):
+    async with opened() as (world, client):
         await client.send("move_displays", displays=displays, group=group, before=before)
         await client.until("tree")
 
         def holder(display) -> str | None:
             return display.config.group.name if display.config.group else None
 
-        assert [(display.config.name, holder(display)) for display in made.viewer.displays] == expected
+        assert [(display.config.name, holder(display)) for display in world.viewer.displays] == expected
         await undo(client)
-        assert made.viewer.config.text() == TEXT
+        assert world.viewer.config.text() == TEXT
 
 
 async def test_display_moved_out_of_disabled_group_is_enabled():
     async with opened(
         TEXT.replace("      Enabled: true\n      Name: Marks", "      Enabled: false\n      Name: Marks")
     ) as (
-        made,
+        world,
         client,
     ):
-        publisher = made.graph.create_node("clicks").create_publisher(PointStamped, "/clicked_point", 5)
+        publisher = world.graph.create_node("clicks").create_publisher(PointStamped, "/clicked_point", 5)
         assert publisher.get_subscription_count() == 0
         await edit(client, "move_displays", displays=["display-3"], group=None, before=None)
         assert publisher.get_subscription_count() == 1
@@ -268,21 +268,21 @@ async def test_display_moved_out_of_disabled_group_is_enabled():
 
 
 async def test_invalid_group_moves_are_refused():
-    async with opened() as (made, client):
+    async with opened() as (world, client):
         for group in ("display-2", "display-1"):
             await client.send("move_displays", displays=["display-2"], group=group, before=None)
             assert "cannot be put into" in (await client.until("configuration_refused"))["message"]
         await client.send("add_display", cls="rviz_default_plugins/Axes", name="Axes", group="display-1", topic=None)
         assert "cannot be put into" in (await client.until("configuration_refused"))["message"]
-        assert made.viewer.config.text() == TEXT
-        assert names(made) == ["Grid", "Marks", "Clicks", "Radar"]
+        assert world.viewer.config.text() == TEXT
+        assert names(world) == ["Grid", "Marks", "Clicks", "Radar"]
 
 
 async def test_displays_are_grouped():
-    async with opened() as (made, client):
+    async with opened() as (world, client):
         await client.send("group_displays", displays=["display-1", "display-3", "display-4"], name="All")
         tree = await client.until("tree")
-        assert [(each["name"], each["group"]) for each in tree["displays"]] == [
+        assert [(display["name"], display["group"]) for display in tree["displays"]] == [
             ("All", None),
             ("Grid", "display-5"),
             ("Clicks", "display-5"),
@@ -290,26 +290,26 @@ async def test_displays_are_grouped():
             ("Marks", None),
         ]
         await undo(client)
-        assert made.viewer.config.text() == TEXT
+        assert world.viewer.config.text() == TEXT
 
 
 async def test_group_nesting_depth_is_limited():
-    async with opened() as (made, client):
+    async with opened() as (world, client):
         for depth in range(display_tree.MAXIMUM_NESTING):
             await edit(client, "group_displays", displays=["display-1"], name=f"Group {depth}")
         await client.send("group_displays", displays=["display-1"], name="Too deep")
         assert "nested" in (await client.until("configuration_refused"))["message"]
-        innermost = next(display for display in made.viewer.displays if display.id == "display-1").config.group
+        innermost = next(display for display in world.viewer.displays if display.id == "display-1").config.group
         await client.send("move_displays", displays=["display-2"], group=innermost.identity, before=None)
         assert "nested" in (await client.until("configuration_refused"))["message"]
         await client.send("add_display", cls="rviz_common/Group", name="More", group=innermost.identity, topic=None)
         assert "nested" in (await client.until("configuration_refused"))["message"]
-        assert len(RvizConfig.parse(made.viewer.config.text()).displays) == 3
+        assert len(RvizConfig.parse(world.viewer.config.text()).displays) == 3
 
 
 async def test_number_of_displays_is_limited(monkeypatch):
     monkeypatch.setattr(display_tree, "MAXIMUM_DISPLAYS", 6)
-    async with opened() as (made, client):
+    async with opened() as (world, client):
         await edit(client, "duplicate_displays", displays=["display-2"])  # a group and what it holds
         for kind, fields in (
             ("duplicate_displays", {"displays": ["display-1"]}),
@@ -318,28 +318,28 @@ async def test_number_of_displays_is_limited(monkeypatch):
         ):
             await client.send(kind, **fields)
             assert "no more than 6 displays" in (await client.until("configuration_refused"))["message"]
-        assert len(made.viewer.displays) == 6
+        assert len(world.viewer.displays) == 6
 
 
 # --- undo of properties --------------------------------------------------------------------------------------------
 
 
 async def test_drag_is_undone_in_one_step():
-    async with opened() as (made, client):
+    async with opened() as (world, client):
         for alpha in (0.1, 0.2, 0.3):
             await client.set("display-1/Alpha", alpha)
         await client.until("property_changed", id="display-1/Alpha", value=0.3)
-        assert entries(made)[0]["Alpha"] == 0.3
+        assert entries(world)[0]["Alpha"] == 0.3
         state = await undo(client)
-        rows = {row["name"]: row for row in (await rows_of(client, made, "display-1"))}
+        rows = {row["name"]: row for row in (await rows_of(client, world, "display-1"))}
         assert rows["Alpha"]["value"] == 0.5
-        assert made.viewer.config.text() == TEXT
+        assert world.viewer.config.text() == TEXT
         assert state["redo"] == {"kind": "set", "name": "Alpha"}
         await undo(client, "redo")
-        assert entries(made)[0]["Alpha"] == 0.3
+        assert entries(world)[0]["Alpha"] == 0.3
 
 
-async def rows_of(client, made, identity: str) -> list[dict]:
+async def rows_of(client, world, identity: str) -> list[dict]:
     messages = [
         message for message in client.messages if isinstance(message, dict) and message["type"] == "display_properties"
     ]
@@ -348,15 +348,15 @@ async def rows_of(client, made, identity: str) -> list[dict]:
 
 async def test_all_links_checkbox_is_undone_with_its_effects():
     config = RvizConfig.for_model("base")
-    async with world(config) as made, page(made.viewer) as client:
+    async with open_world(config) as world, page(world.viewer) as client:
         await client.opened()
-        made.describe(ARM)
+        world.describe(ARM)
         await client.until("robot_scene", revision=1)
         await client.set("display-2/Links/tip", False)
         await client.until("configuration")
         await client.set("display-2/Links/All Links Enabled", False)
         await client.until("configuration")
-        robot = made.display("RobotModel")
+        robot = world.display("RobotModel")
         assert not robot.properties.flag("Links", "base")
         await undo(client)
         assert robot.properties.flag("Links", "base")
@@ -366,11 +366,11 @@ async def test_all_links_checkbox_is_undone_with_its_effects():
 
 
 async def test_fixed_frame_change_is_undone():
-    async with opened() as (made, client):
+    async with opened() as (world, client):
         await client.set("global/Fixed Frame", "odom")
         await client.until("configuration")
-        assert made.viewer._node.get_parameter("fixed_frame").value == "odom"
+        assert world.viewer._node.get_parameter("fixed_frame").value == "odom"
         await undo(client)
-        assert made.viewer.manager.fixed_frame == "base"
-        assert made.viewer._node.get_parameter("fixed_frame").value == "base"
-        assert made.viewer.manager.frames.fixed_frame == "base"
+        assert world.viewer.manager.fixed_frame == "base"
+        assert world.viewer._node.get_parameter("fixed_frame").value == "base"
+        assert world.viewer.manager.frames.fixed_frame == "base"

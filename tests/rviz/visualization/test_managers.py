@@ -13,17 +13,17 @@ from tests.waiting import eventually
 
 
 @asynccontextmanager
-async def own_page(made, key: str = "0123456789abcdef"):
-    address = made.viewer.url.replace("/?", "/ws?") + f"&own={key}"
+async def own_page(world, key: str = "0123456789abcdef"):
+    address = world.viewer.url.replace("/?", "/ws?") + f"&own={key}"
     async with aiohttp.ClientSession() as session, session.ws_connect(address) as socket:
         yield Client(socket)
 
 
 async def test_pages_share_displays():
-    async with opened() as (made, first), page(made.viewer) as second:
+    async with opened() as (world, first), page(world.viewer) as second:
         await second.opened()
         await first.send("remove_displays", displays=["display-1"])
-        assert [each["name"] for each in (await second.until("tree"))["displays"]] == ["Marks", "Clicks", "Radar"]
+        assert [display["name"] for display in (await second.until("tree"))["displays"]] == ["Marks", "Clicks", "Radar"]
         await second.send("undo")
         assert len((await first.until("tree", global_level="warn"))["displays"]) == 3
         assert len((await first.until("tree"))["displays"]) == 4
@@ -31,12 +31,12 @@ async def test_pages_share_displays():
 
 async def test_page_may_have_own_displays(monkeypatch):
     monkeypatch.setattr(manager, "LINGERING", 0.05)
-    async with opened() as (made, shared):
-        publisher = made.graph.create_node("clicks").create_publisher(PointStamped, "/clicked_point", 5)
-        async with own_page(made) as own:
+    async with opened() as (world, shared):
+        publisher = world.graph.create_node("clicks").create_publisher(PointStamped, "/clicked_point", 5)
+        async with own_page(world) as own:
             opening = await own.opened()
             assert (opening["configuration"]["own"], opening["configuration"]["path"]) == (True, None)
-            ids = [each["id"] for each in opening["tree"]["displays"]]
+            ids = [display["id"] for display in opening["tree"]["displays"]]
             assert ids == [f"display-{n}" for n in range(5, 9)]
             assert publisher.get_subscription_count() == 2
             await shared.drain()
@@ -46,32 +46,32 @@ async def test_page_may_have_own_displays(monkeypatch):
             await own.until("configuration")
             await own.set("display-1/Alpha", 0.9)  # of the others: it has no such display
             assert await shared.drain() == []
-            assert made.viewer.config.text() == TEXT
-            assert made.viewer._node.get_parameter("fixed_frame").value == "base"
-        async with own_page(made) as again:  # it was loaded anew
+            assert world.viewer.config.text() == TEXT
+            assert world.viewer._node.get_parameter("fixed_frame").value == "base"
+        async with own_page(world) as again:  # it was loaded anew
             opening = await again.opened()
-            assert [each["id"] for each in opening["tree"]["displays"]] == ids
+            assert [display["id"] for display in opening["tree"]["displays"]] == ids
         await eventually(lambda: publisher.get_subscription_count() == 1)
-        async with own_page(made) as later:
+        async with own_page(world) as later:
             opening = await later.opened()
-            assert [each["id"] for each in opening["tree"]["displays"]] != ids
+            assert [display["id"] for display in opening["tree"]["displays"]] != ids
 
 
 async def test_number_of_lingering_own_displays_is_limited(monkeypatch):
     monkeypatch.setattr(manager, "MOST_LINGERING", 2)
-    async with opened() as (made, _):
-        publisher = made.graph.create_node("clicks").create_publisher(PointStamped, "/clicked_point", 5)
+    async with opened() as (world, _):
+        publisher = world.graph.create_node("clicks").create_publisher(PointStamped, "/clicked_point", 5)
         for number in range(5):
-            async with own_page(made, f"page-number-{number}") as client:
+            async with own_page(world, f"page-number-{number}") as client:
                 await client.opened()
         await eventually(lambda: publisher.get_subscription_count() == 3)  # for all, and for two that wait
-        async with own_page(made, "page-number-4") as client:
+        async with own_page(world, "page-number-4") as client:
             opening = await client.opened()
             assert opening["tree"]["displays"][0]["id"] == "display-21"  # the fifth of four displays each, after four
 
 
 async def test_page_with_invalid_key_shares_displays():
-    async with opened() as (made, _):
+    async with opened() as (world, _):
         for key in ("short", "../../../etc/passwd", "x" * 100):
-            async with own_page(made, key) as client:
+            async with own_page(world, key) as client:
                 assert (await client.opened())["configuration"]["own"] is False

@@ -21,10 +21,10 @@ SIZES = {"box": (1, 2, 3), "cylinder": (0.1, 2), "sphere": (0.3,), "wall": (4, 0
 def test_added_shape_is_read_back(kind):
     before = world_text(PLAIN)
     text, name = add_shape(before, kind, POSE, SIZES[kind])
-    thing = text.entities[name]
-    assert (thing.shape.kind, thing.shape.size) == (kind, SIZES[kind])
-    assert thing.pose.pose == Pose(POSE[:3], POSE[3:])
-    assert thing.is_static == (kind in ("wall", "ramp"))
+    entity = text.entities[name]
+    assert (entity.shape.kind, entity.shape.size) == (kind, SIZES[kind])
+    assert entity.pose.pose == Pose(POSE[:3], POSE[3:])
+    assert entity.is_static == (kind in ("wall", "ramp"))
     assert not simulators_refuse(text)
     assert delete(text, [name]).text == PLAIN
     usual, name = add_shape(before, kind, POSE)

@@ -24,10 +24,10 @@ ENDS = st.sampled_from(["\n", "\r\n"])
 def boxes(draw, name: str) -> str:
     """Generate a box in any notation and frame."""
     gap, quote, between = draw(SPACES), draw(QUOTES), draw(SEPARATORS)
-    numbers = [format_length(each) for each in draw(POSES)]
+    numbers = [format_length(number) for number in draw(POSES)]
     form = draw(st.sampled_from(["", ' relative_to="f"', " frame = 'f'"]))
     pose = draw(st.sampled_from([f"<pose{form}>{gap if '?' not in gap else ''}{between.join(numbers)}</pose>", ""]))
-    size = between.join(format_length(each) for each in draw(SIZES))
+    size = between.join(format_length(length) for length in draw(SIZES))
     geometry = f"<geometry>{gap}<box><size>{size}</size></box></geometry>"
     visual = f"<visual name={quote}v{quote}>{geometry}</visual>"
     inertial = draw(st.sampled_from(["", "<inertial><mass>2</mass></inertial>"]))
@@ -38,7 +38,7 @@ def boxes(draw, name: str) -> str:
 @st.composite
 def worlds(draw) -> str:
     """Generate a world with three boxes and a frame."""
-    frame = f"<frame name='f'><pose>{' '.join(format_length(each) for each in draw(POSES))}</pose></frame>"
+    frame = f"<frame name='f'><pose>{' '.join(format_length(number) for number in draw(POSES))}</pose></frame>"
     parts = [draw(boxes(name)) for name in ("a", "b&amp;c", "d")]
     text = f"<?xml version='1.0'?>\n<sdf version='1.9'>\n<world name='w'>{frame}{''.join(parts)}\n</world>\n</sdf>\n"
     return text.replace("\n", draw(ENDS))

@@ -24,14 +24,14 @@ def changed(text: str, *changes: Change) -> list[str]:
 
 
 def test_world_entities_are_listed():
-    things = world_text(PLAIN).entities
-    assert list(things) == ["ground_plane", "box", "lamp"]
-    assert [thing.kind for thing in things.values()] == ["model", "model", "light"]
-    assert things["ground_plane"].is_static
-    assert things["box"].shape.kind == "box"
-    assert things["box"].shape.size == (0.5, 0.5, 0.5)
-    assert things["box"].shape.color == (0.9, 0.4, 0.1, 1.0)
-    assert things["lamp"].world_pose[:3] == (0, 0, 3)
+    entities = world_text(PLAIN).entities
+    assert list(entities) == ["ground_plane", "box", "lamp"]
+    assert [entity.kind for entity in entities.values()] == ["model", "model", "light"]
+    assert entities["ground_plane"].is_static
+    assert entities["box"].shape.kind == "box"
+    assert entities["box"].shape.size == (0.5, 0.5, 0.5)
+    assert entities["box"].shape.color == (0.9, 0.4, 0.1, 1.0)
+    assert entities["lamp"].world_pose[:3] == (0, 0, 3)
 
 
 def test_pose_change_replaces_only_changed_numbers():
@@ -91,8 +91,8 @@ def test_world_pose_is_converted_to_pose_frame():
         assert moved.entities[name].world_pose[:3] == pytest.approx(pose[:3], abs=1e-8)
     assert moved.text.count("relative_to") == 3
     again = change(moved, [Change(name, pose=pose) for name, pose in wanted.items()])
-    for name, thing in again.entities.items():
-        assert thing.world_pose == pytest.approx(moved.entities[name].world_pose, abs=1e-8)
+    for name, entity in again.entities.items():
+        assert entity.world_pose == pytest.approx(moved.entities[name].world_pose, abs=1e-8)
 
 
 def test_unknown_pose_frame_is_reported():

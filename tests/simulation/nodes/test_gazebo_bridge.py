@@ -60,7 +60,7 @@ def test_malformed_bridge_argument_is_rejected(word):
 
 
 def test_shipped_bridge_file_is_read():
-    topics = {each.gz_topic: each for each in read_bridge_file(str(GAZEBO_PACKAGE / "config" / "bridge.yaml"))}
+    topics = {entry.gz_topic: entry for entry in read_bridge_file(str(GAZEBO_PACKAGE / "config" / "bridge.yaml"))}
     assert topics["kinect/image"].ros_topic == "kinect/image_raw"
     assert topics["cmd_vel"].direction == "ROS_TO_GZ"
 
@@ -271,9 +271,9 @@ async def test_compressed_images_are_published_while_subscribed(stage, encoding,
     (frame,) = compressed
     assert frame.format.startswith(f"{encoding}; jpeg compressed")
     shown = images.open(BytesIO(bytes(frame.data)))
-    found = shown.getpixel((4, 4))
+    shown_pixel = shown.getpixel((4, 4))
     expected = [120] if encoding == "mono8" else [200, 100, 50]
-    assert list(found if isinstance(found, tuple) else (found,)) == pytest.approx(expected, abs=6)
+    assert list(shown_pixel if isinstance(shown_pixel, tuple) else (shown_pixel,)) == pytest.approx(expected, abs=6)
 
 
 @pytest.mark.parametrize(
@@ -298,5 +298,5 @@ async def test_lost_publisher_stops_drive_behind_bridge(stage, ros_type):
     driver.send(message)
     driver.be_lost()
     await stage.graph.settle()
-    assert [each.linear.x for each in driven] == [0.3, 0.0]
+    assert [twist.linear.x for twist in driven] == [0.3, 0.0]
     bridge.close()

@@ -118,11 +118,11 @@ def test_unsaved_changes_are_stored(tmp_path):
     path, folder = tmp_path / "w.world", tmp_path / "state" / "unsaved"
     path.write_bytes(codecs.BOM_UTF8 + PLAIN.encode())
     result = [edited(path, name).store_unsaved(folder) for name in ("a", "b")]
-    (kept,) = folder.iterdir()
-    assert [each.code for each in result] == ["RVIZ301", "RVIZ301"]
+    (file,) = folder.iterdir()
+    assert [diagnostic.code for diagnostic in result] == ["RVIZ301", "RVIZ301"]
     assert f"'{path}'" in result[0].message
-    assert f"'{kept}'" in result[0].message
-    assert kept.read_bytes() == codecs.BOM_UTF8 + PLAIN.replace("'box'", "'b'").encode()
+    assert f"'{file}'" in result[0].message
+    assert file.read_bytes() == codecs.BOM_UTF8 + PLAIN.replace("'box'", "'b'").encode()
     (tmp_path / "file").touch()
     lost = edited(path).store_unsaved(tmp_path / "file" / "unsaved")
     assert (lost.code, "cannot write" in lost.message) == ("RVIZ104", True)

@@ -11,7 +11,7 @@ from linkwright.graph import DurabilityPolicy, QoSProfile
 from linkwright.messages import get_message, get_service
 from linkwright.rviz.config.locations import recovery_folder
 from tests.sdf.editing.texts import BOX, PLAIN
-from tests.viewer.scene import page, world
+from tests.viewer.scene import open_world, page
 from tests.waiting import eventually
 
 STRING = get_message("std_msgs/msg/String")
@@ -27,8 +27,8 @@ POSE = [1, 2, 3, 0, 0, 0.5]
 class Simulation:
     """What a simulator is for those who model its world; keeps what it was asked."""
 
-    def __init__(self, made, path: Path | None, *, loads: bool) -> None:
-        self.node = made.graph.create_node("gazebo")
+    def __init__(self, world, path: Path | None, *, loads: bool) -> None:
+        self.node = world.graph.create_node("gazebo")
         if path is not None:
             self.node.declare_parameter("world", str(path))
         latched = QoSProfile(1, durability=DurabilityPolicy.TRANSIENT_LOCAL)
@@ -54,19 +54,19 @@ class Simulation:
         return self.asked[-1][1].world_resource
 
     def count(self, name: str) -> int:
-        return [each for each, _ in self.asked].count(name)
+        return [service for service, _ in self.asked].count(name)
 
 
 @asynccontextmanager
 async def modeling_session(path: Path | None = None, *, loads: bool = True):
     """A simulation whose world stands in a file, and a page that edits it."""
-    async with world() as made:
-        simulation = Simulation(made, path, loads=loads)
-        async with page(made.viewer) as client:
+    async with open_world() as world:
+        simulation = Simulation(world, path, loads=loads)
+        async with page(world.viewer) as client:
             await client.until("modeling_state", available=True)
             await client.send("set_modeling", active=True)
             client.state = await client.until("modeling_state", active=True)
-            yield simulation, client, made
+            yield simulation, client, world
 
 
 def write_world(tmp_path: Path, text: str = PLAIN) -> Path:
@@ -80,7 +80,7 @@ def change(name: str, **fields) -> dict:
 
 
 async def test_modeling_is_unavailable_without_simulation():
-    async with world() as made, page(made.viewer) as client:
+    async with open_world() as world, page(world.viewer) as client:
         state = (await client.opened())["modeling_state"]
         assert (state["available"], state["active"], state["entities"]) == (False, False, [])
         await client.send("set_modeling", active=True)
@@ -93,7 +93,7 @@ async def test_modeling_pauses_and_resets_simulation(tmp_path):
         assert [name for name, _ in simulation.asked] == ["/pause_physics", "/reset_simulation"]
         assert client.state["file"] == str(path)
         assert not client.state["unsaved"]
-        assert [(each["name"], each["kind"]) for each in client.state["entities"]] == [
+        assert [(entity["name"], entity["kind"]) for entity in client.state["entities"]] == [
             ("ground_plane", "model"),
             ("box", "model"),
             ("lamp", "light"),
@@ -133,14 +133,14 @@ async def test_modeling_messages_edit_entities(tmp_path):
 
         async def names(kind: str, **fields) -> list[str]:
             await client.send(kind, **fields)
-            return [each["name"] for each in (await client.until("modeling_state"))["entities"]]
+            return [entity["name"] for entity in (await client.until("modeling_state"))["entities"]]
 
         for shape in ("box", "cylinder", "sphere", "wall", "ramp"):
             assert shape in (await names("add_entity", shape=shape, address="", pose=POSE, size=[]))[-1]
         for light in ("point_light", "directional_light", "spot_light"):
             await names("add_entity", shape=light, address="", pose=POSE, size=[])
-        found = await names("add_entity", shape="model", address="model://sun", pose=POSE, size=[])
-        assert found == [
+        entity_names = await names("add_entity", shape="model", address="model://sun", pose=POSE, size=[])
+        assert entity_names == [
             *("ground_plane", "box", "lamp", "box_2", "cylinder", "sphere", "wall", "ramp"),
             *("point_light", "directional_light", "spot_light", "sun"),
         ]
@@ -150,23 +150,23 @@ async def test_modeling_messages_edit_entities(tmp_path):
         assert "box_2" in await names("ungroup_entity", name="pile")
         changes = [change("wall", size=[1, 2, 3], color=[0, 0, 1, 1]), change("ramp", new_name="slope", static=False)]
         await client.send("change_entities", changes=changes)
-        entities = {each["name"]: each for each in (await client.until("modeling_state"))["entities"]}
+        entities = {entity["name"]: entity for entity in (await client.until("modeling_state"))["entities"]}
         assert (entities["wall"]["size"], entities["wall"]["color"]) == ([1, 2, 3], [0, 0, 1, 1])
         assert (entities["slope"]["shape"], entities["slope"]["static"]) == ("ramp", False)
         await client.send("ask_models")
-        found = (await client.until("model_choices"))["models"]
-        assert {"name": "sun", "address": "model://sun"} in found
+        model_choices = (await client.until("model_choices"))["models"]
+        assert {"name": "sun", "address": "model://sun"} in model_choices
 
 
 async def test_new_entity_gets_unused_name(tmp_path):
     async with modeling_session(write_world(tmp_path, PLAIN.replace(BOX, ""))) as (_, client, _):
-        assert [each["name"] for each in client.state["entities"]] == ["ground_plane", "lamp"]
+        assert [entity["name"] for entity in client.state["entities"]] == ["ground_plane", "lamp"]
         await client.send("add_entity", shape="box", address="", pose=POSE, size=[])
         assert (await client.until("modeling_state", unsaved=True))["entities"][-1]["name"] == "box_2"
 
 
 async def test_pages_share_edited_world(tmp_path):
-    async with modeling_session(write_world(tmp_path)) as (_, client, made), page(made.viewer) as other:
+    async with modeling_session(write_world(tmp_path)) as (_, client, world), page(world.viewer) as other:
         assert (await other.opened())["modeling_state"]["active"] is True
         await client.send("delete_entities", names=["box"])
         assert len((await other.until("modeling_state", unsaved=True))["entities"]) == 2
@@ -230,11 +230,11 @@ async def test_externally_changed_file_is_reloaded_or_not_overwritten(tmp_path):
 
 async def test_unsaved_changes_are_kept_at_exit(tmp_path):
     path = write_world(tmp_path)
-    async with modeling_session(path) as (_, client, made):
-        assert made.viewer.keep_unsaved() == []
+    async with modeling_session(path) as (_, client, world):
+        assert world.viewer.keep_unsaved() == []
         await client.send("delete_entities", names=["box"])
         await client.until("modeling_state", unsaved=True)
-        (notice,) = made.viewer.keep_unsaved()
+        (notice,) = world.viewer.keep_unsaved()
     assert (notice.code, path.read_text()) == ("RVIZ301", PLAIN)
-    kept = list(recovery_folder().glob("my-*.world"))
-    assert [each.read_text() for each in kept if str(each) in notice.message] == [PLAIN.replace(BOX, "")]
+    files = list(recovery_folder().glob("my-*.world"))
+    assert [file.read_text() for file in files if str(file) in notice.message] == [PLAIN.replace(BOX, "")]

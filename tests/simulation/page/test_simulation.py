@@ -8,7 +8,7 @@ import pytest
 
 from linkwright.graph import DurabilityPolicy, QoSProfile
 from linkwright.messages import Time, get_message, get_service
-from tests.viewer.scene import page, world
+from tests.viewer.scene import open_world, page
 from tests.waiting import eventually
 
 STATE = get_message("simulation_interfaces/msg/SimulationState")
@@ -30,9 +30,9 @@ SERVICES = {
 class Simulation:
     """The topics and services of a simulator; keeps what it was asked, and says where every model is."""
 
-    def __init__(self, made) -> None:
-        self.made = made
-        self.node = made.graph.create_node("gazebo")
+    def __init__(self, world) -> None:
+        self.world = world
+        self.node = world.graph.create_node("gazebo")
         latched = QoSProfile(1, durability=DurabilityPolicy.TRANSIENT_LOCAL)
         self.state = self.node.create_publisher(STATE, "/simulation_state", latched)
         self.metrics = self.node.create_publisher(METRICS, "/performance_metrics", 10)
@@ -59,22 +59,22 @@ class Simulation:
         return response
 
     async def request(self, name: str, count: int = 1):
-        await eventually(lambda: [each for each, _ in self.asked].count(name) >= count)
-        return [request for each, request in self.asked if each == name][-1]
+        await eventually(lambda: [service for service, _ in self.asked].count(name) >= count)
+        return [request for service, request in self.asked if service == name][-1]
 
 
 @asynccontextmanager
 async def simulated():
-    async with world() as made:
-        simulation = Simulation(made)
+    async with open_world() as world:
+        simulation = Simulation(world)
         simulation.state.publish(STATE(state=1))
-        async with page(made.viewer) as client:
+        async with page(world.viewer) as client:
             await client.until("simulation_status", present=True)
             yield simulation, client
 
 
 async def test_simulation_is_absent_without_simulator():
-    async with world() as made, page(made.viewer) as client:
+    async with open_world() as world, page(world.viewer) as client:
         assert (await client.opened())["simulation_status"]["present"] is False
 
 
@@ -82,16 +82,16 @@ async def test_simulation_features_are_created_on_demand():
     def kinds(viewer) -> set[str]:
         return {type(feature).__name__ for feature in viewer._features}
 
-    async with world() as made, page(made.viewer) as client:
+    async with open_world() as world, page(world.viewer) as client:
         assert not (await client.opened())["modeling_state"]["available"]
         needless = {"SimulationFeature", "ModelingFeature", "RecordingFeature", "ComparisonFeature", "PointsFeature"}
-        assert not needless & kinds(made.viewer)
-        Simulation(made).state.publish(STATE(state=1))
+        assert not needless & kinds(world.viewer)
+        Simulation(world).state.publish(STATE(state=1))
         await client.until("simulation_status", present=True)
-        assert needless & kinds(made.viewer) == {"SimulationFeature"}
+        assert needless & kinds(world.viewer) == {"SimulationFeature"}
         await client.send("stop_recording")
         await client.until("recording_state", path="")
-        assert needless & kinds(made.viewer) == {"SimulationFeature", "RecordingFeature"}
+        assert needless & kinds(world.viewer) == {"SimulationFeature", "RecordingFeature"}
 
 
 async def test_status_reports_pause_and_real_time_factor():
@@ -170,10 +170,10 @@ async def test_rejected_request_is_reported():
 
 
 async def test_missing_service_is_reported():
-    async with world() as made:
-        node = made.graph.create_node("gazebo")
+    async with open_world() as world:
+        node = world.graph.create_node("gazebo")
         node.create_publisher(STATE, "/simulation_state", 1).publish(STATE(state=1))
-        async with page(made.viewer) as client:
+        async with page(world.viewer) as client:
             await client.until("simulation_status", present=True)
             await client.send("control_simulation", action="pause")
             assert (await client.until("simulation_notice"))["text"] == "there is no service '/pause_physics'"

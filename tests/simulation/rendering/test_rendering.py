@@ -39,16 +39,16 @@ def renderer_of(simulation: Simulation, way: str):
 @pytest.fixture(params=METHODS)
 def make(request: pytest.FixtureRequest):
     """Makes a renderer one way; the ways that the system lacks are left out."""
-    made = []
+    renderers = []
 
     def renderer(simulation: Simulation):
-        each = renderer_of(simulation, request.param)
-        made.append(each)
-        return each
+        created = renderer_of(simulation, request.param)
+        renderers.append(created)
+        return created
 
     yield renderer
-    for each in made:
-        each.close()
+    for open_renderer in renderers:
+        open_renderer.close()
 
 
 def test_depth_of_walls_is_exact(make):
@@ -199,12 +199,12 @@ def test_primitive_shapes_are_textured(make, tmp_path, shape, distance, order, r
     assert set(corners) <= set(known)
     assert len(set(corners)) >= 2
     if order is not None:
-        assert corners == [known[each] for each in order]
+        assert corners == [known[index] for index in order]
 
 
 def test_box_with_missing_texture_is_reported(tmp_path):
     simulation = simulated(WEARING.format(shape="<box><size>1 1 1</size></box>", image=tmp_path / "none.png"))
-    assert [each.code for each in simulation.scene.diagnostics] == ["SIM112"]
+    assert [diagnostic.code for diagnostic in simulation.scene.diagnostics] == ["SIM112"]
     assert simulation.model.nmesh == 0
 
 
@@ -369,7 +369,9 @@ def test_resting_and_moving_models_are_rendered_at_current_pose(make):
 
     def seen():
         """The world now, of a renderer that has seen it before and of one that has not."""
-        return tuple(each.render(optics, IDENTITY, Channels.DEPTH).depth for each in (renderer, make(simulation)))
+        return tuple(
+            candidate.render(optics, IDENTITY, Channels.DEPTH).depth for candidate in (renderer, make(simulation))
+        )
 
     for place in (None, (2.5, -0.5, 0.3, 0.0, 0.0, 0.0, 1.0), (-2.0, 0.0, 0.0, 0.0, 0.0, 0.0, 1.0)):
         if place is not None:

@@ -42,9 +42,9 @@ def model(parameters: Path) -> str:
 def description(kind: str) -> str:
     """The arm as its controllers see it: each joint is commanded by one kind of interface."""
     interfaces = f"<command_interface name='{kind}'/>" + "".join(
-        f"<state_interface name='{each}'/>" for each in ("position", "velocity")
+        f"<state_interface name='{interface}'/>" for interface in ("position", "velocity")
     )
-    links = "".join(f"<link name='{each}'/>" for each in ("world", *(f"{joint}_link" for joint in JOINTS)))
+    links = "".join(f"<link name='{link}'/>" for link in ("world", *(f"{joint}_link" for joint in JOINTS)))
     joints = "".join(
         f"<joint name='{name}' type='revolute'><parent link='{parent}'/><child link='{name}_link'/><axis xyz='0 1 0'/>"
         "<limit lower='-3' upper='3' effort='100' velocity='5'/></joint>"
@@ -118,7 +118,7 @@ async def test_controller_can_start_before_first_update(tmp_path):
     async with served(model(parameters("position", tmp_path))) as (server, graph, log):
         await Arm(server, graph).begin("position", wait=0.0)
         assert server.simulation.time == 0
-        assert not [each.text for each in log if each.level.name in ("WARN", "ERROR")]
+        assert not [record.text for record in log if record.level.name in ("WARN", "ERROR")]
 
 
 STATE = "control_msgs/msg/JointTrajectoryControllerState"

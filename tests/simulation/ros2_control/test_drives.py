@@ -162,7 +162,7 @@ async def driven(robot: Robot, folder: Path) -> AsyncIterator[Drive]:
         await drive.start("base")
         await drive.advance(0.5)
         yield drive
-        assert not [each.text for each in log if each.level.name in ("WARN", "ERROR")]
+        assert not [record.text for record in log if record.level.name in ("WARN", "ERROR")]
 
 
 @ALL

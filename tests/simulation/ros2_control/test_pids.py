@@ -51,7 +51,7 @@ async def test_pid_moves_joint_to_command_and_stops_with_controller(tmp_path, ki
         await world.advance(2.0)
         position, velocity = server.simulation.joint_state("mbot::left_joint")
         assert (position if kind == "position" else velocity) == pytest.approx(1.5, abs=0.15)
-        assert [each.text for each in log if each.level >= LogLevel.ERROR] == []
+        assert [record.text for record in log if record.level >= LogLevel.ERROR] == []
         assert (await world.ask("switch_controller", deactivate_controllers=["arm"], strictness=2)).ok
         await world.advance(1.0)
         assert server.simulation.joint_state("mbot::left_joint")[1] == pytest.approx(0.0, abs=0.05)
@@ -61,5 +61,5 @@ async def test_gain_that_is_not_a_number_is_reported(tmp_path):
     path = parameter_file(tmp_path / "controllers.yaml", "position")
     async with served(controlled(path)) as (server, graph, log):
         await Controlled(server, graph).describe(in_description("position", kp="stiff"))
-        logged = [each.text for each in log if each.level == LogLevel.WARN]
+        logged = [record.text for record in log if record.level == LogLevel.WARN]
         assert logged == ["the PID parameter kp of joint 'left_joint' is not a number: 'stiff'"]

@@ -112,7 +112,7 @@ async def test_wheels_follow_commands_and_stop_with_controller(file, which):
         assert (await world.ask("switch_controller", deactivate_controllers=["wheels"], strictness=2)).ok
         await world.advance(0.5)
         assert list(states.last.velocity) == pytest.approx([0.0, 0.0], abs=0.05)
-        assert not [each.text for each in log if each.level.name in ("WARN", "ERROR")]
+        assert not [record.text for record in log if record.level.name in ("WARN", "ERROR")]
 
 
 async def test_servos_of_all_joints_require_one_model_compilation(file):
@@ -194,7 +194,7 @@ async def test_joints_and_sensors_missing_in_model_are_reported(file):
     async with served(GROUND, controlled(file)) as (server, graph, log):
         world = Controlled(server, graph)
         await world.describe(description(text))
-        joint, sensor = (each.text for each in log if each.level.name == "WARN")
+        joint, sensor = (record.text for record in log if record.level.name == "WARN")
         assert joint == "Skipping joint in the URDF named 'third_joint' which is not in the gazebo model."
         assert sensor.startswith(
             "sensor 'ft' of <ros2_control> has no IMU or force-torque sensor of this name in the model"
@@ -217,7 +217,7 @@ async def test_reset_keeps_controllers_active(file):
         await world.advance(1.0)
         assert states.last.header.stamp.sec == 1
         assert list(states.last.velocity) == pytest.approx([2.0, 2.0], abs=0.05)
-        assert not any(isnan(each) for each in states.last.effort)
+        assert not any(isnan(effort) for effort in states.last.effort)
 
 
 async def test_manager_is_removed_with_robot(file):
@@ -240,7 +240,10 @@ async def test_controllers_stay_active_when_model_is_replaced(file):
         server.replace_model(model(heavier), "mbot")
         await world.advance(0.1)
         listed = (await world.ask("list_controllers")).controller
-        assert {each.name: each.state for each in listed} == {"broadcaster": "active", "wheels": "active"}
+        assert {controller.name: controller.state for controller in listed} == {
+            "broadcaster": "active",
+            "wheels": "active",
+        }
         await world.command(2.0, 2.0)
         await world.advance(1.0)
         assert server.simulation.joint_state("mbot::left_joint")[1] == pytest.approx(2.0, abs=0.05)
@@ -261,7 +264,7 @@ async def test_respawned_robot_has_no_controllers(file):
 async def test_vendor_copy_of_plugin_is_reported_once(file):
     two = controlled(file, "copy", "<controller_manager_name>other</controller_manager_name>")
     async with served(GROUND, controlled(file, "copy"), two.replace('"mbot"', '"two"')) as (_, __, log):
-        logged = [each.text for each in log if "is simulated as" in each.text]
+        logged = [record.text for record in log if "is simulated as" in record.text]
     assert logged == [
         (
             "'libvendor_ros2_control.so' is simulated as 'ign_ros2_control-system', because its plugin class "

@@ -122,5 +122,5 @@ def test_unsimulated_elements_are_reported_once():
         '<model name="m"><static>true</static><link name="l"><projector name="p"/><projector name="q"/></link></model>'
     )
     walker = ACTOR.replace("<script>", '<animation name="walk"/><plugin name="p" filename="libwalk.so"/><script>')
-    found = unsimulated_elements(simulated(GROUND, more, walker).world)
-    assert found == ["<animation> in <actor>", "<projector>", "libwalk.so in <actor>"]
+    element_names = unsimulated_elements(simulated(GROUND, more, walker).world)
+    assert element_names == ["<animation> in <actor>", "<projector>", "libwalk.so in <actor>"]

@@ -80,19 +80,19 @@ def test_moving_mesh_collides_as_convex_hull(room):
 
 def test_missing_mesh_is_reported_once(tmp_path):
     simulation = simulated(GROUND, mesh_model(tmp_path / "none.stl"))
-    (found,) = simulation.scene.diagnostics
-    assert found.code == "SIM112"
-    assert "none.stl" in found.message
-    assert found.span is not None
+    (diagnostic,) = simulation.scene.diagnostics
+    assert diagnostic.code == "SIM112"
+    assert "none.stl" in diagnostic.message
+    assert diagnostic.span is not None
     simulation.advance(NANOSECONDS_PER_SECOND // 10)
 
 
 def test_mesh_with_too_many_triangles_is_omitted(room, monkeypatch):
     monkeypatch.setattr("linkwright.simulation.scene.meshes._MAX_TRIANGLES", 7)
     simulation = simulated(GROUND, mesh_model(room))
-    (found,) = simulation.scene.diagnostics
-    assert found.code == "SIM115"
-    assert "has 8 triangles, but the maximum is 7" in found.message
+    (diagnostic,) = simulation.scene.diagnostics
+    assert diagnostic.code == "SIM115"
+    assert "has 8 triangles, but the maximum is 7" in diagnostic.message
     simulation.advance(NANOSECONDS_PER_SECOND // 10)
 
 
@@ -123,8 +123,8 @@ def test_unreadable_heightmap_image_is_reported(tmp_path):
         library.collisions(library.spec.worldbody, Heightmap(path.as_uri()), (0, 0, 0, 0, 0, 0, 1), None, fixed=True)
         == []
     )
-    (found,) = library.diagnostics
-    assert found.code == "SIM113"
+    (diagnostic,) = library.diagnostics
+    assert diagnostic.code == "SIM113"
 
 
 def test_polyline_is_extruded():
@@ -157,7 +157,7 @@ def test_invalid_mass_and_inertia_are_reported():
     model = """<model name="m"><link name="l"><inertial><mass>-1</mass><inertia><ixx>-1</ixx></inertia></inertial>
     </link></model>"""
     simulation = simulated(model)
-    assert [found.code for found in simulation.scene.diagnostics] == ["SIM110", "SIM111"]
+    assert [diagnostic.code for diagnostic in simulation.scene.diagnostics] == ["SIM110", "SIM111"]
     simulation.advance(NANOSECONDS_PER_SECOND)
 
 
@@ -168,8 +168,8 @@ def moments(ixx: float, iyy: float, izz: float) -> Simulation:
 
 def test_inertia_violating_triangle_inequality_is_reported():
     simulation = moments(1.0, 1.0, 9.0)
-    (found,) = simulation.scene.diagnostics
-    assert (found.code, "the mean of its moments is used" in found.message) == ("SIM111", True)
+    (diagnostic,) = simulation.scene.diagnostics
+    assert (diagnostic.code, "the mean of its moments is used" in diagnostic.message) == ("SIM111", True)
     assert simulation.model.body("m::l").inertia == pytest.approx([11 / 3] * 3)
 
 

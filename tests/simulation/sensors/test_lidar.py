@@ -94,15 +94,15 @@ def test_lidar_sees_its_robot_but_not_its_own_link(near: float, expected: float)
 def test_noise_depends_on_seed_and_stays_in_range():
     simulation = simulated(room(), carrier())
     parameters = flat(2000, -1.0, 1.0, GAUSSIAN, far=3.4)
-    one, same, other = (lidar_sensor(simulation, parameters, seed=seed).measure().ranges[0] for seed in (1, 1, 2))
-    assert (one == same).all()
-    assert not (one == other).all()
+    first, same, second = (lidar_sensor(simulation, parameters, seed=seed).measure().ranges[0] for seed in (1, 1, 2))
+    assert (first == same).all()
+    assert not (first == second).all()
     exact = lidar_sensor(simulation, flat(2000, -1.0, 1.0, far=3.4)).measure().ranges[0]
     finite = np.isfinite(exact)
-    assert (np.isfinite(one) == finite).all()
-    assert one[finite].max() <= 3.4
+    assert (np.isfinite(first) == finite).all()
+    assert first[finite].max() <= 3.4
     inside = exact < 3.35
-    assert np.std(one[inside] - exact[inside]) == pytest.approx(0.01, rel=0.1)
+    assert np.std(first[inside] - exact[inside]) == pytest.approx(0.01, rel=0.1)
 
 
 def test_spawned_models_are_detected():

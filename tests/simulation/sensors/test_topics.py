@@ -359,9 +359,9 @@ async def test_force_torque_sensors_publish_wrench():
     classic = plugin("libgazebo_ros_ft_sensor.so", "<joint_name>wrist</joint_name><update_rate>10</update_rate>")
     gz = sensor("force_torque", "<topic>ft</topic>", name="ft")
     async with served(ARM.format(inside=gz, more=classic)) as (server, graph, log):
-        one, other = await last_messages(server, graph, "/wrench", "/ft")
-        assert (one.header.frame_id, other.header.frame_id) == ("bob", "arm/wrist/ft")
-        for message in (one, other):
+        first, second = await last_messages(server, graph, "/wrench", "/ft")
+        assert (first.header.frame_id, second.header.frame_id) == ("bob", "arm/wrist/ft")
+        for message in (first, second):
             assert message.wrench.force.z == pytest.approx(-2 * 9.81, abs=1e-3)
             assert message.wrench.torque.y == pytest.approx(2 * 9.81, abs=1e-3)
         assert not log
@@ -386,7 +386,7 @@ async def test_classic_camera_publishes_image_and_camera_info():
         assert list(info.k) == pytest.approx([focal, 0, 32.5, 0, focal, 24.5, 0, 0, 1])
         assert list(info.p)[3] == pytest.approx(-focal * 0.07)
         assert (info.distortion_model, list(info.d)) == ("plumb_bob", [0.0] * 5)
-        assert [each.text for each in log if "camera images are rendered by" in each.text]
+        assert [record.text for record in log if "camera images are rendered by" in record.text]
 
 
 @pytest.mark.parametrize(
@@ -458,7 +458,7 @@ async def test_gz_rgbd_camera_points_have_x_forward():
         assert (image.encoding, depth.encoding, info.width) == ("rgb8", "32FC1", 64)
         points = np.frombuffer(bytes(cloud.data), np.float32).reshape(48, 64, 8)
         assert points[24, 60, :3] == pytest.approx([2.0, -28.5 / 32 * 2, -0.5 / 32 * 2], abs=1e-2)
-        assert [each.text for each in log] == [each.text for each in log if "camera images" in each.text]
+        assert [record.text for record in log] == [record.text for record in log if "camera images" in record.text]
 
 
 LABEL = '<plugin filename="gz-sim-label-system" name="gz::sim::systems::Label"><label>{}</label></plugin>'
@@ -483,10 +483,10 @@ async def test_bounding_boxes_enclose_labeled_models():
     text = carrier(sensor("boundingbox_camera", f"<topic>boxes</topic>{EYE}"))
     async with served(*world, text) as (server, graph, _):
         boxes, image = await last_messages(server, graph, "/boxes", "/boxes_image")
-        found = {detection.results[0].hypothesis.class_id: detection.bbox for detection in boxes.detections}
-        assert sorted(found) == ["7", "9"]
+        bounding_boxes = {detection.results[0].hypothesis.class_id: detection.bbox for detection in boxes.detections}
+        assert sorted(bounding_boxes) == ["7", "9"]
         # 1.5 m away and 0.4 m wide, at a focal length of 32 pixels: 8.5 pixels, 10.7 from the middle of the picture.
-        left, right = found["7"], found["9"]
+        left, right = bounding_boxes["7"], bounding_boxes["9"]
         assert (left.center.position.x, left.size_x) == (pytest.approx(21.3, abs=1), pytest.approx(8.5, abs=1))
         assert (right.center.position.x, right.size_y) == (pytest.approx(42.7, abs=1), pytest.approx(8.5, abs=1))
         assert ((pixels_of(image) == (0, 255, 0)).all(axis=-1)).sum() > 20

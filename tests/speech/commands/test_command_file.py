@@ -72,9 +72,9 @@ def commands() -> CommandSet:
 
 @pytest.mark.parametrize(("text", "intent", "values"), UNDERSTOOD)
 def test_text_matches_command(commands: CommandSet, text: str, intent: str, values: dict[str, object]) -> None:
-    found = commands.match_command(text)
-    assert found is not None
-    assert (found.command.intent, found.values) == (intent, pytest.approx(values) if "angle" in values else values)
+    match = commands.match_command(text)
+    assert match is not None
+    assert (match.command.intent, match.values) == (intent, pytest.approx(values) if "angle" in values else values)
 
 
 @pytest.mark.parametrize("text", NOTHING)
@@ -113,8 +113,8 @@ def read(text: str) -> CommandSet:
 
 def test_action_values_are_numbers_or_slots() -> None:
     phrases = '["go {distance}", "{distance} ahead"]'
-    found = read(COMMANDS.format(phrases=phrases, action='drive: {x: 0.5, distance: "{distance}"}'))
-    assert found.commands[0].action == Drive(x=0.5, distance=Slot("distance"))
+    commands_read = read(COMMANDS.format(phrases=phrases, action='drive: {x: 0.5, distance: "{distance}"}'))
+    assert commands_read.commands[0].action == Drive(x=0.5, distance=Slot("distance"))
 
 
 def test_message_template_is_filled_with_slot_values() -> None:
@@ -128,8 +128,8 @@ def test_message_template_is_filled_with_slot_values() -> None:
 def test_more_specific_phrase_takes_precedence() -> None:
     text = "places: {hall: {x: 1, y: 2, names: [hall, big hall]}}\ncommands:\n"
     text += "  a: {phrases: 'go {place}', go_to: '{place}'}\n"
-    found = read(text + "  b: {phrases: go big hall, stop: true}\n")
-    understood = found.match_command("go big hall")
+    commands_read = read(text + "  b: {phrases: go big hall, stop: true}\n")
+    understood = commands_read.match_command("go big hall")
     assert understood is not None
     assert understood.command.intent == "b"
 

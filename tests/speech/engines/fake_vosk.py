@@ -44,26 +44,26 @@ class KaldiRecognizer:
         return 1
 
     def Result(self):  # noqa: N802
-        found, self.ended, self.partial = self.ended, None, ""
-        return self._written(found)
+        words, self.ended, self.partial = self.ended, None, ""
+        return self._written(words)
 
     def FinalResult(self):  # noqa: N802
-        found = [(word, 1.0) for word in self.partial.split()]
+        words = [(word, 1.0) for word in self.partial.split()]
         self.partial = ""
-        return self._written(found)
+        return self._written(words)
 
     def PartialResult(self):  # noqa: N802
         return json.dumps({"partial": self.partial}, ensure_ascii=False, indent=2)
 
-    def _written(self, found):
-        if not found:
+    def _written(self, words):
+        if not words:
             return '{\n  "text" : ""\n}'
-        first = self.seconds - 0.3 * len(found)
+        first = self.seconds - 0.3 * len(words)
         result = [
             {"conf": conf, "end": first + 0.3 * (index + 1), "start": first + 0.3 * index, "word": word}
-            for index, (word, conf) in enumerate(found)
+            for index, (word, conf) in enumerate(words)
         ]
-        text = " ".join(word for word, _ in found)
+        text = " ".join(word for word, _ in words)
         return json.dumps({"result": result, "text": text} if self.words else {"text": text}, ensure_ascii=False)
 
 

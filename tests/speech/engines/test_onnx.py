@@ -55,7 +55,7 @@ def sound(level, seconds=0.5):
 
 
 def results_of(engine, samples):
-    return [each for at in range(0, len(samples), 1_600) for each in engine.hear(samples[at : at + 1_600])]
+    return [result for at in range(0, len(samples), 1_600) for result in engine.hear(samples[at : at + 1_600])]
 
 
 def rejection(path):
@@ -80,15 +80,15 @@ def test_utterance_class_is_returned_as_phrase(names, tmp_path):
 
 def test_uncertain_or_unlisted_class_gives_empty_text(tmp_path):
     engine = OnnxEngine(EngineOptions(("stop",), "en", network(tmp_path / "net.onnx")))
-    assert [each.text for each in results_of(engine, sound(12_000))] == [""]  # a class, and no phrase
-    assert [each.text for each in results_of(engine, sound(1_500))] == [""]  # no class for sure
+    assert [result.text for result in results_of(engine, sound(12_000))] == [""]  # a class, and no phrase
+    assert [result.text for result in results_of(engine, sound(1_500))] == [""]  # no class for sure
     assert results_of(engine, np.zeros(3 * RATE, np.int16)) == []
 
 
 def test_finish_ends_utterance(tmp_path):
     engine = OnnxEngine(EngineOptions(("stop",), "en", network(tmp_path / "net.onnx")))
     assert results_of(engine, sound(30_000, 0.8)[: round(1.8 * RATE)]) == []
-    assert [each.text for each in engine.finish()] == ["stop"]
+    assert [result.text for result in engine.finish()] == ["stop"]
     assert list(engine.finish()) == []
 
 

@@ -60,14 +60,14 @@ def test_engine_recognizes_utterances(engine):
         sound = say(phones, silence=0.8)
         for at in range(0, len(sound), BLOCK):
             heard += engine.hear(sound[at : at + BLOCK])
-    assert [(each.text, each.final) for each in heard] == [("turn left", True), ("", True), ("stop", True)]
+    assert [(result.text, result.final) for result in heard] == [("turn left", True), ("", True), ("stop", True)]
     assert heard[0].confidence == pytest.approx(np.exp(-0.1))
-    assert all(each.start < each.end for each in heard)
+    assert all(result.start < result.end for result in heard)
     assert all(np.abs(sound).max() > 0.1 for sound in WhisperModel.sounds)
 
 
 def test_finish_ends_utterance(engine):
     WhisperModel.texts[:] = ["stop"]
     assert list(engine.hear(say(WORDS["stop"], silence=0.3)[:-3200])) == []
-    assert [each.text for each in engine.finish()] == ["stop"]
+    assert [result.text for result in engine.finish()] == ["stop"]
     assert list(engine.finish()) == []

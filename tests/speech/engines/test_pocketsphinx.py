@@ -52,11 +52,11 @@ class Decoder:
 
     says = ("go", "to", "<sil>", "the", "kitchen")
     fit = -7.0  # logarithm of the probability of each frame
-    made = ()
+    decoders = ()
 
     def __init__(self, **settings):
         self.config, self.grammar, self.frames = {"frate": 100}, "", 0
-        self.made.append(self)
+        self.decoders.append(self)
 
     def lookup_word(self, word):
         return "A B" if word in ("go", "to", "the", "kitchen", "stop") else None
@@ -99,7 +99,7 @@ class Decoder:
 @pytest.fixture
 def fake_decoder(monkeypatch):
     monkeypatch.setitem(sys.modules, "pocketsphinx", SimpleNamespace(Decoder=Decoder, Endpointer=Endpointer))
-    monkeypatch.setattr(Decoder, "made", [])
+    monkeypatch.setattr(Decoder, "decoders", [])
 
 
 def rejection(*given):
@@ -115,10 +115,13 @@ def test_vosk_and_pocketsphinx_are_registered():
 
 def test_utterance_is_recognized_in_blocks_of_any_length(fake_decoder):
     engine = PocketsphinxEngine(EngineOptions(("go to the kitchen", "Stop")))
-    assert "public <said> = go to the kitchen | stop;" in Decoder.made[0].grammar
+    assert "public <said> = go to the kitchen | stop;" in Decoder.decoders[0].grammar
     sound = np.concatenate([QUIET, QUIET, *[SPEECH] * 5, QUIET, QUIET])
-    heard = [each for at in range(0, len(sound), 700) for each in engine.hear(sound[at : at + 700])]
-    assert [(each.text, each.final) for each in heard] == [("go to the kitchen", False), ("go to the kitchen", True)]
+    heard = [result for at in range(0, len(sound), 700) for result in engine.hear(sound[at : at + 700])]
+    assert [(result.text, result.final) for result in heard] == [
+        ("go to the kitchen", False),
+        ("go to the kitchen", True),
+    ]
     assert heard[-1].confidence == pytest.approx(1 / (1 + math.exp(-1)))
     assert (heard[-1].start, heard[-1].end) == pytest.approx((0.06, 0.24))
 
@@ -140,19 +143,19 @@ def test_unknown_words_give_empty_text(fake_decoder):
 
 def test_finish_ends_utterance(fake_decoder):
     engine = PocketsphinxEngine(EngineOptions(("go", "stop")))
-    assert [each.text for each in engine.hear(np.concatenate([SPEECH, SPEECH[:100]]))] == ["go"]
+    assert [result.text for result in engine.hear(np.concatenate([SPEECH, SPEECH[:100]]))] == ["go"]
     (heard,) = engine.finish()
     assert heard.final
     assert list(engine.finish()) == []
-    assert [each.text for each in engine.hear(SPEECH)] == ["go"]
+    assert [result.text for result in engine.hear(SPEECH)] == ["go"]
     engine.close()
 
 
 def test_silence_and_noise_are_not_recognized_by_real_library():
     engine = PocketsphinxEngine(EngineOptions(("forward", "turn left", "stop")))
     noise = np.random.default_rng(1).normal(0, 30, 16_000).astype(np.int16)
-    assert [each for each in engine.hear(np.concatenate([np.zeros(16_000, np.int16), noise])) if each.text] == []
-    assert [each for each in engine.finish() if each.text] == []
+    assert [result for result in engine.hear(np.concatenate([np.zeros(16_000, np.int16), noise])) if result.text] == []
+    assert [result for result in engine.finish() if result.text] == []
 
 
 def test_finish_at_frame_end_works_with_real_library():

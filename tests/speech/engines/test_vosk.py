@@ -20,8 +20,8 @@ ENGLISH = ("forward", "turn left", "stop", "turn left now")
 def vosk(monkeypatch, tmp_path):
     monkeypatch.setitem(sys.modules, "vosk", fake_vosk)
     monkeypatch.setenv("XDG_DATA_HOME", str(tmp_path / "data"))
-    for each in (fake_vosk.SCRIPT, fake_vosk.MADE, fake_vosk.LEVELS):
-        each.clear()
+    for record in (fake_vosk.SCRIPT, fake_vosk.MADE, fake_vosk.LEVELS):
+        record.clear()
     monkeypatch.setattr(fake_vosk, "WORDS", {"forward", "turn", "left", "stop", "now", "go"})
     return fake_vosk
 
@@ -40,7 +40,7 @@ def engine(model, phrases=ENGLISH, language="en"):
 def results_for(engine, *script):
     """What is heard in as many blocks as the script has items."""
     fake_vosk.SCRIPT[:] = script
-    return [each for _ in script for each in engine.hear(BLOCK)]
+    return [result for _ in script for result in engine.hear(BLOCK)]
 
 
 def rejection(*given, **more):
@@ -59,8 +59,8 @@ def test_grammar_has_phrases_and_unknown_token(model, vosk):
 
 
 def test_phrase_has_lowest_word_confidence_and_times(model):
-    made = engine(model)
-    heard = results_for(made, "", "", "", "", "", "", "", [("turn", 0.8), ("left", 0.95)])
+    recognizer = engine(model)
+    heard = results_for(recognizer, "", "", "", "", "", "", "", [("turn", 0.8), ("left", 0.95)])
     assert heard == [Heard("turn left", 0.8, True, pytest.approx(0.2), pytest.approx(0.8))]
 
 
@@ -88,42 +88,42 @@ def test_unknown_speech_gives_empty_text_and_nearest_phrase(words, nearest, mode
 
 def test_consecutive_phrases_are_separated(model):
     heard = results_for(engine(model), [("turn", 1.0), ("left", 0.9), ("now", 0.7), ("stop", 1.0)])
-    assert [(each.text, each.confidence) for each in heard] == [("turn left now", 0.7), ("stop", 1.0)]
+    assert [(result.text, result.confidence) for result in heard] == [("turn left now", 0.7), ("stop", 1.0)]
 
 
 def test_partials_are_reported_on_change_if_they_are_phrases(model):
-    made = engine(model)
-    heard = results_for(made, "", "turn", "turn left", "turn left", "turn left now")
-    assert [(each.text, each.final) for each in heard] == [("turn left", False), ("turn left now", False)]
+    recognizer = engine(model)
+    heard = results_for(recognizer, "", "turn", "turn left", "turn left", "turn left now")
+    assert [(result.text, result.final) for result in heard] == [("turn left", False), ("turn left now", False)]
     assert heard[0].start == pytest.approx(0.2)
     assert heard[0].end == pytest.approx(0.3)
-    assert [each.text for each in results_for(made, [("stop", 1.0)], "stop")] == ["stop", "stop"]
+    assert [result.text for result in results_for(recognizer, [("stop", 1.0)], "stop")] == ["stop", "stop"]
 
 
 def test_stop_within_other_speech_is_reported_as_partial(model):
     heard = results_for(engine(model), "[unk]", "[unk] stop", [("[unk]", 1.0), ("stop", 1.0)])
-    assert [(each.text, each.final) for each in heard] == [("stop", False), ("", True)]
+    assert [(result.text, result.final) for result in heard] == [("stop", False), ("", True)]
 
 
 def test_finish_ends_utterance(model):
-    made = engine(model)
-    results_for(made, "forward")
-    assert [(each.text, each.final) for each in made.finish()] == [("forward", True)]
-    assert list(made.finish()) == []
-    assert list(made.hear(np.zeros(0, np.int16))) == []
+    recognizer = engine(model)
+    results_for(recognizer, "forward")
+    assert [(result.text, result.final) for result in recognizer.finish()] == [("forward", True)]
+    assert list(recognizer.finish()) == []
+    assert list(recognizer.hear(np.zeros(0, np.int16))) == []
 
 
 def test_chinese_phrases_are_segmented_into_model_words(model, vosk, monkeypatch):
     monkeypatch.setattr(vosk, "WORDS", {"前进", "向", "左", "转", "左转", "停"})
-    made = engine(model, ("前进", "向左", "向左转", "停"), "zh")
+    recognizer = engine(model, ("前进", "向左", "向左转", "停"), "zh")
     assert vosk.MADE[0].grammar == ["前进", "向 左", "向 左转", "停", "[unk]"]
-    heard = results_for(made, [("向", 1.0), ("左", 1.0)], [("向", 1.0), ("左转", 1.0)])
-    assert [each.text for each in heard] == ["向左", "向左转"]
+    heard = results_for(recognizer, [("向", 1.0), ("左", 1.0)], [("向", 1.0), ("左转", 1.0)])
+    assert [result.text for result in heard] == ["向左", "向左转"]
 
 
 def test_phrase_matching_ignores_case(model):
-    made = engine(model, ("Turn Left",))
-    assert [each.text for each in results_for(made, [("turn", 1.0), ("left", 1.0)])] == ["Turn Left"]
+    recognizer = engine(model, ("Turn Left",))
+    assert [result.text for result in results_for(recognizer, [("turn", 1.0), ("left", 1.0)])] == ["Turn Left"]
 
 
 def test_words_missing_from_model_are_reported_together(model, vosk, monkeypatch):

@@ -18,15 +18,15 @@ async def talk(stage):  # noqa: F811
         return started[-1]
 
     yield start
-    for each in started:
-        each.running.close()
+    for robot in started:
+        robot.running.close()
     await stage.graph.settle()
 
 
 @pytest.fixture
 def engine(monkeypatch):
     monkeypatch.setattr("linkwright.speech.engine.extensions", lambda group: {"told": ENTRY})
-    ToldEngine.made.clear()
+    ToldEngine.used_options.clear()
     ToldEngine.finished.clear()
     ToldEngine.says_at_end.clear()
     ToldEngine.trouble.clear()

@@ -28,21 +28,21 @@ class ToldEngine(SpeechEngine):
     """For each block of sound it hears what `says` has for the value of its samples.
 
     Attributes:
-        made: with which options engines were made.
+        used_options: the options of the engines that were created.
         says: value of samples -> what is heard.
         says_at_end: what is heard when the sound ends.
         finished: how often the sound ended.
         trouble: why it hears nothing.
     """
 
-    made: ClassVar[list[EngineOptions]] = []
+    used_options: ClassVar[list[EngineOptions]] = []
     says: ClassVar[dict[int, list[Heard]]] = {}
     says_at_end: ClassVar[list[Heard]] = []
     finished: ClassVar[list[int]] = []
     trouble: ClassVar[list[Diagnostic]] = []
 
     def __init__(self, options: EngineOptions) -> None:
-        self.made.append(options)
+        self.used_options.append(options)
 
     @property
     def problem(self) -> Diagnostic | None:

@@ -51,10 +51,10 @@ async def test_file_is_published_at_clock_rate(test, wav):
     info, plain, stamped = (test.record(f"/{name}") for name in ("audio_info", "audio", "audio_stamped"))
     await test.advance(0.5)
     assert len(plain) == len(stamped) == 5
-    assert np.array_equal(samples([each.data for each in plain])[:4_000], TONE)
-    assert not samples([each.data for each in plain])[4_000:].any()  # silence follows
-    assert np.array_equal(samples([each.audio.data for each in stamped])[:4_000], TONE)
-    assert len({(each.header.stamp.sec, each.header.stamp.nanosec) for each in stamped}) == 5
+    assert np.array_equal(samples([message.data for message in plain])[:4_000], TONE)
+    assert not samples([message.data for message in plain])[4_000:].any()  # silence follows
+    assert np.array_equal(samples([message.audio.data for message in stamped])[:4_000], TONE)
+    assert len({(message.header.stamp.sec, message.header.stamp.nanosec) for message in stamped}) == 5
     assert (info.last.channels, info.last.sample_rate, info.last.sample_format) == (1, 16_000, "S16LE")
 
 
@@ -62,7 +62,7 @@ async def test_file_is_repeated_with_loop(test, wav):
     start(test, RobotAudioCapture, file=wav, loop=True, chunk=2_000)
     heard = test.record("/audio/audio")
     await test.advance(0.6)
-    assert np.array_equal(samples([each.data for each in heard])[:8_000], np.concatenate((TONE, TONE)))
+    assert np.array_equal(samples([message.data for message in heard])[:8_000], np.concatenate((TONE, TONE)))
 
 
 async def test_topics_are_in_node_namespace(test, wav):
@@ -75,7 +75,7 @@ async def test_topics_are_in_node_namespace(test, wav):
 async def test_unsupported_audio_parameters_are_reported(test, wav):
     start(test, file=wav, format="mp3", sample_rate=44_100)
     await test.settle()
-    warned = [each.text for each in test.log if each.level is LogLevel.WARN]
+    warned = [record.text for record in test.log if record.level is LogLevel.WARN]
     assert warned == [
         "parameter 'sample_rate' cannot be '44100': sound is published with '16000'",
         "parameter 'format' cannot be 'mp3': sound is published with 'wave'",
@@ -91,7 +91,7 @@ async def test_microphone_is_published(test, sounddevice):
     for first in (0, 1_600):
         stream.say(TONE[first : first + 1_600])
     await test.settle()
-    assert np.array_equal(samples([each.audio.data for each in heard]), TONE[:3_200])
+    assert np.array_equal(samples([message.audio.data for message in heard]), TONE[:3_200])
     node.close()
 
 
@@ -104,7 +104,7 @@ async def test_microphone_with_other_rate_is_resampled(test, sounddevice, monkey
     assert (stream.rate, stream.block) == (48_000, 4_800)
     stream.say(np.full(9_600, 1_000))
     await test.settle()
-    sound = samples([each.data for each in heard])
+    sound = samples([message.data for message in heard])
     assert 3_100 < len(sound) <= 3_200
     assert np.abs(sound[200:-200] - 1_000).max() <= 1
     node.close()

@@ -20,7 +20,9 @@ def coded(values, sample_format):
         return values.astype(f"{order}f{bits // 8}").tobytes()
     whole = np.rint(values * 2.0 ** (bits - 1)).astype(np.int64) + (2 ** (bits - 1) if kind == "U" else 0)
     size = bits // 8
-    return b"".join(int(each).to_bytes(size, "big" if order == ">" else "little", signed=kind == "S") for each in whole)
+    return b"".join(
+        int(sample).to_bytes(size, "big" if order == ">" else "little", signed=kind == "S") for sample in whole
+    )
 
 
 WHOLE = [f"{kind}{bits}{order}" for kind in "SU" for bits in (16, 24, 32) for order in ("LE", "BE")]

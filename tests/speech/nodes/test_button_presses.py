@@ -46,8 +46,8 @@ async def test_answered_press_does_not_report_unknown_speech(engine, talk, heard
 async def test_press_with_gap_asks_to_repeat(engine, talk):
     robot = talk(engine="told")
     await robot.hold(True)
-    for each in range(5):
-        await robot.say(stamp=10.0 + 0.1 * each)
+    for index in range(5):
+        await robot.say(stamp=10.0 + 0.1 * index)
     await robot.say(stamp=10.6)  # a tenth of a second is missing, long before what is heard
     engine.says_at_end.append(final("", start=5.0, nearest="forward"))
     await robot.hold(False)

@@ -30,7 +30,7 @@ def test_stamps_count_samples_despite_jitter():
 
 
 def test_stalled_source_is_not_a_gap():
-    arrivals = [10.0 + 0.1 * max(each, 40) if each >= 10 else 10.0 + 0.1 * each for each in range(100)]
+    arrivals = [10.0 + 0.1 * max(index, 40) if index >= 10 else 10.0 + 0.1 * index for index in range(100)]
     assert not any(missing(stamped(arrivals)))
 
 
@@ -41,55 +41,55 @@ def test_stamps_follow_the_clock():
 
 def test_lost_blocks_are_reported_as_gap():
     stamps = stamped(10.0 + 0.1 * np.arange(20))
-    found = missing(stamps[:10] + stamps[12:])
-    assert np.allclose(found, [0.0] * 10 + [0.2] + [0.0] * 7, atol=0.005)
+    gap_list = missing(stamps[:10] + stamps[12:])
+    assert np.allclose(gap_list, [0.0] * 10 + [0.2] + [0.0] * 7, atol=0.005)
 
 
 def test_restarted_stream_has_no_gap():
     stamps = SampleStamps()
-    first = [stamps.stamp(BLOCK, round((10.0 + 0.1 * each) * SECOND)) for each in range(10)]
+    first = [stamps.stamp(BLOCK, round((10.0 + 0.1 * index) * SECOND)) for index in range(10)]
     stamps.restart()
     assert stamps.stamp(BLOCK, 15 * SECOND) == 15 * SECOND - LENGTH
     gaps = SoundGaps()
-    assert not any(gaps.measure_gap(each, BLOCK) for each in first)
+    assert not any(gaps.measure_gap(stamp, BLOCK) for stamp in first)
     gaps.restart()
     assert gaps.measure_gap(15 * SECOND, BLOCK) == 0.0
 
 
 def test_loss_reported_by_source_is_a_gap():
-    stamps, gaps, found = SampleStamps(), SoundGaps(), []
-    for each in range(100):
-        lost = 0.4 if each >= 10 and each % 10 == 0 else 0.0
-        found.append(gaps.measure_gap(stamps.stamp(BLOCK, round((10.0 + 0.1 * each) * SECOND), lost), BLOCK))
-    assert [number for number, each in enumerate(found) if each] == list(range(10, 100, 10))
-    assert np.allclose([each for each in found if each], 0.4, atol=0.005)
+    stamps, gaps, gap_list = SampleStamps(), SoundGaps(), []
+    for index in range(100):
+        lost = 0.4 if index >= 10 and index % 10 == 0 else 0.0
+        gap_list.append(gaps.measure_gap(stamps.stamp(BLOCK, round((10.0 + 0.1 * index) * SECOND), lost), BLOCK))
+    assert [number for number, gap in enumerate(gap_list) if gap] == list(range(10, 100, 10))
+    assert np.allclose([gap for gap in gap_list if gap], 0.4, atol=0.005)
 
 
 def test_small_losses_are_accumulated_and_hide_no_large_one():
     stamps, gaps = SampleStamps(), SoundGaps()
     losses = {10: 0.01, 11: 0.04, 12: 0.03, 13: 0.5, 20: 0.02}
-    result = [stamps.stamp(BLOCK, round((10.0 + 0.1 * each) * SECOND), losses.get(each, 0.0)) for each in range(30)]
-    found = [gaps.measure_gap(stamp, BLOCK) for stamp in result]
-    assert [number for number, each in enumerate(found) if each] == [12, 13]
-    assert np.allclose([found[12], found[13]], [0.08, 0.5], atol=0.005)
+    result = [stamps.stamp(BLOCK, round((10.0 + 0.1 * index) * SECOND), losses.get(index, 0.0)) for index in range(30)]
+    gap_list = [gaps.measure_gap(stamp, BLOCK) for stamp in result]
+    assert [number for number, gap in enumerate(gap_list) if gap] == [12, 13]
+    assert np.allclose([gap_list[12], gap_list[13]], [0.08, 0.5], atol=0.005)
 
 
 def test_small_jumps_of_arrival_stamps_are_not_gaps():
     gaps = SoundGaps()
     late = [0, 0, 0, 0, 0.03, 0, 0.04, 0, 0, 0, 0, 0.03, 0, 0.04, 0]
-    assert not any(gaps.measure_gap(round((10.0 + 0.1 * each + by) * SECOND), BLOCK) for each, by in enumerate(late))
+    assert not any(gaps.measure_gap(round((10.0 + 0.1 * index + by) * SECOND), BLOCK) for index, by in enumerate(late))
 
 
 def test_stamps_do_not_run_ahead_of_clock_for_any_reported_loss():
     stamps = SampleStamps()
-    for each in range(20):
-        now = round((10.0 + 0.1 * each) * SECOND)
+    for index in range(20):
+        now = round((10.0 + 0.1 * index) * SECOND)
         assert stamps.stamp(BLOCK, now, 1000.0) <= now + 2 * SECOND
 
 
 def test_gap_is_reported_immediately_after_restart():
     gaps = SoundGaps()
-    assert not any(gaps.measure_gap(round((10.0 + 0.1 * each) * SECOND), BLOCK) for each in range(5))
+    assert not any(gaps.measure_gap(round((10.0 + 0.1 * index) * SECOND), BLOCK) for index in range(5))
     gaps.restart()
     assert gaps.measure_gap(20 * SECOND, BLOCK) == 0.0
     assert gaps.measure_gap(20 * SECOND + 3 * LENGTH, BLOCK) == 0.2
@@ -97,10 +97,12 @@ def test_gap_is_reported_immediately_after_restart():
 
 def test_arrival_stamps_with_jitter_have_no_gaps():
     late = np.random.default_rng(2).uniform(0, 0.2, 200)
-    assert not any(missing([round((10.0 + 0.1 * each + late[each]) * SECOND) for each in range(200)]))
+    assert not any(missing([round((10.0 + 0.1 * index + late[index]) * SECOND) for index in range(200)]))
 
 
 def test_clock_jumps_and_stalls_are_not_gaps():
-    stamps = stamped([10.0 + 0.1 * each for each in range(20)] + [11.9] * 40 + [3.0 + 0.1 * each for each in range(20)])
+    stamps = stamped(
+        [10.0 + 0.1 * index for index in range(20)] + [11.9] * 40 + [3.0 + 0.1 * index for index in range(20)]
+    )
     assert not any(missing(stamps))
     assert stamped([0.0, 0.0]) == [0, LENGTH - LENGTH // 100]

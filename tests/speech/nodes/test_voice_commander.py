@@ -160,8 +160,8 @@ async def test_closing_node_stops_robot(stage, talk):
 
 async def test_engine_gets_phrases_and_options(engine, talk, tmp_path):
     robot = talk(engine="told", language="zh", words_file="/words.json", model=str(tmp_path))
-    await eventually(lambda: engine.made)
-    (options,) = engine.made
+    await eventually(lambda: engine.used_options)
+    (options,) = engine.used_options
     assert (options.language, options.model) == ("zh", tmp_path)
     assert "左转九十度" in options.phrases
     assert robot.said["text"] == []
@@ -224,16 +224,16 @@ async def test_open_listening_answers_uncertain_command_only_with_button(engine,
 async def test_command_with_gap_is_asked_again_but_stop_is_executed(engine, talk):
     robot = talk(engine="told")
     await robot.hold(True)
-    for each in range(5):
-        await robot.say(stamp=10.0 + 0.1 * each)
+    for index in range(5):
+        await robot.say(stamp=10.0 + 0.1 * index)
     await robot.say(final("forward", start=-0.5), stamp=11.0)  # half a second is missing
     assert robot.said["text"] == ["forward"]
     assert robot.said["command"] == []
     assert robot.said["response"] == ["I did not hear all of that, please repeat"]
     await robot.say(final("forward", start=0.8), stamp=11.1)
     assert robot.said["command"] == ["forward"]
-    for each in range(3):
-        await robot.say(stamp=11.2 + 0.1 * each)
+    for index in range(3):
+        await robot.say(stamp=11.2 + 0.1 * index)
     await robot.say(final("stop", start=0.5), stamp=13.0)
     assert robot.said["command"] == ["forward", "stop"]
     assert robot.speed == (0.0, 0.0, 0.0)
@@ -242,8 +242,8 @@ async def test_command_with_gap_is_asked_again_but_stop_is_executed(engine, talk
 async def test_certain_command_with_small_gap_is_executed(engine, talk):
     robot = talk(engine="told")
     await robot.hold(True)
-    for each in range(5):
-        await robot.say(stamp=10.0 + 0.1 * each)
+    for index in range(5):
+        await robot.say(stamp=10.0 + 0.1 * index)
     await robot.say(final("forward"), final(""), stamp=10.6)  # a tenth of a second is missing
     assert robot.said["command"] == ["forward"]
     assert robot.said["response"][-1] == "I did not hear all of that, please repeat"
@@ -252,8 +252,8 @@ async def test_certain_command_with_small_gap_is_executed(engine, talk):
 async def test_next_press_has_no_gap(engine, talk):
     robot = talk(engine="told")
     await robot.hold(True)
-    for each in range(5):
-        await robot.say(stamp=10.0 + 0.1 * each)
+    for index in range(5):
+        await robot.say(stamp=10.0 + 0.1 * index)
     await robot.hold(False)
     await robot.hold(True)
     await robot.say(final("forward", start=0.0), stamp=15.0)

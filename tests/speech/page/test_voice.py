@@ -12,7 +12,7 @@ import pytest
 from linkwright.graph import DurabilityPolicy, QoSProfile
 from linkwright.page.protocol.voice import MOST_LOST_SAMPLES, unpack_sound
 from linkwright.speech.page import floor
-from tests.viewer.scene import Client, World, page, world
+from tests.viewer.scene import Client, World, open_world, page
 from tests.waiting import eventually
 
 BLOCK = np.arange(1600, dtype=np.int16)
@@ -28,9 +28,9 @@ def frame(samples: np.ndarray, *, kind: int = 5, count: int | None = None, lost:
 class Ears:
     """A node that keeps what is on the topics of sound, and says things on those of the conversation."""
 
-    def __init__(self, made: World) -> None:
-        self.made = made
-        self.node = made.graph.create_node("ears")
+    def __init__(self, world: World) -> None:
+        self.world = world
+        self.node = world.graph.create_node("ears")
         self.blocks: list[list[int]] = []
         self.stamps: list[float] = []
         self.held: list[bool] = []
@@ -53,26 +53,26 @@ class Ears:
 
 @asynccontextmanager
 async def heard() -> AsyncIterator[tuple[World, Client, Ears]]:
-    async with world() as made, page(made.viewer) as client:
+    async with open_world() as world, page(world.viewer) as client:
         await client.opened()
-        yield made, client, Ears(made)
+        yield world, client, Ears(world)
 
 
-def publishers(made: World) -> list[int]:
-    return [made.graph.count_publishers(topic) for topic in (*AUDIO, "/voice/listen")]
+def publishers(world: World) -> list[int]:
+    return [world.graph.count_publishers(topic) for topic in (*AUDIO, "/voice/listen")]
 
 
 @pytest.mark.parametrize(("topic", "present"), [("/voice/command", True), ("/voice/response", False)])
 async def test_voice_requires_node_that_understands_commands(topic, present):
-    async with world() as made:
-        made.graph.create_node("other").create_publisher("std_msgs/msg/String", topic, 10)
-        async with page(made.viewer) as client:
+    async with open_world() as world:
+        world.graph.create_node("other").create_publisher("std_msgs/msg/String", topic, 10)
+        async with page(world.viewer) as client:
             await client.send("watch_voice", watched=True)
             assert (await client.until("voice_node"))["present"] is present
 
 
 async def test_sound_is_published_while_button_is_held():
-    async with heard() as (made, client, ears):
+    async with heard() as (world, client, ears):
         await client.send("talk", mode="ready")
         await client.socket.send_bytes(frame(BLOCK))
         await client.send("talk", mode="held")
@@ -81,7 +81,7 @@ async def test_sound_is_published_while_button_is_held():
         await client.send("talk", mode="ready")
         await client.socket.send_bytes(frame(BLOCK))
         await eventually(lambda: ears.held == [True, False])
-        await made.settle()
+        await world.settle()
         assert ears.blocks == [BLOCK.tolist(), BLOCK[:30].tolist()]
 
 
@@ -95,14 +95,14 @@ async def test_stamps_skip_samples_lost_by_browser():
 
 
 async def test_sound_topics_exist_while_microphone_is_open():
-    async with heard() as (made, client, _):
+    async with heard() as (world, client, _):
         await client.send("watch_voice", watched=True)
         await client.until("voice_state", talking="nobody")
-        assert publishers(made) == [0, 0, 0, 0]
+        assert publishers(world) == [0, 0, 0, 0]
         await client.send("talk", mode="ready")
-        await eventually(lambda: publishers(made) == [1, 1, 1, 1])
+        await eventually(lambda: publishers(world) == [1, 1, 1, 1])
         infos: list = []
-        made.graph.create_node("late").create_subscription(
+        world.graph.create_node("late").create_subscription(
             "audio_common_msgs/msg/AudioInfo",
             "/audio/audio_info",
             infos.append,
@@ -112,25 +112,25 @@ async def test_sound_topics_exist_while_microphone_is_open():
         assert (infos[0].channels, infos[0].sample_rate, infos[0].sample_format) == (1, 16000, "S16LE")
         assert (infos[0].bitrate, infos[0].coding_format) == (256, "wave")
         await client.send("talk", mode="off")
-        await eventually(lambda: publishers(made) == [0, 0, 0, 0])
+        await eventually(lambda: publishers(world) == [0, 0, 0, 0])
 
 
 async def test_closed_page_releases_button():
-    async with world() as made:
-        ears = Ears(made)
-        async with page(made.viewer) as client:
+    async with open_world() as world:
+        ears = Ears(world)
+        async with page(world.viewer) as client:
             await client.opened()
             await client.send("talk", mode="held")
             await eventually(lambda: ears.held == [True])
         await eventually(lambda: ears.held == [True, False])
-        assert publishers(made) == [0, 0, 0, 0]
+        assert publishers(world) == [0, 0, 0, 0]
 
 
 async def test_late_subscriber_gets_button_state():
-    async with heard() as (made, client, ears):
+    async with heard() as (world, client, ears):
         await client.send("talk", mode="held")
         await eventually(lambda: ears.held == [True])
-        late = Ears(made)
+        late = Ears(world)
         await eventually(lambda: late.held == [True])
         await client.send("talk", mode="ready")
         await eventually(lambda: late.held == [True, False])
@@ -138,7 +138,7 @@ async def test_late_subscriber_gets_button_state():
 
 
 async def test_page_that_holds_button_talks():
-    async with heard() as (made, first, ears), page(made.viewer) as second:
+    async with heard() as (world, first, ears), page(world.viewer) as second:
         for client in (first, second):
             await client.send("watch_voice", watched=True)
             await client.until("voice_state", talking="nobody")
@@ -159,7 +159,7 @@ async def test_page_that_holds_button_talks():
 
 
 async def test_second_page_waits_for_button():
-    async with heard() as (made, first, ears), page(made.viewer) as second:
+    async with heard() as (world, first, ears), page(world.viewer) as second:
         await second.send("watch_voice", watched=True)
         await first.send("talk", mode="held")
         await second.until("voice_state", talking="another")
@@ -167,7 +167,7 @@ async def test_second_page_waits_for_button():
         await second.socket.send_bytes(frame(BLOCK))
         await first.send("talk", mode="ready")
         await second.until("voice_state", talking="you")
-        await made.settle()
+        await world.settle()
         assert ears.held == [True, False, True]
         assert ears.blocks == []
 
@@ -219,7 +219,7 @@ async def test_page_reporting_excessive_loss_is_closed():
 
 
 async def test_pages_receive_conversation():
-    async with heard() as (made, client, ears):
+    async with heard() as (world, client, ears):
         await client.send("watch_voice", watched=True)
         await client.until("voice_state")
         for topic in ("partial_text", "text", "command", "response"):
@@ -227,11 +227,11 @@ async def test_pages_receive_conversation():
             ears.say(f"/voice/{topic}", f"turn left: {part}")
             assert (await client.until("conversation_text", part=part))["text"] == f"turn left: {part}"
         await client.send("watch_voice", watched=False)
-        await eventually(lambda: made.graph.count_subscribers("/voice/text") == 0)
+        await eventually(lambda: world.graph.count_subscribers("/voice/text") == 0)
 
 
 async def test_text_commands_are_published_and_subscribers_counted():
-    async with heard() as (made, client, ears):
+    async with heard() as (world, client, ears):
         await client.send("watch_voice", watched=True)
         await client.until("voice_state", sound_listeners=1, text_listeners=1)
         await client.send("say_command", text="前进")
@@ -239,7 +239,7 @@ async def test_text_commands_are_published_and_subscribers_counted():
         ears.node.destroy_node()
         await client.until("voice_state", sound_listeners=0, text_listeners=0)
         await client.send("watch_voice", watched=False)
-        await eventually(lambda: made.graph.count_publishers("/voice/text_input") == 0)
+        await eventually(lambda: world.graph.count_publishers("/voice/text_input") == 0)
 
 
 async def test_enrolling_proposal_is_withdrawn_with_its_node():

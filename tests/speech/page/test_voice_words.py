@@ -14,7 +14,7 @@ from linkwright.speech.commands.command_file import DEFAULT_FILE, read_command_f
 from linkwright.speech.enrolled.words import Words, words_path
 from tests.speech.page.test_voice import frame
 from tests.speech.voices import WORDS, say
-from tests.viewer.scene import Client, page, world
+from tests.viewer.scene import Client, open_world, page
 
 STRINGS = Path(__file__).parents[3] / "frontend" / "src" / "strings"
 
@@ -27,11 +27,11 @@ def _own_file(tmp_path, monkeypatch):
 @asynccontextmanager
 async def opened() -> AsyncIterator[tuple[Client, Client]]:
     """Two pages that see the words, the first with its microphone open."""
-    async with world() as made, page(made.viewer) as client, page(made.viewer) as other:
-        for each in (client, other):
-            await each.opened()
-            await each.send("watch_words", watched=True)
-            assert (await each.until("voice_words"))["words"] == []
+    async with open_world() as world, page(world.viewer) as client, page(world.viewer) as other:
+        for client_page in (client, other):
+            await client_page.opened()
+            await client_page.send("watch_words", watched=True)
+            assert (await client_page.until("voice_words"))["words"] == []
         await client.send("talk", mode="ready")
         yield client, other
 

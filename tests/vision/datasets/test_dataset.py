@@ -35,8 +35,8 @@ def make(source, path, images, **options):
 
 
 def test_dataset_requires_only_world_and_folder(tmp_path):
-    made = make_dataset(yard(tmp_path), str(tmp_path / "made"), 2)
-    assert (made.added, made.folder.count) == (2, 2)
+    dataset = make_dataset(yard(tmp_path), str(tmp_path / "made"), 2)
+    assert (dataset.added, dataset.folder.count) == (2, 2)
     assert {"annotations", "labels"} <= {path.name for path in (tmp_path / "made").iterdir()}
 
 
@@ -60,26 +60,26 @@ LIT = """<scene><ambient>0.2 0.2 0.2 1</ambient><background>0 1 1 1</background>
 def test_lights_option_keeps_lights_and_background(tmp_path):
     path = tmp_path / "lit.world"
     path.write_text(world_text(LIT, GROUND, BALL.format(name="ball", pose="1 0 0.2 0 0 0")))
-    made = {}
-    for kept in ((), ("lights",)):
+    pixels = {}
+    for properties in ((), ("lights",)):
         source = Source(
             (str(path),),
             (),
             None,
-            replace(OPTIONS, distractors=0, form="png", fixed_properties=("colors", "lens", *kept)),
+            replace(OPTIONS, distractors=0, form="png", fixed_properties=("colors", "lens", *properties)),
         )
         studio = Studio(source)
         try:
             images = [np.asarray(Image.open(BytesIO(studio.make(index).data)).convert("RGB")) for index in range(4)]
         finally:
             studio.close()
-        made[kept] = np.concatenate(images).reshape(-1, 3).astype(int)
-    lit = made["lights",]
+        pixels[properties] = np.concatenate(images).reshape(-1, 3).astype(int)
+    lit = pixels["lights",]
     sky = (lit == [0, 255, 255]).all(axis=1)
     assert sky.any()
     ground = lit[~sky & (lit[:, 0] > 60)]
     assert (ground[:, 0] > 1.3 * ground[:, 1]).mean() > 0.9, "red light"
-    assert not (made[()] == [0, 255, 255]).all(axis=1).any()
+    assert not (pixels[()] == [0, 255, 255]).all(axis=1).any()
 
 
 def test_all_label_formats_agree(source, tmp_path):
@@ -93,28 +93,32 @@ def test_all_label_formats_agree(source, tmp_path):
     }
     objects = 0
     for split, text in lists_of(folder).items():
-        assert [each["name"] for each in text["categories"]] == ["ball", "crate", "drums"]
-        assert len({each["id"] for each in text["annotations"]}) == len(text["annotations"])
+        assert [category["name"] for category in text["categories"]] == ["ball", "crate", "drums"]
+        assert len({annotation["id"] for annotation in text["annotations"]}) == len(text["annotations"])
         for image in text["images"]:
             with Image.open(folder / "images" / split / image["file_name"]) as opened:
                 assert opened.size == (160, 120) == (image["width"], image["height"])
             lines = (folder / "labels" / split / f"{Path(image['file_name']).stem}.txt").read_text().splitlines()
-            known = [each for each in text["annotations"] if each["image_id"] == image["id"] and not each["iscrowd"]]
+            known = [
+                annotation
+                for annotation in text["annotations"]
+                if annotation["image_id"] == image["id"] and not annotation["iscrowd"]
+            ]
             assert len(lines) == len(known)
-            for line, each in zip(lines, known, strict=True):
+            for line, annotation in zip(lines, known, strict=True):
                 number, *shares = line.split()
                 x, y, width, height = np.array(shares, float) * [160, 120, 160, 120]
-                assert int(number) + 1 == each["category_id"]
-                assert [x - width / 2, y - height / 2, width, height] == pytest.approx(each["bbox"], abs=1e-3)
+                assert int(number) + 1 == annotation["category_id"]
+                assert [x - width / 2, y - height / 2, width, height] == pytest.approx(annotation["bbox"], abs=1e-3)
                 objects += 1
-        for each in text["annotations"]:
-            mask = color_mask(tuple(each["segmentation"]["counts"]), *each["segmentation"]["size"])
+        for annotation in text["annotations"]:
+            mask = color_mask(tuple(annotation["segmentation"]["counts"]), *annotation["segmentation"]["size"])
             left, top, right, bottom = box_of(mask)
-            assert each["bbox"] == [left, top, right - left, bottom - top]
-            assert each["area"] == mask.sum()
+            assert annotation["bbox"] == [left, top, right - left, bottom - top]
+            assert annotation["area"] == mask.sum()
     card = json.loads((folder / "dataset.json").read_text())
     assert card["splits"] == {"train": 16, "val": 2, "test": 2}
-    assert sum(each["objects"] for each in card["statistics"].values()) == objects > 10
+    assert sum(figures["objects"] for figures in card["statistics"].values()) == objects > 10
     assert card["made"][0]["options"]["seed"] == 3
     assert (folder / "contact_sheet.jpg").stat().st_size > 0
 
@@ -154,17 +158,17 @@ def test_worker_processes_give_identical_files(source, tmp_path):
 
 def test_splits_have_requested_shares():
     options = replace(OPTIONS, splits=(0.5, 0.3, 0.2))
-    found = [split_of(index, options) for index in range(200)]
-    assert [found.count(split) for split in SPLITS] == [100, 60, 40]
-    assert [split_of(index, options) for index in range(200)] == found
+    splits = [split_of(index, options) for index in range(200)]
+    assert [splits.count(split) for split in SPLITS] == [100, 60, 40]
+    assert [split_of(index, options) for index in range(200)] == splits
     assert {split_of(index, replace(OPTIONS, splits=(1.0, 0.0, 0.0))) for index in range(50)} == {"train"}
 
 
 def test_append_adds_images(source, tmp_path):
     folder = tmp_path / "set"
     make(source, folder, 3)
-    made = make(source, folder, 4, append=True)
-    assert (made.added, made.folder.count) == (4, 7)
+    dataset = make(source, folder, 4, append=True)
+    assert (dataset.added, dataset.folder.count) == (4, 7)
     numbers = sorted(image["id"] for text in lists_of(folder).values() for image in text["images"])
     assert numbers == list(range(7))
     make(source, tmp_path / "whole", 7)
@@ -221,13 +225,13 @@ def test_append_to_dataset_of_other_version_is_rejected(source, tmp_path):
 def test_interrupted_dataset_is_consistent(source, tmp_path):
     folder = tmp_path / "set"
 
-    def stop(done):
-        if done == 3:
+    def stop(count):
+        if count == 3:
             raise KeyboardInterrupt
 
-    made = make(source, folder, 9, progress=stop)
-    assert made.was_interrupted
-    assert made.folder.count == 3
+    dataset = make(source, folder, 9, progress=stop)
+    assert dataset.was_interrupted
+    assert dataset.folder.count == 3
     assert json.loads((folder / "dataset.json").read_text())["images"] == 3
     assert len([name for name in files(folder) if name.startswith("images")]) == 3
     assert make(source, folder, 2, append=True).folder.count == 5

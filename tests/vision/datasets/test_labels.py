@@ -24,10 +24,10 @@ OPTIONS = Options(width=320, height=240)
 @pytest.fixture
 def stage(tmp_path):
     simulation = loaded(yard(tmp_path))
-    made = Stage(simulation, find_objects(simulation, default_rules([simulation])), 2, 4)
-    made.set_patterns(np.random.default_rng(0))
-    yield made
-    made.close()
+    stage = Stage(simulation, find_objects(simulation, default_rules([simulation])), 2, 4)
+    stage.set_patterns(np.random.default_rng(0))
+    yield stage
+    stage.close()
 
 
 def shots(stage, count):
@@ -68,7 +68,7 @@ def test_full_boxes_of_balls_match_projected_outlines(stage):
         labels, _ = labeled(stage, shot)
         seen = {label.full_box: label for label in labels}
         axes = axes_of(shot.pose)
-        for prop in (each for each in shot.placed_props if each.label == 0):
+        for prop in (placed_prop for placed_prop in shot.placed_props if placed_prop.label == 0):
             center = (stage.simulation.data.geom_xpos[prop.geoms[0]] - np.array(shot.pose[:3])) @ axes
             if center[2] < 0.5:
                 continue

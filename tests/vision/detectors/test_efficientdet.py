@@ -88,11 +88,11 @@ def refused(path, **options):
 def test_boxes_and_names_are_read_from_model(litert, file):
     detector = make_detector(str(file), DetectorOptions())
     assert detector.names == ("person", "bicycle", "car")
-    found = detector.detect(np.zeros((100, 200, 3), np.uint8), Limits())
+    detections = detector.detect(np.zeros((100, 200, 3), np.uint8), Limits())
     assert litert.seen == [(1, 320, 320, 3)]
-    assert [found.name(index) for index in range(len(found))] == ["car", "person"]
-    assert found.boxes.tolist() == [[100, 25, 200, 75], [0, 0, 50, 50]]
-    assert found.scores == pytest.approx([0.9, 0.6])
+    assert [detections.name(index) for index in range(len(detections))] == ["car", "person"]
+    assert detections.boxes.tolist() == [[100, 25, 200, 75], [0, 0, 50, 50]]
+    assert detections.scores == pytest.approx([0.9, 0.6])
     assert len(detector.detect(np.zeros((0, 0, 3), np.uint8), Limits())) == 0
 
 

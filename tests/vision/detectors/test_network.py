@@ -53,43 +53,43 @@ def by_hand(path, image, rows, cols, padded=None):
     return session.run(None, {"images": tensor})[0].astype(np.float32), scales, left, top
 
 
-def overlap(one, two):
-    width = min(one[2], two[2]) - max(one[0], two[0])
-    height = min(one[3], two[3]) - max(one[1], two[1])
+def overlap(first, second):
+    width = min(first[2], second[2]) - max(first[0], second[0])
+    height = min(first[3], second[3]) - max(first[1], second[1])
     common = max(0, width) * max(0, height)
-    whole = (one[2] - one[0]) * (one[3] - one[1]) + (two[2] - two[0]) * (two[3] - two[1]) - common
+    whole = (first[2] - first[0]) * (first[3] - first[1]) + (second[2] - second[0]) * (second[3] - second[1]) - common
     return common / whole
 
 
 def slowly(rows, classes, limits, objectness=False):
     """Boxes, one after the other: (score, class, corners in the input)."""
-    found = []
+    detections = []
     for row in rows:
-        scores = [float(row[4 + objectness + each]) * (float(row[4]) if objectness else 1) for each in range(classes)]
+        scores = [float(row[4 + objectness + index]) * (float(row[4]) if objectness else 1) for index in range(classes)]
         best = max(range(classes), key=scores.__getitem__)
         if scores[best] >= limits.threshold:
             x, y, w, h = map(float, row[:4])
-            found.append((scores[best], best, (x - w / 2, y - h / 2, x + w / 2, y + h / 2)))
-    found.sort(key=lambda each: -each[0])
-    kept = []
-    for each in found:
-        if all(other[1] != each[1] or overlap(other[2], each[2]) <= limits.iou for other in kept):
-            kept.append(each)
-    return kept[: limits.max_detections]
+            detections.append((scores[best], best, (x - w / 2, y - h / 2, x + w / 2, y + h / 2)))
+    detections.sort(key=lambda detection: -detection[0])
+    selected = []
+    for detection in detections:
+        if all(other[1] != detection[1] or overlap(other[2], detection[2]) <= limits.iou for other in selected):
+            selected.append(detection)
+    return selected[: limits.max_detections]
 
 
-def check(found, kept, image, scale, left, top, tolerance=1e-3):
-    assert len(found) == len(kept) > 3
+def check(detections, expected, image, scale, left, top, tolerance=1e-3):
+    assert len(detections) == len(expected) > 3
     height, width = image.shape[:2]
-    for index, (score, which, box) in enumerate(kept):
-        placed = [(each - (left, top)[axis % 2]) / scale[axis % 2] for axis, each in enumerate(box)]
+    for index, (score, which, box) in enumerate(expected):
+        placed = [(coordinate - (left, top)[axis % 2]) / scale[axis % 2] for axis, coordinate in enumerate(box)]
         limits = [width, height, width, height]
-        assert found.boxes[index] == pytest.approx(
-            [min(max(each, 0), limit) for each, limit in zip(placed, limits, strict=True)], abs=tolerance
+        assert detections.boxes[index] == pytest.approx(
+            [min(max(coordinate, 0), limit) for coordinate, limit in zip(placed, limits, strict=True)], abs=tolerance
         )
-        assert found.scores[index] == pytest.approx(score, abs=1e-5)
-        assert found.classes[index] == which
-    assert len(set(map(found.name, range(len(found))))) > 1
+        assert detections.scores[index] == pytest.approx(score, abs=1e-5)
+        assert detections.classes[index] == which
+    assert len(set(map(detections.name, range(len(detections))))) > 1
 
 
 def test_yolov8_columns_are_decoded(tmp_path, image):
@@ -115,8 +115,8 @@ def test_yolov5_with_one_class_is_not_mistaken_for_final_boxes(tmp_path, image):
     path = columns(tmp_path / "v5.onnx", 1, transposed=True, objectness=True, metadata={"names": "['ball']"})
     output, *_ = by_hand(path, image, 96, 128)
     assert output.shape == (1, 756, 6)
-    found = opened(path).detect(image, limits)
-    assert len(found) == len(slowly(output[0], 1, limits, True))
+    detections = opened(path).detect(image, limits)
+    assert len(detections) == len(slowly(output[0], 1, limits, True))
 
 
 @pytest.mark.parametrize("message", [{"end2end": "True"}, {"args": "{'batch': 1, 'nms': True}"}, {}])
@@ -127,19 +127,21 @@ def test_final_boxes_are_decoded(tmp_path, image, message):
     rows[0, 2] = [0, 0, 128, 96, 0.7, 0]
     rows[0, 3] = [0, 0, 50, 50, 0.3, 1]
     path = constant(tmp_path / "v10.onnx", rows, {**NAMES, **message})
-    found = opened(path).detect(image, LIMITS)
-    assert [found.name(index) for index in range(len(found))] == ["cat", "cat", "ball"]
+    detections = opened(path).detect(image, LIMITS)
+    assert [detections.name(index) for index in range(len(detections))] == ["cat", "cat", "ball"]
     across, down, top = 128 / 200, 77 / 120, round((96 - 77) / 2 - 0.1)
-    assert found.boxes[0] == pytest.approx([10 / across, (20 - top) / down, 40 / across, (60 - top) / down], abs=1e-4)
-    assert found.boxes[2].tolist() == [0, 0, 200, 120]
+    assert detections.boxes[0] == pytest.approx(
+        [10 / across, (20 - top) / down, 40 / across, (60 - top) / down], abs=1e-4
+    )
+    assert detections.boxes[2].tolist() == [0, 0, 200, 120]
 
 
 def test_dynamic_input_has_smallest_size_for_image(tmp_path, image):
     path = columns(tmp_path / "any.onnx", size=None, metadata=NAMES)
     output, *place = by_hand(path, image, 128, 160, padded=32)
     assert output.shape[2] == 12 * 20 + 6 * 10 + 3 * 5  # 96 x 160
-    found = opened(path, size=(120, 160)).detect(image, LIMITS)
-    check(found, slowly(output[0].T, 3, LIMITS), image, *place)
+    detections = opened(path, size=(120, 160)).detect(image, LIMITS)
+    check(detections, slowly(output[0].T, 3, LIMITS), image, *place)
 
 
 def test_half_precision_network_is_decoded(tmp_path, image):
@@ -170,8 +172,8 @@ def test_keypoints_are_ignored_with_note(tmp_path, image):
 def test_limits_select_classes_and_number_of_detections(tmp_path, image):
     path = columns(tmp_path / "v8.onnx", metadata=NAMES)
     detector = opened(path)
-    found = detector.detect(image, Limits(0.6, 0.45, classes=frozenset({"cat"})))
-    assert {found.name(index) for index in range(len(found))} == {"cat"}
+    detections = detector.detect(image, Limits(0.6, 0.45, classes=frozenset({"cat"})))
+    assert {detections.name(index) for index in range(len(detections))} == {"cat"}
     assert len(detector.detect(image, Limits(0.6, 0.45, max_detections=2))) == 2
     assert len(detector.detect(image, Limits(0.9999))) == 0
 

@@ -10,20 +10,20 @@ from linkwright.vision.detectors.suppression import non_maximum_suppression
 
 
 def slowly(boxes, scores, classes, iou, most):
-    kept = []
-    for index in sorted(range(len(scores)), key=lambda each: -scores[each]):
+    selected = []
+    for index in sorted(range(len(scores)), key=lambda index: -scores[index]):
         left, top, right, bottom = boxes[index]
-        for other in kept:
+        for other in selected:
             width = min(right, boxes[other][2]) - max(left, boxes[other][0])
             height = min(bottom, boxes[other][3]) - max(top, boxes[other][1])
             common = max(0, width) * max(0, height)
-            sizes = [(each[2] - each[0]) * (each[3] - each[1]) for each in (boxes[index], boxes[other])]
+            sizes = [(box[2] - box[0]) * (box[3] - box[1]) for box in (boxes[index], boxes[other])]
             union = sum(sizes) - common
             if classes[other] == classes[index] and union > 0 and common > iou * union:
                 break
         else:
-            kept.append(index)
-    return kept[:most]
+            selected.append(index)
+    return selected[:most]
 
 
 corner = st.integers(0, 12)

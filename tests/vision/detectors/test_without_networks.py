@@ -28,8 +28,8 @@ def detector(name, **settings):
     return make_detector(name, DetectorOptions(settings=settings))
 
 
-def names(found):
-    return [found.name(index) for index in range(len(found))]
+def names(detections):
+    return [detections.name(index) for index in range(len(detections))]
 
 
 def test_color_detector_finds_balls_and_boxes():
@@ -37,11 +37,11 @@ def test_color_detector_finds_balls_and_boxes():
     cv2.circle(image, (80, 100), 30, (200, 20, 30), cv2.FILLED)
     image[40:80, 200:260] = (20, 60, 200)
     image[150:152, 10:14] = (20, 200, 40)
-    found = detector("colors").detect(image, LIMITS)
-    assert names(found) == ["blue", "red"]
-    assert found.boxes[0].tolist() == [200, 40, 260, 80]
-    assert found.boxes[1] == pytest.approx([50, 70, 111, 131], abs=1)
-    assert found.scores == pytest.approx([1.0, 0.785], abs=0.05)
+    detections = detector("colors").detect(image, LIMITS)
+    assert names(detections) == ["blue", "red"]
+    assert detections.boxes[0].tolist() == [200, 40, 260, 80]
+    assert detections.boxes[1] == pytest.approx([50, 70, 111, 131], abs=1)
+    assert detections.scores == pytest.approx([1.0, 0.785], abs=0.05)
 
 
 def test_custom_colors_and_class_selection_are_applied():
@@ -67,11 +67,11 @@ def test_marker_detections_are_named_by_id(name, dictionary, kind, number):
     image = np.full((240, 320, 3), 255, np.uint8)
     marker = cv2.aruco.generateImageMarker(cv2.aruco.getPredefinedDictionary(kind), number, 80)
     image[60:140, 100:180] = marker[..., np.newaxis]
-    found = detector(name, **({"dictionary": dictionary} if dictionary else {})).detect(image, LIMITS)
-    assert names(found) == [str(number)]
-    assert found.boxes[0] == pytest.approx([100, 60, 180, 140], abs=1)
-    assert found.corners is not None
-    assert found.corners[0] == pytest.approx(np.array([[100, 60], [180, 60], [180, 140], [100, 140]]), abs=1)
+    detections = detector(name, **({"dictionary": dictionary} if dictionary else {})).detect(image, LIMITS)
+    assert names(detections) == [str(number)]
+    assert detections.boxes[0] == pytest.approx([100, 60, 180, 140], abs=1)
+    assert detections.corners is not None
+    assert detections.corners[0] == pytest.approx(np.array([[100, 60], [180, 60], [180, 140], [100, 140]]), abs=1)
 
 
 def test_qr_code_detections_are_named_by_text():
@@ -79,9 +79,9 @@ def test_qr_code_detections_are_named_by_text():
     large = cv2.resize(code, None, fx=5, fy=5, interpolation=cv2.INTER_NEAREST)
     image = np.full((300, 400, 3), 255, np.uint8)
     image[50 : 50 + large.shape[0], 80 : 80 + large.shape[1]] = large[..., np.newaxis]
-    found = detector("qr").detect(image, LIMITS)
-    assert names(found) == ["kitchen"]
-    left, top, right, bottom = found.boxes[0]
+    detections = detector("qr").detect(image, LIMITS)
+    assert names(detections) == ["kitchen"]
+    left, top, right, bottom = detections.boxes[0]
     assert 70 <= left < right <= 90 + large.shape[1]
     assert 40 <= top < bottom <= 60 + large.shape[0]
     assert len(detector("qr").detect(image, Limits(classes=frozenset({"bath"})))) == 0
@@ -99,10 +99,10 @@ def test_small_qr_code_is_read(turned):
     larger = cv2.getPerspectiveTransform(corners, 4 * seen)
     image = cv2.warpPerspective(code, larger, (4 * 320, 4 * 240), flags=cv2.INTER_NEAREST, borderValue=120)
     image = cv2.resize(image, (320, 240), interpolation=cv2.INTER_AREA)
-    found = detector("qr").detect(np.repeat(image[..., np.newaxis], 3, axis=2), LIMITS)
-    assert names(found) == ["kitchen"]
+    detections = detector("qr").detect(np.repeat(image[..., np.newaxis], 3, axis=2), LIMITS)
+    assert names(detections) == ["kitchen"]
     # Its quiet zone of six modules is not in the box.
-    assert found.boxes[0] == pytest.approx([118, 98, 182, 162], abs=4)
+    assert detections.boxes[0] == pytest.approx([118, 98, 182, 162], abs=4)
 
 
 def test_partial_qr_codes_are_not_an_error():
@@ -117,20 +117,20 @@ def test_partial_qr_codes_are_not_an_error():
         for _ in range(int(numbers.integers(0, 4))):
             y, x = (int(integer) for integer in numbers.integers(0, 200, 2))
             image[y : y + 30, x : x + 30] = 255
-        found = look.detect(np.repeat(image[..., np.newaxis], 3, axis=2), LIMITS)
-        assert set(names(found)) <= {"kitchen"}
+        detections = look.detect(np.repeat(image[..., np.newaxis], 3, axis=2), LIMITS)
+        assert set(names(detections)) <= {"kitchen"}
 
 
 def test_line_on_floor_is_detected():
     image = blank()
     cv2.line(image, (200, 239), (200, 100), (20, 20, 20), 21)
     image[:100] = 0  # above the part that is looked at
-    found = detector("line").detect(image, LIMITS)
-    assert names(found) == ["line"]
-    left, top, right, bottom = found.boxes[0]
+    detections = detector("line").detect(image, LIMITS)
+    assert names(detections) == ["line"]
+    left, top, right, bottom = detections.boxes[0]
     assert (left + right) / 2 == pytest.approx(200.5, abs=1)
     assert (top, bottom) == (180, 240)
-    assert found.scores[0] == 1.0
+    assert detections.scores[0] == 1.0
     whole = detector("line", part=1.0, color=[0, 0, 100, 179, 60, 200]).detect(image, LIMITS)
     assert whole.boxes[0][1] == 100
 
@@ -165,17 +165,17 @@ def test_invalid_settings_are_rejected(name, settings, words):
 def test_detections_are_drawn_on_copy_of_image():
     image = blank()
     boxes = np.array([[50, 60, 150, 160], [200, 5, 400, 90]], np.float32)
-    found = Detections(boxes, np.array([0.9, 0.6], np.float32), np.array([0, 1], np.int32), ("ball", "box"))
-    canvas = draw_detections(image, found)
+    detections = Detections(boxes, np.array([0.9, 0.6], np.float32), np.array([0, 1], np.int32), ("ball", "box"))
+    canvas = draw_detections(image, detections)
     assert tuple(canvas[160, 100]) == class_color("ball")
     assert tuple(canvas[90, 300]) == class_color("box")
     assert (image == FLOOR).all()
     assert (draw_detections(image, Detections.empty(("ball",))) == image).all()
     marker = Detections(
         boxes[:1],
-        found.scores[:1],
-        found.classes[:1],
-        found.names,
+        detections.scores[:1],
+        detections.classes[:1],
+        detections.names,
         np.array([[[50, 60], [150, 60], [150, 160], [50, 160]]], np.float32),
     )
     assert tuple(draw_detections(image, marker)[160, 100]) == class_color("ball")
@@ -197,10 +197,10 @@ WITHOUT = ("colors", "aruco", "apriltag", "qr", "line")
 def test_network_options_are_rejected(name, setting, options):
     with pytest.raises(LinkwrightError) as caught:
         make_detector(name, DetectorOptions(**options))
-    (found,) = caught.value.diagnostics
-    assert found.code == "VISION109"
-    assert setting in str(found.message)
-    assert found.hint is not None
+    (diagnostic,) = caught.value.diagnostics
+    assert diagnostic.code == "VISION109"
+    assert setting in str(diagnostic.message)
+    assert diagnostic.hint is not None
 
 
 @pytest.mark.parametrize("name", WITHOUT)

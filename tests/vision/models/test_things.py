@@ -68,9 +68,9 @@ def look(playground, eye, model):
 @pytest.mark.parametrize(("eye", "model", "name"), LOOKS, ids=[look[1] for look in LOOKS])
 def test_network_finds_object_in_front_of_camera(playground, things, eye, model, name):
     image, box = look(playground, eye, model)
-    found = things.detect(image, Limits())
-    shares = intersection_over_union(box, found.boxes)[0]
-    right = [shares[place] for place in range(len(found)) if found.name(place) == name]
+    detections = things.detect(image, Limits())
+    shares = intersection_over_union(box, detections.boxes)[0]
+    right = [shares[place] for place in range(len(detections)) if detections.name(place) == name]
     assert max(right, default=0.0) > 0.5
 
 

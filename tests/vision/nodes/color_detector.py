@@ -37,28 +37,28 @@ class ColorDetector:
         pixels = decode_image(image, self._ranges).pixels[:, :, :3]
         names = classify_colors(pixels.reshape(-1, 3)).reshape(pixels.shape[:2])
         rows, columns = np.nonzero(names == self._color)
-        found = self._array(header=image.header)
+        array = self._array(header=image.header)
         if len(rows) >= _LEAST_PIXELS:
             left, right = np.percentile(columns, [1, 99])
             top, bottom = np.percentile(rows, [1, 99])
-            found.detections.append(detection(image.header, left, top, right + 1, bottom + 1, self._name))
-        self._publisher.publish(found)
+            array.detections.append(detection(image.header, left, top, right + 1, bottom + 1, self._name))
+        self._publisher.publish(array)
 
 
 def detection(header: Any, left: float, top: float, right: float, bottom: float, name: str, score: float = 0.9) -> Any:
     """A vision_msgs/msg/Detection2D of a box."""
-    made = get_message("vision_msgs/msg/Detection2D")(header=header)
-    made.bbox.center.position.x, made.bbox.center.position.y = (left + right) / 2, (top + bottom) / 2
-    made.bbox.size_x, made.bbox.size_y = float(right - left), float(bottom - top)
+    message = get_message("vision_msgs/msg/Detection2D")(header=header)
+    message.bbox.center.position.x, message.bbox.center.position.y = (left + right) / 2, (top + bottom) / 2
+    message.bbox.size_x, message.bbox.size_y = float(right - left), float(bottom - top)
     result = get_message("vision_msgs/msg/ObjectHypothesisWithPose")()
     result.hypothesis.class_id, result.hypothesis.score = name, score
-    made.results = [result]
-    return made
+    message.results = [result]
+    return message
 
 
 def yolo_detection(left: float, top: float, right: float, bottom: float, name: str, score: float) -> Any:
     """A yolo_msgs/msg/Detection of a box, of class 4."""
-    made = get_message("yolo_msgs/msg/Detection")(class_id=4, class_name=name, score=score)
-    made.bbox.center.position.x, made.bbox.center.position.y = (left + right) / 2, (top + bottom) / 2
-    made.bbox.size.x, made.bbox.size.y = float(right - left), float(bottom - top)
-    return made
+    message = get_message("yolo_msgs/msg/Detection")(class_id=4, class_name=name, score=score)
+    message.bbox.center.position.x, message.bbox.center.position.y = (left + right) / 2, (top + bottom) / 2
+    message.bbox.size.x, message.bbox.size.y = float(right - left), float(bottom - top)
+    return message

@@ -55,7 +55,7 @@ class SeekingRobot(SteppedSimulation):
         images: bool = False,
         laser: bool = False,
         seeker: dict[str, Any] | None = None,
-        thing: str = "ball",
+        object_name: str = "ball",
     ) -> None:
         arguments = {"camera": True, "laser": laser}
         world = GAZEBO_PACKAGE / "worlds" / "empty.world"
@@ -63,7 +63,7 @@ class SeekingRobot(SteppedSimulation):
         self._model = folder / "ball.sdf"
         self._model.write_text(_BALL)
         self._ball, self._images, self._seeker = ball, images, seeker or {}
-        self._thing = thing
+        self._object_name = object_name
         self._visible = True
 
     def __enter__(self) -> Self:
@@ -151,7 +151,7 @@ class SeekingRobot(SteppedSimulation):
             pixels = camera.pixels(corners).ravel() + self._numbers.normal(0, 0.7, 4)
             left, top, right, bottom = np.clip(pixels, 0, [_WIDTH, _HEIGHT] * 2)
             if right - left > 5 and bottom - top > 5:
-                array.detections.append(detection(header, left, top, right, bottom, self._thing))
+                array.detections.append(detection(header, left, top, right, bottom, self._object_name))
         self._detections.publish(array)
 
 

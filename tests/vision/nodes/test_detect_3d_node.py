@@ -23,14 +23,14 @@ def test():
 
 def start(test, kind=Detect3DNode, **parameters):
     node = kind(test.graph, NodeOptions(parameters=parameters))
-    found = test.record("/detections_3d")
+    recording = test.record("/detections_3d")
     markers = test.record("/markers")
     test.settle()
     # A camera that looks forward, half a meter above the ground.
     batch = TransformBatch(("base_link",), ("camera",), 0, np.array([[0.1, 0.0, 0.5, -0.5, 0.5, -0.5, 0.5]]))
     test.publish("/tf_static", TFMessage(batch=batch), STATIC_TF_PUBLISHER_QOS)
     test.settle()
-    return node, found, markers
+    return node, recording, markers
 
 
 def header(frame="camera", stamp=NOW):
@@ -56,8 +56,8 @@ def depth(test, values, encoding="32FC1", **more):
 def boxes(test, *given, frame="camera"):
     array = get_message("vision_msgs/msg/Detection2DArray")(header=header(frame))
     array.detections = [detection(array.header, *box, "ball") for box in given]
-    for number, each in enumerate(array.detections):
-        each.id = str(number + 7)
+    for number, array_detection in enumerate(array.detections):
+        array_detection.id = str(number + 7)
     test.publish("/detections", array)
     test.settle()
 
@@ -75,19 +75,19 @@ def warnings(test):
     ("encoding", "factor", "divisor"), [("32FC1", 1.0, 1000), ("16UC1", 1000.0, 1000), ("16UC1", 5000.0, 5000)]
 )
 def test_depth_image_gives_positions_in_target_frame(test, encoding, factor, divisor):
-    _, found, markers = start(test, depth_image_units_divisor=divisor)
+    _, recording, markers = start(test, depth_image_units_divisor=divisor)
     camera(test, "/depth_info")
     depth(test, WALL * factor, encoding)
     boxes(test, BOX)
-    (each,) = found.last.detections
-    at, size = each.bbox.center.position, each.bbox.size
+    (detection,) = recording.last.detections
+    at, size = detection.bbox.center.position, detection.bbox.size
     assert (at.x, at.y, at.z) == pytest.approx((2.1, 0.0, 0.5), abs=0.02)
     assert (size.y, size.z) == pytest.approx((0.16, 0.16), abs=0.01)
-    assert found.last.header.frame_id == each.header.frame_id == "base_link"
-    assert each.id == "7"
-    assert each.results[0].hypothesis.class_id == "ball"
-    assert each.results[0].pose.pose.position.x == at.x
-    turn = each.bbox.center.orientation
+    assert recording.last.header.frame_id == detection.header.frame_id == "base_link"
+    assert detection.id == "7"
+    assert detection.results[0].hypothesis.class_id == "ball"
+    assert detection.results[0].pose.pose.position.x == at.x
+    turn = detection.bbox.center.orientation
     assert abs(turn.w) == pytest.approx(1.0), "x of the box is along the view, z is up"
     _, box, label = markers.last.markers
     assert (box.type, box.scale.y) == (box.CUBE, size.y)
@@ -95,42 +95,42 @@ def test_depth_image_gives_positions_in_target_frame(test, encoding, factor, div
 
 
 def test_depth_image_may_have_half_size(test):
-    _, found, _ = start(test)
+    _, recording, _ = start(test)
     camera(test, "/camera_info")
     camera(test, "/depth_info", 320, 240)
     depth(test, WALL[::2, ::2])
     boxes(test, BOX)
-    assert found.last.detections[0].bbox.center.position.x == pytest.approx(2.1, abs=0.02)
+    assert recording.last.detections[0].bbox.center.position.x == pytest.approx(2.1, abs=0.02)
 
 
 def test_objects_are_placed_on_ground_without_depth(test):
-    _, found, _ = start(test, ground_frame="base_link")
+    _, recording, _ = start(test, ground_frame="base_link")
     camera(test, "/camera_info")
     boxes(test, (295.0, 320.0, 345.0, 365.0), (300.0, 100.0, 340.0, 140.0))
-    (each,) = found.last.detections
-    assert each.id == "7", "the other one is above the horizon"
-    assert each.bbox.center.position.x == pytest.approx(2.1, abs=0.02)
-    assert each.bbox.center.position.z == pytest.approx(0.09, abs=0.02)
+    (detection,) = recording.last.detections
+    assert detection.id == "7", "the other one is above the horizon"
+    assert detection.bbox.center.position.x == pytest.approx(2.1, abs=0.02)
+    assert detection.bbox.center.position.z == pytest.approx(0.09, abs=0.02)
     assert warnings(test) == []
 
 
 def test_ground_is_used_for_box_without_depths(test):
-    _, found, _ = start(test, ground_frame="base_link")
+    _, recording, _ = start(test, ground_frame="base_link")
     camera(test, "/camera_info")
     depth(test, np.full((480, 640), np.nan))
     boxes(test, (295.0, 320.0, 345.0, 365.0))
-    assert found.last.detections[0].bbox.center.position.x == pytest.approx(2.1, abs=0.02)
+    assert recording.last.detections[0].bbox.center.position.x == pytest.approx(2.1, abs=0.02)
 
 
 def test_empty_detections_are_published_and_delete_markers(test):
-    _, found, markers = start(test)
+    _, recording, markers = start(test)
     boxes(test)
-    assert found.last.detections == []
-    assert [each.action for each in markers.last.markers] == [markers.last.markers[0].DELETEALL]
+    assert recording.last.detections == []
+    assert [marker.action for marker in markers.last.markers] == [markers.last.markers[0].DELETEALL]
 
 
 def test_missing_inputs_are_reported(test):
-    _, found, _ = start(test)
+    _, recording, _ = start(test)
     boxes(test, BOX)
     assert warnings(test) == ["the positions of detections are unknown: no camera_info has arrived"]
     camera(test, "/camera_info")
@@ -147,8 +147,8 @@ def test_missing_inputs_are_reported(test):
     test.advance(6.0)
     depth(test, WALL, frame="camera", stamp=Time.from_nanoseconds(5 * 10**9))
     boxes(test, BOX)
-    assert len(found) == 5
-    assert all(message.detections == [] for message in found)
+    assert len(recording) == 5
+    assert all(message.detections == [] for message in recording)
 
 
 def test_unsupported_distortion_model_is_reported(test):
@@ -159,7 +159,7 @@ def test_unsupported_distortion_model_is_reported(test):
 
 def test_yolo_ros_messages_and_parameters_are_supported(test):
     parameters = {"maximum_detection_threshold": 0.3, "depth_image_reliability": 2, "depth_info_reliability": 2}
-    _, found, markers = start(test, YoloDetect3DNode, **parameters)
+    _, recording, markers = start(test, YoloDetect3DNode, **parameters)
     camera(test, "/depth_info")
     depth(test, WALL)
     array = get_message("yolo_msgs/msg/DetectionArray")(header=header())
@@ -167,12 +167,12 @@ def test_yolo_ros_messages_and_parameters_are_supported(test):
     array.detections[0].id = "7"
     test.publish("/detections", array)
     test.settle()
-    (each,) = found.last.detections
-    at, size = each.bbox3d.center.position, each.bbox3d.size
+    (detection,) = recording.last.detections
+    at, size = detection.bbox3d.center.position, detection.bbox3d.size
     assert (at.x, at.y, at.z) == pytest.approx((2.1, 0.0, 0.5), abs=0.02)
     assert (size.y, size.z) == pytest.approx((0.16, 0.16), abs=0.01)
-    assert found.last.header.frame_id == each.bbox3d.frame_id == "base_link"
-    assert (each.id, each.class_name, each.bbox.center.position.x) == ("7", "ball", 320.0)
+    assert recording.last.header.frame_id == detection.bbox3d.frame_id == "base_link"
+    assert (detection.id, detection.class_name, detection.bbox.center.position.x) == ("7", "ball", 320.0)
     assert array.detections[0].bbox3d.frame_id == "", "what others hear, too, stays as it is"
     _, box, label = markers.last.markers
     assert (box.scale.y, label.text) == (size.y, "ball 7 2.0 m")

@@ -45,8 +45,8 @@ def start(test):
         return running[-1]
 
     yield begin
-    for each in running:
-        each.close()
+    for node in running:
+        node.close()
 
 
 def scene(encoding="rgb8"):
@@ -387,10 +387,10 @@ class Slow:
 
 @pytest.fixture
 def slow(monkeypatch):
-    made = Slow(detector.make_detector)
-    monkeypatch.setattr(detector, "make_detector", made)
-    yield made
-    made.proceed.set()
+    factory = Slow(detector.make_detector)
+    monkeypatch.setattr(detector, "make_detector", factory)
+    yield factory
+    factory.proceed.set()
 
 
 async def test_node_answers_services_while_detector_loads(test, start, slow):

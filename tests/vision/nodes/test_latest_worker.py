@@ -9,13 +9,13 @@ from tests.waiting import SECONDS, wait_until
 
 
 def test_busy_worker_keeps_only_latest_item():
-    done: list[int] = []
+    processed: list[int] = []
     begun, proceed = threading.Event(), threading.Event()
 
     def work(item: int) -> None:
         begun.set()
         assert proceed.wait(SECONDS)
-        done.append(item)
+        processed.append(item)
 
     worker = LatestWorker(lambda: work, "slow")
     worker.offer(0)
@@ -23,19 +23,19 @@ def test_busy_worker_keeps_only_latest_item():
     for item in range(1, 50):
         worker.offer(item)
     proceed.set()
-    wait_until(lambda: len(done) == 2)
+    wait_until(lambda: len(processed) == 2)
     worker.close()
-    assert done == [0, 49]
+    assert processed == [0, 49]
 
 
 def test_close_waits_for_current_item_and_drops_rest():
-    done: list[int] = []
+    processed: list[int] = []
     begun, proceed = threading.Event(), threading.Event()
 
     def work(item: int) -> None:
         begun.set()
         assert proceed.wait(SECONDS)
-        done.append(item)
+        processed.append(item)
 
     worker = LatestWorker(lambda: work, "slow")
     worker.offer(0)
@@ -47,4 +47,4 @@ def test_close_waits_for_current_item_and_drops_rest():
     proceed.set()
     closing.join(SECONDS)
     worker.offer(2)
-    assert done == [0]
+    assert processed == [0]

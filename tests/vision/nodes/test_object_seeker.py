@@ -46,7 +46,7 @@ def test_seeker_goes_to_red_ball_seen_by_camera(tmp_path):
 @pytest.mark.parametrize("language", ["en", "zh"])
 def test_answers_are_in_language_of_request(tmp_path, language):
     with SeekingRobot(tmp_path, (1.0, 0.0), seeker={"language": language}) as test:
-        for topic, thing in (
+        for topic, text in (
             ("go_to/zh", "ball"),
             ("go_to/en", "球"),
             ("follow/zh", "ball"),
@@ -54,7 +54,7 @@ def test_answers_are_in_language_of_request(tmp_path, language):
             ("go_to", "ball"),
             ("go_to", "球"),
         ):
-            test.tell(f"/vision/{topic}", thing)
+            test.tell(f"/vision/{topic}", text)
             test.settle()
         test.tell_to_stop()
         test.settle()

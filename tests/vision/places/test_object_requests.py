@@ -44,9 +44,9 @@ from linkwright.vision.places.object_requests import (
     ],
 )
 def test_request_is_parsed_to_noun_and_color(text, noun, color):
-    found = parse_request(text)
-    assert (found.noun, found.color) == (noun, color)
-    assert found.language == ("en" if text.isascii() else "zh")
+    request = parse_request(text)
+    assert (request.noun, request.color) == (noun, color)
+    assert request.language == ("en" if text.isascii() else "zh")
 
 
 @pytest.mark.parametrize("text", ["", "  ", "the", "。"])

@@ -15,8 +15,8 @@ PERIOD = 0.1
 class Robot:
     """A robot that does what it is told, in a plane with one object; it sees 40 degrees to either side."""
 
-    def __init__(self, seeker, thing=None, radius=0.15):
-        self.seeker, self.thing, self.radius = seeker, thing, radius
+    def __init__(self, seeker, target=None, radius=0.15):
+        self.seeker, self.target, self.radius = seeker, target, radius
         self.x = self.y = self.heading = self.time = 0.0
         self.seen_at, self.detection_silence, self.free_distance = -inf, 0.0, inf
         self.way = 0.0
@@ -24,9 +24,9 @@ class Robot:
 
     def step(self):
         view = View(self.time, self.heading, detection_silence=self.detection_silence, free_distance=self.free_distance)
-        if self.thing is not None:
-            away = hypot(self.thing[0] - self.x, self.thing[1] - self.y)
-            bearing = atan2(self.thing[1] - self.y, self.thing[0] - self.x) - self.heading
+        if self.target is not None:
+            away = hypot(self.target[0] - self.x, self.target[1] - self.y)
+            bearing = atan2(self.target[1] - self.y, self.target[0] - self.x) - self.heading
             bearing = (bearing + pi) % (2 * pi) - pi
             if abs(bearing) < 0.7 and not self.hidden:
                 self.seen_at = self.time
@@ -55,14 +55,14 @@ class Robot:
         return [move.event for move in moves if move.event is not None]
 
 
-@pytest.mark.parametrize("thing", [(2.0, 0.0), (1.0, -1.5), (-2.0, 0.5), (0.3, 0.0)])
-def test_seeker_turns_until_object_is_seen_and_goes_there(thing):
+@pytest.mark.parametrize("target", [(2.0, 0.0), (1.0, -1.5), (-2.0, 0.5), (0.3, 0.0)])
+def test_seeker_turns_until_object_is_seen_and_goes_there(target):
     seeker = Seeker()
-    robot = Robot(seeker, thing)
+    robot = Robot(seeker, target)
     seeker.begin()
     assert robot.advance(60)[-1] is Answer.ARRIVED
     assert seeker.phase is Phase.IDLE
-    surface = hypot(thing[0] - robot.x, thing[1] - robot.y) - robot.radius
+    surface = hypot(target[0] - robot.x, target[1] - robot.y) - robot.radius
     assert surface == pytest.approx(0.5, abs=0.05) or (surface < 0.5 and robot.way == 0.0)
 
 
@@ -143,11 +143,11 @@ def test_seeker_follows_moving_object_until_stopped():
     seeker.begin(follow=True)
     events = []
     for step in range(400):
-        robot.thing = (1.0 + 0.02 * step, sin(step / 60))
+        robot.target = (1.0 + 0.02 * step, sin(step / 60))
         move = robot.step()
         events += [move.event] if move.event else []
     assert events == [Answer.FOUND]
-    assert hypot(robot.thing[0] - robot.x, robot.thing[1] - robot.y) < 1.3
+    assert hypot(robot.target[0] - robot.x, robot.target[1] - robot.y) < 1.3
     seeker.stop()
     assert robot.advance(1) == []
     assert robot.step().linear == 0.0

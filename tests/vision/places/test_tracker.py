@@ -12,19 +12,19 @@ NAMES = ("ball", "crate")
 PERIOD = 1 / 30
 
 
-def found(*objects):
+def detections_of(*objects):
     """Detections of (center x, center y, size, score, class)."""
     if not objects:
         return Detections.empty(NAMES)
     boxes = [[x - size / 2, y - size / 2, x + size / 2, y + size / 2] for x, y, size, *_ in objects]
-    scores = [thing[3] if len(thing) > 3 else 0.9 for thing in objects]
-    classes = [thing[4] if len(thing) > 4 else 0 for thing in objects]
+    scores = [entry[3] if len(entry) > 3 else 0.9 for entry in objects]
+    classes = [entry[4] if len(entry) > 4 else 0 for entry in objects]
     return Detections(np.array(boxes, np.float32), np.array(scores, np.float32), np.array(classes, np.int32), NAMES)
 
 
 def test_moving_object_keeps_id_from_second_detection():
     tracker = Tracker()
-    ids = [tracker.update(found((100 + 4 * step, 200, 40)), step * PERIOD)[0] for step in range(60)]
+    ids = [tracker.update(detections_of((100 + 4 * step, 200, 40)), step * PERIOD)[0] for step in range(60)]
     assert ids[0] == 0
     assert set(ids[1:]) == {1}
 
@@ -39,7 +39,7 @@ def test_crossing_objects_keep_ids(seed):
         right = (100 + 3 * step + noise[0], 200 + noise[1], 40)
         left = (460 - 3 * step + noise[2], 212 + noise[3], 40)
         hidden = abs(right[0] - left[0]) < 20  # the nearer one covers the other
-        ids = tracker.update(found(right) if hidden else found(right, left), step * PERIOD)
+        ids = tracker.update(detections_of(right) if hidden else detections_of(right, left), step * PERIOD)
         if step > 2 and not hidden:
             met["right"].add(ids[0])
             met["left"].add(ids[1])
@@ -52,7 +52,7 @@ def test_briefly_missing_object_keeps_id_and_long_missing_gets_new():
     ids = []
     for step in range(200):
         gone = 30 <= step < 50 or 90 <= step < 150
-        result = tracker.update(found() if gone else found((100 + step, 200, 40)), step * PERIOD)
+        result = tracker.update(detections_of() if gone else detections_of((100 + step, 200, 40)), step * PERIOD)
         ids += result
     assert [key for key in dict.fromkeys(ids) if key] == [1, 2], "ids are never used again"
     assert ids[28:32] == [1, 1, 1, 1]
@@ -61,30 +61,32 @@ def test_briefly_missing_object_keeps_id_and_long_missing_gets_new():
 def test_low_score_detection_keeps_track_and_starts_none():
     tracker = Tracker(TrackerSettings(high_threshold=0.5, low_threshold=0.1, new_track_score=0.6))
     for step in range(5):
-        tracker.update(found((100, 100, 40)), step * PERIOD)
-    weak = [tracker.update(found((100, 100, 40, 0.2), (300, 300, 40, 0.2)), step * PERIOD) for step in range(5, 60)]
+        tracker.update(detections_of((100, 100, 40)), step * PERIOD)
+    weak = [
+        tracker.update(detections_of((100, 100, 40, 0.2), (300, 300, 40, 0.2)), step * PERIOD) for step in range(5, 60)
+    ]
     assert all(ids == [1, 0] for ids in weak)
-    assert tracker.update(found((100, 100, 40, 0.05)), 2.0) == [0]
+    assert tracker.update(detections_of((100, 100, 40, 0.05)), 2.0) == [0]
 
 
 def test_single_detection_gets_no_id_and_classes_are_separate():
     tracker = Tracker()
-    assert tracker.update(found((100, 100, 40)), 0.0) == [0]
-    assert tracker.update(found((100, 100, 40, 0.9, 1)), PERIOD) == [0]
-    assert tracker.update(found((100, 100, 40, 0.9, 1)), 2 * PERIOD) == [1]
+    assert tracker.update(detections_of((100, 100, 40)), 0.0) == [0]
+    assert tracker.update(detections_of((100, 100, 40, 0.9, 1)), PERIOD) == [0]
+    assert tracker.update(detections_of((100, 100, 40, 0.9, 1)), 2 * PERIOD) == [1]
 
 
 def test_time_jump_back_restarts_tracks_with_new_ids():
     tracker = Tracker()
     for step in range(3):
-        tracker.update(found((100, 100, 40)), 10 + step * PERIOD)
-    assert tracker.update(found((100, 100, 40)), 0.0) == [0]
-    assert tracker.update(found((100, 100, 40)), PERIOD) == [2]
+        tracker.update(detections_of((100, 100, 40)), 10 + step * PERIOD)
+    assert tracker.update(detections_of((100, 100, 40)), 0.0) == [0]
+    assert tracker.update(detections_of((100, 100, 40)), PERIOD) == [2]
 
 
 def test_low_frame_rate_keeps_ids():
     tracker = Tracker()
-    ids = [tracker.update(found((100 + 10 * step, 200, 60)), step * 0.2)[0] for step in range(20)]
+    ids = [tracker.update(detections_of((100 + 10 * step, 200, 60)), step * 0.2)[0] for step in range(20)]
     assert set(ids[1:]) == {1}
 
 
@@ -94,7 +96,7 @@ def test_thirty_crossing_objects_keep_ids():
     tracker, switches, before = Tracker(), 0, None
     for step in range(90):
         places = start + speed * step * PERIOD + numbers.normal(0, 0.5, (30, 2))
-        ids = np.array(tracker.update(found(*[(x, y, 40) for x, y in places]), step * PERIOD))
+        ids = np.array(tracker.update(detections_of(*[(x, y, 40) for x, y in places]), step * PERIOD))
         if before is not None and step > 2:
             switches += int((ids != before).sum())
         before = ids

@@ -15,10 +15,12 @@ BOXES = np.array([[0, 0, 8, 8], [20, 20, 60, 60]], np.float32)
 
 def figures(classes):
     truth = GroundTruth(BOXES, np.array([0, 1], np.int32), np.zeros(2, bool))
-    kept = [place for place, kind in enumerate(classes) if kind is not None]
-    kinds = np.array([classes[place] for place in kept], np.int32)
+    places = [place for place, kind in enumerate(classes) if kind is not None]
+    kinds = np.array([classes[place] for place in places], np.int32)
     return evaluate(
-        ("ball", "box"), [truth], [Detections(BOXES[kept], np.full(len(kept), 0.9, np.float32), kinds, ("ball", "box"))]
+        ("ball", "box"),
+        [truth],
+        [Detections(BOXES[places], np.full(len(places), 0.9, np.float32), kinds, ("ball", "box"))],
     )
 
 
@@ -56,8 +58,8 @@ def write_card(folder, *worlds, more=()):
     folder.mkdir(exist_ok=True)
     listed = [{"name": f"rooms/{world}.world", "file": f"{world}.world", "sha256": sum_of(world)} for world in worlds]
     runs = [{"seed": 3, "most": 10}, *more]
-    made = [{"worlds": listed, "added": ["mbot.urdf"], "options": options} for options in runs]
-    (folder / "dataset.json").write_text(json.dumps({"made": made}))
+    entries = [{"worlds": listed, "added": ["mbot.urdf"], "options": options} for options in runs]
+    (folder / "dataset.json").write_text(json.dumps({"made": entries}))
     return folder
 
 

@@ -46,7 +46,7 @@ def test_evaluate_command_prints_json(colors, capsys):
     figures = json.loads(capsys.readouterr().out)
     assert figures["images"] == 6
     assert figures["map50"] == pytest.approx(1)
-    assert [each["name"] for each in figures["classes"]] == ["red", "blue"]
+    assert [row["name"] for row in figures["classes"]] == ["red", "blue"]
 
 
 def test_folder_without_dataset_is_one_error(tmp_path, capsys):

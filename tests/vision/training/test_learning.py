@@ -86,7 +86,7 @@ def test_bfloat16_training_matches_float32_within_rounding(shapes, tmp_path):
         )
         training_loop.run(received.append)
         assert all(parameter.dtype == torch.float32 for parameter in training_loop.network.parameters())
-        losses.append([each.losses for each in received])
+        losses.append([report.losses for report in received])
     exact, rounded = np.array(losses)
     assert (exact != rounded).any()
     assert rounded == pytest.approx(exact, rel=0.2)
@@ -170,8 +170,8 @@ def test_loaded_weights_match_exported_network(exported):
     other, file = exported
     network, image = Network(Shape(3, 4)), torch.rand(1, 3, 64, 64)
     load_weights(network, ("disc", "square", "bar"), file, [torch.rand(8, 3, 64, 64)])
-    for found, wanted in zip(output_of(network, image), output_of(other, image), strict=True):
-        assert torch.allclose(found, wanted, rtol=0.02, atol=0.1)  # the file's weights have 16 bits
+    for output, wanted in zip(output_of(network, image), output_of(other, image), strict=True):
+        assert torch.allclose(output, wanted, rtol=0.02, atol=0.1)  # the file's weights have 16 bits
 
 
 def test_loaded_network_has_measured_batch_statistics(exported):
@@ -180,8 +180,8 @@ def test_loaded_network_has_measured_batch_statistics(exported):
     load_weights(network, ("disc", "square", "bar"), file, [images])
     with torch.no_grad():
         _, wanted = network.eval()(images)
-        _, found = network.train()(images)
-    assert (found - wanted).abs().mean() < 0.2 * wanted.std()
+        _, training_output = network.train()(images)
+    assert (training_output - wanted).abs().mean() < 0.2 * wanted.std()
 
 
 def test_loaded_class_weights_are_matched_by_name(exported):
@@ -219,12 +219,12 @@ def test_training_starts_from_weights_file_and_card_names_it(shapes, tmp_path, c
     begun = tmp_path / "first" / "first.onnx"
     assert main([*words, "-o", str(tmp_path / "second"), "--weights", str(begun), "--rate", "1e-9"]) == 0
     capsys.readouterr()
-    session = [
+    sessions = [
         onnxruntime.InferenceSession(file, providers=["CPUExecutionProvider"])
         for file in (begun, tmp_path / "second" / "detector.onnx")
     ]
     image = np.random.default_rng(0).random((1, 3, 96, 96), np.float32)
-    first, second = (each.run(None, {"images": image})[0][0, :4] for each in session)
+    first, second = (session.run(None, {"images": image})[0][0, :4] for session in sessions)
     assert np.abs(first - second).max() < 1.0  # pixels
     assert "| started from | first.onnx, sha256 " in (tmp_path / "second" / "detector.md").read_text(encoding="utf-8")
 
@@ -287,7 +287,7 @@ def test_training_until_ctrl_c_is_kept(shapes, tmp_path):
     assert result.was_interrupted
     assert result.network.is_file()
     assert "2 of 4" in result.card.read_text(encoding="utf-8")
-    assert tuple(each.name for each in result.reports[0].evaluation.classes) == NAMES
+    assert tuple(entry.name for entry in result.reports[0].evaluation.classes) == NAMES
 
 
 @pytest.mark.parametrize("shape", [(8, 16, 3, 3), (48, 16, 1, 1)])
@@ -295,7 +295,7 @@ def test_orthogonalized_gradient_has_equal_singular_values(shape):
     torch.manual_seed(0)
     gradient = torch.randn(shape) * torch.logspace(-3, 0, shape[0])[:, None, None, None]
     spread = torch.linalg.svdvals(gradient.flatten(1))
-    found = torch.linalg.svdvals(orthogonalize(gradient).flatten(1))
+    singular_values = torch.linalg.svdvals(orthogonalize(gradient).flatten(1))
     assert spread.max() > 10 * spread.min()
-    assert found.min() > 0.4
-    assert found.max() < 1.3
+    assert singular_values.min() > 0.4
+    assert singular_values.max() < 1.3

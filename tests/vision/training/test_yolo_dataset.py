@@ -44,9 +44,9 @@ def test_dataset_is_read(shapes):
 
 
 def test_boxes_match_colored_shapes(shapes):
-    for each in open_dataset(shapes).read("train"):
-        left, top, right, bottom = np.rint(each.boxes[0] * 96).astype(int)
-        red = read_image(each)[..., 0] > 200
+    for labeled_image in open_dataset(shapes).read("train"):
+        left, top, right, bottom = np.rint(labeled_image.boxes[0] * 96).astype(int)
+        red = read_image(labeled_image)[..., 0] > 200
         assert (np.flatnonzero(red.any(0))[[0, -1]] == (left, right - 1)).all()
         assert (np.flatnonzero(red.any(1))[[0, -1]] == (top, bottom - 1)).all()
 
@@ -92,9 +92,9 @@ def test_yaml_file_is_accepted_as_dataset_path(shapes):
 )
 def test_malformed_dataset_is_reported(tmp_path, content, message):
     (tmp_path / "data.yaml").write_text(content)
-    found = problem(open_dataset, tmp_path)
-    assert found.code == "VISION302"
-    assert message in str(found.message)
+    diagnostic = problem(open_dataset, tmp_path)
+    assert diagnostic.code == "VISION302"
+    assert message in str(diagnostic.message)
 
 
 def test_missing_and_empty_folders_are_rejected(tmp_path):
@@ -103,9 +103,9 @@ def test_missing_and_empty_folders_are_rejected(tmp_path):
 
 
 def test_missing_split_is_reported(shapes):
-    found = problem(open_dataset(shapes).read, "test")
-    assert found.code == "VISION303"
-    assert "'train' and 'val'" in str(found.hint)
+    diagnostic = problem(open_dataset(shapes).read, "test")
+    assert diagnostic.code == "VISION303"
+    assert "'train' and 'val'" in str(diagnostic.hint)
 
 
 def test_split_without_images_is_reported(shapes):
@@ -128,18 +128,18 @@ def test_split_without_images_is_reported(shapes):
 def test_invalid_label_is_reported_with_location(shapes, line, message):
     text = shapes / "labels" / "train" / "001.txt"
     text.write_text(f"0 0.5 0.5 0.1 0.1\n{line}\n")
-    found = problem(open_dataset(shapes).read, "train")
-    assert found.code == "VISION304"
-    assert message in str(found.message)
-    assert found.span is not None
-    assert found.span.line == 2
+    diagnostic = problem(open_dataset(shapes).read, "train")
+    assert diagnostic.code == "VISION304"
+    assert message in str(diagnostic.message)
+    assert diagnostic.span is not None
+    assert diagnostic.span.line == 2
 
 
 def test_unreadable_image_is_reported(shapes):
     dataset = open_dataset(shapes)
     (shapes / "images" / "train" / "001.png").write_bytes(b"none")
-    found = problem(read_labeled_images, dataset.read("train"), 96, 96)
-    assert (found.code, "001.png" in str(found.message)) == ("VISION305", True)
+    diagnostic = problem(read_labeled_images, dataset.read("train"), 96, 96)
+    assert (diagnostic.code, "001.png" in str(diagnostic.message)) == ("VISION305", True)
 
 
 def test_images_are_letterboxed_with_gray(shapes):
@@ -168,9 +168,9 @@ def test_augmentation_keeps_boxes_around_objects(shapes):
 
 def test_augmentation_is_deterministic_for_seed(shapes):
     labeled_images = read_labeled_images(open_dataset(shapes).read("train"), 96, 96)
-    one, other = (augment(labeled_images, 0, VIEW, np.random.default_rng(5)) for _ in range(2))
-    assert (one[0] == other[0]).all()
-    assert (one[1] == other[1]).all()
+    first, second = (augment(labeled_images, 0, VIEW, np.random.default_rng(5)) for _ in range(2))
+    assert (first[0] == second[0]).all()
+    assert (first[1] == second[1]).all()
 
 
 def test_last_epochs_use_whole_images(shapes):
@@ -188,7 +188,7 @@ def test_last_epochs_use_whole_images(shapes):
 
 def test_images_of_rare_classes_are_sampled_more_often():
     def image(*classes):
-        return np.array([[each, 0, 0, 9, 9] for each in classes], np.float32).reshape(-1, 5)
+        return np.array([[class_number, 0, 0, 9, 9] for class_number in classes], np.float32).reshape(-1, 5)
 
     objects = (*[image(0)] * 16, *[image(1, 0)] * 8, image(2), image(-4, 0), image())
     labeled_images = LabeledImages(np.zeros((len(objects), 1, 1, 3), np.uint8), objects)
@@ -197,6 +197,6 @@ def test_images_of_rare_classes_are_sampled_more_often():
     assert times[24] == pytest.approx(np.sqrt(8))
     assert times[25:] == pytest.approx(1)  # what is to be ignored, or nothing
     chosen = [repeated_indices(times, np.random.default_rng(seed)) for seed in range(200)]
-    counts = np.mean([np.bincount(each, minlength=len(objects)) for each in chosen], 0)
+    counts = np.mean([np.bincount(indices, minlength=len(objects)) for indices in chosen], 0)
     assert counts[:24] == pytest.approx(1)
     assert counts[24] == pytest.approx(np.sqrt(8), abs=0.15)

@@ -40,21 +40,21 @@ def sessions_here(process):
 def test_client_discovers_only_what_its_endpoints_need(processes):
     talker, other = processes("talker"), processes("other")
     publisher = talker.node.create_publisher(String, "chatter", 10)
-    got: list[str] = []
+    texts: list[str] = []
     ears = [processes(f"ear{number}") for number in range(2)]
     subscriptions = [
-        ear.node.create_subscription(String, "chatter", lambda message: got.append(message.data), 10) for ear in ears
+        ear.node.create_subscription(String, "chatter", lambda message: texts.append(message.data), 10) for ear in ears
     ]
     talker.spin_until(lambda: publisher.get_subscription_count() == 2)
     for ear, subscription in zip(ears, subscriptions, strict=True):
         ear.spin_until(lambda subscription=subscription: subscription.get_publisher_count() == 1)
     publisher.publish(String(data="hej"))
     for ear in ears:
-        ear.spin_until(lambda: got)
-        got.clear()
+        ear.spin_until(lambda: texts)
+        texts.clear()
     ears[0].node.destroy_subscription(subscriptions[0])
     talker.spin_until(lambda: publisher.get_subscription_count() == 1)
-    assert [remote_node_names(each) for each in (talker, other, *ears)] == [[], [], [], []]
+    assert [remote_node_names(process) for process in (talker, other, *ears)] == [[], [], [], []]
     assert other.transport.remote_endpoints() == []
 
 

@@ -46,7 +46,7 @@ class Scene:
         """Those that are lost once all is judged."""
         self.time += 2 * GRACE
         assert self.departures.report_lost_publishers() is None
-        return [each.name for each in self.lost]
+        return [endpoint.name for endpoint in self.lost]
 
 
 @pytest.mark.parametrize("leaves", [False, True], ids=["killed", "left"])

@@ -61,12 +61,12 @@ class Site:
 
     def close(self) -> None:
         """End all, and take the hosts away."""
-        for each in self._started:
-            if isinstance(each, Program):
-                each.end()
+        for process in self._started:
+            if isinstance(process, Program):
+                process.end()
             else:
-                each.kill()
-                each.communicate()
+                process.kill()
+                process.communicate()
         self.hosts.close()
 
 
@@ -76,13 +76,13 @@ def site(tmp_path, monkeypatch) -> Iterator[Site]:
     if reason:
         pytest.skip(reason)
     monkeypatch.delenv("ZENOH_CONFIG_OVERRIDE")
-    made = Site(tmp_path)
+    site = Site(tmp_path)
     try:
-        made.router(CLOUD, "cloud.json5")
-        made.router(ROBOT, "robot.json5")
-        yield made
+        site.router(CLOUD, "cloud.json5")
+        site.router(ROBOT, "robot.json5")
+        yield site
     finally:
-        made.close()
+        site.close()
 
 
 @pytest.fixture

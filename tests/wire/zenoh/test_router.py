@@ -27,16 +27,16 @@ def by_router_alone(monkeypatch, router_port) -> None:
 def test_processes_discover_by_router_and_continue_without_it(processes, start_router, by_router_alone):
     router = start_router()
     a, b = processes("a"), processes("b")
-    got: list[str] = []
-    b.node.create_subscription(String, "chatter", lambda message: got.append(message.data), 10)
+    texts: list[str] = []
+    b.node.create_subscription(String, "chatter", lambda message: texts.append(message.data), 10)
     publisher = a.node.create_publisher(String, "chatter", 10)
     a.spin_until(lambda: publisher.get_subscription_count() == 1)
     publisher.publish(String(data="with"))
-    b.spin_until(lambda: got == ["with"])
+    b.spin_until(lambda: texts == ["with"])
     router.terminate()
     assert router.wait(60) == 0
     publisher.publish(String(data="without"))
-    b.spin_until(lambda: got == ["with", "without"])
+    b.spin_until(lambda: texts == ["with", "without"])
 
 
 def test_graph_is_restored_after_router_restart(processes, start_router, monkeypatch, router_port):
@@ -83,10 +83,12 @@ def test_graph_is_restored_after_router_restart(processes, start_router, monkeyp
         spin_both(future.done)
         assert future.result().sum == first + 10
         late = processes(f"late{number}")
-        got: list[str] = []
-        late.node.create_subscription(String, "described", lambda message, got=got: got.append(message.data), LASTING)
-        late.spin_until(lambda got=got: got)
-        assert got == ["robot"]
+        texts: list[str] = []
+        late.node.create_subscription(
+            String, "described", lambda message, texts=texts: texts.append(message.data), LASTING
+        )
+        late.spin_until(lambda texts=texts: texts)
+        assert texts == ["robot"]
         late.close()
     assert heard == ["before", "after", "and again"]
     assert described == ["robot"]

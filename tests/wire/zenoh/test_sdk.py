@@ -48,28 +48,28 @@ def ask_while_spinning(us, question):
 
 def test_messages_work_in_both_directions(processes, peer):
     us = processes("ours")
-    got = []
-    us.node.create_subscription(String, "from_sdk", lambda message: got.append(message.data), EVERYTHING)
+    texts = []
+    us.node.create_subscription(String, "from_sdk", lambda message: texts.append(message.data), EVERYTHING)
     publisher = us.node.create_publisher(String, "to_sdk", EVERYTHING)
-    them = peer()
+    sdk_peer = peer()
     us.spin_until(lambda: publisher.get_subscription_count() == 1)
-    them.ask_until(bool, "listeners")
-    them.ask("say", 0, 100)
+    sdk_peer.ask_until(bool, "listeners")
+    sdk_peer.ask("say", 0, 100)
     for number in range(1000):
         publisher.publish(String(data=str(number)))
-    us.spin_until(lambda: len(got) == 100)
-    assert got == [str(number) for number in range(100)]
-    assert them.ask_until(lambda heard: len(heard) == 1000, "heard") == [str(number) for number in range(1000)]
+    us.spin_until(lambda: len(texts) == 100)
+    assert texts == [str(number) for number in range(100)]
+    assert sdk_peer.ask_until(lambda heard: len(heard) == 1000, "heard") == [str(number) for number in range(1000)]
 
 
 def test_sdk_and_linkwright_discover_endpoints(processes, peer):
     us = processes("ours")
-    them = peer()
+    sdk_peer = peer()
     us.spin_until(lambda: "sdk" in us.node.get_node_names())
     us.spin_until(lambda: ("/flip_sdk", ["std_srvs/srv/SetBool"]) in us.node.get_service_names_and_types())
     (seen,) = us.node.get_publishers_info_by_topic("/from_sdk")
     assert (seen.node_name, seen.topic_type) == ("sdk", "std_msgs/msg/String")
-    them.end()
+    sdk_peer.end()
     us.spin_until(lambda: "sdk" not in us.node.get_node_names())
     assert not us.node.count_publishers("/from_sdk")
 
@@ -84,8 +84,8 @@ def test_thousand_calls_of_sdk_clients_get_their_own_responses(processes, peer):
         return response
 
     us.node.create_service(SetBool, "flip", flip)
-    them = peer()
-    message = ask_while_spinning(us, lambda: them.ask("call", CLIENTS, CALLS // CLIENTS))
+    sdk_peer = peer()
+    message = ask_while_spinning(us, lambda: sdk_peer.ask("call", CLIENTS, CALLS // CLIENTS))
     assert message == [[f"{number % 2 == 0} flipped" for number in range(CALLS // CLIENTS)]] * CLIENTS
     assert len(served) == CALLS
 
@@ -93,7 +93,7 @@ def test_thousand_calls_of_sdk_clients_get_their_own_responses(processes, peer):
 def test_thousand_calls_of_linkwright_clients_get_their_own_responses(processes, peer):
     us = processes("ours")
     clients = [us.node.create_client(SetBool, "flip_sdk") for _ in range(CLIENTS)]
-    them = peer()
+    sdk_peer = peer()
     us.spin_until(lambda: all(client.service_is_ready() for client in clients))
     answers = [[] for _ in clients]
     waiting = [None for _ in clients]
@@ -109,4 +109,4 @@ def test_thousand_calls_of_linkwright_clients_get_their_own_responses(processes,
 
     us.spin_until(all_answered, 300)
     assert answers == [[number % 2 == 0 for number in range(CALLS // CLIENTS)]] * CLIENTS
-    assert them.ask("served") == CALLS
+    assert sdk_peer.ask("served") == CALLS

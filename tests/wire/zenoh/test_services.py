@@ -55,11 +55,11 @@ def test_thousand_calls_of_three_clients_get_their_own_responses(processes):
         for number, (process, caller) in enumerate(zip(clients, callers, strict=True), 1)
     ]
     try:
-        for each in threads:
-            each.start()
-        for each in threads:
-            each.join(300)
-            assert not each.is_alive()
+        for caller_thread in threads:
+            caller_thread.start()
+        for caller_thread in threads:
+            caller_thread.join(300)
+            assert not caller_thread.is_alive()
     finally:
         stop.set()
         thread.join()

@@ -103,8 +103,8 @@ def test_duplicate_session_id_is_reported(silent_port):
     config = zenoh.Config()
     for key, value in (("id", '"abc1"'), ("connect/endpoints", f'["tcp/127.0.0.1:{silent_port}"]')):
         config.insert_json5(key, value)
-    (found,) = obstacles(config)
-    assert "the same 'id'" in found
+    (obstacle,) = obstacles(config)
+    assert "the same 'id'" in obstacle
 
 
 class Certificates:

@@ -37,10 +37,10 @@ def test_wait_before_drop_can_be_configured(wait):
     ],
 )
 def test_failed_session_opening_is_reported_with_advice(router_port, override, message, advice):
-    with socket.socket() as taken:
-        taken.bind(("127.0.0.1", 0))
-        taken.listen()
-        text = override.format(port=taken.getsockname()[1], free=router_port)
+    with socket.socket() as listener:
+        listener.bind(("127.0.0.1", 0))
+        listener.listen()
+        text = override.format(port=listener.getsockname()[1], free=router_port)
         with pytest.raises(LinkwrightError) as refused:
             open_with(configuration(read_settings({OVERRIDES: text})))
     (finding,) = refused.value.diagnostics

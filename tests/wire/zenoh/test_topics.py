@@ -37,15 +37,15 @@ def test_qos_of_remote_endpoints_is_available_and_always_matches(processes):
         liveliness=LivelinessPolicy.MANUAL_BY_TOPIC,
         liveliness_lease_duration=Duration(seconds=2),
     )
-    got: list[str] = []
+    texts: list[str] = []
     publisher = a.node.create_publisher(String, "chatter", offered)
-    b.node.create_subscription(String, "chatter", lambda message: got.append(message.data), 10)
+    b.node.create_subscription(String, "chatter", lambda message: texts.append(message.data), 10)
     a.spin_until(lambda: publisher.get_subscription_count() == 1)
     b.spin_until(lambda: b.node.count_publishers("chatter"))
     (seen,) = b.node.get_publishers_info_by_topic("/chatter")
     assert seen.qos_profile == offered
     publisher.publish(String(data="hej"))
-    b.spin_until(lambda: got == ["hej"])
+    b.spin_until(lambda: texts == ["hej"])
     assert not [text for text in (*a.warnings(), *b.warnings()) if "incompatible" in text]
 
 
@@ -115,12 +115,12 @@ def test_domains_are_isolated(processes, monkeypatch, domain):
 def test_humble_has_no_type_hashes(processes, monkeypatch):
     monkeypatch.setenv("ROS_DISTRO", "humble")
     a, b = processes("a"), processes("b")
-    got: list[str] = []
-    b.node.create_subscription(String, "chatter", lambda message: got.append(message.data), 10)
+    texts: list[str] = []
+    b.node.create_subscription(String, "chatter", lambda message: texts.append(message.data), 10)
     publisher = a.node.create_publisher(String, "chatter", 10)
     a.spin_until(lambda: publisher.get_subscription_count() == 1)
     publisher.publish(String(data="hej"))
-    b.spin_until(lambda: got)
+    b.spin_until(lambda: texts)
     with open_with(configuration(read_settings())) as session:
         key = f"{read_settings().domain_id}/chatter/std_msgs::msg::dds_::String_/TypeHashNotSupported"
         probe = session.declare_publisher(key)
@@ -129,8 +129,8 @@ def test_humble_has_no_type_hashes(processes, monkeypatch):
 
 def test_sample_without_attachment_is_dropped_and_reported_once(processes):
     us = processes("ours")
-    got: list[str] = []
-    us.node.create_subscription(String, "chatter", lambda message: got.append(message.data), 10)
+    texts: list[str] = []
+    us.node.create_subscription(String, "chatter", lambda message: texts.append(message.data), 10)
     with open_with(configuration(read_settings())) as session:
         key = f"{read_settings().domain_id}/chatter/std_msgs::msg::dds_::String_/{type_hash(String)}"
         stranger = session.declare_publisher(key, congestion_control=zenoh.CongestionControl.BLOCK)
@@ -138,43 +138,43 @@ def test_sample_without_attachment_is_dropped_and_reported_once(processes):
         for _ in range(3):
             stranger.put(serialize(String(data="who am I")))
         us.spin_until(us.warnings)
-    assert not got
+    assert not texts
     (text,) = us.warnings()
     assert "it lacks the sender" in text
 
 
 def test_raw_subscription_accepts_unknown_type(processes):
     us = processes("ours")
-    got: list[bytes] = []
-    us.node.create_subscription("strange_msgs/msg/Odd", "odd", got.append, 10, raw=True)
+    payloads: list[bytes] = []
+    us.node.create_subscription("strange_msgs/msg/Odd", "odd", payloads.append, 10, raw=True)
     with open_with(configuration(read_settings())) as session:
         from linkwright.wire.zenoh import attachment
 
         stranger = session.declare_publisher(f"{read_settings().domain_id}/odd/strange_msgs::msg::dds_::Odd_/RIHS01_00")
         us.spin_until(lambda: stranger.matching_status.matching)
         stranger.put(b"\0\1\0\0abcd", attachment=attachment.write(1, 2, bytes(16)))
-        us.spin_until(lambda: got)
-    assert got == [b"\0\1\0\0abcd"]
+        us.spin_until(lambda: payloads)
+    assert payloads == [b"\0\1\0\0abcd"]
 
 
 def test_closed_publisher_is_not_lost_and_killed_one_is(processes, programs):
     us = processes("ours")
     lost: list[EndpointInfo] = []
     us.node.create_subscription(String, "/other", lambda _: None, 10).watch_lost(lost.append)
-    them, marker = processes("theirs"), programs("our_program", "marker")
-    publisher = them.node.create_publisher(String, "/other", 10)
-    them.node.create_publisher(String, "/other", 10)
+    peer, marker = processes("theirs"), programs("our_program", "marker")
+    publisher = peer.node.create_publisher(String, "/other", 10)
+    peer.node.create_publisher(String, "/other", 10)
     us.spin_until(lambda: us.node.count_publishers("/other") == 2)
     publisher.destroy()
     us.spin_until(lambda: us.node.count_publishers("/other") == 1)
-    them.close()
+    peer.close()
     us.spin_until(lambda: us.node.count_publishers("/other") == 0)
     us.node.create_subscription("rcl_interfaces/msg/Log", "/rosout", lambda _: None, 10).watch_lost(lost.append)
     us.spin_until(lambda: "marker" in us.node.get_node_names())
     us.spin_until(lambda: us.node.count_publishers("/rosout") == 2)
     marker.kill()
     us.spin_until(lambda: lost)  # after those that left, if these were told, too
-    assert {each.node.name for each in lost} == {"marker"}, lost
+    assert {endpoint.node.name for endpoint in lost} == {"marker"}, lost
     again = programs("our_program", "marker")
     us.spin_until(lambda: us.node.get_node_names().count("marker") == 1)
     again.ask_until(lambda nodes: nodes == ["marker", "ours"], "nodes")  # who is heard need not have heard

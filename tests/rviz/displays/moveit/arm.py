@@ -44,36 +44,38 @@ def config(cls: str, extra: str = "") -> RvizConfig:
 
 
 def pose(x: float = 0.0, y: float = 0.0, z: float = 0.0) -> Any:
-    made = Pose()
-    made.position.x, made.position.y, made.position.z = x, y, z
-    return made
+    message = Pose()
+    message.position.x, message.position.y, message.position.z = x, y, z
+    return message
 
 
 def state(**positions: float) -> Any:
     """A RobotState; a diff when it says nothing of joints."""
-    made = RobotState(is_diff=not positions)
-    made.joint_state.name = list(positions)
-    made.joint_state.position = [float(position) for position in positions.values()]
-    return made
+    message = RobotState(is_diff=not positions)
+    message.joint_state.name = list(positions)
+    message.joint_state.position = [float(position) for position in positions.values()]
+    return message
 
 
 def primitive(kind: int, *dimensions: float) -> Any:
     return SolidPrimitive(type=kind, dimensions=[float(dimension) for dimension in dimensions])
 
 
-def thing(name: str, *primitives: Any, frame: str = "base", at: Any = None, operation: bytes = b"\x00") -> Any:
+def collision_object(
+    name: str, *primitives: Any, frame: str = "base", at: Any = None, operation: bytes = b"\x00"
+) -> Any:
     """A CollisionObject; a box of one meter where it says nothing."""
-    made = CollisionObject(id=name, operation=operation, pose=at or pose())
-    made.header.frame_id = frame
+    message = CollisionObject(id=name, operation=operation, pose=at or pose())
+    message.header.frame_id = frame
     if operation in (b"\x00", b"\x02"):
-        made.primitives = list(primitives) or [primitive(SolidPrimitive.BOX, 1, 1, 1)]
-    return made
+        message.primitives = list(primitives) or [primitive(SolidPrimitive.BOX, 1, 1, 1)]
+    return message
 
 
 def scene(*objects: Any, robot: Any = None, diff: bool = False, **fields: Any) -> Any:
-    made = PlanningScene(is_diff=diff, robot_state=robot or state(), **fields)
-    made.world.collision_objects = list(objects)
-    return made
+    message = PlanningScene(is_diff=diff, robot_state=robot or state(), **fields)
+    message.world.collision_objects = list(objects)
+    return message
 
 
 def attached(link: str, held: Any) -> Any:

@@ -12,9 +12,18 @@ from linkwright.messages import get_message
 from linkwright.page.files import MeshIndex
 from linkwright.rviz.displays.moveit.robot import PosableRobot, UnusableStateError
 from linkwright.rviz.displays.moveit.trajectory import display_seconds, read_motion
-from tests.rviz.displays.moveit.arm import ARM, ObjectColor, attached, config, scene, state, thing, trajectory
+from tests.rviz.displays.moveit.arm import (
+    ARM,
+    ObjectColor,
+    attached,
+    collision_object,
+    config,
+    scene,
+    state,
+    trajectory,
+)
 from tests.viewer.contents import shown_markers
-from tests.viewer.scene import world
+from tests.viewer.scene import open_world
 from tests.waiting import eventually
 
 PATH = "/display_planned_path"
@@ -26,17 +35,17 @@ DisplayRobotState = get_message("moveit_msgs/msg/DisplayRobotState")
 @asynccontextmanager
 async def shown(cls: str, message_type: str, topic: str, extra: str = ""):
     """A display, a function that publishes to it, and one that gives the markers drawn."""
-    async with world(config(cls, extra)) as w:
-        w.describe(ARM)
-        publisher = w.graph.create_node("talker").create_publisher(message_type, topic, 10)
-        await w.settle()
+    async with open_world(config(cls, extra)) as world:
+        world.describe(ARM)
+        publisher = world.graph.create_node("talker").create_publisher(message_type, topic, 10)
+        await world.settle()
 
         async def publish_and_settle(message) -> dict[str, dict]:
             publisher.publish(message)
-            await w.settle()
-            return shown_markers(w.viewer.displays[0])
+            await world.settle()
+            return shown_markers(world.viewer.displays[0])
 
-        yield w, publish_and_settle
+        yield world, publish_and_settle
 
 
 def moving(extra: str = ""):
@@ -78,8 +87,8 @@ def test_invalid_motions_are_rejected():
 
 
 async def test_trajectory_properties_match_rviz():
-    async with moving() as (w, _):
-        rows = {row.name: row for row in w.display("Trajectory").row().properties}
+    async with moving() as (world, _):
+        rows = {row.name: row for row in world.display("Trajectory").row().properties}
         assert {name: row.value for name, row in rows.items() if name != "Links"} == {
             "Robot Description": "robot_description",
             "Trajectory Topic": PATH,
@@ -97,9 +106,9 @@ async def test_trajectory_properties_match_rviz():
 
 
 async def test_trajectory_is_played_and_robot_disappears_at_end():
-    async with moving(FAST) as (w, publish_and_settle):
+    async with moving(FAST) as (world, publish_and_settle):
         places = []
-        display = w.display("Trajectory")
+        display = world.display("Trajectory")
         put = display.put
 
         def watched(group, shapes):
@@ -114,9 +123,9 @@ async def test_trajectory_is_played_and_robot_disappears_at_end():
 
 
 async def test_loop_animation_repeats_motion():
-    async with moving(FAST + ", Loop Animation: true") as (w, publish_and_settle):
+    async with moving(FAST + ", Loop Animation: true") as (world, publish_and_settle):
         await publish_and_settle(trajectory(0.1))
-        player = w.display("Trajectory")._player
+        player = world.display("Trajectory")._player
         times = []
         step = player._step
 
@@ -130,7 +139,7 @@ async def test_loop_animation_repeats_motion():
 
 
 async def test_color_and_trail_are_shown():
-    async with moving(SLOW + ", Show Trail: true, Color Enabled: true") as (w, publish_and_settle):
+    async with moving(SLOW + ", Show Trail: true, Color Enabled: true") as (world, publish_and_settle):
         drawn = await publish_and_settle(trajectory(0.1, 0.2, 0.3))
         hands = sorted(name for name in drawn if name.endswith("/hand"))
         assert hands == [
@@ -141,18 +150,18 @@ async def test_color_and_trail_are_shown():
             "Planned Path/hand",
         ]
         assert drawn["Planned Path/base"]["color"] == pytest.approx([150 / 255, 50 / 255, 150 / 255, 0.5])
-        display = w.display("Trajectory")
+        display = world.display("Trajectory")
         display.set_property(("Trail Step Size",), 2)
         assert len([name for name in shown_markers(display) if name.endswith("/hand")]) == 3
         display.set_property(("Show Trail",), False)
         display.set_property(("Color Enabled",), False)
-        (gray,) = [each["color"] for name, each in shown_markers(display).items() if name.endswith("/base")]
+        (gray,) = [marker["color"] for name, marker in shown_markers(display).items() if name.endswith("/base")]
         assert gray == [0.5, 0.5, 0.5, 0.5]
 
 
 async def test_new_motion_waits_unless_interrupt_display_is_set():
-    async with moving(SLOW) as (w, publish_and_settle):
-        display = w.display("Trajectory")
+    async with moving(SLOW) as (world, publish_and_settle):
+        display = world.display("Trajectory")
         await publish_and_settle(trajectory(0.1))
         await publish_and_settle(trajectory(0.2, 0.3))
         assert len(display._player.motion.states) == 2
@@ -162,43 +171,43 @@ async def test_new_motion_waits_unless_interrupt_display_is_set():
 
 
 async def test_invalid_motions_are_reported():
-    async with moving(", Interrupt Display: true") as (w, publish_and_settle):
+    async with moving(", Interrupt Display: true") as (world, publish_and_settle):
         await publish_and_settle(trajectory(math.inf))
-        assert w.status("Trajectory")["State"] == (
+        assert world.status("Trajectory")["State"] == (
             "error",
             "The position of joint 'shoulder' must be finite, but is inf",
         )
         strange = trajectory(0.1)
         strange.trajectory[0].joint_trajectory.joint_names = ["elbow"]
         await publish_and_settle(strange)
-        assert w.status("Trajectory")["Joints"] == ("warn", "The robot has no joint 'elbow'")
+        assert world.status("Trajectory")["Joints"] == ("warn", "The robot has no joint 'elbow'")
         await publish_and_settle(trajectory(0.1))
-        assert "Joints" not in w.status("Trajectory")
+        assert "Joints" not in world.status("Trajectory")
 
 
 async def test_robot_state_highlights_links():
     async with shown("RobotState", "moveit_msgs/msg/DisplayRobotState", "/display_robot_state") as (
-        w,
+        world,
         publish_and_settle,
     ):
         red = ObjectColor(id="hand")
         red.color.r = red.color.a = 1.0
         nobody = ObjectColor(id="foot")
         message = DisplayRobotState(state=state(shoulder=math.pi / 2), highlight_links=[red, nobody])
-        message.state.attached_collision_objects = [attached("hand", thing("cup", frame="hand"))]
+        message.state.attached_collision_objects = [attached("hand", collision_object("cup", frame="hand"))]
         drawn = await publish_and_settle(message)
         assert drawn["Robot State/hand"]["color"] == [1, 0, 0, 1]
         assert drawn["Robot State/base"]["color"] == [0.5, 0.5, 0.5, 1]
         assert drawn["Robot State holds/cup"]["pose"][:3] == pytest.approx([1, 0, 0])
-        assert w.status("RobotState")["Highlights"] == ("warn", "The robot has no link 'foot'")
-        display = w.display("RobotState")
+        assert world.status("RobotState")["Highlights"] == ("warn", "The robot has no link 'foot'")
+        display = world.display("RobotState")
         display.set_property(("Show Highlights",), False)
         assert shown_markers(display)["Robot State/hand"]["color"] == [1, 0, 0, 1]  # RViz's red of no color
         display.set_property(("Visual Enabled",), False)
         assert list(shown_markers(display)) == ["Robot State holds/cup"]
         assert await publish_and_settle(DisplayRobotState(hide=True)) == {}
         await publish_and_settle(DisplayRobotState(state=state(shoulder=math.nan)))
-        assert w.status("RobotState")["State"] == (
+        assert world.status("RobotState")["State"] == (
             "error",
             "The position of joint 'shoulder' must be finite, but is nan",
         )
@@ -207,11 +216,11 @@ async def test_robot_state_highlights_links():
 async def test_motion_planning_shows_scene_trajectory_and_queries():
     extra = ", Scene Geometry: {Scene Display Time: 0.0001}, Planned Path: {State Display Time: 1000s}"
     kind, topic = "moveit_msgs/msg/DisplayTrajectory", PATH
-    async with shown("MotionPlanning", kind, topic, extra) as (w, publish_and_settle):
-        display = w.display("MotionPlanning")
-        node = w.graph.create_node("move_group")
+    async with shown("MotionPlanning", kind, topic, extra) as (world, publish_and_settle):
+        display = world.display("MotionPlanning")
+        node = world.graph.create_node("move_group")
         scenes = node.create_publisher("moveit_msgs/msg/PlanningScene", "/monitored_planning_scene", 10)
-        scenes.publish(scene(thing("shelf"), robot=state(shoulder=0.0)))
+        scenes.publish(scene(collision_object("shelf"), robot=state(shoulder=0.0)))
         await eventually(lambda: "Scene Robot/hand" in shown_markers(display))
         drawn = await publish_and_settle(trajectory(math.pi / 2))
         assert {"Scene Geometry/shelf", "Planned Path/base", "Goal State/hand"} <= set(drawn)

@@ -17,16 +17,16 @@ from tests.rviz.displays.moveit.arm import (
     ObjectColor,
     SolidPrimitive,
     attached,
+    collision_object,
     config,
     pose,
     primitive,
     scene,
     signed,
     state,
-    thing,
 )
 from tests.viewer.contents import shown_markers
-from tests.viewer.scene import world
+from tests.viewer.scene import open_world
 from tests.waiting import eventually
 
 TOPIC = "/monitored_planning_scene"
@@ -37,9 +37,9 @@ REMOVE, APPEND, MOVE = b"\x01", b"\x02", b"\x03"
 class Talker:
     """move_group, as far as it publishes."""
 
-    def __init__(self, w, topic: str = TOPIC) -> None:
-        self.w = w
-        self.node = w.graph.create_node("move_group")
+    def __init__(self, world, topic: str = TOPIC) -> None:
+        self.w = world
+        self.node = world.graph.create_node("move_group")
         self.publisher = self.node.create_publisher("moveit_msgs/msg/PlanningScene", topic, 10)
 
     async def publish_scene(self, message) -> dict[str, dict]:
@@ -53,17 +53,17 @@ class Talker:
 
 @asynccontextmanager
 async def planning_scene_world(extra: str = FAST, cls: str = "PlanningScene", text: str = ARM):
-    async with world(config(cls, extra)) as w:
+    async with open_world(config(cls, extra)) as world:
         if text:
-            w.describe(text)
-        talker = Talker(w)
-        await w.settle()
-        yield w, talker
+            world.describe(text)
+        talker = Talker(world)
+        await world.settle()
+        yield world, talker
 
 
 async def test_planning_scene_properties_match_rviz():
-    async with planning_scene_world("") as (w, _):
-        rows = {row.name: row for row in w.display("PlanningScene").row().properties}
+    async with planning_scene_world("") as (world, _):
+        rows = {row.name: row for row in world.display("PlanningScene").row().properties}
         assert {name: row.value for name, row in rows.items() if row.kind != "group"} == {
             "Move Group Namespace": "",
             "Robot Description": "robot_description",
@@ -99,8 +99,8 @@ async def test_robot_state_of_scene_overrides_tf():
 
 
 async def test_primitives_planes_and_meshes_are_drawn():
-    async with planning_scene_world() as (w, talker):
-        many = thing(
+    async with planning_scene_world() as (world, talker):
+        many = collision_object(
             "many",
             primitive(SolidPrimitive.BOX, 1, 2, 3),
             primitive(SolidPrimitive.SPHERE, 0.5),
@@ -117,7 +117,7 @@ async def test_primitives_planes_and_meshes_are_drawn():
         many.meshes = [mesh]
         many.planes = [get_message("shape_msgs/msg/Plane")(coef=[0.0, 0.0, 2.0, -2.0])]
         shown = await talker.publish_scene(scene(many))
-        kinds = {name: each["shape"] for name, each in shown.items()}
+        kinds = {name: marker["shape"] for name, marker in shown.items()}
         assert kinds == {
             "Scene Geometry/many": "cube",
             "Scene Geometry/many primitive 1": "sphere",
@@ -134,43 +134,43 @@ async def test_primitives_planes_and_meshes_are_drawn():
         plane = shown["Scene Geometry/many plane 0"]["points"].reshape(-1, 3)
         assert plane[:, 2].tolist() == [1] * 6
         assert shown["Scene Geometry/many"]["color"] == pytest.approx([50 / 255, 230 / 255, 50 / 255, 0.9])
-        assert w.status("PlanningScene")["Transform"] == ("ok", "Transform OK")
+        assert world.status("PlanningScene")["Transform"] == ("ok", "Transform OK")
 
 
 async def test_objects_are_added_moved_appended_and_removed():
-    async with planning_scene_world() as (w, talker):
-        assert list(await talker.publish_scene(scene(thing("a"), thing("b")))) == [
+    async with planning_scene_world() as (world, talker):
+        assert list(await talker.publish_scene(scene(collision_object("a"), collision_object("b")))) == [
             "Scene Geometry/a",
             "Scene Geometry/b",
         ]
-        moved = await talker.publish_scene(scene(thing("a", at=pose(z=2.0), operation=MOVE), diff=True))
+        moved = await talker.publish_scene(scene(collision_object("a", at=pose(z=2.0), operation=MOVE), diff=True))
         assert moved["Scene Geometry/a"]["pose"][:3] == [0, 0, 2]
-        grown = await talker.publish_scene(scene(thing("b", primitive(2, 1), operation=APPEND), diff=True))
+        grown = await talker.publish_scene(scene(collision_object("b", primitive(2, 1), operation=APPEND), diff=True))
         assert "Scene Geometry/b primitive 1" in grown
-        left = await talker.publish_scene(scene(thing("b", operation=REMOVE), diff=True))
+        left = await talker.publish_scene(scene(collision_object("b", operation=REMOVE), diff=True))
         assert list(left) == ["Scene Geometry/a"]
-        await talker.publish_scene(scene(thing("nobody", operation=MOVE), diff=True))
-        assert w.status("PlanningScene")["nobody"] == (
+        await talker.publish_scene(scene(collision_object("nobody", operation=MOVE), diff=True))
+        assert world.status("PlanningScene")["nobody"] == (
             "error",
             "Object 'nobody' cannot be moved, because it does not exist",
         )
-        assert await talker.publish_scene(scene(thing("", operation=REMOVE), diff=True)) == {}
-        assert list(await talker.publish_scene(scene(thing("c")))) == ["Scene Geometry/c"]
-        assert "nobody" not in w.status("PlanningScene")
+        assert await talker.publish_scene(scene(collision_object("", operation=REMOVE), diff=True)) == {}
+        assert list(await talker.publish_scene(scene(collision_object("c")))) == ["Scene Geometry/c"]
+        assert "nobody" not in world.status("PlanningScene")
 
 
 async def test_attached_object_moves_with_its_link():
     async with planning_scene_world() as (_, talker):
         robot = state(shoulder=0.0, wrist=0.0)
-        robot.attached_collision_objects = [attached("hand", thing("cup", frame="hand", at=pose(x=0.1)))]
-        shown = await talker.publish_scene(scene(thing("cup"), robot=robot))
+        robot.attached_collision_objects = [attached("hand", collision_object("cup", frame="hand", at=pose(x=0.1)))]
+        shown = await talker.publish_scene(scene(collision_object("cup"), robot=robot))
         assert shown["Scene Robot holds/cup"]["pose"][:3] == pytest.approx([0.1, 0, 1])
         assert shown["Scene Robot holds/cup"]["color"] == pytest.approx([150 / 255, 50 / 255, 150 / 255, 1])
         assert "Scene Geometry/cup" not in shown
         shown = await talker.publish_scene(scene(robot=state(shoulder=0.0, wrist=1.0), diff=True))
         assert shown["Scene Robot holds/cup"]["pose"][:3] == pytest.approx([0.1, 0, 2])
         let_go = state()
-        let_go.attached_collision_objects = [attached("hand", thing("cup", operation=REMOVE))]
+        let_go.attached_collision_objects = [attached("hand", collision_object("cup", operation=REMOVE))]
         assert "Scene Robot holds/cup" not in await talker.publish_scene(scene(robot=let_go, diff=True))
 
 
@@ -178,13 +178,13 @@ async def test_objects_have_colors_of_scene():
     async with planning_scene_world() as (_, talker):
         color = ObjectColor(id="a")
         color.color.b, color.color.a = 1.0, 0.25
-        shown = await talker.publish_scene(scene(thing("a"), thing("b"), object_colors=[color]))
+        shown = await talker.publish_scene(scene(collision_object("a"), collision_object("b"), object_colors=[color]))
         assert shown["Scene Geometry/a"]["color"] == [0, 0, 1, 0.25]
         assert shown["Scene Geometry/b"]["color"][3] == 0.9
 
 
 async def test_octomap_cells_follow_render_properties():
-    async with planning_scene_world() as (w, talker):
+    async with planning_scene_world() as (world, talker):
         message = scene()
         octomap = message.world.octomap
         octomap.header.frame_id, octomap.origin = "base", pose(z=1.0)
@@ -194,7 +194,7 @@ async def test_octomap_cells_follow_render_properties():
         (name,) = shown
         assert (shown[name]["shape"], len(shown[name]["points"]) // 3) == ("cube_list", 1)
         assert shown[name]["pose"][:3] == [0, 0, 1]
-        display = w.display("PlanningScene")
+        display = world.display("PlanningScene")
         display.set_property(("Scene Geometry", "Voxel Rendering"), "All Voxels")
         (cells,) = shown_markers(display).values()
         assert len(cells["points"]) // 3 == 2
@@ -202,16 +202,16 @@ async def test_octomap_cells_follow_render_properties():
         assert shown_markers(display) == {}
         octomap.octomap.data = [1]
         await talker.publish_scene(message)
-        assert w.status("PlanningScene")["<octomap>"] == (
+        assert world.status("PlanningScene")["<octomap>"] == (
             "error",
             "The data of the octomap ends too early, after 1 bytes",
         )
 
 
 async def test_changed_properties_take_effect_at_once():
-    async with planning_scene_world() as (w, talker):
-        await talker.publish_scene(scene(thing("a"), robot=state(shoulder=0.0)))
-        display = w.display("PlanningScene")
+    async with planning_scene_world() as (world, talker):
+        await talker.publish_scene(scene(collision_object("a"), robot=state(shoulder=0.0)))
+        display = world.display("PlanningScene")
         display.set_property(("Scene Geometry", "Scene Color"), "#ff0000")
         display.set_property(("Scene Robot", "Robot Alpha"), 0.5)
         display.set_property(("Scene Robot", "Links", "hand"), False)
@@ -228,19 +228,19 @@ async def test_changed_properties_take_effect_at_once():
 
 
 async def test_full_scene_is_requested_when_move_group_appears():
-    async with world(config("PlanningScene", FAST)) as w:
-        w.describe(ARM)
-        await w.settle()
-        node = w.graph.create_node("move_group")
+    async with open_world(config("PlanningScene", FAST)) as world:
+        world.describe(ARM)
+        await world.settle()
+        node = world.graph.create_node("move_group")
         asked = []
 
         def give(request, response):
             asked.append(request.components.components)
-            response.scene = scene(thing("shelf"), robot=state(shoulder=1.0), name="kitchen")
+            response.scene = scene(collision_object("shelf"), robot=state(shoulder=1.0), name="kitchen")
             return response
 
         node.create_service(get_service("moveit_msgs/srv/GetPlanningScene"), "/get_planning_scene", give)
-        display = w.display("PlanningScene")
+        display = world.display("PlanningScene")
         await eventually(lambda: "Scene Geometry/shelf" in shown_markers(display))
         assert "Scene Robot/hand" in shown_markers(display)
         (components,) = asked
@@ -251,8 +251,8 @@ async def test_full_scene_is_requested_when_move_group_appears():
 
 async def test_move_group_namespace_selects_service_and_description():
     extra = ", Move Group Namespace: left, Planning Scene Topic: /left/scene"
-    async with world(config("PlanningScene", extra)) as w:
-        node = w.graph.create_node("left")
+    async with open_world(config("PlanningScene", extra)) as world:
+        node = world.graph.create_node("left")
         node.create_publisher("std_msgs/msg/String", "/left/robot_description", DESCRIPTION_QOS).publish(
             get_message("std_msgs/msg/String")(data=ARM)
         )
@@ -261,29 +261,34 @@ async def test_move_group_namespace_selects_service_and_description():
             "/left/get_planning_scene",
             lambda _, response: response,
         )
-        display = w.display("PlanningScene")
+        display = world.display("PlanningScene")
         await eventually(lambda: display.scene.has_full_scene)
-        assert w.status("PlanningScene")["URDF"] == ("ok", "URDF parsed OK")
+        assert world.status("PlanningScene")["URDF"] == ("ok", "URDF parsed OK")
 
 
 async def test_invalid_scenes_are_reported_and_next_valid_one_is_drawn():
-    async with planning_scene_world() as (w, talker):
-        nan = thing("nan", at=pose(x=math.nan))
-        short = thing("short", primitive(SolidPrimitive.BOX, 1, 1))
-        kind = thing("kind", primitive(9, 1, 1, 1))
-        poses = thing("poses")
+    async with planning_scene_world() as (world, talker):
+        nan = collision_object("nan", at=pose(x=math.nan))
+        short = collision_object("short", primitive(SolidPrimitive.BOX, 1, 1))
+        kind = collision_object("kind", primitive(9, 1, 1, 1))
+        poses = collision_object("poses")
         poses.primitive_poses = [pose(), pose()]
-        mesh = thing("mesh")
+        mesh = collision_object("mesh")
         mesh.meshes = [get_message("shape_msgs/msg/Mesh")()]
         mesh.meshes[0].triangles = [get_message("shape_msgs/msg/MeshTriangle")(vertex_indices=[0, 1, 7])]
-        plane = thing("plane")
+        plane = collision_object("plane")
         plane.planes = [get_message("shape_msgs/msg/Plane")(coef=[0.0, 0.0, 0.0, 1.0])]
         robot = state(shoulder=0.0, elbow=1.0)
-        robot.attached_collision_objects = [attached("foot", thing("ball", frame="foot")), attached("hand", thing("e"))]
+        robot.attached_collision_objects = [
+            attached("foot", collision_object("ball", frame="foot")),
+            attached("hand", collision_object("e")),
+        ]
         robot.attached_collision_objects[1].object.primitives = []
-        shown = await talker.publish_scene(scene(nan, short, kind, poses, mesh, plane, thing("good"), robot=robot))
+        shown = await talker.publish_scene(
+            scene(nan, short, kind, poses, mesh, plane, collision_object("good"), robot=robot)
+        )
         assert [name for name in shown if name.startswith("Scene Geometry")] == ["Scene Geometry/good"]
-        status = w.status("PlanningScene")
+        status = world.status("PlanningScene")
         assert status["nan"] == ("error", "Contains invalid floating point values (nans or infs)")
         assert status["short"] == ("error", "A primitive of type 1 needs 3 dimensions, but has 2")
         assert status["kind"] == ("error", "Primitives of type 9 are not supported")
@@ -296,37 +301,37 @@ async def test_invalid_scenes_are_reported_and_next_valid_one_is_drawn():
         assert status["ball"] == ("error", "The robot has no link 'foot' for the attached object 'ball'")
         assert status["e"] == ("error", "The attached object 'e' has no shapes")
         assert status["Joints"] == ("warn", "The robot has no joint 'elbow'")
-        await talker.publish_scene(scene(thing("good", frame="nowhere"), robot=state(shoulder=math.inf)))
-        status = w.status("PlanningScene")
+        await talker.publish_scene(scene(collision_object("good", frame="nowhere"), robot=state(shoulder=math.inf)))
+        status = world.status("PlanningScene")
         assert status["State"] == ("error", "The position of joint 'shoulder' must be finite, but is inf")
         assert status["Transform"] == ("error", "No transform from [nowhere] to [base]")
         uneven = state(shoulder=0.0)
         uneven.joint_state.position = []
         await talker.publish_scene(scene(robot=uneven))
-        assert w.status("PlanningScene")["State"] == ("error", "The state has 1 joints, but 0 positions")
-        await talker.publish_scene(scene(thing("good"), robot=state(shoulder=0.5)))
-        assert set(w.status("PlanningScene")) == {"Topic", "URDF", "Transform"}
+        assert world.status("PlanningScene")["State"] == ("error", "The state has 1 joints, but 0 positions")
+        await talker.publish_scene(scene(collision_object("good"), robot=state(shoulder=0.5)))
+        assert set(world.status("PlanningScene")) == {"Topic", "URDF", "Transform"}
 
 
 async def test_objects_are_drawn_before_robot_description_arrives():
-    async with planning_scene_world(text="") as (w, talker):
-        shown = await talker.publish_scene(scene(thing("a"), robot=state(shoulder=1.0)))
+    async with planning_scene_world(text="") as (world, talker):
+        shown = await talker.publish_scene(scene(collision_object("a"), robot=state(shoulder=1.0)))
         assert list(shown) == ["Scene Geometry/a"]
-        assert w.status("PlanningScene")["URDF"] == (
+        assert world.status("PlanningScene")["URDF"] == (
             "warn",
             "No description was received on topic 'robot_description' yet",
         )
-        w.describe("<robot>")
-        await w.settle()
-        assert w.status("PlanningScene")["URDF"] == ("error", "URDF failed Model parse")
-        w.describe(ARM)
-        await w.settle()
-        assert "Scene Robot/hand" in shown_markers(w.display("PlanningScene"))
+        world.describe("<robot>")
+        await world.settle()
+        assert world.status("PlanningScene")["URDF"] == ("error", "URDF failed Model parse")
+        world.describe(ARM)
+        await world.settle()
+        assert "Scene Robot/hand" in shown_markers(world.display("PlanningScene"))
 
 
 async def test_virtual_joint_places_root_link():
-    async with planning_scene_world() as (w, talker):
-        w.move({("map", "base"): (1, 0, 0, 0, 0, 0, 1)}, static=True)
+    async with planning_scene_world() as (world, talker):
+        world.move({("map", "base"): (1, 0, 0, 0, 0, 0, 1)}, static=True)
         robot = state(shoulder=0.0)
         robot.multi_dof_joint_state.header.frame_id = "map"
         robot.multi_dof_joint_state.joint_names = ["virtual_joint"]
@@ -338,11 +343,11 @@ async def test_virtual_joint_places_root_link():
 
 
 async def test_page_receives_only_changed_objects():
-    async with planning_scene_world() as (w, talker):
-        await talker.publish_scene(scene(thing("a"), thing("b"), robot=state(shoulder=0.0)))
-        (store,) = w.display("PlanningScene").data()
+    async with planning_scene_world() as (world, talker):
+        await talker.publish_scene(scene(collision_object("a"), collision_object("b"), robot=state(shoulder=0.0)))
+        (store,) = world.display("PlanningScene").data()
         _, seen = store.since(0)
-        await talker.publish_scene(scene(thing("a"), thing("b"), robot=state(shoulder=0.0)))
+        await talker.publish_scene(scene(collision_object("a"), collision_object("b"), robot=state(shoulder=0.0)))
         assert store.since(seen)[0] is None
 
 
@@ -369,16 +374,16 @@ async def test_planning_scene_file_is_saved_unchanged(cls):
             }
         }
     )
-    async with world(type(config(cls)).parse(text)) as w:
-        w.describe(ARM)
-        await w.settle()
-        display = w.viewer.displays[0]
+    async with open_world(type(config(cls)).parse(text)) as world:
+        world.describe(ARM)
+        await world.settle()
+        display = world.viewer.displays[0]
         assert display.row().supported
-        assert w.viewer.config.text() == text
+        assert world.viewer.config.text() == text
 
 
 async def test_disabled_link_is_written_like_rviz():
-    async with planning_scene_world() as (w, _):
-        w.display("PlanningScene").set_property(("Scene Robot", "Links", "hand"), False)
-        (entry,) = yaml.safe_load(w.viewer.config.text())["Visualization Manager"]["Displays"]
+    async with planning_scene_world() as (world, _):
+        world.display("PlanningScene").set_property(("Scene Robot", "Links", "hand"), False)
+        (entry,) = yaml.safe_load(world.viewer.config.text())["Visualization Manager"]["Displays"]
         assert entry["Scene Robot"] == {"Links": {"hand": {"Value": False}}}
