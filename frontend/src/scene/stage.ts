@@ -79,7 +79,7 @@ export class Stage {
     const invalidate = (): void => this.loop.invalidate();
     this.flash = new Flash(this.viewport, session, (display, link) => this.objectsOf(display, link), invalidate);
     this.inspectLayer = new InspectLayer(session, (display) => this.boundsOf(display), invalidate);
-    session.displays.isLoading = ({ id }) => this.drawings.get(id)?.drawing.settled?.() === false;
+    session.displays.isLoading = ({ id }) => this.drawings.get(id)?.drawing.isSettled?.() === false;
     this.overlays.add(this.focalShape.root);
     this.viewport.scene.add(this.overlays, this.inspectLayer.root, this.robotLight.root, this.backdrop.root);
     this.listen();
@@ -153,7 +153,7 @@ export class Stage {
   /** Notifies the drawings of the state of the Interact tool. */
   setInteraction(interaction: Interaction): void {
     this.interaction = interaction;
-    for (const { drawing } of this.drawings.values()) drawing.interactionChanged?.(interaction);
+    for (const { drawing } of this.drawings.values()) drawing.onInteractionChanged?.(interaction);
     this.loop.invalidate();
   }
 
@@ -182,11 +182,11 @@ export class Stage {
     displays.enabledChanged.on((display) => this.propertiesChanged(display));
     session.data.received.on((data) => {
       const drawn = this.drawings.get(data.display);
-      drawn?.drawing.dataChanged?.(data);
+      drawn?.drawing.onDataChanged?.(data);
       if (drawn?.display.enabled && !drawn.drawing.isElsewhere) loop.invalidate();
     });
     session.data.removed.on(({ display, key }) => {
-      this.drawings.get(display)?.drawing.dataForgotten?.(key);
+      this.drawings.get(display)?.drawing.onDataForgotten?.(key);
       loop.invalidate();
     });
     frames.tableChanged.on(invalidate);
@@ -225,8 +225,8 @@ export class Stage {
         const drawing = new Drawing({ display, session, meshes, panels, invalidate, showWithFrame, camera, affordsStudio });
         this.drawings.set(display.id, { display, drawing, pacing: new Pacing(invalidate) });
         this.viewport.scene.add(drawing.root);
-        drawing.interactionChanged?.(this.interaction);
-        for (const data of session.data.of(display.id)) drawing.dataChanged?.(data);
+        drawing.onInteractionChanged?.(this.interaction);
+        for (const data of session.data.of(display.id)) drawing.onDataChanged?.(data);
       }
     }
     this.globalOptionsChanged();
@@ -236,7 +236,7 @@ export class Stage {
 
   private propertiesChanged(display: DisplayState): void {
     const drawn = this.drawings.get(display.id);
-    drawn?.drawing.propertiesChanged();
+    drawn?.drawing.onPropertiesChanged();
     drawn?.pacing.restart();
     this.loop.invalidate();
   }
@@ -266,7 +266,7 @@ export class Stage {
       drawing.root.visible = display.enabled;
       if (!display.enabled) continue;
       if (pacing.isDue(now, 1000 * display.rows.number(0, "Update Interval"))) drawing.update();
-      if (drawing.settled?.() === false) loading += ` ${display.id}`;
+      if (drawing.isSettled?.() === false) loading += ` ${display.id}`;
     }
     const settled = loading === "";
     if (loading !== this.loading) {
@@ -343,7 +343,7 @@ export class Stage {
 
   /** Returns the bounding box of robots and the world's models; of all selectable objects if there are none. */
   private boundsOfAll(): Span | null {
-    const worlds = this.worlds().reduce((sum, world) => sum.union(world.extents().world), new Box3());
+    const worlds = this.worlds().reduce((sum, world) => sum.union(world.boundsByKind().world), new Box3());
     const robots = this.robots().reduce((sum, robot) => sum.union(robot.bounds()), worlds);
     return spanOf(robots) ?? this.picker.boundsOfAll();
   }
@@ -351,7 +351,7 @@ export class Stage {
   /** Draws the displays that show the scene in their own panels. */
   private drawElsewhere(): void {
     const { renderer, scene } = this.viewport;
-    const view: DrawnScene = { renderer, scene, background: this.backgroundColor, withOnly: (accepts, draw) => this.withOnly(accepts, draw) };
+    const view: DrawnScene = { renderer, scene, background: this.backgroundColor, drawOnly: (accepts, draw) => this.withOnly(accepts, draw) };
     for (const { display, drawing } of this.drawings.values()) if (display.enabled) drawing.afterFrame?.(view);
   }
 

@@ -45,8 +45,8 @@ export class OwnPanel {
     } else if (!this.isOpen) {
       this.isOpen = true;
       this.title = display.name;
-      const closed = (): void => session.setProperty(display.enabledId, false);
-      panels.offer({ key: this.key, title: this.title, icon: this.icon, element: this.element, replacesScene: showsOnlyImages(session), closed });
+      const onClosed = (): void => session.setProperty(display.enabledId, false);
+      panels.offer({ key: this.key, title: this.title, icon: this.icon, element: this.element, replacesScene: showsOnlyImages(session), onClosed });
     } else if (this.title !== display.name) {
       this.title = display.name;
       panels.retitle(this.key, this.title);
