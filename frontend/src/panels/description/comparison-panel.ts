@@ -77,23 +77,23 @@ export class ComparisonPanel implements Panel {
   private show(): void {
     const { compared } = this.session.comparison;
     if (!compared) return;
-    const words = strings.comparison;
+    const texts = strings.comparison;
     for (const [tick, { label }] of [[this.old, compared.old], [this.new, compared.new]] as const) {
       const file = tick.querySelector(".comparison-file");
       if (file) file.textContent = shortPlace(label);
-      tick.title = `${tick === this.old ? words.showOld : words.showNew}\n${label}`;
+      tick.title = `${tick === this.old ? texts.showOld : texts.showNew}\n${label}`;
     }
     const marks = marksIn([compared.new, compared.old]);
     this.legend.replaceChildren(
       ...marks.map((mark) => {
         const swatch = h("span", { class: "comparison-swatch" });
         swatch.style.background = MARK_COLORS[mark];
-        return h("li", { data: { mark } }, swatch, words.mark[mark]);
+        return h("li", { data: { mark } }, swatch, texts.mark[mark]);
       }),
     );
     const { items } = compared;
     this.element.classList.toggle("same", items.length === 0);
-    this.count.textContent = items.length === 0 ? words.same : words.count(items.length);
+    this.count.textContent = items.length === 0 ? texts.same : texts.count(items.length);
     const at = this.list.scrollTop;
     this.list.replaceChildren(...groupDifferences(items).map((group) => this.group(group)));
     this.list.scrollTop = at;
@@ -128,16 +128,16 @@ export class ComparisonPanel implements Panel {
   private group({ items, kind }: DifferenceGroup): HTMLElement {
     const [first] = items;
     if (!first) return h("div");
-    const words = strings.comparison;
+    const texts = strings.comparison;
     const { focus, comparison } = this.session;
     const element = comparison.elementOf(first);
-    const label = [icon(SUBJECT_ICONS[first.subject]), h("span", { class: "difference-kind" }, words.subjects[first.subject]), first.name] as const;
+    const label = [icon(SUBJECT_ICONS[first.subject]), h("span", { class: "difference-kind" }, texts.subjects[first.subject]), first.name] as const;
     const choose = (): void => {
       focus.select(element);
       this.look();
     };
     const header = element
-      ? button(words.select(first.name), choose, "difference-name", ...label)
+      ? button(texts.select(first.name), choose, "difference-name", ...label)
       : h("div", { class: "difference-name" }, ...label);
     const group = h(
       "div",
@@ -153,8 +153,8 @@ export class ComparisonPanel implements Panel {
   }
 
   private item(item: ComparedItem, choose: () => void): HTMLElement {
-    const words = strings.comparison;
-    const none = (text: string | null): string => text ?? words.nothing;
+    const texts = strings.comparison;
+    const none = (text: string | null): string => text ?? texts.nothing;
     const line =
       item.property === ""
         ? null

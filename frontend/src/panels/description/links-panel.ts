@@ -28,22 +28,22 @@ export class LinksPanel implements Panel {
   private flashing = new Set<string>();
 
   constructor(private readonly session: Session) {
-    const words = strings.description;
+    const texts = strings.description;
     this.tree.preserveIn(session.memory);
     this.search.type = "search";
-    this.search.placeholder = words.search;
-    this.search.setAttribute("aria-label", words.search);
+    this.search.placeholder = texts.search;
+    this.search.setAttribute("aria-label", texts.search);
     this.search.addEventListener("input", () => this.update());
     const bar = h(
       "div",
       { class: "toolbar" },
       this.count,
       h("span", { class: "spacer" }),
-      button(words.expandAll, () => this.fold(false), "tool bare", icon("expand")),
-      button(words.collapseAll, () => this.fold(true), "tool bare", icon("collapse")),
+      button(texts.expandAll, () => this.fold(false), "tool bare", icon("expand")),
+      button(texts.collapseAll, () => this.fold(true), "tool bare", icon("collapse")),
     );
     this.rows.element.setAttribute("role", "tree");
-    this.rows.element.setAttribute("aria-label", words.linksLabel);
+    this.rows.element.setAttribute("aria-label", texts.linksLabel);
     this.rows.element.addEventListener("keydown", (event) => this.onKeyDown(event));
     this.rows.element.addEventListener("pointerleave", () => session.focus.setHovered(null));
     this.element = h("div", { class: "panel" }, bar, this.search, this.empty, this.rows.element);

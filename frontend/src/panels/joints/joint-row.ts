@@ -133,9 +133,9 @@ export class JointRow {
   }
 
   private get unitName(): string {
-    const words = strings.joints;
-    if (this.joint.kind === "prismatic") return words.meters;
-    return this.angles.current === "deg" ? words.degrees : words.radians;
+    const texts = strings.joints;
+    if (this.joint.kind === "prismatic") return texts.meters;
+    return this.angles.current === "deg" ? texts.degrees : texts.radians;
   }
 
   /** The relation of a mimic joint to its leading joint: `2 × elbow + 0.1 rad`. */

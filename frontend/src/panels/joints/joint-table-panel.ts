@@ -54,10 +54,10 @@ export class JointTablePanel implements Panel {
   }
 
   private heading(column: Column): HTMLElement {
-    const words = strings.description.table;
+    const texts = strings.description.table;
     const mine = this.order?.column === column;
     const sign = mine ? (this.order?.descending ? " ▾" : " ▴") : "";
-    const cell = h("th", {}, button(words.hints[column], () => this.sortBy(column), "", words[column] + sign));
+    const cell = h("th", {}, button(texts.hints[column], () => this.sortBy(column), "", texts[column] + sign));
     cell.scope = "col";
     cell.setAttribute("aria-sort", mine ? (this.order?.descending ? "descending" : "ascending") : "none");
     return cell;

@@ -63,8 +63,8 @@ export class WorldCommands {
   }
 
   saveAs(): void {
-    const words = strings.modeling;
-    askName(words.saveAs, words.path, this.modeling.file ?? "", (path) => this.modeling.save(path));
+    const texts = strings.modeling;
+    askName(texts.saveAs, texts.path, this.modeling.file ?? "", (path) => this.modeling.save(path));
   }
 
   /** Binds the keys, with precedence over those of tools, views and the File menu while the world is modeled. */

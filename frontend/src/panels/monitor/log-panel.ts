@@ -26,14 +26,14 @@ export class LogPanel implements Panel {
   private nodes: string | null = null;
 
   constructor(private readonly state: LogState) {
-    const words = strings.monitor.log;
+    const texts = strings.monitor.log;
     this.list = new VirtualList<LogLine>(ROW_PX, (line) => this.row(line), () => this.showFollowing());
     this.list.element.setAttribute("role", "region");
-    this.list.element.setAttribute("aria-label", words.list);
+    this.list.element.setAttribute("aria-label", texts.list);
     this.list.element.addEventListener("keydown", (event) => this.onKeyDown(event));
-    this.pause = button(words.pauseHint, () => state.setPaused(!state.paused), "tool", strings.monitor.pause);
-    this.newest = button(words.newestHint, () => this.list.follow(), "tool", icon("follow"), words.newest);
-    const copy = button(words.copyHint, () => this.copy(copy), "tool", icon("copy"), words.copy);
+    this.pause = button(texts.pauseHint, () => state.setPaused(!state.paused), "tool", strings.monitor.pause);
+    this.newest = button(texts.newestHint, () => this.list.follow(), "tool", icon("follow"), texts.newest);
+    const copy = button(texts.copyHint, () => this.copy(copy), "tool", icon("copy"), texts.copy);
     this.node.addEventListener("change", () => state.setNode(this.node.value));
     const filters = h(
       "div",
@@ -48,13 +48,13 @@ export class LogPanel implements Panel {
       "div",
       { class: "toolbar" },
       this.pause,
-      button(words.clearHint, () => state.clear(), "tool", icon("clear"), strings.monitor.clear),
+      button(texts.clearHint, () => state.clear(), "tool", icon("clear"), strings.monitor.clear),
       copy,
       h("span", { class: "spacer" }),
       this.newest,
     );
     const head = h("div", { class: "log-row log-head" });
-    for (const text of [words.level, words.time, words.node, words.message, words.location]) head.append(h("span", {}, text));
+    for (const text of [texts.level, texts.time, texts.node, texts.message, texts.location]) head.append(h("span", {}, text));
     this.details.hidden = true;
     this.element = h("div", { class: "panel monitor log" }, bar, filters, head, this.list.element, this.details);
     state.changed.on(coalesced(() => this.show()));
@@ -95,18 +95,18 @@ export class LogPanel implements Panel {
   }
 
   private show(): void {
-    const words = strings.monitor.log;
+    const texts = strings.monitor.log;
     const { lines, shown, missed, paused } = this.state;
     this.list.show(shown);
-    const counted = words.shown(shown.length, lines.length);
-    this.count.textContent = missed > 0 ? `${counted}, ${words.missed(missed)}` : counted;
+    const counted = texts.shown(shown.length, lines.length);
+    this.count.textContent = missed > 0 ? `${counted}, ${texts.missed(missed)}` : counted;
     this.pause.replaceChildren(icon(paused ? "play" : "pause"), paused ? strings.monitor.resume : strings.monitor.pause);
     this.pause.classList.toggle("on", paused);
     const { nodes } = this.state;
     if (nodes.join("\n") === this.nodes) return;
     this.nodes = nodes.join("\n");
     const chosen = this.node.value;
-    this.node.replaceChildren(new Option(words.allNodes, ""), ...nodes.map((name) => new Option(name)));
+    this.node.replaceChildren(new Option(texts.allNodes, ""), ...nodes.map((name) => new Option(name)));
     this.node.value = nodes.includes(chosen) ? chosen : "";
   }
 

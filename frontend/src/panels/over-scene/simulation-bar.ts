@@ -26,13 +26,13 @@ export class SimulationBar {
     private readonly modeling: Modeling,
     commands: WorldCommands,
   ) {
-    const words = strings.simulation;
-    this.play = button(words.pause, () => simulation.control(simulation.paused ? "play" : "pause"), "scene-tool small", icon("pause"));
-    this.step = button(words.step, () => simulation.control("step"), "scene-tool small", icon("step"));
-    const reset = button(words.reset, () => simulation.control("reset"), "scene-tool small", icon("reset"));
-    const add = button(words.spawn, () => this.askSpawn(simulation.freePlace()), "scene-tool small", icon("plus"));
+    const texts = strings.simulation;
+    this.play = button(texts.pause, () => simulation.control(simulation.paused ? "play" : "pause"), "scene-tool small", icon("pause"));
+    this.step = button(texts.step, () => simulation.control("step"), "scene-tool small", icon("step"));
+    const reset = button(texts.reset, () => simulation.control("reset"), "scene-tool small", icon("reset"));
+    const add = button(texts.spawn, () => this.askSpawn(simulation.freePlace()), "scene-tool small", icon("plus"));
     this.modelButton = button(strings.modeling.begin, () => modeling.setActive(!modeling.active), "scene-tool small", icon("build"));
-    const bar = h("div", { class: "simulation-tools", role: "toolbar", aria: { label: words.label } }, this.play, this.step, reset, add, this.modelButton, this.factor, this.time);
+    const bar = h("div", { class: "simulation-tools", role: "toolbar", aria: { label: texts.label } }, this.play, this.step, reset, add, this.modelButton, this.factor, this.time);
     this.element = h("div", { class: "simulation-bar" }, bar, new ModelingBar(modeling, commands).element, this.notice);
     simulation.changed.on(() => this.show());
     modeling.changed.on(() => this.show());
@@ -43,9 +43,9 @@ export class SimulationBar {
 
   private show(): void {
     const { present, paused, time, factor } = this.simulation;
-    const words = strings.simulation;
+    const texts = strings.simulation;
     this.element.hidden = !present;
-    const label = paused ? words.play : words.pause;
+    const label = paused ? texts.play : texts.pause;
     if (this.play.title !== label) {
       this.play.title = label;
       this.play.setAttribute("aria-label", label);

@@ -52,17 +52,17 @@ export class TimelineBar {
     const { timeline } = session;
     this.timeline = timeline;
     this.recording = session.recording;
-    const words = strings.timeline;
-    this.play = button(words.play, () => timeline.play(!timeline.playing), "tool bare", icon("play"));
-    this.loop = button(words.loop, () => timeline.setLoop(!timeline.loop), "tool bare", icon("loop"));
-    this.live = button(words.live, () => timeline.goLive(), "timeline-live");
-    this.live.textContent = words.liveShort;
-    this.back = button(words.back, () => timeline.step(false), "tool bare", icon("stepBack"));
-    this.forward = button(words.forward, () => timeline.step(true), "tool bare", icon("step"));
+    const texts = strings.timeline;
+    this.play = button(texts.play, () => timeline.play(!timeline.playing), "tool bare", icon("play"));
+    this.loop = button(texts.loop, () => timeline.setLoop(!timeline.loop), "tool bare", icon("loop"));
+    this.live = button(texts.live, () => timeline.goLive(), "timeline-live");
+    this.live.textContent = texts.liveShort;
+    this.back = button(texts.back, () => timeline.step(false), "tool bare", icon("stepBack"));
+    this.forward = button(texts.forward, () => timeline.step(true), "tool bare", icon("step"));
     this.speed.append(...SPEEDS.map((speed) => new Option(`${speed}×`, String(speed))));
     this.speed.addEventListener("change", () => timeline.setSpeed(Number(this.speed.value)));
     this.steps.addEventListener("change", () => (timeline.stepTopic = this.steps.value));
-    this.track = h("div", { class: "timeline-track", role: "slider", tabIndex: 0, aria: { label: words.position } }, this.marks, this.markedPart, this.head);
+    this.track = h("div", { class: "timeline-track", role: "slider", tabIndex: 0, aria: { label: texts.position } }, this.marks, this.markedPart, this.head);
     this.track.addEventListener("pointerdown", (event) => this.drag(event));
     this.track.addEventListener("pointermove", (event) => {
       if (!this.track.hasPointerCapture(event.pointerId)) return;
@@ -72,7 +72,7 @@ export class TimelineBar {
     this.track.addEventListener("keydown", (event) => this.onKeyDown(event));
     this.element = h(
       "section",
-      { class: "timeline-bar", aria: { label: words.label } },
+      { class: "timeline-bar", aria: { label: texts.label } },
       this.back,
       this.play,
       this.forward,
@@ -96,7 +96,7 @@ export class TimelineBar {
 
   private show(): void {
     const { timeline, playing, speed, loop, problem } = this.timeline;
-    const words = strings.timeline;
+    const texts = strings.timeline;
     const minutes = timeline?.live ?? false;
     this.updateVisibility();
     this.element.classList.toggle("minutes", minutes);
@@ -104,9 +104,9 @@ export class TimelineBar {
     this.live.setAttribute("aria-pressed", String(this.timeline.live));
     this.forward.hidden = this.speed.hidden = minutes && this.timeline.live;
     this.loop.hidden = minutes;
-    this.track.setAttribute("aria-label", minutes ? words.minutes : words.position);
+    this.track.setAttribute("aria-label", minutes ? texts.minutes : texts.position);
     this.offerSteps();
-    const label = playing ? words.pause : words.play;
+    const label = playing ? texts.pause : texts.play;
     if (this.play.title !== label) {
       this.play.title = label;
       this.play.setAttribute("aria-label", label);

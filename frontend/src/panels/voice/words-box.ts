@@ -93,8 +93,8 @@ export class WordsBox {
   }
 
   private show(): void {
-    const { words } = this;
-    const all = words.all;
+    const { words: texts } = this;
+    const all = texts.all;
     const key = JSON.stringify(all.map(({ name }) => name));
     // Replace the rows only if words changed: a button that is held must stay in place.
     if (key !== this.shownNames) {
@@ -104,7 +104,7 @@ export class WordsBox {
     all.forEach((word, index) => this.update(this.list.children[index], word));
     this.showProblem();
     this.showHere();
-    this.file.textContent = words.file === "" ? "" : strings.voice.words.keptIn(words.file);
+    this.file.textContent = texts.file === "" ? "" : strings.voice.words.keptIn(texts.file);
   }
 
   private showProblem(): void {

@@ -91,21 +91,21 @@ export class Modeler {
 
   private showHint(): void {
     const { modeling, tools } = this.session;
-    const words = strings.modeling;
-    if (modeling.placing) tools.hint = modeling.placing.kind === "wall" ? words.wallHint : words.placeHint;
+    const texts = strings.modeling;
+    if (modeling.placing) tools.hint = modeling.placing.kind === "wall" ? texts.wallHint : texts.placeHint;
   }
 
   private openMenu(event: ToolEvent): void {
     const { modeling, sceneMenu } = this.session;
-    const words = strings.modeling;
+    const texts = strings.modeling;
     const name = this.entityAt(event.x, event.y);
     if (name === null) return;
     if (!modeling.selected.includes(name)) modeling.select([name]);
     const choices = [
-      { label: words.duplicate, run: () => modeling.duplicate() },
-      { label: words.remove, run: () => modeling.remove() },
-      ...(modeling.canGroup ? [{ label: words.group, run: () => modeling.group() }] : []),
-      ...(modeling.canUngroup ? [{ label: words.ungroup, run: () => modeling.ungroup() }] : []),
+      { label: texts.duplicate, run: () => modeling.duplicate() },
+      { label: texts.remove, run: () => modeling.remove() },
+      ...(modeling.canGroup ? [{ label: texts.group, run: () => modeling.group() }] : []),
+      ...(modeling.canUngroup ? [{ label: texts.ungroup, run: () => modeling.ungroup() }] : []),
     ];
     sceneMenu.emit({ x: event.x, y: event.y, choices });
   }
