@@ -72,7 +72,7 @@ export class Sidebar {
     const { displays } = this.session.displays;
     const robot = displays.find(({ id }) => id === this.display);
     const boxes = robot ? [this.rowBox(robot, "Visual Enabled", texts.visual), this.rowBox(robot, "Collision Enabled", texts.collision)] : [];
-    const others = displays.filter(({ id, isGroup, supported }) => id !== this.display && !isGroup && supported && !this.session.comparison.isOld(id));
+    const others = displays.filter(({ id, isGroup, isSupported }) => id !== this.display && !isGroup && isSupported && !this.session.comparison.isOld(id));
     return [...boxes, ...others.map((other) => this.displayBox(other))].filter((box) => box !== null);
   }
 
@@ -86,7 +86,7 @@ export class Sidebar {
 
   private displayBox(display: DisplayState): HTMLElement {
     const tick = tickBox(display.name, display.name, (ticked) => this.session.setProperty(display.enabledId, ticked));
-    tick.box.checked = display.checked;
+    tick.box.checked = display.isChecked;
     return tick;
   }
 
@@ -97,7 +97,7 @@ export class Sidebar {
       this.session.view.setClass(cls);
       this.session.view.update(values);
     };
-    const saved = this.session.view.saved.map(({ view }) => button(view.name, () => recall(view), "tool", view.name));
+    const saved = this.session.view.savedViews.map(({ view }) => button(view.name, () => recall(view), "tool", view.name));
     const reset = button(texts.startHint, () => this.actions.reset(), "tool", icon("reset"), texts.start);
     return [...sides, ...saved, reset];
   }

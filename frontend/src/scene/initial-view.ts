@@ -31,13 +31,13 @@ export function setInitialView(world: InitialViewWorld, view: ViewState, size: V
   if (!view.awaitsFit(world.hasRobots ? SHOWS_ROBOTS : SHOWS_WORLD)) return;
   const camera = world.cameraOfFile();
   if (camera) {
-    view.propose(orbitFromCamera(world, camera), SHOWS_ROBOTS, true);
+    view.proposeValues(orbitFromCamera(world, camera), SHOWS_ROBOTS, true);
     return;
   }
   const boundsByKind = world.boundsByKind();
   const [robots, all] = [spanOf(boundsByKind.robots), spanOf(boundsByKind.world)];
-  if (robots) view.propose(orbitAround(view.values, robots, size, (eye, place) => sees(world, eye, place)), SHOWS_ROBOTS, true);
-  else view.propose(all ? orbitOverview(view.values, all, size) : {}, SHOWS_WORLD, world.hasRobots);
+  if (robots) view.proposeValues(orbitAround(view.values, robots, size, (eye, place) => sees(world, eye, place)), SHOWS_ROBOTS, true);
+  else view.proposeValues(all ? orbitOverview(view.values, all, size) : {}, SHOWS_WORLD, world.hasRobots);
 }
 
 /** Returns the values of an Orbit view that looks like a camera of the world's file, without its roll. */

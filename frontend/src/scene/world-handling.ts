@@ -64,7 +64,7 @@ export class WorldHandling {
       return true;
     }
     const { simulation, modeling, tools } = this.session;
-    if (!simulation.present || modeling.active || (tools.current && !HANDLING_TOOLS.includes(tools.current.cls))) return false;
+    if (!simulation.isPresent || modeling.active || (tools.current && !HANDLING_TOOLS.includes(tools.current.cls))) return false;
     if (event.type === "down" && event.button === "left" && event.ctrl) return this.grab(event);
     if (event.type === "up" && event.button === "right" && event.click) this.openMenu(event);
     return false;
@@ -139,7 +139,7 @@ export class WorldHandling {
     if (found) {
       const model = modelOf(found.link);
       const frame = found.link.split("::").at(-1) ?? "";
-      if (frames.has(frames.row(frame))) choices.push({ label: texts.follow(frame), run: () => view.set("Target Frame", frame) });
+      if (frames.has(frames.rowOf(frame))) choices.push({ label: texts.follow(frame), run: () => view.set("Target Frame", frame) });
       choices.push({ label: texts.remove(model), run: () => simulation.remove(model) });
     }
     sceneMenu.emit({ x: event.x, y: event.y, choices });

@@ -32,7 +32,7 @@ export class FileCommands {
   }
 
   begin(): void {
-    this.ask((discard) => this.state.newFile(discard));
+    this.ask((discard) => this.state.createFile(discard));
   }
 
   open(path: string): void {

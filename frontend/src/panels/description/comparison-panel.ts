@@ -1,7 +1,7 @@
 import { button, coalesced, h } from "../../dom";
 import { icon, type IconName } from "../../icons";
 import type { ComparedItem, ComparedPlace } from "../../protocol";
-import { groupDifferences, MARK_COLORS, marksIn, type DifferenceGroup } from "../../state/comparison";
+import { groupDifferences, MARK_COLORS, usedMarks, type DifferenceGroup } from "../../state/comparison";
 import type { DisplayState } from "../../state/displays";
 import type { Session } from "../../state/session";
 import { strings } from "../../strings";
@@ -83,7 +83,7 @@ export class ComparisonPanel implements Panel {
       if (file) file.textContent = shortPlace(label);
       tick.title = `${tick === this.old ? texts.showOld : texts.showNew}\n${label}`;
     }
-    const marks = marksIn([compared.new, compared.old]);
+    const marks = usedMarks([compared.new, compared.old]);
     this.legend.replaceChildren(
       ...marks.map((mark) => {
         const swatch = h("span", { class: "comparison-swatch" });
@@ -105,7 +105,7 @@ export class ComparisonPanel implements Panel {
     for (const [tick, side] of [[this.old, "old"], [this.new, "new"]] as const) {
       const display = this.display(side);
       tick.box.disabled = display === undefined;
-      tick.box.checked = display?.enabled ?? false;
+      tick.box.checked = display?.isEnabled ?? false;
     }
     const alpha = this.display("old")?.rows.number(1, "Alpha") ?? 1;
     this.alpha.disabled = !this.old.box.checked;

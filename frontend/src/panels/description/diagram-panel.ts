@@ -99,9 +99,9 @@ export class DiagramPanel implements Panel {
     const edges = svg("g", { class: "edges" });
     const shapes = svg("g", {});
     for (const node of this.diagram.nodes) {
-      const { above } = node;
-      if (above) {
-        edges.append(svg("path", { d: edge(above, node), class: "edge" }), svg("path", { d: head(node), class: "edge-head" }));
+      const { parent } = node;
+      if (parent) {
+        edges.append(svg("path", { d: edge(parent, node), class: "edge" }), svg("path", { d: head(node), class: "edge-head" }));
       }
       const shape = this.node(node, model);
       this.nodes.set(key(node.element), shape);
@@ -150,7 +150,7 @@ export class DiagramPanel implements Panel {
     const { diagram } = this;
     if (!diagram || this.canvas.clientWidth === 0) return;
     const { current } = this.session.focus;
-    const node = (current && diagram.nodes.find(({ element }) => isSameElement(element, current))) ?? diagram.nodes.find(({ above }) => !above);
+    const node = (current && diagram.nodes.find(({ element }) => isSameElement(element, current))) ?? diagram.nodes.find(({ parent }) => !parent);
     this.panZoom.showLegibly(diagram.width, diagram.height, TEXT_PX, [node?.x ?? 0, node?.y ?? 0]);
   }
 

@@ -187,8 +187,8 @@ export class SourcePanel implements Panel {
     const display = this.model?.display ?? "";
     const { expanded, origin } = this.writtenPlaces();
     const texts = strings.description.source;
-    if (this.model) this.fill(this.expanded, this.session.description.text(display, EXPANDED), marks(expanded), "expanded");
-    const text = this.file === "" ? null : this.session.description.text(this.requested?.file === this.file ? (this.requested.display ?? display) : display, this.file);
+    if (this.model) this.fill(this.expanded, this.session.description.textOf(display, EXPANDED), marks(expanded), "expanded");
+    const text = this.file === "" ? null : this.session.description.textOf(this.requested?.file === this.file ? (this.requested.display ?? display) : display, this.file);
     const marked = origin?.file === this.file ? marks(origin) : [];
     if (this.requested?.file === this.file) marked.push({ from: this.requested.line, to: this.requested.line, look: this.requested.look });
     const highlights = [...marked, ...this.problems()];

@@ -81,10 +81,10 @@ export class DisplayCommands {
     const { session } = this;
     return [
       {
-        label: display.checked ? texts.disable : texts.enable,
+        label: display.isChecked ? texts.disable : texts.enable,
         icon: "check",
         run: () => {
-          for (const each of this.all()) session.setProperty(each.enabledId, !display.checked);
+          for (const each of this.all()) session.setProperty(each.enabledId, !display.isChecked);
         },
       },
       { label: texts.addHint, icon: "add", keys: keyText(SHORTCUTS.add), separate: true, run: () => this.add() },

@@ -196,17 +196,17 @@ export class DisplaysPanel implements Panel {
 
   private selectLink(key: string): void {
     const found = linkOfKey(this.session, key);
-    const { selected } = this.session.selection;
+    const { selectedLink } = this.session.selection;
     // Revealing the row of a selected link must not clear the selection of other links.
-    if (found && selected?.display === found.display.id && selected.link.name === found.link) return;
+    if (found && selectedLink?.display === found.display.id && selectedLink.link.name === found.link) return;
     const link = found && this.session.robots.get(found.display.id)?.links.find((each) => each.name === found.link);
     if (found && link) this.session.selection.select({ display: found.display.id, link });
   }
 
   private showSelection(): void {
-    const { selected } = this.session.selection;
-    const display = selected && this.session.displays.find(selected.display);
-    const path = display && linkRowPath(display, this.session, selected.link.name);
+    const { selectedLink } = this.session.selection;
+    const display = selectedLink && this.session.displays.find(selectedLink.display);
+    const path = display && linkRowPath(display, this.session, selectedLink.link.name);
     if (path) this.tree.reveal(path);
   }
 }

@@ -1,7 +1,7 @@
 import { button, coalesced, h } from "../../dom";
 import type { JointDetails } from "../../protocol";
 import type { DescriptionModel } from "../../state/description-model";
-import { cellTexts, COLUMNS, sortJoints, type Column } from "../../state/joint-table";
+import { formatJointCells, COLUMNS, sortJoints, type Column } from "../../state/joint-table";
 import type { Session } from "../../state/session";
 import { strings } from "../../strings";
 import { UnitSwitch } from "../../widgets/unit-switch";
@@ -64,7 +64,7 @@ export class JointTablePanel implements Panel {
   }
 
   private row(joint: JointDetails): HTMLElement {
-    const texts = cellTexts(joint, this.session.angles, strings.description);
+    const texts = formatJointCells(joint, this.session.angles, strings.description);
     const row = h(
       "tr",
       { tabIndex: 0, data: { joint: joint.name } },

@@ -1,6 +1,6 @@
 import { button, h } from "../../dom";
 import { icon } from "../../icons";
-import { fromSrdf, toSrdf, matchesPose, type NamedPose } from "../../state/named-poses";
+import { readSrdf, toSrdf, matchesPose, type NamedPose } from "../../state/named-poses";
 import type { Session } from "../../state/session";
 import { strings } from "../../strings";
 import { openMenu } from "../../widgets/menu";
@@ -104,7 +104,7 @@ export class PoseBar {
   private async importFile(): Promise<void> {
     const file = this.picker.files?.[0];
     if (!file) return;
-    const poses = fromSrdf(await file.text());
+    const poses = readSrdf(await file.text());
     this.picker.value = "";
     this.notice.hidden = poses.length > 0;
     this.notice.textContent = strings.description.poses.nothingFound;

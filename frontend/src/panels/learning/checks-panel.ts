@@ -49,7 +49,7 @@ export class ChecksPanel implements Panel {
     this.element.classList.toggle("passed", state.isPassed);
     this.offer.hidden = state.missingCount === 0;
     this.offerText.textContent = strings.learning.missingSteps(state.missingCount);
-    this.next.hidden = !state.isPassed || state.neighbor(1) === undefined;
+    this.next.hidden = !state.isPassed || state.stepAt(1) === undefined;
     this.list.replaceChildren(...(results?.checks ?? []).map((check) => row(check)));
   }
 

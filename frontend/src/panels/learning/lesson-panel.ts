@@ -73,8 +73,8 @@ export class LessonPanel implements Panel {
     const texts = strings.learning;
     const passedCount = state.steps.filter(({ is_passed: isPassed }) => isPassed).length;
     this.place.replaceChildren(`${localText(step.lesson)} · `, h("span", {}, texts.progress(passedCount, state.steps.length)));
-    this.back.disabled = state.neighbor(-1) === undefined;
-    this.next.disabled = state.neighbor(1) === undefined;
+    this.back.disabled = state.stepAt(-1) === undefined;
+    this.next.disabled = state.stepAt(1) === undefined;
     this.next.classList.toggle("primary", state.isPassed);
     this.hint.hidden = step.hint_count === 0;
     this.hint.disabled = step.hints.length >= step.hint_count;

@@ -68,7 +68,7 @@ export class DiagnosticsBanner {
   }
 
   private get imageDisplays(): readonly DisplayState[] {
-    return this.session.displays.displays.filter(({ cls, enabled }) => enabled && IMAGE_DISPLAYS.test(cls));
+    return this.session.displays.displays.filter(({ cls, isEnabled }) => isEnabled && IMAGE_DISPLAYS.test(cls));
   }
 
   private switchOffImages(): void {

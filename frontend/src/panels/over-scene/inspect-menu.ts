@@ -71,7 +71,7 @@ export class InspectMenu {
     this.depth.min = "0";
     this.depth.addEventListener("input", () => {
       const level = Number(this.depth.value);
-      inspect.deepest = level >= Number(this.depth.max) ? null : level;
+      inspect.maxDepth = level >= Number(this.depth.max) ? null : level;
     });
     return h("label", { class: "inspect-depth" }, strings.description.inspect.depth, this.depth, this.depthText);
   }
@@ -91,10 +91,10 @@ export class InspectMenu {
     const model = currentModel(this.session);
     for (const [what, box] of this.boxes) box.checked = inspect.current[what];
     this.open.classList.toggle("on", inspect.isActive);
-    const deepest = model?.deepest ?? 0;
+    const deepest = model?.maxDepth ?? 0;
     this.depth.parentElement?.toggleAttribute("hidden", !inspect.current.frames);
     this.depth.max = String(deepest);
-    this.depth.value = String(inspect.deepest ?? deepest);
+    this.depth.value = String(inspect.maxDepth ?? deepest);
     this.depthText.textContent = this.depth.value;
     this.scale.value = String(Math.log2(inspect.scale));
     for (const slider of [this.depth, this.scale]) {

@@ -28,16 +28,16 @@ export class SelectionCard {
   }
 
   private update(): void {
-    const { selected } = this.session.selection;
+    const { selectedLink } = this.session.selection;
     const wasHidden = this.element.hidden;
     // While the link is edited, the Editing panel shows it, and its handles need the space.
-    this.element.hidden = !selected || this.session.editing.active;
-    if (!selected || this.session.editing.active) {
+    this.element.hidden = !selectedLink || this.session.editing.active;
+    if (!selectedLink || this.session.editing.active) {
       if (!wasHidden && !this.folded) this.column.changed();
       return;
     }
     if (wasHidden) this.folded = this.column.isOverRobots;
-    const { link } = selected;
+    const { link } = selectedLink;
     const texts = strings.selection;
     const clear = button(texts.clear, () => this.session.selection.select(null), "tool bare", icon("close"));
     const edit = this.edit && button(strings.editing.editHint, this.edit, "tool bare edit-link", icon("handles"));
@@ -47,7 +47,7 @@ export class SelectionCard {
       place(link, (file, line) => this.session.description.placeRequested.emit({ file, line })),
       ...trail(link),
     );
-    if (link.place) this.session.connection.send({ type: "ask_provenance", display: selected.display, link: link.name });
+    if (link.place) this.session.connection.send({ type: "ask_provenance", display: selectedLink.display, link: link.name });
   }
 
   /** Returns the button that folds the card to the link's name, or unfolds it. */
@@ -69,7 +69,7 @@ export class SelectionCard {
 
   /** Replaces the plain trail by the calls and values, which the server sends a moment later. */
   private show(provenance: LinkProvenance): void {
-    const selected = this.session.selection.selected;
+    const selected = this.session.selection.selectedLink;
     if (selected?.display !== provenance.display || selected.link.name !== provenance.link) return;
     for (const old of this.element.querySelectorAll(".trail, .provenance")) old.remove();
     const [, ...lines] = provenance.lines; // the first is the place, which the card shows already

@@ -27,9 +27,9 @@ export class SimulationBar {
     commands: WorldCommands,
   ) {
     const texts = strings.simulation;
-    this.play = button(texts.pause, () => simulation.control(simulation.paused ? "play" : "pause"), "scene-tool small", icon("pause"));
-    this.step = button(texts.step, () => simulation.control("step"), "scene-tool small", icon("step"));
-    const reset = button(texts.reset, () => simulation.control("reset"), "scene-tool small", icon("reset"));
+    this.play = button(texts.pause, () => simulation.sendControl(simulation.isPaused ? "play" : "pause"), "scene-tool small", icon("pause"));
+    this.step = button(texts.step, () => simulation.sendControl("step"), "scene-tool small", icon("step"));
+    const reset = button(texts.reset, () => simulation.sendControl("reset"), "scene-tool small", icon("reset"));
     const add = button(texts.spawn, () => this.askSpawn(simulation.freePlace()), "scene-tool small", icon("plus"));
     this.modelButton = button(strings.modeling.begin, () => modeling.setActive(!modeling.active), "scene-tool small", icon("build"));
     const bar = h("div", { class: "simulation-tools", role: "toolbar", aria: { label: texts.label } }, this.play, this.step, reset, add, this.modelButton, this.factor, this.time);
@@ -42,16 +42,16 @@ export class SimulationBar {
   }
 
   private show(): void {
-    const { present, paused, time, factor } = this.simulation;
+    const { isPresent, isPaused, time, factor } = this.simulation;
     const texts = strings.simulation;
-    this.element.hidden = !present;
-    const label = paused ? texts.play : texts.pause;
+    this.element.hidden = !isPresent;
+    const label = isPaused ? texts.play : texts.pause;
     if (this.play.title !== label) {
       this.play.title = label;
       this.play.setAttribute("aria-label", label);
-      this.play.replaceChildren(icon(paused ? "play" : "pause"));
+      this.play.replaceChildren(icon(isPaused ? "play" : "pause"));
     }
-    this.step.disabled = !paused;
+    this.step.disabled = !isPaused;
     this.showModeling();
     this.factor.textContent = factor === null ? "–" : `${factor.toFixed(2)}×`;
     this.time.textContent = time === null ? "–" : `${time.toFixed(1)} s`;

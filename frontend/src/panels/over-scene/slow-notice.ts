@@ -29,11 +29,11 @@ export class SlowNotice {
 
   private update(): void {
     const { slowConnection, slowness, drawingPace } = this.session;
-    const { reduced } = slowConnection;
+    const { reduced: reducedDisplays } = slowConnection;
     const texts = strings.sharing;
-    const cause = causeOf(slowness.cause, this.slowPageNotice === "now", reduced.length);
-    this.element.hidden = reduced.length === 0 && this.slowPageNotice !== "now";
-    const lines = reduced.map((each) => h("div", {}, h("b", {}, this.name(each)), ` ${reductionText(each)}`));
+    const cause = causeOf(slowness.cause, this.slowPageNotice === "now", reducedDisplays.length);
+    this.element.hidden = reducedDisplays.length === 0 && this.slowPageNotice !== "now";
+    const lines = reducedDisplays.map((each) => h("div", {}, h("b", {}, this.name(each)), ` ${reductionText(each)}`));
     if (this.slowPageNotice === "now" && drawingPace.software !== null) lines.push(h("div", {}, texts.software(drawingPace.software)));
     if (this.slowPageNotice === "now" && this.isLitAutomatically) lines.push(h("div", {}, texts.plainLight));
     this.element.replaceChildren(h("strong", {}, texts.slow[cause]), h("div", {}, texts.slowHints[cause]), ...lines);

@@ -62,11 +62,11 @@ export class Toolbar {
     const entry = TOOLS.get(tool.cls);
     const name = toolName(tool);
     const texts = strings.tools;
-    const label = tool.supported && entry ? texts.withKey(name, entry.key) : texts.unknown(tool.cls);
+    const label = tool.isSupported && entry ? texts.withKey(name, entry.key) : texts.unknown(tool.cls);
     const sign = icon(entry?.icon ?? "unknown");
     const toolButton = button(label, () => this.tools.choose(tool), "scene-tool", sign, h("span", { class: "tool-name" }, name));
     toolButton.setAttribute("aria-label", name);
-    toolButton.disabled = !tool.supported;
+    toolButton.disabled = !tool.isSupported;
     if (entry) toolButton.setAttribute("aria-keyshortcuts", entry.key);
     return toolButton;
   }

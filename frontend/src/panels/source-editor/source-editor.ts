@@ -106,7 +106,7 @@ export class SourceEditor implements Documents {
     this.changed.on(coalesced(() => this.refresh()));
     connection.on("description_changed", () => {
       if (this.live.outcome !== null) return; // the language server has the unsaved texts
-      const shownFiles = session.description.of(this.shownDisplay)?.description.files ?? [];
+      const shownFiles = session.description.modelOf(this.shownDisplay)?.description.files ?? [];
       this.service.filesChanged(this.open.filter(({ path }) => shownFiles.includes(path)).map(({ uri }) => uri));
     });
     // a course checks its step again when programs, such as those in the terminal, changed files
@@ -174,7 +174,7 @@ export class SourceEditor implements Documents {
 
   isShownInScene(path: string): boolean {
     const { description, robots, diagnostics } = this.session;
-    return diagnostics.some(({ file }) => file === path) || [...robots.keys()].some((display) => description.of(display)?.description.files.includes(path) === true);
+    return diagnostics.some(({ file }) => file === path) || [...robots.keys()].some((display) => description.modelOf(display)?.description.files.includes(path) === true);
   }
 
   /** Applies an edit that was made in the scene to the unsaved text. */

@@ -124,7 +124,7 @@ export class TerminalDeck {
   private update(): void {
     const { items } = this.state;
     this.discard((id) => this.state.find(id) === undefined);
-    if (this.requested !== null && this.state.whyNot !== "") this.requested = null;
+    if (this.requested !== null && this.state.unavailableReason !== "") this.requested = null;
     if (this.requested === 0) {
       const opened = items.findLast(({ id, shown }) => shown === "here" && id !== this.current);
       if (opened) this.choose(opened.id);
@@ -133,7 +133,7 @@ export class TerminalDeck {
     this.showTabs();
     this.showNotice();
     if (!this.isVisible || document.hidden) return;
-    if (this.current === null && this.state.whyNot === "") this.openNew();
+    if (this.current === null && this.state.unavailableReason === "") this.openNew();
     this.showScreen();
     if (this.item?.shown === "nowhere" && this.requested !== this.current) this.request();
   }
@@ -228,7 +228,7 @@ export class TerminalDeck {
   private showNotice(): void {
     const texts = strings.terminal;
     const { item } = this;
-    let [text, action] = [this.state.isConnected ? this.state.whyNot : texts.disconnected, ""];
+    let [text, action] = [this.state.isConnected ? this.state.unavailableReason : texts.disconnected, ""];
     if (text === "" && item?.shown === "elsewhere") [text, action] = [texts.elsewhere, texts.showHere];
     else if (text === "" && item && item.status !== null) [text, action] = [texts.endedWith(item.status), texts.restart];
     else if (text === "" && this.lostInput === this.current && item) text = texts.inputLost;

@@ -22,17 +22,17 @@ export class RecordButton {
     this.button = button(strings.recording.record, () => this.click(), "timeline-live timeline-record", "");
     this.element = h("span", { class: "timeline-recorder" }, this.problem, this.button);
     recording.changed.on(() => this.show());
-    recording.made.on((file) => this.showFile(file));
+    recording.finished.on((file) => this.showFile(file));
     recording.refused.on((why) => showNotice(strings.recording.refused, why));
     this.show();
   }
 
   private show(): void {
-    const { isRecording, length, size, saved, problem, path, possible } = this.session.recording;
+    const { isRecording, length, size, savedBytes, problem, path, isPossible } = this.session.recording;
     const texts = strings.recording;
-    this.element.hidden = !possible;
+    this.element.hidden = !isPossible;
     this.button.classList.toggle("on", isRecording);
-    const text = isRecording ? amountText(length, size) : saved === null ? texts.record : texts.saving(Math.floor(100 * saved));
+    const text = isRecording ? amountText(length, size) : savedBytes === null ? texts.record : texts.saving(Math.floor(100 * savedBytes));
     if (this.button.textContent !== text) this.button.textContent = text;
     const label = isRecording ? texts.stopHint(path) : texts.recordHint;
     this.button.title = label;
@@ -53,7 +53,7 @@ export class RecordButton {
     const { recording, timeline } = this.session;
     const { extent, mark } = timeline;
     const texts = strings.recording;
-    const saving = recording.saved !== null;
+    const saving = recording.savedBytes !== null;
     const minutes: MenuEntry[] = [
       {
         label: texts.saveMinutes(extent ? lengthText(extent.end - extent.start) : ""),

@@ -31,7 +31,7 @@ export class TimePanel implements Panel {
     close: () => void,
   ) {
     const texts = strings.time;
-    this.pause = button(texts.pauseHint, () => time.set({ paused: !time.paused }), "tool", icon("pause"), texts.pause);
+    this.pause = button(texts.pauseHint, () => time.set({ paused: !time.isPaused }), "tool", icon("pause"), texts.pause);
     this.mode.append(...MODES.map((mode) => new Option(texts.modes[mode], mode)));
     this.mode.setAttribute("aria-label", texts.sync);
     this.source.setAttribute("aria-label", texts.source);
@@ -60,9 +60,9 @@ export class TimePanel implements Panel {
   }
 
   private update(): void {
-    const { paused, mode, source, sources } = this.time;
-    this.pause.setAttribute("aria-pressed", String(paused));
-    this.pause.classList.toggle("active", paused);
+    const { isPaused, mode, source, sources } = this.time;
+    this.pause.setAttribute("aria-pressed", String(isPaused));
+    this.pause.classList.toggle("active", isPaused);
     this.mode.value = mode;
     const names = source === "" || sources.includes(source) ? sources : [...sources, source];
     this.source.replaceChildren(...["", ...names].map((name) => new Option(name)));
@@ -72,7 +72,7 @@ export class TimePanel implements Panel {
   }
 
   private tick(): void {
-    const times = document.hidden ? null : this.time.times();
+    const times = document.hidden ? null : this.time.currentTimes();
     if (!times) return;
     for (const { name, output } of this.figures) {
       const text = times[name].toFixed(2);

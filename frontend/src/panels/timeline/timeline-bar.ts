@@ -53,8 +53,8 @@ export class TimelineBar {
     this.timeline = timeline;
     this.recording = session.recording;
     const texts = strings.timeline;
-    this.play = button(texts.play, () => timeline.play(!timeline.playing), "tool bare", icon("play"));
-    this.loop = button(texts.loop, () => timeline.setLoop(!timeline.loop), "tool bare", icon("loop"));
+    this.play = button(texts.play, () => timeline.play(!timeline.isPlaying), "tool bare", icon("play"));
+    this.loop = button(texts.loop, () => timeline.setLoop(!timeline.isLooping), "tool bare", icon("loop"));
     this.live = button(texts.live, () => timeline.goLive(), "timeline-live");
     this.live.textContent = texts.liveShort;
     this.back = button(texts.back, () => timeline.step(false), "tool bare", icon("stepBack"));
@@ -95,25 +95,25 @@ export class TimelineBar {
   }
 
   private show(): void {
-    const { timeline, playing, speed, loop, problem } = this.timeline;
+    const { timeline, isPlaying, speed, isLooping, problem } = this.timeline;
     const texts = strings.timeline;
     const minutes = timeline?.live ?? false;
     this.updateVisibility();
     this.element.classList.toggle("minutes", minutes);
     this.live.hidden = !minutes;
-    this.live.setAttribute("aria-pressed", String(this.timeline.live));
-    this.forward.hidden = this.speed.hidden = minutes && this.timeline.live;
+    this.live.setAttribute("aria-pressed", String(this.timeline.isLive));
+    this.forward.hidden = this.speed.hidden = minutes && this.timeline.isLive;
     this.loop.hidden = minutes;
     this.track.setAttribute("aria-label", minutes ? texts.minutes : texts.position);
     this.offerSteps();
-    const label = playing ? texts.pause : texts.play;
+    const label = isPlaying ? texts.pause : texts.play;
     if (this.play.title !== label) {
       this.play.title = label;
       this.play.setAttribute("aria-label", label);
-      this.play.replaceChildren(icon(playing ? "pause" : "play"));
+      this.play.replaceChildren(icon(isPlaying ? "pause" : "play"));
     }
-    this.loop.setAttribute("aria-pressed", String(loop));
-    this.loop.classList.toggle("on", loop);
+    this.loop.setAttribute("aria-pressed", String(isLooping));
+    this.loop.classList.toggle("on", isLooping);
     this.speed.value = String(speed);
     this.problem.textContent = problem;
     this.problem.title = problem;
@@ -132,20 +132,20 @@ export class TimelineBar {
 
   private updateVisibility(): void {
     const without = this.timeline.timeline === null;
-    this.element.hidden = without && !this.recording.possible;
+    this.element.hidden = without && !this.recording.isPossible;
     this.element.classList.toggle("recorder-only", without);
   }
 
   private showPosition(): void {
-    const { timeline, position, live, extent } = this.timeline;
+    const { timeline, position, isLive, extent } = this.timeline;
     if (!timeline) return;
     const { start, end } = timeline;
     const part = end > start ? Math.min(1, Math.max(0, (position - start) / (end - start))) : 1;
     this.head.style.left = `${(part * 100).toFixed(3)}%`;
     // The age cannot identify the displayed moment, because it keeps growing while time is paused.
-    const passed = extent ? (live ? extentText(extent) : momentText(position)) : elapsedText(position - start, end - start);
+    const passed = extent ? (isLive ? extentText(extent) : momentText(position)) : elapsedText(position - start, end - start);
     this.time.textContent = passed;
-    this.time.title = extent ? `${clockText(position)}${live ? "" : ` ${agoText(end - position)}`}\n${extentTip(extent)}` : clockText(position);
+    this.time.title = extent ? `${clockText(position)}${isLive ? "" : ` ${agoText(end - position)}`}\n${extentTip(extent)}` : clockText(position);
     this.showMark(start, end);
     this.track.setAttribute("aria-valuemin", "0");
     this.track.setAttribute("aria-valuemax", String(end - start));
@@ -202,7 +202,7 @@ export class TimelineBar {
       const { target } = event;
       if (event.defaultPrevented || event.ctrlKey || event.metaKey || event.altKey || !this.timeline.timeline) return;
       if (!(target instanceof Element) || target.closest(TAKES_LETTERS)) return;
-      if (event.key === " " && !target.closest("button, input, summary, a")) this.timeline.play(!this.timeline.playing);
+      if (event.key === " " && !target.closest("button, input, summary, a")) this.timeline.play(!this.timeline.isPlaying);
       else if (event.key === "ArrowLeft" && this.isFree(target)) this.timeline.step(false);
       else if (event.key === "ArrowRight" && this.isFree(target)) this.timeline.step(true);
       else if (event.key === "[" && this.timeline.timeline.live) this.timeline.markHere("start");
@@ -222,7 +222,7 @@ export class TimelineBar {
         const forward = event.key === "ArrowRight";
         if (!forward && event.key !== "ArrowLeft") return;
         if (event.shiftKey || event.ctrlKey || event.metaKey || event.altKey || !this.pressed) return;
-        if (!(event.target instanceof HTMLCanvasElement) || !this.timeline.timeline || this.timeline.live) return;
+        if (!(event.target instanceof HTMLCanvasElement) || !this.timeline.timeline || this.timeline.isLive) return;
         this.timeline.step(forward);
         event.preventDefault();
         event.stopPropagation();

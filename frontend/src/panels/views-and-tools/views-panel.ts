@@ -75,7 +75,7 @@ export class ViewsPanel implements Panel {
       tree.refresh();
     });
     view.listsChanged.on(() => {
-      if (!view.saved.some((each) => each.id === this.chosen)) this.chosen = null;
+      if (!view.savedViews.some((each) => each.id === this.chosen)) this.chosen = null;
       this.update();
       tree.refresh();
     });
@@ -106,7 +106,7 @@ export class ViewsPanel implements Panel {
         expanded: true,
         children: () => rows(CURRENT, view.properties, current.values, set),
       },
-      ...view.saved.map(({ id, view: saved }): TreeItem => ({
+      ...view.savedViews.map(({ id, view: saved }): TreeItem => ({
         key: id,
         name: saved.name,
         kind: "group",
@@ -133,7 +133,7 @@ export class ViewsPanel implements Panel {
   }
 
   private startRename(): void {
-    const saved = this.view.saved.find((each) => each.id === this.chosen);
+    const saved = this.view.savedViews.find((each) => each.id === this.chosen);
     if (!saved) return;
     this.name.hidden = false;
     this.name.value = saved.view.name;

@@ -29,7 +29,7 @@ export class AxesDrawing implements Drawing {
     const { frames, displays } = this.context.session;
     const isInFixedFrame = this.frame === FIXED_FRAME || this.frame === displays.fixedFrame;
     if (isInFixedFrame) this.root.matrix.identity();
-    this.mesh.visible = isInFixedFrame || framePose(frames, frames.row(this.frame), this.root.matrix);
+    this.mesh.visible = isInFixedFrame || framePose(frames, frames.rowOf(this.frame), this.root.matrix);
     this.root.matrixWorldNeedsUpdate = true;
   }
 

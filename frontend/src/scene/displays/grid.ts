@@ -66,7 +66,7 @@ export class GridDrawing implements Drawing {
       this.root.matrix.identity();
     } else {
       // Without a transform, RViz leaves the grid in place.
-      framePose(frames, frames.row(this.frame), this.root.matrix);
+      framePose(frames, frames.rowOf(this.frame), this.root.matrix);
     }
     this.root.matrixWorldNeedsUpdate = true;
   }

@@ -190,7 +190,7 @@ export class MarkersDrawing implements Drawing {
     }
     const { frames, displays } = this.context.session;
     if (marker.frame === displays.fixedFrame) pose.identity();
-    else if (!framePose(frames, frames.row(marker.frame), pose)) return false;
+    else if (!framePose(frames, frames.rowOf(marker.frame), pose)) return false;
     pose.multiply(localPose);
     return true;
   }

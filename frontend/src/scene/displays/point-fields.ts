@@ -10,7 +10,7 @@ export class PointFieldStore {
     this.unsubscribe = context.session.connection.on("point_fields", (answer) => {
       if (answer.display !== context.display.id) return;
       this.fieldsByPoint.set(`${answer.key}:${answer.index}`, answer.fields);
-      context.session.selection.changed.emit(context.session.selection.selected);
+      context.session.selection.changed.emit(context.session.selection.selectedLink);
     });
   }
 

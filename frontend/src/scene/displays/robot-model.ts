@@ -106,7 +106,7 @@ export class RobotModelDrawing implements Drawing {
     this.isStyleStale = false;
     const { frames } = this.context.session;
     const computePose = (link: LinkScene, matrix: Matrix4): boolean => {
-      const hasPose = framePose(frames, frames.row(link.frame), matrix);
+      const hasPose = framePose(frames, frames.rowOf(link.frame), matrix);
       if (hasPose) this.displacement?.link?.(link.name, matrix);
       return hasPose;
     };
@@ -143,7 +143,7 @@ export class RobotModelDrawing implements Drawing {
     const { session, display } = this.context;
     const link = session.robots.get(display.id)?.links.find((scene) => scene.name === name);
     const pose = new Matrix4();
-    if (!link || !framePose(session.frames, session.frames.row(link.frame), pose)) return null;
+    if (!link || !framePose(session.frames, session.frames.rowOf(link.frame), pose)) return null;
     return new Vector3().setFromMatrixPosition(pose);
   }
 
@@ -165,7 +165,7 @@ export class RobotModelDrawing implements Drawing {
     const { display, session } = this.context;
     const { comparison, displays, frames, robots } = session;
     const newDisplay = comparison.isOld(display.id) ? (comparison.compared?.new.display ?? "") : "";
-    if (displays.find(newDisplay)?.enabled !== true) return undefined;
+    if (displays.find(newDisplay)?.isEnabled !== true) return undefined;
     const frameOf = new Map(robots.get(newDisplay)?.links.map(({ name, frame }) => [name, frame]));
     return ({ name, frame }) => {
       const twin = comparison.twinOf(display.id, name);

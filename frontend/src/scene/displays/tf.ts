@@ -104,13 +104,13 @@ export class TfDrawing implements Drawing {
   positionOf(name: string): Vector3 | null {
     const pose = new Matrix4();
     const { frames } = this.context.session;
-    return framePose(frames, frames.row(name), pose) ? new Vector3().setFromMatrixPosition(pose) : null;
+    return framePose(frames, frames.rowOf(name), pose) ? new Vector3().setFromMatrixPosition(pose) : null;
   }
 
   /** Returns a frame as RViz's Selection panel shows it. */
   describe(name: string): DescriptionRow | null {
     const { frames } = this.context.session;
-    const row = frames.row(name);
+    const row = frames.rowOf(name);
     const pose = new Matrix4();
     if (!framePose(frames, row, pose)) return null;
     const parent = frames.names[frames.parents[row] ?? -1] ?? "";
@@ -172,7 +172,7 @@ export class TfDrawing implements Drawing {
 
   /** Requests a frame only if the fading of some frame changed by a step. */
   private onAgesChanged(): void {
-    if (this.context.display.enabled && this.ageKey() !== this.drawnAgeKey) this.context.invalidate();
+    if (this.context.display.isEnabled && this.ageKey() !== this.drawnAgeKey) this.context.invalidate();
   }
 
   private ageKey(): string {

@@ -133,7 +133,7 @@ export class PartHandles {
     const link = part.part === "joint" ? joint?.parent : part.part === "axis" ? joint?.child : part.name;
     const frame = robot?.links.find((each) => each.name === link)?.frame;
     const pose = new Matrix4();
-    return frame !== undefined && framePose(this.session.frames, this.session.frames.row(frame), pose) ? pose : null;
+    return frame !== undefined && framePose(this.session.frames, this.session.frames.rowOf(frame), pose) ? pose : null;
   }
 
   private drag(event: ToolEvent): void {
